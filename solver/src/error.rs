@@ -1,0 +1,40 @@
+//! What can go wrong: a scene that cannot be modelled, or a run that breaks down.
+
+use thiserror::Error;
+
+/// One thing wrong with a scene, found before anything runs.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{key}: {message}")]
+pub struct SceneError {
+    /// Path of the key, as in the scene file: `material.glass.poisson_ratio`, `body.0.crack.0.from`.
+    pub key: String,
+    /// What is wrong.
+    pub message: String,
+    /// What would be right.
+    pub remedy: String,
+}
+
+/// Something in a scene that is legal but probably not meant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneWarning {
+    /// Path of the key.
+    pub key: String,
+    /// What is suspicious, and what to do about it.
+    pub message: String,
+}
+
+/// A run that broke down.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("the run broke down at step {step}, t = {time:.6e} s, near ({:.6e}, {:.6e}) m: {what}; likely cause: {cause}", place[0], place[1])]
+pub struct Breakdown {
+    /// Step at which it was found.
+    pub step: usize,
+    /// Time, s.
+    pub time: f64,
+    /// Place, m.
+    pub place: [f64; 2],
+    /// What happened.
+    pub what: String,
+    /// Likely cause and remedy.
+    pub cause: String,
+}

@@ -1,0 +1,3 @@
+//! placeholder tour
+pub mod error;
+pub mod scene;
