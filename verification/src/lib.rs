@@ -1,1 +1,3 @@
-//! placeholder
+//! Cases, checks and records that verify the fisura solver.
+pub mod history;
+pub mod record;
