@@ -1,3 +1,4 @@
 //! placeholder tour
 pub mod error;
 pub mod scene;
+pub mod validate;

@@ -1,0 +1,93 @@
+//! What is wrong with a scene, by key, before anything runs.
+//!
+//! Errors are what cannot be modelled or cannot be meant; warnings are legal but suspicious. Each names the key path of
+//! the scene file (`body.0.crack.0.from`) and says what would be right. Units are SI throughout.
+
+mod analysis;
+mod body;
+mod geometry;
+mod material;
+mod mesh;
+
+use std::fmt::Display;
+
+use crate::error::{SceneError, SceneWarning};
+use crate::scene::{Frame, Kinematics, Mass, Scene, Transfer};
+
+/// Checks a scene; the warnings, if it can be modelled.
+///
+/// # Errors
+/// Everything that is wrong, in the order of the scene's tables.
+pub fn validate(scene: &Scene) -> Result<Vec<SceneWarning>, Vec<SceneError>> {
+    let mut findings = Findings::default();
+    mesh::check(&scene.mesh, &mut findings);
+    let mesh_is_sound = findings.errors.is_empty();
+    analysis::check(scene, &mut findings);
+    material::check(scene, &mut findings);
+    body::check(scene, mesh_is_sound, &mut findings);
+    unsupported(scene, &mut findings);
+    if findings.errors.is_empty() { Ok(findings.warnings) } else { Err(findings.errors) }
+}
+
+/// What the checks found so far.
+#[derive(Default)]
+struct Findings {
+    errors: Vec<SceneError>,
+    warnings: Vec<SceneWarning>,
+}
+
+impl Findings {
+    fn error(&mut self, key: impl Into<String>, message: impl Into<String>, remedy: impl Into<String>) {
+        self.errors.push(SceneError { key: key.into(), message: message.into(), remedy: remedy.into() });
+    }
+
+    fn warn(&mut self, key: impl Into<String>, message: impl Into<String>) {
+        self.warnings.push(SceneWarning { key: key.into(), message: message.into() });
+    }
+
+    /// An error unless `value` is positive and finite; `like` is an example with its unit.
+    fn positive(&mut self, key: impl Into<String>, value: f64, like: &str) -> bool {
+        let holds = value > 0.0 && value.is_finite();
+        if !holds {
+            self.error(key, format!("{value} is not positive"), format!("give a positive value such as {like}"));
+        }
+        holds
+    }
+
+    /// An error unless all values are finite.
+    fn finite(&mut self, key: impl Into<String>, values: &[f64]) -> bool {
+        let holds = values.iter().all(|v| v.is_finite());
+        if !holds {
+            self.error(key, "not a finite number", "give finite numbers");
+        }
+        holds
+    }
+}
+
+/// What a scene can say and the solver cannot do yet. A feature that arrives deletes its lines here.
+fn unsupported(scene: &Scene, findings: &mut Findings) {
+    let mut refuse = |key: &str, what: &dyn Display, remedy: &str| {
+        findings.error(key, format!("{what} not supported yet"), remedy);
+    };
+    if scene.bodies.len() > 1 {
+        refuse("body", &"more than one body is", "keep one [[body]]");
+    }
+    for (i, _) in scene.bodies.iter().enumerate().filter(|(_, b)| b.rigid) {
+        refuse(&format!("body.{i}.rigid"), &"rigid bodies are", "remove the key, or set it to false");
+    }
+    if scene.contact.is_some() {
+        refuse("contact", &"contact between bodies is", "remove the [contact] table");
+    }
+    if scene.analysis.kinematics == Kinematics::Finite {
+        refuse("analysis.kinematics", &"finite strain is", "use kinematics = \"small\"");
+    }
+    if scene.analysis.mass == Mass::Consistent {
+        refuse("analysis.mass", &"the consistent mass matrix is", "use mass = \"lumped\"");
+    }
+    if scene.analysis.frame == Frame::Updated && scene.analysis.transfer != Transfer::Flip {
+        refuse("analysis.transfer", &"a transfer other than flip is", "use transfer = \"flip\"");
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,165 @@
+//! Checks of bodies: shape, place in the mesh, points, resolution of the length scale, tractions, cracks.
+
+use super::analysis::side_name;
+use super::geometry::{bounding_box, contains, defect};
+use super::{Findings, mesh::largest_span};
+use crate::scene::{Body, Crack, Edge, Fracture, Layout, Mesh, Scene, Shape, Traction};
+
+/// Relative tolerance of "inside", of the size of the mesh or body.
+const TOLERANCE: f64 = 1e-9;
+/// Most points per span and direction.
+const MOST_POINTS: usize = 16;
+/// Most points of the Maclaurin rule.
+const MOST_MACLAURIN: usize = 5;
+
+pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) {
+    if scene.bodies.is_empty() {
+        findings.error("body", "there is no body", "add a [[body]] with name, material and shape");
+    }
+    for (i, body) in scene.bodies.iter().enumerate() {
+        let key = format!("body.{i}");
+        if scene.bodies[..i].iter().any(|other| other.name == body.name) {
+            findings.error(format!("{key}.name"), format!("a second body named {:?}", body.name), "give each its name");
+        }
+        findings.finite(format!("{key}.velocity"), &body.velocity);
+        findings.finite(format!("{key}.angular_velocity"), &[body.angular_velocity]);
+        points(&key, body, scene.mesh.degree, findings);
+        let fracture = material(&key, body, scene, findings);
+        if let Some((message, remedy)) = defect(&body.shape) {
+            findings.error(format!("{key}.shape"), message, remedy);
+            continue;
+        }
+        if mesh_is_sound && inside_mesh(&key, body, &scene.mesh, findings) {
+            if let Some(fracture) = fracture {
+                resolution(body, fracture, &scene.mesh, findings);
+            }
+            for (j, traction) in body.tractions.iter().enumerate() {
+                check_traction(&format!("{key}.traction.{j}"), traction, body, &scene.mesh, findings);
+            }
+        }
+        for (j, crack) in body.cracks.iter().enumerate() {
+            check_crack(&format!("{key}.crack.{j}"), crack, body, findings);
+        }
+    }
+}
+
+fn points(key: &str, body: &Body, degree: [usize; 2], findings: &mut Findings) {
+    let counts = body.particles_per_cell;
+    let points = format!("{key}.particles_per_cell");
+    if let Some(n) = counts.iter().find(|n| **n == 0 || **n > MOST_POINTS) {
+        findings.error(points, format!("{n} points per cell and direction"), format!("give 1 to {MOST_POINTS}"));
+    } else if body.layout == Layout::Maclaurin && counts.iter().any(|n| *n > MOST_MACLAURIN) {
+        let message = format!("the maclaurin layout has no rule of {} points", counts[0].max(counts[1]));
+        let remedy = "give at most 5 particles_per_cell, or use layout = \"gauss\" or \"uniform\"";
+        findings.error(format!("{key}.layout"), message, remedy);
+    } else if (0..2).any(|d| counts[d] == 1 && degree[d] >= 2) {
+        let message =
+            "one point per cell leaves modes of a mesh of degree 2 and higher without stiffness; use at least 2";
+        findings.warn(points, message);
+    }
+}
+
+/// The fracture table of the body's material, if it has one that makes sense.
+fn material<'a>(key: &str, body: &Body, scene: &'a Scene, findings: &mut Findings) -> Option<&'a Fracture> {
+    let Some(material) = scene.materials.get(&body.material) else {
+        let names: Vec<&str> = scene.materials.keys().map(String::as_str).collect();
+        let remedy = match names.as_slice() {
+            [] => format!("add a table [material.{}]", body.material),
+            _ => format!("known materials: {}", names.join(", ")),
+        };
+        findings.error(format!("{key}.material"), format!("unknown material {:?}", body.material), remedy);
+        return None;
+    };
+    if material.fracture.is_none() && !body.cracks.is_empty() {
+        let message = format!("a crack needs the phase field, but material {:?} has no fracture table", body.material);
+        let remedy = format!("add [material.{}.fracture], or remove the crack", body.material);
+        findings.error(format!("{key}.crack"), message, remedy);
+    }
+    material.fracture.as_ref().filter(|f| f.length_scale > 0.0)
+}
+
+fn inside_mesh(key: &str, body: &Body, mesh: &Mesh, findings: &mut Findings) -> bool {
+    let (min, max) = bounding_box(&body.shape);
+    let (origin, end) = (mesh.origin(), mesh.end());
+    let outside = |d: usize| {
+        let tolerance = TOLERANCE * (end[d] - origin[d]);
+        min[d] < origin[d] - tolerance || max[d] > end[d] + tolerance
+    };
+    let Some(d) = (0..2).find(|d| outside(*d)) else { return true };
+    let name = ["x", "y"][d];
+    let message = format!(
+        "the body reaches from {name} = {} m to {} m, outside the mesh, {} m to {} m",
+        min[d], max[d], origin[d], end[d]
+    );
+    findings.error(format!("{key}.shape"), message, "enlarge mesh.size, or move mesh.origin or the body");
+    false
+}
+
+/// Largest span in the body against the length scale: above it the crack is coarse, above four times it is not there.
+fn resolution(body: &Body, fracture: &Fracture, mesh: &Mesh, findings: &mut Findings) {
+    let (min, max) = bounding_box(&body.shape);
+    let h = (0..2).map(|d| largest_span(&mesh.knots[d], min[d], max[d])).fold(0.0, f64::max);
+    let l0 = fracture.length_scale;
+    let sizes = format!("cells of h = {:.4} mm against l0 = {:.4} mm", 1e3 * h, 1e3 * l0);
+    let key = format!("material.{}.fracture.length_scale", body.material);
+    if h > 4.0 * l0 * (1.0 + TOLERANCE) {
+        let remedy = format!(
+            "h may be at most l0, and never above 4 l0: refine mesh.cells {:.0} times, or raise length_scale",
+            (h / l0 - TOLERANCE).ceil()
+        );
+        findings.error(key, format!("the mesh cannot resolve a crack: {sizes}"), remedy);
+    } else if h > l0 * (1.0 + TOLERANCE) {
+        findings.warn(key, format!("the crack is resolved coarsely: {sizes}; h <= l0 is advised, l0/2 better"));
+    }
+}
+
+fn check_traction(key: &str, traction: &Traction, body: &Body, mesh: &Mesh, findings: &mut Findings) {
+    findings.finite(format!("{key}.stress"), &traction.stress);
+    if let Some(ramp) = traction.ramp {
+        findings.positive(format!("{key}.ramp"), ramp, "ramp = \"1 us\", or leave it out for a load from t = 0");
+    }
+    match &traction.edge {
+        Edge::Side(_) if matches!(body.shape, Shape::Rectangle { .. }) => {}
+        Edge::Side(side) => {
+            let message = format!("only a rectangle has a {} side", side_name(*side));
+            findings.error(format!("{key}.edge"), message, "give segment = [[x0, y0], [x1, y1]] instead");
+        }
+        Edge::Segment(ends) => {
+            let key = format!("{key}.segment");
+            if !findings.finite(key.clone(), &[ends[0], ends[1]].concat()) {
+                return;
+            }
+            let (origin, end) = (mesh.origin(), mesh.end());
+            let size = (end[0] - origin[0]).max(end[1] - origin[1]);
+            let patch = Shape::Rectangle { min: origin, max: end };
+            if ends[0] == ends[1] {
+                findings.error(key, "a segment of zero length", "give two different ends");
+            } else if !ends.iter().all(|p| contains(&patch, *p, TOLERANCE * size)) {
+                findings.error(key, "the segment leaves the mesh", "give ends inside the mesh, on the body's boundary");
+            }
+        }
+    }
+}
+
+fn check_crack(key: &str, crack: &Crack, body: &Body, findings: &mut Findings) {
+    if let Some(half_width) = crack.half_width {
+        let like = "half_width = \"0.125 mm\", or leave it out for l0/2";
+        findings.positive(format!("{key}.half_width"), half_width, like);
+    }
+    if !findings.finite(format!("{key}.from"), &[crack.from, crack.to].concat()) {
+        return;
+    }
+    if crack.from == crack.to {
+        return findings.error(format!("{key}.to"), "a crack of zero length", "give two different ends");
+    }
+    let (min, max) = bounding_box(&body.shape);
+    let tolerance = TOLERANCE * (max[0] - min[0]).max(max[1] - min[1]);
+    let middle = [0, 1].map(|d| 0.5 * (crack.from[d] + crack.to[d]));
+    let places = [("from", crack.from, "end"), ("to", crack.to, "end"), ("from", middle, "middle")];
+    for (name, [x, y], part) in places {
+        if !contains(&body.shape, [x, y], tolerance) {
+            let message = format!("the {part} ({x}, {y}) m of the crack lies outside body {:?}", body.name);
+            findings.error(format!("{key}.{name}"), message, "give ends inside the body or on its boundary");
+        }
+    }
+}

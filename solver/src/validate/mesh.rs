@@ -1,0 +1,61 @@
+//! Checks of the background mesh: degrees and open knot vectors.
+
+use super::Findings;
+use crate::scene::Mesh;
+
+/// Largest number of spans of a mesh.
+const MOST_SPANS: usize = 50_000_000;
+
+pub(super) fn check(mesh: &Mesh, findings: &mut Findings) {
+    for d in 0..2 {
+        if (1..=4).contains(&mesh.degree[d]) {
+            knots(d, mesh.degree[d], &mesh.knots[d], findings);
+        } else {
+            let message = format!("degree {} in direction {}", mesh.degree[d], ["x", "y"][d]);
+            findings.error("mesh.degree", message, "give a degree from 1 to 4");
+        }
+    }
+    let spans = mesh.knots[0].len().saturating_mul(mesh.knots[1].len());
+    if spans > MOST_SPANS {
+        let remedy = format!("use fewer cells: at most {MOST_SPANS} in all");
+        findings.error("mesh.cells", format!("a mesh of about {spans} cells"), remedy);
+    }
+}
+
+fn knots(d: usize, degree: usize, knots: &[f64], findings: &mut Findings) {
+    let key = format!("mesh.knots.{d}");
+    let ends = degree + 1;
+    if knots.len() < 2 * ends {
+        let remedy = format!("degree {degree} needs at least {}", 2 * ends);
+        return findings.error(key, format!("{} knots are too few", knots.len()), remedy);
+    }
+    if !findings.finite(key.clone(), knots) {
+        return;
+    }
+    if let Some(i) = knots.windows(2).position(|k| k[0] > k[1]) {
+        return findings.error(key, format!("knot {} is smaller than the one before it", i + 1), "sort the knots");
+    }
+    let (first, last) = (knots[0], knots[knots.len() - 1]);
+    let open = knots[..ends].iter().all(|k| *k == first) && knots[knots.len() - ends..].iter().all(|k| *k == last);
+    if !open {
+        let remedy = format!("repeat the first and the last knot {ends} times (degree + 1)");
+        return findings.error(key, format!("not open for degree {degree}"), remedy);
+    }
+    if first == last {
+        return findings.error(key, "no span of positive length", "give increasing knots");
+    }
+    let interior = &knots[ends..knots.len() - ends];
+    let repeated = |k: f64| knots.iter().filter(|other| **other == k).count();
+    let widest = interior.chunk_by(|a, b| a == b).find(|run| run.len() > degree || repeated(run[0]) > ends);
+    if let Some(run) = widest {
+        let message = format!("the knot {} stands {} times, so the basis breaks apart", run[0], repeated(run[0]));
+        findings.error(key, message, format!("repeat an inner knot at most {degree} times, the ends {ends} times"));
+    }
+}
+
+/// Lengths of the spans of positive length that overlap the interval `from..to`, largest, m.
+pub(super) fn largest_span(knots: &[f64], from: f64, to: f64) -> f64 {
+    let tolerance = 1e-9 * (to - from);
+    let overlaps = |k: &&[f64]| k[1] > from + tolerance && k[0] < to - tolerance;
+    knots.windows(2).filter(overlaps).map(|k| k[1] - k[0]).fold(0.0, f64::max)
+}

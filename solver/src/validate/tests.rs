@@ -1,0 +1,205 @@
+//! Checks that a reader of files never lets through, and the exact bounds of the others.
+
+use super::validate;
+use crate::scene::*;
+
+/// A fracturing square, 10 mm by 10 mm.
+fn square() -> Scene {
+    let glass = Material {
+        young_modulus: 32e9,
+        poisson_ratio: 0.2,
+        density: 2450.0,
+        fracture: Some(Fracture {
+            critical_energy_release_rate: 3.0,
+            length_scale: 0.25e-3,
+            residual_stiffness: 0.0,
+            split: Split::Spectral,
+        }),
+    };
+    Scene {
+        title: String::new(),
+        mesh: Mesh::uniform([2, 2], [0.0; 2], [0.01; 2], [40, 40]),
+        analysis: Analysis {
+            plane: Plane::Strain,
+            thickness: 1.0,
+            frame: Frame::Total,
+            kinematics: Kinematics::Small,
+            end_time: 1e-6,
+            time_step: TimeStep::Auto,
+            safety: 0.8,
+            transfer: Transfer::Flip,
+            mass: Mass::Lumped,
+            gravity: [0.0; 2],
+        },
+        solver: SolverSettings { phase_field_tolerance: 1e-8, phase_field_solver: PhaseFieldSolver::Cholesky },
+        materials: [("glass".to_string(), glass)].into(),
+        bodies: vec![Body {
+            name: "square".into(),
+            material: "glass".into(),
+            shape: Shape::Rectangle { min: [0.0; 2], max: [0.01; 2] },
+            particles_per_cell: [2, 2],
+            layout: Layout::Gauss,
+            velocity: [0.0; 2],
+            angular_velocity: 0.0,
+            rigid: false,
+            tractions: vec![],
+            cracks: vec![Crack { from: [0.0, 0.005], to: [0.005, 0.005], half_width: None }],
+        }],
+        contact: None,
+        boundaries: vec![],
+        output: Output { samples: 10, frames: vec![] },
+    }
+}
+
+fn with(change: impl FnOnce(&mut Scene)) -> Scene {
+    let mut scene = square();
+    change(&mut scene);
+    scene
+}
+
+fn glass(scene: &mut Scene) -> &mut Material {
+    scene.materials.get_mut("glass").unwrap()
+}
+
+fn errors(change: impl FnOnce(&mut Scene)) -> Vec<String> {
+    validate(&with(change)).map_or_else(|e| e.into_iter().map(|e| e.key).collect(), |_| Vec::new())
+}
+
+fn warnings(change: impl FnOnce(&mut Scene)) -> Vec<String> {
+    validate(&with(change)).unwrap().into_iter().map(|w| w.key).collect()
+}
+
+#[test]
+fn a_sound_scene_passes_in_silence() {
+    assert_eq!(validate(&square()), Ok(vec![]));
+}
+
+#[test]
+fn a_mesh_that_is_none_is_refused() {
+    assert_eq!(errors(|s| s.mesh.degree[1] = 5), ["mesh.degree"]);
+    assert_eq!(errors(|s| s.mesh.degree[0] = 0), ["mesh.degree"]);
+    assert_eq!(errors(|s| s.mesh.knots[1].clear()), ["mesh.knots.1"]);
+    assert_eq!(errors(|s| s.mesh.knots[0][5] = f64::NAN), ["mesh.knots.0"]);
+    assert_eq!(errors(|s| s.mesh.knots[0][5] = 0.0), ["mesh.knots.0"]);
+    assert_eq!(errors(|s| s.mesh.knots[0].insert(0, 0.0)), ["mesh.knots.0"]);
+    assert_eq!(errors(|s| s.mesh = Mesh::uniform([2, 2], [0.0; 2], [0.0; 2], [0, 0])).len(), 2);
+    let repeated = |times: usize| {
+        errors(|s| {
+            let (at, knot) = (10, s.mesh.knots[0][10]);
+            s.mesh.knots[0].splice(at..at, vec![knot; times - 1]);
+        })
+    };
+    assert!(repeated(2).is_empty());
+    assert_eq!(repeated(3), ["mesh.knots.0"]);
+}
+
+#[test]
+fn the_resolution_counts_only_where_the_body_is() {
+    assert!(warnings(|s| glass(s).fracture.as_mut().unwrap().length_scale = 0.25e-3).is_empty());
+    let key = "material.glass.fracture.length_scale";
+    assert_eq!(warnings(|s| glass(s).fracture.as_mut().unwrap().length_scale = 0.24e-3), [key]);
+    assert_eq!(warnings(|s| glass(s).fracture.as_mut().unwrap().length_scale = 0.25e-3 / 4.0), [key]);
+    assert_eq!(errors(|s| glass(s).fracture.as_mut().unwrap().length_scale = 0.24e-3 / 4.0), [key]);
+    let graded = |s: &mut Scene| s.mesh.knots[0].splice(42.., [0.01, 0.05, 0.05, 0.05]).for_each(drop);
+    let sound = with(graded);
+    assert_eq!(sound.mesh.knots[0].len(), 46);
+    assert!(validate(&sound).unwrap().is_empty(), "{:?}", validate(&sound));
+}
+
+#[test]
+fn wave_speeds_are_bounded_on_both_sides() {
+    let key = "material.glass.density";
+    assert_eq!(errors(|s| glass(s).density = 2450e-12), [key]);
+    let soft = |modulus: f64| {
+        move |s: &mut Scene| *glass(s) = Material { young_modulus: modulus, density: 1000.0, ..glass(s).clone() }
+    };
+    assert_eq!(warnings(soft(1000.0)), [key]);
+    assert_eq!(errors(soft(1.0)), [key]);
+    assert!(warnings(soft(1e7)).is_empty());
+}
+
+#[test]
+fn poisson_ratio_one_half_is_for_plane_stress() {
+    assert_eq!(errors(|s| glass(s).poisson_ratio = 0.5), ["material.glass.poisson_ratio"]);
+    let stress = |nu: f64| {
+        move |s: &mut Scene| {
+            s.analysis.plane = Plane::Stress;
+            glass(s).poisson_ratio = nu;
+        }
+    };
+    assert!(errors(stress(0.5)).is_empty());
+    for nu in [0.51, -1.0, f64::NAN] {
+        assert_eq!(errors(stress(nu)), ["material.glass.poisson_ratio"]);
+    }
+}
+
+#[test]
+fn cracks_lie_in_the_closure_of_their_body() {
+    let disk = |from: [f64; 2], to: [f64; 2]| {
+        errors(|s| {
+            let disk = |radius| Shape::Disk { center: [0.005; 2], radius };
+            s.bodies[0].shape = Shape::Difference { of: Box::new(disk(0.005)), minus: vec![disk(0.001)] };
+            s.bodies[0].cracks[0] = Crack { from, to, half_width: None };
+        })
+    };
+    assert!(disk([0.0, 0.005], [0.004, 0.005]).is_empty(), "from the rim to the rim of the hole");
+    assert_eq!(disk([0.0, 0.005], [0.0045, 0.005]), ["body.0.crack.0.to"]);
+    assert_eq!(disk([0.002, 0.005], [0.008, 0.005]), ["body.0.crack.0.from"], "through the hole");
+    assert_eq!(disk([0.0, 0.0], [0.002, 0.005]).len(), 1);
+    let mut scene = square();
+    let triangle = vec![[0.0, 0.0], [0.01, 0.0], [0.0, 0.01]];
+    scene.bodies[0].shape = Shape::Polygon { points: triangle };
+    assert!(validate(&scene).is_ok(), "an end on the slanted edge");
+    scene.bodies[0].cracks[0].to = [0.0051, 0.005];
+    assert!(validate(&scene).is_err());
+    assert_eq!(errors(|s| glass(s).fracture = None), ["body.0.crack"]);
+}
+
+#[test]
+fn points_and_layouts_have_bounds() {
+    let points = |counts, layout| {
+        move |s: &mut Scene| {
+            s.bodies[0].particles_per_cell = counts;
+            s.bodies[0].layout = layout;
+        }
+    };
+    for counts in [[0, 2], [2, 17]] {
+        assert_eq!(errors(points(counts, Layout::Gauss)), ["body.0.particles_per_cell"]);
+    }
+    assert_eq!(warnings(points([1, 2], Layout::Gauss)), ["body.0.particles_per_cell"]);
+    assert!(warnings(points([5, 2], Layout::Maclaurin)).is_empty());
+    assert_eq!(errors(points([6, 2], Layout::Maclaurin)), ["body.0.layout"]);
+}
+
+#[test]
+fn shapes_without_area_are_refused() {
+    let square = |points: &[[f64; 2]]| Shape::Polygon { points: points.to_vec() };
+    for shape in [
+        Shape::Rectangle { min: [0.0; 2], max: [0.01, 0.0] },
+        Shape::Rectangle { min: [0.0; 2], max: [0.01, f64::NAN] },
+        Shape::Disk { center: [0.005; 2], radius: 0.0 },
+        Shape::Annulus { center: [0.005; 2], inner_radius: 0.002, outer_radius: 0.001 },
+        square(&[[0.0, 0.0], [0.01, 0.0]]),
+        square(&[[0.0, 0.0], [0.01, 0.0], [0.002, 0.0]]),
+        square(&[]),
+    ] {
+        assert_eq!(errors(|s| s.bodies[0].shape = shape.clone()), ["body.0.shape"], "{shape:?}");
+    }
+}
+
+#[test]
+fn what_the_solver_cannot_do_is_refused_by_key() {
+    assert_eq!(errors(|s| s.contact = Some(Contact { friction: 0.3 })), ["contact"]);
+    assert_eq!(errors(|s| s.bodies.push(Body { name: "other".into(), ..s.bodies[0].clone() })), ["body"]);
+    assert_eq!(errors(|s| s.analysis.mass = Mass::Consistent), ["analysis.mass"]);
+    assert_eq!(warnings(|s| s.analysis.transfer = Transfer::Apic), ["analysis.transfer"]);
+    let updated = |transfer| {
+        move |s: &mut Scene| {
+            s.analysis.frame = Frame::Updated;
+            s.analysis.transfer = transfer;
+        }
+    };
+    assert!(errors(updated(Transfer::Flip)).is_empty());
+    assert_eq!(errors(updated(Transfer::Musl)), ["analysis.transfer"]);
+    assert_eq!(errors(|s| s.bodies.clear()), ["body"]);
+}

@@ -1,0 +1,165 @@
+//! What is wrong with a file, where, and what would be right.
+
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+use miette::{Diagnostic, LabeledSpan, NamedSource, Severity, SourceCode};
+
+/// A place in the file or in one of the overrides.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Location {
+    /// 0 for the file, `i` for the i-th override (counted from 1).
+    pub source: usize,
+    /// First byte.
+    pub start: usize,
+    /// One past the last byte.
+    pub end: usize,
+}
+
+impl Location {
+    /// Bytes `span` of the source of that number.
+    pub fn new(source: usize, span: Range<usize>) -> Self {
+        Self { source, start: span.start, end: span.end }
+    }
+}
+
+/// One thing wrong with a document, not yet attached to its text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// Full key path, such as `body.0.crack.0.half_width`; empty if no key is involved.
+    pub key: String,
+    /// Where; `None` means the whole file.
+    pub location: Option<Location>,
+    /// What is wrong.
+    pub message: String,
+    /// What would be right.
+    pub remedy: String,
+}
+
+/// The texts that locations point into: the file first, then one per override.
+#[derive(Debug, Clone)]
+pub struct Sources(Vec<Arc<NamedSource<String>>>);
+
+impl Sources {
+    /// The file alone.
+    pub fn new(name: &str, text: &str) -> Self {
+        Self(vec![Arc::new(NamedSource::new(name, text.to_string()))])
+    }
+
+    /// Adds a text; returns its number for [`Location::source`].
+    pub fn push(&mut self, name: &str, text: &str) -> usize {
+        self.0.push(Arc::new(NamedSource::new(name, text.to_string())));
+        self.0.len() - 1
+    }
+
+    /// Text of the file.
+    pub fn text(&self) -> &str {
+        self.0[0].inner()
+    }
+
+    /// Attaches a problem to its text.
+    pub fn diagnose(&self, problem: &Problem, severity: Severity) -> SceneDiagnostic {
+        let location = problem.location.clone().unwrap_or(Location::new(0, 0..0));
+        let source = self.0[location.source.min(self.0.len() - 1)].clone();
+        let text = source.inner();
+        let start = floor_boundary(text, location.start);
+        let end = floor_boundary(text, location.end).max(start);
+        let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
+        SceneDiagnostic {
+            file: source.name().to_string(),
+            line: text[..start].matches('\n').count() + 1,
+            column: text[line_start..start].chars().count() + 1,
+            key: problem.key.clone(),
+            message: problem.message.clone(),
+            remedy: problem.remedy.clone(),
+            span: start..end,
+            severity,
+            source,
+        }
+    }
+
+    /// An error of all `problems`, in the order of their places.
+    pub fn error(&self, problems: &[Problem]) -> SceneFileError {
+        let mut sorted: Vec<&Problem> = problems.iter().collect();
+        sorted.sort_by(|a, b| a.location.cmp(&b.location));
+        SceneFileError { diagnostics: sorted.into_iter().map(|p| self.diagnose(p, Severity::Error)).collect() }
+    }
+}
+
+/// Largest character boundary of `text` not above `index`.
+fn floor_boundary(text: &str, index: usize) -> usize {
+    (0..=index.min(text.len())).rev().find(|i| text.is_char_boundary(*i)).unwrap_or(0)
+}
+
+/// One error or warning with its place.
+///
+/// `Display` is one plain line, `file:line:column: key: message; remedy`. As a [`miette::Diagnostic`] it has the remedy
+/// as help and the place as a label.
+#[derive(Debug, Clone)]
+pub struct SceneDiagnostic {
+    /// File name, or `--set` for an override.
+    pub file: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// Full key path; empty if no key is involved.
+    pub key: String,
+    /// What is wrong.
+    pub message: String,
+    /// What would be right; empty where the message says it.
+    pub remedy: String,
+    /// Bytes in the text.
+    pub span: Range<usize>,
+    /// Error or warning.
+    pub severity: Severity,
+    source: Arc<NamedSource<String>>,
+}
+
+impl fmt::Display for SceneDiagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}:{}: ", self.file, self.line, self.column)?;
+        if !self.key.is_empty() {
+            write!(f, "{}: ", self.key)?;
+        }
+        f.write_str(&self.message)?;
+        if self.remedy.is_empty() { Ok(()) } else { write!(f, "; {}", self.remedy) }
+    }
+}
+
+impl std::error::Error for SceneDiagnostic {}
+
+impl Diagnostic for SceneDiagnostic {
+    fn severity(&self) -> Option<Severity> {
+        Some(self.severity)
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        (!self.remedy.is_empty()).then(|| Box::new(&self.remedy) as Box<dyn fmt::Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(&self.source)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let label = if self.key.is_empty() { "here" } else { &self.key };
+        Some(Box::new(std::iter::once(LabeledSpan::at(self.span.clone(), label))))
+    }
+}
+
+/// A file that is no valid scene: everything found wrong with it.
+///
+/// `Display` is one plain line per problem. For a rendering with source excerpts, render each of `diagnostics`.
+#[derive(Debug, Clone, thiserror::Error, Diagnostic)]
+#[error("{}", lines(diagnostics))]
+pub struct SceneFileError {
+    /// At least one, in the order of their places.
+    #[related]
+    pub diagnostics: Vec<SceneDiagnostic>,
+}
+
+fn lines(diagnostics: &[SceneDiagnostic]) -> String {
+    diagnostics.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,216 @@
+//! A walker over the tree of a document: typed access that collects problems with their key paths.
+//!
+//! Every accessor returns `None` after it has noted a problem, so that a reader reads all its keys first and assembles
+//! its value with `?` at the end; one pass finds everything.
+
+use std::cell::RefCell;
+
+use super::diagnostic::{Location, Problem};
+use super::document::{Node, Value, join};
+use super::suggest::nearest;
+use super::units::{self, Dimension};
+
+/// Problems found so far.
+#[derive(Debug, Default)]
+pub struct Problems(RefCell<Vec<Problem>>);
+
+impl Problems {
+    /// Notes one.
+    pub fn push(&self, problem: Problem) {
+        self.0.borrow_mut().push(problem);
+    }
+
+    /// All of them.
+    pub fn into_inner(self) -> Vec<Problem> {
+        self.0.into_inner()
+    }
+}
+
+/// A value with its key path.
+#[derive(Debug, Clone)]
+pub struct Item<'a> {
+    /// The value.
+    pub node: &'a Node,
+    /// Its key path.
+    pub path: String,
+    problems: &'a Problems,
+}
+
+impl<'a> Item<'a> {
+    /// The value `node` at `path`; problems with it go to `problems`.
+    pub fn new(node: &'a Node, path: &str, problems: &'a Problems) -> Self {
+        Self { node, path: path.to_string(), problems }
+    }
+
+    /// Notes a problem with this value; `None`, for use in a return.
+    pub fn fail<T>(&self, message: impl Into<String>, remedy: impl Into<String>) -> Option<T> {
+        self.fail_at(self.node.location.clone(), &self.path, message.into(), remedy.into())
+    }
+
+    fn fail_at<T>(&self, location: Option<Location>, key: &str, message: String, remedy: String) -> Option<T> {
+        self.problems.push(Problem { key: key.to_string(), location, message, remedy });
+        None
+    }
+
+    fn wrong_kind<T>(&self, expected: &str) -> Option<T> {
+        self.fail(format!("expected {expected}, found {}", self.node.kind()), format!("give {expected}"))
+    }
+
+    /// A number in SI, or a string with a unit of that dimension; finite.
+    pub fn quantity(&self, dimension: Dimension) -> Option<f64> {
+        let value = match &self.node.value {
+            Value::Float(x) => *x,
+            Value::Integer(i) => *i as f64,
+            Value::String(text) => match units::parse_as(text, dimension) {
+                Ok(value) => value,
+                Err(e) => return self.fail(e.message, e.remedy),
+            },
+            _ => return self.wrong_kind(&dimension.example()),
+        };
+        if value.is_finite() {
+            return Some(value);
+        }
+        self.fail("not a finite number", format!("give {}", dimension.example()))
+    }
+
+    /// A whole number between `min` and `max`.
+    pub fn whole(&self, min: usize, max: usize) -> Option<usize> {
+        let range = format!("a whole number between {min} and {max}");
+        match self.node.value {
+            Value::Integer(i) => match usize::try_from(i) {
+                Ok(value) if (min..=max).contains(&value) => Some(value),
+                _ => self.fail(format!("{i} is out of range"), format!("give {range}")),
+            },
+            _ => self.wrong_kind(&range),
+        }
+    }
+
+    /// A string.
+    pub fn text(&self) -> Option<String> {
+        self.node.as_str().map(String::from).or_else(|| self.wrong_kind("a string"))
+    }
+
+    /// `true` or `false`.
+    pub fn flag(&self) -> Option<bool> {
+        match self.node.value {
+            Value::Boolean(b) => Some(b),
+            _ => self.wrong_kind("true or false"),
+        }
+    }
+
+    /// One of the words.
+    pub fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
+        let names: Vec<&str> = words.iter().map(|w| w.0).collect();
+        let list = quoted(&names);
+        let Some(text) = self.node.as_str() else { return self.wrong_kind(&format!("one of {list}")) };
+        if let Some(found) = words.iter().find(|w| w.0 == text) {
+            return Some(found.1);
+        }
+        let meant = nearest(text, &names).map_or(String::new(), |n| format!("did you mean {n:?}? "));
+        self.fail(format!("unknown value {text:?}"), format!("{meant}known: {list}"))
+    }
+
+    /// The entries of an array.
+    pub fn list(&self) -> Option<Vec<Item<'a>>> {
+        let entries = match self.node.as_array() {
+            Some(entries) => entries,
+            None => return self.wrong_kind("an array"),
+        };
+        let item = |(i, node)| Item { node, path: format!("{}.{i}", self.path), problems: self.problems };
+        Some(entries.iter().enumerate().map(item).collect())
+    }
+
+    /// The entries of an array of tables, `[[name]]`.
+    pub fn tables(&self) -> Option<Vec<Item<'a>>> {
+        if self.node.as_table().is_some() {
+            let name = self.path.split('.').filter(|s| s.parse::<usize>().is_err()).collect::<Vec<_>>().join(".");
+            let message = "expected an array of tables, found one table";
+            return self.fail(message, format!("write [[{name}]] instead of [{name}]"));
+        }
+        self.list()
+    }
+
+    /// Every entry of an array read by `read`.
+    pub fn each<T>(&self, read: impl Fn(&Item<'a>) -> Option<T>) -> Option<Vec<T>> {
+        let read: Vec<Option<T>> = self.list()?.iter().map(read).collect();
+        read.into_iter().collect()
+    }
+
+    /// An array of two entries, x and y.
+    pub fn pair<T>(&self, read: impl Fn(&Item<'a>) -> Option<T>) -> Option<[T; 2]> {
+        let items = self.list()?;
+        let [x, y] = items.as_slice() else {
+            let found = format!("expected two entries, x and y, found {}", items.len());
+            return self.fail(found, "give an array of two");
+        };
+        let (x, y) = (read(x), read(y));
+        Some([x?, y?])
+    }
+
+    /// Two quantities of that dimension.
+    pub fn vector(&self, dimension: Dimension) -> Option<[f64; 2]> {
+        self.pair(|item| item.quantity(dimension))
+    }
+
+    /// One whole number for both directions, or two.
+    pub fn whole_per_direction(&self, min: usize, max: usize) -> Option<[usize; 2]> {
+        if self.node.as_array().is_some() {
+            return self.pair(|item| item.whole(min, max));
+        }
+        self.whole(min, max).map(|n| [n, n])
+    }
+
+    /// A table with no other keys than `known`; unknown ones are noted, and the rest can still be read.
+    pub fn fields(&self, known: &[&str]) -> Option<Fields<'a>> {
+        let Some(table) = self.node.as_table() else { return self.wrong_kind("a table") };
+        for (key, node) in table.iter().filter(|(key, _)| !known.contains(&key.as_str())) {
+            let meant = nearest(key, known).map_or(String::new(), |n| format!("did you mean {n:?}? "));
+            let location = node.key_location.clone().or_else(|| node.location.clone());
+            let (path, remedy) = (join(&self.path, key), format!("{meant}known keys: {}", known.join(", ")));
+            self.fail_at::<()>(location, &path, format!("unknown key {key:?}"), remedy);
+        }
+        Some(Fields { item: self.clone() })
+    }
+}
+
+/// A table whose keys are known.
+#[derive(Debug, Clone)]
+pub struct Fields<'a> {
+    item: Item<'a>,
+}
+
+impl<'a> Fields<'a> {
+    /// The table itself.
+    pub fn item(&self) -> &Item<'a> {
+        &self.item
+    }
+
+    /// The value of a key, if it is there.
+    pub fn get(&self, key: &str) -> Option<Item<'a>> {
+        let node = self.item.node.as_table()?.get(key)?;
+        Some(Item { node, path: join(&self.item.path, key), problems: self.item.problems })
+    }
+
+    /// A key that must be there; `like` says what to write.
+    pub fn need<T>(&self, key: &str, like: &str, read: impl FnOnce(&Item<'a>) -> Option<T>) -> Option<T> {
+        if let Some(item) = self.get(key) {
+            return read(&item);
+        }
+        let (path, location) = (join(&self.item.path, key), self.item.node.location.clone());
+        self.item.fail_at(location, &path, "missing".to_string(), format!("add {like}"))
+    }
+
+    /// A key with a default.
+    pub fn or<T>(&self, key: &str, default: T, read: impl FnOnce(&Item<'a>) -> Option<T>) -> Option<T> {
+        self.get(key).map_or(Some(default), |item| read(&item))
+    }
+
+    /// A key that may be absent; the outer `None` means a problem.
+    pub fn maybe<T>(&self, key: &str, read: impl FnOnce(&Item<'a>) -> Option<T>) -> Option<Option<T>> {
+        self.get(key).map_or(Some(None), |item| read(&item).map(Some))
+    }
+}
+
+fn quoted(words: &[&str]) -> String {
+    words.iter().map(|w| format!("{w:?}")).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,109 @@
+//! `--set key.path=value`: values that replace or add to those of a file.
+
+use std::collections::BTreeMap;
+
+use toml::de::DeValue;
+
+use super::diagnostic::{Location, Problem, SceneFileError};
+use super::document::{Document, Node, Value};
+
+/// Name of the source in messages about an override.
+const NAME: &str = "--set";
+
+impl Document {
+    /// Applies overrides in order, each `key.path=value`; array entries count from 0.
+    ///
+    /// The value is read as TOML, or if it is none, as a bare string: `body.0.crack.0.half_width=0.25 mm` needs no
+    /// quotes. A key that the file does not have is created.
+    ///
+    /// # Errors
+    /// Every override without `=`, with an empty key, or whose path leads through a value that is no table or beyond
+    /// the end of an array.
+    pub fn apply(&mut self, overrides: &[String]) -> Result<(), SceneFileError> {
+        let problems: Vec<Problem> = overrides.iter().filter_map(|text| self.apply_one(text).err()).collect();
+        if problems.is_empty() { Ok(()) } else { Err(self.error(&problems)) }
+    }
+
+    fn apply_one(&mut self, text: &str) -> Result<(), Problem> {
+        let source = self.sources.push(NAME, text);
+        let problem = |key: &str, message: String, remedy: String| Problem {
+            key: key.to_string(),
+            location: Some(Location::new(source, 0..text.find('=').unwrap_or(text.len()))),
+            message,
+            remedy,
+        };
+        let form = || "write --set key.path=value, such as --set mesh.degree=3".to_string();
+        let Some((path, value)) = text.split_once('=') else {
+            return Err(problem("", format!("{text:?} has no '='"), form()));
+        };
+        let keys: Vec<&str> = path.split('.').map(str::trim).collect();
+        if keys.iter().any(|k| k.is_empty()) {
+            return Err(problem(path.trim(), "an empty key".to_string(), form()));
+        }
+        let mut node = parse_value(value, source, path.len() + 1);
+        node.key_location = Some(Location::new(source, 0..path.len()));
+        set(&mut self.root, &keys, 0, node).map_err(|(message, remedy)| problem(path.trim(), message, remedy))
+    }
+}
+
+/// A TOML value, or the text itself.
+fn parse_value(text: &str, source: usize, offset: usize) -> Node {
+    let lead = text.len() - text.trim_start().len();
+    let trimmed = text.trim();
+    match DeValue::parse(trimmed) {
+        Ok(value) => Node::from_toml(&value, source, offset + lead),
+        Err(_) => {
+            let location = Location::new(source, offset + lead..offset + lead + trimmed.len());
+            Node::new(Value::String(trimmed.to_string()), Some(location))
+        }
+    }
+}
+
+/// Puts `new` at `keys[at..]` below `node`; message and remedy if the path does not lead there.
+fn set(node: &mut Node, keys: &[&str], at: usize, new: Node) -> Result<(), (String, String)> {
+    let key = keys[at];
+    let here = keys[..at].join(".");
+    let last = at + 1 == keys.len();
+    let kind = node.kind();
+    match &mut node.value {
+        Value::Table(table) => {
+            if last {
+                table.insert(key.to_string(), new);
+                return Ok(());
+            }
+            if !table.contains_key(key) {
+                let next = keys[at + 1];
+                if next.parse::<usize>().is_ok() {
+                    let path = keys[..=at].join(".");
+                    return Err((format!("{path} is not in the file, so it has no entry {next}"), entry_remedy(0)));
+                }
+                let mut child = Node::new(Value::Table(BTreeMap::new()), new.key_location.clone());
+                child.key_location.clone_from(&new.key_location);
+                table.insert(key.to_string(), child);
+            }
+            table.get_mut(key).map_or(Ok(()), |child| set(child, keys, at + 1, new))
+        }
+        Value::Array(array) => {
+            let count = array.len();
+            let entry = key.parse::<usize>().ok().and_then(|i| array.get_mut(i));
+            match entry {
+                Some(child) if last => *child = new,
+                Some(child) => return set(child, keys, at + 1, new),
+                None => {
+                    let message = format!("{here} is an array with {count} entries and has no entry {key:?}");
+                    return Err((message, entry_remedy(count)));
+                }
+            }
+            Ok(())
+        }
+        _ => Err((format!("{here} is {kind}, so it has no key {key:?}"), format!("set {here} itself"))),
+    }
+}
+
+fn entry_remedy(count: usize) -> String {
+    match count {
+        0 => "entries can be changed, not added: add it to the file".to_string(),
+        1 => "entries count from 0: the only one is 0".to_string(),
+        _ => format!("entries count from 0: 0 to {}", count - 1),
+    }
+}

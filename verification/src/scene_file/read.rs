@@ -1,0 +1,248 @@
+//! From the tree of a document to the typed scene: mesh, analysis, solver, boundaries, output.
+
+use std::collections::BTreeMap;
+
+use fisura::scene::{
+    Analysis, Boundary, Contact, Frame, Kinematics, Mass, Mesh, Output, PhaseFieldSolver, Plane, Scene, Side,
+    SolverSettings, TimeStep, Transfer,
+};
+
+use super::diagnostic::Problem;
+use super::document::Node;
+use super::fields::{Fields, Item, Problems};
+use super::read_body::{bodies, materials};
+use super::units::Dimension;
+
+/// Keys of a scene.
+pub const SCENE_KEYS: [&str; 9] =
+    ["title", "mesh", "analysis", "solver", "material", "body", "contact", "boundary", "output"];
+
+/// Largest number of spans in one direction.
+const MOST_CELLS: usize = 1_000_000;
+
+/// Reads the scene that `node` declares: a whole document, or the `[scene]` table of a case file.
+///
+/// `prefix` is the key path of `node` in its document, empty for a whole document. The scene is complete in form; its
+/// sense is checked by [`fisura::validate::validate`].
+///
+/// # Errors
+/// Every unknown key, missing key, wrong type, wrong dimension and number out of range.
+pub fn read_scene(node: &Node, prefix: &str) -> Result<Scene, Vec<Problem>> {
+    let problems = Problems::default();
+    let scene = scene(&Item::new(node, prefix, &problems));
+    let found = problems.into_inner();
+    match scene {
+        Some(scene) if found.is_empty() => Ok(scene),
+        _ => Err(found),
+    }
+}
+
+fn scene(item: &Item<'_>) -> Option<Scene> {
+    let fields = item.fields(&SCENE_KEYS)?;
+    let title = fields.or("title", String::new(), Item::text);
+    let mesh = fields.need("mesh", "a table [mesh] with degree, origin, size and cells", mesh);
+    let analysis = fields.need("analysis", "a table [analysis] with end_time", analysis);
+    let solver = fields.or("solver", default_solver(), solver);
+    let materials = fields.or("material", BTreeMap::new(), materials);
+    let bodies = fields.or("body", Vec::new(), bodies);
+    let contact = fields.maybe("contact", |item| {
+        let friction = item.fields(&["friction"])?.need("friction", "friction = 0.65", number);
+        Some(Contact { friction: friction? })
+    });
+    let boundaries = fields.or("boundary", Vec::new(), boundaries);
+    let output = fields.or("output", Output { samples: 320, frames: Vec::new() }, output);
+    Some(Scene {
+        title: title?,
+        mesh: mesh?,
+        analysis: analysis?,
+        solver: solver?,
+        materials: materials?,
+        bodies: bodies?,
+        contact: contact?,
+        boundaries: boundaries?,
+        output: output?,
+    })
+}
+
+/// A plain number.
+pub(super) fn number(item: &Item<'_>) -> Option<f64> {
+    item.quantity(Dimension::NONE)
+}
+
+/// A length in m.
+pub(super) fn length(item: &Item<'_>) -> Option<f64> {
+    item.quantity(Dimension::LENGTH)
+}
+
+/// A point in m.
+pub(super) fn point(item: &Item<'_>) -> Option<[f64; 2]> {
+    item.vector(Dimension::LENGTH)
+}
+
+/// A time in s.
+pub(super) fn time(item: &Item<'_>) -> Option<f64> {
+    item.quantity(Dimension::TIME)
+}
+
+fn mesh(item: &Item<'_>) -> Option<Mesh> {
+    let fields = item.fields(&["degree", "origin", "size", "cells", "knots", "control_points", "weights"])?;
+    let mut general = false;
+    for key in ["control_points", "weights"] {
+        if let Some(item) = fields.get(key) {
+            general = true;
+            item.fail::<()>("a general patch is not supported yet", "use origin, size and cells (or knots)");
+        }
+    }
+    let degree = fields.need("degree", "degree = 2", |item| item.whole_per_direction(1, 4));
+    if general {
+        return None;
+    }
+    let origin = fields.need("origin", "origin = [0.0, 0.0] (m), the lower left corner", point);
+    let size = fields.need("size", "size = [0.1, 0.04] (m), width and height", size);
+    let knots = fields.maybe("knots", |item| item.pair(|direction| direction.each(length)));
+    let cells = match (fields.get("cells"), &knots) {
+        (Some(cells), Some(Some(_))) => cells.fail("both cells and knots are given", "remove one of the two"),
+        (None, Some(None)) => fields.need("cells", "cells = [100, 40], the spans per direction", |_| None),
+        (Some(cells), _) => cells.whole_per_direction(1, MOST_CELLS),
+        (None, _) => Some([1, 1]),
+    };
+    let (degree, origin, size, knots, cells) = (degree?, origin?, size?, knots?, cells?);
+    match knots {
+        None => Some(Mesh::uniform(degree, origin, size, cells)),
+        Some(knots) => graded(&fields, degree, origin, size, knots),
+    }
+}
+
+fn size(item: &Item<'_>) -> Option<[f64; 2]> {
+    item.pair(|entry| {
+        let value = length(entry)?;
+        if value > 0.0 { Some(value) } else { entry.fail("a size must be positive", "give a positive length") }
+    })
+}
+
+/// Each knot vector scaled affinely: the first knot to `origin`, the last to `origin + size`.
+fn graded(
+    fields: &Fields<'_>,
+    degree: [usize; 2],
+    origin: [f64; 2],
+    size: [f64; 2],
+    knots: [Vec<f64>; 2],
+) -> Option<Mesh> {
+    let item = fields.get("knots")?;
+    for d in 0..2 {
+        let [Some(first), Some(last)] = [knots[d].first(), knots[d].last()] else {
+            return item.fail(format!("no knots in direction {d}"), "give an open knot vector per direction");
+        };
+        if !(first < last && (last - first).is_finite()) {
+            return item.fail("the last knot must be larger than the first", "give increasing knots");
+        }
+    }
+    let knots = [0, 1].map(|d| {
+        let (first, last) = (knots[d][0], knots[d][knots[d].len() - 1]);
+        let scale = |k: &f64| origin[d] + size[d] * ((k - first) / (last - first));
+        knots[d].iter().map(scale).collect()
+    });
+    Some(Mesh { degree, knots })
+}
+
+fn analysis(item: &Item<'_>) -> Option<Analysis> {
+    let fields = item.fields(&[
+        "plane",
+        "thickness",
+        "frame",
+        "kinematics",
+        "end_time",
+        "time_step",
+        "safety",
+        "transfer",
+        "mass",
+        "gravity",
+    ])?;
+    let planes = [("strain", Plane::Strain), ("stress", Plane::Stress)];
+    let frames = [("total", Frame::Total), ("updated", Frame::Updated)];
+    let strains = [("small", Kinematics::Small), ("finite", Kinematics::Finite)];
+    let masses = [("lumped", Mass::Lumped), ("consistent", Mass::Consistent)];
+    let plane = fields.or("plane", Plane::Strain, |item| item.choice(&planes));
+    let thickness = fields.or("thickness", 1.0, length);
+    let frame = fields.or("frame", Frame::Total, |item| item.choice(&frames));
+    let kinematics = fields.or("kinematics", Kinematics::Small, |item| item.choice(&strains));
+    let end_time = fields.need("end_time", "end_time = \"80 us\"", time);
+    let time_step = fields.or("time_step", TimeStep::Auto, |item| match item.node.as_str() {
+        Some("auto") => Some(TimeStep::Auto),
+        _ => time(item).map(TimeStep::Fixed),
+    });
+    let safety = fields.or("safety", 0.8, number);
+    let transfer = fields.or("transfer", Transfer::Flip, transfer);
+    let mass = fields.or("mass", Mass::Lumped, |item| item.choice(&masses));
+    let gravity = fields.or("gravity", [0.0, 0.0], |item| item.vector(Dimension::ACCELERATION));
+    Some(Analysis {
+        plane: plane?,
+        thickness: thickness?,
+        frame: frame?,
+        kinematics: kinematics?,
+        end_time: end_time?,
+        time_step: time_step?,
+        safety: safety?,
+        transfer: transfer?,
+        mass: mass?,
+        gravity: gravity?,
+    })
+}
+
+fn transfer(item: &Item<'_>) -> Option<Transfer> {
+    if item.node.as_table().is_some() {
+        let fields = item.fields(&["xpic"])?;
+        return fields.need("xpic", "{ xpic = 5 }", |order| order.whole(1, 100)).map(Transfer::Xpic);
+    }
+    if item.node.as_str() == Some("xpic") {
+        return item.fail("xpic needs its order", "write transfer = { xpic = 5 }");
+    }
+    item.choice(&[
+        ("pic", Transfer::Pic),
+        ("flip", Transfer::Flip),
+        ("musl", Transfer::Musl),
+        ("apic", Transfer::Apic),
+        ("tpic", Transfer::Tpic),
+    ])
+}
+
+fn default_solver() -> SolverSettings {
+    SolverSettings { phase_field_tolerance: 1e-8, phase_field_solver: PhaseFieldSolver::ConjugateGradients }
+}
+
+fn solver(item: &Item<'_>) -> Option<SolverSettings> {
+    let default = default_solver();
+    let solvers =
+        [("conjugate-gradients", PhaseFieldSolver::ConjugateGradients), ("cholesky", PhaseFieldSolver::Cholesky)];
+    let fields = item.fields(&["phase_field_tolerance", "phase_field_solver"])?;
+    let tolerance = fields.or("phase_field_tolerance", default.phase_field_tolerance, number);
+    let solver = fields.or("phase_field_solver", default.phase_field_solver, |item| item.choice(&solvers));
+    Some(SolverSettings { phase_field_tolerance: tolerance?, phase_field_solver: solver? })
+}
+
+/// Sides of a rectangle by name.
+pub(super) const SIDES: [(&str, Side); 4] =
+    [("left", Side::Left), ("right", Side::Right), ("bottom", Side::Bottom), ("top", Side::Top)];
+
+fn boundaries(item: &Item<'_>) -> Option<Vec<Boundary>> {
+    let read: Vec<Option<Boundary>> = item.tables()?.iter().map(boundary).collect();
+    read.into_iter().collect()
+}
+
+fn boundary(item: &Item<'_>) -> Option<Boundary> {
+    let fields = item.fields(&["side", "fix", "velocity"])?;
+    let side = fields.need("side", "side = \"left\"", |item| item.choice(&SIDES));
+    let components = fields.need("fix", "fix = [\"x\"], the fixed components", |item| {
+        item.each(|component| component.choice(&[("x", 0), ("y", 1)]))
+    });
+    let velocity = fields.or("velocity", [0.0, 0.0], |item| item.vector(Dimension::VELOCITY));
+    let components = components?;
+    Some(Boundary { side: side?, fix: [0, 1].map(|d| components.contains(&d)), velocity: velocity? })
+}
+
+fn output(item: &Item<'_>) -> Option<Output> {
+    let fields = item.fields(&["samples", "frames"])?;
+    let samples = fields.or("samples", 320, |item| item.whole(1, 100_000_000));
+    let frames = fields.or("frames", Vec::new(), |item| item.each(time));
+    Some(Output { samples: samples?, frames: frames? })
+}

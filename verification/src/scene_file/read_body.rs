@@ -1,0 +1,180 @@
+//! From the tree of a document to the typed scene: materials, bodies, shapes, tractions, cracks.
+
+use std::collections::BTreeMap;
+
+use fisura::scene::{Body, Crack, Edge, Fracture, Layout, Material, Shape, Split, Traction};
+
+use super::document::join;
+use super::fields::{Fields, Item};
+use super::read::{SIDES, length, number, point, time};
+use super::units::Dimension;
+
+/// `[material.NAME]` tables by name.
+pub(super) fn materials(item: &Item<'_>) -> Option<BTreeMap<String, Material>> {
+    let Some(table) = item.node.as_table() else {
+        return item.fail(format!("expected a table, found {}", item.node.kind()), "write [material.NAME]");
+    };
+    let names: Vec<&str> = table.keys().map(String::as_str).collect();
+    let fields = item.fields(&names)?;
+    let mut complete = true;
+    let mut materials = BTreeMap::new();
+    for name in names {
+        let Some(entry) = fields.get(name) else { continue };
+        if join("", name) != name {
+            let remedy = "name materials with letters, digits, - and _";
+            complete &= entry.fail::<()>(format!("{name:?} cannot be a material name"), remedy).is_some();
+        }
+        match material(&entry) {
+            Some(material) => drop(materials.insert(name.to_string(), material)),
+            None => complete = false,
+        }
+    }
+    complete.then_some(materials)
+}
+
+fn material(item: &Item<'_>) -> Option<Material> {
+    if item.node.as_table().is_none() {
+        return item.fail("expected a table of material constants", "name the material: [material.NAME]");
+    }
+    let fields = item.fields(&["young_modulus", "poisson_ratio", "density", "fracture"])?;
+    let modulus = fields.need("young_modulus", "young_modulus = \"32 GPa\"", |i| i.quantity(Dimension::STRESS));
+    let poisson = fields.need("poisson_ratio", "poisson_ratio = 0.2", number);
+    let density = fields.need("density", "density = \"2450 kg/m^3\"", |i| i.quantity(Dimension::DENSITY));
+    let fracture = fields.maybe("fracture", fracture);
+    Some(Material { young_modulus: modulus?, poisson_ratio: poisson?, density: density?, fracture: fracture? })
+}
+
+fn fracture(item: &Item<'_>) -> Option<Fracture> {
+    let fields = item.fields(&["critical_energy_release_rate", "length_scale", "residual_stiffness", "split"])?;
+    let rate = fields.need("critical_energy_release_rate", "critical_energy_release_rate = \"3 J/m^2\"", |item| {
+        item.quantity(Dimension::ENERGY_PER_AREA)
+    });
+    let scale = fields.need("length_scale", "length_scale = \"0.25 mm\"", length);
+    let residual = fields.or("residual_stiffness", 0.0, number);
+    let splits = [("spectral", Split::Spectral), ("none", Split::None)];
+    let split = fields.or("split", Split::Spectral, |item| item.choice(&splits));
+    Some(Fracture {
+        critical_energy_release_rate: rate?,
+        length_scale: scale?,
+        residual_stiffness: residual?,
+        split: split?,
+    })
+}
+
+/// `[[body]]` tables in order.
+pub(super) fn bodies(item: &Item<'_>) -> Option<Vec<Body>> {
+    all(item, body)
+}
+
+/// Every entry of an array of tables.
+fn all<T>(item: &Item<'_>, read: impl Fn(&Item<'_>) -> Option<T>) -> Option<Vec<T>> {
+    let read: Vec<Option<T>> = item.tables()?.iter().map(read).collect();
+    read.into_iter().collect()
+}
+
+fn body(item: &Item<'_>) -> Option<Body> {
+    let fields = item.fields(&[
+        "name",
+        "material",
+        "shape",
+        "particles_per_cell",
+        "layout",
+        "velocity",
+        "angular_velocity",
+        "rigid",
+        "traction",
+        "crack",
+    ])?;
+    let layouts = [("gauss", Layout::Gauss), ("uniform", Layout::Uniform), ("maclaurin", Layout::Maclaurin)];
+    let name = fields.need("name", "name = \"plate\"", Item::text);
+    let material = fields.need("material", "the name of a [material.NAME] table", Item::text);
+    let shape_like = "shape = { rectangle = { min = [0.0, 0.0], max = [0.1, 0.04] } }";
+    let shape = fields.need("shape", shape_like, shape);
+    let points = fields.or("particles_per_cell", [2, 2], |item| item.whole_per_direction(1, 16));
+    let layout = fields.or("layout", Layout::Gauss, |item| item.choice(&layouts));
+    let velocity = fields.or("velocity", [0.0, 0.0], |item| item.vector(Dimension::VELOCITY));
+    let angular_velocity = fields.or("angular_velocity", 0.0, |item| item.quantity(Dimension::RATE));
+    let rigid = fields.or("rigid", false, Item::flag);
+    let tractions = fields.or("traction", Vec::new(), |item| all(item, traction));
+    let cracks = fields.or("crack", Vec::new(), |item| all(item, crack));
+    Some(Body {
+        name: name?,
+        material: material?,
+        shape: shape?,
+        particles_per_cell: points?,
+        layout: layout?,
+        velocity: velocity?,
+        angular_velocity: angular_velocity?,
+        rigid: rigid?,
+        tractions: tractions?,
+        cracks: cracks?,
+    })
+}
+
+const SHAPES: [&str; 5] = ["rectangle", "disk", "annulus", "polygon", "difference"];
+
+fn shape(item: &Item<'_>) -> Option<Shape> {
+    let fields = item.fields(&SHAPES)?;
+    let given: Vec<Item<'_>> = SHAPES.iter().filter_map(|kind| fields.get(kind)).collect();
+    let [inner] = given.as_slice() else {
+        let message = format!("expected one shape, found {}", given.len());
+        let remedy = "give one of rectangle, disk, annulus, polygon, difference";
+        return item.fail(message, remedy);
+    };
+    match inner.path.rsplit('.').next()? {
+        "rectangle" => {
+            let fields = inner.fields(&["min", "max"])?;
+            let min = fields.need("min", "min = [0.0, 0.0] (m), the lower left corner", point);
+            let max = fields.need("max", "max = [0.1, 0.04] (m), the upper right corner", point);
+            Some(Shape::Rectangle { min: min?, max: max? })
+        }
+        "disk" => {
+            let fields = inner.fields(&["center", "radius"])?;
+            let (center, radius) = (center(&fields), fields.need("radius", "radius = 0.1 (m)", length));
+            Some(Shape::Disk { center: center?, radius: radius? })
+        }
+        "annulus" => {
+            let fields = inner.fields(&["center", "inner_radius", "outer_radius"])?;
+            let center = center(&fields);
+            let inner_radius = fields.need("inner_radius", "inner_radius = 0.1 (m)", length);
+            let outer_radius = fields.need("outer_radius", "outer_radius = 0.2 (m)", length);
+            Some(Shape::Annulus { center: center?, inner_radius: inner_radius?, outer_radius: outer_radius? })
+        }
+        "polygon" => {
+            let like = "points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]] (m)";
+            let points = inner.fields(&["points"])?.need("points", like, |item| item.each(point));
+            Some(Shape::Polygon { points: points? })
+        }
+        _ => {
+            let fields = inner.fields(&["of", "minus"])?;
+            let of = fields.need("of", "of = { rectangle = { ... } }, the shape cut from", shape);
+            let minus = fields.need("minus", "minus = [{ disk = { ... } }], the shapes cut out", |i| i.each(shape));
+            Some(Shape::Difference { of: Box::new(of?), minus: minus? })
+        }
+    }
+}
+
+fn center(fields: &Fields<'_>) -> Option<[f64; 2]> {
+    fields.need("center", "center = [0.0, 0.0] (m)", point)
+}
+
+fn traction(item: &Item<'_>) -> Option<Traction> {
+    let fields = item.fields(&["edge", "segment", "stress", "ramp"])?;
+    let edge = match (fields.get("edge"), fields.get("segment")) {
+        (Some(edge), None) => edge.choice(&SIDES).map(Edge::Side),
+        (None, Some(segment)) => segment.pair(point).map(Edge::Segment),
+        (Some(edge), Some(_)) => edge.fail("both edge and segment are given", "remove one of the two"),
+        (None, None) => fields.need("edge", "edge = \"top\", or segment = [[x0, y0], [x1, y1]]", |_| None),
+    };
+    let stress = fields.need("stress", "stress = [0.0, \"1 MPa\"]", |item| item.vector(Dimension::STRESS));
+    let ramp = fields.maybe("ramp", time);
+    Some(Traction { edge: edge?, stress: stress?, ramp: ramp? })
+}
+
+fn crack(item: &Item<'_>) -> Option<Crack> {
+    let fields = item.fields(&["from", "to", "half_width"])?;
+    let from = fields.need("from", "from = [0.0, 0.02] (m), the first end", point);
+    let to = fields.need("to", "to = [0.05, 0.02] (m), the second end", point);
+    let half_width = fields.maybe("half_width", length);
+    Some(Crack { from: from?, to: to?, half_width: half_width? })
+}
