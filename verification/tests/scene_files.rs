@@ -151,6 +151,7 @@ const BROKEN: &[Broken] = &[
     ("samples = 320", "samples = -1", 62, "output.samples", &["-1 is out of range"]),
     ("safety     = 0.8", "plane = \"stress\"", 16, "analysis.plane", &["duplicate key", "remove one"]),
     ("to   = [0.05, 0.02]", "from = [0.05, 0.02]", 51, "body.0.crack.0.from", &["duplicate key", "remove one"]),
+    ("max = [0.1, 0.04]", "min = [0.1, 0.04]", 37, "body.0.shape.rectangle.min", &["duplicate key", "remove one"]),
     ("[output]", "[output", 61, "", &["not valid TOML", "correct the syntax"]),
     // sense
     ("cells  = [400, 160]", "knots = [[0, 0, 1, 1], [0, 0, 0, 1, 1, 1]]", 7, "mesh.knots.0", &["too few", "at least 6"]),
@@ -318,6 +319,28 @@ fn no_prefix_or_change_of_a_file_panics() {
         let letter = letters[at % letters.len()];
         parse(&format!("{}{letter}{}", &small[..at], &small[at + 1..]));
     }
+}
+
+#[test]
+fn a_diagnostic_carries_its_place_and_remedy() {
+    use miette::Diagnostic;
+    let error = SceneFile::parse("plate.toml", &edited("\"80 us\"", "\"80 mm\""), &[]).unwrap_err();
+    let related: Vec<_> = error.related().unwrap().collect();
+    let label = related[0].labels().unwrap().next().unwrap();
+    let source = related[0].source_code().unwrap().read_span(label.inner(), 0, 0).unwrap();
+    assert_eq!(source.name(), Some("plate.toml"));
+    assert!(std::str::from_utf8(source.data()).unwrap().contains("80 mm"));
+    assert!(related[0].help().unwrap().to_string().contains("\"80 us\""));
+}
+
+#[test]
+fn a_value_can_be_put_into_a_tree() {
+    use fisura_verification::scene_file::{Node, Value};
+    let mut document = Document::parse("plate.toml", PLATE).unwrap();
+    document.root.set("mesh.degree", Node::new(Value::Integer(4), None)).unwrap();
+    assert_eq!(read_scene(&document.root, "").unwrap().mesh.degree, [4, 4]);
+    assert!(document.root.set("title.x", Node::new(Value::Integer(4), None)).is_err());
+    assert!(document.root.set("", Node::new(Value::Integer(4), None)).is_err());
 }
 
 #[test]

@@ -107,6 +107,17 @@ impl Node {
         path.split('.').filter(|s| !s.is_empty()).try_fold(self, |node, key| node.get(key))
     }
 
+    /// Path of the innermost table below `path` whose text contains byte `at` of the file.
+    fn path_around(&self, path: &str, at: usize) -> String {
+        let contains = |n: &Node| n.location.as_ref().is_some_and(|l| l.start <= at && at < l.end);
+        let inner = self.at(path).and_then(|node| match &node.value {
+            Value::Table(table) => table.iter().find(|(_, n)| contains(n)).map(|(key, _)| join(path, key)),
+            Value::Array(array) => array.iter().position(contains).map(|i| join(path, &i.to_string())),
+            _ => None,
+        });
+        inner.map_or_else(|| path.to_string(), |inner| self.path_around(&inner, at))
+    }
+
     /// Place of the value at `path`, or of the innermost table or array around it that exists.
     pub fn locate(&self, path: &str) -> Option<Location> {
         let mut node = self;
@@ -174,7 +185,7 @@ impl Document {
         let sources = Sources::new(name, text);
         let (table, errors) = DeTable::parse_recoverable(text);
         if !errors.is_empty() {
-            return Err(sources.error(&syntax_problems(text, &errors)));
+            return Err(sources.error(&syntax_problems(text, table.get_ref(), &errors)));
         }
         if table.get_ref().is_empty() {
             let what = if text.trim().is_empty() { "the file is empty" } else { "the file declares nothing" };
@@ -203,7 +214,7 @@ impl Document {
 }
 
 /// One problem per line with a syntax error.
-fn syntax_problems(text: &str, errors: &[toml::de::Error]) -> Vec<Problem> {
+fn syntax_problems(text: &str, recovered: &DeTable<'_>, errors: &[toml::de::Error]) -> Vec<Problem> {
     let mut problems = Vec::new();
     let mut lines = Vec::new();
     for error in errors {
@@ -215,7 +226,9 @@ fn syntax_problems(text: &str, errors: &[toml::de::Error]) -> Vec<Problem> {
         lines.push(line);
         let duplicate = error.message().starts_with("duplicate key");
         let (key, message, remedy) = if duplicate {
-            let key = join_written(&enclosing_table(text, span.start), text.get(span.clone()).unwrap_or(""));
+            let root = Node::new(Value::Table(entries(recovered, 0, 0)), None);
+            let around = root.path_around(&enclosing_table(text, span.start), span.start);
+            let key = join_written(&around, text.get(span.clone()).unwrap_or(""));
             (key, error.message().to_string(), "remove one of the two")
         } else {
             (String::new(), format!("not valid TOML: {}", error.message()), "correct the syntax (key = value, [table])")

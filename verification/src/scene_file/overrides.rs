@@ -10,6 +10,21 @@ use super::document::{Document, Node, Value};
 /// Name of the source in messages about an override.
 const NAME: &str = "--set";
 
+impl Node {
+    /// Puts `value` at a path such as `body.0.crack.0.half_width`, in place of what stands there; keys of tables that
+    /// are not there are created.
+    ///
+    /// # Errors
+    /// What is wrong with the path, if it is empty, leads through a value that is no table, or beyond an array.
+    pub fn set(&mut self, path: &str, value: Node) -> Result<(), String> {
+        let keys: Vec<&str> = path.split('.').collect();
+        if keys.contains(&"") {
+            return Err(format!("{path:?} has an empty key"));
+        }
+        set(self, &keys, 0, value).map_err(|(message, remedy)| format!("{message}; {remedy}"))
+    }
+}
+
 impl Document {
     /// Applies overrides in order, each `key.path=value`; array entries count from 0.
     ///
