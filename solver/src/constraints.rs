@@ -1,0 +1,49 @@
+//! Conditions on the sides of the mesh: prescribed velocity components of the control points of a side.
+//!
+//! End knots are repeated, so the control points of a side alone decide the field on it.
+
+use crate::patch::ControlGrid;
+use crate::scene::Boundary;
+
+/// Control points with a prescribed velocity component.
+#[derive(Debug, Clone, Default)]
+pub struct Constraints {
+    /// Per component: control point and its velocity, m/s.
+    fixed: [Vec<(usize, f64)>; 2],
+}
+
+impl Constraints {
+    /// Constraints of the sides of a mesh.
+    pub fn new(grid: ControlGrid, boundaries: &[Boundary]) -> Self {
+        let mut constraints = Self::default();
+        for component in 0..2 {
+            let fixed = &mut constraints.fixed[component];
+            for boundary in boundaries.iter().filter(|b| b.fix[component]) {
+                fixed.extend(grid.side(boundary.side).into_iter().map(|at| (at, boundary.velocity[component])));
+            }
+            fixed.sort_by_key(|&(at, _)| at);
+            fixed.dedup_by_key(|&mut (at, _)| at);
+        }
+        constraints
+    }
+
+    /// Prescribed components: control point, component, velocity.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, usize, f64)> {
+        let component = |c: usize| self.fixed[c].iter().map(move |&(at, velocity)| (at, c, velocity));
+        component(0).chain(component(1))
+    }
+
+    /// Sets prescribed velocities.
+    pub fn apply_velocity(&self, velocity: &mut [Vec<f64>; 2]) {
+        for (at, component, value) in self.iter() {
+            velocity[component][at] = value;
+        }
+    }
+
+    /// Removes the components from a field (accelerations, directions).
+    pub fn remove(&self, field: &mut [Vec<f64>; 2]) {
+        for (at, component, _) in self.iter() {
+            field[component][at] = 0.0;
+        }
+    }
+}

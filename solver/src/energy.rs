@@ -1,0 +1,109 @@
+//! The energy ledger: every joule has a name.
+//!
+//! ```text
+//! kinetic − stagger + elastic + fracture
+//!   = initial + external work + history work − contact loss − transfer loss + closure
+//! ```
+//!
+//! Each term is summed from its own definition; closure alone is what is left. Stagger, `dt²/8 aᵀ M a`, is the part of
+//! the kinetic energy at whole steps that velocity Verlet does not conserve. History work,
+//! `∬ 2 (1 − k) c (H − psi+)(−dc/dt)`, is what the model adds where the crack widens on remembered energy.
+
+/// Work and losses accumulated over a run, J per metre of thickness.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Ledger {
+    /// Work of tractions, gravity and driven sides.
+    pub external_work: f64,
+    /// Work of the history field.
+    pub history_work: f64,
+    /// Kinetic energy lost between leaving the grid and arriving at the next.
+    pub transfer_loss: f64,
+}
+
+/// State of a run at a whole step. Energies in J for the thickness of the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
+    /// Time, s.
+    pub time: f64,
+    /// Kinetic energy of the control points, J.
+    pub kinetic: f64,
+    /// Part of it that velocity Verlet does not conserve, J.
+    pub stagger: f64,
+    /// Elastic energy, J.
+    pub elastic: f64,
+    /// What only a fracturing body has.
+    pub fracture: Option<FractureSample>,
+    /// Work of external forces, J.
+    pub external_work: f64,
+    /// Loss of the transfers in the updated frame, J.
+    pub transfer_loss: Option<f64>,
+    /// What is left when every named term is added up, J.
+    pub closure: f64,
+    /// Momentum, kg m/s.
+    pub momentum: [f64; 2],
+    /// Angular momentum about the origin, kg m²/s.
+    pub angular_momentum: f64,
+    /// Time step, s.
+    pub time_step: f64,
+}
+
+/// What only a fracturing body has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FractureSample {
+    /// Surface energy of the crack, J.
+    pub energy: f64,
+    /// Work of the history field, J.
+    pub history_work: f64,
+    /// Crack tip, m, if there is a crack.
+    pub crack_tip: Option<[f64; 2]>,
+    /// Smallest phase field at a point.
+    pub min_phase: f64,
+    /// Iterations of the last phase-field solve.
+    pub iterations: usize,
+}
+
+impl Sample {
+    /// Columns of `history.csv`, in order; a column is there only with its model.
+    pub fn named_values(&self) -> Vec<(&'static str, f64)> {
+        let mut row = vec![
+            ("time_s", self.time),
+            ("kinetic_j", self.kinetic),
+            ("stagger_j", self.stagger),
+            ("elastic_j", self.elastic),
+        ];
+        let fracture = self.fracture.as_ref();
+        row.extend(fracture.map(|f| ("fracture_j", f.energy)));
+        row.push(("external_work_j", self.external_work));
+        row.extend(fracture.map(|f| ("history_work_j", f.history_work)));
+        row.extend(self.transfer_loss.map(|loss| ("transfer_loss_j", loss)));
+        row.push(("closure_j", self.closure));
+        if let Some(fracture) = fracture {
+            let [x, y] = fracture.crack_tip.unwrap_or([f64::NAN; 2]);
+            row.extend([("crack_tip_x_m", x), ("crack_tip_y_m", y), ("min_phase_field", fracture.min_phase)]);
+        }
+        row.push(("momentum_x", self.momentum[0]));
+        row.push(("momentum_y", self.momentum[1]));
+        row.push(("angular_momentum", self.angular_momentum));
+        row.push(("time_step_s", self.time_step));
+        row.extend(fracture.map(|f| ("phase_field_iterations", f.iterations as f64)));
+        row
+    }
+
+    /// Energy a ledger closes on: kinetic without stagger, elastic, fracture, J.
+    pub fn stored(&self) -> f64 {
+        self.kinetic - self.stagger + self.elastic + self.fracture.as_ref().map_or(0.0, |f| f.energy)
+    }
+
+    /// Sets closure from the stored energy at t = 0, J.
+    pub fn close(&mut self, initial: f64) {
+        let history_work = self.fracture.as_ref().map_or(0.0, |f| f.history_work);
+        let loss = self.transfer_loss.unwrap_or(0.0);
+        self.closure = self.stored() - initial - self.external_work - history_work + loss;
+    }
+
+    /// Largest single energy of the row, J: the scale of closure.
+    pub fn largest_term(&self) -> f64 {
+        let fracture = self.fracture.as_ref().map_or(0.0, |f| f.energy);
+        [self.kinetic, self.elastic, fracture, self.external_work].into_iter().map(f64::abs).fold(0.0, f64::max)
+    }
+}

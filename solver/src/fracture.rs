@@ -1,0 +1,158 @@
+//! Fracture of one body in the total frame: history energy, phase field, and what is measured of them.
+
+use crate::kernels::{HistoryUpdate, SurfaceEnergy};
+use crate::lane::{LANES, Lane};
+use crate::lattice::Lattice;
+use crate::material::{ElasticModuli, FractureModel};
+use crate::phase_field::PhaseField;
+use crate::scene::{Body, SolverSettings};
+use crate::shape::distance_to_segment;
+use crate::sweep::{Fields, sweep};
+
+/// Ratio of the largest initial history energy to Gc/(4 l0) on a seeded crack (Borden et al. 2012).
+const SEED_STRENGTH: f64 = 1000.0;
+/// Phase field below which a point counts as broken.
+pub const BROKEN: f64 = 0.05;
+
+/// History and phase field of a body.
+#[derive(Debug, Clone)]
+pub struct Fracturing {
+    /// Constants.
+    pub model: FractureModel,
+    /// History energy H at the points, J/m³.
+    pub history: Vec<Lane>,
+    /// Phase field at the points.
+    pub phase: Vec<Lane>,
+    /// `c (H − psi+)` at the points, J/m³.
+    pub remembered: Vec<Lane>,
+    /// Phase field on the control points.
+    pub field: PhaseField,
+    /// Iterations of the last solve.
+    pub iterations: usize,
+}
+
+/// A phase-field solve that stopped short of its tolerance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NotConverged {
+    /// Iterations spent.
+    pub iterations: usize,
+    /// Relative residual reached.
+    pub relative_residual: f64,
+}
+
+impl Fracturing {
+    /// Seeds the cracks of `body` and solves for the initial phase field.
+    ///
+    /// # Errors
+    /// If the initial solve does not converge.
+    pub fn new(
+        lattice: &Lattice,
+        body: &Body,
+        model: FractureModel,
+        settings: &SolverSettings,
+    ) -> Result<Self, NotConverged> {
+        let history = seeded_history(lattice, body, &model);
+        let zeros = vec![Lane::ZERO; lattice.batches()];
+        let mut field = PhaseField::new(lattice, model, settings);
+        let convergence = field.initialise(lattice, &history).map_err(|c| NotConverged {
+            iterations: c.iterations,
+            relative_residual: c.relative_residual,
+        })?;
+        Ok(Self { model, history, phase: zeros.clone(), remembered: zeros, field, iterations: convergence.iterations })
+    }
+
+    /// H from the present displacement.
+    pub fn update_history(&mut self, lattice: &Lattice, moduli: ElasticModuli, displacement: &[Vec<f64>; 2]) {
+        let model = self.model;
+        let strips = self.history.chunks_mut(lattice.strip_batches());
+        let mut kernels: Vec<_> = strips.map(|history| HistoryUpdate { moduli, model, history }).collect();
+        let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
+        sweep(lattice, fields, &mut kernels, None);
+    }
+
+    /// c from the present H.
+    ///
+    /// # Errors
+    /// If the solve does not converge.
+    pub fn solve_phase_field(&mut self, lattice: &Lattice) -> Result<(), NotConverged> {
+        match self.field.solve(lattice, &self.history) {
+            Ok(convergence) => self.iterations = convergence.iterations,
+            Err(c) => {
+                return Err(NotConverged { iterations: c.iterations, relative_residual: c.relative_residual });
+            }
+        }
+        Ok(())
+    }
+
+    /// Surface energy per unit thickness (J/m) and smallest c at a point.
+    pub fn surface_energy(&self, lattice: &Lattice) -> (f64, f64) {
+        let model = self.model;
+        let start = || SurfaceEnergy { model, energy: Lane::ZERO, least: Lane::splat(f64::INFINITY) };
+        let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| start()).collect();
+        let fields = Fields { displacement: [&[], &[]], phase: self.field.control_values() };
+        sweep(lattice, fields, &mut kernels, None);
+        let energy = kernels.iter().map(|k| k.energy.sum()).sum();
+        let least = kernels.iter().flat_map(|k| k.least.0).fold(f64::INFINITY, f64::min);
+        (energy, least)
+    }
+
+    /// Point of largest x with c below [`BROKEN`] at heights of at least `lowest` (m), by linear interpolation between
+    /// neighbouring points in x.
+    pub fn crack_tip(&self, lattice: &Lattice, lowest: f64) -> Option<[f64; 2]> {
+        let mut tip: Option<[f64; 2]> = None;
+        for (row_index, row) in lattice.rows.iter().enumerate() {
+            for (b, &y) in row.position.iter().enumerate().filter(|&(_, &y)| y >= lowest) {
+                if let Some(x) = self.rightmost_broken(lattice, row_index, b)
+                    && tip.is_none_or(|[best, _]| x > best)
+                {
+                    tip = Some([x, y]);
+                }
+            }
+        }
+        tip
+    }
+
+    fn rightmost_broken(&self, lattice: &Lattice, row: usize, b: usize) -> Option<f64> {
+        let mut right: Option<(f64, f64)> = None;
+        for (tile_index, tile) in lattice.tiles.iter().enumerate().rev() {
+            for lane in (0..LANES).rev() {
+                for a in (0..lattice.points[0]).rev() {
+                    if lattice.weight(row, tile_index, b, a)[lane] == 0.0 {
+                        continue;
+                    }
+                    let here = (tile.position[a][lane], self.phase[lattice.batch(row, tile_index, b, a)][lane]);
+                    if here.1 < BROKEN {
+                        let beyond = right.map(|(x, c)| here.0 + (BROKEN - here.1) / (c - here.1) * (x - here.0));
+                        return Some(beyond.unwrap_or(here.0));
+                    }
+                    right = Some(here);
+                }
+            }
+        }
+        None
+    }
+
+    /// Heap memory, bytes.
+    pub fn bytes(&self) -> usize {
+        let lanes = self.history.len() + self.phase.len() + self.remembered.len();
+        lanes * size_of::<Lane>() + self.field.bytes()
+    }
+}
+
+/// Initial history energy `H0(d) = B Gc/(4 l0) (1 − d/w)` within the half width w of a crack, else zero.
+pub fn seed_energy(model: &FractureModel, body: &Body, position: [f64; 2]) -> f64 {
+    let strength = SEED_STRENGTH * model.toughness / (4.0 * model.length_scale);
+    let of_crack = |crack: &crate::scene::Crack| {
+        let half_width = crack.half_width.unwrap_or(0.5 * model.length_scale);
+        strength * (1.0 - distance_to_segment(position, crack.from, crack.to) / half_width)
+    };
+    body.cracks.iter().map(of_crack).fold(0.0, f64::max)
+}
+
+fn seeded_history(lattice: &Lattice, body: &Body, model: &FractureModel) -> Vec<Lane> {
+    let mut history = vec![Lane::ZERO; lattice.batches()];
+    if !body.cracks.is_empty() {
+        lattice.for_each_point(|batch, lane, position, _| history[batch][lane] = seed_energy(model, body, position));
+    }
+    history
+}

@@ -1,0 +1,166 @@
+//! Eight neighbouring spans side by side: the vector type of the hot loops, and the one place where wider
+//! instructions are switched on.
+//!
+//! Every loop over [`Lane`] is plain arithmetic on eight numbers, which the compiler turns into vector instructions of
+//! whatever width the surrounding function may use. [`dispatch`] enters a function compiled for AVX2 and FMA where the
+//! processor has them, so a default build needs no compiler flags.
+
+use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Sub};
+
+/// Spans handled together.
+pub const LANES: usize = 8;
+
+/// One number for each of [`LANES`] neighbouring spans.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C, align(64))]
+pub struct Lane(pub [f64; LANES]);
+
+impl Lane {
+    /// All zero.
+    pub const ZERO: Self = Self([0.0; LANES]);
+
+    /// The same number in every lane.
+    #[inline(always)]
+    pub fn splat(value: f64) -> Self {
+        Self([value; LANES])
+    }
+
+    /// Reads eight neighbours.
+    #[inline(always)]
+    pub fn load(values: &[f64], at: usize) -> Self {
+        let mut lane = Self::ZERO;
+        lane.0.copy_from_slice(&values[at..at + LANES]);
+        lane
+    }
+
+    /// Adds to eight neighbours.
+    #[inline(always)]
+    pub fn add_to(self, values: &mut [f64], at: usize) {
+        for (value, add) in values[at..at + LANES].iter_mut().zip(self.0) {
+            *value += add;
+        }
+    }
+
+    /// `f` of each lane.
+    #[inline(always)]
+    pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        let mut out = Self::ZERO;
+        for l in 0..LANES {
+            out.0[l] = f(self.0[l]);
+        }
+        out
+    }
+
+    /// `f` of each pair of lanes.
+    #[inline(always)]
+    pub fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        let mut out = Self::ZERO;
+        for l in 0..LANES {
+            out.0[l] = f(self.0[l], other.0[l]);
+        }
+        out
+    }
+
+    /// `self + a b`, with one rounding if `FMA`.
+    #[inline(always)]
+    pub fn add_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
+        let mut out = self;
+        for l in 0..LANES {
+            out.0[l] = if FMA { a.0[l].mul_add(b.0[l], out.0[l]) } else { out.0[l] + a.0[l] * b.0[l] };
+        }
+        out
+    }
+
+    /// `self + a b` with the same `b` in every lane.
+    #[inline(always)]
+    pub fn add_scaled<const FMA: bool>(self, a: Self, b: f64) -> Self {
+        self.add_product::<FMA>(a, Self::splat(b))
+    }
+
+    /// Lane-wise maximum.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+
+    /// Lane-wise minimum.
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+
+    /// Sum over the lanes, always in the same order.
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        let v = self.0;
+        ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]))
+    }
+}
+
+impl Index<usize> for Lane {
+    type Output = f64;
+    #[inline(always)]
+    fn index(&self, lane: usize) -> &f64 {
+        &self.0[lane]
+    }
+}
+
+impl IndexMut<usize> for Lane {
+    #[inline(always)]
+    fn index_mut(&mut self, lane: usize) -> &mut f64 {
+        &mut self.0[lane]
+    }
+}
+
+macro_rules! lanewise {
+    ($trait:ident, $method:ident, $op:tt) => {
+        impl $trait for Lane {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.zip(other, |a, b| a $op b)
+            }
+        }
+        impl $trait<f64> for Lane {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: f64) -> Self {
+                self.map(|a| a $op other)
+            }
+        }
+    };
+}
+lanewise!(Add, add, +);
+lanewise!(Sub, sub, -);
+lanewise!(Mul, mul, *);
+
+impl AddAssign for Lane {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+/// Work to be compiled once for wide vector instructions and once without.
+pub trait Vectorised {
+    /// Result.
+    type Output;
+    /// The work; implementations are `#[inline(always)]` so that they take on the instructions of their caller.
+    fn run<const FMA: bool>(self) -> Self::Output;
+}
+
+/// Runs `work` with the widest instructions this processor has.
+pub fn dispatch<W: Vectorised>(work: W) -> W::Output {
+    #[cfg(target_arch = "x86_64")]
+    {
+        #[target_feature(enable = "avx2,fma")]
+        fn wide<W: Vectorised>(work: W) -> W::Output {
+            work.run::<true>()
+        }
+        if std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma") {
+            // SAFETY: the processor was just asked for both features.
+            return unsafe { wide(work) };
+        }
+    }
+    work.run::<false>()
+}

@@ -1,0 +1,247 @@
+//! The phase-field equation of a body (E 10–12, 19–24), AT2 in Borden's convention, c = 1 intact.
+//!
+//! ```text
+//! Σ_J K_IJ c_J = Σ_p V_p N_I(x_p),   K_IJ = Σ_p V_p [ (4 l0 (1 − k) H_p/Gc + 1) N_I N_J + 4 l0² grad N_I · grad N_J ]
+//! ```
+//!
+//! The points' volumes enter once (the source prints them twice in E 24) and the `+ 1` stands (E 9 and 11 drop it).
+//! The history energy H only grows, and so does K: only spans whose H grew since the last solve are added
+//! (delta assembly). An increment too small to move the relative residual by a hundredth of the tolerance waits.
+
+use crate::assembly::{Constant, Factor, PointCoefficients, add_products};
+use crate::cholesky::SparseCholesky;
+use crate::conjugate_gradients::{ConjugateGradients, Convergence};
+use crate::incomplete_cholesky::IncompleteCholesky;
+use crate::lane::{LANES, Lane};
+use crate::lattice::Lattice;
+use crate::material::FractureModel;
+use crate::scene::{PhaseFieldSolver, SolverSettings};
+use crate::stencil::Stencil;
+
+/// Iterations after which a solve counts as failed.
+const ITERATION_LIMIT: usize = 2000;
+/// A lagged factor is renewed once a solve needs this many more iterations than the one after its renewal.
+const EXTRA_ITERATIONS: usize = 3;
+
+/// Counters of the phase-field solver.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct PhaseFieldCounts {
+    /// Systems solved.
+    pub solves: usize,
+    /// Iterations in all.
+    pub iterations: usize,
+    /// Incomplete factorisations.
+    pub factorisations: usize,
+}
+
+/// Phase field of one body on its control points.
+#[derive(Debug, Clone)]
+pub struct PhaseField {
+    model: FractureModel,
+    tolerance: f64,
+    matrix: Stencil,
+    load: Vec<f64>,
+    /// Control values, and those of the solve before.
+    phase: Vec<f64>,
+    previous: Vec<f64>,
+    /// History energy that is in the matrix.
+    assembled: Vec<Lane>,
+    method: Method,
+    counts: PhaseFieldCounts,
+}
+
+#[derive(Debug, Clone)]
+enum Method {
+    Iterative { workspace: Box<ConjugateGradients>, factor: Box<IncompleteCholesky>, fresh_iterations: Option<usize> },
+    Direct(Box<SparseCholesky>),
+}
+
+impl PhaseField {
+    /// Phase field on the points of `lattice`, intact until the first solve.
+    pub fn new(lattice: &Lattice, model: FractureModel, settings: &SolverSettings) -> Self {
+        let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
+        use Factor::{Derivative, Value};
+        add_products(&mut matrix, lattice, [Value, Value], &Constant(1.0));
+        let mut load = integrate_shape_functions(lattice);
+        for factors in [[Derivative, Value], [Value, Derivative]] {
+            add_products(&mut matrix, lattice, factors, &Constant(model.diffusion()));
+        }
+        let grid = lattice.grid;
+        let mut phase = grid.zeros();
+        for row in 0..grid.rows {
+            for column in 0..grid.columns {
+                let at = grid.index(column, row);
+                phase[at] = 1.0;
+                if load[at] == 0.0 {
+                    matrix.set_diagonal(column, row, 1.0);
+                    load[at] = 1.0;
+                }
+            }
+        }
+        let method = match settings.phase_field_solver {
+            PhaseFieldSolver::Cholesky => Method::Direct(Box::default()),
+            PhaseFieldSolver::ConjugateGradients => Method::Iterative {
+                workspace: Box::new(ConjugateGradients::new(&matrix)),
+                factor: Box::new(IncompleteCholesky::new(&matrix)),
+                fresh_iterations: None,
+            },
+        };
+        Self {
+            model,
+            tolerance: settings.phase_field_tolerance,
+            matrix,
+            load,
+            previous: phase.clone(),
+            phase,
+            assembled: vec![Lane::ZERO; lattice.batches()],
+            method,
+            counts: PhaseFieldCounts::default(),
+        }
+    }
+
+    /// Control values of c.
+    pub fn control_values(&self) -> &[f64] {
+        &self.phase
+    }
+
+    /// Counters so far.
+    pub fn counts(&self) -> PhaseFieldCounts {
+        self.counts
+    }
+
+    /// Solves for c with the history energy (J/m³) of every batch of points.
+    ///
+    /// # Errors
+    /// The relative residual reached, if it is not the tolerance.
+    pub fn solve(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Convergence, Convergence> {
+        self.assemble_increments(lattice, history);
+        self.extrapolate();
+        self.counts.solves += 1;
+        let Self { matrix, load, phase, .. } = self;
+        let failed = Convergence { iterations: 0, relative_residual: f64::NAN };
+        let convergence = match &mut self.method {
+            Method::Direct(cholesky) => {
+                cholesky.solve(matrix, load, phase).ok_or(failed)?;
+                Convergence { iterations: 1, relative_residual: 0.0 }
+            }
+            Method::Iterative { workspace, factor, fresh_iterations } => {
+                let stale = |limit: usize, iterations: usize| iterations > limit + EXTRA_ITERATIONS;
+                let result = workspace.solve(matrix, factor, load, phase, self.tolerance, ITERATION_LIMIT);
+                match *fresh_iterations {
+                    Some(limit) if !stale(limit, result.iterations) => {}
+                    Some(_) => {
+                        factor.refactor(matrix);
+                        self.counts.factorisations += 1;
+                        *fresh_iterations = None;
+                    }
+                    None => *fresh_iterations = Some(result.iterations),
+                }
+                result
+            }
+        };
+        self.counts.iterations += convergence.iterations;
+        let direct = matches!(self.method, Method::Direct(_));
+        if direct || convergence.relative_residual <= self.tolerance { Ok(convergence) } else { Err(convergence) }
+    }
+
+    /// First solve with a seeded crack: the factor is made for it, and there is nothing to extrapolate from.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn initialise(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Convergence, Convergence> {
+        self.assemble_increments(lattice, history);
+        if let Method::Iterative { factor, .. } = &mut self.method {
+            factor.refactor(&self.matrix);
+            self.counts.factorisations += 1;
+        }
+        let convergence = self.solve(lattice, history)?;
+        self.previous.copy_from_slice(&self.phase);
+        if let Method::Iterative { fresh_iterations, .. } = &mut self.method {
+            *fresh_iterations = None;
+        }
+        Ok(convergence)
+    }
+
+    /// Adds what the history energy grew by.
+    fn assemble_increments(&mut self, lattice: &Lattice, history: &[Lane]) {
+        let reaction = self.model.reaction_per_energy();
+        let threshold = 0.01 * self.tolerance / reaction;
+        let increments = Increments { history, assembled: &self.assembled, reaction, threshold };
+        add_products(&mut self.matrix, lattice, [Factor::Value, Factor::Value], &increments);
+        let span = lattice.points_per_span();
+        for (assembled, history) in self.assembled.chunks_mut(span).zip(history.chunks(span)) {
+            if grew(assembled, history, threshold) {
+                assembled.copy_from_slice(history);
+            }
+        }
+    }
+
+    /// Start of the next solve: linear extrapolation of the last two.
+    fn extrapolate(&mut self) {
+        for (phase, previous) in self.phase.iter_mut().zip(&mut self.previous) {
+            let next = 2.0 * *phase - *previous;
+            *previous = *phase;
+            *phase = next;
+        }
+    }
+
+    /// Heap memory, bytes.
+    pub fn bytes(&self) -> usize {
+        let method = match &self.method {
+            Method::Iterative { workspace, factor, .. } => workspace.bytes() + factor.bytes(),
+            Method::Direct(_) => 0,
+        };
+        let vectors = self.load.len() + self.phase.len() + self.previous.len() + LANES * self.assembled.len();
+        self.matrix.bytes() + 8 * vectors + method
+    }
+}
+
+/// Whether the history energy of a span row of a tile grew beyond the threshold.
+#[inline(always)]
+fn grew(assembled: &[Lane], history: &[Lane], threshold: f64) -> bool {
+    let mut most = Lane::ZERO;
+    for (assembled, history) in assembled.iter().zip(history) {
+        most = most.max(*history - *assembled);
+    }
+    most.0.iter().any(|&growth| growth > threshold)
+}
+
+struct Increments<'a> {
+    history: &'a [Lane],
+    assembled: &'a [Lane],
+    reaction: f64,
+    threshold: f64,
+}
+
+impl PointCoefficients for Increments<'_> {
+    #[inline(always)]
+    fn span(&self, first: usize, weights: &[Lane], out: &mut [Lane]) -> bool {
+        let range = first..first + weights.len();
+        let (history, assembled) = (&self.history[range.clone()], &self.assembled[range]);
+        if !grew(assembled, history, self.threshold) {
+            return false;
+        }
+        for i in 0..weights.len() {
+            out[i] = (history[i] - assembled[i]) * weights[i] * self.reaction;
+        }
+        true
+    }
+}
+
+/// `Σ_p V_p N_I(x_p)` per unit thickness, m².
+pub fn integrate_shape_functions(lattice: &Lattice) -> Vec<f64> {
+    let mut out = lattice.grid.zeros();
+    let [kx, ky] = lattice.degree.map(|p| p + 1);
+    for batch in 0..lattice.batches() {
+        let (row_index, tile_index, b, a) = lattice.unbatch(batch);
+        let (row, tile) = (&lattice.rows[row_index], &lattice.tiles[tile_index]);
+        let weight = lattice.weight(row_index, tile_index, b, a);
+        for j in 0..ky {
+            for i in 0..kx {
+                let share = tile.value[a * kx + i] * weight * row.value[b][j];
+                share.add_to(&mut out, lattice.grid.index(tile.first + i, row.first + j));
+            }
+        }
+    }
+    out
+}

@@ -1,0 +1,114 @@
+//! Fields on a regular raster, for pictures.
+
+use rayon::prelude::*;
+
+use crate::material::ElasticModuli;
+use crate::spline::ShapeFunctions;
+use crate::total_frame::TotalFrame;
+
+/// Phase field and stress on a raster over the patch, x fastest; NaN outside the body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// Time, s.
+    pub time: f64,
+    /// Pixels in x and y.
+    pub pixels: [usize; 2],
+    /// Lower left corner of the first pixel, m.
+    pub origin: [f64; 2],
+    /// Size of a pixel, m.
+    pub pixel: [f64; 2],
+    /// Phase field, if there is one.
+    pub phase: Option<Vec<f64>>,
+    /// Largest principal stress of the degraded body, Pa.
+    pub stress: Vec<f64>,
+}
+
+impl Picture {
+    /// Picture of a body at `time` (s).
+    pub fn of(frame: &TotalFrame, time: f64, pixels: [usize; 2]) -> Self {
+        let spaces = &frame.patch().spaces;
+        let ends = [0, 1].map(|d| {
+            let spans = spaces[d].spans();
+            (spans[0].left, spans[spans.len() - 1].right)
+        });
+        let origin = ends.map(|(left, _)| left);
+        let pixel = [0, 1].map(|d| (ends[d].1 - ends[d].0) / pixels[d] as f64);
+        let at = |d: usize, i: usize| origin[d] + (i as f64 + 0.5) * pixel[d];
+        let values: Vec<[f64; 2]> = (0..pixels[1])
+            .into_par_iter()
+            .flat_map_iter(|j| (0..pixels[0]).map(move |i| (i, j)))
+            .map(|(i, j)| values_at(frame, [at(0, i), at(1, j)]))
+            .collect();
+        let phase = frame.fracture.is_some().then(|| values.iter().map(|v| v[0]).collect());
+        Self { time, pixels, origin, pixel, phase, stress: values.iter().map(|v| v[1]).collect() }
+    }
+
+    /// Centre of pixel `index`, m.
+    pub fn center(&self, index: usize) -> [f64; 2] {
+        let [i, j] = [index % self.pixels[0], index / self.pixels[0]];
+        [self.origin[0] + (i as f64 + 0.5) * self.pixel[0], self.origin[1] + (j as f64 + 0.5) * self.pixel[1]]
+    }
+}
+
+/// Phase field and largest principal stress at a position.
+fn values_at(frame: &TotalFrame, position: [f64; 2]) -> [f64; 2] {
+    let [sx, sy] = &frame.patch().spaces;
+    let (Some(i), Some(j)) = (sx.find_span(position[0]), sy.find_span(position[1])) else { return [f64::NAN; 2] };
+    if !frame.shape().contains(position) {
+        return [f64::NAN; 2];
+    }
+    let shapes = [sx.shape_functions(i, position[0]), sy.shape_functions(j, position[1])];
+    let first = [sx.spans()[i].first, sy.spans()[j].first];
+    let sum = |field: &[f64], derivative: Option<usize>| interpolate(frame, &shapes, first, field, derivative);
+    let [ux, uy] = frame.displacement();
+    let strain = [
+        sum(ux, Some(0)),
+        sum(uy, Some(1)),
+        0.5 * (sum(ux, Some(1)) + sum(uy, Some(0))),
+    ];
+    match &frame.fracture {
+        None => [1.0, largest_principal_stress(frame.moduli(), strain, None)],
+        Some(fracture) => {
+            let phase = sum(fracture.field.control_values(), None);
+            [phase, largest_principal_stress(frame.moduli(), strain, Some((&fracture.model, phase)))]
+        }
+    }
+}
+
+fn interpolate(
+    frame: &TotalFrame,
+    shapes: &[ShapeFunctions; 2],
+    first: [usize; 2],
+    field: &[f64],
+    derivative: Option<usize>,
+) -> f64 {
+    let table = |d: usize| if derivative == Some(d) { &shapes[d].derivative } else { &shapes[d].value };
+    let grid = frame.lattice().grid;
+    let [p, q] = frame.lattice().degree;
+    let mut sum = 0.0;
+    for l in 0..=q {
+        for k in 0..=p {
+            sum += table(0)[k] * table(1)[l] * field[grid.index(first[0] + k, first[1] + l)];
+        }
+    }
+    sum
+}
+
+fn largest_principal_stress(
+    moduli: ElasticModuli,
+    strain: [f64; 3],
+    fracture: Option<(&crate::material::FractureModel, f64)>,
+) -> f64 {
+    use crate::lane::Lane;
+    let strain = strain.map(Lane::splat);
+    let stress = match fracture {
+        None => moduli.stress(strain),
+        Some((model, phase)) => {
+            let state = crate::split::split(&moduli, model.split, strain);
+            let g = model.degradation(Lane::splat(phase));
+            [0, 1, 2].map(|i| state.stress_minus[i] + g * state.stress_plus[i])
+        }
+    };
+    let [xx, yy, xy] = stress.map(|s| s[0]);
+    0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)
+}

@@ -1,0 +1,93 @@
+//! Regions of the plane: which positions lie in a shape, and how far it reaches.
+
+use crate::scene::{Shape, Side};
+
+impl Shape {
+    /// Whether `position` (m) lies in the shape or on its boundary.
+    pub fn contains(&self, position: [f64; 2]) -> bool {
+        let [x, y] = position;
+        match self {
+            Self::Rectangle { min, max } => (min[0]..=max[0]).contains(&x) && (min[1]..=max[1]).contains(&y),
+            Self::Disk { center, radius } => (x - center[0]).hypot(y - center[1]) <= *radius,
+            Self::Annulus { center, inner_radius, outer_radius } => {
+                (*inner_radius..=*outer_radius).contains(&(x - center[0]).hypot(y - center[1]))
+            }
+            Self::Polygon { points } => polygon_contains(points, position),
+            Self::Difference { of, minus } => of.contains(position) && !minus.iter().any(|s| s.contains(position)),
+        }
+    }
+
+    /// Smallest axis-aligned rectangle around the shape: lower left and upper right corner, m.
+    pub fn bounding_box(&self) -> ([f64; 2], [f64; 2]) {
+        match self {
+            Self::Rectangle { min, max } => (*min, *max),
+            Self::Disk { center, radius } | Self::Annulus { center, outer_radius: radius, .. } => {
+                (center.map(|c| c - radius), center.map(|c| c + radius))
+            }
+            Self::Polygon { points } => points.iter().fold(
+                ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]),
+                |(low, high), p| ([low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]),
+            ),
+            Self::Difference { of, .. } => of.bounding_box(),
+        }
+    }
+
+    /// End points of a side of a rectangle, m; `None` for other shapes.
+    pub fn side(&self, side: Side) -> Option<[[f64; 2]; 2]> {
+        let Self::Rectangle { min, max } = self else { return None };
+        Some(match side {
+            Side::Left => [*min, [min[0], max[1]]],
+            Side::Right => [[max[0], min[1]], *max],
+            Side::Bottom => [*min, [max[0], min[1]]],
+            Side::Top => [[min[0], max[1]], *max],
+        })
+    }
+}
+
+/// Even–odd rule.
+fn polygon_contains(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let mut inside = false;
+    let mut previous = points.len() - 1;
+    for current in 0..points.len() {
+        let ([x0, y0], [x1, y1]) = (points[previous], points[current]);
+        if (y0 > y) != (y1 > y) && x < x0 + (y - y0) / (y1 - y0) * (x1 - x0) {
+            inside = !inside;
+        }
+        previous = current;
+    }
+    inside
+}
+
+/// Distance (m) of `position` from the segment between `from` and `to`.
+pub fn distance_to_segment(position: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let offset = [position[0] - from[0], position[1] - from[1]];
+    let length_squared = along[0] * along[0] + along[1] * along[1];
+    let t = ((offset[0] * along[0] + offset[1] * along[1]) / length_squared).clamp(0.0, 1.0);
+    (offset[0] - t * along[0]).hypot(offset[1] - t * along[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_hold_their_points_and_no_others() {
+        let square = Shape::Polygon { points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]] };
+        let ring = Shape::Annulus { center: [0.0, 0.0], inner_radius: 1.0, outer_radius: 2.0 };
+        let holed = Shape::Difference {
+            of: Box::new(Shape::Rectangle { min: [0.0, 0.0], max: [2.0, 2.0] }),
+            minus: vec![Shape::Disk { center: [1.0, 1.0], radius: 0.5 }],
+        };
+        assert!(square.contains([1.0, 0.5]) && !square.contains([2.1, 0.5]));
+        assert!(ring.contains([1.5, 0.0]) && !ring.contains([0.5, 0.0]) && !ring.contains([2.0, 2.0]));
+        assert!(holed.contains([0.2, 0.2]) && !holed.contains([1.2, 1.0]));
+        assert_eq!(ring.bounding_box(), ([-2.0, -2.0], [2.0, 2.0]));
+    }
+
+    #[test]
+    fn distance_beyond_the_end_is_to_the_end() {
+        assert_eq!(distance_to_segment([3.0, 4.0], [-1.0, 0.0], [0.0, 0.0]), 5.0);
+        assert_eq!(distance_to_segment([-0.5, 0.25], [-1.0, 0.0], [0.0, 0.0]), 0.25);
+    }
+}

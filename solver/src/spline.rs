@@ -1,0 +1,199 @@
+//! One-dimensional B-spline spaces on open knot vectors (E 13).
+//!
+//! On every non-empty knot span the `p + 1` basis functions that live there are kept as polynomials in the local
+//! coordinate `t = (x − left)/(right − left)`, computed once by the Cox–de Boor recursion. An evaluation is then one
+//! Horner scheme per function for any knots, uniform or not.
+
+/// Highest polynomial degree.
+pub const MAX_DEGREE: usize = 4;
+/// Most basis functions on a span, `MAX_DEGREE + 1`.
+pub const MAX_ORDER: usize = MAX_DEGREE + 1;
+
+/// A non-empty knot span.
+#[derive(Debug, Clone)]
+pub struct Span {
+    /// Left knot, m.
+    pub left: f64,
+    /// Right knot, m.
+    pub right: f64,
+    /// Index of the first of the `p + 1` basis functions on the span.
+    pub first: usize,
+    /// `polynomials[k][m]`: coefficient of `t^m` of the basis function `first + k`.
+    polynomials: [[f64; MAX_ORDER]; MAX_ORDER],
+}
+
+impl Span {
+    /// Length of the span, m.
+    pub fn length(&self) -> f64 {
+        self.right - self.left
+    }
+}
+
+/// Values and derivatives of the basis functions at a point; entries past the order are zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShapeFunctions {
+    /// Values.
+    pub value: [f64; MAX_ORDER],
+    /// Derivatives with respect to x, 1/m.
+    pub derivative: [f64; MAX_ORDER],
+}
+
+/// B-spline space of one direction.
+#[derive(Debug, Clone)]
+pub struct SplineSpace {
+    degree: usize,
+    knots: Vec<f64>,
+    spans: Vec<Span>,
+}
+
+impl SplineSpace {
+    /// Space of `degree` on an open knot vector (non-decreasing, end knots repeated `degree + 1` times), in metres.
+    pub fn new(degree: usize, knots: &[f64]) -> Self {
+        assert!((1..=MAX_DEGREE).contains(&degree), "degree 1 to {MAX_DEGREE}");
+        assert!(knots.len() >= 2 * (degree + 1), "an open knot vector has at least 2 (p + 1) knots");
+        let spans = (degree..knots.len() - degree - 1)
+            .filter(|&i| knots[i + 1] > knots[i])
+            .map(|i| Span {
+                left: knots[i],
+                right: knots[i + 1],
+                first: i - degree,
+                polynomials: span_polynomials(degree, knots, i),
+            })
+            .collect();
+        Self { degree, knots: knots.to_vec(), spans }
+    }
+
+    /// Polynomial degree p.
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Knot vector, m.
+    pub fn knot_vector(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// Number of basis functions.
+    pub fn dimension(&self) -> usize {
+        self.knots.len() - self.degree - 1
+    }
+
+    /// Non-empty spans from left to right.
+    pub fn spans(&self) -> &[Span] {
+        &self.spans
+    }
+
+    /// Index of the span that holds `x`; the end of the patch belongs to the last span. `None` outside.
+    pub fn find_span(&self, x: f64) -> Option<usize> {
+        let (left, right) = (self.spans.first()?.left, self.spans.last()?.right);
+        if !(left..=right).contains(&x) {
+            return None;
+        }
+        Some(self.spans.partition_point(|span| span.right <= x).min(self.spans.len() - 1))
+    }
+
+    /// Shape functions at `x` (m), which should lie in `span`.
+    #[inline]
+    pub fn shape_functions(&self, span: usize, x: f64) -> ShapeFunctions {
+        let span = &self.spans[span];
+        let scale = 1.0 / span.length();
+        let t = (x - span.left) * scale;
+        let mut shape = ShapeFunctions { value: [0.0; MAX_ORDER], derivative: [0.0; MAX_ORDER] };
+        for k in 0..=self.degree {
+            let polynomial = &span.polynomials[k];
+            let (mut value, mut slope) = (polynomial[self.degree], 0.0);
+            for m in (0..self.degree).rev() {
+                slope = slope * t + value;
+                value = value * t + polynomial[m];
+            }
+            shape.value[k] = value;
+            shape.derivative[k] = slope * scale;
+        }
+        shape
+    }
+
+    /// Greville abscissae, m: the control values of the function x.
+    pub fn greville(&self) -> Vec<f64> {
+        (0..self.dimension())
+            .map(|i| self.knots[i + 1..=i + self.degree].iter().sum::<f64>() / self.degree as f64)
+            .collect()
+    }
+}
+
+/// Cox–de Boor on polynomials of the local coordinate of the span `[knots[i], knots[i + 1])`.
+fn span_polynomials(degree: usize, knots: &[f64], i: usize) -> [[f64; MAX_ORDER]; MAX_ORDER] {
+    let (left, length) = (knots[i], knots[i + 1] - knots[i]);
+    let mut basis = [[0.0; MAX_ORDER]; MAX_ORDER];
+    basis[0][0] = 1.0;
+    for q in 1..=degree {
+        let mut next = [[0.0; MAX_ORDER]; MAX_ORDER];
+        // basis[k] is N_{i − q + 1 + k, q − 1}; each feeds N_{·, q} of the same index (rising) and the one before (falling).
+        for k in 0..q {
+            let start = knots[i + 1 + k - q];
+            let end = knots[i + 1 + k];
+            let width = end - start;
+            for m in 0..q {
+                let c = basis[k][m] / width;
+                next[k + 1][m] += c * (left - start);
+                next[k + 1][m + 1] += c * length;
+                next[k][m] += c * (end - left);
+                next[k][m + 1] -= c * length;
+            }
+        }
+        basis = next;
+    }
+    basis
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+
+    fn graded(degree: usize) -> SplineSpace {
+        let mut knots = vec![0.0; degree + 1];
+        knots.extend([0.1, 0.15, 0.4, 0.4, 0.9]);
+        knots.extend(vec![1.0; degree + 1]);
+        SplineSpace::new(degree, &knots)
+    }
+
+    #[test]
+    fn partition_of_unity_linear_precision_and_derivatives() {
+        for degree in 2..=4 {
+            let space = graded(degree);
+            let greville = space.greville();
+            for n in 0..=1000 {
+                let x = n as f64 / 1000.0;
+                let span = space.find_span(x).unwrap();
+                let first = space.spans()[span].first;
+                let shape = space.shape_functions(span, x);
+                assert_abs_diff_eq!(shape.value.iter().sum::<f64>(), 1.0, epsilon = 1e-13);
+                assert_abs_diff_eq!(shape.derivative.iter().sum::<f64>(), 0.0, epsilon = 1e-11);
+                let position: f64 = (0..=degree).map(|k| shape.value[k] * greville[first + k]).sum();
+                let slope: f64 = (0..=degree).map(|k| shape.derivative[k] * greville[first + k]).sum();
+                assert_abs_diff_eq!(position, x, epsilon = 1e-13);
+                assert_abs_diff_eq!(slope, 1.0, epsilon = 1e-11);
+            }
+        }
+    }
+
+    #[test]
+    fn the_quadratic_uniform_basis_has_its_textbook_values() {
+        let space = SplineSpace::new(2, &[0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 5.0, 5.0]);
+        let shape = space.shape_functions(2, 2.5);
+        for (value, expected) in shape.value.iter().zip([0.125, 0.75, 0.125, 0.0, 0.0]) {
+            assert_abs_diff_eq!(*value, expected, epsilon = 1e-15);
+        }
+        assert_eq!(space.dimension(), 7);
+        assert_eq!(space.spans()[2].first, 2);
+    }
+
+    #[test]
+    fn the_ends_belong_to_the_patch_and_beyond_does_not() {
+        let space = graded(3);
+        assert_eq!(space.find_span(0.0), Some(0));
+        assert_eq!(space.find_span(1.0), Some(space.spans().len() - 1));
+        assert_eq!(space.find_span(1.0 + 1e-12), None);
+        assert_eq!(space.find_span(f64::NAN), None);
+    }
+}
