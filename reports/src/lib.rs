@@ -1,1 +1,134 @@
-//! placeholder
+//! Figures and reports of the fisura verification harness, as pure functions of its records.
+//!
+//! [`render`] takes a results folder (`results.json`, `series/*.csv`) and writes beside it what people and machines
+//! read. Nothing here runs a simulation, reads a clock or judges a value: the same results give the same bytes.
+//!
+//! | file | for | module |
+//! |---|---|---|
+//! | `figures/*.svg` | papers and pages | [`figure`], [`chart`], [`field`] |
+//! | `report.html` | a reader with a browser | [`html`] |
+//! | `summary.md` | the step summary of a CI run | [`markdown`] |
+//! | `junit.xml` | the test view of a CI service | [`junit`] |
+//! | `metrics.json` | trend charts over commits | [`metrics`] |
+//!
+//! [`text`] prints the verdict on a terminal, [`run_report`] draws the pictures of a single run. Below them lie
+//! [`series`] (the numbers behind figures and what can be wrong with them), [`axis`] (ranges and ticks), [`colour`]
+//! (the map of fields), [`number`] (digits as they are printed) and [`view`] (verdicts in words, records in groups).
+
+pub mod axis;
+pub mod chart;
+pub mod colour;
+pub mod error;
+pub mod field;
+pub mod figure;
+pub mod html;
+pub mod junit;
+pub mod markdown;
+pub mod metrics;
+pub mod number;
+pub mod run_report;
+pub mod series;
+pub mod text;
+pub mod view;
+
+mod frame;
+mod legend;
+mod regions;
+mod style;
+mod svg;
+mod trace;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use fisura_verification::record::{ResultSet, SCHEMA};
+
+pub use error::ReportError;
+pub use series::{FigureError, SeriesSet};
+
+use html::Drawings;
+
+/// What [`render`] wrote.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rendered {
+    /// The results that were read.
+    pub results: ResultSet,
+    /// Files written, relative to the folder, in the order in which they were written.
+    pub files: Vec<PathBuf>,
+}
+
+/// Renders the results in `folder`: figures, `report.html`, `summary.md`, `junit.xml`, `metrics.json`, each written
+/// under a temporary name first.
+///
+/// # Errors
+/// `results.json` is missing, malformed or of another schema, or a file cannot be written. Figures that cannot be drawn
+/// give [`ReportError::Figures`] with all of them, after everything else was written; the page says so in their place.
+pub fn render(folder: &Path) -> Result<Rendered, ReportError> {
+    let results = read_results(folder)?;
+    let series = SeriesSet::load(folder, &results.figures);
+    let mut files = Vec::new();
+    let mut drawings = Drawings::new();
+    let mut broken = Vec::new();
+    for figure in &results.figures {
+        let drawn = figure::file_name(&figure.id).and_then(|name| Ok((name, figure::render_figure(figure, &series)?)));
+        let drawing = match drawn {
+            Ok((name, svg)) => {
+                files.push(write(folder, &name, &svg)?);
+                Ok(svg)
+            }
+            Err(error) => {
+                let words = error.to_string();
+                broken.push(error);
+                Err(words)
+            }
+        };
+        drawings.insert(figure.id.clone(), drawing);
+    }
+    let page = html::render_html(&results, &drawings).map_err(|e| failed("report.html", e))?;
+    files.push(write(folder, "report.html", &page)?);
+    files.push(write(folder, "summary.md", &markdown::render_markdown(&results))?);
+    let junit = junit::render_junit(&results).map_err(|e| failed("junit.xml", e))?;
+    files.push(write(folder, "junit.xml", &junit)?);
+    let metrics = metrics::render_metrics(&results).map_err(|e| failed("metrics.json", e))?;
+    files.push(write(folder, "metrics.json", &metrics)?);
+    if broken.is_empty() { Ok(Rendered { results, files }) } else { Err(ReportError::Figures(broken)) }
+}
+
+/// Reads `results.json` of a folder.
+///
+/// # Errors
+/// The file is missing, malformed or of another schema.
+pub fn read_results(folder: &Path) -> Result<ResultSet, ReportError> {
+    let path = folder.join("results.json");
+    let text = fs::read_to_string(&path).map_err(|source| ReportError::File { path: path.clone(), source })?;
+    let malformed = |e: serde_json::Error| ReportError::Results { path: path.clone(), message: e.to_string() };
+    let value: serde_json::Value = serde_json::from_str(&text).map_err(malformed)?;
+    let found = value.get("schema").and_then(|s| s.as_str()).unwrap_or_default().to_string();
+    if found != SCHEMA {
+        return Err(ReportError::Schema { path, found, expected: SCHEMA });
+    }
+    // read from the text again, so that the error has line and column
+    serde_json::from_str(&text).map_err(malformed)
+}
+
+fn failed(file: &'static str, error: impl std::fmt::Display) -> ReportError {
+    ReportError::Render { file, message: error.to_string() }
+}
+
+/// Writes a file of the folder so that it is either there in full or not at all.
+fn write(folder: &Path, name: &str, content: &str) -> Result<PathBuf, ReportError> {
+    let path = folder.join(name);
+    let fail = |source| ReportError::File { path: path.clone(), source };
+    if let Some(parent) = path.parent() {
+        fs::create_dir_all(parent).map_err(fail)?;
+    }
+    let mut part = path.clone().into_os_string();
+    part.push(".part");
+    fs::write(&part, content).map_err(fail)?;
+    fs::rename(&part, &path).map_err(fail)?;
+    Ok(PathBuf::from(name))
+}
+
+#[cfg(test)]
+#[path = "../tests/fixture/mod.rs"]
+mod example;

@@ -1,0 +1,42 @@
+//! Any figure as SVG.
+
+use std::path::{Component, Path};
+
+use fisura_verification::record::{Figure, FigureBody};
+
+use crate::chart::render_chart;
+use crate::field::{Raster, render_field};
+use crate::series::{FigureError, SeriesSet};
+
+/// Draws a figure as SVG; the series it names must be in `set`. The same input gives the same bytes.
+///
+/// # Errors
+/// Names the figure, the series and the column at fault.
+pub fn render_figure(figure: &Figure, set: &SeriesSet) -> Result<String, FigureError> {
+    file_name(&figure.id)?;
+    match &figure.body {
+        FigureBody::Chart { x, y, curves, regions } => render_chart(figure, [x, y], curves, regions, set),
+        FigureBody::Field { series, pixels, label, range } => {
+            let raster = Raster::read(&figure.id, series, *pixels, set)?;
+            render_field(figure, &raster, label, *range)
+        }
+    }
+}
+
+/// File of a figure below the results folder: `figures/<id>.svg`.
+pub fn file_name(id: &str) -> Result<String, FigureError> {
+    let plain = Path::new(id).components().all(|c| matches!(c, Component::Normal(_)));
+    if id.is_empty() || !plain || id.split('/').any(str::is_empty) || id.contains(['\\', ':']) {
+        return Err(FigureError::Name { figure: id.to_string() });
+    }
+    Ok(format!("figures/{id}.svg"))
+}
+
+/// Caption and deviations as one text, for readers who cannot see the picture.
+pub(crate) fn words(figure: &Figure) -> String {
+    let deviations = figure.deviations.join("; ");
+    match (figure.caption.trim(), deviations.as_str()) {
+        (caption, "") => caption.to_string(),
+        (caption, deviations) => format!("{caption} Differs from the source: {deviations}.").trim().to_string(),
+    }
+}

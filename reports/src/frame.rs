@@ -1,0 +1,85 @@
+//! The frame of a figure: axes, ticks, grid, axis titles.
+
+use plotters::coord::cartesian::Cartesian2d;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+
+use crate::axis::AxisScale;
+use crate::number::power_of_ten;
+use crate::style::{AXIS, GRID, INK, LABEL_SIZE, TICK_SIZE, px, text, text_width};
+use crate::svg::{Drawn, Page};
+
+/// Chart of plotters over our own axes.
+pub type Frame<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<AxisScale, AxisScale>>;
+
+/// Room below the frame for tick labels and the title of the abscissa.
+pub const BELOW: f64 = 46.0;
+
+/// Nominal place of the frame on its page.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// Left side.
+    pub left: f64,
+    /// Top side.
+    pub top: f64,
+    /// Width.
+    pub width: f64,
+    /// Height.
+    pub height: f64,
+}
+
+/// Room left of the frame for the labels and the title of the ordinate.
+pub fn room_left(y: &AxisScale) -> f64 {
+    let widest = y.ticks.iter().map(|t| text_width(&t.1, TICK_SIZE)).fold(0.0, f64::max);
+    (widest + LABEL_SIZE + 26.0).round()
+}
+
+/// Draws axes, grid and titles; the frame returned takes curves in axis coordinates.
+pub fn draw<'a, 'b>(
+    page: &'a Page<'b>,
+    place: Place,
+    axes: &[AxisScale; 2],
+    titles: [&str; 2],
+    grid: bool,
+) -> Drawn<Frame<'a, 'b>> {
+    let left = room_left(&axes[1]);
+    let (width, _) = page.dim_in_pixel();
+    let area = page.clone().shrink(
+        (px(place.left - left), px(place.top)),
+        ((px(left + place.width)).min(width as i32) as u32, px(place.height + BELOW) as u32),
+    );
+    let mut frame = ChartBuilder::on(&area)
+        .set_label_area_size(LabelAreaPosition::Left, px(left))
+        .set_label_area_size(LabelAreaPosition::Bottom, px(BELOW))
+        .build_cartesian_2d(axes[0].clone(), axes[1].clone())?;
+    let tick = text(TICK_SIZE, INK, HPos::Center, VPos::Center);
+    let line = if grid { GRID.stroke_width(px(0.8) as u32) } else { TRANSPARENT.into() };
+    let fine = if grid { GRID.mix(0.55).stroke_width(px(0.6) as u32) } else { TRANSPARENT.into() };
+    frame
+        .configure_mesh()
+        .axis_style(AXIS.stroke_width(px(1.0) as u32))
+        .bold_line_style(line)
+        .light_line_style(fine)
+        .label_style(tick)
+        .axis_desc_style(text(LABEL_SIZE, INK, HPos::Center, VPos::Center))
+        .set_all_tick_mark_size(px(4.0))
+        .x_desc(titles[0])
+        .y_desc(titles[1])
+        .draw()?;
+    factors(page, place, axes)?;
+    Ok(frame)
+}
+
+/// Prints the common powers of ten at the ends of the axes.
+fn factors(page: &Page, place: Place, axes: &[AxisScale; 2]) -> Drawn {
+    let words = |factor: i32| format!("×{}", power_of_ten(factor));
+    if let Some(factor) = axes[0].factor {
+        let at = (px(place.left + place.width), px(place.top + place.height + BELOW));
+        page.draw(&Text::new(words(factor), at, text(TICK_SIZE, INK, HPos::Right, VPos::Bottom)))?;
+    }
+    if let Some(factor) = axes[1].factor {
+        let at = (px(place.left - 8.0), px(place.top - 9.0));
+        page.draw(&Text::new(words(factor), at, text(TICK_SIZE, INK, HPos::Right, VPos::Bottom)))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,77 @@
+//! `junit.xml`: one test case per record, for the test views of CI services.
+
+use std::time::Duration;
+
+use fisura_verification::record::{Record, ResultSet, Status};
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+
+use crate::number::plain;
+use crate::view::{bounds, kind, reason, runs, suites, timing, value, with_unit};
+
+/// The report as XML. A value outside its bounds is a failure, a run that broke down an error; a record without
+/// bounds passes, with its value in the output.
+///
+/// # Errors
+/// Only if the XML cannot be written, which has no cause in the results.
+pub fn render_junit(set: &ResultSet) -> Result<String, quick_junit::SerializeError> {
+    let mut report = Report::new("fisura");
+    let mut total = Duration::ZERO;
+    for name in suites(set) {
+        let records: Vec<&Record> = set.records.iter().filter(|r| r.suite == name).collect();
+        if records.is_empty() {
+            continue;
+        }
+        let mut suite = TestSuite::new(name);
+        // records of one run repeat its time; the suite counts it once
+        let time = runs(records.iter().copied()).iter().map(|(_, run)| seconds(timing(run).wall_s)).sum();
+        suite.set_time(time);
+        total += time;
+        suite.add_test_cases(records.into_iter().map(case));
+        report.add_test_suite(suite);
+    }
+    report.set_time(total);
+    report.to_string()
+}
+
+fn case(record: &Record) -> TestCase {
+    let mut status = match record.status {
+        Status::Pass | Status::Info => TestCaseStatus::success(),
+        Status::Fail => TestCaseStatus::non_success(NonSuccessKind::Failure),
+        Status::Error => TestCaseStatus::non_success(NonSuccessKind::Error),
+    };
+    match record.status {
+        Status::Pass | Status::Info => {}
+        Status::Fail => {
+            status.set_type("out of bounds").set_message(message(record));
+        }
+        Status::Error => {
+            status.set_type("broke down").set_message(reason(record));
+        }
+    }
+    let mut case = TestCase::new(record.id.as_str(), status);
+    case.set_classname(format!("{}.{}", record.suite, record.case));
+    case.set_time(seconds(record.timing.wall_s));
+    case.set_system_out(message(record));
+    case
+}
+
+/// Value, bounds, reason and reference in one text, as some services drop everything but the message.
+fn message(record: &Record) -> String {
+    let mut text = format!("{}: {}", record.quantity, value(record, plain));
+    if record.status != Status::Info {
+        text.push_str(&format!(", accepted {}", bounds(&record.accept, plain)));
+    }
+    let why = reason(record);
+    if !why.is_empty() {
+        text.push_str(&format!(" ({why})"));
+    }
+    if let Some(reference) = &record.reference {
+        let number = reference.value.map(|v| with_unit(&plain(v, crate::number::DIGITS), &record.unit) + ", ");
+        text.push_str(&format!("; reference: {}{}, {}", number.unwrap_or_default(), kind(reference), reference.source));
+    }
+    text
+}
+
+fn seconds(value: f64) -> Duration {
+    Duration::try_from_secs_f64(value).unwrap_or(Duration::ZERO)
+}

@@ -1,0 +1,144 @@
+//! `summary.md`: what a step summary of a CI run shows first.
+
+use fisura_verification::record::{Record, ResultSet, Status};
+
+use crate::number::plain;
+use crate::view::{Counts, bounds, broken, environment, kind, reason, suites, symbol, value, with_unit, word};
+
+/// Largest size in bytes; a step summary over 1 MiB is dropped whole by GitHub.
+pub const LIMIT: usize = 900_000;
+
+/// The summary: verdict, environment, what does not hold, then a table per suite; cut at [`LIMIT`] with a note.
+pub fn render_markdown(set: &ResultSet) -> String {
+    render_limited(set, LIMIT)
+}
+
+fn render_limited(set: &ResultSet, limit: usize) -> String {
+    let counts = Counts::of(&set.records);
+    let mut out = format!("# {} {}\n\n{}.", symbol(counts.verdict()), counts.sentence(), counts.list());
+    for (name, text) in environment(set) {
+        out.push_str(&format!(" {name}: {}.", cell(&text)));
+    }
+    out.push_str("\n\n");
+    let mut budget = Budget { out, limit, left_out: 0 };
+    let broken = broken(set);
+    if !broken.is_empty() {
+        budget.table("## Does not hold", "| | check | value | accepted | why |\n|---|---|---|---|---|", &broken, |r| {
+            let why = format!("{}. {}", r.claim.trim_end_matches('.'), reason(r));
+            [verdict(r.status), format!("`{}`", r.id), value(r, plain), bounds(&r.accept, plain), why]
+        });
+    }
+    for suite in suites(set) {
+        let mut records: Vec<&Record> = set.records.iter().filter(|r| r.suite == suite).collect();
+        if records.is_empty() {
+            continue;
+        }
+        records.sort_by_key(|r| rank(r.status));
+        let title = format!("## {}: {}", cell(suite), Counts::of(records.iter().copied()).list());
+        let head = "| | check | quantity | value | reference | accepted |\n|---|---|---|---|---|---|";
+        budget.table(&title, head, &records, |r| {
+            let quantity = r.quantity.clone();
+            [
+                verdict(r.status),
+                format!("`{}`", r.id),
+                quantity,
+                value(r, plain),
+                reference(r),
+                bounds(&r.accept, plain),
+            ]
+        });
+    }
+    budget.finish()
+}
+
+/// Failures first, then errors, passes, and what has no bounds.
+fn rank(status: Status) -> u8 {
+    match status {
+        Status::Fail => 0,
+        Status::Error => 1,
+        Status::Pass => 2,
+        Status::Info => 3,
+    }
+}
+
+fn verdict(status: Status) -> String {
+    format!("{} {}", symbol(status), word(status))
+}
+
+fn reference(record: &Record) -> String {
+    match &record.reference {
+        None => "none".to_string(),
+        Some(r) => match r.value {
+            Some(v) => format!("{} ({})", with_unit(&plain(v, crate::number::DIGITS), &record.unit), kind(r)),
+            None => kind(r).to_string(),
+        },
+    }
+}
+
+/// Text of a table cell: one line, nothing that Markdown or HTML would take for its own.
+fn cell(text: &str) -> String {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('|', "\\|");
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Output that stops growing at a limit and remembers what it left out.
+struct Budget {
+    out: String,
+    limit: usize,
+    left_out: usize,
+}
+
+impl Budget {
+    fn table<const N: usize>(
+        &mut self,
+        title: &str,
+        head: &str,
+        records: &[&Record],
+        row: impl Fn(&Record) -> [String; N],
+    ) {
+        let top = format!("{title}\n\n{head}\n");
+        if self.out.len() + top.len() > self.limit {
+            self.left_out += records.len();
+            return;
+        }
+        self.out.push_str(&top);
+        for record in records {
+            let line = format!("| {} |\n", row(record).map(|c| cell(&c)).join(" | "));
+            if self.out.len() + line.len() > self.limit {
+                self.left_out += 1;
+            } else {
+                self.out.push_str(&line);
+            }
+        }
+        self.out.push('\n');
+    }
+
+    fn finish(mut self) -> String {
+        if self.left_out > 0 {
+            let note = format!("{} more rows are left out here; `report.html` has them all.\n", self.left_out);
+            self.out.push_str(&note);
+        }
+        self.out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::example::results;
+
+    #[test]
+    fn a_long_summary_is_cut_with_a_note() {
+        let mut set = results();
+        set.records = std::iter::repeat_n(set.records, 50).flatten().collect();
+        let text = render_limited(&set, 4000);
+        assert!(text.len() < 4100, "{}", text.len());
+        assert!(text.ends_with("more rows are left out here; `report.html` has them all.\n"), "{text}");
+        assert!(text.contains("## Does not hold"));
+    }
+
+    #[test]
+    fn cells_stay_cells() {
+        assert_eq!(cell("a | b\n<c>"), "a \\| b &lt;c>");
+    }
+}

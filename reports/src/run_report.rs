@@ -1,0 +1,146 @@
+//! Pictures of a single run: energies against time, and one phase-field picture per frame.
+
+use fisura_verification::history::Table;
+use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Scale};
+
+use crate::field::{Raster, render_field};
+use crate::figure::render_figure;
+use crate::number::{plain, pretty};
+use crate::series::{FigureError, SeriesSet};
+
+/// Name under which the history is passed to the chart.
+const HISTORY: &str = "history.csv";
+
+/// Draws all energies of a `history.csv` (columns `time_s` and `*_j`) against time, in units that suit their size.
+/// A column without any number is left out.
+///
+/// # Errors
+/// There is no `time_s` column, or no energy column with a number in it.
+pub fn energies_svg(history: &Table, title: &str) -> Result<String, FigureError> {
+    let largest = |name: &str| {
+        let values = history.column(name).unwrap_or_default();
+        values.iter().filter(|v| v.is_finite()).fold(None, |m: Option<f64>, v| Some(m.unwrap_or(0.0).max(v.abs())))
+    };
+    let drawn: Vec<&String> = history.names.iter().filter(|n| n.ends_with("_j") && largest(n).is_some()).collect();
+    let top = drawn.iter().filter_map(|n| largest(n)).fold(0.0, f64::max);
+    let (energy_scale, energy_unit) = unit(top, &[("kJ", 1e3), ("J", 1.0), ("mJ", 1e-3), ("µJ", 1e-6), ("nJ", 1e-9)]);
+    let (time_scale, time_unit) = unit(largest("time_s").unwrap_or(0.0), &TIMES);
+    let curves: Vec<Curve> = drawn
+        .into_iter()
+        .map(|name| Curve {
+            label: name.trim_end_matches("_j").replace('_', " "),
+            series: HISTORY.to_string(),
+            x: "time_s".to_string(),
+            y: name.clone(),
+            x_scale: time_scale,
+            y_scale: energy_scale,
+            style: CurveStyle::Line,
+            uncertainty_absolute: 0.0,
+            uncertainty_relative: 0.0,
+        })
+        .collect();
+    if curves.is_empty() {
+        return Err(FigureError::Column {
+            figure: "energies".to_string(),
+            series: HISTORY.to_string(),
+            column: "*_j".to_string(),
+            present: history.names.join(", "),
+        });
+    }
+    let axis = |label: String| Axis { label, scale: Scale::Linear, range: None };
+    let body = FigureBody::Chart {
+        x: axis(format!("time ({time_unit})")),
+        y: axis(format!("energy ({energy_unit})")),
+        curves,
+        regions: Vec::new(),
+    };
+    let mut set = SeriesSet::default();
+    set.insert(HISTORY, history.clone());
+    render_figure(&figure("energies", title.to_string(), body), &set)
+}
+
+/// Draws the phase field of a frame (columns `x_m`, `y_m`, `value`, x fastest) between 0, broken, and 1, intact.
+///
+/// # Errors
+/// The table is no raster.
+pub fn phase_svg(frame: &Table, time_s: f64, title: &str) -> Result<String, FigureError> {
+    let id = phase_name(time_s);
+    let fail = |message| FigureError::Raster { figure: id.clone(), series: "frame".to_string(), message };
+    let raster = Raster::from_table(frame).map_err(fail)?;
+    let (scale, word) = unit(time_s.abs(), &TIMES);
+    let title = format!("{title}, phase field at {} {word}", pretty(time_s * scale, 4));
+    let (label, range) = ("phase field c (0 broken, 1 intact)".to_string(), [0.0, 1.0]);
+    let body = FigureBody::Field { series: String::new(), pixels: raster.pixels, label: label.clone(), range };
+    render_field(&figure(&id, title, body), &raster, &label, range)
+}
+
+/// File name, without ending, of the picture of a frame: `phase-45us`. Times that differ have names that differ, to
+/// nine digits.
+pub fn phase_name(time_s: f64) -> String {
+    let units = [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
+    let (scale, word) = unit(time_s.abs(), &units);
+    format!("phase-{}{word}", plain(time_s * scale, 9))
+}
+
+const TIMES: [(&str, f64); 4] = [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
+
+/// Factor and name of the largest unit in which `size` is at least 1; the first for zero, else the smallest.
+fn unit(size: f64, units: &[(&'static str, f64)]) -> (f64, &'static str) {
+    let basic = units.iter().find(|u| u.1 == 1.0).copied().unwrap_or(("", 1.0));
+    let fits = units.iter().find(|u| size >= 0.999_999_999 * u.1).copied();
+    let smallest = units.last().copied().unwrap_or(basic);
+    let (name, size_of_unit) = if size > 0.0 { fits.unwrap_or(smallest) } else { basic };
+    ((1.0 / size_of_unit), name)
+}
+
+fn figure(id: &str, title: String, body: FigureBody) -> Figure {
+    let (caption, deviations) = (String::new(), Vec::new());
+    Figure { id: id.to_string(), suite: String::new(), title, caption, deviations, body }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn history() -> Table {
+        let mut table = Table::new(&["time_s", "kinetic_j", "contact_loss_j", "time_step_s"]);
+        for i in 0..=40 {
+            let t = i as f64 * 2e-6;
+            table.push(&[t, 0.3 * (t * 1e5).sin().abs(), f64::NAN, 1e-8]);
+        }
+        table
+    }
+
+    #[test]
+    fn energies_choose_their_units() {
+        let svg = energies_svg(&history(), "Plate").unwrap();
+        assert!(svg.contains("time (µs)") && svg.contains("energy (mJ)") && svg.contains("kinetic"));
+        assert!(!svg.contains("contact loss") && !svg.contains("NaN"));
+        assert_eq!(svg, energies_svg(&history(), "Plate").unwrap());
+    }
+
+    #[test]
+    fn a_history_without_energies_is_an_error() {
+        assert!(energies_svg(&Table::new(&["time_s"]), "Plate").is_err());
+    }
+
+    #[test]
+    fn frames_are_named_by_their_time() {
+        assert_eq!(phase_name(0.0), "phase-0s");
+        assert_eq!(phase_name(45e-6), "phase-45us");
+        assert_eq!(phase_name(4.50125e-5), "phase-45.0125us");
+        assert_eq!(phase_name(1.0), "phase-1s");
+    }
+
+    #[test]
+    fn a_frame_is_drawn_and_a_ragged_one_refused() {
+        let mut table = Table::new(&["x_m", "y_m", "value"]);
+        for i in 0..12 {
+            table.push(&[(i % 4) as f64 * 1e-3, (i / 4) as f64 * 1e-3, if i == 5 { f64::NAN } else { 0.5 }]);
+        }
+        let svg = phase_svg(&table, 45e-6, "Plate").unwrap();
+        assert!(svg.contains("phase field at 45 µs") && svg.contains("M0 0h4v1h-4z"), "{svg}");
+        table.push(&[0.0, 3e-3, 1.0]);
+        assert!(phase_svg(&table, 45e-6, "Plate").unwrap_err().to_string().contains("13 rows"));
+    }
+}

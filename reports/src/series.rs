@@ -1,0 +1,140 @@
+//! The numbers behind the figures, and what can be wrong with them.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use fisura_verification::history::Table;
+use fisura_verification::record::{Figure, FigureBody};
+use thiserror::Error;
+
+/// A figure that cannot be drawn.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum FigureError {
+    /// A series file is missing or unreadable.
+    #[error("figure {figure}: series {series} cannot be read: {message}")]
+    Series {
+        /// Figure.
+        figure: String,
+        /// Series, relative to the results folder.
+        series: String,
+        /// What is wrong with it.
+        message: String,
+    },
+    /// A series lacks a column that a curve names.
+    #[error("figure {figure}: series {series} has no column {column:?}; it has {present}")]
+    Column {
+        /// Figure.
+        figure: String,
+        /// Series, relative to the results folder.
+        series: String,
+        /// Column asked for.
+        column: String,
+        /// Columns there are.
+        present: String,
+    },
+    /// A curve has no point that could be drawn on these axes.
+    #[error(
+        "figure {figure}: nothing to draw for {label:?}: columns {x} and {y} of series {series} have no drawable row"
+    )]
+    Empty {
+        /// Figure.
+        figure: String,
+        /// Legend of the curve.
+        label: String,
+        /// Series, relative to the results folder.
+        series: String,
+        /// Column of the abscissa.
+        x: String,
+        /// Column of the ordinate.
+        y: String,
+    },
+    /// The rows of a field do not form the raster that the figure declares.
+    #[error("figure {figure}: series {series} is no raster: {message}")]
+    Raster {
+        /// Figure.
+        figure: String,
+        /// Series, relative to the results folder.
+        series: String,
+        /// What is wrong.
+        message: String,
+    },
+    /// The identifier would leave the folder of figures.
+    #[error("figure {figure:?}: an id consists of names joined by single slashes")]
+    Name {
+        /// Figure.
+        figure: String,
+    },
+    /// The drawing library gave up.
+    #[error("figure {figure}: drawing failed: {message}")]
+    Drawing {
+        /// Figure.
+        figure: String,
+        /// Its words.
+        message: String,
+    },
+}
+
+/// Series tables by their name relative to the results folder.
+#[derive(Debug, Clone, Default)]
+pub struct SeriesSet {
+    tables: BTreeMap<String, Result<Table, String>>,
+}
+
+impl SeriesSet {
+    /// Adds a table under a name such as `series/plate.csv`.
+    pub fn insert(&mut self, name: impl Into<String>, table: Table) {
+        self.tables.insert(name.into(), Ok(table));
+    }
+
+    /// Reads every series that the figures name. A file that cannot be read is remembered with its error, which
+    /// comes up when a figure asks for it.
+    pub fn load<'a>(folder: &Path, figures: impl IntoIterator<Item = &'a Figure>) -> Self {
+        let mut set = Self::default();
+        for name in figures.into_iter().flat_map(names) {
+            let read = |name: &String| Table::read(&folder.join(name)).map_err(|e| e.message);
+            set.tables.entry(name).or_insert_with_key(read);
+        }
+        set
+    }
+
+    /// The table of that name, for a figure.
+    pub fn table(&self, figure: &str, series: &str) -> Result<&Table, FigureError> {
+        let fail = |message: &str| FigureError::Series {
+            figure: figure.to_string(),
+            series: series.to_string(),
+            message: message.to_string(),
+        };
+        match self.tables.get(series) {
+            Some(Ok(table)) => Ok(table),
+            Some(Err(message)) => Err(fail(message)),
+            None => Err(fail("it was not loaded")),
+        }
+    }
+
+    /// A column of a table, for a figure.
+    pub fn column(&self, figure: &str, series: &str, column: &str) -> Result<&[f64], FigureError> {
+        let table = self.table(figure, series)?;
+        table.column(column).ok_or_else(|| FigureError::Column {
+            figure: figure.to_string(),
+            series: series.to_string(),
+            column: column.to_string(),
+            present: table.names.join(", "),
+        })
+    }
+}
+
+/// Names of the series behind a figure, each once, in the order of its curves.
+pub fn names(figure: &Figure) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    match &figure.body {
+        FigureBody::Chart { curves, .. } => {
+            for curve in curves {
+                if !names.contains(&curve.series) {
+                    names.push(curve.series.clone());
+                }
+            }
+        }
+        FigureBody::Field { series, .. } => names.push(series.clone()),
+    }
+    names
+}
