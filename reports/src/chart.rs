@@ -4,7 +4,7 @@ use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, Region};
 use plotters::prelude::*;
 
 use crate::axis::AxisScale;
-use crate::frame::{self, BELOW, Frame, Place};
+use crate::frame::{self, BELOW, EDGE, Frame, Place};
 use crate::legend::{BAND, Legend, draw_marker};
 use crate::regions::{self, Labels};
 use crate::series::{FigureError, SeriesSet};
@@ -71,7 +71,7 @@ impl<'a> Chart<'a> {
         let ordinates = ordinates.chain(regions.iter().flat_map(|r| r.y.into_iter().flatten()));
         let y = AxisScale::fit(axes[1], ordinates, 0.05, 6);
 
-        let left = frame::room_left(&y);
+        let left = frame::room_left(&y) + EDGE;
         let last = x.ticks.last().map_or(0.0, |t| 0.5 * text_width(&t.1, TICK_SIZE));
         let beside = Labels::place(regions, &x, WIDTH).width();
         let width = (WIDTH - left - 8.0 - (beside + 4.0).max(last + 6.0)).round();
@@ -109,7 +109,8 @@ impl<'a> Chart<'a> {
     fn draw_trace(&self, page: &Page, frame: &mut Frame, trace: &Trace) -> Drawn {
         let [x, y] = &self.axes;
         let points = trace.coordinates(x, y);
-        let stroke = trace.look.colour.stroke_width(px(CURVE_WIDTH) as u32);
+        let width = if trace.style == CurveStyle::Reference { 0.85 * CURVE_WIDTH } else { CURVE_WIDTH };
+        let stroke = trace.look.colour.stroke_width(px(width) as u32);
         if trace.style == CurveStyle::Points {
             self.draw_bars(frame, trace)?;
         } else {
@@ -120,8 +121,10 @@ impl<'a> Chart<'a> {
         let seen: Vec<Point> = points.into_iter().filter(|p| visible(*p, x, y)).collect();
         let marker = trace.look.marker.or((seen.len() == 1).then_some(crate::style::Marker::Circle));
         let Some(marker) = marker else { return Ok(()) };
-        for p in marked(&seen, trace, &self.traces) {
-            draw_marker(page, frame.backend_coord(&p), marker, &trace.look)?;
+        let marked = marked(&seen, trace, &self.traces);
+        let radius = if marked.len() > 24 { 2.6 } else { 3.6 };
+        for p in marked {
+            draw_marker(page, frame.backend_coord(&p), marker, radius, trace.look.colour)?;
         }
         Ok(())
     }

@@ -9,7 +9,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use crate::axis::AxisScale;
 use crate::colour::{LEVELS, level, level_colour};
-use crate::frame::{self, BELOW, Place};
+use crate::frame::{self, BELOW, EDGE, Place};
 use crate::series::{FigureError, SeriesSet};
 use crate::style::{AXIS, INK, LABEL_SIZE, SCALE, TICK_SIZE, WIDTH, px, text, text_width};
 use crate::svg::{self, Drawn, Page};
@@ -151,10 +151,12 @@ pub fn render_field(figure: &Figure, raster: &Raster, label: &str, range: [f64; 
     let none = Axis { label: String::new(), scale: Scale::Linear, range: Some(range) };
     let bar = AxisScale::fit(&none, [], 0.0, 5);
     let labels = bar.ticks.iter().map(|t| text_width(&t.1, TICK_SIZE)).fold(0.0, f64::max);
-    let left = frame::room_left(&axes[1]);
+    let left = frame::room_left(&axes[1]) + EDGE;
     let room = WIDTH - left - GAP - BAR - 10.0 - labels - LABEL_SIZE - 16.0;
     let ratio = (axes[1].high - axes[1].low) / (axes[0].high - axes[0].low);
     let width = room.min(TALLEST / ratio).round();
+    // a narrow picture stands in the middle
+    let left = left + (0.5 * (room - width)).round();
     let place = Place { left, top: 20.0, width, height: (width * ratio).round().max(40.0) };
     let size = (WIDTH, place.top + place.height + BELOW + 10.0);
     let description = format!("Picture of {label} over x and y in mm. {}", crate::figure::words(figure));

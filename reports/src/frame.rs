@@ -13,7 +13,9 @@ use crate::svg::{Drawn, Page};
 pub type Frame<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<AxisScale, AxisScale>>;
 
 /// Room below the frame for tick labels and the title of the abscissa.
-pub const BELOW: f64 = 46.0;
+pub const BELOW: f64 = 42.0;
+/// Free room at the left edge of the page.
+pub const EDGE: f64 = 6.0;
 
 /// Nominal place of the frame on its page.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -97,15 +97,15 @@ impl Entry {
             }
         }
         match look.marker {
-            Some(marker) => draw_marker(page, (px(x + 0.5 * SAMPLE), px(y)), marker, look),
+            Some(marker) => draw_marker(page, (px(x + 0.5 * SAMPLE), px(y)), marker, 3.6, look.colour),
             None => Ok(()),
         }
     }
 }
 
-/// Draws a marker at a place on the page, with a thin white rim that sets it off from lines.
-pub fn draw_marker(page: &Page, at: (i32, i32), marker: Marker, look: &Look) -> Drawn {
-    for (radius, colour) in [(4.6, WHITE), (3.6, look.colour)] {
+/// Draws a marker of nominal `radius` at a place on the page, with a thin white rim that sets it off from lines.
+pub fn draw_marker(page: &Page, at: (i32, i32), marker: Marker, radius: f64, colour: RGBColor) -> Drawn {
+    for (radius, colour) in [(radius + 0.9, WHITE), (radius, colour)] {
         let corners = marker.corners(radius);
         if corners.is_empty() {
             page.draw(&Circle::new(at, px(radius), colour.filled()))?;

@@ -22,27 +22,27 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Places the labels above a frame of nominal `width`, in as many rows as it takes to keep them apart.
+    /// Places the labels above a frame of nominal `width`: centred on their bands, pushed apart where two would touch,
+    /// in a further row where that does not help.
     pub fn place(regions: &[Region], x: &AxisScale, width: f64) -> Self {
         let mut labels = Self::default();
-        let mut taken: Vec<Vec<(f64, f64)>> = Vec::new();
+        let mut upright: Vec<(usize, [f64; 2])> = Vec::new();
         for (index, region) in regions.iter().enumerate() {
-            let Some(range) = region.x else {
-                labels.beside.push((region.label.clone(), index));
-                continue;
-            };
-            let [low, high] = extent(Some(range), x);
-            let half = 0.5 * text_width(&region.label, TICK_SIZE) + 4.0;
-            let middle = (0.5 * (low + high) - x.low) / (x.high - x.low) * width;
-            let centre = middle.min(width - half).max(half);
-            let span = (centre - half, centre + half);
-            let free = |row: &Vec<(f64, f64)>| row.iter().all(|t| span.1 <= t.0 || span.0 >= t.1);
-            let row = taken.iter().position(free).unwrap_or(taken.len());
-            if row == taken.len() {
-                taken.push(Vec::new());
+            match region.x {
+                None => labels.beside.push((region.label.clone(), index)),
+                range => upright.push((index, extent(range, x).map(|u| (u - x.low) / (x.high - x.low) * width))),
             }
-            taken[row].push(span);
-            labels.above.push((region.label.clone(), centre, row));
+        }
+        upright.sort_by(|a, b| (a.1[0] + a.1[1]).total_cmp(&(b.1[0] + b.1[1])));
+        let mut rows: Vec<Vec<Span>> = Vec::new();
+        for (index, band) in upright {
+            let span = Span::new(index, band, 0.5 * text_width(&regions[index].label, TICK_SIZE) + 4.0, width);
+            if !rows.iter_mut().any(|row| span.join(row, width)) {
+                rows.push(vec![span]);
+            }
+        }
+        for (number, row) in rows.iter().enumerate() {
+            labels.above.extend(row.iter().map(|s| (regions[s.index].label.clone(), s.centre, number)));
         }
         labels
     }
@@ -63,7 +63,9 @@ impl Labels {
             let bottom = place.top - 3.0 - *row as f64 * ROW;
             let at = (px(place.left + centre), px(bottom));
             page.draw(&Text::new(label.clone(), at, text(TICK_SIZE, INK, HPos::Center, VPos::Bottom)))?;
-            if *row > 0 {
+            let covered =
+                |l: &(String, f64, usize)| l.2 < *row && (l.1 - centre).abs() < 0.5 * text_width(&l.0, TICK_SIZE);
+            if *row > 0 && !self.above.iter().any(covered) {
                 let stem = vec![(at.0, px(place.top)), (at.0, px(bottom - 1.0))];
                 page.draw(&PathElement::new(stem, AXIS.mix(0.35).stroke_width(px(0.6) as u32)))?;
             }
@@ -75,6 +77,44 @@ impl Labels {
             page.draw(&Text::new(label.clone(), at, text(TICK_SIZE, INK, HPos::Left, VPos::Center)))?;
         }
         Ok(())
+    }
+}
+
+/// A label on its way to a row.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    index: usize,
+    band: [f64; 2],
+    centre: f64,
+    half: f64,
+}
+
+impl Span {
+    fn new(index: usize, band: [f64; 2], half: f64, width: f64) -> Self {
+        Self { index, band, centre: 0.0, half }.at(0.5 * (band[0] + band[1]), width)
+    }
+
+    fn at(self, centre: f64, width: f64) -> Self {
+        Self { centre: centre.min(width - self.half).max(self.half), ..self }
+    }
+
+    /// Joins a row, if need be by starting with its band while the label before ends with its own.
+    fn join(self, row: &mut Vec<Span>, width: f64) -> bool {
+        let clear = |a: &Span, b: &Span| a.centre + a.half <= b.centre - b.half;
+        let Some(last) = row.last().copied() else { return false };
+        let before = row.len().checked_sub(2).map(|i| row[i]);
+        let moved = last.at(last.band[1] - last.half, width);
+        let moved_fits = before.is_none_or(|b| clear(&b, &moved));
+        for own in [self, self.at(self.band[0] + self.half, width)] {
+            for previous in [Some(last), moved_fits.then_some(moved)].into_iter().flatten() {
+                if clear(&previous, &own) {
+                    row.pop();
+                    row.extend([previous, own]);
+                    return true;
+                }
+            }
+        }
+        false
     }
 }
 
@@ -111,13 +151,17 @@ mod tests {
     use fisura_verification::record::Scale;
 
     #[test]
-    fn labels_that_would_touch_move_up() {
+    fn labels_that_would_touch_move_apart_then_up() {
         let axis = AxisScale::with_range(Scale::Linear, 0.0, 80.0, 5);
         let region = |a: f64| Region { label: "crack leaves the axis".into(), x: Some([a, a + 1.0]), y: None };
-        let labels = Labels::place(&[region(30.0), region(31.0), region(79.0)], &axis, 600.0);
-        let rows: Vec<usize> = labels.above.iter().map(|l| l.2).collect();
-        assert_eq!(rows, [0, 1, 0]);
-        assert!(labels.above[2].1 < 560.0, "kept within the frame");
-        assert_eq!(labels.height(), 2.0 * ROW);
+        let rows = |starts: &[f64]| {
+            let regions: Vec<Region> = starts.iter().map(|a| region(*a)).collect();
+            let labels = Labels::place(&regions, &axis, 600.0);
+            assert!(labels.above.iter().all(|l| l.1 < 560.0), "kept within the frame");
+            (labels.above.iter().map(|l| l.2).collect::<Vec<_>>(), labels.height())
+        };
+        assert_eq!(rows(&[20.0, 60.0, 79.0]), (vec![0, 0, 0], ROW));
+        assert_eq!(rows(&[30.0, 34.0]), (vec![0, 0], ROW));
+        assert_eq!(rows(&[30.0, 31.0, 32.0]), (vec![0, 1, 2], 3.0 * ROW));
     }
 }

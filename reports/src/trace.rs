@@ -53,9 +53,10 @@ impl Trace {
         Ok(Self { label: curve.label.clone(), style: curve.style, look, points, half_widths })
     }
 
-    /// All ordinates that should be seen, uncertainty included.
+    /// All ordinates that should be seen, uncertainty included, except where it would make a positive value negative.
     pub fn ordinates(&self) -> impl Iterator<Item = f64> + '_ {
-        let band = self.points.iter().zip(&self.half_widths).flat_map(|(p, h)| [p.1 - h, p.1 + h]);
+        let lowest = |y: f64, h: f64| if y < 0.0 { y - h } else { (y - h).max(0.0) };
+        let band = self.points.iter().zip(&self.half_widths).flat_map(move |(p, h)| [lowest(p.1, *h), p.1 + h]);
         self.points.iter().map(|p| p.1).chain(band)
     }
 
