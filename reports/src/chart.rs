@@ -10,7 +10,7 @@ use crate::regions::{self, Labels};
 use crate::series::{FigureError, SeriesSet};
 use crate::style::{AXIS, CURVE_WIDTH, TICK_SIZE, WIDTH, looks, px, text_width};
 use crate::svg::{self, Drawn, Page};
-use crate::trace::{Point, Trace, dash, pieces, visible};
+use crate::trace::{Point, Trace, dash, pieces, thin, visible};
 
 /// Nominal height of the frame.
 const HEIGHT: f64 = 340.0;
@@ -115,7 +115,8 @@ impl<'a> Chart<'a> {
             self.draw_bars(frame, trace)?;
         } else {
             let size = (self.place.width, self.place.height);
-            let lines = pieces(&points, x, y).into_iter().flat_map(|p| dash(&p, trace.look.dashes, x, y, size));
+            let lines = pieces(&points, x, y).into_iter().map(|line| thin(line, x, y, size));
+            let lines = lines.flat_map(|line| dash(&line, trace.look.dashes, x, y, size));
             frame.draw_series(lines.map(|line| PathElement::new(line, stroke)))?;
         }
         let seen: Vec<Point> = points.into_iter().filter(|p| visible(*p, x, y)).collect();

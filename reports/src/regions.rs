@@ -162,6 +162,6 @@ mod tests {
         };
         assert_eq!(rows(&[20.0, 60.0, 79.0]), (vec![0, 0, 0], ROW));
         assert_eq!(rows(&[30.0, 34.0]), (vec![0, 0], ROW));
-        assert_eq!(rows(&[30.0, 31.0, 32.0]), (vec![0, 1, 2], 3.0 * ROW));
+        assert_eq!(rows(&[30.0, 30.5, 31.0]), (vec![0, 0, 1], 2.0 * ROW));
     }
 }

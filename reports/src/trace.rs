@@ -134,6 +134,21 @@ pub fn pieces(points: &[Point], x: &AxisScale, y: &AxisScale) -> Vec<Vec<Point>>
     pieces
 }
 
+/// Drops points that lie within a third of a nominal pixel of the one before, so that a long history stays a small
+/// file; the ends are kept.
+pub fn thin(line: Vec<Point>, x: &AxisScale, y: &AxisScale, size: (f64, f64)) -> Vec<Point> {
+    let (unit_x, unit_y) = (size.0 / (x.high - x.low), size.1 / (y.high - y.low));
+    let last = line.len().saturating_sub(1);
+    let mut kept: Vec<Point> = Vec::new();
+    for (i, p) in line.into_iter().enumerate() {
+        let far = kept.last().is_none_or(|k| ((p.0 - k.0) * unit_x).hypot((p.1 - k.1) * unit_y) > 1.0 / 3.0);
+        if far || i == last {
+            kept.push(p);
+        }
+    }
+    kept
+}
+
 /// Whether a point in axis coordinates lies in the frame.
 pub fn visible(p: Point, x: &AxisScale, y: &AxisScale) -> bool {
     let slack = |axis: &AxisScale| 1e-9 * (axis.high - axis.low);
@@ -216,6 +231,14 @@ mod tests {
     fn lines_end_at_the_frame() {
         let pieces = pieces(&[(-1.0, 0.5), (0.5, 0.5), (0.5, 3.0), (0.7, 3.0)], &unit(), &unit());
         assert_eq!(pieces, [vec![(0.0, 0.5), (0.5, 0.5), (0.5, 1.0)]]);
+    }
+
+    #[test]
+    fn a_long_history_is_thinned_to_the_pixels() {
+        let line: Vec<Point> = (0..=100_000).map(|i| (i as f64 * 1e-5, 0.5)).collect();
+        let thin = thin(line.clone(), &unit(), &unit(), (600.0, 300.0));
+        assert!(thin.len() < 2000, "{}", thin.len());
+        assert_eq!((thin[0], thin[thin.len() - 1]), (line[0], line[100_000]));
     }
 
     #[test]
