@@ -42,6 +42,36 @@ impl Patch {
     }
 }
 
+/// A scalar field and its gradient at a position.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PointValue {
+    /// Value.
+    pub value: f64,
+    /// Gradient, 1/m.
+    pub gradient: [f64; 2],
+}
+
+impl Patch {
+    /// A field of control values at a position (m); `None` outside the patch.
+    pub fn evaluate(&self, field: &[f64], position: [f64; 2]) -> Option<PointValue> {
+        let grid = self.control_grid();
+        let [x, y] = &self.spaces;
+        let (i, j) = (x.find_span(position[0])?, y.find_span(position[1])?);
+        let (sx, sy) = (x.shape_functions(i, position[0]), y.shape_functions(j, position[1]));
+        let first = grid.index(x.spans()[i].first, y.spans()[j].first);
+        let mut result = PointValue::default();
+        for l in 0..=y.degree() {
+            for k in 0..=x.degree() {
+                let control = field[first + l * grid.stride + k];
+                result.value += sx.value[k] * sy.value[l] * control;
+                result.gradient[0] += sx.derivative[k] * sy.value[l] * control;
+                result.gradient[1] += sx.value[k] * sy.derivative[l] * control;
+            }
+        }
+        Some(result)
+    }
+}
+
 /// Layout of the control points of a patch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ControlGrid {

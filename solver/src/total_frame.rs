@@ -312,7 +312,8 @@ impl TotalFrame {
         if frequency > 0.0 { 2.0 / frequency } else { f64::INFINITY }
     }
 
-    fn stiffness_operator(&self) -> Stiffness<'_> {
+    /// Stiffness of the undamaged body on its free degrees of freedom.
+    pub fn stiffness_operator(&self) -> Stiffness<'_> {
         let fixed: std::collections::BTreeSet<_> = self.constraints.iter().map(|(at, c, _)| (at, c)).collect();
         let moving = |&(at, c): &(usize, usize)| self.inverse_mass[at] > 0.0 && !fixed.contains(&(at, c));
         let free: Vec<_> = self.grid.indices().flat_map(|at| [(at, 0), (at, 1)]).filter(moving).collect();
@@ -324,6 +325,14 @@ impl TotalFrame {
             image: [self.grid.zeros(), self.grid.zeros()],
             strips: self.strip_forces.clone(),
         }
+    }
+
+    /// Stress `[xx, yy, xy]` (Pa) of the undamaged body under a displacement field at a position; NaN outside the patch.
+    pub fn elastic_stress_at(&self, displacement: &[Vec<f64>; 2], position: [f64; 2]) -> [f64; 3] {
+        let [x, y] = [0, 1].map(|c| self.patch.evaluate(&displacement[c], position));
+        let (Some(x), Some(y)) = (x, y) else { return [f64::NAN; 3] };
+        let strain = [x.gradient[0], y.gradient[1], 0.5 * (x.gradient[1] + y.gradient[0])];
+        self.moduli.stress(strain.map(Lane::splat)).map(|s| s[0])
     }
 
     /// Elastic energy, J.
@@ -391,14 +400,22 @@ fn lowest_tip(scene: &Scene) -> f64 {
     if scene.boundaries.iter().any(roller) { low[1] } else { 0.5 * (low[1] + high[1]) }
 }
 
-/// Stiffness of the undamaged body on its free degrees of freedom.
-struct Stiffness<'a> {
+/// Stiffness of the undamaged body on its free degrees of freedom, per unit thickness.
+#[derive(Debug)]
+pub struct Stiffness<'a> {
     frame: &'a TotalFrame,
     masses: Vec<f64>,
     free: Vec<(usize, usize)>,
     field: VectorField,
     image: VectorField,
     strips: StripForces,
+}
+
+impl Stiffness<'_> {
+    /// Control point and component of each degree of freedom.
+    pub fn degrees_of_freedom(&self) -> &[(usize, usize)] {
+        &self.free
+    }
 }
 
 impl StiffnessOperator for Stiffness<'_> {
