@@ -1,0 +1,169 @@
+//! Reference data: curves, numbers and bands from elsewhere, with their provenance.
+//!
+//! A library is a folder whose subfolders each hold a `source.toml` (citation, how obtained, model, resolution,
+//! uncertainty) and CSV files. [`Library::load`] reads and checks all of it; what it hands out is in SI units. A curve
+//! that exists only as a picture (`obtained = "picture-only"`) is absent until somebody puts its CSV file there, and
+//! from then on it is drawn like any other. Nothing is extrapolated, and gaps stay gaps.
+
+mod compare;
+mod curve;
+mod error;
+mod load;
+mod load_curve;
+mod quantity;
+mod source_file;
+
+use std::path::Path;
+
+pub use compare::{relative_rms, rms_difference};
+pub use curve::ReferenceCurve;
+pub use error::ReferenceError;
+pub use quantity::quantities;
+pub use source_file::{Obtained, Slip};
+
+use crate::record::{Reference, ReferenceKind};
+
+/// One `source.toml`, numbers aside.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    /// Folder below the library's, with `/`: `estrada-2024/figure-3a`.
+    pub id: String,
+    /// Citation.
+    pub citation: String,
+    /// Address, where there is one.
+    pub url: Option<String>,
+    /// How the numbers were obtained.
+    pub obtained: Obtained,
+    /// Kind, for records.
+    pub kind: ReferenceKind,
+    /// What was modelled.
+    pub model: String,
+    /// How finely.
+    pub resolution: String,
+    /// What to know before comparing.
+    pub remarks: Vec<String>,
+    /// Misprints, and what is used instead.
+    pub slips: Vec<Slip>,
+}
+
+/// A number from a source.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReferenceValue {
+    /// Folder of its source.
+    pub id: String,
+    /// Name.
+    pub name: String,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Value, SI.
+    pub value: f64,
+    /// What it is.
+    pub note: String,
+    /// Citation of its source.
+    pub citation: String,
+    /// Kind, for records.
+    pub kind: ReferenceKind,
+}
+
+/// A range in which a result should fall.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReferenceBand {
+    /// Folder of its source.
+    pub id: String,
+    /// Name.
+    pub name: String,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Lower end, SI.
+    pub min: f64,
+    /// Upper end, SI.
+    pub max: f64,
+    /// Folders of the sources it was put together from.
+    pub sources: Vec<String>,
+    /// What it is.
+    pub note: String,
+    /// Citation.
+    pub citation: String,
+    /// Kind, for records.
+    pub kind: ReferenceKind,
+}
+
+impl ReferenceValue {
+    /// The reference entry of a record that is held against this number.
+    pub fn reference(&self) -> Reference {
+        let source = format!("{}: {} ({})", self.id, self.citation, self.name);
+        Reference { value: Some(self.value), kind: self.kind, source }
+    }
+}
+
+impl ReferenceBand {
+    /// The reference entry of a record that is held against this band.
+    pub fn reference(&self) -> Reference {
+        let from = if self.sources.is_empty() { self.citation.clone() } else { self.sources.join(", ") };
+        Reference { value: None, kind: self.kind, source: format!("{}, {}: {from}", self.id, self.name) }
+    }
+}
+
+/// All reference data of a folder, in the order of folder names.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Library {
+    sources: Vec<Source>,
+    curves: Vec<ReferenceCurve>,
+    values: Vec<ReferenceValue>,
+    bands: Vec<ReferenceBand>,
+}
+
+impl Library {
+    /// Reads every `source.toml` below `folder`, at any depth, and the CSV files it names. Order and content depend on
+    /// nothing but the files.
+    ///
+    /// # Errors
+    /// A folder that cannot be read or holds no `source.toml`; a CSV file without a `source.toml` beside it; a file
+    /// that is not as described; a curve whose file or column is missing, unless it is `picture-only`.
+    pub fn load(folder: &Path) -> Result<Self, ReferenceError> {
+        load::library(folder)
+    }
+
+    /// All sources, those without numbers included.
+    pub fn sources(&self) -> &[Source] {
+        &self.sources
+    }
+
+    /// The source in folder `id`.
+    pub fn source(&self, id: &str) -> Option<&Source> {
+        self.sources.iter().find(|s| s.id == id)
+    }
+
+    /// All curves of a quantity, such as `plate/elastic-energy`.
+    pub fn curves(&self, quantity: &str) -> Vec<&ReferenceCurve> {
+        self.curves.iter().filter(|c| c.quantity == quantity).collect()
+    }
+
+    /// The curve of a quantity from `id` (folder, and variant if the folder has several: `mandal-2020/at2`).
+    pub fn curve(&self, id: &str, quantity: &str) -> Option<&ReferenceCurve> {
+        self.curves.iter().find(|c| c.id == id && c.quantity == quantity)
+    }
+
+    /// All numbers, in the order of the files.
+    pub fn values(&self) -> &[ReferenceValue] {
+        &self.values
+    }
+
+    /// The number called `name` in folder `id`.
+    pub fn value(&self, id: &str, name: &str) -> Option<&ReferenceValue> {
+        self.values.iter().find(|v| v.id == id && v.name == name)
+    }
+
+    /// All bands, in the order of the files.
+    pub fn bands(&self) -> &[ReferenceBand] {
+        &self.bands
+    }
+
+    /// The band called `name` in folder `id`.
+    pub fn band(&self, id: &str, name: &str) -> Option<&ReferenceBand> {
+        self.bands.iter().find(|b| b.id == id && b.name == name)
+    }
+}
+
+#[cfg(test)]
+mod tests;

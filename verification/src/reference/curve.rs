@@ -1,0 +1,116 @@
+//! A reference curve in SI units.
+
+use super::Obtained;
+use crate::history::Table;
+use crate::record::{Curve, CurveStyle, ReferenceKind};
+
+/// A curve from elsewhere, in SI units, with its uncertainty.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReferenceCurve {
+    /// Folder below the library's, with the variant if the folder has several: `mandal-2020/at2`.
+    pub id: String,
+    /// What it describes: `plate/elastic-energy`.
+    pub quantity: String,
+    /// Legend.
+    pub label: String,
+    /// Citation of its source.
+    pub citation: String,
+    /// Kind, for records.
+    pub kind: ReferenceKind,
+    /// How it was obtained.
+    pub obtained: Obtained,
+    /// Abscissae, SI, strictly increasing.
+    pub x: Vec<f64>,
+    /// Ordinates, SI, finite.
+    pub y: Vec<f64>,
+    /// SI unit of the abscissae.
+    pub x_unit: &'static str,
+    /// SI unit of the ordinates.
+    pub y_unit: &'static str,
+    /// Widest distance between two abscissae across which the curve is interpolated and drawn.
+    pub max_gap: Option<f64>,
+    /// Half width of the uncertainty, SI.
+    pub uncertainty_absolute: f64,
+    /// Half width of the uncertainty relative to the ordinate; the larger of the two holds.
+    pub uncertainty_relative: f64,
+    /// How the uncertainty was estimated, or that none is known.
+    pub uncertainty_note: String,
+}
+
+impl ReferenceCurve {
+    /// First and last abscissa, SI.
+    pub fn range(&self) -> [f64; 2] {
+        [self.x[0], self.x[self.x.len() - 1]]
+    }
+
+    /// Ordinate at `x` by linear interpolation; `None` outside the range and inside a gap wider than `max_gap`.
+    pub fn at(&self, x: f64) -> Option<f64> {
+        let (i, weight) = bracket(&self.x, x)?;
+        if weight > 0.0 && weight < 1.0 && self.is_gap(i) {
+            return None;
+        }
+        Some(blend(&self.y, i, weight))
+    }
+
+    /// Half width of the uncertainty at an ordinate, SI; 0 where none is known.
+    pub fn uncertainty(&self, y: f64) -> f64 {
+        self.uncertainty_absolute.max(self.uncertainty_relative * y.abs())
+    }
+
+    /// Path of the curve's series in a results folder.
+    pub fn series_path(&self) -> String {
+        format!("series/reference-{}-{}.csv", self.id.replace('/', "-"), self.quantity.replace('/', "-"))
+    }
+
+    /// The curve for a figure, and the table (columns `x`, `y`, SI) to be stored at [`Self::series_path`], so that the
+    /// results folder stands by itself. The scales take SI to the units of the axes. A row of not-a-number breaks the
+    /// line in a gap wider than `max_gap`; a single point is drawn as a point.
+    pub fn series(&self, x_scale: f64, y_scale: f64) -> (Curve, Table) {
+        let mut table = Table::new(&["x", "y"]);
+        for i in 0..self.x.len() {
+            table.push(&[self.x[i], self.y[i]]);
+            if i + 1 < self.x.len() && self.is_gap(i) {
+                table.push(&[0.5 * (self.x[i] + self.x[i + 1]), f64::NAN]);
+            }
+        }
+        let curve = Curve {
+            label: self.label.clone(),
+            series: self.series_path(),
+            x: "x".to_string(),
+            y: "y".to_string(),
+            x_scale,
+            y_scale,
+            style: if self.x.len() > 1 { CurveStyle::Reference } else { CurveStyle::Points },
+            uncertainty_absolute: self.uncertainty_absolute * y_scale,
+            uncertainty_relative: self.uncertainty_relative,
+        };
+        (curve, table)
+    }
+
+    /// Whether the interval after row `i` is too wide to be interpolated, round-off of the units aside.
+    fn is_gap(&self, i: usize) -> bool {
+        self.max_gap.is_some_and(|gap| self.x[i + 1] - self.x[i] > gap * (1.0 + 1e-9))
+    }
+}
+
+/// Row and weight of the next row for linear interpolation at `x` in increasing abscissae; `None` outside their range.
+pub(super) fn bracket(abscissae: &[f64], x: f64) -> Option<(usize, f64)> {
+    let (first, last) = (*abscissae.first()?, *abscissae.last()?);
+    if !(first..=last).contains(&x) {
+        return None;
+    }
+    if abscissae.len() == 1 {
+        return Some((0, 0.0));
+    }
+    let i = abscissae.partition_point(|a| *a <= x).clamp(1, abscissae.len() - 1) - 1;
+    Some((i, (x - abscissae[i]) / (abscissae[i + 1] - abscissae[i])))
+}
+
+/// Ordinate between row `i` and the next; a row itself is met exactly and needs no neighbour.
+pub(super) fn blend(ordinates: &[f64], i: usize, weight: f64) -> f64 {
+    match weight {
+        0.0 => ordinates[i],
+        1.0 => ordinates[i + 1],
+        w => (1.0 - w) * ordinates[i] + w * ordinates[i + 1],
+    }
+}

@@ -1,0 +1,101 @@
+//! `source.toml` as people write it.
+
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use crate::record::ReferenceKind;
+
+/// How numbers were obtained.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Obtained {
+    /// Read from output that the authors publish.
+    PublishedOutput,
+    /// Measured from a picture.
+    Digitised,
+    /// Computed with another code for comparison.
+    IndependentCode,
+    /// Stated in a text.
+    Text,
+    /// Put together from other folders.
+    Compiled,
+    /// A picture that nobody has digitised yet: its file may be absent.
+    PictureOnly,
+}
+
+/// A misprint in a source, and what is used instead.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Slip {
+    /// Where it stands.
+    pub place: String,
+    /// What is printed.
+    pub printed: String,
+    /// What this project uses.
+    pub used: String,
+}
+
+/// The whole file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SourceFile {
+    pub(super) citation: Spanned<String>,
+    pub(super) url: Option<String>,
+    pub(super) obtained: Obtained,
+    pub(super) kind: ReferenceKind,
+    pub(super) model: String,
+    pub(super) resolution: String,
+    #[serde(default)]
+    pub(super) remarks: Vec<String>,
+    #[serde(default, rename = "curve")]
+    pub(super) curves: Vec<Spanned<CurveEntry>>,
+    #[serde(default, rename = "value")]
+    pub(super) values: Vec<Spanned<ValueEntry>>,
+    #[serde(default, rename = "band")]
+    pub(super) bands: Vec<Spanned<BandEntry>>,
+    #[serde(default, rename = "slip")]
+    pub(super) slips: Vec<Slip>,
+}
+
+/// `[[curve]]`: two columns of a CSV file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CurveEntry {
+    pub(super) variant: Option<String>,
+    pub(super) quantity: String,
+    pub(super) label: String,
+    pub(super) file: String,
+    pub(super) x: String,
+    pub(super) x_unit: String,
+    pub(super) y: String,
+    pub(super) y_unit: String,
+    pub(super) max_gap: Option<f64>,
+    #[serde(default)]
+    pub(super) subtract_first: bool,
+    pub(super) uncertainty_absolute: f64,
+    pub(super) uncertainty_relative: f64,
+    pub(super) uncertainty_note: String,
+}
+
+/// `[[value]]`: a number.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ValueEntry {
+    pub(super) name: String,
+    pub(super) unit: String,
+    pub(super) value: f64,
+    pub(super) note: String,
+}
+
+/// `[[band]]`: a range.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BandEntry {
+    pub(super) name: String,
+    pub(super) unit: String,
+    pub(super) min: f64,
+    pub(super) max: f64,
+    #[serde(default)]
+    pub(super) sources: Vec<String>,
+    pub(super) note: String,
+}
