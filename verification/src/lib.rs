@@ -1,5 +1,13 @@
 //! Cases, checks and records that verify the fisura solver.
+
+pub mod case;
+pub mod expand;
+pub mod figures;
 pub mod history;
+pub mod measure;
 pub mod record;
 pub mod reference;
 pub mod scene_file;
+pub mod scene_run;
+pub mod study;
+pub mod suite;

@@ -1,0 +1,126 @@
+//! From a case to the scenes it runs: study axes and variants.
+//!
+//! A list where a scene has one value is an axis; several axes span their product. Each variant changes its keys on top.
+
+use fisura::scene::Scene;
+
+use crate::case::Case;
+use crate::scene_file::document::{Node, Value};
+use crate::scene_file::{Problem, SceneFileError, check_scene, read_scene};
+
+/// One scene of a case.
+#[derive(Debug, Clone)]
+pub struct CaseScene {
+    /// Name within the case: `degree=3`, or the variant's; empty for the only one.
+    pub name: String,
+    /// Values along the axes.
+    pub parameters: Vec<(String, serde_json::Value)>,
+    /// The scene.
+    pub scene: Scene,
+}
+
+/// Keys whose one value is itself a list, with its depth.
+fn depth_of_one_value(path: &str) -> usize {
+    let key = path.rsplit('.').next().unwrap_or(path);
+    match key {
+        "cells" | "origin" | "size" | "particles_per_cell" | "velocity" | "gravity" | "fix" | "frames" | "min"
+        | "max" | "center" | "from" | "to" | "stress" => 1,
+        "knots" | "points" | "segment" => 2,
+        "minus" => usize::MAX,
+        _ => 0,
+    }
+}
+
+fn depth(node: &Node) -> usize {
+    match node.as_array() {
+        Some(entries) => 1 + entries.iter().map(depth).max().unwrap_or(0),
+        None => 0,
+    }
+}
+
+/// Every key path below `node` that has more values than a scene needs.
+fn find_axes(node: &Node, path: &str, axes: &mut Vec<(String, Vec<Node>)>) {
+    if let Some(table) = node.as_table() {
+        for (key, child) in table {
+            find_axes(child, &crate::scene_file::document::join(path, key), axes);
+        }
+    } else if let Some(entries) = node.as_array() {
+        if entries.iter().any(|entry| entry.as_table().is_some()) {
+            for (index, entry) in entries.iter().enumerate() {
+                find_axes(entry, &format!("{path}.{index}"), axes);
+            }
+        } else if depth(node) > depth_of_one_value(path) {
+            axes.push((path.to_string(), entries.to_vec()));
+        }
+    }
+}
+
+impl Case {
+    /// All scenes of the case, in order; none if it has no `[scene]`.
+    ///
+    /// # Errors
+    /// Everything wrong with a scene, with its place in the case file.
+    pub fn scenes(&self) -> Result<Vec<CaseScene>, SceneFileError> {
+        let Some(base) = self.scene_node() else { return Ok(Vec::new()) };
+        let mut axes = Vec::new();
+        find_axes(base, "", &mut axes);
+        let mut trees = vec![(String::new(), Vec::new(), base.clone())];
+        for (path, values) in &axes {
+            trees = trees.iter().flat_map(|tree| values.iter().map(|value| along(tree, path, value))).collect();
+        }
+        if !self.variants.is_empty() {
+            trees = trees
+                .iter()
+                .flat_map(|tree| self.variants.iter().map(move |variant| (tree, variant)))
+                .map(|((name, parameters, tree), variant)| {
+                    let mut tree = tree.clone();
+                    for (key, value) in &variant.set {
+                        tree.set(key, value.clone()).map_err(|e| self.error("variant", &e, "name a key of the scene"))?;
+                    }
+                    Ok((join_names(name, &variant.name), parameters.clone(), tree))
+                })
+                .collect::<Result<_, SceneFileError>>()?;
+        }
+        trees.into_iter().map(|(name, parameters, tree)| self.scene_of(name, parameters, &tree)).collect()
+    }
+
+    fn scene_of(
+        &self,
+        name: String,
+        parameters: Vec<(String, serde_json::Value)>,
+        tree: &Node,
+    ) -> Result<CaseScene, SceneFileError> {
+        let fail = |problems: Vec<Problem>| self.document.error(&problems);
+        let scene = read_scene(tree, "scene").map_err(fail)?;
+        check_scene(&scene, tree, "scene").map_err(fail)?;
+        Ok(CaseScene { name, parameters, scene })
+    }
+}
+
+type Tree = (String, Vec<(String, serde_json::Value)>, Node);
+
+fn along((name, parameters, tree): &Tree, path: &str, value: &Node) -> Tree {
+    let mut tree = tree.clone();
+    tree.set(path, value.clone()).expect("the path was found in this tree");
+    let key = path.rsplit('.').next().unwrap_or(path);
+    let json = to_json(value);
+    let mut parameters = parameters.clone();
+    let shown = json.to_string().replace('"', "").replace(',', "x").replace(['[', ']'], "");
+    parameters.push((key.to_string(), json));
+    (join_names(name, &format!("{key}={shown}")), parameters, tree)
+}
+
+fn join_names(first: &str, second: &str) -> String {
+    if first.is_empty() { second.to_string() } else { format!("{first},{second}") }
+}
+
+fn to_json(node: &Node) -> serde_json::Value {
+    match &node.value {
+        Value::String(s) | Value::Datetime(s) => s.clone().into(),
+        Value::Integer(i) => (*i).into(),
+        Value::Float(x) => (*x).into(),
+        Value::Boolean(b) => (*b).into(),
+        Value::Array(entries) => entries.iter().map(to_json).collect(),
+        Value::Table(table) => table.iter().map(|(k, v)| (k.clone(), to_json(v))).collect(),
+    }
+}

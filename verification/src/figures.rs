@@ -1,0 +1,248 @@
+//! Figures of runs of scenes, each with every reference curve of its quantity.
+//!
+//! Reference curves are looked up by quantity at the time of drawing, so a curve added to the reference data appears
+//! without a change of code.
+
+use crate::history::Table;
+use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Region, Scale};
+use crate::reference::Library;
+use crate::study::scene::RunInfo;
+
+/// A chart of one quantity against time, over all runs of a suite.
+struct Quantity {
+    id: &'static str,
+    title: &'static str,
+    label: &'static str,
+    /// Column of the history or of the derived series.
+    column: &'static str,
+    derived: bool,
+    /// SI to the axis.
+    scale: f64,
+    /// Reference curves with this quantity are drawn.
+    reference: &'static str,
+    /// Band of the events to mark: name, and whether it bounds the time axis.
+    bands: &'static [&'static str],
+}
+
+/// Charts of the plate under impact.
+const PLATE: [Quantity; 7] = [
+    Quantity {
+        id: "elastic-energy",
+        title: "Elastic energy",
+        label: "elastic energy (J/m)",
+        column: "elastic_j",
+        derived: false,
+        scale: 1.0,
+        reference: "plate/elastic-energy",
+        bands: &["first-elastic-peak-time", "second-elastic-peak-time"],
+    },
+    Quantity {
+        id: "fracture-increment",
+        title: "Fracture energy since the start",
+        label: "fracture energy increment (J/m)",
+        column: "fracture_increment_j",
+        derived: true,
+        scale: 1.0,
+        reference: "plate/fracture-increment",
+        bands: &["branching-time"],
+    },
+    Quantity {
+        id: "kinetic-energy",
+        title: "Kinetic energy",
+        label: "kinetic energy (J/m)",
+        column: "kinetic_j",
+        derived: false,
+        scale: 1.0,
+        reference: "plate/kinetic-energy",
+        bands: &[],
+    },
+    Quantity {
+        id: "external-work",
+        title: "Work of the tractions",
+        label: "external work (J/m)",
+        column: "external_work_j",
+        derived: false,
+        scale: 1.0,
+        reference: "plate/external-work",
+        bands: &[],
+    },
+    Quantity {
+        id: "tip-position",
+        title: "Crack tip along the plate",
+        label: "tip x (mm)",
+        column: "crack_tip_x_m",
+        derived: false,
+        scale: 1e3,
+        reference: "plate/tip-x",
+        bands: &["branching-time"],
+    },
+    Quantity {
+        id: "tip-height",
+        title: "Crack tip across the plate (upper half)",
+        label: "tip y (mm)",
+        column: "crack_tip_y_m",
+        derived: false,
+        scale: 1e3,
+        reference: "plate/tip-y",
+        bands: &["branching-time"],
+    },
+    Quantity {
+        id: "tip-speed",
+        title: "Crack tip speed along the plate, fitted over ±2 µs",
+        label: "dx/dt of the tip (m/s)",
+        column: "tip_speed_m_per_s",
+        derived: true,
+        scale: 1.0,
+        reference: "plate/tip-speed",
+        bands: &[],
+    },
+];
+
+/// Charts and pictures of all runs, and the tables they need beyond those of the runs.
+pub fn of_runs(runs: &[RunInfo], library: &Library) -> (Vec<Figure>, Vec<(String, Table)>) {
+    let (mut figures, mut tables) = (Vec::new(), Vec::new());
+    let plates: Vec<&RunInfo> = runs.iter().filter(|r| r.suite == "plate").collect();
+    if !plates.is_empty() {
+        for quantity in &PLATE {
+            figures.push(chart(quantity, &plates, library, &mut tables));
+        }
+    }
+    let mut suites: Vec<&str> = runs.iter().map(|r| r.suite.as_str()).collect();
+    suites.dedup();
+    for suite in suites {
+        figures.push(closure_chart(suite, runs));
+    }
+    for run in &plates {
+        figures.push(ledger(run));
+        figures.extend(pictures(run));
+    }
+    (figures, tables)
+}
+
+fn time_axis() -> Axis {
+    Axis { label: "time (µs)".into(), scale: Scale::Linear, range: None }
+}
+
+fn axis(label: &str) -> Axis {
+    Axis { label: label.into(), scale: Scale::Linear, range: None }
+}
+
+fn curve(label: &str, series: &str, y: &str, y_scale: f64) -> Curve {
+    Curve {
+        label: label.into(),
+        series: series.into(),
+        x: "time_s".into(),
+        y: y.into(),
+        x_scale: 1e6,
+        y_scale,
+        style: CurveStyle::Line,
+        uncertainty_absolute: 0.0,
+        uncertainty_relative: 0.0,
+    }
+}
+
+fn chart(quantity: &Quantity, runs: &[&RunInfo], library: &Library, tables: &mut Vec<(String, Table)>) -> Figure {
+    let mut curves = Vec::new();
+    for reference in library.curves(quantity.reference) {
+        let (curve, table) = reference.series(1e6, quantity.scale);
+        let stem = curve.series.trim_start_matches("series/").trim_end_matches(".csv").to_string();
+        tables.push((stem, table));
+        curves.push(curve);
+    }
+    for run in runs {
+        let energy = quantity.column.ends_with("_j");
+        let scale = quantity.scale * if energy { run.energy_factor } else { 1.0 };
+        let series = if quantity.derived { run.derived() } else { run.series.clone() };
+        curves.push(curve(&run.label, &series, quantity.column, scale));
+    }
+    let bands = quantity.bands.iter().filter_map(|name| library.band("plate-events", name));
+    let regions = bands.map(|b| Region { label: b.name.replace('-', " "), x: Some([b.min * 1e6, b.max * 1e6]), y: None });
+    Figure {
+        id: format!("plate-{}", quantity.id),
+        suite: "plate".into(),
+        title: quantity.title.into(),
+        caption: captions(runs),
+        deviations: deviations(runs),
+        body: FigureBody::Chart { x: time_axis(), y: axis(quantity.label), curves, regions: regions.collect() },
+    }
+}
+
+/// Resolution of every run.
+fn captions(runs: &[&RunInfo]) -> String {
+    let each = runs.iter().map(|run| format!("{}: {}", run.label, run.resolution));
+    format!("{}.", each.collect::<Vec<_>>().join("; "))
+}
+
+fn deviations(runs: &[&RunInfo]) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for deviation in runs.iter().flat_map(|run| &run.deviations) {
+        if !all.contains(deviation) {
+            all.push(deviation.clone());
+        }
+    }
+    all
+}
+
+/// Closure of the ledger over the largest energy so far, for every run of a suite.
+fn closure_chart(suite: &str, runs: &[RunInfo]) -> Figure {
+    let of_suite: Vec<&RunInfo> = runs.iter().filter(|r| r.suite == suite).collect();
+    let curves = of_suite.iter().map(|run| {
+        let label = if run.variant.is_empty() { run.case.clone() } else { format!("{}: {}", run.case, run.variant) };
+        let mut curve = curve(&label, &run.derived(), "closure_over_largest", 1.0);
+        (curve.x, curve.x_scale) = ("time_over_end".into(), 1.0);
+        curve
+    });
+    Figure {
+        id: format!("{suite}-ledger-closure"),
+        suite: suite.into(),
+        title: "Closure of the energy ledger".into(),
+        caption: "What is left of the ledger when every named term is added up, over the largest energy of the run."
+            .into(),
+        deviations: Vec::new(),
+        body: FigureBody::Chart {
+            x: axis("time / end time"),
+            y: axis("closure / largest energy"),
+            curves: curves.collect(),
+            regions: Vec::new(),
+        },
+    }
+}
+
+/// Every term of the ledger of one run.
+fn ledger(run: &RunInfo) -> Figure {
+    let terms = ["kinetic_j", "elastic_j", "fracture_j", "external_work_j", "history_work_j", "transfer_loss_j", "closure_j"];
+    let present = terms.into_iter().filter(|t| run.columns.iter().any(|c| c == t));
+    let words = |term: &str| term.trim_end_matches("_j").replace('_', " ");
+    Figure {
+        id: format!("plate-ledger-{}", run.case),
+        suite: run.suite.clone(),
+        title: format!("Energy ledger, {}", run.label),
+        caption: format!("{}.", run.resolution),
+        deviations: run.deviations.clone(),
+        body: FigureBody::Chart {
+            x: time_axis(),
+            y: axis("energy (J/m)"),
+            curves: present.map(|term| curve(&words(term), &run.series, term, run.energy_factor)).collect(),
+            regions: Vec::new(),
+        },
+    }
+}
+
+/// Phase-field pictures of one run.
+fn pictures(run: &RunInfo) -> Vec<Figure> {
+    let half = if run.energy_factor == 2.0 { " Upper half of a symmetric plate." } else { "" };
+    let figure = |picture: &crate::study::scene::PictureInfo| Figure {
+        id: format!("plate-phase-{}-{:.0}us", run.case, picture.time * 1e6),
+        suite: run.suite.clone(),
+        title: format!("Phase field at {:.1} µs, {}", picture.time * 1e6, run.label),
+        caption: format!("{}.{half}", run.resolution),
+        deviations: run.deviations.clone(),
+        body: FigureBody::Field {
+            series: picture.series.clone(),
+            pixels: picture.pixels,
+            label: "phase field c (1 intact, 0 broken)".into(),
+            range: [0.0, 1.0],
+        },
+    };
+    run.pictures.iter().map(figure).collect()
+}

@@ -1,0 +1,153 @@
+//! Measures on the history of a run: what a check of a scene study can ask for.
+//!
+//! Energies are those of the whole body: a half model's are doubled first (`energy_factor` of the case).
+
+mod series;
+mod tip;
+
+use fisura::picture::Picture;
+use fisura::scene::Scene;
+
+use crate::case::Check;
+use crate::history::Table;
+use crate::record::{Reference, ReferenceKind};
+use crate::reference::Library;
+
+pub use tip::fitted_speed;
+
+/// A finished run of a scene, as measures see it.
+#[derive(Debug, Clone, Copy)]
+pub struct Run<'a> {
+    /// Name of the variant.
+    pub name: &'a str,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Its history.
+    pub history: &'a Table,
+    /// Its pictures.
+    pub frames: &'a [Picture],
+    /// Factor from its energies to those of the whole body.
+    pub energy_factor: f64,
+}
+
+/// What a measure found.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Measured {
+    /// Value in the unit of the check; absent if what it asks for did not happen.
+    pub value: Option<f64>,
+    /// What it is held against, if the measure knows.
+    pub reference: Option<Reference>,
+}
+
+impl Measured {
+    fn of(value: Option<f64>) -> Self {
+        Self { value, reference: None }
+    }
+}
+
+/// Names of all measures, for error messages.
+pub const MEASURES: [&str; 22] = [
+    "relative-rms", "rms-difference", "value-at", "increment-at", "initial", "slope", "slope-ratio", "closure", "drift",
+    "largest", "peak-value", "peak-time", "largest-decrease", "difference", "order-in-step", "tip-passes",
+    "branching-time", "branching-place", "axis-end", "tip-speed", "tip-exit", "branches",
+];
+
+impl Run<'_> {
+    /// Times, s.
+    pub fn times(&self) -> Result<&[f64], String> {
+        self.history.column("time_s").ok_or_else(|| "the history has no column time_s".to_string())
+    }
+
+    /// A column, energies for the whole body. `sum` columns are written `a + b`, differences `a - b`.
+    pub fn column(&self, name: &str) -> Result<Vec<f64>, String> {
+        let mut total: Option<Vec<f64>> = None;
+        let mut sign = 1.0;
+        for word in name.split_whitespace() {
+            match word {
+                "+" => sign = 1.0,
+                "-" => sign = -1.0,
+                column => {
+                    let values = self.history.column(column).ok_or_else(|| self.no_column(column))?;
+                    let factor = sign * if column.ends_with("_j") { self.energy_factor } else { 1.0 };
+                    let scaled = values.iter().map(|v| factor * v);
+                    total = Some(match total {
+                        None => scaled.collect(),
+                        Some(sum) => sum.iter().zip(scaled).map(|(a, b)| a + b).collect(),
+                    });
+                }
+            }
+        }
+        total.ok_or_else(|| "no column is named".to_string())
+    }
+
+    fn no_column(&self, column: &str) -> String {
+        format!("the history has no column {column:?}; it has {}", self.history.names.join(", "))
+    }
+
+    /// Increment of a column since t = 0.
+    fn increment(&self, name: &str) -> Result<Vec<f64>, String> {
+        let values = self.column(name)?;
+        let start = values.first().copied().unwrap_or(0.0);
+        Ok(values.iter().map(|v| v - start).collect())
+    }
+
+    /// Rows within the window of a check.
+    fn window(&self, check: &Check) -> Result<std::ops::Range<usize>, String> {
+        let times = self.times()?;
+        let slack = 1e-9 * times.last().copied().unwrap_or(0.0);
+        let start = times.partition_point(|&t| t < check.window[0] - slack);
+        let end = times.partition_point(|&t| t <= check.window[1] + slack);
+        if start < end { Ok(start..end) } else { Err("no sample lies between from and to".to_string()) }
+    }
+}
+
+/// Measures what `check` asks of `run`; `runs` are all variants of the case.
+///
+/// # Errors
+/// If the measure or something it needs does not exist.
+pub fn measure(check: &Check, run: &Run, runs: &[Run], library: &Library) -> Result<Measured, String> {
+    let name = check.measure.as_deref().ok_or_else(|| format!("name a measure: {}", MEASURES.join(", ")))?;
+    let measured = match name {
+        "relative-rms" | "rms-difference" => series::against_curve(name, check, run, library)?,
+        "value-at" => Measured::of(series::value_at(check, run, false)?),
+        "increment-at" => Measured::of(series::value_at(check, run, true)?),
+        "initial" => Measured::of(run.column(column(check)?)?.first().copied()),
+        "slope" => Measured::of(Some(series::slope(check, run)?)),
+        "slope-ratio" => series::slope_over_plane_wave_power(check, run)?,
+        "closure" => Measured::of(Some(series::closure(run)?)),
+        "drift" => Measured::of(Some(series::drift(check, run)?)),
+        "largest" => Measured::of(Some(series::largest(check, run)?)),
+        "peak-value" => Measured::of(series::peak(check, run)?.map(|(_, value)| value)),
+        "peak-time" => Measured::of(series::peak(check, run)?.map(|(time, _)| time)),
+        "largest-decrease" => Measured::of(Some(series::largest_decrease(check, run)?)),
+        "difference" => Measured::of(Some(series::difference(check, run, runs)?)),
+        "order-in-step" => Measured::of(series::order_in_step(check, runs)?),
+        "tip-passes" => Measured::of(tip::passes(check, run)?),
+        "branching-time" => Measured::of(tip::branching(run)?.map(|b| b.time)),
+        "branching-place" => Measured::of(tip::branching(run)?.map(|b| b.x)),
+        "axis-end" => Measured::of(tip::end_along_axis(run)),
+        "tip-speed" => Measured::of(tip::largest_speed_before_branching(run)?),
+        "branches" => Measured::of(tip::branches(check, run)?),
+        "tip-exit" => Measured::of(tip::exit_offset(check, run)?),
+        _ => return Err(format!("unknown measure {name:?}; known: {}", MEASURES.join(", "))),
+    };
+    let expected = check.expect.map(|value| Reference {
+        value: Some(value * check.scale),
+        kind: check.expect_kind,
+        source: check.expect_source.clone(),
+    });
+    let finite = measured.value.filter(|v| v.is_finite());
+    Ok(Measured { value: finite.map(|v| v * check.scale), reference: expected.or(measured.reference) })
+}
+
+fn column(check: &Check) -> Result<&str, String> {
+    check.column.as_deref().ok_or_else(|| "this measure needs column = \"…\"".to_string())
+}
+
+fn position(check: &Check) -> Result<f64, String> {
+    check.at.ok_or_else(|| "this measure needs at = …".to_string())
+}
+
+fn curve_reference(kind: ReferenceKind, label: &str) -> Option<Reference> {
+    Some(Reference { value: None, kind, source: label.to_string() })
+}

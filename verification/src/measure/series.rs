@@ -1,0 +1,130 @@
+//! Measures on columns of the history.
+
+use fisura::material::ElasticModuli;
+
+use super::tip::fitted_slope;
+use super::{Measured, Run, column, curve_reference, position};
+use crate::case::Check;
+use crate::record::{Reference, ReferenceKind};
+use crate::reference::{self, Library};
+
+/// Root mean square against a reference curve, relative or absolute. Curves of energy increments are compared with
+/// increments.
+pub(super) fn against_curve(name: &str, check: &Check, run: &Run, library: &Library) -> Result<Measured, String> {
+    let path = check.reference.as_deref().ok_or("this measure needs reference = \"folder/quantity\"")?;
+    let (folder, quantity) = path.split_once('/').ok_or("write reference = \"folder/quantity\"")?;
+    let curve = library.curve(folder, quantity).ok_or_else(|| format!("no reference curve {path:?}"))?;
+    let column = column(check)?;
+    let values = if quantity.ends_with("increment") { run.increment(column)? } else { run.column(column)? };
+    let [from, to] = check.window;
+    let compare = if name == "relative-rms" { reference::relative_rms } else { reference::rms_difference };
+    let value = compare(curve, run.times()?, &values, from, to);
+    Ok(Measured { value, reference: curve_reference(curve.kind, &curve.label) })
+}
+
+/// Linear interpolation at the time `at`.
+pub(super) fn value_at(check: &Check, run: &Run, increment: bool) -> Result<Option<f64>, String> {
+    let (goal, times) = (position(check)?, run.times()?);
+    let values = if increment { run.increment(column(check)?)? } else { run.column(column(check)?)? };
+    let slack = 1e-9 * goal.abs();
+    let Some(after) = times.iter().position(|&t| t >= goal - slack) else { return Ok(None) };
+    if after == 0 {
+        return Ok(Some(values[0]));
+    }
+    let s = (goal - times[after - 1]) / (times[after] - times[after - 1]);
+    Ok(Some(values[after - 1] + s * (values[after] - values[after - 1])))
+}
+
+/// Slope of a straight line fitted over the window, per second.
+pub(super) fn slope(check: &Check, run: &Run) -> Result<f64, String> {
+    let (window, times, values) = (run.window(check)?, run.times()?, run.column(column(check)?)?);
+    fitted_slope(window.map(|i| (times[i], values[i]))).ok_or_else(|| "the window holds one sample".to_string())
+}
+
+/// Slope over the power `W sigma²/(rho c_d)` that two plane waves entering over the width W carry into elastic energy.
+pub(super) fn slope_over_plane_wave_power(check: &Check, run: &Run) -> Result<Measured, String> {
+    let scene = run.scene;
+    let body = scene.bodies.first().ok_or("no body")?;
+    let material = &scene.materials[&body.material];
+    let moduli = ElasticModuli::new(material, scene.analysis.plane);
+    let (low, high) = body.shape.bounding_box();
+    let stress = body.tractions.first().ok_or("no traction")?.stress[1];
+    let impedance = material.density * moduli.dilatational_speed(material.density);
+    let power = (high[0] - low[0]) * stress * stress / impedance * scene.analysis.thickness;
+    let reference = Reference {
+        value: check.expect,
+        kind: ReferenceKind::Exact,
+        source: "two plane waves: W sigma²/(rho c_d)".to_string(),
+    };
+    Ok(Measured { value: Some(slope(check, run)? / power), reference: Some(reference) })
+}
+
+/// Largest |closure| over the largest energy of the run.
+pub(super) fn closure(run: &Run) -> Result<f64, String> {
+    let most = |name: &str| -> f64 {
+        run.column(name).map_or(0.0, |c| c.iter().fold(0.0, |most: f64, v| most.max(v.abs())))
+    };
+    let scale = ["kinetic_j", "elastic_j", "fracture_j", "external_work_j"].map(most).into_iter().fold(0.0, f64::max);
+    if scale > 0.0 { Ok(most("closure_j") / scale) } else { Err("the run has no energy".to_string()) }
+}
+
+/// Largest departure from the first value, over the first value.
+pub(super) fn drift(check: &Check, run: &Run) -> Result<f64, String> {
+    let (window, values) = (run.window(check)?, run.column(column(check)?)?);
+    let first = values[window.start];
+    Ok(values[window].iter().map(|v| (v - first).abs()).fold(0.0, f64::max) / first.abs())
+}
+
+/// Largest magnitude in the window.
+pub(super) fn largest(check: &Check, run: &Run) -> Result<f64, String> {
+    Ok(run.column(column(check)?)?[run.window(check)?].iter().map(|v| v.abs()).fold(0.0, f64::max))
+}
+
+/// Time (s) and height of the highest sample of the window, sharpened by a parabola through its neighbours. None if the
+/// highest stands at an end of the window: that is no peak.
+pub(super) fn peak(check: &Check, run: &Run) -> Result<Option<(f64, f64)>, String> {
+    let (window, times, values) = (run.window(check)?, run.times()?, run.column(column(check)?)?);
+    let Some(top) = window.clone().max_by(|&a, &b| values[a].total_cmp(&values[b])) else { return Ok(None) };
+    if top == window.start || top + 1 >= window.end {
+        return Ok(None);
+    }
+    let (left, middle, right) = (values[top - 1], values[top], values[top + 1]);
+    let curvature = left - 2.0 * middle + right;
+    let shift = if curvature < 0.0 { 0.5 * (left - right) / curvature } else { 0.0 };
+    let step = times[top + 1] - times[top];
+    Ok(Some((times[top] + shift * step, middle - 0.25 * (left - right) * shift)))
+}
+
+/// Largest fall of a column below an earlier value, over its largest value.
+pub(super) fn largest_decrease(check: &Check, run: &Run) -> Result<f64, String> {
+    let values = run.column(column(check)?)?;
+    let (mut highest, mut fall) = (f64::NEG_INFINITY, 0.0_f64);
+    for value in values {
+        highest = highest.max(value);
+        fall = fall.max(highest - value);
+    }
+    Ok(fall / highest.abs())
+}
+
+/// Largest difference from the same column of the variant `against`, over its largest magnitude, at equal times.
+pub(super) fn difference(check: &Check, run: &Run, runs: &[Run]) -> Result<f64, String> {
+    let name = check.against.as_deref().ok_or("this measure needs against = \"variant\"")?;
+    let other = runs.iter().find(|r| r.name == name).ok_or_else(|| format!("no variant {name:?}"))?;
+    let (values, others) = (run.column(column(check)?)?, other.column(column(check)?)?);
+    let (times, other_times) = (run.times()?, other.times()?);
+    if values.len() != others.len() || times.iter().zip(other_times).any(|(a, b)| (a - b).abs() > 1e-9 * a.abs()) {
+        return Err("the two variants have different sample times".to_string());
+    }
+    let scale = others.iter().map(|v| v.abs()).fold(0.0, f64::max);
+    Ok(values.iter().zip(&others).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale)
+}
+
+/// Order at which a quantity falls with the time step over the variants: slope of log closure against log dt.
+pub(super) fn order_in_step(check: &Check, runs: &[Run]) -> Result<Option<f64>, String> {
+    let mut points = Vec::new();
+    for run in runs {
+        let step = *run.column("time_step_s")?.last().ok_or("an empty history")?;
+        points.push((step.ln(), largest(check, run)?.ln()));
+    }
+    Ok(fitted_slope(points.into_iter()))
+}

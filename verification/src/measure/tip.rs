@@ -1,0 +1,114 @@
+//! Events of a growing crack, from its tip against time and from the last picture.
+//!
+//! The axis is the height of the initial crack. The tip *branches* when it first leaves the axis by [`OFF_AXIS`].
+
+use super::{Run, position};
+use crate::case::Check;
+
+/// Distance from the axis that counts as having left it, m.
+const OFF_AXIS: f64 = 0.25e-3;
+/// Half width of the window in which a speed is fitted, s.
+const SPEED_WINDOW: f64 = 2e-6;
+/// Phase field below which the material counts as broken.
+const BROKEN: f64 = 0.05;
+
+/// The tip against time: t (s), x and y (m), only where there is one.
+fn tips(run: &Run) -> Result<Vec<[f64; 3]>, String> {
+    let (x, y) = (run.column("crack_tip_x_m")?, run.column("crack_tip_y_m")?);
+    let rows = run.times()?.iter().zip(x).zip(y);
+    Ok(rows.map(|((&t, x), y)| [t, x, y]).filter(|row| row[1].is_finite()).collect())
+}
+
+/// Height of the first crack, m.
+fn axis(run: &Run) -> f64 {
+    run.scene.bodies.iter().flat_map(|b| &b.cracks).map(|c| c.to[1]).next().unwrap_or(0.0)
+}
+
+/// First time at which the tip has passed x = `at`, s.
+pub(super) fn passes(check: &Check, run: &Run) -> Result<Option<f64>, String> {
+    let goal = position(check)?;
+    let tips = tips(run)?;
+    let Some(after) = tips.iter().position(|row| row[1] >= goal) else { return Ok(None) };
+    if after == 0 {
+        return Ok(Some(tips[0][0]));
+    }
+    let ([t0, x0, _], [t1, x1, _]) = (tips[after - 1], tips[after]);
+    Ok(Some(t0 + (goal - x0) / (x1 - x0) * (t1 - t0)))
+}
+
+/// Where and when the crack branched.
+pub(super) struct Branching {
+    /// Time, s.
+    pub(super) time: f64,
+    /// Place, m.
+    pub(super) x: f64,
+}
+
+pub(super) fn branching(run: &Run) -> Result<Option<Branching>, String> {
+    let axis = axis(run);
+    let first = tips(run)?.into_iter().find(|row| (row[2] - axis).abs() > OFF_AXIS);
+    Ok(first.map(|[time, x, _]| Branching { time, x }))
+}
+
+/// Largest slope of a straight line fitted to x over ±2 µs, before branching, m/s.
+pub(super) fn largest_speed_before_branching(run: &Run) -> Result<Option<f64>, String> {
+    let end = branching(run)?.map_or(f64::INFINITY, |b| b.time);
+    let tips = tips(run)?;
+    let (times, x): (Vec<f64>, Vec<f64>) = tips.iter().map(|row| (row[0], row[1])).unzip();
+    let last = tips.last().map_or(0.0, |row| row[0]);
+    let centers = tips.iter().map(|row| row[0]).filter(|t| *t >= SPEED_WINDOW && *t <= (end.min(last) - SPEED_WINDOW));
+    Ok(centers.map(|t| fitted_speed(&times, &x, t)).filter(|v| v.is_finite()).reduce(f64::max))
+}
+
+/// Slope of a straight line fitted to positions x (m) within ±2 µs of `center` (s), m/s; NaN without two of them.
+pub fn fitted_speed(times: &[f64], x: &[f64], center: f64) -> f64 {
+    let near = |row: &(&f64, &f64)| (row.0 - center).abs() <= SPEED_WINDOW * (1.0 + 1e-9) && row.1.is_finite();
+    let points = times.iter().zip(x).filter(near).map(|(t, x)| (*t, *x));
+    fitted_slope(points).unwrap_or(f64::NAN)
+}
+
+/// Least-squares slope of points (t, x).
+pub(super) fn fitted_slope(points: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
+    let n = points.clone().count() as f64;
+    let (t, x) = points.clone().fold((0.0, 0.0), |(t, x), p| (t + p.0 / n, x + p.1 / n));
+    let (top, bottom) = points.fold((0.0, 0.0), |(top, bottom), p| {
+        (top + (p.0 - t) * (p.1 - x), bottom + (p.0 - t) * (p.0 - t))
+    });
+    (bottom > 0.0).then(|| top / bottom)
+}
+
+/// Distance from the axis at which the tip first passes x = `at`, m.
+pub(super) fn exit_offset(check: &Check, run: &Run) -> Result<Option<f64>, String> {
+    let (goal, axis) = (position(check)?, axis(run));
+    Ok(tips(run)?.into_iter().find(|row| row[1] >= goal).map(|row| (row[2] - axis).abs()))
+}
+
+/// Where the crack along the axis ends: the last broken pixel in an unbroken row of them, in the last picture, m.
+pub(super) fn end_along_axis(run: &Run) -> Option<f64> {
+    let picture = run.frames.last()?;
+    let phase = picture.phase.as_ref()?;
+    let row = ((axis(run) - picture.origin[1]) / picture.pixel[1]).floor().max(0.0) as usize;
+    let columns = picture.pixels[0];
+    let row = row.min(picture.pixels[1] - 1) * columns;
+    let broken = phase[row..row + columns].iter().take_while(|c| **c < BROKEN).count();
+    (broken > 0).then(|| picture.origin[0] + broken as f64 * picture.pixel[0])
+}
+
+/// Separate broken stretches at or above the axis on the vertical line x = `at` of the last picture.
+pub(super) fn branches(check: &Check, run: &Run) -> Result<Option<f64>, String> {
+    let x = position(check)?;
+    let Some(picture) = run.frames.last() else { return Ok(None) };
+    let Some(phase) = &picture.phase else { return Ok(None) };
+    let column = ((x - picture.origin[0]) / picture.pixel[0]) as usize;
+    let axis = axis(run);
+    let broken = (0..picture.pixels[1])
+        .map(|row| row * picture.pixels[0] + column.min(picture.pixels[0] - 1))
+        .filter(|&index| picture.center(index)[1] >= axis)
+        .map(|index| phase[index] < BROKEN);
+    let (mut count, mut inside) = (0, false);
+    for now in broken {
+        count += usize::from(now && !inside);
+        inside = now;
+    }
+    Ok(Some(count as f64))
+}

@@ -1,0 +1,103 @@
+//! Spline bases on random open knot vectors: partition of unity, linear precision, derivatives and continuity.
+//!
+//! Knots come from a fixed linear congruential sequence, with span ratios up to 100. Continuity C^(p−1) at the inner knots
+//! is measured on the values and first derivatives from both sides, relative to their size.
+
+use fisura::spline::SplineSpace;
+
+use super::{Findings, StudyError};
+use crate::case::Case;
+use crate::expand::CaseScene;
+
+const KNOT_VECTORS: usize = 20;
+const SPANS: usize = 12;
+const POINTS: usize = 50;
+
+pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    for degree in 1..=4 {
+        let mut worst = Worst::default();
+        for seed in 0..KNOT_VECTORS {
+            let space = SplineSpace::new(degree, &random_knots(degree, seed as u64));
+            worst.look(&space);
+        }
+        let variant = format!("p={degree}");
+        findings.add(&variant, "partition of unity, largest error", worst.unity, None);
+        findings.add(&variant, "linear precision, largest error", worst.linear, None);
+        findings.add(&variant, "gradients, largest error times span length", worst.gradient, None);
+        findings.add(&variant, "continuity at inner knots, largest jump", worst.jump, None);
+    }
+    Ok(findings)
+}
+
+/// Open knots on [0, 1] with spans between 1 and 100 in arbitrary units.
+fn random_knots(degree: usize, seed: u64) -> Vec<f64> {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1);
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let lengths: Vec<f64> = (0..SPANS).map(|_| 100f64.powf(next())).collect();
+    let total: f64 = lengths.iter().sum();
+    let mut knots = vec![0.0; degree + 1];
+    let mut position = 0.0;
+    for length in &lengths[..SPANS - 1] {
+        position += length / total;
+        knots.push(position);
+    }
+    knots.extend(vec![1.0; degree + 1]);
+    knots
+}
+
+#[derive(Default)]
+struct Worst {
+    unity: f64,
+    linear: f64,
+    gradient: f64,
+    jump: f64,
+}
+
+impl Worst {
+    fn look(&mut self, space: &SplineSpace) {
+        let greville = space.greville();
+        let degree = space.degree();
+        for (index, span) in space.spans().iter().enumerate() {
+            for i in 0..=POINTS {
+                let x = span.left + span.length() * i as f64 / POINTS as f64;
+                let shape = space.shape_functions(index, x);
+                let sum = |table: &[f64], factors: &dyn Fn(usize) -> f64| -> f64 {
+                    (0..=degree).map(|k| table[k] * factors(k)).sum()
+                };
+                let control = |k: usize| greville[span.first + k];
+                self.unity = self.unity.max((sum(&shape.value, &|_| 1.0) - 1.0).abs());
+                self.linear = self.linear.max((sum(&shape.value, &control) - x).abs());
+                self.gradient = self.gradient.max(span.length() * sum(&shape.derivative, &|_| 1.0).abs());
+                self.gradient = self.gradient.max(span.length() * (sum(&shape.derivative, &control) - 1.0).abs());
+            }
+        }
+        for index in 1..space.spans().len() {
+            self.jump = self.jump.max(jump_at_knot(space, index));
+        }
+    }
+}
+
+/// Largest jump of a value, and for p ≥ 2 of a first derivative times the shorter span, over the left knot of a span.
+fn jump_at_knot(space: &SplineSpace, index: usize) -> f64 {
+    let (before, after) = (&space.spans()[index - 1], &space.spans()[index]);
+    let degree = space.degree();
+    let (left, right) =
+        (space.shape_functions(index - 1, after.left), space.shape_functions(index, after.left));
+    let shorter = before.length().min(after.length());
+    let mut worst = 0.0_f64;
+    for function in before.first..=after.first + degree {
+        let at = |shape: &[f64], first: usize| {
+            function.checked_sub(first).filter(|k| *k <= degree).map_or(0.0, |k| shape[k])
+        };
+        worst = worst.max((at(&left.value, before.first) - at(&right.value, after.first)).abs());
+        if degree >= 2 {
+            let jump = at(&left.derivative, before.first) - at(&right.derivative, after.first);
+            worst = worst.max(shorter * jump.abs());
+        }
+    }
+    worst
+}

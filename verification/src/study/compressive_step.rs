@@ -1,0 +1,29 @@
+//! A compressive uniaxial step must not drive fracture: H stays zero.
+//!
+//! The column is held at its sides, so the only strain is compressive and psi+ vanishes identically. Round-off leaves
+//! transverse strains of relative size 1e-16, whose energy is of relative size 1e-32.
+
+use fisura::simulation::Simulation;
+
+use super::{Findings, StudyError};
+use crate::case::Case;
+use crate::expand::CaseScene;
+
+pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    for scene in scenes {
+        let mut simulation = Simulation::new(&scene.scene)?;
+        let mut most_elastic = 0.0_f64;
+        while !simulation.finished() {
+            most_elastic = most_elastic.max(simulation.advance_to_next_sample()?.elastic);
+        }
+        let area: f64 = {
+            let (low, high) = scene.scene.bodies[0].shape.bounding_box();
+            (high[0] - low[0]) * (high[1] - low[1]) * scene.scene.analysis.thickness
+        };
+        let history = simulation.frame().fracture.as_ref().map(|f| &f.history).ok_or_else(|| StudyError::Other("nothing fractures here".into()))?;
+        let most = history.iter().flat_map(|lane| lane.0).fold(0.0, f64::max);
+        findings.add(&scene.name, "largest history energy over mean elastic energy density", most * area / most_elastic, None);
+    }
+    Ok(findings)
+}

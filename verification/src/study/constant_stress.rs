@@ -1,0 +1,108 @@
+//! The patch test: a body under constant boundary tractions has that constant stress everywhere.
+//!
+//! The body is loaded on its four sides with the tractions of a unit stress (xx, yy and xy in turn), through its own
+//! surface points. The static equilibrium with the body's own operators is solved densely with the three rigid motions
+//! held, and the stress is evaluated at the material points. With points that integrate the products of gradients of
+//! shape functions exactly the error is round-off; equally spaced cubics miss it at the open ends of the knot vector.
+
+use fisura::critical_step::StiffnessOperator;
+use fisura::loads::NodalLoad;
+use fisura::scene::{Edge, Side, Traction};
+use fisura::total_frame::TotalFrame;
+use nalgebra::{DMatrix, DVector};
+
+use super::{Findings, StudyError};
+use crate::case::Case;
+use crate::expand::CaseScene;
+
+pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    for scene in scenes {
+        let frame = TotalFrame::new(&scene.scene).map_err(|_| StudyError::Other("no equilibrium at rest".into()))?;
+        let patch_test = PatchTest::new(&frame)?;
+        for (name, stress) in [("xx", [1.0, 0.0, 0.0]), ("yy", [0.0, 1.0, 0.0]), ("xy", [0.0, 0.0, 1.0])] {
+            let error = patch_test.largest_stress_error(scene, stress);
+            findings.add(&scene.name, &format!("constant stress {name}, largest error at a point"), error, None);
+        }
+    }
+    Ok(findings)
+}
+
+struct PatchTest<'a> {
+    frame: &'a TotalFrame,
+    degrees_of_freedom: Vec<(usize, usize)>,
+    /// Which of them hold the rigid motions.
+    held: [usize; 3],
+    factor: nalgebra::Cholesky<f64, nalgebra::Dyn>,
+}
+
+impl<'a> PatchTest<'a> {
+    fn new(frame: &'a TotalFrame) -> Result<Self, StudyError> {
+        let mut operator = frame.stiffness_operator();
+        let degrees_of_freedom = operator.degrees_of_freedom().to_vec();
+        let n = degrees_of_freedom.len();
+        let mut matrix = DMatrix::zeros(n, n);
+        let (mut unit, mut image) = (vec![0.0; n], vec![0.0; n]);
+        for column in 0..n {
+            unit[column] = 1.0;
+            operator.stiffness(&unit, &mut image);
+            unit[column] = 0.0;
+            matrix.set_column(column, &DVector::from_column_slice(&image));
+        }
+        let grid = frame.lattice().grid;
+        let corner = |column: usize, component: usize| {
+            let wanted = (grid.index(column, 0), component);
+            degrees_of_freedom.iter().position(|dof| *dof == wanted)
+        };
+        let held = [corner(0, 0), corner(0, 1), corner(grid.columns - 1, 1)];
+        let [Some(a), Some(b), Some(c)] = held else {
+            return Err(StudyError::Other("the body does not reach the lower corners of the mesh".into()));
+        };
+        for index in [a, b, c] {
+            let diagonal = matrix[(index, index)];
+            matrix.row_mut(index).fill(0.0);
+            matrix.column_mut(index).fill(0.0);
+            matrix[(index, index)] = diagonal;
+        }
+        let singular = || StudyError::Other("the stiffness is not positive definite: too few points per span".into());
+        let factor = matrix.cholesky().ok_or_else(singular)?;
+        Ok(Self { frame, degrees_of_freedom, held: [a, b, c], factor })
+    }
+
+    fn largest_stress_error(&self, scene: &CaseScene, stress: [f64; 3]) -> f64 {
+        let solution = self.factor.solve(&self.load(scene, stress));
+        let grid = self.frame.lattice().grid;
+        let mut displacement = [grid.zeros(), grid.zeros()];
+        for (value, &(at, component)) in solution.iter().zip(&self.degrees_of_freedom) {
+            displacement[component][at] = *value;
+        }
+        let mut worst = 0.0_f64;
+        self.frame.lattice().for_each_point(|_, _, position, _| {
+            let found = self.frame.elastic_stress_at(&displacement, position);
+            for (found, exact) in found.into_iter().zip(stress) {
+                worst = worst.max((found - exact).abs());
+            }
+        });
+        worst
+    }
+
+    /// Nodal forces of the tractions `sigma n` on the four sides, zero where rigid motions are held.
+    fn load(&self, scene: &CaseScene, [xx, yy, xy]: [f64; 3]) -> DVector<f64> {
+        let body = &scene.scene.bodies[0];
+        let grid = self.frame.lattice().grid;
+        let mut forces = [grid.zeros(), grid.zeros()];
+        let sides =
+            [(Side::Left, [-xx, -xy]), (Side::Right, [xx, xy]), (Side::Bottom, [-xy, -yy]), (Side::Top, [xy, yy])];
+        for (side, stress) in sides {
+            let traction = Traction { edge: Edge::Side(side), stress, ramp: None };
+            for (at, force) in NodalLoad::new(self.frame.patch(), grid, body, &traction).forces {
+                forces[0][at] += force[0];
+                forces[1][at] += force[1];
+            }
+        }
+        let value = |(index, &(at, component)): (usize, &(usize, usize))| {
+            if self.held.contains(&index) { 0.0 } else { forces[component][at] }
+        };
+        DVector::from_iterator(self.degrees_of_freedom.len(), self.degrees_of_freedom.iter().enumerate().map(value))
+    }
+}

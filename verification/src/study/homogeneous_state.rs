@@ -1,0 +1,110 @@
+//! The homogeneous state of AT2 against its closed form.
+//!
+//! A body under uniform uniaxial strain e has psi+ = M e²/2 everywhere, so the phase field is the constant
+//! `c = 1/(1 + 2 l0 M e²/Gc)` and the stress `c² M e`, with M = lam + 2 mu. The stress peaks at `e = sqrt(Gc/(6 l0 M))`,
+//! where c = 3/4 and sigma = (9/16) sqrt(M Gc/(6 l0)). Constants are in the space and the same sums stand on both sides,
+//! so the discrete solution is exact for every degree and layout.
+
+use fisura::lane::Lane;
+use fisura::lattice::Lattice;
+use fisura::material::{ElasticModuli, FractureModel};
+use fisura::patch::Patch;
+use fisura::phase_field::PhaseField;
+
+use super::{Findings, StudyError};
+use crate::case::Case;
+use crate::expand::CaseScene;
+use crate::history::Table;
+use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind, Scale};
+
+/// Strains looked at, over the strain at the peak.
+const STRAINS: usize = 40;
+const FURTHEST: f64 = 4.0;
+
+pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    for scene in scenes {
+        let (table, error) = loading(scene)?;
+        findings.add(&scene.name, "phase field, largest error", error, None);
+        let (peak_strain, peak_stress) = peak(&table);
+        let exact = |what: &str| Some(Reference { value: Some(1.0), kind: ReferenceKind::Exact, source: what.into() });
+        findings.add(&scene.name, "strain at the peak over closed form", peak_strain, exact("sqrt(Gc/(6 l0 M))"));
+        let source = exact("(9/16) sqrt(M Gc/(6 l0))");
+        findings.add(&scene.name, "stress at the peak over closed form", peak_stress, source);
+        if findings.series.is_empty() {
+            let stem = format!("{}-{}", case.suite, case.name);
+            findings.figures.push(figure(case, &stem));
+            findings.series.push((stem, table));
+        }
+    }
+    Ok(findings)
+}
+
+/// Strain, stress, and both against closed forms; and the largest error of c at a control point.
+fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
+    let scene = &case_scene.scene;
+    let body = &scene.bodies[0];
+    let material = &scene.materials[&body.material];
+    let fracture = material.fracture.as_ref().ok_or_else(|| StudyError::Other("the material has no fracture".into()))?;
+    let model = FractureModel::new(fracture);
+    let moduli = ElasticModuli::new(material, scene.analysis.plane);
+    let modulus = moduli.lambda + 2.0 * moduli.mu;
+    let peak_strain = (model.toughness / (6.0 * model.length_scale * modulus)).sqrt();
+    let peak_stress = 9.0 / 16.0 * (modulus * model.toughness / (6.0 * model.length_scale)).sqrt();
+    let lattice = Lattice::new(&Patch::new(&scene.mesh), body);
+    let mut field = PhaseField::new(&lattice, model, &scene.solver);
+    let mut table = Table::new(&["strain_over_peak", "stress_over_peak", "closed_form"]);
+    let mut worst = 0.0_f64;
+    for step in 0..=STRAINS {
+        let strain = FURTHEST * peak_strain * step as f64 / STRAINS as f64;
+        let history = vec![Lane::splat(0.5 * modulus * strain * strain); lattice.batches()];
+        field.solve(&lattice, &history).map_err(|c| {
+            StudyError::Other(format!("the phase field did not converge: residual {:e}", c.relative_residual))
+        })?;
+        let exact = 1.0 / (1.0 + 2.0 * model.length_scale * modulus * strain * strain / model.toughness);
+        let values = lattice.grid.indices().map(|at| field.control_values()[at]);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| (l.min(c), h.max(c)));
+        worst = worst.max((low - exact).abs()).max((high - exact).abs());
+        let stress = |c: f64| c * c * modulus * strain / peak_stress;
+        table.push(&[strain / peak_strain, stress(0.5 * (low + high)), stress(exact)]);
+    }
+    Ok((table, worst))
+}
+
+/// Strain and stress of the highest row over the closed forms; rows include the peak itself.
+fn peak(table: &Table) -> (f64, f64) {
+    let stress = &table.columns[1];
+    let top = (0..stress.len()).max_by(|&a, &b| stress[a].total_cmp(&stress[b])).unwrap_or(0);
+    (table.columns[0][top], stress[top])
+}
+
+fn figure(case: &Case, stem: &str) -> Figure {
+    let curve = |label: &str, y: &str, style| Curve {
+        label: label.into(),
+        series: format!("series/{stem}.csv"),
+        x: "strain_over_peak".into(),
+        y: y.into(),
+        x_scale: 1.0,
+        y_scale: 1.0,
+        style,
+        uncertainty_absolute: 0.0,
+        uncertainty_relative: 0.0,
+    };
+    let axis = |label: &str| Axis { label: label.into(), scale: Scale::Linear, range: None };
+    Figure {
+        id: stem.into(),
+        suite: case.suite.clone(),
+        title: "Homogeneous bar in uniaxial strain".into(),
+        caption: "Stress over its closed-form peak against strain over its closed-form peak.".into(),
+        deviations: Vec::new(),
+        body: FigureBody::Chart {
+            x: axis("strain / strain at the peak"),
+            y: axis("stress / peak stress"),
+            curves: vec![
+                curve("closed form", "closed_form", CurveStyle::Reference),
+                curve("material points", "stress_over_peak", CurveStyle::Markers),
+            ],
+            regions: Vec::new(),
+        },
+    }
+}

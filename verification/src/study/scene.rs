@@ -1,0 +1,225 @@
+//! The `scene` study: run every scene of a case, keep histories and pictures, evaluate the measures of its checks.
+
+use serde::{Deserialize, Serialize};
+
+use fisura::picture::Picture;
+use fisura::scene::{Mesh, Scene};
+
+use crate::case::{Case, Check};
+use crate::expand::CaseScene;
+use crate::history::Table;
+use crate::measure::{Measured, Run, fitted_speed, measure};
+use crate::record::Timing;
+use crate::reference::Library;
+use crate::scene_run::{SceneRun, run_scene};
+
+/// What figures need to know of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunInfo {
+    /// Suite.
+    pub suite: String,
+    /// Case.
+    pub case: String,
+    /// Variant within the case, or empty.
+    pub variant: String,
+    /// Legend.
+    pub label: String,
+    /// History, relative to the results folder.
+    pub series: String,
+    /// Columns of the history.
+    pub columns: Vec<String>,
+    /// Factor from its energies to those of the whole body.
+    pub energy_factor: f64,
+    /// Resolution in words: degree, h, l0/h, points, steps, dt.
+    pub resolution: String,
+    /// What differs from the cited source.
+    pub deviations: Vec<String>,
+    /// Phase-field pictures.
+    pub pictures: Vec<PictureInfo>,
+}
+
+impl RunInfo {
+    /// Series of what is derived from the history, relative to the results folder.
+    pub fn derived(&self) -> String {
+        self.series.replace(".csv", "-derived.csv")
+    }
+}
+
+/// A stored phase-field picture.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PictureInfo {
+    /// Time, s.
+    pub time: f64,
+    /// Raster, relative to the results folder.
+    pub series: String,
+    /// Pixels.
+    pub pixels: [usize; 2],
+}
+
+/// A scene of a case, run.
+#[derive(Debug)]
+pub struct FinishedScene {
+    /// The scene and its name.
+    pub case_scene: CaseScene,
+    /// History, pictures, breakdown.
+    pub run: SceneRun,
+    /// Cost.
+    pub timing: Timing,
+    energy_factor: f64,
+}
+
+impl FinishedScene {
+    /// As measures see it.
+    pub fn as_run(&self) -> Run<'_> {
+        Run {
+            name: &self.case_scene.name,
+            scene: &self.case_scene.scene,
+            history: &self.run.history,
+            frames: &self.run.frames,
+            energy_factor: self.energy_factor,
+        }
+    }
+}
+
+/// Runs the scenes of a case one after the other; `advanced` gets the finished fraction.
+pub fn run_scenes(case: &Case, scenes: Vec<CaseScene>, advanced: &dyn Fn(f64)) -> Vec<FinishedScene> {
+    let count = scenes.len() as f64;
+    scenes
+        .into_iter()
+        .enumerate()
+        .map(|(index, case_scene)| {
+            let run = run_scene(&case_scene.scene, &mut |progress| advanced((index as f64 + progress.fraction()) / count));
+            let particle_steps = run.summary.particles as u64 * run.summary.steps as u64;
+            let timing = Timing {
+                wall_s: run.summary.wall_s,
+                particle_steps,
+                ns_per_particle_step: 1e9 * run.summary.wall_s / particle_steps.max(1) as f64,
+            };
+            FinishedScene { case_scene, run, timing, energy_factor: case.energy_factor }
+        })
+        .collect()
+}
+
+/// Runs a check applies to.
+pub fn applies<'a>(check: &Check, finished: &'a [FinishedScene]) -> Vec<&'a FinishedScene> {
+    let about = |f: &&FinishedScene| match (&check.variant, &check.against) {
+        (Some(variant), _) => f.case_scene.name == *variant,
+        (None, Some(against)) => f.case_scene.name != *against,
+        (None, None) => true,
+    };
+    let all: Vec<_> = finished.iter().filter(about).collect();
+    if check.measure.as_deref() == Some("order-in-step") { all.into_iter().take(1).collect() } else { all }
+}
+
+/// Evaluates a check on one run.
+///
+/// # Errors
+/// If the check asks for something that is not there.
+pub fn evaluate(
+    check: &Check,
+    of: &FinishedScene,
+    finished: &[FinishedScene],
+    library: &Library,
+) -> Result<Measured, String> {
+    let runs: Vec<Run> = finished.iter().map(FinishedScene::as_run).collect();
+    measure(check, &of.as_run(), &runs, library)
+}
+
+/// File name without ending of the series of a run.
+pub fn series_stem(case: &Case, variant: &str) -> String {
+    let mut stem = format!("{}-{}", case.suite, case.name);
+    if !variant.is_empty() {
+        stem.push('-');
+        stem.extend(variant.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }));
+    }
+    stem
+}
+
+/// What figures need to know of a run, and the tables to store for them.
+pub fn describe(case: &Case, finished: &FinishedScene) -> (RunInfo, Vec<(String, Table)>) {
+    let stem = series_stem(case, &finished.case_scene.name);
+    let history = &finished.run.history;
+    let mut tables = vec![(stem.clone(), history.clone()), (format!("{stem}-derived"), derived(history))];
+    let mut pictures = Vec::new();
+    for frame in &finished.run.frames {
+        if let Some(phase) = &frame.phase {
+            let name = format!("{stem}-phase-{:.0}us", frame.time * 1e6);
+            tables.push((name.clone(), raster(frame, phase)));
+            let series = format!("series/{name}.csv");
+            pictures.push(PictureInfo { time: frame.time, series, pixels: frame.pixels });
+        }
+    }
+    let label = if case.label.is_empty() { case.name.clone() } else { case.label.clone() };
+    let variant = &finished.case_scene.name;
+    let info = RunInfo {
+        suite: case.suite.clone(),
+        case: case.name.clone(),
+        variant: variant.clone(),
+        label: if variant.is_empty() { label } else { format!("{label}, {variant}") },
+        series: format!("series/{stem}.csv"),
+        columns: finished.run.history.names.clone(),
+        energy_factor: case.energy_factor,
+        resolution: resolution(finished),
+        deviations: case.deviations.clone(),
+        pictures,
+    };
+    (info, tables)
+}
+
+/// Quantities derived from a history: what figures show beside its own columns.
+fn derived(history: &Table) -> Table {
+    let mut table = Table::new(&["time_s", "time_over_end", "closure_over_largest"]);
+    let column = |name: &str| history.column(name).unwrap_or_default();
+    let largest = ["kinetic_j", "elastic_j", "fracture_j", "external_work_j"]
+        .into_iter()
+        .flat_map(|name| column(name).iter().map(|v| v.abs()))
+        .fold(f64::MIN_POSITIVE, f64::max);
+    let times = column("time_s");
+    let end = times.last().copied().unwrap_or(0.0).max(f64::MIN_POSITIVE);
+    for (time, closure) in times.iter().zip(column("closure_j")) {
+        table.push(&[*time, time / end, closure / largest]);
+    }
+    if let (Some(energy), Some(x)) = (history.column("fracture_j"), history.column("crack_tip_x_m")) {
+        let start = energy.first().copied().unwrap_or(0.0);
+        table.names.push("fracture_increment_j".into());
+        table.columns.push(energy.iter().map(|e| e - start).collect());
+        table.names.push("tip_speed_m_per_s".into());
+        table.columns.push(times.iter().map(|t| fitted_speed(times, x, *t)).collect());
+    }
+    table
+}
+
+/// Raster of a picture; values rounded to 1e-5, which no colour shows.
+fn raster(frame: &Picture, values: &[f64]) -> Table {
+    let mut table = Table::new(&["x_m", "y_m", "value"]);
+    for (index, value) in values.iter().enumerate() {
+        let [x, y] = frame.center(index).map(|c| (c * 1e9).round() / 1e9);
+        table.push(&[x, y, (value * 1e5).round() / 1e5]);
+    }
+    table
+}
+
+/// Degree, spans, l0/h, points, steps and dt in words.
+fn resolution(finished: &FinishedScene) -> String {
+    let scene = &finished.case_scene.scene;
+    let summary = &finished.run.summary;
+    let [hx, hy] = span_lengths(&scene.mesh);
+    let [p, q] = scene.mesh.degree;
+    let degree = if p == q { format!("p = {p}") } else { format!("p = ({p}, {q})") };
+    let ratio = length_scale(scene).map_or(String::new(), |l0| format!(", l0/h = {:.3}", l0 / hx.max(hy)));
+    format!(
+        "{degree}, h = {:.4} × {:.4} mm{ratio}, {} points, {} control points, {} steps of {:.4e} s",
+        hx * 1e3, hy * 1e3, summary.particles, summary.control_points, summary.steps, summary.time_step_s.unwrap_or(f64::NAN)
+    )
+}
+
+/// Largest span per direction, m.
+pub fn span_lengths(mesh: &Mesh) -> [f64; 2] {
+    [0, 1].map(|d| mesh.knots[d].windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max))
+}
+
+/// Smallest length scale of the materials in use, m.
+pub fn length_scale(scene: &Scene) -> Option<f64> {
+    let fractures = scene.materials.values().filter_map(|m| m.fracture.as_ref());
+    fractures.map(|f| f.length_scale).reduce(f64::min)
+}

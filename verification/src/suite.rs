@@ -1,0 +1,177 @@
+//! Suites: which cases there are, which are chosen, and running them into a folder of results.
+
+mod judge;
+mod resume;
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+pub use crate::case::{Case, Tier};
+use crate::figures;
+use crate::record::{Environment, Figure, Record, ResultSet, SCHEMA, Status};
+use crate::reference::{Library, ReferenceError};
+use crate::scene_file::SceneFileError;
+use crate::study::scene::RunInfo;
+
+/// Which cases to run.
+#[derive(Debug, Clone)]
+pub struct Selection {
+    /// Suites; empty: all.
+    pub suites: Vec<String>,
+    /// Pattern that case ids match; absent: all.
+    pub case_glob: Option<String>,
+    /// Tier; the full tier includes the quick one.
+    pub tier: Tier,
+}
+
+/// Where and how to run.
+#[derive(Debug, Clone)]
+pub struct Options<'a> {
+    /// Results folder.
+    pub out: &'a Path,
+    /// Folder of reference data.
+    pub reference_data: &'a Path,
+    /// Recorded with the results.
+    pub environment: Environment,
+    /// Takes up the cases that an interrupted run of the same commit finished.
+    pub resume: bool,
+}
+
+/// Told what is going on.
+pub trait Progress: Sync {
+    /// A case starts; `index` counts from 0.
+    fn started(&self, case: &Case, index: usize, count: usize);
+    /// The finished fraction of the case.
+    fn advanced(&self, fraction: f64);
+    /// A case is finished.
+    fn finished(&self, case: &Case, records: &[Record]);
+}
+
+/// What keeps a verification from being carried out at all.
+#[derive(Debug, Error)]
+pub enum VerifyError {
+    /// A case file is wrong.
+    #[error(transparent)]
+    Case(#[from] SceneFileError),
+    /// Reference data are wrong.
+    #[error(transparent)]
+    Reference(#[from] ReferenceError),
+    /// The results folder cannot be written.
+    #[error("{path}: {message}")]
+    Output {
+        /// File or folder.
+        path: String,
+        /// What is wrong.
+        message: String,
+    },
+}
+
+impl VerifyError {
+    fn output(path: &Path, error: impl std::fmt::Display) -> Self {
+        Self::Output { path: path.display().to_string(), message: error.to_string() }
+    }
+}
+
+/// What one case found, as stored between sessions.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct CaseOutcome {
+    /// Records, in the order of the checks.
+    pub records: Vec<Record>,
+    /// Figures of the study itself.
+    pub figures: Vec<Figure>,
+    /// Runs of scenes.
+    pub runs: Vec<RunInfo>,
+}
+
+/// Every case below `folder`, `<suite>/<case>.toml`, in order of suite and name.
+///
+/// # Errors
+/// The first case file that is wrong. `overrides` are `--set` keys, applied to the scene of every case.
+pub fn load_cases(folder: &Path, overrides: &[String]) -> Result<Vec<Case>, SceneFileError> {
+    let pattern = folder.join("*").join("*.toml");
+    let paths = glob::glob(&pattern.to_string_lossy()).into_iter().flatten().flatten();
+    let mut paths: Vec<PathBuf> = paths.collect();
+    paths.sort();
+    paths.iter().map(|path| Case::load(path, overrides)).collect()
+}
+
+/// The cases a selection names.
+pub fn select(cases: Vec<Case>, selection: &Selection) -> Vec<Case> {
+    let pattern = selection.case_glob.as_deref().and_then(|g| glob::Pattern::new(g).ok());
+    let chosen = |case: &Case| {
+        (selection.suites.is_empty() || selection.suites.contains(&case.suite))
+            && (selection.case_glob.is_none() || pattern.as_ref().is_some_and(|p| p.matches(&case.id())))
+            && case.tier <= selection.tier
+    };
+    cases.into_iter().filter(chosen).collect()
+}
+
+/// Runs the cases and writes `results.json` and `series/*.csv` into the results folder.
+///
+/// # Errors
+/// If a case or reference file is wrong, or the folder cannot be written. A failed check is a record, not an error.
+pub fn verify(cases: &[Case], options: &Options, progress: &dyn Progress) -> Result<ResultSet, VerifyError> {
+    let library = Library::load(options.reference_data)?;
+    let series = options.out.join("series");
+    std::fs::create_dir_all(&series).map_err(|e| VerifyError::output(&series, e))?;
+    let store = resume::Store::open(options)?;
+    let mut outcomes = Vec::new();
+    for (index, case) in cases.iter().enumerate() {
+        progress.started(case, index, cases.len());
+        let outcome = match store.load(case) {
+            Some(outcome) => outcome,
+            None => {
+                let outcome = judge::run_case(case, options.out, &library, progress)?;
+                store.save(case, &outcome)?;
+                outcome
+            }
+        };
+        progress.finished(case, &outcome.records);
+        outcomes.push(outcome);
+    }
+    let runs: Vec<RunInfo> = outcomes.iter().flat_map(|o| o.runs.clone()).collect();
+    let mut figures: Vec<Figure> = outcomes.iter().flat_map(|o| o.figures.clone()).collect();
+    let (drawn, tables) = figures::of_runs(&runs, &library);
+    figures.extend(drawn);
+    for (stem, table) in tables {
+        write_series(options.out, &stem, &table)?;
+    }
+    let results = ResultSet {
+        schema: SCHEMA.to_string(),
+        environment: options.environment.clone(),
+        records: outcomes.into_iter().flat_map(|o| o.records).collect(),
+        figures,
+    };
+    write_json(&options.out.join("results.json"), &results)?;
+    store.finish();
+    Ok(results)
+}
+
+/// Worst status of a set of records.
+pub fn worst(records: &[Record]) -> Option<Status> {
+    let rank = |status: Status| match status {
+        Status::Info => 0,
+        Status::Pass => 1,
+        Status::Fail => 2,
+        Status::Error => 3,
+    };
+    records.iter().map(|r| r.status).max_by_key(|s| rank(*s))
+}
+
+/// Writes `series/<stem>.csv`, whole or not at all.
+fn write_series(out: &Path, stem: &str, table: &crate::history::Table) -> Result<(), VerifyError> {
+    let path = out.join("series").join(format!("{stem}.csv"));
+    let temporary = path.with_extension("csv.part");
+    table.write(&temporary).map_err(|e| VerifyError::output(&path, e))?;
+    std::fs::rename(&temporary, &path).map_err(|e| VerifyError::output(&path, e))
+}
+
+/// Writes JSON, whole or not at all.
+fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), VerifyError> {
+    let mut text = serde_json::to_string_pretty(value).map_err(|e| VerifyError::output(path, e))?;
+    text.push('\n');
+    let temporary = path.with_extension("json.part");
+    std::fs::write(&temporary, text).map_err(|e| VerifyError::output(path, e))?;
+    std::fs::rename(&temporary, path).map_err(|e| VerifyError::output(path, e))
+}
