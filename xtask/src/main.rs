@@ -1,2 +1,49 @@
-//! placeholder
-fn main() {}
+//! The commands of the fisura workspace: `cargo xtask verify`, `list`, `run`, `check`, `report`.
+//!
+//! One file per command; beside them [`cli`] (what can be said on the command line), [`exit`] (statuses), [`failure`]
+//! (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go), [`progress`]
+//! (bars), [`pictures`] (figures of a run), [`environment`] (where and when).
+
+mod check;
+mod cli;
+mod console;
+mod environment;
+mod exit;
+mod failure;
+mod folders;
+mod list;
+mod pictures;
+mod progress;
+mod report;
+mod run;
+mod scene_input;
+mod verify;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use cli::{Cli, Command, Common};
+use exit::Exit;
+use failure::Failure;
+
+fn main() -> ExitCode {
+    let Cli { command, common } = Cli::parse();
+    let outcome = set_threads(&common).and_then(|()| match command {
+        Command::Verify(args) => verify::verify(&args, &common),
+        Command::List => list::list(&common),
+        Command::Run(args) => run::run(&args, &common),
+        Command::Check(args) => check::check(&args, &common),
+        Command::Report(args) => report::report(&args, &common),
+    });
+    outcome.unwrap_or_else(|failure| failure.show()).into()
+}
+
+/// All parallel work of the process runs on this many threads; on all cores unless told.
+fn set_threads(common: &Common) -> Result<(), Failure> {
+    let threads = common.threads.map_or(0, |n| usize::from(n.get())); // 0 lets rayon decide
+    let built = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    built.map_err(|e| {
+        Failure::new(Exit::BadInput, format!("{threads} threads cannot be started: {e}")).help("give fewer --threads")
+    })
+}

@@ -1,0 +1,205 @@
+//! `check SCENE.toml`: what will be modelled and what it will cost.
+
+use std::collections::BTreeMap;
+
+use fisura::material::ElasticModuli;
+use fisura::scene::{Frame, Plane, Scene};
+use fisura::simulation::{Extent, Simulation};
+use fisura::time_plan::TimePlan;
+use fisura_reports::number::{duration, plain};
+use serde::Serialize;
+
+use crate::cli::{Common, Format, SceneArgs};
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::{console, scene_input};
+
+/// Rough wall time of mechanics per particle and step on two cores, s.
+const MECHANICS: f64 = 15e-9;
+/// Rough wall time of the phase field per control point and step on two cores, s.
+const PHASE_FIELD: f64 = 150e-9;
+
+/// Arguments of `check`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+}
+
+/// Validates a scene, prepares it without a step, and says what it found.
+///
+/// # Errors
+/// A bad scene, or an initial phase field that does not converge.
+pub fn check(args: &Args, common: &Common) -> Result<Exit, Failure> {
+    let file = scene_input::load(&args.scene, common)?;
+    let simulation = Simulation::new(&file.scene).map_err(|breakdown| Failure::from(&breakdown))?;
+    let mut found = Findings::new(&file.scene, &simulation.extent(), simulation.plan());
+    found.warnings = file.warnings.iter().map(ToString::to_string).collect();
+    found.warnings.extend(simulation.warnings().iter().cloned());
+    for warning in simulation.warnings() {
+        console::note(common, &format!("warning: {warning}"));
+    }
+    match common.format {
+        Format::Json => console::json(&found),
+        Format::Text => console::result(&found.text()),
+    }
+    Ok(Exit::Done)
+}
+
+/// What will be modelled and what it will cost.
+#[derive(Debug, Serialize)]
+struct Findings {
+    title: String,
+    models: Vec<String>,
+    plane: &'static str,
+    frame: &'static str,
+    bodies: Vec<BodyFindings>,
+    materials: BTreeMap<String, MaterialFindings>,
+    degree: [usize; 2],
+    cells: [usize; 2],
+    /// Largest span per direction, m.
+    span_m: [f64; 2],
+    particles: usize,
+    control_points: usize,
+    end_time_s: f64,
+    critical_step_s: Option<f64>,
+    time_step_s: f64,
+    steps: usize,
+    samples: usize,
+    frames: usize,
+    memory_mb: f64,
+    phase_field_memory_mb: f64,
+    estimated_wall_s: f64,
+    estimate: &'static str,
+    warnings: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct BodyFindings {
+    name: String,
+    material: String,
+    tractions: usize,
+    cracks: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct MaterialFindings {
+    /// Speed of dilatational waves, m/s.
+    wave_speed_m_per_s: f64,
+    /// Length scale over the largest span; absent without fracture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    length_scale_over_span: Option<f64>,
+}
+
+impl Findings {
+    fn new(scene: &Scene, extent: &Extent, plan: &TimePlan) -> Self {
+        let spans = [0, 1].map(|d| spans(&scene.mesh.knots[d]));
+        let span_m = [0, 1].map(|d| spans[d].iter().copied().fold(0.0, f64::max));
+        let fractures = extent.phase_field_bytes > 0;
+        let per_step = MECHANICS * extent.particles as f64
+            + if fractures { PHASE_FIELD * extent.control_points as f64 } else { 0.0 };
+        Self {
+            title: scene.title.clone(),
+            models: extent.models.clone(),
+            plane: if scene.analysis.plane == Plane::Strain { "strain" } else { "stress" },
+            frame: if scene.analysis.frame == Frame::Total { "total" } else { "updated" },
+            bodies: bodies(scene),
+            materials: materials(scene, span_m[0].max(span_m[1])),
+            degree: scene.mesh.degree,
+            cells: [spans[0].len(), spans[1].len()],
+            span_m,
+            particles: extent.particles,
+            control_points: extent.control_points,
+            end_time_s: scene.analysis.end_time,
+            critical_step_s: Some(plan.critical).filter(|c| c.is_finite()),
+            time_step_s: plan.step,
+            steps: plan.steps(),
+            samples: plan.samples,
+            frames: scene.output.frames.len(),
+            memory_mb: 1e-6 * (extent.mechanics_bytes + extent.phase_field_bytes) as f64,
+            phase_field_memory_mb: 1e-6 * extent.phase_field_bytes as f64,
+            estimated_wall_s: per_step * plan.steps() as f64,
+            estimate: "rough: 15 ns per particle and step, with fracture 150 ns per control point and step, two cores",
+            warnings: Vec::new(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let second = |s: f64| format!("{} s", plain(s, 5));
+        let memory = match self.phase_field_memory_mb {
+            0.0 => String::new(),
+            mb => format!(", {} MB of it for the phase field", plain(mb, 3)),
+        };
+        let mut rows = vec![
+            ("title", self.title.clone()),
+            ("models", format!("{}; plane {}, {} frame", self.models.join(", "), self.plane, self.frame)),
+        ];
+        rows.extend(self.bodies.iter().map(|body| ("body", body.text())));
+        rows.extend(self.materials.iter().map(|(name, material)| ("material", material.text(name))));
+        let [hx, hy] = self.span_m.map(|h| plain(1e3 * h, 5));
+        let critical = self.critical_step_s.map_or("none, nothing can move".to_string(), second);
+        let time = format!(
+            "{} in {} steps of {}",
+            second(self.end_time_s),
+            self.steps,
+            second(self.time_step_s)
+        );
+        rows.extend([
+            ("mesh", format!("{} x {} spans of {hx} x {hy} mm", self.cells[0], self.cells[1])),
+            ("degree", format!("{} x {}", self.degree[0], self.degree[1])),
+            ("particles", self.particles.to_string()),
+            ("control points", self.control_points.to_string()),
+            ("critical step", critical),
+            ("time", time),
+            ("output", format!("{} rows after the first, {} frames", self.samples, self.frames)),
+            ("memory", format!("about {} MB{memory}", plain(self.memory_mb, 3))),
+            ("wall time", format!("about {}", duration(self.estimated_wall_s))),
+            ("", self.estimate.to_string()),
+        ]);
+        rows.extend(self.warnings.iter().map(|w| ("warning", w.clone())));
+        console::table(&rows)
+    }
+}
+
+impl BodyFindings {
+    fn text(&self) -> String {
+        let Self { name, material, tractions, cracks } = self;
+        format!("{name} of {material}; tractions: {tractions}, cracks: {cracks}")
+    }
+}
+
+impl MaterialFindings {
+    fn text(&self, name: &str) -> String {
+        let ratio = self.length_scale_over_span.map(|r| format!(", l0/h {}", plain(r, 4))).unwrap_or_default();
+        format!("{name}; wave speed {} m/s{ratio}", plain(self.wave_speed_m_per_s, 5))
+    }
+}
+
+/// Lengths of the non-empty spans of a knot vector, m.
+fn spans(knots: &[f64]) -> Vec<f64> {
+    knots.windows(2).map(|k| k[1] - k[0]).filter(|h| *h > 0.0).collect()
+}
+
+fn bodies(scene: &Scene) -> Vec<BodyFindings> {
+    let of = |body: &fisura::scene::Body| BodyFindings {
+        name: body.name.clone(),
+        material: body.material.clone(),
+        tractions: body.tractions.len(),
+        cracks: body.cracks.len(),
+    };
+    scene.bodies.iter().map(of).collect()
+}
+
+/// Materials in use.
+fn materials(scene: &Scene, span: f64) -> BTreeMap<String, MaterialFindings> {
+    let used = scene.materials.iter().filter(|(name, _)| scene.bodies.iter().any(|b| b.material == **name));
+    used.map(|(name, material)| {
+        let moduli = ElasticModuli::new(material, scene.analysis.plane);
+        let findings = MaterialFindings {
+            wave_speed_m_per_s: moduli.dilatational_speed(material.density),
+            length_scale_over_span: material.fracture.as_ref().map(|f| f.length_scale / span),
+        };
+        (name.clone(), findings)
+    })
+    .collect()
+}

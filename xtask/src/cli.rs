@@ -1,0 +1,77 @@
+//! What can be said on the command line.
+
+use std::num::NonZeroU16;
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::{check, report, run, verify};
+
+const EXIT_STATUS: &str = "\
+Exit status: 0 all checks hold, 1 a check fails, 2 bad arguments or bad input, 3 a run broke down, \
+4 nothing was selected.";
+
+/// Runs and verifies fisura, an explicit phase-field material point method.
+#[derive(Debug, Parser)]
+#[command(name = "xtask", bin_name = "cargo xtask", version, after_help = EXIT_STATUS, max_term_width = 100)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// Flags of every command.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run the verification suites, write the report, and say whether every check holds
+    Verify(verify::Args),
+    /// List the cases: what each claims and models, its tier and estimated time
+    List,
+    /// Run a scene to its end and write its history, summary and pictures
+    Run(run::Args),
+    /// Validate a scene and say what will be modelled and what it will cost, without running it
+    Check(check::Args),
+    /// Render the report of a results folder again, without running anything
+    Report(report::Args),
+}
+
+/// Flags of every command.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Common options")]
+pub struct Common {
+    /// Folder for the files that are written [default: target/fisura/<command>]
+    #[arg(long, global = true, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of threads, the same results for any [default: all cores]
+    #[arg(long, global = true, value_name = "N")]
+    pub threads: Option<NonZeroU16>,
+    /// Nothing on standard error but errors: no progress, no warnings
+    #[arg(long, global = true)]
+    pub quiet: bool,
+    /// What goes to standard output
+    #[arg(long, global = true, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+/// Form of standard output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// A scene file and changes to it.
+#[derive(Debug, Clone, Args)]
+pub struct SceneArgs {
+    /// Scene file
+    #[arg(value_name = "SCENE.toml")]
+    pub scene: PathBuf,
+    /// Change a value of the scene, such as mesh.degree=3 or body.0.crack.0.half_width="0.25 mm"; entries count from 0
+    #[arg(long, value_name = "key.path=value")]
+    pub set: Vec<String>,
+}

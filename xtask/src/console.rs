@@ -1,0 +1,56 @@
+//! What goes to which stream: results to standard output, everything else to standard error.
+
+use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
+use std::process::exit;
+
+use serde::Serialize;
+
+use crate::cli::Common;
+use crate::exit::Exit;
+
+/// Writes a result to standard output. A reader that went away ends the program quietly.
+pub fn result(text: &str) {
+    let mut out = stdout().lock();
+    if let Err(error) = out.write_all(text.as_bytes()).and_then(|()| out.flush())
+        && error.kind() != ErrorKind::BrokenPipe
+    {
+        error_text(&format!("error: standard output cannot be written: {error}\n"));
+        exit(Exit::BadInput as i32);
+    }
+}
+
+/// Writes a result to standard output as JSON.
+pub fn json(value: &impl Serialize) {
+    match serde_json::to_string_pretty(value) {
+        Ok(text) => result(&(text + "\n")),
+        Err(error) => error_text(&format!("error: no JSON can be made of the result: {error}\n")),
+    }
+}
+
+/// Writes to standard error.
+pub fn error_text(text: &str) {
+    let _ = stderr().lock().write_all(text.as_bytes()); // there is no other place left to complain
+}
+
+/// Tells people something on standard error, unless they asked for quiet.
+pub fn note(common: &Common, text: &str) {
+    if !common.quiet {
+        error_text(&format!("{text}\n"));
+    }
+}
+
+/// Whether standard error is a terminal that may show progress bars.
+pub fn interactive(common: &Common) -> bool {
+    !common.quiet && stderr().is_terminal()
+}
+
+/// Whether errors are shown with excerpts and colours: on a terminal, unless `NO_COLOR` is set.
+pub fn graphical() -> bool {
+    stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+}
+
+/// Rows of name and value, the values aligned.
+pub fn table(rows: &[(&str, String)]) -> String {
+    let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    rows.iter().map(|(name, value)| format!("{name:width$}  {value}\n")).collect()
+}

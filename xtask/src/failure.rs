@@ -1,0 +1,175 @@
+//! Errors and warnings as they are shown: with source excerpts on a terminal, one line each elsewhere.
+
+use std::fmt;
+
+use fisura::error::Breakdown;
+use fisura_reports::ReportError;
+use fisura_verification::scene_file::{SceneDiagnostic, SceneFileError};
+use fisura_verification::scene_run::OutputError;
+use miette::{Diagnostic, LabeledSpan, MietteDiagnostic, MietteHandler, MietteHandlerOpts, ReportHandler, Severity};
+
+use crate::console;
+use crate::exit::Exit;
+
+/// Why a command could not do what was asked.
+#[derive(Debug)]
+pub enum Failure {
+    /// A file of a scene or a case is not valid.
+    SceneFile(SceneFileError),
+    /// Anything else.
+    Other {
+        /// Exit status.
+        exit: Exit,
+        /// What is wrong.
+        message: String,
+        /// What would be right, if it is not plain from the message.
+        help: Option<String>,
+    },
+}
+
+impl Failure {
+    /// A failure without help.
+    pub fn new(exit: Exit, message: impl Into<String>) -> Self {
+        Self::Other { exit, message: message.into(), help: None }
+    }
+
+    /// The same with what would be right.
+    pub fn help(self, text: impl Into<String>) -> Self {
+        match self {
+            Self::Other { exit, message, .. } => Self::Other { exit, message, help: Some(text.into()) },
+            scene_file => scene_file,
+        }
+    }
+
+    /// Writes the failure to standard error and gives its exit status.
+    pub fn show(&self) -> Exit {
+        console::error_text(&self.render(console::graphical()));
+        match self {
+            Self::SceneFile(_) => Exit::BadInput,
+            Self::Other { exit, .. } => *exit,
+        }
+    }
+
+    fn render(&self, graphical: bool) -> String {
+        match self {
+            Self::SceneFile(error) => error.diagnostics.iter().map(|d| render(d, graphical)).collect(),
+            Self::Other { message, help, .. } if graphical => {
+                let diagnostic = MietteDiagnostic::new(message);
+                picture(&match help {
+                    Some(help) => diagnostic.with_help(help),
+                    None => diagnostic,
+                })
+            }
+            Self::Other { message, help, .. } => {
+                let help = help.as_ref().map(|h| format!("  help: {h}\n")).unwrap_or_default();
+                format!("error: {message}\n{help}")
+            }
+        }
+    }
+}
+
+impl From<SceneFileError> for Failure {
+    fn from(error: SceneFileError) -> Self {
+        Self::SceneFile(error)
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        Self::new(Exit::BadInput, error.to_string()).help("give a folder that can be written with --out")
+    }
+}
+
+impl From<&Breakdown> for Failure {
+    fn from(breakdown: &Breakdown) -> Self {
+        Self::new(Exit::BrokeDown, breakdown.to_string())
+    }
+}
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Self {
+        Self::new(Exit::BadInput, error.to_string())
+    }
+}
+
+/// One finding in a file: `error: file:line:column: key: message; remedy`, or with the excerpt around it.
+pub fn render(diagnostic: &SceneDiagnostic, graphical: bool) -> String {
+    if graphical {
+        return picture(&Excerpt(diagnostic));
+    }
+    let word = if diagnostic.severity == Severity::Error { "error" } else { "warning" };
+    format!("{word}: {diagnostic}\n")
+}
+
+/// A finding whose place is told by its excerpt and whose remedy by its help, and not once more in its title.
+#[derive(Debug)]
+struct Excerpt<'a>(&'a SceneDiagnostic);
+
+impl fmt::Display for Excerpt<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let SceneDiagnostic { file, line, column, key, message, .. } = self.0;
+        write!(f, "{file}:{line}:{column}: ")?;
+        if key.is_empty() { f.write_str(message) } else { write!(f, "{key}: {message}") }
+    }
+}
+
+impl std::error::Error for Excerpt<'_> {}
+
+impl Diagnostic for Excerpt<'_> {
+    fn severity(&self) -> Option<Severity> {
+        self.0.severity()
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.0.help()
+    }
+
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        self.0.source_code()
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        self.0.labels()
+    }
+}
+
+/// With colours and excerpts, for a terminal.
+fn picture(diagnostic: &dyn Diagnostic) -> String {
+    struct Rendered<'a>(MietteHandler, &'a dyn Diagnostic);
+    impl fmt::Display for Rendered<'_> {
+        fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            self.0.debug(self.1, f)
+        }
+    }
+    let options = MietteHandlerOpts::new().force_graphical(true).break_words(false).terminal_links(false);
+    Rendered(options.build(), diagnostic).to_string() + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use fisura_verification::scene_file::SceneFile;
+
+    use super::*;
+
+    fn broken() -> Failure {
+        SceneFile::parse("scene.toml", "[mesh]\ndegree = 7\n", &[]).unwrap_err().into()
+    }
+
+    #[test]
+    fn a_finding_names_place_key_and_remedy_in_either_form() {
+        for graphical in [false, true] {
+            let text = broken().render(graphical);
+            for part in ["scene.toml:2:", "mesh.degree", "1 to 4"] {
+                assert!(text.contains(part), "{part:?} is missing from\n{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn off_a_terminal_a_finding_is_one_line() {
+        let text = broken().render(false);
+        assert!(text.lines().all(|line| line.starts_with("error: scene.toml:")), "{text}");
+        let text = Failure::new(Exit::BadInput, "no").help("yes").render(false);
+        assert_eq!(text, "error: no\n  help: yes\n");
+    }
+}

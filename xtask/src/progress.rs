@@ -1,0 +1,20 @@
+//! Progress bars on standard error, only on a terminal.
+
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::cli::Common;
+use crate::console;
+
+/// A bar of `length` units; invisible where nobody would see it.
+pub fn bar(common: &Common, template: &str, length: u64) -> ProgressBar {
+    let visible = console::interactive(common);
+    let target = if visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let bar = ProgressBar::with_draw_target(Some(length), target).with_style(style);
+    if visible {
+        bar.enable_steady_tick(Duration::from_millis(200));
+    }
+    bar
+}

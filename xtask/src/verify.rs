@@ -1,0 +1,172 @@
+//! `verify`: runs the suites, writes the report, says whether every check holds.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::time::Instant;
+
+use fisura_reports::number::duration;
+use fisura_reports::text::render_text;
+use fisura_verification::record::{Record, ResultSet, Status};
+use fisura_verification::suite::{self, Case, Options, Selection, Tier, VerifyError, load_cases, select, worst};
+use indicatif::ProgressBar;
+
+use crate::cli::{Common, Format};
+use crate::environment::environment;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::{console, folders, progress};
+
+/// Parts into which the bar of a case is divided.
+const PARTS: u64 = 1000;
+
+/// Arguments of `verify`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Only these suites, separated by commas
+    #[arg(long, value_name = "SUITE,…", value_delimiter = ',')]
+    suite: Vec<String>,
+    /// Only cases whose id matches, such as plate/*
+    #[arg(long, value_name = "GLOB")]
+    case: Option<String>,
+    /// quick (minutes in all), or full (the same and paper resolution)
+    #[arg(long, value_name = "TIER", default_value = "quick", value_parser = str::parse::<Tier>)]
+    tier: Tier,
+    /// Change a value in the scene of every case; entries count from 0
+    #[arg(long, value_name = "key.path=value")]
+    set: Vec<String>,
+}
+
+/// Runs what is selected.
+///
+/// # Errors
+/// Unknown suites, a bad pattern, nothing selected, a case or reference file that is wrong, a folder that cannot be
+/// written.
+pub fn verify(args: &Args, common: &Common) -> Result<Exit, Failure> {
+    let cases = selected(args)?;
+    let folder = folders::output(common, "verify")?;
+    if args.tier == Tier::Full {
+        let seconds = cases.iter().map(|case| case.seconds).sum();
+        console::note(common, &format!("{} cases, estimated {} on two cores", cases.len(), duration(seconds)));
+    }
+    let workspace = folders::workspace();
+    let options = Options {
+        out: &folder,
+        reference_data: &workspace.join("reference-data"),
+        environment: environment(&workspace),
+        resume: args.tier == Tier::Full,
+    };
+    let watch = Watch::new(common);
+    let results = suite::verify(&cases, &options, &watch);
+    watch.bar.finish_and_clear();
+    let results = results?;
+    let rendered = fisura_reports::render(&folder);
+    print(&results, common);
+    console::note(common, &format!("report: {}", folder.join("report.html").display()));
+    rendered?;
+    Ok(verdict(&results.records))
+}
+
+impl From<VerifyError> for Failure {
+    fn from(error: VerifyError) -> Self {
+        match error {
+            VerifyError::Case(error) => error.into(),
+            other => Self::new(Exit::BadInput, other.to_string()),
+        }
+    }
+}
+
+/// The folder of the case files.
+///
+/// # Errors
+/// If there is none.
+pub fn cases_folder() -> Result<PathBuf, Failure> {
+    let folder = folders::workspace().join("verification/cases");
+    if folder.is_dir() {
+        return Ok(folder);
+    }
+    let message = format!("there is no folder {} with case files", folder.display());
+    Err(Failure::new(Exit::BadInput, message).help("start it with `cargo xtask` or in the root of the workspace"))
+}
+
+fn selected(args: &Args) -> Result<Vec<Case>, Failure> {
+    let bad = |message: String| Failure::new(Exit::BadInput, message);
+    if let Some(pattern) = &args.case {
+        glob::Pattern::new(pattern)
+            .map_err(|e| bad(format!("--case {pattern}: {e}")).help("write a pattern such as plate/*"))?;
+    }
+    let cases = load_cases(&cases_folder()?, &args.set)?;
+    let known: BTreeSet<&str> = cases.iter().map(|case| case.suite.as_str()).collect();
+    let unknown: Vec<&str> = args.suite.iter().map(String::as_str).filter(|s| !known.contains(s)).collect();
+    if !unknown.is_empty() {
+        let known = known.into_iter().collect::<Vec<_>>().join(", ");
+        return Err(bad(format!("unknown suite: {}", unknown.join(", "))).help(format!("known suites: {known}")));
+    }
+    let selection = Selection { suites: args.suite.clone(), case_glob: args.case.clone(), tier: args.tier };
+    let cases = select(cases, &selection);
+    if cases.is_empty() {
+        let message = format!("no case of the {} tier is selected", args.tier);
+        return Err(Failure::new(Exit::NothingSelected, message).help("see `cargo xtask list` for what there is"));
+    }
+    Ok(cases)
+}
+
+fn print(results: &ResultSet, common: &Common) {
+    match common.format {
+        Format::Json => console::json(results),
+        Format::Text => console::result(&render_text(results)),
+    }
+}
+
+fn verdict(records: &[Record]) -> Exit {
+    match worst(records) {
+        Some(Status::Error) => Exit::BrokeDown,
+        Some(Status::Fail) => Exit::CheckFailed,
+        _ => Exit::Done,
+    }
+}
+
+/// A bar on a terminal; elsewhere a line per finished case.
+struct Watch<'a> {
+    common: &'a Common,
+    bar: ProgressBar,
+    present: Mutex<(String, Instant)>,
+}
+
+impl<'a> Watch<'a> {
+    fn new(common: &'a Common) -> Self {
+        let bar = progress::bar(common, "{msg} {wide_bar} {percent} %, {elapsed}", PARTS);
+        Self { common, bar, present: Mutex::new((String::new(), Instant::now())) }
+    }
+}
+
+impl suite::Progress for Watch<'_> {
+    fn started(&self, case: &Case, index: usize, count: usize) {
+        let place = format!("[{}/{count}] {}", index + 1, case.id());
+        self.bar.set_message(place.clone());
+        self.bar.set_position(0);
+        if let Ok(mut present) = self.present.lock() {
+            *present = (place, Instant::now());
+        }
+    }
+
+    fn advanced(&self, fraction: f64) {
+        self.bar.set_position((fraction.clamp(0.0, 1.0) * PARTS as f64) as u64);
+    }
+
+    fn finished(&self, _case: &Case, records: &[Record]) {
+        let Ok(present) = self.present.lock() else { return };
+        let word = match worst(records) {
+            Some(Status::Error) => "error",
+            Some(Status::Fail) => "fail",
+            Some(Status::Pass) => "pass",
+            Some(Status::Info) | None => "info",
+        };
+        let line = format!("{} {word}, {}", present.0, duration(present.1.elapsed().as_secs_f64()));
+        if console::interactive(self.common) {
+            self.bar.println(line);
+        } else {
+            console::note(self.common, &line);
+        }
+    }
+}
