@@ -26,4 +26,5 @@ pub mod sweep;
 pub mod total_frame;
 pub mod simulation;
 pub mod time_plan;
+pub mod updated_frame;
 pub mod validate;

@@ -15,6 +15,7 @@ use crate::incomplete_cholesky::IncompleteCholesky;
 use crate::lane::{LANES, Lane};
 use crate::lattice::Lattice;
 use crate::material::FractureModel;
+use crate::patch::ControlGrid;
 use crate::scene::{PhaseFieldSolver, SolverSettings};
 use crate::stencil::Stencil;
 
@@ -56,6 +57,19 @@ enum Method {
     Direct(Box<SparseCholesky>),
 }
 
+impl Method {
+    fn new(matrix: &Stencil, settings: &SolverSettings) -> Self {
+        match settings.phase_field_solver {
+            PhaseFieldSolver::Cholesky => Self::Direct(Box::default()),
+            PhaseFieldSolver::ConjugateGradients => Self::Iterative {
+                workspace: Box::new(ConjugateGradients::new(matrix)),
+                factor: Box::new(IncompleteCholesky::new(matrix)),
+                fresh_iterations: None,
+            },
+        }
+    }
+}
+
 impl PhaseField {
     /// Phase field on the points of `lattice`, intact until the first solve.
     pub fn new(lattice: &Lattice, model: FractureModel, settings: &SolverSettings) -> Self {
@@ -78,14 +92,7 @@ impl PhaseField {
                 }
             }
         }
-        let method = match settings.phase_field_solver {
-            PhaseFieldSolver::Cholesky => Method::Direct(Box::default()),
-            PhaseFieldSolver::ConjugateGradients => Method::Iterative {
-                workspace: Box::new(ConjugateGradients::new(&matrix)),
-                factor: Box::new(IncompleteCholesky::new(&matrix)),
-                fresh_iterations: None,
-            },
-        };
+        let method = Method::new(&matrix, settings);
         Self {
             model,
             tolerance: settings.phase_field_tolerance,
@@ -97,6 +104,34 @@ impl PhaseField {
             method,
             counts: PhaseFieldCounts::default(),
         }
+    }
+
+    /// Phase field whose system is assembled anew at every step (see [`Self::system_mut`]), intact until the first solve.
+    pub fn without_lattice(
+        grid: ControlGrid,
+        degree: [usize; 2],
+        model: FractureModel,
+        settings: &SolverSettings,
+    ) -> Self {
+        let matrix = Stencil::zeros(grid, degree);
+        let mut phase = grid.zeros();
+        grid.indices().for_each(|at| phase[at] = 1.0);
+        Self {
+            model,
+            tolerance: settings.phase_field_tolerance,
+            load: grid.zeros(),
+            previous: phase.clone(),
+            phase,
+            assembled: Vec::new(),
+            method: Method::new(&matrix, settings),
+            matrix,
+            counts: PhaseFieldCounts::default(),
+        }
+    }
+
+    /// Matrix and right-hand side, to be assembled by the caller.
+    pub fn system_mut(&mut self) -> (&mut Stencil, &mut Vec<f64>) {
+        (&mut self.matrix, &mut self.load)
     }
 
     /// Control values of c.
@@ -115,6 +150,14 @@ impl PhaseField {
     /// The relative residual reached, if it is not the tolerance.
     pub fn solve(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Convergence, Convergence> {
         self.assemble_increments(lattice, history);
+        self.solve_system()
+    }
+
+    /// Solves the system as it stands.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn solve_system(&mut self) -> Result<Convergence, Convergence> {
         self.extrapolate();
         self.counts.solves += 1;
         let Self { matrix, load, phase, .. } = self;
@@ -150,16 +193,29 @@ impl PhaseField {
     /// As [`Self::solve`].
     pub fn initialise(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Convergence, Convergence> {
         self.assemble_increments(lattice, history);
-        if let Method::Iterative { factor, .. } = &mut self.method {
-            factor.refactor(&self.matrix);
-            self.counts.factorisations += 1;
-        }
-        let convergence = self.solve(lattice, history)?;
+        self.initialise_system()
+    }
+
+    /// First solve of the system as it stands.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn initialise_system(&mut self) -> Result<Convergence, Convergence> {
+        self.renew_factor();
+        let convergence = self.solve_system()?;
         self.previous.copy_from_slice(&self.phase);
         if let Method::Iterative { fresh_iterations, .. } = &mut self.method {
             *fresh_iterations = None;
         }
         Ok(convergence)
+    }
+
+    /// Factors the preconditioner from the matrix as it stands.
+    pub fn renew_factor(&mut self) {
+        if let Method::Iterative { factor, .. } = &mut self.method {
+            factor.refactor(&self.matrix);
+            self.counts.factorisations += 1;
+        }
     }
 
     /// Adds what the history energy grew by.

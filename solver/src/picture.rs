@@ -3,8 +3,10 @@
 use rayon::prelude::*;
 
 use crate::material::ElasticModuli;
+use crate::patch::Patch;
 use crate::spline::ShapeFunctions;
 use crate::total_frame::TotalFrame;
+use crate::updated_frame::UpdatedFrame;
 
 /// Phase field and stress on a raster over the patch, x fastest; NaN outside the body.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,30 +25,77 @@ pub struct Picture {
     pub stress: Vec<f64>,
 }
 
-impl Picture {
-    /// Picture of a body at `time` (s).
-    pub fn of(frame: &TotalFrame, time: f64, pixels: [usize; 2]) -> Self {
-        let spaces = &frame.patch().spaces;
-        let ends = [0, 1].map(|d| {
-            let spans = spaces[d].spans();
+/// Pixels over a patch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Raster {
+    /// Pixels in x and y.
+    pub pixels: [usize; 2],
+    /// Lower left corner of the first pixel, m.
+    pub origin: [f64; 2],
+    /// Size of a pixel, m.
+    pub pixel: [f64; 2],
+}
+
+impl Raster {
+    /// Raster of `pixels` over a patch.
+    pub fn new(patch: &Patch, pixels: [usize; 2]) -> Self {
+        let ends = patch.spaces.each_ref().map(|space| {
+            let spans = space.spans();
             (spans[0].left, spans[spans.len() - 1].right)
         });
-        let origin = ends.map(|(left, _)| left);
         let pixel = [0, 1].map(|d| (ends[d].1 - ends[d].0) / pixels[d] as f64);
-        let at = |d: usize, i: usize| origin[d] + (i as f64 + 0.5) * pixel[d];
-        let values: Vec<[f64; 2]> = (0..pixels[1])
-            .into_par_iter()
-            .flat_map_iter(|j| (0..pixels[0]).map(move |i| (i, j)))
-            .map(|(i, j)| values_at(frame, [at(0, i), at(1, j)]))
-            .collect();
-        let phase = frame.fracture.is_some().then(|| values.iter().map(|v| v[0]).collect());
-        Self { time, pixels, origin, pixel, phase, stress: values.iter().map(|v| v[1]).collect() }
+        Self { pixels, origin: ends.map(|(left, _)| left), pixel }
     }
 
     /// Centre of pixel `index`, m.
     pub fn center(&self, index: usize) -> [f64; 2] {
-        let [i, j] = [index % self.pixels[0], index / self.pixels[0]];
-        [self.origin[0] + (i as f64 + 0.5) * self.pixel[0], self.origin[1] + (j as f64 + 0.5) * self.pixel[1]]
+        let at = [index % self.pixels[0], index / self.pixels[0]];
+        [0, 1].map(|d| self.origin[d] + (at[d] as f64 + 0.5) * self.pixel[d])
+    }
+
+    /// Calls `f` with index and overlap (m²) of every pixel that meets a rectangle, given by its ends in x and y.
+    pub fn for_each_overlap(&self, ends: [[f64; 2]; 2], mut f: impl FnMut(usize, f64)) {
+        let near = |d: usize| {
+            let at = |x: f64| (((x - self.origin[d]) / self.pixel[d]).max(0.0) as usize).min(self.pixels[d] - 1);
+            at(ends[d][0])..=at(ends[d][1])
+        };
+        let overlap = |d: usize, i: usize| {
+            let left = self.origin[d] + i as f64 * self.pixel[d];
+            (ends[d][1].min(left + self.pixel[d]) - ends[d][0].max(left)).max(0.0)
+        };
+        for j in near(1) {
+            for i in near(0) {
+                f(j * self.pixels[0] + i, overlap(0, i) * overlap(1, j));
+            }
+        }
+    }
+}
+
+impl Picture {
+    /// Picture of a body at `time` (s).
+    pub fn of(frame: &TotalFrame, time: f64, pixels: [usize; 2]) -> Self {
+        let raster = Raster::new(frame.patch(), pixels);
+        let values: Vec<[f64; 2]> =
+            (0..pixels[0] * pixels[1]).into_par_iter().map(|index| values_at(frame, raster.center(index))).collect();
+        let phase = frame.fracture.is_some().then(|| values.iter().map(|v| v[0]).collect());
+        Self::new(raster, time, phase, values.iter().map(|v| v[1]).collect())
+    }
+
+    /// Picture of a body in the updated frame at `time` (s).
+    pub fn of_updated(frame: &UpdatedFrame, time: f64, pixels: [usize; 2]) -> Self {
+        let raster = Raster::new(frame.patch(), pixels);
+        let (phase, stress) = frame.paint(&raster);
+        Self::new(raster, time, phase, stress)
+    }
+
+    fn new(raster: Raster, time: f64, phase: Option<Vec<f64>>, stress: Vec<f64>) -> Self {
+        let Raster { pixels, origin, pixel } = raster;
+        Self { time, pixels, origin, pixel, phase, stress }
+    }
+
+    /// Centre of pixel `index`, m.
+    pub fn center(&self, index: usize) -> [f64; 2] {
+        Raster { pixels: self.pixels, origin: self.origin, pixel: self.pixel }.center(index)
     }
 }
 
@@ -61,11 +110,7 @@ fn values_at(frame: &TotalFrame, position: [f64; 2]) -> [f64; 2] {
     let first = [sx.spans()[i].first, sy.spans()[j].first];
     let sum = |field: &[f64], derivative: Option<usize>| interpolate(frame, &shapes, first, field, derivative);
     let [ux, uy] = frame.displacement();
-    let strain = [
-        sum(ux, Some(0)),
-        sum(uy, Some(1)),
-        0.5 * (sum(ux, Some(1)) + sum(uy, Some(0))),
-    ];
+    let strain = [sum(ux, Some(0)), sum(uy, Some(1)), 0.5 * (sum(ux, Some(1)) + sum(uy, Some(0)))];
     match &frame.fracture {
         None => [1.0, largest_principal_stress(frame.moduli(), strain, None)],
         Some(fracture) => {

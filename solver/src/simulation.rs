@@ -4,11 +4,13 @@ use crate::energy::Sample;
 use crate::error::Breakdown;
 use crate::fracture::NotConverged;
 use crate::lane::LANES;
+use crate::patch::Patch;
 use crate::phase_field::PhaseFieldCounts;
 use crate::picture::Picture;
-use crate::scene::Scene;
+use crate::scene::{self, Scene};
 use crate::time_plan::TimePlan;
 use crate::total_frame::TotalFrame;
+use crate::updated_frame::{Failure, UpdatedFrame};
 
 /// Elastic energy beyond this many times all energy that ever came in counts as numerical growth.
 const GROWTH_LIMIT: f64 = 10.0;
@@ -28,15 +30,78 @@ pub struct Extent {
     pub phase_field_bytes: usize,
 }
 
+/// The body in the frame of its scene.
+#[derive(Debug)]
+enum Frame {
+    Total(Box<TotalFrame>),
+    Updated(Box<UpdatedFrame>),
+}
+
+/// The same expression for either frame.
+macro_rules! either {
+    ($frame:expr, $body:ident => $value:expr) => {
+        match $frame {
+            Frame::Total($body) => $value,
+            Frame::Updated($body) => $value,
+        }
+    };
+}
+
+impl Frame {
+    fn new(scene: &Scene) -> Result<Self, Failure> {
+        Ok(match scene.analysis.frame {
+            scene::Frame::Total => Self::Total(Box::new(TotalFrame::new(scene)?)),
+            scene::Frame::Updated => Self::Updated(Box::new(UpdatedFrame::new(scene)?)),
+        })
+    }
+
+    fn step(&mut self, dt: f64) -> Result<(), Failure> {
+        match self {
+            Self::Total(body) => Ok(body.step(dt)?),
+            Self::Updated(body) => body.step(dt),
+        }
+    }
+
+    fn patch(&self) -> &Patch {
+        either!(self, body => body.patch())
+    }
+
+    fn particles(&self) -> usize {
+        match self {
+            Self::Total(body) => body.lattice().count(),
+            Self::Updated(body) => body.points().len(),
+        }
+    }
+
+    fn mass(&self) -> &[f64] {
+        match self {
+            Self::Total(body) => body.mass(),
+            Self::Updated(body) => &body.nodes().mass,
+        }
+    }
+
+    fn velocity(&self) -> &[Vec<f64>; 2] {
+        match self {
+            Self::Total(body) => body.velocity(),
+            Self::Updated(body) => &body.nodes().velocity,
+        }
+    }
+
+    fn phase_field_counts(&self) -> Option<PhaseFieldCounts> {
+        either!(self, body => body.fracture.as_ref().map(|f| f.field.counts()))
+    }
+}
+
 /// A running scene.
 #[derive(Debug)]
 pub struct Simulation {
-    frame: TotalFrame,
+    frame: Frame,
     plan: TimePlan,
     warnings: Vec<String>,
     steps: usize,
     initial: f64,
     energy_in: f64,
+    warned_of_step: bool,
 }
 
 impl Simulation {
@@ -46,12 +111,14 @@ impl Simulation {
     /// If the initial phase field does not converge.
     pub fn new(scene: &Scene) -> Result<Self, Breakdown> {
         let origin = scene.mesh.origin();
-        let frame = TotalFrame::new(scene).map_err(|failure| not_converged(0, 0.0, origin, failure))?;
-        let (plan, warnings) = TimePlan::new(&scene.analysis, &scene.output, frame.critical_step());
-        let start = frame.sample(plan.step);
+        let frame = Frame::new(scene).map_err(|failure| breakdown(0, 0.0, origin, failure))?;
+        let critical = either!(&frame, body => body.critical_step());
+        let (plan, warnings) = TimePlan::new(&scene.analysis, &scene.output, critical);
+        let start = either!(&frame, body => body.sample(plan.step));
         let initial = start.stored();
         let energy_in = start.kinetic + start.elastic;
-        Ok(Self { frame, plan, warnings, steps: 0, initial, energy_in })
+        let warned_of_step = plan.step > critical;
+        Ok(Self { frame, plan, warnings, steps: 0, initial, energy_in, warned_of_step })
     }
 
     /// Steps and samples.
@@ -59,7 +126,7 @@ impl Simulation {
         &self.plan
     }
 
-    /// Warnings found in preparation.
+    /// Warnings found in preparation, and since.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
@@ -74,24 +141,55 @@ impl Simulation {
         self.steps >= self.plan.steps()
     }
 
-    /// The body, for verification.
+    /// The body of a scene in the total frame, for verification.
+    ///
+    /// # Panics
+    /// If the scene is in the updated frame: see [`Self::updated_frame`].
     pub fn frame(&self) -> &TotalFrame {
-        &self.frame
+        let Frame::Total(frame) = &self.frame else { panic!("the scene is in the updated frame") };
+        frame
+    }
+
+    /// The body of a scene in the updated frame, for verification.
+    pub fn updated_frame(&self) -> Option<&UpdatedFrame> {
+        if let Frame::Updated(frame) = &self.frame { Some(frame) } else { None }
     }
 
     /// Takes one step.
     ///
     /// # Errors
-    /// If the numbers break: not finite, growing without a source, or a solve that does not converge.
+    /// If the numbers break: not finite, growing without a source, a solve that does not converge, or a point that leaves
+    /// the patch.
     pub fn step(&mut self) -> Result<(), Breakdown> {
         self.steps += 1;
         let result = self.frame.step(self.plan.step);
         let time = self.steps as f64 * self.plan.step;
         let healthy = self.is_healthy();
         match result {
-            Ok(()) if healthy => Ok(()),
-            Err(failure) if healthy => Err(not_converged(self.steps, time, self.fastest_place(), failure)),
+            Ok(()) if healthy => {
+                self.watch_critical_step(time);
+                Ok(())
+            }
+            Err(failure) if healthy => Err(breakdown(self.steps, time, self.fastest_place(), failure)),
             _ => Err(self.unstable(time)),
+        }
+    }
+
+    /// Takes the critical step again where points moved, and warns once if the step in use exceeds it.
+    fn watch_critical_step(&mut self, time: f64) {
+        let Frame::Updated(frame) = &mut self.frame else { return };
+        if self.warned_of_step || !frame.critical_step_is_due() {
+            return;
+        }
+        let critical = frame.critical_step();
+        if self.plan.step > critical {
+            self.warned_of_step = true;
+            self.warnings.push(format!(
+                "from t = {time:.4e} s on, the time step {:.4e} s is {:.3} times the critical step {critical:.4e} s at the \
+                 moved positions; lower analysis.safety or the time step",
+                self.plan.step,
+                self.plan.step / critical
+            ));
         }
     }
 
@@ -108,7 +206,7 @@ impl Simulation {
 
     /// Energies, momenta and crack tip now, with closure.
     pub fn sample(&self) -> Sample {
-        let mut sample = self.frame.sample(self.plan.step);
+        let mut sample = either!(&self.frame, body => body.sample(self.plan.step));
         sample.time = self.steps as f64 * self.plan.step;
         sample.close(self.initial);
         sample
@@ -116,19 +214,19 @@ impl Simulation {
 
     /// Phase-field counters; all zero where none is modelled.
     pub fn phase_field_counts(&self) -> PhaseFieldCounts {
-        self.frame.fracture.as_ref().map(|f| f.field.counts()).unwrap_or_default()
+        self.frame.phase_field_counts().unwrap_or_default()
     }
 
     /// What is modelled and how large it is.
     pub fn extent(&self) -> Extent {
         let mut models = vec!["momentum".to_string()];
-        if self.frame.fracture.is_some() {
+        if self.frame.phase_field_counts().is_some() {
             models.push("phase field".to_string());
         }
-        let [mechanics_bytes, phase_field_bytes] = self.frame.bytes();
+        let [mechanics_bytes, phase_field_bytes] = either!(&self.frame, body => body.bytes());
         Extent {
             models,
-            particles: self.frame.lattice().count(),
+            particles: self.frame.particles(),
             control_points: self.frame.mass().iter().filter(|m| **m > 0.0).count(),
             mechanics_bytes,
             phase_field_bytes,
@@ -137,11 +235,15 @@ impl Simulation {
 
     /// Fields on a raster of `pixels` over the patch.
     pub fn picture(&self, pixels: [usize; 2]) -> Picture {
-        Picture::of(&self.frame, self.steps as f64 * self.plan.step, pixels)
+        let time = self.steps as f64 * self.plan.step;
+        match &self.frame {
+            Frame::Total(frame) => Picture::of(frame, time, pixels),
+            Frame::Updated(frame) => Picture::of_updated(frame, time, pixels),
+        }
     }
 
     fn is_healthy(&mut self) -> bool {
-        let (elastic, work) = (self.frame.elastic_energy(), self.frame.external_work().abs());
+        let (elastic, work) = either!(&self.frame, body => (body.elastic_energy(), body.external_work().abs()));
         self.energy_in = self.energy_in.max(work + self.initial.abs());
         elastic.is_finite() && elastic <= GROWTH_LIMIT * self.energy_in
     }
@@ -150,7 +252,7 @@ impl Simulation {
     fn fastest_place(&self) -> [f64; 2] {
         let frame = &self.frame;
         let [vx, vy] = frame.velocity();
-        let grid = frame.lattice().grid;
+        let grid = frame.patch().control_grid();
         let speed = |at: &usize| {
             let speed = vx[*at].hypot(vy[*at]);
             if speed.is_nan() { f64::INFINITY } else { speed }
@@ -161,7 +263,7 @@ impl Simulation {
     }
 
     fn unstable(&self, time: f64) -> Breakdown {
-        let elastic = self.frame.elastic_energy();
+        let elastic = either!(&self.frame, body => body.elastic_energy());
         let what = if elastic.is_finite() {
             format!("elastic energy {elastic:.3e} J exceeds {GROWTH_LIMIT} times all energy put in")
         } else {
@@ -182,18 +284,30 @@ impl Simulation {
     }
 }
 
-fn not_converged(step: usize, time: f64, place: [f64; 2], failure: NotConverged) -> Breakdown {
-    Breakdown {
-        step,
-        time,
-        place,
-        what: format!(
-            "the phase-field solve stopped after {} iterations at a relative residual of {:.3e}",
-            failure.iterations, failure.relative_residual
-        ),
-        cause: "solver.phase_field_tolerance is tighter than round-off allows for this length scale and mesh; \
-                raise it, or try phase_field_solver = \"cholesky\""
-            .to_string(),
+/// A step that could not be taken, near `place` (m).
+fn breakdown(step: usize, time: f64, place: [f64; 2], failure: Failure) -> Breakdown {
+    match failure {
+        Failure::NotConverged(NotConverged { iterations, relative_residual }) => Breakdown {
+            step,
+            time,
+            place,
+            what: format!(
+                "the phase-field solve stopped after {iterations} iterations at a relative residual of \
+                 {relative_residual:.3e}"
+            ),
+            cause: "solver.phase_field_tolerance is tighter than round-off allows for this length scale and mesh; \
+                    raise it, or try phase_field_solver = \"cholesky\""
+                .to_string(),
+        },
+        Failure::Left(place) => Breakdown {
+            step,
+            time,
+            place,
+            what: "a point left the mesh".to_string(),
+            cause: "the body moves out of the mesh; enlarge mesh.size or move mesh.origin so that it holds the whole \
+                    motion, or end earlier"
+                .to_string(),
+        },
     }
 }
 

@@ -394,7 +394,7 @@ impl TotalFrame {
 
 /// Height from which the crack tip is looked for: the middle of the body, or its foot where a roller on the bottom side
 /// makes the body the upper half of a symmetric one.
-fn lowest_tip(scene: &Scene) -> f64 {
+pub(crate) fn lowest_tip(scene: &Scene) -> f64 {
     let (low, high) = scene.bodies[0].shape.bounding_box();
     let roller = |b: &crate::scene::Boundary| b.side == Side::Bottom && b.fix == [false, true] && b.velocity[1] == 0.0;
     if scene.boundaries.iter().any(roller) { low[1] } else { 0.5 * (low[1] + high[1]) }

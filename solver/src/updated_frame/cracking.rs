@@ -1,0 +1,248 @@
+//! Fracture of a body in the updated frame: history energy, phase field and degraded stress at moving points.
+
+use rayon::prelude::*;
+
+use super::assembly::assemble;
+use super::points::{Cell, Cells, FracturePoint, Point};
+use super::transfer::{MAX_FUNCTIONS, contract, gather, walk};
+use super::windows::cut;
+use crate::fracture::{NotConverged, seed_energy};
+use crate::lane::{LANES, Lane, Vectorised, dispatch};
+use crate::material::{ElasticModuli, FractureModel};
+use crate::patch::{ControlGrid, Patch};
+use crate::phase_field::PhaseField;
+use crate::scene::{Body, SolverSettings};
+use crate::split;
+
+/// History and phase field of a body.
+#[derive(Debug, Clone)]
+pub struct Cracking {
+    /// Constants.
+    pub model: FractureModel,
+    /// History energy, phase field, … of each point, in the order of the points.
+    pub points: Vec<FracturePoint>,
+    /// Phase field on the control points.
+    pub field: PhaseField,
+    /// Iterations of the last solve.
+    pub iterations: usize,
+    /// Surface energy of the crack per unit thickness, J/m.
+    pub surface_energy: f64,
+    /// Smallest c at a point.
+    pub least_phase: f64,
+}
+
+/// Sums over the points at the new whole step, per unit thickness.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PointSums {
+    /// Elastic energy, J/m.
+    pub elastic_energy: f64,
+    /// Work of the new stress over the step, `Σ V sigma(n+1) : de`, J/m.
+    pub stress_work: f64,
+    /// Work of the history field, J/m.
+    pub history_work: f64,
+    surface_energy: f64,
+    least_phase: f64,
+}
+
+impl Cracking {
+    /// Seeds the cracks of `body` at its points; the phase field is not solved for yet.
+    pub fn new(patch: &Patch, body: &Body, model: FractureModel, settings: &SolverSettings, points: &[Point]) -> Self {
+        let history = |p: &Point| seed_energy(&model, body, p.position);
+        let points = points.iter().map(|p| FracturePoint { history: history(p), phase: 1.0, ..Default::default() });
+        let degree = [0, 1].map(|d| patch.spaces[d].degree());
+        Self {
+            points: points.collect(),
+            field: PhaseField::without_lattice(patch.control_grid(), degree, model, settings),
+            model,
+            iterations: 0,
+            surface_energy: 0.0,
+            least_phase: 1.0,
+        }
+    }
+
+    /// `H ← max(H, psi+)` (E 10).
+    pub fn update_history(&mut self, moduli: &ElasticModuli, cells: &Cells, points: &[Point]) {
+        let model = self.model;
+        let strips = cut(&mut self.points, cells.strips.iter().map(|s| s.points.clone()));
+        strips.into_par_iter().zip(&cells.strips).for_each(|(fracture, strip)| {
+            dispatch(UpdateHistory { moduli, model, points: &points[strip.points.clone()], fracture });
+        });
+    }
+
+    /// Assembles and solves the phase-field system at the present positions; `moved` says that points changed spans.
+    ///
+    /// # Errors
+    /// If the solve does not converge.
+    pub fn solve(&mut self, patch: &Patch, cells: &Cells, points: &[Point], moved: bool) -> Result<(), NotConverged> {
+        let (matrix, load) = self.field.system_mut();
+        assemble(matrix, load, patch, cells, points, &self.points, &self.model);
+        let first = self.field.counts().solves == 0;
+        if moved && !first {
+            self.field.renew_factor(); // other control points may have material now
+        }
+        let result = if first { self.field.initialise_system() } else { self.field.solve_system() };
+        let convergence =
+            result.map_err(|c| NotConverged { iterations: c.iterations, relative_residual: c.relative_residual })?;
+        self.iterations = convergence.iterations;
+        Ok(())
+    }
+
+    /// Phase field and degraded stress at the points (E 6), and what is summed over them.
+    pub fn update_stress(
+        &mut self,
+        patch: &Patch,
+        moduli: &ElasticModuli,
+        cells: &Cells,
+        points: &mut [Point],
+    ) -> PointSums {
+        let (model, phase) = (self.model, self.field.control_values());
+        let ranges = || cells.strips.iter().map(|s| s.points.clone());
+        let strips = cut(points, ranges()).into_par_iter().zip(cut(&mut self.points, ranges()));
+        let sums: Vec<PointSums> = strips
+            .zip(&cells.strips)
+            .map(|((points, fracture), strip)| {
+                let cells = &cells.cells[strip.cells.clone()];
+                let grid = patch.control_grid();
+                dispatch(UpdateStress { patch, grid, moduli, model, phase, cells, points, fracture })
+            })
+            .collect();
+        let total = sums.iter().fold(PointSums { least_phase: f64::INFINITY, ..Default::default() }, PointSums::add);
+        (self.surface_energy, self.least_phase) = (total.surface_energy, total.least_phase);
+        PointSums { history_work: (1.0 - model.residual_stiffness) * total.history_work, ..total }
+    }
+
+    /// Heap memory, bytes.
+    pub fn bytes(&self) -> usize {
+        self.points.len() * size_of::<FracturePoint>() + self.field.bytes()
+    }
+}
+
+impl PointSums {
+    fn add(self, other: &Self) -> Self {
+        Self {
+            elastic_energy: self.elastic_energy + other.elastic_energy,
+            stress_work: self.stress_work + other.stress_work,
+            history_work: self.history_work + other.history_work,
+            surface_energy: self.surface_energy + other.surface_energy,
+            least_phase: self.least_phase.min(other.least_phase),
+        }
+    }
+}
+
+struct UpdateHistory<'a> {
+    moduli: &'a ElasticModuli,
+    model: FractureModel,
+    points: &'a [Point],
+    fracture: &'a mut [FracturePoint],
+}
+
+impl Vectorised for UpdateHistory<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        for (points, fracture) in self.points.chunks(LANES).zip(self.fracture.chunks_mut(LANES)) {
+            let strain = [0, 1, 2].map(|i| gather(points, |p| p.strain[i]));
+            let energy = split::split(self.moduli, self.model.split, strain).energy_plus;
+            for (lane, point) in fracture.iter_mut().enumerate() {
+                point.history = if energy[lane] > point.history { energy[lane] } else { point.history };
+            }
+        }
+    }
+}
+
+struct UpdateStress<'a> {
+    patch: &'a Patch,
+    grid: ControlGrid,
+    moduli: &'a ElasticModuli,
+    model: FractureModel,
+    phase: &'a [f64],
+    cells: &'a [Cell],
+    points: &'a mut [Point],
+    fracture: &'a mut [FracturePoint],
+}
+
+impl Vectorised for UpdateStress<'_> {
+    type Output = PointSums;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> PointSums {
+        walk!(self)
+    }
+}
+
+impl UpdateStress<'_> {
+    #[inline(always)]
+    fn walk(mut self, kx: usize, ky: usize) -> PointSums {
+        let mut sums = PointSums { least_phase: f64::INFINITY, ..Default::default() };
+        let offset = self.cells.first().map_or(0, |cell| cell.points.start);
+        let mut phases = [0.0; LANES];
+        for cell in self.cells {
+            let mut local = [0.0; MAX_FUNCTIONS];
+            for l in 0..ky {
+                let base = self.grid.index(cell.first[0], cell.first[1] + l);
+                local[l * kx..(l + 1) * kx].copy_from_slice(&self.phase[base..base + kx]);
+            }
+            let all = cell.points.start - offset..cell.points.end - offset;
+            for first in all.clone().step_by(LANES) {
+                let some = first..(first + LANES).min(all.end);
+                for at in some.clone() {
+                    phases[at - first] = self.interpolate(cell, &self.points[at], &local, kx, ky, &mut sums);
+                }
+                self.degrade(some, Lane(phases), &mut sums);
+            }
+        }
+        sums
+    }
+
+    /// Phase field at a point; adds its surface energy `Gc [(1 − c)²/(4 l0) + l0 |grad c|²]` (E 3).
+    #[inline(always)]
+    fn interpolate(
+        &self,
+        cell: &Cell,
+        point: &Point,
+        local: &[f64; MAX_FUNCTIONS],
+        kx: usize,
+        ky: usize,
+        sums: &mut PointSums,
+    ) -> f64 {
+        let sx = self.patch.spaces[0].shape_functions(cell.span[0], point.position[0]);
+        let sy = self.patch.spaces[1].shape_functions(cell.span[1], point.position[1]);
+        let [mut c, mut along_x, mut along_y] = [0.0; 3];
+        for l in 0..ky {
+            let (mut value, mut slope) = (0.0, 0.0);
+            for k in 0..kx {
+                value += sx.value[k] * local[l * kx + k];
+                slope += sx.derivative[k] * local[l * kx + k];
+            }
+            c += sy.value[l] * value;
+            along_x += sy.value[l] * slope;
+            along_y += sy.derivative[l] * value;
+        }
+        let FractureModel { toughness, length_scale, .. } = self.model;
+        let gradient_square = along_x * along_x + along_y * along_y;
+        let density = (1.0 - c) * (1.0 - c) / (4.0 * length_scale) + length_scale * gradient_square;
+        sums.surface_energy += point.volume * toughness * density;
+        sums.least_phase = sums.least_phase.min(c);
+        c
+    }
+
+    /// Degraded stress of at most eight points, their energy, and the works of the step.
+    #[inline(always)]
+    fn degrade(&mut self, some: std::ops::Range<usize>, phase: Lane, sums: &mut PointSums) {
+        let (points, fracture) = (&mut self.points[some.clone()], &mut self.fracture[some]);
+        let state = split::split(self.moduli, self.model.split, [0, 1, 2].map(|i| gather(points, |p| p.strain[i])));
+        let g = self.model.degradation(phase);
+        let energy = state.energy_minus + g * state.energy_plus;
+        let stress = [0, 1, 2].map(|i| state.stress_minus[i] + g * state.stress_plus[i]);
+        for (lane, (point, cracked)) in points.iter_mut().zip(fracture).enumerate() {
+            point.stress = [0, 1, 2].map(|i| stress[i][lane]);
+            sums.elastic_energy += point.volume * energy[lane];
+            sums.stress_work += point.volume * contract(point.stress, cracked.strain_increment);
+            let remembered = phase[lane] * (cracked.history - state.energy_plus[lane]);
+            let widening = cracked.phase - phase[lane];
+            sums.history_work += point.volume * (remembered + cracked.remembered) * widening;
+            (cracked.remembered, cracked.phase) = (remembered, phase[lane]);
+        }
+    }
+}
