@@ -138,12 +138,7 @@ impl Findings {
         rows.extend(self.materials.iter().map(|(name, material)| ("material", material.text(name))));
         let [hx, hy] = self.span_m.map(|h| plain(1e3 * h, 5));
         let critical = self.critical_step_s.map_or("none, nothing can move".to_string(), second);
-        let time = format!(
-            "{} in {} steps of {}",
-            second(self.end_time_s),
-            self.steps,
-            second(self.time_step_s)
-        );
+        let time = format!("{} in {} steps of {}", second(self.end_time_s), self.steps, second(self.time_step_s));
         rows.extend([
             ("mesh", format!("{} x {} spans of {hx} x {hy} mm", self.cells[0], self.cells[1])),
             ("degree", format!("{} x {}", self.degree[0], self.degree[1])),

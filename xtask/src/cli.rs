@@ -59,9 +59,8 @@ pub struct Common {
 /// Form of standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// For people.
+    // no doc comments: they would spread over the help of every command
     Text,
-    /// For programs.
     Json,
 }
 

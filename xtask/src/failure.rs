@@ -159,7 +159,7 @@ mod tests {
     fn a_finding_names_place_key_and_remedy_in_either_form() {
         for graphical in [false, true] {
             let text = broken().render(graphical);
-            for part in ["scene.toml:2:", "mesh.degree", "1 to 4"] {
+            for part in ["scene.toml:2:", "mesh.degree", "between 1 and 4"] {
                 assert!(text.contains(part), "{part:?} is missing from\n{text}");
             }
         }

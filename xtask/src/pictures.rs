@@ -64,7 +64,7 @@ impl StressScale {
 }
 
 fn stress_svg(frame: &Picture, scale: &StressScale, id: &str, title: &str) -> Result<String, FigureError> {
-    let label = format!("largest principal stress ({})", scale.unit);
+    let label = format!("stress σ₁ ({})", scale.unit);
     let high = [0, 1].map(|d| frame.origin[d] + frame.pixels[d] as f64 * frame.pixel[d]);
     let values = frame.stress.iter().map(|s| s * scale.factor).collect();
     let raster = Raster { pixels: frame.pixels, low: frame.origin, high, values };

@@ -43,7 +43,7 @@ pub struct Args {
 /// Unknown suites, a bad pattern, nothing selected, a case or reference file that is wrong, a folder that cannot be
 /// written.
 pub fn verify(args: &Args, common: &Common) -> Result<Exit, Failure> {
-    let cases = selected(args)?;
+    let cases = selected(args, common)?;
     let folder = folders::output(common, "verify")?;
     if args.tier == Tier::Full {
         let seconds = cases.iter().map(|case| case.seconds).sum();
@@ -89,13 +89,13 @@ pub fn cases_folder() -> Result<PathBuf, Failure> {
     Err(Failure::new(Exit::BadInput, message).help("start it with `cargo xtask` or in the root of the workspace"))
 }
 
-fn selected(args: &Args) -> Result<Vec<Case>, Failure> {
+fn selected(args: &Args, common: &Common) -> Result<Vec<Case>, Failure> {
     let bad = |message: String| Failure::new(Exit::BadInput, message);
     if let Some(pattern) = &args.case {
         glob::Pattern::new(pattern)
             .map_err(|e| bad(format!("--case {pattern}: {e}")).help("write a pattern such as plate/*"))?;
     }
-    let cases = load_cases(&cases_folder()?, &args.set)?;
+    let cases = load_cases(&cases_folder()?, &[])?;
     let known: BTreeSet<&str> = cases.iter().map(|case| case.suite.as_str()).collect();
     let unknown: Vec<&str> = args.suite.iter().map(String::as_str).filter(|s| !known.contains(s)).collect();
     if !unknown.is_empty() {
@@ -108,7 +108,27 @@ fn selected(args: &Args) -> Result<Vec<Case>, Failure> {
         let message = format!("no case of the {} tier is selected", args.tier);
         return Err(Failure::new(Exit::NothingSelected, message).help("see `cargo xtask list` for what there is"));
     }
-    Ok(cases)
+    changed(args, cases, common)
+}
+
+/// The cases with the changes of `--set`, every scene of them known to be valid before anything runs. A case without a
+/// scene has nothing that could be changed: it is said, and the case stays as it is.
+fn changed(args: &Args, cases: Vec<Case>, common: &Common) -> Result<Vec<Case>, Failure> {
+    let mut ready = Vec::new();
+    for case in cases {
+        let case = match case.scene_node() {
+            Some(_) => Case::load(&case.path, &args.set)?,
+            None => {
+                if !args.set.is_empty() {
+                    console::note(common, &format!("warning: {} has no scene that --set could change", case.id()));
+                }
+                case
+            }
+        };
+        case.scenes()?;
+        ready.push(case);
+    }
+    Ok(ready)
 }
 
 fn print(results: &ResultSet, common: &Common) {

@@ -1,0 +1,76 @@
+//! `check`: what it tells, and what it refuses.
+
+use super::support::{BLOCK, Place, keys, notched};
+
+#[test]
+fn the_keys_of_its_json_stay() {
+    let place = Place::with("notched.toml", &notched());
+    let found = place.xtask(&["check", "notched.toml", "--format", "json"]).with_status(0).json();
+    insta::assert_snapshot!("check-keys", keys(&found));
+    assert_eq!(found["models"], serde_json::json!(["momentum", "phase field"]));
+    assert_eq!(found["particles"], 200);
+    let glass = &found["materials"]["glass"];
+    assert!((glass["length_scale_over_span"].as_f64().unwrap() - 1.0).abs() < 1e-12);
+    assert!((glass["wave_speed_m_per_s"].as_f64().unwrap() - 3809.5).abs() < 0.1);
+    assert!(place.files(".") == ["notched.toml"], "nothing is written");
+}
+
+#[test]
+fn an_elastic_scene_has_no_memory_for_a_phase_field() {
+    let place = Place::with("block.toml", BLOCK);
+    let found = place.xtask(&["check", "block.toml", "--format", "json"]).with_status(0).json();
+    assert_eq!(found["phase_field_memory_mb"], 0.0);
+    assert!(found["materials"]["glass"].get("length_scale_over_span").is_none());
+    let text = place.xtask(&["check", "block.toml"]).with_status(0).out;
+    assert!(!text.contains("phase field") && text.contains("rough"), "{text}");
+}
+
+#[test]
+fn set_changes_what_is_checked() {
+    let place = Place::with("block.toml", BLOCK);
+    let arguments = ["check", "block.toml", "--format", "json", "--set", "mesh.cells=[20, 10]", "--set"];
+    let found = place.xtask(&[&arguments[..], &["body.0.particles_per_cell=[3, 3]"]].concat()).with_status(0).json();
+    assert_eq!(found["particles"], 1800);
+}
+
+#[test]
+fn a_broken_scene_ends_with_2_and_names_place_key_and_remedy() {
+    let scene = notched();
+    let broken = |from: &str, to: &str| {
+        assert!(scene.contains(from), "no {from:?} in the scene");
+        scene.replacen(from, to, 1)
+    };
+    for (text, parts) in [
+        (broken("poisson_ratio", "poison_ratio"), &["s.toml:14:1: material.glass.poison_ratio: ", "poisson_ratio"][..]),
+        (broken("\"5 us\"", "\"5 m\""), &["s.toml:10:12: analysis.end_time: ", "us"]),
+        (broken("\"32 GPa\"", "-1"), &["s.toml:13:", "material.glass.young_modulus: ", "positive"]),
+        (broken("= 0.2", "= 0.5"), &["s.toml:14:", "material.glass.poisson_ratio: ", "0.5"]),
+        (broken("[10, 5]", "[2, 1]"), &["length_scale: ", "s.toml:"]),
+        (broken("[mesh]", "[mesh"), &["s.toml:3:"]),
+        (String::new(), &["s.toml:1:1: ", "[mesh]"]),
+    ] {
+        let place = Place::with("s.toml", &text);
+        for command in ["check", "run"] {
+            let outcome = place.xtask(&[command, "s.toml"]).with_status(2).complains_of(parts);
+            assert!(outcome.out.is_empty() && !outcome.err.contains("panicked"), "{outcome:?}");
+            assert!(outcome.err.lines().all(|l| l.starts_with("error: ") && l.contains("; ")), "{}", outcome.err);
+        }
+    }
+}
+
+#[test]
+fn a_missing_file_and_a_bad_override_end_with_2() {
+    let place = Place::with("block.toml", BLOCK);
+    place.xtask(&["check", "absent.toml"]).with_status(2).complains_of(&["absent.toml"]);
+    let outcome = place.xtask(&["check", "block.toml", "--set", "body.3.velocity=[0, 1]"]).with_status(2);
+    outcome.complains_of(&["--set:1:1: body.3.velocity: ", "the only one is 0"]);
+}
+
+#[test]
+fn warnings_go_to_standard_error_and_into_the_json() {
+    let place = Place::with("block.toml", BLOCK);
+    let arguments = ["check", "block.toml", "--format", "json", "--set", "analysis.time_step=1 us"];
+    let outcome = place.xtask(&arguments).with_status(0).complains_of(&["warning: ", "critical step"]);
+    assert!(outcome.json()["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains("critical")));
+    assert_eq!(place.xtask(&[&arguments[..], &["--quiet"]].concat()).err, "");
+}

@@ -1,0 +1,8 @@
+//! The built binary on small scenes: exit statuses, streams, files, help.
+
+mod check;
+mod help;
+mod report;
+mod run;
+mod support;
+mod verify;

@@ -1,0 +1,100 @@
+//! `run`: files, statuses, breakdowns, the same bytes for any number of threads.
+
+use super::support::{BLOCK, Place, notched};
+
+#[test]
+fn an_elastic_scene_has_nothing_of_fracture() {
+    let place = Place::with("block.toml", BLOCK);
+    let run = place.xtask(&["run", "block.toml", "--out", "out", "--format", "json"]).with_status(0);
+    assert_eq!(run.err, "", "no warnings, and no progress bar off a terminal");
+    assert_eq!(run.json()["models"], serde_json::json!(["momentum"]));
+    assert_eq!(run.out, place.read("out/summary.json"));
+    let history = place.read("out/history.csv");
+    assert_eq!(
+        history.lines().next().unwrap(),
+        "time_s,kinetic_j,stagger_j,elastic_j,external_work_j,closure_j,momentum_x,momentum_y,angular_momentum,\
+         time_step_s"
+    );
+    assert_eq!(history.lines().count(), 1 + 11);
+    let files = ["energies.svg", "history.csv", "stress-0s.svg", "stress-5us.svg", "summary.json"];
+    assert_eq!(place.files("out"), files);
+}
+
+#[test]
+fn a_fracture_scene_gives_the_same_bytes_for_one_and_two_threads() {
+    let place = Place::with("notched.toml", &notched());
+    for threads in ["1", "2"] {
+        let run = place.xtask(&["run", "notched.toml", "--threads", threads, "--out", threads]).with_status(0);
+        assert!(run.out.contains("momentum, phase field"), "{run:?}");
+    }
+    let history = place.read("1/history.csv");
+    assert_eq!(history, place.read("2/history.csv"));
+    for name in place.files("1").iter().filter(|name| name.ends_with(".svg")) {
+        assert_eq!(place.read(&format!("1/{name}")), place.read(&format!("2/{name}")), "{name}");
+    }
+    assert_eq!(
+        history.lines().next().unwrap(),
+        "time_s,kinetic_j,stagger_j,elastic_j,fracture_j,external_work_j,history_work_j,closure_j,crack_tip_x_m,\
+         crack_tip_y_m,min_phase_field,momentum_x,momentum_y,angular_momentum,time_step_s,phase_field_iterations"
+    );
+    assert!(place.path("1/phase-0s.svg").is_file() && place.path("1/phase-5us.svg").is_file());
+}
+
+#[test]
+fn a_step_above_the_critical_one_ends_with_3_and_keeps_the_history() {
+    let place = Place::with("block.toml", BLOCK);
+    let critical =
+        place.xtask(&["check", "block.toml", "--format", "json"]).json()["critical_step_s"].as_f64().unwrap();
+    let step = format!("analysis.time_step={:e}", 1.2 * critical);
+    let end = format!("analysis.end_time={:e}", 240.0 * critical);
+    let arguments = ["run", "block.toml", "--out", "out", "--set", &step, "--set", &end, "--set", "output.frames=[0]"];
+    let run = place.xtask(&[&arguments[..], &["--set", "output.samples=100"]].concat()).with_status(3);
+    let run = run.complains_of(&["at step", "t = ", "near (", "likely cause", "1.200 times the critical step"]);
+    assert!(run.out.contains("Block"), "the summary is printed: {run:?}");
+    let rows = place.read("out/history.csv").lines().count() - 1;
+    assert!((2..101).contains(&rows), "{rows} rows");
+    assert!(!place.read("out/history.csv").contains("nan"));
+    let summary: serde_json::Value = serde_json::from_str(&place.read("out/summary.json")).unwrap();
+    assert!(summary["breakdown"]["step"].as_u64().unwrap() > 1);
+    assert!(place.path("out/stress-0s.svg").is_file());
+}
+
+#[test]
+fn set_changes_the_scene_and_pictures_of_the_run_before_go() {
+    let place = Place::with("block.toml", BLOCK);
+    place.xtask(&["run", "block.toml", "--out", "out"]).with_status(0);
+    let arguments = ["run", "block.toml", "--out", "out", "--set", "output.samples=4", "--set", "output.frames=[]"];
+    place.write("out/phase-notes.txt", "mine");
+    let run = place.xtask(&[&arguments[..], &["--set", "mesh.degree=3"]].concat()).with_status(0);
+    assert!(run.out.contains("particles") && run.err.is_empty(), "{run:?}");
+    assert_eq!(place.read("out/history.csv").lines().count(), 1 + 5);
+    assert_eq!(place.files("out"), ["energies.svg", "history.csv", "phase-notes.txt", "summary.json"]);
+}
+
+#[test]
+fn files_go_to_the_target_folder_of_the_workspace_or_of_the_current_folder() {
+    let mut place = Place::with("scenes/block.toml", BLOCK);
+    place.xtask(&["run", "scenes/block.toml", "--quiet"]).with_status(0);
+    assert!(place.path("target/fisura/run/history.csv").is_file());
+
+    place.write("workspace/Cargo.toml", "[workspace]\n");
+    place.manifest = Some(place.path("workspace/xtask"));
+    place.xtask_in(&place.path("scenes"), &["run", "block.toml"]).with_status(0);
+    assert!(place.path("workspace/target/fisura/run/history.csv").is_file());
+}
+
+#[test]
+fn an_output_folder_that_cannot_be_written_is_refused_before_the_run() {
+    let place = Place::with("block.toml", BLOCK);
+    place.write("file", "not a folder");
+    let run = place.xtask(&["run", "block.toml", "--out", "file/out"]).with_status(2);
+    assert_eq!(run.complains_of(&["output folder file/out cannot be written", "--out"]).out, "");
+}
+
+#[test]
+fn what_is_not_offered_yet_is_refused() {
+    let place = Place::with("block.toml", BLOCK);
+    for flag in ["--vtk", "--resume"] {
+        place.xtask(&["run", "block.toml", flag]).with_status(2).complains_of(&[flag, "not supported yet"]);
+    }
+}

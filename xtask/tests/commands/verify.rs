@@ -1,0 +1,91 @@
+//! `verify` and `list` on a workspace with two small cases.
+
+use super::support::{BLOCK, Place};
+
+/// The least that reference data can be.
+const SOURCE: &str = "citation = \"Nobody (1900)\"\nobtained = \"text\"\nkind = \"literature\"\nmodel = \"none\"\n\
+                      resolution = \"none\"\n";
+
+/// The block as the scene of a case.
+fn case(claim: &str, tier: &str, largest_closure: f64) -> String {
+    let scene: String = BLOCK
+        .lines()
+        .map(|line| match line.trim_start_matches('[') {
+            table if table.len() < line.len() => {
+                let brackets = "[".repeat(line.len() - table.len());
+                format!("{brackets}scene.{table}\n")
+            }
+            _ if line.starts_with("title") => "[scene]\ntitle = \"Block\"\n".to_string(),
+            _ => format!("{line}\n"),
+        })
+        .collect();
+    format!(
+        "claim = \"{claim}\"\ntier = \"{tier}\"\nseconds = 1\n\n{scene}\n[[check]]\n\
+         quantity = \"closure of the energy ledger over the largest energy\"\nmeasure = \"closure\"\n\
+         max = {largest_closure:e}\nwhy = \"round-off\"\n"
+    )
+}
+
+fn workspace() -> Place {
+    let mut place = Place::with("Cargo.toml", "[workspace]\n");
+    place.write("verification/cases/energy/block.toml", &case("The ledger closes", "quick", 1e-12));
+    place.write("verification/cases/strict/block.toml", &case("The ledger closes exactly", "full", -1.0));
+    place.write("reference-data/nobody-1900/source.toml", SOURCE);
+    place.manifest = Some(place.path("xtask"));
+    place
+}
+
+#[test]
+fn cases_are_listed() {
+    let place = workspace();
+    let text = place.xtask(&["list"]).with_status(0).out;
+    assert!(text.contains("energy/block") && text.contains("The ledger closes"), "{text}");
+    let cases = place.xtask(&["list", "--format", "json"]).with_status(0).json();
+    insta::assert_json_snapshot!("list", cases);
+}
+
+#[test]
+fn checks_that_hold_end_with_0_and_leave_a_report() {
+    let place = workspace();
+    let outcome = place.xtask(&["verify"]).with_status(0).complains_of(&["[1/1] energy/block pass"]);
+    assert!(outcome.out.contains("PASS"), "{outcome:?}");
+    for name in ["results.json", "report.html", "summary.md", "junit.xml", "metrics.json"] {
+        assert!(place.path("target/fisura/verify").join(name).is_file(), "{name} is missing");
+    }
+    let results = place.xtask(&["verify", "--suite", "energy", "--format", "json", "--quiet"]).with_status(0);
+    assert_eq!((results.json()["schema"].as_str(), results.err.as_str()), (Some("fisura.results/1"), ""));
+}
+
+#[test]
+fn a_check_that_fails_ends_with_1() {
+    let place = workspace();
+    let outcome = place.xtask(&["verify", "--tier", "full", "--out", "out"]).with_status(1);
+    let outcome = outcome.complains_of(&["2 cases, estimated 2 s", "[2/2] strict/block fail"]);
+    assert!(outcome.out.contains("FAIL"), "{outcome:?}");
+    assert!(place.path("out/report.html").is_file());
+}
+
+#[test]
+fn a_run_that_breaks_down_ends_with_3() {
+    let place = workspace();
+    let changes = ["--set", "analysis.time_step=1 us", "--set", "analysis.end_time=500 us"];
+    let outcome = place.xtask(&[&["verify"][..], &changes].concat()).with_status(3);
+    assert!(outcome.out.contains("ERROR") && outcome.out.contains("critical step"), "{outcome:?}");
+}
+
+#[test]
+fn nothing_selected_ends_with_4() {
+    let place = workspace();
+    place.xtask(&["verify", "--case", "energy/absent*"]).with_status(4).complains_of(&["no case", "list"]);
+    place.xtask(&["verify", "--suite", "strict"]).with_status(4).complains_of(&["quick tier"]);
+}
+
+#[test]
+fn a_bad_selection_or_change_ends_with_2_before_anything_runs() {
+    let place = workspace();
+    place.xtask(&["verify", "--suite", "energy,nope"]).with_status(2).complains_of(&["nope", "energy, strict"]);
+    place.xtask(&["verify", "--case", "[a"]).with_status(2).complains_of(&["--case [a"]);
+    let outcome = place.xtask(&["verify", "--set", "mesh.degree=9"]).with_status(2);
+    outcome.complains_of(&["mesh.degree", "between 1 and 4"]);
+    assert!(!place.path("target/fisura/verify/results.json").exists());
+}
