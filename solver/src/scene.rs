@@ -42,7 +42,7 @@ impl Mesh {
     /// Open uniform knots: `cells[d]` equal spans of a rectangle with lower left corner `origin` (m) and `size` (m).
     pub fn uniform(degree: [usize; 2], origin: [f64; 2], size: [f64; 2], cells: [usize; 2]) -> Self {
         let knots = [0, 1].map(|d| {
-            let interior = (0..=cells[d]).map(|i| origin[d] + size[d] * i as f64 / cells[d] as f64);
+            let interior = (0..=cells[d]).map(|i| origin[d] + size[d] * (i as f64 / cells[d] as f64));
             let mut knots = vec![origin[d]; degree[d]];
             knots.extend(interior);
             knots.extend(std::iter::repeat_n(origin[d] + size[d], degree[d]));

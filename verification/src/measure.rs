@@ -46,9 +46,9 @@ impl Measured {
 }
 
 /// Names of all measures, for error messages.
-pub const MEASURES: [&str; 22] = [
+pub const MEASURES: [&str; 23] = [
     "relative-rms", "rms-difference", "value-at", "increment-at", "initial", "slope", "slope-ratio", "closure", "drift",
-    "largest", "peak-value", "peak-time", "largest-decrease", "difference", "order-in-step", "tip-passes",
+    "largest", "peak-value", "peak-time", "largest-decrease", "difference", "half-difference", "order-in-step", "tip-passes",
     "branching-time", "branching-place", "axis-end", "tip-speed", "tip-exit", "branches",
 ];
 
@@ -120,7 +120,8 @@ pub fn measure(check: &Check, run: &Run, runs: &[Run], library: &Library) -> Res
         "peak-value" => Measured::of(series::peak(check, run)?.map(|(_, value)| value)),
         "peak-time" => Measured::of(series::peak(check, run)?.map(|(time, _)| time)),
         "largest-decrease" => Measured::of(Some(series::largest_decrease(check, run)?)),
-        "difference" => Measured::of(Some(series::difference(check, run, runs)?)),
+        "difference" => Measured::of(Some(series::difference(check, run, runs, 1.0)?)),
+        "half-difference" => Measured::of(Some(series::difference(check, run, runs, 2.0)?)),
         "order-in-step" => Measured::of(series::order_in_step(check, runs)?),
         "tip-passes" => Measured::of(tip::passes(check, run)?),
         "branching-time" => Measured::of(tip::branching(run)?.map(|b| b.time)),
