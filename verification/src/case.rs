@@ -156,7 +156,17 @@ impl Case {
 }
 
 const KEYS: [&str; 11] = [
-    "claim", "tier", "seconds", "study", "label", "energy_factor", "deviations", "models", "scene", "variant", "check",
+    "claim",
+    "tier",
+    "seconds",
+    "study",
+    "label",
+    "energy_factor",
+    "deviations",
+    "models",
+    "scene",
+    "variant",
+    "check",
 ];
 
 fn read_case(item: &Item<'_>, path: &Path, document: &Document) -> Option<Case> {
@@ -214,8 +224,24 @@ fn read_variant(item: &Item<'_>) -> Option<Variant> {
 }
 
 const CHECK_KEYS: [&str; 18] = [
-    "quantity", "unit", "measure", "column", "reference", "from", "to", "at", "expect", "expect_kind", "expect_source",
-    "scale", "band", "variant", "against", "min", "max", "why",
+    "quantity",
+    "unit",
+    "measure",
+    "column",
+    "reference",
+    "from",
+    "to",
+    "at",
+    "expect",
+    "expect_kind",
+    "expect_source",
+    "scale",
+    "band",
+    "variant",
+    "against",
+    "min",
+    "max",
+    "why",
 ];
 
 fn read_check(item: &Item<'_>) -> Option<Check> {

@@ -75,7 +75,8 @@ impl Case {
                 .map(|((name, parameters, tree), variant)| {
                     let mut tree = tree.clone();
                     for (key, value) in &variant.set {
-                        tree.set(key, value.clone()).map_err(|e| self.error("variant", &e, "name a key of the scene"))?;
+                        tree.set(key, value.clone())
+                            .map_err(|e| self.error("variant", &e, "name a key of the scene"))?;
                     }
                     Ok((join_names(name, &variant.name), parameters.clone(), tree))
                 })

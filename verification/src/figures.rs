@@ -156,7 +156,8 @@ fn chart(quantity: &Quantity, runs: &[&RunInfo], library: &Library, tables: &mut
         curves.push(curve(&run.label, &series, quantity.column, scale));
     }
     let bands = quantity.bands.iter().filter_map(|name| library.band("plate-events", name));
-    let regions = bands.map(|b| Region { label: b.name.replace('-', " "), x: Some([b.min * 1e6, b.max * 1e6]), y: None });
+    let regions =
+        bands.map(|b| Region { label: b.name.replace('-', " "), x: Some([b.min * 1e6, b.max * 1e6]), y: None });
     Figure {
         id: format!("plate-{}", quantity.id),
         suite: "plate".into(),
@@ -210,7 +211,8 @@ fn closure_chart(suite: &str, runs: &[RunInfo]) -> Figure {
 
 /// Every term of the ledger of one run.
 fn ledger(run: &RunInfo) -> Figure {
-    let terms = ["kinetic_j", "elastic_j", "fracture_j", "external_work_j", "history_work_j", "transfer_loss_j", "closure_j"];
+    let terms =
+        ["kinetic_j", "elastic_j", "fracture_j", "external_work_j", "history_work_j", "transfer_loss_j", "closure_j"];
     let present = terms.into_iter().filter(|t| run.columns.iter().any(|c| c == t));
     let words = |term: &str| term.trim_end_matches("_j").replace('_', " ");
     Figure {

@@ -47,9 +47,29 @@ impl Measured {
 
 /// Names of all measures, for error messages.
 pub const MEASURES: [&str; 23] = [
-    "relative-rms", "rms-difference", "value-at", "increment-at", "initial", "slope", "slope-ratio", "closure", "drift",
-    "largest", "peak-value", "peak-time", "largest-decrease", "difference", "half-difference", "order-in-step", "tip-passes",
-    "branching-time", "branching-place", "axis-end", "tip-speed", "tip-exit", "branches",
+    "relative-rms",
+    "rms-difference",
+    "value-at",
+    "increment-at",
+    "initial",
+    "slope",
+    "slope-ratio",
+    "closure",
+    "drift",
+    "largest",
+    "peak-value",
+    "peak-time",
+    "largest-decrease",
+    "difference",
+    "half-difference",
+    "order-in-step",
+    "tip-passes",
+    "branching-time",
+    "branching-place",
+    "axis-end",
+    "tip-speed",
+    "tip-exit",
+    "branches",
 ];
 
 impl Run<'_> {

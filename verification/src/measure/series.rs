@@ -61,9 +61,8 @@ pub(super) fn slope_over_plane_wave_power(check: &Check, run: &Run) -> Result<Me
 
 /// Largest |closure| over the largest energy of the run.
 pub(super) fn closure(run: &Run) -> Result<f64, String> {
-    let most = |name: &str| -> f64 {
-        run.column(name).map_or(0.0, |c| c.iter().fold(0.0, |most: f64, v| most.max(v.abs())))
-    };
+    let most =
+        |name: &str| -> f64 { run.column(name).map_or(0.0, |c| c.iter().fold(0.0, |most: f64, v| most.max(v.abs()))) };
     let scale = ["kinetic_j", "elastic_j", "fracture_j", "external_work_j"].map(most).into_iter().fold(0.0, f64::max);
     if scale > 0.0 { Ok(most("closure_j") / scale) } else { Err("the run has no energy".to_string()) }
 }

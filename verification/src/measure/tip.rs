@@ -71,9 +71,8 @@ pub fn fitted_speed(times: &[f64], x: &[f64], center: f64) -> f64 {
 pub(super) fn fitted_slope(points: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     let n = points.clone().count() as f64;
     let (t, x) = points.clone().fold((0.0, 0.0), |(t, x), p| (t + p.0 / n, x + p.1 / n));
-    let (top, bottom) = points.fold((0.0, 0.0), |(top, bottom), p| {
-        (top + (p.0 - t) * (p.1 - x), bottom + (p.0 - t) * (p.0 - t))
-    });
+    let (top, bottom) =
+        points.fold((0.0, 0.0), |(top, bottom), p| (top + (p.0 - t) * (p.1 - x), bottom + (p.0 - t) * (p.0 - t)));
     (bottom > 0.0).then(|| top / bottom)
 }
 

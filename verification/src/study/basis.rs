@@ -85,8 +85,7 @@ impl Worst {
 fn jump_at_knot(space: &SplineSpace, index: usize) -> f64 {
     let (before, after) = (&space.spans()[index - 1], &space.spans()[index]);
     let degree = space.degree();
-    let (left, right) =
-        (space.shape_functions(index - 1, after.left), space.shape_functions(index, after.left));
+    let (left, right) = (space.shape_functions(index - 1, after.left), space.shape_functions(index, after.left));
     let shorter = before.length().min(after.length());
     let mut worst = 0.0_f64;
     for function in before.first..=after.first + degree {

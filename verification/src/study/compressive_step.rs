@@ -21,9 +21,19 @@ pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, Stud
             let (low, high) = scene.scene.bodies[0].shape.bounding_box();
             (high[0] - low[0]) * (high[1] - low[1]) * scene.scene.analysis.thickness
         };
-        let history = simulation.frame().fracture.as_ref().map(|f| &f.history).ok_or_else(|| StudyError::Other("nothing fractures here".into()))?;
+        let history = simulation
+            .frame()
+            .fracture
+            .as_ref()
+            .map(|f| &f.history)
+            .ok_or_else(|| StudyError::Other("nothing fractures here".into()))?;
         let most = history.iter().flat_map(|lane| lane.0).fold(0.0, f64::max);
-        findings.add(&scene.name, "largest history energy over mean elastic energy density", most * area / most_elastic, None);
+        findings.add(
+            &scene.name,
+            "largest history energy over mean elastic energy density",
+            most * area / most_elastic,
+            None,
+        );
     }
     Ok(findings)
 }

@@ -45,7 +45,8 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
     let scene = &case_scene.scene;
     let body = &scene.bodies[0];
     let material = &scene.materials[&body.material];
-    let fracture = material.fracture.as_ref().ok_or_else(|| StudyError::Other("the material has no fracture".into()))?;
+    let fracture =
+        material.fracture.as_ref().ok_or_else(|| StudyError::Other("the material has no fracture".into()))?;
     let model = FractureModel::new(fracture);
     let moduli = ElasticModuli::new(material, scene.analysis.plane);
     let modulus = moduli.lambda + 2.0 * moduli.mu;

@@ -88,7 +88,8 @@ pub fn run_scenes(case: &Case, scenes: Vec<CaseScene>, advanced: &dyn Fn(f64)) -
         .into_iter()
         .enumerate()
         .map(|(index, case_scene)| {
-            let run = run_scene(&case_scene.scene, &mut |progress| advanced((index as f64 + progress.fraction()) / count));
+            let run =
+                run_scene(&case_scene.scene, &mut |progress| advanced((index as f64 + progress.fraction()) / count));
             let particle_steps = run.summary.particles as u64 * run.summary.steps as u64;
             let timing = Timing {
                 wall_s: run.summary.wall_s,
@@ -209,7 +210,12 @@ fn resolution(finished: &FinishedScene) -> String {
     let ratio = length_scale(scene).map_or(String::new(), |l0| format!(", l0/h = {:.3}", l0 / hx.max(hy)));
     format!(
         "{degree}, h = {:.4} × {:.4} mm{ratio}, {} points, {} control points, {} steps of {:.4e} s",
-        hx * 1e3, hy * 1e3, summary.particles, summary.control_points, summary.steps, summary.time_step_s.unwrap_or(f64::NAN)
+        hx * 1e3,
+        hy * 1e3,
+        summary.particles,
+        summary.control_points,
+        summary.steps,
+        summary.time_step_s.unwrap_or(f64::NAN)
     )
 }
 

@@ -112,7 +112,8 @@ fn judge_findings(
         for measurement in matching {
             let mut record = bare_record(case, check, &measurement.variant);
             record.timing = timing;
-            record.parameters = scenes.iter().find(|s| s.name == measurement.variant).map(parameters).unwrap_or_default();
+            record.parameters =
+                scenes.iter().find(|s| s.name == measurement.variant).map(parameters).unwrap_or_default();
             record.unit.clone_from(&measurement.unit);
             record.series = findings.series.first().map(|(stem, _)| format!("series/{stem}.csv"));
             judge(&mut record, Measured { value: measurement.value, reference: measurement.reference.clone() });

@@ -1,0 +1,215 @@
+//! Suites end to end on small cases: verdicts, breakdowns, wrong checks, resuming, reference curves in figures.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use fisura_verification::figures;
+use fisura_verification::record::{Environment, FigureBody, Record, ResultSet, Status, Timing};
+use fisura_verification::reference::Library;
+use fisura_verification::study::scene::RunInfo;
+use fisura_verification::suite::{Case, Options, Progress, Selection, Tier, VerifyError, load_cases, select, verify};
+
+const SCENE: &str = r#"
+[scene.mesh]
+degree = 2
+origin = [0.0, 0.0]
+size = [1.0, 0.5]
+cells = [8, 4]
+
+[scene.analysis]
+end_time = 1.0
+
+[scene.material.solid]
+young_modulus = 1.0
+poisson_ratio = 0.3
+density = 1.0
+
+[[scene.body]]
+name = "block"
+material = "solid"
+shape = { rectangle = { min = [0.0, 0.0], max = [1.0, 0.5] } }
+velocity = [0.01, 0.0]
+
+[[scene.boundary]]
+side = "left"
+fix = ["x"]
+
+[scene.output]
+samples = 10
+"#;
+
+struct Silent;
+
+impl Progress for Silent {
+    fn started(&self, _case: &Case, _index: usize, _count: usize) {}
+    fn advanced(&self, _fraction: f64) {}
+    fn finished(&self, _case: &Case, _records: &[Record]) {}
+}
+
+fn repository(folder: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder)
+}
+
+fn write_case(root: &Path, name: &str, scene: &str, check: &str) {
+    let folder = root.join("cases/trial");
+    std::fs::create_dir_all(&folder).unwrap();
+    let text = format!("claim = \"a trial\"\nseconds = 1\n{scene}\n{check}\n");
+    std::fs::write(folder.join(format!("{name}.toml")), text).unwrap();
+}
+
+fn run(root: &Path, environment: Environment) -> Result<ResultSet, VerifyError> {
+    let cases = load_cases(&root.join("cases"), &[])?;
+    let reference_data = repository("reference-data");
+    let out = root.join("out");
+    let options = Options { out: &out, reference_data: &reference_data, environment, resume: true };
+    verify(&cases, &options, &Silent)
+}
+
+const CLOSURE: &str = "[[check]]\nquantity = \"closure\"\nmeasure = \"closure\"\nmax = 1e-12\nwhy = \"round-off\"";
+
+#[test]
+fn bounds_decide_between_pass_and_fail() {
+    let root = tempfile::tempdir().unwrap();
+    let hopeless = "[[check]]\nquantity = \"kinetic energy\"\nmeasure = \"initial\"\ncolumn = \"kinetic_j\"\nmax = 0.0\nwhy = \"never\"";
+    write_case(root.path(), "a", SCENE, CLOSURE);
+    write_case(root.path(), "b", SCENE, hopeless);
+    let results = run(root.path(), Environment::default()).unwrap();
+    let statuses: Vec<_> = results.records.iter().map(|r| (r.id.as_str(), r.status)).collect();
+    assert_eq!(statuses, [("trial/a/closure", Status::Pass), ("trial/b/kinetic-energy", Status::Fail)]);
+    let stored: ResultSet =
+        serde_json::from_slice(&std::fs::read(root.path().join("out/results.json")).unwrap()).unwrap();
+    assert_eq!(stored, results);
+    assert!(root.path().join("out/series/trial-a.csv").exists());
+}
+
+#[test]
+fn a_run_that_breaks_down_is_an_error_with_step_and_place() {
+    let root = tempfile::tempdir().unwrap();
+    let unstable = SCENE.replace("end_time = 1.0", "end_time = 100.0\ntime_step = 0.2");
+    write_case(root.path(), "unstable", &unstable, CLOSURE);
+    let results = run(root.path(), Environment::default()).unwrap();
+    assert_eq!(results.records[0].status, Status::Error);
+    let message = results.records[0].message.as_deref().unwrap();
+    assert!(message.contains("at step") && message.contains("critical step"), "{message}");
+}
+
+#[test]
+fn a_check_that_asks_for_what_is_not_there_names_its_line() {
+    for (check, expected) in [
+        ("[[check]]\nquantity = \"q\"\nmeasure = \"closuer\"", "unknown measure"),
+        ("[[check]]\nquantity = \"q\"\nmeasure = \"initial\"\ncolumn = \"fracture_j\"", "no column \"fracture_j\""),
+        ("[[check]]\nquantity = \"q\"\nmeasure = \"closure\"\nvariant = \"none\"", "no run of this case"),
+        ("[[check]]\nquantity = \"q\"\nmeasure = \"closure\"\nmax = 1.0", "bounds without a reason"),
+        ("[[check]]\nquantity = \"q\"\nmeasure = \"closure\"\nband = \"plate-events/none\"", "no reference band"),
+    ] {
+        let root = tempfile::tempdir().unwrap();
+        write_case(root.path(), "wrong", SCENE, check);
+        let error = run(root.path(), Environment::default()).unwrap_err().to_string();
+        assert!(error.contains("wrong.toml:") && error.contains(expected), "{error}");
+    }
+}
+
+#[test]
+fn lists_where_a_scene_has_one_value_are_axes() {
+    let root = tempfile::tempdir().unwrap();
+    let axes =
+        SCENE.replace("degree = 2", "degree = [1, 2]").replace("cells = [8, 4]", "cells = [[4, 2], [8, 4], [16, 8]]");
+    write_case(root.path(), "axes", &axes, CLOSURE);
+    let results = run(root.path(), Environment::default()).unwrap();
+    assert_eq!(results.records.len(), 6);
+    assert_eq!(results.records[5].parameters["degree"], serde_json::json!([2, 2]));
+    assert_eq!(results.records[5].parameters["cells"], serde_json::json!([16, 8]));
+}
+
+/// Results without measured time.
+fn timeless(mut results: ResultSet) -> ResultSet {
+    for record in &mut results.records {
+        record.timing = Timing::default();
+    }
+    results
+}
+
+#[test]
+fn two_runs_agree_and_a_clean_commit_takes_up_finished_cases() {
+    let root = tempfile::tempdir().unwrap();
+    write_case(root.path(), "a", SCENE, CLOSURE);
+    let clean = || Environment { commit: "c0ffee".into(), ..Environment::default() };
+    let first = run(root.path(), clean()).unwrap();
+    let second = run(root.path(), clean()).unwrap();
+    assert_eq!(timeless(first), timeless(second));
+    assert!(!root.path().join("out/partial").exists(), "a complete run leaves nothing to take up");
+
+    write_case(root.path(), "b", SCENE, "[[check]]\nquantity = \"q\"\nmeasure = \"closuer\"");
+    run(root.path(), clean()).unwrap_err();
+    let kept = std::fs::read_dir(root.path().join("out/partial")).unwrap().count();
+    assert_eq!(kept, 1, "case a was finished before case b failed");
+    write_case(root.path(), "b", SCENE, CLOSURE);
+    let marked = root.path().join("out/partial").read_dir().unwrap().next().unwrap().unwrap().path();
+    let text = std::fs::read_to_string(&marked).unwrap().replace("a trial", "a trial taken up");
+    std::fs::write(&marked, text).unwrap();
+    let resumed = run(root.path(), clean()).unwrap();
+    assert_eq!(resumed.records[0].claim, "a trial taken up");
+    assert_eq!(resumed.records[1].claim, "a trial");
+}
+
+#[test]
+fn every_committed_case_is_sound_and_ids_are_unique() {
+    let cases = load_cases(&repository("verification/cases"), &[]).unwrap();
+    assert!(cases.len() >= 20);
+    let mut ids = BTreeSet::new();
+    for case in &cases {
+        assert!(!case.claim.is_empty() && case.seconds > 0.0, "{}", case.id());
+        let scenes = case.scenes().unwrap_or_else(|e| panic!("{e}"));
+        assert!(case.study == "basis" || !scenes.is_empty(), "{} has no scene", case.id());
+        for check in &case.checks {
+            let key = (case.id(), check.quantity.clone(), check.variant.clone(), check.against.clone());
+            assert!(ids.insert(key), "{}: {} is checked twice", case.id(), check.quantity);
+        }
+    }
+    let quick = Selection { suites: vec!["plate".into()], case_glob: None, tier: Tier::Quick };
+    let full = Selection { tier: Tier::Full, ..quick.clone() };
+    assert_eq!(select(cases.clone(), &quick).len(), 1);
+    assert_eq!(select(cases, &full).len(), 8);
+}
+
+#[test]
+fn a_curve_that_a_reader_digitises_appears_in_the_figure_without_a_change_of_code() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path().join("estrada-2024/figure-3a");
+    std::fs::create_dir_all(&folder).unwrap();
+    let source = repository("reference-data/estrada-2024/figure-3a/source.toml");
+    std::fs::copy(source, folder.join("source.toml")).unwrap();
+    let runs = [plate_run()];
+    let before = curves_of_elastic_energy(&runs, root.path());
+    std::fs::write(folder.join("curve.csv"), "time_us,elastic_j_per_m\n0,0\n10,0.11\n20,0.07\n").unwrap();
+    let after = curves_of_elastic_energy(&runs, root.path());
+    assert_eq!(after.len(), before.len() + 1);
+    assert!(after.iter().any(|label| label.contains("Estrada")), "{after:?}");
+}
+
+fn curves_of_elastic_energy(runs: &[RunInfo], references: &Path) -> Vec<String> {
+    let library = Library::load(references).unwrap();
+    let (figures, tables) = figures::of_runs(runs, &library);
+    let figure = figures.into_iter().find(|f| f.id == "plate-elastic-energy").unwrap();
+    let FigureBody::Chart { curves, .. } = figure.body else { panic!("a chart") };
+    for curve in curves.iter().filter(|c| c.series.contains("reference-")) {
+        let stem = curve.series.trim_start_matches("series/").trim_end_matches(".csv");
+        assert!(tables.iter().any(|(name, _)| name == stem), "{stem} is stored beside the figure");
+    }
+    curves.into_iter().map(|c| c.label).collect()
+}
+
+fn plate_run() -> RunInfo {
+    RunInfo {
+        suite: "plate".into(),
+        case: "trial".into(),
+        variant: String::new(),
+        label: "trial".into(),
+        series: "series/plate-trial.csv".into(),
+        columns: vec!["time_s".into(), "elastic_j".into()],
+        energy_factor: 1.0,
+        resolution: "p = 2".into(),
+        deviations: Vec::new(),
+        pictures: Vec::new(),
+    }
+}
