@@ -159,6 +159,7 @@ pub fn dispatch<W: Vectorised>(work: W) -> W::Output {
         }
         if std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma") {
             // SAFETY: the processor was just asked for both features.
+            #[expect(unsafe_code, reason = "the caller of a function compiled for more features must have them")]
             return unsafe { wide(work) };
         }
     }

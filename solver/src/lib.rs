@@ -1,4 +1,131 @@
-//! placeholder tour
+//! Dynamic brittle fracture in the plane by the material point method on a spline background mesh.
+//!
+//! `fisura` moves bodies made of material points through time with an explicit scheme, lets them crack by a phase field
+//! driven by the tensile part of their elastic energy, and accounts for every joule on the way. It follows Estrada
+//! (2024), *Material point method applied to dynamic brittle fracture analysis using phase-field*, Mecánica Computacional
+//! XLI, 537–546; (E n) is equation n of that paper. This crate is the physics alone: it reads no files, draws nothing
+//! and looks at no clock.
+//!
+//! A [`Scene`] is plain data. [`validate::validate`] says what is wrong with one, by key; [`Simulation::new`] makes one
+//! ready to run; [`Simulation::step`] takes a step and [`Simulation::sample`] reads the energies. What a scene does not
+//! declare is not modelled: an elastic body holds no phase field and solves for none.
+//!
+//! # The time step
+//!
+//! In the total frame, where shape functions are evaluated at the reference positions once ([`total_frame::TotalFrame::step`]):
+//!
+//! ```text
+//! ┌─ given u, v, a on the control points, H at the points, c on the control points, all at n ──────────────────┐
+//! │ predict      v ← v + dt/2 a,   u ← u + dt v                       velocity Verlet: beta = 0, gamma = 1/2   │
+//! │ history      e = sym grad u at the points,   H ← max(H, psi+(e))                     E 4–5, 10, 15–16      │
+//! │ phase field  K(H) c = Σ V N                                                          E 11–12, 19–24        │
+//! │ stress       sigma = g(c) dpsi+/de + dpsi−/de at the points                          E 6–7                 │
+//! │ forces       f_int = Σ V sigma grad N,   f_ext = Σ l t N + m g                       E 17–18               │
+//! │ accelerate   a = (f_ext − f_int) / m, zero where the velocity is prescribed          E 14                  │
+//! │ correct      v ← v + dt/2 a                                                                                │
+//! └─ u, v, a, H, c at n + 1 ───────────────────────────────────────────────────────────────────────────────────┘
+//! ```
+//!
+//! History and phase field are there only with a [`scene::Fracture`]. With beta = 0 the strain at n + 1 does not depend
+//! on the acceleration at n + 1, so the staggered iteration of the paper is converged after one pass. In the updated
+//! frame the points carry the velocity and the grid is rebuilt at every step: see [`updated_frame`]. The step is a
+//! fraction of the critical one of the operator itself ([`critical_step`]).
+//!
+//! # From the paper to the code
+//!
+//! | equations | what | module |
+//! |---|---|---|
+//! | E 3 | surface energy of the crack | [`kernels`] |
+//! | E 4–7 | elastic energy, its split, degraded stress | [`split`], [`material`], [`kernels`] |
+//! | E 10 | history energy | [`kernels`], [`fracture`] |
+//! | E 11–12, 19–24 | phase-field equation and its matrix | [`phase_field`], [`assembly`] |
+//! | E 13 | splines and the patch they span | [`spline`], [`patch`] |
+//! | E 14–18 | the step | [`total_frame`], [`updated_frame`] |
+//! | E 15–18 | transfers between points and control points | [`sweep`], [`updated_frame`] |
+//! | – | material points: layouts, tiles of spans | [`quadrature`], [`lattice`], [`shape`] |
+//! | – | tractions, gravity, conditions on sides | [`loads`], [`constraints`] |
+//! | – | linear algebra of the phase field | [`stencil`], [`conjugate_gradients`], [`incomplete_cholesky`], [`cholesky`] |
+//! | – | critical step, plan of steps and samples | [`critical_step`], [`time_plan`] |
+//! | – | energy ledger, pictures | [`energy`], [`picture`] |
+//!
+//! Where the paper prints a slip, the module that uses the equation says so.
+//!
+//! # Units
+//!
+//! SI throughout: m, s, kg, N, J, Pa. Inside, masses, forces and energies are per metre of thickness; a
+//! [`Sample`](energy::Sample) is for the thickness of the scene. The phase field c is 1 where intact and 0 where broken,
+//! and the length scale l0 is Borden's, half the l of the form `(Gc/2)(d²/l + l |grad d|²)`.
+//!
+//! # The same bits
+//!
+//! Sums are cut by data, strip by strip and chunk by chunk, and added in a fixed order: a run gives the same bits for any
+//! number of threads.
+//!
+//! # Not modelled yet
+//!
+//! More than one body, contact and rigid bodies; finite strain; the consistent mass matrix; transfers of the updated
+//! frame other than FLIP; patches that are not affine, and weights (NURBS). [`validate::validate`] refuses a scene that
+//! asks for one of these.
+//!
+//! # Example
+//!
+//! A clamped strip of glass is pulled at its free end. It is elastic, so the energies add up to round-off:
+//!
+//! ```
+//! use fisura::scene::*;
+//! use fisura::{Scene, Simulation};
+//!
+//! let glass = Material { young_modulus: 32e9, poisson_ratio: 0.2, density: 2450.0, fracture: None };
+//! let strip = Body {
+//!     name: "strip".into(),
+//!     material: "glass".into(),
+//!     shape: Shape::Rectangle { min: [0.0, 0.0], max: [8e-3, 2e-3] },
+//!     particles_per_cell: [2, 2],
+//!     layout: Layout::Gauss,
+//!     velocity: [0.0, 0.0],
+//!     angular_velocity: 0.0,
+//!     rigid: false,
+//!     tractions: vec![Traction { edge: Edge::Side(Side::Right), stress: [1e6, 0.0], ramp: Some(1e-6) }],
+//!     cracks: vec![],
+//! };
+//! let scene = Scene {
+//!     title: "a strip under tension".into(),
+//!     mesh: Mesh::uniform([2, 2], [0.0, 0.0], [8e-3, 2e-3], [32, 8]),
+//!     analysis: Analysis {
+//!         plane: Plane::Stress,
+//!         thickness: 1e-3,
+//!         frame: Frame::Total,
+//!         kinematics: Kinematics::Small,
+//!         end_time: 4e-6,
+//!         time_step: TimeStep::Auto,
+//!         safety: 0.8,
+//!         transfer: Transfer::Flip,
+//!         mass: Mass::Lumped,
+//!         gravity: [0.0, 0.0],
+//!     },
+//!     solver: SolverSettings {
+//!         phase_field_tolerance: 1e-8,
+//!         phase_field_solver: PhaseFieldSolver::ConjugateGradients,
+//!     },
+//!     materials: [("glass".to_string(), glass)].into(),
+//!     bodies: vec![strip],
+//!     contact: None,
+//!     boundaries: vec![Boundary { side: Side::Left, fix: [true, true], velocity: [0.0, 0.0] }],
+//!     output: Output { samples: 10, frames: vec![] },
+//! };
+//!
+//! assert_eq!(fisura::validate::validate(&scene), Ok(vec![]));
+//! let mut simulation = Simulation::new(&scene)?;
+//! while !simulation.finished() {
+//!     let sample = simulation.advance_to_next_sample()?;
+//!     assert!(sample.elastic > 0.0 && sample.kinetic > 0.0);
+//!     assert!(sample.closure.abs() <= 1e-12 * sample.largest_term());
+//! }
+//! # Ok::<(), fisura::error::Breakdown>(())
+//! ```
+
+#![deny(unsafe_code)]
+
 pub mod assembly;
 pub mod cholesky;
 pub mod conjugate_gradients;
@@ -19,12 +146,15 @@ pub mod picture;
 pub mod quadrature;
 pub mod scene;
 pub mod shape;
+pub mod simulation;
 pub mod spline;
 pub mod split;
 pub mod stencil;
 pub mod sweep;
-pub mod total_frame;
-pub mod simulation;
 pub mod time_plan;
+pub mod total_frame;
 pub mod updated_frame;
 pub mod validate;
+
+pub use scene::Scene;
+pub use simulation::Simulation;
