@@ -258,6 +258,54 @@ fn a_flying_cracked_plate_closes_its_ledger() {
     assert!(relative_closure(&samples) <= 1e-3, "closure {:e}", relative_closure(&samples));
 }
 
+/// A block that is struck on one side and otherwise left alone, after 400 steps of `fraction` of the critical step.
+fn struck_block(degree: usize, fraction: f64) -> bool {
+    let mut scene = scene(degree, 16, [0.00237, 0.0025], [0.0075, 0.0075]);
+    let kick = Traction { edge: Edge::Side(Side::Left), stress: [1e4, 7e3], ramp: Some(1.0) };
+    scene.bodies[0].tractions = vec![kick];
+    let critical = Simulation::new(&scene).unwrap().plan().critical;
+    scene.analysis.time_step = TimeStep::Fixed(fraction * critical);
+    scene.analysis.end_time = 400.0 * fraction * critical;
+    scene.output.samples = 1;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    simulation.advance_to_next_sample().is_ok()
+}
+
+#[test]
+fn the_critical_step_separates_stable_runs_from_unstable_ones() {
+    for degree in 2..=3 {
+        assert!(struck_block(degree, 0.98), "p = {degree}: broke down below the critical step");
+        assert!(!struck_block(degree, 1.15), "p = {degree}: stable 15 % above the critical step");
+    }
+}
+
+#[test]
+fn a_body_in_flight_stays_quiet_at_the_automatic_step() {
+    for degree in 2..=3 {
+        let mut scene = scene(degree, 40, [0.0006, 0.002], [0.0073, 0.006]);
+        scene.bodies[0].velocity = [100.0, 60.0];
+        scene.analysis.safety = 0.8;
+        scene.analysis.end_time = 25e-6; // ten spans
+        let (_, samples) = run(&scene);
+        let end = samples.last().unwrap();
+        assert!(end.elastic <= 1e-24 * end.kinetic, "p = {degree}: noise of {:e} J", end.elastic);
+    }
+}
+
+#[test]
+fn a_critical_step_that_falls_below_the_step_in_use_is_a_warning_once_with_its_time() {
+    let mut scene = scene(1, 16, [0.00125, 0.005], [0.005, 0.00875]);
+    scene.bodies[0].velocity = [100.0, 0.0];
+    scene.analysis.safety = 1.0;
+    scene.analysis.end_time = 10e-6; // with p = 1 and cut spans the critical step collapses
+    let mut simulation = Simulation::new(&scene).unwrap();
+    assert!(simulation.warnings().is_empty(), "{:?}", simulation.warnings());
+    while !simulation.finished() && simulation.step().is_ok() {}
+    let warnings = simulation.warnings();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].starts_with("from t = ") && warnings[0].contains("times the critical step"), "{warnings:?}");
+}
+
 #[test]
 fn one_thread_and_two_give_the_same_bits() {
     let mut scene = notched_plate(40);
