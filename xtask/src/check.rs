@@ -31,6 +31,7 @@ pub struct Args {
 /// # Errors
 /// A bad scene, or an initial phase field that does not converge.
 pub fn check(args: &Args, common: &Common) -> Result<Exit, Failure> {
+    console::no_files(common, "check");
     let file = scene_input::load(&args.scene, common)?;
     let simulation = Simulation::new(&file.scene).map_err(|breakdown| Failure::from(&breakdown))?;
     let mut found = Findings::new(&file.scene, &simulation.extent(), simulation.plan());

@@ -39,6 +39,13 @@ pub fn note(common: &Common, text: &str) {
     }
 }
 
+/// Says that `--out` has no effect on a command that writes no files.
+pub fn no_files(common: &Common, command: &str) {
+    if common.out.is_some() {
+        note(common, &format!("warning: {command} writes no files, so --out has no effect"));
+    }
+}
+
 /// Whether standard error is a terminal that may show progress bars.
 pub fn interactive(common: &Common) -> bool {
     !common.quiet && stderr().is_terminal()

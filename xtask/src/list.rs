@@ -15,6 +15,7 @@ use crate::verify::cases_folder;
 /// # Errors
 /// A case file that is wrong.
 pub fn list(common: &Common) -> Result<Exit, Failure> {
+    console::no_files(common, "list");
     let cases = load_cases(&cases_folder()?, &[])?;
     match common.format {
         Format::Json => console::json(&json!({ "cases": cases.iter().map(entry).collect::<Vec<_>>() })),

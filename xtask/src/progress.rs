@@ -7,14 +7,21 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::cli::Common;
 use crate::console;
 
+/// What a bar shows before its length is known.
+pub const SPINNER: &str = "{spinner} {msg}";
+
 /// A bar of `length` units; invisible where nobody would see it.
 pub fn bar(common: &Common, template: &str, length: u64) -> ProgressBar {
     let visible = console::interactive(common);
     let target = if visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    let bar = ProgressBar::with_draw_target(Some(length), target).with_style(style);
+    let bar = ProgressBar::with_draw_target(Some(length), target).with_style(style(template));
     if visible {
         bar.enable_steady_tick(Duration::from_millis(200));
     }
     bar
+}
+
+/// A style; the plain one if indicatif cannot read the template.
+pub fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }

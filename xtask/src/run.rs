@@ -32,11 +32,11 @@ pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
     refuse(args)?;
     let file = scene_input::load(&args.scene, common)?;
     let folder = folders::output(common, "run")?;
-    let bar = progress::bar(common, "{msg} {wide_bar} {pos}/{len} steps, {eta} left", 0);
+    let bar = progress::bar(common, progress::SPINNER, 0);
     bar.set_message("preparing");
     let run = run_scene(&file.scene, &mut |progress| {
         if progress.step == 0 {
-            bar.set_message("running");
+            bar.set_style(progress::style("{wide_bar} {pos}/{len} steps, {eta} left"));
             bar.set_length(progress.steps as u64);
             bar.reset_eta();
         }

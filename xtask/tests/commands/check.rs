@@ -74,3 +74,17 @@ fn warnings_go_to_standard_error_and_into_the_json() {
     assert!(outcome.json()["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains("critical")));
     assert_eq!(place.xtask(&[&arguments[..], &["--quiet"]].concat()).err, "");
 }
+
+#[test]
+fn the_example_scenes_are_valid_and_without_warnings() {
+    let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../verification/scenes");
+    let place = Place::new();
+    for entry in std::fs::read_dir(scenes).unwrap() {
+        let path = entry.unwrap().path();
+        let outcome = place.xtask(&["check", path.to_str().unwrap()]).with_status(0);
+        assert_eq!(outcome.err, "", "{}", path.display());
+    }
+    let outcome = place.xtask(&["run", &format!("{scenes}/bar.toml"), "--out", "bar"]).with_status(0);
+    assert_eq!(outcome.err, "");
+    assert_eq!(place.read("bar/history.csv").lines().count(), 1 + 201);
+}
