@@ -1,0 +1,219 @@
+//! The solvers of the phase-field system: incomplete Cholesky, conjugate gradients, sparse Cholesky.
+
+mod common;
+
+use common::{Random, body, fracture_model, rectangle, with_threads};
+use fisura::assembly::{Constant, Factor, PointCoefficients, add_products};
+use fisura::cholesky::SparseCholesky;
+use fisura::conjugate_gradients::ConjugateGradients;
+use fisura::incomplete_cholesky::IncompleteCholesky;
+use fisura::lane::Lane;
+use fisura::lattice::Lattice;
+use fisura::patch::{ControlGrid, Patch};
+use fisura::scene::*;
+use fisura::stencil::Stencil;
+use nalgebra::{DMatrix, DVector};
+
+/// Span of the test meshes, m: the length scale of the model.
+const SPAN: f64 = 0.25e-3;
+
+/// Reaction coefficient 1, and `contrast` within a span of a horizontal line from the left.
+struct Crack<'a> {
+    lattice: &'a Lattice,
+    contrast: f64,
+}
+
+impl PointCoefficients for Crack<'_> {
+    fn span(&self, first: usize, weights: &[Lane], out: &mut [Lane]) -> bool {
+        let [_, top] = self.lattice.position(self.lattice.batches() - 1, 0);
+        for (i, weight) in weights.iter().enumerate() {
+            out[i] = *weight;
+            for lane in 0..8 {
+                let [x, y] = self.lattice.position(first + i, lane);
+                if (y - 0.5 * top).abs() < 0.5 * SPAN && x < 10.0 * SPAN {
+                    out[i][lane] *= self.contrast;
+                }
+            }
+        }
+        true
+    }
+}
+
+/// The phase-field matrix of a plate with a crack whose reaction is `contrast` times that of the rest.
+fn phase_field_matrix(degree: usize, cells: [usize; 2], contrast: f64) -> Stencil {
+    let size = [SPAN * cells[0] as f64, SPAN * cells[1] as f64];
+    let patch = Patch::new(&Mesh::uniform([degree; 2], [0.0; 2], size, cells));
+    let lattice = Lattice::new(&patch, &body(rectangle([0.0; 2], size), [degree.max(2); 2]));
+    let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
+    use Factor::{Derivative, Value};
+    add_products(&mut matrix, &lattice, [Value, Value], &Crack { lattice: &lattice, contrast });
+    for factors in [[Derivative, Value], [Value, Derivative]] {
+        add_products(&mut matrix, &lattice, factors, &Constant(fracture_model().diffusion()));
+    }
+    matrix
+}
+
+fn dense(matrix: &Stencil) -> DMatrix<f64> {
+    let grid = matrix.grid;
+    let n = grid.columns * grid.rows;
+    let mut full = DMatrix::zeros(n, n);
+    for row in 0..grid.rows {
+        for column in 0..grid.columns {
+            for (index, offset) in matrix.offsets().iter().enumerate() {
+                let (other_row, other) = (row + offset.rows, column as isize + offset.columns);
+                if other_row < grid.rows && (0..grid.columns as isize).contains(&other) {
+                    let value = matrix.row(row, index)[grid.index(column, 0)];
+                    let (i, j) = (row * grid.columns + column, other_row * grid.columns + other as usize);
+                    full[(i, j)] = value;
+                    full[(j, i)] = value;
+                }
+            }
+        }
+    }
+    full
+}
+
+fn packed(grid: ControlGrid, field: &[f64]) -> DVector<f64> {
+    DVector::from_iterator(grid.columns * grid.rows, grid.indices().map(|at| field[at]))
+}
+
+/// Largest difference of two fields over the largest value of the first.
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    let scale = a.iter().fold(0.0, |m: f64, a| m.max(a.abs()));
+    a.iter().zip(b).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs())) / scale
+}
+
+fn inner(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// A banded matrix on one row of control points: nothing falls outside the stencil, so the factor is the exact one.
+#[test]
+fn without_fill_the_factor_is_exact() {
+    for degree in 1..=4 {
+        let grid = ControlGrid { columns: 43, rows: 1, stride: 64 };
+        let mut matrix = Stencil::zeros(grid, [degree, 1]);
+        let mut random = Random::new(degree as u64);
+        for column in 0..grid.columns {
+            for ahead in 1..=degree.min(grid.columns - 1 - column) {
+                let at = ahead * grid.stride + grid.index(column, 0);
+                matrix.coefficients_mut()[at] = random.next();
+            }
+            matrix.set_diagonal(column, 0, 2.0 * degree as f64 + 0.1);
+        }
+        let r = random.field(grid, 1.0);
+        let mut x = grid.zeros();
+        let product = IncompleteCholesky::new(&matrix).apply(&r, &mut x);
+        let exact = dense(&matrix).cholesky().expect("positive definite").solve(&packed(grid, &r));
+        for (i, at) in grid.indices().enumerate() {
+            approx::assert_abs_diff_eq!(x[at], exact[i], epsilon = 1e-12 * exact.amax());
+        }
+        approx::assert_relative_eq!(product, inner(&r, &x), max_relative = 1e-13);
+    }
+}
+
+/// Rows that are not coupled to each other have no fill either, and every block then solves its own rows.
+#[test]
+fn uncoupled_rows_are_solved_exactly_across_blocks() {
+    let grid = ControlGrid { columns: 21, rows: 61, stride: 48 };
+    let mut matrix = Stencil::zeros(grid, [3, 3]);
+    let mut random = Random::new(5);
+    for row in 0..grid.rows {
+        for column in 0..grid.columns {
+            for ahead in 1..=3.min(grid.columns - 1 - column) {
+                let at = row * matrix.row_length() + ahead * grid.stride + grid.index(column, 0);
+                matrix.coefficients_mut()[at] = random.next();
+            }
+            matrix.set_diagonal(column, row, 7.0);
+        }
+    }
+    let r = random.field(grid, 1.0);
+    let (mut x, mut back) = (grid.zeros(), grid.zeros());
+    IncompleteCholesky::new(&matrix).apply(&r, &mut x);
+    matrix.apply(&x, &mut back);
+    assert!(difference(&r, &back) <= 1e-13, "{}", difference(&r, &back));
+}
+
+#[test]
+fn the_preconditioner_is_symmetric_and_positive_definite() {
+    for degree in 1..=4 {
+        for contrast in [1.0, 1e3, 1e6] {
+            let matrix = phase_field_matrix(degree, [31, 57], contrast);
+            let factor = IncompleteCholesky::new(&matrix);
+            let mut random = Random::new(11);
+            let (mut x, mut y) = (matrix.grid.zeros(), matrix.grid.zeros());
+            for _ in 0..20 {
+                let (r, s) = (random.field(matrix.grid, 1.0), random.field(matrix.grid, 1.0));
+                let product = factor.apply(&r, &mut x);
+                assert!(product > 0.0, "degree {degree}, contrast {contrast}: r·z = {product}");
+                approx::assert_relative_eq!(product, inner(&r, &x), max_relative = 1e-11);
+                factor.apply(&s, &mut y);
+                let scale = (inner(&x, &x) * inner(&s, &s)).sqrt();
+                approx::assert_abs_diff_eq!(inner(&s, &x), inner(&r, &y), epsilon = 1e-12 * scale);
+            }
+        }
+    }
+}
+
+#[test]
+fn conjugate_gradients_reach_the_solution_of_the_direct_solver() {
+    for degree in 1..=4 {
+        for contrast in [1.0, 1e3, 1e6] {
+            let matrix = phase_field_matrix(degree, [31, 57], contrast);
+            let grid = matrix.grid;
+            let mut b = grid.zeros();
+            let mut ones = grid.zeros();
+            grid.indices().for_each(|at| ones[at] = 1.0);
+            phase_field_matrix(degree, [31, 57], 1.0).apply(&ones, &mut b);
+            let mut direct = grid.zeros();
+            SparseCholesky::default().solve(&matrix, &b, &mut direct).expect("positive definite");
+            let mut x = grid.zeros();
+            let factor = IncompleteCholesky::new(&matrix);
+            let mut solver = ConjugateGradients::new(&matrix);
+            let outcome = solver.solve(&matrix, &factor, &b, &mut x, 1e-12, 500);
+            assert!(outcome.relative_residual <= 1e-12, "degree {degree}, contrast {contrast}: {outcome:?}");
+            assert!(outcome.iterations <= 60, "degree {degree}, contrast {contrast}: {outcome:?}");
+            assert!(difference(&direct, &x) <= 1e-10, "degree {degree}: {:e}", difference(&direct, &x));
+            let again = solver.solve(&matrix, &factor, &b, &mut x, 1e-11, 500);
+            assert_eq!(again.iterations, 0, "a start that meets the tolerance is kept");
+            let mut image = grid.zeros();
+            matrix.apply(&x, &mut image);
+            let residual: Vec<f64> = b.iter().zip(&image).map(|(b, i)| b - i).collect();
+            let relative = (inner(&residual, &residual) / inner(&b, &b)).sqrt();
+            assert!(relative <= 2e-12, "the residual that is reported is the true one: {relative:e}");
+        }
+    }
+}
+
+#[test]
+fn sparse_cholesky_agrees_with_a_dense_one() {
+    let mut solver = SparseCholesky::default();
+    for contrast in [1.0, 1e6] {
+        let matrix = phase_field_matrix(3, [13, 11], contrast);
+        let b = Random::new(2).field(matrix.grid, 1.0);
+        let mut x = matrix.grid.zeros();
+        solver.solve(&matrix, &b, &mut x).expect("positive definite");
+        let exact = dense(&matrix).cholesky().expect("positive definite").solve(&packed(matrix.grid, &b));
+        for (i, at) in matrix.grid.indices().enumerate() {
+            approx::assert_abs_diff_eq!(x[at], exact[i], epsilon = 1e-10 * exact.amax());
+        }
+    }
+    let mut indefinite = phase_field_matrix(3, [13, 11], 1.0);
+    indefinite.set_diagonal(4, 4, -1.0);
+    let b = indefinite.grid.zeros();
+    assert_eq!(solver.solve(&indefinite, &b, &mut b.clone()), None, "an indefinite matrix is refused");
+}
+
+#[test]
+fn two_threads_give_the_bits_of_one() {
+    let matrix = phase_field_matrix(2, [40, 80], 1e3);
+    let b = Random::new(13).field(matrix.grid, 1.0);
+    let solve = || {
+        let mut x = matrix.grid.zeros();
+        let factor = IncompleteCholesky::new(&matrix);
+        ConjugateGradients::new(&matrix).solve(&matrix, &factor, &b, &mut x, 1e-10, 500);
+        x.iter().map(|x| x.to_bits()).collect::<Vec<_>>()
+    };
+    let one = with_threads(1, solve);
+    assert!(with_threads(2, solve) == one && with_threads(3, solve) == one);
+}
