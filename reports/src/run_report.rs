@@ -69,7 +69,7 @@ pub fn phase_svg(frame: &Table, time_s: f64, title: &str) -> Result<String, Figu
     let raster = Raster::from_table(frame).map_err(fail)?;
     let (scale, word) = unit(time_s.abs(), &TIMES);
     let title = format!("{title}, phase field at {} {word}", pretty(time_s * scale, 4));
-    let (label, range) = ("phase field c (0 broken, 1 intact)".to_string(), [0.0, 1.0]);
+    let (label, range) = ("phase field c".to_string(), [0.0, 1.0]);
     let body = FigureBody::Field { series: String::new(), pixels: raster.pixels, label: label.clone(), range };
     render_field(&figure(&id, title, body), &raster, &label, range)
 }

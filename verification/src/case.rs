@@ -84,6 +84,8 @@ pub struct Variant {
     pub name: String,
     /// Key path in the scene and value.
     pub set: Vec<(String, Node)>,
+    /// Energies of the run times this are those of the whole body; absent: that of the case.
+    pub energy_factor: Option<f64>,
 }
 
 /// A case of a suite.
@@ -214,13 +216,14 @@ fn default_models(document: &Document) -> Vec<String> {
 }
 
 fn read_variant(item: &Item<'_>) -> Option<Variant> {
-    let fields = item.fields(&["name", "set"])?;
+    let fields = item.fields(&["name", "set", "energy_factor"])?;
     let name = fields.need("name", "name = \"…\"", Item::text);
     let set = fields.need("set", "set = { \"mesh.degree\" = 3 }", |i| match &i.node.value {
         Value::Table(table) => Some(table.iter().map(|(key, node)| (key.clone(), node.clone())).collect()),
         _ => i.fail("expected a table", "write set = { \"mesh.degree\" = 3 }"),
     });
-    Some(Variant { name: name?, set: set? })
+    let energy_factor = fields.maybe("energy_factor", |i| i.quantity(Dimension::NONE));
+    Some(Variant { name: name?, set: set?, energy_factor: energy_factor? })
 }
 
 const CHECK_KEYS: [&str; 18] = [

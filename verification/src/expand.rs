@@ -4,7 +4,7 @@
 
 use fisura::scene::Scene;
 
-use crate::case::Case;
+use crate::case::{Case, Variant};
 use crate::scene_file::document::{Node, Value};
 use crate::scene_file::{Problem, SceneFileError, check_scene, read_scene};
 
@@ -17,6 +17,8 @@ pub struct CaseScene {
     pub parameters: Vec<(String, serde_json::Value)>,
     /// The scene.
     pub scene: Scene,
+    /// Energies of its run times this are those of the whole body.
+    pub energy_factor: f64,
 }
 
 /// Keys whose one value is itself a list, with its depth.
@@ -64,51 +66,60 @@ impl Case {
         let Some(base) = self.scene_node() else { return Ok(Vec::new()) };
         let mut axes = Vec::new();
         find_axes(base, "", &mut axes);
-        let mut trees = vec![(String::new(), Vec::new(), base.clone())];
+        let start =
+            Tree { name: String::new(), parameters: Vec::new(), energy_factor: self.energy_factor, node: base.clone() };
+        let mut trees = vec![start];
         for (path, values) in &axes {
-            trees = trees.iter().flat_map(|tree| values.iter().map(|value| along(tree, path, value))).collect();
+            trees = trees.iter().flat_map(|tree| values.iter().map(|value| tree.along(path, value))).collect();
         }
         if !self.variants.is_empty() {
-            trees = trees
-                .iter()
-                .flat_map(|tree| self.variants.iter().map(move |variant| (tree, variant)))
-                .map(|((name, parameters, tree), variant)| {
-                    let mut tree = tree.clone();
-                    for (key, value) in &variant.set {
-                        tree.set(key, value.clone())
-                            .map_err(|e| self.error("variant", &e, "name a key of the scene"))?;
-                    }
-                    Ok((join_names(name, &variant.name), parameters.clone(), tree))
-                })
-                .collect::<Result<_, SceneFileError>>()?;
+            let pairs = trees.iter().flat_map(|tree| self.variants.iter().map(move |variant| (tree, variant)));
+            let varied: Result<Vec<Tree>, String> = pairs.map(|(tree, variant)| tree.varied(variant)).collect();
+            trees = varied.map_err(|e| self.error("variant", &e, "name a key of the scene"))?;
         }
-        trees.into_iter().map(|(name, parameters, tree)| self.scene_of(name, parameters, &tree)).collect()
+        trees.into_iter().map(|tree| self.scene_of(tree)).collect()
     }
 
-    fn scene_of(
-        &self,
-        name: String,
-        parameters: Vec<(String, serde_json::Value)>,
-        tree: &Node,
-    ) -> Result<CaseScene, SceneFileError> {
+    fn scene_of(&self, tree: Tree) -> Result<CaseScene, SceneFileError> {
         let fail = |problems: Vec<Problem>| self.document.error(&problems);
-        let scene = read_scene(tree, "scene").map_err(fail)?;
-        check_scene(&scene, tree, "scene").map_err(fail)?;
-        Ok(CaseScene { name, parameters, scene })
+        let scene = read_scene(&tree.node, "scene").map_err(fail)?;
+        check_scene(&scene, &tree.node, "scene").map_err(fail)?;
+        Ok(CaseScene { name: tree.name, parameters: tree.parameters, scene, energy_factor: tree.energy_factor })
     }
 }
 
-type Tree = (String, Vec<(String, serde_json::Value)>, Node);
+/// A `[scene]` table on its way to one scene.
+#[derive(Clone)]
+struct Tree {
+    name: String,
+    parameters: Vec<(String, serde_json::Value)>,
+    energy_factor: f64,
+    node: Node,
+}
 
-fn along((name, parameters, tree): &Tree, path: &str, value: &Node) -> Tree {
-    let mut tree = tree.clone();
-    tree.set(path, value.clone()).expect("the path was found in this tree");
-    let key = path.rsplit('.').next().unwrap_or(path);
-    let json = to_json(value);
-    let mut parameters = parameters.clone();
-    let shown = json.to_string().replace('"', "").replace(',', "x").replace(['[', ']'], "");
-    parameters.push((key.to_string(), json));
-    (join_names(name, &format!("{key}={shown}")), parameters, tree)
+impl Tree {
+    /// With one value of an axis.
+    fn along(&self, path: &str, value: &Node) -> Self {
+        let mut tree = self.clone();
+        tree.node.set(path, value.clone()).expect("the path was found in this tree");
+        let key = path.rsplit('.').next().unwrap_or(path);
+        let json = to_json(value);
+        let shown = json.to_string().replace('"', "").replace(',', "x").replace(['[', ']'], "");
+        tree.parameters.push((key.to_string(), json));
+        tree.name = join_names(&tree.name, &format!("{key}={shown}"));
+        tree
+    }
+
+    /// With the keys of a variant changed.
+    fn varied(&self, variant: &Variant) -> Result<Self, String> {
+        let mut tree = self.clone();
+        for (key, value) in &variant.set {
+            tree.node.set(key, value.clone())?;
+        }
+        tree.name = join_names(&tree.name, &variant.name);
+        tree.energy_factor = variant.energy_factor.unwrap_or(self.energy_factor);
+        Ok(tree)
+    }
 }
 
 fn join_names(first: &str, second: &str) -> String {

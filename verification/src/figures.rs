@@ -242,7 +242,7 @@ fn pictures(run: &RunInfo) -> Vec<Figure> {
         body: FigureBody::Field {
             series: picture.series.clone(),
             pixels: picture.pixels,
-            label: "phase field c (1 intact, 0 broken)".into(),
+            label: "phase field c".into(),
             range: [0.0, 1.0],
         },
     };

@@ -46,7 +46,7 @@ impl Measured {
 }
 
 /// Names of all measures, for error messages.
-pub const MEASURES: [&str; 23] = [
+pub const MEASURES: &[&str] = &[
     "relative-rms",
     "rms-difference",
     "value-at",
@@ -61,15 +61,15 @@ pub const MEASURES: [&str; 23] = [
     "peak-time",
     "largest-decrease",
     "difference",
-    "half-difference",
     "order-in-step",
     "tip-passes",
     "branching-time",
     "branching-place",
     "axis-end",
-    "tip-speed",
+    "tip-speed-ratio",
     "tip-exit",
     "branches",
+    "asymmetry",
 ];
 
 impl Run<'_> {
@@ -140,14 +140,14 @@ pub fn measure(check: &Check, run: &Run, runs: &[Run], library: &Library) -> Res
         "peak-value" => Measured::of(series::peak(check, run)?.map(|(_, value)| value)),
         "peak-time" => Measured::of(series::peak(check, run)?.map(|(time, _)| time)),
         "largest-decrease" => Measured::of(Some(series::largest_decrease(check, run)?)),
-        "difference" => Measured::of(Some(series::difference(check, run, runs, 1.0)?)),
-        "half-difference" => Measured::of(Some(series::difference(check, run, runs, 2.0)?)),
+        "difference" => Measured::of(Some(series::difference(check, run, runs)?)),
         "order-in-step" => Measured::of(series::order_in_step(check, runs)?),
         "tip-passes" => Measured::of(tip::passes(check, run)?),
         "branching-time" => Measured::of(tip::branching(run)?.map(|b| b.time)),
         "branching-place" => Measured::of(tip::branching(run)?.map(|b| b.x)),
         "axis-end" => Measured::of(tip::end_along_axis(run)),
-        "tip-speed" => Measured::of(tip::largest_speed_before_branching(run)?),
+        "tip-speed-ratio" => Measured::of(tip::largest_speed_before_branching(check, run)?),
+        "asymmetry" => Measured::of(tip::asymmetry(run)),
         "branches" => Measured::of(tip::branches(check, run)?),
         "tip-exit" => Measured::of(tip::exit_offset(check, run)?),
         _ => return Err(format!("unknown measure {name:?}; known: {}", MEASURES.join(", "))),
@@ -171,4 +171,17 @@ fn position(check: &Check) -> Result<f64, String> {
 
 fn curve_reference(kind: ReferenceKind, label: &str) -> Option<Reference> {
     Some(Reference { value: None, kind, source: label.to_string() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_measure_that_is_listed_exists() {
+        let body = include_str!("measure.rs");
+        for name in MEASURES {
+            assert!(body.matches(&format!("\"{name}\"")).count() >= 2, "{name} is listed but not measured");
+        }
+    }
 }

@@ -105,9 +105,9 @@ pub(super) fn largest_decrease(check: &Check, run: &Run) -> Result<f64, String> 
     Ok(fall / highest.abs())
 }
 
-/// Largest difference of `factor` times a column from that of the variant `against`, over the largest magnitude of the
-/// latter, at equal times.
-pub(super) fn difference(check: &Check, run: &Run, runs: &[Run], factor: f64) -> Result<f64, String> {
+/// Largest difference of a column from that of the variant `against`, over the largest magnitude of the latter, at equal
+/// times.
+pub(super) fn difference(check: &Check, run: &Run, runs: &[Run]) -> Result<f64, String> {
     let name = check.against.as_deref().ok_or("this measure needs against = \"variant\"")?;
     let other = runs.iter().find(|r| r.name == name).ok_or_else(|| format!("no variant {name:?}"))?;
     let (values, others) = (run.column(column(check)?)?, other.column(column(check)?)?);
@@ -116,7 +116,7 @@ pub(super) fn difference(check: &Check, run: &Run, runs: &[Run], factor: f64) ->
         return Err("the two variants have different sample times".to_string());
     }
     let scale = others.iter().map(|v| v.abs()).fold(0.0, f64::max);
-    Ok(values.iter().zip(&others).map(|(a, b)| (factor * a - b).abs()).fold(0.0, f64::max) / scale)
+    Ok(values.iter().zip(&others).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale)
 }
 
 /// Order at which a quantity falls with the time step over the variants: slope of log closure against log dt.

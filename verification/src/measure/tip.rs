@@ -50,14 +50,15 @@ pub(super) fn branching(run: &Run) -> Result<Option<Branching>, String> {
     Ok(first.map(|[time, x, _]| Branching { time, x }))
 }
 
-/// Largest slope of a straight line fitted to x over ±2 µs, before branching, m/s.
-pub(super) fn largest_speed_before_branching(run: &Run) -> Result<Option<f64>, String> {
+/// Largest slope of a straight line fitted to x over ±2 µs, before branching, over the speed `at`.
+pub(super) fn largest_speed_before_branching(check: &Check, run: &Run) -> Result<Option<f64>, String> {
+    let unit = position(check)?;
     let end = branching(run)?.map_or(f64::INFINITY, |b| b.time);
     let tips = tips(run)?;
     let (times, x): (Vec<f64>, Vec<f64>) = tips.iter().map(|row| (row[0], row[1])).unzip();
     let last = tips.last().map_or(0.0, |row| row[0]);
     let centers = tips.iter().map(|row| row[0]).filter(|t| *t >= SPEED_WINDOW && *t <= (end.min(last) - SPEED_WINDOW));
-    Ok(centers.map(|t| fitted_speed(&times, &x, t)).filter(|v| v.is_finite()).reduce(f64::max))
+    Ok(centers.map(|t| fitted_speed(&times, &x, t)).filter(|v| v.is_finite()).reduce(f64::max).map(|v| v / unit))
 }
 
 /// Slope of a straight line fitted to positions x (m) within ±2 µs of `center` (s), m/s; NaN without two of them.
@@ -110,4 +111,13 @@ pub(super) fn branches(check: &Check, run: &Run) -> Result<Option<f64>, String> 
         inside = now;
     }
     Ok(Some(count as f64))
+}
+
+/// Largest difference of c from its mirror image about the axis, over the last picture of a whole body.
+pub(super) fn asymmetry(run: &Run) -> Option<f64> {
+    let picture = run.frames.last()?;
+    let phase = picture.phase.as_ref()?;
+    let [columns, rows] = picture.pixels;
+    let mirrored = |index: usize| phase[(rows - 1 - index / columns) * columns + index % columns];
+    (0..phase.len()).map(|index| (phase[index] - mirrored(index)).abs()).reduce(f64::max)
 }

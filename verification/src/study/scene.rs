@@ -65,7 +65,6 @@ pub struct FinishedScene {
     pub run: SceneRun,
     /// Cost.
     pub timing: Timing,
-    energy_factor: f64,
 }
 
 impl FinishedScene {
@@ -76,13 +75,13 @@ impl FinishedScene {
             scene: &self.case_scene.scene,
             history: &self.run.history,
             frames: &self.run.frames,
-            energy_factor: self.energy_factor,
+            energy_factor: self.case_scene.energy_factor,
         }
     }
 }
 
 /// Runs the scenes of a case one after the other; `advanced` gets the finished fraction.
-pub fn run_scenes(case: &Case, scenes: Vec<CaseScene>, advanced: &dyn Fn(f64)) -> Vec<FinishedScene> {
+pub fn run_scenes(scenes: Vec<CaseScene>, advanced: &dyn Fn(f64)) -> Vec<FinishedScene> {
     let count = scenes.len() as f64;
     scenes
         .into_iter()
@@ -96,7 +95,7 @@ pub fn run_scenes(case: &Case, scenes: Vec<CaseScene>, advanced: &dyn Fn(f64)) -
                 particle_steps,
                 ns_per_particle_step: 1e9 * run.summary.wall_s / particle_steps.max(1) as f64,
             };
-            FinishedScene { case_scene, run, timing, energy_factor: case.energy_factor }
+            FinishedScene { case_scene, run, timing }
         })
         .collect()
 }
@@ -159,7 +158,7 @@ pub fn describe(case: &Case, finished: &FinishedScene) -> (RunInfo, Vec<(String,
         label: if variant.is_empty() { label } else { format!("{label}, {variant}") },
         series: format!("series/{stem}.csv"),
         columns: finished.run.history.names.clone(),
-        energy_factor: case.energy_factor,
+        energy_factor: finished.case_scene.energy_factor,
         resolution: resolution(finished),
         deviations: case.deviations.clone(),
         pictures,

@@ -21,7 +21,7 @@ pub(super) fn run_case(
 ) -> Result<CaseOutcome, VerifyError> {
     let scenes = case.scenes()?;
     if case.study == "scene" {
-        let finished = run_scenes(case, scenes, &|fraction| progress.advanced(fraction));
+        let finished = run_scenes(scenes, &|fraction| progress.advanced(fraction));
         return judge_runs(case, &finished, out, library);
     }
     let Some(study) = find(&case.study) else {
