@@ -1,0 +1,98 @@
+//! A time step beyond the critical one breaks down in words; one below it lasts.
+
+mod common;
+
+use common::{elastic_scene, notched_plate};
+use fisura::Simulation;
+use fisura::error::Breakdown;
+use fisura::scene::*;
+
+/// The scene with a fixed step of `ratio` times its critical step, for `steps` steps.
+fn with_step(mut scene: Scene, ratio: f64, steps: usize) -> Scene {
+    let critical = Simulation::new(&scene).unwrap().plan().critical;
+    scene.analysis.time_step = TimeStep::Fixed(ratio * critical);
+    scene.analysis.end_time = ratio * critical * steps as f64;
+    scene
+}
+
+fn breakdown(scene: &Scene) -> Breakdown {
+    let mut simulation = Simulation::new(scene).unwrap();
+    assert!(simulation.warnings().iter().any(|w| w.contains("times the critical step")));
+    while !simulation.finished() {
+        if let Err(breakdown) = simulation.step() {
+            return breakdown;
+        }
+        for (name, value) in simulation.sample().named_values() {
+            assert!(value.is_finite() || name.starts_with("crack_tip"), "{name} is {value}");
+        }
+    }
+    panic!("{} steps passed without a breakdown", simulation.steps());
+}
+
+fn moving(degree: usize) -> Scene {
+    let mut scene = elastic_scene(degree, [0.01, 0.005], [20, 10]);
+    scene.bodies[0].tractions = vec![Traction { edge: Edge::Side(Side::Right), stress: [1e6, 0.0], ramp: None }];
+    scene
+}
+
+fn check(name: &str, scene: &Scene) {
+    let found = breakdown(scene);
+    assert!(found.step > 0 && found.time.is_finite() && found.time > 0.0, "{name}: {found:?}");
+    assert!(scene.bodies[0].shape.contains(found.place), "{name}: {:?}", found.place);
+    assert!(found.cause.contains("times the critical step"), "{name}: {}", found.cause);
+    let text = found.to_string();
+    assert!(!text.contains("NaN") && text.contains(&format!("step {}", found.step)), "{text}");
+}
+
+#[test]
+fn beyond_the_critical_step_the_run_says_so() {
+    for degree in 1..=3 {
+        check(&format!("elastic, degree {degree}"), &with_step(moving(degree), 1.3, 2000));
+    }
+    check("far beyond", &with_step(moving(2), 10.0, 2000));
+    let mut spinning = elastic_scene(2, [0.01, 0.005], [20, 10]);
+    spinning.bodies[0].angular_velocity = 1e3;
+    check("spinning, without loads", &with_step(spinning, 1.3, 4000));
+    let mut driven = elastic_scene(2, [0.01, 0.005], [20, 10]);
+    driven.boundaries = vec![
+        Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] },
+        Boundary { side: Side::Right, fix: [true, false], velocity: [1.0, 0.0] },
+    ];
+    check("driven", &with_step(driven, 1.3, 2000));
+}
+
+#[test]
+fn below_the_critical_step_it_lasts() {
+    for degree in 1..=3 {
+        let mut simulation = Simulation::new(&with_step(moving(degree), 0.95, 2000)).unwrap();
+        assert!(simulation.warnings().is_empty(), "{:?}", simulation.warnings());
+        assert_eq!(simulation.plan().steps(), 2000);
+        while !simulation.finished() {
+            simulation.step().unwrap();
+        }
+        let sample = simulation.sample();
+        assert!(sample.closure.abs() <= 1e-11 * sample.largest_term(), "degree {degree}: {:e}", sample.closure);
+    }
+}
+
+/// The unstable mode of a fracturing body is torn apart by the phase field before its elastic energy has grown: at 1.3
+/// times the critical step this plate shatters (fracture energy 0.019 J to 0.071 J on 0.014 J of work) and goes on.
+#[test]
+#[ignore = "the watch sees elastic energy only; closure, at twice all energy put in, would tell"]
+fn beyond_the_critical_step_a_fracturing_body_says_so() {
+    check("fracture", &with_step(notched_plate(1e5), 1.3, 100));
+}
+
+/// What makes up for it until then: the ledger does not close, where half the step closes to a millionth.
+#[test]
+fn beyond_the_critical_step_the_ledger_of_a_fracturing_body_does_not_close() {
+    let closure = |ratio: f64| {
+        let scene = with_step(notched_plate(1e5), ratio, (60.0 / ratio) as usize);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        while !simulation.finished() && simulation.step().is_ok() {}
+        let sample = simulation.sample();
+        sample.closure.abs() / sample.largest_term()
+    };
+    let (stable, unstable) = (closure(0.8), closure(1.3));
+    assert!(stable < 1e-6 && unstable > 0.1, "{stable:e} and {unstable:e}");
+}
