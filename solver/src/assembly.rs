@@ -150,21 +150,14 @@ impl<C: PointCoefficients> AssembleStrip<'_, C> {
 
     /// Per pair of functions in y, into the couplings of the half stencil.
     #[inline(always)]
-    fn sum_in_y<const FMA: bool>(
-        &mut self,
-        row: &Row,
-        tile: &Tile,
-        sums: &[Lane],
-        kx: usize,
-        ky: usize,
-        ny: usize,
-    ) {
+    fn sum_in_y<const FMA: bool>(&mut self, row: &Row, tile: &Tile, sums: &[Lane], kx: usize, ky: usize, ny: usize) {
         let table = match self.factors[1] {
             Factor::Value => &row.value,
             Factor::Derivative => &row.derivative,
         };
         let stride = self.lattice.grid.stride;
-        let (p, half) = (kx - 1, self.lattice.degree[0] + 1 + self.lattice.degree[1] * (2 * self.lattice.degree[0] + 1));
+        let (p, half) =
+            (kx - 1, self.lattice.degree[0] + 1 + self.lattice.degree[1] * (2 * self.lattice.degree[0] + 1));
         for lower in 0..ky {
             let control_row = row.first + lower - self.first_row;
             let base = control_row * half * stride + self.lattice.grid.index(tile.first, 0);

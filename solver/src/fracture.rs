@@ -54,10 +54,9 @@ impl Fracturing {
         let history = seeded_history(lattice, body, &model);
         let zeros = vec![Lane::ZERO; lattice.batches()];
         let mut field = PhaseField::new(lattice, model, settings);
-        let convergence = field.initialise(lattice, &history).map_err(|c| NotConverged {
-            iterations: c.iterations,
-            relative_residual: c.relative_residual,
-        })?;
+        let convergence = field
+            .initialise(lattice, &history)
+            .map_err(|c| NotConverged { iterations: c.iterations, relative_residual: c.relative_residual })?;
         Ok(Self { model, history, phase: zeros.clone(), remembered: zeros, field, iterations: convergence.iterations })
     }
 

@@ -35,8 +35,7 @@ impl IncompleteCholesky {
     pub fn new(matrix: &Stencil) -> Self {
         let offsets = matrix.offsets().to_vec();
         let updates = updates(&offsets, matrix.degree());
-        let mut factor =
-            Self { grid: matrix.grid, offsets, updates, factor: vec![0.0; matrix.coefficients().len()] };
+        let mut factor = Self { grid: matrix.grid, offsets, updates, factor: vec![0.0; matrix.coefficients().len()] };
         factor.refactor(matrix);
         factor
     }
@@ -57,9 +56,7 @@ impl IncompleteCholesky {
             .par_chunks_mut(rows)
             .zip(r.par_chunks(rows))
             .zip(self.factor.par_chunks(length))
-            .map(|((out, r), factor)| {
-                dispatch(SolveBlock { grid: self.grid, offsets: &self.offsets, factor, r, out })
-            })
+            .map(|((out, r), factor)| dispatch(SolveBlock { grid: self.grid, offsets: &self.offsets, factor, r, out }))
             .collect();
         parts.iter().sum()
     }

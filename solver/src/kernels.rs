@@ -124,8 +124,8 @@ impl PointKernel for SurfaceEnergy {
         let FractureModel { toughness, length_scale, .. } = self.model;
         let broken = Lane::splat(1.0) - values.phase;
         let [gx, gy] = values.phase_gradient;
-        let density = broken * broken * (toughness / (4.0 * length_scale))
-            + (gx * gx + gy * gy) * (toughness * length_scale);
+        let density =
+            broken * broken * (toughness / (4.0 * length_scale)) + (gx * gx + gy * gy) * (toughness * length_scale);
         self.energy = self.energy.add_product::<FMA>(weight, density);
         let exists = values.phase.zip(weight, |c, w| if w > 0.0 { c } else { f64::INFINITY });
         self.least = self.least.min(exists);

@@ -211,8 +211,7 @@ fn columns(space: &SplineSpace, rule: &Rule, low: f64, high: f64, clip: bool) ->
     let spans = space.spans().iter().enumerate().filter(|(_, s)| meets(s.left, s.right));
     spans
         .map(|(index, span)| {
-            let (left, right) =
-                if clip { (span.left.max(low), span.right.min(high)) } else { (span.left, span.right) };
+            let (left, right) = if clip { (span.left.max(low), span.right.min(high)) } else { (span.left, span.right) };
             let position: Vec<f64> = rule.points.iter().map(|t| left + t * (right - left)).collect();
             let shapes: Vec<_> = position.iter().map(|&x| space.shape_functions(index, x)).collect();
             Columns {

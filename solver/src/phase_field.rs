@@ -24,6 +24,10 @@ const ITERATION_LIMIT: usize = 2000;
 /// A lagged factor is renewed once a solve needs this many more iterations than the one after its renewal.
 const EXTRA_ITERATIONS: usize = 3;
 
+/// Diagonal and right-hand side of control points without material, as a fraction of the largest right-hand side: they
+/// hardly weigh in the norm that the tolerance refers to.
+const EMPTY: f64 = 1e-6;
+
 /// Counters of the phase-field solver.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct PhaseFieldCounts {
@@ -80,30 +84,9 @@ impl PhaseField {
         for factors in [[Derivative, Value], [Value, Derivative]] {
             add_products(&mut matrix, lattice, factors, &Constant(model.diffusion()));
         }
-        let grid = lattice.grid;
-        let mut phase = grid.zeros();
-        for row in 0..grid.rows {
-            for column in 0..grid.columns {
-                let at = grid.index(column, row);
-                phase[at] = 1.0;
-                if load[at] == 0.0 {
-                    matrix.set_diagonal(column, row, 1.0);
-                    load[at] = 1.0;
-                }
-            }
-        }
-        let method = Method::new(&matrix, settings);
-        Self {
-            model,
-            tolerance: settings.phase_field_tolerance,
-            matrix,
-            load,
-            previous: phase.clone(),
-            phase,
-            assembled: vec![Lane::ZERO; lattice.batches()],
-            method,
-            counts: PhaseFieldCounts::default(),
-        }
+        isolate_empty(&mut matrix, &mut load);
+        let assembled = vec![Lane::ZERO; lattice.batches()];
+        Self::intact(matrix, load, assembled, model, settings)
     }
 
     /// Phase field whose system is assembled anew at every step (see [`Self::system_mut`]), intact until the first solve.
@@ -113,16 +96,25 @@ impl PhaseField {
         model: FractureModel,
         settings: &SolverSettings,
     ) -> Self {
-        let matrix = Stencil::zeros(grid, degree);
-        let mut phase = grid.zeros();
-        grid.indices().for_each(|at| phase[at] = 1.0);
+        Self::intact(Stencil::zeros(grid, degree), grid.zeros(), Vec::new(), model, settings)
+    }
+
+    fn intact(
+        matrix: Stencil,
+        load: Vec<f64>,
+        assembled: Vec<Lane>,
+        model: FractureModel,
+        settings: &SolverSettings,
+    ) -> Self {
+        let mut phase = matrix.grid.zeros();
+        matrix.grid.indices().for_each(|at| phase[at] = 1.0);
         Self {
             model,
             tolerance: settings.phase_field_tolerance,
-            load: grid.zeros(),
+            load,
             previous: phase.clone(),
             phase,
-            assembled: Vec::new(),
+            assembled,
             method: Method::new(&matrix, settings),
             matrix,
             counts: PhaseFieldCounts::default(),
@@ -249,6 +241,20 @@ impl PhaseField {
         };
         let vectors = self.load.len() + self.phase.len() + self.previous.len() + LANES * self.assembled.len();
         self.matrix.bytes() + 8 * vectors + method
+    }
+}
+
+/// Gives control points without material an equation of their own, `c = 1`.
+pub(crate) fn isolate_empty(matrix: &mut Stencil, load: &mut [f64]) {
+    let grid = matrix.grid;
+    let empty = EMPTY * load.iter().copied().fold(0.0, f64::max);
+    for row in 0..grid.rows {
+        for column in 0..grid.columns {
+            if matrix.diagonal(column, row) == 0.0 {
+                matrix.set_diagonal(column, row, empty);
+                load[grid.index(column, row)] = empty;
+            }
+        }
     }
 }
 

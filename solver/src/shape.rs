@@ -24,10 +24,11 @@ impl Shape {
             Self::Disk { center, radius } | Self::Annulus { center, outer_radius: radius, .. } => {
                 (center.map(|c| c - radius), center.map(|c| c + radius))
             }
-            Self::Polygon { points } => points.iter().fold(
-                ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]),
-                |(low, high), p| ([low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]),
-            ),
+            Self::Polygon { points } => {
+                points.iter().fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), p| {
+                    ([low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])])
+                })
+            }
             Self::Difference { of, .. } => of.bounding_box(),
         }
     }

@@ -230,11 +230,8 @@ impl<K: PointKernel> StripSweep<'_, K> {
         for b in 0..ny {
             let (value, derivative) = (&row.value[b], &row.derivative[b]);
             for a in 0..nx {
-                let mut point = PointValues {
-                    gradient: [Lane::ZERO; 4],
-                    phase: Lane::ZERO,
-                    phase_gradient: [Lane::ZERO; 2],
-                };
+                let mut point =
+                    PointValues { gradient: [Lane::ZERO; 4], phase: Lane::ZERO, phase_gradient: [Lane::ZERO; 2] };
                 for k in 0..ky {
                     let slot = &sums[((row.first + k) % ky) * SUMS * nx..][..SUMS * nx];
                     let (n, d) = (value[k], derivative[k]);

@@ -4,11 +4,13 @@
 //! points for the whole run, strains follow from the displacement, and nothing is lost in transfers. With beta = 0 the
 //! strain at n + 1 does not depend on the acceleration at n + 1: one pass of the staggered scheme is converged.
 
+mod observe;
+mod stiffness;
+
 use rayon::prelude::*;
 
 use crate::constraints::Constraints;
-use crate::critical_step::{StiffnessOperator, highest_frequency};
-use crate::energy::{FractureSample, Ledger, Sample};
+use crate::energy::Ledger;
 use crate::fracture::{Fracturing, NotConverged};
 use crate::kernels::{DegradedStress, ElasticStress};
 use crate::lane::Lane;
@@ -20,6 +22,8 @@ use crate::phase_field::integrate_shape_functions;
 use crate::scene::{Scene, Shape, Side};
 use crate::stencil::CHUNK_ROWS;
 use crate::sweep::{Fields, StripForces, sweep};
+
+pub use stiffness::Stiffness;
 
 /// Masses below this fraction of the largest give no acceleration; their control points keep their velocity.
 const NEGLIGIBLE_MASS: f64 = 1e-12;
@@ -267,66 +271,6 @@ impl TotalFrame {
         [sums[1] / sums[0], sums[2] / sums[0]]
     }
 
-    /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at zero.
-    pub fn sample(&self, dt: f64) -> Sample {
-        let thickness = self.thickness;
-        let greville = [0, 1].map(|d| self.patch.spaces[d].greville());
-        let (mut kinetic, mut stagger, mut momentum, mut angular) = (0.0, 0.0, [0.0; 2], 0.0);
-        for at in self.grid.indices() {
-            let m = self.mass[at];
-            let [v, a] = [&self.velocity, &self.acceleration].map(|f| [f[0][at], f[1][at]]);
-            kinetic += 0.5 * m * (v[0] * v[0] + v[1] * v[1]);
-            stagger += 0.125 * dt * dt * m * (a[0] * a[0] + a[1] * a[1]);
-            momentum = [momentum[0] + m * v[0], momentum[1] + m * v[1]];
-            let (x, y) = (greville[0][self.grid.column_of(at)], greville[1][self.grid.row_of(at)]);
-            angular += m * (x * v[1] - y * v[0]);
-        }
-        let fracture = self.fracture.as_ref().map(|f| {
-            let (energy, min_phase) = f.surface_energy(&self.lattice);
-            FractureSample {
-                energy: energy * thickness,
-                history_work: self.ledger.history_work * thickness,
-                crack_tip: f.crack_tip(&self.lattice, self.lowest_tip),
-                min_phase,
-                iterations: f.iterations,
-            }
-        });
-        Sample {
-            time: self.time,
-            kinetic: kinetic * thickness,
-            stagger: stagger * thickness,
-            elastic: self.elastic_energy * thickness,
-            fracture,
-            external_work: self.ledger.external_work * thickness,
-            transfer_loss: None,
-            closure: 0.0,
-            momentum: momentum.map(|p| p * thickness),
-            angular_momentum: angular * thickness,
-            time_step: dt,
-        }
-    }
-
-    /// Critical time step of the undamaged body, s; infinite if nothing can move.
-    pub fn critical_step(&self) -> f64 {
-        let frequency = highest_frequency(&mut self.stiffness_operator());
-        if frequency > 0.0 { 2.0 / frequency } else { f64::INFINITY }
-    }
-
-    /// Stiffness of the undamaged body on its free degrees of freedom.
-    pub fn stiffness_operator(&self) -> Stiffness<'_> {
-        let fixed: std::collections::BTreeSet<_> = self.constraints.iter().map(|(at, c, _)| (at, c)).collect();
-        let moving = |&(at, c): &(usize, usize)| self.inverse_mass[at] > 0.0 && !fixed.contains(&(at, c));
-        let free: Vec<_> = self.grid.indices().flat_map(|at| [(at, 0), (at, 1)]).filter(moving).collect();
-        Stiffness {
-            frame: self,
-            masses: free.iter().map(|&(at, _)| self.mass[at]).collect(),
-            free,
-            field: [self.grid.zeros(), self.grid.zeros()],
-            image: [self.grid.zeros(), self.grid.zeros()],
-            strips: self.strip_forces.clone(),
-        }
-    }
-
     /// Stress `[xx, yy, xy]` (Pa) of the undamaged body under a displacement field at a position; NaN outside the patch.
     pub fn elastic_stress_at(&self, displacement: &[Vec<f64>; 2], position: [f64; 2]) -> [f64; 3] {
         let [x, y] = [0, 1].map(|c| self.patch.evaluate(&displacement[c], position));
@@ -398,44 +342,4 @@ pub(crate) fn lowest_tip(scene: &Scene) -> f64 {
     let (low, high) = scene.bodies[0].shape.bounding_box();
     let roller = |b: &crate::scene::Boundary| b.side == Side::Bottom && b.fix == [false, true] && b.velocity[1] == 0.0;
     if scene.boundaries.iter().any(roller) { low[1] } else { 0.5 * (low[1] + high[1]) }
-}
-
-/// Stiffness of the undamaged body on its free degrees of freedom, per unit thickness.
-#[derive(Debug)]
-pub struct Stiffness<'a> {
-    frame: &'a TotalFrame,
-    masses: Vec<f64>,
-    free: Vec<(usize, usize)>,
-    field: VectorField,
-    image: VectorField,
-    strips: StripForces,
-}
-
-impl Stiffness<'_> {
-    /// Control point and component of each degree of freedom.
-    pub fn degrees_of_freedom(&self) -> &[(usize, usize)] {
-        &self.free
-    }
-}
-
-impl StiffnessOperator for Stiffness<'_> {
-    fn masses(&self) -> &[f64] {
-        &self.masses
-    }
-
-    fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
-        for (&(at, component), x) in self.free.iter().zip(x) {
-            self.field[component][at] = *x;
-        }
-        let lattice = &self.frame.lattice;
-        let moduli = self.frame.moduli;
-        let mut kernels: Vec<_> =
-            (0..lattice.strips()).map(|_| ElasticStress { moduli, energy: Lane::ZERO }).collect();
-        let fields = Fields { displacement: [&self.field[0], &self.field[1]], phase: &[] };
-        sweep(lattice, fields, &mut kernels, Some(&mut self.strips));
-        self.strips.assemble(self.frame.grid.stride, &mut self.image);
-        for (&(at, component), out) in self.free.iter().zip(out) {
-            *out = self.image[component][at];
-        }
-    }
 }

@@ -10,11 +10,8 @@ use super::windows::{Window, scatter};
 use crate::lane::{Vectorised, dispatch};
 use crate::material::FractureModel;
 use crate::patch::Patch;
+use crate::phase_field::isolate_empty;
 use crate::stencil::Stencil;
-
-/// Diagonal and right-hand side of control points without material, as a fraction of the largest right-hand side: their
-/// solution is 1, and they do not weigh in the norm that the tolerance refers to.
-const EMPTY: f64 = 1e-6;
 
 /// Assembles matrix and right-hand side anew.
 pub fn assemble(
@@ -36,15 +33,7 @@ pub fn assemble(
         let lead = grid.index(0, 0);
         dispatch(AssembleStrip { patch, row_length, stride, lead, cells, points, fracture, model, window });
     });
-    let empty = EMPTY * load.iter().copied().fold(0.0, f64::max);
-    for row in 0..grid.rows {
-        for column in 0..grid.columns {
-            if matrix.diagonal(column, row) == 0.0 {
-                matrix.set_diagonal(column, row, empty);
-                load[grid.index(column, row)] = empty;
-            }
-        }
-    }
+    isolate_empty(matrix, load);
 }
 
 struct AssembleStrip<'a> {
