@@ -82,7 +82,8 @@ pub(super) fn largest(check: &Check, run: &Run) -> Result<f64, String> {
 /// Time (s) and height of the highest sample of the window, sharpened by a parabola through its neighbours. None if the
 /// highest stands at an end of the window: that is no peak.
 pub(super) fn peak(check: &Check, run: &Run) -> Result<Option<(f64, f64)>, String> {
-    let (window, times, values) = (run.window(check)?, run.times()?, run.column(column(check)?)?);
+    let (times, values) = (run.times()?, run.column(column(check)?)?);
+    let Ok(window) = run.window(check) else { return Ok(None) };
     let Some(top) = window.clone().max_by(|&a, &b| values[a].total_cmp(&values[b])) else { return Ok(None) };
     if top == window.start || top + 1 >= window.end {
         return Ok(None);
