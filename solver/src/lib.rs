@@ -140,6 +140,7 @@ pub mod lane;
 pub mod lattice;
 pub mod loads;
 pub mod material;
+pub mod nurbs;
 pub mod patch;
 pub mod phase_field;
 pub mod picture;

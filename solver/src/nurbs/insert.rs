@@ -1,0 +1,96 @@
+//! Knot insertion (Boehm 1980): the same geometry on more control points.
+//!
+//! Inserting u into the span `[U_k, U_(k+1))` replaces the control points `Q_i = a_i P_i + (1 − a_i) P_(i−1)` with
+//! `a_i = (u − U_i)/(U_(i+p) − U_i)` for `k − p < i ≤ k`, in homogeneous coordinates. These are convex combinations, so
+//! that round-off does not grow.
+
+use super::{NurbsError, NurbsPatch};
+
+impl NurbsPatch {
+    /// The same geometry with `new` knots inserted in a direction (0 or 1), in any order and repeated as given.
+    ///
+    /// # Errors
+    /// If a knot is not strictly inside the patch, or appears more often than the degree afterwards.
+    pub fn insert_knots(&self, direction: usize, new: &[f64]) -> Result<Self, NurbsError> {
+        let space = &self.spaces[direction];
+        let (degree, old) = (space.degree(), space.knot_vector());
+        let (low, high) = (old[0], old[old.len() - 1]);
+        if let Some(&knot) = new.iter().find(|&&u| !(u > low && u < high)) {
+            return Err(NurbsError::InsertOutside { direction, knot, low, high });
+        }
+        let mut all = [old, new].concat();
+        all.sort_by(f64::total_cmp);
+        super::check::knots(direction, degree, &all)?;
+        self.with_direction_changed(direction, degree, &all, |line| {
+            let (mut knots, mut points) = (old.to_vec(), line.to_vec());
+            for &u in new {
+                points = insert(degree, &knots, &points, u);
+                let place = knots.partition_point(|&k| k <= u);
+                knots.insert(place, u);
+            }
+            points
+        })
+    }
+
+    /// The same geometry with every non-empty span of both directions cut into `parts` equal ones.
+    ///
+    /// # Panics
+    /// If `parts` is zero.
+    pub fn subdivide(&self, parts: usize) -> Result<Self, NurbsError> {
+        assert!(parts > 0, "a span has at least one part");
+        let mut patch = self.clone();
+        for direction in 0..2 {
+            let spans = self.spaces[direction].spans().iter();
+            let new: Vec<f64> = spans
+                .flat_map(|span| (1..parts).map(|i| span.left + span.length() * i as f64 / parts as f64))
+                .collect();
+            patch = patch.insert_knots(direction, &new)?;
+        }
+        Ok(patch)
+    }
+}
+
+/// One knot into one line of control points.
+fn insert(degree: usize, knots: &[f64], points: &[[f64; 3]], u: f64) -> Vec<[f64; 3]> {
+    let k = knots.partition_point(|&knot| knot <= u) - 1;
+    (0..=points.len())
+        .map(|i| {
+            if i + degree <= k {
+                points[i]
+            } else if i > k {
+                points[i - 1]
+            } else {
+                let a = (u - knots[i]) / (knots[i + degree] - knots[i]);
+                [0, 1, 2].map(|c| a * points[i][c] + (1.0 - a) * points[i - 1][c])
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_is_halved_as_de_casteljau_does() {
+        let points = [[0.0, 0.0, 1.0], [1.0, 2.0, 1.0], [2.0, 0.0, 1.0]];
+        let knots = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        let once = insert(2, &knots, &points, 0.5);
+        assert_eq!(once, [[0.0, 0.0, 1.0], [0.5, 1.0, 1.0], [1.5, 1.0, 1.0], [2.0, 0.0, 1.0]]);
+        let twice = insert(2, &[0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0], &once, 0.5);
+        assert_eq!(twice[2], [1.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn knots_outside_or_too_many_are_refused() {
+        let patch = NurbsPatch::quarter_annulus(1.0, 2.0).unwrap();
+        for bad in [0.0, 1.0, -0.5, 2.0, f64::NAN] {
+            let error = patch.insert_knots(1, &[0.5, bad]).unwrap_err();
+            assert!(matches!(error, NurbsError::InsertOutside { direction: 1, .. }), "{error}");
+        }
+        let error = patch.insert_knots(0, &[0.5, 0.5]).unwrap_err();
+        assert!(matches!(error, NurbsError::TornKnot { direction: 0, times: 2, degree: 1, .. }), "{error}");
+        assert_eq!(patch.insert_knots(1, &[0.5, 0.5]).unwrap().spaces()[1].dimension(), 5);
+        assert_eq!(patch.subdivide(4).unwrap().spaces()[0].spans().len(), 4);
+    }
+}
