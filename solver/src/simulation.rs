@@ -15,6 +15,12 @@ use crate::updated_frame::{Failure, UpdatedFrame};
 /// Elastic energy beyond this many times all energy that ever came in counts as numerical growth.
 const GROWTH_LIMIT: f64 = 10.0;
 
+/// Closure of the ledger beyond this fraction of the energy that came in counts as broken numbers: ten times and more what
+/// a stable step leaves. An unstable step of a fracturing body shows here first, for damage eats the growing mode.
+const CLOSURE_LIMIT: f64 = 0.02;
+/// Closure below this fraction of the stored energy is round-off and tolerance of the phase field.
+const CLOSURE_FLOOR: f64 = 1e-6;
+
 /// What a run models and how large it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extent {
@@ -99,8 +105,12 @@ pub struct Simulation {
     plan: TimePlan,
     warnings: Vec<String>,
     steps: usize,
+    /// Stored energy at t = 0, J.
     initial: f64,
+    /// Kinetic and elastic energy at t = 0 and the largest external work since, J.
     energy_in: f64,
+    /// The state at the last sample.
+    sampled: Sample,
     warned_of_step: bool,
 }
 
@@ -114,11 +124,11 @@ impl Simulation {
         let frame = Frame::new(scene).map_err(|failure| breakdown(0, 0.0, origin, failure))?;
         let critical = either!(&frame, body => body.critical_step());
         let (plan, warnings) = TimePlan::new(&scene.analysis, &scene.output, critical);
-        let start = either!(&frame, body => body.sample(plan.step));
-        let initial = start.stored();
-        let energy_in = start.kinetic + start.elastic;
+        let sampled = either!(&frame, body => body.sample(plan.step));
+        let initial = sampled.stored();
+        let energy_in = sampled.kinetic + sampled.elastic;
         let warned_of_step = plan.step > critical;
-        Ok(Self { frame, plan, warnings, steps: 0, initial, energy_in, warned_of_step })
+        Ok(Self { frame, plan, warnings, steps: 0, initial, energy_in, sampled, warned_of_step })
     }
 
     /// Steps and samples.
@@ -142,12 +152,8 @@ impl Simulation {
     }
 
     /// The body of a scene in the total frame, for verification.
-    ///
-    /// # Panics
-    /// If the scene is in the updated frame: see [`Self::updated_frame`].
-    pub fn frame(&self) -> &TotalFrame {
-        let Frame::Total(frame) = &self.frame else { panic!("the scene is in the updated frame") };
-        frame
+    pub fn total_frame(&self) -> Option<&TotalFrame> {
+        if let Frame::Total(frame) = &self.frame { Some(frame) } else { None }
     }
 
     /// The body of a scene in the updated frame, for verification.
@@ -168,6 +174,10 @@ impl Simulation {
         match result {
             Ok(()) if healthy => {
                 self.watch_critical_step(time);
+                if self.steps.is_multiple_of(self.plan.steps_per_sample) {
+                    self.sampled = self.measure();
+                    self.check_closure()?;
+                }
                 Ok(())
             }
             Err(failure) if healthy => Err(breakdown(self.steps, time, self.fastest_place(), failure)),
@@ -201,11 +211,15 @@ impl Simulation {
         for _ in 0..self.plan.steps_per_sample {
             self.step()?;
         }
-        Ok(self.sample())
+        Ok(self.sampled.clone())
     }
 
     /// Energies, momenta and crack tip now, with closure.
     pub fn sample(&self) -> Sample {
+        if self.steps.is_multiple_of(self.plan.steps_per_sample) { self.sampled.clone() } else { self.measure() }
+    }
+
+    fn measure(&self) -> Sample {
         let mut sample = either!(&self.frame, body => body.sample(self.plan.step));
         sample.time = self.steps as f64 * self.plan.step;
         sample.close(self.initial);
@@ -244,8 +258,22 @@ impl Simulation {
 
     fn is_healthy(&mut self) -> bool {
         let (elastic, work) = either!(&self.frame, body => (body.elastic_energy(), body.external_work().abs()));
-        self.energy_in = self.energy_in.max(work + self.initial.abs());
-        elastic.is_finite() && elastic <= GROWTH_LIMIT * self.energy_in
+        self.energy_in = self.energy_in.max(work);
+        elastic.is_finite() && elastic <= GROWTH_LIMIT * (self.energy_in + self.initial.abs())
+    }
+
+    /// The ledger of the last sample must close.
+    fn check_closure(&self) -> Result<(), Breakdown> {
+        let Sample { closure, time, .. } = self.sampled;
+        let limit = CLOSURE_LIMIT * self.energy_in + CLOSURE_FLOOR * self.sampled.stored().abs();
+        if closure.abs() <= limit {
+            return Ok(());
+        }
+        let what = format!(
+            "the energy ledger is open by {closure:.3e} J, more than {CLOSURE_LIMIT} of the {:.3e} J put in",
+            self.energy_in
+        );
+        Err(Breakdown { step: self.steps, time, place: self.fastest_place(), what, cause: self.cause_of_growth() })
     }
 
     /// Greville point of the fastest control point, m.
@@ -269,8 +297,12 @@ impl Simulation {
         } else {
             "the elastic energy is not a number".to_string()
         };
+        Breakdown { step: self.steps, time, place: self.fastest_place(), what, cause: self.cause_of_growth() }
+    }
+
+    fn cause_of_growth(&self) -> String {
         let ratio = self.plan.step / self.plan.critical;
-        let cause = if ratio > 1.0 {
+        if ratio > 1.0 {
             format!(
                 "the time step {:.4e} s is {ratio:.3} times the critical step {:.4e} s; use time_step = \"auto\"",
                 self.plan.step, self.plan.critical
@@ -279,8 +311,7 @@ impl Simulation {
             "the time step is below the critical one of the undamaged body; look for extreme loads or velocities, \
              and halve the safety factor"
                 .to_string()
-        };
-        Breakdown { step: self.steps, time, place: self.fastest_place(), what, cause }
+        }
     }
 }
 

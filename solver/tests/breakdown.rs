@@ -76,23 +76,8 @@ fn below_the_critical_step_it_lasts() {
 }
 
 /// The unstable mode of a fracturing body is torn apart by the phase field before its elastic energy has grown: at 1.3
-/// times the critical step this plate shatters (fracture energy 0.019 J to 0.071 J on 0.014 J of work) and goes on.
+/// times the critical step this plate shatters (fracture energy 0.019 J to 0.071 J on 0.014 J of work); the ledger tells.
 #[test]
-#[ignore = "the watch sees elastic energy only; closure, at twice all energy put in, would tell"]
 fn beyond_the_critical_step_a_fracturing_body_says_so() {
     check("fracture", &with_step(notched_plate(1e5), 1.3, 100));
-}
-
-/// What makes up for it until then: the ledger does not close, where half the step closes to a millionth.
-#[test]
-fn beyond_the_critical_step_the_ledger_of_a_fracturing_body_does_not_close() {
-    let closure = |ratio: f64| {
-        let scene = with_step(notched_plate(1e5), ratio, (60.0 / ratio) as usize);
-        let mut simulation = Simulation::new(&scene).unwrap();
-        while !simulation.finished() && simulation.step().is_ok() {}
-        let sample = simulation.sample();
-        sample.closure.abs() / sample.largest_term()
-    };
-    let (stable, unstable) = (closure(0.8), closure(1.3));
-    assert!(stable < 1e-6 && unstable > 0.1, "{stable:e} and {unstable:e}");
 }

@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 /// Dense highest angular frequency of the free degrees of freedom, and the bound the solver takes.
 fn frequencies(scene: &Scene) -> (f64, f64) {
     let simulation = Simulation::new(scene).unwrap();
-    let mut operator = simulation.frame().stiffness_operator();
+    let mut operator = simulation.total_frame().unwrap().stiffness_operator();
     let bound = highest_frequency(&mut operator);
     let masses = operator.masses().to_vec();
     let n = masses.len();

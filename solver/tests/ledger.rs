@@ -82,7 +82,7 @@ fn terms_equal_their_definitions() {
     scene.bodies[0].velocity = [2.0, 1.0];
     scene.bodies[0].angular_velocity = 100.0;
     let (simulation, samples) = run(&scene);
-    let (frame, last) = (simulation.frame(), samples.last().unwrap());
+    let (frame, last) = (simulation.total_frame().unwrap(), samples.last().unwrap());
     let [vx, vy] = frame.velocity();
     let [ux, uy] = frame.displacement();
     let (mut kinetic, mut momentum, mut work) = (0.0, [0.0; 2], 0.0);

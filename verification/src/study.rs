@@ -7,6 +7,7 @@ mod basis;
 mod compressive_step;
 mod constant_stress;
 mod homogeneous_state;
+mod nurbs;
 pub mod scene;
 
 use thiserror::Error;
@@ -69,11 +70,12 @@ pub enum StudyError {
 type Study = fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>;
 
 /// Studies other than `scene`, by name.
-pub const STUDIES: [(&str, Study); 4] = [
+pub const STUDIES: [(&str, Study); 5] = [
     ("basis", basis::study),
     ("constant-stress", constant_stress::study),
     ("homogeneous-state", homogeneous_state::study),
     ("compressive-step", compressive_step::study),
+    ("nurbs", nurbs::study),
 ];
 
 /// The study of that name.

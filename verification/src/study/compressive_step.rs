@@ -22,9 +22,8 @@ pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, Stud
             (high[0] - low[0]) * (high[1] - low[1]) * scene.scene.analysis.thickness
         };
         let history = simulation
-            .frame()
-            .fracture
-            .as_ref()
+            .total_frame()
+            .and_then(|f| f.fracture.as_ref())
             .map(|f| &f.history)
             .ok_or_else(|| StudyError::Other("nothing fractures here".into()))?;
         let most = history.iter().flat_map(|lane| lane.0).fold(0.0, f64::max);
