@@ -1,13 +1,14 @@
 //! Fracture of one body in the total frame: history energy, phase field, and what is measured of them.
 
-use crate::kernels::{HistoryUpdate, SurfaceEnergy};
+use crate::conjugate_gradients::Convergence;
+use crate::kernels::{DegradedStress, HistoryUpdate, SurfaceEnergy};
 use crate::lane::{LANES, Lane};
 use crate::lattice::Lattice;
 use crate::material::{ElasticModuli, FractureModel};
 use crate::phase_field::PhaseField;
 use crate::scene::{Body, SolverSettings};
 use crate::shape::distance_to_segment;
-use crate::sweep::{Fields, sweep};
+use crate::sweep::{Fields, StripForces, sweep};
 
 /// Ratio of the largest initial history energy to Gc/(4 l0) on a seeded crack (Borden et al. 2012).
 const SEED_STRENGTH: f64 = 1000.0;
@@ -31,6 +32,15 @@ pub struct Fracturing {
     pub iterations: usize,
 }
 
+/// Sums over the points, J per metre of thickness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StressSums {
+    /// Elastic energy.
+    pub elastic_energy: f64,
+    /// Work of the history field since the last sweep.
+    pub history_work: f64,
+}
+
 /// A phase-field solve that stopped short of its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NotConverged {
@@ -38,6 +48,12 @@ pub struct NotConverged {
     pub iterations: usize,
     /// Relative residual reached.
     pub relative_residual: f64,
+}
+
+impl From<Convergence> for NotConverged {
+    fn from(Convergence { iterations, relative_residual }: Convergence) -> Self {
+        Self { iterations, relative_residual }
+    }
 }
 
 impl Fracturing {
@@ -74,13 +90,41 @@ impl Fracturing {
     /// # Errors
     /// If the solve does not converge.
     pub fn solve_phase_field(&mut self, lattice: &Lattice) -> Result<(), NotConverged> {
-        match self.field.solve(lattice, &self.history) {
-            Ok(convergence) => self.iterations = convergence.iterations,
-            Err(c) => {
-                return Err(NotConverged { iterations: c.iterations, relative_residual: c.relative_residual });
-            }
-        }
+        self.iterations = self.field.solve(lattice, &self.history)?.iterations;
         Ok(())
+    }
+
+    /// Degraded stress at the points and its nodal forces; keeps c and `c (H − psi+)` for the history work of the next
+    /// step.
+    pub fn degraded_forces(
+        &mut self,
+        lattice: &Lattice,
+        moduli: ElasticModuli,
+        displacement: [&[f64]; 2],
+        forces: &mut StripForces,
+    ) -> StressSums {
+        let model = self.model;
+        let chunk = lattice.strip_batches();
+        let states = self.phase.chunks_mut(chunk).zip(self.remembered.chunks_mut(chunk));
+        let mut kernels: Vec<_> = states
+            .zip(self.history.chunks(chunk))
+            .map(|((phase, remembered), history)| DegradedStress {
+                moduli,
+                model,
+                history,
+                phase,
+                remembered,
+                energy: Lane::ZERO,
+                history_work: Lane::ZERO,
+            })
+            .collect();
+        let fields = Fields { displacement, phase: self.field.control_values() };
+        sweep(lattice, fields, &mut kernels, Some(forces));
+        let history_work: f64 = kernels.iter().map(|k| k.history_work.sum()).sum();
+        StressSums {
+            elastic_energy: kernels.iter().map(|k| k.energy.sum()).sum(),
+            history_work: (1.0 - model.residual_stiffness) * history_work,
+        }
     }
 
     /// Surface energy per unit thickness (J/m) and smallest c at a point.
@@ -116,7 +160,11 @@ impl Fracturing {
         for (tile_index, tile) in lattice.tiles.iter().enumerate().rev() {
             for lane in (0..LANES).rev() {
                 for a in (0..lattice.points[0]).rev() {
+                    if tile.weight[a][lane] == 0.0 {
+                        continue; // a lane beyond the spans of the tile
+                    }
                     if lattice.weight(row, tile_index, b, a)[lane] == 0.0 {
+                        right = None; // a hole: nothing to interpolate to
                         continue;
                     }
                     let here = (tile.position[a][lane], self.phase[lattice.batch(row, tile_index, b, a)][lane]);

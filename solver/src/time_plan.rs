@@ -47,7 +47,7 @@ impl TimePlan {
 
     /// Steps in all.
     pub fn steps(&self) -> usize {
-        self.samples * self.steps_per_sample
+        self.samples.saturating_mul(self.steps_per_sample)
     }
 }
 

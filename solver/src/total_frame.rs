@@ -12,14 +12,14 @@ use rayon::prelude::*;
 use crate::constraints::Constraints;
 use crate::energy::Ledger;
 use crate::fracture::{Fracturing, NotConverged};
-use crate::kernels::{DegradedStress, ElasticStress};
+use crate::kernels::ElasticStress;
 use crate::lane::Lane;
 use crate::lattice::Lattice;
 use crate::loads::NodalLoad;
 use crate::material::{ElasticModuli, FractureModel};
 use crate::patch::{ControlGrid, Patch};
 use crate::phase_field::integrate_shape_functions;
-use crate::scene::{Scene, Shape, Side};
+use crate::scene::{Boundary, Scene, Shape, Side};
 use crate::stencil::CHUNK_ROWS;
 use crate::sweep::{Fields, StripForces, sweep};
 
@@ -164,26 +164,9 @@ impl TotalFrame {
         let moduli = self.moduli;
         let displacement = [&self.displacement[0][..], &self.displacement[1][..]];
         if let Some(fracture) = &mut self.fracture {
-            let model = fracture.model;
-            let chunk = self.lattice.strip_batches();
-            let states = fracture.phase.chunks_mut(chunk).zip(fracture.remembered.chunks_mut(chunk));
-            let mut kernels: Vec<_> = states
-                .zip(fracture.history.chunks(chunk))
-                .map(|((phase, remembered), history)| DegradedStress {
-                    moduli,
-                    model,
-                    history,
-                    phase,
-                    remembered,
-                    energy: Lane::ZERO,
-                    history_work: Lane::ZERO,
-                })
-                .collect();
-            let fields = Fields { displacement, phase: fracture.field.control_values() };
-            sweep(&self.lattice, fields, &mut kernels, Some(&mut self.strip_forces));
-            self.elastic_energy = kernels.iter().map(|k| k.energy.sum()).sum();
-            let work: f64 = kernels.iter().map(|k| k.history_work.sum()).sum();
-            self.ledger.history_work += (1.0 - model.residual_stiffness) * work;
+            let sums = fracture.degraded_forces(&self.lattice, moduli, displacement, &mut self.strip_forces);
+            self.elastic_energy = sums.elastic_energy;
+            self.ledger.history_work += sums.history_work;
         } else {
             let mut kernels: Vec<_> =
                 (0..self.lattice.strips()).map(|_| ElasticStress { moduli, energy: Lane::ZERO }).collect();
@@ -336,10 +319,15 @@ impl TotalFrame {
     }
 }
 
-/// Height from which the crack tip is looked for: the middle of the body, or its foot where a roller on the bottom side
-/// makes the body the upper half of a symmetric one.
+/// Height from which the crack tip is looked for: the middle of the body, or its foot if the body is the upper half of a
+/// symmetric one: it stands on the bottom side, a roller holds that side, and a crack lies along it.
 pub(crate) fn lowest_tip(scene: &Scene) -> f64 {
-    let (low, high) = scene.bodies[0].shape.bounding_box();
-    let roller = |b: &crate::scene::Boundary| b.side == Side::Bottom && b.fix == [false, true] && b.velocity[1] == 0.0;
-    if scene.boundaries.iter().any(roller) { low[1] } else { 0.5 * (low[1] + high[1]) }
+    let body = &scene.bodies[0];
+    let (low, high) = body.shape.bounding_box();
+    let at_foot = |y: f64| (y - low[1]).abs() <= 1e-9 * (high[1] - low[1]);
+    let roller = |b: &Boundary| b.side == Side::Bottom && b.fix == [false, true] && b.velocity[1] == 0.0;
+    let half = at_foot(scene.mesh.origin()[1])
+        && scene.boundaries.iter().any(roller)
+        && body.cracks.iter().any(|crack| at_foot(crack.from[1]) && at_foot(crack.to[1]));
+    if half { low[1] } else { 0.5 * (low[1] + high[1]) }
 }

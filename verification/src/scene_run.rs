@@ -115,7 +115,8 @@ impl Run {
             let step = simulation.steps();
             self.summary.steps = step;
             if step.is_multiple_of(plan.steps_per_sample) {
-                self.sample(&simulation);
+                let sample = self.sample(&simulation);
+                simulation.watch_ledger(&sample)?;
             }
             self.picture(scene, &simulation, &frames);
             progress(Progress { step, steps: plan.steps(), time: step as f64 * plan.step });
@@ -137,7 +138,7 @@ impl Run {
     }
 
     /// One row of the history.
-    fn sample(&mut self, simulation: &Simulation) {
+    fn sample(&mut self, simulation: &Simulation) -> Sample {
         let sample: Sample = timed(&mut self.stages.samples, || simulation.sample());
         let (names, values): (Vec<_>, Vec<_>) = sample.named_values().into_iter().unzip();
         if self.history.names.is_empty() {
@@ -146,6 +147,7 @@ impl Run {
         self.history.push(&values);
         self.largest_closure = self.largest_closure.max(sample.closure.abs());
         self.largest_energy = self.largest_energy.max(sample.largest_term());
+        sample
     }
 
     /// A picture, if the present step is one of `frames`.

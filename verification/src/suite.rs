@@ -116,6 +116,10 @@ pub fn verify(cases: &[Case], options: &Options, progress: &dyn Progress) -> Res
     let series = options.out.join("series");
     std::fs::create_dir_all(&series).map_err(|e| VerifyError::output(&series, e))?;
     let store = resume::Store::open(options)?;
+    if !store.has_finished_cases() {
+        remove_old_results(options.out);
+        std::fs::create_dir_all(&series).map_err(|e| VerifyError::output(&series, e))?;
+    }
     let mut outcomes = Vec::new();
     for (index, case) in cases.iter().enumerate() {
         progress.started(case, index, cases.len());
@@ -146,6 +150,16 @@ pub fn verify(cases: &[Case], options: &Options, progress: &dyn Progress) -> Res
     write_json(&options.out.join("results.json"), &results)?;
     store.finish();
     Ok(results)
+}
+
+/// Series and figures of an earlier run, if the folder is one of results: they would pass for those of this one.
+fn remove_old_results(out: &Path) {
+    if out.join("results.json").exists() {
+        for folder in ["series", "figures"] {
+            // What cannot be removed is overwritten where it matters, and writing reports the reason.
+            let _ = std::fs::remove_dir_all(out.join(folder));
+        }
+    }
 }
 
 /// Worst status of a set of records.

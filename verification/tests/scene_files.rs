@@ -171,7 +171,7 @@ const BROKEN: &[Broken] = &[
     ("max = [0.1, 0.04]", "max = [0.2, 0.04]", 37, "body.0.shape", &["outside the mesh", "enlarge mesh.size"]),
     ("max = [0.1, 0.04]", "max = [0.0, 0.04]", 37, "body.0.shape", &["empty rectangle", "min below max"]),
     ("{ rectangle = { min = [0.0, 0.0], max = [0.1, 0.04] } }", "{ disk = { center = [0.05, 0.02], radius = 0.02 } }", 44, "body.0.traction.0.edge", &["only a rectangle has a top side", "segment ="]),
-    ("[[body.traction]]\nedge   = \"top\"", "[[body.traction]]\nsegment = [[0, 0], [1, 0]]", 44, "body.0.traction.0.segment", &["leaves the mesh"]),
+    ("[[body.traction]]\nedge   = \"top\"", "[[body.traction]]\nsegment = [[0, 0], [1, 0]]", 44, "body.0.traction.0.segment", &["leaves body \"plate\"", "boundary"]),
     ("\"gauss\"", "\"maclaurin\"\nparticles_per_cell = [6, 6]", 0, "body.0.particles_per_cell", &["duplicate key"]),
     ("from = [0.0, 0.02]", "from = [-0.01, 0.02]", 50, "body.0.crack.0.from", &["lies outside body \"plate\"", "boundary"]),
     ("to   = [0.05, 0.02]", "to = [0.0, 0.02]", 51, "body.0.crack.0.to", &["zero length"]),

@@ -10,7 +10,7 @@ use fisura_verification::record::Environment;
 pub fn environment(workspace: &Path) -> Environment {
     let git = |args: &[&str]| output(Command::new("git").args(args).current_dir(folder(workspace)));
     let commit = git(&["rev-parse", "HEAD"]);
-    let changes = git(&["status", "--porcelain", "--untracked-files=no"]);
+    let changes = git(&["status", "--porcelain"]);
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let since = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
     Environment {

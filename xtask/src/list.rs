@@ -1,5 +1,7 @@
 //! `list`: suites and cases.
 
+use std::collections::BTreeSet;
+
 use fisura_reports::number::duration;
 use fisura_verification::suite::{Case, load_cases};
 use serde_json::{Value, json};
@@ -18,7 +20,11 @@ pub fn list(common: &Common) -> Result<Exit, Failure> {
     console::no_files(common, "list");
     let cases = load_cases(&cases_folder()?, &[])?;
     match common.format {
-        Format::Json => console::json(&json!({ "cases": cases.iter().map(entry).collect::<Vec<_>>() })),
+        Format::Json => {
+            let entries: Vec<Value> = cases.iter().map(entry).collect();
+            let suites: BTreeSet<&str> = cases.iter().map(|case| case.suite.as_str()).collect();
+            console::json(&json!({ "suites": suites, "tiers": ["quick", "full"], "cases": entries }));
+        }
         Format::Text => console::result(&text(&cases)),
     }
     Ok(Exit::Done)

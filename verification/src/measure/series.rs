@@ -1,6 +1,7 @@
 //! Measures on columns of the history.
 
 use fisura::material::ElasticModuli;
+use nalgebra::{DMatrix, DVector};
 
 use super::tip::fitted_slope;
 use super::{Measured, Run, column, curve_reference, position};
@@ -61,9 +62,8 @@ pub(super) fn slope_over_plane_wave_power(check: &Check, run: &Run) -> Result<Me
 
 /// Largest |closure| over the largest energy of the run.
 pub(super) fn closure(run: &Run) -> Result<f64, String> {
-    let most =
-        |name: &str| -> f64 { run.column(name).map_or(0.0, |c| c.iter().fold(0.0, |most: f64, v| most.max(v.abs()))) };
-    let scale = ["kinetic_j", "elastic_j", "fracture_j", "external_work_j"].map(most).into_iter().fold(0.0, f64::max);
+    let most = |name: &str| -> f64 { run.column(name).map_or(0.0, |c| c.iter().map(|v| v.abs()).fold(0.0, larger)) };
+    let scale = ["kinetic_j", "elastic_j", "fracture_j", "external_work_j"].map(most).into_iter().fold(0.0, larger);
     if scale > 0.0 { Ok(most("closure_j") / scale) } else { Err("the run has no energy".to_string()) }
 }
 
@@ -71,16 +71,17 @@ pub(super) fn closure(run: &Run) -> Result<f64, String> {
 pub(super) fn drift(check: &Check, run: &Run) -> Result<f64, String> {
     let (window, values) = (run.window(check)?, run.column(column(check)?)?);
     let first = values[window.start];
-    Ok(values[window].iter().map(|v| (v - first).abs()).fold(0.0, f64::max) / first.abs())
+    Ok(values[window].iter().map(|v| (v - first).abs()).fold(0.0, larger) / first.abs())
 }
 
 /// Largest magnitude in the window.
 pub(super) fn largest(check: &Check, run: &Run) -> Result<f64, String> {
-    Ok(run.column(column(check)?)?[run.window(check)?].iter().map(|v| v.abs()).fold(0.0, f64::max))
+    Ok(run.column(column(check)?)?[run.window(check)?].iter().map(|v| v.abs()).fold(0.0, larger))
 }
 
-/// Time (s) and height of the highest sample of the window, sharpened by a parabola through its neighbours. None if the
-/// highest stands at an end of the window: that is no peak.
+/// Time (s) and height of the peak in the window: a parabola fitted to the samples within `at` seconds of the highest (its
+/// neighbours, if `at` is absent). A width beyond the ripples of a wave front makes the time of a flat peak well defined.
+/// None if the highest stands at an end of the window: that is no peak.
 pub(super) fn peak(check: &Check, run: &Run) -> Result<Option<(f64, f64)>, String> {
     let (times, values) = (run.times()?, run.column(column(check)?)?);
     let Ok(window) = run.window(check) else { return Ok(None) };
@@ -88,11 +89,18 @@ pub(super) fn peak(check: &Check, run: &Run) -> Result<Option<(f64, f64)>, Strin
     if top == window.start || top + 1 >= window.end {
         return Ok(None);
     }
-    let (left, middle, right) = (values[top - 1], values[top], values[top + 1]);
-    let curvature = left - 2.0 * middle + right;
-    let shift = if curvature < 0.0 { 0.5 * (left - right) / curvature } else { 0.0 };
     let step = times[top + 1] - times[top];
-    Ok(Some((times[top] + shift * step, middle - 0.25 * (left - right) * shift)))
+    let half_width = check.at.unwrap_or(step).max(step) * (1.0 + 1e-9);
+    let near = (0..times.len()).filter(|&i| (times[i] - times[top]).abs() <= half_width);
+    let rows: Vec<[f64; 2]> = near.map(|i| [(times[i] - times[top]) / step, values[i]]).collect();
+    let matrix = DMatrix::from_fn(rows.len(), 3, |i, power| rows[i][0].powi(power as i32));
+    let heights = DVector::from_iterator(rows.len(), rows.iter().map(|row| row[1]));
+    let Ok(fit) = matrix.svd(true, true).solve(&heights, 1e-12) else { return Ok(None) };
+    if fit[2] >= 0.0 {
+        return Ok(None);
+    }
+    let shift = -0.5 * fit[1] / fit[2];
+    Ok(Some((times[top] + shift * step, fit[0] + 0.5 * fit[1] * shift)))
 }
 
 /// Largest fall of a column below an earlier value, over its largest value.
@@ -101,7 +109,7 @@ pub(super) fn largest_decrease(check: &Check, run: &Run) -> Result<f64, String> 
     let (mut highest, mut fall) = (f64::NEG_INFINITY, 0.0_f64);
     for value in values {
         highest = highest.max(value);
-        fall = fall.max(highest - value);
+        fall = larger(fall, highest - value);
     }
     Ok(fall / highest.abs())
 }
@@ -116,8 +124,13 @@ pub(super) fn difference(check: &Check, run: &Run, runs: &[Run]) -> Result<f64, 
     if values.len() != others.len() || times.iter().zip(other_times).any(|(a, b)| (a - b).abs() > 1e-9 * a.abs()) {
         return Err("the two variants have different sample times".to_string());
     }
-    let scale = others.iter().map(|v| v.abs()).fold(0.0, f64::max);
-    Ok(values.iter().zip(&others).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale)
+    let scale = others.iter().map(|v| v.abs()).fold(0.0, larger);
+    Ok(values.iter().zip(&others).map(|(a, b)| (a - b).abs()).fold(0.0, larger) / scale)
+}
+
+/// The larger of two numbers; not a number if either is not: a gap in a column must not pass for agreement.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
 /// Order at which a quantity falls with the time step over the variants: slope of log closure against log dt.

@@ -2,6 +2,8 @@
 //!
 //! The axis is the height of the initial crack. The tip *branches* when it first leaves the axis by [`OFF_AXIS`].
 
+use fisura::fracture::BROKEN;
+
 use super::{Run, position};
 use crate::case::Check;
 
@@ -9,8 +11,6 @@ use crate::case::Check;
 const OFF_AXIS: f64 = 0.25e-3;
 /// Half width of the window in which a speed is fitted, s.
 const SPEED_WINDOW: f64 = 2e-6;
-/// Phase field below which the material counts as broken.
-const BROKEN: f64 = 0.05;
 
 /// The tip against time: t (s), x and y (m), only where there is one.
 fn tips(run: &Run) -> Result<Vec<[f64; 3]>, String> {

@@ -143,7 +143,7 @@ pub fn describe(case: &Case, finished: &FinishedScene) -> (RunInfo, Vec<(String,
     let mut pictures = Vec::new();
     for frame in &finished.run.frames {
         if let Some(phase) = &frame.phase {
-            let name = format!("{stem}-phase-{:.0}us", frame.time * 1e6);
+            let name = format!("{stem}-phase-{}us", microseconds(frame.time));
             tables.push((name.clone(), raster(frame, phase)));
             let series = format!("series/{name}.csv");
             pictures.push(PictureInfo { time: frame.time, series, pixels: frame.pixels });
@@ -187,6 +187,11 @@ fn derived(history: &Table) -> Table {
         table.columns.push(times.iter().map(|t| fitted_speed(times, x, *t)).collect());
     }
     table
+}
+
+/// A time in microseconds to the nanosecond, for file names.
+pub fn microseconds(time: f64) -> f64 {
+    (time * 1e9).round() / 1e3
 }
 
 /// Raster of a picture; values rounded to 1e-5, which no colour shows.
