@@ -3,17 +3,37 @@
 use crate::scene::{Shape, Side};
 
 impl Shape {
-    /// Whether `position` (m) lies in the shape or on its boundary.
+    /// Whether `position` (m) lies in the shape; what bounds it belongs to it, except for the edges of a polygon, which
+    /// belong to one side by the even–odd rule, and for what a difference takes away.
     pub fn contains(&self, position: [f64; 2]) -> bool {
-        let [x, y] = position;
+        self.contains_within(position, 0.0)
+    }
+
+    /// Whether `position` (m) lies in the shape grown by `margin` (m); a negative margin shrinks it. A small positive
+    /// margin makes it the closure of the shape, up to rounding.
+    pub fn contains_within(&self, position: [f64; 2], margin: f64) -> bool {
+        let distance = |center: &[f64; 2]| (position[0] - center[0]).hypot(position[1] - center[1]);
         match self {
-            Self::Rectangle { min, max } => (min[0]..=max[0]).contains(&x) && (min[1]..=max[1]).contains(&y),
-            Self::Disk { center, radius } => (x - center[0]).hypot(y - center[1]) <= *radius,
-            Self::Annulus { center, inner_radius, outer_radius } => {
-                (*inner_radius..=*outer_radius).contains(&(x - center[0]).hypot(y - center[1]))
+            Self::Rectangle { min, max } => {
+                (0..2).all(|d| position[d] >= min[d] - margin && position[d] <= max[d] + margin)
             }
-            Self::Polygon { points } => polygon_contains(points, position),
-            Self::Difference { of, minus } => of.contains(position) && !minus.iter().any(|s| s.contains(position)),
+            Self::Disk { center, radius } => distance(center) <= radius + margin,
+            Self::Annulus { center, inner_radius, outer_radius } => {
+                (inner_radius - margin..=outer_radius + margin).contains(&distance(center))
+            }
+            Self::Polygon { points } => {
+                let inside = polygon_contains(points, position);
+                let near =
+                    |reach: f64| polygon_edges(points).any(|[a, b]| distance_to_segment(position, a, b) <= reach);
+                match margin {
+                    m if m > 0.0 => inside || near(m),
+                    m if m < 0.0 => inside && !near(-m),
+                    _ => inside,
+                }
+            }
+            Self::Difference { of, minus } => {
+                of.contains_within(position, margin) && !minus.iter().any(|s| s.contains_within(position, -margin))
+            }
         }
     }
 
@@ -45,18 +65,16 @@ impl Shape {
     }
 }
 
+/// Edges of a polygon from the one that closes it on.
+pub(crate) fn polygon_edges(points: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
+    (0..points.len()).map(|i| [points[(i + points.len() - 1) % points.len()], points[i]])
+}
+
 /// Even–odd rule.
 fn polygon_contains(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
-    let mut inside = false;
-    let mut previous = points.len() - 1;
-    for current in 0..points.len() {
-        let ([x0, y0], [x1, y1]) = (points[previous], points[current]);
-        if (y0 > y) != (y1 > y) && x < x0 + (y - y0) / (y1 - y0) * (x1 - x0) {
-            inside = !inside;
-        }
-        previous = current;
-    }
-    inside
+    let crosses =
+        |[[x0, y0], [x1, y1]]: &[[f64; 2]; 2]| (y0 > &y) != (y1 > &y) && x < x0 + (y - y0) / (y1 - y0) * (x1 - x0);
+    polygon_edges(points).filter(crosses).count() % 2 == 1
 }
 
 /// Distance (m) of `position` from the segment between `from` and `to`.
@@ -64,7 +82,8 @@ pub fn distance_to_segment(position: [f64; 2], from: [f64; 2], to: [f64; 2]) -> 
     let along = [to[0] - from[0], to[1] - from[1]];
     let offset = [position[0] - from[0], position[1] - from[1]];
     let length_squared = along[0] * along[0] + along[1] * along[1];
-    let t = ((offset[0] * along[0] + offset[1] * along[1]) / length_squared).clamp(0.0, 1.0);
+    let projected = offset[0] * along[0] + offset[1] * along[1];
+    let t = if length_squared > 0.0 { (projected / length_squared).clamp(0.0, 1.0) } else { 0.0 };
     (offset[0] - t * along[0]).hypot(offset[1] - t * along[1])
 }
 
@@ -87,8 +106,25 @@ mod tests {
     }
 
     #[test]
+    fn a_margin_moves_every_boundary_outwards_or_inwards() {
+        let disk = |radius| Shape::Disk { center: [0.0; 2], radius };
+        let shapes = [
+            (Shape::Rectangle { min: [-1.0; 2], max: [1.0; 2] }, [1.0, 0.5]),
+            (disk(1.0), [0.0, 1.0]),
+            (Shape::Annulus { center: [0.0; 2], inner_radius: 0.5, outer_radius: 1.0 }, [0.5, 0.0]),
+            (Shape::Polygon { points: vec![[0.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0]] }, [0.5, 0.5]),
+            (Shape::Difference { of: Box::new(disk(2.0)), minus: vec![disk(1.0)] }, [1.0, 0.0]),
+        ];
+        for (shape, on_the_boundary) in shapes {
+            assert!(shape.contains_within(on_the_boundary, 1e-9), "{shape:?}");
+            assert!(!shape.contains_within(on_the_boundary, -1e-9), "{shape:?}");
+        }
+    }
+
+    #[test]
     fn distance_beyond_the_end_is_to_the_end() {
         assert_eq!(distance_to_segment([3.0, 4.0], [-1.0, 0.0], [0.0, 0.0]), 5.0);
         assert_eq!(distance_to_segment([-0.5, 0.25], [-1.0, 0.0], [0.0, 0.0]), 0.25);
+        assert_eq!(distance_to_segment([3.0, 4.0], [0.0, 0.0], [0.0, 0.0]), 5.0, "a segment without length");
     }
 }

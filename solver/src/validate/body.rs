@@ -1,14 +1,17 @@
 //! Checks of bodies: shape, place in the mesh, points, resolution of the length scale, tractions, cracks.
 
 use super::analysis::side_name;
-use super::geometry::{bounding_box, contains, defect};
+use super::geometry::defect;
 use super::{Findings, mesh::largest_span};
+use crate::quadrature::MAX_POINTS;
 use crate::scene::{Body, Crack, Edge, Fracture, Layout, Mesh, Scene, Shape, Traction};
 
 /// Relative tolerance of "inside", of the size of the mesh or body.
 const TOLERANCE: f64 = 1e-9;
-/// Most points per span and direction.
-const MOST_POINTS: usize = 16;
+/// Intervals between the positions at which the segment of a traction is looked at.
+const SEGMENT_INTERVALS: usize = 32;
+/// Most positions at which a crack is looked at.
+const MOST_CRACK_SAMPLES: usize = 10_000;
 /// Most points of the Maclaurin rule.
 const MOST_MACLAURIN: usize = 5;
 
@@ -29,16 +32,17 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
             findings.error(format!("{key}.shape"), message, remedy);
             continue;
         }
-        if mesh_is_sound && inside_mesh(&key, body, &scene.mesh, findings) {
-            if let Some(fracture) = fracture {
-                resolution(body, fracture, &scene.mesh, findings);
-            }
-            for (j, traction) in body.tractions.iter().enumerate() {
-                check_traction(&format!("{key}.traction.{j}"), traction, body, &scene.mesh, findings);
-            }
+        if mesh_is_sound
+            && inside_mesh(&key, body, &scene.mesh, findings)
+            && let Some(fracture) = fracture
+        {
+            resolution(body, fracture, &scene.mesh, findings);
+        }
+        for (j, traction) in body.tractions.iter().enumerate() {
+            check_traction(&format!("{key}.traction.{j}"), traction, body, findings);
         }
         for (j, crack) in body.cracks.iter().enumerate() {
-            check_crack(&format!("{key}.crack.{j}"), crack, body, findings);
+            check_crack(&format!("{key}.crack.{j}"), crack, body, fracture, findings);
         }
     }
 }
@@ -46,8 +50,8 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
 fn points(key: &str, body: &Body, degree: [usize; 2], findings: &mut Findings) {
     let counts = body.particles_per_cell;
     let points = format!("{key}.particles_per_cell");
-    if let Some(n) = counts.iter().find(|n| **n == 0 || **n > MOST_POINTS) {
-        findings.error(points, format!("{n} points per cell and direction"), format!("give 1 to {MOST_POINTS}"));
+    if let Some(n) = counts.iter().find(|n| **n == 0 || **n > MAX_POINTS) {
+        findings.error(points, format!("{n} points per cell and direction"), format!("give 1 to {MAX_POINTS}"));
     } else if body.layout == Layout::Maclaurin && counts.iter().any(|n| *n > MOST_MACLAURIN) {
         let message = format!("the maclaurin layout has no rule of {} points", counts[0].max(counts[1]));
         let remedy = "give at most 5 particles_per_cell, or use layout = \"gauss\" or \"uniform\"";
@@ -79,7 +83,7 @@ fn material<'a>(key: &str, body: &Body, scene: &'a Scene, findings: &mut Finding
 }
 
 fn inside_mesh(key: &str, body: &Body, mesh: &Mesh, findings: &mut Findings) -> bool {
-    let (min, max) = bounding_box(&body.shape);
+    let (min, max) = body.shape.bounding_box();
     let (origin, end) = (mesh.origin(), mesh.end());
     let outside = |d: usize| {
         let tolerance = TOLERANCE * (end[d] - origin[d]);
@@ -97,7 +101,7 @@ fn inside_mesh(key: &str, body: &Body, mesh: &Mesh, findings: &mut Findings) -> 
 
 /// Largest span in the body against the length scale: above it the crack is coarse, above four times it is not there.
 fn resolution(body: &Body, fracture: &Fracture, mesh: &Mesh, findings: &mut Findings) {
-    let (min, max) = bounding_box(&body.shape);
+    let (min, max) = body.shape.bounding_box();
     let h = (0..2).map(|d| largest_span(&mesh.knots[d], min[d], max[d])).fold(0.0, f64::max);
     let l0 = fracture.length_scale;
     let sizes = format!("cells of h = {:.4} mm against l0 = {:.4} mm", 1e3 * h, 1e3 * l0);
@@ -113,7 +117,7 @@ fn resolution(body: &Body, fracture: &Fracture, mesh: &Mesh, findings: &mut Find
     }
 }
 
-fn check_traction(key: &str, traction: &Traction, body: &Body, mesh: &Mesh, findings: &mut Findings) {
+fn check_traction(key: &str, traction: &Traction, body: &Body, findings: &mut Findings) {
     findings.finite(format!("{key}.stress"), &traction.stress);
     if let Some(ramp) = traction.ramp {
         findings.positive(format!("{key}.ramp"), ramp, "ramp = \"1 us\", or leave it out for a load from t = 0");
@@ -129,19 +133,29 @@ fn check_traction(key: &str, traction: &Traction, body: &Body, mesh: &Mesh, find
             if !findings.finite(key.clone(), &[ends[0], ends[1]].concat()) {
                 return;
             }
-            let (origin, end) = (mesh.origin(), mesh.end());
-            let size = (end[0] - origin[0]).max(end[1] - origin[1]);
-            let patch = Shape::Rectangle { min: origin, max: end };
             if ends[0] == ends[1] {
                 findings.error(key, "a segment of zero length", "give two different ends");
-            } else if !ends.iter().all(|p| contains(&patch, *p, TOLERANCE * size)) {
-                findings.error(key, "the segment leaves the mesh", "give ends inside the mesh, on the body's boundary");
+            } else if let Some([x, y]) = first_outside(*ends, SEGMENT_INTERVALS, &body.shape) {
+                let message = format!("the segment leaves body {:?}: ({x}, {y}) m lies outside", body.name);
+                findings.error(key, message, "give two ends between which every point lies on the body's boundary");
             }
         }
     }
 }
 
-fn check_crack(key: &str, crack: &Crack, body: &Body, findings: &mut Findings) {
+/// First of `intervals + 1` equally spaced positions (m) between two ends, both included, that is not in the closure of
+/// a shape.
+fn first_outside([from, to]: [[f64; 2]; 2], intervals: usize, shape: &Shape) -> Option<[f64; 2]> {
+    let (min, max) = shape.bounding_box();
+    let tolerance = TOLERANCE * (max[0] - min[0]).max(max[1] - min[1]);
+    let position = |i: usize| {
+        let t = i as f64 / intervals as f64;
+        [0, 1].map(|d| (1.0 - t) * from[d] + t * to[d])
+    };
+    (0..=intervals).map(position).find(|p| !shape.contains_within(*p, tolerance))
+}
+
+fn check_crack(key: &str, crack: &Crack, body: &Body, fracture: Option<&Fracture>, findings: &mut Findings) {
     if let Some(half_width) = crack.half_width {
         let like = "half_width = \"0.125 mm\", or leave it out for l0/2";
         findings.positive(format!("{key}.half_width"), half_width, like);
@@ -152,14 +166,21 @@ fn check_crack(key: &str, crack: &Crack, body: &Body, findings: &mut Findings) {
     if crack.from == crack.to {
         return findings.error(format!("{key}.to"), "a crack of zero length", "give two different ends");
     }
-    let (min, max) = bounding_box(&body.shape);
-    let tolerance = TOLERANCE * (max[0] - min[0]).max(max[1] - min[1]);
-    let middle = [0, 1].map(|d| 0.5 * (crack.from[d] + crack.to[d]));
-    let places = [("from", crack.from, "end"), ("to", crack.to, "end"), ("from", middle, "middle")];
-    for (name, [x, y], part) in places {
-        if !contains(&body.shape, [x, y], tolerance) {
-            let message = format!("the {part} ({x}, {y}) m of the crack lies outside body {:?}", body.name);
+    let ends_inside = [("from", crack.from), ("to", crack.to)].map(|(name, [x, y])| {
+        let inside = first_outside([[x, y]; 2], 1, &body.shape).is_none();
+        if !inside {
+            let message = format!("the end ({x}, {y}) m of the crack lies outside body {:?}", body.name);
             findings.error(format!("{key}.{name}"), message, "give ends inside the body or on its boundary");
         }
+        inside
+    });
+    let length = (crack.to[0] - crack.from[0]).hypot(crack.to[1] - crack.from[1]);
+    let finest = fracture.map_or(f64::INFINITY, |f| 0.5 * f.length_scale);
+    let intervals = ((length / finest).ceil() as usize).clamp(2, MOST_CRACK_SAMPLES - 1);
+    if ends_inside == [true, true]
+        && let Some([x, y]) = first_outside([crack.from, crack.to], intervals, &body.shape)
+    {
+        let message = format!("the crack leaves body {:?} between its ends, at ({x}, {y}) m", body.name);
+        findings.error(format!("{key}.from"), message, "give one crack for each part that lies inside the body");
     }
 }

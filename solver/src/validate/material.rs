@@ -1,6 +1,7 @@
 //! Checks of materials: ranges of the constants, and whether the wave speed they imply is possible.
 
 use super::Findings;
+use crate::material::ElasticModuli;
 use crate::scene::{Fracture, Material, Plane, Scene};
 
 /// No solid carries waves faster than this, m/s (diamond: 18 km/s).
@@ -47,18 +48,8 @@ fn poisson_ratio(key: &str, ratio: f64, plane: Plane, findings: &mut Findings) -
     }
 }
 
-/// Speed of dilatational waves, m/s: `sqrt((λ + 2μ)/ρ)` in plane strain, `sqrt(E/(ρ(1 - ν²)))` in plane stress.
-fn dilatational_speed(material: &Material, plane: Plane) -> f64 {
-    let (e, nu) = (material.young_modulus, material.poisson_ratio);
-    let modulus = match plane {
-        Plane::Strain => e * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
-        Plane::Stress => e / (1.0 - nu * nu),
-    };
-    (modulus / material.density).sqrt()
-}
-
 fn wave_speed(key: &str, material: &Material, plane: Plane, findings: &mut Findings) {
-    let speed = dilatational_speed(material, plane);
+    let speed = ElasticModuli::new(material, plane).dilatational_speed(material.density);
     let key = format!("{key}.density");
     let implied = format!("with this density dilatational waves travel at {speed:.3e} m/s");
     if speed > FASTEST {

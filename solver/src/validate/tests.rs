@@ -156,6 +156,42 @@ fn cracks_lie_in_the_closure_of_their_body() {
 }
 
 #[test]
+fn a_crack_does_not_leap_over_a_hole() {
+    let crack = |radius: f64| {
+        errors(|s| {
+            let hole = Shape::Disk { center: [0.0025, 0.005], radius };
+            s.bodies[0].shape = Shape::Difference { of: Box::new(s.bodies[0].shape.clone()), minus: vec![hole] };
+            s.bodies[0].cracks[0] = Crack { from: [0.0, 0.005], to: [0.01, 0.005], half_width: None };
+        })
+    };
+    assert_eq!(crack(0.3e-3), ["body.0.crack.0.from"], "neither end nor the middle is in the hole");
+    assert_eq!(crack(0.07e-3), ["body.0.crack.0.from"], "a hole of about l0/2");
+    let endless = |s: &mut Scene| glass(s).fracture.as_mut().unwrap().length_scale = 1e-300;
+    assert_eq!(errors(endless), ["material.glass.fracture.length_scale"], "a finite number of positions");
+}
+
+#[test]
+fn tractions_act_on_segments_of_their_body() {
+    let segment = |ends: [[f64; 2]; 2]| {
+        errors(|s| {
+            s.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [0.008, 0.01] };
+            s.bodies[0].tractions = vec![Traction { edge: Edge::Segment(ends), stress: [1e6, 0.0], ramp: None }];
+        })
+    };
+    assert!(segment([[0.008, 0.0], [0.008, 0.01]]).is_empty(), "on the boundary");
+    assert!(segment([[0.004, 0.002], [0.004, 0.003]]).is_empty(), "inside");
+    assert_eq!(segment([[0.009, 0.0], [0.009, 0.01]]), ["body.0.traction.0.segment"], "in the mesh beside the body");
+    assert_eq!(segment([[0.0, 0.01], [0.0081, 0.01]]), ["body.0.traction.0.segment"], "longer than the side");
+    let notched = errors(|s| {
+        let notch = Shape::Rectangle { min: [0.004, -0.001], max: [0.005, 0.002] };
+        s.bodies[0].shape = Shape::Difference { of: Box::new(s.bodies[0].shape.clone()), minus: vec![notch] };
+        let edge = Edge::Segment([[0.0, 0.0], [0.01, 0.0]]);
+        s.bodies[0].tractions = vec![Traction { edge, stress: [0.0, 1e6], ramp: None }];
+    });
+    assert_eq!(notched, ["body.0.traction.0.segment"], "over the mouth of a notch");
+}
+
+#[test]
 fn points_and_layouts_have_bounds() {
     let points = |counts, layout| {
         move |s: &mut Scene| {
