@@ -22,7 +22,7 @@ pub fn validate(scene: &Scene) -> Result<Vec<SceneWarning>, Vec<SceneError>> {
     let mut findings = Findings::default();
     mesh::check(&scene.mesh, &mut findings);
     let mesh_is_sound = findings.errors.is_empty();
-    analysis::check(scene, &mut findings);
+    analysis::check(scene, mesh_is_sound, &mut findings);
     material::check(scene, &mut findings);
     body::check(scene, mesh_is_sound, &mut findings);
     unsupported(scene, &mut findings);

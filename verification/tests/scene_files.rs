@@ -135,6 +135,7 @@ const BROKEN: &[Broken] = &[
     ("\"80 us\"", "\"80 mm\"", 14, "analysis.end_time", &["is a length, expected a time", "\"80 us\""]),
     ("\"80 us\"", "\"80 usec\"", 14, "analysis.end_time", &["unknown unit \"usec\"", "\"80 us\""]),
     ("\"80 us\"", "nan", 14, "analysis.end_time", &["not a finite number"]),
+    ("\"80 us\"", "1e30", 14, "analysis.end_time", &["e37 steps", "shorter end_time"]),
     ("\"80 us\"", "true", 14, "analysis.end_time", &["found a boolean", "\"80 us\""]),
     ("transfer   = \"flip\"", "transfer = \"xpic\"", 17, "analysis.transfer", &["{ xpic = 5 }"]),
     ("\"32 GPa\"", "\"32 Gpa\"", 25, "material.glass.young_modulus", &["unknown unit", "did you mean \"GPa\""]),
@@ -180,6 +181,8 @@ const BROKEN: &[Broken] = &[
     ("[output]", "[[boundary]]\nside = \"left\"\nfix = [\"y\", \"x\"]\n[output]", 63, "boundary.1.fix", &["already fixed on the left side", "remove one"]),
     ("80e-6]", "90e-6]", 63, "output.frames.2", &["outside the simulated time", "end_time"]),
     ("samples = 320", "samples = 0", 62, "output.samples", &["between 1"]),
+    ("time_step  = \"auto\"", "time_step = 1e-20", 15, "analysis.time_step", &["8.0e15 steps", "longer time_step"]),
+    ("from = [0.0, 0.02]\nto   = [0.05, 0.02]", "from = [0.0, 0.02]\nto = [0.11, 0.02]", 51, "body.0.crack.0.to", &["lies outside body \"plate\""]),
     // not yet
     ("# [contact] with friction = 0.65 stands here once bodies can meet", "[contact]\nfriction = 0.65", 54, "contact", &["not supported yet", "remove"]),
     ("kinematics = \"small\"", "kinematics = \"finite\"", 13, "analysis.kinematics", &["not supported yet", "small"]),
@@ -295,6 +298,10 @@ fn a_wrong_override_is_named() {
         ("analysis.end_time=80 mm", "--set:1:19: analysis.end_time: \"80 mm\" is a length"),
         ("contact.friction=0.3", "--set:1:1: contact: contact between bodies is not supported yet"),
         ("material.glass.density= 2450e-12", "--set:1:25: material.glass.density: with this density"),
+        ("body.0.shape.rectangle.min=[0,0", "body.0.shape.rectangle.min: not valid TOML: unclosed array"),
+        ("mesh={degree=2", "mesh: not valid TOML: "),
+        ("title= \"half", "title: not valid TOML: "),
+        ("title='half", "title: not valid TOML: "),
         ("mesh=3", "--set:1:6: mesh: expected a table, found an integer"),
     ] {
         let text = SceneFile::parse("plate.toml", PLATE, &overrides(&[set])).expect_err(set).to_string();

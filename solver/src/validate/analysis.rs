@@ -1,14 +1,23 @@
 //! Checks of times, step, solver, boundaries and output.
 
-use super::Findings;
-use crate::scene::{Frame, Scene, Side, TimeStep, Transfer};
+use super::material::plausible_speed;
+use super::{Findings, mesh::spans_over};
+use crate::scene::{Body, Boundary, Frame, Scene, Side, TimeStep, Transfer};
 
-pub(super) fn check(scene: &Scene, findings: &mut Findings) {
+/// Most steps of a run.
+const MOST_STEPS: f64 = 1e9;
+/// Relative tolerance of "on the side", of the size of the mesh.
+const TOLERANCE: f64 = 1e-9;
+
+pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) {
     let analysis = &scene.analysis;
     findings.positive("analysis.thickness", analysis.thickness, "thickness = 1.0 (m)");
-    findings.positive("analysis.end_time", analysis.end_time, "end_time = \"80 us\"");
+    let mut sound = findings.positive("analysis.end_time", analysis.end_time, "end_time = \"80 us\"");
     if let TimeStep::Fixed(step) = analysis.time_step {
-        findings.positive("analysis.time_step", step, "time_step = \"10 ns\", or \"auto\"");
+        sound &= findings.positive("analysis.time_step", step, "time_step = \"10 ns\", or \"auto\"");
+    }
+    if sound {
+        steps(scene, mesh_is_sound, findings);
     }
     if !(analysis.safety > 0.0 && analysis.safety <= 1.0) {
         let message = format!("{} is no fraction of the critical step", analysis.safety);
@@ -22,12 +31,71 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     }
     solver(scene, findings);
     boundaries(scene, findings);
+    if mesh_is_sound {
+        for (i, boundary) in scene.boundaries.iter().enumerate() {
+            held(&format!("boundary.{i}.side"), boundary, scene, findings);
+        }
+    }
     output(scene, findings);
     if let Some(contact) = &scene.contact
         && !(contact.friction >= 0.0 && contact.friction.is_finite())
     {
         let message = format!("a friction coefficient of {}", contact.friction);
         findings.error("contact.friction", message, "give a coefficient of 0 or more");
+    }
+}
+
+/// Whether the run has a number of steps that can be taken: with a step of choice, one span per step is the estimate.
+fn steps(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) {
+    let end = scene.analysis.end_time;
+    if let TimeStep::Fixed(step) = scene.analysis.time_step {
+        let steps = end / step;
+        if steps > MOST_STEPS {
+            let message =
+                format!("steps of {step:e} s to end_time = {end:e} s are {steps:.1e} steps, above {MOST_STEPS:e}");
+            let remedy = "give a longer time_step, or \"auto\", or a shorter end_time";
+            findings.error("analysis.time_step", message, remedy);
+        }
+    } else if mesh_is_sound {
+        let steps = scene.bodies.iter().filter_map(|body| crossings(body, scene)).fold(0.0, f64::max);
+        if steps > MOST_STEPS {
+            let message = format!("{end:e} s are about {steps:.1e} steps of the smallest cell, above {MOST_STEPS:e}");
+            findings.error("analysis.end_time", message, "give a shorter end_time with its unit, such as \"80 us\"");
+        }
+    }
+}
+
+/// How many times a dilatational wave crosses the smallest span under a body until the end; `None` without a material
+/// that makes sense.
+fn crossings(body: &Body, scene: &Scene) -> Option<f64> {
+    let speed = plausible_speed(scene.materials.get(&body.material)?, scene.analysis.plane)?;
+    let (min, max) = body.shape.bounding_box();
+    let spans = (0..2).flat_map(|d| spans_over(&scene.mesh.knots[d], min[d], max[d]));
+    Some(scene.analysis.end_time * speed / spans.fold(f64::INFINITY, f64::min))
+}
+
+/// A warning unless a body reaches the side of a boundary.
+fn held(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) {
+    let (origin, end) = (scene.mesh.origin(), scene.mesh.end());
+    let (d, upper) = match boundary.side {
+        Side::Left => (0, false),
+        Side::Right => (0, true),
+        Side::Bottom => (1, false),
+        Side::Top => (1, true),
+    };
+    let tolerance = TOLERANCE * (end[d] - origin[d]);
+    let place = if upper { end[d] } else { origin[d] };
+    let reaches = |body: &Body| {
+        let (min, max) = body.shape.bounding_box();
+        if upper { max[d] >= place - tolerance } else { min[d] <= place + tolerance }
+    };
+    if !scene.bodies.iter().any(reaches) {
+        let (side, name) = (side_name(boundary.side), ["x", "y"][d]);
+        let message = format!(
+            "no body reaches the {side} side of the mesh, {name} = {place} m, so nothing is held there; let the mesh \
+             end where the body does, or remove the boundary"
+        );
+        findings.warn(key, message);
     }
 }
 

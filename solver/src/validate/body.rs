@@ -2,7 +2,7 @@
 
 use super::analysis::side_name;
 use super::geometry::defect;
-use super::{Findings, mesh::largest_span};
+use super::{Findings, mesh::spans_over};
 use crate::quadrature::MAX_POINTS;
 use crate::scene::{Body, Crack, Edge, Fracture, Layout, Mesh, Scene, Shape, Traction};
 
@@ -102,7 +102,7 @@ fn inside_mesh(key: &str, body: &Body, mesh: &Mesh, findings: &mut Findings) -> 
 /// Largest span in the body against the length scale: above it the crack is coarse, above four times it is not there.
 fn resolution(body: &Body, fracture: &Fracture, mesh: &Mesh, findings: &mut Findings) {
     let (min, max) = body.shape.bounding_box();
-    let h = (0..2).map(|d| largest_span(&mesh.knots[d], min[d], max[d])).fold(0.0, f64::max);
+    let h = (0..2).flat_map(|d| spans_over(&mesh.knots[d], min[d], max[d])).fold(0.0, f64::max);
     let l0 = fracture.length_scale;
     let sizes = format!("cells of h = {:.4} mm against l0 = {:.4} mm", 1e3 * h, 1e3 * l0);
     let key = format!("material.{}.fracture.length_scale", body.material);

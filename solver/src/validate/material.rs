@@ -48,6 +48,12 @@ fn poisson_ratio(key: &str, ratio: f64, plane: Plane, findings: &mut Findings) -
     }
 }
 
+/// Speed of dilatational waves, m/s, if a solid can have it.
+pub(super) fn plausible_speed(material: &Material, plane: Plane) -> Option<f64> {
+    let speed = ElasticModuli::new(material, plane).dilatational_speed(material.density);
+    (SLOWEST..=FASTEST).contains(&speed).then_some(speed)
+}
+
 fn wave_speed(key: &str, material: &Material, plane: Plane, findings: &mut Findings) {
     let speed = ElasticModuli::new(material, plane).dilatational_speed(material.density);
     let key = format!("{key}.density");

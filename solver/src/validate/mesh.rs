@@ -53,9 +53,9 @@ fn knots(d: usize, degree: usize, knots: &[f64], findings: &mut Findings) {
     }
 }
 
-/// Lengths of the spans of positive length that overlap the interval `from..to`, largest, m.
-pub(super) fn largest_span(knots: &[f64], from: f64, to: f64) -> f64 {
+/// Lengths (m) of the spans of positive length that overlap the interval `from..to`.
+pub(super) fn spans_over(knots: &[f64], from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
     let tolerance = 1e-9 * (to - from);
-    let overlaps = |k: &&[f64]| k[1] > from + tolerance && k[0] < to - tolerance;
-    knots.windows(2).filter(overlaps).map(|k| k[1] - k[0]).fold(0.0, f64::max)
+    let overlaps = move |k: &&[f64]| k[1] > k[0] && k[1] > from + tolerance && k[0] < to - tolerance;
+    knots.windows(2).filter(overlaps).map(|k| k[1] - k[0])
 }

@@ -192,6 +192,45 @@ fn tractions_act_on_segments_of_their_body() {
 }
 
 #[test]
+fn the_number_of_steps_is_bounded() {
+    let messages = |change: &dyn Fn(&mut Scene)| {
+        validate(&with(change)).map_or_else(|e| e.iter().map(ToString::to_string).collect(), |_| Vec::new())
+    };
+    assert_eq!(errors(|s| s.analysis.end_time = 1e30), ["analysis.end_time"]);
+    assert_eq!(errors(|s| s.analysis.end_time = f64::MAX), ["analysis.end_time"]);
+    // 3809.5 m/s over 0.25 mm
+    assert!(errors(|s| s.analysis.end_time = 65.0).is_empty());
+    let long: Vec<String> = messages(&|s| s.analysis.end_time = 66.0);
+    assert!(long.len() == 1 && long[0].contains("1.0e9 steps"), "{long:?}");
+    let thin_beside = |s: &mut Scene| {
+        s.analysis.end_time = 65.0;
+        s.mesh.knots[0].splice(42.., [0.01, 0.010001, 0.010001, 0.010001]).for_each(drop);
+    };
+    assert!(errors(thin_beside).is_empty(), "cells without a body do not count");
+    let fixed = |step| move |s: &mut Scene| s.analysis.time_step = TimeStep::Fixed(step);
+    assert!(errors(fixed(1.1e-15)).is_empty());
+    assert_eq!(errors(fixed(0.9e-15)), ["analysis.time_step"]);
+    assert_eq!(errors(fixed(1e-320)), ["analysis.time_step"]);
+}
+
+#[test]
+fn a_boundary_holds_a_body() {
+    let held = |side, min: [f64; 2], max: [f64; 2]| {
+        warnings(|s| {
+            s.bodies[0].shape = Shape::Rectangle { min, max };
+            s.bodies[0].cracks.clear();
+            s.boundaries = vec![Boundary { side, fix: [true, true], velocity: [0.0; 2] }];
+        })
+    };
+    for side in [Side::Left, Side::Right, Side::Bottom, Side::Top] {
+        assert!(held(side, [1e-12; 2], [0.01 - 1e-12; 2]).is_empty(), "{side:?}");
+        assert_eq!(held(side, [0.001; 2], [0.009; 2]), ["boundary.0.side"], "{side:?}");
+    }
+    assert!(held(Side::Top, [0.001; 2], [0.009, 0.01]).is_empty());
+    assert_eq!(held(Side::Bottom, [0.001; 2], [0.009, 0.01]), ["boundary.0.side"]);
+}
+
+#[test]
 fn points_and_layouts_have_bounds() {
     let points = |counts, layout| {
         move |s: &mut Scene| {

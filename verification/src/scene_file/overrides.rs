@@ -29,10 +29,11 @@ impl Document {
     /// Applies overrides in order, each `key.path=value`; array entries count from 0.
     ///
     /// The value is read as TOML, or if it is none, as a bare string: `body.0.crack.0.half_width=0.25 mm` needs no
-    /// quotes. A key that the file does not have is created.
+    /// quotes. What starts like an array, a table or a quoted string is never a bare one. A key that the file does not
+    /// have is created.
     ///
     /// # Errors
-    /// Every override without `=`, with an empty key, or whose path leads through a value that is no table or beyond
+    /// Every override without `=`, with an array, table or quoted string that is not TOML, with an empty key, or whose path leads through a value that is no table or beyond
     /// the end of an array.
     pub fn apply(&mut self, overrides: &[String]) -> Result<(), SceneFileError> {
         let problems: Vec<Problem> = overrides.iter().filter_map(|text| self.apply_one(text).err()).collect();
@@ -55,22 +56,30 @@ impl Document {
         if keys.iter().any(|k| k.is_empty()) {
             return Err(problem(path.trim(), "an empty key".to_string(), form()));
         }
-        let mut node = parse_value(value, source, path.len() + 1);
+        let mut node = parse_value(value, source, path.len() + 1).map_err(|(location, message)| Problem {
+            key: path.trim().to_string(),
+            location: Some(location),
+            message: format!("not valid TOML: {message}"),
+            remedy: "close every bracket and quote, as in --set 'mesh.size=[0.1, 0.04]'".to_string(),
+        })?;
         node.key_location = Some(Location::new(source, 0..path.len()));
         set(&mut self.root, &keys, 0, node).map_err(|(message, remedy)| problem(path.trim(), message, remedy))
     }
 }
 
-/// A TOML value, or the text itself.
-fn parse_value(text: &str, source: usize, offset: usize) -> Node {
-    let lead = text.len() - text.trim_start().len();
+/// A TOML value, or the text itself unless it starts like an array, a table or a quoted string; place and message of
+/// the syntax error if it does.
+fn parse_value(text: &str, source: usize, offset: usize) -> Result<Node, (Location, String)> {
     let trimmed = text.trim();
+    let start = offset + text.len() - text.trim_start().len();
+    let end = start + trimmed.len();
     match DeValue::parse(trimmed) {
-        Ok(value) => Node::from_toml(&value, source, offset + lead),
-        Err(_) => {
-            let location = Location::new(source, offset + lead..offset + lead + trimmed.len());
-            Node::new(Value::String(trimmed.to_string()), Some(location))
+        Ok(value) => Ok(Node::from_toml(&value, source, start)),
+        Err(error) if trimmed.starts_with(['[', '{', '"', '\'']) => {
+            let span = error.span().map_or(end..end, |s| (start + s.start).min(end)..(start + s.end).min(end));
+            Err((Location::new(source, span), error.message().to_string()))
         }
+        Err(_) => Ok(Node::new(Value::String(trimmed.to_string()), Some(Location::new(source, start..end)))),
     }
 }
 
