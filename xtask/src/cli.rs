@@ -42,7 +42,7 @@ pub enum Command {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Common options")]
 pub struct Common {
-    /// Folder for the files that are written [default: target/fisura/<command>]
+    /// Folder for the files that are written; `target/fisura/` and the name of the command by default
     #[arg(long, global = true, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Number of threads, the same results for any [default: all cores]
