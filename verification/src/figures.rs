@@ -4,8 +4,9 @@
 //! without a change of code.
 
 use crate::history::Table;
+use crate::measure::fitted_speed;
 use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Region, Scale};
-use crate::reference::Library;
+use crate::reference::{Library, ReferenceCurve};
 use crate::study::scene::RunInfo;
 
 /// A chart of one quantity against time, over all runs of a suite.
@@ -93,7 +94,7 @@ const PLATE: [Quantity; 7] = [
         column: "tip_speed_m_per_s",
         derived: true,
         scale: 1.0,
-        reference: "plate/tip-speed",
+        reference: "plate/tip-x",
         bands: &[],
     },
 ];
@@ -144,7 +145,10 @@ fn curve(label: &str, series: &str, y: &str, y_scale: f64) -> Curve {
 fn chart(quantity: &Quantity, runs: &[&RunInfo], library: &Library, tables: &mut Vec<(String, Table)>) -> Figure {
     let mut curves = Vec::new();
     for reference in library.curves(quantity.reference) {
-        let (curve, table) = reference.series(1e6, quantity.scale);
+        let (mut curve, mut table) = reference.series(1e6, quantity.scale);
+        if quantity.id == "tip-speed" {
+            (curve, table) = speed_of(reference, curve);
+        }
         let stem = curve.series.trim_start_matches("series/").trim_end_matches(".csv").to_string();
         tables.push((stem, table));
         curves.push(curve);
@@ -166,6 +170,17 @@ fn chart(quantity: &Quantity, runs: &[&RunInfo], library: &Library, tables: &mut
         deviations: deviations(runs),
         body: FigureBody::Chart { x: time_axis(), y: axis(quantity.label), curves, regions: regions.collect() },
     }
+}
+
+/// Speed of a reference tip, fitted as that of the runs; its uncertainty is that of two positions 4 µs apart.
+fn speed_of(reference: &ReferenceCurve, position: Curve) -> (Curve, Table) {
+    let mut table = Table::new(&["x", "y"]);
+    for &time in &reference.x {
+        table.push(&[time, fitted_speed(&reference.x, &reference.y, time)]);
+    }
+    let uncertainty_absolute = reference.uncertainty_absolute / 4e-6;
+    let series = position.series.replace("tip-x", "tip-speed");
+    (Curve { series, y_scale: 1.0, uncertainty_absolute, uncertainty_relative: 0.0, ..position }, table)
 }
 
 /// Resolution of every run.
