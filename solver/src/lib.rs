@@ -133,6 +133,7 @@ pub mod constraints;
 pub mod critical_step;
 pub mod energy;
 pub mod error;
+pub mod forcing;
 pub mod fracture;
 pub mod incomplete_cholesky;
 pub mod kernels;

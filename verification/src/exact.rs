@@ -1,0 +1,45 @@
+//! Exact solutions, one file each. Their derivations stand under `reference-data/derivations/`.
+
+use fisura::scene::{Material, Plane};
+
+/// Fields that solve the equations of motion exactly, with the loads they need. Positions are in the reference
+/// configuration, in m; times in s.
+pub trait ExactSolution: Send + Sync {
+    /// Material.
+    fn material(&self) -> Material;
+    /// Plane state.
+    fn plane(&self) -> Plane;
+    /// Displacement, m.
+    fn displacement(&self, position: [f64; 2], time: f64) -> [f64; 2];
+    /// `∂u_i/∂x_j`.
+    fn displacement_gradient(&self, position: [f64; 2], time: f64) -> [[f64; 2]; 2];
+    /// Velocity, m/s.
+    fn velocity(&self, _position: [f64; 2], _time: f64) -> [f64; 2] {
+        [0.0; 2]
+    }
+    /// Acceleration, m/s².
+    fn acceleration(&self, _position: [f64; 2], _time: f64) -> [f64; 2] {
+        [0.0; 2]
+    }
+    /// Stress `stress[i][j]`, Pa: first Piola–Kirchhoff (component i, reference normal j); that is the Cauchy stress for
+    /// small strains. It is the degraded one where a phase field is modelled.
+    fn stress(&self, position: [f64; 2], time: f64) -> [[f64; 2]; 2];
+    /// Body force per reference volume, N/m³: `rho a − Div stress`.
+    fn body_force(&self, position: [f64; 2], time: f64) -> [f64; 2];
+    /// The phase field, where one is modelled.
+    fn phase(&self) -> Option<&dyn ExactPhase> {
+        None
+    }
+}
+
+/// A phase field that solves `[4 l0 (1 − k) H/Gc + 1] c − 4 l0² Δc = s` exactly.
+pub trait ExactPhase {
+    /// Phase field.
+    fn value(&self, position: [f64; 2], time: f64) -> f64;
+    /// Its gradient, 1/m.
+    fn gradient(&self, position: [f64; 2], time: f64) -> [f64; 2];
+    /// History energy H, J/m³.
+    fn history(&self, position: [f64; 2], time: f64) -> f64;
+    /// Source s.
+    fn source(&self, position: [f64; 2], time: f64) -> f64;
+}
