@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use criterion::{BatchSize, Bencher, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use fisura::Simulation;
-use fisura::assembly::{Constant, Factor, PointCoefficients, add_products};
+use fisura::assembly::{Constant, Form, PointCoefficients, add_form};
 use fisura::critical_step::highest_frequency;
 use fisura::incomplete_cholesky::IncompleteCholesky;
 use fisura::kernels::{DegradedStress, ElasticStress, HistoryUpdate};
@@ -111,13 +111,10 @@ impl Square {
 
     /// The whole phase-field matrix.
     fn assemble(&self, matrix: &mut Stencil) {
-        use Factor::{Derivative, Value};
         matrix.coefficients_mut().fill(0.0);
         let reaction = Reaction { history: &self.history, per_energy: self.model.reaction_per_energy() };
-        add_products(matrix, &self.lattice, [Value, Value], &reaction);
-        for factors in [[Derivative, Value], [Value, Derivative]] {
-            add_products(matrix, &self.lattice, factors, &Constant(self.model.diffusion()));
-        }
+        add_form(matrix, &self.lattice, Form::Mass, &reaction);
+        add_form(matrix, &self.lattice, Form::Diffusion, &Constant(self.model.diffusion()));
     }
 
     fn matrix(&self) -> Stencil {

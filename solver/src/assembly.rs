@@ -1,8 +1,10 @@
-//! Matrices `Σ_p f_p B_I(x_p) B_J(x_p)` from the material points of a lattice, by sum factorisation.
+//! Matrices `Σ_p f_p N_I N_J` and `Σ_p f_p grad N_I · grad N_J` from the material points of a lattice (E 19–24).
 //!
-//! Points of a span form a grid, so the sum over them is done first along x, for every pair of functions in x, then
-//! along y. Strips are assembled in two colours: strips of one colour share no control row, and the order in which
+//! Over a rectangle by sum factorisation: points of a span form a grid, so the sum over them is done first along x, for
+//! every pair of functions in x, then along y. On a patch with a geometry pair by pair ([`mapped`]). Strips are assembled in two colours: strips of one colour share no control row, and the order in which
 //! contributions meet does not depend on the number of threads.
+
+mod mapped;
 
 use rayon::prelude::*;
 
@@ -12,12 +14,19 @@ use crate::quadrature::MAX_POINTS;
 use crate::spline::MAX_ORDER;
 use crate::stencil::Stencil;
 
-/// Which function of a direction enters the product.
+/// What is integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Factor {
-    /// The shape function.
+pub enum Form {
+    /// `N_I N_J`.
+    Mass,
+    /// `grad N_I · grad N_J`.
+    Diffusion,
+}
+
+/// Which function of a direction enters a product.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Factor {
     Value,
-    /// Its derivative.
     Derivative,
 }
 
@@ -42,13 +51,28 @@ impl PointCoefficients for Constant {
     }
 }
 
-/// Adds `Σ_p f_p B_I B_J` to `matrix`, where `B` is the product of the `factors` in x and y.
-pub fn add_products<C: PointCoefficients>(
-    matrix: &mut Stencil,
-    lattice: &Lattice,
-    factors: [Factor; 2],
-    coefficients: &C,
-) {
+/// Adds `Σ_p f_p N_I N_J` or `Σ_p f_p grad N_I · grad N_J` to `matrix`.
+pub fn add_form<C: PointCoefficients>(matrix: &mut Stencil, lattice: &Lattice, form: Form, coefficients: &C) {
+    use Factor::{Derivative, Value};
+    if lattice.mapping.is_some() {
+        return for_each_strip(matrix, lattice, |strip, first_row, window| {
+            mapped::assemble(lattice, form, coefficients, strip, first_row, window);
+        });
+    }
+    let products: &[[Factor; 2]] = match form {
+        Form::Mass => &[[Value, Value]],
+        Form::Diffusion => &[[Derivative, Value], [Value, Derivative]],
+    };
+    for &factors in products {
+        for_each_strip(matrix, lattice, |strip, first_row, window| {
+            dispatch(AssembleStrip { lattice, factors, coefficients, strip, first_row, window });
+        });
+    }
+}
+
+/// Calls `assemble` with every strip, its first control row, and the part of the matrix it contributes to; strips of one
+/// colour in parallel.
+fn for_each_strip(matrix: &mut Stencil, lattice: &Lattice, assemble: impl Fn(usize, usize, &mut [f64]) + Sync) {
     let row_length = matrix.row_length();
     for colour in 0..2 {
         let mut windows = Vec::new();
@@ -60,9 +84,7 @@ pub fn add_products<C: PointCoefficients>(
             windows.push((strip, rows.start, window));
             (rest, passed) = (tail, rows.end);
         }
-        windows.into_par_iter().for_each(|(strip, first_row, window)| {
-            dispatch(AssembleStrip { lattice, factors, coefficients, strip, first_row, window });
-        });
+        windows.into_par_iter().for_each(|(strip, first_row, window)| assemble(strip, first_row, window));
     }
 }
 

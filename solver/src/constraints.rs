@@ -33,6 +33,11 @@ impl Constraints {
         component(0).chain(component(1))
     }
 
+    /// Control points at which a component is prescribed, in increasing order.
+    pub fn held(&self, component: usize) -> Vec<usize> {
+        self.fixed[component].iter().map(|&(at, _)| at).collect()
+    }
+
     /// Sets prescribed velocities.
     pub fn apply_velocity(&self, velocity: &mut [Vec<f64>; 2]) {
         for (at, component, value) in self.iter() {

@@ -13,38 +13,41 @@ const RESIDUAL: f64 = 0.005;
 const STRIDE: usize = 10;
 const MOST: usize = 300;
 
-/// A linear operator `K` with lumped mass on packed degrees of freedom.
+/// A stiffness `K` and a mass `M` on packed degrees of freedom, both symmetric, M positive definite.
 pub trait StiffnessOperator {
-    /// Lumped masses of the free degrees of freedom, all positive.
-    fn masses(&self) -> &[f64];
+    /// Number of free degrees of freedom.
+    fn size(&self) -> usize;
     /// `out = K x`.
     fn stiffness(&mut self, x: &[f64], out: &mut [f64]);
+    /// `out = M⁻¹ x`.
+    fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]);
 }
 
 /// Bound of the largest angular frequency, rad per unit time (see the module); zero if there is no stiffness.
+///
+/// Lanczos iteration on `M⁻¹ K` in the inner product of M: of every vector q its image `M q` is kept, so M is never applied.
 pub fn highest_frequency(operator: &mut impl StiffnessOperator) -> f64 {
-    let scale: Vec<f64> = operator.masses().iter().map(|m| 1.0 / m.sqrt()).collect();
-    let n = scale.len();
-    let mut current = pseudo_random(n);
-    normalise(&mut current);
-    let mut previous = vec![0.0; n];
-    let (mut scaled, mut image) = (vec![0.0; n], vec![0.0; n]);
+    let n = operator.size();
+    let mut image = pseudo_random(n); // M times the vector
+    let mut vector = vec![0.0; n];
+    operator.divide_by_mass(&image, &mut vector);
+    let norm = dot(&vector, &image).sqrt();
+    for i in 0..n {
+        vector[i] /= norm;
+        image[i] /= norm;
+    }
+    let (mut previous, mut residual_image) = (vec![0.0; n], vec![0.0; n]);
     let (mut diagonal, mut off_diagonal) = (Vec::new(), Vec::<f64>::new());
     loop {
-        for i in 0..n {
-            scaled[i] = scale[i] * current[i];
-        }
-        operator.stiffness(&scaled, &mut image);
+        operator.stiffness(&vector, &mut residual_image);
         let beta = off_diagonal.last().copied().unwrap_or(0.0);
+        let alpha = dot(&residual_image, &vector);
         for i in 0..n {
-            image[i] = scale[i] * image[i] - beta * previous[i];
-        }
-        let alpha = dot(&image, &current);
-        for i in 0..n {
-            image[i] -= alpha * current[i];
+            residual_image[i] -= alpha * image[i] + beta * previous[i];
         }
         diagonal.push(alpha);
-        let next = dot(&image, &image).sqrt();
+        operator.divide_by_mass(&residual_image, &mut vector);
+        let next = dot(&vector, &residual_image).max(0.0).sqrt();
         let exhausted = next <= 1e-12 * diagonal[0].abs() || diagonal.len() == MOST.min(n);
         if exhausted || diagonal.len().is_multiple_of(STRIDE) {
             let (value, residual) = largest_ritz(&diagonal, &off_diagonal, next);
@@ -53,9 +56,10 @@ pub fn highest_frequency(operator: &mut impl StiffnessOperator) -> f64 {
             }
         }
         off_diagonal.push(next);
-        std::mem::swap(&mut previous, &mut current);
+        std::mem::swap(&mut previous, &mut image);
         for i in 0..n {
-            current[i] = image[i] / next;
+            image[i] = residual_image[i] / next;
+            vector[i] /= next;
         }
     }
 }
@@ -87,11 +91,6 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-fn normalise(x: &mut [f64]) {
-    let norm = dot(x, x).sqrt();
-    x.iter_mut().for_each(|x| *x /= norm);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -101,8 +100,13 @@ mod tests {
     }
 
     impl StiffnessOperator for Chain {
-        fn masses(&self) -> &[f64] {
-            &self.masses
+        fn size(&self) -> usize {
+            self.masses.len()
+        }
+        fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]) {
+            for i in 0..x.len() {
+                out[i] = x[i] / self.masses[i];
+            }
         }
         fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
             let n = x.len();

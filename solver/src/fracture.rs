@@ -2,7 +2,7 @@
 
 use crate::conjugate_gradients::Convergence;
 use crate::kernels::{DegradedStress, HistoryUpdate, SurfaceEnergy};
-use crate::lane::{LANES, Lane};
+use crate::lane::Lane;
 use crate::lattice::Lattice;
 use crate::material::{ElasticModuli, FractureModel};
 use crate::phase_field::PhaseField;
@@ -140,43 +140,50 @@ impl Fracturing {
     }
 
     /// Point of largest x with c below [`BROKEN`] at heights of at least `lowest` (m), by linear interpolation between
-    /// neighbouring points in x.
+    /// neighbouring points along a row.
     pub fn crack_tip(&self, lattice: &Lattice, lowest: f64) -> Option<[f64; 2]> {
         let mut tip: Option<[f64; 2]> = None;
-        for (row_index, row) in lattice.rows.iter().enumerate() {
-            for (b, &y) in row.position.iter().enumerate().filter(|&(_, &y)| y >= lowest) {
-                if let Some(x) = self.rightmost_broken(lattice, row_index, b)
-                    && tip.is_none_or(|[best, _]| x > best)
-                {
-                    tip = Some([x, y]);
+        for row in 0..lattice.rows.len() {
+            for b in 0..lattice.points[1] {
+                let Some(broken) = self.rightmost_broken(lattice, row, b, lowest) else { continue };
+                if tip.is_none_or(|tip| broken[0] > tip[0]) {
+                    tip = Some(broken);
                 }
             }
         }
         tip
     }
 
-    fn rightmost_broken(&self, lattice: &Lattice, row: usize, b: usize) -> Option<f64> {
-        let mut right: Option<(f64, f64)> = None;
+    fn rightmost_broken(&self, lattice: &Lattice, row: usize, b: usize, lowest: f64) -> Option<[f64; 2]> {
+        let mut next: Option<([f64; 2], f64)> = None;
+        let mut tip: Option<[f64; 2]> = None;
         for (tile_index, tile) in lattice.tiles.iter().enumerate().rev() {
-            for lane in (0..LANES).rev() {
+            for lane in (0..tile.count).rev() {
                 for a in (0..lattice.points[0]).rev() {
-                    if tile.weight[a][lane] == 0.0 {
-                        continue; // a lane beyond the spans of the tile
-                    }
-                    if lattice.weight(row, tile_index, b, a)[lane] == 0.0 {
-                        right = None; // a hole: nothing to interpolate to
+                    let batch = lattice.batch(row, tile_index, b, a);
+                    let (position, c) = (lattice.position(batch, lane), self.phase[batch][lane]);
+                    if lattice.weight(row, tile_index, b, a)[lane] == 0.0 || position[1] < lowest {
+                        next = None; // nothing to interpolate to
                         continue;
                     }
-                    let here = (tile.position[a][lane], self.phase[lattice.batch(row, tile_index, b, a)][lane]);
-                    if here.1 < BROKEN {
-                        let beyond = right.map(|(x, c)| here.0 + (BROKEN - here.1) / (c - here.1) * (x - here.0));
-                        return Some(beyond.unwrap_or(here.0));
+                    if c < BROKEN {
+                        let beyond = next.filter(|(_, other)| *other >= BROKEN).map(|(place, other)| {
+                            let t = (BROKEN - c) / (other - c);
+                            [0, 1].map(|d| position[d] + t * (place[d] - position[d]))
+                        });
+                        let here = beyond.filter(|place| place[0] > position[0]).unwrap_or(position);
+                        if tip.is_none_or(|tip| here[0] > tip[0]) {
+                            tip = Some(here);
+                        }
+                        if lattice.mapping.is_none() {
+                            return tip; // positions grow along the row
+                        }
                     }
-                    right = Some(here);
+                    next = Some((position, c));
                 }
             }
         }
-        None
+        tip
     }
 
     /// Heap memory, bytes.

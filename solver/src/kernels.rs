@@ -30,8 +30,7 @@ impl PointKernel for ElasticStress {
     fn points<const FMA: bool>(&mut self, _at: usize, weight: Lane, values: &PointValues) -> Stress {
         let strain = strain(values.gradient);
         self.energy = self.energy.add_product::<FMA>(weight, self.moduli.energy(strain));
-        let [xx, yy, xy] = self.moduli.stress(strain);
-        Stress { xx, yy, xy }
+        Stress::symmetric(self.moduli.stress(strain))
     }
 }
 
@@ -97,8 +96,7 @@ impl PointKernel for DegradedStress<'_> {
         let g = self.model.degradation(c);
         let energy = state.energy_minus.add_product::<FMA>(g, state.energy_plus);
         self.energy = self.energy.add_product::<FMA>(weight, energy);
-        let stress = |i: usize| state.stress_minus[i].add_product::<FMA>(g, state.stress_plus[i]);
-        Stress { xx: stress(0), yy: stress(1), xy: stress(2) }
+        Stress::symmetric([0, 1, 2].map(|i| state.stress_minus[i].add_product::<FMA>(g, state.stress_plus[i])))
     }
 }
 

@@ -6,11 +6,19 @@
 //! are formed strip by strip, so they do not depend on the number of threads.
 //!
 //! A rectangle cuts the spans at its edges exactly; of other shapes the points of a span that lie inside are kept.
+//!
+//! On a patch with a geometry the lattice is one of parameters, and each point has a [`MappedPoint`]. A rational field is a
+//! quotient of two spline fields, `u = A/W` with `A = Σ N_a w_a u_a` and `W = Σ N_b w_b`, so that sums still factor:
+//!
+//! ```text
+//! ∂u/∂ξ_d = (∂A/∂ξ_d − A ∂W/∂ξ_d / W)/W,   ∂u/∂x_j = Σ_d ∂u/∂ξ_d ∂ξ_d/∂x_j
+//! ```
 
 use crate::lane::{LANES, Lane};
+use crate::nurbs::{MAX_FUNCTIONS, NurbsPatch};
 use crate::patch::{ControlGrid, Patch};
 use crate::quadrature::Rule;
-use crate::scene::{Body, Shape};
+use crate::scene::{Body, Layout, Shape};
 use crate::spline::{MAX_ORDER, SplineSpace};
 
 /// Rows of spans in a strip; at least the highest degree, so that only neighbouring strips share control points.
@@ -57,12 +65,74 @@ pub struct Lattice {
     pub degree: [usize; 2],
     /// Points per span in x and y.
     pub points: [usize; 2],
+    /// Their layout.
+    pub layout: Layout,
     /// Tiles of columns.
     pub tiles: Vec<Tile>,
     /// Rows of spans.
     pub rows: Vec<Row>,
-    /// Which points exist, 1 or 0 per batch and lane; absent if all do.
-    mask: Option<Vec<Lane>>,
+    /// What the geometry of the patch adds; absent over a rectangle.
+    pub mapping: Option<Box<Mapping>>,
+    /// What the product of the weights of both directions is multiplied by, per batch: 0 where there is no point, and the
+    /// determinant of the Jacobian where there is a geometry; absent if it is 1 everywhere.
+    factor: Option<Vec<Lane>>,
+}
+
+/// Points of a patch with a geometry.
+#[derive(Debug, Clone)]
+pub struct Mapping {
+    /// Weights of the control points, as a field.
+    pub weights: Vec<f64>,
+    /// One entry per batch.
+    pub points: Vec<MappedPoint>,
+}
+
+/// The weight function W and the geometry map at a batch of points.
+#[derive(Debug, Clone, Copy)]
+pub struct MappedPoint {
+    /// 1/W.
+    pub inverse_weight: Lane,
+    /// `∂W/∂ξ_d / W`.
+    pub weight_slope: [Lane; 2],
+    /// `[∂ξ/∂x, ∂ξ/∂y, ∂η/∂x, ∂η/∂y]`, 1/m.
+    pub inverse_jacobian: [Lane; 4],
+    /// Position, m.
+    pub position: [Lane; 2],
+}
+
+impl MappedPoint {
+    const ZERO: Self = Self {
+        inverse_weight: Lane::ZERO,
+        weight_slope: [Lane::ZERO; 2],
+        inverse_jacobian: [Lane::ZERO; 4],
+        position: [Lane::ZERO; 2],
+    };
+
+    /// Value and physical gradient of a rational field from the sum `A` and its parametric slopes.
+    #[inline(always)]
+    pub fn field(&self, sum: Lane, slopes: [Lane; 2]) -> (Lane, [Lane; 2]) {
+        let value = sum * self.inverse_weight;
+        let [u, v] = [0, 1].map(|d| slopes[d] * self.inverse_weight - value * self.weight_slope[d]);
+        let [ux, uy, vx, vy] = self.inverse_jacobian;
+        (value, [u * ux + v * vx, u * uy + v * vy])
+    }
+
+    /// The adjoint of [`Self::field`] for a force and a stress: factors of the spline and of its two parametric slopes.
+    #[inline(always)]
+    pub fn adjoint(&self, force: Lane, [x, y]: [Lane; 2]) -> (Lane, [Lane; 2]) {
+        let [ux, uy, vx, vy] = self.inverse_jacobian;
+        let [u, v] = [(x * ux + y * uy) * self.inverse_weight, (x * vx + y * vy) * self.inverse_weight];
+        (force * self.inverse_weight - u * self.weight_slope[0] - v * self.weight_slope[1], [u, v])
+    }
+}
+
+/// Shape functions and physical gradients (1/m) of a batch of points, function n = l (p + 1) + k.
+#[derive(Debug, Clone, Copy)]
+pub struct BatchFunctions {
+    /// Values.
+    pub value: [Lane; MAX_FUNCTIONS],
+    /// Gradients.
+    pub gradient: [[Lane; 2]; MAX_FUNCTIONS],
 }
 
 /// Span indices and the part of each span that belongs to the body, along one direction.
@@ -77,8 +147,11 @@ struct Columns {
 impl Lattice {
     /// The points of `body` on `patch`.
     pub fn new(patch: &Patch, body: &Body) -> Self {
-        let (low, high) = body.shape.bounding_box();
-        let clip = matches!(body.shape, Shape::Rectangle { .. });
+        let (low, high) = match patch.geometry {
+            None => body.shape.bounding_box(),
+            Some(_) => Shape::Patch.bounding_box(), // a lattice of parameters
+        };
+        let clip = matches!(body.shape, Shape::Rectangle { .. }) && patch.geometry.is_none();
         let [x, y] = [0, 1].map(|d| {
             let rule = Rule::new(body.layout, body.particles_per_cell[d]);
             columns(&patch.spaces[d], &rule, low[d], high[d], clip)
@@ -98,27 +171,65 @@ impl Lattice {
             grid: patch.control_grid(),
             degree,
             points: body.particles_per_cell,
+            layout: body.layout,
             tiles: tiles(&x, degree[0] + 1),
             rows,
-            mask: None,
+            mapping: None,
+            factor: None,
         };
-        if !clip {
-            lattice.mask = Some(lattice.mask_of(&body.shape));
+        if let Some(geometry) = &patch.geometry {
+            lattice.map_by(geometry);
+        }
+        if !(clip || body.shape == Shape::Patch) {
+            lattice.keep_inside(&body.shape);
         }
         lattice
     }
 
-    fn mask_of(&self, shape: &Shape) -> Vec<Lane> {
-        let inside = |batch: usize, lane: usize| f64::from(u8::from(shape.contains(self.position(batch, lane))));
-        (0..self.batches())
-            .map(|batch| {
-                let mut lanes = Lane::ZERO;
-                for lane in 0..LANES {
-                    lanes[lane] = inside(batch, lane);
+    /// Evaluates weight function and geometry map at every point.
+    fn map_by(&mut self, patch: &NurbsPatch) {
+        let mut weights = self.grid.zeros();
+        for (at, weight) in self.grid.indices().zip(patch.weights()) {
+            weights[at] = *weight;
+        }
+        let mut points = vec![MappedPoint::ZERO; self.batches()];
+        let mut determinants = vec![Lane::ZERO; self.batches()];
+        for batch in 0..self.batches() {
+            let (_, tile, _, _) = self.unbatch(batch);
+            for lane in 0..self.tiles[tile].count {
+                let parameters = self.position(batch, lane);
+                let Some(span) = patch.find_span(parameters) else { continue };
+                let image = patch.map(&patch.shape_functions(span, parameters));
+                let weight = patch.weight_function(span, parameters);
+                let [[xu, xv], [yu, yv]] = image.jacobian;
+                let determinant = image.determinant();
+                determinants[batch][lane] = determinant;
+                let point = &mut points[batch];
+                point.inverse_weight[lane] = 1.0 / weight.value;
+                for d in 0..2 {
+                    point.weight_slope[d][lane] = weight.gradient[d] / weight.value;
+                    point.position[d][lane] = image.position[d];
                 }
-                lanes
-            })
-            .collect()
+                for (entry, value) in point.inverse_jacobian.iter_mut().zip([yv, -xv, -yu, xu]) {
+                    entry[lane] = value / determinant;
+                }
+            }
+        }
+        self.mapping = Some(Box::new(Mapping { weights, points }));
+        self.factor = Some(determinants);
+    }
+
+    /// Takes away the points outside a shape.
+    fn keep_inside(&mut self, shape: &Shape) {
+        let mut factor = self.factor.take().unwrap_or_else(|| vec![Lane::splat(1.0); self.batches()]);
+        for (batch, factor) in factor.iter_mut().enumerate() {
+            for lane in 0..LANES {
+                if !shape.contains(self.position(batch, lane)) {
+                    factor[lane] = 0.0;
+                }
+            }
+        }
+        self.factor = Some(factor);
     }
 
     /// Points in a span.
@@ -169,14 +280,88 @@ impl Lattice {
     #[inline(always)]
     pub fn weight(&self, row: usize, tile: usize, b: usize, a: usize) -> Lane {
         let weight = self.tiles[tile].weight[a] * self.rows[row].weight[b];
-        match &self.mask {
+        match &self.factor {
             None => weight,
-            Some(mask) => weight * mask[self.batch(row, tile, b, a)],
+            Some(factor) => weight * factor[self.batch(row, tile, b, a)],
+        }
+    }
+
+    /// Weights of eight control points from index `at` of a field on; 1 over a rectangle.
+    #[inline(always)]
+    pub fn weights(&self, at: usize) -> Lane {
+        self.mapping.as_ref().map_or(Lane::splat(1.0), |mapping| Lane::load(&mapping.weights, at))
+    }
+
+    /// Shape functions of a batch; those of lane l belong to control points l columns further than those of lane 0.
+    pub fn shape_functions(&self, batch: usize) -> BatchFunctions {
+        let (row_index, tile_index, b, a) = self.unbatch(batch);
+        let (row, tile) = (&self.rows[row_index], &self.tiles[tile_index]);
+        let [kx, ky] = self.degree.map(|p| p + 1);
+        let mut functions =
+            BatchFunctions { value: [Lane::ZERO; MAX_FUNCTIONS], gradient: [[Lane::ZERO; 2]; MAX_FUNCTIONS] };
+        for l in 0..ky {
+            for k in 0..kx {
+                let (n, x, dx) = (l * kx + k, tile.value[a * kx + k], tile.derivative[a * kx + k]);
+                functions.value[n] = x * row.value[b][l];
+                functions.gradient[n] = [dx * row.value[b][l], x * row.derivative[b][l]];
+                if let Some(mapping) = &self.mapping {
+                    let weight = Lane::load(&mapping.weights, self.grid.index(tile.first + k, row.first + l));
+                    let [u, v] = functions.gradient[n].map(|g| g * weight);
+                    let rational = mapping.points[batch].field(functions.value[n] * weight, [u, v]);
+                    (functions.value[n], functions.gradient[n]) = rational;
+                }
+            }
+        }
+        functions
+    }
+
+    /// `Σ_p V_p f_p N_I(x_p)` of a density at the points, as a field; `density` gets batch, lane and position.
+    pub fn integrate(&self, mut density: impl FnMut(usize, usize, [f64; 2]) -> f64) -> Vec<f64> {
+        let mut out = self.grid.zeros();
+        self.add_integral(&mut [&mut out], |batch, lane, position| ([density(batch, lane, position)], [[0.0; 2]]));
+        out
+    }
+
+    /// Adds `Σ_p V_p (f_p N_I + s_p · grad N_I)` to fields; `density` gives f and s of each field for a batch, lane and
+    /// position.
+    pub fn add_integral<const F: usize>(
+        &self,
+        out: &mut [&mut Vec<f64>; F],
+        mut density: impl FnMut(usize, usize, [f64; 2]) -> ([f64; F], [[f64; 2]; F]),
+    ) {
+        let [kx, ky] = self.degree.map(|p| p + 1);
+        for batch in 0..self.batches() {
+            let (row_index, tile_index, b, a) = self.unbatch(batch);
+            let (row, tile) = (&self.rows[row_index], &self.tiles[tile_index]);
+            let weight = self.weight(row_index, tile_index, b, a);
+            let (mut force, mut stress) = ([Lane::ZERO; F], [[Lane::ZERO; 2]; F]);
+            for lane in (0..tile.count).filter(|&lane| weight[lane] > 0.0) {
+                let (f, s) = density(batch, lane, self.position(batch, lane));
+                for i in 0..F {
+                    force[i][lane] = f[i];
+                    for d in 0..2 {
+                        stress[i][d][lane] = s[i][d];
+                    }
+                }
+            }
+            let functions = self.shape_functions(batch);
+            for l in 0..ky {
+                for k in 0..kx {
+                    let (value, [x, y]) = (functions.value[l * kx + k], functions.gradient[l * kx + k]);
+                    for i in 0..F {
+                        let share = (force[i] * value + stress[i][0] * x + stress[i][1] * y) * weight;
+                        share.add_to(out[i], self.grid.index(tile.first + k, row.first + l));
+                    }
+                }
+            }
         }
     }
 
     /// Position of the point of a batch in a lane, m.
     pub fn position(&self, batch: usize, lane: usize) -> [f64; 2] {
+        if let Some(mapping) = &self.mapping {
+            return mapping.points[batch].position.map(|x| x[lane]);
+        }
         let (row, tile, b, a) = self.unbatch(batch);
         [self.tiles[tile].position[a][lane], self.rows[row].position[b]]
     }

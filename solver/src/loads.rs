@@ -1,8 +1,8 @@
 //! External loads: tractions carried by surface points, and gravity.
 
-use crate::patch::{ControlGrid, Patch};
+use crate::patch::{BoundaryPoint, Patch};
 use crate::quadrature::Rule;
-use crate::scene::{Body, Edge, Traction};
+use crate::scene::{Body, Edge, Shape, Side, Traction};
 
 /// Surface point of a loaded boundary.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,6 +46,12 @@ pub fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<SurfacePoi
     points
 }
 
+/// Points on a side of the patch, with the layout of the body in every span.
+pub fn boundary_points(patch: &Patch, body: &Body, side: Side) -> Vec<BoundaryPoint> {
+    let along = if matches!(side, Side::Left | Side::Right) { 1 } else { 0 };
+    patch.boundary(side, &Rule::new(body.layout, body.particles_per_cell[along]))
+}
+
 /// A traction as nodal forces that share one factor in time.
 #[derive(Debug, Clone)]
 pub struct NodalLoad {
@@ -56,11 +62,23 @@ pub struct NodalLoad {
 
 impl NodalLoad {
     /// Nodal forces of `traction` with the shape functions at the reference positions.
-    pub fn new(patch: &Patch, grid: ControlGrid, body: &Body, traction: &Traction) -> Self {
+    pub fn new(patch: &Patch, body: &Body, traction: &Traction) -> Self {
         let mut sums = std::collections::BTreeMap::<usize, f64>::new();
-        for point in surface_points(patch, body, &traction.edge) {
-            for (index, value) in shape_functions_at(patch, grid, point.position) {
-                *sums.entry(index).or_default() += value * point.length;
+        let mut add = |functions: &[(usize, f64)], length: f64| {
+            for &(index, value) in functions {
+                *sums.entry(index).or_default() += value * length;
+            }
+        };
+        match (&traction.edge, &body.shape) {
+            (Edge::Side(side), Shape::Patch) => {
+                boundary_points(patch, body, *side).iter().for_each(|point| add(&point.functions, point.length));
+            }
+            _ => {
+                for point in surface_points(patch, body, &traction.edge) {
+                    if let Some(functions) = patch.functions_at(point.position) {
+                        add(&functions.values, point.length);
+                    }
+                }
             }
         }
         let forces = sums.into_iter().map(|(index, sum)| (index, traction.stress.map(|s| s * sum))).collect();
@@ -71,16 +89,4 @@ impl NodalLoad {
     pub fn factor(&self, time: f64) -> f64 {
         self.ramp.map_or(1.0, |ramp| (time / ramp).clamp(0.0, 1.0))
     }
-}
-
-/// Non-zero shape functions at a position: control point index and value; empty outside the patch.
-pub fn shape_functions_at(patch: &Patch, grid: ControlGrid, position: [f64; 2]) -> Vec<(usize, f64)> {
-    let [x, y] = &patch.spaces;
-    let (Some(i), Some(j)) = (x.find_span(position[0]), y.find_span(position[1])) else { return Vec::new() };
-    let (sx, sy) = (x.shape_functions(i, position[0]), y.shape_functions(j, position[1]));
-    let (first, first_row) = (x.spans()[i].first, y.spans()[j].first);
-    (0..=y.degree())
-        .flat_map(|l| (0..=x.degree()).map(move |k| (k, l)))
-        .map(|(k, l)| (grid.index(first + k, first_row + l), sx.value[k] * sy.value[l]))
-        .collect()
 }

@@ -11,7 +11,7 @@
 //! Two special cases skip work and give the same numbers to round-off ([`Form`]): equal weights need no division, and an
 //! affine rectangle needs no inverse map. [`NurbsPatch::general`] takes the fast path away, so that this can be checked.
 //!
-//! The patch is not yet wired into scenes: the time step runs on [`Patch`](crate::patch::Patch).
+//! A scene whose mesh has a geometry runs on such a patch: see [`crate::lattice`] for how its points use it.
 //!
 //! ```
 //! use fisura::nurbs::NurbsPatch;
@@ -33,9 +33,11 @@ mod insert;
 mod locate;
 
 pub use error::{LocateError, NurbsError};
+pub(crate) use functions::products;
 pub use functions::{MAX_FUNCTIONS, MapPoint, RationalFunctions, rational_functions};
 pub use locate::{INVERSION_TOLERANCE, Location};
 
+use crate::patch::PointValue;
 use crate::spline::SplineSpace;
 
 /// What a patch may skip.
@@ -149,6 +151,20 @@ impl NurbsPatch {
             Form::Affine { .. } | Form::Polynomial => functions::products(&self.spaces, span, parameters),
             Form::Rational => rational_functions(&self.spaces, &self.weights, span, parameters),
         }
+    }
+
+    /// The weight function `W = Σ N_b w_b` and its parametric gradient.
+    pub fn weight_function(&self, span: [usize; 2], parameters: [f64; 2]) -> PointValue {
+        let functions = functions::products(&self.spaces, span, parameters);
+        let mut weight = PointValue { value: 0.0, gradient: [0.0; 2] };
+        for n in 0..functions.count {
+            let w = self.weights[functions.control[n]];
+            weight.value += w * functions.value[n];
+            for d in 0..2 {
+                weight.gradient[d] += w * functions.gradient[n][d];
+            }
+        }
+        weight
     }
 
     /// Position and Jacobian where `functions` were evaluated.

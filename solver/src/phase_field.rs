@@ -8,7 +8,7 @@
 //! The history energy H only grows, and so does K: only spans whose H grew since the last solve are added
 //! (delta assembly). An increment too small to move the relative residual by a hundredth of the tolerance waits.
 
-use crate::assembly::{Constant, Factor, PointCoefficients, add_products};
+use crate::assembly::{Constant, Form, PointCoefficients, add_form};
 use crate::cholesky::SparseCholesky;
 use crate::conjugate_gradients::{ConjugateGradients, Convergence};
 use crate::incomplete_cholesky::IncompleteCholesky;
@@ -78,12 +78,9 @@ impl PhaseField {
     /// Phase field on the points of `lattice`, intact until the first solve.
     pub fn new(lattice: &Lattice, model: FractureModel, settings: &SolverSettings) -> Self {
         let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
-        use Factor::{Derivative, Value};
-        add_products(&mut matrix, lattice, [Value, Value], &Constant(1.0));
+        add_form(&mut matrix, lattice, Form::Mass, &Constant(1.0));
+        add_form(&mut matrix, lattice, Form::Diffusion, &Constant(model.diffusion()));
         let mut load = integrate_shape_functions(lattice);
-        for factors in [[Derivative, Value], [Value, Derivative]] {
-            add_products(&mut matrix, lattice, factors, &Constant(model.diffusion()));
-        }
         isolate_empty(&mut matrix, &mut load);
         let assembled = vec![Lane::ZERO; lattice.batches()];
         Self::intact(matrix, load, assembled, model, settings)
@@ -124,6 +121,11 @@ impl PhaseField {
     /// Matrix and right-hand side, to be assembled by the caller.
     pub fn system_mut(&mut self) -> (&mut Stencil, &mut Vec<f64>) {
         (&mut self.matrix, &mut self.load)
+    }
+
+    /// Replaces the right-hand side of a body that fills the patch: `Σ_p V_p s_p N_I(x_p)` with a manufactured source s.
+    pub fn set_load(&mut self, load: Vec<f64>) {
+        self.load = load;
     }
 
     /// Control values of c.
@@ -215,7 +217,7 @@ impl PhaseField {
         let reaction = self.model.reaction_per_energy();
         let threshold = 0.01 * self.tolerance / reaction;
         let increments = Increments { history, assembled: &self.assembled, reaction, threshold };
-        add_products(&mut self.matrix, lattice, [Factor::Value, Factor::Value], &increments);
+        add_form(&mut self.matrix, lattice, Form::Mass, &increments);
         let span = lattice.points_per_span();
         for (assembled, history) in self.assembled.chunks_mut(span).zip(history.chunks(span)) {
             if grew(assembled, history, threshold) {
@@ -292,18 +294,5 @@ impl PointCoefficients for Increments<'_> {
 
 /// `Σ_p V_p N_I(x_p)` per unit thickness, m².
 pub fn integrate_shape_functions(lattice: &Lattice) -> Vec<f64> {
-    let mut out = lattice.grid.zeros();
-    let [kx, ky] = lattice.degree.map(|p| p + 1);
-    for batch in 0..lattice.batches() {
-        let (row_index, tile_index, b, a) = lattice.unbatch(batch);
-        let (row, tile) = (&lattice.rows[row_index], &lattice.tiles[tile_index]);
-        let weight = lattice.weight(row_index, tile_index, b, a);
-        for j in 0..ky {
-            for i in 0..kx {
-                let share = tile.value[a * kx + i] * weight * row.value[b][j];
-                share.add_to(&mut out, lattice.grid.index(tile.first + i, row.first + j));
-            }
-        }
-    }
-    out
+    lattice.integrate(|_, _, _| 1.0)
 }

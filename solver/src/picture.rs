@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use crate::material::ElasticModuli;
 use crate::patch::Patch;
-use crate::spline::ShapeFunctions;
 use crate::total_frame::TotalFrame;
 use crate::updated_frame::UpdatedFrame;
 
@@ -37,14 +36,11 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Raster of `pixels` over a patch.
+    /// Raster of `pixels` over the box around a patch.
     pub fn new(patch: &Patch, pixels: [usize; 2]) -> Self {
-        let ends = patch.spaces.each_ref().map(|space| {
-            let spans = space.spans();
-            (spans[0].left, spans[spans.len() - 1].right)
-        });
-        let pixel = [0, 1].map(|d| (ends[d].1 - ends[d].0) / pixels[d] as f64);
-        Self { pixels, origin: ends.map(|(left, _)| left), pixel }
+        let (low, high) = patch.bounding_box();
+        let pixel = [0, 1].map(|d| (high[d] - low[d]) / pixels[d] as f64);
+        Self { pixels, origin: low, pixel }
     }
 
     /// Centre of pixel `index`, m.
@@ -101,42 +97,20 @@ impl Picture {
 
 /// Phase field and largest principal stress at a position.
 fn values_at(frame: &TotalFrame, position: [f64; 2]) -> [f64; 2] {
-    let [sx, sy] = &frame.patch().spaces;
-    let (Some(i), Some(j)) = (sx.find_span(position[0]), sy.find_span(position[1])) else { return [f64::NAN; 2] };
+    let outside = [f64::NAN; 2];
     if !frame.shape().contains(position) {
-        return [f64::NAN; 2];
+        return outside;
     }
-    let shapes = [sx.shape_functions(i, position[0]), sy.shape_functions(j, position[1])];
-    let first = [sx.spans()[i].first, sy.spans()[j].first];
-    let sum = |field: &[f64], derivative: Option<usize>| interpolate(frame, &shapes, first, field, derivative);
-    let [ux, uy] = frame.displacement();
-    let strain = [sum(ux, Some(0)), sum(uy, Some(1)), 0.5 * (sum(ux, Some(1)) + sum(uy, Some(0)))];
+    let Some(functions) = frame.patch().functions_at(position) else { return outside };
+    let [ux, uy] = frame.displacement().each_ref().map(|u| functions.interpolate(u).gradient);
+    let strain = [ux[0], uy[1], 0.5 * (ux[1] + uy[0])];
     match &frame.fracture {
         None => [1.0, largest_principal_stress(frame.moduli(), strain, None)],
         Some(fracture) => {
-            let phase = sum(fracture.field.control_values(), None);
+            let phase = functions.interpolate(fracture.field.control_values()).value;
             [phase, largest_principal_stress(frame.moduli(), strain, Some((&fracture.model, phase)))]
         }
     }
-}
-
-fn interpolate(
-    frame: &TotalFrame,
-    shapes: &[ShapeFunctions; 2],
-    first: [usize; 2],
-    field: &[f64],
-    derivative: Option<usize>,
-) -> f64 {
-    let table = |d: usize| if derivative == Some(d) { &shapes[d].derivative } else { &shapes[d].value };
-    let grid = frame.lattice().grid;
-    let [p, q] = frame.lattice().degree;
-    let mut sum = 0.0;
-    for l in 0..=q {
-        for k in 0..=p {
-            sum += table(0)[k] * table(1)[l] * field[grid.index(first[0] + k, first[1] + l)];
-        }
-    }
-    sum
 }
 
 fn largest_principal_stress(

@@ -29,13 +29,25 @@ pub struct Scene {
     pub output: Output,
 }
 
-/// Background B-spline patch over an axis-aligned rectangle.
+/// Background NURBS patch: a B-spline patch over an axis-aligned rectangle, or any other with its geometry.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     /// Polynomial degree per direction, 1 to 4.
     pub degree: [usize; 2],
-    /// Open knot vector per direction, in metres: first and last knot repeated `degree + 1` times.
+    /// Open knot vector per direction: first and last knot repeated `degree + 1` times. In metres over a rectangle, in any
+    /// unit with a geometry.
     pub knots: [Vec<f64>; 2],
+    /// Control points and weights; absent over a rectangle, whose knots are its coordinates.
+    pub geometry: Option<Geometry>,
+}
+
+/// Geometry of a general patch, row by row, first direction fastest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Geometry {
+    /// Control points, m.
+    pub control_points: Vec<[f64; 2]>,
+    /// Weights, all positive.
+    pub weights: Vec<f64>,
 }
 
 impl Mesh {
@@ -48,17 +60,30 @@ impl Mesh {
             knots.extend(std::iter::repeat_n(origin[d] + size[d], degree[d]));
             knots
         });
-        Self { degree, knots }
+        Self { degree, knots, geometry: None }
     }
 
-    /// Lower left corner, m.
+    /// Lower left corner of the patch, or of the box around its control points, m.
     pub fn origin(&self) -> [f64; 2] {
-        [0, 1].map(|d| self.knots[d].first().copied().unwrap_or(0.0))
+        [0, 1].map(|d| match &self.geometry {
+            None => self.knots[d].first().copied().unwrap_or(0.0),
+            Some(geometry) => geometry.control_points.iter().map(|p| p[d]).fold(f64::INFINITY, f64::min),
+        })
     }
 
-    /// Upper right corner, m.
+    /// Upper right corner of the patch, or of the box around its control points, m.
     pub fn end(&self) -> [f64; 2] {
-        [0, 1].map(|d| self.knots[d].last().copied().unwrap_or(0.0))
+        [0, 1].map(|d| match &self.geometry {
+            None => self.knots[d].last().copied().unwrap_or(0.0),
+            Some(geometry) => geometry.control_points.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, f64::max),
+        })
+    }
+
+    /// The box around the part of a shape that lies in the box around the patch: lower left and upper right corner, m.
+    pub fn extent(&self, shape: &Shape) -> ([f64; 2], [f64; 2]) {
+        let (low, high) = shape.bounding_box();
+        let (origin, end) = (self.origin(), self.end());
+        ([0, 1].map(|d| low[d].max(origin[d])), [0, 1].map(|d| high[d].min(end[d])))
     }
 }
 
@@ -233,6 +258,8 @@ pub enum Shape {
         /// Corners in order.
         points: Vec<[f64; 2]>,
     },
+    /// All of the background patch.
+    Patch,
     /// A shape without other shapes.
     Difference {
         /// The shape cut from.
@@ -253,7 +280,7 @@ pub enum Layout {
     Maclaurin,
 }
 
-/// Side of a rectangle.
+/// Side of a rectangle, or of a patch: left and right bound its first parametric direction, bottom and top its second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Side {
     /// Smallest x.
@@ -269,7 +296,7 @@ pub enum Side {
 /// Where a traction acts.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Edge {
-    /// A side of a rectangle body.
+    /// A side of a body that is a rectangle or the whole patch.
     Side(Side),
     /// A straight segment, m.
     Segment([[f64; 2]; 2]),

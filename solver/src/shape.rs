@@ -31,13 +31,15 @@ impl Shape {
                     _ => inside,
                 }
             }
+            Self::Patch => true,
             Self::Difference { of, minus } => {
                 of.contains_within(position, margin) && !minus.iter().any(|s| s.contains_within(position, -margin))
             }
         }
     }
 
-    /// Smallest axis-aligned rectangle around the shape: lower left and upper right corner, m.
+    /// Smallest axis-aligned rectangle around the shape: lower left and upper right corner, m. That of the patch, which the
+    /// shape does not know, is the whole plane; [`crate::scene::Mesh::extent`] clips it.
     pub fn bounding_box(&self) -> ([f64; 2], [f64; 2]) {
         match self {
             Self::Rectangle { min, max } => (*min, *max),
@@ -49,6 +51,7 @@ impl Shape {
                     ([low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])])
                 })
             }
+            Self::Patch => ([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]),
             Self::Difference { of, .. } => of.bounding_box(),
         }
     }

@@ -81,7 +81,7 @@ impl Frame {
 
     fn mass(&self) -> &[f64] {
         match self {
-            Self::Total(body) => body.mass(),
+            Self::Total(body) => body.mass().row_sums(),
             Self::Updated(body) => &body.nodes().mass,
         }
     }
@@ -279,7 +279,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Greville point of the fastest control point, m.
+    /// Position of the fastest control point, m.
     fn fastest_place(&self) -> [f64; 2] {
         let frame = &self.frame;
         let [vx, vy] = frame.velocity();
@@ -289,8 +289,7 @@ impl Simulation {
             if speed.is_nan() { f64::INFINITY } else { speed }
         };
         let fastest = grid.indices().max_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or(0);
-        let [x, y] = [0, 1].map(|d| frame.patch().spaces[d].greville());
-        [x[grid.column_of(fastest)], y[grid.row_of(fastest)]]
+        frame.patch().control_positions().map(|x| x[fastest])
     }
 
     fn unstable(&self, time: f64) -> Breakdown {

@@ -4,29 +4,31 @@
 //! points for the whole run, strains follow from the displacement, and nothing is lost in transfers. With beta = 0 the
 //! strain at n + 1 does not depend on the acceleration at n + 1: one pass of the staggered scheme is converged.
 
+mod forced;
 mod observe;
 mod stiffness;
+
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use crate::constraints::Constraints;
 use crate::energy::Ledger;
+use crate::forcing::Forcing;
 use crate::fracture::{Fracturing, NotConverged};
-use crate::kernels::ElasticStress;
 use crate::lane::Lane;
 use crate::lattice::Lattice;
 use crate::loads::NodalLoad;
+use crate::mass::MassMatrix;
 use crate::material::{ElasticModuli, FractureModel};
 use crate::patch::{ControlGrid, Patch};
-use crate::phase_field::integrate_shape_functions;
 use crate::scene::{Boundary, Scene, Shape, Side};
 use crate::stencil::CHUNK_ROWS;
-use crate::sweep::{Fields, StripForces, sweep};
+use crate::sweep::StripForces;
 
+use forced::Forced;
 pub use stiffness::Stiffness;
-
-/// Masses below this fraction of the largest give no acceleration; their control points keep their velocity.
-const NEGLIGIBLE_MASS: f64 = 1e-12;
+use stiffness::elastic_forces;
 
 /// A field of vectors on the control points, by component.
 type VectorField = [Vec<f64>; 2];
@@ -42,10 +44,10 @@ pub struct TotalFrame {
     thickness: f64,
     gravity: [f64; 2],
     loads: Vec<NodalLoad>,
+    /// Loads that vary in space, if there are any.
+    forced: Option<Box<Forced>>,
     constraints: Constraints,
-    /// Lumped mass per unit thickness, kg/m, and its inverse (zero where negligible).
-    mass: Vec<f64>,
-    inverse_mass: Vec<f64>,
+    mass: MassMatrix,
     displacement: VectorField,
     velocity: VectorField,
     acceleration: VectorField,
@@ -71,10 +73,8 @@ impl TotalFrame {
         let material = &scene.materials[&body.material];
         let lattice = Lattice::new(&patch, body);
         let grid = lattice.grid;
-        let mut mass = integrate_shape_functions(&lattice);
-        mass.iter_mut().for_each(|m| *m *= material.density);
-        let negligible = NEGLIGIBLE_MASS * mass.iter().copied().fold(0.0, f64::max);
-        let inverse_mass = mass.iter().map(|&m| if m > negligible { 1.0 / m } else { 0.0 }).collect();
+        let constraints = Constraints::new(grid, &scene.boundaries);
+        let held = [0, 1].map(|component| constraints.held(component));
         let fracture = material
             .fracture
             .as_ref()
@@ -82,8 +82,10 @@ impl TotalFrame {
             .transpose()?;
         let zeros = || [grid.zeros(), grid.zeros()];
         let mut frame = Self {
-            loads: body.tractions.iter().map(|t| NodalLoad::new(&patch, grid, body, t)).collect(),
-            constraints: Constraints::new(grid, &scene.boundaries),
+            loads: body.tractions.iter().map(|t| NodalLoad::new(&patch, body, t)).collect(),
+            forced: None,
+            mass: MassMatrix::new(&lattice, material.density, scene.analysis.mass, held),
+            constraints,
             moduli: ElasticModuli::new(material, scene.analysis.plane),
             shape: body.shape.clone(),
             thickness: scene.analysis.thickness,
@@ -101,16 +103,45 @@ impl TotalFrame {
             patch,
             grid,
             lattice,
-            mass,
-            inverse_mass,
             fracture,
         };
         frame.set_initial_velocity(body.velocity, body.angular_velocity);
-        frame.internal_forces();
-        frame.ledger.history_work = 0.0; // there was no step yet
-        frame.accelerate();
-        frame.driven_power = frame.power_of_driven_sides();
+        frame.begin();
         Ok(frame)
+    }
+
+    /// Begins anew at t = 0 from given control values of displacement (m) and velocity (m/s), under loads that vary in space.
+    ///
+    /// # Errors
+    /// If the initial phase field does not converge.
+    pub fn start_from(
+        &mut self,
+        displacement: VectorField,
+        velocity: VectorField,
+        forcing: Arc<dyn Forcing>,
+    ) -> Result<(), NotConverged> {
+        (self.displacement, self.velocity) = (displacement, velocity);
+        self.constraints.apply_velocity(&mut self.velocity);
+        self.ledger = Ledger::default();
+        self.time = 0.0;
+        let mut forced = Forced::new(forcing, &self.patch, &self.lattice);
+        forced.update_forces(&self.lattice, 0.0);
+        if let Some(fracture) = &mut self.fracture {
+            fracture.update_history(&self.lattice, self.moduli, &self.displacement);
+            fracture.field.set_load(forced.phase_load(&self.lattice, 0.0));
+            fracture.field.initialise(&self.lattice, &fracture.history)?;
+        }
+        self.forced = Some(Box::new(forced));
+        self.begin();
+        Ok(())
+    }
+
+    /// Forces and accelerations at t = 0.
+    fn begin(&mut self) {
+        self.internal_forces();
+        self.ledger.history_work = 0.0; // there was no step yet
+        self.accelerate();
+        self.driven_power = self.power_of_driven_sides();
     }
 
     /// One time step of `dt` seconds (E 14–18).
@@ -119,13 +150,14 @@ impl TotalFrame {
     /// If the phase field does not converge.
     pub fn step(&mut self, dt: f64) -> Result<(), NotConverged> {
         self.predict(dt);
+        self.update_loads();
         if let Some(fracture) = &mut self.fracture {
             fracture.update_history(&self.lattice, self.moduli, &self.displacement);
             fracture.solve_phase_field(&self.lattice)?;
         }
         self.internal_forces();
-        self.book_external_work(dt);
         self.accelerate();
+        self.book_external_work(dt);
         self.correct(dt);
         Ok(())
     }
@@ -159,47 +191,61 @@ impl TotalFrame {
         }
     }
 
+    /// Loads that vary in space, at the present time.
+    fn update_loads(&mut self) {
+        let Some(forced) = &mut self.forced else { return };
+        forced.update_forces(&self.lattice, self.time);
+        if let Some(fracture) = &mut self.fracture {
+            fracture.field.set_load(forced.phase_load(&self.lattice, self.time));
+        }
+    }
+
     /// Stress at the points and its nodal forces; books the work of the history field.
     fn internal_forces(&mut self) {
         let moduli = self.moduli;
-        let displacement = [&self.displacement[0][..], &self.displacement[1][..]];
         if let Some(fracture) = &mut self.fracture {
+            let displacement = [&self.displacement[0][..], &self.displacement[1][..]];
             let sums = fracture.degraded_forces(&self.lattice, moduli, displacement, &mut self.strip_forces);
             self.elastic_energy = sums.elastic_energy;
             self.ledger.history_work += sums.history_work;
+            self.strip_forces.assemble(self.grid.stride, &mut self.internal);
         } else {
-            let mut kernels: Vec<_> =
-                (0..self.lattice.strips()).map(|_| ElasticStress { moduli, energy: Lane::ZERO }).collect();
-            let fields = Fields { displacement, phase: &[] };
-            sweep(&self.lattice, fields, &mut kernels, Some(&mut self.strip_forces));
-            self.elastic_energy = kernels.iter().map(|k| k.energy.sum()).sum();
+            let (strips, internal) = (&mut self.strip_forces, &mut self.internal);
+            self.elastic_energy = elastic_forces(&self.lattice, moduli, &self.displacement, strips, internal);
         }
-        self.strip_forces.assemble(self.grid.stride, &mut self.internal);
     }
 
     /// `a = M⁻¹ (f_ext − f_int)`, zero where the velocity is prescribed.
     fn accelerate(&mut self) {
+        self.external_minus_internal();
+        self.mass.divide(&mut self.acceleration);
+        self.constraints.remove(&mut self.acceleration);
+    }
+
+    /// `f_ext − f_int` in the room of the acceleration.
+    fn external_minus_internal(&mut self) {
         let chunk = CHUNK_ROWS * self.grid.stride;
         for component in 0..2 {
             let gravity = self.gravity[component];
             let a = self.acceleration[component].par_chunks_mut(chunk);
-            a.zip(self.internal[component].par_chunks(chunk)).zip(self.inverse_mass.par_chunks(chunk)).for_each(
-                |((a, f), inverse)| {
-                    for ((a, f), inverse) in a.iter_mut().zip(f).zip(inverse) {
-                        *a = if *inverse > 0.0 { gravity - f * inverse } else { 0.0 };
-                    }
-                },
-            );
+            let mass = self.mass.row_sums().par_chunks(chunk);
+            a.zip(self.internal[component].par_chunks(chunk)).zip(mass).for_each(|((a, f), m)| {
+                for ((a, f), m) in a.iter_mut().zip(f).zip(m) {
+                    *a = gravity * m - f;
+                }
+            });
         }
         for load in &self.loads {
             let factor = load.factor(self.time);
             for &(at, force) in &load.forces {
                 for component in 0..2 {
-                    self.acceleration[component][at] += factor * force[component] * self.inverse_mass[at];
+                    self.acceleration[component][at] += factor * force[component];
                 }
             }
         }
-        self.constraints.remove(&mut self.acceleration);
+        if let Some(forced) = &self.forced {
+            forced.add_to(&mut self.acceleration);
+        }
     }
 
     /// Work of tractions, gravity and driven sides over the last step: mean force times displacement.
@@ -212,7 +258,10 @@ impl TotalFrame {
             power += factor * forces.map(|&(at, f)| f[0] * velocity[0][at] + f[1] * velocity[1][at]).sum::<f64>();
         }
         for (component, gravity) in self.gravity.into_iter().enumerate().filter(|(_, g)| *g != 0.0) {
-            power += gravity * self.mass.iter().zip(&velocity[component]).map(|(m, v)| m * v).sum::<f64>();
+            power += gravity * self.mass.row_sums().iter().zip(&velocity[component]).map(|(m, v)| m * v).sum::<f64>();
+        }
+        if let Some(forced) = &self.forced {
+            power += forced.mean_power(velocity);
         }
         let driven = self.power_of_driven_sides();
         power += 0.5 * (self.driven_power + driven);
@@ -220,38 +269,41 @@ impl TotalFrame {
         self.ledger.external_work += dt * power;
     }
 
-    /// Reaction times velocity of the driven control points, whose acceleration is zero.
+    /// Reaction times velocity of the driven control points: internal and inertial minus external force.
     fn power_of_driven_sides(&self) -> f64 {
+        let driven: Vec<_> = self.constraints.iter().filter(|(_, _, value)| *value != 0.0).collect();
+        if driven.is_empty() {
+            return 0.0;
+        }
+        let mut inertia = [self.grid.zeros(), self.grid.zeros()];
+        let mut forced = [self.grid.zeros(), self.grid.zeros()];
+        for component in 0..2 {
+            self.mass.multiply(&self.acceleration[component], &mut inertia[component]);
+        }
+        if let Some(loads) = &self.forced {
+            loads.add_to(&mut forced);
+        }
         let mut power = 0.0;
-        for (at, component, value) in self.constraints.iter().filter(|(_, _, value)| *value != 0.0) {
+        for (at, component, value) in driven {
             let loads = self.loads.iter().flat_map(|load| load.forces.iter().map(|f| (load.factor(self.time), f)));
             let applied: f64 = loads.filter(|(_, f)| f.0 == at).map(|(factor, f)| factor * f.1[component]).sum();
-            let weight = self.gravity[component] * self.mass[at];
-            power += value * (self.internal[component][at] - applied - weight);
+            let external = applied + forced[component][at] + self.gravity[component] * self.mass.row_sums()[at];
+            power += value * (self.internal[component][at] + inertia[component][at] - external);
         }
         power
     }
 
+    /// Rigid motion about the centre of mass: linear in the position, so its control values are exact.
     fn set_initial_velocity(&mut self, velocity: [f64; 2], angular_velocity: f64) {
-        let greville = [0, 1].map(|d| self.patch.spaces[d].greville());
-        let center = self.center_of_mass(&greville);
+        let [x, y] = self.patch.control_positions();
+        let mass = self.mass.row_sums();
+        let total: f64 = mass.iter().sum();
+        let center = [&x, &y].map(|x| mass.iter().zip(x).map(|(m, x)| m * x).sum::<f64>() / total);
         for at in self.grid.indices() {
-            let (x, y) = (greville[0][self.grid.column_of(at)], greville[1][self.grid.row_of(at)]);
-            self.velocity[0][at] = velocity[0] - angular_velocity * (y - center[1]);
-            self.velocity[1][at] = velocity[1] + angular_velocity * (x - center[0]);
+            self.velocity[0][at] = velocity[0] - angular_velocity * (y[at] - center[1]);
+            self.velocity[1][at] = velocity[1] + angular_velocity * (x[at] - center[0]);
         }
         self.constraints.apply_velocity(&mut self.velocity);
-    }
-
-    fn center_of_mass(&self, greville: &[Vec<f64>; 2]) -> [f64; 2] {
-        let mut sums = [0.0; 3];
-        for at in self.grid.indices() {
-            let m = self.mass[at];
-            sums[0] += m;
-            sums[1] += m * greville[0][self.grid.column_of(at)];
-            sums[2] += m * greville[1][self.grid.row_of(at)];
-        }
-        [sums[1] / sums[0], sums[2] / sums[0]]
     }
 
     /// Stress `[xx, yy, xy]` (Pa) of the undamaged body under a displacement field at a position; NaN outside the patch.
@@ -307,9 +359,14 @@ impl TotalFrame {
         &self.velocity
     }
 
-    /// Lumped masses per unit thickness, kg/m.
-    pub fn mass(&self) -> &[f64] {
+    /// Mass per unit thickness.
+    pub fn mass(&self) -> &MassMatrix {
         &self.mass
+    }
+
+    /// Sides with prescribed velocity.
+    pub fn constraints(&self) -> &Constraints {
+        &self.constraints
     }
 
     /// Heap memory of mechanics and of the phase field, bytes.
@@ -323,7 +380,7 @@ impl TotalFrame {
 /// symmetric one: it stands on the bottom side, a roller holds that side, and a crack lies along it.
 pub(crate) fn lowest_tip(scene: &Scene) -> f64 {
     let body = &scene.bodies[0];
-    let (low, high) = body.shape.bounding_box();
+    let (low, high) = scene.mesh.extent(&body.shape);
     let at_foot = |y: f64| (y - low[1]).abs() <= 1e-9 * (high[1] - low[1]);
     let roller = |b: &Boundary| b.side == Side::Bottom && b.fix == [false, true] && b.velocity[1] == 0.0;
     let half = at_foot(scene.mesh.origin()[1])

@@ -12,7 +12,7 @@ mod mesh;
 use std::fmt::Display;
 
 use crate::error::{SceneError, SceneWarning};
-use crate::scene::{Frame, Kinematics, Mass, Scene, Transfer};
+use crate::scene::{Frame, Kinematics, Scene, Transfer};
 
 /// Checks a scene; the warnings, if it can be modelled.
 ///
@@ -81,8 +81,12 @@ fn unsupported(scene: &Scene, findings: &mut Findings) {
     if scene.analysis.kinematics == Kinematics::Finite {
         refuse("analysis.kinematics", &"finite strain is", "use kinematics = \"small\"");
     }
-    if scene.analysis.mass == Mass::Consistent {
-        refuse("analysis.mass", &"the consistent mass matrix is", "use mass = \"lumped\"");
+    if scene.analysis.frame == Frame::Updated && scene.mesh.geometry.is_some() {
+        refuse(
+            "mesh.control_points",
+            &"a general patch in the updated frame is",
+            "use frame = \"total\", or a rectangle",
+        );
     }
     if scene.analysis.frame == Frame::Updated && scene.analysis.transfer != Transfer::Flip {
         refuse("analysis.transfer", &"a transfer other than flip is", "use transfer = \"flip\"");

@@ -6,25 +6,26 @@ use common::{body, elastic_scene, rectangle};
 use fisura::Simulation;
 use fisura::critical_step::{StiffnessOperator, highest_frequency};
 use fisura::scene::*;
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Dense highest angular frequency of the free degrees of freedom, and the bound the solver takes.
 fn frequencies(scene: &Scene) -> (f64, f64) {
     let simulation = Simulation::new(scene).unwrap();
     let mut operator = simulation.total_frame().unwrap().stiffness_operator();
     let bound = highest_frequency(&mut operator);
-    let masses = operator.masses().to_vec();
-    let n = masses.len();
+    let n = operator.size();
     let (mut unit, mut column) = (vec![0.0; n], vec![0.0; n]);
-    let mut matrix = DMatrix::zeros(n, n);
+    let (mut stiffness, mut inverse_mass) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
     for j in 0..n {
         unit[j] = 1.0;
         operator.stiffness(&unit, &mut column);
+        stiffness.set_column(j, &DVector::from_column_slice(&column));
+        operator.divide_by_mass(&unit, &mut column);
+        inverse_mass.set_column(j, &DVector::from_column_slice(&column));
         unit[j] = 0.0;
-        for i in 0..n {
-            matrix[(i, j)] = column[i] / (masses[i] * masses[j]).sqrt();
-        }
     }
+    let factor = inverse_mass.cholesky().expect("a positive mass").l();
+    let matrix = factor.transpose() * stiffness * factor;
     let asymmetry = (&matrix - matrix.transpose()).amax();
     assert!(asymmetry <= 1e-12 * matrix.amax(), "the stiffness is symmetric");
     let eigenvalues = SymmetricEigen::new(matrix).eigenvalues;

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Random, body, fracture_model, rectangle, with_threads};
-use fisura::assembly::{Constant, Factor, PointCoefficients, add_products};
+use fisura::assembly::{Constant, Form, PointCoefficients, add_form};
 use fisura::cholesky::SparseCholesky;
 use fisura::conjugate_gradients::ConjugateGradients;
 use fisura::incomplete_cholesky::IncompleteCholesky;
@@ -45,11 +45,8 @@ fn phase_field_matrix(degree: usize, cells: [usize; 2], contrast: f64) -> Stenci
     let patch = Patch::new(&Mesh::uniform([degree; 2], [0.0; 2], size, cells));
     let lattice = Lattice::new(&patch, &body(rectangle([0.0; 2], size), [degree.max(2); 2]));
     let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
-    use Factor::{Derivative, Value};
-    add_products(&mut matrix, &lattice, [Value, Value], &Crack { lattice: &lattice, contrast });
-    for factors in [[Derivative, Value], [Value, Derivative]] {
-        add_products(&mut matrix, &lattice, factors, &Constant(fracture_model().diffusion()));
-    }
+    add_form(&mut matrix, &lattice, Form::Mass, &Crack { lattice: &lattice, contrast });
+    add_form(&mut matrix, &lattice, Form::Diffusion, &Constant(fracture_model().diffusion()));
     matrix
 }
 

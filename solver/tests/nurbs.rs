@@ -175,7 +175,7 @@ proptest! {
     #[test]
     fn an_affine_rectangle_is_the_patch_of_the_mesh([x, y] in [direction(), direction()]) {
         let (degree, knots) = ([x.degree, y.degree], [x.knots, y.knots]);
-        let mesh = Mesh { degree, knots: knots.clone() };
+        let mesh = Mesh { degree, knots: knots.clone(), geometry: None };
         let patch = Patch::new(&mesh);
         let rectangle = NurbsPatch::rectangle(degree, [&knots[0], &knots[1]], [0.0, 0.0], [1.0, 1.0]).unwrap();
         let general = rectangle.general();

@@ -10,6 +10,7 @@ pub mod fields;
 mod overrides;
 mod read;
 mod read_body;
+mod read_mesh;
 pub mod suggest;
 pub mod units;
 

@@ -72,7 +72,7 @@ impl MapPoint {
 }
 
 /// Products of the B-splines of two directions: the basis of a patch with equal weights.
-pub(super) fn products(spaces: &[SplineSpace; 2], span: [usize; 2], parameters: [f64; 2]) -> RationalFunctions {
+pub(crate) fn products(spaces: &[SplineSpace; 2], span: [usize; 2], parameters: [f64; 2]) -> RationalFunctions {
     let [x, y] = spaces;
     let (sx, sy) = (x.shape_functions(span[0], parameters[0]), y.shape_functions(span[1], parameters[1]));
     let (first_column, first_row) = (x.spans()[span[0]].first, y.spans()[span[1]].first);

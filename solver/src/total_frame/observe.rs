@@ -7,17 +7,15 @@ impl TotalFrame {
     /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at zero.
     pub fn sample(&self, dt: f64) -> Sample {
         let thickness = self.thickness;
-        let greville = [0, 1].map(|d| self.patch.spaces[d].greville());
-        let (mut kinetic, mut stagger, mut momentum, mut angular) = (0.0, 0.0, [0.0; 2], 0.0);
-        for at in self.grid.indices() {
-            let m = self.mass[at];
-            let [v, a] = [&self.velocity, &self.acceleration].map(|f| [f[0][at], f[1][at]]);
-            kinetic += 0.5 * m * (v[0] * v[0] + v[1] * v[1]);
-            stagger += 0.125 * dt * dt * m * (a[0] * a[0] + a[1] * a[1]);
-            momentum = [momentum[0] + m * v[0], momentum[1] + m * v[1]];
-            let (x, y) = (greville[0][self.grid.column_of(at)], greville[1][self.grid.row_of(at)]);
-            angular += m * (x * v[1] - y * v[0]);
+        let [x, y] = self.patch.control_positions();
+        let kinetic = self.mass.half_square(&self.velocity);
+        let stagger = 0.25 * dt * dt * self.mass.half_square(&self.acceleration);
+        let mut momenta = [self.grid.zeros(), self.grid.zeros()];
+        for component in 0..2 {
+            self.mass.multiply(&self.velocity[component], &mut momenta[component]);
         }
+        let momentum = momenta.each_ref().map(|p| p.iter().sum::<f64>());
+        let angular: f64 = self.grid.indices().map(|at| x[at] * momenta[1][at] - y[at] * momenta[0][at]).sum();
         let fracture = self.fracture.as_ref().map(|f| {
             let (energy, min_phase) = f.surface_energy(&self.lattice);
             FractureSample {

@@ -1,9 +1,13 @@
 //! Stiffness of the undamaged body in the total frame, and the critical step it implies.
 
+use std::collections::BTreeSet;
+
 use super::{TotalFrame, VectorField};
 use crate::critical_step::{StiffnessOperator, highest_frequency};
 use crate::kernels::ElasticStress;
 use crate::lane::Lane;
+use crate::lattice::Lattice;
+use crate::material::ElasticModuli;
 use crate::sweep::{Fields, StripForces, sweep};
 
 impl TotalFrame {
@@ -13,27 +17,55 @@ impl TotalFrame {
         if frequency > 0.0 { 2.0 / frequency } else { f64::INFINITY }
     }
 
+    /// Control point and component of every degree of freedom that can move.
+    pub fn free_components(&self) -> Vec<(usize, usize)> {
+        let held: BTreeSet<_> = self.constraints.iter().map(|(at, c, _)| (at, c)).collect();
+        let moving = |&(at, c): &(usize, usize)| self.mass.moves(at) && !held.contains(&(at, c));
+        self.grid.indices().flat_map(|at| [(at, 0), (at, 1)]).filter(moving).collect()
+    }
+
+    /// Room for [`Self::elastic_forces`].
+    pub fn strip_forces(&self) -> StripForces {
+        self.strip_forces.clone()
+    }
+
+    /// Internal forces (N/m) of the undamaged body under a displacement (m).
+    pub fn elastic_forces(&self, displacement: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
+        elastic_forces(&self.lattice, self.moduli, displacement, strips, out);
+    }
+
     /// Stiffness of the undamaged body on its free degrees of freedom.
     pub fn stiffness_operator(&self) -> Stiffness<'_> {
-        let fixed: std::collections::BTreeSet<_> = self.constraints.iter().map(|(at, c, _)| (at, c)).collect();
-        let moving = |&(at, c): &(usize, usize)| self.inverse_mass[at] > 0.0 && !fixed.contains(&(at, c));
-        let free: Vec<_> = self.grid.indices().flat_map(|at| [(at, 0), (at, 1)]).filter(moving).collect();
+        let zeros = || [self.grid.zeros(), self.grid.zeros()];
         Stiffness {
             frame: self,
-            masses: free.iter().map(|&(at, _)| self.mass[at]).collect(),
-            free,
-            field: [self.grid.zeros(), self.grid.zeros()],
-            image: [self.grid.zeros(), self.grid.zeros()],
+            free: self.free_components(),
+            field: zeros(),
+            image: zeros(),
             strips: self.strip_forces.clone(),
         }
     }
+}
+
+/// Nodal forces (N/m) of the elastic stress under a displacement (m); returns the elastic energy, J/m.
+pub(super) fn elastic_forces(
+    lattice: &Lattice,
+    moduli: ElasticModuli,
+    displacement: &VectorField,
+    strips: &mut StripForces,
+    out: &mut VectorField,
+) -> f64 {
+    let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| ElasticStress { moduli, energy: Lane::ZERO }).collect();
+    let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
+    sweep(lattice, fields, &mut kernels, Some(strips));
+    strips.assemble(lattice.grid.stride, out);
+    kernels.iter().map(|k| k.energy.sum()).sum()
 }
 
 /// Stiffness of the undamaged body on its free degrees of freedom, per unit thickness.
 #[derive(Debug)]
 pub struct Stiffness<'a> {
     frame: &'a TotalFrame,
-    masses: Vec<f64>,
     free: Vec<(usize, usize)>,
     field: VectorField,
     image: VectorField,
@@ -45,25 +77,35 @@ impl Stiffness<'_> {
     pub fn degrees_of_freedom(&self) -> &[(usize, usize)] {
         &self.free
     }
-}
 
-impl StiffnessOperator for Stiffness<'_> {
-    fn masses(&self) -> &[f64] {
-        &self.masses
-    }
-
-    fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
+    fn unpack(&mut self, x: &[f64]) {
         for (&(at, component), x) in self.free.iter().zip(x) {
             self.field[component][at] = *x;
         }
-        let lattice = &self.frame.lattice;
-        let moduli = self.frame.moduli;
-        let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| ElasticStress { moduli, energy: Lane::ZERO }).collect();
-        let fields = Fields { displacement: [&self.field[0], &self.field[1]], phase: &[] };
-        sweep(lattice, fields, &mut kernels, Some(&mut self.strips));
-        self.strips.assemble(self.frame.grid.stride, &mut self.image);
+    }
+
+    fn pack(&self, field: &VectorField, out: &mut [f64]) {
         for (&(at, component), out) in self.free.iter().zip(out) {
-            *out = self.image[component][at];
+            *out = field[component][at];
         }
+    }
+}
+
+impl StiffnessOperator for Stiffness<'_> {
+    fn size(&self) -> usize {
+        self.free.len()
+    }
+
+    fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
+        self.unpack(x);
+        self.frame.elastic_forces(&self.field, &mut self.strips, &mut self.image);
+        self.pack(&self.image, out);
+    }
+
+    fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]) {
+        self.unpack(x);
+        let mut quotient = self.field.clone();
+        self.frame.mass.divide(&mut quotient);
+        self.pack(&quotient, out);
     }
 }

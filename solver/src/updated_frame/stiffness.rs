@@ -31,8 +31,14 @@ impl<'a> Stiffness<'a> {
 }
 
 impl StiffnessOperator for Stiffness<'_> {
-    fn masses(&self) -> &[f64] {
-        &self.masses
+    fn size(&self) -> usize {
+        self.masses.len()
+    }
+
+    fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]) {
+        for ((out, x), mass) in out.iter_mut().zip(x).zip(&self.masses) {
+            *out = x / mass;
+        }
     }
 
     fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {

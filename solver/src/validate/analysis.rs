@@ -1,8 +1,10 @@
 //! Checks of times, step, solver, boundaries and output.
 
 use super::material::plausible_speed;
-use super::{Findings, mesh::spans_over};
-use crate::scene::{Body, Boundary, Frame, Scene, Side, TimeStep, Transfer};
+use super::{Findings, mesh::span_lengths};
+use crate::quadrature::Rule;
+use crate::scene::{Body, Boundary, Frame, Mass, Scene, Shape, Side, TimeStep, Transfer};
+use crate::spline::SplineSpace;
 
 /// Most steps of a run.
 const MOST_STEPS: f64 = 1e9;
@@ -29,6 +31,9 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
                        frame = \"updated\"";
         findings.warn("analysis.transfer", message);
     }
+    if analysis.mass == Mass::Consistent {
+        consistent_mass(scene, mesh_is_sound, findings);
+    }
     solver(scene, findings);
     boundaries(scene, findings);
     if mesh_is_sound {
@@ -43,6 +48,57 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
         let message = format!("a friction coefficient of {}", contact.friction);
         findings.error("contact.friction", message, "give a coefficient of 0 or more");
     }
+}
+
+/// The consistent mass needs the total frame, spans that no body cuts, and points that determine every control value.
+fn consistent_mass(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) {
+    let key = "analysis.mass";
+    if scene.analysis.frame == Frame::Updated {
+        let message = "the consistent mass with frame = \"updated\", where cut spans would collapse the critical step";
+        return findings.error(key, message, "use mass = \"lumped\", or frame = \"total\"");
+    }
+    for body in scene.bodies.iter().filter(|_| mesh_is_sound) {
+        let on_knots = |d: usize, x: f64| {
+            let knots = &scene.mesh.knots[d];
+            knots.iter().any(|k| (k - x).abs() <= TOLERANCE * (knots[knots.len() - 1] - knots[0]))
+        };
+        let uncut = match &body.shape {
+            Shape::Patch => true,
+            Shape::Rectangle { min, max } => {
+                scene.mesh.geometry.is_none() && (0..2).all(|d| on_knots(d, min[d]) && on_knots(d, max[d]))
+            }
+            _ => false,
+        };
+        if !uncut {
+            let message =
+                format!("body {:?} cuts spans, which collapses the critical step of the consistent mass", body.name);
+            findings.error(key, message, "let the body end at knots of the mesh, or use mass = \"lumped\"");
+        }
+        for d in 0..2 {
+            let space = SplineSpace::new(scene.mesh.degree[d], &scene.mesh.knots[d]);
+            if !determined(&space, &Rule::new(body.layout, body.particles_per_cell[d])) {
+                let n = body.particles_per_cell[d];
+                let message =
+                    format!("{n} points per cell in direction {} leave the mass matrix singular", ["x", "y"][d]);
+                let remedy = format!("give {} particles_per_cell", scene.mesh.degree[d] + 1);
+                findings.error(key, message, remedy);
+            }
+        }
+    }
+}
+
+/// Whether the points of a rule in every span determine a spline (Schoenberg and Whitney): taken in order, each basis
+/// function has a point of its own inside its support.
+fn determined(space: &SplineSpace, rule: &Rule) -> bool {
+    let points = space.spans().iter().flat_map(|s| rule.points.iter().map(move |t| s.left + t * s.length()));
+    let (knots, order) = (space.knot_vector(), space.degree() + 1);
+    let mut next = 0;
+    for x in points {
+        if next < space.dimension() && knots[next] < x && x < knots[next + order] {
+            next += 1;
+        }
+    }
+    next == space.dimension()
 }
 
 /// Whether the run has a number of steps that can be taken: with a step of choice, one span per step is the estimate.
@@ -69,9 +125,8 @@ fn steps(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) {
 /// that makes sense.
 fn crossings(body: &Body, scene: &Scene) -> Option<f64> {
     let speed = plausible_speed(scene.materials.get(&body.material)?, scene.analysis.plane)?;
-    let (min, max) = body.shape.bounding_box();
-    let spans = (0..2).flat_map(|d| spans_over(&scene.mesh.knots[d], min[d], max[d]));
-    Some(scene.analysis.end_time * speed / spans.fold(f64::INFINITY, f64::min))
+    let [smallest, _] = span_lengths(&scene.mesh, &body.shape);
+    Some(scene.analysis.end_time * speed / smallest)
 }
 
 /// A warning unless a body reaches the side of a boundary.
@@ -84,9 +139,12 @@ fn held(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) 
         Side::Top => (1, true),
     };
     let tolerance = TOLERANCE * (end[d] - origin[d]);
+    if scene.mesh.geometry.is_some() {
+        return; // the sides of the patch are not those of the box around it
+    }
     let place = if upper { end[d] } else { origin[d] };
     let reaches = |body: &Body| {
-        let (min, max) = body.shape.bounding_box();
+        let (min, max) = scene.mesh.extent(&body.shape);
         if upper { max[d] >= place - tolerance } else { min[d] <= place + tolerance }
     };
     if !scene.bodies.iter().any(reaches) {

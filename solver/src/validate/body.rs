@@ -1,8 +1,9 @@
 //! Checks of bodies: shape, place in the mesh, points, resolution of the length scale, tractions, cracks.
 
 use super::analysis::side_name;
-use super::geometry::defect;
-use super::{Findings, mesh::spans_over};
+use super::geometry::{defect, outline};
+use super::{Findings, mesh::span_lengths};
+use crate::nurbs::{LocateError, NurbsPatch};
 use crate::quadrature::MAX_POINTS;
 use crate::scene::{Body, Crack, Edge, Fracture, Layout, Mesh, Scene, Shape, Traction};
 
@@ -39,10 +40,10 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
             resolution(body, fracture, &scene.mesh, findings);
         }
         for (j, traction) in body.tractions.iter().enumerate() {
-            check_traction(&format!("{key}.traction.{j}"), traction, body, findings);
+            check_traction(&format!("{key}.traction.{j}"), traction, body, &scene.mesh, findings);
         }
         for (j, crack) in body.cracks.iter().enumerate() {
-            check_crack(&format!("{key}.crack.{j}"), crack, body, fracture, findings);
+            check_crack(&format!("{key}.crack.{j}"), crack, body, fracture, &scene.mesh, findings);
         }
     }
 }
@@ -83,6 +84,16 @@ fn material<'a>(key: &str, body: &Body, scene: &'a Scene, findings: &mut Finding
 }
 
 fn inside_mesh(key: &str, body: &Body, mesh: &Mesh, findings: &mut Findings) -> bool {
+    match (&body.shape, mesh.nurbs()) {
+        (Shape::Patch, Some(_)) => return true,
+        (Shape::Patch, None) => {
+            let remedy = "give the rectangle of the mesh: shape = { rectangle = { min = …, max = … } }";
+            findings.error(format!("{key}.shape"), "the mesh is a rectangle without a geometry of its own", remedy);
+            return false;
+        }
+        (shape, Some(Ok(patch))) => return inside_patch(key, shape, &patch, findings),
+        _ => {}
+    }
     let (min, max) = body.shape.bounding_box();
     let (origin, end) = (mesh.origin(), mesh.end());
     let outside = |d: usize| {
@@ -99,10 +110,27 @@ fn inside_mesh(key: &str, body: &Body, mesh: &Mesh, findings: &mut Findings) -> 
     false
 }
 
+/// Whether the outline of a shape lies on a patch with a geometry.
+fn inside_patch(key: &str, shape: &Shape, patch: &NurbsPatch, findings: &mut Findings) -> bool {
+    let tolerance = TOLERANCE * patch.size();
+    for point in outline(shape) {
+        if let Err(LocateError::Outside { nearest: [x, y], distance, .. }) = patch.locate(point, None)
+            && distance > tolerance
+        {
+            let message = format!("the point ({}, {}) m of the body lies outside the patch", point[0], point[1]);
+            let remedy = format!(
+                "move or shrink the body (the patch begins {distance:.3e} m away, at ({x}, {y}) m), or use shape = \"patch\""
+            );
+            findings.error(format!("{key}.shape"), message, remedy);
+            return false;
+        }
+    }
+    true
+}
+
 /// Largest span in the body against the length scale: above it the crack is coarse, above four times it is not there.
 fn resolution(body: &Body, fracture: &Fracture, mesh: &Mesh, findings: &mut Findings) {
-    let (min, max) = body.shape.bounding_box();
-    let h = (0..2).flat_map(|d| spans_over(&mesh.knots[d], min[d], max[d])).fold(0.0, f64::max);
+    let [_, h] = span_lengths(mesh, &body.shape);
     let l0 = fracture.length_scale;
     let sizes = format!("cells of h = {:.4} mm against l0 = {:.4} mm", 1e3 * h, 1e3 * l0);
     let key = format!("material.{}.fracture.length_scale", body.material);
@@ -117,12 +145,18 @@ fn resolution(body: &Body, fracture: &Fracture, mesh: &Mesh, findings: &mut Find
     }
 }
 
-fn check_traction(key: &str, traction: &Traction, body: &Body, findings: &mut Findings) {
+fn check_traction(key: &str, traction: &Traction, body: &Body, mesh: &Mesh, findings: &mut Findings) {
     findings.finite(format!("{key}.stress"), &traction.stress);
     if let Some(ramp) = traction.ramp {
         findings.positive(format!("{key}.ramp"), ramp, "ramp = \"1 us\", or leave it out for a load from t = 0");
     }
     match &traction.edge {
+        Edge::Side(_) if body.shape == Shape::Patch => {}
+        _ if mesh.geometry.is_some() => {
+            let remedy =
+                "give the body shape = \"patch\" and the traction edge = \"left\", \"right\", \"bottom\" or \"top\"";
+            findings.error(key, "on a patch with control_points only its sides can be loaded", remedy);
+        }
         Edge::Side(_) if matches!(body.shape, Shape::Rectangle { .. }) => {}
         Edge::Side(side) => {
             let message = format!("only a rectangle has a {} side", side_name(*side));
@@ -135,7 +169,7 @@ fn check_traction(key: &str, traction: &Traction, body: &Body, findings: &mut Fi
             }
             if ends[0] == ends[1] {
                 findings.error(key, "a segment of zero length", "give two different ends");
-            } else if let Some([x, y]) = first_outside(*ends, SEGMENT_INTERVALS, &body.shape) {
+            } else if let Some([x, y]) = first_outside(*ends, SEGMENT_INTERVALS, &body.shape, mesh) {
                 let message = format!("the segment leaves body {:?}: ({x}, {y}) m lies outside", body.name);
                 findings.error(key, message, "give two ends between which every point lies on the body's boundary");
             }
@@ -145,17 +179,26 @@ fn check_traction(key: &str, traction: &Traction, body: &Body, findings: &mut Fi
 
 /// First of `intervals + 1` equally spaced positions (m) between two ends, both included, that is not in the closure of
 /// a shape.
-fn first_outside([from, to]: [[f64; 2]; 2], intervals: usize, shape: &Shape) -> Option<[f64; 2]> {
-    let (min, max) = shape.bounding_box();
+fn first_outside([from, to]: [[f64; 2]; 2], intervals: usize, shape: &Shape, mesh: &Mesh) -> Option<[f64; 2]> {
+    let (min, max) = mesh.extent(shape);
     let tolerance = TOLERANCE * (max[0] - min[0]).max(max[1] - min[1]);
     let position = |i: usize| {
         let t = i as f64 / intervals as f64;
         [0, 1].map(|d| (1.0 - t) * from[d] + t * to[d])
     };
-    (0..=intervals).map(position).find(|p| !shape.contains_within(*p, tolerance))
+    let patch = mesh.nurbs().and_then(Result::ok);
+    let off_patch = |p: [f64; 2]| patch.as_ref().is_some_and(|patch| patch.locate(p, None).is_err());
+    (0..=intervals).map(position).find(|p| !shape.contains_within(*p, tolerance) || off_patch(*p))
 }
 
-fn check_crack(key: &str, crack: &Crack, body: &Body, fracture: Option<&Fracture>, findings: &mut Findings) {
+fn check_crack(
+    key: &str,
+    crack: &Crack,
+    body: &Body,
+    fracture: Option<&Fracture>,
+    mesh: &Mesh,
+    findings: &mut Findings,
+) {
     if let Some(half_width) = crack.half_width {
         let like = "half_width = \"0.125 mm\", or leave it out for l0/2";
         findings.positive(format!("{key}.half_width"), half_width, like);
@@ -167,7 +210,7 @@ fn check_crack(key: &str, crack: &Crack, body: &Body, fracture: Option<&Fracture
         return findings.error(format!("{key}.to"), "a crack of zero length", "give two different ends");
     }
     let ends_inside = [("from", crack.from), ("to", crack.to)].map(|(name, [x, y])| {
-        let inside = first_outside([[x, y]; 2], 1, &body.shape).is_none();
+        let inside = first_outside([[x, y]; 2], 1, &body.shape, mesh).is_none();
         if !inside {
             let message = format!("the end ({x}, {y}) m of the crack lies outside body {:?}", body.name);
             findings.error(format!("{key}.{name}"), message, "give ends inside the body or on its boundary");
@@ -178,7 +221,7 @@ fn check_crack(key: &str, crack: &Crack, body: &Body, fracture: Option<&Fracture
     let finest = fracture.map_or(f64::INFINITY, |f| 0.5 * f.length_scale);
     let intervals = ((length / finest).ceil() as usize).clamp(2, MOST_CRACK_SAMPLES - 1);
     if ends_inside == [true, true]
-        && let Some([x, y]) = first_outside([crack.from, crack.to], intervals, &body.shape)
+        && let Some([x, y]) = first_outside([crack.from, crack.to], intervals, &body.shape, mesh)
     {
         let message = format!("the crack leaves body {:?} between its ends, at ({x}, {y}) m", body.name);
         findings.error(format!("{key}.from"), message, "give one crack for each part that lies inside the body");

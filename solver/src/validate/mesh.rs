@@ -1,7 +1,8 @@
-//! Checks of the background mesh: degrees and open knot vectors.
+//! Checks of the background mesh: degrees, open knot vectors, geometry.
 
 use super::Findings;
-use crate::scene::Mesh;
+use crate::nurbs::{NurbsError, NurbsPatch};
+use crate::scene::{Mesh, Shape};
 
 /// Largest number of spans of a mesh.
 const MOST_SPANS: usize = 50_000_000;
@@ -20,6 +21,32 @@ pub(super) fn check(mesh: &Mesh, findings: &mut Findings) {
         let remedy = format!("use fewer cells: at most {MOST_SPANS} in all");
         findings.error("mesh.cells", format!("a mesh of about {spans} cells"), remedy);
     }
+    if findings.errors.is_empty()
+        && let Some(Err(error)) = mesh.nurbs()
+    {
+        geometry(&error, findings);
+    }
+}
+
+/// What is wrong with a patch, by key, and what would be right.
+fn geometry(error: &NurbsError, findings: &mut Findings) {
+    use NurbsError::{ControlPointCount, ControlPointNotFinite, Folded, Weight, WeightCount};
+    let (key, remedy) = match error {
+        ControlPointCount { columns, rows, .. } => (
+            "mesh.control_points",
+            format!("give {} points [x, y], rows of {columns}, first direction fastest", columns * rows),
+        ),
+        ControlPointNotFinite { .. } => ("mesh.control_points", "give finite coordinates".into()),
+        Folded { .. } => (
+            "mesh.control_points",
+            "move or reorder the control points: rows must not cross, and run counter-clockwise around the patch"
+                .into(),
+        ),
+        WeightCount { expected, .. } => ("mesh.weights", format!("give {expected} weights, one per control point")),
+        Weight { .. } => ("mesh.weights", "give weights above zero; 1 everywhere for a polynomial patch".into()),
+        _ => ("mesh.knots", "give open knot vectors for these degrees".into()),
+    };
+    findings.error(key, error.to_string(), remedy);
 }
 
 fn knots(d: usize, degree: usize, knots: &[f64], findings: &mut Findings) {
@@ -53,9 +80,36 @@ fn knots(d: usize, degree: usize, knots: &[f64], findings: &mut Findings) {
     }
 }
 
-/// Lengths (m) of the spans of positive length that overlap the interval `from..to`.
-pub(super) fn spans_over(knots: &[f64], from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
-    let tolerance = 1e-9 * (to - from);
-    let overlaps = move |k: &&[f64]| k[1] > k[0] && k[1] > from + tolerance && k[0] < to - tolerance;
-    knots.windows(2).filter(overlaps).map(|k| k[1] - k[0])
+/// Smallest and largest length (m) of the spans under the box around a shape; of a patch with a geometry, of the chords
+/// between neighbouring knots through the middles of all spans.
+pub(super) fn span_lengths(mesh: &Mesh, shape: &Shape) -> [f64; 2] {
+    let widen = |[least, most]: [f64; 2], length: f64| [least.min(length), most.max(length)];
+    let start = [f64::INFINITY, 0.0];
+    if let Some(Ok(patch)) = mesh.nurbs() {
+        return chords(&patch).fold(start, widen);
+    }
+    let (from, to) = mesh.extent(shape);
+    let lengths = (0..2).flat_map(|d| {
+        let tolerance = 1e-9 * (to[d] - from[d]);
+        let overlaps = move |k: &&[f64]| k[1] > k[0] && k[1] > from[d] + tolerance && k[0] < to[d] - tolerance;
+        mesh.knots[d].windows(2).filter(overlaps).map(|k| k[1] - k[0])
+    });
+    lengths.fold(start, widen)
+}
+
+fn chords(patch: &NurbsPatch) -> impl Iterator<Item = f64> {
+    let [x, y] = patch.spaces().each_ref().map(|space| space.spans().iter().enumerate());
+    let spans = y.flat_map(move |(j, t)| x.clone().map(move |(i, s)| ([i, j], [[s.left, s.right], [t.left, t.right]])));
+    spans.flat_map(move |(span, ends)| {
+        [0, 1].map(|d| {
+            let middle = ends.map(|[left, right]| 0.5 * (left + right));
+            let at = |end: f64| {
+                let mut parameters = middle;
+                parameters[d] = end;
+                patch.map(&patch.shape_functions(span, parameters)).position
+            };
+            let [a, b] = ends[d].map(at);
+            (b[0] - a[0]).hypot(b[1] - a[1])
+        })
+    })
 }

@@ -266,7 +266,6 @@ fn shapes_without_area_are_refused() {
 fn what_the_solver_cannot_do_is_refused_by_key() {
     assert_eq!(errors(|s| s.contact = Some(Contact { friction: 0.3 })), ["contact"]);
     assert_eq!(errors(|s| s.bodies.push(Body { name: "other".into(), ..s.bodies[0].clone() })), ["body"]);
-    assert_eq!(errors(|s| s.analysis.mass = Mass::Consistent), ["analysis.mass"]);
     assert_eq!(warnings(|s| s.analysis.transfer = Transfer::Apic), ["analysis.transfer"]);
     let updated = |transfer| {
         move |s: &mut Scene| {

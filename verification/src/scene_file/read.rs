@@ -3,22 +3,20 @@
 use std::collections::BTreeMap;
 
 use fisura::scene::{
-    Analysis, Boundary, Contact, Frame, Kinematics, Mass, Mesh, Output, PhaseFieldSolver, Plane, Scene, Side,
+    Analysis, Boundary, Contact, Frame, Kinematics, Mass, Output, PhaseFieldSolver, Plane, Scene, Shape, Side,
     SolverSettings, TimeStep, Transfer,
 };
 
 use super::diagnostic::Problem;
 use super::document::Node;
-use super::fields::{Fields, Item, Problems};
+use super::fields::{Item, Problems};
 use super::read_body::{bodies, materials};
+use super::read_mesh::mesh;
 use super::units::Dimension;
 
 /// Keys of a scene.
 pub const SCENE_KEYS: [&str; 9] =
     ["title", "mesh", "analysis", "solver", "material", "body", "contact", "boundary", "output"];
-
-/// Largest number of spans in one direction.
-const MOST_CELLS: usize = 1_000_000;
 
 /// Reads the scene that `node` declares: a whole document, or the `[scene]` table of a case file.
 ///
@@ -51,13 +49,20 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     });
     let boundaries = fields.or("boundary", Vec::new(), boundaries);
     let output = fields.or("output", Output { samples: 320, frames: Vec::new() }, output);
+    let (mesh, mut bodies) = (mesh?, bodies?);
+    if mesh.geometry.is_none() {
+        // All of a rectangular mesh is a rectangle.
+        for body in bodies.iter_mut().filter(|body| body.shape == Shape::Patch) {
+            body.shape = Shape::Rectangle { min: mesh.origin(), max: mesh.end() };
+        }
+    }
     Some(Scene {
         title: title?,
-        mesh: mesh?,
+        mesh,
         analysis: analysis?,
         solver: solver?,
         materials: materials?,
-        bodies: bodies?,
+        bodies,
         contact: contact?,
         boundaries: boundaries?,
         output: output?,
@@ -82,67 +87,6 @@ pub(super) fn point(item: &Item<'_>) -> Option<[f64; 2]> {
 /// A time in s.
 pub(super) fn time(item: &Item<'_>) -> Option<f64> {
     item.quantity(Dimension::TIME)
-}
-
-fn mesh(item: &Item<'_>) -> Option<Mesh> {
-    let fields = item.fields(&["degree", "origin", "size", "cells", "knots", "control_points", "weights"])?;
-    let mut general = false;
-    for key in ["control_points", "weights"] {
-        if let Some(item) = fields.get(key) {
-            general = true;
-            item.fail::<()>("a general patch is not supported yet", "use origin, size and cells (or knots)");
-        }
-    }
-    let degree = fields.need("degree", "degree = 2", |item| item.whole_per_direction(1, 4));
-    if general {
-        return None;
-    }
-    let origin = fields.need("origin", "origin = [0.0, 0.0] (m), the lower left corner", point);
-    let size = fields.need("size", "size = [0.1, 0.04] (m), width and height", size);
-    let knots = fields.maybe("knots", |item| item.pair(|direction| direction.each(length)));
-    let cells = match (fields.get("cells"), &knots) {
-        (Some(cells), Some(Some(_))) => cells.fail("both cells and knots are given", "remove one of the two"),
-        (None, Some(None)) => fields.need("cells", "cells = [100, 40], the spans per direction", |_| None),
-        (Some(cells), _) => cells.whole_per_direction(1, MOST_CELLS),
-        (None, _) => Some([1, 1]),
-    };
-    let (degree, origin, size, knots, cells) = (degree?, origin?, size?, knots?, cells?);
-    match knots {
-        None => Some(Mesh::uniform(degree, origin, size, cells)),
-        Some(knots) => graded(&fields, degree, origin, size, knots),
-    }
-}
-
-fn size(item: &Item<'_>) -> Option<[f64; 2]> {
-    item.pair(|entry| {
-        let value = length(entry)?;
-        if value > 0.0 { Some(value) } else { entry.fail("a size must be positive", "give a positive length") }
-    })
-}
-
-/// Each knot vector scaled affinely: the first knot to `origin`, the last to `origin + size`.
-fn graded(
-    fields: &Fields<'_>,
-    degree: [usize; 2],
-    origin: [f64; 2],
-    size: [f64; 2],
-    knots: [Vec<f64>; 2],
-) -> Option<Mesh> {
-    let item = fields.get("knots")?;
-    for d in 0..2 {
-        let [Some(first), Some(last)] = [knots[d].first(), knots[d].last()] else {
-            return item.fail(format!("no knots in direction {d}"), "give an open knot vector per direction");
-        };
-        if !(first < last && (last - first).is_finite()) {
-            return item.fail("the last knot must be larger than the first", "give increasing knots");
-        }
-    }
-    let knots = [0, 1].map(|d| {
-        let (first, last) = (knots[d][0], knots[d][knots[d].len() - 1]);
-        let scale = |k: &f64| origin[d] + size[d] * ((k - first) / (last - first));
-        knots[d].iter().map(scale).collect()
-    });
-    Some(Mesh { degree, knots })
 }
 
 fn analysis(item: &Item<'_>) -> Option<Analysis> {

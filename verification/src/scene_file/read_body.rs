@@ -114,11 +114,14 @@ fn body(item: &Item<'_>) -> Option<Body> {
 const SHAPES: [&str; 5] = ["rectangle", "disk", "annulus", "polygon", "difference"];
 
 fn shape(item: &Item<'_>) -> Option<Shape> {
+    if item.node.as_str() == Some("patch") {
+        return Some(Shape::Patch);
+    }
     let fields = item.fields(&SHAPES)?;
     let given: Vec<Item<'_>> = SHAPES.iter().filter_map(|kind| fields.get(kind)).collect();
     let [inner] = given.as_slice() else {
         let message = format!("expected one shape, found {}", given.len());
-        let remedy = "give one of rectangle, disk, annulus, polygon, difference";
+        let remedy = "give one of rectangle, disk, annulus, polygon, difference; or shape = \"patch\"";
         return item.fail(message, remedy);
     };
     match inner.path.rsplit('.').next()? {

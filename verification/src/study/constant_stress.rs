@@ -95,7 +95,7 @@ impl<'a> PatchTest<'a> {
             [(Side::Left, [-xx, -xy]), (Side::Right, [xx, xy]), (Side::Bottom, [-xy, -yy]), (Side::Top, [xy, yy])];
         for (side, stress) in sides {
             let traction = Traction { edge: Edge::Side(side), stress, ramp: None };
-            for (at, force) in NodalLoad::new(self.frame.patch(), grid, body, &traction).forces {
+            for (at, force) in NodalLoad::new(self.frame.patch(), body, &traction).forces {
                 forces[0][at] += force[0];
                 forces[1][at] += force[1];
             }

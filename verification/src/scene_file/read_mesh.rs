@@ -1,0 +1,159 @@
+//! From the tree of a document to the background mesh: a rectangle, a general NURBS patch, or an annular sector.
+
+use fisura::nurbs::{NurbsError, NurbsPatch};
+use fisura::scene::{Geometry, Mesh};
+
+use super::fields::{Fields, Item};
+use super::read::{length, number, point};
+
+/// Largest number of spans in one direction.
+const MOST_CELLS: usize = 1_000_000;
+const KEYS: [&str; 9] =
+    ["degree", "origin", "size", "cells", "knots", "control_points", "weights", "subdivide", "annulus"];
+
+/// The `[mesh]` table.
+pub(super) fn mesh(item: &Item<'_>) -> Option<Mesh> {
+    let fields = item.fields(&KEYS)?;
+    let form = ["control_points", "annulus"].into_iter().find(|key| fields.get(key).is_some());
+    let allowed: &[&str] = match form {
+        Some("control_points") => &["degree", "knots", "control_points", "weights", "subdivide"],
+        Some(_) => &["degree", "cells", "annulus"],
+        None => &["degree", "origin", "size", "cells", "knots"],
+    };
+    let mut complete = true;
+    for key in KEYS.into_iter().filter(|key| !allowed.contains(key)) {
+        if let Some(extra) = fields.get(key) {
+            let what = form.map_or("a rectangle".to_string(), |form| format!("a mesh with {form}"));
+            let remedy = format!("remove it; {what} takes {}", allowed.join(", "));
+            complete = extra.fail::<()>(format!("{key} does not go with {what}"), remedy).is_some();
+        }
+    }
+    let degree = fields.need("degree", "degree = 2", |item| item.whole_per_direction(1, 4));
+    match (form, complete) {
+        (_, false) => None,
+        (Some("control_points"), _) => general(&fields, degree?),
+        (Some(_), _) => fields.get("annulus").and_then(|item| annulus(&item, &fields, degree?)),
+        (None, _) => rectangle(&fields, degree),
+    }
+}
+
+fn rectangle(fields: &Fields<'_>, degree: Option<[usize; 2]>) -> Option<Mesh> {
+    let origin = fields.need("origin", "origin = [0.0, 0.0] (m), the lower left corner", point);
+    let size = fields.need("size", "size = [0.1, 0.04] (m), width and height", size);
+    let knots = fields.maybe("knots", |item| item.pair(|direction| direction.each(length)));
+    let cells = match (fields.get("cells"), &knots) {
+        (Some(cells), Some(Some(_))) => cells.fail("both cells and knots are given", "remove one of the two"),
+        (None, Some(None)) => fields.need("cells", "cells = [100, 40], the spans per direction", |_| None),
+        (Some(cells), _) => cells.whole_per_direction(1, MOST_CELLS),
+        (None, _) => Some([1, 1]),
+    };
+    let (degree, origin, size, knots, cells) = (degree?, origin?, size?, knots?, cells?);
+    match knots {
+        None => Some(Mesh::uniform(degree, origin, size, cells)),
+        Some(knots) => graded(fields, degree, origin, size, knots),
+    }
+}
+
+fn size(item: &Item<'_>) -> Option<[f64; 2]> {
+    item.pair(|entry| {
+        let value = length(entry)?;
+        if value > 0.0 { Some(value) } else { entry.fail("a size must be positive", "give a positive length") }
+    })
+}
+
+/// Each knot vector scaled affinely: the first knot to `origin`, the last to `origin + size`.
+fn graded(
+    fields: &Fields<'_>,
+    degree: [usize; 2],
+    origin: [f64; 2],
+    size: [f64; 2],
+    knots: [Vec<f64>; 2],
+) -> Option<Mesh> {
+    let item = fields.get("knots")?;
+    for d in 0..2 {
+        let [Some(first), Some(last)] = [knots[d].first(), knots[d].last()] else {
+            return item.fail(format!("no knots in direction {d}"), "give an open knot vector per direction");
+        };
+        if !(first < last && (last - first).is_finite()) {
+            return item.fail("the last knot must be larger than the first", "give increasing knots");
+        }
+    }
+    let knots = [0, 1].map(|d| {
+        let (first, last) = (knots[d][0], knots[d][knots[d].len() - 1]);
+        let scale = |k: &f64| origin[d] + size[d] * ((k - first) / (last - first));
+        knots[d].iter().map(scale).collect()
+    });
+    Some(Mesh { degree, knots, geometry: None })
+}
+
+/// Knots, control points and weights as given, every span cut into `subdivide` equal parts by knot insertion.
+fn general(fields: &Fields<'_>, degree: [usize; 2]) -> Option<Mesh> {
+    let knots =
+        fields.need("knots", "knots = [[0, 0, 0, 1, 1, 1], [0, 0, 0, 1, 1, 1]], one vector per direction", |item| {
+            item.pair(|direction| direction.each(number))
+        });
+    let like = "control_points = [[0.0, 0.0], …] (m), first direction fastest";
+    let control_points: Option<Vec<[f64; 2]>> = fields.need("control_points", like, |item| item.each(point));
+    let weights = fields.maybe("weights", |item| item.each(number));
+    let parts = fields.or("subdivide", 1, |item| item.whole(1, MOST_CELLS));
+    let (knots, control_points, weights, parts) = (knots?, control_points?, weights?, parts?);
+    let weights = weights.unwrap_or_else(|| vec![1.0; control_points.len()]);
+    let mesh = Mesh { degree, knots, geometry: Some(Geometry { control_points, weights }) };
+    match mesh.nurbs()? {
+        Ok(patch) if parts > 1 => refined(fields, "subdivide", patch.subdivide(parts)),
+        _ => Some(mesh), // validation says what is wrong with a patch
+    }
+}
+
+/// The sector between two radii: the first direction is radial, the second angular.
+fn annulus(item: &Item<'_>, fields: &Fields<'_>, degree: [usize; 2]) -> Option<Mesh> {
+    let inner_fields = item.fields(&["center", "inner_radius", "outer_radius", "angles"])?;
+    let center = inner_fields.or("center", [0.0; 2], point);
+    let inner = inner_fields.need("inner_radius", "inner_radius = 0.1 (m)", length);
+    let outer = inner_fields.need("outer_radius", "outer_radius = 0.2 (m)", length);
+    let angles = inner_fields.or("angles", [0.0, std::f64::consts::FRAC_PI_2], |item| item.pair(number));
+    let cells = fields.need("cells", "cells = [16, 32], the spans along the radius and along the arc", |item| {
+        item.whole_per_direction(1, MOST_CELLS)
+    });
+    if degree[1] < 2 {
+        let remedy = "give a degree of at least 2 along the arc, such as degree = [1, 2] or 2";
+        return fields.get("degree")?.fail("an arc is a rational curve of degree 2", remedy);
+    }
+    let (center, inner, outer, angles, cells) = (center?, inner?, outer?, angles?, cells?);
+    let sector = match NurbsPatch::annular_sector(inner, outer, angles) {
+        Ok(sector) => sector,
+        Err(error) => return item.fail(error.to_string(), "give 0 <= inner_radius < outer_radius and growing angles"),
+    };
+    let pieces = sector.spaces()[1].spans().len();
+    if !cells[1].is_multiple_of(pieces) {
+        let message = format!("{} cells along an arc of {pieces} rational pieces", cells[1]);
+        return fields.get("cells")?.fail(message, format!("give a multiple of {pieces}"));
+    }
+    let refine = || {
+        let mut patch = sector;
+        for d in 0..2 {
+            while patch.spaces()[d].degree() < degree[d] {
+                patch = patch.elevate(d)?;
+            }
+            let parts = cells[d] / [1, pieces][d];
+            let spans = patch.spaces()[d].spans().iter();
+            let new: Vec<f64> =
+                spans.flat_map(|s| (1..parts).map(move |i| s.left + s.length() * i as f64 / parts as f64)).collect();
+            patch = patch.insert_knots(d, &new)?;
+        }
+        Ok(patch)
+    };
+    let mut mesh = refined(fields, "annulus", refine())?;
+    let points = mesh.geometry.as_mut().map(|geometry| &mut geometry.control_points);
+    for point in points.into_iter().flatten() {
+        *point = [point[0] + center[0], point[1] + center[1]];
+    }
+    Some(mesh)
+}
+
+fn refined(fields: &Fields<'_>, key: &str, patch: Result<NurbsPatch, NurbsError>) -> Option<Mesh> {
+    match patch {
+        Ok(patch) => Some(Mesh::of(&patch)),
+        Err(error) => fields.get(key)?.fail(error.to_string(), "correct the patch"),
+    }
+}
