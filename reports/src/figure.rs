@@ -15,7 +15,7 @@ use crate::series::{FigureError, SeriesSet};
 pub fn render_figure(figure: &Figure, set: &SeriesSet) -> Result<String, FigureError> {
     file_name(&figure.id)?;
     match &figure.body {
-        FigureBody::Chart { x, y, curves, regions } => render_chart(figure, [x, y], curves, regions, set),
+        FigureBody::Chart { x, y, curves, regions, .. } => render_chart(figure, [x, y], curves, regions, set),
         FigureBody::Field { series, pixels, label, range } => {
             let raster = Raster::read(&figure.id, series, *pixels, set)?;
             render_field(figure, &raster, label, *range)

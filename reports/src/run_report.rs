@@ -53,6 +53,8 @@ pub fn energies_svg(history: &Table, title: &str) -> Result<String, FigureError>
         y: axis(format!("energy ({energy_unit})")),
         curves,
         regions: Vec::new(),
+        slopes: Vec::new(),
+        floors: Vec::new(),
     };
     let mut set = SeriesSet::default();
     set.insert(HISTORY, history.clone());

@@ -1,6 +1,42 @@
 //! Exact solutions, one file each. Their derivations stand under `reference-data/derivations/`.
+//!
+//! A solution states its displacement (and phase field) and its stress law; velocity, stress, body force and source
+//! follow by differentiation ([`motion`], [`dual`]). [`find`] gives a solution by name.
 
 use fisura::scene::{Material, Plane};
+
+pub mod dual;
+pub mod elastostatics;
+pub mod law;
+pub mod motion;
+pub mod phase_field;
+pub mod standing_wave;
+#[cfg(test)]
+mod tests;
+
+use elastostatics::Elastostatics;
+use motion::Derived;
+use phase_field::PhaseField;
+use standing_wave::StandingWave;
+
+/// Names that [`find`] knows.
+pub const NAMES: &[&str] = &["elastostatics", "standing-wave", "phase-field", "phase-field-zero-flux"];
+
+/// The exact solution of a name in a plane state.
+pub fn find(name: &str, plane: Plane) -> Option<Box<dyn ExactSolution>> {
+    Some(match name {
+        "elastostatics" => Box::new(Derived(Elastostatics { plane })),
+        "standing-wave" => Box::new(Derived(StandingWave { plane })),
+        "phase-field" => Box::new(Derived(PhaseField { plane, zero_flux: false })),
+        "phase-field-zero-flux" => Box::new(Derived(PhaseField { plane, zero_flux: true })),
+        _ => return None,
+    })
+}
+
+/// Elastic material with E = 1 Pa and a density of 1 kg/m³.
+fn unit_material(poisson_ratio: f64) -> Material {
+    Material { young_modulus: 1.0, poisson_ratio, density: 1.0, fracture: None }
+}
 
 /// Fields that solve the equations of motion exactly, with the loads they need. Positions are in the reference
 /// configuration, in m; times in s.

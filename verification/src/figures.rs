@@ -168,7 +168,14 @@ fn chart(quantity: &Quantity, runs: &[&RunInfo], library: &Library, tables: &mut
         title: quantity.title.into(),
         caption: captions(runs),
         deviations: deviations(runs),
-        body: FigureBody::Chart { x: time_axis(), y: axis(quantity.label), curves, regions: regions.collect() },
+        body: FigureBody::Chart {
+            x: time_axis(),
+            y: axis(quantity.label),
+            curves,
+            regions: regions.collect(),
+            slopes: Vec::new(),
+            floors: Vec::new(),
+        },
     }
 }
 
@@ -220,6 +227,8 @@ fn closure_chart(suite: &str, runs: &[RunInfo]) -> Figure {
             y: axis("closure / largest energy"),
             curves: curves.collect(),
             regions: Vec::new(),
+            slopes: Vec::new(),
+            floors: Vec::new(),
         },
     }
 }
@@ -241,6 +250,8 @@ fn ledger(run: &RunInfo) -> Figure {
             y: axis("energy (J/m)"),
             curves: present.map(|term| curve(&words(term), &run.series, term, run.energy_factor)).collect(),
             regions: Vec::new(),
+            slopes: Vec::new(),
+            floors: Vec::new(),
         },
     }
 }

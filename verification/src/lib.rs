@@ -1,6 +1,7 @@
 //! Cases, checks and records that verify the fisura solver.
 
 pub mod case;
+pub mod convergence;
 pub mod exact;
 pub mod expand;
 pub mod figures;

@@ -232,6 +232,28 @@ pub struct Region {
     pub y: Option<[f64; 2]>,
 }
 
+/// A triangle beside a curve that shows an order: its hypotenuse runs from `(x[0], y0)` with the slope of theory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SlopeTriangle {
+    /// Abscissae of its ends, in drawn units.
+    pub x: [f64; 2],
+    /// Ordinate of the hypotenuse at `x[0]`, in drawn units.
+    pub y0: f64,
+    /// Slope along the axes as drawn: on two logarithmic axes the exponent of `y ~ x^slope`.
+    pub slope: f64,
+    /// Text beside the upright leg: `3`, `3/2`.
+    pub label: String,
+}
+
+/// A level below which values mean nothing, such as that of round-off; markers at or below it are drawn hollow.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Floor {
+    /// Ordinate in drawn units.
+    pub y: f64,
+    /// Label.
+    pub label: String,
+}
+
 /// What a figure shows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
@@ -246,6 +268,12 @@ pub enum FigureBody {
         curves: Vec<Curve>,
         /// Marked regions.
         regions: Vec<Region>,
+        /// Orders of theory, beside the curves that should show them.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        slopes: Vec<SlopeTriangle>,
+        /// Levels below which values mean nothing.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        floors: Vec<Floor>,
     },
     /// A field on a regular raster: the series has columns `x_m, y_m, value`, one row per pixel centre, x fastest.
     Field {

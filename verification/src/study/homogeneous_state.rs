@@ -160,6 +160,8 @@ fn figure(case: &Case, stem: &str) -> Figure {
                 curve("material points", "stress_over_peak", CurveStyle::Markers),
             ],
             regions: Vec::new(),
+            slopes: Vec::new(),
+            floors: Vec::new(),
         },
     }
 }

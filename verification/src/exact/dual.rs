@@ -1,0 +1,187 @@
+//! Numbers that carry their derivatives with respect to x, y and t (forward differentiation).
+//!
+//! A [`Dual`] is a value with its gradient, and the rules of calculus are its arithmetic. Nested once, in a [`Jet`], the
+//! entries of the gradient carry their own gradients, which are the second derivatives:
+//!
+//! ```
+//! use fisura_verification::exact::dual::{Jet, Scalar};
+//!
+//! let [x, y, _] = Jet::variables([0.5, 2.0], 0.0);
+//! let u = (x * y).sin();
+//! assert_eq!(u.gradient[0].value, 2.0 * 1f64.cos());
+//! assert_eq!(u.gradient[0].gradient[1], 1f64.cos() - 1f64.sin());
+//! ```
+//!
+//! Derivatives come out to round-off, because nothing is differenced.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Directions of differentiation: x, y, t.
+pub const DIRECTIONS: usize = 3;
+
+/// What the formulas of exact solutions are made of: plain numbers, or numbers with derivatives.
+pub trait Scalar:
+    Copy
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+{
+    /// A number that does not vary.
+    fn constant(value: f64) -> Self;
+    /// Sine.
+    fn sin(self) -> Self;
+    /// Cosine.
+    fn cos(self) -> Self;
+    /// Exponential.
+    fn exp(self) -> Self;
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+    /// Square root.
+    fn sqrt(self) -> Self;
+}
+
+impl Scalar for f64 {
+    fn constant(value: f64) -> Self {
+        value
+    }
+    fn sin(self) -> Self {
+        f64::sin(self)
+    }
+    fn cos(self) -> Self {
+        f64::cos(self)
+    }
+    fn exp(self) -> Self {
+        f64::exp(self)
+    }
+    fn ln(self) -> Self {
+        f64::ln(self)
+    }
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+}
+
+/// A value and its derivatives with respect to x, y, t.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dual<T> {
+    /// Value.
+    pub value: T,
+    /// `∂/∂x, ∂/∂y, ∂/∂t`.
+    pub gradient: [T; DIRECTIONS],
+}
+
+/// A number with its first derivatives.
+pub type Field = Dual<f64>;
+
+/// A number with its first and second derivatives: `gradient[i].gradient[j]` is `∂²/∂i∂j`.
+pub type Jet = Dual<Field>;
+
+impl Jet {
+    /// x (m), y (m) and t (s) as the variables of differentiation.
+    pub fn variables([x, y]: [f64; 2], t: f64) -> [Self; DIRECTIONS] {
+        let mut variables = [x, y, t].map(Self::constant);
+        for (d, variable) in variables.iter_mut().enumerate() {
+            variable.value.gradient[d] = 1.0;
+            variable.gradient[d] = Field::constant(1.0);
+        }
+        variables
+    }
+}
+
+impl<T: Scalar> Dual<T> {
+    /// The chain rule: a function of this number, given its value and its slope here.
+    #[inline]
+    pub fn chain(self, value: T, slope: T) -> Self {
+        Self { value, gradient: self.gradient.map(|g| slope * g) }
+    }
+
+    fn zip(self, other: Self, f: impl Fn(T, T) -> T) -> [T; DIRECTIONS] {
+        std::array::from_fn(|d| f(self.gradient[d], other.gradient[d]))
+    }
+}
+
+impl<T: Scalar> Scalar for Dual<T> {
+    fn constant(value: f64) -> Self {
+        Self { value: T::constant(value), gradient: [T::constant(0.0); DIRECTIONS] }
+    }
+    fn sin(self) -> Self {
+        self.chain(self.value.sin(), self.value.cos())
+    }
+    fn cos(self) -> Self {
+        self.chain(self.value.cos(), -self.value.sin())
+    }
+    fn exp(self) -> Self {
+        let value = self.value.exp();
+        self.chain(value, value)
+    }
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), T::constant(1.0) / self.value)
+    }
+    fn sqrt(self) -> Self {
+        let value = self.value.sqrt();
+        self.chain(value, T::constant(0.5) / value)
+    }
+}
+
+impl<T: Scalar> Neg for Dual<T> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { value: -self.value, gradient: self.gradient.map(|g| -g) }
+    }
+}
+
+impl<T: Scalar> Add for Dual<T> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { value: self.value + other.value, gradient: self.zip(other, |a, b| a + b) }
+    }
+}
+
+impl<T: Scalar> Sub for Dual<T> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self { value: self.value - other.value, gradient: self.zip(other, |a, b| a - b) }
+    }
+}
+
+impl<T: Scalar> Mul for Dual<T> {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let gradient = self.zip(other, |a, b| a * other.value + self.value * b);
+        Self { value: self.value * other.value, gradient }
+    }
+}
+
+impl<T: Scalar> Div for Dual<T> {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        Self { value, gradient: self.zip(other, |a, b| (a - value * b) / other.value) }
+    }
+}
+
+impl<T: Scalar> Add<f64> for Dual<T> {
+    type Output = Self;
+    fn add(self, other: f64) -> Self {
+        Self { value: self.value + other, ..self }
+    }
+}
+
+impl<T: Scalar> Sub<f64> for Dual<T> {
+    type Output = Self;
+    fn sub(self, other: f64) -> Self {
+        Self { value: self.value - other, ..self }
+    }
+}
+
+impl<T: Scalar> Mul<f64> for Dual<T> {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
+        Self { value: self.value * factor, gradient: self.gradient.map(|g| g * factor) }
+    }
+}

@@ -1,0 +1,111 @@
+//! Independent of symbolic algebra: what must be a derivative of what, by finite differences; stresses from the solver's
+//! own moduli; the residuals of the equations.
+
+use fisura::lane::Lane;
+use fisura::material::{ElasticModuli, FractureModel};
+use nalgebra::{Matrix2, SymmetricEigen};
+
+use super::difference::{first, laplacian, partial, second};
+use super::{both_planes, samples};
+use crate::exact::{ExactSolution, NAMES};
+
+/// Largest difference allowed, relative to the larger of 1 and the value.
+const TOLERANCE: f64 = 1e-8;
+
+fn assert_close(name: &str, what: &str, value: f64, expected: f64, tolerance: f64) {
+    let difference = (value - expected).abs() / expected.abs().max(1.0);
+    assert!(difference <= tolerance, "{name}: {what} is {value:e}, expected {expected:e}: {difference:e}");
+}
+
+/// Runs a check on every solution, plane state and sample.
+fn everywhere(check: impl Fn(&str, &dyn ExactSolution, [f64; 2], f64)) {
+    for name in NAMES {
+        for solution in both_planes(name) {
+            for (place, time) in samples(name) {
+                check(name, solution.as_ref(), place, time);
+            }
+        }
+    }
+}
+
+#[test]
+fn gradient_velocity_and_acceleration_are_derivatives_of_the_displacement() {
+    everywhere(|name, solution, place, time| {
+        let (gradient, velocity) = (solution.displacement_gradient(place, time), solution.velocity(place, time));
+        let acceleration = solution.acceleration(place, time);
+        for i in [0, 1] {
+            for d in [0, 1] {
+                let expected = partial(|x| solution.displacement(x, time)[i], place, d);
+                assert_close(name, "displacement gradient", gradient[i][d], expected, TOLERANCE);
+            }
+            let displacement = |h| solution.displacement(place, time + h)[i];
+            assert_close(name, "velocity", velocity[i], first(displacement), TOLERANCE);
+            assert_close(name, "acceleration", acceleration[i], second(displacement), TOLERANCE);
+        }
+    });
+}
+
+#[test]
+fn the_equation_of_motion_holds() {
+    everywhere(|name, solution, place, time| {
+        let density = solution.material().density;
+        for i in [0, 1] {
+            let acceleration = second(|h| solution.displacement(place, time + h)[i]);
+            let divergence: f64 = [0, 1].iter().map(|&d| partial(|x| solution.stress(x, time)[i][d], place, d)).sum();
+            let residual = density * acceleration - divergence - solution.body_force(place, time)[i];
+            assert_close(name, "residual of the equation of motion", residual, 0.0, TOLERANCE);
+        }
+    });
+}
+
+#[test]
+fn the_phase_field_equation_holds() {
+    everywhere(|name, solution, place, time| {
+        assert_eq!(solution.phase().is_some(), solution.material().fracture.is_some(), "{name}");
+        let (Some(phase), Some(fracture)) = (solution.phase(), solution.material().fracture) else { return };
+        let (l0, k) = (fracture.length_scale, fracture.residual_stiffness);
+        let reaction = 4.0 * l0 * (1.0 - k) * phase.history(place, time) / fracture.critical_energy_release_rate;
+        let curvature = laplacian(|x| phase.value(x, time), place);
+        let residual = (reaction + 1.0) * phase.value(place, time) - 4.0 * l0 * l0 * curvature;
+        assert_close(name, "source", phase.source(place, time), residual, TOLERANCE);
+        for d in [0, 1] {
+            let expected = partial(|x| phase.value(x, time), place, d);
+            assert_close(name, "phase gradient", phase.gradient(place, time)[d], expected, TOLERANCE);
+        }
+    });
+}
+
+#[test]
+fn the_stress_follows_from_the_gradient() {
+    everywhere(|name, solution, place, time| {
+        let law = if ["hencky-wave", "axis-aligned", "vortex"].contains(&name) { hencky } else { linear };
+        let moduli = ElasticModuli::new(&solution.material(), solution.plane());
+        let intact = law(&moduli, solution.displacement_gradient(place, time));
+        let factor = degradation(solution, place, time);
+        let stress = solution.stress(place, time);
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            assert_close(name, "stress", stress[i][j], factor * intact[(i, j)], 1e-13);
+        }
+    });
+}
+
+/// g(c) of the solver, 1 without a phase field.
+fn degradation(solution: &dyn ExactSolution, place: [f64; 2], time: f64) -> f64 {
+    let (Some(phase), Some(fracture)) = (solution.phase(), solution.material().fracture) else { return 1.0 };
+    FractureModel::new(&fracture).degradation(Lane::splat(phase.value(place, time))).0[0]
+}
+
+fn linear(moduli: &ElasticModuli, [[xx, xy], [yx, yy]]: [[f64; 2]; 2]) -> Matrix2<f64> {
+    let [xx, yy, xy] = moduli.stress([xx, yy, 0.5 * (xy + yx)].map(Lane::splat)).map(|s| s.0[0]);
+    Matrix2::new(xx, xy, xy, yy)
+}
+
+/// `P = tau F⁻ᵀ` with the logarithm from eigenvectors.
+fn hencky(moduli: &ElasticModuli, [[xx, xy], [yx, yy]]: [[f64; 2]; 2]) -> Matrix2<f64> {
+    let f = Matrix2::new(1.0 + xx, xy, yx, 1.0 + yy);
+    let eigen = SymmetricEigen::new(f * f.transpose());
+    let strain = eigen.eigenvalues.map(|value| 0.5 * value.ln());
+    let e = eigen.eigenvectors * Matrix2::from_diagonal(&strain) * eigen.eigenvectors.transpose();
+    let tau = linear(moduli, [[e[(0, 0)], e[(0, 1)]], [e[(1, 0)], e[(1, 1)]]]);
+    tau * f.try_inverse().expect("an invertible deformation").transpose()
+}
