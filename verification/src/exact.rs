@@ -5,30 +5,57 @@
 
 use fisura::scene::{Material, Plane};
 
+pub mod axis_aligned;
+pub mod bar_wave;
+pub mod coupled;
 pub mod dual;
 pub mod elastostatics;
+pub mod kirsch;
 pub mod law;
 pub mod motion;
 pub mod phase_field;
 pub mod standing_wave;
 #[cfg(test)]
 mod tests;
+pub mod vortex;
 
+use axis_aligned::AxisAligned;
+use bar_wave::{FiniteWave, HenckyWave};
+use coupled::Coupled;
 use elastostatics::Elastostatics;
+use kirsch::Kirsch;
 use motion::Derived;
 use phase_field::PhaseField;
 use standing_wave::StandingWave;
+use vortex::Vortex;
 
 /// Names that [`find`] knows.
-pub const NAMES: &[&str] = &["elastostatics", "standing-wave", "phase-field", "phase-field-zero-flux"];
+pub const NAMES: &[&str] = &[
+    "elastostatics",
+    "kirsch",
+    "standing-wave",
+    "phase-field",
+    "phase-field-zero-flux",
+    "coupled",
+    "finite-wave",
+    "hencky-wave",
+    "axis-aligned",
+    "vortex",
+];
 
 /// The exact solution of a name in a plane state.
 pub fn find(name: &str, plane: Plane) -> Option<Box<dyn ExactSolution>> {
     Some(match name {
         "elastostatics" => Box::new(Derived(Elastostatics { plane })),
+        "kirsch" => Box::new(Derived(Kirsch { plane })),
         "standing-wave" => Box::new(Derived(StandingWave { plane })),
         "phase-field" => Box::new(Derived(PhaseField { plane, zero_flux: false })),
         "phase-field-zero-flux" => Box::new(Derived(PhaseField { plane, zero_flux: true })),
+        "coupled" => Box::new(Derived(Coupled { plane })),
+        "finite-wave" => Box::new(Derived(FiniteWave { plane })),
+        "hencky-wave" => Box::new(Derived(HenckyWave { plane })),
+        "axis-aligned" => Box::new(Derived(AxisAligned { plane, amplitude: axis_aligned::AMPLITUDE })),
+        "vortex" => Box::new(Derived(Vortex { plane })),
         _ => return None,
     })
 }

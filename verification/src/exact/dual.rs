@@ -100,8 +100,10 @@ impl<T: Scalar> Dual<T> {
         Self { value, gradient: self.gradient.map(|g| slope * g) }
     }
 
-    fn zip(self, other: Self, f: impl Fn(T, T) -> T) -> [T; DIRECTIONS] {
-        std::array::from_fn(|d| f(self.gradient[d], other.gradient[d]))
+    /// The chain rule for a function of two numbers, given its value and both slopes.
+    fn chain_two(self, other: Self, value: T, slopes: [T; 2]) -> Self {
+        let gradient = std::array::from_fn(|d| slopes[0] * self.gradient[d] + slopes[1] * other.gradient[d]);
+        Self { value, gradient }
     }
 }
 
@@ -138,22 +140,23 @@ impl<T: Scalar> Neg for Dual<T> {
 impl<T: Scalar> Add for Dual<T> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self { value: self.value + other.value, gradient: self.zip(other, |a, b| a + b) }
+        let gradient = std::array::from_fn(|d| self.gradient[d] + other.gradient[d]);
+        Self { value: self.value + other.value, gradient }
     }
 }
 
 impl<T: Scalar> Sub for Dual<T> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        Self { value: self.value - other.value, gradient: self.zip(other, |a, b| a - b) }
+        let gradient = std::array::from_fn(|d| self.gradient[d] - other.gradient[d]);
+        Self { value: self.value - other.value, gradient }
     }
 }
 
 impl<T: Scalar> Mul for Dual<T> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        let gradient = self.zip(other, |a, b| a * other.value + self.value * b);
-        Self { value: self.value * other.value, gradient }
+        self.chain_two(other, self.value * other.value, [other.value, self.value])
     }
 }
 
@@ -161,7 +164,7 @@ impl<T: Scalar> Div for Dual<T> {
     type Output = Self;
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
-        Self { value, gradient: self.zip(other, |a, b| (a - value * b) / other.value) }
+        self.chain_two(other, value, [T::constant(1.0) / other.value, -value / other.value])
     }
 }
 

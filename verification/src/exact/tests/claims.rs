@@ -1,7 +1,14 @@
 //! What the modules of the solutions claim: boundary conditions, signs, ranges.
 
+use std::f64::consts::TAU;
+
+use fisura::lane::Lane;
+use fisura::material::ElasticModuli;
+use fisura::scene::Plane;
+use fisura::split::{EnergySplit, split, tensile_strain};
+
 use super::both_planes;
-use crate::exact::{phase_field, standing_wave};
+use crate::exact::{ExactSolution, find, kirsch, phase_field, standing_wave, vortex};
 
 /// Points on the sides of a rectangle with its lower left corner at the origin, with the direction of the normal.
 fn sides(size: [f64; 2]) -> Vec<([f64; 2], usize)> {
@@ -19,6 +26,112 @@ fn sides(size: [f64; 2]) -> Vec<([f64; 2], usize)> {
 /// Points of a fine lattice on a rectangle.
 fn lattice(size: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
     (0..=40).flat_map(move |i| (0..=40).map(move |j| [f64::from(i) / 40.0 * size[0], f64::from(j) / 40.0 * size[1]]))
+}
+
+/// Stress vector on a circle about the origin, at an angle.
+fn traction(solution: &dyn ExactSolution, radius: f64, angle: f64, time: f64) -> [f64; 2] {
+    let normal = [angle.cos(), angle.sin()];
+    let stress = solution.stress(normal.map(|n| n * radius), time);
+    stress.map(|row| row[0] * normal[0] + row[1] * normal[1])
+}
+
+fn angles() -> impl Iterator<Item = f64> {
+    (0..24).map(|i| f64::from(i) / 24.0 * TAU)
+}
+
+#[test]
+fn the_hole_is_free_and_the_plate_is_under_tension_far_away() {
+    for solution in both_planes("kirsch") {
+        for angle in angles() {
+            assert!(traction(solution.as_ref(), kirsch::RADIUS, angle, 0.0).iter().all(|t| t.abs() < 1e-14), "{angle}");
+            let far = traction(solution.as_ref(), 1e4, angle, 0.0);
+            assert!((far[0] - kirsch::TENSION * angle.cos()).abs() < 1e-7 && far[1].abs() < 1e-7, "{far:?}");
+        }
+        let crown = solution.stress([0.0, kirsch::RADIUS], 0.0);
+        assert!((crown[0][0] - 3.0 * kirsch::TENSION).abs() < 1e-14);
+        for distance in [1.0, 2.3] {
+            assert!(solution.displacement([distance, 0.0], 0.0)[1].abs() < 1e-15);
+            assert!(solution.displacement([0.0, distance], 0.0)[0].abs() < 1e-15);
+            assert!(solution.stress([distance, 0.0], 0.0)[0][1].abs() < 1e-15);
+            assert!(solution.stress([0.0, distance], 0.0)[0][1].abs() < 1e-15);
+        }
+    }
+}
+
+#[test]
+fn the_coupled_solution_is_in_growing_tension() {
+    for solution in both_planes("coupled") {
+        let phase = solution.phase().unwrap();
+        let moduli = ElasticModuli::new(&solution.material(), solution.plane());
+        for place in lattice([1.0, 1.0]) {
+            let mut last = 0.0;
+            for time in (0..=20).map(|i| f64::from(i) / 20.0) {
+                let [[xx, xy], [yx, yy]] = solution.displacement_gradient(place, time);
+                let strain = [xx, yy, 0.5 * (xy + yx)].map(Lane::splat);
+                let (_, [_, smaller]) = tensile_strain(strain);
+                assert!(smaller.0[0] > 0.05, "{place:?} {time}: smaller principal strain {}", smaller.0[0]);
+                let state = split(&moduli, EnergySplit::Spectral, strain);
+                let history = phase.history(place, time);
+                assert!((state.energy_plus.0[0] - history).abs() < 1e-15 && state.energy_minus.0[0] == 0.0);
+                assert!(history > last, "{place:?} {time}: psi+ does not grow");
+                last = history;
+                assert!((0.45..=0.95).contains(&phase.value(place, time)), "{place:?} {time}");
+            }
+        }
+    }
+}
+
+#[test]
+fn bars_are_held_at_their_ends_and_indifferent_to_the_plane_state() {
+    for name in ["finite-wave", "hencky-wave"] {
+        let [strain, stress] = both_planes(name);
+        for time in [0.0, 0.2, 0.9] {
+            for place in [[0.0, 0.3], [1.0, 0.7]] {
+                assert!(strain.displacement(place, time)[0].abs() < 1e-16);
+            }
+            for place in lattice([1.0, 0.5]) {
+                assert_eq!(strain.stress(place, time), stress.stress(place, time));
+                assert!([0, 1].map(|i| strain.stress(place, time)[i][1]).iter().all(|s| s.abs() < 1e-16));
+                assert!((0.7..1.3).contains(&(1.0 + strain.displacement_gradient(place, time)[0][0])));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_axis_aligned_displacement_rests_on_rollers() {
+    for solution in both_planes("axis-aligned") {
+        for (place, normal) in sides([1.0, 1.0]) {
+            for time in [0.0, 0.4, 1.3] {
+                assert!(solution.displacement(place, time)[normal].abs() < 1e-15, "{place:?}");
+                assert!(solution.stress(place, time)[0][1].abs() < 1e-15, "{place:?}");
+                assert!(solution.stress(place, time)[1][0].abs() < 1e-15, "{place:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_vortex_ends_at_its_radii_and_keeps_areas() {
+    for solution in both_planes("vortex") {
+        for (angle, time) in angles().flat_map(|angle| [0.2, 0.5, 1.1].map(|time| (angle, time))) {
+            for radius in vortex::RADII {
+                let place = [radius * angle.cos(), radius * angle.sin()];
+                assert!(solution.displacement(place, time).iter().all(|u| u.abs() < 1e-14));
+                assert!(solution.velocity(place, time).iter().all(|v| v.abs() < 1e-14));
+                assert!(traction(solution.as_ref(), radius, angle, time).iter().all(|t| t.abs() < 1e-13));
+            }
+            for radius in [0.8, 0.95, 1.0, 1.13] {
+                let [[xx, xy], [yx, yy]] =
+                    solution.displacement_gradient([radius * angle.cos(), radius * angle.sin()], time);
+                assert!(((1.0 + xx) * (1.0 + yy) - xy * yx - 1.0).abs() < 1e-14);
+                // det F = 1: tr(F Fᵀ) = 2 + γ².
+                let shear = (2.0 * (xx + yy) + xx * xx + xy * xy + yx * yx + yy * yy).max(0.0).sqrt();
+                assert!(shear < 0.71, "shear {shear}");
+            }
+        }
+    }
+    assert!(find("vortex", Plane::Strain).unwrap().displacement([1.0, 0.0], 0.5)[1] > 0.09);
 }
 
 #[test]

@@ -1,0 +1,59 @@
+//! Axis-aligned displacement of the unit square, manufactured, after Wallstedt & Guilkey (2008), *An evaluation of explicit
+//! time integration schemes for use with the generalized interpolation material point method*, Journal of Computational
+//! Physics 227.
+//!
+//! ```text
+//! u = A sin(2πX) sin(πct),      v = A sin(2πY) sin(πct + 2π/3),      c = sqrt(E/rho)
+//! P = tau/F per axis,      tau_i = lam* (e_x + e_y) + 2 mu e_i,      e_i = ln F_i
+//! b = rho a − Div P,      E = 1 Pa, nu = 0.3, rho = 1 kg/m³,      A = 0.05 m unless said
+//! ```
+//!
+//! The displacement is theirs, the law is fisura's own (Hencky instead of neo-Hookean), so body forces differ. F_i lies
+//! within 1 ± 2πA: 0.69 and 1.31 at A = 0.05, where material points with linear shape functions blow up. The period is 2 s.
+//!
+//! Boundary conditions: rollers on all four sides of [0, 1]²; shear vanishes everywhere. Displacement and velocity are not zero
+//! at t = 0.
+
+use std::f64::consts::PI;
+
+use fisura::material::ElasticModuli;
+use fisura::scene::{Material, Plane};
+
+use super::dual::{Jet, Scalar};
+use super::law::{self, Tensor};
+use super::motion::Motion;
+use super::unit_material;
+
+/// Amplitude of the registered solution, m.
+pub const AMPLITUDE: f64 = 0.05;
+
+/// See the module.
+#[derive(Debug, Clone, Copy)]
+pub struct AxisAligned {
+    /// Plane state.
+    pub plane: Plane,
+    /// Amplitude A, m; below 1/(2π).
+    pub amplitude: f64,
+}
+
+impl Motion for AxisAligned {
+    fn material(&self) -> Material {
+        unit_material(0.3)
+    }
+
+    fn plane(&self) -> Plane {
+        self.plane
+    }
+
+    fn displacement(&self, [x, y, t]: [Jet; 3]) -> [Jet; 2] {
+        let speed = (self.material().young_modulus / self.material().density).sqrt();
+        let along = |coordinate: Jet, phase: f64| {
+            (coordinate * (2.0 * PI)).sin() * (t * (PI * speed) + phase).sin() * self.amplitude
+        };
+        [along(x, 0.0), along(y, 2.0 * PI / 3.0)]
+    }
+
+    fn stress(&self, gradient: Tensor) -> Tensor {
+        law::hencky(&ElasticModuli::new(&self.material(), self.plane), gradient)
+    }
+}

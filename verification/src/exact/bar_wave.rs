@@ -1,0 +1,93 @@
+//! Standing waves of finite displacement in a bar along x, 0 ≤ X ≤ 1 (m), of any height.
+//!
+//! ```text
+//! u = 0.04 sin(πX) sin(πct) + 0.02 sin(2πX) sin(2πct),      v = 0,      c = sqrt(E/rho)
+//! E = 1 Pa, nu = 0, rho = 1 kg/m³
+//! finite-wave    P = E (F − 1)       b = 0
+//! hencky-wave    P = E ln(F)/F       b = rho a − dP/dX
+//! ```
+//!
+//! `finite-wave` is an exact solution without any load at any amplitude, since P is linear in F. It is what the total
+//! frame computes with small kinematics, where shape functions and stress refer to the reference configuration; in the
+//! updated frame it needs P = E (F − 1) as a law of its own. F lies within 0.75 and 1.25: points cross many spans of a
+//! fine mesh.
+//!
+//! `hencky-wave` has the same displacement with the logarithmic law, which is what `kinematics = "finite"` computes.
+//!
+//! Boundary conditions: no displacement along x at X = 0 and X = 1. As nu = 0 nothing happens across: other sides may be
+//! free or on rollers, and both plane states agree. It starts from u = 0 with a velocity.
+
+use std::f64::consts::PI;
+
+use fisura::material::ElasticModuli;
+use fisura::scene::{Material, Plane};
+
+use super::dual::{Jet, Scalar};
+use super::law::{self, Tensor};
+use super::motion::Motion;
+use super::unit_material;
+
+/// Amplitudes of the first and the second mode, m.
+pub const AMPLITUDES: [f64; 2] = [0.04, 0.02];
+
+fn material() -> Material {
+    unit_material(0.0)
+}
+
+fn displacement([x, _, t]: [Jet; 3]) -> [Jet; 2] {
+    let speed = (material().young_modulus / material().density).sqrt();
+    let mode = |n: f64| (x * (n * PI)).sin() * (t * (n * PI * speed)).sin();
+    [mode(1.0) * AMPLITUDES[0] + mode(2.0) * AMPLITUDES[1], Jet::constant(0.0)]
+}
+
+/// `finite-wave`: stress linear in the deformation gradient, no body force.
+#[derive(Debug, Clone, Copy)]
+pub struct FiniteWave {
+    /// Plane state.
+    pub plane: Plane,
+}
+
+impl Motion for FiniteWave {
+    const FORCE_FREE: bool = true;
+
+    fn material(&self) -> Material {
+        material()
+    }
+
+    fn plane(&self) -> Plane {
+        self.plane
+    }
+
+    fn displacement(&self, variables: [Jet; 3]) -> [Jet; 2] {
+        displacement(variables)
+    }
+
+    fn stress(&self, gradient: Tensor) -> Tensor {
+        law::linear(&ElasticModuli::new(&material(), self.plane), gradient)
+    }
+}
+
+/// `hencky-wave`: logarithmic stress law, with a body force.
+#[derive(Debug, Clone, Copy)]
+pub struct HenckyWave {
+    /// Plane state.
+    pub plane: Plane,
+}
+
+impl Motion for HenckyWave {
+    fn material(&self) -> Material {
+        material()
+    }
+
+    fn plane(&self) -> Plane {
+        self.plane
+    }
+
+    fn displacement(&self, variables: [Jet; 3]) -> [Jet; 2] {
+        displacement(variables)
+    }
+
+    fn stress(&self, gradient: Tensor) -> Tensor {
+        law::hencky(&ElasticModuli::new(&material(), self.plane), gradient)
+    }
+}

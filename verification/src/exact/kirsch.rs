@@ -1,0 +1,71 @@
+//! Infinite plate with a circular hole under uniaxial tension (Kirsch 1898), static, without body force.
+//!
+//! Hole of radius a = 1 m about the origin, remote tension T = 1 Pa along x, E = 1 Pa, nu = 0.3. With
+//! `kappa = 3 − 4 nu` in plane strain and `(3 − nu)/(1 + nu)` in plane stress, and polar coordinates r, θ:
+//!
+//! ```text
+//! u = T a/(8 mu) [ (r/a) (kappa + 1) cos θ + (2 a/r) ((1 + kappa) cos θ + cos 3θ) − (2 a³/r³) cos 3θ ]
+//! v = T a/(8 mu) [ (r/a) (kappa − 3) sin θ + (2 a/r) ((1 − kappa) sin θ + sin 3θ) − (2 a³/r³) sin 3θ ]
+//! ```
+//!
+//! (textbook form, as in the tests of isogeometric analysis: Hughes, Cottrell & Bazilevs 2005). The stress does not
+//! depend on kappa; the hoop stress at the hole is T (1 − 2 cos 2θ), 3 T at θ = ±π/2.
+//!
+//! Valid for r ≥ a. Boundary conditions: none on the hole, which is free of traction; on an outer boundary the traction
+//! sigma n or the displacement; on the axes y = 0 and x = 0 symmetry (normal displacement and shear vanish).
+
+use fisura::material::ElasticModuli;
+use fisura::scene::{Material, Plane};
+
+use super::dual::{Jet, Scalar};
+use super::law::{self, Tensor};
+use super::motion::Motion;
+use super::unit_material;
+
+/// Radius of the hole, m.
+pub const RADIUS: f64 = 1.0;
+
+/// Remote tension along x, Pa.
+pub const TENSION: f64 = 1.0;
+
+/// See the module.
+#[derive(Debug, Clone, Copy)]
+pub struct Kirsch {
+    /// Plane state.
+    pub plane: Plane,
+}
+
+impl Motion for Kirsch {
+    const FORCE_FREE: bool = true;
+
+    fn material(&self) -> Material {
+        unit_material(0.3)
+    }
+
+    fn plane(&self) -> Plane {
+        self.plane
+    }
+
+    fn displacement(&self, [x, y, _]: [Jet; 3]) -> [Jet; 2] {
+        let nu = self.material().poisson_ratio;
+        let kappa = match self.plane {
+            Plane::Strain => 3.0 - 4.0 * nu,
+            Plane::Stress => (3.0 - nu) / (1.0 + nu),
+        };
+        let r = (x * x + y * y).sqrt();
+        let (cos, sin) = (x / r, y / r);
+        let cos3 = cos * cos * cos * 4.0 - cos * 3.0;
+        let sin3 = sin * 3.0 - sin * sin * sin * 4.0;
+        let (near, far) = (Jet::constant(2.0 * RADIUS) / r, r * (1.0 / RADIUS));
+        let nearest = near * near * near * 0.25;
+        let scale = TENSION * RADIUS / (8.0 * ElasticModuli::new(&self.material(), self.plane).mu);
+        [
+            (far * cos * (kappa + 1.0) + near * (cos * (1.0 + kappa) + cos3) - nearest * cos3) * scale,
+            (far * sin * (kappa - 3.0) + near * (sin * (1.0 - kappa) + sin3) - nearest * sin3) * scale,
+        ]
+    }
+
+    fn stress(&self, gradient: Tensor) -> Tensor {
+        law::linear(&ElasticModuli::new(&self.material(), self.plane), gradient)
+    }
+}
