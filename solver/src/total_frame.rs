@@ -136,6 +136,20 @@ impl TotalFrame {
         Ok(())
     }
 
+    /// Nodal forces (N/m) of the loads that vary in space, at the present time.
+    pub fn forced_loads(&self) -> VectorField {
+        let mut forces = [self.grid.zeros(), self.grid.zeros()];
+        if let Some(forced) = &self.forced {
+            forced.add_to(&mut forces);
+        }
+        forces
+    }
+
+    /// Right-hand side (m²) of the phase-field equation with the source and flux of a forcing at t = 0.
+    pub fn phase_load(&self, forcing: Arc<dyn Forcing>) -> Vec<f64> {
+        Forced::new(forcing, &self.patch, &self.lattice).phase_load(&self.lattice, 0.0)
+    }
+
     /// Forces and accelerations at t = 0.
     fn begin(&mut self) {
         self.internal_forces();

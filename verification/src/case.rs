@@ -3,6 +3,8 @@
 //! A case is one TOML file `cases/<suite>/<case>.toml`. Its `[scene]` table has the form of a scene file, and may have a
 //! list where a scene has one value: a study axis. `[[variant]]` tables change several keys together.
 
+pub mod convergence;
+
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -73,6 +75,8 @@ pub struct Check {
     pub variant: Option<String>,
     /// Variant it is compared with.
     pub against: Option<String>,
+    /// How far below and above its reference value a measurement may lie, if the bounds are relative to it.
+    pub around_reference: Option<[f64; 2]>,
     /// Bounds.
     pub accept: Accept,
 }
@@ -115,6 +119,8 @@ pub struct Case {
     pub models: Vec<String>,
     /// Changed copies of the scene.
     pub variants: Vec<Variant>,
+    /// What a convergence study solves.
+    pub convergence: Option<convergence::ConvergenceSetup>,
     /// Checks.
     pub checks: Vec<Check>,
     /// The file, for places of errors.
@@ -157,7 +163,7 @@ impl Case {
     }
 }
 
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     "claim",
     "tier",
     "seconds",
@@ -168,6 +174,7 @@ const KEYS: [&str; 11] = [
     "models",
     "scene",
     "variant",
+    "convergence",
     "check",
 ];
 
@@ -183,6 +190,7 @@ fn read_case(item: &Item<'_>, path: &Path, document: &Document) -> Option<Case> 
     let deviations = fields.or("deviations", Vec::new(), words);
     let models = fields.or("models", default_models(document), words);
     let variants = fields.or("variant", Vec::new(), |i| i.tables()?.iter().map(read_variant).collect());
+    let convergence = fields.maybe("convergence", convergence::read);
     let checks = fields.need("check", "at least one [[check]]", |i| i.tables()?.iter().map(read_check).collect());
     let stem = |p: Option<&std::ffi::OsStr>| p.map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     Some(Case {
@@ -198,6 +206,7 @@ fn read_case(item: &Item<'_>, path: &Path, document: &Document) -> Option<Case> 
         deviations: deviations?,
         models: models?,
         variants: variants?,
+        convergence: convergence?,
         checks: checks?,
         document: document.clone(),
     })
@@ -226,7 +235,7 @@ fn read_variant(item: &Item<'_>) -> Option<Variant> {
     Some(Variant { name: name?, set: set?, energy_factor: energy_factor? })
 }
 
-const CHECK_KEYS: [&str; 18] = [
+const CHECK_KEYS: [&str; 20] = [
     "quantity",
     "unit",
     "measure",
@@ -244,6 +253,8 @@ const CHECK_KEYS: [&str; 18] = [
     "against",
     "min",
     "max",
+    "below",
+    "above",
     "why",
 ];
 
@@ -261,6 +272,7 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
     let expect_source = fields.or("expect_source", String::new(), Item::text);
     let scale = fields.or("scale", 1.0, |i| i.quantity(Dimension::NONE));
     let (band, variant, against) = (text("band"), text("variant"), text("against"));
+    let around_reference = read_around(&fields);
     let accept = read_accept(&fields);
     Some(Check {
         quantity: quantity?,
@@ -277,8 +289,19 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
         band: band?,
         variant: variant?,
         against: against?,
+        around_reference: around_reference?,
         accept: accept?,
     })
+}
+
+/// `below = 0.1, above = 0.5`: bounds around the reference value.
+fn read_around(fields: &Fields<'_>) -> Option<Option<[f64; 2]>> {
+    let (below, above) = (fields.maybe("below", any_quantity)?, fields.maybe("above", any_quantity)?);
+    match (below, above) {
+        (None, None) => Some(None),
+        (Some(below), Some(above)) => Some(Some([below, above])),
+        _ => fields.item().fail("one of below and above is missing", "give both: how far from the reference value"),
+    }
 }
 
 /// Bounds need a reason.
@@ -287,7 +310,8 @@ fn read_accept(fields: &Fields<'_>) -> Option<Accept> {
     let (min, max) = (number("min"), number("max"));
     let why = fields.or("why", String::new(), Item::text);
     let (min, max, why) = (min?, max?, why?);
-    if (min.is_some() || max.is_some()) && why.is_empty() {
+    let bounded = ["min", "max", "below", "above"].iter().any(|key| fields.get(key).is_some());
+    if bounded && why.is_empty() {
         return fields.item().fail("bounds without a reason", "add why = \"where the bound comes from\"");
     }
     Some(Accept { min, max, why })

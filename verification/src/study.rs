@@ -6,6 +6,7 @@
 mod basis;
 mod compressive_step;
 mod constant_stress;
+mod convergence;
 mod homogeneous_state;
 mod nurbs;
 pub mod scene;
@@ -70,12 +71,13 @@ pub enum StudyError {
 type Study = fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>;
 
 /// Studies other than `scene`, by name.
-pub const STUDIES: [(&str, Study); 5] = [
+pub const STUDIES: [(&str, Study); 6] = [
     ("basis", basis::study),
     ("constant-stress", constant_stress::study),
     ("homogeneous-state", homogeneous_state::study),
     ("compressive-step", compressive_step::study),
     ("nurbs", nurbs::study),
+    ("convergence", convergence::study),
 ];
 
 /// The study of that name.

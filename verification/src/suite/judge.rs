@@ -115,6 +115,12 @@ fn judge_findings(
             record.parameters =
                 scenes.iter().find(|s| s.name == measurement.variant).map(parameters).unwrap_or_default();
             record.unit.clone_from(&measurement.unit);
+            if let (Some([below, above]), Some(value)) =
+                (check.around_reference, measurement.reference.as_ref().and_then(|r| r.value))
+            {
+                record.accept.min = Some(value - below);
+                record.accept.max = Some(value + above);
+            }
             record.series = findings.series.first().map(|(stem, _)| format!("series/{stem}.csv"));
             judge(&mut record, Measured { value: measurement.value, reference: measurement.reference.clone() });
             outcome.records.push(record);

@@ -1,0 +1,155 @@
+//! The `[convergence]` table of a case file: which exact solution is solved for, on which meshes, how.
+//!
+//! ```toml
+//! study = "convergence"
+//!
+//! [convergence]
+//! problem = "elastostatics"     # an exact solution, or "projection"
+//! patch = "annulus"             # "square", "graded", "bent", "annulus", "sector", "random"
+//! degrees = [2, 3]
+//! cells = [4, 8, 16, 32]        # spans per direction
+//! ```
+
+use fisura::scene::{Layout, Mass, Plane};
+
+use crate::scene_file::fields::Item;
+use crate::scene_file::units::Dimension;
+
+/// A family of patches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PatchFamily {
+    /// The rectangle [0, 1] × [0, 0.8] m with equal spans.
+    Square,
+    /// The same with spans of random lengths, drawn once on the coarsest mesh.
+    Graded,
+    /// A polynomial patch with curved sides.
+    Bent,
+    /// The quarter annulus between the radii 1 and 2 m.
+    Annulus,
+    /// The quarter annulus between the radii 1 and 4 m about a hole.
+    Sector,
+    /// The rectangle with random weights, inner control points and knots, drawn once on the coarsest mesh.
+    Random,
+}
+
+/// How the problem is loaded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loading {
+    /// Body force and traction: measures the method.
+    Strong,
+    /// Exact stress and inertia through the code's own sums: verifies the code, blind to the quadrature.
+    Weak,
+}
+
+/// What is refined.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Refine {
+    /// The mesh, with time steps in proportion to a power of the span length; (p + 1)/2 if none is given.
+    Mesh(Option<f64>),
+    /// The time step on the finest mesh, in these fractions of its critical one.
+    TimeStep,
+}
+
+/// A convergence study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConvergenceSetup {
+    /// Exact solution.
+    pub problem: String,
+    /// Plane state.
+    pub plane: Plane,
+    /// Meshes.
+    pub patch: PatchFamily,
+    /// Degrees.
+    pub degrees: Vec<usize>,
+    /// Spans per direction, level by level.
+    pub cells: Vec<usize>,
+    /// Layout of the points.
+    pub layout: Layout,
+    /// Points per span and direction, one per degree; p + 1 if absent.
+    pub points: Option<Vec<usize>>,
+    /// Mass matrix.
+    pub mass: Mass,
+    /// Loads.
+    pub loading: Loading,
+    /// Mesh or time step.
+    pub refine: Refine,
+    /// Time step on the coarsest mesh over its critical one; the fractions tried, where the time step is refined.
+    pub safety: Vec<f64>,
+    /// End of the simulated time, s, if not that of the problem.
+    pub end_time: Option<f64>,
+}
+
+impl ConvergenceSetup {
+    /// Points per span and direction for the n-th degree.
+    pub fn points(&self, n: usize) -> usize {
+        self.points.as_ref().map_or(self.degrees[n] + 1, |points| points[n])
+    }
+}
+
+const KEYS: [&str; 13] = [
+    "problem",
+    "plane",
+    "patch",
+    "degrees",
+    "cells",
+    "layout",
+    "points",
+    "mass",
+    "loading",
+    "refine",
+    "step_power",
+    "safety",
+    "end_time",
+];
+
+pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
+    let fields = item.fields(&KEYS)?;
+    let wholes = |item: &Item<'_>, least, most| item.each(|entry| entry.whole(least, most));
+    let problem = fields.need("problem", "problem = \"elastostatics\"", Item::text);
+    let planes = [("strain", Plane::Strain), ("stress", Plane::Stress)];
+    let plane = fields.or("plane", Plane::Strain, |i| i.choice(&planes));
+    let families = [
+        ("square", PatchFamily::Square),
+        ("graded", PatchFamily::Graded),
+        ("bent", PatchFamily::Bent),
+        ("annulus", PatchFamily::Annulus),
+        ("sector", PatchFamily::Sector),
+        ("random", PatchFamily::Random),
+    ];
+    let patch = fields.or("patch", PatchFamily::Square, |i| i.choice(&families));
+    let degrees = fields.need("degrees", "degrees = [2, 3]", |i| wholes(i, 1, 4));
+    let cells = fields.need("cells", "cells = [4, 8, 16, 32]", |i| wholes(i, 1, 4096));
+    let layouts = [("gauss", Layout::Gauss), ("uniform", Layout::Uniform), ("maclaurin", Layout::Maclaurin)];
+    let layout = fields.or("layout", Layout::Gauss, |i| i.choice(&layouts));
+    let points = fields.maybe("points", |i| wholes(i, 1, 16));
+    let masses = [("consistent", Mass::Consistent), ("lumped", Mass::Lumped)];
+    let mass = fields.or("mass", Mass::Consistent, |i| i.choice(&masses));
+    let loadings = [("strong", Loading::Strong), ("weak", Loading::Weak)];
+    let loading = fields.or("loading", Loading::Strong, |i| i.choice(&loadings));
+    let step_power = fields.maybe("step_power", |i| i.quantity(Dimension::NONE));
+    let refine = fields.or("refine", true, |i| i.choice(&[("mesh", true), ("time-step", false)]));
+    let safety = fields.or("safety", vec![0.4], |i| i.each(|entry| entry.quantity(Dimension::NONE)));
+    let end_time = fields.maybe("end_time", |i| i.quantity(Dimension::TIME));
+    let (degrees, points) = (degrees?, points?);
+    if let Some(points) = &points
+        && points.len() != degrees.len()
+    {
+        let message = format!("{} numbers of points for {} degrees", points.len(), degrees.len());
+        return fields.get("points")?.fail(message, "give one number of points per span and direction for each degree");
+    }
+    let step_power = step_power?;
+    Some(ConvergenceSetup {
+        problem: problem?,
+        plane: plane?,
+        patch: patch?,
+        degrees,
+        cells: cells?,
+        layout: layout?,
+        points,
+        mass: mass?,
+        loading: loading?,
+        refine: if refine? { Refine::Mesh(step_power) } else { Refine::TimeStep },
+        safety: safety?,
+        end_time: end_time?,
+    })
+}

@@ -1,0 +1,96 @@
+//! Errors against an exact field, integrated over another, finer set of points than those of the body.
+
+use fisura::lane::Lane;
+use fisura::lattice::Lattice;
+use fisura::patch::Patch;
+use fisura::scene::{Body, Layout};
+
+/// Points per span and direction beyond those of the body.
+const FINER: usize = 3;
+
+/// Quadrature points for errors on the patch of a body.
+pub(super) struct ErrorPoints {
+    lattice: Lattice,
+}
+
+/// Squares of an error and of the exact field, integrated, m² times their units squared.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Squares {
+    error: [f64; 2],
+    exact: [f64; 2],
+}
+
+impl Squares {
+    /// Relative error in L2.
+    pub fn l2(&self) -> f64 {
+        (self.error[0] / self.exact[0]).sqrt()
+    }
+
+    /// Relative error of the gradient in L2: in the H1 seminorm.
+    pub fn h1(&self) -> f64 {
+        (self.error[1] / self.exact[1]).sqrt()
+    }
+}
+
+impl std::iter::Sum for Squares {
+    fn sum<I: Iterator<Item = Self>>(parts: I) -> Self {
+        parts.fold(Self::default(), |sum, part| Self {
+            error: [0, 1].map(|i| sum.error[i] + part.error[i]),
+            exact: [0, 1].map(|i| sum.exact[i] + part.exact[i]),
+        })
+    }
+}
+
+impl ErrorPoints {
+    pub fn new(patch: &Patch, body: &Body) -> Self {
+        let most = body.particles_per_cell.into_iter().max().unwrap_or(1);
+        let degree = patch.spaces.iter().map(|s| s.degree()).max().unwrap_or(1);
+        let finer = Body {
+            layout: Layout::Gauss,
+            particles_per_cell: [(most.max(degree + 1) + FINER).min(fisura::quadrature::MAX_POINTS); 2],
+            ..body.clone()
+        };
+        Self { lattice: Lattice::new(patch, &finer) }
+    }
+
+    /// Area of the body, m².
+    pub fn area(&self) -> f64 {
+        let mut area = 0.0;
+        self.lattice.for_each_point(|_, _, _, weight| area += weight);
+        area
+    }
+
+    /// A field of control values against an exact field, given as value and gradient at a position.
+    pub fn squares(&self, field: &[f64], exact: impl Fn([f64; 2]) -> (f64, [f64; 2])) -> Squares {
+        let lattice = &self.lattice;
+        let [kx, ky] = lattice.degree.map(|p| p + 1);
+        let mut sums = Squares::default();
+        for batch in 0..lattice.batches() {
+            let (row_index, tile_index, b, a) = lattice.unbatch(batch);
+            let (row, tile) = (&lattice.rows[row_index], &lattice.tiles[tile_index]);
+            let functions = lattice.shape_functions(batch);
+            let (mut value, mut gradient) = (Lane::ZERO, [Lane::ZERO; 2]);
+            for l in 0..ky {
+                for k in 0..kx {
+                    let control = Lane::load(field, lattice.grid.index(tile.first + k, row.first + l));
+                    value += functions.value[l * kx + k] * control;
+                    for d in 0..2 {
+                        gradient[d] += functions.gradient[l * kx + k][d] * control;
+                    }
+                }
+            }
+            let weight = lattice.weight(row_index, tile_index, b, a);
+            for lane in (0..tile.count).filter(|&lane| weight[lane] > 0.0) {
+                let (exact_value, exact_gradient) = exact(lattice.position(batch, lane));
+                let square = |x: f64| weight[lane] * x * x;
+                sums.error[0] += square(value[lane] - exact_value);
+                sums.exact[0] += square(exact_value);
+                for d in 0..2 {
+                    sums.error[1] += square(gradient[d][lane] - exact_gradient[d]);
+                    sums.exact[1] += square(exact_gradient[d]);
+                }
+            }
+        }
+        sums
+    }
+}

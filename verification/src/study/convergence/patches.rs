@@ -1,0 +1,143 @@
+//! Families of meshes: one geometry for all refinements, drawn once and carried by knot insertion.
+
+use fisura::nurbs::{NurbsError, NurbsPatch};
+use fisura::scene::{Mesh, Shape};
+
+use crate::case::convergence::PatchFamily;
+
+/// Spans per direction of the mesh on which random knots, weights and control points are drawn.
+const COARSE: usize = 3;
+
+/// The rectangle of the square, graded and random families, m.
+const SIZE: [f64; 2] = [1.0, 0.8];
+
+/// Mesh of a family with `cells` spans per direction, and the shape of a body that fills it. Random families have a
+/// multiple of [`COARSE`] spans.
+pub(super) fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<(Mesh, Shape), NurbsError> {
+    let rectangle = Shape::Rectangle { min: [0.0; 2], max: SIZE };
+    let parts = cells.div_ceil(COARSE);
+    match family {
+        PatchFamily::Square => Ok((Mesh::uniform([degree; 2], [0.0; 2], SIZE, [cells; 2]), rectangle)),
+        PatchFamily::Graded => {
+            let mut random = Random(11);
+            let knots = SIZE.map(|size| open(degree, &subdivided(&random.breaks(size), parts)));
+            Ok((Mesh { degree: [degree; 2], knots, geometry: None }, rectangle))
+        }
+        PatchFamily::Bent => general(refined(&bent()?, degree, cells)?),
+        PatchFamily::Annulus => general(refined(&NurbsPatch::quarter_annulus(1.0, 2.0)?, degree, cells)?),
+        PatchFamily::Sector => general(refined(&NurbsPatch::quarter_annulus(1.0, 4.0)?, degree, cells)?),
+        PatchFamily::Random => general(random(degree)?.subdivide(parts)?),
+    }
+}
+
+fn general(patch: NurbsPatch) -> Result<(Mesh, Shape), NurbsError> {
+    Ok((Mesh::of(&patch), Shape::Patch))
+}
+
+/// One piece of low degree raised to `degree` and cut into `cells` equal parts per direction.
+fn refined(patch: &NurbsPatch, degree: usize, cells: usize) -> Result<NurbsPatch, NurbsError> {
+    let mut patch = patch.clone();
+    for d in 0..2 {
+        while patch.spaces()[d].degree() < degree {
+            patch = patch.elevate(d)?;
+        }
+    }
+    patch.subdivide(cells)
+}
+
+/// A biquadratic piece with curved sides, polynomial.
+fn bent() -> Result<NurbsPatch, NurbsError> {
+    let piece: &[f64] = &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+    let points = vec![
+        [0.0, 0.0],
+        [0.5, 0.15],
+        [1.0, 0.0],
+        [-0.1, 0.4],
+        [0.55, 0.45],
+        [1.15, 0.35],
+        [0.1, 0.8],
+        [0.5, 0.7],
+        [1.0, 0.9],
+    ];
+    NurbsPatch::new([2, 2], [piece, piece], points, vec![1.0; 9])
+}
+
+/// The rectangle on random knots, with random weights, its inner control points moved at random.
+fn random(degree: usize) -> Result<NurbsPatch, NurbsError> {
+    let mut random = Random(5);
+    let knots = [(); 2].map(|()| open(degree, &random.breaks(1.0)));
+    let flat = NurbsPatch::rectangle([degree; 2], [&knots[0], &knots[1]], [0.0; 2], SIZE)?;
+    let [columns, rows] = flat.spaces().each_ref().map(|space| space.dimension());
+    let inner = |n: usize| (1..columns - 1).contains(&(n % columns)) && (1..rows - 1).contains(&(n / columns));
+    let mut points = flat.control_points().to_vec();
+    for (n, point) in points.iter_mut().enumerate() {
+        let shift = [random.between(-0.03, 0.03), random.between(-0.03, 0.03)];
+        if inner(n) {
+            *point = [point[0] + shift[0], point[1] + shift[1]];
+        }
+    }
+    let weights = points.iter().map(|_| random.between(-0.7, 0.7).exp()).collect();
+    NurbsPatch::new([degree; 2], [&knots[0], &knots[1]], points, weights)
+}
+
+fn open(degree: usize, breaks: &[f64]) -> Vec<f64> {
+    let mut knots = vec![breaks[0]; degree];
+    knots.extend(breaks);
+    knots.extend(vec![breaks[breaks.len() - 1]; degree]);
+    knots
+}
+
+fn subdivided(breaks: &[f64], parts: usize) -> Vec<f64> {
+    let inner = breaks.windows(2).flat_map(|b| {
+        let (left, right) = (b[0], b[1]);
+        (0..parts).map(move |i| left + (right - left) * i as f64 / parts as f64)
+    });
+    inner.chain(breaks.last().copied()).collect()
+}
+
+/// A linear congruential sequence, the same on every machine.
+struct Random(u64);
+
+impl Random {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        low + (high - low) * ((self.0 >> 11) as f64 / (1u64 << 53) as f64)
+    }
+
+    /// Ends of [`COARSE`] spans from 0 to `size` whose lengths differ by up to a factor of four.
+    fn breaks(&mut self, size: f64) -> Vec<f64> {
+        let lengths: Vec<f64> = (0..COARSE).map(|_| 4f64.powf(self.between(0.0, 1.0))).collect();
+        let total: f64 = lengths.iter().sum();
+        let mut breaks = vec![0.0];
+        let mut sum = 0.0;
+        for length in &lengths[..COARSE - 1] {
+            sum += length;
+            breaks.push(size * sum / total);
+        }
+        breaks.push(size);
+        breaks
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The geometry of a family is one for all refinements: corners and area stay.
+    #[test]
+    fn refinement_keeps_the_geometry() {
+        use PatchFamily::{Annulus, Bent, Random, Sector};
+        for family in [Bent, Annulus, Sector, Random] {
+            for degree in 2..=4 {
+                let middle = [3, 6].map(|cells| {
+                    let patch = mesh(family, degree, cells).unwrap().0.nurbs().unwrap().unwrap();
+                    let parameters = [0.3, 0.6];
+                    patch.map(&patch.shape_functions(patch.find_span(parameters).unwrap(), parameters)).position
+                });
+                for d in 0..2 {
+                    approx::assert_abs_diff_eq!(middle[0][d], middle[1][d], epsilon = 1e-14);
+                }
+            }
+        }
+    }
+}
