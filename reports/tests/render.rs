@@ -99,6 +99,17 @@ fn logarithmic_axes_have_clean_labels() {
 }
 
 #[test]
+fn slopes_of_theory_and_floors_stand_in_the_chart() {
+    let folder = folder();
+    render(folder.path()).unwrap();
+    let svg = read(folder.path(), "figures/timing/order.svg");
+    assert!(svg.contains("\nround-off\n") && svg.contains("\n3\n"), "both are labelled: {svg}");
+    assert!(svg.contains("Slopes of theory: 3."), "and told to those who cannot see it");
+    let hollow = |svg: &str| svg.lines().filter(|l| l.starts_with("<circle")).count();
+    assert_eq!(hollow(&svg), 2 * 5 + 1, "four markers and the sample have a rim, the one below the floor a hole");
+}
+
+#[test]
 fn a_gap_in_the_numbers_is_a_gap_in_the_line() {
     let folder = folder();
     render(folder.path()).unwrap();

@@ -6,6 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use crate::measure::grid_convergence::Estimate;
 use crate::record::{Accept, ReferenceKind};
 use crate::scene_file::document::{Document, Node, Value};
 use crate::scene_file::fields::{Fields, Item, Problems};
@@ -73,6 +74,10 @@ pub struct Check {
     pub variant: Option<String>,
     /// Variant it is compared with.
     pub against: Option<String>,
+    /// What to make of the values on all meshes; absent: a value for each.
+    pub meshes: Option<Estimate>,
+    /// Order of theory in h, for `meshes`.
+    pub order: Option<f64>,
     /// Bounds.
     pub accept: Accept,
 }
@@ -226,7 +231,7 @@ fn read_variant(item: &Item<'_>) -> Option<Variant> {
     Some(Variant { name: name?, set: set?, energy_factor: energy_factor? })
 }
 
-const CHECK_KEYS: [&str; 18] = [
+const CHECK_KEYS: [&str; 20] = [
     "quantity",
     "unit",
     "measure",
@@ -242,6 +247,8 @@ const CHECK_KEYS: [&str; 18] = [
     "band",
     "variant",
     "against",
+    "meshes",
+    "order",
     "min",
     "max",
     "why",
@@ -261,6 +268,8 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
     let expect_source = fields.or("expect_source", String::new(), Item::text);
     let scale = fields.or("scale", 1.0, |i| i.quantity(Dimension::NONE));
     let (band, variant, against) = (text("band"), text("variant"), text("against"));
+    let meshes = fields.maybe("meshes", |i| i.choice(&Estimate::WORDS));
+    let order = number("order");
     let accept = read_accept(&fields);
     Some(Check {
         quantity: quantity?,
@@ -277,6 +286,8 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
         band: band?,
         variant: variant?,
         against: against?,
+        meshes: meshes?,
+        order: order?,
         accept: accept?,
     })
 }
