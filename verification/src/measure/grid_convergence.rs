@@ -116,19 +116,17 @@ fn combine(estimate: Estimate, mut meshes: Vec<(f64, f64)>, theory: Option<f64>)
 
 /// The order p from the differences `[f2 - f1, f3 - f2]` and the ratios `[r21, r32]`.
 fn order([fine, coarse]: [f64; 2], [r21, r32]: [f64; 2]) -> Result<f64, String> {
-    let ratio = coarse / fine;
-    if coarse == 0.0 && fine == 0.0 {
-        return Err("the value does not depend on the mesh, and has no order".into());
+    if fine == 0.0 {
+        let meshes = if coarse == 0.0 { "any of the meshes" } else { "the finest meshes" };
+        return Err(format!("the value does not change between {meshes}, and has no order"));
     }
+    let ratio = coarse / fine;
     if ratio < 0.0 {
         return Err("oscillatory convergence: no order, limit or index".into());
     }
     // the right-hand side of the equation for p grows with p from this value at p = 0
     if ratio.is_nan() || ratio <= (1.0 + 1e-9) * r32.ln() / r21.ln() {
         return Err("no convergence: the difference does not fall from mesh to mesh".into());
-    }
-    if ratio.is_infinite() {
-        return Err("the value does not change between the finest meshes, and has no order".into());
     }
     let mut p = ratio.ln() / r21.ln();
     for _ in 0..ITERATIONS {

@@ -52,8 +52,9 @@ fn what_does_not_converge_gives_words_and_no_number() {
         ([1.0, 1.1, 1.3], "no convergence"),
         ([1.0, 1.1, 1.2], "no convergence"),
         ([1.0, 1.0, 1.2], "no convergence"),
-        ([1.0, 1.2, 1.2], "does not change between the finest"),
-        ([1.0, 1.0, 1.0], "does not depend on the mesh"),
+        ([1.2, 1.0, 1.0], "does not change between the finest meshes"),
+        ([1.0, 1.2, 1.2], "does not change between the finest meshes"),
+        ([1.0, 1.0, 1.0], "does not change between any of the meshes"),
         ([1.0, f64::NAN, 1.0], "no convergence"),
     ] {
         for (_, estimate) in Estimate::WORDS {
