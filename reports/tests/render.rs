@@ -67,6 +67,9 @@ fn the_page_keeps_its_structure() {
     assert!(!page.contains("<script") && !page.contains("src="), "the page needs nothing else");
     assert!(page.contains("prefers-color-scheme: dark"));
     assert!(page.contains("h → 0 &lt;extrapolated&gt;"), "text of records is escaped");
+    let rates = page.split("<table class=\"rates\">").nth(1).and_then(|t| t.split("</table>").next()).unwrap();
+    assert_eq!(rates.matches("<td><a href=\"#check-manufactured-bar-").count(), 4, "one row per order: {rates}");
+    assert_eq!(rates.matches("A manufactured bar").count(), 1, "the claim stands once per case");
     for target in page.split("href=\"#").skip(1).map(|t| t.split('"').next().unwrap_or_default()) {
         assert!(page.contains(&format!("id=\"{target}\"")), "#{target} leads nowhere");
     }
