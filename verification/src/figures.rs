@@ -112,8 +112,9 @@ pub fn of_runs(runs: &[RunInfo], library: &Library) -> (Vec<Figure>, Vec<(String
     }
     for runs in variants.chunk_by(|a, b| a.case == b.case) {
         for quantity in &PLATE {
-            let stem = format!("plate-{}", runs[0].case);
-            figures.push(chart(quantity, &stem, runs, library, &mut tables));
+            let case = &runs[0].case;
+            let figure = chart(quantity, &format!("plate-{case}"), runs, library, &mut tables);
+            figures.push(Figure { title: format!("{}: {}", figure.title, case.replace('-', " ")), ..figure });
         }
     }
     let mut suites: Vec<&str> = runs.iter().map(|r| r.suite.as_str()).collect();
