@@ -10,6 +10,9 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 
 use crate::number::{power_of_ten, pretty};
 
+/// Decades up to which minor ticks have grid lines; beyond, they would be a grey wash.
+const FINE_GRID: f64 = 3.0;
+
 /// A fitted axis that plotters can draw.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisScale {
@@ -20,8 +23,8 @@ pub struct AxisScale {
     pub high: f64,
     /// Labelled ticks: axis coordinate and text.
     pub ticks: Vec<(f64, String)>,
-    /// Ticks without label, for the fine grid of a logarithmic axis.
-    minor: Vec<f64>,
+    /// Ticks without label of a logarithmic axis.
+    pub minor: Vec<f64>,
     /// Power of ten by which all labels are to be multiplied, to be printed beside the axis.
     pub factor: Option<i32>,
 }
@@ -74,7 +77,8 @@ impl Ranged for AxisScale {
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        let minor: &[f64] = if hint.weight().allow_light_points() { &self.minor } else { &[] };
+        let fine = self.high - self.low <= FINE_GRID && hint.weight().allow_light_points();
+        let minor: &[f64] = if fine { &self.minor } else { &[] };
         self.ticks.iter().map(|t| t.0).chain(minor.iter().copied()).collect()
     }
 
@@ -163,7 +167,8 @@ fn log_ticks(low: f64, high: f64, target: usize) -> Option<Ticks> {
     };
     let labelled = chosen.iter().filter(|(_, m, d)| *m != 1 || d.rem_euclid(stride) == 0);
     let ticks = labelled.map(|(u, m, d)| (*u, text(*m, *d))).collect();
-    let minor = if stride == 1 { places(choices[2]).into_iter().map(|t| t.0).collect() } else { Vec::new() };
+    // unlabelled decades where not all are labelled
+    let minor = places(choices[if stride == 1 { 2 } else { 0 }]).into_iter().map(|t| t.0).collect();
     Some((ticks, minor, None))
 }
 
@@ -183,6 +188,13 @@ mod tests {
         assert_eq!(labels(Scale::Log, -1.9, -0.8), ["0.02", "0.05", "0.1"]);
         assert_eq!(labels(Scale::Log, -6.02, -5.4), ["10⁻⁶", "2×10⁻⁶", "3×10⁻⁶"]);
         assert_eq!(labels(Scale::Log, -12.0, 0.0), ["10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²", "10⁰"]);
+    }
+
+    #[test]
+    fn minor_ticks_lie_between_decades_or_are_decades() {
+        let minor = |low: f64, high: f64| AxisScale::with_range(Scale::Log, low, high, 6).minor.len();
+        assert_eq!(minor(-6.0, -2.0), 4 * 9 + 1);
+        assert_eq!(minor(-12.0, 0.0), 13, "every decade where every other one is labelled");
     }
 
     #[test]

@@ -1,10 +1,11 @@
-//! Line charts: curves over common axes, reference bands, marked regions, a legend below.
+//! Line charts: curves over common axes, reference bands, marked regions, slopes of theory, a legend below.
 
-use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, Region};
+use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, Floor, Region, SlopeTriangle};
 use plotters::prelude::*;
 
 use crate::axis::AxisScale;
 use crate::frame::{self, BELOW, EDGE, Frame, Place};
+use crate::guides;
 use crate::legend::{BAND, Legend, draw_marker};
 use crate::regions::{self, Labels};
 use crate::series::{FigureError, SeriesSet};
@@ -17,12 +18,23 @@ const HEIGHT: f64 = 340.0;
 /// Markers on a line that has them only to be told apart.
 const SPARSE: usize = 9;
 
+/// What a chart shows beside its curves.
+#[derive(Debug, Clone, Copy)]
+pub struct Marks<'a> {
+    /// Marked regions.
+    pub regions: &'a [Region],
+    /// Slopes of theory.
+    pub slopes: &'a [SlopeTriangle],
+    /// Levels below which values mean nothing.
+    pub floors: &'a [Floor],
+}
+
 /// Everything needed to draw a chart.
 struct Chart<'a> {
     titles: [&'a str; 2],
     axes: [AxisScale; 2],
     traces: Vec<Trace>,
-    regions: &'a [Region],
+    marks: Marks<'a>,
     labels: Labels,
     legend: Legend,
     place: Place,
@@ -36,16 +48,18 @@ pub fn render_chart(
     figure: &Figure,
     axes: [&Axis; 2],
     curves: &[Curve],
-    regions: &[Region],
+    marks: Marks,
     set: &SeriesSet,
 ) -> Result<String, FigureError> {
-    let chart = Chart::prepare(&figure.id, axes, curves, regions, set)?;
+    let chart = Chart::prepare(&figure.id, axes, curves, marks, set)?;
     let labels: Vec<&str> = curves.iter().map(|c| c.label.as_str()).collect();
+    let theory: Vec<&str> = marks.slopes.iter().map(|s| s.label.as_str()).collect();
     let description = format!(
-        "Chart of {} against {}. Curves: {}. {}",
+        "Chart of {} against {}. Curves: {}. {}{}",
         axes[1].label,
         axes[0].label,
         labels.join("; "),
+        if theory.is_empty() { String::new() } else { format!("Slopes of theory: {}. ", theory.join(", ")) },
         crate::figure::words(figure)
     );
     svg::page(&figure.id, (&figure.title, &description), chart.size(), |page| chart.draw(page).map(|()| None))
@@ -56,9 +70,10 @@ impl<'a> Chart<'a> {
         id: &str,
         axes: [&'a Axis; 2],
         curves: &[Curve],
-        regions: &'a [Region],
+        marks: Marks<'a>,
         set: &SeriesSet,
     ) -> Result<Self, FigureError> {
+        let Marks { regions, slopes, floors } = marks;
         let looks = looks(&curves.iter().map(|c| c.style).collect::<Vec<_>>());
         let scales = axes.map(|a| a.scale);
         let traces = curves.iter().zip(looks).map(|(c, look)| Trace::read(id, c, look, scales, set));
@@ -66,9 +81,12 @@ impl<'a> Chart<'a> {
         let marked = curves.iter().any(|c| matches!(c.style, CurveStyle::Markers | CurveStyle::Points));
         let abscissae = traces.iter().flat_map(|t| t.points.iter().map(|p| p.0));
         let abscissae = abscissae.chain(regions.iter().flat_map(|r| r.x.into_iter().flatten()));
+        let abscissae = abscissae.chain(slopes.iter().flat_map(|s| s.x));
         let x = AxisScale::fit(axes[0], abscissae, if marked { 0.04 } else { 0.0 }, 7);
         let ordinates = traces.iter().flat_map(Trace::ordinates);
         let ordinates = ordinates.chain(regions.iter().flat_map(|r| r.y.into_iter().flatten()));
+        let ordinates = ordinates.chain(slopes.iter().flat_map(|s| [s.y0, guides::end(s, axes)]));
+        let ordinates = ordinates.chain(floors.iter().map(|f| f.y));
         let y = AxisScale::fit(axes[1], ordinates, 0.05, 6);
 
         let left = frame::room_left(&y) + EDGE;
@@ -79,7 +97,7 @@ impl<'a> Chart<'a> {
         let top = (12.0 + labels.height()).max(if y.factor.is_some() { 28.0 } else { 0.0 });
         let legend = Legend::arrange(&traces, WIDTH - left - 20.0);
         let place = Place { left, top, width, height: HEIGHT };
-        Ok(Self { titles: axes.map(|a| a.label.as_str()), axes: [x, y], traces, regions, labels, legend, place })
+        Ok(Self { titles: axes.map(|a| a.label.as_str()), axes: [x, y], traces, marks, labels, legend, place })
     }
 
     fn size(&self) -> (f64, f64) {
@@ -88,8 +106,12 @@ impl<'a> Chart<'a> {
 
     fn draw(&self, page: &Page) -> Drawn {
         let mut frame = frame::draw(page, self.place, &self.axes, self.titles, true)?;
-        regions::shade(&mut frame, self.regions, &self.axes)?;
-        self.labels.draw(page, self.place, self.regions, &self.axes[1])?;
+        regions::shade(&mut frame, self.marks.regions, &self.axes)?;
+        self.labels.draw(page, self.place, self.marks.regions, &self.axes[1])?;
+        let [x, y] = &self.axes;
+        let lines: Vec<Vec<Point>> = self.traces.iter().map(|t| t.coordinates(x, y)).collect();
+        guides::draw_floors(page, &mut frame, self.place, self.marks.floors, &self.axes, &lines)?;
+        guides::draw_slopes(page, &mut frame, self.marks.slopes, &self.axes)?;
         if self.axes[1].crosses_zero() {
             let ends = vec![(self.axes[0].low, 0.0), (self.axes[0].high, 0.0)];
             frame.draw_series([PathElement::new(ends, AXIS.mix(0.7).stroke_width(px(0.8) as u32))])?;
@@ -124,8 +146,9 @@ impl<'a> Chart<'a> {
         let Some(marker) = marker else { return Ok(()) };
         let marked = marked(&seen, trace, &self.traces);
         let radius = if marked.len() > 24 { 2.6 } else { 3.6 };
+        let floor = self.marks.floors.iter().map(|f| y.coordinate(f.y)).fold(f64::NEG_INFINITY, f64::max);
         for p in marked {
-            draw_marker(page, frame.backend_coord(&p), marker, radius, trace.look.colour)?;
+            draw_marker(page, frame.backend_coord(&p), marker, radius, trace.look.colour, p.1 <= floor)?;
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use std::path::{Component, Path};
 
 use fisura_verification::record::{Figure, FigureBody};
 
-use crate::chart::render_chart;
+use crate::chart::{Marks, render_chart};
 use crate::field::{Raster, render_field};
 use crate::series::{FigureError, SeriesSet};
 
@@ -15,7 +15,9 @@ use crate::series::{FigureError, SeriesSet};
 pub fn render_figure(figure: &Figure, set: &SeriesSet) -> Result<String, FigureError> {
     file_name(&figure.id)?;
     match &figure.body {
-        FigureBody::Chart { x, y, curves, regions, .. } => render_chart(figure, [x, y], curves, regions, set),
+        FigureBody::Chart { x, y, curves, regions, slopes, floors } => {
+            render_chart(figure, [x, y], curves, Marks { regions, slopes, floors }, set)
+        }
         FigureBody::Field { series, pixels, label, range } => {
             let raster = Raster::read(&figure.id, series, *pixels, set)?;
             render_field(figure, &raster, label, *range)

@@ -14,6 +14,8 @@ pub type Frame<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<AxisScale,
 
 /// Room below the frame for tick labels and the title of the abscissa.
 pub const BELOW: f64 = 42.0;
+/// Length of a minor tick.
+const MINOR: f64 = 2.5;
 /// Free room at the left edge of the page.
 pub const EDGE: f64 = 6.0;
 
@@ -68,8 +70,24 @@ pub fn draw<'a, 'b>(
         .x_desc(titles[0])
         .y_desc(titles[1])
         .draw()?;
+    minor_ticks(page, place, axes)?;
     factors(page, place, axes)?;
     Ok(frame)
+}
+
+/// Short marks at the unlabelled ticks of logarithmic axes.
+fn minor_ticks(page: &Page, place: Place, axes: &[AxisScale; 2]) -> Drawn {
+    let fraction = |axis: &AxisScale, u: f64| (u - axis.low) / (axis.high - axis.low);
+    let (left, bottom) = (place.left, place.top + place.height);
+    let along = axes[0].minor.iter().map(|u| left + fraction(&axes[0], *u) * place.width);
+    let along = along.map(|x| [(x, bottom), (x, bottom + MINOR)]);
+    let across = axes[1].minor.iter().map(|u| bottom - fraction(&axes[1], *u) * place.height);
+    let across = across.map(|y| [(left - MINOR, y), (left, y)]);
+    for ends in along.chain(across) {
+        let line = ends.map(|(x, y)| (px(x), px(y))).to_vec();
+        page.draw(&PathElement::new(line, AXIS.stroke_width(px(0.8) as u32)))?;
+    }
+    Ok(())
 }
 
 /// Prints the common powers of ten at the ends of the axes.

@@ -9,6 +9,7 @@ use minijinja::value::Serde;
 use serde::Serialize;
 
 use crate::number::{DIGITS, duration, grouped, plain, pretty};
+use crate::rates::{Rate, rates};
 use crate::series::names;
 use crate::svg::slug;
 use crate::view::{self, Counts};
@@ -57,6 +58,21 @@ struct Run {
     rows: Vec<Row>,
 }
 
+/// Orders of one case.
+#[derive(Serialize)]
+struct Orders {
+    id: String,
+    claim: String,
+    rows: Vec<Order>,
+}
+
+#[derive(Serialize)]
+struct Order {
+    anchor: String,
+    verdict: Verdict,
+    cells: [String; 6],
+}
+
 #[derive(Serialize)]
 struct Picture {
     anchor: String,
@@ -75,6 +91,7 @@ struct Suite {
     name: String,
     counts: String,
     verdict: Verdict,
+    orders: Vec<Orders>,
     runs: Vec<Run>,
     figures: Vec<Picture>,
 }
@@ -122,9 +139,25 @@ fn suite(set: &ResultSet, name: &str, drawings: &Drawings) -> Suite {
         name: name.to_string(),
         counts: counts.list(),
         verdict: verdict(counts.verdict()),
+        orders: orders(&records),
         runs: view::runs(records).into_iter().map(|(id, records)| run(id, &records)).collect(),
         figures: figures.map(|f| picture(f, drawings)).collect(),
     }
+}
+
+/// The rates of a suite, by case.
+fn orders(records: &[&Record]) -> Vec<Orders> {
+    let order = |rate: &Rate| Order {
+        anchor: format!("check-{}", slug(&rate.record.id)),
+        verdict: verdict(rate.record.status),
+        cells: rate.cells(pretty),
+    };
+    let of_case = |rates: &[Rate]| {
+        let first = rates[0].record;
+        let id = format!("{}/{}", first.suite, first.case);
+        Orders { id, claim: first.claim.clone(), rows: rates.iter().map(order).collect() }
+    };
+    rates(records).chunk_by(|a, b| a.record.case == b.record.case).map(of_case).collect()
 }
 
 fn run(id: &str, records: &[&Record]) -> Run {

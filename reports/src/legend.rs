@@ -97,15 +97,16 @@ impl Entry {
             }
         }
         match look.marker {
-            Some(marker) => draw_marker(page, (px(x + 0.5 * SAMPLE), px(y)), marker, 3.6, look.colour),
+            Some(marker) => draw_marker(page, (px(x + 0.5 * SAMPLE), px(y)), marker, 3.6, look.colour, false),
             None => Ok(()),
         }
     }
 }
 
 /// Draws a marker of nominal `radius` at a place on the page, with a thin white rim that sets it off from lines.
-pub fn draw_marker(page: &Page, at: (i32, i32), marker: Marker, radius: f64, colour: RGBColor) -> Drawn {
-    for (radius, colour) in [(radius + 0.9, WHITE), (radius, colour)] {
+pub fn draw_marker(page: &Page, at: (i32, i32), marker: Marker, radius: f64, colour: RGBColor, hollow: bool) -> Drawn {
+    let layers = [(radius + 0.9, WHITE), (radius, colour), (radius - 1.4, WHITE)];
+    for (radius, colour) in layers.into_iter().take(if hollow { 3 } else { 2 }) {
         let corners = marker.corners(radius);
         if corners.is_empty() {
             page.draw(&Circle::new(at, px(radius), colour.filled()))?;

@@ -13,7 +13,8 @@
 //!
 //! [`text`] prints the verdict on a terminal, [`run_report`] draws the pictures of a single run. Below them lie
 //! [`series`] (the numbers behind figures and what can be wrong with them), [`axis`] (ranges and ticks), [`colour`]
-//! (the map of fields), [`number`] (digits as they are printed) and [`view`] (verdicts in words, records in groups).
+//! (the map of fields), [`number`] (digits as they are printed), [`rates`] (orders of convergence among records) and
+//! [`view`] (verdicts in words, records in groups).
 
 pub mod axis;
 pub mod chart;
@@ -26,12 +27,14 @@ pub mod junit;
 pub mod markdown;
 pub mod metrics;
 pub mod number;
+pub mod rates;
 pub mod run_report;
 pub mod series;
 pub mod text;
 pub mod view;
 
 mod frame;
+mod guides;
 mod legend;
 mod regions;
 mod style;

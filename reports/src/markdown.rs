@@ -3,6 +3,7 @@
 use fisura_verification::record::{Record, ResultSet, Status};
 
 use crate::number::plain;
+use crate::rates::rates;
 use crate::view::{Counts, bounds, broken, environment, kind, reason, suites, symbol, value, with_unit, word};
 
 /// Largest size in bytes; a step summary over 1 MiB is dropped whole by GitHub.
@@ -33,6 +34,7 @@ fn render_limited(set: &ResultSet, limit: usize) -> String {
         if records.is_empty() {
             continue;
         }
+        let rates = rates(&records);
         records.sort_by_key(|r| rank(r.status));
         let title = format!("## {}: {}", cell(suite), Counts::of(records.iter().copied()).list());
         let head = "| | check | quantity | value | reference | accepted |\n|---|---|---|---|---|---|";
@@ -47,6 +49,16 @@ fn render_limited(set: &ResultSet, limit: usize) -> String {
                 bounds(&r.accept, plain),
             ]
         });
+        if !rates.is_empty() {
+            let title = format!("### Orders of convergence: {}", cell(suite));
+            let head = "| | problem | degree | norm | theory | observed | accepted | error on the finest mesh |\n\
+                        |---|---|---|---|---|---|---|---|";
+            budget.table(&title, head, &rates, |rate| {
+                let [degree, norm, theory, observed, band, error] = rate.cells(plain);
+                let problem = format!("`{}`", rate.record.case);
+                [verdict(rate.record.status), problem, degree, norm, theory, observed, band, error]
+            });
+        }
     }
     budget.finish()
 }
@@ -89,13 +101,7 @@ struct Budget {
 }
 
 impl Budget {
-    fn table<const N: usize>(
-        &mut self,
-        title: &str,
-        head: &str,
-        records: &[&Record],
-        row: impl Fn(&Record) -> [String; N],
-    ) {
+    fn table<T, const N: usize>(&mut self, title: &str, head: &str, records: &[T], row: impl Fn(&T) -> [String; N]) {
         let top = format!("{title}\n\n{head}\n");
         if self.out.len() + top.len() > self.limit {
             self.left_out += records.len();

@@ -153,7 +153,9 @@ pub fn looks(styles: &[CurveStyle]) -> Vec<Look> {
             }
             CurveStyle::Markers => {
                 results += 1;
-                solid(results - 1, Some(Marker::ALL[(results - 1) % 5]))
+                let n = results - 1;
+                let dashes = if n == 0 { &[] } else { DASHES[(n - 1) % 5] };
+                Look { dashes, ..solid(n, Some(Marker::ALL[n % 5])) }
             }
             CurveStyle::Reference => {
                 references += 1;

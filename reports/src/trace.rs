@@ -156,6 +156,12 @@ pub fn visible(p: Point, x: &AxisScale, y: &AxisScale) -> bool {
     inside(p.0, x) && inside(p.1, y)
 }
 
+/// Whether a line runs through a rectangle, both in axis coordinates.
+pub fn meets(line: &[Point], x: [f64; 2], y: [f64; 2]) -> bool {
+    let finite = |p: &Point| p.0.is_finite() && p.1.is_finite();
+    line.windows(2).any(|pair| pair.iter().all(finite) && clip(pair[0], pair[1], x, y).is_some())
+}
+
 /// Liang and Barsky: the part of a segment inside a rectangle.
 fn clip(a: Point, b: Point, x: [f64; 2], y: [f64; 2]) -> Option<(Point, Point)> {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);

@@ -67,6 +67,9 @@ fn the_page_keeps_its_structure() {
     assert!(!page.contains("<script") && !page.contains("src="), "the page needs nothing else");
     assert!(page.contains("prefers-color-scheme: dark"));
     assert!(page.contains("h → 0 &lt;extrapolated&gt;"), "text of records is escaped");
+    let rates = page.split("<table class=\"rates\">").nth(1).and_then(|t| t.split("</table>").next()).unwrap();
+    assert_eq!(rates.matches("<td><a href=\"#check-manufactured-bar-").count(), 4, "one row per order: {rates}");
+    assert_eq!(rates.matches("A manufactured bar").count(), 1, "the claim stands once per case");
     for target in page.split("href=\"#").skip(1).map(|t| t.split('"').next().unwrap_or_default()) {
         assert!(page.contains(&format!("id=\"{target}\"")), "#{target} leads nowhere");
     }
@@ -96,6 +99,17 @@ fn logarithmic_axes_have_clean_labels() {
         assert!(svg.contains(&format!("\n{label}\n")), "{label} is missing in {svg}");
     }
     assert!(!svg.contains("99999"), "{svg}");
+}
+
+#[test]
+fn slopes_of_theory_and_floors_stand_in_the_chart() {
+    let folder = folder();
+    render(folder.path()).unwrap();
+    let svg = read(folder.path(), "figures/timing/order.svg");
+    assert!(svg.contains("\nround-off\n") && svg.contains("\n3\n"), "both are labelled: {svg}");
+    assert!(svg.contains("Slopes of theory: 3."), "and told to those who cannot see it");
+    let hollow = |svg: &str| svg.lines().filter(|l| l.starts_with("<circle")).count();
+    assert_eq!(hollow(&svg), 2 * 5 + 1, "four markers and the sample have a rim, the one below the floor a hole");
 }
 
 #[test]

@@ -8,6 +8,7 @@ pub mod convergence;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use crate::measure::grid_convergence::Estimate;
 use crate::record::{Accept, ReferenceKind};
 use crate::scene_file::document::{Document, Node, Value};
 use crate::scene_file::fields::{Fields, Item, Problems};
@@ -77,6 +78,10 @@ pub struct Check {
     pub against: Option<String>,
     /// How far below and above its reference value a measurement may lie, if the bounds are relative to it.
     pub around_reference: Option<[f64; 2]>,
+    /// What to make of the values on all meshes; absent: a value for each.
+    pub meshes: Option<Estimate>,
+    /// Order of theory in h, for `meshes`.
+    pub order: Option<f64>,
     /// Bounds.
     pub accept: Accept,
 }
@@ -235,7 +240,7 @@ fn read_variant(item: &Item<'_>) -> Option<Variant> {
     Some(Variant { name: name?, set: set?, energy_factor: energy_factor? })
 }
 
-const CHECK_KEYS: [&str; 20] = [
+const CHECK_KEYS: [&str; 22] = [
     "quantity",
     "unit",
     "measure",
@@ -251,6 +256,8 @@ const CHECK_KEYS: [&str; 20] = [
     "band",
     "variant",
     "against",
+    "meshes",
+    "order",
     "min",
     "max",
     "below",
@@ -273,6 +280,8 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
     let scale = fields.or("scale", 1.0, |i| i.quantity(Dimension::NONE));
     let (band, variant, against) = (text("band"), text("variant"), text("against"));
     let around_reference = read_around(&fields);
+    let meshes = fields.maybe("meshes", |i| i.choice(&Estimate::WORDS));
+    let order = number("order");
     let accept = read_accept(&fields);
     Some(Check {
         quantity: quantity?,
@@ -290,6 +299,8 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
         variant: variant?,
         against: against?,
         around_reference: around_reference?,
+        meshes: meshes?,
+        order: order?,
         accept: accept?,
     })
 }

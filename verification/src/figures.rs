@@ -99,13 +99,22 @@ const PLATE: [Quantity; 7] = [
     },
 ];
 
-/// Charts and pictures of all runs, and the tables they need beyond those of the runs.
+/// Charts and pictures of all runs, and the tables they need beyond those of the runs. Variants of one case, such as the
+/// meshes of a study, have charts of their own.
 pub fn of_runs(runs: &[RunInfo], library: &Library) -> (Vec<Figure>, Vec<(String, Table)>) {
     let (mut figures, mut tables) = (Vec::new(), Vec::new());
-    let plates: Vec<&RunInfo> = runs.iter().filter(|r| r.suite == "plate").collect();
+    let of_plate = runs.iter().filter(|r| r.suite == "plate");
+    let (plates, variants): (Vec<&RunInfo>, Vec<&RunInfo>) = of_plate.partition(|r| r.variant.is_empty());
     if !plates.is_empty() {
         for quantity in &PLATE {
-            figures.push(chart(quantity, &plates, library, &mut tables));
+            figures.push(chart(quantity, "plate", &plates, library, &mut tables));
+        }
+    }
+    for runs in variants.chunk_by(|a, b| a.case == b.case) {
+        for quantity in &PLATE {
+            let case = &runs[0].case;
+            let figure = chart(quantity, &format!("plate-{case}"), runs, library, &mut tables);
+            figures.push(Figure { title: format!("{}: {}", figure.title, case.replace('-', " ")), ..figure });
         }
     }
     let mut suites: Vec<&str> = runs.iter().map(|r| r.suite.as_str()).collect();
@@ -142,7 +151,14 @@ fn curve(label: &str, series: &str, y: &str, y_scale: f64) -> Curve {
     }
 }
 
-fn chart(quantity: &Quantity, runs: &[&RunInfo], library: &Library, tables: &mut Vec<(String, Table)>) -> Figure {
+/// One quantity of some runs beside its references; ids begin with `stem`.
+fn chart(
+    quantity: &Quantity,
+    stem: &str,
+    runs: &[&RunInfo],
+    library: &Library,
+    tables: &mut Vec<(String, Table)>,
+) -> Figure {
     let mut curves = Vec::new();
     for reference in library.curves(quantity.reference) {
         let (mut curve, mut table) = reference.series(1e6, quantity.scale);
@@ -163,7 +179,7 @@ fn chart(quantity: &Quantity, runs: &[&RunInfo], library: &Library, tables: &mut
     let regions =
         bands.map(|b| Region { label: b.name.replace('-', " "), x: Some([b.min * 1e6, b.max * 1e6]), y: None });
     Figure {
-        id: format!("plate-{}", quantity.id),
+        id: format!("{stem}-{}", quantity.id),
         suite: "plate".into(),
         title: quantity.title.into(),
         caption: captions(runs),

@@ -2,6 +2,7 @@
 //!
 //! Energies are those of the whole body: a half model's are doubled first (`energy_factor` of the case).
 
+pub mod grid_convergence;
 mod series;
 mod tip;
 
@@ -37,11 +38,13 @@ pub struct Measured {
     pub value: Option<f64>,
     /// What it is held against, if the measure knows.
     pub reference: Option<Reference>,
+    /// Why there is no value, if the measure knows.
+    pub message: Option<String>,
 }
 
 impl Measured {
     fn of(value: Option<f64>) -> Self {
-        Self { value, reference: None }
+        Self { value, ..Self::default() }
     }
 }
 
@@ -152,13 +155,15 @@ pub fn measure(check: &Check, run: &Run, runs: &[Run], library: &Library) -> Res
         "tip-exit" => Measured::of(tip::exit_offset(check, run)?),
         _ => return Err(format!("unknown measure {name:?}; known: {}", MEASURES.join(", "))),
     };
-    let expected = check.expect.map(|value| Reference {
-        value: Some(value * check.scale),
-        kind: check.expect_kind,
-        source: check.expect_source.clone(),
-    });
     let finite = measured.value.filter(|v| v.is_finite());
-    Ok(Measured { value: finite.map(|v| v * check.scale), reference: expected.or(measured.reference) })
+    let reference = expected(check, check.scale).or(measured.reference);
+    Ok(Measured { value: finite.map(|v| v * check.scale), reference, message: measured.message })
+}
+
+/// The expected value of a check as a reference, times `factor`.
+fn expected(check: &Check, factor: f64) -> Option<Reference> {
+    let source = check.expect_source.clone();
+    check.expect.map(|value| Reference { value: Some(value * factor), kind: check.expect_kind, source })
 }
 
 fn column(check: &Check) -> Result<&str, String> {

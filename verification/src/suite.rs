@@ -173,9 +173,12 @@ pub fn worst(records: &[Record]) -> Option<Status> {
     records.iter().map(|r| r.status).max_by_key(|s| rank(*s))
 }
 
-/// Writes `series/<stem>.csv`, whole or not at all.
+/// Writes `series/<stem>.csv`, whole or not at all; a stem such as `timing/bar` has a folder of its own.
 fn write_series(out: &Path, stem: &str, table: &crate::history::Table) -> Result<(), VerifyError> {
     let path = out.join("series").join(format!("{stem}.csv"));
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|e| VerifyError::output(folder, e))?;
+    }
     let temporary = path.with_extension("csv.part");
     table.write(&temporary).map_err(|e| VerifyError::output(&path, e))?;
     std::fs::rename(&temporary, &path).map_err(|e| VerifyError::output(&path, e))
@@ -188,4 +191,26 @@ fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), VerifyEr
     let temporary = path.with_extension("json.part");
     std::fs::write(&temporary, text).map_err(|e| VerifyError::output(path, e))?;
     std::fs::rename(&temporary, path).map_err(|e| VerifyError::output(path, e))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::history::Table;
+
+    #[test]
+    fn measured_times_have_a_folder_that_goes_with_old_results() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path();
+        let mut table = Table::new(&["seconds"]);
+        table.push(&[0.25]);
+        write_series(out, "timing/bar", &table).unwrap();
+        let written = out.join("series/timing/bar.csv");
+        assert_eq!(Table::read(&written).unwrap(), table);
+        remove_old_results(out);
+        assert!(written.exists(), "a folder without results.json is none of ours");
+        std::fs::write(out.join("results.json"), "{}").unwrap();
+        remove_old_results(out);
+        assert!(!out.join("series").exists());
+    }
 }

@@ -121,6 +121,51 @@ fn lists_where_a_scene_has_one_value_are_axes() {
     assert_eq!(results.records[5].parameters["cells"], serde_json::json!([16, 8]));
 }
 
+const ORDER: &str = "[[check]]\nquantity = \"order of the initial energy\"\nmeasure = \"initial\"\ncolumn = \"kinetic_j\"\nmeshes = \"observed-order\"";
+
+/// The scene on three meshes, and a check that combines them.
+fn three_meshes() -> String {
+    SCENE.replace("cells = [8, 4]", "cells = [[4, 2], [8, 4], [16, 8]]")
+}
+
+#[test]
+fn a_check_over_meshes_is_one_record_of_the_finest() {
+    let root = tempfile::tempdir().unwrap();
+    let constant = ORDER.replace("initial energy", "initial elastic energy").replace("kinetic_j", "elastic_j");
+    write_case(root.path(), "meshes", &three_meshes(), &format!("{ORDER}\n{constant}"));
+    let results = run(root.path(), Environment::default()).unwrap();
+    let [order, none] = results.records.as_slice() else { panic!("two records: {:?}", results.records) };
+    assert_eq!(order.id, "trial/meshes/order-of-the-initial-energy");
+    assert_eq!(order.parameters["cells"], serde_json::json!([16, 8]));
+    // the control points of the roller side do not move: a strip of mass as wide as a span is missing
+    assert!((order.value.unwrap() - 1.0).abs() < 1e-9, "{order:?}");
+    assert_eq!((none.value, none.status), (None, Status::Info));
+    assert!(none.message.as_ref().unwrap().contains("from coarse to fine"), "{none:?}");
+}
+
+#[test]
+fn meshes_that_cannot_be_combined_are_refused_before_they_are_run() {
+    let with = |from: &str, to: &str| (three_meshes(), ORDER.replace(from, to));
+    let scene = |from: &str, to: &str| (three_meshes().replace(from, to), ORDER.to_string());
+    for ((scene, check), expected, remedy) in [
+        (with("observed-order", "richardsons"), "unknown value \"richardsons\"", "did you mean \"richardson\"?"),
+        (scene("[4, 2], ", ""), "too few meshes", "three or more values"),
+        (scene("[4, 2], [8, 4]", "[16, 4], [8, 4]"), "by one factor in both directions", "cells = [["),
+        (scene("degree = 2", "degree = [2, 3]"), "differ in more than the mesh", "one case per degree"),
+        (with("\nmeshes", "\nagainst = \"cells=4x2\"\nmeshes"), "combines all variants", "remove variant, against"),
+        (with("meshes = \"observed-order\"", "order = 2"), "order of theory without meshes", "add meshes"),
+        (with("observed-order\"", "richardson\"\norder = -1"), "not positive", "order = 2"),
+    ] {
+        let root = tempfile::tempdir().unwrap();
+        write_case(root.path(), "wrong", &scene, &check);
+        let error = run(root.path(), Environment::default()).unwrap_err().to_string();
+        for part in ["wrong.toml:", expected, remedy] {
+            assert!(error.contains(part), "{part} is missing in {error}");
+        }
+        assert!(!root.path().join("out/series/trial-wrong-cells-8x4.csv").exists(), "nothing is run");
+    }
+}
+
 /// Results without measured time.
 fn timeless(mut results: ResultSet) -> ResultSet {
     for record in &mut results.records {
@@ -169,7 +214,7 @@ fn every_committed_case_is_sound_and_ids_are_unique() {
     let quick = Selection { suites: vec!["plate".into()], case_glob: None, tier: Tier::Quick };
     let full = Selection { tier: Tier::Full, ..quick.clone() };
     assert_eq!(select(cases.clone(), &quick).len(), 1);
-    assert_eq!(select(cases, &full).len(), 8);
+    assert_eq!(select(cases, &full).len(), 10);
 }
 
 #[test]

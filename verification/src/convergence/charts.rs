@@ -171,11 +171,14 @@ impl Place {
 
     /// Distance, in decades, from the other lines: positive where none of them meets the triangle.
     fn clearance(&self, own: usize, lines: &[Vec<Point>]) -> f64 {
-        let (low, high) = (self.y[0].min(self.y[1]), self.y[0].max(self.y[1]));
+        let low = self.y[0].min(self.y[1]);
+        let hypotenuse = |s: f64| self.y[0] + s * (self.y[1] - self.y[0]);
         let others = lines.iter().enumerate().filter(|(index, _)| *index != own).map(|(_, line)| line);
-        let distance = |y: f64| (low - y).max(y - high);
-        let probes = [self.x[0], 0.5 * (self.x[0] + self.x[1]), self.x[1]];
-        let distances = others.flat_map(|line| probes.map(|x| at(line, x))).flatten().map(distance);
+        let distance = |line: &Vec<Point>, s: f64| {
+            let y = at(line, self.x[0] + s * (self.x[1] - self.x[0]))?;
+            Some((low - y).max(y - hypotenuse(s)))
+        };
+        let distances = others.flat_map(|line| [0.0, 0.5, 1.0].map(|s| distance(line, s))).flatten();
         distances.fold(f64::INFINITY, f64::min)
     }
 

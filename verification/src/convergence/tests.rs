@@ -134,3 +134,22 @@ fn a_triangle_stands_below_its_curve_and_above_the_next() {
         assert!(index == 2 || triangle.x.iter().all(|x| triangle.y0 > curve(p + 1.0, *x)), "{triangle:?}");
     }
 }
+
+#[test]
+fn curves_of_one_order_share_a_triangle_clear_of_all() {
+    let mut study = study();
+    study.norms.truncate(1);
+    study.curves = [1.0, 0.9, 0.2]
+        .map(|factor| {
+            let level = |(h, error)| Level { h, unknowns: 1, seconds: 0.0, errors: vec![factor * error] };
+            let levels = levels(4, 2.0, 0.0).into_iter().map(level).collect();
+            Curve { name: format!("lumped, {factor}"), levels, orders: vec![Some(2.0)] }
+        })
+        .to_vec();
+    let figures = study.figures();
+    assert_eq!(figures.len(), 2, "no times, no figure of cost");
+    let FigureBody::Chart { slopes, .. } = &figures[0].body else { panic!("a chart") };
+    let [triangle] = slopes.as_slice() else { panic!("one triangle: {slopes:?}") };
+    let over = |factor: f64| triangle.y0 / (factor * 2.0 * triangle.x[0] * triangle.x[0]);
+    assert!(over(0.9) < 1.0 && !(0.8..=1.0).contains(&over(0.2)), "it stands clear of every curve: {triangle:?}");
+}

@@ -20,7 +20,7 @@ pub(super) fn against_curve(name: &str, check: &Check, run: &Run, library: &Libr
     let [from, to] = check.window;
     let compare = if name == "relative-rms" { reference::relative_rms } else { reference::rms_difference };
     let value = compare(curve, run.times()?, &values, from, to);
-    Ok(Measured { value, reference: curve_reference(curve.kind, &curve.label) })
+    Ok(Measured { value, reference: curve_reference(curve.kind, &curve.label), message: None })
 }
 
 /// Linear interpolation at the time `at`.
@@ -57,7 +57,7 @@ pub(super) fn slope_over_plane_wave_power(check: &Check, run: &Run) -> Result<Me
         kind: ReferenceKind::Exact,
         source: "two plane waves: W sigma²/(rho c_d)".to_string(),
     };
-    Ok(Measured { value: Some(slope(check, run)? / power), reference: Some(reference) })
+    Ok(Measured { value: Some(slope(check, run)? / power), reference: Some(reference), message: None })
 }
 
 /// Largest |closure| over the largest energy of the run.

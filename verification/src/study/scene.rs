@@ -2,12 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
+use fisura::error::Breakdown;
 use fisura::picture::Picture;
 use fisura::scene::{Mesh, Scene};
 
 use crate::case::{Case, Check};
 use crate::expand::CaseScene;
 use crate::history::Table;
+use crate::measure::grid_convergence::{over_meshes, span};
 use crate::measure::{Measured, Run, fitted_speed, measure};
 use crate::record::Timing;
 use crate::reference::Library;
@@ -100,7 +102,7 @@ pub fn run_scenes(scenes: Vec<CaseScene>, advanced: &dyn Fn(f64)) -> Vec<Finishe
         .collect()
 }
 
-/// Runs a check applies to.
+/// Runs a check applies to; the finest for one that combines all meshes.
 pub fn applies<'a>(check: &Check, finished: &'a [FinishedScene]) -> Vec<&'a FinishedScene> {
     let about = |f: &&FinishedScene| match (&check.variant, &check.against) {
         (Some(variant), _) => f.case_scene.name == *variant,
@@ -108,6 +110,10 @@ pub fn applies<'a>(check: &Check, finished: &'a [FinishedScene]) -> Vec<&'a Fini
         (None, None) => true,
     };
     let all: Vec<_> = finished.iter().filter(about).collect();
+    if check.meshes.is_some() {
+        let finest = all.into_iter().min_by(|a, b| span(&a.as_run()).total_cmp(&span(&b.as_run())));
+        return finest.into_iter().collect();
+    }
     if check.measure.as_deref() == Some("order-in-step") { all.into_iter().take(1).collect() } else { all }
 }
 
@@ -122,7 +128,16 @@ pub fn evaluate(
     library: &Library,
 ) -> Result<Measured, String> {
     let runs: Vec<Run> = finished.iter().map(FinishedScene::as_run).collect();
-    measure(check, &of.as_run(), &runs, library)
+    match check.meshes {
+        Some(estimate) => over_meshes(estimate, check, &runs, library),
+        None => measure(check, &of.as_run(), &runs, library),
+    }
+}
+
+/// What broke a run that a check on `of` needs.
+pub fn breakdown<'a>(check: &Check, of: &'a FinishedScene, finished: &'a [FinishedScene]) -> Option<&'a Breakdown> {
+    let any = || finished.iter().find_map(|f| f.run.breakdown.as_ref());
+    if check.meshes.is_some() { any() } else { of.run.breakdown.as_ref() }
 }
 
 /// File name without ending of the series of a run.

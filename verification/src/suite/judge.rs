@@ -8,9 +8,10 @@ use super::{CaseOutcome, Progress, VerifyError, write_series};
 use crate::case::{Case, Check};
 use crate::expand::CaseScene;
 use crate::measure::Measured;
+use crate::measure::grid_convergence::validate;
 use crate::record::{Accept, Record, Status, Timing};
 use crate::reference::{Library, ReferenceBand};
-use crate::study::scene::{FinishedScene, applies, describe, evaluate, run_scenes};
+use crate::study::scene::{FinishedScene, applies, breakdown, describe, evaluate, run_scenes};
 use crate::study::{Findings, STUDIES, StudyError, find};
 
 pub(super) fn run_case(
@@ -20,6 +21,7 @@ pub(super) fn run_case(
     progress: &dyn Progress,
 ) -> Result<CaseOutcome, VerifyError> {
     let scenes = case.scenes()?;
+    validate(case, &scenes)?;
     if case.study == "scene" {
         let finished = run_scenes(scenes, &|fraction| progress.advanced(fraction));
         return judge_runs(case, &finished, out, library);
@@ -56,11 +58,12 @@ fn judge_runs(
             return Err(unknown_variant(case, index));
         }
         for run in concerned {
-            let mut record = bare_record(case, check, &run.case_scene.name);
+            let variant = if check.meshes.is_some() { "" } else { &run.case_scene.name };
+            let mut record = bare_record(case, check, variant);
             record.timing = run.timing;
             record.parameters = parameters(&run.case_scene);
             record.series = outcome.runs.iter().find(|i| i.variant == run.case_scene.name).map(|i| i.series.clone());
-            if let Some(breakdown) = &run.run.breakdown {
+            if let Some(breakdown) = breakdown(check, run, finished) {
                 record.status = Status::Error;
                 record.message = Some(breakdown.to_string());
             } else {
@@ -122,7 +125,8 @@ fn judge_findings(
                 record.accept.max = Some(value + above);
             }
             record.series = findings.series.first().map(|(stem, _)| format!("series/{stem}.csv"));
-            judge(&mut record, Measured { value: measurement.value, reference: measurement.reference.clone() });
+            let (value, reference) = (measurement.value, measurement.reference.clone());
+            judge(&mut record, Measured { value, reference, message: None });
             outcome.records.push(record);
         }
         if outcome.records.len() == before {
@@ -161,7 +165,8 @@ fn judge(record: &mut Record, measured: Measured) {
     record.reference = measured.reference;
     record.status = Record::judge(record.value, &record.accept);
     if record.value.is_none() {
-        record.message = Some("what is measured did not happen within the run".to_string());
+        let otherwise = || "what is measured did not happen within the run".to_string();
+        record.message = Some(measured.message.unwrap_or_else(otherwise));
     }
 }
 

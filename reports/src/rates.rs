@@ -1,0 +1,134 @@
+//! Orders of convergence as a table: theory, what was observed, the band, and the error on the finest mesh.
+//!
+//! A record is a rate when its quantity begins with `order of`; what follows names the error. Its theory is the value of
+//! its reference. The error itself is the record of the same run whose quantity is that name with `on the finest mesh` or
+//! `with the smallest step`.
+
+use fisura_verification::record::Record;
+
+use crate::number::plain;
+use crate::view::{bounds, with_unit};
+
+/// Digits of an order.
+const ORDER_DIGITS: usize = 4;
+/// Digits of an error.
+const ERROR_DIGITS: usize = 3;
+
+/// Digits of a number, for a table or for reading: `plain` or `pretty`.
+pub type Show = fn(f64, usize) -> String;
+
+/// One row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rate<'a> {
+    /// The order.
+    pub record: &'a Record,
+    /// What falls at this order: `displacement error in L2`.
+    pub norm: &'a str,
+    /// Variant of the run: `p=2`; empty for the only one.
+    pub variant: &'a str,
+    /// The error on the finest mesh, if it is a record.
+    pub finest: Option<&'a Record>,
+}
+
+/// The rates among records, in their order.
+pub fn rates<'a>(records: &[&'a Record]) -> Vec<Rate<'a>> {
+    let rate = |record: &&'a Record| {
+        let norm = norm(record)?;
+        let names = ["on the finest mesh", "with the smallest step"].map(|end| format!("{norm} {end}"));
+        let same = |other: &&&'a Record| {
+            (&other.suite, &other.case) == (&record.suite, &record.case)
+                && variant(other) == variant(record)
+                && names.contains(&other.quantity)
+        };
+        Some(Rate { record, norm, variant: variant(record), finest: records.iter().find(same).copied() })
+    };
+    records.iter().filter_map(rate).collect()
+}
+
+/// Name of the error whose order a record is.
+fn norm(record: &Record) -> Option<&str> {
+    let name = record.quantity.strip_prefix("order of ")?;
+    Some(name.strip_prefix("the ").unwrap_or(name))
+}
+
+/// The part of an id between its case and its quantity.
+fn variant(record: &Record) -> &str {
+    let run = crate::view::run_id(record);
+    let rest = run.strip_prefix(record.suite.as_str()).and_then(|r| r.strip_prefix('/'));
+    let rest = rest.and_then(|r| r.strip_prefix(record.case.as_str())).unwrap_or_default();
+    rest.trim_start_matches('/')
+}
+
+impl Rate<'_> {
+    /// Degree, and what else sets the run apart: `p = 2, lumped`; the degree of its parameters where the variant has none.
+    fn degree(&self) -> String {
+        if !self.variant.is_empty() {
+            return self.variant.replace('=', " = ").replace(',', ", ");
+        }
+        match self.record.parameters.get("degree") {
+            Some(serde_json::Value::Array(both)) if both.first() == both.last() && !both.is_empty() => {
+                format!("p = {}", both[0])
+            }
+            Some(degree) => format!("p = {degree}"),
+            None => String::new(),
+        }
+    }
+
+    /// Order of theory.
+    fn theory(&self, show: Show) -> String {
+        let value = self.record.reference.as_ref().and_then(|r| r.value);
+        value.map_or_else(|| "none".to_string(), |v| show(v, ORDER_DIGITS))
+    }
+
+    /// Observed order, with the digits that its bounds need.
+    fn observed(&self, show: Show) -> String {
+        let Some(value) = self.record.value else { return "none".to_string() };
+        let limits = [self.record.accept.min, self.record.accept.max];
+        let hidden =
+            |digits: usize| limits.iter().flatten().any(|b| *b != value && plain(*b, digits) == plain(value, digits));
+        let digits = (ORDER_DIGITS..17).find(|digits| !hidden(*digits)).unwrap_or(17);
+        show(value, digits)
+    }
+
+    /// Accepted orders.
+    fn band(&self, show: Show) -> String {
+        bounds(&self.record.accept, show)
+    }
+
+    /// All columns but the problem: degree, norm, theory, observed, accepted, error on the finest mesh.
+    pub fn cells(&self, show: Show) -> [String; 6] {
+        [
+            self.degree(),
+            self.norm.to_string(),
+            self.theory(show),
+            self.observed(show),
+            self.band(show),
+            self.error(show),
+        ]
+    }
+
+    /// Error on the finest mesh.
+    fn error(&self, show: Show) -> String {
+        let value = |record: &Record| record.value.map(|v| with_unit(&show(v, ERROR_DIGITS), &record.unit));
+        self.finest.and_then(value).unwrap_or_else(|| "none".to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::example::results;
+
+    #[test]
+    fn rates_are_found_by_their_words_and_matched_with_their_errors() {
+        let set = results();
+        let records: Vec<&Record> = set.records.iter().filter(|r| r.suite == "manufactured").collect();
+        let rates = rates(&records);
+        assert_eq!(rates.len(), 4);
+        let cells: Vec<_> = rates.iter().map(|r| r.cells(plain)).collect();
+        let l2 = ["p = 1", "displacement error in L2", "2", "1.998", "≥ 1.9", "0.000489"].map(String::from);
+        assert_eq!(cells[0], l2);
+        assert_eq!(cells[3][5], "none", "no record of its error");
+        assert_eq!(rates[3].observed(plain), "none");
+    }
+}
