@@ -135,6 +135,7 @@ pub mod energy;
 pub mod error;
 pub mod forcing;
 pub mod fracture;
+pub mod hencky;
 pub mod incomplete_cholesky;
 pub mod kernels;
 pub mod lane;

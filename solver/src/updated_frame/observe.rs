@@ -1,9 +1,11 @@
 //! What is read from a body in the updated frame: energies, crack tip, pictures.
 
+use super::UpdatedFrame;
+use super::losses::TransferLosses;
 use super::points::{FracturePoint, Point};
-use super::{TransferLosses, UpdatedFrame};
 use crate::energy::{FractureSample, Sample};
 use crate::fracture::BROKEN;
+use crate::hencky::Gradient;
 use crate::material::ElasticModuli;
 use crate::patch::Patch;
 use crate::picture::Raster;
@@ -103,6 +105,21 @@ impl UpdatedFrame {
         TransferLosses { kinetic: kinetic * t, power: power * t, imposed: imposed * t }
     }
 
+    /// Kinetic energy of the points as the scheme keeps it, `1/2 Σ m v_p(n − 1/2) · v_p(n + 1/2)` with FLIP or MUSL, J; at
+    /// t = 0 that of the initial velocities. `dt` is the step in use.
+    pub fn point_kinetic_energy(&self, dt: f64) -> f64 {
+        let square = |p: &Point| p.volume * (p.velocity[0] * p.velocity[0] + p.velocity[1] * p.velocity[1]);
+        let points = 0.5 * self.density * self.points.iter().map(square).sum::<f64>();
+        let nodes = &self.nodes;
+        // Σ m v_p · (S a)_p = w · M a with the velocity w that arrived.
+        let kick = |c: usize| -> f64 {
+            let product = |((m, w), a): ((&f64, &f64), &f64)| m * w * a;
+            nodes.mass.iter().zip(&nodes.arrived[c]).zip(&nodes.acceleration[c]).map(product).sum()
+        };
+        let half = if self.at_start { 0.0 } else { 0.5 * dt };
+        (points + half * (kick(0) + kick(1))) * self.thickness
+    }
+
     /// Elastic energy, J.
     pub fn elastic_energy(&self) -> f64 {
         self.elastic_energy * self.thickness
@@ -147,6 +164,10 @@ impl UpdatedFrame {
     pub fn bytes(&self) -> [usize; 2] {
         let points = self.points.len() * size_of::<Point>() + self.cells.bytes();
         let loads: usize = self.loads.iter().map(|load| load.bytes()).sum();
-        [points + self.nodes.bytes() + loads, self.fracture.as_ref().map_or(0, |f| f.bytes())]
+        let affine = self.affine.as_ref().map_or(0, |affine| affine.bytes());
+        let deformation = self.deformation.as_ref().map_or(0, |gradients| gradients.len() * size_of::<Gradient>());
+        let forcing = self.forcing.as_ref().map_or(0, |forcing| forcing.bytes());
+        let points = points + affine + deformation + forcing;
+        [points + self.nodes.bytes() + self.departure.bytes() + loads, self.fracture.as_ref().map_or(0, |f| f.bytes())]
     }
 }
