@@ -43,7 +43,7 @@ use crate::lane::dispatch;
 use crate::lattice::Lattice;
 use crate::material::{ElasticModuli, FractureModel};
 use crate::patch::Patch;
-use crate::scene::{Kinematics, Scene, Transfer};
+use crate::scene::{Kinematics, Plane, Scene, Transfer};
 use crate::total_frame::lowest_tip;
 use affine::{AffineVelocities, Fit};
 use cracking::Cracking;
@@ -73,6 +73,8 @@ pub enum Failure {
 pub struct UpdatedFrame {
     patch: Patch,
     moduli: ElasticModuli,
+    /// Logarithmic change of volume over that of area: less than 1 in plane stress, where the thickness follows.
+    thickening: f64,
     density: f64,
     thickness: f64,
     gravity: [f64; 2],
@@ -131,6 +133,10 @@ impl UpdatedFrame {
             loads: body.tractions.iter().map(|t| SurfaceLoad::new(&patch, body, t)).collect(),
             forcing: None,
             moduli: ElasticModuli::new(material, scene.analysis.plane),
+            thickening: match scene.analysis.plane {
+                Plane::Strain => 1.0,
+                Plane::Stress => (1.0 - 2.0 * material.poisson_ratio) / (1.0 - material.poisson_ratio),
+            },
             density: material.density,
             thickness: scene.analysis.thickness,
             gravity: scene.analysis.gravity,

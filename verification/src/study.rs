@@ -8,6 +8,7 @@ mod compressive_step;
 mod constant_stress;
 mod homogeneous_state;
 mod nurbs;
+mod rotation;
 pub mod scene;
 
 use thiserror::Error;
@@ -70,12 +71,13 @@ pub enum StudyError {
 type Study = fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>;
 
 /// Studies other than `scene`, by name.
-pub const STUDIES: [(&str, Study); 5] = [
+pub const STUDIES: [(&str, Study); 6] = [
     ("basis", basis::study),
     ("constant-stress", constant_stress::study),
     ("homogeneous-state", homogeneous_state::study),
     ("compressive-step", compressive_step::study),
     ("nurbs", nurbs::study),
+    ("rotation", rotation::study),
 ];
 
 /// The study of that name.

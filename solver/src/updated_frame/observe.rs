@@ -82,7 +82,7 @@ impl UpdatedFrame {
         for point in &self.points {
             let half = 0.5 * FILL * point.volume.sqrt();
             let [xx, yy, xy] = point.stress;
-            let principal = 0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy);
+            let principal = (0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)) / self.volume_ratio(point);
             raster.for_each_overlap(point.position.map(|x| [x - half, x + half]), |pixel, area| {
                 covered[pixel] += area;
                 stress[pixel] += area * principal;
@@ -96,6 +96,12 @@ impl UpdatedFrame {
         });
         let mean = |pixel| if material(pixel) { stress[pixel] / covered[pixel] } else { f64::NAN };
         (phase, (0..covered.len()).map(mean).collect())
+    }
+
+    /// Present volume over that at t = 0, which leads from the stress of a point to Cauchy's; 1 for small strains.
+    fn volume_ratio(&self, point: &Point) -> f64 {
+        let dilatation = point.strain[0] + point.strain[1];
+        if self.deformation.is_some() { (self.thickening * dilatation).exp() } else { 1.0 }
     }
 
     /// Parts of the transfer loss so far, J.

@@ -22,11 +22,11 @@ pub struct Point {
     pub velocity: [f64; 2],
     /// Displacement so far, m, added up on its own: positions minus first positions would lose digits.
     pub displacement: [f64; 2],
-    /// Linear strain `[xx, yy, xy]`.
+    /// Strain `[xx, yy, xy]`: linear, or Hencky's with finite kinematics.
     pub strain: [f64; 3],
-    /// Stress of the degraded material `[xx, yy, xy]`, Pa.
+    /// Stress of the degraded material `[xx, yy, xy]`, Pa; Kirchhoff's with finite kinematics.
     pub stress: [f64; 3],
-    /// Volume per unit thickness, m²; constant for small strains.
+    /// Volume at t = 0 per unit thickness, m².
     pub volume: f64,
 }
 
