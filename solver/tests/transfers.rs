@@ -341,3 +341,22 @@ fn the_critical_step_is_stable_with_every_transfer() {
         }
     }
 }
+
+#[test]
+fn one_thread_and_two_give_the_same_bits_with_every_transfer() {
+    for transfer in ALL {
+        let mut scene = eventful(transfer, 2);
+        scene.analysis.kinematics = Kinematics::Finite;
+        scene.analysis.end_time = 1.0;
+        let on = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut frame = UpdatedFrame::new(&scene).unwrap();
+                frame.apply_forcing(Arc::new(StandingWave(1e-3)));
+                (0..100).for_each(|_| frame.step(0.01).unwrap());
+                (frame.points().to_vec(), frame.sample(0.01))
+            })
+        };
+        assert_eq!(on(1), on(2), "{transfer:?}");
+    }
+}
