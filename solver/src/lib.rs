@@ -43,6 +43,8 @@
 //! | E 14–18 | the step | [`total_frame`], [`updated_frame`] |
 //! | E 15–18 | transfers between points and control points | [`sweep`], [`updated_frame`] |
 //! | – | material points: layouts, tiles of spans | [`quadrature`], [`lattice`], [`shape`] |
+//! | – | what the points take from the grid, and its losses | [`updated_frame::departure`], [`updated_frame::losses`] |
+//! | – | finite strain | [`hencky`] |
 //! | – | tractions, gravity, conditions on sides | [`loads`], [`constraints`] |
 //! | – | linear algebra of the phase field | [`stencil`], [`conjugate_gradients`], [`incomplete_cholesky`], [`cholesky`] |
 //! | – | critical step, plan of steps and samples | [`critical_step`], [`time_plan`] |
@@ -63,9 +65,8 @@
 //!
 //! # Not modelled yet
 //!
-//! More than one body, contact and rigid bodies; finite strain; the consistent mass matrix; transfers of the updated
-//! frame other than FLIP; patches that are not affine, and weights (NURBS). [`validate::validate`] refuses a scene that
-//! asks for one of these.
+//! More than one body, contact and rigid bodies; finite strain in the total frame; the consistent mass matrix; patches
+//! that are not affine, and weights (NURBS). [`validate::validate`] refuses a scene that asks for one of these.
 //!
 //! # Example
 //!
@@ -135,6 +136,7 @@ pub mod energy;
 pub mod error;
 pub mod forcing;
 pub mod fracture;
+pub mod hencky;
 pub mod incomplete_cholesky;
 pub mod kernels;
 pub mod lane;

@@ -1,50 +1,35 @@
-//! Explicit dynamics in the updated frame: points carry everything, the grid is rebuilt at every step (FLIP, lumped mass).
+//! Explicit dynamics in the updated frame: points carry everything, the grid is rebuilt at every step (lumped mass).
 //!
 //! Between two whole steps n and n + 1 the shape functions are those at the positions x(n). The scheme is velocity Verlet
-//! written as one full kick on the rebuilt grid; no acceleration outlives its grid. Strains are small: the strain of a
-//! point is the sum of `dt sym(grad v(n + 1/2))`.
-//!
-//! # The energy ledger
-//!
-//! Let `v` be the velocity that leaves grid n (after the kick), `w` the one that arrives on grid n + 1 (P2G), `w*` that
-//! velocity with the prescribed components imposed, and f = f_ext − f_int. Then, for a linear elastic body, term by term,
-//!
-//! ```text
-//! Δ(kinetic − stagger) = 1/2 w*ᵀ M(n+1) w* − 1/2 vᵀ M(n) v + dt/2 [ (f + r)(n) · v + (f + r)(n+1) · w* ]
-//! Δ elastic            = dt/2 Σ V [ sigma(n) + sigma(n+1) ] : d,          d = sym grad v at the points, on grid n
-//! ```
-//!
-//! with the reactions r. The forces of n + 1 work on the points' motion `v` but on the grid's `w*`; the lumped projection
-//! has filtered the difference away. So the transfer loss has three parts, each measured where it happens:
-//!
-//! - `kinetic`: `1/2 vᵀ M(n) v − 1/2 wᵀ M(n+1) w`, the fall between leaving and arriving;
-//! - `power`: `dt/2 [ P(n+1) − f(n+1) · w* ]`, where `P(n+1) = t(n+1) · v_s + Σ m g · v_p − Σ V sigma(n+1) : d` is the power
-//!   of the new forces on the motion the points just made, and likewise `dt/2 f(n) · v` of control points whose mass is
-//!   negligible, which feel forces and do not follow them;
-//! - `imposed`: `1/2 Σ m (v_prescribed − w)²` where a prescribed velocity is imposed on what arrived. The rest of that
-//!   jump, `Σ m (v_prescribed − w) v_prescribed`, is work of the driven side.
-//!
-//! External work is force times motion of the points it acts on: `dt/2 [t(n) + t(n+1)] · v_s` of surface points,
-//! `dt g · Σ m v` of gravity, and the mean reaction of driven sides. What closure remains is round-off in an elastic body.
-//! With a phase field there remain the stress-work quadrature, as in the total frame, and what the energy of the phase
-//! field changes by as its points pass through the spans: it swings with the period of a span and does not add up. It is
-//! not booked, since the only measure of it, the residual of the phase-field equation, would hide errors of that equation.
+//! written as one full kick on the rebuilt grid; no acceleration outlives its grid. What the points take from the grid is
+//! the transfer's choice: see [`departure`]. Strains are small, the sum of `dt sym(grad v(n + 1/2))`, or finite: Hencky
+//! strains of the deformation gradient of each point with Kirchhoff stresses, so that the internal force is
+//! `Σ V tau grad N` with the reference volume V ([`crate::hencky`]). Every loss of a transfer is measured: see [`losses`].
 //!
 //! # The critical step
 //!
 //! It is shorter than the `2/ω_max` of a grid that keeps its velocity. For points at rest a mode of the grid obeys
-//! `u ← u + dt (v − dt ω² u)`, `v ← v − dt s ω² u`, where 0 ≤ s ≤ 1 is what the way to the points and back
+//! `u ← u + dt (v − dt ω² u)`, `v ← v − dt s ω² u` with FLIP, where 0 ≤ s ≤ 1 is what the way to the points and back
 //! (`M⁻¹` times the consistent mass) leaves of an increment. The mode is stable up to `ω dt = 2/√(2 − s)`: 1.46 for the
-//! shortest waves of quadratic splines, and √2 for what the points do not see. [`UpdatedFrame::critical_step`] is √2/ω_max.
+//! shortest waves of quadratic splines, and √2 for what the points do not see. [`UpdatedFrame::critical_step`] is √2/ω_max
+//! for every transfer but MUSL, whose limit is 2/ω_max ([`departure`]). With finite strains ω_max is that of the stiffness
+//! without the geometric part.
 
+pub mod affine;
 pub mod assembly;
 pub mod cracking;
+pub mod departure;
 pub mod grid;
+pub mod losses;
 pub mod observe;
 pub mod points;
+pub mod smoothing;
 pub mod stiffness;
+pub mod strain;
 pub mod tractions;
 pub mod transfer;
+pub mod verify;
+pub mod volume_forcing;
 pub mod windows;
 
 use rayon::prelude::*;
@@ -53,18 +38,25 @@ use crate::constraints::Constraints;
 use crate::critical_step::highest_frequency;
 use crate::energy::Ledger;
 use crate::fracture::NotConverged;
+use crate::hencky::Gradient;
 use crate::lane::dispatch;
 use crate::lattice::Lattice;
 use crate::material::{ElasticModuli, FractureModel};
 use crate::patch::Patch;
-use crate::scene::Scene;
+use crate::scene::{Kinematics, Plane, Scene, Transfer};
 use crate::total_frame::lowest_tip;
+use affine::{AffineVelocities, Fit};
 use cracking::Cracking;
+use departure::Departure;
 use grid::{ImposedEnergy, NodalFields};
+use losses::TransferLosses;
 use points::{Cells, OutsidePatch, Point};
+use smoothing::Smoothing;
 use stiffness::Stiffness;
+use strain::{Finite, Small};
 use tractions::SurfaceLoad;
 use transfer::{GridToPoints, PointsToGrid, StripMotion};
+use volume_forcing::VolumeForcing;
 use windows::{cut, scatter};
 
 /// Why a step could not be taken.
@@ -76,29 +68,26 @@ pub enum Failure {
     Left([f64; 2]),
 }
 
-/// Parts of the transfer loss so far, J per metre of thickness.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct TransferLosses {
-    /// Fall of the kinetic energy between leaving one grid and arriving on the next.
-    pub kinetic: f64,
-    /// Work of the forces on the part of the motion that was filtered away.
-    pub power: f64,
-    /// Loss where prescribed velocities are imposed on what arrived.
-    pub imposed: f64,
-}
-
 /// One body in the updated frame.
 #[derive(Debug, Clone)]
 pub struct UpdatedFrame {
     patch: Patch,
     moduli: ElasticModuli,
+    /// Logarithmic change of volume over that of area: less than 1 in plane stress, where the thickness follows.
+    thickening: f64,
     density: f64,
     thickness: f64,
     gravity: [f64; 2],
     points: Vec<Point>,
     cells: Cells,
     nodes: NodalFields,
+    departure: Departure,
+    /// Velocity gradients of the points, for the transfers that need them.
+    affine: Option<AffineVelocities>,
+    /// Displacement gradients `F − I` of the points, if the kinematics are finite.
+    deformation: Option<Vec<Gradient>>,
     loads: Vec<SurfaceLoad>,
+    forcing: Option<VolumeForcing>,
     /// The phase field, if the material fractures.
     pub fracture: Option<Cracking>,
     lowest_tip: f64,
@@ -115,14 +104,6 @@ pub struct UpdatedFrame {
     travelled: f64,
 }
 
-/// What the grid holds when the points leave it, per unit thickness.
-struct Leaving {
-    kinetic: f64,
-    momentum: [f64; 2],
-    /// Power of forces on control points of negligible mass.
-    idle_power: f64,
-}
-
 impl UpdatedFrame {
     /// The body of `scene` at t = 0 with its initial accelerations.
     ///
@@ -133,16 +114,29 @@ impl UpdatedFrame {
         let body = &scene.bodies[0];
         let material = &scene.materials[&body.material];
         let mut points = Point::of_lattice(&Lattice::new(&patch, body));
-        set_velocities(&mut points, body.velocity, body.angular_velocity);
         let mut cells = Cells::default();
-        cells.sort(&patch, &mut points, None)?;
+        cells.sort(&patch, &mut points)?;
         let crack = |f| Cracking::new(&patch, body, FractureModel::new(f), &scene.solver, &points);
         let constraints = Constraints::new(patch.control_grid(), &scene.boundaries);
+        let affine = |fit| AffineVelocities::new(fit, &patch, points.len());
+        let center = center_of_mass(&points);
         let mut frame = Self {
             fracture: material.fracture.as_ref().map(crack),
             nodes: NodalFields::new(&patch, constraints),
+            departure: Departure::new(patch.control_grid(), scene.analysis.transfer),
+            affine: match scene.analysis.transfer {
+                Transfer::Apic => Some(affine(Fit::Weighted)),
+                Transfer::Tpic => Some(affine(Fit::Taylor)),
+                Transfer::Flip | Transfer::Pic | Transfer::Musl | Transfer::Xpic(_) => None,
+            },
+            deformation: (scene.analysis.kinematics == Kinematics::Finite).then(|| vec![[[0.0; 2]; 2]; points.len()]),
             loads: body.tractions.iter().map(|t| SurfaceLoad::new(&patch, body, t)).collect(),
+            forcing: None,
             moduli: ElasticModuli::new(material, scene.analysis.plane),
+            thickening: match scene.analysis.plane {
+                Plane::Strain => 1.0,
+                Plane::Stress => (1.0 - 2.0 * material.poisson_ratio) / (1.0 - material.poisson_ratio),
+            },
             density: material.density,
             thickness: scene.analysis.thickness,
             gravity: scene.analysis.gravity,
@@ -159,13 +153,12 @@ impl UpdatedFrame {
             points,
             cells,
         };
+        let (velocity, spin) = (body.velocity, body.angular_velocity);
+        frame.give_velocity(|x| [velocity[0] - spin * (x[1] - center[1]), velocity[1] + spin * (x[0] - center[0])]);
         frame.attach_loads()?;
         frame.crack_and_stress(true)?;
         frame.ledger.history_work = 0.0; // there was no step yet
-        frame.points_to_grid();
-        frame.apply_boundary();
-        frame.accelerate();
-        frame.driven_power = frame.nodes.power_of_driven_sides();
+        frame.find_accelerations();
         Ok(frame)
     }
 
@@ -174,7 +167,9 @@ impl UpdatedFrame {
     /// # Errors
     /// If the phase field does not converge, or a point leaves the patch.
     pub fn step(&mut self, dt: f64) -> Result<(), Failure> {
-        let leaving = self.kick(dt); // grid: v(n+1/2) = v(n−1/2) + dt a(n)
+        self.kick(dt); // grid: v(n+1/2) = v(n−1/2) + dt a(n)
+        self.depart(); // transfer: what the points take up, and the motion they follow
+        let leaving = self.leaving();
         let left_span = self.grid_to_points(dt); // G2P: velocities, positions, strains
         if left_span {
             self.sort()?;
@@ -188,48 +183,41 @@ impl UpdatedFrame {
         Ok(())
     }
 
-    fn kick(&mut self, dt: f64) -> Leaving {
+    fn kick(&mut self, dt: f64) {
         self.nodes.kick(if self.at_start { 0.5 * dt } else { dt });
         self.at_start = false;
         self.time += dt;
-        let [_, idle_power] = self.nodes.power();
-        Leaving {
-            kinetic: self.nodes.kinetic_energy(&self.nodes.velocity),
-            momentum: self.nodes.momentum(),
-            idle_power,
+    }
+
+    fn depart(&mut self) {
+        let Self { patch, cells, points, nodes, departure, affine, density, .. } = self;
+        departure.leave(nodes, &Smoothing { patch, cells, points, density: *density, mass: &nodes.mass });
+        if let Some(affine) = affine {
+            affine.take(patch, cells, points, &nodes.velocity);
         }
     }
 
-    /// FLIP: `v_p += Σ N (v(n+1/2) − v arrived)`, `x_p += dt Σ N v(n+1/2)`; whether a point left its span.
+    /// `v_p ← kept v_p + Σ N taken`, `x_p += dt Σ N motion`, and the strain of the motion; whether a point left its span.
     fn grid_to_points(&mut self, dt: f64) -> bool {
-        let Self { patch, cells, nodes, points, fracture, .. } = self;
-        let elastic = fracture.is_none().then_some(self.moduli);
-        let ranges = || cells.strips.iter().map(|s| s.points.clone());
-        let cracked = match fracture {
-            Some(fracture) => cut(&mut fracture.points, ranges()),
-            None => cells.strips.iter().map(|_| &mut [][..]).collect(),
+        let Self { patch, cells, points, departure, forcing, .. } = self;
+        if let Some(forcing) = forcing {
+            forcing.before_motion(patch, cells, points, &departure.motion);
+        }
+        let motions = match self.deformation.take() {
+            None => self.move_points(dt, self.cells.strips.iter().map(|_| Small).collect()),
+            Some(mut deformation) => {
+                let strips = cut(&mut deformation, self.cells.strips.iter().map(|s| s.points.clone()));
+                let motions = self.move_points(dt, strips.into_iter().map(Finite).collect());
+                self.deformation = Some(deformation);
+                motions
+            }
         };
-        let velocity = nodes.velocity.each_ref().map(|f| &f[..]);
-        let arrived = nodes.arrived.each_ref().map(|f| &f[..]);
-        let strips = cut(points, ranges()).into_par_iter().zip(cracked).zip(&cells.strips);
-        let motions: Vec<StripMotion> = strips
-            .map(|((points, fracture), strip)| {
-                let cells = &cells.cells[strip.cells.clone()];
-                dispatch(GridToPoints {
-                    patch,
-                    grid: nodes.grid,
-                    dt,
-                    velocity,
-                    arrived,
-                    elastic,
-                    cells,
-                    points,
-                    fracture,
-                })
-            })
-            .collect();
-        for load in &mut self.loads {
-            load.move_points(patch, nodes.grid, &nodes.velocity, dt);
+        let Self { patch, nodes, points, departure, forcing, loads, .. } = self;
+        for load in loads {
+            load.move_points(patch, nodes.grid, &departure.motion, dt);
+        }
+        if let Some(forcing) = forcing {
+            forcing.after_motion(points, self.time, dt);
         }
         let fastest = motions.iter().map(|m| m.fastest).fold(0.0, f64::max);
         self.travelled += dt * (2.0 * fastest).sqrt();
@@ -238,9 +226,55 @@ impl UpdatedFrame {
         motions.iter().any(|m| m.left_span)
     }
 
+    /// Velocity, position and strain of the points; `kinematics` for each strip.
+    fn move_points<K: strain::Kinematics + Send>(&mut self, dt: f64, kinematics: Vec<K>) -> Vec<StripMotion> {
+        let Self { patch, cells, nodes, points, departure, fracture, .. } = self;
+        let elastic = fracture.is_none().then_some(self.moduli);
+        let ranges = || cells.strips.iter().map(|s| s.points.clone());
+        let cracked = match fracture {
+            Some(fracture) => cut(&mut fracture.points, ranges()),
+            None => cells.strips.iter().map(|_| &mut [][..]).collect(),
+        };
+        let (kept, grid) = (departure.kept, nodes.grid);
+        let motion = departure.motion.each_ref().map(|f| &f[..]);
+        let taken = departure.taken.each_ref().map(|f| &f[..]);
+        let strips = cut(points, ranges()).into_par_iter().zip(cracked).zip(kinematics).zip(&cells.strips);
+        strips
+            .map(|(((points, fracture), kinematics), strip)| {
+                let cells = &cells.cells[strip.cells.clone()];
+                dispatch(GridToPoints {
+                    patch,
+                    grid,
+                    dt,
+                    motion,
+                    taken,
+                    kept,
+                    kinematics,
+                    elastic,
+                    cells,
+                    points,
+                    fracture,
+                })
+            })
+            .collect()
+    }
+
     fn sort(&mut self) -> Result<(), OutsidePatch> {
-        let fracture = self.fracture.as_mut().map(|f| &mut f.points);
-        self.cells.sort(&self.patch, &mut self.points, fracture)
+        let Self { patch, cells, points, .. } = self;
+        cells.sort(patch, points)?;
+        if let Some(fracture) = &mut self.fracture {
+            cells.reorder(&mut fracture.points);
+        }
+        if let Some(affine) = &mut self.affine {
+            cells.reorder(&mut affine.gradients);
+        }
+        if let Some(deformation) = &mut self.deformation {
+            cells.reorder(deformation);
+        }
+        if let Some(forcing) = &mut self.forcing {
+            forcing.reorder(cells);
+        }
+        Ok(())
     }
 
     fn attach_loads(&mut self) -> Result<(), OutsidePatch> {
@@ -270,10 +304,16 @@ impl UpdatedFrame {
             let cells = &cells.cells[strip.cells.clone()];
             dispatch(PointsToGrid { patch, grid, density, cells, points, window });
         });
+        if let Some(affine) = &self.affine {
+            affine.give(patch, cells, points, density, &mut nodes.arrived);
+        }
         nodes.divide_by_mass();
         nodes.add_gravity(self.gravity);
         for load in &self.loads {
             load.add_forces(patch, grid, self.time, &mut nodes.force);
+        }
+        if let Some(forcing) = &self.forcing {
+            forcing.add_forces(patch, cells, points, &mut nodes.force);
         }
     }
 
@@ -285,27 +325,27 @@ impl UpdatedFrame {
         self.nodes.accelerate();
     }
 
-    /// Books the works and losses of the step that ends now.
-    fn book(&mut self, dt: f64, leaving: &Leaving, imposed: ImposedEnergy) {
-        let [following, _] = self.nodes.power();
-        let weight = self.gravity[0] * leaving.momentum[0] + self.gravity[1] * leaving.momentum[1];
-        let traction_at = |time: f64| self.loads.iter().map(|load| load.factor(time) * load.power()).sum::<f64>();
-        let [before, now] = [self.time - dt, self.time].map(traction_at);
-        let driven = self.nodes.power_of_driven_sides();
-        let on_points = now + weight - self.stress_work / dt;
-        self.losses.kinetic += leaving.kinetic - self.nodes.kinetic_energy(&self.nodes.arrived);
-        self.losses.power += 0.5 * dt * (leaving.idle_power + on_points - following);
-        self.losses.imposed += imposed.loss;
-        self.ledger.external_work += imposed.work + dt * weight + 0.5 * dt * (before + now);
-        self.ledger.external_work += 0.5 * dt * (self.driven_power + driven);
-        self.ledger.transfer_loss = self.losses.kinetic + self.losses.power + self.losses.imposed;
-        self.driven_power = driven;
+    /// Rebuilds the grid where no step leads to it.
+    fn find_accelerations(&mut self) {
+        self.points_to_grid();
+        self.apply_boundary();
+        self.accelerate();
+        self.driven_power = self.nodes.power_of_driven_sides();
+    }
+
+    /// Gives the points a velocity field (m/s), and its gradients where the transfer carries them.
+    fn give_velocity(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2]) {
+        let Self { patch, cells, points, affine, nodes, .. } = self;
+        points.iter_mut().for_each(|point| point.velocity = velocity(point.position));
+        if let Some(affine) = affine {
+            affine.take(patch, cells, points, &nodes.at_greville_points(patch, velocity));
+        }
     }
 
     /// Critical time step of the undamaged body at the present positions, s; infinite if nothing can move.
     pub fn critical_step(&self) -> f64 {
         let frequency = highest_frequency(&mut Stiffness::new(self));
-        if frequency > 0.0 { std::f64::consts::SQRT_2 / frequency } else { f64::INFINITY }
+        if frequency > 0.0 { self.departure.stable_fraction() / frequency } else { f64::INFINITY }
     }
 
     /// Whether a point may have moved a quarter of the smallest span since the last call that said so: the time to take
@@ -332,12 +372,8 @@ impl From<OutsidePatch> for Failure {
     }
 }
 
-/// Initial velocities: a translation and a rotation about the centre of mass.
-fn set_velocities(points: &mut [Point], velocity: [f64; 2], angular_velocity: f64) {
+/// Centre of mass, m.
+fn center_of_mass(points: &[Point]) -> [f64; 2] {
     let volume: f64 = points.iter().map(|p| p.volume).sum();
-    let center = [0, 1].map(|d| points.iter().map(|p| p.volume * p.position[d]).sum::<f64>() / volume);
-    for point in points {
-        let [x, y] = [0, 1].map(|d| point.position[d] - center[d]);
-        point.velocity = [velocity[0] - angular_velocity * y, velocity[1] + angular_velocity * x];
-    }
+    [0, 1].map(|d| points.iter().map(|p| p.volume * p.position[d]).sum::<f64>() / volume)
 }

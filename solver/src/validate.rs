@@ -12,7 +12,7 @@ mod mesh;
 use std::fmt::Display;
 
 use crate::error::{SceneError, SceneWarning};
-use crate::scene::{Frame, Kinematics, Scene, Transfer};
+use crate::scene::{Frame, Kinematics, Scene};
 
 /// Checks a scene; the warnings, if it can be modelled.
 ///
@@ -78,8 +78,9 @@ fn unsupported(scene: &Scene, findings: &mut Findings) {
     if scene.contact.is_some() {
         refuse("contact", &"contact between bodies is", "remove the [contact] table");
     }
-    if scene.analysis.kinematics == Kinematics::Finite {
-        refuse("analysis.kinematics", &"finite strain is", "use kinematics = \"small\"");
+    if scene.analysis.kinematics == Kinematics::Finite && scene.analysis.frame == Frame::Total {
+        let remedy = "use frame = \"updated\", or kinematics = \"small\"";
+        refuse("analysis.kinematics", &"finite strain in the total frame is", remedy);
     }
     if scene.analysis.frame == Frame::Updated && scene.mesh.geometry.is_some() {
         refuse(
@@ -87,9 +88,6 @@ fn unsupported(scene: &Scene, findings: &mut Findings) {
             &"a general patch in the updated frame is",
             "use frame = \"total\", or a rectangle",
         );
-    }
-    if scene.analysis.frame == Frame::Updated && scene.analysis.transfer != Transfer::Flip {
-        refuse("analysis.transfer", &"a transfer other than flip is", "use transfer = \"flip\"");
     }
 }
 

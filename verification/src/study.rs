@@ -9,6 +9,7 @@ mod constant_stress;
 mod convergence;
 mod homogeneous_state;
 mod nurbs;
+mod rotation;
 pub mod scene;
 
 use thiserror::Error;
@@ -71,13 +72,14 @@ pub enum StudyError {
 type Study = fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>;
 
 /// Studies other than `scene`, by name.
-pub const STUDIES: [(&str, Study); 6] = [
+pub const STUDIES: [(&str, Study); 7] = [
     ("basis", basis::study),
     ("constant-stress", constant_stress::study),
     ("homogeneous-state", homogeneous_state::study),
     ("compressive-step", compressive_step::study),
     ("nurbs", nurbs::study),
     ("convergence", convergence::study),
+    ("rotation", rotation::study),
 ];
 
 /// The study of that name.

@@ -130,27 +130,52 @@ impl NodalFields {
         0.5 * self.mass.iter().zip(x.iter().zip(y)).map(|(m, (x, y))| m * (x * x + y * y)).sum::<f64>()
     }
 
-    /// Momentum of [`Self::velocity`], kg/s.
-    pub fn momentum(&self) -> [f64; 2] {
-        [0, 1].map(|c| self.mass.iter().zip(&self.velocity[c]).map(|(m, v)| m * v).sum())
+    /// Momentum of a velocity field, kg/s.
+    pub fn momentum(&self, velocity: &VectorField) -> [f64; 2] {
+        [0, 1].map(|c| self.mass.iter().zip(&velocity[c]).map(|(m, v)| m * v).sum())
     }
 
     /// Power of the present forces on the present velocities at control points that follow them: those that accelerate,
-    /// and those that are held or driven (first), and at the others, whose mass is negligible (second), W/m.
-    pub fn power(&self) -> [f64; 2] {
-        let (mut following, mut idle) = (0.0, 0.0);
+    /// and those that are held or driven, W/m.
+    pub fn power_followed(&self) -> f64 {
+        let mut power = 0.0;
         for component in 0..2 {
             let nodes = self.force[component].iter().zip(&self.velocity[component]).zip(&self.inverse_mass);
-            for ((force, velocity), inverse) in nodes {
-                let power = force * velocity;
-                *(if *inverse > 0.0 { &mut following } else { &mut idle }) += power;
+            for ((force, velocity), _) in nodes.filter(|(_, inverse)| **inverse > 0.0) {
+                power += force * velocity;
             }
         }
-        for (at, component, value) in self.constraints.iter().filter(|&(at, _, _)| self.inverse_mass[at] == 0.0) {
-            following += self.force[component][at] * value;
-            idle -= self.force[component][at] * value;
+        let held = self.constraints.iter().filter(|&(at, _, _)| self.inverse_mass[at] == 0.0);
+        power + held.map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
+    }
+
+    /// Power of the present forces on a `motion`, less [`Self::power_followed`], W/m.
+    pub fn power_not_followed(&self, motion: &VectorField) -> f64 {
+        let mut power = 0.0;
+        for component in 0..2 {
+            let nodes = self.force[component].iter().zip(&self.velocity[component]).zip(&self.inverse_mass);
+            for (((force, velocity), inverse), motion) in nodes.zip(&motion[component]) {
+                power += force * (motion - if *inverse > 0.0 { *velocity } else { 0.0 });
+            }
         }
-        [following, idle]
+        let held = self.constraints.iter().filter(|&(at, _, _)| self.inverse_mass[at] == 0.0);
+        power - held.map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
+    }
+
+    /// Values of a velocity field at the Greville points: exact control values of an affine field, of second order for others.
+    pub fn at_greville_points(&self, patch: &Patch, velocity: impl Fn([f64; 2]) -> [f64; 2]) -> VectorField {
+        let [x, y] = [0, 1].map(|d| patch.spaces[d].greville());
+        let mut field = [self.grid.zeros(), self.grid.zeros()];
+        for at in self.grid.indices() {
+            let value = velocity([x[self.grid.column_of(at)], y[self.grid.row_of(at)]]);
+            (field[0][at], field[1][at]) = (value[0], value[1]);
+        }
+        field
+    }
+
+    /// Imposes the prescribed velocities on a motion of the points.
+    pub fn constrain(&self, motion: &mut VectorField) {
+        self.constraints.apply_velocity(motion);
     }
 
     /// Reaction times velocity of the driven control points, W/m.

@@ -1,9 +1,11 @@
 //! What is read from a body in the updated frame: energies, crack tip, pictures.
 
+use super::UpdatedFrame;
+use super::losses::TransferLosses;
 use super::points::{FracturePoint, Point};
-use super::{TransferLosses, UpdatedFrame};
 use crate::energy::{FractureSample, Sample};
 use crate::fracture::BROKEN;
+use crate::hencky::Gradient;
 use crate::material::ElasticModuli;
 use crate::patch::Patch;
 use crate::picture::Raster;
@@ -80,7 +82,7 @@ impl UpdatedFrame {
         for point in &self.points {
             let half = 0.5 * FILL * point.volume.sqrt();
             let [xx, yy, xy] = point.stress;
-            let principal = 0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy);
+            let principal = (0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)) / self.volume_ratio(point);
             raster.for_each_overlap(point.position.map(|x| [x - half, x + half]), |pixel, area| {
                 covered[pixel] += area;
                 stress[pixel] += area * principal;
@@ -96,11 +98,32 @@ impl UpdatedFrame {
         (phase, (0..covered.len()).map(mean).collect())
     }
 
+    /// Present volume over that at t = 0, which leads from the stress of a point to Cauchy's; 1 for small strains.
+    fn volume_ratio(&self, point: &Point) -> f64 {
+        let dilatation = point.strain[0] + point.strain[1];
+        if self.deformation.is_some() { (self.thickening * dilatation).exp() } else { 1.0 }
+    }
+
     /// Parts of the transfer loss so far, J.
     pub fn transfer_losses(&self) -> TransferLosses {
         let TransferLosses { kinetic, power, imposed } = self.losses;
         let t = self.thickness;
         TransferLosses { kinetic: kinetic * t, power: power * t, imposed: imposed * t }
+    }
+
+    /// Kinetic energy of the points as the scheme keeps it, `1/2 Σ m v_p(n − 1/2) · v_p(n + 1/2)` with FLIP or MUSL, J; at
+    /// t = 0 that of the initial velocities. `dt` is the step in use.
+    pub fn point_kinetic_energy(&self, dt: f64) -> f64 {
+        let square = |p: &Point| p.volume * (p.velocity[0] * p.velocity[0] + p.velocity[1] * p.velocity[1]);
+        let points = 0.5 * self.density * self.points.iter().map(square).sum::<f64>();
+        let nodes = &self.nodes;
+        // Σ m v_p · (S a)_p = w · M a with the velocity w that arrived.
+        let kick = |c: usize| -> f64 {
+            let product = |((m, w), a): ((&f64, &f64), &f64)| m * w * a;
+            nodes.mass.iter().zip(&nodes.arrived[c]).zip(&nodes.acceleration[c]).map(product).sum()
+        };
+        let half = if self.at_start { 0.0 } else { 0.5 * dt };
+        (points + half * (kick(0) + kick(1))) * self.thickness
     }
 
     /// Elastic energy, J.
@@ -147,6 +170,10 @@ impl UpdatedFrame {
     pub fn bytes(&self) -> [usize; 2] {
         let points = self.points.len() * size_of::<Point>() + self.cells.bytes();
         let loads: usize = self.loads.iter().map(|load| load.bytes()).sum();
-        [points + self.nodes.bytes() + loads, self.fracture.as_ref().map_or(0, |f| f.bytes())]
+        let affine = self.affine.as_ref().map_or(0, |affine| affine.bytes());
+        let deformation = self.deformation.as_ref().map_or(0, |gradients| gradients.len() * size_of::<Gradient>());
+        let forcing = self.forcing.as_ref().map_or(0, |forcing| forcing.bytes());
+        let points = points + affine + deformation + forcing;
+        [points + self.nodes.bytes() + self.departure.bytes() + loads, self.fracture.as_ref().map_or(0, |f| f.bytes())]
     }
 }

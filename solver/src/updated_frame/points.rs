@@ -22,11 +22,11 @@ pub struct Point {
     pub velocity: [f64; 2],
     /// Displacement so far, m, added up on its own: positions minus first positions would lose digits.
     pub displacement: [f64; 2],
-    /// Linear strain `[xx, yy, xy]`.
+    /// Strain `[xx, yy, xy]`: linear, or Hencky's with finite kinematics.
     pub strain: [f64; 3],
-    /// Stress of the degraded material `[xx, yy, xy]`, Pa.
+    /// Stress of the degraded material `[xx, yy, xy]`, Pa; Kirchhoff's with finite kinematics.
     pub stress: [f64; 3],
-    /// Volume per unit thickness, m²; constant for small strains.
+    /// Volume at t = 0 per unit thickness, m².
     pub volume: f64,
 }
 
@@ -85,6 +85,11 @@ pub struct Cells {
 pub struct OutsidePatch(pub [f64; 2]);
 
 impl Point {
+    /// Position at t = 0, m, to the round-off of the position now.
+    pub fn reference(&self) -> [f64; 2] {
+        [0, 1].map(|d| self.position[d] - self.displacement[d])
+    }
+
     /// The points of a lattice at rest.
     pub fn of_lattice(lattice: &Lattice) -> Vec<Self> {
         let mut points = Vec::new();
@@ -97,25 +102,28 @@ impl Point {
 }
 
 impl Cells {
-    /// Sorts `points`, and `fracture` with them if there are any, by span.
+    /// Sorts `points` by span. What else belongs to the points follows by [`Self::reorder`].
     ///
     /// # Errors
     /// A point outside the patch; the order is then undefined.
-    pub fn sort(
-        &mut self,
-        patch: &Patch,
-        points: &mut Vec<Point>,
-        fracture: Option<&mut Vec<FracturePoint>>,
-    ) -> Result<(), OutsidePatch> {
+    pub fn sort(&mut self, patch: &Patch, points: &mut [Point]) -> Result<(), OutsidePatch> {
         self.spans = [0, 1].map(|d| patch.spaces[d].spans().len());
         self.find_keys(patch, points)?;
         self.count();
-        *points = self.in_order(points);
-        if let Some(fracture) = fracture {
-            *fracture = self.in_order(fracture);
-        }
+        self.reorder(points);
         self.list_cells(patch);
         Ok(())
+    }
+
+    /// Brings what belongs to the points, one item each, from their order before the last [`Self::sort`] into that after it.
+    pub fn reorder<T: Copy>(&self, items: &mut [T]) {
+        let unsorted = items.to_vec();
+        let mut next = self.starts.clone();
+        for (item, key) in unsorted.iter().zip(&self.keys) {
+            let at = &mut next[*key as usize];
+            items[*at] = *item;
+            *at += 1;
+        }
     }
 
     /// Whether a span has points.
@@ -157,17 +165,6 @@ impl Cells {
         for span in 1..starts.len() {
             starts[span] += starts[span - 1];
         }
-    }
-
-    fn in_order<T: Copy>(&self, items: &[T]) -> Vec<T> {
-        let mut sorted = items.to_vec();
-        let mut next = self.starts.clone();
-        for (item, key) in items.iter().zip(&self.keys) {
-            let at = &mut next[*key as usize];
-            sorted[*at] = *item;
-            *at += 1;
-        }
-        sorted
     }
 
     fn list_cells(&mut self, patch: &Patch) {
@@ -222,7 +219,8 @@ mod tests {
             points.iter().map(|p| FracturePoint { history: p.volume, ..Default::default() }).collect();
         let mut cells = Cells::default();
         for _ in 0..2 {
-            cells.sort(&patch, &mut points, Some(&mut fracture)).unwrap();
+            cells.sort(&patch, &mut points).unwrap();
+            cells.reorder(&mut fracture);
             let spans: Vec<_> = cells.cells.iter().map(|c| (c.span, c.points.clone())).collect();
             assert_eq!(spans, [([0, 0], 0..2), ([1, 0], 2..3), ([0, 4], 3..4), ([2, 8], 4..6)]);
             assert_eq!(
@@ -234,6 +232,6 @@ mod tests {
             assert!(cells.is_occupied([1, 0]) && !cells.is_occupied([1, 1]));
         }
         points[0].position = [-0.1, 0.5];
-        assert_eq!(cells.sort(&patch, &mut points, None), Err(OutsidePatch([-0.1, 0.5])));
+        assert_eq!(cells.sort(&patch, &mut points), Err(OutsidePatch([-0.1, 0.5])));
     }
 }

@@ -1,10 +1,11 @@
-//! The transfers of the updated frame: points to grid and grid to points (E 15–18), FLIP.
+//! The passes between points and grid of the updated frame (E 15–18).
 //!
 //! Both go cell by cell: the control values of a span are gathered once for all its points. Shape functions are products
 //! of two one-dimensional Horner schemes at the present position. Four numbers travel together through the inner loops,
 //! which is what the vector instructions of every processor in question hold.
 
 use super::points::{Cell, FracturePoint, Point};
+use super::strain::Kinematics;
 use super::windows::Window;
 use crate::lane::{LANES, Lane, Vectorised};
 use crate::material::ElasticModuli;
@@ -104,17 +105,21 @@ impl PointsToGrid<'_> {
 }
 
 /// G2P: velocity, position and strain of the points of a strip, and stress and energy where nothing fractures.
-pub struct GridToPoints<'a> {
+pub struct GridToPoints<'a, K> {
     /// Background patch.
     pub patch: &'a Patch,
     /// Layout of the control points.
     pub grid: ControlGrid,
     /// Time step, s.
     pub dt: f64,
-    /// Velocity of the control points at the half step, m/s.
-    pub velocity: [&'a [f64]; 2],
-    /// Velocity with which the points arrived on this grid, m/s.
-    pub arrived: [&'a [f64]; 2],
+    /// Velocity of the control points with which the points move and strain, m/s.
+    pub motion: [&'a [f64]; 2],
+    /// What the points take up into their velocity, m/s.
+    pub taken: [&'a [f64]; 2],
+    /// Part of its own velocity that a point keeps.
+    pub kept: f64,
+    /// Strains the points of the strip.
+    pub kinematics: K,
     /// Moduli if the body is elastic: its stress follows at once.
     pub elastic: Option<ElasticModuli>,
     /// Cells of the strip.
@@ -138,7 +143,7 @@ pub struct StripMotion {
     pub stress_work: f64,
 }
 
-impl Vectorised for GridToPoints<'_> {
+impl<K: Kinematics> Vectorised for GridToPoints<'_, K> {
     type Output = StripMotion;
 
     #[inline(always)]
@@ -147,7 +152,7 @@ impl Vectorised for GridToPoints<'_> {
     }
 }
 
-impl GridToPoints<'_> {
+impl<K: Kinematics> GridToPoints<'_, K> {
     #[inline(always)]
     fn walk(mut self, kx: usize, ky: usize) -> StripMotion {
         let mut motion = StripMotion::default();
@@ -173,22 +178,22 @@ impl GridToPoints<'_> {
         motion
     }
 
-    /// Velocity and its change since arrival, `[vx, vy, Δvx, Δvy]`, of the control points of a cell.
+    /// Motion and what is taken up, two components each, of the control points of a cell.
     #[inline(always)]
     fn gather(&self, cell: &Cell, kx: usize, ky: usize) -> [[f64; 4]; MAX_FUNCTIONS] {
         let mut local = [[0.0; 4]; MAX_FUNCTIONS];
         for l in 0..ky {
             let base = self.grid.index(cell.first[0], cell.first[1] + l);
             for k in 0..kx {
-                let v = self.velocity.map(|field| field[base + k]);
-                let arrived = self.arrived.map(|field| field[base + k]);
-                local[l * kx + k] = [v[0], v[1], v[0] - arrived[0], v[1] - arrived[1]];
+                let [ux, uy] = self.motion.map(|field| field[base + k]);
+                let [tx, ty] = self.taken.map(|field| field[base + k]);
+                local[l * kx + k] = [ux, uy, tx, ty];
             }
         }
         local
     }
 
-    /// FLIP for one point; returns its strain increment.
+    /// Moves and strains one point; returns its strain increment.
     #[inline(always)]
     fn move_point(
         &mut self,
@@ -218,15 +223,13 @@ impl GridToPoints<'_> {
                 along_y[c] += sy.derivative[l] * row_value[c];
             }
         }
-        let increment = [self.dt * along_x[0], self.dt * along_y[1], 0.5 * self.dt * (along_y[0] + along_x[1])];
+        let step = [0, 1].map(|c| [self.dt * along_x[c], self.dt * along_y[c]]);
+        let increment = self.kinematics.strain(at, &mut point.strain, &step);
         for d in 0..2 {
-            point.velocity[d] += value[2 + d];
+            point.velocity[d] = self.kept * point.velocity[d] + value[2 + d];
             point.displacement[d] += self.dt * value[d];
             point.position[d] += self.dt * value[d];
             motion.fastest = motion.fastest.max(value[d] * value[d]);
-        }
-        for i in 0..3 {
-            point.strain[i] += increment[i];
         }
         let spans = [&x.spans()[cell.span[0]], &y.spans()[cell.span[1]]];
         motion.left_span |= (0..2).any(|d| !(spans[d].left <= point.position[d] && point.position[d] < spans[d].right));

@@ -8,6 +8,8 @@ use crate::spline::SplineSpace;
 
 /// Most steps of a run.
 const MOST_STEPS: f64 = 1e9;
+/// Highest order of XPIC: each costs a transfer to the points and back per step.
+const HIGHEST_XPIC: usize = 100;
 /// Relative tolerance of "on the side", of the size of the mesh.
 const TOLERANCE: f64 = 1e-9;
 
@@ -33,6 +35,12 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
     }
     if analysis.mass == Mass::Consistent {
         consistent_mass(scene, mesh_is_sound, findings);
+    }
+    if let Transfer::Xpic(order) = analysis.transfer
+        && !(1..=HIGHEST_XPIC).contains(&order)
+    {
+        let remedy = format!("give an order from 1 (which is pic) to {HIGHEST_XPIC}, such as 5");
+        findings.error("analysis.transfer", format!("xpic of order {order}"), remedy);
     }
     solver(scene, findings);
     boundaries(scene, findings);

@@ -273,7 +273,15 @@ fn what_the_solver_cannot_do_is_refused_by_key() {
             s.analysis.transfer = transfer;
         }
     };
-    assert!(errors(updated(Transfer::Flip)).is_empty());
-    assert_eq!(errors(updated(Transfer::Musl)), ["analysis.transfer"]);
+    for transfer in [Transfer::Flip, Transfer::Pic, Transfer::Musl, Transfer::Apic, Transfer::Tpic, Transfer::Xpic(5)] {
+        assert!(errors(updated(transfer)).is_empty(), "{transfer:?}");
+    }
+    assert_eq!(errors(updated(Transfer::Xpic(0))), ["analysis.transfer"]);
+    assert_eq!(errors(|s| s.analysis.kinematics = Kinematics::Finite), ["analysis.kinematics"]);
+    let finite = |s: &mut Scene| {
+        updated(Transfer::Apic)(s);
+        s.analysis.kinematics = Kinematics::Finite;
+    };
+    assert!(errors(finite).is_empty());
     assert_eq!(errors(|s| s.bodies.clear()), ["body"]);
 }

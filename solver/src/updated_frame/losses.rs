@@ -1,0 +1,81 @@
+//! The energy ledger of the updated frame: works and transfer losses of a step.
+//!
+//! Let `v` be the velocity that leaves grid n (after the kick), `u` the one the points move and strain with (v, but for
+//! MUSL), `w` the one that arrives on grid n + 1 (P2G), `w*` that velocity with the prescribed components imposed, and
+//! f = f_ext − f_int. Then, for a linear elastic body, whatever the transfer, term by term,
+//!
+//! ```text
+//! Δ(kinetic − stagger) = 1/2 w*ᵀ M(n+1) w* − 1/2 vᵀ M(n) v + dt/2 [ (f + r)(n) · v + (f + r)(n+1) · w* ]
+//! Δ elastic            = dt/2 Σ V [ sigma(n) + sigma(n+1) ] : d,          d = sym grad u at the points, on grid n
+//! ```
+//!
+//! with the reactions r. The forces of n and n + 1 work on the points' motion `u` but on the grid's `v` and `w*`. So the
+//! transfer loss has three parts, each measured where it happens:
+//!
+//! - `kinetic`: `1/2 vᵀ M(n) v − 1/2 wᵀ M(n+1) w`, the fall between leaving and arriving. `w` holds what the transfer gives
+//!   back, affine parts included;
+//! - `power`: `dt/2 [ P(n+1) − f(n+1) · w* ]`, where `P(n+1) = t(n+1) · v_s + Σ m g · u_p − Σ V sigma(n+1) : d` is the power
+//!   of the new forces on the motion the points just made; and `dt/2 [ f(n) · u − f(n) · v ]` of the old ones, where v counts at
+//!   control points that follow forces only (those of negligible mass feel them and do not);
+//! - `imposed`: `1/2 Σ m (v_prescribed − w)²` where a prescribed velocity is imposed on what arrived. The rest of that
+//!   jump, `Σ m (v_prescribed − w) v_prescribed`, is work of the driven side.
+//!
+//! External work is force times motion of the points it acts on: `dt/2 [t(n) + t(n+1)] · u_s` of surface points,
+//! `dt g · Σ m u` of gravity, and the mean reaction of driven sides. What closure remains is round-off in an elastic body with
+//! small strains. With finite strains tau replaces sigma and V the reference volume, d is taken with respect to the
+//! positions at n beside tau(n) and to those at n + 1 beside tau(n+1), and the trapezoidal sum leaves O(dt²).
+//! With a phase field there remain the stress-work quadrature, as in the total frame, and what the energy of the phase
+//! field changes by as its points pass through the spans: it swings with the period of a span and does not add up. It is
+//! not booked, since the only measure of it, the residual of the phase-field equation, would hide errors of that equation.
+
+use super::UpdatedFrame;
+use super::grid::ImposedEnergy;
+
+/// Parts of the transfer loss so far, J per metre of thickness.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct TransferLosses {
+    /// Fall of the kinetic energy between leaving one grid and arriving on the next.
+    pub kinetic: f64,
+    /// Work of the forces on the difference between the motion of the points and that of the grid.
+    pub power: f64,
+    /// Loss where prescribed velocities are imposed on what arrived.
+    pub imposed: f64,
+}
+
+/// What the grid holds when the points leave it, per unit thickness.
+pub(super) struct Leaving {
+    kinetic: f64,
+    /// Momentum of the motion of the points.
+    momentum: [f64; 2],
+    /// Power of the forces on that motion, less what the grid follows.
+    not_followed: f64,
+}
+
+impl UpdatedFrame {
+    /// To be asked once the departure of the points is known.
+    pub(super) fn leaving(&self) -> Leaving {
+        let Self { nodes, departure, .. } = self;
+        Leaving {
+            kinetic: nodes.kinetic_energy(&nodes.velocity),
+            momentum: nodes.momentum(&departure.motion),
+            not_followed: nodes.power_not_followed(&departure.motion),
+        }
+    }
+
+    /// Books the works and losses of the step that ends now.
+    pub(super) fn book(&mut self, dt: f64, leaving: &Leaving, imposed: ImposedEnergy) {
+        let weight = self.gravity[0] * leaving.momentum[0] + self.gravity[1] * leaving.momentum[1];
+        let traction_at = |time: f64| self.loads.iter().map(|load| load.factor(time) * load.power()).sum::<f64>();
+        let [before, now] = [self.time - dt, self.time].map(traction_at);
+        let [forced_before, forced_now] = self.forcing.as_ref().map_or([0.0; 2], |forcing| forcing.powers());
+        let driven = self.nodes.power_of_driven_sides();
+        let on_points = now + forced_now + weight - self.stress_work / dt;
+        self.losses.kinetic += leaving.kinetic - self.nodes.kinetic_energy(&self.nodes.arrived);
+        self.losses.power += 0.5 * dt * (leaving.not_followed + on_points - self.nodes.power_followed());
+        self.losses.imposed += imposed.loss;
+        self.ledger.external_work += imposed.work + dt * weight + 0.5 * dt * (before + now);
+        self.ledger.external_work += 0.5 * dt * (forced_before + forced_now + self.driven_power + driven);
+        self.ledger.transfer_loss = self.losses.kinetic + self.losses.power + self.losses.imposed;
+        self.driven_power = driven;
+    }
+}

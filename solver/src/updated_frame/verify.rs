@@ -1,0 +1,47 @@
+//! What verification sets and a scene cannot say: velocity fields, volume loads, prescribed motions.
+
+use std::sync::Arc;
+
+use super::volume_forcing::VolumeForcing;
+use super::{Failure, UpdatedFrame};
+use crate::forcing::Forcing;
+
+impl UpdatedFrame {
+    /// Gives the points an initial velocity (m/s) as a function of the reference position (m), before the first step.
+    ///
+    /// # Panics
+    /// After a step.
+    pub fn set_initial_velocity(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2]) {
+        assert!(self.at_start, "a step has been taken");
+        self.give_velocity(velocity);
+        self.find_accelerations();
+    }
+
+    /// Applies the volume loads of a forcing (`volume` alone) from t = 0 on, before the first step.
+    ///
+    /// # Panics
+    /// After a step.
+    pub fn apply_forcing(&mut self, forcing: Arc<dyn Forcing>) {
+        assert!(self.at_start, "a step has been taken");
+        self.forcing = Some(VolumeForcing::new(forcing, self.deformation.is_some(), &self.points));
+        self.find_accelerations();
+    }
+
+    /// Moves the points for `dt` seconds with a velocity (m/s) prescribed at the Greville points of all control points,
+    /// which makes an affine motion exact. Forces play no part, velocities stay, and the ledger books nothing.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub fn prescribe_motion(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2], dt: f64) -> Result<(), Failure> {
+        self.time += dt;
+        let field = self.nodes.at_greville_points(&self.patch, velocity);
+        self.departure.prescribe(&field);
+        if self.grid_to_points(dt) {
+            self.sort()?;
+        }
+        self.attach_loads()?;
+        self.crack_and_stress(true)?;
+        self.find_accelerations();
+        Ok(())
+    }
+}

@@ -1,0 +1,42 @@
+//! One revolution in a thousand increments, each applied exactly.
+//!
+//! The control points get the velocity `(R(θ) − I) x/dt` with θ = 2π/1000, which splines reproduce. What strain is left is
+//! that of the kinematics alone: none for Hencky strain; linear strain gains `cos θ − 1` in both directions per increment.
+
+use std::f64::consts::TAU;
+
+use fisura::scene::Kinematics;
+use fisura::updated_frame::UpdatedFrame;
+
+use super::{Findings, StudyError};
+use crate::case::Case;
+use crate::expand::CaseScene;
+use crate::record::{Reference, ReferenceKind};
+
+const INCREMENTS: usize = 1000;
+
+pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    let (sine, cosine) = (TAU / INCREMENTS as f64).sin_cos();
+    for CaseScene { name, scene, .. } in scenes {
+        let broken = |_| StudyError::Other("a point left the mesh, or the phase field did not converge".into());
+        let mut frame = UpdatedFrame::new(scene).map_err(broken)?;
+        let turn = |[x, y]: [f64; 2]| [(cosine - 1.0) * x - sine * y, sine * x + (cosine - 1.0) * y];
+        for _ in 0..INCREMENTS {
+            frame.prescribe_motion(turn, 1.0).map_err(broken)?;
+        }
+        let left = match scene.analysis.kinematics {
+            Kinematics::Finite => 0.0,
+            Kinematics::Small => INCREMENTS as f64 * (cosine - 1.0),
+        };
+        let off = frame.points().iter().flat_map(|p| [p.strain[0] - left, p.strain[1] - left, p.strain[2]]);
+        let back = frame.points().iter().flat_map(|p| p.displacement);
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |a: f64, b| a.max(b.abs()));
+        let exact =
+            |source: &str| Some(Reference { value: Some(0.0), kind: ReferenceKind::Exact, source: source.to_string() });
+        let source = exact("no strain (Hencky); 1000 (cos θ − 1) in both directions (linear)");
+        findings.add(name, "strain after a revolution, less the exact one", largest(&mut off.into_iter()), source);
+        findings.add(name, "displacement after a revolution", largest(&mut back.into_iter()), exact("none"));
+    }
+    Ok(findings)
+}
