@@ -13,7 +13,7 @@ use fisura::scene::{Layout, Mass};
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::case::convergence::{ConvergenceSetup, Loading, PatchFamily, Refine};
-use crate::convergence::{Convergence, Curve, Norm, Refined};
+use crate::convergence::{Convergence, Curve, Level, Norm, Refined};
 use crate::expand::CaseScene;
 use problem::{Kind, Problem};
 use solve::Discrete;
@@ -24,12 +24,19 @@ const FLOOR: f64 = 1e-11;
 pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let setup =
         case.convergence.as_ref().ok_or_else(|| StudyError::Other("a [convergence] table is missing".into()))?;
-    let problem = problem::find(&setup.problem, setup.plane).map_err(StudyError::Other)?;
+    let problem = problem::find(&setup.problem, setup.plane, setup.patch).map_err(StudyError::Other)?;
     let norms = Discrete::norms(&problem);
+    let mut findings = Findings::default();
     let mut curves = Vec::new();
     for (n, &degree) in setup.degrees.iter().enumerate() {
+        let name = format!("p={degree}");
         let orders = norms.iter().map(|&(_, below)| Some(theory(setup, &problem, degree, below))).collect();
-        curves.push(Curve { name: format!("p={degree}"), levels: levels(setup, &problem, n)?, orders });
+        let (levels, best) = levels(setup, &problem, n)?;
+        for (index, (quantity, _)) in norms.iter().enumerate() {
+            let error = levels.last().map_or(f64::NAN, |level| level.errors[index]);
+            findings.add(&name, &format!("{quantity} over that of the best approximation"), error / best[index], None);
+        }
+        curves.push(Curve { name, levels, orders });
     }
     let norm = |&(quantity, _): &(&str, usize)| Norm { quantity: quantity.into(), unit: "1".into(), floor: FLOOR };
     let study = Convergence {
@@ -46,39 +53,37 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
         norms: norms.iter().map(norm).collect(),
         curves,
     };
-    let mut findings = Findings::default();
     study.add_to(&mut findings);
     Ok(findings)
 }
 
-/// The levels of the n-th degree.
-fn levels(setup: &ConvergenceSetup, problem: &Problem, n: usize) -> Result<Vec<crate::convergence::Level>, StudyError> {
+/// The levels of the n-th degree, and the errors of the best approximation on the last.
+fn levels(setup: &ConvergenceSetup, problem: &Problem, n: usize) -> Result<(Vec<Level>, Vec<f64>), StudyError> {
     let mesh = |cells: usize| Discrete::new(setup, problem, n, cells);
+    let finest = setup.cells[setup.cells.len() - 1];
     let dynamic = problem.kind == Kind::Dynamic;
-    match setup.refine {
+    let levels: Result<Vec<Level>, StudyError> = match setup.refine {
         Refine::Mesh(power) => {
             let power = power.unwrap_or(0.5 * (setup.degrees[n] + 1) as f64);
             let coarsest = mesh(setup.cells[0])?;
-            let (h, step) =
-                (coarsest.span_length(), setup.safety[0] * if dynamic { coarsest.critical_step() } else { 0.0 });
+            let critical = if dynamic { coarsest.critical_step() } else { 0.0 };
             let level = |&cells: &usize| {
-                let mesh = mesh(cells)?;
-                let step = step * (mesh.span_length() / h).powf(power);
+                let mut mesh = mesh(cells)?;
+                let step = setup.safety[0] * critical * (mesh.span_length() / coarsest.span_length()).powf(power);
                 mesh.level(step)
             };
             setup.cells.iter().map(level).collect()
         }
         Refine::TimeStep => {
-            let finest = setup.cells[setup.cells.len() - 1];
             let critical = mesh(finest)?.critical_step();
             let level = |&fraction: &f64| {
-                let mut level = mesh(finest)?.level(fraction * critical)?;
-                level.h = fraction * critical;
-                Ok(level)
+                let level = mesh(finest)?.level(fraction * critical)?;
+                Ok(Level { h: fraction * critical, ..level })
             };
             setup.safety.iter().map(level).collect()
         }
-    }
+    };
+    Ok((levels?, mesh(finest)?.best_errors()?))
 }
 
 /// Order that theory gives an error `below` orders under that of the displacement.

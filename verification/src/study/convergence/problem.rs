@@ -6,7 +6,7 @@ use std::sync::Arc;
 use fisura::forcing::{Forcing, VolumeLoad};
 use fisura::scene::{Plane, Side};
 
-use crate::case::convergence::Loading;
+use crate::case::convergence::{Loading, PatchFamily};
 use crate::exact::{self, ExactSolution};
 
 /// Which equation is solved.
@@ -33,10 +33,17 @@ pub(super) struct Problem {
     pub end_time: f64,
 }
 
-/// The problem of a name; an error message otherwise.
-pub(super) fn find(name: &str, plane: Plane) -> Result<Problem, String> {
+/// The problem of a name on a family of patches; an error message otherwise.
+///
+/// A wave stands between rollers on a rectangle; on any other patch its exact traction acts on all sides.
+pub(super) fn find(name: &str, plane: Plane, family: PatchFamily) -> Result<Problem, String> {
     use Side::{Bottom, Left, Right, Top};
-    let rollers = vec![(Left, [true, false]), (Right, [true, false]), (Bottom, [false, true]), (Top, [false, true])];
+    let rollers = match family {
+        PatchFamily::Square | PatchFamily::Graded | PatchFamily::Random => {
+            vec![(Left, [true, false]), (Right, [true, false]), (Bottom, [false, true]), (Top, [false, true])]
+        }
+        PatchFamily::Bent | PatchFamily::Annulus | PatchFamily::Sector => vec![],
+    };
     let (kind, held, end_time) = match name {
         "projection" => (Kind::Projection, vec![], 0.0),
         "elastostatics" => (Kind::Static, vec![(Left, [true; 2])], 0.0),

@@ -9,7 +9,8 @@ use fisura::patch::ControlGrid;
 use fisura::phase_field::PhaseField;
 use fisura::projection::Projection;
 use fisura::scene::{
-    Analysis, Body, Boundary, Frame, Kinematics, Output, PhaseFieldSolver, Scene, SolverSettings, TimeStep, Transfer,
+    Analysis, Body, Boundary, Frame, Kinematics, Mass, Output, PhaseFieldSolver, Scene, SolverSettings, TimeStep,
+    Transfer,
 };
 use fisura::statics::StaticSolver;
 use fisura::total_frame::TotalFrame;
@@ -67,12 +68,34 @@ impl<'a> Discrete<'a> {
         }
     }
 
+    /// Errors of the projections of the exact fields in the end: the best that the space can do.
+    pub fn best_errors(&self) -> Result<Vec<f64>, StudyError> {
+        let (solution, dynamic) = (&self.problem.solution, self.problem.kind == Kind::Dynamic);
+        let end = if dynamic { self.end_time() } else { 0.0 };
+        let mut errors = Vec::new();
+        if self.problem.kind != Kind::PhaseField {
+            errors.extend(self.displacement_errors(&self.project(|x| solution.displacement(x, end))?, end));
+        }
+        if dynamic {
+            errors.push(self.velocity_error(&self.project(|x| solution.velocity(x, end))?, end));
+        }
+        if let Some(phase) = solution.phase() {
+            let [field, _] = self.project(|x| [phase.value(x, end), 0.0])?;
+            errors.extend(self.phase_errors(&field, end));
+        }
+        Ok(errors)
+    }
+
     /// Solves and measures; a dynamic problem with steps of at most `step` (s).
-    pub fn level(mut self, step: f64) -> Result<Level, StudyError> {
+    pub fn level(&mut self, step: f64) -> Result<Level, StudyError> {
         let start = Instant::now();
         let errors: Vec<f64> = match self.problem.kind {
             Kind::Projection => {
-                let field = self.project(|x| self.problem.solution.displacement(x, 0.0))?;
+                let displacement = |x| self.problem.solution.displacement(x, 0.0);
+                let field = match self.setup.mass {
+                    Mass::Consistent => self.project(displacement)?,
+                    Mass::Lumped => self.project_by_row_sums(displacement),
+                };
                 self.displacement_errors(&field, 0.0)
             }
             Kind::Static => {
@@ -86,11 +109,7 @@ impl<'a> Discrete<'a> {
             Kind::Dynamic => {
                 let end = self.run(step)?;
                 let mut errors = self.displacement_errors(self.frame.displacement(), end);
-                let velocity = (0..2).map(|i| {
-                    let exact = |x| (self.problem.solution.velocity(x, end)[i], [0.0; 2]);
-                    self.points.squares(&self.frame.velocity()[i], exact)
-                });
-                errors.push(velocity.sum::<Squares>().l2());
+                errors.push(self.velocity_error(self.frame.velocity(), end));
                 if let Some(fracture) = &self.frame.fracture {
                     errors.extend(self.phase_errors(fracture.field.control_values(), end));
                 }
@@ -112,6 +131,10 @@ impl<'a> Discrete<'a> {
     pub fn span_length(&self) -> f64 {
         let [x, y] = self.frame.patch().spaces.each_ref().map(|space| space.spans().len());
         (self.points.area() / (x * y) as f64).sqrt()
+    }
+
+    fn end_time(&self) -> f64 {
+        self.setup.end_time.unwrap_or(self.problem.end_time)
     }
 
     fn grid(&self) -> ControlGrid {
@@ -139,6 +162,16 @@ impl<'a> Discrete<'a> {
             Ok(projection.project(|x| function(x)[i]))
         };
         Ok([component(0)?, component(1)?])
+    }
+
+    /// The quotient of `Σ_p V_p N_I f` and `Σ_p V_p N_I`: what a lumped transfer from points to grid gives.
+    fn project_by_row_sums(&self, function: impl Fn([f64; 2]) -> [f64; 2]) -> VectorField {
+        let lattice = self.frame.lattice();
+        let volumes = lattice.integrate(|_, _, _| 1.0);
+        [0, 1].map(|i| {
+            let sums = lattice.integrate(|_, _, x| function(x)[i]);
+            sums.iter().zip(&volumes).map(|(sum, volume)| if *volume > 0.0 { sum / volume } else { 0.0 }).collect()
+        })
     }
 
     fn solve_static(&mut self) -> Result<VectorField, StudyError> {
@@ -178,7 +211,7 @@ impl<'a> Discrete<'a> {
 
     /// Runs to the end in equal steps; the end time, s.
     fn run(&mut self, step: f64) -> Result<f64, StudyError> {
-        let end = self.setup.end_time.unwrap_or(self.problem.end_time);
+        let end = self.end_time();
         let solution = &self.problem.solution;
         let displacement = self.project(|x| solution.displacement(x, 0.0))?;
         let velocity = self.project(|x| solution.velocity(x, 0.0))?;
@@ -200,6 +233,14 @@ impl<'a> Discrete<'a> {
         };
         let squares: Squares = (0..2).map(component).sum();
         vec![squares.l2(), squares.h1()]
+    }
+
+    fn velocity_error(&self, field: &VectorField, time: f64) -> f64 {
+        let component = |i: usize| {
+            let exact = |x| (self.problem.solution.velocity(x, time)[i], [0.0; 2]);
+            self.points.squares(&field[i], exact)
+        };
+        (0..2).map(component).sum::<Squares>().l2()
     }
 
     fn phase_errors(&self, field: &[f64], time: f64) -> Vec<f64> {
