@@ -14,6 +14,8 @@
 //! ∂u/∂ξ_d = (∂A/∂ξ_d − A ∂W/∂ξ_d / W)/W,   ∂u/∂x_j = Σ_d ∂u/∂ξ_d ∂ξ_d/∂x_j
 //! ```
 
+use rayon::prelude::*;
+
 use crate::lane::{LANES, Lane};
 use crate::nurbs::{MAX_FUNCTIONS, NurbsPatch};
 use crate::patch::{ControlGrid, Patch};
@@ -316,7 +318,7 @@ impl Lattice {
     }
 
     /// `Σ_p V_p f_p N_I(x_p)` of a density at the points, as a field; `density` gets batch, lane and position.
-    pub fn integrate(&self, mut density: impl FnMut(usize, usize, [f64; 2]) -> f64) -> Vec<f64> {
+    pub fn integrate(&self, density: impl Fn(usize, usize, [f64; 2]) -> f64 + Sync) -> Vec<f64> {
         let mut out = self.grid.zeros();
         self.add_integral(&mut [&mut out], |batch, lane, position| ([density(batch, lane, position)], [[0.0; 2]]));
         out
@@ -327,15 +329,14 @@ impl Lattice {
     pub fn add_integral<const F: usize>(
         &self,
         out: &mut [&mut Vec<f64>; F],
-        mut density: impl FnMut(usize, usize, [f64; 2]) -> ([f64; F], [[f64; 2]; F]),
+        density: impl Fn(usize, usize, [f64; 2]) -> ([f64; F], [[f64; 2]; F]) + Sync,
     ) {
         let [kx, ky] = self.degree.map(|p| p + 1);
-        for batch in 0..self.batches() {
-            let (row_index, tile_index, b, a) = self.unbatch(batch);
-            let (row, tile) = (&self.rows[row_index], &self.tiles[tile_index]);
-            let weight = self.weight(row_index, tile_index, b, a);
+        let of_batch = |batch: usize| {
+            let (row, tile, b, a) = self.unbatch(batch);
+            let weight = self.weight(row, tile, b, a);
             let (mut force, mut stress) = ([Lane::ZERO; F], [[Lane::ZERO; 2]; F]);
-            for lane in (0..tile.count).filter(|&lane| weight[lane] > 0.0) {
+            for lane in (0..self.tiles[tile].count).filter(|&lane| weight[lane] > 0.0) {
                 let (f, s) = density(batch, lane, self.position(batch, lane));
                 for i in 0..F {
                     force[i][lane] = f[i];
@@ -344,6 +345,12 @@ impl Lattice {
                     }
                 }
             }
+            (weight, force, stress)
+        };
+        let densities: Vec<_> = (0..self.batches()).into_par_iter().map(of_batch).collect();
+        for (batch, (weight, force, stress)) in densities.into_iter().enumerate() {
+            let (row_index, tile_index, _, _) = self.unbatch(batch);
+            let (row, tile) = (&self.rows[row_index], &self.tiles[tile_index]);
             let functions = self.shape_functions(batch);
             for l in 0..ky {
                 for k in 0..kx {

@@ -24,7 +24,7 @@ impl<'a> Projection<'a> {
     }
 
     /// Control values of the projection of a function of position (m).
-    pub fn project(&self, function: impl Fn([f64; 2]) -> f64) -> Vec<f64> {
+    pub fn project(&self, function: impl Fn([f64; 2]) -> f64 + Sync) -> Vec<f64> {
         let right = self.lattice.integrate(|_, _, position| function(position));
         let mut field = self.lattice.grid.zeros();
         self.factor.solve(&right, &mut field);

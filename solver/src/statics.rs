@@ -1,4 +1,4 @@
-//! Elastostatics on the operators of the time step: `K u = f` with displacements prescribed where velocities are.
+//! Elastostatics on the operators of the time step: `(K + s M) u = f` with displacements prescribed where velocities are.
 //!
 //! The stiffness is read off the body's own internal forces: columns far enough apart do not overlap, so
 //! `2 (2 p + 1)(2 q + 1)` sweeps give all of them. It serves verification; scenes are dynamic.
@@ -8,6 +8,7 @@ use faer::sparse::linalg::solvers::Llt;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 
+use crate::sweep::StripForces;
 use crate::total_frame::TotalFrame;
 
 /// A field of vectors on the control points, by component.
@@ -17,15 +18,16 @@ type VectorField = [Vec<f64>; 2];
 #[derive(Debug)]
 pub struct StaticSolver<'a> {
     frame: &'a TotalFrame,
+    shift: f64,
     /// Control point and component of each unknown.
     free: Vec<(usize, usize)>,
     factor: Llt<usize, f64>,
 }
 
 impl<'a> StaticSolver<'a> {
-    /// Factors the stiffness on the components that no boundary holds; `None` if it is not positive definite: the body is
-    /// not held against rigid motions, or has too few points per span.
-    pub fn new(frame: &'a TotalFrame) -> Option<Self> {
+    /// Factors the stiffness, plus `shift` (1/s²) times the mass, on the components that no boundary holds; `None` if it is
+    /// not positive definite: the body is not held against rigid motions by boundaries or a shift, or has too few points.
+    pub fn new(frame: &'a TotalFrame, shift: f64) -> Option<Self> {
         let free = frame.free_components();
         let grid = frame.lattice().grid;
         let mut number = [vec![usize::MAX; grid.len()], vec![usize::MAX; grid.len()]];
@@ -44,7 +46,7 @@ impl<'a> StaticSolver<'a> {
             for at in grid.indices().filter(of_colour).filter(|&at| number[component][at] != usize::MAX) {
                 probe[component][at] = 1.0;
             }
-            frame.elastic_forces(&probe, &mut strips, &mut image);
+            shifted_forces(frame, shift, &probe, &mut strips, &mut image);
             for &(at, c) in &free {
                 // The only control point of the colour within p columns and q rows.
                 let near = |place: usize, colour: usize, reach: usize| {
@@ -64,7 +66,7 @@ impl<'a> StaticSolver<'a> {
         }
         let matrix = SparseColMat::try_new_from_triplets(free.len(), free.len(), &triplets).ok()?;
         let factor = matrix.sp_cholesky(Side::Lower).ok()?;
-        Some(Self { frame, free, factor })
+        Some(Self { frame, shift, free, factor })
     }
 
     /// Displacement (m) under nodal forces per unit thickness (N/m); at the components that boundaries hold it is that of
@@ -76,7 +78,7 @@ impl<'a> StaticSolver<'a> {
             displacement[component][at] = 0.0;
         }
         let mut image = [grid.zeros(), grid.zeros()];
-        self.frame.elastic_forces(&displacement, &mut self.frame.strip_forces(), &mut image);
+        shifted_forces(self.frame, self.shift, &displacement, &mut self.frame.strip_forces(), &mut image);
         let right = |&(at, component): &(usize, usize)| forces[component][at] - image[component][at];
         let mut solution = Mat::from_fn(self.free.len(), 1, |n, _| right(&self.free[n]));
         self.factor.solve_in_place(solution.as_mut());
@@ -84,5 +86,17 @@ impl<'a> StaticSolver<'a> {
             displacement[component][at] = solution[(n, 0)];
         }
         displacement
+    }
+}
+
+/// `(K + s M) u`.
+fn shifted_forces(frame: &TotalFrame, shift: f64, u: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
+    frame.elastic_forces(u, strips, out);
+    if shift != 0.0 {
+        let mut inertia = frame.lattice().grid.zeros();
+        for component in 0..2 {
+            frame.mass().multiply(&u[component], &mut inertia);
+            out[component].iter_mut().zip(&inertia).for_each(|(f, m)| *f += shift * m);
+        }
     }
 }

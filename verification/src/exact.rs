@@ -96,7 +96,7 @@ pub trait ExactSolution: Send + Sync {
 }
 
 /// A phase field that solves `[4 l0 (1 − k) H/Gc + 1] c − 4 l0² Δc = s` exactly.
-pub trait ExactPhase {
+pub trait ExactPhase: Sync {
     /// Phase field.
     fn value(&self, position: [f64; 2], time: f64) -> f64;
     /// Its gradient, 1/m.

@@ -29,7 +29,9 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
     let mut findings = Findings::default();
     let mut curves = Vec::new();
     for (n, &degree) in setup.degrees.iter().enumerate() {
-        let name = format!("p={degree}");
+        let repeated = setup.degrees.iter().filter(|&other| *other == degree).count() > 1;
+        let points = if repeated { format!(", {0}x{0} points", setup.points(n)) } else { String::new() };
+        let name = format!("p={degree}{points}");
         let orders = norms.iter().map(|&(_, below)| Some(theory(setup, &problem, degree, below))).collect();
         let (levels, best) = levels(setup, &problem, n)?;
         for (index, (quantity, _)) in norms.iter().enumerate() {

@@ -71,12 +71,12 @@ fn random(degree: usize) -> Result<NurbsPatch, NurbsError> {
     let inner = |n: usize| (1..columns - 1).contains(&(n % columns)) && (1..rows - 1).contains(&(n / columns));
     let mut points = flat.control_points().to_vec();
     for (n, point) in points.iter_mut().enumerate() {
-        let shift = [random.between(-0.03, 0.03), random.between(-0.03, 0.03)];
+        let shift = [random.between(-0.02, 0.02), random.between(-0.02, 0.02)];
         if inner(n) {
             *point = [point[0] + shift[0], point[1] + shift[1]];
         }
     }
-    let weights = points.iter().map(|_| random.between(-0.7, 0.7).exp()).collect();
+    let weights = points.iter().map(|_| random.between(-0.35, 0.35).exp()).collect();
     NurbsPatch::new([degree; 2], [&knots[0], &knots[1]], points, weights)
 }
 

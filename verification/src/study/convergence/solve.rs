@@ -4,17 +4,19 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use fisura::lane::Lane;
-use fisura::material::FractureModel;
+use fisura::material::{ElasticModuli, FractureModel};
 use fisura::patch::ControlGrid;
 use fisura::phase_field::PhaseField;
 use fisura::projection::Projection;
+use fisura::quadrature::Rule;
 use fisura::scene::{
-    Analysis, Body, Boundary, Frame, Kinematics, Mass, Output, PhaseFieldSolver, Scene, SolverSettings, TimeStep,
-    Transfer,
+    Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Output, PhaseFieldSolver, Scene, SolverSettings,
+    TimeStep, Transfer,
 };
 use fisura::statics::StaticSolver;
 use fisura::total_frame::TotalFrame;
 use fisura::validate::validate;
+use nalgebra::DMatrix;
 
 use super::errors::{ErrorPoints, Squares};
 use super::patches;
@@ -25,6 +27,9 @@ use crate::study::StudyError;
 
 /// Control values of a vector field, by component.
 type VectorField = [Vec<f64>; 2];
+
+/// Square of the frequency (1/s²) that holds a free body in its elliptic projection.
+const SHIFT: f64 = 1.0;
 
 /// A problem on one mesh.
 pub(super) struct Discrete<'a> {
@@ -151,7 +156,7 @@ impl<'a> Discrete<'a> {
     }
 
     /// Projection of a vector field; components that boundaries hold are zero where they are so in the exact solution.
-    fn project(&self, function: impl Fn([f64; 2]) -> [f64; 2]) -> Result<VectorField, StudyError> {
+    fn project(&self, function: impl Fn([f64; 2]) -> [f64; 2] + Sync) -> Result<VectorField, StudyError> {
         let component = |i: usize| -> Result<Vec<f64>, StudyError> {
             let held = match self.problem.kind {
                 Kind::Dynamic => self.frame.constraints().held(i),
@@ -165,7 +170,7 @@ impl<'a> Discrete<'a> {
     }
 
     /// The quotient of `Σ_p V_p N_I f` and `Σ_p V_p N_I`: what a lumped transfer from points to grid gives.
-    fn project_by_row_sums(&self, function: impl Fn([f64; 2]) -> [f64; 2]) -> VectorField {
+    fn project_by_row_sums(&self, function: impl Fn([f64; 2]) -> [f64; 2] + Sync) -> VectorField {
         let lattice = self.frame.lattice();
         let volumes = lattice.integrate(|_, _, _| 1.0);
         [0, 1].map(|i| {
@@ -176,12 +181,47 @@ impl<'a> Discrete<'a> {
 
     fn solve_static(&mut self) -> Result<VectorField, StudyError> {
         let zeros = || [self.grid().zeros(), self.grid().zeros()];
-        let prescribed = self.project(|x| self.problem.solution.displacement(x, 0.0))?;
+        let prescribed = self.project_on_sides()?;
         let (still, forcing) = (zeros(), self.manufactured());
         self.frame.start_from(still.clone(), still, forcing).map_err(|_| other("no phase field is expected"))?;
         let forces = self.frame.forced_loads();
-        let solver = StaticSolver::new(&self.frame).ok_or_else(|| other("the stiffness is not positive definite"))?;
+        let solver =
+            StaticSolver::new(&self.frame, 0.0).ok_or_else(|| other("the stiffness is not positive definite"))?;
         Ok(solver.solve(&forces, &prescribed))
+    }
+
+    /// Least-squares projection of the exact displacement along the sides that are held.
+    fn project_on_sides(&self) -> Result<VectorField, StudyError> {
+        let mut field = [self.grid().zeros(), self.grid().zeros()];
+        let degree = self.frame.patch().spaces.each_ref().map(|space| space.degree());
+        let rule = Rule::new(Layout::Gauss, degree[0].max(degree[1]) + 3);
+        for &(side, fixed) in &self.problem.held {
+            let at = self.grid().side(side);
+            let number = |index: usize| at.iter().position(|&other| other == index);
+            let mut matrix = DMatrix::zeros(at.len(), at.len());
+            let mut right = DMatrix::zeros(at.len(), 2);
+            for point in self.frame.patch().boundary(side, &rule) {
+                let exact = self.problem.solution.displacement(point.position, 0.0);
+                let on_side = point.functions.iter().filter_map(|&(index, value)| Some((number(index)?, value)));
+                let functions: Vec<(usize, f64)> = on_side.collect();
+                for &(m, value) in &functions {
+                    for &(n, other) in &functions {
+                        matrix[(m, n)] += point.length * value * other;
+                    }
+                    for component in 0..2 {
+                        right[(m, component)] += point.length * value * exact[component];
+                    }
+                }
+            }
+            let factor = matrix.cholesky().ok_or_else(|| other("the points do not determine the side"))?;
+            let solution = factor.solve(&right);
+            for component in (0..2).filter(|&component| fixed[component]) {
+                for (n, &index) in at.iter().enumerate() {
+                    field[component][index] = solution[(n, component)];
+                }
+            }
+        }
+        Ok(field)
     }
 
     fn solve_phase_field(&self) -> Result<Vec<f64>, StudyError> {
@@ -209,11 +249,30 @@ impl<'a> Discrete<'a> {
         Ok(field.control_values().to_vec())
     }
 
+    /// The initial displacement that excites no waves of its own: the elastic energy of its error, plus the kinetic energy
+    /// of as much velocity, is least. A least-squares projection would leave an error of high frequency, which costs the
+    /// velocity an order.
+    fn elliptic_projection(&self) -> Result<VectorField, StudyError> {
+        let solution = &self.problem.solution;
+        let material = solution.material();
+        let moduli = ElasticModuli::new(&material, solution.plane());
+        let mut forces = [self.grid().zeros(), self.grid().zeros()];
+        let [x, y] = &mut forces;
+        self.frame.lattice().add_integral(&mut [x, y], |_, _, position| {
+            let [[xx, xy], [yx, yy]] = solution.displacement_gradient(position, 0.0);
+            let [sx, sy, sxy] = moduli.stress([xx, yy, 0.5 * (xy + yx)].map(Lane::splat)).map(|s| s[0]);
+            let force = solution.displacement(position, 0.0).map(|u| SHIFT * material.density * u);
+            (force, [[sx, sxy], [sxy, sy]])
+        });
+        let solver = StaticSolver::new(&self.frame, SHIFT).ok_or_else(|| other("no elliptic projection"))?;
+        Ok(solver.solve(&forces, &[self.grid().zeros(), self.grid().zeros()]))
+    }
+
     /// Runs to the end in equal steps; the end time, s.
     fn run(&mut self, step: f64) -> Result<f64, StudyError> {
         let end = self.end_time();
         let solution = &self.problem.solution;
-        let displacement = self.project(|x| solution.displacement(x, 0.0))?;
+        let displacement = self.elliptic_projection()?;
         let velocity = self.project(|x| solution.velocity(x, 0.0))?;
         let broken = |_| other("the phase field does not converge");
         self.frame.start_from(displacement, velocity, self.manufactured()).map_err(broken)?;
