@@ -5,7 +5,7 @@
 //!
 //! [convergence]
 //! problem = "elastostatics"     # an exact solution, or "projection"
-//! patch = "annulus"             # "square", "graded", "bent", "annulus", "sector", "random"
+//! patch = "annulus"             # "square", "graded", "bent", "annulus", "random"
 //! degrees = [2, 3]
 //! cells = [4, 8, 16, 32]        # spans per direction
 //! ```
@@ -26,8 +26,6 @@ pub enum PatchFamily {
     Bent,
     /// The quarter annulus between the radii 1 and 2 m.
     Annulus,
-    /// The quarter annulus between the radii 1 and 4 m about a hole.
-    Sector,
     /// The rectangle with random weights, inner control points and knots, drawn once on the coarsest mesh.
     Random,
 }
@@ -113,7 +111,6 @@ pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
         ("graded", PatchFamily::Graded),
         ("bent", PatchFamily::Bent),
         ("annulus", PatchFamily::Annulus),
-        ("sector", PatchFamily::Sector),
         ("random", PatchFamily::Random),
     ];
     let patch = fields.or("patch", PatchFamily::Square, |i| i.choice(&families));

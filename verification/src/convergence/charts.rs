@@ -33,6 +33,9 @@ pub(super) fn figures(study: &Convergence) -> Vec<Figure> {
             continue;
         }
         figures.push(figure(study, index, Against::Size, &drawn));
+        if index > 0 {
+            continue; // one norm is enough to compare degrees at equal unknowns and at equal cost
+        }
         if matches!(study.refined, Refined::Mesh { .. }) {
             figures.push(figure(study, index, Against::Unknowns, &drawn));
         }

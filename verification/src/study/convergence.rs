@@ -122,7 +122,6 @@ fn words_of_patch(family: PatchFamily) -> &'static str {
         PatchFamily::Graded => "graded spans",
         PatchFamily::Bent => "a curved polynomial patch",
         PatchFamily::Annulus => "a quarter annulus",
-        PatchFamily::Sector => "a sector about a hole",
         PatchFamily::Random => "random weights and knots",
     }
 }

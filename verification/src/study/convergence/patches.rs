@@ -1,7 +1,7 @@
 //! Families of meshes: one geometry for all refinements, drawn once and carried by knot insertion.
 
 use fisura::nurbs::{NurbsError, NurbsPatch};
-use fisura::scene::{Mesh, Shape};
+use fisura::scene::Mesh;
 
 use crate::case::convergence::PatchFamily;
 
@@ -11,27 +11,20 @@ const COARSE: usize = 3;
 /// The rectangle of the square, graded and random families, m.
 const SIZE: [f64; 2] = [1.0, 0.8];
 
-/// Mesh of a family with `cells` spans per direction, and the shape of a body that fills it. Random families have a
-/// multiple of [`COARSE`] spans.
-pub(super) fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<(Mesh, Shape), NurbsError> {
-    let rectangle = Shape::Rectangle { min: [0.0; 2], max: SIZE };
+/// Mesh of a family with `cells` spans per direction. Random families have a multiple of [`COARSE`] spans.
+pub(super) fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<Mesh, NurbsError> {
     let parts = cells.div_ceil(COARSE);
     match family {
-        PatchFamily::Square => Ok((Mesh::uniform([degree; 2], [0.0; 2], SIZE, [cells; 2]), rectangle)),
+        PatchFamily::Square => Ok(Mesh::uniform([degree; 2], [0.0; 2], SIZE, [cells; 2])),
         PatchFamily::Graded => {
             let mut random = Random(11);
             let knots = SIZE.map(|size| open(degree, &subdivided(&random.breaks(size), parts)));
-            Ok((Mesh { degree: [degree; 2], knots, geometry: None }, rectangle))
+            Ok(Mesh { degree: [degree; 2], knots, geometry: None })
         }
-        PatchFamily::Bent => general(refined(&bent()?, degree, cells)?),
-        PatchFamily::Annulus => general(refined(&NurbsPatch::quarter_annulus(1.0, 2.0)?, degree, cells)?),
-        PatchFamily::Sector => general(refined(&NurbsPatch::quarter_annulus(1.0, 4.0)?, degree, cells)?),
-        PatchFamily::Random => general(random(degree)?.subdivide(parts)?),
+        PatchFamily::Bent => Ok(Mesh::of(&refined(&bent()?, degree, cells)?)),
+        PatchFamily::Annulus => Ok(Mesh::of(&refined(&NurbsPatch::quarter_annulus(1.0, 2.0)?, degree, cells)?)),
+        PatchFamily::Random => Ok(Mesh::of(&random(degree)?.subdivide(parts)?)),
     }
-}
-
-fn general(patch: NurbsPatch) -> Result<(Mesh, Shape), NurbsError> {
-    Ok((Mesh::of(&patch), Shape::Patch))
 }
 
 /// One piece of low degree raised to `degree` and cut into `cells` equal parts per direction.
@@ -129,11 +122,11 @@ mod tests {
     /// The geometry of a family is one for all refinements: corners and area stay.
     #[test]
     fn refinement_keeps_the_geometry() {
-        use PatchFamily::{Annulus, Bent, Random, Sector};
-        for family in [Bent, Annulus, Sector, Random] {
+        use PatchFamily::{Annulus, Bent, Random};
+        for family in [Bent, Annulus, Random] {
             for degree in 2..=4 {
                 let middle = [3, 6].map(|cells| {
-                    let patch = mesh(family, degree, cells).unwrap().0.nurbs().unwrap().unwrap();
+                    let patch = mesh(family, degree, cells).unwrap().nurbs().unwrap().unwrap();
                     let parameters = [0.3, 0.6];
                     patch.map(&patch.shape_functions(patch.find_span(parameters).unwrap(), parameters)).position
                 });

@@ -9,10 +9,7 @@ use fisura::patch::ControlGrid;
 use fisura::phase_field::PhaseField;
 use fisura::projection::Projection;
 use fisura::quadrature::Rule;
-use fisura::scene::{
-    Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Output, PhaseFieldSolver, Scene, SolverSettings,
-    TimeStep, Transfer,
-};
+use fisura::scene::{Layout, Mass, Scene};
 use fisura::statics::StaticSolver;
 use fisura::total_frame::TotalFrame;
 use fisura::validate::validate;
@@ -23,6 +20,7 @@ use super::patches;
 use super::problem::{Kind, Manufactured, Problem};
 use crate::case::convergence::{ConvergenceSetup, Loading};
 use crate::convergence::Level;
+use crate::plain_scene::PlainScene;
 use crate::study::StudyError;
 
 /// Control values of a vector field, by component.
@@ -309,46 +307,21 @@ impl<'a> Discrete<'a> {
     }
 }
 
-/// The scene of one mesh: the body fills the patch, and nothing but the exact solution loads it.
+/// The scene of one mesh.
 fn scene(setup: &ConvergenceSetup, problem: &Problem, n: usize, cells: usize) -> Result<Scene, StudyError> {
-    let (mesh, shape) = patches::mesh(setup.patch, setup.degrees[n], cells).map_err(|e| other(e.to_string()))?;
+    let mesh = patches::mesh(setup.patch, setup.degrees[n], cells).map_err(|e| other(e.to_string()))?;
     let mut material = problem.solution.material();
     if problem.kind == Kind::PhaseField {
         material.fracture = None; // the study builds its own phase field, on the points of this scene
     }
-    let body = Body {
-        name: "body".into(),
-        material: "material".into(),
-        shape,
-        particles_per_cell: [setup.points(n); 2],
-        layout: setup.layout,
-        velocity: [0.0; 2],
-        angular_velocity: 0.0,
-        rigid: false,
-        tractions: vec![],
-        cracks: vec![],
-    };
-    let boundary = |&(side, fix): &(_, _)| Boundary { side, fix, velocity: [0.0; 2] };
-    Ok(Scene {
-        title: setup.problem.clone(),
+    let plain = PlainScene {
         mesh,
-        analysis: Analysis {
-            plane: setup.plane,
-            thickness: 1.0,
-            frame: Frame::Total,
-            kinematics: Kinematics::Small,
-            end_time: 1.0,
-            time_step: TimeStep::Auto,
-            safety: 0.5,
-            transfer: Transfer::Flip,
-            mass: setup.mass,
-            gravity: [0.0; 2],
-        },
-        solver: SolverSettings { phase_field_tolerance: 1e-14, phase_field_solver: PhaseFieldSolver::Cholesky },
-        materials: [("material".to_string(), material)].into(),
-        bodies: vec![body],
-        contact: None,
-        boundaries: problem.held.iter().map(boundary).collect(),
-        output: Output { samples: 1, frames: vec![] },
-    })
+        material,
+        plane: setup.plane,
+        mass: setup.mass,
+        layout: setup.layout,
+        points: setup.points(n),
+        held: problem.held.clone(),
+    };
+    Ok(plain.scene())
 }

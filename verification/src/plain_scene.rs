@@ -1,0 +1,78 @@
+//! Scenes that studies build by themselves: one body that fills its mesh, loaded by nothing that a scene can say.
+
+use fisura::scene::{
+    Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldSolver, Plane, Scene,
+    Shape, Side, SolverSettings, TimeStep, Transfer,
+};
+
+/// What differs from study to study.
+#[derive(Debug, Clone)]
+pub struct PlainScene {
+    /// Background patch.
+    pub mesh: Mesh,
+    /// Material of the body.
+    pub material: Material,
+    /// Plane state.
+    pub plane: Plane,
+    /// Mass matrix.
+    pub mass: Mass,
+    /// Layout of the points.
+    pub layout: Layout,
+    /// Points per span and direction.
+    pub points: usize,
+    /// Sides that are held, by component.
+    pub held: Vec<(Side, [bool; 2])>,
+}
+
+/// Rollers on all four sides of a rectangle.
+pub const ROLLERS: [(Side, [bool; 2]); 4] = [
+    (Side::Left, [true, false]),
+    (Side::Right, [true, false]),
+    (Side::Bottom, [false, true]),
+    (Side::Top, [false, true]),
+];
+
+impl PlainScene {
+    /// The scene, in the total frame with small strains.
+    pub fn scene(self) -> Scene {
+        let shape = match self.mesh.geometry {
+            None => Shape::Rectangle { min: self.mesh.origin(), max: self.mesh.end() },
+            Some(_) => Shape::Patch,
+        };
+        let body = Body {
+            name: "body".into(),
+            material: "material".into(),
+            shape,
+            particles_per_cell: [self.points; 2],
+            layout: self.layout,
+            velocity: [0.0; 2],
+            angular_velocity: 0.0,
+            rigid: false,
+            tractions: vec![],
+            cracks: vec![],
+        };
+        let boundary = |(side, fix)| Boundary { side, fix, velocity: [0.0; 2] };
+        Scene {
+            title: String::new(),
+            mesh: self.mesh,
+            analysis: Analysis {
+                plane: self.plane,
+                thickness: 1.0,
+                frame: Frame::Total,
+                kinematics: Kinematics::Small,
+                end_time: 1.0,
+                time_step: TimeStep::Auto,
+                safety: 0.5,
+                transfer: Transfer::Flip,
+                mass: self.mass,
+                gravity: [0.0; 2],
+            },
+            solver: SolverSettings { phase_field_tolerance: 1e-14, phase_field_solver: PhaseFieldSolver::Cholesky },
+            materials: [("material".to_string(), self.material)].into(),
+            bodies: vec![body],
+            contact: None,
+            boundaries: self.held.into_iter().map(boundary).collect(),
+            output: Output { samples: 1, frames: vec![] },
+        }
+    }
+}
