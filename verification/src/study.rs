@@ -7,10 +7,13 @@ mod basis;
 mod compressive_step;
 mod constant_stress;
 mod convergence;
+mod crack_profile;
 mod homogeneous_state;
 mod nurbs;
+mod pulse;
 mod rotation;
 pub mod scene;
+mod vibration;
 
 use thiserror::Error;
 
@@ -72,13 +75,16 @@ pub enum StudyError {
 type Study = fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>;
 
 /// Studies other than `scene`, by name.
-pub const STUDIES: [(&str, Study); 7] = [
+pub const STUDIES: [(&str, Study); 10] = [
     ("basis", basis::study),
     ("constant-stress", constant_stress::study),
     ("homogeneous-state", homogeneous_state::study),
     ("compressive-step", compressive_step::study),
     ("nurbs", nurbs::study),
     ("convergence", convergence::study),
+    ("vibration", vibration::study),
+    ("pulse", pulse::study),
+    ("crack-profile", crack_profile::study),
     ("rotation", rotation::study),
 ];
 

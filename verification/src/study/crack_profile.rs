@@ -1,0 +1,82 @@
+//! The phase field of one crack, c = 0 on a line, against its closed form `c = 1 − exp(−|x|/(2 l0))` of energy Gc.
+//!
+//! The line lies on knots repeated p times, where splines are continuous and no more, as the profile is. With
+//! `e = 1 − c` the surface energy is `Gc/(4 l0) eᵀ (M + 4 l0² D) e` on the matrices of the phase field.
+
+use fisura::assembly::{Constant, Form, add_form};
+use fisura::cholesky::SparseCholesky;
+use fisura::lattice::Lattice;
+use fisura::patch::Patch;
+use fisura::scene::{Layout, Mass, Material, Mesh, Plane};
+use fisura::stencil::Stencil;
+
+use super::{Findings, StudyError};
+use crate::case::Case;
+use crate::expand::CaseScene;
+use crate::plain_scene::PlainScene;
+use crate::record::{Reference, ReferenceKind};
+
+/// Length scale l0, m.
+const LENGTH: f64 = 1.0;
+/// Half width and height of the body, in l0: exp(−12) of the profile is cut off.
+const HALF_WIDTH: usize = 24;
+const HEIGHT: f64 = 2.0;
+
+pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    for degree in [2, 3] {
+        for per_length in [1, 2] {
+            let (energy, error) = crack(degree, per_length)?;
+            let variant = format!("p={degree}, h=l0/{per_length}");
+            let one = Reference { value: Some(1.0), kind: ReferenceKind::Exact, source: "AT2 in one dimension".into() };
+            findings.add(&variant, "surface energy of the crack over Gc", energy, Some(one));
+            findings.add(&variant, "phase field, largest error at a control line of its knots", error, None);
+        }
+    }
+    Ok(findings)
+}
+
+/// Energy per unit of length over Gc, and the largest error of c at a knot.
+fn crack(degree: usize, per_length: usize) -> Result<(f64, f64), StudyError> {
+    let half = HALF_WIDTH * per_length;
+    let at = |i: usize| (i as f64 - half as f64) * LENGTH / per_length as f64;
+    let mut x = vec![at(0); degree];
+    for i in 0..=2 * half {
+        x.extend(vec![at(i); if i == half { degree } else { 1 }]);
+    }
+    x.extend(vec![at(2 * half); degree]);
+    let rows = Mesh::uniform([degree; 2], [0.0; 2], [1.0, HEIGHT], [1, 2]).knots[1].clone();
+    let mesh = Mesh { degree: [degree; 2], knots: [x, rows], geometry: None };
+    let scene = PlainScene {
+        mesh,
+        material: Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None },
+        plane: Plane::Strain,
+        mass: Mass::Lumped,
+        layout: Layout::Gauss,
+        points: degree + 1,
+        held: vec![],
+    }
+    .scene();
+    let patch = Patch::new(&scene.mesh);
+    let lattice = Lattice::new(&patch, &scene.bodies[0]);
+    let grid = lattice.grid;
+    let mut matrix = Stencil::zeros(grid, lattice.degree);
+    add_form(&mut matrix, &lattice, Form::Mass, &Constant(1.0));
+    add_form(&mut matrix, &lattice, Form::Diffusion, &Constant(4.0 * LENGTH * LENGTH));
+    // The one column of control points that decides the field on x = 0.
+    let middle = (grid.columns - 1) / 2;
+    let held: Vec<usize> = (0..grid.rows).map(|row| grid.index(middle, row)).collect();
+    let factor = SparseCholesky::default().factor(&matrix, &held);
+    let factor = factor.ok_or_else(|| StudyError::Other("the matrix is not positive definite".into()))?;
+    let mut phase = grid.zeros();
+    factor.solve(&lattice.integrate(|_, _, _| 1.0), &mut phase);
+    let (mut broken, mut image) = (grid.zeros(), grid.zeros());
+    grid.indices().for_each(|at| broken[at] = 1.0 - phase[at]);
+    let energy = matrix.apply(&broken, &mut image) / (4.0 * LENGTH) / HEIGHT;
+    let exact = |x: f64| 1.0 - (-x.abs() / (2.0 * LENGTH)).exp();
+    let error = |i: usize| {
+        let value = patch.evaluate(&phase, [at(i), 0.5 * HEIGHT]).map_or(f64::NAN, |v| v.value);
+        (value - exact(at(i))).abs()
+    };
+    Ok((energy, (0..=2 * half).map(error).fold(0.0, f64::max)))
+}

@@ -1,0 +1,139 @@
+//! Free vibration of a bar over many periods: what velocity Verlet conserves and what only oscillates.
+//!
+//! The bar stands between rollers (nu = 0) and starts from its first mode at full speed. The staggered energy
+//! `½ vᵀ M v − dt²/8 aᵀ M a + U` is constant; at whole steps the energy `½ vᵀ M v + U` oscillates by `(ω dt)²/4` from peak
+//! to peak, and does not drift. Drift is the difference of the means over the first and the second half of the run, both
+//! with a window that suppresses the oscillation itself.
+
+use std::sync::Arc;
+
+use fisura::forcing::{Forcing, VolumeLoad};
+use fisura::projection::Projection;
+use fisura::scene::{Layout, Mass, Material, Mesh, Plane};
+use fisura::total_frame::TotalFrame;
+
+use super::{Findings, StudyError};
+use crate::case::Case;
+use crate::expand::CaseScene;
+use crate::plain_scene::{PlainScene, ROLLERS};
+use crate::record::{Reference, ReferenceKind};
+
+const SPANS: usize = 16;
+const PERIODS: f64 = 100.0;
+/// Time step over the critical one.
+const SAFETY: f64 = 0.2;
+
+/// No loads.
+#[derive(Debug)]
+struct Free;
+
+impl Forcing for Free {
+    fn volume(&self, _position: [f64; 2], _time: f64) -> VolumeLoad {
+        VolumeLoad::default()
+    }
+}
+
+pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    for degree in 1..=3 {
+        for (mass, word) in [(Mass::Consistent, "consistent"), (Mass::Lumped, "lumped")] {
+            let energies = vibrate(degree, mass)?;
+            let variant = format!("p={degree}, {word} mass");
+            let quarter =
+                Reference { value: Some(0.25), kind: ReferenceKind::Theory, source: "velocity Verlet".into() };
+            let oscillation = "energy at whole steps, oscillation over (omega dt)^2";
+            findings.add(&variant, oscillation, energies.oscillation(), Some(quarter));
+            findings.add(&variant, "energy at whole steps, relative drift", energies.drift(), None);
+            findings.add(&variant, "staggered energy, relative spread", energies.spread(), None);
+        }
+    }
+    Ok(findings)
+}
+
+/// Energies at whole steps and staggered, and the square of the phase per step.
+struct Energies {
+    whole: Vec<f64>,
+    staggered: Vec<f64>,
+    phase_squared: f64,
+}
+
+fn vibrate(degree: usize, mass: Mass) -> Result<Energies, StudyError> {
+    let height = 2.0 / SPANS as f64;
+    let scene = PlainScene {
+        mesh: Mesh::uniform([degree; 2], [0.0; 2], [1.0, height], [SPANS, 2]),
+        material: Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None },
+        plane: Plane::Strain,
+        mass,
+        layout: Layout::Gauss,
+        points: degree + 1,
+        held: ROLLERS.to_vec(),
+    }
+    .scene();
+    let broken = |_| StudyError::Other("no phase field is expected".into());
+    let mut frame = TotalFrame::new(&scene).map_err(broken)?;
+    let zeros = || frame.lattice().grid.zeros();
+    let held = frame.constraints().held(0);
+    let projection = Projection::new(frame.lattice(), &held)
+        .ok_or_else(|| StudyError::Other("the points do not determine a projection".into()))?;
+    let velocity = [projection.project(|[x, _]| (std::f64::consts::PI * x).sin()), zeros()];
+    let still = [zeros(), zeros()];
+    drop(projection);
+    frame.start_from(still, velocity, Arc::new(Free)).map_err(broken)?;
+    let dt = SAFETY * frame.critical_step();
+    let phase = std::f64::consts::PI * dt;
+    let steps = (PERIODS * std::f64::consts::TAU / phase).ceil() as usize;
+    let mut energies = Energies { whole: vec![], staggered: vec![], phase_squared: phase * phase };
+    for _ in 0..steps {
+        frame.step(dt).map_err(broken)?;
+        let sample = frame.sample(dt);
+        energies.whole.push(sample.kinetic + sample.elastic);
+        energies.staggered.push(sample.kinetic - sample.stagger + sample.elastic);
+    }
+    Ok(energies)
+}
+
+/// Largest minus smallest, over the first.
+fn relative_spread(values: &[f64]) -> f64 {
+    let (low, high) = values.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &e| (l.min(e), h.max(e)));
+    (high - low) / values[0]
+}
+
+/// Mean with a Blackman–Harris window, whose side lobes lie 92 dB below its main one.
+fn windowed_mean(values: &[f64]) -> f64 {
+    let weight = |i: usize| {
+        let t = std::f64::consts::TAU * (i as f64 + 0.5) / values.len() as f64;
+        0.35875 - 0.48829 * t.cos() + 0.14128 * (2.0 * t).cos() - 0.01168 * (3.0 * t).cos()
+    };
+    let (sum, total) = values.iter().enumerate().fold((0.0, 0.0), |(s, w), (i, e)| (s + weight(i) * e, w + weight(i)));
+    sum / total
+}
+
+impl Energies {
+    fn oscillation(&self) -> f64 {
+        relative_spread(&self.whole) / self.phase_squared
+    }
+
+    fn spread(&self) -> f64 {
+        relative_spread(&self.staggered)
+    }
+
+    fn drift(&self) -> f64 {
+        let (first, second) = self.whole.split_at(self.whole.len() / 2);
+        let [first, second] = [first, second].map(windowed_mean);
+        (second - first).abs() / first
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_hides_the_oscillation_and_shows_the_drift() {
+        let energy =
+            |growth: f64| (0..5000).map(move |i| 1.0 + 1e-3 * (0.3 * f64::from(i)).cos() + growth * f64::from(i));
+        let energies = |growth| Energies { whole: energy(growth).collect(), staggered: vec![], phase_squared: 1.0 };
+        assert!(energies(0.0).drift() < 1e-9);
+        approx::assert_relative_eq!(energies(1e-8).drift(), 2500.0 * 1e-8, max_relative = 1e-3);
+    }
+}
