@@ -13,7 +13,7 @@ const SIZE: [f64; 2] = [1.0, 0.8];
 
 /// Mesh of a family with `cells` spans per direction, and the shape of a body that fills it. Random families have a
 /// multiple of [`COARSE`] spans.
-pub(super) fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<(Mesh, Shape), NurbsError> {
+pub fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<(Mesh, Shape), NurbsError> {
     let rectangle = Shape::Rectangle { min: [0.0; 2], max: SIZE };
     let parts = cells.div_ceil(COARSE);
     match family {
