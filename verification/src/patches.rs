@@ -12,7 +12,10 @@ const COARSE: usize = 3;
 const SIZE: [f64; 2] = [1.0, 0.8];
 
 /// Mesh of a family with `cells` spans per direction, and the shape of a body that fills it. Random families have a
-/// multiple of [`COARSE`] spans.
+/// multiple of three spans.
+///
+/// # Errors
+/// If a family cannot have that degree, such as arcs of degree 1.
 pub fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<(Mesh, Shape), NurbsError> {
     let rectangle = Shape::Rectangle { min: [0.0; 2], max: SIZE };
     let parts = cells.div_ceil(COARSE);
@@ -26,6 +29,7 @@ pub fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<(Mesh, S
         PatchFamily::Bent => general(refined(&bent()?, degree, cells)?),
         PatchFamily::Annulus => general(refined(&NurbsPatch::quarter_annulus(1.0, 2.0)?, degree, cells)?),
         PatchFamily::Sector => general(refined(&NurbsPatch::quarter_annulus(1.0, 4.0)?, degree, cells)?),
+        PatchFamily::Weighted => general(weighted(degree)?.subdivide(cells)?),
         PatchFamily::Random => general(random(degree)?.subdivide(parts)?),
     }
 }
@@ -60,6 +64,15 @@ fn bent() -> Result<NurbsPatch, NurbsError> {
         [1.0, 0.9],
     ];
     NurbsPatch::new([2, 2], [piece, piece], points, vec![1.0; 9])
+}
+
+/// The curved piece raised to `degree`, with weights from 1/2 to 2 drawn on its one span.
+fn weighted(degree: usize) -> Result<NurbsPatch, NurbsError> {
+    let piece = refined(&bent()?, degree, 1)?;
+    let mut random = Random(17);
+    let weights = piece.weights().iter().map(|_| 2f64.powf(random.between(-1.0, 1.0))).collect();
+    let knots = piece.spaces().each_ref().map(|space| space.knot_vector());
+    NurbsPatch::new([degree; 2], knots, piece.control_points().to_vec(), weights)
 }
 
 /// The rectangle on random knots, with random weights, its inner control points moved at random.
@@ -126,8 +139,8 @@ mod tests {
     /// The geometry of a family is one for all refinements: corners and area stay.
     #[test]
     fn refinement_keeps_the_geometry() {
-        use PatchFamily::{Annulus, Bent, Random, Sector};
-        for family in [Bent, Annulus, Sector, Random] {
+        use PatchFamily::{Annulus, Bent, Random, Sector, Weighted};
+        for family in [Bent, Annulus, Sector, Weighted, Random] {
             for degree in 2..=4 {
                 let middle = [3, 6].map(|cells| {
                     let patch = mesh(family, degree, cells).unwrap().0.nurbs().unwrap().unwrap();

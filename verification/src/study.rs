@@ -7,7 +7,9 @@ mod basis;
 mod compressive_step;
 mod constant_stress;
 mod convergence;
+mod eigenfrequencies;
 mod homogeneous_state;
+mod linear_field;
 mod nurbs;
 mod rotation;
 pub mod scene;
@@ -72,7 +74,7 @@ pub enum StudyError {
 type Study = fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>;
 
 /// Studies other than `scene`, by name.
-pub const STUDIES: [(&str, Study); 7] = [
+pub const STUDIES: [(&str, Study); 9] = [
     ("basis", basis::study),
     ("constant-stress", constant_stress::study),
     ("homogeneous-state", homogeneous_state::study),
@@ -80,6 +82,8 @@ pub const STUDIES: [(&str, Study); 7] = [
     ("nurbs", nurbs::study),
     ("convergence", convergence::study),
     ("rotation", rotation::study),
+    ("eigenfrequencies", eigenfrequencies::study),
+    ("linear-field", linear_field::study),
 ];
 
 /// The study of that name.

@@ -5,7 +5,7 @@
 //!
 //! [convergence]
 //! problem = "elastostatics"     # an exact solution, or "projection"
-//! patch = "annulus"             # "square", "graded", "bent", "annulus", "sector", "random"
+//! patch = "annulus"             # "square", "graded", "bent", "annulus", "sector", "weighted", "random"
 //! degrees = [2, 3]
 //! cells = [4, 8, 16, 32]        # spans per direction
 //! ```
@@ -28,6 +28,8 @@ pub enum PatchFamily {
     Annulus,
     /// The quarter annulus between the radii 1 and 4 m about a hole.
     Sector,
+    /// The polynomial patch's control points with weights from 1/2 to 2, drawn once on its one span.
+    Weighted,
     /// The rectangle with random weights, inner control points and knots, drawn once on the coarsest mesh.
     Random,
 }
@@ -114,6 +116,7 @@ pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
         ("bent", PatchFamily::Bent),
         ("annulus", PatchFamily::Annulus),
         ("sector", PatchFamily::Sector),
+        ("weighted", PatchFamily::Weighted),
         ("random", PatchFamily::Random),
     ];
     let patch = fields.or("patch", PatchFamily::Square, |i| i.choice(&families));

@@ -16,10 +16,11 @@ use fisura::total_frame::TotalFrame;
 use fisura::validate::validate;
 
 use super::errors::{ErrorPoints, Squares};
-use super::patches;
+
 use super::problem::{Kind, Manufactured, Problem};
 use crate::case::convergence::{ConvergenceSetup, Loading};
 use crate::convergence::Level;
+use crate::patches;
 use crate::study::StudyError;
 
 /// Control values of a vector field, by component.
