@@ -170,7 +170,10 @@ fn too_few_points_are_refused() {
                 let (_, samples) = run(&Scene { analysis: Analysis { end_time: 1e-7, ..scene.analysis }, ..scene });
                 assert!(samples.iter().all(|s| s.closure.is_finite()));
             } else {
-                assert_refused(&scene, &["1 points per cell in direction x", "singular", &format!("give {} ", degree + 1)]);
+                assert_refused(
+                    &scene,
+                    &["1 points per cell in direction x", "singular", &format!("give {} ", degree + 1)],
+                );
             }
         }
         let one = consistent(elastic_scene(degree, [0.01, 0.008], [1, 1]), degree);

@@ -126,7 +126,8 @@ fn the_bound_holds_for_the_consistent_mass() {
 /// From an independent one-dimensional code; 1 %, half a unit of its last digit being 0.2 %.
 #[test]
 fn table_of_bars_with_consistent_mass() {
-    let table = [(1, false, 0.577), (2, false, 0.431), (3, false, 0.291), (1, true, 0.586), (2, true, 0.632), (3, true, 0.524)];
+    let table =
+        [(1, false, 0.577), (2, false, 0.431), (3, false, 0.291), (1, true, 0.586), (2, true, 0.632), (3, true, 0.524)];
     for (degree, held, expected) in table {
         let cells = 16; // as the table: held, the number still depends on it
         let mut scene = elastic_scene(1, [0.04, 1.0], [cells, 1]);

@@ -351,7 +351,10 @@ fn check_surface(name: &str, nurbs: &NurbsPatch, points: usize, tolerance: f64) 
             length += point.length;
             // A little inwards lies on the patch, as much outwards does not.
             let moved = |step: f64| nurbs.locate([x + step * nx, y + step * ny], None).is_ok();
-            assert!(n % 97 > 0 || (moved(-1e-7) && !moved(1e-7)), "{name}: the normal at ({x}, {y}) on the {side:?} side");
+            assert!(
+                n % 97 > 0 || (moved(-1e-7) && !moved(1e-7)),
+                "{name}: the normal at ({x}, {y}) on the {side:?} side"
+            );
         }
     }
     assert!(closed[0].hypot(closed[1]) <= tolerance * length, "{name}: not closed by {closed:?}");

@@ -132,6 +132,7 @@ const BROKEN: &[Broken] = &[
     ("subdivide = 16", "cells = [4, 4]", 15, "mesh.cells", &["does not go with a mesh with control_points", "subdivide"]),
     ("subdivide = 16", "size = [1, 1]", 15, "mesh.size", &["does not go with", "remove it"]),
     ("subdivide = 16", "annulus = { inner_radius = 1, outer_radius = 2 }", 15, "mesh.annulus", &["does not go with a mesh with control_points"]),
+    ("end_time = \"10 us\"", "end_time = \"10 us\"\nframe = \"updated\"", 19, "analysis.frame", &["updated frame is not supported yet", "use frame = \\\"total\\\""]),
     ("degree = 2", "degree = [2, 3]", 7, "mesh.knots.1", &["too few", "at least 8"]),
     ("length_scale = \"10 cm\"", "length_scale = \"1 cm\"", 26, "material.glass.fracture.length_scale", &["cannot resolve", "subdivide"]),
     ("shape = \"patch\"", "shape = { disk = { center = [0.9, 0.8], radius = 0.2 } }", 31, "body.0.shape", &["lies outside the patch", "shape = \\\"patch\\\""]),

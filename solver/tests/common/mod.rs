@@ -189,8 +189,17 @@ pub fn random_patch(degree: [usize; 2], spans: [usize; 2], seed: u64) -> NurbsPa
 /// A biquadratic square with curved sides, raised to `degree` and cut into `parts` per direction; polynomial.
 pub fn bent_patch(degree: usize, parts: usize) -> NurbsPatch {
     let piece: &[f64] = &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-    let points =
-        [[0.0, 0.0], [0.5, 0.15], [1.0, 0.0], [-0.1, 0.4], [0.55, 0.45], [1.15, 0.35], [0.1, 0.8], [0.5, 0.7], [1.0, 0.9]];
+    let points = [
+        [0.0, 0.0],
+        [0.5, 0.15],
+        [1.0, 0.0],
+        [-0.1, 0.4],
+        [0.55, 0.45],
+        [1.15, 0.35],
+        [0.1, 0.8],
+        [0.5, 0.7],
+        [1.0, 0.9],
+    ];
     let mut patch = NurbsPatch::new([2, 2], [piece, piece], points.to_vec(), vec![1.0; 9]).expect("not folded");
     for direction in 0..2 {
         while patch.spaces()[direction].degree() < degree {

@@ -41,7 +41,8 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
             findings.add(&name, "its gradient, largest error at a point", gradient, None);
             // Random families have a multiple of three spans.
             let fine = on(if family == PatchFamily::Random { 9 } else { 8 })?;
-            let quantity = |points: &str| format!("equilibrium residual of a linear field on 8 or 9 spans, {points} points");
+            let quantity =
+                |points: &str| format!("equilibrium residual of a linear field on 8 or 9 spans, {points} points");
             findings.add(&name, &quantity("p + 6"), residual(&fine, degree + 6)[0], None);
             findings.add(&name, &quantity("3"), residual(&fine, 3)[0], None);
             for points in [2, 3, 4] {
@@ -57,7 +58,11 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
                     });
                 }
                 let name = format!("{words}, p={degree}, {points}x{points} points");
-                curves.push(Curve { name, levels, orders: vec![Some(2.0 * points as f64 - degree as f64), Some(2.0 * points as f64)] });
+                curves.push(Curve {
+                    name,
+                    levels,
+                    orders: vec![Some(2.0 * points as f64 - degree as f64), Some(2.0 * points as f64)],
+                });
             }
         }
     }
@@ -65,11 +70,13 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
         suite: case.suite.clone(),
         stem: format!("{}-{}", case.suite, case.name),
         title: "Equilibrium of a linear field on rational patches".into(),
-        caption: "Largest nodal force left over, relative to the largest of the tractions, and its work on a smooth field, \
+        caption:
+            "Largest nodal force left over, relative to the largest of the tractions, and its work on a smooth field, \
                   relative to that of the tractions; h in parameters."
-            .into(),
+                .into(),
         deviations: case.deviations.clone(),
-        theory: "n Gauss points per direction integrate smooth integrands with order 2 n, less p for single functions".into(),
+        theory: "n Gauss points per direction integrate smooth integrands with order 2 n, less p for single functions"
+            .into(),
         refined: Refined::Mesh { dimensions: 2 },
         norms: ["equilibrium residual of a linear field", "work of the residual on a smooth field"]
             .map(|quantity| Norm { quantity: quantity.into(), unit: "1".into(), floor: FLOOR })
