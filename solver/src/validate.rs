@@ -84,8 +84,8 @@ fn unsupported(scene: &Scene, findings: &mut Findings) {
     }
     if scene.analysis.frame == Frame::Updated && scene.mesh.geometry.is_some() {
         refuse(
-            "mesh.control_points",
-            &"a general patch in the updated frame is",
+            "analysis.frame",
+            &"a mesh with control_points or annulus in the updated frame is",
             "use frame = \"total\", or a rectangle",
         );
     }

@@ -26,8 +26,8 @@ fn depth_of_one_value(path: &str) -> usize {
     let key = path.rsplit('.').next().unwrap_or(path);
     match key {
         "cells" | "origin" | "size" | "particles_per_cell" | "velocity" | "gravity" | "fix" | "frames" | "min"
-        | "max" | "center" | "from" | "to" | "stress" => 1,
-        "knots" | "points" | "segment" => 2,
+        | "max" | "center" | "from" | "to" | "stress" | "weights" | "angles" => 1,
+        "knots" | "points" | "segment" | "control_points" => 2,
         "minus" => usize::MAX,
         _ => 0,
     }

@@ -7,6 +7,7 @@ pub mod expand;
 pub mod figures;
 pub mod history;
 pub mod measure;
+pub mod patches;
 pub mod plain_scene;
 pub mod record;
 pub mod reference;

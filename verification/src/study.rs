@@ -8,7 +8,9 @@ mod compressive_step;
 mod constant_stress;
 mod convergence;
 mod crack_profile;
+mod eigenfrequencies;
 mod homogeneous_state;
+mod linear_field;
 mod nurbs;
 mod pulse;
 mod rotation;
@@ -75,7 +77,7 @@ pub enum StudyError {
 type Study = fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>;
 
 /// Studies other than `scene`, by name.
-pub const STUDIES: [(&str, Study); 10] = [
+pub const STUDIES: [(&str, Study); 12] = [
     ("basis", basis::study),
     ("constant-stress", constant_stress::study),
     ("homogeneous-state", homogeneous_state::study),
@@ -86,6 +88,8 @@ pub const STUDIES: [(&str, Study); 10] = [
     ("pulse", pulse::study),
     ("crack-profile", crack_profile::study),
     ("rotation", rotation::study),
+    ("eigenfrequencies", eigenfrequencies::study),
+    ("linear-field", linear_field::study),
 ];
 
 /// The study of that name.

@@ -128,7 +128,7 @@ const BROKEN: &[Broken] = &[
     ("size   = [0.1, 0.04]", "size = [0.1, -0.04]", 6, "mesh.size.1", &["positive"]),
     ("cells  = [400, 160]", "cells = [400, 0]", 7, "mesh.cells.1", &["0 is out of range", "1000000"]),
     ("cells  = [400, 160]", "", 3, "mesh.cells", &["missing", "cells = [100, 40]"]),
-    ("cells  = [400, 160]", "weights = [1]", 7, "mesh.weights", &["not supported yet", "origin, size and cells (or knots)"]),
+    ("cells  = [400, 160]", "weights = [1]", 7, "mesh.weights", &["does not go with a rectangle", "origin, size, cells, knots"]),
     ("cells  = [400, 160]", "cells = [4, 4]\nknots = [[0, 0, 1, 1], [0, 1]]", 7, "mesh.cells", &["remove one"]),
     ("cells  = [400, 160]", "knots = [[1, 1, 0, 0], [0, 1]]", 7, "mesh.knots", &["increasing"]),
     ("plane      = \"strain\"", "plane = \"strian\"", 10, "analysis.plane", &["did you mean \"strain\"", "\"stress\""]),
@@ -186,7 +186,6 @@ const BROKEN: &[Broken] = &[
     // not yet
     ("# [contact] with friction = 0.65 stands here once bodies can meet", "[contact]\nfriction = 0.65", 54, "contact", &["not supported yet", "remove"]),
     ("kinematics = \"small\"", "kinematics = \"finite\"", 13, "analysis.kinematics", &["not supported yet", "small"]),
-    ("mass       = \"lumped\"", "mass = \"consistent\"", 18, "analysis.mass", &["not supported yet", "lumped"]),
     ("rigid    = false", "rigid = true", 42, "body.0.rigid", &["not supported yet", "false"]),
 ];
 
@@ -205,6 +204,24 @@ fn a_broken_scene_says_where_and_what_would_help() {
         }
     }
     assert!(missed.is_empty(), "{}", missed.join("\n"));
+}
+
+#[test]
+fn the_consistent_mass_is_refused_where_it_cannot_be() {
+    let consistent = edited("mass       = \"lumped\"", "mass = \"consistent\"");
+    assert!(SceneFile::parse("plate.toml", &consistent, &[]).is_ok());
+    for (change, words) in [
+        ("analysis.frame=updated", ["frame = \"updated\"", "frame = \"total\""]),
+        ("body.0.particles_per_cell=1", ["1 points per cell", "give 3 particles_per_cell"]),
+        ("body.0.shape.rectangle.max.1=0.0399", ["cuts spans", "end at knots of the mesh"]),
+    ] {
+        // What else the change breaks stands on lines of its own.
+        let error = SceneFile::parse("plate.toml", &consistent, &overrides(&[change])).unwrap_err().to_string();
+        let found = error.lines().any(|l| {
+            l.starts_with("plate.toml:18:") && l.contains(" analysis.mass: ") && words.iter().all(|w| l.contains(w))
+        });
+        assert!(found, "{change}: {error}");
+    }
 }
 
 #[test]

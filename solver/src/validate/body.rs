@@ -135,8 +135,9 @@ fn resolution(body: &Body, fracture: &Fracture, mesh: &Mesh, findings: &mut Find
     let sizes = format!("cells of h = {:.4} mm against l0 = {:.4} mm", 1e3 * h, 1e3 * l0);
     let key = format!("material.{}.fracture.length_scale", body.material);
     if h > 4.0 * l0 * (1.0 + TOLERANCE) {
+        let finer = if mesh.geometry.is_some() { "subdivide or mesh.cells" } else { "cells" };
         let remedy = format!(
-            "h may be at most l0, and never above 4 l0: refine mesh.cells {:.0} times, or raise length_scale",
+            "h may be at most l0, and never above 4 l0: refine mesh.{finer} {:.0} times, or raise length_scale",
             (h / l0 - TOLERANCE).ceil()
         );
         findings.error(key, format!("the mesh cannot resolve a crack: {sizes}"), remedy);
@@ -155,7 +156,9 @@ fn check_traction(key: &str, traction: &Traction, body: &Body, mesh: &Mesh, find
         _ if mesh.geometry.is_some() => {
             let remedy =
                 "give the body shape = \"patch\" and the traction edge = \"left\", \"right\", \"bottom\" or \"top\"";
-            findings.error(key, "on a patch with control_points only its sides can be loaded", remedy);
+            let form = if matches!(traction.edge, Edge::Segment(_)) { "segment" } else { "edge" };
+            let message = "on a patch with control_points or annulus only its sides can be loaded";
+            findings.error(format!("{key}.{form}"), message, remedy);
         }
         Edge::Side(_) if matches!(body.shape, Shape::Rectangle { .. }) => {}
         Edge::Side(side) => {

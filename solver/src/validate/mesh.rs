@@ -24,12 +24,12 @@ pub(super) fn check(mesh: &Mesh, findings: &mut Findings) {
     if findings.errors.is_empty()
         && let Some(Err(error)) = mesh.nurbs()
     {
-        geometry(&error, findings);
+        geometry(&error, mesh, findings);
     }
 }
 
 /// What is wrong with a patch, by key, and what would be right.
-fn geometry(error: &NurbsError, findings: &mut Findings) {
+fn geometry(error: &NurbsError, mesh: &Mesh, findings: &mut Findings) {
     use NurbsError::{ControlPointCount, ControlPointNotFinite, Folded, Weight, WeightCount};
     let (key, remedy) = match error {
         ControlPointCount { columns, rows, .. } => (
@@ -39,11 +39,15 @@ fn geometry(error: &NurbsError, findings: &mut Findings) {
         ControlPointNotFinite { .. } => ("mesh.control_points", "give finite coordinates".into()),
         Folded { .. } => (
             "mesh.control_points",
-            "move or reorder the control points: rows must not cross, and run counter-clockwise around the patch"
+            "move or reorder the control points: seen along a row the next row lies to its left, and rows do not cross"
                 .into(),
         ),
         WeightCount { expected, .. } => ("mesh.weights", format!("give {expected} weights, one per control point")),
-        Weight { .. } => ("mesh.weights", "give weights above zero; 1 everywhere for a polynomial patch".into()),
+        Weight { column, row, .. } => {
+            let columns = mesh.knots[0].len() - mesh.degree[0] - 1;
+            let remedy = "give weights above zero; 1 everywhere for a polynomial patch";
+            return findings.error(format!("mesh.weights.{}", row * columns + column), error.to_string(), remedy);
+        }
         _ => ("mesh.knots", "give open knot vectors for these degrees".into()),
     };
     findings.error(key, error.to_string(), remedy);

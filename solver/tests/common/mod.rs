@@ -4,8 +4,10 @@
 use fisura::Simulation;
 use fisura::energy::Sample;
 use fisura::material::{ElasticModuli, FractureModel};
+use fisura::nurbs::NurbsPatch;
 use fisura::patch::ControlGrid;
 use fisura::scene::*;
+use fisura::spline::SplineSpace;
 
 pub fn glass() -> Material {
     Material { young_modulus: 32e9, poisson_ratio: 0.2, density: 2450.0, fracture: None }
@@ -148,4 +150,80 @@ pub fn graded_knots(degree: usize, spans: usize, repeated: &[usize]) -> Vec<f64>
         knots.extend(std::iter::repeat_n(x, times));
     }
     knots
+}
+
+/// An open knot vector from 0 to 1 whose spans differ by up to a factor of 100; every third inner knot is repeated.
+pub fn random_knots(random: &mut Random, degree: usize, spans: usize) -> Vec<f64> {
+    let lengths: Vec<f64> = (0..spans).map(|_| 10f64.powf(1.0 + random.next())).collect();
+    let total: f64 = lengths.iter().sum();
+    let mut knots = vec![0.0; degree + 1];
+    let mut sum = 0.0;
+    for (n, length) in lengths[..spans - 1].iter().enumerate() {
+        sum += length / total;
+        knots.extend(vec![sum; if n % 3 == 2 { degree.min(2) } else { 1 }]);
+    }
+    knots.extend(vec![1.0; degree + 1]);
+    knots
+}
+
+/// A bent square of about 1 m on random knots with weights from 0.1 to 10; bend and weights are tamed until neither it nor
+/// its halves are folded.
+pub fn random_patch(degree: [usize; 2], spans: [usize; 2], seed: u64) -> NurbsPatch {
+    let mut random = Random::new(seed);
+    let knots = [0, 1].map(|d| random_knots(&mut random, degree[d], spans[d]));
+    let [gx, gy] = [0, 1].map(|d| SplineSpace::new(degree[d], &knots[d]).greville());
+    let logarithms: Vec<f64> = (0..gx.len() * gy.len()).map(|_| random.next()).collect();
+    for tame in [1.0, 0.5, 0.25, 0.1] {
+        let bend = |u: f64, v: f64| [u + 0.3 * tame * v * v, v + 0.4 * tame * u * (1.0 - u) + 0.2 * tame * u * v];
+        let control = gy.iter().flat_map(|&v| gx.iter().map(move |&u| bend(u, v))).collect();
+        let weights = logarithms.iter().map(|log| 10f64.powf(tame * log)).collect();
+        if let Ok(patch) = NurbsPatch::new(degree, [&knots[0], &knots[1]], control, weights)
+            && patch.subdivide(2).is_ok()
+        {
+            return patch;
+        }
+    }
+    panic!("seed {seed} folds")
+}
+
+/// A biquadratic square with curved sides, raised to `degree` and cut into `parts` per direction; polynomial.
+pub fn bent_patch(degree: usize, parts: usize) -> NurbsPatch {
+    let piece: &[f64] = &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+    let points = [
+        [0.0, 0.0],
+        [0.5, 0.15],
+        [1.0, 0.0],
+        [-0.1, 0.4],
+        [0.55, 0.45],
+        [1.15, 0.35],
+        [0.1, 0.8],
+        [0.5, 0.7],
+        [1.0, 0.9],
+    ];
+    let mut patch = NurbsPatch::new([2, 2], [piece, piece], points.to_vec(), vec![1.0; 9]).expect("not folded");
+    for direction in 0..2 {
+        while patch.spaces()[direction].degree() < degree {
+            patch = patch.elevate(direction).expect("degree up to 4");
+        }
+    }
+    patch.subdivide(parts).expect("not folded")
+}
+
+/// The quarter annulus with radii 1 and 2, of `degree` in both directions and `parts` spans per direction.
+pub fn annulus(degree: usize, parts: usize) -> NurbsPatch {
+    let mut patch = NurbsPatch::quarter_annulus(1.0, 2.0).expect("growing radii");
+    for direction in 0..2 {
+        while patch.spaces()[direction].degree() < degree {
+            patch = patch.elevate(direction).expect("degree up to 4");
+        }
+    }
+    patch.subdivide(parts).expect("not folded")
+}
+
+/// A general patch as a scene: a glass body that is all of it, `points` per span and direction.
+pub fn patch_scene(patch: &NurbsPatch, points: usize) -> Scene {
+    let mut scene = elastic_scene(1, [1.0; 2], [1; 2]);
+    scene.mesh = Mesh::of(patch);
+    scene.bodies[0] = body(Shape::Patch, [points; 2]);
+    scene
 }

@@ -5,7 +5,7 @@
 //!
 //! [convergence]
 //! problem = "elastostatics"     # an exact solution, or "projection"
-//! patch = "annulus"             # "square", "graded", "bent", "annulus", "random"
+//! patch = "annulus"             # "square", "graded", "bent", "annulus", "weighted", "random"
 //! degrees = [2, 3]
 //! cells = [4, 8, 16, 32]        # spans per direction
 //! ```
@@ -26,6 +26,8 @@ pub enum PatchFamily {
     Bent,
     /// The quarter annulus between the radii 1 and 2 m.
     Annulus,
+    /// The polynomial patch's control points with weights from 1/2 to 2, drawn once on its one span.
+    Weighted,
     /// The rectangle with random weights, inner control points and knots, drawn once on the coarsest mesh.
     Random,
 }
@@ -111,6 +113,7 @@ pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
         ("graded", PatchFamily::Graded),
         ("bent", PatchFamily::Bent),
         ("annulus", PatchFamily::Annulus),
+        ("weighted", PatchFamily::Weighted),
         ("random", PatchFamily::Random),
     ];
     let patch = fields.or("patch", PatchFamily::Square, |i| i.choice(&families));

@@ -1,13 +1,13 @@
 //! The patch test: a body under constant boundary tractions has that constant stress everywhere.
 //!
-//! The body is loaded on its four sides with the tractions of a unit stress (xx, yy and xy in turn), through its own
+//! The body, a rectangle or a whole patch, is loaded on its four sides with the tractions of a unit stress (xx, yy and xy in turn), through its own
 //! surface points. The static equilibrium with the body's own operators is solved densely with the three rigid motions
 //! held, and the stress is evaluated at the material points. With points that integrate the products of gradients of
 //! shape functions exactly the error is round-off; equally spaced cubics miss it at the open ends of the knot vector.
 
 use fisura::critical_step::StiffnessOperator;
-use fisura::loads::NodalLoad;
-use fisura::scene::{Edge, Side, Traction};
+use fisura::loads::{NodalLoad, boundary_points};
+use fisura::scene::{Edge, Shape, Side, Traction};
 use fisura::total_frame::TotalFrame;
 use nalgebra::{DMatrix, DVector};
 
@@ -94,6 +94,16 @@ impl<'a> PatchTest<'a> {
         let sides =
             [(Side::Left, [-xx, -xy]), (Side::Right, [xx, xy]), (Side::Bottom, [-xy, -yy]), (Side::Top, [xy, yy])];
         for (side, stress) in sides {
+            if body.shape == Shape::Patch {
+                for point in boundary_points(self.frame.patch(), body, side) {
+                    let [x, y] = point.normal.map(|n| n * point.length);
+                    for &(at, value) in &point.functions {
+                        forces[0][at] += value * (xx * x + xy * y);
+                        forces[1][at] += value * (xy * x + yy * y);
+                    }
+                }
+                continue;
+            }
             let traction = Traction { edge: Edge::Side(side), stress, ramp: None };
             for (at, force) in NodalLoad::new(self.frame.patch(), body, &traction).forces {
                 forces[0][at] += force[0];

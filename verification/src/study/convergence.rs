@@ -4,7 +4,6 @@
 //! unless the case gives another power. Errors are relative, and integrated with an independent, finer quadrature.
 
 mod errors;
-mod patches;
 mod problem;
 mod solve;
 
@@ -122,6 +121,7 @@ fn words_of_patch(family: PatchFamily) -> &'static str {
         PatchFamily::Graded => "graded spans",
         PatchFamily::Bent => "a curved polynomial patch",
         PatchFamily::Annulus => "a quarter annulus",
+        PatchFamily::Weighted => "a curved patch with random weights",
         PatchFamily::Random => "random weights and knots",
     }
 }

@@ -42,7 +42,7 @@ pub(super) fn find(name: &str, plane: Plane, family: PatchFamily) -> Result<Prob
         PatchFamily::Square | PatchFamily::Graded | PatchFamily::Random => {
             vec![(Left, [true, false]), (Right, [true, false]), (Bottom, [false, true]), (Top, [false, true])]
         }
-        PatchFamily::Bent | PatchFamily::Annulus => vec![],
+        PatchFamily::Bent | PatchFamily::Annulus | PatchFamily::Weighted => vec![],
     };
     let (kind, held, end_time) = match name {
         "projection" => (Kind::Projection, vec![], 0.0),

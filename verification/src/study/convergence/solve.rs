@@ -16,10 +16,11 @@ use fisura::validate::validate;
 use nalgebra::DMatrix;
 
 use super::errors::{ErrorPoints, Squares};
-use super::patches;
+
 use super::problem::{Kind, Manufactured, Problem};
 use crate::case::convergence::{ConvergenceSetup, Loading};
 use crate::convergence::Level;
+use crate::patches;
 use crate::plain_scene::PlainScene;
 use crate::study::StudyError;
 

@@ -11,8 +11,11 @@ const COARSE: usize = 3;
 /// The rectangle of the square, graded and random families, m.
 const SIZE: [f64; 2] = [1.0, 0.8];
 
-/// Mesh of a family with `cells` spans per direction. Random families have a multiple of [`COARSE`] spans.
-pub(super) fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<Mesh, NurbsError> {
+/// Mesh of a family with `cells` spans per direction. Random families have a multiple of three spans.
+///
+/// # Errors
+/// If a family cannot have that degree, such as arcs of degree 1.
+pub fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<Mesh, NurbsError> {
     let parts = cells.div_ceil(COARSE);
     match family {
         PatchFamily::Square => Ok(Mesh::uniform([degree; 2], [0.0; 2], SIZE, [cells; 2])),
@@ -23,6 +26,7 @@ pub(super) fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<M
         }
         PatchFamily::Bent => Ok(Mesh::of(&refined(&bent()?, degree, cells)?)),
         PatchFamily::Annulus => Ok(Mesh::of(&refined(&NurbsPatch::quarter_annulus(1.0, 2.0)?, degree, cells)?)),
+        PatchFamily::Weighted => Ok(Mesh::of(&weighted(degree)?.subdivide(cells)?)),
         PatchFamily::Random => Ok(Mesh::of(&random(degree)?.subdivide(parts)?)),
     }
 }
@@ -53,6 +57,15 @@ fn bent() -> Result<NurbsPatch, NurbsError> {
         [1.0, 0.9],
     ];
     NurbsPatch::new([2, 2], [piece, piece], points, vec![1.0; 9])
+}
+
+/// The curved piece raised to `degree`, with weights from 1/2 to 2 drawn on its one span.
+fn weighted(degree: usize) -> Result<NurbsPatch, NurbsError> {
+    let piece = refined(&bent()?, degree, 1)?;
+    let mut random = Random(17);
+    let weights = piece.weights().iter().map(|_| 2f64.powf(random.between(-1.0, 1.0))).collect();
+    let knots = piece.spaces().each_ref().map(|space| space.knot_vector());
+    NurbsPatch::new([degree; 2], knots, piece.control_points().to_vec(), weights)
 }
 
 /// The rectangle on random knots, with random weights, its inner control points moved at random.
@@ -122,8 +135,8 @@ mod tests {
     /// The geometry of a family is one for all refinements: corners and area stay.
     #[test]
     fn refinement_keeps_the_geometry() {
-        use PatchFamily::{Annulus, Bent, Random};
-        for family in [Bent, Annulus, Random] {
+        use PatchFamily::{Annulus, Bent, Random, Weighted};
+        for family in [Bent, Annulus, Weighted, Random] {
             for degree in 2..=4 {
                 let middle = [3, 6].map(|cells| {
                     let patch = mesh(family, degree, cells).unwrap().nurbs().unwrap().unwrap();

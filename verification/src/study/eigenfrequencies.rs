@@ -1,0 +1,139 @@
+//! Lowest frequencies of a bar held at both ends, from the solver's own operators, against `n π c/L`.
+//!
+//! The bar is a strip of unit length, one linear span high, between rollers above and below, with Poisson's ratio zero: what
+//! does not vary over its height is one-dimensional, and shear modes lie far above. The generalised eigenproblem is solved
+//! densely. With the consistent mass frequencies are too high, by order 2 p; with the lumped one too low, by order 2.
+
+use fisura::critical_step::StiffnessOperator;
+use fisura::scene::{
+    Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldSolver, Plane, Scene,
+    Shape, Side, SolverSettings, TimeStep, Transfer,
+};
+use fisura::total_frame::TotalFrame;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use super::{Findings, StudyError};
+use crate::case::Case;
+use crate::convergence::{Convergence, Curve, Level, Norm, Refined};
+use crate::expand::CaseScene;
+
+/// Spans along the bar.
+const MESHES: [usize; 4] = [8, 16, 32, 64];
+const MODES: usize = 3;
+/// Height over length: the lowest shear mode has the frequency 44 c/L, the third mode of the bar 9.4 c/L.
+const HEIGHT: f64 = 0.05;
+/// Relative errors at or below this are round-off: the spectrum spans four decades and the eigenvalues are squares.
+const FLOOR: f64 = 5e-12;
+
+pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    let mut curves = Vec::new();
+    for mass in [Mass::Consistent, Mass::Lumped] {
+        for degree in 1..=3 {
+            let words = if mass == Mass::Consistent { "consistent" } else { "lumped" };
+            let name = format!("{words}, p={degree}");
+            let mut levels = Vec::new();
+            for spans in MESHES {
+                let (errors, unknowns) = relative_errors(mass, degree, spans)?;
+                if spans == MESHES[MESHES.len() - 1] {
+                    for (mode, error) in errors.iter().enumerate() {
+                        let quantity = format!("relative frequency error of mode {} on {spans} spans", mode + 1);
+                        findings.add(&name, &quantity, *error, None);
+                    }
+                }
+                let errors = errors.iter().map(|e| e.abs()).collect();
+                levels.push(Level { h: 1.0 / spans as f64, unknowns, seconds: 0.0, errors });
+            }
+            let order = if mass == Mass::Consistent { 2.0 * degree as f64 } else { 2.0 };
+            curves.push(Curve { name, levels, orders: vec![Some(order); MODES] });
+        }
+    }
+    let norm = |mode| Norm { quantity: format!("frequency error of mode {mode}"), unit: "1".into(), floor: FLOOR };
+    let study = Convergence {
+        suite: case.suite.clone(),
+        stem: format!("{}-{}", case.suite, case.name),
+        title: "Frequencies of a bar held at both ends".into(),
+        caption: "A strip one span high between rollers, Poisson's ratio zero; relative errors.".into(),
+        deviations: case.deviations.clone(),
+        theory: "eigenvalues converge twice as fast as functions in H1: 2 p; row sums leave order 2".into(),
+        refined: Refined::Mesh { dimensions: 1 },
+        norms: (1..=MODES).map(norm).collect(),
+        curves,
+    };
+    study.add_to(&mut findings);
+    Ok(findings)
+}
+
+/// Relative errors, with sign, of the lowest frequencies, and the number of unknowns.
+fn relative_errors(mass: Mass, degree: usize, spans: usize) -> Result<(Vec<f64>, usize), StudyError> {
+    let other = |message: &str| StudyError::Other(message.into());
+    let scene = bar(mass, degree, spans);
+    fisura::validate::validate(&scene).map_err(|errors| StudyError::Other(errors[0].to_string()))?;
+    let frame = TotalFrame::new(&scene).map_err(|_| other("there is no phase field"))?;
+    let mut operator = frame.stiffness_operator();
+    let n = operator.size();
+    let (mut stiffness, mut inverse_mass) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
+    let (mut unit, mut image) = (vec![0.0; n], vec![0.0; n]);
+    for column in 0..n {
+        unit[column] = 1.0;
+        operator.stiffness(&unit, &mut image);
+        stiffness.set_column(column, &DVector::from_column_slice(&image));
+        operator.divide_by_mass(&unit, &mut image);
+        inverse_mass.set_column(column, &DVector::from_column_slice(&image));
+        unit[column] = 0.0;
+    }
+    let factor = inverse_mass.cholesky().ok_or_else(|| other("the mass is not positive definite"))?.l();
+    let matrix = factor.transpose() * stiffness * factor;
+    let mut eigenvalues: Vec<f64> = SymmetricEigen::new(matrix).eigenvalues.iter().copied().collect();
+    eigenvalues.sort_by(f64::total_cmp);
+    let exact = |mode: usize| mode as f64 * std::f64::consts::PI; // unit modulus, density and length
+    let error = |(i, eigenvalue): (usize, &f64)| eigenvalue.sqrt() / exact(i + 1) - 1.0;
+    Ok((eigenvalues.iter().take(MODES).enumerate().map(error).collect(), n))
+}
+
+/// The strip, all of unit modulus, density and length.
+fn bar(mass: Mass, degree: usize, spans: usize) -> Scene {
+    let hold = |side, fix| Boundary { side, fix, velocity: [0.0; 2] };
+    Scene {
+        title: "bar".into(),
+        mesh: Mesh::uniform([degree, 1], [0.0; 2], [1.0, HEIGHT], [spans, 1]),
+        analysis: Analysis {
+            plane: Plane::Strain,
+            thickness: 1.0,
+            frame: Frame::Total,
+            kinematics: Kinematics::Small,
+            end_time: 1.0,
+            time_step: TimeStep::Auto,
+            safety: 0.5,
+            transfer: Transfer::Flip,
+            mass,
+            gravity: [0.0; 2],
+        },
+        solver: SolverSettings { phase_field_tolerance: 1e-10, phase_field_solver: PhaseFieldSolver::Cholesky },
+        materials: [(
+            "unit".to_string(),
+            Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None },
+        )]
+        .into(),
+        bodies: vec![Body {
+            name: "bar".into(),
+            material: "unit".into(),
+            shape: Shape::Rectangle { min: [0.0; 2], max: [1.0, HEIGHT] },
+            particles_per_cell: [degree + 1, 2],
+            layout: Layout::Gauss,
+            velocity: [0.0; 2],
+            angular_velocity: 0.0,
+            rigid: false,
+            tractions: vec![],
+            cracks: vec![],
+        }],
+        contact: None,
+        boundaries: vec![
+            hold(Side::Left, [true, false]),
+            hold(Side::Right, [true, false]),
+            hold(Side::Bottom, [false, true]),
+            hold(Side::Top, [false, true]),
+        ],
+        output: Output { samples: 1, frames: vec![] },
+    }
+}

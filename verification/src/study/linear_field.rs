@@ -1,0 +1,161 @@
+//! A linear displacement on rational patches: interpolated exactly, in equilibrium up to the quadrature by points.
+//!
+//! A linear field lies in the space of every patch, so its strain is exact at the points. Its internal forces and the
+//! tractions on the four sides then balance but for the error of the point sums, whose integrands are rational: the
+//! *equilibrium residual*. Its work on a smooth field is the error of a composite rule of n Gauss points per direction on a
+//! smooth integrand and falls with order 2 n. The largest nodal force left over, relative to the largest of the tractions,
+//! falls with order 2 n − p only: the functions of a single control point change over a span. The tractions are integrated
+//! with 16 points per span. Weights are drawn once on the coarsest mesh and carried by knot insertion.
+
+use fisura::lattice::Lattice;
+use fisura::patch::Patch;
+use fisura::quadrature::{MAX_POINTS, Rule};
+use fisura::scene::{Body, Layout, Side};
+
+use super::{Findings, StudyError};
+use crate::case::Case;
+use crate::case::convergence::PatchFamily;
+use crate::convergence::{Convergence, Curve, Level, Norm, Refined};
+use crate::expand::CaseScene;
+use crate::patches;
+
+const FAMILIES: [(PatchFamily, &str, [usize; 4]); 3] = [
+    (PatchFamily::Annulus, "annulus", [2, 4, 8, 16]),
+    (PatchFamily::Weighted, "weighted", [4, 8, 16, 32]),
+    (PatchFamily::Random, "random", [6, 12, 24, 48]),
+];
+/// Displacement gradient, and the stress it stands for: any constants balance, so no material is needed.
+const GRADIENT: [[f64; 2]; 2] = [[0.3, -0.7], [0.2, 0.5]];
+const STRESS: [[f64; 2]; 2] = [[1.0, 0.4], [0.4, -0.6]];
+const FLOOR: f64 = 1e-13;
+
+pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    let mut curves = Vec::new();
+    for (family, words, cells) in FAMILIES {
+        for degree in [2, 3] {
+            let on = |spans: usize| patch(family, degree, spans);
+            let name = format!("{words}, p={degree}");
+            let [value, gradient] = interpolation_errors(&on(cells[1])?);
+            findings.add(&name, "linear field, largest error at a point", value, None);
+            findings.add(&name, "its gradient, largest error at a point", gradient, None);
+            // Random families have a multiple of three spans.
+            let fine = on(if family == PatchFamily::Random { 9 } else { 8 })?;
+            let quantity =
+                |points: &str| format!("equilibrium residual of a linear field on 8 or 9 spans, {points} points");
+            findings.add(&name, &quantity("p + 6"), residual(&fine, degree + 6)[0], None);
+            findings.add(&name, &quantity("3"), residual(&fine, 3)[0], None);
+            for points in [2, 3, 4] {
+                let mut levels = Vec::new();
+                for spans in cells {
+                    let patch = on(spans)?;
+                    let unknowns = 2 * patch.control_grid().columns * patch.control_grid().rows;
+                    levels.push(Level {
+                        h: 1.0 / spans as f64,
+                        unknowns,
+                        seconds: 0.0,
+                        errors: residual(&patch, points).to_vec(),
+                    });
+                }
+                let name = format!("{words}, p={degree}, {points}x{points} points");
+                curves.push(Curve {
+                    name,
+                    levels,
+                    orders: vec![Some(2.0 * points as f64 - degree as f64), Some(2.0 * points as f64)],
+                });
+            }
+        }
+    }
+    let study = Convergence {
+        suite: case.suite.clone(),
+        stem: format!("{}-{}", case.suite, case.name),
+        title: "Equilibrium of a linear field on rational patches".into(),
+        caption:
+            "Largest nodal force left over, relative to the largest of the tractions, and its work on a smooth field, \
+                  relative to that of the tractions; h in parameters."
+                .into(),
+        deviations: case.deviations.clone(),
+        theory: "n Gauss points per direction integrate smooth integrands with order 2 n, less p for single functions"
+            .into(),
+        refined: Refined::Mesh { dimensions: 2 },
+        norms: ["equilibrium residual of a linear field", "work of the residual on a smooth field"]
+            .map(|quantity| Norm { quantity: quantity.into(), unit: "1".into(), floor: FLOOR })
+            .to_vec(),
+        curves,
+    };
+    study.add_to(&mut findings);
+    Ok(findings)
+}
+
+fn patch(family: PatchFamily, degree: usize, spans: usize) -> Result<Patch, StudyError> {
+    let mesh = patches::mesh(family, degree, spans).map_err(|e| StudyError::Other(e.to_string()))?;
+    Ok(Patch::new(&mesh))
+}
+
+fn lattice(patch: &Patch, points: usize) -> Lattice {
+    let body = Body {
+        name: "body".into(),
+        material: "none".into(),
+        shape: fisura::scene::Shape::Patch,
+        particles_per_cell: [points; 2],
+        layout: Layout::Gauss,
+        velocity: [0.0; 2],
+        angular_velocity: 0.0,
+        rigid: false,
+        tractions: vec![],
+        cracks: vec![],
+    };
+    Lattice::new(patch, &body)
+}
+
+/// Largest errors of value and gradient at the points, found through the inverse map.
+fn interpolation_errors(patch: &Patch) -> [f64; 2] {
+    let [x, y] = patch.control_positions();
+    let fields = GRADIENT.map(|[a, b]| x.iter().zip(&y).map(|(x, y)| a * x + b * y).collect::<Vec<f64>>());
+    let mut worst = [0.0_f64; 2];
+    lattice(patch, 3).for_each_point(|_, _, position, _| {
+        for (field, gradient) in fields.iter().zip(GRADIENT) {
+            let Some(found) = patch.evaluate(field, position) else { return worst = [f64::INFINITY; 2] };
+            let exact = gradient[0] * position[0] + gradient[1] * position[1];
+            worst[0] = worst[0].max((found.value - exact).abs());
+            for d in 0..2 {
+                worst[1] = worst[1].max((found.gradient[d] - gradient[d]).abs());
+            }
+        }
+    });
+    worst
+}
+
+/// What internal forces and tractions leave: the largest nodal force, relative to the largest of the tractions, and the work
+/// on a smooth field, relative to the sum of the magnitudes of that of the tractions.
+fn residual(patch: &Patch, points: usize) -> [f64; 2] {
+    let lattice = lattice(patch, points);
+    let mut tractions = [lattice.grid.zeros(), lattice.grid.zeros()];
+    let rule = Rule::new(Layout::Gauss, MAX_POINTS);
+    for side in [Side::Left, Side::Right, Side::Bottom, Side::Top] {
+        for point in patch.boundary(side, &rule) {
+            let [x, y] = point.normal.map(|n| n * point.length);
+            for &(at, value) in &point.functions {
+                for i in 0..2 {
+                    tractions[i][at] += value * (STRESS[i][0] * x + STRESS[i][1] * y);
+                }
+            }
+        }
+    }
+    let mut internal = [lattice.grid.zeros(), lattice.grid.zeros()];
+    let [x, y] = &mut internal;
+    lattice.add_integral(&mut [x, y], |_, _, _| ([0.0; 2], STRESS));
+    let [x, y] = patch.control_positions();
+    let smooth = |i: usize, at: usize| if i == 0 { x[at] * (x[at] - y[at]) } else { y[at] * (x[at] + y[at]) };
+    let [mut largest, mut most, mut work, mut scale] = [0.0_f64; 4];
+    for (i, (internal, traction)) in internal.iter().zip(&tractions).enumerate() {
+        for at in lattice.grid.indices() {
+            let left_over = internal[at] - traction[at];
+            largest = largest.max(left_over.abs());
+            most = most.max(traction[at].abs());
+            work += smooth(i, at) * left_over;
+            scale += (smooth(i, at) * traction[at]).abs();
+        }
+    }
+    [largest / most, work.abs() / scale]
+}
