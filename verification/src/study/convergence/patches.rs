@@ -4,6 +4,7 @@ use fisura::nurbs::{NurbsError, NurbsPatch};
 use fisura::scene::{Mesh, Shape};
 
 use crate::case::convergence::PatchFamily;
+use crate::exact::vortex::RADII;
 
 /// Spans per direction of the mesh on which random knots, weights and control points are drawn.
 const COARSE: usize = 3;
@@ -11,23 +12,42 @@ const COARSE: usize = 3;
 /// The rectangle of the square, graded and random families, m.
 const SIZE: [f64; 2] = [1.0, 0.8];
 
+/// Half the side of the square about the ring, m: its points move by less than 0.1 m and stay within 1.25 m of the centre.
+const AROUND_RING: f64 = 1.4;
+
 /// Mesh of a family with `cells` spans per direction, and the shape of a body that fills it. Random families have a
 /// multiple of [`COARSE`] spans.
 pub(super) fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<(Mesh, Shape), NurbsError> {
-    let rectangle = Shape::Rectangle { min: [0.0; 2], max: SIZE };
     let parts = cells.div_ceil(COARSE);
     match family {
-        PatchFamily::Square => Ok((Mesh::uniform([degree; 2], [0.0; 2], SIZE, [cells; 2]), rectangle)),
+        PatchFamily::Square => Ok(rectangle_of(SIZE, degree, [cells; 2])),
         PatchFamily::Graded => {
             let mut random = Random(11);
             let knots = SIZE.map(|size| open(degree, &subdivided(&random.breaks(size), parts)));
-            Ok((Mesh { degree: [degree; 2], knots, geometry: None }, rectangle))
+            let shape = Shape::Rectangle { min: [0.0; 2], max: SIZE };
+            Ok((Mesh { degree: [degree; 2], knots, geometry: None }, shape))
         }
         PatchFamily::Bent => general(refined(&bent()?, degree, cells)?),
         PatchFamily::Annulus => general(refined(&NurbsPatch::quarter_annulus(1.0, 2.0)?, degree, cells)?),
         PatchFamily::Sector => general(refined(&NurbsPatch::quarter_annulus(1.0, 4.0)?, degree, cells)?),
         PatchFamily::Random => general(random(degree)?.subdivide(parts)?),
+        PatchFamily::Strip => Ok(rectangle_of([1.0, 1.0 / cells as f64], degree, [cells, 1])),
+        PatchFamily::UnitSquare => Ok(rectangle_of([1.0; 2], degree, [cells; 2])),
+        PatchFamily::Ring => {
+            let mesh = Mesh::uniform([degree; 2], [-AROUND_RING; 2], [2.0 * AROUND_RING; 2], [cells; 2]);
+            let [inner_radius, outer_radius] = RADII;
+            Ok((mesh, Shape::Annulus { center: [0.0; 2], inner_radius, outer_radius }))
+        }
     }
+}
+
+/// Points per span and direction, `points` of them along x. Nothing varies across a strip, where two will do.
+pub(super) fn points_per_span(family: PatchFamily, points: usize) -> [usize; 2] {
+    if family == PatchFamily::Strip { [points, points.min(2)] } else { [points; 2] }
+}
+
+fn rectangle_of(size: [f64; 2], degree: usize, cells: [usize; 2]) -> (Mesh, Shape) {
+    (Mesh::uniform([degree; 2], [0.0; 2], size, cells), Shape::Rectangle { min: [0.0; 2], max: size })
 }
 
 fn general(patch: NurbsPatch) -> Result<(Mesh, Shape), NurbsError> {

@@ -8,16 +8,14 @@ use fisura::material::FractureModel;
 use fisura::patch::ControlGrid;
 use fisura::phase_field::PhaseField;
 use fisura::projection::Projection;
-use fisura::scene::{
-    Analysis, Body, Boundary, Frame, Kinematics, Output, PhaseFieldSolver, Scene, SolverSettings, TimeStep, Transfer,
-};
+use fisura::scene::{Scene, Transfer};
 use fisura::statics::StaticSolver;
 use fisura::total_frame::TotalFrame;
-use fisura::validate::validate;
 
 use super::errors::{ErrorPoints, Squares};
-use super::patches;
 use super::problem::{Kind, Manufactured, Problem};
+use super::scene::scene;
+use super::{OnMesh, other};
 use crate::case::convergence::{ConvergenceSetup, Loading};
 use crate::convergence::Level;
 use crate::study::StudyError;
@@ -34,41 +32,8 @@ pub(super) struct Discrete<'a> {
     scene: Scene,
 }
 
-fn other(message: impl Into<String>) -> StudyError {
-    StudyError::Other(message.into())
-}
-
-impl<'a> Discrete<'a> {
-    /// The mesh with `cells` spans per direction for the n-th degree.
-    pub fn new(setup: &'a ConvergenceSetup, problem: &'a Problem, n: usize, cells: usize) -> Result<Self, StudyError> {
-        let scene = scene(setup, problem, n, cells)?;
-        validate(&scene)
-            .map_err(|errors| other(errors.iter().map(|e| e.to_string()).collect::<Vec<_>>().join("; ")))?;
-        let frame = TotalFrame::new(&scene).map_err(|_| other("the initial phase field does not converge"))?;
-        let points = ErrorPoints::new(frame.patch(), &scene.bodies[0]);
-        Ok(Self { setup, problem, frame, points, scene })
-    }
-
-    /// Names of the errors of a kind of problem, in the order of [`Level::errors`], and their order below p + 1.
-    pub fn norms(problem: &Problem) -> Vec<(&'static str, usize)> {
-        let displacement = [("displacement error in L2", 0), ("displacement error in H1", 1)];
-        let phase = [("phase-field error in L2", 0), ("phase-field error in H1", 1)];
-        match problem.kind {
-            Kind::Projection | Kind::Static => displacement.to_vec(),
-            Kind::PhaseField => phase.to_vec(),
-            Kind::Dynamic => {
-                let mut norms = displacement.to_vec();
-                norms.push(("velocity error in L2", 0));
-                if problem.solution.phase().is_some() {
-                    norms.extend(phase);
-                }
-                norms
-            }
-        }
-    }
-
-    /// Solves and measures; a dynamic problem with steps of at most `step` (s).
-    pub fn level(mut self, step: f64) -> Result<Level, StudyError> {
+impl OnMesh for Discrete<'_> {
+    fn level(mut self: Box<Self>, step: f64) -> Result<Level, StudyError> {
         let start = Instant::now();
         let errors: Vec<f64> = match self.problem.kind {
             Kind::Projection => {
@@ -103,15 +68,41 @@ impl<'a> Discrete<'a> {
         Ok(Level { h: self.span_length(), unknowns: fields * grid.columns * grid.rows, seconds, errors })
     }
 
-    /// Critical time step, s.
-    pub fn critical_step(&self) -> f64 {
+    fn critical_step(&self) -> f64 {
         self.frame.critical_step()
     }
 
-    /// Side of a square as large as the mean span, m.
-    pub fn span_length(&self) -> f64 {
+    fn span_length(&self) -> f64 {
         let [x, y] = self.frame.patch().spaces.each_ref().map(|space| space.spans().len());
         (self.points.area() / (x * y) as f64).sqrt()
+    }
+}
+
+impl<'a> Discrete<'a> {
+    /// The mesh with `cells` spans per direction for the n-th degree.
+    pub fn new(setup: &'a ConvergenceSetup, problem: &'a Problem, n: usize, cells: usize) -> Result<Self, StudyError> {
+        let scene = scene(setup, problem, n, cells, Transfer::Flip)?;
+        let frame = TotalFrame::new(&scene).map_err(|_| other("the initial phase field does not converge"))?;
+        let points = ErrorPoints::new(frame.patch(), &scene.bodies[0]);
+        Ok(Self { setup, problem, frame, points, scene })
+    }
+
+    /// Names of the errors of a kind of problem, in the order of [`Level::errors`], and their order below p + 1.
+    pub fn norms(problem: &Problem) -> Vec<(&'static str, usize)> {
+        let displacement = [("displacement error in L2", 0), ("displacement error in H1", 1)];
+        let phase = [("phase-field error in L2", 0), ("phase-field error in H1", 1)];
+        match problem.kind {
+            Kind::Projection | Kind::Static => displacement.to_vec(),
+            Kind::PhaseField => phase.to_vec(),
+            Kind::Dynamic => {
+                let mut norms = displacement.to_vec();
+                norms.push(("velocity error in L2", 0));
+                if problem.solution.phase().is_some() {
+                    norms.extend(phase);
+                }
+                norms
+            }
+        }
     }
 
     fn grid(&self) -> ControlGrid {
@@ -124,6 +115,7 @@ impl<'a> Discrete<'a> {
             solution: self.problem.solution.clone(),
             loading: self.setup.loading,
             diffusion: fracture.map_or(0.0, |f| FractureModel::new(&f).diffusion()),
+            moved: false,
         })
     }
 
@@ -207,48 +199,4 @@ impl<'a> Discrete<'a> {
         let squares = self.points.squares(field, |x| (phase.value(x, time), phase.gradient(x, time)));
         vec![squares.l2(), squares.h1()]
     }
-}
-
-/// The scene of one mesh: the body fills the patch, and nothing but the exact solution loads it.
-fn scene(setup: &ConvergenceSetup, problem: &Problem, n: usize, cells: usize) -> Result<Scene, StudyError> {
-    let (mesh, shape) = patches::mesh(setup.patch, setup.degrees[n], cells).map_err(|e| other(e.to_string()))?;
-    let mut material = problem.solution.material();
-    if problem.kind == Kind::PhaseField {
-        material.fracture = None; // the study builds its own phase field, on the points of this scene
-    }
-    let body = Body {
-        name: "body".into(),
-        material: "material".into(),
-        shape,
-        particles_per_cell: [setup.points(n); 2],
-        layout: setup.layout,
-        velocity: [0.0; 2],
-        angular_velocity: 0.0,
-        rigid: false,
-        tractions: vec![],
-        cracks: vec![],
-    };
-    let boundary = |&(side, fix): &(_, _)| Boundary { side, fix, velocity: [0.0; 2] };
-    Ok(Scene {
-        title: setup.problem.clone(),
-        mesh,
-        analysis: Analysis {
-            plane: setup.plane,
-            thickness: 1.0,
-            frame: Frame::Total,
-            kinematics: Kinematics::Small,
-            end_time: 1.0,
-            time_step: TimeStep::Auto,
-            safety: 0.5,
-            transfer: Transfer::Flip,
-            mass: setup.mass,
-            gravity: [0.0; 2],
-        },
-        solver: SolverSettings { phase_field_tolerance: 1e-14, phase_field_solver: PhaseFieldSolver::Cholesky },
-        materials: [("material".to_string(), material)].into(),
-        bodies: vec![body],
-        contact: None,
-        boundaries: problem.held.iter().map(boundary).collect(),
-        output: Output { samples: 1, frames: vec![] },
-    })
 }
