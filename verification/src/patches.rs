@@ -11,6 +11,9 @@ const COARSE: usize = 3;
 /// The rectangle of the square, graded and random families, m.
 const SIZE: [f64; 2] = [1.0, 0.8];
 
+/// Half the side of the square about the ring, m: its points move by less than 0.1 m and stay within 1.25 m of the centre.
+const AROUND_RING: f64 = 1.4;
+
 /// Mesh of a family with `cells` spans per direction. Random families have a multiple of three spans.
 ///
 /// # Errors
@@ -19,6 +22,9 @@ pub fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<Mesh, Nu
     let parts = cells.div_ceil(COARSE);
     match family {
         PatchFamily::Square => Ok(Mesh::uniform([degree; 2], [0.0; 2], SIZE, [cells; 2])),
+        PatchFamily::UnitSquare => Ok(Mesh::uniform([degree; 2], [0.0; 2], [1.0; 2], [cells; 2])),
+        PatchFamily::Strip => Ok(Mesh::uniform([degree; 2], [0.0; 2], [1.0, 1.0 / cells as f64], [cells, 1])),
+        PatchFamily::Ring => Ok(Mesh::uniform([degree; 2], [-AROUND_RING; 2], [2.0 * AROUND_RING; 2], [cells; 2])),
         PatchFamily::Graded => {
             let mut random = Random(11);
             let knots = SIZE.map(|size| open(degree, &subdivided(&random.breaks(size), parts)));

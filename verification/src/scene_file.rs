@@ -8,7 +8,7 @@ pub mod diagnostic;
 pub mod document;
 pub mod fields;
 mod overrides;
-mod read;
+pub(crate) mod read;
 mod read_body;
 mod read_mesh;
 pub mod suggest;

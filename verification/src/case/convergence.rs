@@ -9,10 +9,14 @@
 //! degrees = [2, 3]
 //! cells = [4, 8, 16, 32]        # spans per direction
 //! ```
+//!
+//! `frame = "updated"` lets the points of a finite motion cross the spans of a fixed mesh; `transfers = ["flip", "apic"]`
+//! then gives a curve for each.
 
-use fisura::scene::{Layout, Mass, Plane};
+use fisura::scene::{Frame, Layout, Mass, Plane, Transfer};
 
 use crate::scene_file::fields::Item;
+use crate::scene_file::read::transfer;
 use crate::scene_file::units::Dimension;
 
 /// A family of patches.
@@ -30,6 +34,12 @@ pub enum PatchFamily {
     Weighted,
     /// The rectangle with random weights, inner control points and knots, drawn once on the coarsest mesh.
     Random,
+    /// A strip of equal spans along [0, 1] m, one span high, with two points across: for waves along x.
+    Strip,
+    /// The square [0, 1]² m with equal spans.
+    UnitSquare,
+    /// The ring between the radii 0.75 and 1.25 m in the square [−1.4, 1.4]² m with equal spans that it cuts.
+    Ring,
 }
 
 /// How the problem is loaded.
@@ -57,6 +67,10 @@ pub struct ConvergenceSetup {
     pub problem: String,
     /// Plane state.
     pub plane: Plane,
+    /// Frame: the updated one has finite kinematics.
+    pub frame: Frame,
+    /// Transfers of the updated frame, a curve each.
+    pub transfers: Vec<Transfer>,
     /// Meshes.
     pub patch: PatchFamily,
     /// Degrees.
@@ -86,9 +100,11 @@ impl ConvergenceSetup {
     }
 }
 
-const KEYS: [&str; 13] = [
+const KEYS: [&str; 15] = [
     "problem",
     "plane",
+    "frame",
+    "transfers",
     "patch",
     "degrees",
     "cells",
@@ -115,7 +131,12 @@ pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
         ("annulus", PatchFamily::Annulus),
         ("weighted", PatchFamily::Weighted),
         ("random", PatchFamily::Random),
+        ("strip", PatchFamily::Strip),
+        ("unit-square", PatchFamily::UnitSquare),
+        ("ring", PatchFamily::Ring),
     ];
+    let frame = fields.or("frame", Frame::Total, |i| i.choice(&[("total", Frame::Total), ("updated", Frame::Updated)]));
+    let transfers = fields.or("transfers", vec![Transfer::Flip], |i| i.each(transfer));
     let patch = fields.or("patch", PatchFamily::Square, |i| i.choice(&families));
     let degrees = fields.need("degrees", "degrees = [2, 3]", |i| wholes(i, 1, 4));
     let cells = fields.need("cells", "cells = [4, 8, 16, 32]", |i| wholes(i, 1, 4096));
@@ -141,6 +162,8 @@ pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
     Some(ConvergenceSetup {
         problem: problem?,
         plane: plane?,
+        frame: frame?,
+        transfers: transfers?,
         patch: patch?,
         degrees,
         cells: cells?,

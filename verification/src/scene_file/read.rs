@@ -133,7 +133,8 @@ fn analysis(item: &Item<'_>) -> Option<Analysis> {
     })
 }
 
-fn transfer(item: &Item<'_>) -> Option<Transfer> {
+/// A transfer: its name, or `{ xpic = m }`.
+pub fn transfer(item: &Item<'_>) -> Option<Transfer> {
     if item.node.as_table().is_some() {
         let fields = item.fields(&["xpic"])?;
         return fields.need("xpic", "{ xpic = 5 }", |order| order.whole(1, 100)).map(Transfer::Xpic);

@@ -1,43 +1,64 @@
 //! Convergence to an exact solution: the `[convergence]` table of a case says which, on which meshes, and how.
 //!
 //! A dynamic problem is run with steps in proportion to `h^((p + 1)/2)`, so that the second order in time shows as p + 1,
-//! unless the case gives another power. Errors are relative, and integrated with an independent, finer quadrature.
+//! unless the case gives another power. Errors are relative. In the total frame they are integrated with an independent,
+//! finer quadrature, in the updated frame they are those of the points.
 
 mod errors;
+mod moving;
 mod problem;
+mod scene;
 mod solve;
 
-use fisura::scene::{Layout, Mass};
+use fisura::scene::{Frame, Layout, Mass, Transfer};
 
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::case::convergence::{ConvergenceSetup, Loading, PatchFamily, Refine};
 use crate::convergence::{Convergence, Curve, Level, Norm, Refined};
 use crate::expand::CaseScene;
+use moving::Moving;
 use problem::{Kind, Problem};
 use solve::Discrete;
 
 /// Relative errors at or below this are round-off.
 const FLOOR: f64 = 1e-11;
 
+/// A problem on one mesh.
+trait OnMesh {
+    /// Solves and measures; a dynamic problem with steps of at most `step` (s).
+    fn level(self: Box<Self>, step: f64) -> Result<Level, StudyError>;
+    /// Errors of the best approximation of the exact fields in the end, in the order of those of a level; none where
+    /// errors are those of points that move.
+    fn best_errors(&self) -> Result<Vec<f64>, StudyError>;
+    /// Critical time step, s.
+    fn critical_step(&self) -> f64;
+    /// Side of a square as large as the mean span, m.
+    fn span_length(&self) -> f64;
+}
+
 pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let setup =
         case.convergence.as_ref().ok_or_else(|| StudyError::Other("a [convergence] table is missing".into()))?;
-    let problem = problem::find(&setup.problem, setup.plane, setup.patch).map_err(StudyError::Other)?;
-    let norms = Discrete::norms(&problem);
+    let problem = problem::find(setup).map_err(StudyError::Other)?;
+    let norms = match setup.frame {
+        Frame::Total => Discrete::norms(&problem),
+        Frame::Updated => moving::NORMS.to_vec(),
+    };
     let mut findings = Findings::default();
     let mut curves = Vec::new();
     for (n, &degree) in setup.degrees.iter().enumerate() {
-        let repeated = setup.degrees.iter().filter(|&other| *other == degree).count() > 1;
-        let points = if repeated { format!(", {0}x{0} points", setup.points(n)) } else { String::new() };
-        let name = format!("p={degree}{points}");
-        let orders = norms.iter().map(|&(_, below)| Some(theory(setup, &problem, degree, below))).collect();
-        let (levels, best) = levels(setup, &problem, n)?;
-        for (index, (quantity, _)) in norms.iter().enumerate() {
-            let error = levels.last().map_or(f64::NAN, |level| level.errors[index]);
-            findings.add(&name, &format!("{quantity} over that of the best approximation"), error / best[index], None);
+        for &transfer in &setup.transfers {
+            let orders = norms.iter().map(|&(_, below)| theory(setup, &problem, degree, below)).collect();
+            let name = curve_name(setup, n, transfer);
+            let (levels, best) = levels(setup, &problem, n, transfer)?;
+            for (index, best) in best.into_iter().enumerate() {
+                let error = levels.last().map_or(f64::NAN, |level| level.errors[index]);
+                let quantity = format!("{} over that of the best approximation", norms[index].0);
+                findings.add(&name, &quantity, error / best, None);
+            }
+            curves.push(Curve { name, levels, orders });
         }
-        curves.push(Curve { name, levels, orders });
     }
     let norm = |&(quantity, _): &(&str, usize)| Norm { quantity: quantity.into(), unit: "1".into(), floor: FLOOR };
     let study = Convergence {
@@ -58,18 +79,43 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
     Ok(findings)
 }
 
+/// What distinguishes a curve: the degree, with points or transfer where these vary.
+fn curve_name(setup: &ConvergenceSetup, n: usize, transfer: Transfer) -> String {
+    let degree = setup.degrees[n];
+    let mut name = format!("p={degree}");
+    if setup.degrees.iter().filter(|d| **d == degree).count() > 1 {
+        name += &format!(" {0}x{0}", setup.points(n));
+    }
+    if setup.transfers.len() > 1 {
+        name += &match transfer {
+            Transfer::Xpic(order) => format!(" xpic({order})"),
+            named => format!(" {named:?}").to_lowercase(),
+        };
+    }
+    name
+}
+
 /// The levels of the n-th degree, and the errors of the best approximation on the last.
-fn levels(setup: &ConvergenceSetup, problem: &Problem, n: usize) -> Result<(Vec<Level>, Vec<f64>), StudyError> {
-    let mesh = |cells: usize| Discrete::new(setup, problem, n, cells);
+fn levels(
+    setup: &ConvergenceSetup,
+    problem: &Problem,
+    n: usize,
+    transfer: Transfer,
+) -> Result<(Vec<Level>, Vec<f64>), StudyError> {
+    let mesh = |cells: usize| -> Result<Box<dyn OnMesh + '_>, StudyError> {
+        Ok(match setup.frame {
+            Frame::Total => Box::new(Discrete::new(setup, problem, n, cells)?),
+            Frame::Updated => Box::new(Moving::new(setup, problem, n, cells, transfer)?),
+        })
+    };
     let finest = setup.cells[setup.cells.len() - 1];
-    let dynamic = problem.kind == Kind::Dynamic;
     let levels: Result<Vec<Level>, StudyError> = match setup.refine {
         Refine::Mesh(power) => {
             let power = power.unwrap_or(0.5 * (setup.degrees[n] + 1) as f64);
             let coarsest = mesh(setup.cells[0])?;
-            let critical = if dynamic { coarsest.critical_step() } else { 0.0 };
+            let critical = if problem.kind == Kind::Dynamic { coarsest.critical_step() } else { 0.0 };
             let level = |&cells: &usize| {
-                let mut mesh = mesh(cells)?;
+                let mesh = mesh(cells)?;
                 let step = setup.safety[0] * critical * (mesh.span_length() / coarsest.span_length()).powf(power);
                 mesh.level(step)
             };
@@ -87,15 +133,21 @@ fn levels(setup: &ConvergenceSetup, problem: &Problem, n: usize) -> Result<(Vec<
     Ok((levels?, mesh(finest)?.best_errors()?))
 }
 
-/// Order that theory gives an error `below` orders under that of the displacement.
-fn theory(setup: &ConvergenceSetup, problem: &Problem, degree: usize, below: usize) -> f64 {
+/// Order that theory gives an error `below` orders under that of the displacement. There is none for moving points: the
+/// error of their quadrature does not fall with h.
+fn theory(setup: &ConvergenceSetup, problem: &Problem, degree: usize, below: usize) -> Option<f64> {
     let space = (degree + 1 - below) as f64;
     match (problem.kind, setup.refine) {
-        (Kind::Dynamic, Refine::TimeStep) => 2.0,
-        (Kind::Dynamic, Refine::Mesh(Some(power))) => space.min(2.0 * power),
-        (Kind::Dynamic, _) if setup.mass == Mass::Lumped => space.min(2.0),
-        _ => space,
+        _ if setup.frame == Frame::Updated => None,
+        (Kind::Dynamic, Refine::TimeStep) => Some(2.0),
+        (Kind::Dynamic, Refine::Mesh(Some(power))) => Some(space.min(2.0 * power)),
+        (Kind::Dynamic, _) if setup.mass == Mass::Lumped => Some(space.min(2.0)),
+        _ => Some(space),
     }
+}
+
+fn other(message: impl Into<String>) -> StudyError {
+    StudyError::Other(message.into())
 }
 
 fn words_of_theory(setup: &ConvergenceSetup, problem: &Problem) -> String {
@@ -123,6 +175,9 @@ fn words_of_patch(family: PatchFamily) -> &'static str {
         PatchFamily::Annulus => "a quarter annulus",
         PatchFamily::Weighted => "a curved patch with random weights",
         PatchFamily::Random => "random weights and knots",
+        PatchFamily::Strip => "a strip",
+        PatchFamily::UnitSquare => "the unit square",
+        PatchFamily::Ring => "a ring cut out of a square",
     }
 }
 
@@ -142,6 +197,9 @@ fn caption(setup: &ConvergenceSetup, problem: &Problem) -> String {
     if problem.kind == Kind::Dynamic {
         let mass = if setup.mass == Mass::Lumped { "lumped" } else { "consistent" };
         words.push_str(&format!("; {mass} mass"));
+    }
+    if setup.frame == Frame::Updated {
+        words.push_str("; updated frame, the points cross spans");
     }
     words + ". Errors relative to the exact field."
 }

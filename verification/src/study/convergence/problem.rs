@@ -4,10 +4,11 @@ use std::fmt;
 use std::sync::Arc;
 
 use fisura::forcing::{Forcing, VolumeLoad};
-use fisura::scene::{Plane, Side};
+use fisura::scene::{Frame, Side};
 
-use crate::case::convergence::{Loading, PatchFamily};
+use crate::case::convergence::{ConvergenceSetup, Loading, PatchFamily};
 use crate::exact::{self, ExactSolution};
+use crate::plain_scene::ROLLERS;
 
 /// Which equation is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,32 +34,36 @@ pub(super) struct Problem {
     pub end_time: f64,
 }
 
-/// The problem of a name on a family of patches; an error message otherwise.
+/// The problem of a setup; an error message if no study solves it in that frame.
 ///
-/// A wave stands between rollers on a rectangle; on any other patch its exact traction acts on all sides.
-pub(super) fn find(name: &str, plane: Plane, family: PatchFamily) -> Result<Problem, String> {
-    use Side::{Bottom, Left, Right, Top};
-    let rollers = match family {
-        PatchFamily::Square | PatchFamily::Graded | PatchFamily::Random => {
-            vec![(Left, [true, false]), (Right, [true, false]), (Bottom, [false, true]), (Top, [false, true])]
-        }
-        PatchFamily::Bent | PatchFamily::Annulus | PatchFamily::Weighted => vec![],
-    };
-    let (kind, held, end_time) = match name {
-        "projection" => (Kind::Projection, vec![], 0.0),
-        "elastostatics" => (Kind::Static, vec![(Left, [true; 2])], 0.0),
-        "kirsch" => (Kind::Static, vec![(Bottom, [false, true]), (Top, [true, false])], 0.0),
-        "phase-field" | "phase-field-zero-flux" => (Kind::PhaseField, vec![], 0.0),
-        "standing-wave" | "finite-wave" => (Kind::Dynamic, rollers, 0.6),
-        "coupled" => (Kind::Dynamic, vec![], 0.5),
-        _ => {
-            let known = "projection, elastostatics, kirsch, phase-field, phase-field-zero-flux, standing-wave, \
-                         finite-wave, coupled";
-            return Err(format!("no convergence study solves for {name:?}; known: {known}"));
+/// The updated frame computes the Hencky law, the total frame with small kinematics `P = E (F − 1)` in a bar. A wave stands
+/// between rollers on a rectangle; on a curved patch its exact traction acts on all sides.
+pub(super) fn find(setup: &ConvergenceSetup) -> Result<Problem, String> {
+    use Side::{Bottom, Left, Top};
+    let curved = matches!(setup.patch, PatchFamily::Bent | PatchFamily::Annulus | PatchFamily::Weighted);
+    let rollers = if curved { vec![] } else { ROLLERS.to_vec() };
+    let name = setup.problem.as_str();
+    let (kind, held, end_time) = match (setup.frame, name) {
+        (Frame::Total, "projection") => (Kind::Projection, vec![], 0.0),
+        (Frame::Total, "elastostatics") => (Kind::Static, vec![(Left, [true; 2])], 0.0),
+        (Frame::Total, "kirsch") => (Kind::Static, vec![(Bottom, [false, true]), (Top, [true, false])], 0.0),
+        (Frame::Total, "phase-field" | "phase-field-zero-flux") => (Kind::PhaseField, vec![], 0.0),
+        (Frame::Total, "standing-wave" | "finite-wave") => (Kind::Dynamic, rollers, 0.6),
+        (Frame::Total, "coupled") => (Kind::Dynamic, vec![], 0.5),
+        (Frame::Updated, "hencky-wave" | "axis-aligned") => (Kind::Dynamic, rollers, 0.6),
+        (Frame::Updated, "vortex") => (Kind::Dynamic, vec![], 0.6),
+        (frame, _) => {
+            let known = match frame {
+                Frame::Total => {
+                    "projection, elastostatics, kirsch, phase-field, phase-field-zero-flux, standing-wave, finite-wave, coupled"
+                }
+                Frame::Updated => "hencky-wave, axis-aligned, vortex",
+            };
+            return Err(format!("no convergence study solves for {name:?} in this frame; known: {known}"));
         }
     };
     let source = if name == "projection" { "elastostatics" } else { name };
-    let solution = exact::find(source, plane).ok_or_else(|| format!("no exact solution {source:?}"))?;
+    let solution = exact::find(source, setup.plane).ok_or_else(|| format!("no exact solution {source:?}"))?;
     Ok(Problem { kind, solution: solution.into(), held, end_time })
 }
 
@@ -68,6 +73,8 @@ pub(super) struct Manufactured {
     pub loading: Loading,
     /// `4 l0²` (m²), where there is a phase field.
     pub diffusion: f64,
+    /// Whether gradients are those at the moved points, on which Kirchhoff's stress works.
+    pub moved: bool,
 }
 
 impl fmt::Debug for Manufactured {
@@ -83,7 +90,12 @@ impl Forcing for Manufactured {
             Loading::Weak => {
                 let density = self.solution.material().density;
                 let force = self.solution.acceleration(position, time).map(|a| density * a);
-                VolumeLoad { force, stress: self.solution.stress(position, time) }
+                let stress = self.solution.stress(position, time);
+                if !self.moved {
+                    return VolumeLoad { force, stress };
+                }
+                let gradient = self.solution.displacement_gradient(position, time);
+                VolumeLoad { force, stress: kirchhoff(stress, gradient) }
             }
         }
     }
@@ -105,5 +117,25 @@ impl Forcing for Manufactured {
     fn phase_flux(&self, position: [f64; 2], normal: [f64; 2], time: f64) -> f64 {
         let gradient = self.solution.phase().map_or([0.0; 2], |phase| phase.gradient(position, time));
         self.diffusion * (gradient[0] * normal[0] + gradient[1] * normal[1])
+    }
+}
+
+/// Kirchhoff's stress `P Fᵀ` from that of Piola–Kirchhoff and the displacement gradient.
+fn kirchhoff(stress: [[f64; 2]; 2], gradient: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    [0, 1].map(|i| [0, 1].map(|j| stress[i][j] + stress[i][0] * gradient[j][0] + stress[i][1] * gradient[j][1]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kirchhoff_stress_is_symmetric_and_piola_without_strain() {
+        let stress = [[2.0, 0.5], [0.5, -1.0]];
+        assert_eq!(kirchhoff(stress, [[0.0; 2]; 2]), stress);
+        let vortex = exact::find("vortex", fisura::scene::Plane::Strain).unwrap();
+        let (x, t) = ([0.7, 0.6], 0.4);
+        let tau = kirchhoff(vortex.stress(x, t), vortex.displacement_gradient(x, t));
+        assert!(tau[0][1].abs() > 1e-3 && (tau[0][1] - tau[1][0]).abs() < 1e-14);
     }
 }

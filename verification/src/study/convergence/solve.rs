@@ -9,19 +9,18 @@ use fisura::patch::ControlGrid;
 use fisura::phase_field::PhaseField;
 use fisura::projection::Projection;
 use fisura::quadrature::Rule;
-use fisura::scene::{Layout, Mass, Scene};
+use fisura::scene::{Layout, Mass, Scene, Transfer};
 use fisura::statics::StaticSolver;
 use fisura::total_frame::TotalFrame;
-use fisura::validate::validate;
 use nalgebra::DMatrix;
 
 use super::errors::{ErrorPoints, Squares};
 
 use super::problem::{Kind, Manufactured, Problem};
+use super::scene::scene;
+use super::{OnMesh, other};
 use crate::case::convergence::{ConvergenceSetup, Loading};
 use crate::convergence::Level;
-use crate::patches;
-use crate::plain_scene::PlainScene;
 use crate::study::StudyError;
 
 /// Control values of a vector field, by component.
@@ -39,59 +38,8 @@ pub(super) struct Discrete<'a> {
     scene: Scene,
 }
 
-fn other(message: impl Into<String>) -> StudyError {
-    StudyError::Other(message.into())
-}
-
-impl<'a> Discrete<'a> {
-    /// The mesh with `cells` spans per direction for the n-th degree.
-    pub fn new(setup: &'a ConvergenceSetup, problem: &'a Problem, n: usize, cells: usize) -> Result<Self, StudyError> {
-        let scene = scene(setup, problem, n, cells)?;
-        validate(&scene)
-            .map_err(|errors| other(errors.iter().map(|e| e.to_string()).collect::<Vec<_>>().join("; ")))?;
-        let frame = TotalFrame::new(&scene).map_err(|_| other("the initial phase field does not converge"))?;
-        let points = ErrorPoints::new(frame.patch(), &scene.bodies[0]);
-        Ok(Self { setup, problem, frame, points, scene })
-    }
-
-    /// Names of the errors of a kind of problem, in the order of [`Level::errors`], and their order below p + 1.
-    pub fn norms(problem: &Problem) -> Vec<(&'static str, usize)> {
-        let displacement = [("displacement error in L2", 0), ("displacement error in H1", 1)];
-        let phase = [("phase-field error in L2", 0), ("phase-field error in H1", 1)];
-        match problem.kind {
-            Kind::Projection | Kind::Static => displacement.to_vec(),
-            Kind::PhaseField => phase.to_vec(),
-            Kind::Dynamic => {
-                let mut norms = displacement.to_vec();
-                norms.push(("velocity error in L2", 0));
-                if problem.solution.phase().is_some() {
-                    norms.extend(phase);
-                }
-                norms
-            }
-        }
-    }
-
-    /// Errors of the projections of the exact fields in the end: the best that the space can do.
-    pub fn best_errors(&self) -> Result<Vec<f64>, StudyError> {
-        let (solution, dynamic) = (&self.problem.solution, self.problem.kind == Kind::Dynamic);
-        let end = if dynamic { self.end_time() } else { 0.0 };
-        let mut errors = Vec::new();
-        if self.problem.kind != Kind::PhaseField {
-            errors.extend(self.displacement_errors(&self.project(|x| solution.displacement(x, end))?, end));
-        }
-        if dynamic {
-            errors.push(self.velocity_error(&self.project(|x| solution.velocity(x, end))?, end));
-        }
-        if let Some(phase) = solution.phase() {
-            let [field, _] = self.project(|x| [phase.value(x, end), 0.0])?;
-            errors.extend(self.phase_errors(&field, end));
-        }
-        Ok(errors)
-    }
-
-    /// Solves and measures; a dynamic problem with steps of at most `step` (s).
-    pub fn level(&mut self, step: f64) -> Result<Level, StudyError> {
+impl OnMesh for Discrete<'_> {
+    fn level(mut self: Box<Self>, step: f64) -> Result<Level, StudyError> {
         let start = Instant::now();
         let errors: Vec<f64> = match self.problem.kind {
             Kind::Projection => {
@@ -126,15 +74,58 @@ impl<'a> Discrete<'a> {
         Ok(Level { h: self.span_length(), unknowns: fields * grid.columns * grid.rows, seconds, errors })
     }
 
-    /// Critical time step, s.
-    pub fn critical_step(&self) -> f64 {
+    fn best_errors(&self) -> Result<Vec<f64>, StudyError> {
+        let (solution, dynamic) = (&self.problem.solution, self.problem.kind == Kind::Dynamic);
+        let end = if dynamic { self.end_time() } else { 0.0 };
+        let mut errors = Vec::new();
+        if self.problem.kind != Kind::PhaseField {
+            errors.extend(self.displacement_errors(&self.project(|x| solution.displacement(x, end))?, end));
+        }
+        if dynamic {
+            errors.push(self.velocity_error(&self.project(|x| solution.velocity(x, end))?, end));
+        }
+        if let Some(phase) = solution.phase() {
+            let [field, _] = self.project(|x| [phase.value(x, end), 0.0])?;
+            errors.extend(self.phase_errors(&field, end));
+        }
+        Ok(errors)
+    }
+
+    fn critical_step(&self) -> f64 {
         self.frame.critical_step()
     }
 
-    /// Side of a square as large as the mean span, m.
-    pub fn span_length(&self) -> f64 {
+    fn span_length(&self) -> f64 {
         let [x, y] = self.frame.patch().spaces.each_ref().map(|space| space.spans().len());
         (self.points.area() / (x * y) as f64).sqrt()
+    }
+}
+
+impl<'a> Discrete<'a> {
+    /// The mesh with `cells` spans per direction for the n-th degree.
+    pub fn new(setup: &'a ConvergenceSetup, problem: &'a Problem, n: usize, cells: usize) -> Result<Self, StudyError> {
+        let scene = scene(setup, problem, n, cells, Transfer::Flip)?;
+        let frame = TotalFrame::new(&scene).map_err(|_| other("the initial phase field does not converge"))?;
+        let points = ErrorPoints::new(frame.patch(), &scene.bodies[0]);
+        Ok(Self { setup, problem, frame, points, scene })
+    }
+
+    /// Names of the errors of a kind of problem, in the order of [`Level::errors`], and their order below p + 1.
+    pub fn norms(problem: &Problem) -> Vec<(&'static str, usize)> {
+        let displacement = [("displacement error in L2", 0), ("displacement error in H1", 1)];
+        let phase = [("phase-field error in L2", 0), ("phase-field error in H1", 1)];
+        match problem.kind {
+            Kind::Projection | Kind::Static => displacement.to_vec(),
+            Kind::PhaseField => phase.to_vec(),
+            Kind::Dynamic => {
+                let mut norms = displacement.to_vec();
+                norms.push(("velocity error in L2", 0));
+                if problem.solution.phase().is_some() {
+                    norms.extend(phase);
+                }
+                norms
+            }
+        }
     }
 
     fn end_time(&self) -> f64 {
@@ -150,6 +141,7 @@ impl<'a> Discrete<'a> {
         Arc::new(Manufactured {
             solution: self.problem.solution.clone(),
             loading: self.setup.loading,
+            moved: false,
             diffusion: fracture.map_or(0.0, |f| FractureModel::new(&f).diffusion()),
         })
     }
@@ -306,23 +298,4 @@ impl<'a> Discrete<'a> {
         let squares = self.points.squares(field, |x| (phase.value(x, time), phase.gradient(x, time)));
         vec![squares.l2(), squares.h1()]
     }
-}
-
-/// The scene of one mesh.
-fn scene(setup: &ConvergenceSetup, problem: &Problem, n: usize, cells: usize) -> Result<Scene, StudyError> {
-    let mesh = patches::mesh(setup.patch, setup.degrees[n], cells).map_err(|e| other(e.to_string()))?;
-    let mut material = problem.solution.material();
-    if problem.kind == Kind::PhaseField {
-        material.fracture = None; // the study builds its own phase field, on the points of this scene
-    }
-    let plain = PlainScene {
-        mesh,
-        material,
-        plane: setup.plane,
-        mass: setup.mass,
-        layout: setup.layout,
-        points: setup.points(n),
-        held: problem.held.clone(),
-    };
-    Ok(plain.scene())
 }

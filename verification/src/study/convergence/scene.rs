@@ -1,0 +1,52 @@
+//! The scene of one mesh of a convergence study.
+
+use fisura::scene::{Frame, Kinematics, Scene, Shape, Transfer};
+use fisura::validate::validate;
+
+use super::other;
+use super::problem::{Kind, Problem};
+use crate::case::convergence::{ConvergenceSetup, PatchFamily};
+use crate::exact::vortex::RADII;
+use crate::patches;
+use crate::plain_scene::PlainScene;
+use crate::study::StudyError;
+
+/// The scene of one mesh: nothing but the exact solution loads the body, which fills the patch unless it is a ring.
+pub(super) fn scene(
+    setup: &ConvergenceSetup,
+    problem: &Problem,
+    n: usize,
+    cells: usize,
+    transfer: Transfer,
+) -> Result<Scene, StudyError> {
+    let mut material = problem.solution.material();
+    if problem.kind == Kind::PhaseField {
+        material.fracture = None; // the study builds its own phase field, on the points of this scene
+    }
+    let plain = PlainScene {
+        mesh: patches::mesh(setup.patch, setup.degrees[n], cells).map_err(|e| other(e.to_string()))?,
+        material,
+        plane: setup.plane,
+        mass: setup.mass,
+        layout: setup.layout,
+        points: setup.points(n),
+        held: problem.held.clone(),
+    };
+    let mut scene = plain.scene();
+    if setup.frame == Frame::Updated {
+        (scene.analysis.frame, scene.analysis.kinematics) = (Frame::Updated, Kinematics::Finite);
+        scene.analysis.transfer = transfer;
+    }
+    let body = &mut scene.bodies[0];
+    match setup.patch {
+        PatchFamily::Ring => {
+            let [inner_radius, outer_radius] = RADII;
+            body.shape = Shape::Annulus { center: [0.0; 2], inner_radius, outer_radius };
+        }
+        // Nothing varies across a strip, where two points will do.
+        PatchFamily::Strip => body.particles_per_cell[1] = setup.points(n).min(2),
+        _ => {}
+    }
+    validate(&scene).map_err(|errors| other(errors.iter().map(|e| e.to_string()).collect::<Vec<_>>().join("; ")))?;
+    Ok(scene)
+}
