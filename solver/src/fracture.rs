@@ -1,12 +1,13 @@
 //! Fracture of one body in the total frame: history energy, phase field, and what is measured of them.
 
 use crate::conjugate_gradients::Convergence;
+use crate::finite::sweep_with;
 use crate::kernels::{DegradedStress, HistoryUpdate, SurfaceEnergy};
 use crate::lane::Lane;
 use crate::lattice::Lattice;
 use crate::material::{ElasticModuli, FractureModel};
 use crate::phase_field::PhaseField;
-use crate::scene::{Body, SolverSettings};
+use crate::scene::{Body, Kinematics, SolverSettings};
 use crate::shape::distance_to_segment;
 use crate::sweep::{Fields, StripForces, sweep};
 
@@ -77,12 +78,18 @@ impl Fracturing {
     }
 
     /// H from the present displacement.
-    pub fn update_history(&mut self, lattice: &Lattice, moduli: ElasticModuli, displacement: &[Vec<f64>; 2]) {
+    pub fn update_history(
+        &mut self,
+        lattice: &Lattice,
+        moduli: ElasticModuli,
+        kinematics: Kinematics,
+        displacement: &[Vec<f64>; 2],
+    ) {
         let model = self.model;
         let strips = self.history.chunks_mut(lattice.strip_batches());
         let mut kernels: Vec<_> = strips.map(|history| HistoryUpdate { moduli, model, history }).collect();
         let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
-        sweep(lattice, fields, &mut kernels, None);
+        sweep_with(kinematics, lattice, fields, &mut kernels, None);
     }
 
     /// c from the present H.
@@ -100,6 +107,7 @@ impl Fracturing {
         &mut self,
         lattice: &Lattice,
         moduli: ElasticModuli,
+        kinematics: Kinematics,
         displacement: [&[f64]; 2],
         forces: &mut StripForces,
     ) -> StressSums {
@@ -119,7 +127,7 @@ impl Fracturing {
             })
             .collect();
         let fields = Fields { displacement, phase: self.field.control_values() };
-        sweep(lattice, fields, &mut kernels, Some(forces));
+        sweep_with(kinematics, lattice, fields, &mut kernels, Some(forces));
         let history_work: f64 = kernels.iter().map(|k| k.history_work.sum()).sum();
         StressSums {
             elastic_energy: kernels.iter().map(|k| k.energy.sum()).sum(),

@@ -134,6 +134,7 @@ pub mod constraints;
 pub mod critical_step;
 pub mod energy;
 pub mod error;
+pub mod finite;
 pub mod forcing;
 pub mod fracture;
 pub mod hencky;

@@ -103,12 +103,13 @@ fn values_at(frame: &TotalFrame, position: [f64; 2]) -> [f64; 2] {
     }
     let Some(functions) = frame.patch().functions_at(position) else { return outside };
     let [ux, uy] = frame.displacement().each_ref().map(|u| functions.interpolate(u).gradient);
-    let strain = [ux[0], uy[1], 0.5 * (ux[1] + uy[0])];
+    let (strain, growth) = frame.strain([ux, uy]);
+    let cauchy = |fracture| largest_principal_stress(frame.moduli(), strain, fracture) / growth;
     match &frame.fracture {
-        None => [1.0, largest_principal_stress(frame.moduli(), strain, None)],
+        None => [1.0, cauchy(None)],
         Some(fracture) => {
             let phase = functions.interpolate(fracture.field.control_values()).value;
-            [phase, largest_principal_stress(frame.moduli(), strain, Some((&fracture.model, phase)))]
+            [phase, cauchy(Some((&fracture.model, phase)))]
         }
     }
 }

@@ -16,13 +16,14 @@ use crate::constraints::Constraints;
 use crate::energy::Ledger;
 use crate::forcing::Forcing;
 use crate::fracture::{Fracturing, NotConverged};
+use crate::hencky::hencky_strain;
 use crate::lane::Lane;
 use crate::lattice::Lattice;
 use crate::loads::NodalLoad;
 use crate::mass::MassMatrix;
 use crate::material::{ElasticModuli, FractureModel};
 use crate::patch::{ControlGrid, Patch};
-use crate::scene::{Boundary, Scene, Shape, Side};
+use crate::scene::{Boundary, Kinematics, Scene, Shape, Side};
 use crate::stencil::CHUNK_ROWS;
 use crate::sweep::StripForces;
 
@@ -40,6 +41,7 @@ pub struct TotalFrame {
     grid: ControlGrid,
     lattice: Lattice,
     moduli: ElasticModuli,
+    kinematics: Kinematics,
     shape: Shape,
     thickness: f64,
     gravity: [f64; 2],
@@ -87,6 +89,7 @@ impl TotalFrame {
             mass: MassMatrix::new(&lattice, material.density, scene.analysis.mass, held),
             constraints,
             moduli: ElasticModuli::new(material, scene.analysis.plane),
+            kinematics: scene.analysis.kinematics,
             shape: body.shape.clone(),
             thickness: scene.analysis.thickness,
             gravity: scene.analysis.gravity,
@@ -127,7 +130,7 @@ impl TotalFrame {
         let mut forced = Forced::new(forcing, &self.patch, &self.lattice);
         forced.update_forces(&self.lattice, 0.0);
         if let Some(fracture) = &mut self.fracture {
-            fracture.update_history(&self.lattice, self.moduli, &self.displacement);
+            fracture.update_history(&self.lattice, self.moduli, self.kinematics, &self.displacement);
             fracture.field.set_load(forced.phase_load(&self.lattice, 0.0));
             fracture.field.initialise(&self.lattice, &fracture.history)?;
         }
@@ -166,7 +169,7 @@ impl TotalFrame {
         self.predict(dt);
         self.update_loads();
         if let Some(fracture) = &mut self.fracture {
-            fracture.update_history(&self.lattice, self.moduli, &self.displacement);
+            fracture.update_history(&self.lattice, self.moduli, self.kinematics, &self.displacement);
             fracture.solve_phase_field(&self.lattice)?;
         }
         self.internal_forces();
@@ -216,16 +219,15 @@ impl TotalFrame {
 
     /// Stress at the points and its nodal forces; books the work of the history field.
     fn internal_forces(&mut self) {
-        let moduli = self.moduli;
+        let Self { lattice, moduli, kinematics, displacement, strip_forces, internal, .. } = self;
         if let Some(fracture) = &mut self.fracture {
-            let displacement = [&self.displacement[0][..], &self.displacement[1][..]];
-            let sums = fracture.degraded_forces(&self.lattice, moduli, displacement, &mut self.strip_forces);
+            let displacement = [&displacement[0][..], &displacement[1][..]];
+            let sums = fracture.degraded_forces(lattice, *moduli, *kinematics, displacement, strip_forces);
             self.elastic_energy = sums.elastic_energy;
             self.ledger.history_work += sums.history_work;
-            self.strip_forces.assemble(self.grid.stride, &mut self.internal);
+            strip_forces.assemble(self.grid.stride, internal);
         } else {
-            let (strips, internal) = (&mut self.strip_forces, &mut self.internal);
-            self.elastic_energy = elastic_forces(&self.lattice, moduli, &self.displacement, strips, internal);
+            self.elastic_energy = elastic_forces(lattice, *moduli, *kinematics, displacement, strip_forces, internal);
         }
     }
 
@@ -320,11 +322,21 @@ impl TotalFrame {
         self.constraints.apply_velocity(&mut self.velocity);
     }
 
-    /// Stress `[xx, yy, xy]` (Pa) of the undamaged body under a displacement field at a position; NaN outside the patch.
+    /// Strain `[xx, yy, xy]` of a displacement gradient, and by how much the volume grew.
+    pub fn strain(&self, gradient: [[f64; 2]; 2]) -> ([f64; 3], f64) {
+        let [[xx, xy], [yx, yy]] = gradient;
+        match self.kinematics {
+            Kinematics::Small => ([xx, yy, 0.5 * (xy + yx)], 1.0),
+            Kinematics::Finite => (hencky_strain(&gradient), (1.0 + xx) * (1.0 + yy) - xy * yx),
+        }
+    }
+
+    /// Stress `[xx, yy, xy]` (Pa) of the undamaged body under a displacement field at a position; NaN outside the patch. With
+    /// finite kinematics it is Kirchhoff's.
     pub fn elastic_stress_at(&self, displacement: &[Vec<f64>; 2], position: [f64; 2]) -> [f64; 3] {
         let [x, y] = [0, 1].map(|c| self.patch.evaluate(&displacement[c], position));
         let (Some(x), Some(y)) = (x, y) else { return [f64::NAN; 3] };
-        let strain = [x.gradient[0], y.gradient[1], 0.5 * (x.gradient[1] + y.gradient[0])];
+        let (strain, _) = self.strain([x.gradient, y.gradient]);
         self.moduli.stress(strain.map(Lane::splat)).map(|s| s[0])
     }
 

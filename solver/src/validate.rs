@@ -12,7 +12,7 @@ mod mesh;
 use std::fmt::Display;
 
 use crate::error::{SceneError, SceneWarning};
-use crate::scene::{Frame, Kinematics, Scene};
+use crate::scene::{Frame, Scene};
 
 /// Checks a scene; the warnings, if it can be modelled.
 ///
@@ -77,10 +77,6 @@ fn unsupported(scene: &Scene, findings: &mut Findings) {
     }
     if scene.contact.is_some() {
         refuse("contact", &"contact between bodies is", "remove the [contact] table");
-    }
-    if scene.analysis.kinematics == Kinematics::Finite && scene.analysis.frame == Frame::Total {
-        let remedy = "use frame = \"updated\", or kinematics = \"small\"";
-        refuse("analysis.kinematics", &"finite strain in the total frame is", remedy);
     }
     if scene.analysis.frame == Frame::Updated && scene.mesh.geometry.is_some() {
         refuse(

@@ -4,11 +4,13 @@ use std::collections::BTreeSet;
 
 use super::{TotalFrame, VectorField};
 use crate::critical_step::{StiffnessOperator, highest_frequency};
+use crate::finite::sweep_with;
 use crate::kernels::ElasticStress;
 use crate::lane::Lane;
 use crate::lattice::Lattice;
 use crate::material::ElasticModuli;
-use crate::sweep::{Fields, StripForces, sweep};
+use crate::scene::Kinematics;
+use crate::sweep::{Fields, StripForces};
 
 impl TotalFrame {
     /// Critical time step of the undamaged body, s; infinite if nothing can move.
@@ -29,9 +31,9 @@ impl TotalFrame {
         self.strip_forces.clone()
     }
 
-    /// Internal forces (N/m) of the undamaged body under a displacement (m).
+    /// Internal forces (N/m) of the undamaged body under a displacement (m), linear in it.
     pub fn elastic_forces(&self, displacement: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
-        elastic_forces(&self.lattice, self.moduli, displacement, strips, out);
+        elastic_forces(&self.lattice, self.moduli, Kinematics::Small, displacement, strips, out);
     }
 
     /// Stiffness of the undamaged body on its free degrees of freedom.
@@ -51,13 +53,14 @@ impl TotalFrame {
 pub(super) fn elastic_forces(
     lattice: &Lattice,
     moduli: ElasticModuli,
+    kinematics: Kinematics,
     displacement: &VectorField,
     strips: &mut StripForces,
     out: &mut VectorField,
 ) -> f64 {
     let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| ElasticStress { moduli, energy: Lane::ZERO }).collect();
     let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
-    sweep(lattice, fields, &mut kernels, Some(strips));
+    sweep_with(kinematics, lattice, fields, &mut kernels, Some(strips));
     strips.assemble(lattice.grid.stride, out);
     kernels.iter().map(|k| k.energy.sum()).sum()
 }

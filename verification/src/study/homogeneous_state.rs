@@ -13,7 +13,7 @@ use fisura::lattice::Lattice;
 use fisura::material::{ElasticModuli, FractureModel};
 use fisura::patch::Patch;
 use fisura::phase_field::PhaseField;
-use fisura::scene::Side;
+use fisura::scene::{Kinematics, Side};
 use fisura::sweep::StripForces;
 
 use super::{Findings, StudyError};
@@ -112,11 +112,11 @@ impl Points<'_> {
         for at in grid.indices() {
             displacement[0][at] = strain * self.greville[grid.column_of(at)];
         }
-        fracture.update_history(lattice, *moduli, &displacement);
+        fracture.update_history(lattice, *moduli, Kinematics::Small, &displacement);
         fracture.solve_phase_field(lattice).map_err(|c| {
             StudyError::Other(format!("the phase field did not converge: residual {:e}", c.relative_residual))
         })?;
-        fracture.degraded_forces(lattice, *moduli, [&displacement[0], &displacement[1]], forces);
+        fracture.degraded_forces(lattice, *moduli, Kinematics::Small, [&displacement[0], &displacement[1]], forces);
         let mut nodal = [grid.zeros(), grid.zeros()];
         forces.assemble(grid.stride, &mut nodal);
         let force: f64 = grid.side(Side::Right).into_iter().map(|at| nodal[0][at]).sum();

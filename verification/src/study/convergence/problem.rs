@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use fisura::forcing::{Forcing, VolumeLoad};
-use fisura::scene::{Frame, Side};
+use fisura::scene::{Frame, Kinematics, Side};
 
 use crate::case::convergence::{ConvergenceSetup, Loading, PatchFamily};
 use crate::exact::{self, ExactSolution};
@@ -32,11 +32,13 @@ pub(super) struct Problem {
     pub held: Vec<(Side, [bool; 2])>,
     /// End of the simulated time, s.
     pub end_time: f64,
+    /// Small strains, or the Hencky law.
+    pub kinematics: Kinematics,
 }
 
 /// The problem of a setup; an error message if no study solves it in that frame.
 ///
-/// The updated frame computes the Hencky law, the total frame with small kinematics `P = E (F − 1)` in a bar. A wave stands
+/// Small kinematics in the total frame are `P = E (F − 1)` in a bar, at any amplitude. A wave stands
 /// between rollers on a rectangle; on a curved patch its exact traction acts on all sides.
 pub(super) fn find(setup: &ConvergenceSetup) -> Result<Problem, String> {
     use Side::{Bottom, Left, Top};
@@ -49,13 +51,15 @@ pub(super) fn find(setup: &ConvergenceSetup) -> Result<Problem, String> {
         (Frame::Total, "kirsch") => (Kind::Static, vec![(Bottom, [false, true]), (Top, [true, false])], 0.0),
         (Frame::Total, "phase-field" | "phase-field-zero-flux") => (Kind::PhaseField, vec![], 0.0),
         (Frame::Total, "standing-wave" | "finite-wave") => (Kind::Dynamic, rollers, 0.6),
+        (Frame::Total, "hencky-wave" | "axis-aligned") => (Kind::Dynamic, rollers, 0.6),
         (Frame::Total, "coupled") => (Kind::Dynamic, vec![], 0.5),
         (Frame::Updated, "hencky-wave" | "axis-aligned") => (Kind::Dynamic, rollers, 0.6),
         (Frame::Updated, "vortex") => (Kind::Dynamic, vec![], 0.6),
         (frame, _) => {
             let known = match frame {
                 Frame::Total => {
-                    "projection, elastostatics, kirsch, phase-field, phase-field-zero-flux, standing-wave, finite-wave, coupled"
+                    "projection, elastostatics, kirsch, phase-field, phase-field-zero-flux, standing-wave, finite-wave, \
+                     hencky-wave, axis-aligned, coupled"
                 }
                 Frame::Updated => "hencky-wave, axis-aligned, vortex",
             };
@@ -64,7 +68,9 @@ pub(super) fn find(setup: &ConvergenceSetup) -> Result<Problem, String> {
     };
     let source = if name == "projection" { "elastostatics" } else { name };
     let solution = exact::find(source, setup.plane).ok_or_else(|| format!("no exact solution {source:?}"))?;
-    Ok(Problem { kind, solution: solution.into(), held, end_time })
+    let finite = matches!(name, "hencky-wave" | "axis-aligned" | "vortex");
+    let kinematics = if finite { Kinematics::Finite } else { Kinematics::Small };
+    Ok(Problem { kind, solution: solution.into(), held, end_time, kinematics })
 }
 
 /// The loads that make an exact solution one of the discrete problem.

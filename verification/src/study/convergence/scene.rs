@@ -1,6 +1,6 @@
 //! The scene of one mesh of a convergence study.
 
-use fisura::scene::{Frame, Kinematics, Scene, Shape, Transfer};
+use fisura::scene::{Frame, Scene, Shape, Transfer};
 use fisura::validate::validate;
 
 use super::other;
@@ -33,9 +33,9 @@ pub(super) fn scene(
         held: problem.held.clone(),
     };
     let mut scene = plain.scene();
+    scene.analysis.kinematics = problem.kinematics;
     if setup.frame == Frame::Updated {
-        (scene.analysis.frame, scene.analysis.kinematics) = (Frame::Updated, Kinematics::Finite);
-        scene.analysis.transfer = transfer;
+        (scene.analysis.frame, scene.analysis.transfer) = (Frame::Updated, transfer);
     }
     let body = &mut scene.bodies[0];
     match setup.patch {
