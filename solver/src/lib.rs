@@ -1,4 +1,4 @@
-//! Dynamic brittle fracture in the plane by the material point method on a spline background mesh.
+//! Dynamic brittle fracture in the plane by the material point method on a NURBS background mesh.
 //!
 //! `fisura` moves bodies made of material points through time with an explicit scheme, lets them crack by a phase field
 //! driven by the tensile part of their elastic energy, and accounts for every joule on the way. It follows Estrada
@@ -39,13 +39,15 @@
 //! | E 4–7 | elastic energy, its split, degraded stress | [`split`], [`material`], [`kernels`] |
 //! | E 10 | history energy | [`kernels`], [`fracture`] |
 //! | E 11–12, 19–24 | phase-field equation and its matrix | [`phase_field`], [`assembly`] |
-//! | E 13 | splines and the patch they span | [`spline`], [`patch`] |
-//! | E 14–18 | the step | [`total_frame`], [`updated_frame`] |
+//! | E 13 | splines, the patch they span, its geometry | [`spline`], [`patch`], [`nurbs`] |
+//! | E 14–18 | the step, the mass matrix | [`total_frame`], [`updated_frame`], [`mass`] |
 //! | E 15–18 | transfers between points and control points | [`sweep`], [`updated_frame`] |
 //! | – | material points: layouts, tiles of spans | [`quadrature`], [`lattice`], [`shape`] |
 //! | – | what the points take from the grid, and its losses | [`updated_frame::departure`], [`updated_frame::losses`] |
 //! | – | finite strain | [`hencky`] |
 //! | – | tractions, gravity, conditions on sides | [`loads`], [`constraints`] |
+//! | – | finite strain | [`hencky`], [`finite`] |
+//! | – | for verification: loads that vary in space, projection, elastostatics | [`forcing`], [`projection`], [`statics`] |
 //! | – | linear algebra of the phase field | [`stencil`], [`conjugate_gradients`], [`incomplete_cholesky`], [`cholesky`] |
 //! | – | critical step, plan of steps and samples | [`critical_step`], [`time_plan`] |
 //! | – | energy ledger, pictures | [`energy`], [`picture`] |
@@ -65,8 +67,8 @@
 //!
 //! # Not modelled yet
 //!
-//! More than one body, contact and rigid bodies; finite strain in the total frame; the consistent mass matrix; patches
-//! that are not affine, and weights (NURBS). [`validate::validate`] refuses a scene that asks for one of these.
+//! More than one body, contact and rigid bodies; general patches in the updated frame; the consistent mass matrix there or
+//! where a body cuts spans. [`validate::validate`] refuses a scene that asks for one of these.
 //!
 //! # Example
 //!
