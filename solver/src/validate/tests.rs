@@ -277,7 +277,7 @@ fn what_the_solver_cannot_do_is_refused_by_key() {
         assert!(errors(updated(transfer)).is_empty(), "{transfer:?}");
     }
     assert_eq!(errors(updated(Transfer::Xpic(0))), ["analysis.transfer"]);
-    assert_eq!(errors(|s| s.analysis.kinematics = Kinematics::Finite), ["analysis.kinematics"]);
+    assert!(errors(|s| s.analysis.kinematics = Kinematics::Finite).is_empty());
     let finite = |s: &mut Scene| {
         updated(Transfer::Apic)(s);
         s.analysis.kinematics = Kinematics::Finite;
