@@ -185,7 +185,6 @@ const BROKEN: &[Broken] = &[
     ("from = [0.0, 0.02]\nto   = [0.05, 0.02]", "from = [0.0, 0.02]\nto = [0.11, 0.02]", 51, "body.0.crack.0.to", &["lies outside body \"plate\""]),
     // not yet
     ("# [contact] with friction = 0.65 stands here once bodies can meet", "[contact]\nfriction = 0.65", 54, "contact", &["not supported yet", "remove"]),
-    ("kinematics = \"small\"", "kinematics = \"finite\"", 13, "analysis.kinematics", &["not supported yet", "small"]),
     ("rigid    = false", "rigid = true", 42, "body.0.rigid", &["not supported yet", "false"]),
 ];
 
