@@ -7,7 +7,7 @@
 //! [`LANES`] neighbours past the control points; the room stays zero.
 
 use crate::lane::LANES;
-use crate::nurbs::{NurbsError, NurbsPatch, RationalFunctions};
+use crate::nurbs::{Location, NurbsError, NurbsPatch, RationalFunctions};
 use crate::quadrature::Rule;
 use crate::scene::{Geometry, Mesh, Side};
 use crate::spline::{MAX_DEGREE, SplineSpace};
@@ -177,26 +177,43 @@ impl Patch {
 
     /// Shape functions at a position (m); `None` outside the patch.
     pub fn functions_at(&self, position: [f64; 2]) -> Option<PointFunctions> {
-        let grid = self.control_grid();
-        let (functions, gradient) = match &self.geometry {
+        Some(self.functions(self.locate(position)?))
+    }
+
+    /// Span and parameters of a position (m); `None` outside the patch.
+    pub fn locate(&self, position: [f64; 2]) -> Option<Location> {
+        match &self.geometry {
             None => {
                 let span = [self.spaces[0].find_span(position[0])?, self.spaces[1].find_span(position[1])?];
-                let functions = self.products(span, position);
-                (functions, functions.gradient)
+                Some(Location { span, parameters: position })
+            }
+            Some(patch) => patch.locate(position, None).ok(),
+        }
+    }
+
+    /// Shape functions at a place.
+    pub fn functions(&self, Location { span, parameters }: Location) -> PointFunctions {
+        let (functions, position, gradient) = match &self.geometry {
+            None => {
+                let functions = self.products(span, parameters);
+                (functions, parameters, functions.gradient)
             }
             Some(patch) => {
-                let place = patch.locate(position, None).ok()?;
-                let functions = patch.shape_functions(place.span, place.parameters);
-                (functions, functions.physical_gradients(&patch.map(&functions)))
+                let functions = patch.shape_functions(span, parameters);
+                let image = patch.map(&functions);
+                (functions, image.position, functions.physical_gradients(&image))
             }
         };
-        Some(PointFunctions { values: on_grid(grid, &functions), gradients: gradient[..functions.count].to_vec() })
+        let values = on_grid(self.control_grid(), &functions);
+        PointFunctions { position, values, gradients: gradient[..functions.count].to_vec() }
     }
 }
 
 /// Shape functions at a position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointFunctions {
+    /// The position, m.
+    pub position: [f64; 2],
     /// Index in a field and value of those that do not vanish.
     pub values: Vec<(usize, f64)>,
     /// Their gradients, 1/m.

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::material::ElasticModuli;
+use crate::nurbs::Location;
 use crate::patch::Patch;
 use crate::total_frame::TotalFrame;
 use crate::updated_frame::UpdatedFrame;
@@ -49,6 +50,22 @@ impl Raster {
         [0, 1].map(|d| self.origin[d] + (at[d] as f64 + 0.5) * self.pixel[d])
     }
 
+    /// Index of the pixel that holds a position, or of the nearest one.
+    fn pixel_of(&self, position: [f64; 2]) -> usize {
+        let at = [0, 1]
+            .map(|d| (((position[d] - self.origin[d]) / self.pixel[d]).max(0.0) as usize).min(self.pixels[d] - 1));
+        at[1] * self.pixels[0] + at[0]
+    }
+
+    /// Intervals per direction that put three samples on every pixel along two lines of three positions.
+    fn samples(&self, along: [[f64; 2]; 3], across: [[f64; 2]; 3]) -> [usize; 2] {
+        let size = self.pixel[0].min(self.pixel[1]);
+        [along, across].map(|[a, b, c]| {
+            let length = (b[0] - a[0]).hypot(b[1] - a[1]) + (c[0] - b[0]).hypot(c[1] - b[1]);
+            (3.0 * length / size).ceil() as usize + 1
+        })
+    }
+
     /// Calls `f` with index and overlap (m²) of every pixel that meets a rectangle, given by its ends in x and y.
     pub fn for_each_overlap(&self, ends: [[f64; 2]; 2], mut f: impl FnMut(usize, f64)) {
         let near = |d: usize| {
@@ -71,8 +88,10 @@ impl Picture {
     /// Picture of a body at `time` (s).
     pub fn of(frame: &TotalFrame, time: f64, pixels: [usize; 2]) -> Self {
         let raster = Raster::new(frame.patch(), pixels);
+        let places = places_of_pixels(frame.patch(), &raster);
+        let outside = [f64::NAN; 2];
         let values: Vec<[f64; 2]> =
-            (0..pixels[0] * pixels[1]).into_par_iter().map(|index| values_at(frame, raster.center(index))).collect();
+            places.par_iter().map(|place| place.map_or(outside, |place| values_at(frame, place))).collect();
         let phase = frame.fracture.is_some().then(|| values.iter().map(|v| v[0]).collect());
         Self::new(raster, time, phase, values.iter().map(|v| v[1]).collect())
     }
@@ -95,13 +114,45 @@ impl Picture {
     }
 }
 
-/// Phase field and largest principal stress at a position.
-fn values_at(frame: &TotalFrame, position: [f64; 2]) -> [f64; 2] {
-    let outside = [f64::NAN; 2];
-    if !frame.shape().contains(position) {
-        return outside;
+/// Span and parameters of the centre of every pixel, or as near to it as half of one; `None` outside the patch.
+fn places_of_pixels(patch: &Patch, raster: &Raster) -> Vec<Option<Location>> {
+    let count = raster.pixels[0] * raster.pixels[1];
+    let Some(geometry) = &patch.geometry else {
+        return (0..count).map(|index| patch.locate(raster.center(index))).collect();
+    };
+    // Forward from the parameters: a search for every pixel would be slow, above all for those outside.
+    let mut nearest = vec![(f64::INFINITY, [0; 2], [0.0; 2]); count];
+    for (j, t) in patch.spaces[1].spans().iter().enumerate() {
+        for (i, s) in patch.spaces[0].spans().iter().enumerate() {
+            let at = |u: f64, v: f64| [s.left + u * s.length(), t.left + v * t.length()];
+            let place = |u: f64, v: f64| geometry.map(&geometry.shape_functions([i, j], at(u, v))).position;
+            let [along, across] = raster.samples(
+                [place(0.0, 0.5), place(0.5, 0.5), place(1.0, 0.5)],
+                [place(0.5, 0.0), place(0.5, 0.5), place(0.5, 1.0)],
+            );
+            for (n, m) in (0..=across).flat_map(|n| (0..=along).map(move |m| (n, m))) {
+                let (u, v) = (m as f64 / along as f64, n as f64 / across as f64);
+                let position = place(u, v);
+                let index = raster.pixel_of(position);
+                let center = raster.center(index);
+                let distance = (position[0] - center[0]).hypot(position[1] - center[1]);
+                if distance < nearest[index].0 {
+                    nearest[index] = (distance, [i, j], at(u, v));
+                }
+            }
+        }
     }
-    let Some(functions) = frame.patch().functions_at(position) else { return outside };
+    let found =
+        |(distance, span, parameters): (f64, _, _)| distance.is_finite().then_some(Location { span, parameters });
+    nearest.into_iter().map(found).collect()
+}
+
+/// Phase field and largest principal stress at a place of the patch.
+fn values_at(frame: &TotalFrame, place: Location) -> [f64; 2] {
+    let functions = frame.patch().functions(place);
+    if !frame.shape().contains(functions.position) {
+        return [f64::NAN; 2];
+    }
     let [ux, uy] = frame.displacement().each_ref().map(|u| functions.interpolate(u).gradient);
     let (strain, growth) = frame.strain([ux, uy]);
     let cauchy = |fracture| largest_principal_stress(frame.moduli(), strain, fracture) / growth;
