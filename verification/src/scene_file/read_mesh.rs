@@ -8,6 +8,8 @@ use super::read::{length, number, point};
 
 /// Largest number of spans in one direction.
 const MOST_CELLS: usize = 1_000_000;
+/// Largest number of spans of a patch with a geometry, of which every point keeps its map.
+const MOST_MAPPED_SPANS: usize = 1_000_000;
 const KEYS: [&str; 9] =
     ["degree", "origin", "size", "cells", "knots", "control_points", "weights", "subdivide", "annulus"];
 
@@ -100,7 +102,11 @@ fn general(fields: &Fields<'_>, degree: [usize; 2]) -> Option<Mesh> {
     let weights = weights.unwrap_or_else(|| vec![1.0; control_points.len()]);
     let mesh = Mesh { degree, knots, geometry: Some(Geometry { control_points, weights }) };
     match mesh.nurbs()? {
-        Ok(patch) if parts > 1 => refined(fields, "subdivide", patch.subdivide(parts)),
+        Ok(patch) if parts > 1 => {
+            let spans = patch.spaces().each_ref().map(|space| space.spans().len().saturating_mul(parts));
+            few_enough(fields, "subdivide", spans)?;
+            refined(fields, "subdivide", patch.subdivide(parts))
+        }
         _ => Some(mesh), // validation says what is wrong with a patch
     }
 }
@@ -120,6 +126,7 @@ fn annulus(item: &Item<'_>, fields: &Fields<'_>, degree: [usize; 2]) -> Option<M
         return fields.get("degree")?.fail("an arc is a rational curve of degree 2", remedy);
     }
     let (center, inner, outer, angles, cells) = (center?, inner?, outer?, angles?, cells?);
+    few_enough(fields, "cells", cells)?;
     let sector = match NurbsPatch::annular_sector(inner, outer, angles) {
         Ok(sector) => sector,
         Err(error) => return item.fail(error.to_string(), "give 0 <= inner_radius < outer_radius and growing angles"),
@@ -149,6 +156,15 @@ fn annulus(item: &Item<'_>, fields: &Fields<'_>, degree: [usize; 2]) -> Option<M
         *point = [point[0] + center[0], point[1] + center[1]];
     }
     Some(mesh)
+}
+
+fn few_enough(fields: &Fields<'_>, key: &str, [columns, rows]: [usize; 2]) -> Option<()> {
+    let spans = columns.saturating_mul(rows);
+    if spans <= MOST_MAPPED_SPANS {
+        return Some(());
+    }
+    let remedy = format!("give fewer: at most {MOST_MAPPED_SPANS} spans in all");
+    fields.get(key)?.fail(format!("a general patch of {spans} spans"), remedy)
 }
 
 fn refined(fields: &Fields<'_>, key: &str, patch: Result<NurbsPatch, NurbsError>) -> Option<Mesh> {
