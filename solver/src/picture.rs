@@ -114,14 +114,14 @@ impl Picture {
     }
 }
 
-/// Span and parameters of the centre of every pixel, or as near to it as half of one; `None` outside the patch.
+/// Span and parameters of the centre of every pixel; `None` outside the patch.
 fn places_of_pixels(patch: &Patch, raster: &Raster) -> Vec<Option<Location>> {
     let count = raster.pixels[0] * raster.pixels[1];
     let Some(geometry) = &patch.geometry else {
         return (0..count).map(|index| patch.locate(raster.center(index))).collect();
     };
-    // Forward from the parameters: a search for every pixel would be slow, above all for those outside.
-    let mut nearest = vec![(f64::INFINITY, [0; 2], [0.0; 2]); count];
+    // Samples of the patch tell which pixels it meets and where to search: a search from nowhere would be slow.
+    let mut nearest = vec![(f64::INFINITY, [0.0; 2]); count];
     for (j, t) in patch.spaces[1].spans().iter().enumerate() {
         for (i, s) in patch.spaces[0].spans().iter().enumerate() {
             let at = |u: f64, v: f64| [s.left + u * s.length(), t.left + v * t.length()];
@@ -137,14 +137,15 @@ fn places_of_pixels(patch: &Patch, raster: &Raster) -> Vec<Option<Location>> {
                 let center = raster.center(index);
                 let distance = (position[0] - center[0]).hypot(position[1] - center[1]);
                 if distance < nearest[index].0 {
-                    nearest[index] = (distance, [i, j], at(u, v));
+                    nearest[index] = (distance, at(u, v));
                 }
             }
         }
     }
-    let found =
-        |(distance, span, parameters): (f64, _, _)| distance.is_finite().then_some(Location { span, parameters });
-    nearest.into_iter().map(found).collect()
+    let near = nearest.into_par_iter().enumerate().map(|(index, (distance, parameters))| {
+        distance.is_finite().then(|| geometry.locate(raster.center(index), Some(parameters)).ok())?
+    });
+    near.collect()
 }
 
 /// Phase field and largest principal stress at a place of the patch.
