@@ -20,7 +20,8 @@ impl<K: PointKernel> PointKernel for Finite<'_, K> {
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
-        let [xx, xy, yx, yy] = values.gradient;
+        // Where there is no point, control points without mass may fly anywhere: no strain there.
+        let [xx, xy, yx, yy] = values.gradient.map(|g| g.zip(weight, |g, w| if w > 0.0 { g } else { 0.0 }));
         let (mut exx, mut eyy, mut exy) = (Lane::ZERO, Lane::ZERO, Lane::ZERO);
         for lane in 0..LANES {
             [exx[lane], eyy[lane], exy[lane]] = hencky_strain(&[[xx[lane], xy[lane]], [yx[lane], yy[lane]]]);

@@ -82,9 +82,13 @@ fn consistent_mass(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) 
                 format!("body {:?} cuts spans, which collapses the critical step of the consistent mass", body.name);
             findings.error(key, message, "let the body end at knots of the mesh, or use mass = \"lumped\"");
         }
-        for d in 0..2 {
+        let (low, high) = match body.shape {
+            Shape::Patch => Shape::Patch.bounding_box(),
+            _ => scene.mesh.extent(&body.shape),
+        };
+        for d in (0..2).filter(|&d| super::body::has_rule(body, d)) {
             let space = SplineSpace::new(scene.mesh.degree[d], &scene.mesh.knots[d]);
-            if !determined(&space, &Rule::new(body.layout, body.particles_per_cell[d])) {
+            if !determined(&space, [low[d], high[d]], &Rule::new(body.layout, body.particles_per_cell[d])) {
                 let n = body.particles_per_cell[d];
                 let message =
                     format!("{n} points per cell in direction {} leave the mass matrix singular", ["x", "y"][d]);
@@ -95,18 +99,23 @@ fn consistent_mass(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) 
     }
 }
 
-/// Whether the points of a rule in every span determine a spline (Schoenberg and Whitney): taken in order, each basis
-/// function has a point of its own inside its support.
-fn determined(space: &SplineSpace, rule: &Rule) -> bool {
-    let points = space.spans().iter().flat_map(|s| rule.points.iter().map(move |t| s.left + t * s.length()));
+/// Whether the points of a rule in every span between two ends determine a spline there (Schoenberg and Whitney): taken in
+/// order, each basis function has a point of its own inside its support.
+fn determined(space: &SplineSpace, [from, to]: [f64; 2], rule: &Rule) -> bool {
+    let spans: Vec<_> =
+        space.spans().iter().filter(|s| 0.5 * (s.left + s.right) > from && 0.5 * (s.left + s.right) < to).collect();
+    let (Some(first), Some(last)) = (spans.first(), spans.last()) else { return true };
     let (knots, order) = (space.knot_vector(), space.degree() + 1);
-    let mut next = 0;
-    for x in points {
-        if next < space.dimension() && knots[next] < x && x < knots[next + order] {
-            next += 1;
+    let (mut next, end) = (first.first, last.first + order);
+    for span in &spans {
+        for t in &rule.points {
+            let x = span.left + t * span.length();
+            if next < end && knots[next] < x && x < knots[next + order] {
+                next += 1;
+            }
         }
     }
-    next == space.dimension()
+    next == end
 }
 
 /// Whether the run has a number of steps that can be taken: with a step of choice, one span per step is the estimate.

@@ -48,6 +48,12 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
     }
 }
 
+/// Whether the layout of a body has a rule of its number of points in a direction.
+pub(super) fn has_rule(body: &Body, d: usize) -> bool {
+    let most = if body.layout == Layout::Maclaurin { MOST_MACLAURIN } else { MAX_POINTS };
+    (1..=most).contains(&body.particles_per_cell[d])
+}
+
 fn points(key: &str, body: &Body, degree: [usize; 2], findings: &mut Findings) {
     let counts = body.particles_per_cell;
     let points = format!("{key}.particles_per_cell");

@@ -8,8 +8,11 @@ use super::read::{length, number, point};
 
 /// Largest number of spans in one direction.
 const MOST_CELLS: usize = 1_000_000;
-/// Largest number of spans of a patch with a geometry, of which every point keeps its map.
+/// Largest number of spans of a patch with a geometry, of which every point keeps its map, in all and in one direction.
 const MOST_MAPPED_SPANS: usize = 1_000_000;
+const MOST_MAPPED_IN_A_ROW: usize = 10_000;
+/// Angle short of a full turn that a ring has to leave open, rad.
+const LEAST_OPENING: f64 = 1e-9;
 const KEYS: [&str; 9] =
     ["degree", "origin", "size", "cells", "knots", "control_points", "weights", "subdivide", "annulus"];
 
@@ -127,6 +130,10 @@ fn annulus(item: &Item<'_>, fields: &Fields<'_>, degree: [usize; 2]) -> Option<M
     }
     let (center, inner, outer, angles, cells) = (center?, inner?, outer?, angles?, cells?);
     few_enough(fields, "cells", cells)?;
+    if angles[1] - angles[0] >= std::f64::consts::TAU - LEAST_OPENING {
+        let message = "a full turn would leave a slit: the ends of the patch touch and are not joined";
+        return item.fail(message, "give a sector with symmetry planes at its ends, such as half a turn");
+    }
     let sector = match NurbsPatch::annular_sector(inner, outer, angles) {
         Ok(sector) => sector,
         Err(error) => return item.fail(error.to_string(), "give 0 <= inner_radius < outer_radius and growing angles"),
@@ -160,10 +167,11 @@ fn annulus(item: &Item<'_>, fields: &Fields<'_>, degree: [usize; 2]) -> Option<M
 
 fn few_enough(fields: &Fields<'_>, key: &str, [columns, rows]: [usize; 2]) -> Option<()> {
     let spans = columns.saturating_mul(rows);
-    if spans <= MOST_MAPPED_SPANS {
+    if spans <= MOST_MAPPED_SPANS && columns.max(rows) <= MOST_MAPPED_IN_A_ROW {
         return Some(());
     }
-    let remedy = format!("give fewer: at most {MOST_MAPPED_SPANS} spans in all");
+    let remedy =
+        format!("give fewer: at most {MOST_MAPPED_SPANS} spans in all and {MOST_MAPPED_IN_A_ROW} in a direction");
     fields.get(key)?.fail(format!("a general patch of {spans} spans"), remedy)
 }
 
