@@ -282,7 +282,7 @@ impl<K: PointKernel> StripSweep<'_, K> {
                 }
                 let map = mapped.map(|mapping| &mapping.points[self.lattice.batch(row_index, tile_index, b, a)]);
                 if let Some(map) = map {
-                    point = rational(map, displacement, &point);
+                    point = rational::<K>(map, displacement, &point);
                 }
                 let weight = self.lattice.weight(row_index, tile_index, b, a);
                 let stress = self.kernel.points::<FMA>(at + b * nx + a, weight, &point);
@@ -348,12 +348,20 @@ impl<K: PointKernel> StripSweep<'_, K> {
     }
 }
 
-/// Fields of a patch with a geometry from the spline sums and their parametric slopes.
+/// Fields of a patch with a geometry that a kernel needs, from the spline sums and their parametric slopes.
 #[inline(always)]
-fn rational(map: &MappedPoint, displacement: [Lane; 2], sums: &PointValues) -> PointValues {
-    let [xu, xv, yu, yv] = sums.gradient;
-    let (_, [xx, xy]) = map.field(displacement[0], [xu, xv]);
-    let (_, [yx, yy]) = map.field(displacement[1], [yu, yv]);
-    let (phase, phase_gradient) = map.field(sums.phase, sums.phase_gradient);
-    PointValues { gradient: [xx, xy, yx, yy], phase, phase_gradient }
+fn rational<K: PointKernel>(map: &MappedPoint, displacement: [Lane; 2], sums: &PointValues) -> PointValues {
+    let mut values = *sums;
+    if K::DISPLACEMENT {
+        let [xu, xv, yu, yv] = sums.gradient;
+        let (_, [xx, xy]) = map.field(displacement[0], [xu, xv]);
+        let (_, [yx, yy]) = map.field(displacement[1], [yu, yv]);
+        values.gradient = [xx, xy, yx, yy];
+    }
+    if K::PHASE_GRADIENT {
+        (values.phase, values.phase_gradient) = map.field(sums.phase, sums.phase_gradient);
+    } else if K::PHASE {
+        values.phase = sums.phase * map.inverse_weight;
+    }
+    values
 }
