@@ -113,7 +113,7 @@ fn subdivided(breaks: &[f64], parts: usize) -> Vec<f64> {
 
 /// Ends of [`COARSE`] spans from 0 to `size` whose lengths differ by up to a factor of four.
 fn breaks(random: &mut Random, size: f64) -> Vec<f64> {
-    let lengths: Vec<f64> = (0..COARSE).map(|_| 4f64.powf(random.next())).collect();
+    let lengths: Vec<f64> = (0..COARSE).map(|_| 4f64.powf(random.unit())).collect();
     let total: f64 = lengths.iter().sum();
     let mut breaks = vec![0.0];
     let mut sum = 0.0;

@@ -44,7 +44,7 @@ fn random_patches(degree: usize, findings: &mut Findings) -> Result<(), StudyErr
         let knots = degrees.map(|p| random.knots(p, SPANS, true));
         let spaces = [0, 1].map(|d| SplineSpace::new(degrees[d], &knots[d]));
         let count = spaces[0].dimension() * spaces[1].dimension();
-        let weights: Vec<f64> = (0..count).map(|_| 10f64.powf(2.0 * random.next() - 1.0)).collect();
+        let weights: Vec<f64> = (0..count).map(|_| 10f64.powf(2.0 * random.unit() - 1.0)).collect();
         worst.look_at_basis(&spaces, &weights);
         let (patch, tame) = bent(&spaces, &weights).map_err(other)?;
         tamed += usize::from(tame < 1.0);
@@ -98,7 +98,7 @@ fn circles(findings: &mut Findings) -> Result<(), NurbsError> {
             patch = patch.elevate(1)?;
         }
         let mut random = Random::scrambled(degree);
-        let new: Vec<f64> = (0..20).map(|_| random.next()).collect();
+        let new: Vec<f64> = (0..20).map(|_| random.unit()).collect();
         let refined = patch.insert_knots(1, &new)?.insert_knots(0, &new)?;
         let variant = format!("p={degree}");
         for (name, patch) in [("quarter annulus", &patch), ("refined quarter annulus", &refined)] {
@@ -220,7 +220,7 @@ impl Worst {
     }
 
     fn look_at_refinement(&mut self, patch: &NurbsPatch, random: &mut Random) -> Result<(), NurbsError> {
-        let new: Vec<f64> = (0..5).map(|_| random.next()).collect();
+        let new: Vec<f64> = (0..5).map(|_| random.unit()).collect();
         let inserted = patch.insert_knots(0, &new)?.insert_knots(1, &new)?;
         let raised = if patch.spaces()[0].degree() < 4 { Some(patch.elevate(0)?) } else { None };
         for place in places(inserted.spaces()) {
@@ -262,7 +262,7 @@ impl Worst {
     /// Images of random parameters, searched from nowhere and from other random parameters.
     fn look_at_inverse_map(&mut self, patch: &NurbsPatch, random: &mut Random) -> Result<(), LocateError> {
         for _ in 0..100 {
-            let [at, from] = [[random.next(), random.next()], [random.next(), random.next()]];
+            let [at, from] = [[random.unit(), random.unit()], [random.unit(), random.unit()]];
             let point = position(patch, at);
             for start in [None, Some(from)] {
                 let found = patch.locate(point, start)?;
