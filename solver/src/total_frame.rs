@@ -23,7 +23,7 @@ use crate::loads::NodalLoad;
 use crate::mass::MassMatrix;
 use crate::material::{ElasticModuli, FractureModel};
 use crate::patch::{ControlGrid, Patch};
-use crate::scene::{Boundary, Kinematics, Scene, Shape, Side};
+use crate::scene::{Body, Boundary, Kinematics, Scene, Shape, Side};
 use crate::stencil::CHUNK_ROWS;
 use crate::sweep::StripForces;
 
@@ -94,7 +94,7 @@ impl TotalFrame {
             thickness: scene.analysis.thickness,
             gravity: scene.analysis.gravity,
             strip_forces: StripForces::new(&lattice),
-            lowest_tip: lowest_tip(scene),
+            lowest_tip: lowest_tip(scene, body),
             displacement: zeros(),
             velocity: zeros(),
             acceleration: zeros(),
@@ -404,8 +404,7 @@ impl TotalFrame {
 
 /// Height from which the crack tip is looked for: the middle of the body, or its foot if the body is the upper half of a
 /// symmetric one: it stands on the bottom side, a roller holds that side, and a crack lies along it.
-pub(crate) fn lowest_tip(scene: &Scene) -> f64 {
-    let body = &scene.bodies[0];
+pub(crate) fn lowest_tip(scene: &Scene, body: &Body) -> f64 {
     let (low, high) = scene.mesh.extent(&body.shape);
     let at_foot = |y: f64| (y - low[1]).abs() <= 1e-9 * (high[1] - low[1]);
     let roller = |b: &Boundary| b.side == Side::Bottom && b.fix == [false, true] && b.velocity[1] == 0.0;
