@@ -35,6 +35,8 @@ pub struct Sample {
     pub fracture: Option<FractureSample>,
     /// Work of external forces, J.
     pub external_work: f64,
+    /// Losses of contact, if the scene declares it.
+    pub contact: Option<ContactSample>,
     /// Loss of the transfers in the updated frame, J.
     pub transfer_loss: Option<f64>,
     /// What is left when every named term is added up, J.
@@ -62,6 +64,28 @@ pub struct FractureSample {
     pub iterations: usize,
 }
 
+/// Losses of contact so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactSample {
+    /// Energy lost in contact, J.
+    pub loss: f64,
+    /// The part of it that friction took, J.
+    pub friction: f64,
+}
+
+impl FractureSample {
+    fn with(self, other: Self) -> Self {
+        let tips = self.crack_tip.into_iter().chain(other.crack_tip);
+        Self {
+            energy: self.energy + other.energy,
+            history_work: self.history_work + other.history_work,
+            crack_tip: tips.max_by(|a, b| a[0].total_cmp(&b[0])),
+            min_phase: self.min_phase.min(other.min_phase),
+            iterations: self.iterations + other.iterations,
+        }
+    }
+}
+
 impl Sample {
     /// Columns of `history.csv`, in order; a column is there only with its model.
     pub fn named_values(&self) -> Vec<(&'static str, f64)> {
@@ -75,6 +99,7 @@ impl Sample {
         row.extend(fracture.map(|f| ("fracture_j", f.energy)));
         row.push(("external_work_j", self.external_work));
         row.extend(fracture.map(|f| ("history_work_j", f.history_work)));
+        row.extend(self.contact.into_iter().flat_map(|c| [("contact_loss_j", c.loss), ("friction_j", c.friction)]));
         row.extend(self.transfer_loss.map(|loss| ("transfer_loss_j", loss)));
         row.push(("closure_j", self.closure));
         if let Some(fracture) = fracture {
@@ -89,6 +114,26 @@ impl Sample {
         row
     }
 
+    /// This sample with another body's: energies and momenta are added, the tip is that of the crack that is further.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        let fracture = match (self.fracture, other.fracture) {
+            (Some(a), Some(b)) => Some(a.with(b)),
+            (a, b) => a.or(b),
+        };
+        Self {
+            kinetic: self.kinetic + other.kinetic,
+            stagger: self.stagger + other.stagger,
+            elastic: self.elastic + other.elastic,
+            fracture,
+            external_work: self.external_work + other.external_work,
+            transfer_loss: self.transfer_loss.zip(other.transfer_loss).map(|(a, b)| a + b),
+            momentum: [0, 1].map(|d| self.momentum[d] + other.momentum[d]),
+            angular_momentum: self.angular_momentum + other.angular_momentum,
+            ..self
+        }
+    }
+
     /// Energy a ledger closes on: kinetic without stagger, elastic, fracture, J.
     pub fn stored(&self) -> f64 {
         self.kinetic - self.stagger + self.elastic + self.fracture.as_ref().map_or(0.0, |f| f.energy)
@@ -97,7 +142,7 @@ impl Sample {
     /// Sets closure from the stored energy at t = 0, J.
     pub fn close(&mut self, initial: f64) {
         let history_work = self.fracture.as_ref().map_or(0.0, |f| f.history_work);
-        let loss = self.transfer_loss.unwrap_or(0.0);
+        let loss = self.transfer_loss.unwrap_or(0.0) + self.contact.map_or(0.0, |c| c.loss);
         self.closure = self.stored() - initial - self.external_work - history_work + loss;
     }
 

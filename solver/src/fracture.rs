@@ -203,8 +203,7 @@ impl Fracturing {
 
 /// Height from which the crack tip is looked for: the middle of the body, or its foot if the body is the upper half of a
 /// symmetric one: it stands on the bottom side, a roller holds that side, and a crack lies along it.
-pub(crate) fn lowest_tip(scene: &Scene) -> f64 {
-    let body = &scene.bodies[0];
+pub(crate) fn lowest_tip(scene: &Scene, body: &Body) -> f64 {
     let (low, high) = scene.mesh.extent(&body.shape);
     let at_foot = |y: f64| (y - low[1]).abs() <= 1e-9 * (high[1] - low[1]);
     let roller = |b: &Boundary| b.side == Side::Bottom && b.fix == [false, true] && b.velocity[1] == 0.0;

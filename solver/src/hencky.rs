@@ -55,6 +55,11 @@ pub fn gradient_at_end(step: &Gradient) -> Gradient {
     [[(xx + determinant) * scale, xy * scale], [yx * scale, (yy + determinant) * scale]]
 }
 
+/// `det F`, the area of a region over that at t = 0; not positive if it is turned inside out.
+pub fn growth([[xx, xy], [yx, yy]]: &Gradient) -> f64 {
+    (1.0 + xx) * (1.0 + yy) - xy * yx
+}
+
 /// Symmetric part `[xx, yy, xy]`.
 #[inline(always)]
 pub fn symmetric([[xx, xy], [yx, yy]]: Gradient) -> [f64; 3] {

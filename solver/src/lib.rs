@@ -133,6 +133,7 @@ pub mod assembly;
 pub mod cholesky;
 pub mod conjugate_gradients;
 pub mod constraints;
+pub mod contact;
 pub mod critical_step;
 pub mod energy;
 pub mod error;

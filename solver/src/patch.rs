@@ -6,6 +6,8 @@
 //! Fields on the control points are rows of `stride` numbers, x fastest. Each row begins and ends with room for reading
 //! [`LANES`] neighbours past the control points; the room stays zero.
 
+use std::ops::Range;
+
 use crate::lane::LANES;
 use crate::nurbs::{Location, NurbsError, NurbsPatch, RationalFunctions};
 use crate::quadrature::Rule;
@@ -34,6 +36,12 @@ impl Patch {
             spaces: [0, 1].map(|d| SplineSpace::new(mesh.degree[d], &mesh.knots[d])),
             geometry: mesh.nurbs().map(|patch| Box::new(patch.expect("the geometry of a valid mesh"))),
         }
+    }
+
+    /// The part of a patch over a rectangle that some neighbouring spans in x and y cover.
+    pub fn part(&self, spans: &[Range<usize>; 2]) -> Self {
+        debug_assert!(self.geometry.is_none(), "parts are taken of rectangles");
+        Self { spaces: [0, 1].map(|d| self.spaces[d].part(spans[d].clone())), geometry: None }
     }
 
     /// Layout of fields on its control points.

@@ -65,11 +65,15 @@ impl Method {
     fn new(matrix: &Stencil, settings: &SolverSettings) -> Self {
         match settings.phase_field_solver {
             PhaseFieldSolver::Cholesky => Self::Direct(Box::default()),
-            PhaseFieldSolver::ConjugateGradients => Self::Iterative {
-                workspace: Box::new(ConjugateGradients::new(matrix)),
-                factor: Box::new(IncompleteCholesky::new(matrix)),
-                fresh_iterations: None,
-            },
+            PhaseFieldSolver::ConjugateGradients => Self::iterative(matrix),
+        }
+    }
+
+    fn iterative(matrix: &Stencil) -> Self {
+        Self::Iterative {
+            workspace: Box::new(ConjugateGradients::new(matrix)),
+            factor: Box::new(IncompleteCholesky::new(matrix)),
+            fresh_iterations: None,
         }
     }
 }
@@ -116,6 +120,28 @@ impl PhaseField {
             matrix,
             counts: PhaseFieldCounts::default(),
         }
+    }
+
+    /// Goes over to another grid, whose first control column and row lie `shift` columns and rows further; control points
+    /// that were not there begin intact.
+    pub fn relocate(&mut self, grid: ControlGrid, shift: [isize; 2]) {
+        let old = self.matrix.grid;
+        let moved = |values: &[f64]| {
+            let mut moved = grid.zeros();
+            for at in grid.indices() {
+                let column = (grid.column_of(at) as isize + shift[0]) as usize; // wraps around when negative
+                let row = (grid.row_of(at) as isize + shift[1]) as usize;
+                moved[at] = if column < old.columns && row < old.rows { values[old.index(column, row)] } else { 1.0 };
+            }
+            moved
+        };
+        (self.phase, self.previous) = (moved(&self.phase), moved(&self.previous));
+        self.matrix = Stencil::zeros(grid, self.matrix.degree());
+        self.load = grid.zeros();
+        self.method = match self.method {
+            Method::Direct(_) => Method::Direct(Box::default()),
+            Method::Iterative { .. } => Method::iterative(&self.matrix),
+        };
     }
 
     /// Matrix and right-hand side, to be assembled by the caller.

@@ -4,7 +4,6 @@ use crate::energy::Sample;
 use crate::error::Breakdown;
 use crate::fracture::NotConverged;
 use crate::lane::LANES;
-use crate::patch::Patch;
 use crate::phase_field::PhaseFieldCounts;
 use crate::picture::Picture;
 use crate::scene::{self, Scene};
@@ -68,33 +67,32 @@ impl Frame {
         }
     }
 
-    fn patch(&self) -> &Patch {
-        either!(self, body => body.patch())
-    }
-
     fn particles(&self) -> usize {
         match self {
             Self::Total(body) => body.lattice().count(),
-            Self::Updated(body) => body.points().len(),
+            Self::Updated(frame) => frame.fields().iter().map(|field| field.points().len()).sum(),
         }
     }
 
-    fn mass(&self) -> &[f64] {
+    /// Control points with mass, counted for each body.
+    fn control_points(&self) -> usize {
+        let massive = |mass: &[f64]| mass.iter().filter(|m| **m > 0.0).count();
         match self {
-            Self::Total(body) => body.mass().row_sums(),
-            Self::Updated(body) => &body.nodes().mass,
+            Self::Total(body) => massive(body.mass().row_sums()),
+            Self::Updated(frame) => frame.fields().iter().map(|field| massive(&field.nodes().mass)).sum(),
         }
     }
 
-    fn velocity(&self) -> &[Vec<f64>; 2] {
-        match self {
-            Self::Total(body) => body.velocity(),
-            Self::Updated(body) => &body.nodes().velocity,
-        }
+    /// Position of the fastest control point, m.
+    fn fastest_place(&self) -> [f64; 2] {
+        either!(self, body => body.fastest_place())
     }
 
     fn phase_field_counts(&self) -> Option<PhaseFieldCounts> {
-        either!(self, body => body.fracture.as_ref().map(|f| f.field.counts()))
+        match self {
+            Self::Total(body) => body.fracture.as_ref().map(|f| f.field.counts()),
+            Self::Updated(frame) => frame.phase_field_counts(),
+        }
     }
 }
 
@@ -174,7 +172,7 @@ impl Simulation {
                 self.watch_critical_step(time);
                 Ok(())
             }
-            Err(failure) if healthy => Err(breakdown(self.steps, time, self.fastest_place(), failure)),
+            Err(failure) if healthy => Err(breakdown(self.steps, time, self.frame.fastest_place(), failure)),
             _ => Err(self.unstable(time)),
         }
     }
@@ -229,11 +227,14 @@ impl Simulation {
         if self.frame.phase_field_counts().is_some() {
             models.push("phase field".to_string());
         }
+        if self.updated_frame().is_some_and(|frame| frame.contact().is_some()) {
+            models.push("contact".to_string());
+        }
         let [mechanics_bytes, phase_field_bytes] = either!(&self.frame, body => body.bytes());
         Extent {
             models,
             particles: self.frame.particles(),
-            control_points: self.frame.mass().iter().filter(|m| **m > 0.0).count(),
+            control_points: self.frame.control_points(),
             mechanics_bytes,
             phase_field_bytes,
         }
@@ -267,7 +268,7 @@ impl Simulation {
         let what = format!("the energy ledger is open by {closure:.3e} J of {:.3e} J put in so far", self.energy_in);
         if self.warned_of_step {
             let cause = self.cause_of_growth();
-            return Err(Breakdown { step: self.steps, time, place: self.fastest_place(), what, cause });
+            return Err(Breakdown { step: self.steps, time, place: self.frame.fastest_place(), what, cause });
         }
         if !self.warned_of_closure {
             self.warned_of_closure = true;
@@ -279,19 +280,6 @@ impl Simulation {
         Ok(())
     }
 
-    /// Position of the fastest control point, m.
-    fn fastest_place(&self) -> [f64; 2] {
-        let frame = &self.frame;
-        let [vx, vy] = frame.velocity();
-        let grid = frame.patch().control_grid();
-        let speed = |at: &usize| {
-            let speed = vx[*at].hypot(vy[*at]);
-            if speed.is_nan() { f64::INFINITY } else { speed }
-        };
-        let fastest = grid.indices().max_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or(0);
-        frame.patch().control_positions().map(|x| x[fastest])
-    }
-
     fn unstable(&self, time: f64) -> Breakdown {
         let elastic = either!(&self.frame, body => body.elastic_energy());
         let what = if elastic.is_finite() {
@@ -299,10 +287,16 @@ impl Simulation {
         } else {
             "the elastic energy is not a number".to_string()
         };
-        Breakdown { step: self.steps, time, place: self.fastest_place(), what, cause: self.cause_of_growth() }
+        Breakdown { step: self.steps, time, place: self.frame.fastest_place(), what, cause: self.cause_of_growth() }
     }
 
     fn cause_of_growth(&self) -> String {
+        if let Some([x, y]) = self.updated_frame().and_then(|frame| frame.inverted_place()) {
+            return format!(
+                "the body is turned inside out at ({x:.6e}, {y:.6e}) m: the deformation is larger than the mesh or the \
+                 time step can follow; look for extreme loads or velocities, refine the mesh, or lower analysis.safety"
+            );
+        }
         let ratio = self.plan.step / self.plan.critical;
         if ratio > 1.0 {
             format!(

@@ -4,6 +4,8 @@
 //! coordinate `t = (x − left)/(right − left)`, computed once by the Cox–de Boor recursion. An evaluation is then one
 //! Horner scheme per function for any knots, uniform or not.
 
+use std::ops::Range;
+
 /// Highest polynomial degree.
 pub const MAX_DEGREE: usize = 4;
 /// Most basis functions on a span, `MAX_DEGREE + 1`.
@@ -61,6 +63,17 @@ impl SplineSpace {
             })
             .collect();
         Self { degree, knots: knots.to_vec(), spans }
+    }
+
+    /// The space on some neighbouring spans alone: the same basis functions there, numbered from the first that lives on them.
+    pub fn part(&self, spans: Range<usize>) -> Self {
+        let (first, last) = (self.spans[spans.start].first, self.spans[spans.end - 1].first + self.degree);
+        let shifted = self.spans[spans].iter().map(|span| Span { first: span.first - first, ..span.clone() });
+        Self {
+            degree: self.degree,
+            knots: self.knots[first..=last + self.degree + 1].to_vec(),
+            spans: shifted.collect(),
+        }
     }
 
     /// Polynomial degree p.

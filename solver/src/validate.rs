@@ -5,11 +5,10 @@
 
 mod analysis;
 mod body;
+mod contact;
 mod geometry;
 mod material;
 mod mesh;
-
-use std::fmt::Display;
 
 use crate::error::{SceneError, SceneWarning};
 use crate::scene::{Frame, Scene};
@@ -25,6 +24,7 @@ pub fn validate(scene: &Scene) -> Result<Vec<SceneWarning>, Vec<SceneError>> {
     analysis::check(scene, mesh_is_sound, &mut findings);
     material::check(scene, &mut findings);
     body::check(scene, mesh_is_sound, &mut findings);
+    contact::check(scene, mesh_is_sound, &mut findings);
     unsupported(scene, &mut findings);
     if findings.errors.is_empty() { Ok(findings.warnings) } else { Err(findings.errors) }
 }
@@ -66,24 +66,9 @@ impl Findings {
 
 /// What a scene can say and the solver cannot do yet. A feature that arrives deletes its lines here.
 fn unsupported(scene: &Scene, findings: &mut Findings) {
-    let mut refuse = |key: &str, what: &dyn Display, remedy: &str| {
-        findings.error(key, format!("{what} not supported yet"), remedy);
-    };
-    if scene.bodies.len() > 1 {
-        refuse("body", &"more than one body is", "keep one [[body]]");
-    }
-    for (i, _) in scene.bodies.iter().enumerate().filter(|(_, b)| b.rigid) {
-        refuse(&format!("body.{i}.rigid"), &"rigid bodies are", "remove the key, or set it to false");
-    }
-    if scene.contact.is_some() {
-        refuse("contact", &"contact between bodies is", "remove the [contact] table");
-    }
     if scene.analysis.frame == Frame::Updated && scene.mesh.geometry.is_some() {
-        refuse(
-            "analysis.frame",
-            &"a mesh with control_points or annulus in the updated frame is",
-            "use frame = \"total\", or a rectangle",
-        );
+        let message = "a mesh with control_points or annulus in the updated frame is not supported yet";
+        findings.error("analysis.frame", message, "use frame = \"total\", or a rectangle");
     }
 }
 

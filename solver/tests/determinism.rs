@@ -10,7 +10,7 @@ fn bits(scene: &Scene) -> Vec<u64> {
     let (simulation, samples) = run(scene);
     let rows = samples.iter().flat_map(|s| s.named_values()).map(|(_, value)| value.to_bits());
     let fields: Vec<u64> = match simulation.updated_frame() {
-        Some(frame) => frame.points().iter().flat_map(|p| p.position).map(f64::to_bits).collect(),
+        Some(frame) => frame.fields()[0].points().iter().flat_map(|p| p.position).map(f64::to_bits).collect(),
         None => simulation.total_frame().unwrap().displacement().iter().flatten().map(|u| u.to_bits()).collect(),
     };
     rows.chain(fields).collect()

@@ -58,11 +58,11 @@ fn strain_of_a_revolution(degree: usize, steps: usize, kinematics: Kinematics) -
     for _ in 0..steps {
         frame.prescribe_motion(|[x, y]| [(c - 1.0) * x - s * y, s * x + (c - 1.0) * y], 1.0).unwrap();
     }
-    for point in frame.points() {
+    for point in frame.fields()[0].points() {
         let u = point.displacement;
         assert!(u[0].hypot(u[1]) <= 1e-12, "not back by {u:?}");
     }
-    frame.points().iter().flat_map(|p| p.strain).fold(0.0, |a, e| a.max(e.abs()))
+    frame.fields()[0].points().iter().flat_map(|p| p.strain).fold(0.0, |a, e| a.max(e.abs()))
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn small_motions_are_those_of_small_strains() {
         scene.bodies[0].tractions = vec![pull];
         let mut frame = UpdatedFrame::new(&scene).unwrap();
         (0..100).for_each(|_| frame.step(0.02).unwrap());
-        frame.points().to_vec()
+        frame.fields()[0].points().to_vec()
     };
     let (small, finite) = (end(Kinematics::Small), end(Kinematics::Finite));
     let largest = small.iter().flat_map(|p| p.strain).fold(0.0_f64, |a, e| a.max(e.abs()));
@@ -154,7 +154,7 @@ fn spinning_disc(degree: usize, cells: usize, transfer: Transfer) -> [f64; 2] {
         let sample = simulation.advance_to_next_sample().unwrap();
         assert!(sample.closure.abs() <= 1e-4 * sample.largest_term(), "closure {:e}", sample.closure);
         let weight = (TAU / 2.0 * sample.time / end).sin().powi(2);
-        for point in simulation.updated_frame().unwrap().points() {
+        for point in simulation.updated_frame().unwrap().fields()[0].points() {
             let [x, y] = point.position;
             if x.hypot(y) < 0.15 {
                 // Mean of radial and hoop stress at radius r, whose first term is the stress at the centre.

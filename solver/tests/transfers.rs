@@ -89,7 +89,7 @@ fn a_rigid_translation_is_exact_with_every_transfer() {
             scene.analysis.end_time = 1.6;
             let what = format!("{transfer:?}, p = {degree}, {kinematics:?}, {layout:?}");
             let (simulation, samples) = run(&scene);
-            for point in simulation.updated_frame().unwrap().points() {
+            for point in simulation.updated_frame().unwrap().fields()[0].points() {
                 let off = (point.velocity[0] - velocity[0]).hypot(point.velocity[1] - velocity[1]);
                 assert!(off <= 1e-13 * 0.58, "{what}: velocity off by {off:e}");
                 let strain = point.strain.iter().fold(0.0_f64, |a, e| a.max(e.abs()));
@@ -293,7 +293,7 @@ fn loss_per_period(degree: usize, transfer: Transfer) -> f64 {
     // The wave is followed up to the dispersion of lumped mass (0.12 % of the frequency, 3 % of a radian per period) and
     // the noise of points that cross spans, and the work of the forcing is booked.
     let off = |p: &Point| (p.displacement[0] - wave.displacement(p.reference()[0], frame.time())).abs();
-    let off = frame.points().iter().map(off).fold(0.0, f64::max);
+    let off = frame.fields()[0].points().iter().map(off).fold(0.0, f64::max);
     assert!(off <= 0.04 * 0.08, "{transfer:?}, p = {degree}: {off:e} m off the wave");
     assert!(end.closure.abs() <= 1e-4 * start.kinetic, "{transfer:?}, p = {degree}: closure {:e}", end.closure);
     end.transfer_loss.unwrap() / start.kinetic / 4.0
@@ -354,7 +354,7 @@ fn one_thread_and_two_give_the_same_bits_with_every_transfer() {
                 let mut frame = UpdatedFrame::new(&scene).unwrap();
                 frame.apply_forcing(Arc::new(StandingWave(1e-3)));
                 (0..100).for_each(|_| frame.step(0.01).unwrap());
-                (frame.points().to_vec(), frame.sample(0.01))
+                (frame.fields()[0].points().to_vec(), frame.sample(0.01))
             })
         };
         assert_eq!(on(1), on(2), "{transfer:?}");

@@ -106,7 +106,7 @@ fn a_rigid_translation_through_the_mesh_leaves_velocity_and_strain_alone() {
             scene.bodies[0].layout = layout;
             scene.analysis.end_time = 10e-6; // five spans
             let (simulation, samples) = run(&scene);
-            for point in updated(&simulation).points() {
+            for point in updated(&simulation).fields()[0].points() {
                 let off = (point.velocity[0] - velocity[0]).hypot(point.velocity[1] - velocity[1]);
                 assert!(off <= 1e-13 * 345.0, "p = {degree}, {layout:?}: velocity off by {off:e} m/s");
                 let strain = point.strain.iter().fold(0.0_f64, |a, e| a.max(e.abs()));
@@ -133,7 +133,7 @@ fn free_fall_is_exact() {
         let expected = mass * gravity[d] * sample.time;
         assert!((sample.momentum[d] - expected).abs() <= 1e-13 * mass * 150.0, "at t = {}", sample.time);
     }
-    for point in updated(&simulation).points() {
+    for point in updated(&simulation).fields()[0].points() {
         for d in 0..2 {
             let fallen = 0.5 * gravity[d] * end.time * end.time;
             assert!((point.displacement[d] - fallen).abs() <= 1e-13 * fallen.abs(), "{}", point.displacement[d]);
@@ -158,8 +158,8 @@ fn momentum_is_kept_to_round_off_and_angular_momentum_by_every_grid() {
         let lost = (sample.angular_momentum - samples[0].angular_momentum).abs();
         assert!(lost <= 2e-3 * samples[0].angular_momentum.abs(), "t = {}: {lost:e}", sample.time);
     }
-    let nodes = updated(&simulation).nodes();
-    let greville = [0, 1].map(|d| updated(&simulation).patch().spaces[d].greville());
+    let nodes = updated(&simulation).fields()[0].nodes();
+    let greville = [0, 1].map(|d| updated(&simulation).fields()[0].patch().spaces[d].greville());
     let [mut torque, mut scale] = [0.0; 2];
     for at in nodes.grid.indices() {
         let [x, y] = [greville[0][nodes.grid.column_of(at)], greville[1][nodes.grid.row_of(at)]];
@@ -216,7 +216,7 @@ fn notched_plate_in_both_frames(cells: usize) -> ([f64; 4], f64) {
     fixed.analysis.frame = Frame::Total;
     let (simulation, moving) = run(&moving);
     let (_, fixed) = run(&fixed);
-    let moved = updated(&simulation).points().iter().flat_map(|p| p.displacement).fold(0.0_f64, |a, u| a.max(u.abs()));
+    let moved = updated(&simulation).fields()[0].points().iter().flat_map(|p| p.displacement).fold(0.0_f64, |a, u| a.max(u.abs()));
     assert!(moved <= 0.1 * 0.01 / cells as f64, "displacements of {moved:e} m are not small against h");
     assert!(relative_closure(&moving) <= 1e-3, "closure {:e}", relative_closure(&moving));
     let (mut apart, mut tips_apart) = ([0.0_f64; 4], 0.0_f64);
@@ -315,7 +315,7 @@ fn one_thread_and_two_give_the_same_bits() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let (simulation, samples) = run(&scene);
-            (updated(&simulation).points().to_vec(), samples)
+            (updated(&simulation).fields()[0].points().to_vec(), samples)
         })
     };
     assert_eq!(on(1), on(2));

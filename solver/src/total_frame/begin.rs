@@ -46,7 +46,7 @@ impl TotalFrame {
             thickness: scene.analysis.thickness,
             gravity: scene.analysis.gravity,
             strip_forces: StripForces::new(&lattice),
-            lowest_tip: lowest_tip(scene),
+            lowest_tip: lowest_tip(scene, body),
             displacement: zeros(),
             velocity: zeros(),
             acceleration: zeros(),

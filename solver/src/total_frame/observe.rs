@@ -17,6 +17,17 @@ use crate::patch::Patch;
 use crate::scene::{Kinematics, Shape};
 
 impl TotalFrame {
+    /// Position of the fastest control point, m.
+    pub fn fastest_place(&self) -> [f64; 2] {
+        let [vx, vy] = &self.velocity;
+        let speed = |at: &usize| {
+            let speed = vx[*at].hypot(vy[*at]);
+            if speed.is_nan() { f64::INFINITY } else { speed }
+        };
+        let fastest = self.grid.indices().max_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or(0);
+        self.patch.control_positions().map(|x| x[fastest])
+    }
+
     /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at zero.
     pub fn sample(&self, dt: f64) -> Sample {
         let thickness = self.thickness;
@@ -46,6 +57,7 @@ impl TotalFrame {
             elastic: self.elastic_energy * thickness,
             fracture,
             external_work: self.ledger.external_work * thickness,
+            contact: None,
             transfer_loss: None,
             closure: 0.0,
             momentum: momentum.map(|p| p * thickness),

@@ -53,6 +53,11 @@ impl AffineVelocities {
         Self { fit, gradients: vec![[[0.0; 2]; 2]; points], greville }
     }
 
+    /// Goes over to another part of the patch.
+    pub fn follow(&mut self, patch: &Patch) {
+        self.greville = [0, 1].map(|d| patch.spaces[d].greville());
+    }
+
     /// Velocity gradients from a velocity on the control points, m/s.
     pub fn take(&mut self, patch: &Patch, cells: &Cells, points: &[Point], velocity: &VectorField) {
         let Self { fit, gradients, greville } = self;

@@ -61,6 +61,11 @@ impl Departure {
         if self.transfer == Transfer::Musl { 2.0 } else { std::f64::consts::SQRT_2 }
     }
 
+    /// The transfer.
+    pub fn transfer(&self) -> Transfer {
+        self.transfer
+    }
+
     /// From the velocities that arrived on and leave the grid.
     pub fn leave(&mut self, nodes: &NodalFields, smoothing: &Smoothing) {
         let Self { motion, taken, kept, transfer } = self;

@@ -183,6 +183,12 @@ impl NodalFields {
         -self.constraints.iter().map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
     }
 
+    /// Inverse masses with which the components of a control point answer to a force, m/kg: zero where the velocity is
+    /// prescribed or the mass negligible.
+    pub fn mobility(&self, at: usize) -> [f64; 2] {
+        [0, 1].map(|c| if self.fixed.contains(&(at, c)) { 0.0 } else { self.inverse_mass[at] })
+    }
+
     /// Components that accelerate: control point and component.
     pub fn free(&self) -> Vec<(usize, usize)> {
         let moving = |&(at, c): &(usize, usize)| self.inverse_mass[at] > 0.0 && !self.fixed.contains(&(at, c));

@@ -28,7 +28,7 @@
 //! field changes by as its points pass through the spans: it swings with the period of a span and does not add up. It is
 //! not booked, since the only measure of it, the residual of the phase-field equation, would hide errors of that equation.
 
-use super::UpdatedFrame;
+use super::field::DiscreteField;
 use super::grid::ImposedEnergy;
 
 /// Parts of the transfer loss so far, J per metre of thickness.
@@ -51,7 +51,7 @@ pub(super) struct Leaving {
     not_followed: f64,
 }
 
-impl UpdatedFrame {
+impl DiscreteField {
     /// To be asked once the departure of the points is known.
     pub(super) fn leaving(&self) -> Leaving {
         let Self { nodes, departure, .. } = self;

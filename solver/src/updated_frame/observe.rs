@@ -1,32 +1,131 @@
-//! What is read from a body in the updated frame: energies, crack tip, pictures.
+//! What is read from the bodies of the updated frame: energies, momenta, crack tip.
 
 use super::UpdatedFrame;
+use super::field::DiscreteField;
+use super::grid::NodalFields;
 use super::losses::TransferLosses;
-use super::points::{FracturePoint, Point};
-use crate::energy::{FractureSample, Sample};
+use super::points::{Cells, FracturePoint, Point};
+use crate::contact::{Contact, Surface};
+use crate::energy::{ContactSample, FractureSample, Sample};
 use crate::fracture::BROKEN;
-use crate::hencky::Gradient;
+use crate::hencky::{Gradient, growth};
 use crate::material::ElasticModuli;
 use crate::patch::Patch;
-use crate::picture::Raster;
-
-use super::grid::NodalFields;
-use super::points::Cells;
-
-/// Side of the square a point fills in a picture, over the root of its volume. The points of a Gauss rule stand up to
-/// 1.16 of that apart.
-const FILL: f64 = 1.25;
+use crate::phase_field::PhaseFieldCounts;
 
 impl UpdatedFrame {
     /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at zero.
     pub fn sample(&self, dt: f64) -> Sample {
+        let kick = self.coming_kick(dt);
+        let mut accelerations: Vec<_> = self.fields.iter().map(|field| field.nodes().acceleration.clone()).collect();
+        let contact = self.contact.as_ref().map(|contact| {
+            for push in contact.pushes(&self.fields, kick) {
+                (0..2).for_each(|c| accelerations[push.body][c][push.at] += push.acceleration[c]);
+            }
+            let ledger = contact.ledger_now(&self.fields, kick);
+            (ContactSample { loss: ledger.loss * self.thickness, friction: ledger.friction * self.thickness }, ledger.work)
+        });
+        let mut bodies = self.fields.iter().zip(&accelerations).map(|(field, a)| field.sample(dt, a));
+        let first = bodies.next().expect("a scene has a body");
+        let mut sample = bodies.fold(first, Sample::with);
+        if let Some((contact, work)) = contact {
+            sample.external_work += work * self.thickness;
+            sample.contact = Some(contact);
+        }
+        sample
+    }
+
+    /// The bodies that deform, in the order of the scene.
+    pub fn fields(&self) -> &[DiscreteField] {
+        &self.fields
+    }
+
+    /// Contact of the bodies, if the scene declares it.
+    pub fn contact(&self) -> Option<&Contact> {
+        self.contact.as_ref()
+    }
+
+    /// Time, s.
+    pub fn time(&self) -> f64 {
+        self.fields.first().map_or(0.0, |field| field.time)
+    }
+
+    /// Background patch.
+    pub fn patch(&self) -> &Patch {
+        &self.patch
+    }
+
+    /// Thickness, m.
+    pub fn thickness(&self) -> f64 {
+        self.thickness
+    }
+
+    /// Elastic energy, J.
+    pub fn elastic_energy(&self) -> f64 {
+        self.fields.iter().map(|field| field.elastic_energy()).sum()
+    }
+
+    /// External work so far, J.
+    pub fn external_work(&self) -> f64 {
+        let rigid = self.contact.as_ref().map_or(0.0, |contact| contact.ledger().work) * self.thickness;
+        self.fields.iter().map(|field| field.external_work()).sum::<f64>() + rigid
+    }
+
+    /// Parts of the transfer loss so far, J.
+    pub fn transfer_losses(&self) -> TransferLosses {
+        self.fields.iter().fold(TransferLosses::default(), |sum, field| {
+            let TransferLosses { kinetic, power, imposed } = field.transfer_losses();
+            TransferLosses { kinetic: sum.kinetic + kinetic, power: sum.power + power, imposed: sum.imposed + imposed }
+        })
+    }
+
+    /// Kinetic energy of the points of all bodies, J: see [`DiscreteField::point_kinetic_energy`].
+    pub fn point_kinetic_energy(&self, dt: f64) -> f64 {
+        self.fields.iter().map(|field| field.point_kinetic_energy(dt)).sum()
+    }
+
+    /// Counters of the phase fields, if there are any.
+    pub fn phase_field_counts(&self) -> Option<PhaseFieldCounts> {
+        let counts = self.fields.iter().filter_map(|field| field.fracture.as_ref()).map(|f| f.field.counts());
+        counts.reduce(|a, b| PhaseFieldCounts {
+            solves: a.solves + b.solves,
+            iterations: a.iterations + b.iterations,
+            factorisations: a.factorisations + b.factorisations,
+        })
+    }
+
+    /// Position (m) of the fastest control point with mass.
+    pub fn fastest_place(&self) -> [f64; 2] {
+        let fastest = self.fields.iter().map(|field| field.fastest_place());
+        fastest.max_by(|a, b| a.0.total_cmp(&b.0)).map_or([0.0; 2], |(_, place)| place)
+    }
+
+    /// Position (m) of a point that is turned inside out, if there is one.
+    pub fn inverted_place(&self) -> Option<[f64; 2]> {
+        self.fields.iter().find_map(|field| {
+            let inverted = field.deformation.as_ref()?.iter().position(|f| growth(f) <= 0.0)?;
+            Some(field.points[inverted].position)
+        })
+    }
+
+    /// Heap memory of mechanics and of the phase fields, bytes.
+    pub fn bytes(&self) -> [usize; 2] {
+        let contact = self.contact.as_ref().map_or(0, |contact| contact.bytes());
+        self.fields.iter().map(|field| field.bytes()).fold([contact, 0], |sum, bytes| [sum[0] + bytes[0], sum[1] + bytes[1]])
+    }
+}
+
+impl DiscreteField {
+    /// Energies, momenta and crack tip at the present whole step with the given accelerations (m/s²); `dt` is the step in
+    /// use. Closure is left at zero.
+    fn sample(&self, dt: f64, acceleration: &super::grid::VectorField) -> Sample {
         let (thickness, nodes) = (self.thickness, &self.nodes);
         let half = if self.at_start { 0.0 } else { 0.5 * dt };
         let greville = [0, 1].map(|d| self.patch.spaces[d].greville());
         let (mut kinetic, mut stagger, mut momentum, mut angular) = (0.0, 0.0, [0.0; 2], 0.0);
         for at in nodes.grid.indices() {
             let m = nodes.mass[at];
-            let a = [0, 1].map(|c| nodes.acceleration[c][at]);
+            let a = [0, 1].map(|c| acceleration[c][at]);
             let v = [0, 1].map(|c| nodes.velocity[c][at] + half * a[c]);
             kinetic += 0.5 * m * (v[0] * v[0] + v[1] * v[1]);
             stagger += 0.125 * dt * dt * m * (a[0] * a[0] + a[1] * a[1]);
@@ -48,6 +147,7 @@ impl UpdatedFrame {
             elastic: self.elastic_energy * thickness,
             fracture,
             external_work: self.ledger.external_work * thickness,
+            contact: None,
             transfer_loss: Some(self.ledger.transfer_loss * thickness),
             closure: 0.0,
             momentum: momentum.map(|p| p * thickness),
@@ -72,36 +172,6 @@ impl UpdatedFrame {
             [p.position[0] + ahead, p.position[1]]
         });
         tips.max_by(|a, b| a[0].total_cmp(&b[0]))
-    }
-
-    /// Paints the largest principal stress, a mean over the points weighted with volume, and the phase field where there
-    /// is material. Each point fills a square, a quarter larger than its volume so that no gaps are left between them.
-    pub fn paint(&self, raster: &Raster) -> (Option<Vec<f64>>, Vec<f64>) {
-        let mut covered = vec![0.0; raster.pixels[0] * raster.pixels[1]];
-        let mut stress = covered.clone();
-        for point in &self.points {
-            let half = 0.5 * FILL * point.volume.sqrt();
-            let [xx, yy, xy] = point.stress;
-            let principal = (0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)) / self.volume_ratio(point);
-            raster.for_each_overlap(point.position.map(|x| [x - half, x + half]), |pixel, area| {
-                covered[pixel] += area;
-                stress[pixel] += area * principal;
-            });
-        }
-        let material = |pixel: usize| covered[pixel] >= 0.5 * raster.pixel[0] * raster.pixel[1];
-        let phase = self.fracture.as_ref().map(|fracture| {
-            let control = fracture.field.control_values();
-            let at = |pixel| self.patch.evaluate(control, raster.center(pixel)).map_or(f64::NAN, |c| c.value);
-            (0..covered.len()).map(|pixel| if material(pixel) { at(pixel) } else { f64::NAN }).collect()
-        });
-        let mean = |pixel| if material(pixel) { stress[pixel] / covered[pixel] } else { f64::NAN };
-        (phase, (0..covered.len()).map(mean).collect())
-    }
-
-    /// Present volume over that at t = 0, which leads from the stress of a point to Cauchy's; 1 for small strains.
-    fn volume_ratio(&self, point: &Point) -> f64 {
-        let dilatation = point.strain[0] + point.strain[1];
-        if self.deformation.is_some() { (self.thickening * dilatation).exp() } else { 1.0 }
     }
 
     /// Parts of the transfer loss so far, J.
@@ -136,6 +206,35 @@ impl UpdatedFrame {
         self.ledger.external_work * self.thickness
     }
 
+    /// Momentum of the points with their velocities half a step back, kg m/s.
+    pub fn momentum(&self) -> [f64; 2] {
+        let sum = |d: usize| self.points.iter().map(|p| p.volume * p.velocity[d]).sum::<f64>();
+        [0, 1].map(|d| self.density * self.thickness * sum(d))
+    }
+
+    /// Mass, kg.
+    pub fn mass(&self) -> f64 {
+        self.density * self.thickness * self.points.iter().map(|p| p.volume).sum::<f64>()
+    }
+
+    /// Square of the speed (infinite if it is no number) and position (m) of the fastest control point.
+    fn fastest_place(&self) -> (f64, [f64; 2]) {
+        let [vx, vy] = &self.nodes.velocity;
+        let greville = [0, 1].map(|d| self.patch.spaces[d].greville());
+        let grid = self.nodes.grid;
+        let speed = |at: usize| {
+            let speed = vx[at] * vx[at] + vy[at] * vy[at];
+            (if speed.is_nan() { f64::INFINITY } else { speed }, at)
+        };
+        let (speed, at) = grid.indices().map(speed).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+        (speed, [greville[0][grid.column_of(at)], greville[1][grid.row_of(at)]])
+    }
+
+    /// Boundary, if the body may meet others.
+    pub fn surface(&self) -> Option<&Surface> {
+        self.surface.as_ref()
+    }
+
     /// Time, s.
     pub fn time(&self) -> f64 {
         self.time
@@ -156,7 +255,7 @@ impl UpdatedFrame {
         &self.nodes
     }
 
-    /// Background patch.
+    /// The part of the background patch the nodal fields cover.
     pub fn patch(&self) -> &Patch {
         &self.patch
     }
@@ -173,7 +272,8 @@ impl UpdatedFrame {
         let affine = self.affine.as_ref().map_or(0, |affine| affine.bytes());
         let deformation = self.deformation.as_ref().map_or(0, |gradients| gradients.len() * size_of::<Gradient>());
         let forcing = self.forcing.as_ref().map_or(0, |forcing| forcing.bytes());
-        let points = points + affine + deformation + forcing;
+        let surface = self.surface.as_ref().map_or(0, |surface| surface.bytes());
+        let points = points + affine + deformation + forcing + surface;
         [points + self.nodes.bytes() + self.departure.bytes() + loads, self.fracture.as_ref().map_or(0, |f| f.bytes())]
     }
 }

@@ -1,6 +1,6 @@
 //! Stiffness of the undamaged body at the present positions, for the critical step.
 
-use super::UpdatedFrame;
+use super::field::DiscreteField;
 use super::points::{Cell, Point};
 use super::transfer::{MAX_FUNCTIONS, walk};
 use super::windows::{Window, scatter};
@@ -12,7 +12,7 @@ use crate::patch::{ControlGrid, Patch};
 /// `K x` on the components that accelerate, per unit thickness.
 #[derive(Debug)]
 pub struct Stiffness<'a> {
-    frame: &'a UpdatedFrame,
+    frame: &'a DiscreteField,
     free: Vec<(usize, usize)>,
     masses: Vec<f64>,
     field: [Vec<f64>; 2],
@@ -21,7 +21,7 @@ pub struct Stiffness<'a> {
 
 impl<'a> Stiffness<'a> {
     /// Operator of the present grid of `frame`.
-    pub fn new(frame: &'a UpdatedFrame) -> Self {
+    pub fn new(frame: &'a DiscreteField) -> Self {
         let nodes = frame.nodes();
         let free = nodes.free();
         let masses = free.iter().map(|&(at, _)| nodes.mass[at]).collect();

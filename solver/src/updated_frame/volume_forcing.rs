@@ -29,9 +29,9 @@ pub struct VolumeForcing {
 }
 
 impl VolumeForcing {
-    /// Loads at t = 0.
-    pub fn new(forcing: Arc<dyn Forcing>, finite: bool, points: &[Point]) -> Self {
-        let loads = points.iter().map(|p| forcing.volume(p.reference(), 0.0)).collect();
+    /// Loads at a time, s.
+    pub fn new(forcing: Arc<dyn Forcing>, finite: bool, points: &[Point], time: f64) -> Self {
+        let loads = points.iter().map(|p| forcing.volume(p.reference(), time)).collect();
         Self { forcing, finite, loads, motion: vec![Default::default(); points.len()], powers: [0.0; 2] }
     }
 

@@ -35,6 +35,7 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
             continue;
         }
         if mesh_is_sound
+            && !body.rigid
             && inside_mesh(&key, body, &scene.mesh, findings)
             && let Some(fracture) = fracture
         {

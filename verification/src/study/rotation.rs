@@ -30,8 +30,8 @@ pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, Stud
             Kinematics::Finite => 0.0,
             Kinematics::Small => INCREMENTS as f64 * (cosine - 1.0),
         };
-        let off = frame.points().iter().flat_map(|p| [p.strain[0] - left, p.strain[1] - left, p.strain[2]]);
-        let back = frame.points().iter().flat_map(|p| p.displacement);
+        let off = frame.fields()[0].points().iter().flat_map(|p| [p.strain[0] - left, p.strain[1] - left, p.strain[2]]);
+        let back = frame.fields()[0].points().iter().flat_map(|p| p.displacement);
         let exact =
             |source: &str| Some(Reference { value: Some(0.0), kind: ReferenceKind::Exact, source: source.to_string() });
         let source = exact("no strain (Hencky); 1000 (cos θ − 1) in both directions (linear)");

@@ -58,7 +58,7 @@ impl<'a> Moving<'a> {
         let solution = self.problem.solution.clone();
         self.frame.set_initial_velocity(|x| solution.velocity(x, 0.0));
         let moved = |p: &Point| solution.displacement(p.position, 0.0).iter().any(|u| u.abs() > AT_REST);
-        if self.frame.points().iter().any(moved) {
+        if self.frame.fields()[0].points().iter().any(moved) {
             self.displace()?;
         }
         let (solution, loading) = (self.problem.solution.clone(), self.setup.loading);
@@ -87,11 +87,11 @@ impl<'a> Moving<'a> {
     /// Relative errors of displacement, velocity, and velocity in the middle at the end (s) of steps of `dt` (s).
     fn errors(&self, end: f64, dt: f64) -> Vec<f64> {
         let solution = &self.problem.solution;
-        let acceleration = &self.frame.nodes().acceleration;
+        let acceleration = &self.frame.fields()[0].nodes().acceleration;
         let sides = self.frame.patch().spaces.each_ref().map(sides);
         let mut squares = [[0.0; 2]; 3];
-        for point in self.frame.points() {
-            let a = acceleration.each_ref().map(|a| self.frame.patch().evaluate(a, point.position).unwrap_or_default());
+        for point in self.frame.fields()[0].points() {
+            let a = acceleration.each_ref().map(|a| self.frame.fields()[0].patch().evaluate(a, point.position).unwrap_or_default());
             let velocity = [0, 1].map(|d: usize| point.velocity[d] + 0.5 * dt * a[d].value);
             let reference = point.reference();
             let middle = (0..2).all(|d| is_in_middle(reference[d], sides[d]));

@@ -1,0 +1,366 @@
+//! One body of the updated frame: its points and its own nodal fields, a discrete field on the shared patch.
+//!
+//! The nodal fields cover the part of the patch the body is in and a few spans around it; the part follows the body
+//! ([`Self::follow`](DiscreteField)). Bodies know nothing of each other: see [`crate::contact`].
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::affine::{AffineVelocities, Fit};
+use super::cracking::Cracking;
+use super::departure::Departure;
+use super::grid::{ImposedEnergy, NodalFields};
+use super::losses::TransferLosses;
+use super::part;
+use super::points::{Cells, OutsidePatch, Point};
+use super::smoothing::Smoothing;
+use super::stiffness::Stiffness;
+use super::strain::{self, Finite, Small};
+use super::tractions::SurfaceLoad;
+use super::transfer::{GridToPoints, PointsToGrid, StripMotion};
+use super::volume_forcing::VolumeForcing;
+use super::windows::{cut, scatter};
+use super::Failure;
+use crate::contact::Surface;
+use crate::critical_step::highest_frequency;
+use crate::energy::Ledger;
+use crate::fracture::{NotConverged, lowest_tip};
+use crate::hencky::Gradient;
+use crate::lane::dispatch;
+use crate::lattice::Lattice;
+use crate::material::{ElasticModuli, FractureModel};
+use crate::patch::Patch;
+use crate::scene::{Body, Boundary, Kinematics, Plane, Scene, Transfer};
+
+/// One body in the updated frame.
+#[derive(Debug, Clone)]
+pub struct DiscreteField {
+    pub(super) whole: Arc<Patch>,
+    /// The part of the patch the nodal fields cover, and its first control column and row.
+    pub(super) patch: Patch,
+    pub(super) origin: [usize; 2],
+    pub(super) boundaries: Vec<Boundary>,
+    pub(super) moduli: ElasticModuli,
+    /// Logarithmic change of volume over that of area: less than 1 in plane stress, where the thickness follows.
+    pub(super) thickening: f64,
+    pub(super) density: f64,
+    pub(super) thickness: f64,
+    pub(super) gravity: [f64; 2],
+    pub(super) points: Vec<Point>,
+    pub(super) cells: Cells,
+    pub(super) nodes: NodalFields,
+    pub(super) departure: Departure,
+    /// Velocity gradients of the points, for the transfers that need them.
+    pub(super) affine: Option<AffineVelocities>,
+    /// Displacement gradients `F − I` of the points, if the kinematics are finite.
+    pub(super) deformation: Option<Vec<Gradient>>,
+    pub(super) loads: Vec<SurfaceLoad>,
+    pub(super) forcing: Option<VolumeForcing>,
+    /// The boundary, if the body may meet others.
+    pub(super) surface: Option<Surface>,
+    /// The phase field, if the material fractures.
+    pub fracture: Option<Cracking>,
+    pub(super) lowest_tip: f64,
+    pub(super) elastic_energy: f64,
+    /// `Σ V sigma(n+1) : de` of the last step.
+    pub(super) stress_work: f64,
+    pub(super) driven_power: f64,
+    pub(super) ledger: Ledger,
+    pub(super) losses: TransferLosses,
+    pub(super) time: f64,
+    /// Before the first step the points carry v(0) and the kick is half a step.
+    pub(super) at_start: bool,
+    /// Bound of the distance any point moved since the critical step was taken, m.
+    travelled: f64,
+}
+
+impl DiscreteField {
+    /// The body of `scene` at t = 0 with its initial accelerations.
+    ///
+    /// # Errors
+    /// If the initial phase field does not converge, or a point is not on the patch.
+    pub fn new(scene: &Scene, body: &Body, whole: &Arc<Patch>) -> Result<Self, Failure> {
+        let material = &scene.materials[&body.material];
+        let mut points = Point::of_lattice(&Lattice::new(whole, body));
+        let spans = part::spans_around(whole, &points)?;
+        let (patch, origin) = (whole.part(&spans), part::origin(whole, &spans));
+        let mut cells = Cells::default();
+        cells.sort(&patch, &mut points)?;
+        let crack = |f| Cracking::new(&patch, body, FractureModel::new(f), &scene.solver, &points);
+        let constraints = part::constraints(whole, &patch, origin, &scene.boundaries);
+        let affine = |fit| AffineVelocities::new(fit, &patch, points.len());
+        let center = center_of_mass(&points);
+        let mut field = Self {
+            fracture: material.fracture.as_ref().map(crack),
+            nodes: NodalFields::new(&patch, constraints),
+            departure: Departure::new(patch.control_grid(), scene.analysis.transfer),
+            affine: match scene.analysis.transfer {
+                Transfer::Apic => Some(affine(Fit::Weighted)),
+                Transfer::Tpic => Some(affine(Fit::Taylor)),
+                Transfer::Flip | Transfer::Pic | Transfer::Musl | Transfer::Xpic(_) => None,
+            },
+            deformation: (scene.analysis.kinematics == Kinematics::Finite).then(|| vec![[[0.0; 2]; 2]; points.len()]),
+            loads: body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t)).collect(),
+            forcing: None,
+            surface: scene.contact.is_some().then(|| Surface::new(&scene.mesh, body)),
+            moduli: ElasticModuli::new(material, scene.analysis.plane),
+            thickening: match scene.analysis.plane {
+                Plane::Strain => 1.0,
+                Plane::Stress => (1.0 - 2.0 * material.poisson_ratio) / (1.0 - material.poisson_ratio),
+            },
+            density: material.density,
+            thickness: scene.analysis.thickness,
+            gravity: scene.analysis.gravity,
+            lowest_tip: lowest_tip(scene, body),
+            elastic_energy: 0.0,
+            stress_work: 0.0,
+            driven_power: 0.0,
+            ledger: Ledger::default(),
+            losses: TransferLosses::default(),
+            time: 0.0,
+            at_start: true,
+            travelled: 0.0,
+            whole: Arc::clone(whole),
+            boundaries: scene.boundaries.clone(),
+            patch,
+            origin,
+            points,
+            cells,
+        };
+        let (velocity, spin) = (body.velocity, body.angular_velocity);
+        let rigidly =
+            |x: [f64; 2]| [velocity[0] - spin * (x[1] - center[1]), velocity[1] + spin * (x[0] - center[0])];
+        field.points.iter_mut().for_each(|point| point.velocity = rigidly(point.position));
+        field.take_affine_velocities(rigidly);
+        field.attach_surfaces()?;
+        field.crack_and_stress(true)?;
+        field.ledger.history_work = 0.0; // there was no step yet
+        field.find_accelerations();
+        Ok(field)
+    }
+
+    /// One time step of `dt` seconds (E 14–24), whose kick lasts `kick` seconds.
+    ///
+    /// # Errors
+    /// If the phase field does not converge, or a point leaves the patch.
+    pub fn step(&mut self, dt: f64, kick: f64) -> Result<(), Failure> {
+        self.kick(dt, kick); // grid: v(n+1/2) = v(n−1/2) + dt a(n)
+        self.depart(); // transfer: what the points take up, and the motion they follow
+        let leaving = self.leaving();
+        let left_span = self.grid_to_points(dt); // G2P: velocities, positions, strains
+        if left_span {
+            self.sort()?;
+        }
+        self.attach_surfaces()?;
+        self.crack_and_stress(left_span)?; // points: psi+, H, phase field, stress at n + 1
+        self.points_to_grid(); // P2G: mass, velocity, forces at x(n+1)
+        let imposed = self.apply_boundary();
+        self.accelerate(); // a(n+1)
+        self.book(dt, &leaving, imposed);
+        Ok(())
+    }
+
+    fn kick(&mut self, dt: f64, kick: f64) {
+        self.nodes.kick(kick);
+        self.at_start = false;
+        self.time += dt;
+    }
+
+    /// Adds an acceleration to a control point for the coming kick, m/s².
+    pub fn push(&mut self, at: usize, acceleration: [f64; 2]) {
+        for (field, a) in self.nodes.acceleration.iter_mut().zip(acceleration) {
+            field[at] += a;
+        }
+    }
+
+    /// Index of a control point of the whole patch in the nodal fields, if they reach there.
+    pub fn index_of(&self, control: [usize; 2]) -> Option<usize> {
+        let grid = self.nodes.grid;
+        let [column, row] = [0, 1].map(|d| control[d].wrapping_sub(self.origin[d]));
+        (column < grid.columns && row < grid.rows).then(|| grid.index(column, row))
+    }
+
+    fn depart(&mut self) {
+        let Self { patch, cells, points, nodes, departure, affine, density, .. } = self;
+        departure.leave(nodes, &Smoothing { patch, cells, points, density: *density, mass: &nodes.mass });
+        if let Some(affine) = affine {
+            affine.take(patch, cells, points, &nodes.velocity);
+        }
+    }
+
+    /// `v_p ← kept v_p + Σ N taken`, `x_p += dt Σ N motion`, and the strain of the motion; whether a point left its span.
+    pub(super) fn grid_to_points(&mut self, dt: f64) -> bool {
+        let Self { patch, cells, points, departure, forcing, .. } = self;
+        if let Some(forcing) = forcing {
+            forcing.before_motion(patch, cells, points, &departure.motion);
+        }
+        let motions = match self.deformation.take() {
+            None => self.move_points(dt, self.cells.strips.iter().map(|_| Small).collect()),
+            Some(mut deformation) => {
+                let strips = cut(&mut deformation, self.cells.strips.iter().map(|s| s.points.clone()));
+                let motions = self.move_points(dt, strips.into_iter().map(Finite).collect());
+                self.deformation = Some(deformation);
+                motions
+            }
+        };
+        let Self { patch, nodes, points, departure, forcing, loads, surface, .. } = self;
+        for load in loads {
+            load.move_points(patch, nodes.grid, &departure.motion, dt);
+        }
+        if let Some(surface) = surface {
+            surface.follow(patch, nodes.grid, &departure.motion, dt);
+        }
+        if let Some(forcing) = forcing {
+            forcing.after_motion(points, self.time, dt);
+        }
+        let fastest = motions.iter().map(|m| m.fastest).fold(0.0, f64::max);
+        self.travelled += dt * (2.0 * fastest).sqrt();
+        self.elastic_energy = motions.iter().map(|m| m.elastic_energy).sum();
+        self.stress_work = motions.iter().map(|m| m.stress_work).sum();
+        motions.iter().any(|m| m.left_span)
+    }
+
+    /// Velocity, position and strain of the points; `kinematics` for each strip.
+    fn move_points<K: strain::Kinematics + Send>(&mut self, dt: f64, kinematics: Vec<K>) -> Vec<StripMotion> {
+        let Self { patch, cells, nodes, points, departure, fracture, .. } = self;
+        let elastic = fracture.is_none().then_some(self.moduli);
+        let ranges = || cells.strips.iter().map(|s| s.points.clone());
+        let cracked = match fracture {
+            Some(fracture) => cut(&mut fracture.points, ranges()),
+            None => cells.strips.iter().map(|_| &mut [][..]).collect(),
+        };
+        let (kept, grid) = (departure.kept, nodes.grid);
+        let motion = departure.motion.each_ref().map(|f| &f[..]);
+        let taken = departure.taken.each_ref().map(|f| &f[..]);
+        let strips = cut(points, ranges()).into_par_iter().zip(cracked).zip(kinematics).zip(&cells.strips);
+        strips
+            .map(|(((points, fracture), kinematics), strip)| {
+                let cells = &cells.cells[strip.cells.clone()];
+                dispatch(GridToPoints {
+                    patch,
+                    grid,
+                    dt,
+                    motion,
+                    taken,
+                    kept,
+                    kinematics,
+                    elastic,
+                    cells,
+                    points,
+                    fracture,
+                })
+            })
+            .collect()
+    }
+
+    pub(super) fn sort(&mut self) -> Result<(), OutsidePatch> {
+        if self.cells.sort(&self.patch, &mut self.points).is_err() {
+            self.follow()?;
+        }
+        let cells = &self.cells;
+        if let Some(fracture) = &mut self.fracture {
+            cells.reorder(&mut fracture.points);
+        }
+        if let Some(affine) = &mut self.affine {
+            cells.reorder(&mut affine.gradients);
+        }
+        if let Some(deformation) = &mut self.deformation {
+            cells.reorder(deformation);
+        }
+        if let Some(forcing) = &mut self.forcing {
+            forcing.reorder(cells);
+        }
+        Ok(())
+    }
+
+    /// Finds spans for the surface points of loads and of the boundary.
+    pub(super) fn attach_surfaces(&mut self) -> Result<(), OutsidePatch> {
+        let Self { patch, cells, loads, surface, .. } = self;
+        loads.iter_mut().try_for_each(|load| load.attach(patch, cells))?;
+        surface.iter_mut().try_for_each(|surface| surface.attach(patch, cells))
+    }
+
+    /// History, phase field and degraded stress; an elastic body has its stress from G2P.
+    pub(super) fn crack_and_stress(&mut self, moved: bool) -> Result<(), NotConverged> {
+        let Self { patch, cells, points, moduli, .. } = self;
+        let Some(fracture) = &mut self.fracture else { return Ok(()) };
+        fracture.update_history(moduli, cells, points);
+        fracture.solve(patch, cells, points, moved)?;
+        let sums = fracture.update_stress(patch, moduli, cells, points);
+        self.elastic_energy = sums.elastic_energy;
+        self.stress_work = sums.stress_work;
+        self.ledger.history_work += sums.history_work;
+        Ok(())
+    }
+
+    /// Mass, arriving velocity, and internal and external forces.
+    fn points_to_grid(&mut self) {
+        let Self { patch, cells, points, nodes, density, .. } = self;
+        nodes.clear();
+        let (grid, density) = (nodes.grid, *density);
+        let NodalFields { mass, arrived: [px, py], force: [fx, fy], .. } = nodes;
+        scatter(&cells.strips, [mass, px, py, fx, fy], [grid.stride; 5], |strip, window| {
+            let cells = &cells.cells[strip.cells.clone()];
+            dispatch(PointsToGrid { patch, grid, density, cells, points, window });
+        });
+        if let Some(affine) = &self.affine {
+            affine.give(patch, cells, points, density, &mut nodes.arrived);
+        }
+        nodes.divide_by_mass();
+        nodes.add_gravity(self.gravity);
+        for load in &self.loads {
+            load.add_forces(patch, grid, self.time, &mut nodes.force);
+        }
+        if let Some(forcing) = &self.forcing {
+            forcing.add_forces(patch, cells, points, &mut nodes.force);
+        }
+    }
+
+    fn apply_boundary(&mut self) -> ImposedEnergy {
+        self.nodes.impose_velocities()
+    }
+
+    fn accelerate(&mut self) {
+        self.nodes.accelerate();
+    }
+
+    /// Rebuilds the grid where no step leads to it.
+    pub(super) fn find_accelerations(&mut self) {
+        self.points_to_grid();
+        self.apply_boundary();
+        self.accelerate();
+        self.driven_power = self.nodes.power_of_driven_sides();
+    }
+
+    /// Velocity gradients of a velocity field (m/s), where the transfer carries them.
+    pub(super) fn take_affine_velocities(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2]) {
+        let Self { patch, cells, points, affine, nodes, .. } = self;
+        if let Some(affine) = affine {
+            affine.take(patch, cells, points, &nodes.at_greville_points(patch, velocity));
+        }
+    }
+
+    /// Critical time step of the undamaged body at the present positions, s; infinite if nothing can move.
+    pub fn critical_step(&self) -> f64 {
+        let frequency = highest_frequency(&mut Stiffness::new(self));
+        if frequency > 0.0 { self.departure.stable_fraction() / frequency } else { f64::INFINITY }
+    }
+
+    /// Whether a point may have moved a quarter of the smallest span since the last call that said so: the time to take
+    /// the critical step again.
+    pub fn critical_step_is_due(&mut self) -> bool {
+        let spans = self.patch.spaces.iter().flat_map(|space| space.spans());
+        let due = self.travelled >= 0.25 * spans.map(|s| s.length()).fold(f64::INFINITY, f64::min);
+        if due {
+            self.travelled = 0.0;
+        }
+        due
+    }
+}
+
+/// Centre of mass, m.
+fn center_of_mass(points: &[Point]) -> [f64; 2] {
+    let volume: f64 = points.iter().map(|p| p.volume).sum();
+    [0, 1].map(|d| points.iter().map(|p| p.volume * p.position[d]).sum::<f64>() / volume)
+}

@@ -1,0 +1,76 @@
+//! Positions on the boundary of a body that move with it.
+//!
+//! Such a position may stand in a span that no material point has reached. It is evaluated with the polynomials of the
+//! nearest span that has points, continued beyond its end: they still sum to one and reproduce positions, so no force
+//! and no torque is lost, and every control point that counts has mass.
+
+use super::grid::VectorField;
+use super::points::{Cells, OutsidePatch};
+use crate::patch::{ControlGrid, Patch};
+use crate::spline::{ShapeFunctions, SplineSpace};
+
+/// A position that moves with a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Follower {
+    /// Position, m.
+    pub position: [f64; 2],
+    /// Span whose polynomials are used.
+    span: [usize; 2],
+}
+
+impl Follower {
+    /// A position at t = 0, m, to be attached.
+    pub fn new(position: [f64; 2]) -> Self {
+        Self { position, span: [0, 0] }
+    }
+
+    /// Chooses the span anew.
+    ///
+    /// # Errors
+    /// If there is no material within one span of it.
+    pub fn attach(&mut self, patch: &Patch, cells: &Cells) -> Result<(), OutsidePatch> {
+        self.span = nearest_occupied_span(patch, cells, self.position).ok_or(OutsidePatch(self.position))?;
+        Ok(())
+    }
+
+    /// Moves with a velocity field (m/s) for `dt` seconds; the velocity.
+    pub fn follow(&mut self, patch: &Patch, grid: ControlGrid, velocity: &VectorField, dt: f64) -> [f64; 2] {
+        let mut v = [0.0; 2];
+        self.for_each_function(patch, grid, |at, n| v = [0, 1].map(|c| v[c] + n * velocity[c][at]));
+        self.position = [0, 1].map(|c| self.position[c] + dt * v[c]);
+        v
+    }
+
+    /// Calls `f` with control point and value of every shape function at the position.
+    pub fn for_each_function(&self, patch: &Patch, grid: ControlGrid, mut f: impl FnMut(usize, f64)) {
+        let shapes: [ShapeFunctions; 2] =
+            [0, 1].map(|d| patch.spaces[d].shape_functions(self.span[d], self.position[d]));
+        let first = [0, 1].map(|d| patch.spaces[d].spans()[self.span[d]].first);
+        for l in 0..=patch.spaces[1].degree() {
+            for k in 0..=patch.spaces[0].degree() {
+                f(grid.index(first[0] + k, first[1] + l), shapes[0].value[k] * shapes[1].value[l]);
+            }
+        }
+    }
+}
+
+/// The span with points that is nearest to a position, among its own and its eight neighbours.
+fn nearest_occupied_span(patch: &Patch, cells: &Cells, position: [f64; 2]) -> Option<[usize; 2]> {
+    let home = [0, 1].map(|d| clamped_span(&patch.spaces[d], position[d]));
+    let near = |d: usize| home[d].saturating_sub(1)..(home[d] + 2).min(patch.spaces[d].spans().len());
+    let distance = |span: &[usize; 2]| {
+        let beyond = |d: usize| {
+            let s = &patch.spaces[d].spans()[span[d]];
+            (s.left - position[d]).max(position[d] - s.right).max(0.0)
+        };
+        beyond(0).hypot(beyond(1))
+    };
+    let spans = std::iter::once(home).chain(near(1).flat_map(|j| near(0).map(move |i| [i, j])));
+    spans.filter(|span| cells.is_occupied(*span)).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}
+
+/// The span of `x`, or the end span nearest to it.
+fn clamped_span(space: &SplineSpace, x: f64) -> usize {
+    let last = space.spans().len() - 1;
+    space.find_span(x).unwrap_or(if x > space.spans()[last].right { last } else { 0 })
+}
