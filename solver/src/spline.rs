@@ -14,9 +14,9 @@ pub const MAX_ORDER: usize = MAX_DEGREE + 1;
 /// A non-empty knot span.
 #[derive(Debug, Clone)]
 pub struct Span {
-    /// Left knot, m.
+    /// Left knot, m or unit of the knots.
     pub left: f64,
-    /// Right knot, m.
+    /// Right knot, m or unit of the knots.
     pub right: f64,
     /// Index of the first of the `p + 1` basis functions on the span.
     pub first: usize,
@@ -25,7 +25,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// Length of the span, m.
+    /// Length of the span, m or unit of the knots.
     pub fn length(&self) -> f64 {
         self.right - self.left
     }
@@ -36,7 +36,7 @@ impl Span {
 pub struct ShapeFunctions {
     /// Values.
     pub value: [f64; MAX_ORDER],
-    /// Derivatives with respect to x, 1/m.
+    /// Derivatives with respect to x, 1/m or 1/unit of the knots.
     pub derivative: [f64; MAX_ORDER],
 }
 
@@ -81,7 +81,7 @@ impl SplineSpace {
         self.degree
     }
 
-    /// Knot vector, m.
+    /// Knot vector, m or unit of its own.
     pub fn knot_vector(&self) -> &[f64] {
         &self.knots
     }
@@ -125,7 +125,7 @@ impl SplineSpace {
         shape
     }
 
-    /// Greville abscissae, m: the control values of the function x.
+    /// Greville abscissae, in the unit of the knots: the control values of the function x.
     pub fn greville(&self) -> Vec<f64> {
         (0..self.dimension())
             .map(|i| self.knots[i + 1..=i + self.degree].iter().sum::<f64>() / self.degree as f64)

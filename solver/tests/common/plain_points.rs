@@ -68,15 +68,15 @@ pub fn plain_points(patch: &NurbsPatch, lattice: &Lattice, body: &Body) -> Vec<P
     points
 }
 
-/// Largest magnitude.
+/// Largest magnitude; not a number if one value is not.
 pub fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |m: f64, v| m.max(v.abs()))
+    values.iter().map(|v| v.abs()).max_by(f64::total_cmp).unwrap_or(0.0)
 }
 
 /// Asserts that two fields differ by at most `tolerance` of the largest entry; prints nothing when they do.
 pub fn assert_close(name: &str, seen: &[f64], expected: &[f64], tolerance: f64) {
     let scale = largest(expected);
     assert!(scale > 0.0, "{name}: nothing to compare");
-    let error = seen.iter().zip(expected).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+    let error = largest(&seen.iter().zip(expected).map(|(a, b)| a - b).collect::<Vec<f64>>());
     assert!(error <= tolerance * scale, "{name}: differs by {:.3e} of the largest", error / scale);
 }
