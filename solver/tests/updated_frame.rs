@@ -216,7 +216,11 @@ fn notched_plate_in_both_frames(cells: usize) -> ([f64; 4], f64) {
     fixed.analysis.frame = Frame::Total;
     let (simulation, moving) = run(&moving);
     let (_, fixed) = run(&fixed);
-    let moved = updated(&simulation).fields()[0].points().iter().flat_map(|p| p.displacement).fold(0.0_f64, |a, u| a.max(u.abs()));
+    let moved = updated(&simulation).fields()[0]
+        .points()
+        .iter()
+        .flat_map(|p| p.displacement)
+        .fold(0.0_f64, |a, u| a.max(u.abs()));
     assert!(moved <= 0.1 * 0.01 / cells as f64, "displacements of {moved:e} m are not small against h");
     assert!(relative_closure(&moving) <= 1e-3, "closure {:e}", relative_closure(&moving));
     let (mut apart, mut tips_apart) = ([0.0_f64; 4], 0.0_f64);

@@ -91,7 +91,9 @@ impl<'a> Moving<'a> {
         let sides = self.frame.patch().spaces.each_ref().map(sides);
         let mut squares = [[0.0; 2]; 3];
         for point in self.frame.fields()[0].points() {
-            let a = acceleration.each_ref().map(|a| self.frame.fields()[0].patch().evaluate(a, point.position).unwrap_or_default());
+            let a = acceleration
+                .each_ref()
+                .map(|a| self.frame.fields()[0].patch().evaluate(a, point.position).unwrap_or_default());
             let velocity = [0, 1].map(|d: usize| point.velocity[d] + 0.5 * dt * a[d].value);
             let reference = point.reference();
             let middle = (0..2).all(|d| is_in_middle(reference[d], sides[d]));
