@@ -133,4 +133,3 @@ impl From<OutsidePatch> for Failure {
         Self::Left(position)
     }
 }
-

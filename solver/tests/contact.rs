@@ -10,10 +10,9 @@ fn bars(degree: usize, spans: usize) -> Scene {
     let h = 1.0 / spans as f64;
     let cells = 2 * spans + 16;
     let mut scene = elastic_scene(degree, [cells as f64 * h, 4.0 * h], [cells, 4]);
-    scene.materials.insert(
-        "glass".into(),
-        Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None },
-    );
+    scene
+        .materials
+        .insert("glass".into(), Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None });
     let bar = |name: &str, left: f64, speed: f64| Body {
         name: name.into(),
         velocity: [speed, 0.0],
@@ -30,45 +29,68 @@ fn bars(degree: usize, spans: usize) -> Scene {
 
 #[test]
 fn two_equal_bars_exchange_their_velocities() {
-    for (degree, spans) in [(2, 16), (2, 32), (3, 16), (3, 32)] {
+    // A step front disperses over (L/h)^(1/3) spans, so the release is not sharp: the error falls as h^(2/3).
+    for (degree, spans, most) in [(2, 16, 0.06), (2, 32, 0.04), (3, 16, 0.09), (3, 32, 0.05)] {
         let scene = bars(degree, spans);
         fisura::validate::validate(&scene).unwrap();
         let (simulation, samples) = run(&scene);
-        let frame = simulation.updated_frame().unwrap();
-        let [left, right] = [0, 1].map(|i| frame.fields()[i].momentum()[0] / frame.fields()[i].mass() / 0.01);
-        let last = samples.last().unwrap();
-        println!("p {degree} n {spans} left {left:.5} right {right:.5} K {:.4e} loss {:?} transfer {:.3e} closure {:.3e} p0 {:.3e}",
-            last.kinetic, last.contact, last.transfer_loss.unwrap(), last.closure, last.momentum[0] - samples[0].momentum[0]);
+        let fields = simulation.updated_frame().unwrap().fields();
+        let [left, right] = [0, 1].map(|i| fields[i].momentum()[0] / fields[i].mass() / 0.01);
+        assert!(left.abs() < most && (right - 1.0).abs() < most, "p = {degree}, {spans} spans: {left} and {right}");
+        let momentum = 0.01 * fields[0].mass();
+        for sample in &samples {
+            assert!((sample.momentum[0] - momentum).abs() < 1e-12 * momentum);
+            assert!(sample.closure.abs() < 1e-12 * samples[0].kinetic, "closure {:e}", sample.closure);
+        }
+        assert!(samples.last().unwrap().contact.unwrap().loss > 0.0);
     }
 }
 
-#[test]
-fn explore() {
-    let report = |what: &str, scene: &Scene| {
-        let (simulation, samples) = run(scene);
-        let frame = simulation.updated_frame().unwrap();
-        let [left, right] = [0, 1].map(|i| frame.fields()[i].momentum()[0] / frame.fields()[i].mass() / scene.bodies[0].velocity[0]);
-        let last = samples.last().unwrap();
-        let k0 = samples[0].kinetic;
-        println!("{what}: left {left:.5} right {right:.5} K {:.4} E {:.4} loss {:.4} transfer {:.4} closure {:.1e}",
-            last.kinetic / k0, last.elastic / k0, last.contact.unwrap().loss / k0, last.transfer_loss.unwrap() / k0, last.closure / k0);
+fn elastic(young_modulus: f64, poisson_ratio: f64, density: f64) -> Material {
+    Material { young_modulus, poisson_ratio, density, fracture: None }
+}
+
+/// A block or disc on a rigid floor under gravity turned by an angle.
+fn incline(degree: usize, shape: Shape, slope: f64, friction: f64, cells: [usize; 2], size: [f64; 2]) -> Scene {
+    let mut scene = elastic_scene(degree, size, cells);
+    scene.materials.insert("glass".into(), elastic(1e7, 0.3, 1000.0));
+    let foot = 2.0 * size[1] / cells[1] as f64 * 1.37;
+    let floor =
+        Body { name: "floor".into(), rigid: true, ..body(rectangle([-1.0, -1.0], [size[0] + 1.0, foot]), [2, 2]) };
+    let lifted = match shape {
+        Shape::Rectangle { min, max } => rectangle([min[0], min[1] + foot], [max[0], max[1] + foot]),
+        Shape::Disk { center, radius } => Shape::Disk { center: [center[0], center[1] + foot], radius },
+        other => other,
     };
-    let base = bars(2, 32);
-    report("base", &base);
-    let mut s = base.clone(); s.bodies.iter_mut().for_each(|b| b.particles_per_cell = [4, 4]); report("4x4", &s);
-    let mut s = base.clone(); s.bodies.iter_mut().for_each(|b| b.layout = Layout::Uniform); report("uniform", &s);
-    let mut s = base.clone(); s.analysis.safety = 0.1; report("safety 0.1", &s);
-    let mut s = base.clone(); s.analysis.safety = 0.9; report("safety 0.9", &s);
-    for t in [Transfer::Apic, Transfer::Tpic, Transfer::Musl, Transfer::Xpic(5), Transfer::Xpic(2)] {
-        let mut s = base.clone(); s.analysis.transfer = t; report(&format!("{t:?}"), &s);
+    scene.bodies = vec![body(lifted, [degree.max(2); 2]), floor];
+    scene.contact = Some(Contact { friction });
+    scene.analysis.frame = Frame::Updated;
+    scene.analysis.kinematics = Kinematics::Finite;
+    scene.analysis.gravity = [10.0 * slope.sin(), -10.0 * slope.cos()];
+    scene.analysis.end_time = 0.4;
+    scene.analysis.safety = 0.5;
+    scene
+}
+
+#[test]
+fn a_sliding_block_and_a_rolling_disc_have_their_accelerations() {
+    let slope = 30_f64.to_radians();
+    let block = rectangle([0.2, 0.0], [0.6, 0.2]);
+    let disc = Shape::Disk { center: [0.4, 0.2], radius: 0.2 };
+    let slides = |friction: f64| 10.0 * (slope.sin() - friction * slope.cos());
+    let rolls = 10.0 * slope.sin() * 2.0 / 3.0;
+    for (what, shape, friction, expected) in
+        [("sliding block", block, 0.2, slides(0.2)), ("rolling disc", disc, 0.5, rolls)]
+    {
+        let scene = incline(2, shape, slope, friction, [100, 30], [2.0, 0.6]);
+        fisura::validate::validate(&scene).unwrap();
+        let (simulation, samples) = run(&scene);
+        let field = &simulation.updated_frame().unwrap().fields()[0];
+        let acceleration = field.momentum()[0] / field.mass() / field.time();
+        assert!((acceleration - expected).abs() < 0.02 * expected, "{what}: {acceleration} instead of {expected}");
+        let friction: Vec<f64> = samples.iter().map(|s| s.contact.unwrap().friction).collect();
+        assert!(friction.is_sorted(), "{what}: friction does negative work");
+        let work = samples.last().unwrap().external_work;
+        assert!(samples.iter().all(|s| s.closure.abs() < 1e-5 * work), "{what}: the ledger is open");
     }
-    let mut s = base.clone(); s.bodies[0].velocity[0] = 0.001; s.analysis.end_time = 4.0 + 1.0 / 32.0 / 0.001; report("slow", &s);
-    for f in [0.1, 0.3, 0.5, 0.7] {
-        let mut s = base.clone();
-        let h = 1.0 / 32.0;
-        for b in &mut s.bodies { if let Shape::Rectangle { min, max } = &mut b.shape { min[0] += f * h; max[0] += f * h; } }
-        report(&format!("offset {f}"), &s);
-    }
-    let mut s = bars(2, 64); s.analysis.safety = 0.5; report("64", &s);
-    let mut s = bars(2, 128); s.analysis.safety = 0.5; report("128", &s);
 }

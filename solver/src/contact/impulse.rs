@@ -1,13 +1,13 @@
-//! Impulses of contact at the control points where bodies meet, and their energy.
+//! Impulses of contact, and their energy.
 
 use std::collections::HashMap;
 
 use super::surface::dot;
-use super::{Contact, ContactLedger, Meeting};
+use super::{Contact, ContactLedger, Touch};
 use crate::updated_frame::field::DiscreteField;
 
-/// Most rounds over control points where more than two bodies meet.
-const ROUNDS: usize = 50;
+/// Most rounds over the touches.
+const ROUNDS: usize = 500;
 /// Change of an impulse, relative to the largest, below which the rounds end.
 const SETTLED: f64 = 1e-12;
 
@@ -31,198 +31,251 @@ pub struct Push {
     pub acceleration: [f64; 2],
 }
 
-/// A body at a meeting.
-#[derive(Debug, Clone, Copy)]
-struct Side {
-    /// Index in the nodal fields; none of a rigid body.
-    at: Option<usize>,
-    /// Velocity before the kick, after it without contact, and after it, m/s.
-    before: [f64; 2],
-    free: [f64; 2],
-    after: [f64; 2],
-    /// Inverse masses of the components, m/kg; zero where they cannot answer.
-    mobility: [f64; 2],
+/// A force of contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactForce {
+    /// Numbers of the bodies a and b; rigid ones are counted after the others.
+    pub bodies: [usize; 2],
+    /// Where it acts, m.
+    pub position: [f64; 2],
+    /// Unit normal from a to b.
+    pub normal: [f64; 2],
+    /// Force on b, per unit thickness, N/m.
+    pub force: [f64; 2],
 }
 
-/// Impulse at a meeting along normal and tangent, kg/s.
-#[derive(Debug, Clone, Copy, Default)]
-struct Impulse {
+/// Impulse at a touch along normal and tangent, kg/s per unit thickness.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Impulse {
     normal: f64,
     tangent: f64,
 }
 
-struct Pair<'a> {
-    meeting: &'a Meeting,
-    sides: [Side; 2],
+/// A control point of a body that touches another.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    body: usize,
+    at: usize,
+    /// Inverse masses of the components, m/kg; zero where they cannot answer.
+    mobility: [f64; 2],
+    /// Velocity before the kick, after it without contact, and after it, m/s.
+    before: [f64; 2],
+    free: [f64; 2],
+    after: [f64; 2],
+}
+
+/// The touches of a kick, with the control points they act on.
+struct Problem<'a> {
+    nodes: Vec<Node>,
+    touches: Vec<Acting<'a>>,
+}
+
+/// A touch that acts.
+struct Acting<'a> {
+    touch: &'a Touch,
+    /// Node and shape function, negative for body a.
+    functions: Vec<(usize, f64)>,
+    /// Velocity of a rigid body b less that of a rigid body a, m/s.
+    rigid: [f64; 2],
+    /// How the relative velocity answers an impulse along normal and tangent, m/kg.
+    answers: [f64; 2],
     impulse: Impulse,
 }
 
 impl Contact {
     /// Accelerations that contact adds in the coming kick.
     pub fn pushes(&self, fields: &[DiscreteField], kick: Kick) -> Vec<Push> {
-        self.resolve(fields, kick).iter().flat_map(|pair| pair.pushes(kick.length)).collect()
+        self.solve(fields, kick).pushes(kick.length)
     }
 
-    /// The same, and books the energies of the kick.
+    /// Forces in the coming kick.
+    pub fn forces(&self, fields: &[DiscreteField], kick: Kick) -> Vec<ContactForce> {
+        let force = |acting: &Acting| {
+            let Touch { bodies, position, normal, .. } = *acting.touch;
+            let force = acting.vector_of(acting.impulse).map(|impulse| impulse / kick.length);
+            (acting.impulse.normal > 0.0).then_some(ContactForce { bodies, position, normal, force })
+        };
+        self.solve(fields, kick).touches.iter().filter_map(force).collect()
+    }
+
+    /// The accelerations, and books the energies of the kick.
     pub fn act(&mut self, fields: &[DiscreteField], kick: Kick) -> Vec<Push> {
-        let pairs = self.resolve(fields, kick);
-        let ledger = pairs.iter().fold(self.ledger, |sum, pair| {
-            sum.plus(pair.energy(kick, |side| side.after)).plus(pair.arriving(kick))
-        });
-        let pushes = pairs.iter().flat_map(|pair| pair.pushes(kick.length)).collect();
-        self.ledger = ledger;
+        let problem = self.solve(fields, kick);
+        let arriving = problem.arriving(kick);
+        let ledger = self.ledger.plus(arriving).plus(problem.energy(kick, |node| node.after));
+        let last = problem.touches.iter().map(|a| ((a.touch.bodies, a.touch.segment), a.impulse));
+        let last = last
+            .filter(|(_, impulse)| impulse.normal > 0.0)
+            .map(|(key, impulse)| (key, impulse.times(1.0 / kick.length)));
+        let last = last.collect();
+        let pushes = problem.pushes(kick.length);
+        (self.ledger, self.last) = (ledger, last);
         pushes
     }
 
     /// The ledger at the present whole step: with the half of the coming kick that belongs to the step before.
     pub fn ledger_now(&self, fields: &[DiscreteField], kick: Kick) -> ContactLedger {
-        self.resolve(fields, kick).iter().fold(self.ledger, |sum, pair| sum.plus(pair.arriving(kick)))
+        self.ledger.plus(self.solve(fields, kick).arriving(kick))
     }
 
-    fn resolve(&self, fields: &[DiscreteField], kick: Kick) -> Vec<Pair<'_>> {
-        let mut pairs: Vec<Pair> = self.meetings.iter().filter_map(|m| self.pair(fields, m, kick)).collect();
-        let several = pairs.windows(2).any(|two| two[0].meeting.control == two[1].meeting.control);
-        let mut pushed = HashMap::<(usize, usize), [f64; 2]>::new();
-        for _ in 0..if several { ROUNDS } else { 1 } {
+    /// Impulses of the coming kick.
+    fn solve(&self, fields: &[DiscreteField], kick: Kick) -> Problem<'_> {
+        let mut problem = self.problem(fields, kick);
+        for _ in 0..ROUNDS {
             let (mut largest, mut change) = (0.0_f64, 0.0_f64);
-            for pair in &mut pairs {
-                let old = pair.impulse;
-                let extra = [0, 1].map(|s| pair.key(s).and_then(|key| pushed.get(&key)).copied().unwrap_or_default());
-                pair.settle(extra, self.friction, kick.step);
-                let delta = pair.vector_of(Impulse {
-                    normal: pair.impulse.normal - old.normal,
-                    tangent: pair.impulse.tangent - old.tangent,
-                });
-                for (s, sign) in [(0, -1.0), (1, 1.0)] {
-                    if let Some(key) = pair.key(s) {
-                        let sum = pushed.entry(key).or_default();
-                        *sum = [0, 1].map(|c| sum[c] + sign * delta[c] * pair.sides[s].mobility[c]);
-                    }
-                }
-                largest = largest.max(pair.impulse.normal);
-                change = change.max(delta[0].hypot(delta[1]));
+            for acting in &mut problem.touches {
+                let old = acting.impulse;
+                let new = acting.settled(&problem.nodes, self.friction, kick.step);
+                let delta = Impulse { normal: new.normal - old.normal, tangent: new.tangent - old.tangent };
+                acting.give(&mut problem.nodes, delta);
+                acting.impulse = new;
+                largest = largest.max(new.normal);
+                change = change.max(delta.normal.abs()).max(delta.tangent.abs());
             }
             if change <= SETTLED * largest {
                 break;
             }
         }
-        for pair in &mut pairs {
-            for s in 0..2 {
-                let push = pair.key(s).and_then(|key| pushed.get(&key)).copied().unwrap_or_default();
-                pair.sides[s].after = [0, 1].map(|c| pair.sides[s].free[c] + push[c]);
-            }
-        }
-        pairs
+        problem
     }
 
-    /// Both bodies of a meeting; nothing if one has no mass there.
-    fn pair<'a>(&self, fields: &[DiscreteField], meeting: &'a Meeting, kick: Kick) -> Option<Pair<'a>> {
-        let [a, b] = meeting.bodies.map(|body| match fields.get(body) {
-            Some(field) => {
-                let at = field.index_of(meeting.control)?;
-                let nodes = field.nodes();
-                let velocity = [0, 1].map(|c| nodes.velocity[c][at]);
-                (nodes.inverse_mass[at] > 0.0).then(|| Side {
-                    at: Some(at),
-                    before: velocity,
-                    free: [0, 1].map(|c| velocity[c] + kick.length * nodes.acceleration[c][at]),
-                    after: velocity,
-                    mobility: nodes.mobility(at),
-                })
+    /// The touches with the impulses of the step before.
+    fn problem(&self, fields: &[DiscreteField], kick: Kick) -> Problem<'_> {
+        let mut nodes = Vec::new();
+        let mut numbers = HashMap::new();
+        let mut number = |body: usize, at: usize| {
+            *numbers.entry((body, at)).or_insert_with(|| {
+                let fields = fields[body].nodes();
+                let before = [0, 1].map(|c| fields.velocity[c][at]);
+                let free = [0, 1].map(|c| before[c] + kick.length * fields.acceleration[c][at]);
+                nodes.push(Node { body, at, mobility: fields.mobility(at), before, free, after: free });
+                nodes.len() - 1
+            })
+        };
+        let mut touches = Vec::with_capacity(self.touches.len());
+        for touch in &self.touches {
+            let (mut functions, mut rigid) = (Vec::new(), [0.0; 2]);
+            for (side, sign) in [(0, -1.0), (1, 1.0)] {
+                let body = touch.bodies[side];
+                functions.extend(touch.functions[side].iter().map(|&(at, n)| (number(body, at), sign * n)));
+                if body >= fields.len() {
+                    let velocity = self.rigid[body - fields.len()].velocity_at(touch.position);
+                    rigid = velocity.map(|v| sign * v);
+                }
             }
-            None => {
-                let position = [0, 1].map(|d| self.greville[d][meeting.control[d]]);
-                let velocity = self.rigid[body - fields.len()].velocity_at(position);
-                Some(Side { at: None, before: velocity, free: velocity, after: velocity, mobility: [0.0; 2] })
-            }
-        });
-        Some(Pair { meeting, sides: [a?, b?], impulse: Impulse::default() })
+            let impulse = self
+                .last
+                .get(&(touch.bodies, touch.segment))
+                .map_or_else(Impulse::default, |last| last.times(kick.length));
+            touches.push(Acting { touch, functions, rigid, answers: [0.0; 2], impulse });
+        }
+        for acting in &mut touches {
+            acting.find_answers(&nodes);
+            acting.give(&mut nodes, acting.impulse);
+        }
+        Problem { nodes, touches }
     }
 }
 
-impl Pair<'_> {
-    fn key(&self, side: usize) -> Option<(usize, usize)> {
-        Some((self.meeting.bodies[side], self.sides[side].at?))
-    }
-
-    fn tangent(&self) -> [f64; 2] {
-        let [x, y] = self.meeting.normal;
-        [-y, x]
-    }
-
-    fn vector_of(&self, impulse: Impulse) -> [f64; 2] {
-        let (n, t) = (self.meeting.normal, self.tangent());
-        [0, 1].map(|c| impulse.normal * n[c] + impulse.tangent * t[c])
-    }
-
-    /// Impulse that keeps the gap from closing and sliding below the friction, given the velocities that all impulses so far
-    /// add to both sides.
-    fn settle(&mut self, pushed: [[f64; 2]; 2], friction: f64, step: f64) {
-        let [a, b] = self.sides;
-        let mobility = [0, 1].map(|c| a.mobility[c] + b.mobility[c]);
-        let mut relative = [0, 1].map(|c| b.free[c] + pushed[1][c] - a.free[c] - pushed[0][c]);
-        let answer = |direction: [f64; 2]| (0..2).map(|c| direction[c] * direction[c] * mobility[c]).sum::<f64>();
-        let n = self.meeting.normal;
-        if answer(n) > 0.0 {
-            let allowed = -self.meeting.gap.max(0.0) / step;
-            let normal = (self.impulse.normal + (allowed - dot(relative, n)) / answer(n)).max(0.0);
-            relative = [0, 1].map(|c| relative[c] + (normal - self.impulse.normal) * n[c] * mobility[c]);
-            self.impulse.normal = normal;
-        }
-        let t = self.tangent();
-        if answer(t) > 0.0 {
-            let most = friction * self.impulse.normal;
-            self.impulse.tangent = (self.impulse.tangent - dot(relative, t) / answer(t)).clamp(-most, most);
-        }
-    }
-
-    fn pushes(&self, length: f64) -> impl Iterator<Item = Push> {
-        let vector = self.vector_of(self.impulse);
-        let push = |side: usize, sign: f64| {
-            let (body, at) = self.key(side)?;
-            let mobility = self.sides[side].mobility;
-            Some(Push { body, at, acceleration: [0, 1].map(|c| sign * vector[c] * mobility[c] / length) })
+impl Problem<'_> {
+    fn pushes(&self, length: f64) -> Vec<Push> {
+        let push = |node: &Node| {
+            let acceleration = [0, 1].map(|c| (node.after[c] - node.free[c]) / length);
+            Push { body: node.body, at: node.at, acceleration }
         };
-        let pushes = [push(0, -1.0), push(1, 1.0)];
-        pushes.into_iter().flatten().filter(|push| push.acceleration != [0.0; 2])
+        self.nodes.iter().map(push).filter(|push| push.acceleration != [0.0; 2]).collect()
     }
 
     /// Energies of half the force of the kick with the velocities before it; there are none at the start.
     fn arriving(&self, kick: Kick) -> ContactLedger {
-        if kick.length < kick.step { ContactLedger::default() } else { self.energy(kick, |side| side.before) }
+        if kick.length < kick.step { ContactLedger::default() } else { self.energy(kick, |node| node.before) }
     }
 
-    /// Energies of half the force of the kick with velocities of both sides.
-    fn energy(&self, kick: Kick, velocity: impl Fn(&Side) -> [f64; 2]) -> ContactLedger {
-        let mut energy = ContactLedger::default();
-        if self.impulse.normal == 0.0 {
-            return energy;
-        }
+    /// Energies of half the force of the kick with given velocities.
+    fn energy(&self, kick: Kick, velocity: impl Fn(&Node) -> [f64; 2] + Copy) -> ContactLedger {
         let half = 0.5 * kick.step / kick.length;
+        let parts = self.touches.iter().map(|acting| acting.energy(&self.nodes, velocity));
+        parts.fold(ContactLedger::default(), |sum, part| sum.plus(part.times(half)))
+    }
+}
+
+impl Acting<'_> {
+    fn tangent(&self) -> [f64; 2] {
+        let [x, y] = self.touch.normal;
+        [-y, x]
+    }
+
+    fn vector_of(&self, impulse: Impulse) -> [f64; 2] {
+        let (n, t) = (self.touch.normal, self.tangent());
+        [0, 1].map(|c| impulse.normal * n[c] + impulse.tangent * t[c])
+    }
+
+    fn find_answers(&mut self, nodes: &[Node]) {
+        let mut mobility = [0.0; 2];
+        for &(node, n) in &self.functions {
+            mobility = [0, 1].map(|c| mobility[c] + n * n * nodes[node].mobility[c]);
+        }
+        let answer = |direction: [f64; 2]| (0..2).map(|c| direction[c] * direction[c] * mobility[c]).sum();
+        self.answers = [answer(self.touch.normal), answer(self.tangent())];
+    }
+
+    /// Velocity of b relative to a.
+    fn relative(&self, nodes: &[Node], velocity: impl Fn(&Node) -> [f64; 2]) -> [f64; 2] {
+        self.functions.iter().fold(self.rigid, |sum, &(node, n)| {
+            let v = velocity(&nodes[node]);
+            [0, 1].map(|c| sum[c] + n * v[c])
+        })
+    }
+
+    /// Adds what an impulse does to the velocities of the nodes.
+    fn give(&self, nodes: &mut [Node], impulse: Impulse) {
+        let vector = self.vector_of(impulse);
+        for &(node, n) in &self.functions {
+            let node = &mut nodes[node];
+            node.after = [0, 1].map(|c| node.after[c] + n * node.mobility[c] * vector[c]);
+        }
+    }
+
+    /// The impulse that, with all others as they are, keeps the gap from closing and sliding below the friction.
+    fn settled(&self, nodes: &[Node], friction: f64, step: f64) -> Impulse {
+        let Impulse { mut normal, mut tangent } = self.impulse;
+        let relative = self.relative(nodes, |node| node.after);
+        let [along_normal, along_tangent] = self.answers;
+        if along_normal > 0.0 {
+            let allowed = -self.touch.gap.max(0.0) / step;
+            normal = (normal + (allowed - dot(relative, self.touch.normal)) / along_normal).max(0.0);
+        }
+        let most = friction * normal;
+        if along_tangent > 0.0 {
+            tangent = (tangent - dot(relative, self.tangent()) / along_tangent).clamp(-most, most);
+        }
+        Impulse { normal, tangent }
+    }
+
+    /// Energies of the impulse with given velocities.
+    fn energy(&self, nodes: &[Node], velocity: impl Fn(&Node) -> [f64; 2]) -> ContactLedger {
+        let relative = self.relative(nodes, |node| {
+            let v = velocity(node);
+            [0, 1].map(|c| if node.mobility[c] > 0.0 { v[c] } else { 0.0 })
+        });
         let all = self.vector_of(self.impulse);
         let friction = self.vector_of(Impulse { normal: 0.0, ..self.impulse });
-        for (side, sign) in self.sides.iter().zip([-1.0, 1.0]) {
-            let velocity = velocity(side);
-            let work = |impulse: [f64; 2]| {
-                let acts = |c: &usize| side.at.is_none() || side.mobility[*c] > 0.0;
-                half * (0..2).filter(acts).map(|c| sign * impulse[c] * velocity[c]).sum::<f64>()
-            };
-            energy.loss -= work(all);
-            energy.friction -= work(friction);
-            if side.at.is_none() {
-                energy.work -= work(all);
-            }
-        }
-        energy
+        ContactLedger { loss: -dot(all, relative), friction: -dot(friction, relative), work: -dot(all, self.rigid) }
+    }
+}
+
+impl Impulse {
+    fn times(self, factor: f64) -> Self {
+        Self { normal: factor * self.normal, tangent: factor * self.tangent }
     }
 }
 
 impl ContactLedger {
     fn plus(self, other: Self) -> Self {
-        Self {
-            loss: self.loss + other.loss,
-            friction: self.friction + other.friction,
-            work: self.work + other.work,
-        }
+        Self { loss: self.loss + other.loss, friction: self.friction + other.friction, work: self.work + other.work }
+    }
+
+    fn times(self, factor: f64) -> Self {
+        Self { loss: factor * self.loss, friction: factor * self.friction, work: factor * self.work }
     }
 }

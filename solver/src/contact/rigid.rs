@@ -20,7 +20,7 @@ impl RigidBody {
     pub fn new(mesh: &Mesh, body: &Body) -> Self {
         let surface = Surface::new(mesh, body);
         let (center, velocity, spin) = (surface.centroid(), body.velocity, body.angular_velocity);
-        Self { reference: surface.positions(), surface, center, velocity, spin, time: 0.0 }
+        Self { reference: surface.positions().to_vec(), surface, center, velocity, spin, time: 0.0 }
     }
 
     /// Moves to the place it has at a time, s.

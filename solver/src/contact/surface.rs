@@ -1,12 +1,13 @@
 //! The boundary of a body as segments between vertices that move with it, and distances from it.
 
-use crate::patch::{ControlGrid, Patch};
+use rayon::prelude::*;
+
+use super::handle::{DEPTH, handle};
 use crate::quadrature::MAX_POINTS;
 use crate::scene::{Body, Mesh, Shape};
 use crate::shape::polygon_edges;
-use crate::updated_frame::follower::Follower;
+use crate::updated_frame::field::DiscreteField;
 use crate::updated_frame::grid::VectorField;
-use crate::updated_frame::points::{Cells, OutsidePatch};
 
 /// Relative distance from the boundary within which a segment counts as lying on it.
 const ON_BOUNDARY: f64 = 1e-6;
@@ -14,7 +15,7 @@ const ON_BOUNDARY: f64 = 1e-6;
 /// A boundary: segments with the body to their left.
 #[derive(Debug, Clone)]
 pub struct Surface {
-    vertices: Vec<Follower>,
+    vertices: Vec<[f64; 2]>,
     segments: Vec<[u32; 2]>,
     /// Segments that end and begin at each vertex.
     neighbours: Vec<[Option<u32>; 2]>,
@@ -36,8 +37,6 @@ pub struct Center {
     pub position: [f64; 2],
     /// Outward unit normal.
     pub normal: [f64; 2],
-    /// Length of the segment, m.
-    pub length: f64,
 }
 
 impl Surface {
@@ -46,7 +45,8 @@ impl Surface {
         let spacing = spacing(mesh, body);
         let (low, high) = mesh.extent(&body.shape);
         let mut surface = Self { vertices: Vec::new(), segments: Vec::new(), neighbours: Vec::new() };
-        let shape = if body.shape == Shape::Patch { Shape::Rectangle { min: low, max: high } } else { body.shape.clone() };
+        let shape =
+            if body.shape == Shape::Patch { Shape::Rectangle { min: low, max: high } } else { body.shape.clone() };
         let tolerance = ON_BOUNDARY * (high[0] - low[0]).max(high[1] - low[1]);
         for ring in rings(&shape, spacing) {
             surface.add(&ring, |middle| is_on_boundary(&shape, middle, tolerance.max(0.1 * spacing)));
@@ -59,7 +59,7 @@ impl Surface {
     fn add(&mut self, ring: &[[f64; 2]], keep: impl Fn([f64; 2]) -> bool) {
         let first = self.vertices.len() as u32;
         let count = ring.len() as u32;
-        self.vertices.extend(ring.iter().map(|position| Follower::new(*position)));
+        self.vertices.extend(ring);
         for i in 0..count {
             let ends = [i, (i + 1) % count];
             let [a, b] = ends.map(|v| ring[v as usize]);
@@ -77,24 +77,22 @@ impl Surface {
         }
     }
 
-    /// Finds the spans of its vertices.
-    ///
-    /// # Errors
-    /// A vertex with no material within one span of it.
-    pub fn attach(&mut self, patch: &Patch, cells: &Cells) -> Result<(), OutsidePatch> {
-        self.vertices.iter_mut().try_for_each(|vertex| vertex.attach(patch, cells))
-    }
-
-    /// Moves with a velocity field (m/s) for `dt` seconds.
-    pub fn follow(&mut self, patch: &Patch, grid: ControlGrid, velocity: &VectorField, dt: f64) {
-        for vertex in &mut self.vertices {
-            vertex.follow(patch, grid, velocity, dt);
-        }
+    /// Moves with a velocity field (m/s) of its body for `dt` seconds. A vertex that has lost its material stays behind.
+    pub fn follow(&mut self, field: &DiscreteField, velocity: &VectorField, dt: f64) {
+        let depth = DEPTH * field.shortest_span();
+        let moved = (0..self.vertices.len()).into_par_iter().map(|vertex| {
+            let position = self.vertices[vertex];
+            let normal = self.vertex_normal(vertex);
+            let weights = handle(field, position, [0, 1].map(|d| position[d] - depth * normal[d])).unwrap_or_default();
+            let sum = |c: usize| weights.iter().map(|&(at, w)| w * velocity[c][at]).sum::<f64>();
+            [0, 1].map(|c| position[c] + dt * sum(c))
+        });
+        self.vertices = moved.collect();
     }
 
     /// Moves every vertex to the place of a map, m.
     pub fn place(&mut self, place: impl Fn(usize) -> [f64; 2]) {
-        self.vertices.iter_mut().enumerate().for_each(|(index, vertex)| vertex.position = place(index));
+        self.vertices.iter_mut().enumerate().for_each(|(index, vertex)| *vertex = place(index));
     }
 
     /// Centroid of the region it bounds, m.
@@ -110,14 +108,14 @@ impl Surface {
     }
 
     /// Positions of the vertices, m.
-    pub fn positions(&self) -> Vec<[f64; 2]> {
-        self.vertices.iter().map(|vertex| vertex.position).collect()
+    pub fn positions(&self) -> &[[f64; 2]] {
+        &self.vertices
     }
 
     /// Box around the boundary: lower left and upper right corner, m.
     pub fn bounding_box(&self) -> [[f64; 2]; 2] {
         self.vertices.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], vertex| {
-            [[0, 1].map(|d| low[d].min(vertex.position[d])), [0, 1].map(|d| high[d].max(vertex.position[d]))]
+            [[0, 1].map(|d| low[d].min(vertex[d])), [0, 1].map(|d| high[d].max(vertex[d]))]
         })
     }
 
@@ -133,8 +131,7 @@ impl Surface {
     /// Centre of a segment.
     pub fn center(&self, segment: u32) -> Center {
         let [a, b] = self.ends(segment);
-        let (normal, length) = normal(a, b);
-        Center { position: [0, 1].map(|d| 0.5 * (a[d] + b[d])), normal, length }
+        Center { position: [0, 1].map(|d| 0.5 * (a[d] + b[d])), normal: normal(a, b) }
     }
 
     /// The point nearest to a position (m) on one of `segments`, if any lies within `reach` (m).
@@ -161,32 +158,36 @@ impl Surface {
         Some(Nearest { distance: if outside { distance } else { -distance }, normal })
     }
 
-    /// Outward normal of a segment at a fraction t of its length: at its ends the mean of the two that meet.
+    /// Outward normal of a segment at a fraction t of its length: at its ends that of the vertex.
     fn normal_at(&self, segment: u32, t: f64) -> [f64; 2] {
-        let own = self.segment_normal(segment);
         let [from, to] = self.segments[segment as usize];
-        let other = match t {
-            0.0 => self.neighbours[from as usize][0],
-            1.0 => self.neighbours[to as usize][1],
-            _ => None,
-        };
-        let Some(other) = other else { return own };
-        let other = self.segment_normal(other);
-        unit([own[0] + other[0], own[1] + other[1]]).unwrap_or(own)
+        if t <= 0.0 {
+            self.vertex_normal(from as usize)
+        } else if t >= 1.0 {
+            self.vertex_normal(to as usize)
+        } else {
+            self.segment_normal(segment)
+        }
+    }
+
+    /// Mean of the outward normals of the segments that meet at a vertex; zero if there are none.
+    fn vertex_normal(&self, vertex: usize) -> [f64; 2] {
+        let normals = self.neighbours[vertex].iter().flatten().map(|&segment| self.segment_normal(segment));
+        unit(normals.fold([0.0; 2], |sum, n| [0, 1].map(|d| sum[d] + n[d]))).unwrap_or_default()
     }
 
     fn segment_normal(&self, segment: u32) -> [f64; 2] {
         let [a, b] = self.ends(segment);
-        normal(a, b).0
+        normal(a, b)
     }
 
     fn ends(&self, segment: u32) -> [[f64; 2]; 2] {
-        self.segments[segment as usize].map(|vertex| self.vertices[vertex as usize].position)
+        self.segments[segment as usize].map(|vertex| self.vertices[vertex as usize])
     }
 
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
-        let per_vertex = size_of::<Follower>() + size_of::<[Option<u32>; 2]>();
+        let per_vertex = size_of::<[f64; 2]>() + size_of::<[Option<u32>; 2]>();
         self.vertices.len() * per_vertex + self.segments.len() * size_of::<[u32; 2]>()
     }
 }
@@ -250,11 +251,11 @@ fn is_on_boundary(shape: &Shape, position: [f64; 2], tolerance: f64) -> bool {
     shape.contains_within(position, tolerance) && !shape.contains_within(position, -tolerance)
 }
 
-/// Normal to the right of the way from `a` to `b`, and its length.
-fn normal(a: [f64; 2], b: [f64; 2]) -> ([f64; 2], f64) {
+/// Unit normal to the right of the way from `a` to `b`.
+fn normal(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     let along = [b[0] - a[0], b[1] - a[1]];
     let length = along[0].hypot(along[1]);
-    ([along[1] / length, -along[0] / length], length)
+    [along[1] / length, -along[0] / length]
 }
 
 /// The direction of a vector, unless it is zero.

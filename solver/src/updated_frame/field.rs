@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::Failure;
 use super::affine::{AffineVelocities, Fit};
 use super::cracking::Cracking;
 use super::departure::Departure;
@@ -21,7 +22,6 @@ use super::tractions::SurfaceLoad;
 use super::transfer::{GridToPoints, PointsToGrid, StripMotion};
 use super::volume_forcing::VolumeForcing;
 use super::windows::{cut, scatter};
-use super::Failure;
 use crate::contact::Surface;
 use crate::critical_step::highest_frequency;
 use crate::energy::Ledger;
@@ -129,11 +129,10 @@ impl DiscreteField {
             cells,
         };
         let (velocity, spin) = (body.velocity, body.angular_velocity);
-        let rigidly =
-            |x: [f64; 2]| [velocity[0] - spin * (x[1] - center[1]), velocity[1] + spin * (x[0] - center[0])];
+        let rigidly = |x: [f64; 2]| [velocity[0] - spin * (x[1] - center[1]), velocity[1] + spin * (x[0] - center[0])];
         field.points.iter_mut().for_each(|point| point.velocity = rigidly(point.position));
         field.take_affine_velocities(rigidly);
-        field.attach_surfaces()?;
+        field.attach_loads()?;
         field.crack_and_stress(true)?;
         field.ledger.history_work = 0.0; // there was no step yet
         field.find_accelerations();
@@ -152,7 +151,7 @@ impl DiscreteField {
         if left_span {
             self.sort()?;
         }
-        self.attach_surfaces()?;
+        self.attach_loads()?;
         self.crack_and_stress(left_span)?; // points: psi+, H, phase field, stress at n + 1
         self.points_to_grid(); // P2G: mass, velocity, forces at x(n+1)
         let imposed = self.apply_boundary();
@@ -172,13 +171,6 @@ impl DiscreteField {
         for (field, a) in self.nodes.acceleration.iter_mut().zip(acceleration) {
             field[at] += a;
         }
-    }
-
-    /// Index of a control point of the whole patch in the nodal fields, if they reach there.
-    pub fn index_of(&self, control: [usize; 2]) -> Option<usize> {
-        let grid = self.nodes.grid;
-        let [column, row] = [0, 1].map(|d| control[d].wrapping_sub(self.origin[d]));
-        (column < grid.columns && row < grid.rows).then(|| grid.index(column, row))
     }
 
     fn depart(&mut self) {
@@ -204,12 +196,13 @@ impl DiscreteField {
                 motions
             }
         };
-        let Self { patch, nodes, points, departure, forcing, loads, surface, .. } = self;
+        if let Some(mut surface) = self.surface.take() {
+            surface.follow(self, &self.departure.motion, dt);
+            self.surface = Some(surface);
+        }
+        let Self { patch, nodes, points, departure, forcing, loads, .. } = self;
         for load in loads {
             load.move_points(patch, nodes.grid, &departure.motion, dt);
-        }
-        if let Some(surface) = surface {
-            surface.follow(patch, nodes.grid, &departure.motion, dt);
         }
         if let Some(forcing) = forcing {
             forcing.after_motion(points, self.time, dt);
@@ -274,11 +267,9 @@ impl DiscreteField {
         Ok(())
     }
 
-    /// Finds spans for the surface points of loads and of the boundary.
-    pub(super) fn attach_surfaces(&mut self) -> Result<(), OutsidePatch> {
-        let Self { patch, cells, loads, surface, .. } = self;
-        loads.iter_mut().try_for_each(|load| load.attach(patch, cells))?;
-        surface.iter_mut().try_for_each(|surface| surface.attach(patch, cells))
+    /// Finds spans for the surface points of loads.
+    pub(super) fn attach_loads(&mut self) -> Result<(), OutsidePatch> {
+        self.loads.iter_mut().try_for_each(|load| load.attach(&self.patch, &self.cells))
     }
 
     /// History, phase field and degraded stress; an elastic body has its stress from G2P.
@@ -337,7 +328,7 @@ impl DiscreteField {
     pub(super) fn take_affine_velocities(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2]) {
         let Self { patch, cells, points, affine, nodes, .. } = self;
         if let Some(affine) = affine {
-            affine.take(patch, cells, points, &nodes.at_greville_points(patch, velocity));
+            affine.take(patch, cells, points, &nodes.at_greville_points(velocity));
         }
     }
 
@@ -347,11 +338,16 @@ impl DiscreteField {
         if frequency > 0.0 { self.departure.stable_fraction() / frequency } else { f64::INFINITY }
     }
 
+    /// Length of the shortest span, m.
+    pub fn shortest_span(&self) -> f64 {
+        let spans = self.patch.spaces.iter().flat_map(|space| space.spans());
+        spans.map(|span| span.length()).fold(f64::INFINITY, f64::min)
+    }
+
     /// Whether a point may have moved a quarter of the smallest span since the last call that said so: the time to take
     /// the critical step again.
     pub fn critical_step_is_due(&mut self) -> bool {
-        let spans = self.patch.spaces.iter().flat_map(|space| space.spans());
-        let due = self.travelled >= 0.25 * spans.map(|s| s.length()).fold(f64::INFINITY, f64::min);
+        let due = self.travelled >= 0.25 * self.shortest_span();
         if due {
             self.travelled = 0.0;
         }

@@ -24,6 +24,12 @@ impl Follower {
         Self { position, span: [0, 0] }
     }
 
+    /// A position evaluated with the polynomials of the span that `inside` (m) is in or nearest to; `None` if there is no
+    /// material within one span of that.
+    pub fn continued(position: [f64; 2], inside: [f64; 2], patch: &Patch, cells: &Cells) -> Option<Self> {
+        Some(Self { position, span: nearest_occupied_span(patch, cells, inside)? })
+    }
+
     /// Chooses the span anew.
     ///
     /// # Errors

@@ -18,6 +18,8 @@ pub type VectorField = [Vec<f64>; 2];
 pub struct NodalFields {
     /// Layout of the control points.
     pub grid: ControlGrid,
+    /// Greville abscissae in x and y, m: where the control points stand.
+    pub greville: [Vec<f64>; 2],
     /// Lumped mass, kg/m, and its inverse (zero where negligible).
     pub mass: Vec<f64>,
     /// See [`Self::mass`].
@@ -51,6 +53,7 @@ impl NodalFields {
         let vectors = || [grid.zeros(), grid.zeros()];
         Self {
             grid,
+            greville: [0, 1].map(|d| patch.spaces[d].greville()),
             mass: grid.zeros(),
             inverse_mass: grid.zeros(),
             arrived: vectors(),
@@ -162,13 +165,16 @@ impl NodalFields {
         power - held.map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
     }
 
+    /// Position of a control point, m.
+    pub fn position(&self, at: usize) -> [f64; 2] {
+        [self.greville[0][self.grid.column_of(at)], self.greville[1][self.grid.row_of(at)]]
+    }
+
     /// Values of a velocity field at the Greville points: exact control values of an affine field, of second order for others.
-    pub fn at_greville_points(&self, patch: &Patch, velocity: impl Fn([f64; 2]) -> [f64; 2]) -> VectorField {
-        let [x, y] = [0, 1].map(|d| patch.spaces[d].greville());
+    pub fn at_greville_points(&self, velocity: impl Fn([f64; 2]) -> [f64; 2]) -> VectorField {
         let mut field = [self.grid.zeros(), self.grid.zeros()];
         for at in self.grid.indices() {
-            let value = velocity([x[self.grid.column_of(at)], y[self.grid.row_of(at)]]);
-            (field[0][at], field[1][at]) = (value[0], value[1]);
+            [field[0][at], field[1][at]] = velocity(self.position(at));
         }
         field
     }
@@ -197,6 +203,6 @@ impl NodalFields {
 
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
-        8 * 10 * self.grid.len()
+        8 * (10 * self.grid.len() + self.greville[0].len() + self.greville[1].len())
     }
 }

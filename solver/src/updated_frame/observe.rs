@@ -5,6 +5,7 @@ use super::field::DiscreteField;
 use super::grid::NodalFields;
 use super::losses::TransferLosses;
 use super::points::{Cells, FracturePoint, Point};
+use crate::contact::impulse::ContactForce;
 use crate::contact::{Contact, Surface};
 use crate::energy::{ContactSample, FractureSample, Sample};
 use crate::fracture::BROKEN;
@@ -23,7 +24,10 @@ impl UpdatedFrame {
                 (0..2).for_each(|c| accelerations[push.body][c][push.at] += push.acceleration[c]);
             }
             let ledger = contact.ledger_now(&self.fields, kick);
-            (ContactSample { loss: ledger.loss * self.thickness, friction: ledger.friction * self.thickness }, ledger.work)
+            (
+                ContactSample { loss: ledger.loss * self.thickness, friction: ledger.friction * self.thickness },
+                ledger.work,
+            )
         });
         let mut bodies = self.fields.iter().zip(&accelerations).map(|(field, a)| field.sample(dt, a));
         let first = bodies.next().expect("a scene has a body");
@@ -53,6 +57,11 @@ impl UpdatedFrame {
     /// Background patch.
     pub fn patch(&self) -> &Patch {
         &self.patch
+    }
+
+    /// Forces of contact now; `dt` is the step in use.
+    pub fn contact_forces(&self, dt: f64) -> Vec<ContactForce> {
+        self.contact.as_ref().map_or_else(Vec::new, |contact| contact.forces(&self.fields, self.coming_kick(dt)))
     }
 
     /// Thickness, m.
@@ -111,7 +120,10 @@ impl UpdatedFrame {
     /// Heap memory of mechanics and of the phase fields, bytes.
     pub fn bytes(&self) -> [usize; 2] {
         let contact = self.contact.as_ref().map_or(0, |contact| contact.bytes());
-        self.fields.iter().map(|field| field.bytes()).fold([contact, 0], |sum, bytes| [sum[0] + bytes[0], sum[1] + bytes[1]])
+        self.fields
+            .iter()
+            .map(|field| field.bytes())
+            .fold([contact, 0], |sum, bytes| [sum[0] + bytes[0], sum[1] + bytes[1]])
     }
 }
 
@@ -121,7 +133,6 @@ impl DiscreteField {
     fn sample(&self, dt: f64, acceleration: &super::grid::VectorField) -> Sample {
         let (thickness, nodes) = (self.thickness, &self.nodes);
         let half = if self.at_start { 0.0 } else { 0.5 * dt };
-        let greville = [0, 1].map(|d| self.patch.spaces[d].greville());
         let (mut kinetic, mut stagger, mut momentum, mut angular) = (0.0, 0.0, [0.0; 2], 0.0);
         for at in nodes.grid.indices() {
             let m = nodes.mass[at];
@@ -130,7 +141,7 @@ impl DiscreteField {
             kinetic += 0.5 * m * (v[0] * v[0] + v[1] * v[1]);
             stagger += 0.125 * dt * dt * m * (a[0] * a[0] + a[1] * a[1]);
             momentum = [momentum[0] + m * v[0], momentum[1] + m * v[1]];
-            let (x, y) = (greville[0][nodes.grid.column_of(at)], greville[1][nodes.grid.row_of(at)]);
+            let [x, y] = nodes.position(at);
             angular += m * (x * v[1] - y * v[0]);
         }
         let fracture = self.fracture.as_ref().map(|f| FractureSample {
@@ -220,14 +231,12 @@ impl DiscreteField {
     /// Square of the speed (infinite if it is no number) and position (m) of the fastest control point.
     fn fastest_place(&self) -> (f64, [f64; 2]) {
         let [vx, vy] = &self.nodes.velocity;
-        let greville = [0, 1].map(|d| self.patch.spaces[d].greville());
-        let grid = self.nodes.grid;
         let speed = |at: usize| {
             let speed = vx[at] * vx[at] + vy[at] * vy[at];
             (if speed.is_nan() { f64::INFINITY } else { speed }, at)
         };
-        let (speed, at) = grid.indices().map(speed).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
-        (speed, [greville[0][grid.column_of(at)], greville[1][grid.row_of(at)]])
+        let (speed, at) = self.nodes.grid.indices().map(speed).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+        (speed, self.nodes.position(at))
     }
 
     /// Boundary, if the body may meet others.

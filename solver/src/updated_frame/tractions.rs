@@ -26,7 +26,8 @@ impl SurfaceLoad {
     /// The surface points of a traction at t = 0.
     pub fn new(patch: &Patch, body: &Body, traction: &Traction) -> Self {
         let points = surface_points(patch, body, &traction.edge).into_iter();
-        let points = points.map(|p| MovingSurfacePoint { place: Follower::new(p.position), length: p.length }).collect();
+        let points =
+            points.map(|p| MovingSurfacePoint { place: Follower::new(p.position), length: p.length }).collect();
         Self { points, stress: traction.stress, ramp: traction.ramp, power: 0.0 }
     }
 

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::volume_forcing::VolumeForcing;
 use super::field::DiscreteField;
+use super::volume_forcing::VolumeForcing;
 use super::{Failure, UpdatedFrame};
 use crate::forcing::Forcing;
 
@@ -52,12 +52,12 @@ impl DiscreteField {
 
     fn prescribe_motion(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2], dt: f64) -> Result<(), Failure> {
         self.time += dt;
-        let field = self.nodes.at_greville_points(&self.patch, velocity);
+        let field = self.nodes.at_greville_points(velocity);
         self.departure.prescribe(&field);
         if self.grid_to_points(dt) {
             self.sort()?;
         }
-        self.attach_surfaces()?;
+        self.attach_loads()?;
         self.crack_and_stress(true)?;
         self.find_accelerations();
         Ok(())

@@ -264,8 +264,6 @@ fn shapes_without_area_are_refused() {
 
 #[test]
 fn what_the_solver_cannot_do_is_refused_by_key() {
-    assert_eq!(errors(|s| s.contact = Some(Contact { friction: 0.3 })), ["contact"]);
-    assert_eq!(errors(|s| s.bodies.push(Body { name: "other".into(), ..s.bodies[0].clone() })), ["body"]);
     assert_eq!(warnings(|s| s.analysis.transfer = Transfer::Apic), ["analysis.transfer"]);
     let updated = |transfer| {
         move |s: &mut Scene| {
@@ -284,4 +282,45 @@ fn what_the_solver_cannot_do_is_refused_by_key() {
     };
     assert!(errors(finite).is_empty());
     assert_eq!(errors(|s| s.bodies.clear()), ["body"]);
+}
+
+#[test]
+fn several_bodies_need_the_updated_frame_and_room() {
+    let two = |gap: f64| {
+        move |s: &mut Scene| {
+            s.analysis.frame = Frame::Updated;
+            s.contact = Some(Contact { friction: 0.3 });
+            let block = |name: &str, left: f64, right: f64| Body {
+                name: name.into(),
+                shape: Shape::Rectangle { min: [left, 0.0], max: [right, 0.01] },
+                tractions: vec![],
+                cracks: vec![],
+                ..s.bodies[0].clone()
+            };
+            s.bodies = vec![block("left", 0.0, 0.005), block("right", 0.005 + gap, 0.01)];
+        }
+    };
+    assert!(errors(two(0.0)).is_empty());
+    assert_eq!(errors(two(-1e-4)), ["body.1.shape"]);
+    let changed = |change: fn(&mut Scene)| {
+        errors(move |s| {
+            two(0.0)(s);
+            change(s);
+        })
+    };
+    assert_eq!(changed(|s| s.analysis.frame = Frame::Total), ["analysis.frame"]);
+    assert_eq!(changed(|s| s.contact = Some(Contact { friction: -0.1 })), ["contact.friction"]);
+    assert_eq!(changed(|s| s.bodies[1].name = "left".into()), ["body.1.name"]);
+    assert!(changed(|s| s.bodies[1].rigid = true).is_empty());
+    assert!(changed(|s| s.contact = None).is_empty(), "bodies that do not meet");
+    assert_eq!(changed(|s| s.bodies.iter_mut().for_each(|b| b.rigid = true)), ["body"]);
+    let alone = |s: &mut Scene| {
+        s.bodies[1].rigid = true;
+        s.contact = None;
+    };
+    assert_eq!(changed(alone), ["body.1.rigid"]);
+    let within = |s: &mut Scene| {
+        s.bodies[1].shape = Shape::Disk { center: [0.0025, 0.005], radius: 0.001 };
+    };
+    assert_eq!(changed(within), ["body.1.shape"], "one body inside the other");
 }
