@@ -1,7 +1,7 @@
 //! Checks of several bodies, rigid bodies and contact.
 
-use super::geometry::defect;
 use super::Findings;
+use super::geometry::defect;
 use crate::contact::Surface;
 use crate::scene::{Body, Frame, Scene};
 use crate::spans::span_lengths;
