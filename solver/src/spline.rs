@@ -125,6 +125,22 @@ impl SplineSpace {
         shape
     }
 
+    /// Second derivatives (1/m²) of the shape functions at `x` (m), which should lie in `span`.
+    #[inline]
+    pub fn second_derivatives(&self, span: usize, x: f64) -> [f64; MAX_ORDER] {
+        let span = &self.spans[span];
+        let scale = 1.0 / span.length();
+        let t = (x - span.left) * scale;
+        let mut second = [0.0; MAX_ORDER];
+        for k in 0..=self.degree {
+            for m in (2..=self.degree).rev() {
+                second[k] = second[k] * t + (m * (m - 1)) as f64 * span.polynomials[k][m];
+            }
+            second[k] *= scale * scale;
+        }
+        second
+    }
+
     /// Greville abscissae, in the unit of the knots: the control values of the function x.
     pub fn greville(&self) -> Vec<f64> {
         (0..self.dimension())
@@ -186,6 +202,12 @@ mod tests {
                 let slope: f64 = (0..=degree).map(|k| shape.derivative[k] * greville[first + k]).sum();
                 assert_abs_diff_eq!(position, x, epsilon = 1e-13);
                 assert_abs_diff_eq!(slope, 1.0, epsilon = 1e-11);
+                let (second, step) = (space.second_derivatives(span, x), 1e-6);
+                let [before, beyond] = [-step, step].map(|step| space.shape_functions(span, x + step));
+                for k in 0..=degree {
+                    let difference = (beyond.derivative[k] - before.derivative[k]) / (2.0 * step);
+                    assert_abs_diff_eq!(second[k], difference, epsilon = 1e-3 * (1.0 + second[k].abs()));
+                }
             }
         }
     }

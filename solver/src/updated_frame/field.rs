@@ -134,7 +134,7 @@ impl DiscreteField {
         field.take_affine_velocities(rigidly);
         field.attach_loads()?;
         field.crack_and_stress(true)?;
-        field.ledger.history_work = 0.0; // there was no step yet
+        (field.ledger, field.losses) = Default::default(); // there was no step yet
         field.find_accelerations();
         Ok(field)
     }
@@ -282,6 +282,7 @@ impl DiscreteField {
         self.elastic_energy = sums.elastic_energy;
         self.stress_work = sums.stress_work;
         self.ledger.history_work += sums.history_work;
+        self.losses.phase_field -= sums.gained_in_motion;
         Ok(())
     }
 
