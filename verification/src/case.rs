@@ -5,12 +5,14 @@
 
 pub mod convergence;
 mod read;
+mod rings;
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use crate::measure::grid_convergence::Estimate;
 use crate::record::{Accept, ReferenceKind};
+use crate::rings::Geometry;
 use crate::scene_file::document::{Document, Node};
 use crate::scene_file::fields::{Item, Problems};
 use crate::scene_file::{Problem, SceneFileError};
@@ -126,6 +128,8 @@ pub struct Case {
     pub variants: Vec<Variant>,
     /// What a convergence study solves.
     pub convergence: Option<convergence::ConvergenceSetup>,
+    /// Geometries of the `rings-sweep` study.
+    pub rings: Option<Vec<Geometry>>,
     /// Checks.
     pub checks: Vec<Check>,
     /// The file, for places of errors.

@@ -13,6 +13,7 @@ pub mod plain_scene;
 pub mod random;
 pub mod record;
 pub mod reference;
+pub mod rings;
 pub mod scene_file;
 pub mod scene_run;
 pub mod study;

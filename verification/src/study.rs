@@ -13,6 +13,7 @@ mod homogeneous_state;
 mod linear_field;
 mod nurbs;
 mod pulse;
+mod rings;
 mod rotation;
 pub mod scene;
 mod vibration;
@@ -77,7 +78,7 @@ pub enum StudyError {
 type Study = fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>;
 
 /// Studies other than `scene`, by name.
-pub const STUDIES: [(&str, Study); 12] = [
+pub const STUDIES: [(&str, Study); 14] = [
     ("basis", basis::study),
     ("constant-stress", constant_stress::study),
     ("homogeneous-state", homogeneous_state::study),
@@ -90,6 +91,8 @@ pub const STUDIES: [(&str, Study); 12] = [
     ("rotation", rotation::study),
     ("eigenfrequencies", eigenfrequencies::study),
     ("linear-field", linear_field::study),
+    ("rings", rings::study),
+    ("rings-sweep", rings::sweep),
 ];
 
 /// The study of that name.

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use super::{Case, Check, Tier, Variant, convergence};
+use super::{Case, Check, Tier, Variant, convergence, rings};
 use crate::measure::grid_convergence::Estimate;
 use crate::record::{Accept, ReferenceKind};
 use crate::scene_file::document::{Document, Node, Value};
 use crate::scene_file::fields::{Fields, Item};
 use crate::scene_file::units::{self, Dimension};
 
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 13] = [
     "claim",
     "tier",
     "seconds",
@@ -21,6 +21,7 @@ const KEYS: [&str; 12] = [
     "scene",
     "variant",
     "convergence",
+    "rings",
     "check",
 ];
 
@@ -37,6 +38,7 @@ pub(super) fn case(item: &Item<'_>, path: &Path, document: &Document) -> Option<
     let models = fields.or("models", default_models(document), words);
     let variants = fields.or("variant", Vec::new(), |i| i.tables()?.iter().map(read_variant).collect());
     let convergence = fields.maybe("convergence", convergence::read);
+    let rings = fields.maybe("rings", rings::read);
     let checks = fields.need("check", "at least one [[check]]", |i| i.tables()?.iter().map(read_check).collect());
     let stem = |p: Option<&std::ffi::OsStr>| p.map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     Some(Case {
@@ -53,6 +55,7 @@ pub(super) fn case(item: &Item<'_>, path: &Path, document: &Document) -> Option<
         models: models?,
         variants: variants?,
         convergence: convergence?,
+        rings: rings?,
         checks: checks?,
         document: document.clone(),
     })

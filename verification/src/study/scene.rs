@@ -211,7 +211,7 @@ pub fn microseconds(time: f64) -> f64 {
 }
 
 /// Raster of a picture; values rounded to 1e-5, which no colour shows.
-fn raster(frame: &Picture, values: &[f64]) -> Table {
+pub fn raster(frame: &Picture, values: &[f64]) -> Table {
     let mut table = Table::new(&["x_m", "y_m", "value"]);
     for (index, value) in values.iter().enumerate() {
         let [x, y] = frame.center(index).map(|c| (c * 1e9).round() / 1e9);
