@@ -11,6 +11,9 @@ use crate::history::Table;
 /// Part of the final fracture energy at which it counts as levelled off.
 const LEVEL: f64 = 0.97;
 
+/// Distance from the line of centres beyond which broken material lies aside, over twice the length scale.
+const ASIDE: f64 = 3.0;
+
 /// Names of the events, in the order of the paper.
 pub const EVENTS: [&str; 6] = [
     "cracks at the inner edge towards the contact",
@@ -83,6 +86,7 @@ impl Watch {
             "force_n",
             "elastic_asymmetry",
             "fracture_asymmetry",
+            "broken_aside",
         ];
         Some(Self {
             body: number,
@@ -116,6 +120,7 @@ impl Watch {
             force,
             asymmetry(simulation, |field| field.elastic_energy()),
             asymmetry(simulation, |field| field.fracture.as_ref().map_or(0.0, |f| f.surface_energy)),
+            self.aside(simulation),
         ];
         row.extend(sample.named_values().iter().map(|(_, value)| value));
         self.table.push(&row);
@@ -136,6 +141,22 @@ impl Watch {
             }
         }
         Wall { phases }
+    }
+
+    /// Part of the broken material that lies further than a few length scales from the line of centres: zero if the ring splits
+    /// along the diameter alone.
+    fn aside(&self, simulation: &Simulation) -> f64 {
+        let field = &simulation.updated_frame().expect("rings move in the updated frame").fields()[self.body];
+        let cracked = field.fracture.iter().flat_map(|cracking| cracking.points.iter());
+        let broken = field.points().iter().zip(cracked).filter(|(_, cracked)| cracked.phase < BROKEN);
+        let (mut all, mut aside) = (0.0, 0.0);
+        for (point, _) in broken {
+            all += point.volume;
+            if (point.reference()[1] - self.center[1]).abs() > ASIDE * self.depth {
+                aside += point.volume;
+            }
+        }
+        if all > 0.0 { aside / all } else { 0.0 }
     }
 
     /// Times (s) of [`EVENTS`]; none of those that did not come.

@@ -117,6 +117,7 @@ fn add_invariants(findings: &mut Findings, variant: &str, scene: &Scene, watched
     add("largest fall of the friction work over the initial kinetic energy", fall("friction_j") / initial);
     add("contact loss over the initial kinetic energy", last("contact_loss_j") / initial);
     add("transfer loss over the initial kinetic energy", last("transfer_loss_j") / initial);
+    add("broken material aside the diameter at the end", last("broken_aside"));
     add("fracture energy at the end, J", factor * last("fracture_j"));
     if let [left, right] = &watched.rings[..] {
         let [x, y] = scene.bodies[0].velocity;
