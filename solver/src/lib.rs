@@ -43,6 +43,7 @@
 //! | E 14–18 | the step, the mass matrix | [`total_frame`], [`updated_frame`], [`mass`] |
 //! | E 15–18 | transfers between points and control points | [`sweep`], [`updated_frame`] |
 //! | – | material points: layouts, tiles of spans | [`quadrature`], [`lattice`], [`shape`] |
+//! | – | several bodies, frictional contact, rigid bodies | [`updated_frame::field`], [`contact`] |
 //! | – | what the points take from the grid, and its losses | [`updated_frame::departure`], [`updated_frame::losses`] |
 //! | – | finite strain | [`hencky`] |
 //! | – | tractions, gravity, conditions on sides | [`loads`], [`constraints`] |
@@ -67,7 +68,7 @@
 //!
 //! # Not modelled yet
 //!
-//! More than one body, contact and rigid bodies; general patches in the updated frame; the consistent mass matrix there or
+//! Contact of a body with itself; general patches in the updated frame; the consistent mass matrix there or
 //! where a body cuts spans. [`validate::validate`] refuses a scene that asks for one of these.
 //!
 //! # Example

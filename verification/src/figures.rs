@@ -129,6 +129,25 @@ pub fn of_runs(runs: &[RunInfo], library: &Library) -> (Vec<Figure>, Vec<(String
     (figures, tables)
 }
 
+/// Draws the reference curves of the fracture energy of two rings into its figures; the tables they need.
+pub fn add_references(figures: &mut [Figure], library: &Library) -> Vec<(String, Table)> {
+    let mut tables = Vec::new();
+    for figure in figures.iter_mut().filter(|f| f.suite == "rings" && f.id.ends_with("fracture-energy")) {
+        let FigureBody::Chart { curves, .. } = &mut figure.body else { continue };
+        for reference in library.curves("rings/fracture-energy") {
+            let (curve, table) = reference.series(1e6, 1.0);
+            tables.push((stem(&curve), table));
+            curves.push(curve);
+        }
+    }
+    tables
+}
+
+/// File name without ending of the series of a curve.
+fn stem(curve: &Curve) -> String {
+    curve.series.trim_start_matches("series/").trim_end_matches(".csv").to_string()
+}
+
 fn time_axis() -> Axis {
     Axis { label: "time (µs)".into(), scale: Scale::Linear, range: None }
 }
@@ -151,10 +170,10 @@ fn curve(label: &str, series: &str, y: &str, y_scale: f64) -> Curve {
     }
 }
 
-/// One quantity of some runs beside its references; ids begin with `stem`.
+/// One quantity of some runs beside its references; ids begin with `prefix`.
 fn chart(
     quantity: &Quantity,
-    stem: &str,
+    prefix: &str,
     runs: &[&RunInfo],
     library: &Library,
     tables: &mut Vec<(String, Table)>,
@@ -165,8 +184,7 @@ fn chart(
         if quantity.id == "tip-speed" {
             (curve, table) = speed_of(reference, curve);
         }
-        let stem = curve.series.trim_start_matches("series/").trim_end_matches(".csv").to_string();
-        tables.push((stem, table));
+        tables.push((stem(&curve), table));
         curves.push(curve);
     }
     for run in runs {
@@ -179,7 +197,7 @@ fn chart(
     let regions =
         bands.map(|b| Region { label: b.name.replace('-', " "), x: Some([b.min * 1e6, b.max * 1e6]), y: None });
     Figure {
-        id: format!("{stem}-{}", quantity.id),
+        id: format!("{prefix}-{}", quantity.id),
         suite: "plate".into(),
         title: quantity.title.into(),
         caption: captions(runs),

@@ -136,7 +136,9 @@ pub fn verify(cases: &[Case], options: &Options, progress: &dyn Progress) -> Res
     }
     let runs: Vec<RunInfo> = outcomes.iter().flat_map(|o| o.runs.clone()).collect();
     let mut figures: Vec<Figure> = outcomes.iter().flat_map(|o| o.figures.clone()).collect();
-    let (drawn, tables) = figures::of_runs(&runs, &library);
+    let mut tables = figures::add_references(&mut figures, &library);
+    let (drawn, of_runs) = figures::of_runs(&runs, &library);
+    tables.extend(of_runs);
     figures.extend(drawn);
     for (stem, table) in tables {
         write_series(options.out, &stem, &table)?;
