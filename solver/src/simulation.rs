@@ -291,17 +291,16 @@ impl Simulation {
     }
 
     fn cause_of_growth(&self) -> String {
-        if let Some([x, y]) = self.updated_frame().and_then(|frame| frame.inverted_place()) {
-            return format!(
-                "the body is turned inside out at ({x:.6e}, {y:.6e}) m: the deformation is larger than the mesh or the \
-                 time step can follow; look for extreme loads or velocities, refine the mesh, or lower analysis.safety"
-            );
-        }
         let ratio = self.plan.step / self.plan.critical;
         if ratio > 1.0 {
             format!(
                 "the time step {:.4e} s is {ratio:.3} times the critical step {:.4e} s; use time_step = \"auto\"",
                 self.plan.step, self.plan.critical
+            )
+        } else if let Some([x, y]) = either!(&self.frame, body => body.inverted_place()) {
+            format!(
+                "the body is turned inside out at ({x:.6e}, {y:.6e}) m: look for extreme loads or velocities, refine the mesh \
+                 there, or halve the safety factor"
             )
         } else {
             "the time step is below the critical one of the undamaged body; look for extreme loads or velocities, \

@@ -94,3 +94,26 @@ fn below_the_critical_step_an_open_ledger_is_a_warning() {
         }
     }
 }
+
+/// A load no solid bears turns the body inside out: the message says so instead of blaming the time step.
+#[test]
+fn a_body_turned_inside_out_is_named() {
+    for frame in [Frame::Total, Frame::Updated] {
+        let mut scene = elastic_scene(2, [0.01, 0.005], [20, 10]);
+        scene.analysis.frame = frame;
+        scene.analysis.kinematics = Kinematics::Finite;
+        scene.bodies[0].shape = common::rectangle([0.003, 0.001], [0.007, 0.004]);
+        scene.bodies[0].tractions = vec![
+            Traction { edge: Edge::Side(Side::Right), stress: [-2e12, 0.0], ramp: None },
+            Traction { edge: Edge::Side(Side::Left), stress: [2e12, 0.0], ramp: None },
+        ];
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let found = loop {
+            match simulation.step() {
+                Err(found) => break found,
+                Ok(()) => assert!(!simulation.finished(), "{frame:?}: the load was borne"),
+            }
+        };
+        assert!(found.cause.contains("inside out"), "{frame:?}: {found}");
+    }
+}

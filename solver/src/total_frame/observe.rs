@@ -8,7 +8,7 @@ use crate::constraints::Constraints;
 use crate::energy::{FractureSample, Sample};
 use crate::forcing::Forcing;
 use crate::fracture::Fracturing;
-use crate::hencky::hencky_strain;
+use crate::hencky::{growth, hencky_strain};
 use crate::lane::Lane;
 use crate::lattice::Lattice;
 use crate::mass::MassMatrix;
@@ -66,12 +66,25 @@ impl TotalFrame {
         }
     }
 
+    /// Reference position (m) of a point that is turned inside out, if there is one; small strains know none.
+    pub fn inverted_place(&self) -> Option<[f64; 2]> {
+        let mut inverted = None;
+        self.lattice.for_each_point(|_, _, position, _| {
+            let [x, y] = self.displacement.each_ref().map(|u| self.patch.evaluate(u, position).unwrap_or_default());
+            let (_, growth) = self.strain([x.gradient, y.gradient]);
+            if inverted.is_none() && growth <= 0.0 {
+                inverted = Some(position);
+            }
+        });
+        inverted
+    }
+
     /// Strain `[xx, yy, xy]` of a displacement gradient, and by how much the volume grew.
     pub fn strain(&self, gradient: [[f64; 2]; 2]) -> ([f64; 3], f64) {
         let [[xx, xy], [yx, yy]] = gradient;
         match self.kinematics {
             Kinematics::Small => ([xx, yy, 0.5 * (xy + yx)], 1.0),
-            Kinematics::Finite => (hencky_strain(&gradient), (1.0 + xx) * (1.0 + yy) - xy * yx),
+            Kinematics::Finite => (hencky_strain(&gradient), growth(&gradient)),
         }
     }
 
