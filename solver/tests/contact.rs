@@ -96,3 +96,58 @@ fn a_sliding_block_and_a_rolling_disc_have_their_accelerations() {
         assert!(samples.iter().all(|s| s.closure.abs() < 1e-5 * work), "{what}: the ledger is open");
     }
 }
+
+/// Two blocks that fly into each other.
+fn blocks(contact: Option<Contact>) -> Scene {
+    let mut scene = elastic_scene(2, [4.0, 0.5], [80, 10]);
+    scene.materials.insert("glass".into(), elastic(1e4, 0.3, 1.0));
+    let block = |name: &str, left: f64, speed: f64| Body {
+        name: name.into(),
+        velocity: [speed, 0.0],
+        ..body(rectangle([left, 0.123], [left + 0.3, 0.377]), [2; 2])
+    };
+    scene.bodies = vec![block("left", 0.5, 1.0), block("right", 3.2, -1.0)];
+    scene.contact = contact;
+    scene.analysis.frame = Frame::Updated;
+    scene.analysis.end_time = 2.0;
+    scene
+}
+
+#[test]
+fn bodies_pass_through_each_other_without_a_contact_table() {
+    let (simulation, samples) = run(&blocks(None));
+    let frame = simulation.updated_frame().unwrap();
+    assert!(frame.contact().is_none() && frame.fields().iter().all(|field| field.surface().is_none()));
+    assert!(samples.iter().all(|s| s.contact.is_none()));
+    for (field, speed) in frame.fields().iter().zip([1.0, -1.0]) {
+        assert!(field.points().iter().all(|p| (p.velocity[0] - speed).abs() < 1e-12 && p.velocity[1].abs() < 1e-12));
+    }
+    let (simulation, samples) = run(&blocks(Some(Contact { friction: 0.3 })));
+    let fields = simulation.updated_frame().unwrap().fields();
+    assert!(fields[0].momentum()[0] < 0.0 && fields[1].momentum()[0] > 0.0, "they bounce with contact");
+    let one = fields[0].mass();
+    assert!(samples.iter().all(|s| s.momentum.iter().all(|p| p.abs() < 1e-12 * one)));
+}
+
+#[test]
+fn nodal_fields_follow_a_body_with_its_phase_field() {
+    let mut scene = blocks(None);
+    scene.materials.get_mut("glass").unwrap().fracture = Some(Fracture {
+        critical_energy_release_rate: 1.0,
+        length_scale: 0.05,
+        residual_stiffness: 0.0,
+        split: Split::Spectral,
+    });
+    scene.bodies.truncate(1);
+    scene.bodies[0].cracks = vec![Crack { from: [0.6, 0.25], to: [0.7, 0.25], half_width: None }];
+    let (simulation, samples) = run(&scene);
+    let field = &simulation.updated_frame().unwrap().fields()[0];
+    let (part, whole) = (field.nodes().grid, simulation.updated_frame().unwrap().patch().control_grid());
+    assert!(part.columns < whole.columns / 3, "{} of {} columns", part.columns, whole.columns);
+    assert!(field.points().iter().all(|p| (p.velocity[0] - 1.0).abs() < 1e-11 && p.velocity[1].abs() < 1e-11));
+    let energies: Vec<f64> = samples.iter().map(|s| s.fracture.as_ref().unwrap().energy).collect();
+    let spread = energies.iter().map(|e| (e / energies[0] - 1.0).abs()).fold(0.0, f64::max);
+    // 40 spans of flight: the energy of the crack swings with its place in the span and does not drift.
+    assert!(spread < 0.1, "{energies:?}");
+    assert!(samples.iter().all(|s| s.closure.abs() < 2e-3 * energies[0]), "the ledger is open");
+}

@@ -59,3 +59,31 @@ fn updated_frame() {
     scene.analysis.end_time = 0.5e-6;
     check(&scene);
 }
+
+#[test]
+fn bodies_in_contact() {
+    let mut scene = updated_scene_of_two();
+    scene.analysis.transfer = Transfer::Apic;
+    check(&scene);
+}
+
+/// Two brittle discs in collision.
+fn updated_scene_of_two() -> Scene {
+    let mut scene = notched_plate(1e6);
+    scene.mesh = Mesh::uniform([2; 2], [0.0; 2], [0.02, 0.01], [80, 40]);
+    let disc = |name: &str, x: f64, speed: f64| Body {
+        name: name.into(),
+        shape: Shape::Disk { center: [x, 0.005], radius: 0.004 },
+        velocity: [speed, 0.0],
+        cracks: vec![],
+        tractions: vec![],
+        ..scene.bodies[0].clone()
+    };
+    scene.bodies = vec![disc("left", 0.006, 20.0), disc("right", 0.014, -20.0)];
+    scene.boundaries.clear();
+    scene.contact = Some(Contact { friction: 0.2 });
+    scene.analysis.frame = Frame::Updated;
+    scene.analysis.kinematics = Kinematics::Finite;
+    scene.analysis.end_time = 3e-6;
+    scene
+}
