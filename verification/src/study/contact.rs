@@ -33,6 +33,14 @@ fn run(scene: &Scene, seen: &mut dyn FnMut(&Simulation, &UpdatedFrame)) -> Resul
     }
 }
 
+/// Samples of a run: enough to see what a ledger does, few enough to cost little.
+const SAMPLES: usize = 400;
+
+/// Whether a sample is to be taken now.
+fn sample_is_due(simulation: &Simulation) -> bool {
+    simulation.steps().is_multiple_of(simulation.plan().steps().div_ceil(SAMPLES)) || simulation.finished()
+}
+
 /// Sum of forces, N/m.
 fn sum<'a>(forces: impl IntoIterator<Item = &'a ContactForce>) -> [f64; 2] {
     forces.into_iter().fold([0.0; 2], |[x, y], f| [x + f.force[0], y + f.force[1]])
@@ -77,10 +85,12 @@ struct Books {
     /// Largest departure of the momentum from the first one, kg m/s, and of the angular momentum, kg m²/s.
     momentum: f64,
     angular_momentum: f64,
-    /// Losses in contact so far, J, and the part of friction.
+    /// Losses in contact so far, J, the part of friction, and losses of the transfers.
     loss: f64,
     friction: f64,
-    /// Largest decrease of the friction loss from one sample to the next, J.
+    transfer: f64,
+    /// What friction took up to the last step, and its largest decrease in a step, J per metre of thickness.
+    taken: f64,
     friction_decrease: f64,
 }
 
@@ -93,8 +103,19 @@ impl Books {
         self.energy = larger(self.energy, sample.largest_term());
         self.momentum = larger(self.momentum, (x - first[0]).hypot(y - first[1]));
         self.angular_momentum = larger(self.angular_momentum, (sample.angular_momentum - first[2]).abs());
-        self.friction_decrease = larger(self.friction_decrease, self.friction - contact.friction);
         (self.loss, self.friction) = (contact.loss, contact.friction);
+        self.transfer = sample.transfer_loss.unwrap_or(f64::NAN);
+    }
+
+    /// Looks at the friction after a step; cheaper than a sample.
+    fn step(&mut self, frame: &UpdatedFrame) {
+        let friction = frame.contact().map_or(f64::NAN, |contact| contact.ledger().friction);
+        self.take(friction);
+    }
+
+    fn take(&mut self, friction: f64) {
+        self.friction_decrease = larger(self.friction_decrease, self.taken - friction);
+        self.taken = friction;
     }
 
     /// Energy at t = 0, J.
@@ -156,6 +177,7 @@ mod tests {
         let mut books = Books::default();
         for (momentum, friction, closure) in [(1.0, 0.0, 0.0), (1.5, 0.3, -0.2), (1.1, 0.1, 0.1)] {
             books.enter(&sample(momentum, friction, closure));
+            books.take(friction);
         }
         assert_eq!((books.momentum, books.closure, books.initial()), (0.5, 0.2, 3.0));
         assert!((books.friction_decrease - 0.2).abs() < 1e-15 && books.loss == 0.2);

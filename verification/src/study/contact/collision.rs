@@ -3,16 +3,13 @@
 use fisura::scene::Scene;
 use fisura::updated_frame::field::DiscreteField;
 
-use super::{Books, center, chart, curve, dot, exact, largest, run, sum};
+use super::{Books, center, chart, curve, dot, exact, largest, run, sample_is_due};
 use crate::case::Case;
 use crate::expand::CaseScene;
 use crate::history::Table;
 use crate::record::CurveStyle;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
-
-/// Rows of a series.
-const ROWS: usize = 300;
 
 pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
@@ -28,7 +25,13 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
         findings.series.push((stem, found.energies));
     }
     let title = format!("Energies over that at t = 0, {}", case.label);
-    findings.figures.push(chart(series_stem(case, "energies"), &title, "", ["time (s)", "energy over that at t = 0"], curves));
+    findings.figures.push(chart(
+        series_stem(case, "energies"),
+        &title,
+        "",
+        ["time (s)", "energy over that at t = 0"],
+        curves,
+    ));
     Ok(findings)
 }
 
@@ -47,8 +50,6 @@ struct Collision {
     left: [f64; 3],
     /// Angular momentum of the bodies about their own centres in the end, over the angular momentum at t = 0.
     own_spin: f64,
-    /// Change of the momentum of the first body less the sum of the forces on it, over its first momentum: the largest.
-    balance: f64,
     /// Energies over that at t = 0.
     energies: Table,
 }
@@ -65,23 +66,24 @@ fn collide(scene: &Scene) -> Result<Collision, StudyError> {
         exit: [[f64::NAN; 2]; 2],
         left: [f64::NAN; 3],
         own_spin: f64::NAN,
-        balance: 0.0,
         energies: Table::new(&["time_s", "kinetic", "elastic", "contact_loss"]),
     };
     let mut start: Option<[[f64; 2]; 2]> = None;
-    let mut expected = [0.0; 2];
     run(scene, &mut |simulation, frame| {
         let [one, two] = frame.fields() else { return };
-        let (sample, step) = (simulation.sample(), simulation.plan().step);
-        found.books.enter(&sample);
+        found.books.step(frame);
+        let sample = sample_is_due(simulation).then(|| simulation.sample());
+        if let Some(sample) = &sample {
+            found.books.enter(sample);
+        }
         let (centers, velocities) = ([one, two].map(center), [one, two].map(velocity));
         if start.is_none() {
             start = Some(centers);
-            expected = one.momentum();
-            found.momentum = dot(expected, expected).sqrt();
+            let momentum = one.momentum();
+            found.momentum = dot(momentum, momentum).sqrt();
             let middle = [0, 1].map(|d| 0.5 * (centers[0][d] + centers[1][d]));
             let arm = [0, 1].map(|d| centers[0][d] - middle[d]);
-            found.angular_momentum = super::cross(arm, expected).abs();
+            found.angular_momentum = super::cross(arm, momentum).abs();
         }
         let initial = found.books.initial();
         let [a, b] = start.unwrap_or_default();
@@ -93,18 +95,12 @@ fn collide(scene: &Scene) -> Result<Collision, StudyError> {
             (kinetic[0] - kinetic[1]).abs() / initial,
         ];
         found.mirror = [0, 1, 2].map(|i| super::larger(found.mirror[i], now[i]));
-        // The velocities of the points are half a step back: so far they know the forces of all kicks but the coming one.
-        let momentum = one.momentum();
-        let off = [0, 1].map(|d| momentum[d] - expected[d]);
-        found.balance = super::larger(found.balance, dot(off, off).sqrt() / found.momentum);
-        let kick = if simulation.steps() == 0 { 0.5 * step } else { step };
-        let force = sum(&frame.contact_forces(step));
-        expected = [0, 1].map(|d| expected[d] - kick * force[d]);
         found.exit = velocities;
-        found.left = [sample.kinetic, sample.elastic, sample.transfer_loss.unwrap_or(f64::NAN)].map(|e| e / initial);
-        let orbital: f64 = [(one, 0), (two, 1)].map(|(f, i)| super::cross(centers[i], f.momentum())).iter().sum();
-        found.own_spin = sample.angular_momentum - orbital;
-        if simulation.steps() % simulation.plan().steps().div_ceil(ROWS) == 0 {
+        if let Some(sample) = sample {
+            found.left =
+                [sample.kinetic, sample.elastic, sample.transfer_loss.unwrap_or(f64::NAN)].map(|e| e / initial);
+            let orbital: f64 = [(one, 0), (two, 1)].map(|(f, i)| super::cross(centers[i], f.momentum())).iter().sum();
+            found.own_spin = sample.angular_momentum - orbital;
             let loss = found.books.loss / initial;
             found.energies.push(&[frame.time(), found.left[0], found.left[1], loss]);
         }
@@ -137,11 +133,14 @@ impl Collision {
         findings.add(name, quantity, angular, zero("forces act at one place"));
         let spin = self.own_spin / (2.0 * self.angular_momentum);
         findings.add(name, "share of the angular momentum that spins the bodies in the end", spin, None);
-        let quantity = "momentum of a body less the impulses on it, over its momentum";
-        findings.add(name, quantity, self.balance, zero("Newton"));
         let source = "the collision of mirrored bodies";
         findings.add(name, "velocities, departure from the mirror image over the speed", self.mirror[0], zero(source));
-        findings.add(name, "centres, departure from the mirror image over their distance", self.mirror[1], zero(source));
+        findings.add(
+            name,
+            "centres, departure from the mirror image over their distance",
+            self.mirror[1],
+            zero(source),
+        );
         findings.add(name, "kinetic energies, difference over the energy at t = 0", self.mirror[2], zero(source));
         findings.add(name, "closure of the energy ledger over the energy at t = 0", books.closure / initial, None);
         let [one, two] = self.exit;
@@ -153,6 +152,9 @@ impl Collision {
         findings.add(name, "elastic energy in the end over the energy at t = 0", elastic, None);
         findings.add(name, "loss of the transfers over the energy at t = 0", transfer, None);
         findings.add(name, "energy lost in contact over the energy at t = 0", books.loss / initial, None);
+        let lost = (books.loss + books.transfer - books.friction) / initial;
+        let quantity = "energy lost in contact and transfers, without friction, over the energy at t = 0";
+        findings.add(name, quantity, lost, zero("elastic bodies"));
         findings.add(name, "energy lost to friction over the energy at t = 0", books.friction / initial, None);
         let decrease = books.friction_decrease / initial;
         findings.add(name, "largest decrease of the friction loss in a step over the energy at t = 0", decrease, None);

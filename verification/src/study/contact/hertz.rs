@@ -9,7 +9,8 @@
 //! sections 4.2 and 4.1). The force F per unit thickness is the sum of the forces of contact. Everything else is measured
 //! where it acts: the half width from the second moment of the forces across the contact (a²/4 for a semi-ellipse), the peak
 //! pressure from the forces on the middle quarter of the contact, the stress at points under it. Forces at single segments
-//! are not unique; their moments over many are. All are means over the steps in which the force is close to its largest.
+//! are not unique, and bunch: only what they are together over a span, which is where control points take them up, means
+//! something. So every force is spread over a span to each side for the pressure. All are means over the steps in which the force is close to its largest.
 
 use std::f64::consts::PI;
 
@@ -17,7 +18,7 @@ use fisura::contact::impulse::ContactForce;
 use fisura::scene::{Body, Plane, Scene, Shape};
 use fisura::updated_frame::field::DiscreteField;
 
-use super::{Books, chart, curve, dot, exact, larger, run, sum};
+use super::{Books, chart, curve, dot, exact, larger, run, sample_is_due, sum};
 use crate::case::Case;
 use crate::expand::CaseScene;
 use crate::history::Table;
@@ -50,7 +51,8 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
     findings.series.push((stem.clone(), ellipse()));
     curves.push(curve("Hertz", &stem, ["s_over_a", "pressure_over_p0"], CurveStyle::Reference));
     let title = format!("Pressure across the contact, {}", case.label);
-    let caption = "Forces of contact per length near the largest force, in units of Hertz's half width and peak pressure.";
+    let caption =
+        "Forces of contact per length near the largest force, in units of Hertz's half width and peak pressure.";
     let axes = ["place across the contact over a", "pressure over p0"];
     findings.figures.push(chart(series_stem(case, "pressure"), &title, caption, axes, curves));
     Ok(findings)
@@ -94,9 +96,16 @@ impl Hertz {
         }
         let total = |part: &dyn Fn(&Body) -> f64| scene.bodies.iter().map(part).sum::<f64>();
         let points = scene.bodies[0].particles_per_cell[0] as f64;
-        let shortest = |d: usize| scene.mesh.knots[d].windows(2).map(|w| w[1] - w[0]).filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+        let shortest = |d: usize| {
+            scene.mesh.knots[d].windows(2).map(|w| w[1] - w[0]).filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min)
+        };
         let segment = shortest(0).min(shortest(1)) / points;
-        Ok(Self { radius: 1.0 / total(&curvature), modulus: 1.0 / total(&compliance), span: shortest(0).min(shortest(1)), segment })
+        Ok(Self {
+            radius: 1.0 / total(&curvature),
+            modulus: 1.0 / total(&compliance),
+            span: shortest(0).min(shortest(1)),
+            segment,
+        })
     }
 
     /// Half width under a force (N/m), m.
@@ -110,7 +119,8 @@ impl Hertz {
     }
 
     fn press(self, scene: &Scene) -> Result<Pressed, StudyError> {
-        let mut found = Pressed { hertz: self, moments: vec![], balance: 0.0, momentum: f64::NAN, books: Books::default() };
+        let mut found =
+            Pressed { hertz: self, moments: vec![], balance: 0.0, momentum: f64::NAN, books: Books::default() };
         let mut expected = [0.0; 2];
         run(scene, &mut |simulation, frame| {
             let (step, field) = (simulation.plan().step, &frame.fields()[0]);
@@ -123,7 +133,9 @@ impl Hertz {
             let kick = if simulation.steps() == 0 { 0.5 * step } else { step };
             let total = sum(&forces);
             expected = [0, 1].map(|d| expected[d] - kick * total[d]);
-            found.books.enter(&simulation.sample());
+            if sample_is_due(simulation) {
+                found.books.enter(&simulation.sample());
+            }
             if !forces.is_empty() {
                 found.moments.push(self.look(&forces, field));
             }
@@ -146,7 +158,7 @@ impl Hertz {
         let square = mean(&|f| place(f.position, along).powi(2));
         let mut bins = [0.0; BINS];
         for f in forces {
-            let (s, reach) = (place(f.position, along) / half, 0.5 * self.segment / half);
+            let (s, reach) = (place(f.position, along) / half, self.span / half);
             spread(&mut bins, [s - reach, s + reach], dot(f.force, normal) / (peak * half));
         }
         let (mut stress, mut count) = (0.0, 0);
@@ -236,7 +248,12 @@ impl Pressed {
         findings.add(name, "points across half the width", expected / hertz.segment, None);
         findings.add(name, "half width over R", expected / hertz.radius, None);
         findings.add(name, "half width over the shortest span", expected / hertz.span, None);
-        findings.add(name, "share of the contact that is seen after the largest force", self.share_after_the_top(), None);
+        findings.add(
+            name,
+            "share of the contact that is seen after the largest force",
+            self.share_after_the_top(),
+            None,
+        );
         let closure = self.books.closure / self.books.initial();
         findings.add(name, "closure of the energy ledger over the energy at t = 0", closure, None);
     }

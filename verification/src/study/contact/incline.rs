@@ -9,12 +9,14 @@
 //! ```
 //!
 //! A body that starts in touch with the plane when gravity begins to act vibrates about this motion, and loses touch now and
-//! then. Accelerations are means over the whole run, velocity over time: impulses add up whatever the force does meanwhile.
+//! then. Accelerations are therefore slopes of straight lines through the origin, fitted to the velocity of the centre of mass and
+//! to the spin of the points, `Σ m r × v/Σ m r²`, at all steps.
 
 use fisura::scene::{Scene, Shape};
 use fisura::updated_frame::UpdatedFrame;
+use fisura::updated_frame::field::DiscreteField;
 
-use super::{Books, center, chart, cross, curve, dot, exact, run, sum};
+use super::{Books, center, chart, cross, curve, dot, exact, run, sample_is_due};
 use crate::case::Case;
 use crate::expand::CaseScene;
 use crate::history::Table;
@@ -34,7 +36,12 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
         slope.add(&found, name, &mut findings);
         let stem = format!("{}-velocity", series_stem(case, name));
         curves.push(curve(name, &stem, ["time_s", "velocity_m_per_s"], CurveStyle::Line));
-        curves.push(curve(&format!("{name}, closed form"), &stem, ["time_s", "closed_form_m_per_s"], CurveStyle::Reference));
+        curves.push(curve(
+            &format!("{name}, closed form"),
+            &stem,
+            ["time_s", "closed_form_m_per_s"],
+            CurveStyle::Reference,
+        ));
         let mut table = Table::new(&["time_s", "velocity_m_per_s", "closed_form_m_per_s"]);
         let every = found.velocities.len().div_ceil(ROWS).max(1);
         found.velocities.iter().step_by(every).for_each(|[t, v]| table.push(&[*t, *v, slope.acceleration() * t]));
@@ -62,14 +69,13 @@ struct Slope {
 
 /// What a run gave.
 struct Descent {
-    /// Mean acceleration down the slope and out of the plane, m/s².
-    acceleration: [f64; 2],
-    /// Mean angular acceleration in the sense of rolling down, rad/s².
+    /// Acceleration down the slope, m/s², and angular acceleration in the sense of rolling down, rad/s².
+    acceleration: f64,
     spin: f64,
+    /// Velocity out of the plane in the end, m/s.
+    out: f64,
     /// Way of the centre of mass down the slope, m.
     way: f64,
-    /// Mean normal force over weight into the plane.
-    normal: f64,
     books: Books,
     /// Time (s) and velocity down the slope (m/s) after every step.
     velocities: Vec<[f64; 2]>,
@@ -112,48 +118,51 @@ impl Slope {
 
     fn descend(&self, scene: &Scene) -> Result<Descent, StudyError> {
         let start = |frame: &UpdatedFrame| center(&frame.fields()[0]);
-        let (mut first, mut impulse, mut last_time) = (None, 0.0, 0.0);
+        let (mut first, mut spins) = (None, vec![]);
         let mut found = Descent {
-            acceleration: [f64::NAN; 2],
+            acceleration: f64::NAN,
             spin: f64::NAN,
+            out: f64::NAN,
             way: f64::NAN,
-            normal: f64::NAN,
             books: Books::default(),
             velocities: vec![],
         };
         run(scene, &mut |simulation, frame| {
-            let (sample, field) = (simulation.sample(), &frame.fields()[0]);
+            let (field, step) = (&frame.fields()[0], simulation.plan().step);
             let (time, mass, middle) = (frame.time(), field.mass(), center(field));
             let first = *first.get_or_insert_with(|| start(frame));
-            // Forces are constant over a kick; that at t = 0 lasts half a step, and so does the last half in use here.
-            let force = -dot(sum(&frame.contact_forces(simulation.plan().step)), self.normal);
-            impulse += 0.5 * (time - last_time) * force;
-            if !simulation.finished() {
-                impulse += 0.5 * simulation.plan().step * force;
-            }
-            last_time = time;
-            found.acceleration = [self.down, self.normal].map(|d| dot(sample.momentum, d) / mass / time);
             found.way = dot([0, 1].map(|d| middle[d] - first[d]), self.down);
-            found.velocities.push([time, dot(sample.momentum, self.down) / mass]);
-            found.normal = impulse / (mass * self.gravity[0] * time);
-            if let Some(radius) = self.radius {
-                let own = sample.angular_momentum - cross(middle, sample.momentum);
-                found.spin = cross(self.normal, self.down) * own / (0.5 * mass * radius * radius) / time;
+            found.books.step(frame);
+            if sample_is_due(simulation) {
+                found.books.enter(&simulation.sample());
             }
-            found.books.enter(&sample);
+            // The velocities of the points are half a step back.
+            let momentum = field.momentum();
+            if simulation.steps() > 0 {
+                let back = time - 0.5 * step;
+                found.velocities.push([back, dot(momentum, self.down) / mass]);
+                spins.push([back, cross(self.normal, self.down) * spin(field, middle)]);
+                found.out = dot(momentum, self.normal) / mass;
+            }
         })?;
+        (found.acceleration, found.spin) = (slope_through_origin(&found.velocities), slope_through_origin(&spins));
         Ok(found)
     }
 
     fn add(&self, found: &Descent, name: &str, findings: &mut Findings) {
-        let [down, out] = found.acceleration;
+        let down = found.acceleration;
         let expected = self.acceleration();
         if expected > 0.0 {
             let quantity = "acceleration down the slope over the closed form";
             findings.add(name, quantity, down / expected, exact(1.0, "Newton and Coulomb"));
         } else {
             let zero = || exact(0.0, "friction holds the block");
-            findings.add(name, "acceleration down the slope over that without friction", down / self.gravity[1], zero());
+            findings.add(
+                name,
+                "acceleration down the slope over that without friction",
+                down / self.gravity[1],
+                zero(),
+            );
             findings.add(name, "creep down the slope over the length of the body", found.way / self.length, zero());
         }
         if let Some(spin) = self.spin() {
@@ -166,15 +175,37 @@ impl Slope {
                 findings.add(name, quantity, over, exact(0.0, "no friction turns it"));
             }
         }
-        let normal = exact(1.0, "the plane carries the weight");
-        findings.add(name, "mean normal force over the weight into the plane", found.normal, normal);
-        findings.add(name, "mean acceleration out of the plane over gravity", out / self.gravity[0], exact(0.0, "it stays"));
+        let time = found.velocities.last().map_or(f64::NAN, |[time, _]| *time);
+        let out = found.out / (self.gravity[0] * time);
+        findings.add(name, "velocity out of the plane in the end over that of free fall", out, exact(0.0, "it stays"));
         let books = &found.books;
         let scale = books.energy;
         findings.add(name, "energy that friction took over the largest energy", books.friction / scale, None);
-        findings.add(name, "largest decrease of it in a step over the largest energy", books.friction_decrease / scale, None);
+        findings.add(
+            name,
+            "largest decrease of it in a step over the largest energy",
+            books.friction_decrease / scale,
+            None,
+        );
         findings.add(name, "closure of the energy ledger over the largest energy", books.closure / scale, None);
     }
+}
+
+/// Angular velocity of the points of a body about a position (m), rad/s.
+fn spin(field: &DiscreteField, about: [f64; 2]) -> f64 {
+    let mean = field.momentum().map(|p| p / field.mass());
+    let parts = field.points().iter().map(|p| {
+        let arm = [0, 1].map(|d| p.position[d] - about[d]);
+        let velocity = [0, 1].map(|d| p.velocity[d] - mean[d]);
+        [p.volume * cross(arm, velocity), p.volume * dot(arm, arm)]
+    });
+    let [moment, inertia] = parts.fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
+    moment / inertia
+}
+
+/// Slope of the straight line through the origin that is nearest to points (t, y).
+fn slope_through_origin(rows: &[[f64; 2]]) -> f64 {
+    rows.iter().map(|[t, y]| t * y).sum::<f64>() / rows.iter().map(|[t, _]| t * t).sum::<f64>()
 }
 
 /// Outward unit normal of the edge of a floor that is nearest to a position (m).
@@ -217,6 +248,13 @@ mod tests {
         assert!((rolling.spin().unwrap() - slipping.spin().unwrap()).abs() < 1e-6);
         assert_eq!(slope(0.0, Some(0.5)).spin(), Some(0.0));
         assert_eq!((slope(0.5, None).acceleration(), slope(1.0, None).acceleration()), (2.0, 0.0));
+    }
+
+    #[test]
+    fn a_line_through_the_origin_ignores_ripples() {
+        let rows: Vec<[f64; 2]> =
+            (0..1000).map(|i| i as f64 * 1e-3).map(|t| [t, 3.0 * t + 0.01 * (300.0 * t).sin()]).collect();
+        assert!((slope_through_origin(&rows) - 3.0).abs() < 1e-3);
     }
 
     #[test]
