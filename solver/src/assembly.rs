@@ -1,8 +1,10 @@
 //! Matrices `Σ_p f_p N_I N_J` and `Σ_p f_p grad N_I · grad N_J` from the material points of a lattice (E 19–24).
 //!
 //! Over a rectangle by sum factorisation: points of a span form a grid, so the sum over them is done first along x, for
-//! every pair of functions in x, then along y. On a patch with a geometry pair by pair (`assembly/mapped.rs`). Strips are assembled in two colours: strips of one colour share no control row, and the order in which
-//! contributions meet does not depend on the number of threads.
+//! every pair of functions in x, then along y. On a patch with a geometry pair by pair (`assembly/mapped.rs`).
+//!
+//! Strips are assembled in two colours: strips of one colour share no control row, and the order in which contributions
+//! meet does not depend on the number of threads.
 
 mod mapped;
 

@@ -3,23 +3,26 @@
 //!
 //! The symbolic factorisation is done once and reused as long as the pattern stays.
 
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
+use std::sync::Arc;
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, factorize_symbolic_cholesky};
 use faer::sparse::{SparseColMat, Triplet};
-use faer::{Mat, Side};
+use faer::{Conj, Mat, Side, get_global_parallelism};
 
 use crate::stencil::Stencil;
 
 /// Direct solver for matrices of one pattern.
 #[derive(Debug, Clone, Default)]
 pub struct SparseCholesky {
-    symbolic: Option<SymbolicLlt<usize>>,
+    symbolic: Option<Arc<SymbolicCholesky<usize>>>,
 }
 
 /// A factored matrix.
 #[derive(Debug, Clone)]
 pub struct Factor {
-    llt: Llt<usize, f64>,
+    symbolic: Arc<SymbolicCholesky<usize>>,
+    values: Vec<f64>,
     /// Index in a field of each unknown.
     indices: Vec<usize>,
     held: Vec<bool>,
@@ -35,10 +38,20 @@ impl SparseCholesky {
         let held: Vec<bool> = indices.iter().map(|&at| is_held[at]).collect();
         let lower = lower_triangle(matrix, &held)?;
         if self.symbolic.is_none() {
-            self.symbolic = Some(SymbolicLlt::try_new(lower.symbolic(), Side::Lower).ok()?);
+            let (pattern, settings) = (lower.symbolic(), Default::default());
+            let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, Default::default(), settings).ok()?;
+            self.symbolic = Some(Arc::new(symbolic));
         }
-        let llt = Llt::try_new_with_symbolic(self.symbolic.clone()?, lower.as_ref(), Side::Lower).ok()?;
-        Some(Factor { llt, indices, held })
+        let symbolic = self.symbolic.clone()?;
+        let (threads, regularization) = (get_global_parallelism(), Default::default());
+        let mut values = vec![0.0; symbolic.len_val()];
+        let mut room = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(threads, Default::default()));
+        let room = MemStack::new(&mut room);
+        let lower = lower.as_ref();
+        symbolic
+            .factorize_numeric_llt(&mut values, lower, Side::Lower, regularization, threads, room, Default::default())
+            .ok()?;
+        Some(Factor { symbolic, values, indices, held })
     }
 
     /// Solves `A x = b`; `None` if the matrix is not positive definite.
@@ -53,10 +66,22 @@ impl Factor {
     pub fn solve(&self, b: &[f64], x: &mut [f64]) {
         let value = |i: usize| if self.held[i] { 0.0 } else { b[self.indices[i]] };
         let mut solution = Mat::from_fn(self.indices.len(), 1, |i, _| value(i));
-        self.llt.solve_in_place(solution.as_mut());
+        let threads = get_global_parallelism();
+        let mut room = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(1, threads));
+        LltRef::<usize, f64>::new(&self.symbolic, &self.values).solve_in_place_with_conj(
+            Conj::No,
+            solution.as_mut(),
+            threads,
+            MemStack::new(&mut room),
+        );
         for (i, &index) in self.indices.iter().enumerate() {
             x[index] = solution[(i, 0)];
         }
+    }
+
+    /// Heap memory of the factor, bytes; that of the pattern, which factors share, is left out.
+    pub fn bytes(&self) -> usize {
+        8 * self.values.len()
     }
 }
 

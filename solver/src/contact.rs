@@ -2,8 +2,9 @@
 //!
 //! The boundary of a body is a line of segments that moves with it ([`Surface`]): bodies touch where their boundaries do, though
 //! supports of quadratic and cubic splines overlap up to three spans earlier. The centre of every segment that faces another
-//! boundary is a [`Touch`]: it measures the signed gap g to it, and an impulse P acts there on one body, −P on the
-//! other. Both spread it over control points with weights W that stand for the same position x ([`handle`]),
+//! boundary measures the signed gap to it. What the segments of both bodies measure within a square as large as a span is one
+//! [`Touch`]: its position x and gap g are their means, so that touches are as many as control points can tell apart, and
+//! neither body is the master of the other. An impulse P acts there on one body, −P on the other. Both spread it over control points with weights W that stand for the same position x ([`handle`]),
 //!
 //! ```text
 //! f_I = ± W_I P,        v_rel = Σ W_I^b v_I^b − Σ W_I^a v_I^a,        Σ W_I = 1,   Σ W_I x_I = x,
@@ -30,7 +31,7 @@ use crate::updated_frame::field::DiscreteField;
 use handle::{DEPTH, handle};
 use impulse::Impulse;
 pub use rigid::RigidBody;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 pub use surface::Surface;
 use surface::{Center, dot, unit};
 
@@ -39,21 +40,30 @@ const FACING: f64 = -0.5;
 /// Gap up to which a touch is looked at, in spans.
 const NEAR: f64 = 0.1;
 
-/// The centre of a segment that is near the boundary of another body.
+/// A place, as large as a span, where the boundaries of two bodies are near each other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Touch {
     /// Numbers of the bodies a and b; rigid ones are counted after the others.
     pub bodies: [usize; 2],
-    /// Which of the two the segment belongs to, and its number.
-    pub segment: (usize, u32),
+    /// Column and row of the square it stands for.
+    pub square: [i32; 2],
     /// Position, m.
     pub position: [f64; 2],
     /// Gap, m; negative where the boundaries overlap.
     pub gap: f64,
     /// Unit normal from a to b.
     pub normal: [f64; 2],
-    /// Index in the nodal fields and shape function of both bodies; none of a rigid one.
-    functions: [Vec<(usize, f64)>; 2],
+    /// Index in the nodal fields and weight for both bodies; none of a rigid one.
+    weights: [Vec<(usize, f64)>; 2],
+}
+
+/// Sums over the segments of both bodies whose middle of the gap lies in a square.
+#[derive(Default)]
+struct Sums {
+    count: f64,
+    position: [f64; 2],
+    gap: f64,
+    normal: [f64; 2],
 }
 
 /// What contact took and gave so far, J per metre of thickness.
@@ -71,12 +81,13 @@ pub struct ContactLedger {
 #[derive(Debug, Clone)]
 pub struct Contact {
     friction: f64,
-    /// Shortest span, m: boundaries further apart are not compared.
+    /// Corner of the patch, m, and its shortest span: the side of a square.
+    origin: [f64; 2],
     reach: f64,
     rigid: Vec<RigidBody>,
     touches: Vec<Touch>,
     /// Impulses of the last step, where to start from.
-    last: HashMap<([usize; 2], (usize, u32)), Impulse>,
+    last: HashMap<([usize; 2], [i32; 2]), Impulse>,
     ledger: ContactLedger,
 }
 
@@ -86,6 +97,7 @@ impl Contact {
         let spans = || whole.spaces.iter().flat_map(|space| space.spans());
         Some(Self {
             friction: scene.contact.as_ref()?.friction,
+            origin: [0, 1].map(|d| whole.spaces[d].spans()[0].left),
             reach: spans().map(|span| span.length()).fold(f64::INFINITY, f64::min),
             rigid: scene.bodies.iter().filter(|b| b.rigid).map(|b| RigidBody::new(&scene.mesh, b)).collect(),
             touches: Vec::new(),
@@ -112,22 +124,19 @@ impl Contact {
                     [0, 1].map(|d| boxes[a][1][d].min(boxes[b][1][d]) + self.reach),
                 ];
                 if (0..2).all(|d| common[0][d] <= common[1][d]) {
-                    self.compare([a, b], [surfaces[a], surfaces[b]], common, fields, &mut touches);
+                    let sums = self.compare([surfaces[a], surfaces[b]], common);
+                    touches.extend(
+                        sums.into_iter().filter_map(|(square, sums)| self.touch([a, b], square, &sums, fields)),
+                    );
                 }
             }
         }
         self.touches = touches;
     }
 
-    /// Finds the touches of two boundaries in a box.
-    fn compare(
-        &self,
-        bodies: [usize; 2],
-        surfaces: [&Surface; 2],
-        common: [[f64; 2]; 2],
-        fields: &[DiscreteField],
-        touches: &mut Vec<Touch>,
-    ) {
+    /// What the segments of two boundaries in a box see of each other, square by square.
+    fn compare(&self, surfaces: [&Surface; 2], common: [[f64; 2]; 2]) -> BTreeMap<[i32; 2], Sums> {
+        let mut squares = BTreeMap::new();
         let segments = surfaces.map(|surface| surface.segments_in(common));
         for (own, other, sign) in [(0, 1, 1.0), (1, 0, -1.0)] {
             for &segment in &segments[own] {
@@ -137,18 +146,31 @@ impl Contact {
                     continue;
                 }
                 let Some(normal) = unit([0, 1].map(|d| sign * (normal[d] - nearest.normal[d]))) else { continue };
-                // Into the body, away from the other one.
-                let inside = [-DEPTH, DEPTH].map(|depth| [0, 1].map(|d| position[d] + depth * self.reach * normal[d]));
-                let [a, b] = [0, 1].map(|side| match fields.get(bodies[side]) {
-                    Some(field) => handle(field, position, inside[side]),
-                    None => Some(Vec::new()),
-                });
-                if let (Some(a), Some(b)) = (a, b) {
-                    let segment = (own, segment);
-                    touches.push(Touch { bodies, segment, position, gap: nearest.distance, normal, functions: [a, b] });
+                let middle = [0, 1].map(|d| position[d] + 0.5 * sign * nearest.distance * normal[d]);
+                // Squares around the knots: a plane of symmetry along a knot line cuts none.
+                let square = [0, 1].map(|d| ((middle[d] - self.origin[d]) / self.reach).round() as i32);
+                let sums: &mut Sums = squares.entry(square).or_default();
+                sums.count += 1.0;
+                sums.gap += nearest.distance;
+                for d in 0..2 {
+                    sums.position[d] += middle[d];
+                    sums.normal[d] += normal[d];
                 }
             }
         }
+        squares
+    }
+
+    /// The touch of a square; none if a body has no material there.
+    fn touch(&self, bodies: [usize; 2], square: [i32; 2], sums: &Sums, fields: &[DiscreteField]) -> Option<Touch> {
+        let position = sums.position.map(|sum| sum / sums.count);
+        let normal = unit(sums.normal)?;
+        let hold = |side: usize, depth: f64| match fields.get(bodies[side]) {
+            Some(field) => handle(field, position, [0, 1].map(|d| position[d] + depth * self.reach * normal[d])),
+            None => Some(Vec::new()),
+        };
+        let weights = [hold(0, -DEPTH)?, hold(1, DEPTH)?];
+        Some(Touch { bodies, square, position, gap: sums.gap / sums.count, normal, weights })
     }
 
     /// Where bodies are near each other.

@@ -2,8 +2,9 @@
 //!
 //! Velocity Verlet is stable up to `2/ω_max` of `M⁻¹ K`. The largest eigenvalue of `M^(−1/2) K M^(−1/2)` of the undamaged
 //! body comes from a Lanczos iteration, which approaches it from below; the residual norm of the Ritz vector is added.
-//! That puts the value on the safe side but for clusters of eigenvalues, where it was seen 4e-7 too low. A formula in the span length alone is not safe: free edges, Poisson's ratio
-//! and cut spans all lower the step.
+//! That puts the value on the safe side but for clusters of eigenvalues, where it was seen 4e-7 too low.
+//!
+//! A formula in the span length alone is not safe: free edges, Poisson's ratio and cut spans all lower the step.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 

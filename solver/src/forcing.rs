@@ -35,3 +35,13 @@ pub trait Forcing: Debug + Send + Sync {
         0.0
     }
 }
+
+/// No loads.
+#[derive(Debug, Clone, Copy)]
+pub struct NoLoads;
+
+impl Forcing for NoLoads {
+    fn volume(&self, _position: [f64; 2], _time: f64) -> VolumeLoad {
+        VolumeLoad::default()
+    }
+}

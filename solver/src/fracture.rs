@@ -7,7 +7,7 @@ use crate::lane::Lane;
 use crate::lattice::Lattice;
 use crate::material::{ElasticModuli, FractureModel};
 use crate::phase_field::PhaseField;
-use crate::scene::{Body, Kinematics, SolverSettings};
+use crate::scene::{Body, Boundary, Kinematics, Scene, Side, SolverSettings};
 use crate::shape::distance_to_segment;
 use crate::sweep::{Fields, StripForces, sweep};
 
@@ -199,6 +199,18 @@ impl Fracturing {
         let lanes = self.history.len() + self.phase.len() + self.remembered.len();
         lanes * size_of::<Lane>() + self.field.bytes()
     }
+}
+
+/// Height from which the crack tip is looked for: the middle of the body, or its foot if the body is the upper half of a
+/// symmetric one: it stands on the bottom side, a roller holds that side, and a crack lies along it.
+pub(crate) fn lowest_tip(scene: &Scene, body: &Body) -> f64 {
+    let (low, high) = scene.mesh.extent(&body.shape);
+    let at_foot = |y: f64| (y - low[1]).abs() <= 1e-9 * (high[1] - low[1]);
+    let roller = |b: &Boundary| b.side == Side::Bottom && b.fix == [false, true] && b.velocity[1] == 0.0;
+    let half = at_foot(scene.mesh.origin()[1])
+        && scene.boundaries.iter().any(roller)
+        && body.cracks.iter().any(|crack| at_foot(crack.from[1]) && at_foot(crack.to[1]));
+    if half { low[1] } else { 0.5 * (low[1] + high[1]) }
 }
 
 /// Initial history energy `H0(d) = B Gc/(4 l0) (1 − d/w)` within the half width w of a crack, else zero.

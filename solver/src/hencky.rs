@@ -95,7 +95,7 @@ mod tests {
     }
 
     fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
-        (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max)
+        (0..3).map(|i| (a[i] - b[i]).abs()).max_by(f64::total_cmp).unwrap() // NaN is the largest
     }
 
     fn rotation(angle: f64) -> Matrix2<f64> {

@@ -20,6 +20,10 @@ struct Update {
     target: usize,
 }
 
+/// Pivots below this fraction of the diagonal are replaced by it: dropped couplings can leave nothing of them, most of all where
+/// a control point has hardly any material.
+const LEAST_PIVOT: f64 = 1e-2;
+
 /// Factor of the blocks of a stencil matrix.
 #[derive(Debug, Clone)]
 pub struct IncompleteCholesky {
@@ -45,7 +49,8 @@ impl IncompleteCholesky {
         self.factor.copy_from_slice(matrix.coefficients());
         let block = BLOCK_ROWS * matrix.row_length();
         let Self { grid, offsets, updates, factor } = self;
-        factor.par_chunks_mut(block).for_each(|block| factor_block(*grid, offsets, updates, block));
+        let blocks = factor.par_chunks_mut(block).zip(matrix.coefficients().par_chunks(block));
+        blocks.for_each(|(block, matrix)| factor_block(*grid, offsets, updates, matrix, block));
     }
 
     /// `out = (L D Lᵀ)⁻¹ r`; returns `rᵀ out`.
@@ -83,15 +88,16 @@ fn updates(offsets: &[Offset], degree: [usize; 2]) -> Vec<Update> {
     updates
 }
 
-fn factor_block(grid: ControlGrid, offsets: &[Offset], updates: &[Update], block: &mut [f64]) {
+/// `block` holds a copy of the rows of `matrix`.
+fn factor_block(grid: ControlGrid, offsets: &[Offset], updates: &[Update], matrix: &[f64], block: &mut [f64]) {
     let row_length = offsets.len() * grid.stride;
     let rows = block.len() / row_length;
     for row in 0..rows {
         let reachable = offsets.iter().take_while(|o| row + o.rows < rows).count();
         for column in 0..grid.columns {
             let at = row * row_length + grid.index(column, 0);
-            let diagonal = block[at];
-            let inverse = if diagonal > 0.0 { 1.0 / diagonal } else { 1.0 };
+            let pivot = if block[at] > LEAST_PIVOT * matrix[at] { block[at] } else { matrix[at] };
+            let inverse = if pivot > 0.0 { 1.0 / pivot } else { 1.0 };
             let mut entries = [0.0; 64];
             for (index, entry) in entries.iter_mut().enumerate().take(reachable).skip(1) {
                 *entry = block[at + index * grid.stride];

@@ -5,23 +5,22 @@
 //! handled eight at a time, one per lane of a [`Lane`] (a *tile*), and rows of spans in *strips* of fixed height. Sums
 //! are formed strip by strip, so they do not depend on the number of threads.
 //!
-//! A rectangle cuts the spans at its edges exactly; of other shapes the points of a span that lie inside are kept.
-//!
-//! On a patch with a geometry the lattice is one of parameters, and each point has a [`MappedPoint`]. A rational field is a
-//! quotient of two spline fields, `u = A/W` with `A = Σ N_a w_a u_a` and `W = Σ N_b w_b`, so that sums still factor:
-//!
-//! ```text
-//! ∂u/∂ξ_d = (∂A/∂ξ_d − A ∂W/∂ξ_d / W)/W,   ∂u/∂x_j = Σ_d ∂u/∂ξ_d ∂ξ_d/∂x_j
-//! ```
+//! A rectangle cuts the spans at its edges exactly; of other shapes the points of a span that lie inside are kept. On a
+//! patch with a geometry the lattice is one of parameters, in the unit of the knots, and has a [`Mapping`].
 
-use rayon::prelude::*;
+mod integrate;
+mod mapped;
+mod tables;
+
+pub use mapped::{MappedPoint, Mapping};
 
 use crate::lane::{LANES, Lane};
-use crate::nurbs::{MAX_FUNCTIONS, NurbsPatch};
+use crate::nurbs::MAX_FUNCTIONS;
 use crate::patch::{ControlGrid, Patch};
 use crate::quadrature::Rule;
 use crate::scene::{Body, Layout, Shape};
-use crate::spline::{MAX_ORDER, SplineSpace};
+use crate::spline::MAX_ORDER;
+use tables::{columns, tiles};
 
 /// Rows of spans in a strip; at least the highest degree, so that only neighbouring strips share control points.
 const STRIP_ROWS: usize = 8;
@@ -35,11 +34,11 @@ pub struct Tile {
     pub count: usize,
     /// Values of the basis functions: point a, function k at `a * order + k`.
     pub value: Vec<Lane>,
-    /// Their derivatives, 1/m.
+    /// Their derivatives, 1/m or 1/unit of the knots.
     pub derivative: Vec<Lane>,
-    /// Weights of the points, m.
+    /// Weights of the points, m or unit of the knots.
     pub weight: Vec<Lane>,
-    /// Positions of the points, m.
+    /// Positions of the points, m or unit of the knots.
     pub position: Vec<Lane>,
 }
 
@@ -50,11 +49,11 @@ pub struct Row {
     pub first: usize,
     /// Values of the basis functions: point b, function k at `[b][k]`.
     pub value: Vec<[f64; MAX_ORDER]>,
-    /// Their derivatives, 1/m.
+    /// Their derivatives, 1/m or 1/unit of the knots.
     pub derivative: Vec<[f64; MAX_ORDER]>,
-    /// Weights of the points, m.
+    /// Weights of the points, m or unit of the knots.
     pub weight: Vec<f64>,
-    /// Positions of the points, m.
+    /// Positions of the points, m or unit of the knots.
     pub position: Vec<f64>,
 }
 
@@ -80,54 +79,6 @@ pub struct Lattice {
     factor: Option<Vec<Lane>>,
 }
 
-/// Points of a patch with a geometry.
-#[derive(Debug, Clone)]
-pub struct Mapping {
-    /// Weights of the control points, as a field.
-    pub weights: Vec<f64>,
-    /// One entry per batch.
-    pub points: Vec<MappedPoint>,
-}
-
-/// The weight function W and the geometry map at a batch of points.
-#[derive(Debug, Clone, Copy)]
-pub struct MappedPoint {
-    /// 1/W.
-    pub inverse_weight: Lane,
-    /// `∂W/∂ξ_d / W`.
-    pub weight_slope: [Lane; 2],
-    /// `[∂ξ/∂x, ∂ξ/∂y, ∂η/∂x, ∂η/∂y]`, 1/m.
-    pub inverse_jacobian: [Lane; 4],
-    /// Position, m.
-    pub position: [Lane; 2],
-}
-
-impl MappedPoint {
-    const ZERO: Self = Self {
-        inverse_weight: Lane::ZERO,
-        weight_slope: [Lane::ZERO; 2],
-        inverse_jacobian: [Lane::ZERO; 4],
-        position: [Lane::ZERO; 2],
-    };
-
-    /// Value and physical gradient of a rational field from the sum `A` and its parametric slopes.
-    #[inline(always)]
-    pub fn field(&self, sum: Lane, slopes: [Lane; 2]) -> (Lane, [Lane; 2]) {
-        let value = sum * self.inverse_weight;
-        let [u, v] = [0, 1].map(|d| slopes[d] * self.inverse_weight - value * self.weight_slope[d]);
-        let [ux, uy, vx, vy] = self.inverse_jacobian;
-        (value, [u * ux + v * vx, u * uy + v * vy])
-    }
-
-    /// The adjoint of [`Self::field`] for a force and a stress: factors of the spline and of its two parametric slopes.
-    #[inline(always)]
-    pub fn adjoint(&self, force: Lane, [x, y]: [Lane; 2]) -> (Lane, [Lane; 2]) {
-        let [ux, uy, vx, vy] = self.inverse_jacobian;
-        let [u, v] = [(x * ux + y * uy) * self.inverse_weight, (x * vx + y * vy) * self.inverse_weight];
-        (force * self.inverse_weight - u * self.weight_slope[0] - v * self.weight_slope[1], [u, v])
-    }
-}
-
 /// Shape functions and physical gradients (1/m) of a batch of points, function n = l (p + 1) + k.
 #[derive(Debug, Clone, Copy)]
 pub struct BatchFunctions {
@@ -135,15 +86,6 @@ pub struct BatchFunctions {
     pub value: [Lane; MAX_FUNCTIONS],
     /// Gradients.
     pub gradient: [[Lane; 2]; MAX_FUNCTIONS],
-}
-
-/// Span indices and the part of each span that belongs to the body, along one direction.
-struct Columns {
-    first: usize,
-    value: Vec<[f64; MAX_ORDER]>,
-    derivative: Vec<[f64; MAX_ORDER]>,
-    weight: Vec<f64>,
-    position: Vec<f64>,
 }
 
 impl Lattice {
@@ -186,39 +128,6 @@ impl Lattice {
             lattice.keep_inside(&body.shape);
         }
         lattice
-    }
-
-    /// Evaluates weight function and geometry map at every point.
-    fn map_by(&mut self, patch: &NurbsPatch) {
-        let mut weights = self.grid.zeros();
-        for (at, weight) in self.grid.indices().zip(patch.weights()) {
-            weights[at] = *weight;
-        }
-        let mut points = vec![MappedPoint::ZERO; self.batches()];
-        let mut determinants = vec![Lane::ZERO; self.batches()];
-        for batch in 0..self.batches() {
-            let (_, tile, _, _) = self.unbatch(batch);
-            for lane in 0..self.tiles[tile].count {
-                let parameters = self.position(batch, lane);
-                let Some(span) = patch.find_span(parameters) else { continue };
-                let image = patch.map(&patch.shape_functions(span, parameters));
-                let weight = patch.weight_function(span, parameters);
-                let [[xu, xv], [yu, yv]] = image.jacobian;
-                let determinant = image.determinant();
-                determinants[batch][lane] = determinant;
-                let point = &mut points[batch];
-                point.inverse_weight[lane] = 1.0 / weight.value;
-                for d in 0..2 {
-                    point.weight_slope[d][lane] = weight.gradient[d] / weight.value;
-                    point.position[d][lane] = image.position[d];
-                }
-                for (entry, value) in point.inverse_jacobian.iter_mut().zip([yv, -xv, -yu, xu]) {
-                    entry[lane] = value / determinant;
-                }
-            }
-        }
-        self.mapping = Some(Box::new(Mapping { weights, points }));
-        self.factor = Some(determinants);
     }
 
     /// Takes away the points outside a shape.
@@ -317,53 +226,6 @@ impl Lattice {
         functions
     }
 
-    /// `Σ_p V_p f_p N_I(x_p)` of a density at the points, as a field; `density` gets batch, lane and position.
-    pub fn integrate(&self, density: impl Fn(usize, usize, [f64; 2]) -> f64 + Sync) -> Vec<f64> {
-        let mut out = self.grid.zeros();
-        self.add_integral(&mut [&mut out], |batch, lane, position| ([density(batch, lane, position)], [[0.0; 2]]));
-        out
-    }
-
-    /// Adds `Σ_p V_p (f_p N_I + s_p · grad N_I)` to fields; `density` gives f and s of each field for a batch, lane and
-    /// position.
-    pub fn add_integral<const F: usize>(
-        &self,
-        out: &mut [&mut Vec<f64>; F],
-        density: impl Fn(usize, usize, [f64; 2]) -> ([f64; F], [[f64; 2]; F]) + Sync,
-    ) {
-        let [kx, ky] = self.degree.map(|p| p + 1);
-        let of_batch = |batch: usize| {
-            let (row, tile, b, a) = self.unbatch(batch);
-            let weight = self.weight(row, tile, b, a);
-            let (mut force, mut stress) = ([Lane::ZERO; F], [[Lane::ZERO; 2]; F]);
-            for lane in (0..self.tiles[tile].count).filter(|&lane| weight[lane] > 0.0) {
-                let (f, s) = density(batch, lane, self.position(batch, lane));
-                for i in 0..F {
-                    force[i][lane] = f[i];
-                    for d in 0..2 {
-                        stress[i][d][lane] = s[i][d];
-                    }
-                }
-            }
-            (weight, force, stress)
-        };
-        let densities: Vec<_> = (0..self.batches()).into_par_iter().map(of_batch).collect();
-        for (batch, (weight, force, stress)) in densities.into_iter().enumerate() {
-            let (row_index, tile_index, _, _) = self.unbatch(batch);
-            let (row, tile) = (&self.rows[row_index], &self.tiles[tile_index]);
-            let functions = self.shape_functions(batch);
-            for l in 0..ky {
-                for k in 0..kx {
-                    let (value, [x, y]) = (functions.value[l * kx + k], functions.gradient[l * kx + k]);
-                    for i in 0..F {
-                        let share = (force[i] * value + stress[i][0] * x + stress[i][1] * y) * weight;
-                        share.add_to(out[i], self.grid.index(tile.first + k, row.first + l));
-                    }
-                }
-            }
-        }
-    }
-
     /// Position of the point of a batch in a lane, m.
     pub fn position(&self, batch: usize, lane: usize) -> [f64; 2] {
         if let Some(mapping) = &self.mapping {
@@ -386,64 +248,16 @@ impl Lattice {
         }
     }
 
+    /// Heap memory of what is kept per point, bytes.
+    pub fn bytes(&self) -> usize {
+        let mapping = self.mapping.as_ref().map_or(0, |mapping| mapping.bytes());
+        mapping + self.factor.as_ref().map_or(0, |factor| size_of::<Lane>() * factor.len())
+    }
+
     /// Number of material points.
     pub fn count(&self) -> usize {
         let mut count = 0;
         self.for_each_point(|_, _, _, _| count += 1);
         count
     }
-}
-
-/// Tables of the spans that meet `[low, high]`.
-fn columns(space: &SplineSpace, rule: &Rule, low: f64, high: f64, clip: bool) -> Vec<Columns> {
-    let meets = |left: f64, right: f64| {
-        let sliver = 1e-12 * (right - left);
-        right.min(high) - left.max(low) > sliver
-    };
-    let spans = space.spans().iter().enumerate().filter(|(_, s)| meets(s.left, s.right));
-    spans
-        .map(|(index, span)| {
-            let (left, right) = if clip { (span.left.max(low), span.right.min(high)) } else { (span.left, span.right) };
-            let position: Vec<f64> = rule.points.iter().map(|t| left + t * (right - left)).collect();
-            let shapes: Vec<_> = position.iter().map(|&x| space.shape_functions(index, x)).collect();
-            Columns {
-                first: span.first,
-                value: shapes.iter().map(|s| s.value).collect(),
-                derivative: shapes.iter().map(|s| s.derivative).collect(),
-                weight: rule.weights.iter().map(|w| w * (right - left)).collect(),
-                position,
-            }
-        })
-        .collect()
-}
-
-/// Groups columns whose first control columns follow each other into tiles of at most [`LANES`].
-fn tiles(columns: &[Columns], order: usize) -> Vec<Tile> {
-    let mut tiles: Vec<Tile> = Vec::new();
-    for column in columns {
-        let points = column.weight.len();
-        let fits = |tile: &Tile| tile.count < LANES && tile.first + tile.count == column.first;
-        if !tiles.last().is_some_and(fits) {
-            tiles.push(Tile {
-                first: column.first,
-                count: 0,
-                value: vec![Lane::ZERO; points * order],
-                derivative: vec![Lane::ZERO; points * order],
-                weight: vec![Lane::ZERO; points],
-                position: vec![Lane::ZERO; points],
-            });
-        }
-        let tile = tiles.last_mut().expect("just pushed");
-        let lane = tile.count;
-        tile.count += 1;
-        for a in 0..points {
-            for k in 0..order {
-                tile.value[a * order + k][lane] = column.value[a][k];
-                tile.derivative[a * order + k][lane] = column.derivative[a][k];
-            }
-            tile.weight[a][lane] = column.weight[a];
-            tile.position[a][lane] = column.position[a];
-        }
-    }
-    tiles
 }

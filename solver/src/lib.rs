@@ -157,6 +157,7 @@ pub mod quadrature;
 pub mod scene;
 pub mod shape;
 pub mod simulation;
+pub mod spans;
 pub mod spline;
 pub mod split;
 pub mod statics;

@@ -3,6 +3,8 @@
 //! The lumped mass converges with order 2 whatever the degree, the consistent one with p + 1. The consistent matrix is
 //! factored once; prescribed components and control points without mass leave the system, and their acceleration is zero.
 
+use rayon::prelude::*;
+
 use crate::assembly::{Constant, Form, add_form};
 use crate::cholesky::{Factor, SparseCholesky};
 use crate::lattice::Lattice;
@@ -12,6 +14,9 @@ use crate::stencil::Stencil;
 /// Row sums below this fraction of the largest give no acceleration; their control points keep their velocity.
 const NEGLIGIBLE: f64 = 1e-12;
 
+/// Control points that a thread takes at least.
+const CHUNK: usize = 4096;
+
 /// A field of vectors on the control points, by component.
 type VectorField = [Vec<f64>; 2];
 
@@ -19,6 +24,8 @@ type VectorField = [Vec<f64>; 2];
 #[derive(Debug, Clone)]
 pub struct MassMatrix {
     row_sums: Vec<f64>,
+    /// Row sums up to this, kg/m, are taken for none.
+    negligible: f64,
     kind: Kind,
 }
 
@@ -57,20 +64,12 @@ impl MassMatrix {
                 Kind::Consistent(Box::new(Consistent::new(lattice, density, held, &empty)))
             }
         };
-        Self { row_sums, kind }
+        Self { row_sums, negligible, kind }
     }
 
     /// Row sums, kg/m: the mass of each control point.
     pub fn row_sums(&self) -> &[f64] {
         &self.row_sums
-    }
-
-    /// Inverse row sums, zero where negligible, if the mass is lumped.
-    pub fn lumped_inverse(&self) -> Option<&[f64]> {
-        match &self.kind {
-            Kind::Lumped { inverse } => Some(inverse),
-            Kind::Consistent(_) => None,
-        }
     }
 
     /// Forces become accelerations: `M⁻¹ f`, zero where held (consistent mass) or without mass.
@@ -83,7 +82,9 @@ impl MassMatrix {
     /// [`Self::divide`] for one component.
     pub fn divide_component(&self, component: usize, force: &mut [f64]) {
         match &self.kind {
-            Kind::Lumped { inverse } => force.iter_mut().zip(inverse).for_each(|(f, inverse)| *f *= inverse),
+            Kind::Lumped { inverse } => {
+                force.par_iter_mut().zip(inverse).with_min_len(CHUNK).for_each(|(f, inverse)| *f *= inverse);
+            }
             Kind::Consistent(consistent) => {
                 let right = force.to_vec();
                 consistent.factors[component % consistent.factors.len()].solve(&right, force);
@@ -115,10 +116,18 @@ impl MassMatrix {
 
     /// Whether a control point can be accelerated.
     pub fn moves(&self, at: usize) -> bool {
-        match &self.kind {
-            Kind::Lumped { inverse } => inverse[at] > 0.0,
-            Kind::Consistent(_) => self.row_sums[at] > 0.0,
-        }
+        self.row_sums[at] > self.negligible
+    }
+
+    /// Heap memory, bytes.
+    pub fn bytes(&self) -> usize {
+        let kind = match &self.kind {
+            Kind::Lumped { inverse } => 8 * inverse.len(),
+            Kind::Consistent(consistent) => {
+                consistent.matrix.bytes() + consistent.factors.iter().map(Factor::bytes).sum::<usize>()
+            }
+        };
+        8 * self.row_sums.len() + kind
     }
 }
 

@@ -153,18 +153,12 @@ impl NurbsPatch {
         }
     }
 
-    /// The weight function `W = Σ N_b w_b` and its parametric gradient.
-    pub fn weight_function(&self, span: [usize; 2], parameters: [f64; 2]) -> PointValue {
-        let functions = functions::products(&self.spaces, span, parameters);
-        let mut weight = PointValue { value: 0.0, gradient: [0.0; 2] };
-        for n in 0..functions.count {
-            let w = self.weights[functions.control[n]];
-            weight.value += w * functions.value[n];
-            for d in 0..2 {
-                weight.gradient[d] += w * functions.gradient[n][d];
-            }
-        }
-        weight
+    /// The image of a pair of parameters, and the weight function `W = Σ N_b w_b` with its parametric gradient.
+    pub fn image(&self, span: [usize; 2], parameters: [f64; 2]) -> (MapPoint, PointValue) {
+        let products = functions::products(&self.spaces, span, parameters);
+        let (rational, weight) = functions::weighted(products, &self.weights);
+        let functions = if self.form == Form::Rational { rational } else { products };
+        (self.map(&functions), weight)
     }
 
     /// Position and Jacobian where `functions` were evaluated.

@@ -173,7 +173,7 @@ pub struct BoundaryPoint {
 pub struct PointValue {
     /// Value.
     pub value: f64,
-    /// Gradient, 1/m.
+    /// Gradient, 1/m; of a function of parameters, 1/unit of the knots.
     pub gradient: [f64; 2],
 }
 

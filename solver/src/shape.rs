@@ -52,7 +52,7 @@ impl Shape {
                 })
             }
             Self::Patch => ([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]),
-            Self::Difference { of, .. } => of.bounding_box(),
+            Self::Difference { of, minus } => minus.iter().fold(of.bounding_box(), cut),
         }
     }
 
@@ -66,6 +66,20 @@ impl Shape {
             Side::Top => [[min[0], max[1]], *max],
         })
     }
+}
+
+/// A box without what a rectangle that reaches across it cuts off at a side.
+fn cut((mut low, mut high): ([f64; 2], [f64; 2]), shape: &Shape) -> ([f64; 2], [f64; 2]) {
+    let Shape::Rectangle { min, max } = shape else { return (low, high) };
+    for d in 0..2 {
+        let across = min[1 - d] <= low[1 - d] && max[1 - d] >= high[1 - d];
+        if across && min[d] <= low[d] && max[d] < high[d] {
+            low[d] = low[d].max(max[d]);
+        } else if across && max[d] >= high[d] && min[d] > low[d] {
+            high[d] = high[d].min(min[d]);
+        }
+    }
+    (low, high)
 }
 
 /// Edges of a polygon from the one that closes it on.
@@ -106,6 +120,11 @@ mod tests {
         assert!(ring.contains([1.5, 0.0]) && !ring.contains([0.5, 0.0]) && !ring.contains([2.0, 2.0]));
         assert!(holed.contains([0.2, 0.2]) && !holed.contains([1.2, 1.0]));
         assert_eq!(ring.bounding_box(), ([-2.0, -2.0], [2.0, 2.0]));
+        let half = Shape::Difference {
+            of: Box::new(ring),
+            minus: vec![Shape::Rectangle { min: [-3.0, -3.0], max: [3.0, 0.0] }],
+        };
+        assert_eq!(half.bounding_box(), ([-2.0, 0.0], [2.0, 2.0]));
     }
 
     #[test]

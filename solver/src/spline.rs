@@ -14,9 +14,9 @@ pub const MAX_ORDER: usize = MAX_DEGREE + 1;
 /// A non-empty knot span.
 #[derive(Debug, Clone)]
 pub struct Span {
-    /// Left knot, m.
+    /// Left knot, m or unit of the knots.
     pub left: f64,
-    /// Right knot, m.
+    /// Right knot, m or unit of the knots.
     pub right: f64,
     /// Index of the first of the `p + 1` basis functions on the span.
     pub first: usize,
@@ -25,7 +25,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// Length of the span, m.
+    /// Length of the span, m or unit of the knots.
     pub fn length(&self) -> f64 {
         self.right - self.left
     }
@@ -36,7 +36,7 @@ impl Span {
 pub struct ShapeFunctions {
     /// Values.
     pub value: [f64; MAX_ORDER],
-    /// Derivatives with respect to x, 1/m.
+    /// Derivatives with respect to x, 1/m or 1/unit of the knots.
     pub derivative: [f64; MAX_ORDER],
 }
 
@@ -81,7 +81,7 @@ impl SplineSpace {
         self.degree
     }
 
-    /// Knot vector, m.
+    /// Knot vector, m or unit of its own.
     pub fn knot_vector(&self) -> &[f64] {
         &self.knots
     }
@@ -125,7 +125,23 @@ impl SplineSpace {
         shape
     }
 
-    /// Greville abscissae, m: the control values of the function x.
+    /// Second derivatives (1/m²) of the shape functions at `x` (m), which should lie in `span`.
+    #[inline]
+    pub fn second_derivatives(&self, span: usize, x: f64) -> [f64; MAX_ORDER] {
+        let span = &self.spans[span];
+        let scale = 1.0 / span.length();
+        let t = (x - span.left) * scale;
+        let mut second = [0.0; MAX_ORDER];
+        for k in 0..=self.degree {
+            for m in (2..=self.degree).rev() {
+                second[k] = second[k] * t + (m * (m - 1)) as f64 * span.polynomials[k][m];
+            }
+            second[k] *= scale * scale;
+        }
+        second
+    }
+
+    /// Greville abscissae, in the unit of the knots: the control values of the function x.
     pub fn greville(&self) -> Vec<f64> {
         (0..self.dimension())
             .map(|i| self.knots[i + 1..=i + self.degree].iter().sum::<f64>() / self.degree as f64)
@@ -186,6 +202,12 @@ mod tests {
                 let slope: f64 = (0..=degree).map(|k| shape.derivative[k] * greville[first + k]).sum();
                 assert_abs_diff_eq!(position, x, epsilon = 1e-13);
                 assert_abs_diff_eq!(slope, 1.0, epsilon = 1e-11);
+                let (second, step) = (space.second_derivatives(span, x), 1e-6);
+                let [before, beyond] = [-step, step].map(|step| space.shape_functions(span, x + step));
+                for k in 0..=degree {
+                    let difference = (beyond.derivative[k] - before.derivative[k]) / (2.0 * step);
+                    assert_abs_diff_eq!(second[k], difference, epsilon = 1e-3 * (1.0 + second[k].abs()));
+                }
             }
         }
     }

@@ -4,26 +4,22 @@
 //! points for the whole run, strains follow from the displacement, and nothing is lost in transfers. With beta = 0 the
 //! strain at n + 1 does not depend on the acceleration at n + 1: one pass of the staggered scheme is converged.
 
+mod begin;
 mod forced;
 mod observe;
 mod stiffness;
-
-use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use crate::constraints::Constraints;
 use crate::energy::Ledger;
-use crate::forcing::Forcing;
 use crate::fracture::{Fracturing, NotConverged};
-use crate::hencky::hencky_strain;
-use crate::lane::Lane;
 use crate::lattice::Lattice;
 use crate::loads::NodalLoad;
 use crate::mass::MassMatrix;
-use crate::material::{ElasticModuli, FractureModel};
+use crate::material::ElasticModuli;
 use crate::patch::{ControlGrid, Patch};
-use crate::scene::{Body, Boundary, Kinematics, Scene, Shape, Side};
+use crate::scene::{Kinematics, Shape};
 use crate::stencil::CHUNK_ROWS;
 use crate::sweep::StripForces;
 
@@ -65,94 +61,6 @@ pub struct TotalFrame {
 }
 
 impl TotalFrame {
-    /// The body of `scene` at t = 0 with its initial accelerations.
-    ///
-    /// # Errors
-    /// If the initial phase field does not converge.
-    pub fn new(scene: &Scene) -> Result<Self, NotConverged> {
-        let patch = Patch::new(&scene.mesh);
-        let body = &scene.bodies[0];
-        let material = &scene.materials[&body.material];
-        let lattice = Lattice::new(&patch, body);
-        let grid = lattice.grid;
-        let constraints = Constraints::new(grid, &scene.boundaries);
-        let held = [0, 1].map(|component| constraints.held(component));
-        let fracture = material
-            .fracture
-            .as_ref()
-            .map(|f| Fracturing::new(&lattice, body, FractureModel::new(f), &scene.solver))
-            .transpose()?;
-        let zeros = || [grid.zeros(), grid.zeros()];
-        let mut frame = Self {
-            loads: body.tractions.iter().map(|t| NodalLoad::new(&patch, body, t)).collect(),
-            forced: None,
-            mass: MassMatrix::new(&lattice, material.density, scene.analysis.mass, held),
-            constraints,
-            moduli: ElasticModuli::new(material, scene.analysis.plane),
-            kinematics: scene.analysis.kinematics,
-            shape: body.shape.clone(),
-            thickness: scene.analysis.thickness,
-            gravity: scene.analysis.gravity,
-            strip_forces: StripForces::new(&lattice),
-            lowest_tip: lowest_tip(scene, body),
-            displacement: zeros(),
-            velocity: zeros(),
-            acceleration: zeros(),
-            internal: zeros(),
-            elastic_energy: 0.0,
-            ledger: Ledger::default(),
-            time: 0.0,
-            driven_power: 0.0,
-            patch,
-            grid,
-            lattice,
-            fracture,
-        };
-        frame.set_initial_velocity(body.velocity, body.angular_velocity);
-        frame.begin();
-        Ok(frame)
-    }
-
-    /// Begins anew at t = 0 from given control values of displacement (m) and velocity (m/s), under loads that vary in space.
-    ///
-    /// # Errors
-    /// If the initial phase field does not converge.
-    pub fn start_from(
-        &mut self,
-        displacement: VectorField,
-        velocity: VectorField,
-        forcing: Arc<dyn Forcing>,
-    ) -> Result<(), NotConverged> {
-        (self.displacement, self.velocity) = (displacement, velocity);
-        self.constraints.apply_velocity(&mut self.velocity);
-        self.ledger = Ledger::default();
-        self.time = 0.0;
-        let mut forced = Forced::new(forcing, &self.patch, &self.lattice);
-        forced.update_forces(&self.lattice, 0.0);
-        if let Some(fracture) = &mut self.fracture {
-            fracture.update_history(&self.lattice, self.moduli, self.kinematics, &self.displacement);
-            fracture.field.set_load(forced.phase_load(&self.lattice, 0.0));
-            fracture.field.initialise(&self.lattice, &fracture.history)?;
-        }
-        self.forced = Some(Box::new(forced));
-        self.begin();
-        Ok(())
-    }
-
-    /// Nodal forces (N/m) of the loads that vary in space, at the present time.
-    pub fn forced_loads(&self) -> VectorField {
-        let mut forces = [self.grid.zeros(), self.grid.zeros()];
-        if let Some(forced) = &self.forced {
-            forced.add_to(&mut forces);
-        }
-        forces
-    }
-
-    /// Right-hand side (m²) of the phase-field equation with the source and flux of a forcing at t = 0.
-    pub fn phase_load(&self, forcing: Arc<dyn Forcing>) -> Vec<f64> {
-        Forced::new(forcing, &self.patch, &self.lattice).phase_load(&self.lattice, 0.0)
-    }
-
     /// Forces and accelerations at t = 0.
     fn begin(&mut self) {
         self.internal_forces();
@@ -308,108 +216,4 @@ impl TotalFrame {
         }
         power
     }
-
-    /// Rigid motion about the centre of mass: linear in the position, so its control values are exact.
-    fn set_initial_velocity(&mut self, velocity: [f64; 2], angular_velocity: f64) {
-        let [x, y] = self.patch.control_positions();
-        let mass = self.mass.row_sums();
-        let total: f64 = mass.iter().sum();
-        let center = [&x, &y].map(|x| mass.iter().zip(x).map(|(m, x)| m * x).sum::<f64>() / total);
-        for at in self.grid.indices() {
-            self.velocity[0][at] = velocity[0] - angular_velocity * (y[at] - center[1]);
-            self.velocity[1][at] = velocity[1] + angular_velocity * (x[at] - center[0]);
-        }
-        self.constraints.apply_velocity(&mut self.velocity);
-    }
-
-    /// Strain `[xx, yy, xy]` of a displacement gradient, and by how much the volume grew.
-    pub fn strain(&self, gradient: [[f64; 2]; 2]) -> ([f64; 3], f64) {
-        let [[xx, xy], [yx, yy]] = gradient;
-        match self.kinematics {
-            Kinematics::Small => ([xx, yy, 0.5 * (xy + yx)], 1.0),
-            Kinematics::Finite => (hencky_strain(&gradient), (1.0 + xx) * (1.0 + yy) - xy * yx),
-        }
-    }
-
-    /// Stress `[xx, yy, xy]` (Pa) of the undamaged body under a displacement field at a position; NaN outside the patch. With
-    /// finite kinematics it is Kirchhoff's.
-    pub fn elastic_stress_at(&self, displacement: &[Vec<f64>; 2], position: [f64; 2]) -> [f64; 3] {
-        let [x, y] = [0, 1].map(|c| self.patch.evaluate(&displacement[c], position));
-        let (Some(x), Some(y)) = (x, y) else { return [f64::NAN; 3] };
-        let (strain, _) = self.strain([x.gradient, y.gradient]);
-        self.moduli.stress(strain.map(Lane::splat)).map(|s| s[0])
-    }
-
-    /// Elastic energy, J.
-    pub fn elastic_energy(&self) -> f64 {
-        self.elastic_energy * self.thickness
-    }
-
-    /// External work so far, J.
-    pub fn external_work(&self) -> f64 {
-        self.ledger.external_work * self.thickness
-    }
-
-    /// Time, s.
-    pub fn time(&self) -> f64 {
-        self.time
-    }
-
-    /// Material points.
-    pub fn lattice(&self) -> &Lattice {
-        &self.lattice
-    }
-
-    /// Region of the body.
-    pub fn shape(&self) -> &Shape {
-        &self.shape
-    }
-
-    /// Background patch.
-    pub fn patch(&self) -> &Patch {
-        &self.patch
-    }
-
-    /// Moduli.
-    pub fn moduli(&self) -> ElasticModuli {
-        self.moduli
-    }
-
-    /// Control values of the displacement, m.
-    pub fn displacement(&self) -> &VectorField {
-        &self.displacement
-    }
-
-    /// Control values of the velocity, m/s.
-    pub fn velocity(&self) -> &VectorField {
-        &self.velocity
-    }
-
-    /// Mass per unit thickness.
-    pub fn mass(&self) -> &MassMatrix {
-        &self.mass
-    }
-
-    /// Sides with prescribed velocity.
-    pub fn constraints(&self) -> &Constraints {
-        &self.constraints
-    }
-
-    /// Heap memory of mechanics and of the phase field, bytes.
-    pub fn bytes(&self) -> [usize; 2] {
-        let mechanics = 8 * 10 * self.grid.len() + self.strip_forces.bytes();
-        [mechanics, self.fracture.as_ref().map_or(0, Fracturing::bytes)]
-    }
-}
-
-/// Height from which the crack tip is looked for: the middle of the body, or its foot if the body is the upper half of a
-/// symmetric one: it stands on the bottom side, a roller holds that side, and a crack lies along it.
-pub(crate) fn lowest_tip(scene: &Scene, body: &Body) -> f64 {
-    let (low, high) = scene.mesh.extent(&body.shape);
-    let at_foot = |y: f64| (y - low[1]).abs() <= 1e-9 * (high[1] - low[1]);
-    let roller = |b: &Boundary| b.side == Side::Bottom && b.fix == [false, true] && b.velocity[1] == 0.0;
-    let half = at_foot(scene.mesh.origin()[1])
-        && scene.boundaries.iter().any(roller)
-        && body.cracks.iter().any(|crack| at_foot(crack.from[1]) && at_foot(crack.to[1]));
-    if half { low[1] } else { 0.5 * (low[1] + high[1]) }
 }

@@ -82,12 +82,14 @@ fn a_sliding_block_and_a_rolling_disc_have_their_accelerations() {
     for (what, shape, friction, expected) in
         [("sliding block", block, 0.2, slides(0.2)), ("rolling disc", disc, 0.5, rolls)]
     {
-        let scene = incline(2, shape, slope, friction, [100, 30], [2.0, 0.6]);
+        // FLIP loses 3 % of the rolling on this mesh, and 0.5 % on one twice as fine.
+        let mut scene = incline(2, shape, slope, friction, [100, 30], [2.0, 0.6]);
+        scene.analysis.transfer = Transfer::Apic;
         fisura::validate::validate(&scene).unwrap();
         let (simulation, samples) = run(&scene);
         let field = &simulation.updated_frame().unwrap().fields()[0];
         let acceleration = field.momentum()[0] / field.mass() / field.time();
-        assert!((acceleration - expected).abs() < 0.02 * expected, "{what}: {acceleration} instead of {expected}");
+        assert!((acceleration - expected).abs() < 0.01 * expected, "{what}: {acceleration} instead of {expected}");
         let friction: Vec<f64> = samples.iter().map(|s| s.contact.unwrap().friction).collect();
         assert!(friction.is_sorted(), "{what}: friction does negative work");
         let work = samples.last().unwrap().external_work;

@@ -1,50 +1,24 @@
 //! Finite kinematics in the updated frame: rotations, the small-strain limit, the spinning disc.
 
+mod common;
+
 use std::f64::consts::TAU;
 
+use common::{unit_solid, updated_scene};
 use fisura::scene::*;
 use fisura::simulation::Simulation;
 use fisura::updated_frame::UpdatedFrame;
 
 /// A body of modulus and density 1 on a square mesh of equal spans.
 fn scene(degree: usize, side: f64, cells: usize, shape: Shape, kinematics: Kinematics) -> Scene {
-    let solid = Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None };
-    Scene {
-        title: String::new(),
-        mesh: Mesh::uniform([degree; 2], [-0.5 * side; 2], [side; 2], [cells; 2]),
-        analysis: Analysis {
-            plane: Plane::Stress,
-            thickness: 1.0,
-            frame: Frame::Updated,
-            kinematics,
-            end_time: 1.0,
-            time_step: TimeStep::Auto,
-            safety: 0.5,
-            transfer: Transfer::Apic,
-            mass: Mass::Lumped,
-            gravity: [0.0; 2],
-        },
-        solver: SolverSettings {
-            phase_field_tolerance: 1e-10,
-            phase_field_solver: PhaseFieldSolver::ConjugateGradients,
-        },
-        materials: [("solid".to_string(), solid)].into(),
-        bodies: vec![Body {
-            name: "body".into(),
-            material: "solid".into(),
-            shape,
-            particles_per_cell: [degree + 1; 2],
-            layout: Layout::Gauss,
-            velocity: [0.0; 2],
-            angular_velocity: 0.0,
-            rigid: false,
-            tractions: vec![],
-            cracks: vec![],
-        }],
-        contact: None,
-        boundaries: vec![],
-        output: Output { samples: 200, frames: vec![] },
-    }
+    let mesh = Mesh::uniform([degree; 2], [-0.5 * side; 2], [side; 2], [cells; 2]);
+    let mut scene = updated_scene(unit_solid(), mesh, shape);
+    scene.bodies[0].particles_per_cell = [degree + 1; 2];
+    scene.analysis.plane = Plane::Stress;
+    scene.analysis.kinematics = kinematics;
+    scene.analysis.transfer = Transfer::Apic;
+    scene.output.samples = 200;
+    scene
 }
 
 fn block() -> Shape {

@@ -6,18 +6,9 @@ use std::sync::Arc;
 
 use common::elastic_scene;
 use fisura::Simulation;
-use fisura::forcing::{Forcing, VolumeLoad};
+use fisura::forcing::NoLoads;
 use fisura::scene::*;
 use fisura::total_frame::TotalFrame;
-
-#[derive(Debug)]
-struct Free;
-
-impl Forcing for Free {
-    fn volume(&self, _position: [f64; 2], _time: f64) -> VolumeLoad {
-        VolumeLoad::default()
-    }
-}
 
 /// Elastic energy (J) under the displacement `(A − I) X`.
 fn energy(degree: usize, kinematics: Kinematics, a: [[f64; 2]; 2]) -> f64 {
@@ -30,7 +21,7 @@ fn energy(degree: usize, kinematics: Kinematics, a: [[f64; 2]; 2]) -> f64 {
         x.iter().zip(&y).map(moved).collect()
     };
     let still = [vec![0.0; x.len()], vec![0.0; x.len()]];
-    frame.start_from([component(0), component(1)], still, Arc::new(Free)).unwrap();
+    frame.start_from([component(0), component(1)], still, Arc::new(NoLoads)).unwrap();
     frame.elastic_energy()
 }
 

@@ -1,14 +1,17 @@
-//! The transfers of the updated frame: what each keeps, what it loses, and that every loss is booked.
+//! The transfers of the updated frame: what each keeps, and that every loss is booked. See `transfer_losses.rs` for what
+//! they lose.
 
-use std::f64::consts::{PI, TAU};
+mod common;
+
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use common::standing_wave::StandingWave;
+use common::{rectangle, relative_closure, run, unit_solid, updated_scene, with_threads};
 use fisura::energy::Sample;
-use fisura::forcing::{Forcing, VolumeLoad};
 use fisura::scene::*;
 use fisura::simulation::Simulation;
 use fisura::updated_frame::UpdatedFrame;
-use fisura::updated_frame::points::Point;
 
 const ALL: [Transfer; 7] = [
     Transfer::Flip,
@@ -22,58 +25,7 @@ const ALL: [Transfer; 7] = [
 
 /// A rectangle of modulus and density 1 on a mesh of equal spans.
 fn scene(degree: usize, mesh: [f64; 2], cells: [usize; 2], min: [f64; 2], max: [f64; 2]) -> Scene {
-    let solid = Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None };
-    Scene {
-        title: String::new(),
-        mesh: Mesh::uniform([degree; 2], [0.0; 2], mesh, cells),
-        analysis: Analysis {
-            plane: Plane::Strain,
-            thickness: 1.0,
-            frame: Frame::Updated,
-            kinematics: Kinematics::Small,
-            end_time: 1.0,
-            time_step: TimeStep::Auto,
-            safety: 0.5,
-            transfer: Transfer::Flip,
-            mass: Mass::Lumped,
-            gravity: [0.0; 2],
-        },
-        solver: SolverSettings {
-            phase_field_tolerance: 1e-10,
-            phase_field_solver: PhaseFieldSolver::ConjugateGradients,
-        },
-        materials: [("solid".to_string(), solid)].into(),
-        bodies: vec![Body {
-            name: "block".into(),
-            material: "solid".into(),
-            shape: Shape::Rectangle { min, max },
-            particles_per_cell: [degree.max(2); 2],
-            layout: Layout::Gauss,
-            velocity: [0.0; 2],
-            angular_velocity: 0.0,
-            rigid: false,
-            tractions: vec![],
-            cracks: vec![],
-        }],
-        contact: None,
-        boundaries: vec![],
-        output: Output { samples: 10, frames: vec![] },
-    }
-}
-
-fn run(scene: &Scene) -> (Simulation, Vec<Sample>) {
-    let mut simulation = Simulation::new(scene).unwrap();
-    let mut samples = vec![simulation.sample()];
-    while !simulation.finished() {
-        samples.push(simulation.advance_to_next_sample().unwrap());
-    }
-    (simulation, samples)
-}
-
-/// Largest closure over the largest energy of a run.
-fn relative_closure(samples: &[Sample]) -> f64 {
-    let scale = samples.iter().map(Sample::largest_term).fold(0.0, f64::max);
-    samples.iter().map(|s| s.closure.abs()).fold(0.0, f64::max) / scale
+    updated_scene(unit_solid(), Mesh::uniform([degree; 2], [0.0; 2], mesh, cells), rectangle(min, max))
 }
 
 #[test]
@@ -208,108 +160,6 @@ fn angular_momentum_is_kept_by_affine_velocities_and_lost_to_the_filter_of_the_o
     }
 }
 
-/// A bar of two rows of spans without lateral contraction, held in x at both ends or free.
-fn bar(degree: usize, cells: usize, held: bool, transfer: Transfer) -> Scene {
-    let h = 1.0 / cells as f64;
-    let mut scene = scene(degree, [1.0, 2.0 * h], [cells, 2], [0.0, 0.0], [1.0, 2.0 * h]);
-    scene.materials.get_mut("solid").unwrap().poisson_ratio = 0.0;
-    scene.bodies[0].particles_per_cell = [degree + 1; 2];
-    if held {
-        let hold = |side| Boundary { side, fix: [true, false], velocity: [0.0; 2] };
-        scene.boundaries = [Side::Left, Side::Right].map(hold).into();
-    }
-    scene.analysis.transfer = transfer;
-    scene
-}
-
-/// Energy of points and elasticity after each of 100 periods (2 s) of a bar in its first mode, points at rest but for
-/// 1e-10 of its length, with steps of a fifth of a span.
-fn energy_of_points(degree: usize, held: bool, transfer: Transfer) -> Vec<f64> {
-    let scene = bar(degree, 16, held, transfer);
-    let mut frame = UpdatedFrame::new(&scene).unwrap();
-    let mode = |x: f64| if held { (PI * x).sin() } else { (PI * x).cos() };
-    frame.set_initial_velocity(|[x, _]| [1e-10 * PI * mode(x), 0.0]);
-    let dt = 0.2 / 16.0;
-    let mut energies = vec![frame.point_kinetic_energy(dt) + frame.elastic_energy()];
-    for _ in 0..100 {
-        (0..160).for_each(|_| frame.step(dt).unwrap());
-        energies.push(frame.point_kinetic_energy(dt) + frame.elastic_energy());
-    }
-    energies
-}
-
-#[test]
-fn musl_keeps_the_energy_of_the_points_where_flip_loses_a_third() {
-    for degree in [2, 3] {
-        let drift = |held, transfer| {
-            let energies = energy_of_points(degree, held, transfer);
-            energies.iter().map(|e| e / energies[0] - 1.0).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a })
-        };
-        let (free, held) = (drift(false, Transfer::Musl), drift(true, Transfer::Musl));
-        let flip = [false, true].map(|held| drift(held, Transfer::Flip));
-        println!("p = {degree}: 100 periods of a free or held bar, MUSL {free:.2e} {held:.2e}, FLIP {flip:.3?}");
-        assert!(free.abs() <= 1e-5, "p = {degree}: MUSL {free:e}");
-        // At held ends the points start with a velocity that the sides take away.
-        assert!(held <= 0.0 && held > -0.01, "p = {degree}: MUSL between held ends {held:e}");
-        assert!(flip[1] < -0.25 && flip[1] > -0.5, "p = {degree}: FLIP {flip:?}");
-    }
-}
-
-/// Keeps a bar of Hencky material in the standing wave `u = A sin πX sin πt` of any amplitude.
-#[derive(Debug)]
-struct StandingWave(f64);
-
-impl StandingWave {
-    fn displacement(&self, x: f64, time: f64) -> f64 {
-        self.0 * (PI * x).sin() * (PI * time).sin()
-    }
-}
-
-impl Forcing for StandingWave {
-    /// `rho a − dP/dX` with `P = E ln F/F`, E = rho = 1.
-    fn volume(&self, [x, _]: [f64; 2], time: f64) -> VolumeLoad {
-        let u = self.displacement(x, time);
-        let stretch = 1.0 + self.0 * PI * (PI * x).cos() * (PI * time).sin();
-        let stress_slope = (1.0 - stretch.ln()) / (stretch * stretch) * (-PI * PI * u);
-        VolumeLoad { force: [-PI * PI * u - stress_slope, 0.0], ..Default::default() }
-    }
-}
-
-/// Losses per period over the first energy, for points that cross 1.28 of 32 spans and back: mean of four periods.
-fn loss_per_period(degree: usize, transfer: Transfer) -> f64 {
-    let wave = StandingWave(0.04);
-    let mut scene = bar(degree, 32, true, transfer);
-    scene.bodies[0].layout = Layout::Uniform;
-    scene.bodies[0].particles_per_cell = [4; 2];
-    scene.analysis.kinematics = Kinematics::Finite;
-    let mut frame = UpdatedFrame::new(&scene).unwrap();
-    frame.set_initial_velocity(|[x, _]| [0.04 * PI * (PI * x).sin(), 0.0]);
-    frame.apply_forcing(Arc::new(StandingWave(0.04)));
-    let dt = 0.2 / 32.0;
-    let start = frame.sample(dt);
-    (0..320 * 4).for_each(|_| frame.step(dt).unwrap());
-    let mut end = frame.sample(dt);
-    end.close(start.stored());
-    // The wave is followed up to the dispersion of lumped mass (0.12 % of the frequency, 3 % of a radian per period) and
-    // the noise of points that cross spans, and the work of the forcing is booked.
-    let off = |p: &Point| (p.displacement[0] - wave.displacement(p.reference()[0], frame.time())).abs();
-    let off = frame.fields()[0].points().iter().map(off).fold(0.0, f64::max);
-    assert!(off <= 0.04 * 0.08, "{transfer:?}, p = {degree}: {off:e} m off the wave");
-    assert!(end.closure.abs() <= 1e-4 * start.kinetic, "{transfer:?}, p = {degree}: closure {:e}", end.closure);
-    end.transfer_loss.unwrap() / start.kinetic / 4.0
-}
-
-#[test]
-fn losses_per_period_stay_small_when_points_cross_spans() {
-    for (degree, flip) in [(2, 0.005), (3, 0.0015)] {
-        for (transfer, most) in [(Transfer::Flip, flip), (Transfer::Musl, flip), (Transfer::Apic, 0.005)] {
-            let loss = loss_per_period(degree, transfer);
-            println!("{transfer:?}, p = {degree}: {loss:.2e} of the energy per period");
-            assert!((0.0..=most).contains(&loss), "{transfer:?}, p = {degree}: {loss:e}");
-        }
-    }
-}
-
 /// A body that is struck on one side and otherwise left alone, after 400 steps of `fraction` of the critical step.
 fn struck(transfer: Transfer, degree: usize, fraction: f64) -> bool {
     let mut scene = scene(degree, [1.0, 1.0], [16, 16], [0.237, 0.25], [0.75, 0.75]);
@@ -349,8 +199,7 @@ fn one_thread_and_two_give_the_same_bits_with_every_transfer() {
         scene.analysis.kinematics = Kinematics::Finite;
         scene.analysis.end_time = 1.0;
         let on = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| {
+            with_threads(threads, || {
                 let mut frame = UpdatedFrame::new(&scene).unwrap();
                 frame.apply_forcing(Arc::new(StandingWave(1e-3)));
                 (0..100).for_each(|_| frame.step(0.01).unwrap());

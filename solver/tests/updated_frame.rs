@@ -1,71 +1,25 @@
 //! The updated frame: what must hold exactly, and how far it agrees with the total frame.
 
+mod common;
+
+use common::{brittle, glass, rectangle, relative_closure, run, updated_scene, with_threads};
 use fisura::energy::Sample;
 use fisura::scene::*;
 use fisura::simulation::Simulation;
 use fisura::updated_frame::UpdatedFrame;
 
-const YOUNG: f64 = 32e9;
 const DENSITY: f64 = 2450.0;
 
 /// A glass rectangle on a mesh of 10 mm by 10 mm.
 fn scene(degree: usize, cells: usize, min: [f64; 2], max: [f64; 2]) -> Scene {
-    let glass = Material { young_modulus: YOUNG, poisson_ratio: 0.2, density: DENSITY, fracture: None };
-    Scene {
-        title: String::new(),
-        mesh: Mesh::uniform([degree; 2], [0.0; 2], [0.01; 2], [cells; 2]),
-        analysis: Analysis {
-            plane: Plane::Strain,
-            thickness: 1.0,
-            frame: Frame::Updated,
-            kinematics: Kinematics::Small,
-            end_time: 1e-6,
-            time_step: TimeStep::Auto,
-            safety: 0.5,
-            transfer: Transfer::Flip,
-            mass: Mass::Lumped,
-            gravity: [0.0; 2],
-        },
-        solver: SolverSettings {
-            phase_field_tolerance: 1e-10,
-            phase_field_solver: PhaseFieldSolver::ConjugateGradients,
-        },
-        materials: [("glass".to_string(), glass)].into(),
-        bodies: vec![Body {
-            name: "block".into(),
-            material: "glass".into(),
-            shape: Shape::Rectangle { min, max },
-            particles_per_cell: [degree.max(2); 2],
-            layout: Layout::Gauss,
-            velocity: [0.0; 2],
-            angular_velocity: 0.0,
-            rigid: false,
-            tractions: vec![],
-            cracks: vec![],
-        }],
-        contact: None,
-        boundaries: vec![],
-        output: Output { samples: 10, frames: vec![] },
-    }
-}
-
-fn run(scene: &Scene) -> (Simulation, Vec<Sample>) {
-    let mut simulation = Simulation::new(scene).unwrap();
-    let mut samples = vec![simulation.sample()];
-    while !simulation.finished() {
-        samples.push(simulation.advance_to_next_sample().unwrap());
-    }
-    (simulation, samples)
+    let mesh = Mesh::uniform([degree; 2], [0.0; 2], [0.01; 2], [cells; 2]);
+    let mut scene = updated_scene(glass(), mesh, rectangle(min, max));
+    scene.analysis.end_time = 1e-6;
+    scene
 }
 
 fn updated(simulation: &Simulation) -> &UpdatedFrame {
     simulation.updated_frame().unwrap()
-}
-
-/// Largest closure over the largest energy of a run.
-fn relative_closure(samples: &[Sample]) -> f64 {
-    let scale = samples.iter().map(Sample::largest_term).fold(0.0, f64::max);
-    samples.iter().map(|s| s.closure.abs()).fold(0.0, f64::max) / scale
 }
 
 /// A clamped strip under a traction at its free end, whose margin on the mesh is two spans.
@@ -81,12 +35,7 @@ fn cantilever(degree: usize, stress: f64) -> Scene {
 /// A small plate with a crack, pulled apart, with a margin of 2 mm of empty mesh above and below.
 fn notched_plate(cells: usize) -> Scene {
     let mut scene = scene(2, cells, [0.0, 0.002], [0.01, 0.008]);
-    scene.materials.get_mut("glass").unwrap().fracture = Some(Fracture {
-        critical_energy_release_rate: 3.0,
-        length_scale: 0.25e-3,
-        residual_stiffness: 0.0,
-        split: Split::Spectral,
-    });
+    scene.materials.get_mut("solid").unwrap().fracture = Some(brittle());
     let pull = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: Some(2e-6) };
     scene.bodies[0].tractions = vec![pull(Side::Top, 3e6), pull(Side::Bottom, -3e6)];
     scene.bodies[0].cracks = vec![Crack { from: [0.0, 0.005], to: [0.005, 0.005], half_width: None }];
@@ -316,8 +265,7 @@ fn one_thread_and_two_give_the_same_bits() {
     scene.bodies[0].velocity = [0.0, 40.0];
     scene.analysis.end_time = 1.5e-6;
     let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
+        with_threads(threads, || {
             let (simulation, samples) = run(&scene);
             (updated(&simulation).fields()[0].points().to_vec(), samples)
         })

@@ -4,6 +4,7 @@ use fisura::nurbs::{NurbsError, NurbsPatch};
 use fisura::scene::Mesh;
 
 use crate::case::convergence::PatchFamily;
+use crate::random::Random;
 
 /// Spans per direction of the mesh on which random knots, weights and control points are drawn.
 const COARSE: usize = 3;
@@ -26,8 +27,8 @@ pub fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<Mesh, Nu
         PatchFamily::Strip => Ok(Mesh::uniform([degree; 2], [0.0; 2], [1.0, 1.0 / cells as f64], [cells, 1])),
         PatchFamily::Ring => Ok(Mesh::uniform([degree; 2], [-AROUND_RING; 2], [2.0 * AROUND_RING; 2], [cells; 2])),
         PatchFamily::Graded => {
-            let mut random = Random(11);
-            let knots = SIZE.map(|size| open(degree, &subdivided(&random.breaks(size), parts)));
+            let mut random = Random::new(11);
+            let knots = SIZE.map(|size| open(degree, &subdivided(&breaks(&mut random, size), parts)));
             Ok(Mesh { degree: [degree; 2], knots, geometry: None })
         }
         PatchFamily::Bent => Ok(Mesh::of(&refined(&bent()?, degree, cells)?)),
@@ -68,7 +69,7 @@ fn bent() -> Result<NurbsPatch, NurbsError> {
 /// The curved piece raised to `degree`, with weights from 1/2 to 2 drawn on its one span.
 fn weighted(degree: usize) -> Result<NurbsPatch, NurbsError> {
     let piece = refined(&bent()?, degree, 1)?;
-    let mut random = Random(17);
+    let mut random = Random::new(17);
     let weights = piece.weights().iter().map(|_| 2f64.powf(random.between(-1.0, 1.0))).collect();
     let knots = piece.spaces().each_ref().map(|space| space.knot_vector());
     NurbsPatch::new([degree; 2], knots, piece.control_points().to_vec(), weights)
@@ -79,8 +80,8 @@ fn weighted(degree: usize) -> Result<NurbsPatch, NurbsError> {
 /// The draw is one whose quartics are in their asymptotic range above round-off. With the seed 5 they reach order 4.6 at
 /// 96 spans and 4.8 at 192, as an independent program confirms: a layer at one edge is resolved late.
 fn random(degree: usize) -> Result<NurbsPatch, NurbsError> {
-    let mut random = Random(7);
-    let knots = [(); 2].map(|()| open(degree, &random.breaks(1.0)));
+    let mut random = Random::new(7);
+    let knots = [(); 2].map(|()| open(degree, &breaks(&mut random, 1.0)));
     let flat = NurbsPatch::rectangle([degree; 2], [&knots[0], &knots[1]], [0.0; 2], SIZE)?;
     let [columns, rows] = flat.spaces().each_ref().map(|space| space.dimension());
     let inner = |n: usize| (1..columns - 1).contains(&(n % columns)) && (1..rows - 1).contains(&(n / columns));
@@ -110,28 +111,18 @@ fn subdivided(breaks: &[f64], parts: usize) -> Vec<f64> {
     inner.chain(breaks.last().copied()).collect()
 }
 
-/// A linear congruential sequence, the same on every machine.
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        low + (high - low) * ((self.0 >> 11) as f64 / (1u64 << 53) as f64)
+/// Ends of [`COARSE`] spans from 0 to `size` whose lengths differ by up to a factor of four.
+fn breaks(random: &mut Random, size: f64) -> Vec<f64> {
+    let lengths: Vec<f64> = (0..COARSE).map(|_| 4f64.powf(random.unit())).collect();
+    let total: f64 = lengths.iter().sum();
+    let mut breaks = vec![0.0];
+    let mut sum = 0.0;
+    for length in &lengths[..COARSE - 1] {
+        sum += length;
+        breaks.push(size * sum / total);
     }
-
-    /// Ends of [`COARSE`] spans from 0 to `size` whose lengths differ by up to a factor of four.
-    fn breaks(&mut self, size: f64) -> Vec<f64> {
-        let lengths: Vec<f64> = (0..COARSE).map(|_| 4f64.powf(self.between(0.0, 1.0))).collect();
-        let total: f64 = lengths.iter().sum();
-        let mut breaks = vec![0.0];
-        let mut sum = 0.0;
-        for length in &lengths[..COARSE - 1] {
-            sum += length;
-            breaks.push(size * sum / total);
-        }
-        breaks.push(size);
-        breaks
-    }
+    breaks.push(size);
+    breaks
 }
 
 #[cfg(test)]

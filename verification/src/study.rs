@@ -14,6 +14,7 @@ mod homogeneous_state;
 mod linear_field;
 mod nurbs;
 mod pulse;
+mod rings;
 mod rotation;
 pub mod scene;
 mod vibration;
@@ -78,7 +79,7 @@ pub enum StudyError {
 type Study = fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>;
 
 /// Studies other than `scene`, by name.
-pub const STUDIES: [(&str, Study); 18] = [
+pub const STUDIES: [(&str, Study); 20] = [
     ("basis", basis::study),
     ("constant-stress", constant_stress::study),
     ("homogeneous-state", homogeneous_state::study),
@@ -97,6 +98,8 @@ pub const STUDIES: [(&str, Study); 18] = [
     ("contact-collision", contact::collision::study),
     ("contact-hertz", contact::hertz::study),
     ("contact-stack", contact::stack::study),
+    ("rings", rings::study),
+    ("rings-sweep", rings::sweep),
 ];
 
 /// The study of that name.

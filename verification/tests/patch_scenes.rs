@@ -148,6 +148,7 @@ const BROKEN: &[Broken] = &[
 const BROKEN_MESHES: &[(&str, usize, &str, &[&str])] = &[
     ("degree = 1\ncells = [4, 4]\nannulus = { inner_radius = 1, outer_radius = 2 }", 4, "mesh.degree", &["rational curve of degree 2", "degree = [1, 2]"]),
     ("degree = 2\ncells = [4, 4]\nannulus = { inner_radius = 2, outer_radius = 1 }", 6, "mesh.annulus", &["inner_radius < outer_radius"]),
+    ("degree = 2\ncells = [4, 4]\nannulus = { inner_radius = 0, outer_radius = 2 }", 6, "mesh.annulus.inner_radius", &["shrink to a point", "positive inner_radius"]),
     ("degree = 2\ncells = [4, 4]\nannulus = { inner_radius = 1, outer_radius = 2, angles = [1, 0] }", 6, "mesh.annulus", &["growing angles"]),
     ("degree = 2\ncells = [4, 5]\nannulus = { inner_radius = 1, outer_radius = 2, angles = [0, 3.0] }", 5, "mesh.cells", &["2 rational pieces", "multiple of 2"]),
     ("degree = 2\ncells = [4000, 5000]\nannulus = { inner_radius = 1, outer_radius = 2 }", 5, "mesh.cells", &["20000000 spans", "1000000"]),
@@ -180,4 +181,13 @@ fn a_broken_patch_says_where_and_what_would_help() {
         look(&with_mesh(mesh), mesh, *line, key, words, &mut missed);
     }
     assert!(missed.is_empty(), "{}", missed.join("\n\n"));
+}
+
+/// Its outline lies on the ring everywhere.
+#[test]
+fn a_disk_over_the_hole_of_a_ring_is_refused() {
+    let ring = "degree = 2\ncells = [4, 8]\nannulus = { inner_radius = 1, outer_radius = 2, angles = [0, 6.28] }";
+    let disk = "shape = { disk = { center = [0.0, 0.0], radius = 1.5 } }";
+    let error = SceneFile::parse("ring.toml", &with_mesh(ring).replace("shape = \"patch\"", disk), &[]).unwrap_err();
+    assert!(error.to_string().contains("body.0.shape: the body covers the side of the patch"), "{error}");
 }

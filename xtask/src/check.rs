@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use fisura::material::ElasticModuli;
 use fisura::scene::{Frame, Plane, Scene};
 use fisura::simulation::{Extent, Simulation};
+use fisura::spans::largest_spans;
 use fisura::time_plan::TimePlan;
 use fisura_reports::number::{duration, plain};
 use serde::Serialize;
@@ -94,8 +95,7 @@ struct MaterialFindings {
 
 impl Findings {
     fn new(scene: &Scene, extent: &Extent, plan: &TimePlan) -> Self {
-        let spans = [0, 1].map(|d| spans(&scene.mesh.knots[d]));
-        let span_m = [0, 1].map(|d| spans[d].iter().copied().fold(0.0, f64::max));
+        let span_m = largest_spans(&scene.mesh);
         let fractures = extent.phase_field_bytes > 0;
         let per_step = MECHANICS * extent.particles as f64
             + if fractures { PHASE_FIELD * extent.control_points as f64 } else { 0.0 };
@@ -107,7 +107,7 @@ impl Findings {
             bodies: bodies(scene),
             materials: materials(scene, span_m[0].max(span_m[1])),
             degree: scene.mesh.degree,
-            cells: [spans[0].len(), spans[1].len()],
+            cells: scene.mesh.knots.each_ref().map(|knots| spans(knots)),
             span_m,
             particles: extent.particles,
             control_points: extent.control_points,
@@ -171,9 +171,9 @@ impl MaterialFindings {
     }
 }
 
-/// Lengths of the non-empty spans of a knot vector, m.
-fn spans(knots: &[f64]) -> Vec<f64> {
-    knots.windows(2).map(|k| k[1] - k[0]).filter(|h| *h > 0.0).collect()
+/// Number of the non-empty spans of a knot vector.
+fn spans(knots: &[f64]) -> usize {
+    knots.windows(2).filter(|k| k[1] > k[0]).count()
 }
 
 fn bodies(scene: &Scene) -> Vec<BodyFindings> {

@@ -73,8 +73,8 @@ struct Problem<'a> {
 /// A touch that acts.
 struct Acting<'a> {
     touch: &'a Touch,
-    /// Node and shape function, negative for body a.
-    functions: Vec<(usize, f64)>,
+    /// Node and weight, negative for body a.
+    weights: Vec<(usize, f64)>,
     /// Velocity of a rigid body b less that of a rigid body a, m/s.
     rigid: [f64; 2],
     /// How the relative velocity answers an impulse along normal and tangent, m/kg.
@@ -103,7 +103,7 @@ impl Contact {
         let problem = self.solve(fields, kick);
         let arriving = problem.arriving(kick);
         let ledger = self.ledger.plus(arriving).plus(problem.energy(kick, |node| node.after));
-        let last = problem.touches.iter().map(|a| ((a.touch.bodies, a.touch.segment), a.impulse));
+        let last = problem.touches.iter().map(|a| ((a.touch.bodies, a.touch.square), a.impulse));
         let last = last
             .filter(|(_, impulse)| impulse.normal > 0.0)
             .map(|(key, impulse)| (key, impulse.times(1.0 / kick.length)));
@@ -154,10 +154,10 @@ impl Contact {
         };
         let mut touches = Vec::with_capacity(self.touches.len());
         for touch in &self.touches {
-            let (mut functions, mut rigid) = (Vec::new(), [0.0; 2]);
+            let (mut weights, mut rigid) = (Vec::new(), [0.0; 2]);
             for (side, sign) in [(0, -1.0), (1, 1.0)] {
                 let body = touch.bodies[side];
-                functions.extend(touch.functions[side].iter().map(|&(at, n)| (number(body, at), sign * n)));
+                weights.extend(touch.weights[side].iter().map(|&(at, n)| (number(body, at), sign * n)));
                 if body >= fields.len() {
                     let velocity = self.rigid[body - fields.len()].velocity_at(touch.position);
                     rigid = velocity.map(|v| sign * v);
@@ -165,9 +165,9 @@ impl Contact {
             }
             let impulse = self
                 .last
-                .get(&(touch.bodies, touch.segment))
+                .get(&(touch.bodies, touch.square))
                 .map_or_else(Impulse::default, |last| last.times(kick.length));
-            touches.push(Acting { touch, functions, rigid, answers: [0.0; 2], impulse });
+            touches.push(Acting { touch, weights, rigid, answers: [0.0; 2], impulse });
         }
         for acting in &mut touches {
             acting.find_answers(&nodes);
@@ -212,7 +212,7 @@ impl Acting<'_> {
 
     fn find_answers(&mut self, nodes: &[Node]) {
         let mut mobility = [0.0; 2];
-        for &(node, n) in &self.functions {
+        for &(node, n) in &self.weights {
             mobility = [0, 1].map(|c| mobility[c] + n * n * nodes[node].mobility[c]);
         }
         let answer = |direction: [f64; 2]| (0..2).map(|c| direction[c] * direction[c] * mobility[c]).sum();
@@ -221,7 +221,7 @@ impl Acting<'_> {
 
     /// Velocity of b relative to a.
     fn relative(&self, nodes: &[Node], velocity: impl Fn(&Node) -> [f64; 2]) -> [f64; 2] {
-        self.functions.iter().fold(self.rigid, |sum, &(node, n)| {
+        self.weights.iter().fold(self.rigid, |sum, &(node, n)| {
             let v = velocity(&nodes[node]);
             [0, 1].map(|c| sum[c] + n * v[c])
         })
@@ -230,7 +230,7 @@ impl Acting<'_> {
     /// Adds what an impulse does to the velocities of the nodes.
     fn give(&self, nodes: &mut [Node], impulse: Impulse) {
         let vector = self.vector_of(impulse);
-        for &(node, n) in &self.functions {
+        for &(node, n) in &self.weights {
             let node = &mut nodes[node];
             node.after = [0, 1].map(|c| node.after[c] + n * node.mobility[c] * vector[c]);
         }

@@ -69,7 +69,17 @@ impl Surface {
         }
     }
 
+    /// Forgets vertices without segments, and finds the neighbours of the others.
     fn join(&mut self) {
+        let mut numbers = vec![None; self.vertices.len()];
+        let mut kept = Vec::new();
+        for vertex in self.segments.iter_mut().flatten() {
+            *vertex = *numbers[*vertex as usize].get_or_insert_with(|| {
+                kept.push(self.vertices[*vertex as usize]);
+                kept.len() as u32 - 1
+            });
+        }
+        self.vertices = kept;
         self.neighbours = vec![[None; 2]; self.vertices.len()];
         for (index, [from, to]) in self.segments.iter().enumerate() {
             self.neighbours[*to as usize][0] = Some(index as u32);

@@ -1,5 +1,6 @@
 //! Rational basis functions, their gradients, and what the geometry map makes of them.
 
+use crate::patch::PointValue;
 use crate::spline::{MAX_ORDER, SplineSpace};
 
 /// Most basis functions on a span of a patch.
@@ -108,7 +109,12 @@ pub fn rational_functions(
     span: [usize; 2],
     parameters: [f64; 2],
 ) -> RationalFunctions {
-    let mut functions = products(spaces, span, parameters);
+    weighted(products(spaces, span, parameters), weights).0
+}
+
+/// The rational functions of some products, and the weight function they were divided by with its parametric gradient.
+pub(super) fn weighted(products: RationalFunctions, weights: &[f64]) -> (RationalFunctions, PointValue) {
+    let mut functions = products;
     let (mut sum, mut slope) = (0.0, [0.0; 2]);
     for n in 0..functions.count {
         let weight = weights[functions.control[n]];
@@ -126,7 +132,7 @@ pub fn rational_functions(
             functions.gradient[n][d] = (functions.gradient[n][d] - functions.value[n] * slope[d]) * scale;
         }
     }
-    functions
+    (functions, PointValue { value: sum, gradient: slope })
 }
 
 #[cfg(test)]

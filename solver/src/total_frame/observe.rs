@@ -1,7 +1,20 @@
-//! What is measured of a body in the total frame at a whole step.
+//! What can be seen of a body in the total frame at a whole step.
 
-use super::TotalFrame;
+use std::sync::Arc;
+
+use super::forced::Forced;
+use super::{TotalFrame, VectorField};
+use crate::constraints::Constraints;
 use crate::energy::{FractureSample, Sample};
+use crate::forcing::Forcing;
+use crate::fracture::Fracturing;
+use crate::hencky::hencky_strain;
+use crate::lane::Lane;
+use crate::lattice::Lattice;
+use crate::mass::MassMatrix;
+use crate::material::ElasticModuli;
+use crate::patch::Patch;
+use crate::scene::{Kinematics, Shape};
 
 impl TotalFrame {
     /// Position of the fastest control point, m.
@@ -51,5 +64,99 @@ impl TotalFrame {
             angular_momentum: angular * thickness,
             time_step: dt,
         }
+    }
+
+    /// Strain `[xx, yy, xy]` of a displacement gradient, and by how much the volume grew.
+    pub fn strain(&self, gradient: [[f64; 2]; 2]) -> ([f64; 3], f64) {
+        let [[xx, xy], [yx, yy]] = gradient;
+        match self.kinematics {
+            Kinematics::Small => ([xx, yy, 0.5 * (xy + yx)], 1.0),
+            Kinematics::Finite => (hencky_strain(&gradient), (1.0 + xx) * (1.0 + yy) - xy * yx),
+        }
+    }
+
+    /// Stress `[xx, yy, xy]` (Pa) of the undamaged body under a displacement field at a position; NaN outside the patch. With
+    /// finite kinematics it is Kirchhoff's.
+    pub fn elastic_stress_at(&self, displacement: &[Vec<f64>; 2], position: [f64; 2]) -> [f64; 3] {
+        let [x, y] = [0, 1].map(|c| self.patch.evaluate(&displacement[c], position));
+        let (Some(x), Some(y)) = (x, y) else { return [f64::NAN; 3] };
+        let (strain, _) = self.strain([x.gradient, y.gradient]);
+        self.moduli.stress(strain.map(Lane::splat)).map(|s| s[0])
+    }
+
+    /// Elastic energy, J.
+    pub fn elastic_energy(&self) -> f64 {
+        self.elastic_energy * self.thickness
+    }
+
+    /// External work so far, J.
+    pub fn external_work(&self) -> f64 {
+        self.ledger.external_work * self.thickness
+    }
+
+    /// Time, s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Material points.
+    pub fn lattice(&self) -> &Lattice {
+        &self.lattice
+    }
+
+    /// Region of the body.
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// Background patch.
+    pub fn patch(&self) -> &Patch {
+        &self.patch
+    }
+
+    /// Moduli.
+    pub fn moduli(&self) -> ElasticModuli {
+        self.moduli
+    }
+
+    /// Control values of the displacement, m.
+    pub fn displacement(&self) -> &VectorField {
+        &self.displacement
+    }
+
+    /// Control values of the velocity, m/s.
+    pub fn velocity(&self) -> &VectorField {
+        &self.velocity
+    }
+
+    /// Mass per unit thickness.
+    pub fn mass(&self) -> &MassMatrix {
+        &self.mass
+    }
+
+    /// Sides with prescribed velocity.
+    pub fn constraints(&self) -> &Constraints {
+        &self.constraints
+    }
+
+    /// Nodal forces (N/m) of the loads that vary in space, at the present time.
+    pub fn forced_loads(&self) -> VectorField {
+        let mut forces = [self.grid.zeros(), self.grid.zeros()];
+        if let Some(forced) = &self.forced {
+            forced.add_to(&mut forces);
+        }
+        forces
+    }
+
+    /// Right-hand side (m²) of the phase-field equation with the source and flux of a forcing at t = 0.
+    pub fn phase_load(&self, forcing: Arc<dyn Forcing>) -> Vec<f64> {
+        Forced::new(forcing, &self.patch, &self.lattice).phase_load(&self.lattice, 0.0)
+    }
+
+    /// Heap memory of mechanics and of the phase field, bytes.
+    pub fn bytes(&self) -> [usize; 2] {
+        let fields = 8 * 8 * self.grid.len(); // displacement, velocity, acceleration, internal forces
+        let mechanics = fields + self.lattice.bytes() + self.mass.bytes() + self.strip_forces.bytes();
+        [mechanics, self.fracture.as_ref().map_or(0, Fracturing::bytes)]
     }
 }

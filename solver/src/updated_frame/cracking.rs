@@ -40,6 +40,8 @@ pub struct PointSums {
     pub stress_work: f64,
     /// Work of the history field, J/m.
     pub history_work: f64,
+    /// Energy the phase field gained as points moved through it, J/m.
+    pub gained_in_motion: f64,
     surface_energy: f64,
     least_phase: f64,
 }
@@ -123,6 +125,7 @@ impl PointSums {
             elastic_energy: self.elastic_energy + other.elastic_energy,
             stress_work: self.stress_work + other.stress_work,
             history_work: self.history_work + other.history_work,
+            gained_in_motion: self.gained_in_motion + other.gained_in_motion,
             surface_energy: self.surface_energy + other.surface_energy,
             least_phase: self.least_phase.min(other.least_phase),
         }
@@ -187,7 +190,11 @@ impl UpdateStress<'_> {
             for first in all.clone().step_by(LANES) {
                 let some = first..(first + LANES).min(all.end);
                 for at in some.clone() {
-                    phases[at - first] = self.interpolate(cell, &self.points[at], &local, kx, ky, &mut sums);
+                    let (phase, slope) = self.interpolate(cell, at, &local, kx, ky, &mut sums);
+                    let (point, cracked) = (&self.points[at], &mut self.fracture[at]);
+                    let gained = [0, 1].map(|d| 0.5 * (cracked.slope[d] + slope[d]) * cracked.moved[d]);
+                    sums.gained_in_motion += point.volume * (gained[0] + gained[1]);
+                    (phases[at - first], cracked.slope) = (phase, slope);
                 }
                 self.degrade(some, Lane(phases), &mut sums);
             }
@@ -195,36 +202,53 @@ impl UpdateStress<'_> {
         sums
     }
 
-    /// Phase field at a point; adds its surface energy `Gc [(1 − c)²/(4 l0) + l0 |grad c|²]` (E 3).
+    /// Phase field at a point, and the slope of its energy `(1 − k) c² H + Gc [(1 − c)²/(4 l0) + l0 |grad c|²]` with H and the
+    /// control values kept; adds the surface energy (E 3).
     #[inline(always)]
     fn interpolate(
         &self,
         cell: &Cell,
-        point: &Point,
+        at: usize,
         local: &[f64; MAX_FUNCTIONS],
         kx: usize,
         ky: usize,
         sums: &mut PointSums,
-    ) -> f64 {
-        let sx = self.patch.spaces[0].shape_functions(cell.span[0], point.position[0]);
-        let sy = self.patch.spaces[1].shape_functions(cell.span[1], point.position[1]);
-        let [mut c, mut along_x, mut along_y] = [0.0; 3];
+    ) -> (f64, [f64; 2]) {
+        let (point, history) = (&self.points[at], self.fracture[at].history);
+        let [x, y] = &self.patch.spaces;
+        let sx = x.shape_functions(cell.span[0], point.position[0]);
+        let sy = y.shape_functions(cell.span[1], point.position[1]);
+        let (xx, yy) = (
+            x.second_derivatives(cell.span[0], point.position[0]),
+            y.second_derivatives(cell.span[1], point.position[1]),
+        );
+        let ([mut c, mut along_x, mut along_y], mut second) = ([0.0; 3], [0.0; 3]);
         for l in 0..ky {
-            let (mut value, mut slope) = (0.0, 0.0);
+            let (mut value, mut slope, mut curvature) = (0.0, 0.0, 0.0);
             for k in 0..kx {
                 value += sx.value[k] * local[l * kx + k];
                 slope += sx.derivative[k] * local[l * kx + k];
+                curvature += xx[k] * local[l * kx + k];
             }
             c += sy.value[l] * value;
             along_x += sy.value[l] * slope;
             along_y += sy.derivative[l] * value;
+            second[0] += sy.value[l] * curvature;
+            second[1] += sy.derivative[l] * slope;
+            second[2] += yy[l] * value;
         }
-        let FractureModel { toughness, length_scale, .. } = self.model;
+        let FractureModel { toughness, length_scale, residual_stiffness, .. } = self.model;
         let gradient_square = along_x * along_x + along_y * along_y;
         let density = (1.0 - c) * (1.0 - c) / (4.0 * length_scale) + length_scale * gradient_square;
         sums.surface_energy += point.volume * toughness * density;
         sums.least_phase = sums.least_phase.min(c);
-        c
+        let by_value = 2.0 * (1.0 - residual_stiffness) * c * history - toughness * (1.0 - c) / (2.0 * length_scale);
+        let by_gradient = 2.0 * toughness * length_scale;
+        let slope = [
+            by_value * along_x + by_gradient * (second[0] * along_x + second[1] * along_y),
+            by_value * along_y + by_gradient * (second[1] * along_x + second[2] * along_y),
+        ];
+        (c, slope)
     }
 
     /// Degraded stress of at most eight points, their energy, and the works of the step.

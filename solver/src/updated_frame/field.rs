@@ -25,14 +25,13 @@ use super::windows::{cut, scatter};
 use crate::contact::Surface;
 use crate::critical_step::highest_frequency;
 use crate::energy::Ledger;
-use crate::fracture::NotConverged;
+use crate::fracture::{NotConverged, lowest_tip};
 use crate::hencky::Gradient;
 use crate::lane::dispatch;
 use crate::lattice::Lattice;
 use crate::material::{ElasticModuli, FractureModel};
 use crate::patch::Patch;
 use crate::scene::{Body, Boundary, Kinematics, Plane, Scene, Transfer};
-use crate::total_frame::lowest_tip;
 
 /// One body in the updated frame.
 #[derive(Debug, Clone)]
@@ -135,7 +134,7 @@ impl DiscreteField {
         field.take_affine_velocities(rigidly);
         field.attach_loads()?;
         field.crack_and_stress(true)?;
-        field.ledger.history_work = 0.0; // there was no step yet
+        (field.ledger, field.losses) = Default::default(); // there was no step yet
         field.find_accelerations();
         Ok(field)
     }
@@ -283,6 +282,7 @@ impl DiscreteField {
         self.elastic_energy = sums.elastic_energy;
         self.stress_work = sums.stress_work;
         self.ledger.history_work += sums.history_work;
+        self.losses.phase_field -= sums.gained_in_motion;
         Ok(())
     }
 

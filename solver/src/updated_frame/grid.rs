@@ -8,7 +8,7 @@ use crate::patch::{ControlGrid, Patch};
 /// Masses below this fraction of the largest give no acceleration; their control points keep their velocity.
 ///
 /// Removing such a control point (zero velocity) would break the partition of unity and brake every moving boundary.
-const NEGLIGIBLE_MASS: f64 = 1e-12;
+const NEGLIGIBLE_MASS: f64 = 1e-16;
 
 /// A field of vectors on the control points, by component.
 pub type VectorField = [Vec<f64>; 2];

@@ -24,9 +24,15 @@
 //! `dt g · Σ m u` of gravity, and the mean reaction of driven sides. What closure remains is round-off in an elastic body with
 //! small strains. With finite strains tau replaces sigma and V the reference volume, d is taken with respect to the
 //! positions at n beside tau(n) and to those at n + 1 beside tau(n+1), and the trapezoidal sum leaves O(dt²).
-//! With a phase field there remain the stress-work quadrature, as in the total frame, and what the energy of the phase
-//! field changes by as its points pass through the spans: it swings with the period of a span and does not add up. It is
-//! not booked, since the only measure of it, the residual of the phase-field equation, would hide errors of that equation.
+//!
+//! With a phase field there is a fourth part. The equation of the phase field balances what c changes by through its control
+//! values, but a point also sees c change because it moves through them by δx: in the updated frame c is a field in space,
+//! and no stress answers to that. Its energy, with the history and the control values kept, has the slope s at a point, and
+//!
+//! - `phase_field`: `−Σ V [s(n) + s(n+1)]/2 · δx`,  `s = grad {(1 − k) c² H + Gc [(1 − c)²/(4 l0) + l0 |grad c|²]}`.
+//!
+//! It swings with the period of a span where a body moves on as a whole, and grows where a crack opens and stretches the
+//! gradient of c across it. What then remains is the stress-work quadrature, O(dt²), as in the total frame.
 
 use super::field::DiscreteField;
 use super::grid::ImposedEnergy;
@@ -40,6 +46,8 @@ pub struct TransferLosses {
     pub power: f64,
     /// Loss where prescribed velocities are imposed on what arrived.
     pub imposed: f64,
+    /// Loss of the phase field as points move through it.
+    pub phase_field: f64,
 }
 
 /// What the grid holds when the points leave it, per unit thickness.
@@ -75,7 +83,14 @@ impl DiscreteField {
         self.losses.imposed += imposed.loss;
         self.ledger.external_work += imposed.work + dt * weight + 0.5 * dt * (before + now);
         self.ledger.external_work += 0.5 * dt * (forced_before + forced_now + self.driven_power + driven);
-        self.ledger.transfer_loss = self.losses.kinetic + self.losses.power + self.losses.imposed;
+        self.ledger.transfer_loss = self.losses.sum();
         self.driven_power = driven;
+    }
+}
+
+impl TransferLosses {
+    /// All of it.
+    pub fn sum(&self) -> f64 {
+        self.kinetic + self.power + self.imposed + self.phase_field
     }
 }

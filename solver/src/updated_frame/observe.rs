@@ -83,8 +83,13 @@ impl UpdatedFrame {
     /// Parts of the transfer loss so far, J.
     pub fn transfer_losses(&self) -> TransferLosses {
         self.fields.iter().fold(TransferLosses::default(), |sum, field| {
-            let TransferLosses { kinetic, power, imposed } = field.transfer_losses();
-            TransferLosses { kinetic: sum.kinetic + kinetic, power: sum.power + power, imposed: sum.imposed + imposed }
+            let part = field.transfer_losses();
+            TransferLosses {
+                kinetic: sum.kinetic + part.kinetic,
+                power: sum.power + part.power,
+                imposed: sum.imposed + part.imposed,
+                phase_field: sum.phase_field + part.phase_field,
+            }
         })
     }
 
@@ -187,9 +192,9 @@ impl DiscreteField {
 
     /// Parts of the transfer loss so far, J.
     pub fn transfer_losses(&self) -> TransferLosses {
-        let TransferLosses { kinetic, power, imposed } = self.losses;
+        let TransferLosses { kinetic, power, imposed, phase_field } = self.losses;
         let t = self.thickness;
-        TransferLosses { kinetic: kinetic * t, power: power * t, imposed: imposed * t }
+        TransferLosses { kinetic: kinetic * t, power: power * t, imposed: imposed * t, phase_field: phase_field * t }
     }
 
     /// Kinetic energy of the points as the scheme keeps it, `1/2 Σ m v_p(n − 1/2) · v_p(n + 1/2)` with FLIP or MUSL, J; at

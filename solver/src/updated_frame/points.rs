@@ -41,6 +41,10 @@ pub struct FracturePoint {
     pub remembered: f64,
     /// Strain of the last step.
     pub strain_increment: [f64; 3],
+    /// Displacement of the last step, m.
+    pub moved: [f64; 2],
+    /// What the energy of the phase field there changes by as the point moves through it, J/m⁴ (see [`super::losses`]).
+    pub slope: [f64; 2],
 }
 
 /// The points of one span.

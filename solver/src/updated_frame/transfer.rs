@@ -165,9 +165,10 @@ impl<K: Kinematics> GridToPoints<'_, K> {
                 let some = first..(first + LANES).min(all.end);
                 for at in some.clone() {
                     let increment = self.move_point(cell, at, &local, kx, ky, &mut motion);
-                    increments[at - first] = increment;
+                    increments[at - first] = increment.0;
                     if let Some(fracture) = self.fracture.get_mut(at) {
-                        fracture.strain_increment = increment;
+                        fracture.strain_increment = increment.0;
+                        fracture.moved = increment.1;
                     }
                 }
                 if let Some(moduli) = self.elastic {
@@ -193,7 +194,7 @@ impl<K: Kinematics> GridToPoints<'_, K> {
         local
     }
 
-    /// Moves and strains one point; returns its strain increment.
+    /// Moves and strains one point; returns its strain increment and displacement.
     #[inline(always)]
     fn move_point(
         &mut self,
@@ -203,7 +204,7 @@ impl<K: Kinematics> GridToPoints<'_, K> {
         kx: usize,
         ky: usize,
         motion: &mut StripMotion,
-    ) -> [f64; 3] {
+    ) -> ([f64; 3], [f64; 2]) {
         let [x, y] = &self.patch.spaces;
         let point = &mut self.points[at];
         let sx = x.shape_functions(cell.span[0], point.position[0]);
@@ -225,15 +226,16 @@ impl<K: Kinematics> GridToPoints<'_, K> {
         }
         let step = [0, 1].map(|c| [self.dt * along_x[c], self.dt * along_y[c]]);
         let increment = self.kinematics.strain(at, &mut point.strain, &step);
+        let moved = [0, 1].map(|d| self.dt * value[d]);
         for d in 0..2 {
             point.velocity[d] = self.kept * point.velocity[d] + value[2 + d];
-            point.displacement[d] += self.dt * value[d];
-            point.position[d] += self.dt * value[d];
+            point.displacement[d] += moved[d];
+            point.position[d] += moved[d];
             motion.fastest = motion.fastest.max(value[d] * value[d]);
         }
         let spans = [&x.spans()[cell.span[0]], &y.spans()[cell.span[1]]];
         motion.left_span |= (0..2).any(|d| !(spans[d].left <= point.position[d] && point.position[d] < spans[d].right));
-        increment
+        (increment, moved)
     }
 }
 

@@ -1,9 +1,10 @@
 //! Checks of times, step, solver, boundaries and output.
 
+use super::Findings;
 use super::material::plausible_speed;
-use super::{Findings, mesh::span_lengths};
 use crate::quadrature::Rule;
 use crate::scene::{Body, Boundary, Frame, Mass, Scene, Shape, Side, TimeStep, Transfer};
+use crate::spans::span_lengths;
 use crate::spline::SplineSpace;
 
 /// Most steps of a run.

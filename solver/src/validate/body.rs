@@ -1,11 +1,12 @@
 //! Checks of bodies: shape, place in the mesh, points, resolution of the length scale, tractions, cracks.
 
+use super::Findings;
 use super::analysis::side_name;
-use super::geometry::{defect, outline};
-use super::{Findings, mesh::span_lengths};
+use super::geometry::{covered_side, defect, outline};
 use crate::nurbs::{LocateError, NurbsPatch};
 use crate::quadrature::MAX_POINTS;
 use crate::scene::{Body, Crack, Edge, Fracture, Layout, Mesh, Scene, Shape, Traction};
+use crate::spans::span_lengths;
 
 /// Relative tolerance of "inside", of the size of the mesh or body.
 const TOLERANCE: f64 = 1e-9;
@@ -117,7 +118,8 @@ fn inside_mesh(key: &str, body: &Body, mesh: &Mesh, findings: &mut Findings) -> 
     false
 }
 
-/// Whether the outline of a shape lies on a patch with a geometry.
+/// Whether a shape lies on a patch with a geometry: its outline does, and no side of the patch runs inside it, as that of a
+/// hole would.
 fn inside_patch(key: &str, shape: &Shape, patch: &NurbsPatch, findings: &mut Findings) -> bool {
     let tolerance = TOLERANCE * patch.size();
     for point in outline(shape) {
@@ -131,6 +133,13 @@ fn inside_patch(key: &str, shape: &Shape, patch: &NurbsPatch, findings: &mut Fin
             findings.error(format!("{key}.shape"), message, remedy);
             return false;
         }
+    }
+    if let Some([x, y]) = covered_side(shape, patch) {
+        let message =
+            format!("the body covers the side of the patch at ({x:.6e}, {y:.6e}) m, beyond which there is no mesh");
+        let remedy = "move or shrink the body, cut the hole out of it, or use shape = \"patch\"";
+        findings.error(format!("{key}.shape"), message, remedy);
+        return false;
     }
     true
 }

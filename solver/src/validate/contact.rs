@@ -1,9 +1,10 @@
 //! Checks of several bodies, rigid bodies and contact.
 
+use super::Findings;
 use super::geometry::defect;
-use super::{Findings, mesh::span_lengths};
 use crate::contact::Surface;
-use crate::scene::{Body, Frame, Scene};
+use crate::scene::{Body, Frame, Scene, Shape};
+use crate::spans::span_lengths;
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
 const TOLERANCE: f64 = 1e-3;
@@ -53,7 +54,7 @@ fn overlaps(scene: &Scene, findings: &mut Findings) {
                 continue;
             }
             let [h, _] = span_lengths(&scene.mesh, &a.shape);
-            let deepest = depth(&surfaces[i], &surfaces[j]).max(depth(&surfaces[j], &surfaces[i]));
+            let deepest = depth(&surfaces[i], &surfaces[j], &b.shape).max(depth(&surfaces[j], &surfaces[i], &a.shape));
             if deepest > TOLERANCE * h {
                 let message = format!("body {:?} overlaps body {:?} by {deepest:.3e} m at t = 0", b.name, a.name);
                 findings.error(format!("body.{j}.shape"), message, "move the bodies apart until they touch at most");
@@ -63,10 +64,11 @@ fn overlaps(scene: &Scene, findings: &mut Findings) {
 }
 
 /// How far the segments of one boundary reach into the body inside another, m.
-fn depth(one: &Surface, other: &Surface) -> f64 {
+fn depth(one: &Surface, other: &Surface, inside: &Shape) -> f64 {
     let [low, high] = other.bounding_box();
     let all = other.segments_in([[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]]);
-    let near = one.segments_in([low, high]).into_iter();
-    let nearest = near.filter_map(|segment| other.nearest(one.center(segment).position, &all, f64::INFINITY));
-    nearest.map(|nearest| -nearest.distance).fold(0.0, f64::max)
+    let centers = one.segments_in([low, high]).into_iter().map(|segment| one.center(segment).position);
+    let within = centers.filter(|position| inside.contains(*position));
+    let nearest = within.filter_map(|position| other.nearest(position, &all, f64::INFINITY));
+    nearest.map(|nearest| nearest.distance.abs()).fold(0.0, f64::max)
 }

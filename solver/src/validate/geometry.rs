@@ -1,11 +1,12 @@
 //! Shapes that are empty or malformed, and their outlines.
 
+use crate::nurbs::NurbsPatch;
 use crate::scene::Shape;
 use crate::shape::polygon_edges;
 
 type Point = [f64; 2];
 
-/// Points looked at along a circle or a straight edge of a body on a general patch.
+/// Points looked at along a circle or a straight edge of a body on a general patch, and along a side of the patch.
 const OUTLINE_INTERVALS: usize = 64;
 
 /// Why a shape is empty or malformed, with a remedy.
@@ -69,5 +70,55 @@ pub fn outline(shape: &Shape) -> Vec<[f64; 2]> {
             circle(*center, *inner_radius).chain(circle(*center, *outer_radius)).collect()
         }
         Shape::Difference { of, .. } => outline(of),
+    }
+}
+
+/// A point (m) of the sides of a patch that lies inside a shape, not on its boundary.
+pub fn covered_side(shape: &Shape, patch: &NurbsPatch) -> Option<[f64; 2]> {
+    if is_patch(shape) {
+        return None;
+    }
+    let margin = 1e-6 * patch.size();
+    let ranges =
+        patch.spaces().each_ref().map(|space| [space.spans()[0].left, space.spans()[space.spans().len() - 1].right]);
+    let at = |d: usize, t: f64| (1.0 - t) * ranges[d][0] + t * ranges[d][1];
+    let sides = (0..=OUTLINE_INTERVALS).map(|i| i as f64 / OUTLINE_INTERVALS as f64);
+    let parameters = sides.flat_map(|t| [[t, 0.0], [t, 1.0], [0.0, t], [1.0, t]]).map(|[s, t]| [at(0, s), at(1, t)]);
+    let position = |p: [f64; 2]| patch.find_span(p).map(|span| patch.map(&patch.shape_functions(span, p)).position);
+    parameters.filter_map(position).find(|x| shape.contains_within(*x, -margin))
+}
+
+/// Whether a shape is the whole patch, less what is cut out of it.
+fn is_patch(shape: &Shape) -> bool {
+    match shape {
+        Shape::Difference { of, .. } => is_patch(of),
+        _ => *shape == Shape::Patch,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_over_a_hole_covers_its_side() {
+        use std::f64::consts::PI;
+        let half_ring = NurbsPatch::annular_sector(1.0, 3.0, [0.0, PI]).unwrap();
+        let disk = |x: f64, y: f64, radius: f64| Shape::Disk { center: [x, y], radius };
+        assert!(covered_side(&disk(0.0, 1.2, 1.1), &half_ring).is_some(), "over the inner side");
+        assert!(covered_side(&disk(0.0, 2.0, 1.0), &half_ring).is_none(), "touching both arcs");
+        assert!(covered_side(&disk(-1.5, 1.5, 0.5), &half_ring).is_none(), "well inside");
+        assert!(covered_side(&Shape::Patch, &half_ring).is_none());
+        let cut = Shape::Difference { of: Box::new(Shape::Patch), minus: vec![disk(0.0, 2.0, 0.5)] };
+        assert!(covered_side(&cut, &half_ring).is_none(), "the patch less a disk");
+
+        // Almost closed, so that the outline of a disk over the hole lies on the patch but where the ring is open.
+        let ring = NurbsPatch::annular_sector(1.0, 3.0, [0.0, 2.0 * PI - 1e-3]).unwrap();
+        let hole = || vec![disk(0.0, 0.0, 1.0)];
+        let around_hole = Shape::Difference { of: Box::new(disk(0.0, 0.0, 2.0)), minus: hole() };
+        let [x, y] = covered_side(&disk(0.0, 0.0, 2.0), &ring).unwrap();
+        assert!(x.hypot(y) <= 2.0);
+        let [x, y] = covered_side(&around_hole, &ring).expect("the opening is still covered");
+        assert!(x.hypot(y) > 1.0 && y.abs() < 1e-2, "not the side of the hole: ({x}, {y})");
     }
 }

@@ -1,8 +1,8 @@
 //! Checks of the background mesh: degrees, open knot vectors, geometry.
 
 use super::Findings;
-use crate::nurbs::{NurbsError, NurbsPatch};
-use crate::scene::{Mesh, Shape};
+use crate::nurbs::NurbsError;
+use crate::scene::Mesh;
 
 /// Largest number of spans of a mesh.
 const MOST_SPANS: usize = 50_000_000;
@@ -82,38 +82,4 @@ fn knots(d: usize, degree: usize, knots: &[f64], findings: &mut Findings) {
         let message = format!("the knot {} stands {} times, so the basis breaks apart", run[0], repeated(run[0]));
         findings.error(key, message, format!("repeat an inner knot at most {degree} times, the ends {ends} times"));
     }
-}
-
-/// Smallest and largest length (m) of the spans under the box around a shape; of a patch with a geometry, of the chords
-/// between neighbouring knots through the middles of all spans.
-pub(super) fn span_lengths(mesh: &Mesh, shape: &Shape) -> [f64; 2] {
-    let widen = |[least, most]: [f64; 2], length: f64| [least.min(length), most.max(length)];
-    let start = [f64::INFINITY, 0.0];
-    if let Some(Ok(patch)) = mesh.nurbs() {
-        return chords(&patch).fold(start, widen);
-    }
-    let (from, to) = mesh.extent(shape);
-    let lengths = (0..2).flat_map(|d| {
-        let tolerance = 1e-9 * (to[d] - from[d]);
-        let overlaps = move |k: &&[f64]| k[1] > k[0] && k[1] > from[d] + tolerance && k[0] < to[d] - tolerance;
-        mesh.knots[d].windows(2).filter(overlaps).map(|k| k[1] - k[0])
-    });
-    lengths.fold(start, widen)
-}
-
-fn chords(patch: &NurbsPatch) -> impl Iterator<Item = f64> {
-    let [x, y] = patch.spaces().each_ref().map(|space| space.spans().iter().enumerate());
-    let spans = y.flat_map(move |(j, t)| x.clone().map(move |(i, s)| ([i, j], [[s.left, s.right], [t.left, t.right]])));
-    spans.flat_map(move |(span, ends)| {
-        [0, 1].map(|d| {
-            let middle = ends.map(|[left, right]| 0.5 * (left + right));
-            let at = |end: f64| {
-                let mut parameters = middle;
-                parameters[d] = end;
-                patch.map(&patch.shape_functions(span, parameters)).position
-            };
-            let [a, b] = ends[d].map(at);
-            (b[0] - a[0]).hypot(b[1] - a[1])
-        })
-    })
 }

@@ -1,6 +1,9 @@
 //! Scenes and small helpers that several tests share.
 #![allow(dead_code)] // each test takes what it needs
 
+pub mod plain_points;
+pub mod standing_wave;
+
 use fisura::Simulation;
 use fisura::energy::Sample;
 use fisura::material::{ElasticModuli, FractureModel};
@@ -79,6 +82,24 @@ pub fn elastic_scene(degree: usize, size: [f64; 2], cells: [usize; 2]) -> Scene 
     }
 }
 
+/// A solid of unit modulus and density.
+pub fn unit_solid() -> Material {
+    Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None }
+}
+
+/// A free body of a material called `solid` in the updated frame, with FLIP, at half the critical step, for 1 s.
+pub fn updated_scene(material: Material, mesh: Mesh, shape: Shape) -> Scene {
+    let mut scene = elastic_scene(mesh.degree[0], [1.0; 2], [1; 2]);
+    scene.materials = [("solid".to_string(), material)].into();
+    scene.bodies[0].material = "solid".into();
+    scene.bodies[0].shape = shape;
+    scene.mesh = mesh;
+    scene.analysis.frame = Frame::Updated;
+    scene.analysis.end_time = 1.0;
+    scene.analysis.safety = 0.5;
+    scene
+}
+
 /// A plate of 10 mm by 5 mm with spans of l0, pulled open by `stress` (Pa); an elastic one.
 pub fn pulled_plate(stress: f64) -> Scene {
     let mut scene = elastic_scene(2, [0.01, 0.005], [40, 20]);
@@ -103,6 +124,12 @@ pub fn run(scene: &Scene) -> (Simulation, Vec<Sample>) {
         samples.push(simulation.advance_to_next_sample().expect("the scene runs"));
     }
     (simulation, samples)
+}
+
+/// Largest closure over the largest energy of a run; not a number if one closure is not.
+pub fn relative_closure(samples: &[Sample]) -> f64 {
+    let largest = |of: fn(&Sample) -> f64| samples.iter().map(of).max_by(f64::total_cmp).expect("samples");
+    largest(|s| s.closure.abs()) / largest(Sample::largest_term)
 }
 
 /// Runs `f` in a pool of its own.

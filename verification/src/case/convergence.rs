@@ -120,7 +120,6 @@ const KEYS: [&str; 15] = [
 
 pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
     let fields = item.fields(&KEYS)?;
-    let wholes = |item: &Item<'_>, least, most| item.each(|entry| entry.whole(least, most));
     let problem = fields.need("problem", "problem = \"elastostatics\"", Item::text);
     let planes = [("strain", Plane::Strain), ("stress", Plane::Stress)];
     let plane = fields.or("plane", Plane::Strain, |i| i.choice(&planes));
@@ -136,21 +135,21 @@ pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
         ("ring", PatchFamily::Ring),
     ];
     let frame = fields.or("frame", Frame::Total, |i| i.choice(&[("total", Frame::Total), ("updated", Frame::Updated)]));
-    let transfers = fields.or("transfers", vec![Transfer::Flip], |i| i.each(transfer));
+    let transfers = fields.maybe("transfers", |i| filled(i, "[\"flip\", \"apic\"]", transfer));
     let patch = fields.or("patch", PatchFamily::Square, |i| i.choice(&families));
-    let degrees = fields.need("degrees", "degrees = [2, 3]", |i| wholes(i, 1, 4));
-    let cells = fields.need("cells", "cells = [4, 8, 16, 32]", |i| wholes(i, 1, 4096));
+    let degrees = fields.need("degrees", "degrees = [2, 3]", |i| filled(i, "[2, 3]", |n| n.whole(1, 4)));
+    let cells = fields.need("cells", "cells = [4, 8, 16, 32]", |i| filled(i, "[4, 8, 16, 32]", |n| n.whole(1, 4096)));
     let layouts = [("gauss", Layout::Gauss), ("uniform", Layout::Uniform), ("maclaurin", Layout::Maclaurin)];
     let layout = fields.or("layout", Layout::Gauss, |i| i.choice(&layouts));
-    let points = fields.maybe("points", |i| wholes(i, 1, 16));
+    let points = fields.maybe("points", |i| i.each(|n| n.whole(1, 16)));
     let masses = [("consistent", Mass::Consistent), ("lumped", Mass::Lumped)];
     let mass = fields.or("mass", Mass::Consistent, |i| i.choice(&masses));
     let loadings = [("strong", Loading::Strong), ("weak", Loading::Weak)];
     let loading = fields.or("loading", Loading::Strong, |i| i.choice(&loadings));
     let step_power = fields.maybe("step_power", |i| i.quantity(Dimension::NONE));
     let refine = fields.or("refine", true, |i| i.choice(&[("mesh", true), ("time-step", false)]));
-    let safety = fields.or("safety", vec![0.4], |i| i.each(|entry| entry.quantity(Dimension::NONE)));
-    let end_time = fields.maybe("end_time", |i| i.quantity(Dimension::TIME));
+    let safety = fields.or("safety", vec![0.4], |i| filled(i, "[0.4]", |n| positive(n, Dimension::NONE)));
+    let end_time = fields.maybe("end_time", |i| positive(i, Dimension::TIME));
     let (degrees, points) = (degrees?, points?);
     if let Some(points) = &points
         && points.len() != degrees.len()
@@ -158,12 +157,17 @@ pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
         let message = format!("{} numbers of points for {} degrees", points.len(), degrees.len());
         return fields.get("points")?.fail(message, "give one number of points per span and direction for each degree");
     }
+    let (frame, transfers) = (frame?, transfers?);
+    if frame == Frame::Total && transfers.is_some() {
+        let remedy = "leave transfers out, or give frame = \"updated\"";
+        return fields.get("transfers")?.fail("the total frame has no transfers", remedy);
+    }
     let step_power = step_power?;
     Some(ConvergenceSetup {
         problem: problem?,
         plane: plane?,
-        frame: frame?,
-        transfers: transfers?,
+        frame,
+        transfers: transfers.unwrap_or(vec![Transfer::Flip]),
         patch: patch?,
         degrees,
         cells: cells?,
@@ -175,4 +179,72 @@ pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
         safety: safety?,
         end_time: end_time?,
     })
+}
+
+/// A list with at least one entry.
+fn filled<'a, T>(item: &Item<'a>, like: &str, read: impl Fn(&Item<'a>) -> Option<T>) -> Option<Vec<T>> {
+    let entries = item.each(read)?;
+    if entries.is_empty() {
+        return item.fail("the list is empty", format!("give at least one entry, such as {like}"));
+    }
+    Some(entries)
+}
+
+fn positive(item: &Item<'_>, dimension: Dimension) -> Option<f64> {
+    let value = item.quantity(dimension)?;
+    if value <= 0.0 {
+        return item.fail(format!("{value} is not positive"), "give a number above zero");
+    }
+    Some(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene_file::document::Document;
+    use crate::scene_file::fields::Problems;
+
+    /// What is wrong with a table that is sound but for these lines: keys, messages and remedies.
+    fn problems(lines: &str) -> Vec<(String, String, String)> {
+        let sound = [("problem", "\"vortex\""), ("degrees", "[2]"), ("cells", "[4, 8]")];
+        let given = |key: &str| lines.lines().any(|line| line.starts_with(key));
+        let rest: String =
+            sound.iter().filter(|(key, _)| !given(key)).map(|(key, value)| format!("{key} = {value}\n")).collect();
+        let document = Document::parse("trial.toml", &format!("{rest}{lines}\n")).unwrap();
+        let problems = Problems::default();
+        let setup = read(&Item::new(&document.root, "convergence", &problems));
+        let found = problems.into_inner();
+        assert_eq!(setup.is_none(), !found.is_empty(), "{lines}");
+        found.into_iter().map(|p| (p.key, p.message, p.remedy)).collect()
+    }
+
+    #[test]
+    fn what_is_sound_is_read() {
+        for lines in ["", "frame = \"updated\"\ntransfers = [\"flip\"]", "safety = [0.4]\nend_time = \"1 s\""] {
+            assert_eq!(problems(lines), vec![], "{lines}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_run_is_refused_by_key_with_a_remedy() {
+        for (key, lines) in [
+            ("degrees", "degrees = []"),
+            ("degrees.1", "degrees = [2, 0]"),
+            ("cells", "cells = []"),
+            ("cells.0", "cells = [0, 4]"),
+            ("points", "points = [3, 4]"),
+            ("safety", "safety = []"),
+            ("safety.0", "safety = [0.0]"),
+            ("safety.1", "safety = [0.4, -0.2]"),
+            ("end_time", "end_time = \"0 s\""),
+            ("end_time", "end_time = -1.0"),
+            ("transfers", "transfers = [\"flip\"]"),
+            ("transfers", "frame = \"updated\"\ntransfers = []"),
+        ] {
+            let found = problems(lines);
+            assert_eq!(found.len(), 1, "{lines}: {found:?}");
+            assert_eq!(found[0].0, format!("convergence.{key}"), "{lines}: {found:?}");
+            assert!(found[0].2.contains("give"), "{found:?}");
+        }
+    }
 }

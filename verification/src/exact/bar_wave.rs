@@ -40,41 +40,22 @@ fn displacement([x, _, t]: [Jet; 3]) -> [Jet; 2] {
     [mode(1.0) * AMPLITUDES[0] + mode(2.0) * AMPLITUDES[1], Jet::constant(0.0)]
 }
 
-/// `finite-wave`: stress linear in the deformation gradient, no body force.
+/// The wave with the logarithmic law and a body force, or with the linear one and none.
 #[derive(Debug, Clone, Copy)]
-pub struct FiniteWave {
+pub struct BarWave<const HENCKY: bool> {
     /// Plane state.
     pub plane: Plane,
 }
 
-impl Motion for FiniteWave {
-    const FORCE_FREE: bool = true;
-
-    fn material(&self) -> Material {
-        material()
-    }
-
-    fn plane(&self) -> Plane {
-        self.plane
-    }
-
-    fn displacement(&self, variables: [Jet; 3]) -> [Jet; 2] {
-        displacement(variables)
-    }
-
-    fn stress(&self, gradient: Tensor) -> Tensor {
-        law::linear(&ElasticModuli::new(&material(), self.plane), gradient)
-    }
-}
+/// `finite-wave`: stress linear in the deformation gradient, no body force.
+pub type FiniteWave = BarWave<false>;
 
 /// `hencky-wave`: logarithmic stress law, with a body force.
-#[derive(Debug, Clone, Copy)]
-pub struct HenckyWave {
-    /// Plane state.
-    pub plane: Plane,
-}
+pub type HenckyWave = BarWave<true>;
 
-impl Motion for HenckyWave {
+impl<const HENCKY: bool> Motion for BarWave<HENCKY> {
+    const FORCE_FREE: bool = !HENCKY;
+
     fn material(&self) -> Material {
         material()
     }
@@ -88,6 +69,7 @@ impl Motion for HenckyWave {
     }
 
     fn stress(&self, gradient: Tensor) -> Tensor {
-        law::hencky(&ElasticModuli::new(&material(), self.plane), gradient)
+        let law = if HENCKY { law::hencky } else { law::linear };
+        law(&ElasticModuli::new(&material(), self.plane), gradient)
     }
 }

@@ -17,12 +17,13 @@
 //! order departs from it by more than a tenth, p is limited to the range from 1/2 to theory and F is 3 (Oberkampf and Roy,
 //! Verification and Validation in Scientific Computing, 2010, section 8.6.3); within a tenth, p is that of theory.
 
+use fisura::spans::largest_spans;
+
 use super::{Measured, Run, expected, measure};
 use crate::case::{Case, Check};
 use crate::expand::CaseScene;
 use crate::reference::Library;
 use crate::scene_file::SceneFileError;
-use crate::study::scene::span_lengths;
 
 /// Extrapolation by an order below this would go far beyond what was computed.
 const LEAST_ORDER: f64 = 0.5;
@@ -52,7 +53,7 @@ impl Estimate {
 
 /// Representative span length of a run's mesh, m.
 pub fn span(run: &Run) -> f64 {
-    let [x, y] = span_lengths(&run.scene.mesh);
+    let [x, y] = largest_spans(&run.scene.mesh);
     (x * y).sqrt()
 }
 
@@ -191,7 +192,7 @@ fn usable(
     if !scenes.windows(2).all(alike) {
         return Err(("variants differ in more than the mesh", "one case per degree, layout and material"));
     }
-    let mut spans: Vec<[f64; 2]> = scenes.iter().map(|s| span_lengths(&s.scene.mesh)).collect();
+    let mut spans: Vec<[f64; 2]> = scenes.iter().map(|s| largest_spans(&s.scene.mesh)).collect();
     spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let needed = if estimate != Estimate::ObservedOrder && check.order.is_some() { 2 } else { 3 };
     if spans.len() < needed {

@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::tip::fitted_slope;
 use super::{Measured, Run, column, curve_reference, position};
 use crate::case::Check;
+use crate::extremes::{self, larger};
 use crate::record::{Reference, ReferenceKind};
 use crate::reference::{self, Library};
 
@@ -62,8 +63,8 @@ pub(super) fn slope_over_plane_wave_power(check: &Check, run: &Run) -> Result<Me
 
 /// Largest |closure| over the largest energy of the run.
 pub(super) fn closure(run: &Run) -> Result<f64, String> {
-    let most = |name: &str| -> f64 { run.column(name).map_or(0.0, |c| c.iter().map(|v| v.abs()).fold(0.0, larger)) };
-    let scale = ["kinetic_j", "elastic_j", "fracture_j", "external_work_j"].map(most).into_iter().fold(0.0, larger);
+    let most = |name: &str| -> f64 { run.column(name).map_or(0.0, |c| extremes::largest(c.iter().map(|v| v.abs()))) };
+    let scale = extremes::largest(["kinetic_j", "elastic_j", "fracture_j", "external_work_j"].map(most));
     if scale > 0.0 { Ok(most("closure_j") / scale) } else { Err("the run has no energy".to_string()) }
 }
 
@@ -71,12 +72,12 @@ pub(super) fn closure(run: &Run) -> Result<f64, String> {
 pub(super) fn drift(check: &Check, run: &Run) -> Result<f64, String> {
     let (window, values) = (run.window(check)?, run.column(column(check)?)?);
     let first = values[window.start];
-    Ok(values[window].iter().map(|v| (v - first).abs()).fold(0.0, larger) / first.abs())
+    Ok(extremes::largest(values[window].iter().map(|v| (v - first).abs())) / first.abs())
 }
 
 /// Largest magnitude in the window.
 pub(super) fn largest(check: &Check, run: &Run) -> Result<f64, String> {
-    Ok(run.column(column(check)?)?[run.window(check)?].iter().map(|v| v.abs()).fold(0.0, larger))
+    Ok(extremes::largest(run.column(column(check)?)?[run.window(check)?].iter().map(|v| v.abs())))
 }
 
 /// Time (s) and height of the peak in the window: a parabola fitted to the samples within `at` seconds of the highest (its
@@ -124,8 +125,8 @@ pub(super) fn difference(check: &Check, run: &Run, runs: &[Run]) -> Result<f64, 
     if values.len() != others.len() || times.iter().zip(other_times).any(|(a, b)| (a - b).abs() > 1e-9 * a.abs()) {
         return Err("the two variants have different sample times".to_string());
     }
-    let scale = others.iter().map(|v| v.abs()).fold(0.0, larger);
-    Ok(values.iter().zip(&others).map(|(a, b)| (a - b).abs()).fold(0.0, larger) / scale)
+    let scale = extremes::largest(others.iter().map(|v| v.abs()));
+    Ok(extremes::largest(values.iter().zip(&others).map(|(a, b)| (a - b).abs())) / scale)
 }
 
 /// Largest principal stress in the middle of the mesh, Pa: mean over the frames, weighted with the square of a sine that
@@ -140,11 +141,6 @@ pub(super) fn stress_in_the_middle(run: &Run) -> Result<f64, String> {
         weights += weight;
     }
     if weights > 0.0 { Ok(sum / weights) } else { Err("no frame lies within the run".to_string()) }
-}
-
-/// The larger of two numbers; not a number if either is not: a gap in a column must not pass for agreement.
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
 /// Order at which a quantity falls with the time step over the variants: slope of log closure against log dt.

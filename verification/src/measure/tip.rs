@@ -6,6 +6,7 @@ use fisura::fracture::BROKEN;
 
 use super::{Run, position};
 use crate::case::Check;
+use crate::extremes::larger;
 
 /// Distance from the axis that counts as having left it, m.
 const OFF_AXIS: f64 = 0.25e-3;
@@ -119,5 +120,5 @@ pub(super) fn asymmetry(run: &Run) -> Option<f64> {
     let phase = picture.phase.as_ref()?;
     let [columns, rows] = picture.pixels;
     let mirrored = |index: usize| phase[(rows - 1 - index / columns) * columns + index % columns];
-    (0..phase.len()).map(|index| (phase[index] - mirrored(index)).abs()).reduce(f64::max)
+    (0..phase.len()).map(|index| (phase[index] - mirrored(index)).abs()).reduce(larger)
 }

@@ -134,9 +134,14 @@ fn annulus(item: &Item<'_>, fields: &Fields<'_>, degree: [usize; 2]) -> Option<M
         let message = "a full turn would leave a slit: the ends of the patch touch and are not joined";
         return item.fail(message, "give a sector with symmetry planes at its ends, such as half a turn");
     }
+    if inner == 0.0 {
+        let message = "an inner radius of zero: a side of the patch would shrink to a point, which has no normal";
+        let remedy = "give a small positive inner_radius, or a disk as the body of a rectangular mesh";
+        return inner_fields.get("inner_radius")?.fail(message, remedy);
+    }
     let sector = match NurbsPatch::annular_sector(inner, outer, angles) {
         Ok(sector) => sector,
-        Err(error) => return item.fail(error.to_string(), "give 0 <= inner_radius < outer_radius and growing angles"),
+        Err(error) => return item.fail(error.to_string(), "give 0 < inner_radius < outer_radius and growing angles"),
     };
     let pieces = sector.spaces()[1].spans().len();
     if !cells[1].is_multiple_of(pieces) {

@@ -8,8 +8,10 @@ use fisura::spline::SplineSpace;
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::expand::CaseScene;
+use crate::extremes::larger;
+use crate::random::Random;
 
-const KNOT_VECTORS: usize = 20;
+const KNOT_VECTORS: u64 = 20;
 const SPANS: usize = 12;
 const POINTS: usize = 50;
 
@@ -18,7 +20,7 @@ pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stu
     for degree in 1..=4 {
         let mut worst = Worst::default();
         for seed in 0..KNOT_VECTORS {
-            let space = SplineSpace::new(degree, &random_knots(degree, seed as u64));
+            let space = SplineSpace::new(degree, &Random::scrambled(seed).knots(degree, SPANS, false));
             worst.look(&space);
         }
         let variant = format!("p={degree}");
@@ -28,25 +30,6 @@ pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stu
         findings.add(&variant, "continuity at inner knots, largest jump", worst.jump, None);
     }
     Ok(findings)
-}
-
-/// Open knots on [0, 1] with spans between 1 and 100 in arbitrary units.
-fn random_knots(degree: usize, seed: u64) -> Vec<f64> {
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1);
-    let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
-    let lengths: Vec<f64> = (0..SPANS).map(|_| 100f64.powf(next())).collect();
-    let total: f64 = lengths.iter().sum();
-    let mut knots = vec![0.0; degree + 1];
-    let mut position = 0.0;
-    for length in &lengths[..SPANS - 1] {
-        position += length / total;
-        knots.push(position);
-    }
-    knots.extend(vec![1.0; degree + 1]);
-    knots
 }
 
 #[derive(Default)]
@@ -69,14 +52,14 @@ impl Worst {
                     (0..=degree).map(|k| table[k] * factors(k)).sum()
                 };
                 let control = |k: usize| greville[span.first + k];
-                self.unity = self.unity.max((sum(&shape.value, &|_| 1.0) - 1.0).abs());
-                self.linear = self.linear.max((sum(&shape.value, &control) - x).abs());
-                self.gradient = self.gradient.max(span.length() * sum(&shape.derivative, &|_| 1.0).abs());
-                self.gradient = self.gradient.max(span.length() * (sum(&shape.derivative, &control) - 1.0).abs());
+                self.unity = larger(self.unity, (sum(&shape.value, &|_| 1.0) - 1.0).abs());
+                self.linear = larger(self.linear, (sum(&shape.value, &control) - x).abs());
+                self.gradient = larger(self.gradient, span.length() * sum(&shape.derivative, &|_| 1.0).abs());
+                self.gradient = larger(self.gradient, span.length() * (sum(&shape.derivative, &control) - 1.0).abs());
             }
         }
         for index in 1..space.spans().len() {
-            self.jump = self.jump.max(jump_at_knot(space, index));
+            self.jump = larger(self.jump, jump_at_knot(space, index));
         }
     }
 }
@@ -92,10 +75,10 @@ fn jump_at_knot(space: &SplineSpace, index: usize) -> f64 {
         let at = |shape: &[f64], first: usize| {
             function.checked_sub(first).filter(|k| *k <= degree).map_or(0.0, |k| shape[k])
         };
-        worst = worst.max((at(&left.value, before.first) - at(&right.value, after.first)).abs());
+        worst = larger(worst, (at(&left.value, before.first) - at(&right.value, after.first)).abs());
         if degree >= 2 {
             let jump = at(&left.derivative, before.first) - at(&right.derivative, after.first);
-            worst = worst.max(shorter * jump.abs());
+            worst = larger(worst, shorter * jump.abs());
         }
     }
     worst

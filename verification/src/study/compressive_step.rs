@@ -8,6 +8,7 @@ use fisura::simulation::Simulation;
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::expand::CaseScene;
+use crate::extremes::{larger, largest};
 
 pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
@@ -15,7 +16,7 @@ pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, Stud
         let mut simulation = Simulation::new(&scene.scene)?;
         let mut most_elastic = 0.0_f64;
         while !simulation.finished() {
-            most_elastic = most_elastic.max(simulation.advance_to_next_sample()?.elastic);
+            most_elastic = larger(most_elastic, simulation.advance_to_next_sample()?.elastic);
         }
         let area: f64 = {
             let (low, high) = scene.scene.bodies[0].shape.bounding_box();
@@ -26,7 +27,7 @@ pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, Stud
             .and_then(|f| f.fracture.as_ref())
             .map(|f| &f.history)
             .ok_or_else(|| StudyError::Other("nothing fractures here".into()))?;
-        let most = history.iter().flat_map(|lane| lane.0).fold(0.0, f64::max);
+        let most = largest(history.iter().flat_map(|lane| lane.0));
         findings.add(
             &scene.name,
             "largest history energy over mean elastic energy density",

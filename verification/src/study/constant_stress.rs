@@ -14,6 +14,7 @@ use nalgebra::{DMatrix, DVector};
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::expand::CaseScene;
+use crate::extremes::larger;
 
 pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
@@ -80,7 +81,7 @@ impl<'a> PatchTest<'a> {
         self.frame.lattice().for_each_point(|_, _, position, _| {
             let found = self.frame.elastic_stress_at(&displacement, position);
             for (found, exact) in found.into_iter().zip(stress) {
-                worst = worst.max((found - exact).abs());
+                worst = larger(worst, (found - exact).abs());
             }
         });
         worst

@@ -140,8 +140,10 @@ fn theory(setup: &ConvergenceSetup, problem: &Problem, degree: usize, below: usi
     match (problem.kind, setup.refine) {
         _ if setup.frame == Frame::Updated => None,
         (Kind::Dynamic, Refine::TimeStep) => Some(2.0),
-        (Kind::Dynamic, Refine::Mesh(Some(power))) => Some(space.min(2.0 * power)),
-        (Kind::Dynamic, _) if setup.mass == Mass::Lumped => Some(space.min(2.0)),
+        (Kind::Dynamic, Refine::Mesh(power)) => {
+            let space = if setup.mass == Mass::Lumped { space.min(2.0) } else { space };
+            Some(power.map_or(space, |power| space.min(2.0 * power)))
+        }
         _ => Some(space),
     }
 }

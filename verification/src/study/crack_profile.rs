@@ -13,6 +13,7 @@ use fisura::stencil::Stencil;
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::expand::CaseScene;
+use crate::extremes::largest;
 use crate::plain_scene::PlainScene;
 use crate::record::{Reference, ReferenceKind};
 
@@ -78,5 +79,5 @@ fn crack(degree: usize, per_length: usize) -> Result<(f64, f64), StudyError> {
         let value = patch.evaluate(&phase, [at(i), 0.5 * HEIGHT]).map_or(f64::NAN, |v| v.value);
         (value - exact(at(i))).abs()
     };
-    Ok((energy, (0..=2 * half).map(error).fold(0.0, f64::max)))
+    Ok((energy, largest((0..=2 * half).map(error))))
 }

@@ -5,10 +5,7 @@
 //! densely. With the consistent mass frequencies are too high, by order 2 p; with the lumped one too low, by order 2.
 
 use fisura::critical_step::StiffnessOperator;
-use fisura::scene::{
-    Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldSolver, Plane, Scene,
-    Shape, Side, SolverSettings, TimeStep, Transfer,
-};
+use fisura::scene::{Layout, Mass, Material, Mesh, Plane, Scene};
 use fisura::total_frame::TotalFrame;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -16,6 +13,7 @@ use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::convergence::{Convergence, Curve, Level, Norm, Refined};
 use crate::expand::CaseScene;
+use crate::plain_scene::{PlainScene, ROLLERS};
 
 /// Spans along the bar.
 const MESHES: [usize; 4] = [8, 16, 32, 64];
@@ -93,47 +91,16 @@ fn relative_errors(mass: Mass, degree: usize, spans: usize) -> Result<(Vec<f64>,
 
 /// The strip, all of unit modulus, density and length.
 fn bar(mass: Mass, degree: usize, spans: usize) -> Scene {
-    let hold = |side, fix| Boundary { side, fix, velocity: [0.0; 2] };
-    Scene {
-        title: "bar".into(),
+    let mut scene = PlainScene {
         mesh: Mesh::uniform([degree, 1], [0.0; 2], [1.0, HEIGHT], [spans, 1]),
-        analysis: Analysis {
-            plane: Plane::Strain,
-            thickness: 1.0,
-            frame: Frame::Total,
-            kinematics: Kinematics::Small,
-            end_time: 1.0,
-            time_step: TimeStep::Auto,
-            safety: 0.5,
-            transfer: Transfer::Flip,
-            mass,
-            gravity: [0.0; 2],
-        },
-        solver: SolverSettings { phase_field_tolerance: 1e-10, phase_field_solver: PhaseFieldSolver::Cholesky },
-        materials: [(
-            "unit".to_string(),
-            Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None },
-        )]
-        .into(),
-        bodies: vec![Body {
-            name: "bar".into(),
-            material: "unit".into(),
-            shape: Shape::Rectangle { min: [0.0; 2], max: [1.0, HEIGHT] },
-            particles_per_cell: [degree + 1, 2],
-            layout: Layout::Gauss,
-            velocity: [0.0; 2],
-            angular_velocity: 0.0,
-            rigid: false,
-            tractions: vec![],
-            cracks: vec![],
-        }],
-        contact: None,
-        boundaries: vec![
-            hold(Side::Left, [true, false]),
-            hold(Side::Right, [true, false]),
-            hold(Side::Bottom, [false, true]),
-            hold(Side::Top, [false, true]),
-        ],
-        output: Output { samples: 1, frames: vec![] },
+        material: Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None },
+        plane: Plane::Strain,
+        mass,
+        layout: Layout::Gauss,
+        points: degree + 1,
+        held: ROLLERS.to_vec(),
     }
+    .scene();
+    scene.bodies[0].particles_per_cell[1] = 2; // linear over the height
+    scene
 }

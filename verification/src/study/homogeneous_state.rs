@@ -19,6 +19,7 @@ use fisura::sweep::StripForces;
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::expand::CaseScene;
+use crate::extremes::{larger, largest};
 use crate::history::Table;
 use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind, Scale};
 
@@ -31,7 +32,7 @@ pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, Study
     for scene in scenes {
         let (table, error) = loading(scene)?;
         findings.add(&scene.name, "phase field, largest error", error, None);
-        let stress = table.columns[1].iter().zip(&table.columns[2]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let stress = largest(table.columns[1].iter().zip(&table.columns[2]).map(|(a, b)| (a - b).abs()));
         findings.add(&scene.name, "stress, largest error over the peak stress", stress, None);
         let (peak_strain, peak_stress) = peak(&table);
         let exact = |what: &str| Some(Reference { value: Some(1.0), kind: ReferenceKind::Exact, source: what.into() });
@@ -79,7 +80,7 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
         let strain = FURTHEST * peak_strain * step as f64 / STRAINS as f64;
         let (phase, stress) = points.strained_by(strain)?;
         let exact = closed_form(&model, modulus, strain);
-        worst = phase.into_iter().fold(worst, |worst, c| worst.max((c - exact).abs()));
+        worst = phase.into_iter().map(|c| (c - exact).abs()).fold(worst, larger);
         let degraded = (1.0 - model.residual_stiffness) * exact * exact + model.residual_stiffness;
         table.push(&[strain / peak_strain, stress / peak_stress, degraded * modulus * strain / peak_stress]);
     }
@@ -104,8 +105,8 @@ struct Points<'a> {
 }
 
 impl Points<'_> {
-    /// Smallest and largest control value of c, and the mean stress on the right side (Pa), under the uniaxial strain.
-    fn strained_by(&mut self, strain: f64) -> Result<([f64; 2], f64), StudyError> {
+    /// Control values of c, and the mean stress on the right side (Pa), under the uniaxial strain.
+    fn strained_by(&mut self, strain: f64) -> Result<(Vec<f64>, f64), StudyError> {
         let Self { lattice, moduli, fracture, forces, .. } = self;
         let grid = lattice.grid;
         let mut displacement = [grid.zeros(), grid.zeros()];
@@ -120,9 +121,8 @@ impl Points<'_> {
         let mut nodal = [grid.zeros(), grid.zeros()];
         forces.assemble(grid.stride, &mut nodal);
         let force: f64 = grid.side(Side::Right).into_iter().map(|at| nodal[0][at]).sum();
-        let values = grid.indices().map(|at| fracture.field.control_values()[at]);
-        let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], c| [l.min(c), h.max(c)]);
-        Ok((range, force / self.height))
+        let phase = grid.indices().map(|at| fracture.field.control_values()[at]).collect();
+        Ok((phase, force / self.height))
     }
 }
 

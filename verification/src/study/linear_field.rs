@@ -17,6 +17,7 @@ use crate::case::Case;
 use crate::case::convergence::PatchFamily;
 use crate::convergence::{Convergence, Curve, Level, Norm, Refined};
 use crate::expand::CaseScene;
+use crate::extremes::larger;
 use crate::patches;
 
 const FAMILIES: [(PatchFamily, &str, [usize; 4]); 3] = [
@@ -117,9 +118,9 @@ fn interpolation_errors(patch: &Patch) -> [f64; 2] {
         for (field, gradient) in fields.iter().zip(GRADIENT) {
             let Some(found) = patch.evaluate(field, position) else { return worst = [f64::INFINITY; 2] };
             let exact = gradient[0] * position[0] + gradient[1] * position[1];
-            worst[0] = worst[0].max((found.value - exact).abs());
+            worst[0] = larger(worst[0], (found.value - exact).abs());
             for d in 0..2 {
-                worst[1] = worst[1].max((found.gradient[d] - gradient[d]).abs());
+                worst[1] = larger(worst[1], (found.gradient[d] - gradient[d]).abs());
             }
         }
     });
@@ -151,8 +152,8 @@ fn residual(patch: &Patch, points: usize) -> [f64; 2] {
     for (i, (internal, traction)) in internal.iter().zip(&tractions).enumerate() {
         for at in lattice.grid.indices() {
             let left_over = internal[at] - traction[at];
-            largest = largest.max(left_over.abs());
-            most = most.max(traction[at].abs());
+            largest = larger(largest, left_over.abs());
+            most = larger(most, traction[at].abs());
             work += smooth(i, at) * left_over;
             scale += (smooth(i, at) * traction[at]).abs();
         }

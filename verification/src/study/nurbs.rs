@@ -10,6 +10,8 @@ use fisura::spline::SplineSpace;
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::expand::CaseScene;
+use crate::extremes::{larger, largest};
+use crate::random::Random;
 
 const PATCHES: u64 = 20;
 const SPANS: usize = 8;
@@ -37,12 +39,12 @@ fn random_patches(degree: usize, findings: &mut Findings) -> Result<(), StudyErr
     let mut worst = Worst::default();
     let mut tamed = 0;
     for seed in 0..PATCHES {
-        let mut random = Random::new(seed + 1000 * degree as u64);
+        let mut random = Random::scrambled(seed + 1000 * degree as u64);
         let degrees = [degree, 1 + degree % 4];
-        let knots = degrees.map(|p| random.knots(p));
+        let knots = degrees.map(|p| random.knots(p, SPANS, true));
         let spaces = [0, 1].map(|d| SplineSpace::new(degrees[d], &knots[d]));
         let count = spaces[0].dimension() * spaces[1].dimension();
-        let weights: Vec<f64> = (0..count).map(|_| 10f64.powf(2.0 * random.next() - 1.0)).collect();
+        let weights: Vec<f64> = (0..count).map(|_| 10f64.powf(2.0 * random.unit() - 1.0)).collect();
         worst.look_at_basis(&spaces, &weights);
         let (patch, tame) = bent(&spaces, &weights).map_err(other)?;
         tamed += usize::from(tame < 1.0);
@@ -95,8 +97,8 @@ fn circles(findings: &mut Findings) -> Result<(), NurbsError> {
         if degree > 2 {
             patch = patch.elevate(1)?;
         }
-        let mut random = Random::new(degree);
-        let new: Vec<f64> = (0..20).map(|_| random.next()).collect();
+        let mut random = Random::scrambled(degree);
+        let new: Vec<f64> = (0..20).map(|_| random.unit()).collect();
         let refined = patch.insert_knots(1, &new)?.insert_knots(0, &new)?;
         let variant = format!("p={degree}");
         for (name, patch) in [("quarter annulus", &patch), ("refined quarter annulus", &refined)] {
@@ -113,7 +115,7 @@ fn off_circle(patch: &NurbsPatch) -> f64 {
     for n in 0..=ARC_POINTS {
         for xi in [0.0, 0.5, 1.0] {
             let [x, y] = position(patch, [xi, n as f64 / ARC_POINTS as f64]);
-            worst = worst.max((x.hypot(y) / (1.0 + xi) - 1.0).abs());
+            worst = larger(worst, (x.hypot(y) / (1.0 + xi) - 1.0).abs());
         }
     }
     worst
@@ -129,10 +131,6 @@ fn position(patch: &NurbsPatch, parameters: [f64; 2]) -> [f64; 2] {
 
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
-}
-
-fn largest(numbers: &[f64]) -> f64 {
-    numbers.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
 }
 
 fn sum(f: &RationalFunctions, term: impl Fn(usize) -> f64) -> f64 {
@@ -180,9 +178,9 @@ impl Worst {
     fn look_at_basis(&mut self, spaces: &[SplineSpace; 2], weights: &[f64]) {
         for Place { span, parameters, length } in places(spaces) {
             let f = rational_functions(spaces, weights, span, parameters);
-            self.unity = self.unity.max((sum(&f, |n| f.value[n]) - 1.0).abs());
+            self.unity = larger(self.unity, (sum(&f, |n| f.value[n]) - 1.0).abs());
             for d in 0..2 {
-                self.gradient_sum = self.gradient_sum.max(length[d] * sum(&f, |n| f.gradient[n][d]).abs());
+                self.gradient_sum = larger(self.gradient_sum, length[d] * sum(&f, |n| f.gradient[n][d]).abs());
                 // Central differences of two steps, extrapolated: error O(step^4). Powers of two, so that the parameters are
                 // not rounded to unequal steps on both sides, which the curvature would make an error of first order.
                 let difference = |step: f64| {
@@ -197,7 +195,7 @@ impl Worst {
                 let (narrow, wide) = (difference(STEP), difference(2.0 * STEP));
                 for n in 0..f.count {
                     let slope = (4.0 * narrow(n) - wide(n)) / 3.0;
-                    self.difference = self.difference.max((length[d] * f.gradient[n][d] - slope).abs());
+                    self.difference = larger(self.difference, (length[d] * f.gradient[n][d] - slope).abs());
                 }
             }
         }
@@ -210,26 +208,26 @@ impl Worst {
         for place in places(patch.spaces()) {
             let f = patch.shape_functions(place.span, place.parameters);
             let point = patch.map(&f);
-            self.linear = self.linear.max((f.interpolate(&field) - value(point.position)).abs());
+            self.linear = larger(self.linear, (f.interpolate(&field) - value(point.position)).abs());
             let gradient = f.physical_gradients(&point);
-            let inverse = largest(point.jacobian.as_flattened()) / point.determinant();
-            let length = 1.0 / (inverse * largest(f.gradient[..f.count].as_flattened()));
+            let inverse = largest(point.jacobian.as_flattened().iter().map(|x| x.abs())) / point.determinant();
+            let length = 1.0 / (inverse * largest(f.gradient[..f.count].as_flattened().iter().map(|x| x.abs())));
             for (d, expected) in [2.0, -1.0].into_iter().enumerate() {
                 let error = (sum(&f, |n| gradient[n][d] * field[f.control[n]]) - expected).abs();
-                self.linear_gradient = self.linear_gradient.max(length * error);
+                self.linear_gradient = larger(self.linear_gradient, length * error);
             }
         }
     }
 
     fn look_at_refinement(&mut self, patch: &NurbsPatch, random: &mut Random) -> Result<(), NurbsError> {
-        let new: Vec<f64> = (0..5).map(|_| random.next()).collect();
+        let new: Vec<f64> = (0..5).map(|_| random.unit()).collect();
         let inserted = patch.insert_knots(0, &new)?.insert_knots(1, &new)?;
         let raised = if patch.spaces()[0].degree() < 4 { Some(patch.elevate(0)?) } else { None };
         for place in places(inserted.spaces()) {
             let before = position(patch, place.parameters);
-            self.insertion = self.insertion.max(distance(position(&inserted, place.parameters), before));
+            self.insertion = larger(self.insertion, distance(position(&inserted, place.parameters), before));
             if let Some(raised) = &raised {
-                self.elevation = self.elevation.max(distance(position(raised, place.parameters), before));
+                self.elevation = larger(self.elevation, distance(position(raised, place.parameters), before));
             }
         }
         Ok(())
@@ -247,14 +245,14 @@ impl Worst {
                 let general = patch.general();
                 let [f, g] = [patch, &general].map(|p| p.shape_functions(place.span, place.parameters));
                 let [a, b] = [patch.map(&f), general.map(&g)];
-                *worst = worst.max(distance(a.position, b.position));
+                *worst = larger(*worst, distance(a.position, b.position));
                 for n in 0..f.count {
-                    *worst = worst.max((f.value[n] - g.value[n]).abs());
+                    *worst = larger(*worst, (f.value[n] - g.value[n]).abs());
                 }
                 for d in 0..2 {
                     let gradients = (0..f.count).map(|n| f.gradient[n][d] - g.gradient[n][d]);
                     let jacobian = (0..2).map(|i| a.jacobian[i][d] - b.jacobian[i][d]);
-                    *worst = gradients.chain(jacobian).fold(*worst, |m, x| m.max(place.length[d] * x.abs()));
+                    *worst = gradients.chain(jacobian).map(|x| place.length[d] * x.abs()).fold(*worst, larger);
                 }
             }
         }
@@ -264,42 +262,13 @@ impl Worst {
     /// Images of random parameters, searched from nowhere and from other random parameters.
     fn look_at_inverse_map(&mut self, patch: &NurbsPatch, random: &mut Random) -> Result<(), LocateError> {
         for _ in 0..100 {
-            let [at, from] = [[random.next(), random.next()], [random.next(), random.next()]];
+            let [at, from] = [[random.unit(), random.unit()], [random.unit(), random.unit()]];
             let point = position(patch, at);
             for start in [None, Some(from)] {
                 let found = patch.locate(point, start)?;
-                self.inverse = self.inverse.max(distance(position(patch, found.parameters), point));
+                self.inverse = larger(self.inverse, distance(position(patch, found.parameters), point));
             }
         }
         Ok(())
-    }
-}
-
-/// Linear congruential sequence on [0, 1).
-struct Random(u64);
-
-impl Random {
-    fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1))
-    }
-
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Open knots on [0, 1] with spans between 1 and 100 in arbitrary units; every third inner knot repeated up to p times.
-    fn knots(&mut self, degree: usize) -> Vec<f64> {
-        let lengths: Vec<f64> = (0..SPANS).map(|_| 100f64.powf(self.next())).collect();
-        let total: f64 = lengths.iter().sum();
-        let mut knots = vec![0.0; degree + 1];
-        let mut position = 0.0;
-        for (i, length) in lengths[..SPANS - 1].iter().enumerate() {
-            position += length / total;
-            let times = if i % 3 == 2 { 1 + (self.next() * degree as f64) as usize } else { 1 };
-            knots.extend(vec![position; times]);
-        }
-        knots.extend(vec![1.0; degree + 1]);
-        knots
     }
 }

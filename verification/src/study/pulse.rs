@@ -12,7 +12,7 @@
 
 use std::sync::Arc;
 
-use fisura::forcing::{Forcing, VolumeLoad};
+use fisura::forcing::NoLoads;
 use fisura::material::ElasticModuli;
 use fisura::projection::Projection;
 use fisura::quadrature::Rule;
@@ -34,16 +34,6 @@ const WAVES: usize = 41;
 /// Where the packets start, and how far they fly, m.
 const START: f64 = 1.0;
 const FLIGHT: f64 = 1.0;
-
-/// No loads.
-#[derive(Debug)]
-struct Free;
-
-impl Forcing for Free {
-    fn volume(&self, _position: [f64; 2], _time: f64) -> VolumeLoad {
-        VolumeLoad::default()
-    }
-}
 
 pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
@@ -163,7 +153,7 @@ impl Flying {
             fields[1][component] = projection.project(|x| velocity(x)[component]);
         }
         let [displacement, velocity] = fields;
-        self.frame.start_from(displacement, velocity, Arc::new(Free)).map_err(broken)
+        self.frame.start_from(displacement, velocity, Arc::new(NoLoads)).map_err(broken)
     }
 
     /// Distance (m) that the centroid of the square of a component along a side flies in a time (s).

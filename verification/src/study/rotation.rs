@@ -11,6 +11,7 @@ use fisura::updated_frame::UpdatedFrame;
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::expand::CaseScene;
+use crate::extremes::largest;
 use crate::record::{Reference, ReferenceKind};
 
 const INCREMENTS: usize = 1000;
@@ -31,12 +32,11 @@ pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, Stud
         };
         let off = frame.fields()[0].points().iter().flat_map(|p| [p.strain[0] - left, p.strain[1] - left, p.strain[2]]);
         let back = frame.fields()[0].points().iter().flat_map(|p| p.displacement);
-        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |a: f64, b| a.max(b.abs()));
         let exact =
             |source: &str| Some(Reference { value: Some(0.0), kind: ReferenceKind::Exact, source: source.to_string() });
         let source = exact("no strain (Hencky); 1000 (cos θ − 1) in both directions (linear)");
-        findings.add(name, "strain after a revolution, less the exact one", largest(&mut off.into_iter()), source);
-        findings.add(name, "displacement after a revolution", largest(&mut back.into_iter()), exact("none"));
+        findings.add(name, "strain after a revolution, less the exact one", largest(off.map(f64::abs)), source);
+        findings.add(name, "displacement after a revolution", largest(back.map(f64::abs)), exact("none"));
     }
     Ok(findings)
 }

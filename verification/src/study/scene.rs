@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use fisura::error::Breakdown;
 use fisura::picture::Picture;
-use fisura::scene::{Mesh, Scene};
+use fisura::scene::Scene;
+use fisura::spans::largest_spans;
 
 use crate::case::{Case, Check};
 use crate::expand::CaseScene;
@@ -210,7 +211,7 @@ pub fn microseconds(time: f64) -> f64 {
 }
 
 /// Raster of a picture; values rounded to 1e-5, which no colour shows.
-fn raster(frame: &Picture, values: &[f64]) -> Table {
+pub fn raster(frame: &Picture, values: &[f64]) -> Table {
     let mut table = Table::new(&["x_m", "y_m", "value"]);
     for (index, value) in values.iter().enumerate() {
         let [x, y] = frame.center(index).map(|c| (c * 1e9).round() / 1e9);
@@ -223,7 +224,7 @@ fn raster(frame: &Picture, values: &[f64]) -> Table {
 fn resolution(finished: &FinishedScene) -> String {
     let scene = &finished.case_scene.scene;
     let summary = &finished.run.summary;
-    let [hx, hy] = span_lengths(&scene.mesh);
+    let [hx, hy] = largest_spans(&scene.mesh);
     let [p, q] = scene.mesh.degree;
     let degree = if p == q { format!("p = {p}") } else { format!("p = ({p}, {q})") };
     let ratio = length_scale(scene).map_or(String::new(), |l0| format!(", l0/h = {:.3}", l0 / hx.max(hy)));
@@ -236,11 +237,6 @@ fn resolution(finished: &FinishedScene) -> String {
         summary.steps,
         summary.time_step_s.unwrap_or(f64::NAN)
     )
-}
-
-/// Largest span per direction, m.
-pub fn span_lengths(mesh: &Mesh) -> [f64; 2] {
-    [0, 1].map(|d| mesh.knots[d].windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max))
 }
 
 /// Smallest length scale of the materials in use, m.

@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use fisura::forcing::{Forcing, VolumeLoad};
+use fisura::forcing::NoLoads;
 use fisura::projection::Projection;
 use fisura::scene::{Layout, Mass, Material, Mesh, Plane};
 use fisura::total_frame::TotalFrame;
@@ -15,6 +15,7 @@ use fisura::total_frame::TotalFrame;
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::expand::CaseScene;
+use crate::extremes::spread;
 use crate::plain_scene::{PlainScene, ROLLERS};
 use crate::record::{Reference, ReferenceKind};
 
@@ -22,16 +23,6 @@ const SPANS: usize = 16;
 const PERIODS: f64 = 100.0;
 /// Time step over the critical one.
 const SAFETY: f64 = 0.2;
-
-/// No loads.
-#[derive(Debug)]
-struct Free;
-
-impl Forcing for Free {
-    fn volume(&self, _position: [f64; 2], _time: f64) -> VolumeLoad {
-        VolumeLoad::default()
-    }
-}
 
 pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
@@ -78,7 +69,7 @@ fn vibrate(degree: usize, mass: Mass) -> Result<Energies, StudyError> {
     let velocity = [projection.project(|[x, _]| (std::f64::consts::PI * x).sin()), zeros()];
     let still = [zeros(), zeros()];
     drop(projection);
-    frame.start_from(still, velocity, Arc::new(Free)).map_err(broken)?;
+    frame.start_from(still, velocity, Arc::new(NoLoads)).map_err(broken)?;
     let dt = SAFETY * frame.critical_step();
     let phase = std::f64::consts::PI * dt;
     let steps = (PERIODS * std::f64::consts::TAU / phase).ceil() as usize;
@@ -94,8 +85,7 @@ fn vibrate(degree: usize, mass: Mass) -> Result<Energies, StudyError> {
 
 /// Largest minus smallest, over the first.
 fn relative_spread(values: &[f64]) -> f64 {
-    let (low, high) = values.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &e| (l.min(e), h.max(e)));
-    (high - low) / values[0]
+    spread(values) / values[0]
 }
 
 /// Mean with a Blackman–Harris window, whose side lobes lie 92 dB below its main one.

@@ -9,6 +9,7 @@ use fisura::split::{EnergySplit, split, tensile_strain};
 
 use super::both_planes;
 use crate::exact::{ExactSolution, find, kirsch, phase_field, standing_wave, vortex};
+use crate::extremes;
 
 /// Points on the sides of a rectangle with its lower left corner at the origin, with the direction of the normal.
 fn sides(size: [f64; 2]) -> Vec<([f64; 2], usize)> {
@@ -156,7 +157,7 @@ fn phase_fields_have_the_claimed_range_and_flux() {
                 assert!(phase.history(place, 0.0) > 0.0, "{name} {place:?}");
             }
             let flux = |(place, d): ([f64; 2], usize)| phase.gradient(place, 0.0)[d].abs();
-            let largest = sides(phase_field::SIZE).into_iter().map(flux).fold(0.0, f64::max);
+            let largest = extremes::largest(sides(phase_field::SIZE).into_iter().map(flux));
             assert_eq!(largest < 1e-14, name == "phase-field-zero-flux", "{name}: {largest:e}");
         }
     }

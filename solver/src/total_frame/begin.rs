@@ -1,0 +1,106 @@
+//! How a body in the total frame begins: from a scene, or from given fields under loads that vary in space.
+
+use std::sync::Arc;
+
+use super::forced::Forced;
+use super::{TotalFrame, VectorField};
+use crate::constraints::Constraints;
+use crate::energy::Ledger;
+use crate::forcing::Forcing;
+use crate::fracture::{Fracturing, NotConverged, lowest_tip};
+use crate::lattice::Lattice;
+use crate::loads::NodalLoad;
+use crate::mass::MassMatrix;
+use crate::material::{ElasticModuli, FractureModel};
+use crate::patch::Patch;
+use crate::scene::Scene;
+use crate::sweep::StripForces;
+
+impl TotalFrame {
+    /// The body of `scene` at t = 0 with its initial accelerations.
+    ///
+    /// # Errors
+    /// If the initial phase field does not converge.
+    pub fn new(scene: &Scene) -> Result<Self, NotConverged> {
+        let patch = Patch::new(&scene.mesh);
+        let body = &scene.bodies[0];
+        let material = &scene.materials[&body.material];
+        let lattice = Lattice::new(&patch, body);
+        let grid = lattice.grid;
+        let constraints = Constraints::new(grid, &scene.boundaries);
+        let held = [0, 1].map(|component| constraints.held(component));
+        let fracture = material
+            .fracture
+            .as_ref()
+            .map(|f| Fracturing::new(&lattice, body, FractureModel::new(f), &scene.solver))
+            .transpose()?;
+        let zeros = || [grid.zeros(), grid.zeros()];
+        let mut frame = Self {
+            loads: body.tractions.iter().map(|t| NodalLoad::new(&patch, body, t)).collect(),
+            forced: None,
+            mass: MassMatrix::new(&lattice, material.density, scene.analysis.mass, held),
+            constraints,
+            moduli: ElasticModuli::new(material, scene.analysis.plane),
+            kinematics: scene.analysis.kinematics,
+            shape: body.shape.clone(),
+            thickness: scene.analysis.thickness,
+            gravity: scene.analysis.gravity,
+            strip_forces: StripForces::new(&lattice),
+            lowest_tip: lowest_tip(scene, body),
+            displacement: zeros(),
+            velocity: zeros(),
+            acceleration: zeros(),
+            internal: zeros(),
+            elastic_energy: 0.0,
+            ledger: Ledger::default(),
+            time: 0.0,
+            driven_power: 0.0,
+            patch,
+            grid,
+            lattice,
+            fracture,
+        };
+        frame.set_initial_velocity(body.velocity, body.angular_velocity);
+        frame.begin();
+        Ok(frame)
+    }
+
+    /// Begins anew at t = 0 from given control values of displacement (m) and velocity (m/s), under loads that vary in space.
+    ///
+    /// # Errors
+    /// If the initial phase field does not converge.
+    pub fn start_from(
+        &mut self,
+        displacement: VectorField,
+        velocity: VectorField,
+        forcing: Arc<dyn Forcing>,
+    ) -> Result<(), NotConverged> {
+        (self.displacement, self.velocity) = (displacement, velocity);
+        self.constraints.apply_velocity(&mut self.velocity);
+        self.ledger = Ledger::default();
+        self.time = 0.0;
+        let mut forced = Forced::new(forcing, &self.patch, &self.lattice);
+        forced.update_forces(&self.lattice, 0.0);
+        if let Some(fracture) = &mut self.fracture {
+            fracture.update_history(&self.lattice, self.moduli, self.kinematics, &self.displacement);
+            fracture.field.set_load(forced.phase_load(&self.lattice, 0.0));
+            fracture.field.initialise(&self.lattice, &fracture.history)?;
+        }
+        self.forced = Some(Box::new(forced));
+        self.begin();
+        Ok(())
+    }
+
+    /// Rigid motion about the centre of mass: linear in the position, so its control values are exact.
+    fn set_initial_velocity(&mut self, velocity: [f64; 2], angular_velocity: f64) {
+        let [x, y] = self.patch.control_positions();
+        let mass = self.mass.row_sums();
+        let total: f64 = mass.iter().sum();
+        let center = [&x, &y].map(|x| mass.iter().zip(x).map(|(m, x)| m * x).sum::<f64>() / total);
+        for at in self.grid.indices() {
+            self.velocity[0][at] = velocity[0] - angular_velocity * (y[at] - center[1]);
+            self.velocity[1][at] = velocity[1] + angular_velocity * (x[at] - center[0]);
+        }
+        self.constraints.apply_velocity(&mut self.velocity);
+    }
+}

@@ -1,0 +1,49 @@
+//! The `[rings]` table of a case file: geometries of two rings, all combinations of its lists.
+//!
+//! ```toml
+//! study = "rings-sweep"
+//!
+//! [rings]
+//! outer_radius = ["50 mm", "60 mm"]
+//! inner_over_outer = [0.6, 0.7]
+//! length_scale = ["1 mm"]
+//! points = [2]                  # per span and direction
+//! ```
+
+use crate::rings::Geometry;
+use crate::scene_file::fields::Item;
+use crate::scene_file::units::Dimension;
+
+pub(super) fn read(item: &Item<'_>) -> Option<Vec<Geometry>> {
+    let fields = item.fields(&["outer_radius", "inner_over_outer", "length_scale", "points"])?;
+    let list = |key: &str, like: &str, dimension: Dimension| {
+        fields.need(key, like, |i| i.each(|entry| positive(entry, dimension)))
+    };
+    let outer = list("outer_radius", "outer_radius = [\"50 mm\"]", Dimension::LENGTH);
+    let ratio = list("inner_over_outer", "inner_over_outer = [0.6]", Dimension::NONE);
+    let scale = list("length_scale", "length_scale = [\"1 mm\"]", Dimension::LENGTH);
+    let points = fields.need("points", "points = [2]", |i| i.each(|n| n.whole(1, 8)));
+    let (outer, ratio, scale, points) = (outer?, ratio?, scale?, points?);
+    if let Some(ratio) = ratio.iter().find(|ratio| **ratio >= 1.0) {
+        let message = format!("an inner radius of {ratio} times the outer one");
+        return fields.get("inner_over_outer")?.fail(message, "give ratios below 1");
+    }
+    let mut geometries = Vec::new();
+    for &outer in &outer {
+        for &ratio in &ratio {
+            for &length_scale in &scale {
+                let of = |&points: &usize| Geometry { outer, inner: ratio * outer, length_scale, points };
+                geometries.extend(points.iter().map(of));
+            }
+        }
+    }
+    Some(geometries)
+}
+
+fn positive(item: &Item<'_>, dimension: Dimension) -> Option<f64> {
+    let value = item.quantity(dimension)?;
+    if value <= 0.0 {
+        return item.fail(format!("{value} is not positive"), "give numbers above zero");
+    }
+    Some(value)
+}

@@ -1,0 +1,152 @@
+//! Two rings in head-on collision: the events of every scene of a case.
+
+mod figures;
+mod sweep;
+
+use fisura::Simulation;
+use fisura::picture::Picture;
+use fisura::scene::Scene;
+use fisura::simulation::square_pixels;
+
+use super::scene::series_stem;
+use super::{Findings, Measurement, StudyError};
+use crate::case::Case;
+use crate::expand::CaseScene;
+use crate::extremes::{larger, largest};
+use crate::record::{Reference, ReferenceKind};
+use crate::rings::events::{EVENTS, Watch};
+use crate::scene_run::frame_steps;
+pub(super) use sweep::study as sweep;
+
+/// Times (s) of the events in the paper's words; the end of the crack through the rear wall is not among them.
+pub const PAPER: [Option<f64>; 6] = [Some(30e-6), Some(60e-6), Some(100e-6), None, Some(150e-6), Some(400e-6)];
+/// Phase field below which the first crack has formed.
+const CRACKED: f64 = 0.05;
+/// Pixels of a picture along its longer side.
+const PIXELS: usize = 300;
+
+/// A scene run to its end, and what was seen.
+struct Watched {
+    /// The rings, in the order of the bodies.
+    rings: Vec<Watch>,
+    pictures: Vec<Picture>,
+    particles: usize,
+    step: f64,
+    steps: usize,
+}
+
+impl Watched {
+    fn run(scene: &Scene) -> Result<Self, StudyError> {
+        let rings: Vec<Watch> = (0..scene.bodies.len()).filter_map(|body| Watch::new(scene, body)).collect();
+        if rings.is_empty() {
+            return Err(StudyError::Other("no body is a brittle ring".into()));
+        }
+        let mut simulation = Simulation::new(scene)?;
+        let (particles, plan) = (simulation.extent().particles, *simulation.plan());
+        let (frames, _) = frame_steps(&scene.output.frames, plan.step, plan.steps());
+        let mut watched = Self { rings, pictures: Vec::new(), particles, step: plan.step, steps: plan.steps() };
+        loop {
+            if frames.contains(&simulation.steps()) {
+                let (low, high) = (scene.mesh.origin(), scene.mesh.end());
+                let pixels = square_pixels([0, 1].map(|d| high[d] - low[d]), PIXELS);
+                watched.pictures.push(simulation.picture(pixels));
+            }
+            if simulation.steps().is_multiple_of(plan.steps_per_sample) {
+                let sample = simulation.sample();
+                simulation.watch_ledger(&sample)?;
+                watched.rings.iter_mut().for_each(|ring| ring.look(&simulation, &sample));
+            }
+            if simulation.finished() {
+                return Ok(watched);
+            }
+            simulation.step()?;
+        }
+    }
+}
+
+/// Events and invariants of every scene of a case.
+pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    let mut first: Option<Watched> = None;
+    for case_scene in scenes {
+        let CaseScene { name, scene, energy_factor, .. } = case_scene;
+        let watched = Watched::run(scene)?;
+        add_events(&mut findings, name, &watched.rings[0]);
+        add_invariants(&mut findings, name, scene, &watched, *energy_factor);
+        match &first {
+            None => figures::add(&mut findings, case, case_scene, &watched),
+            Some(first) => compare(&mut findings, name, first, &watched, *energy_factor),
+        }
+        findings.series.push((series_stem(case, name), watched.rings[0].table.clone()));
+        first.get_or_insert(watched);
+    }
+    Ok(findings)
+}
+
+fn in_microseconds(variant: &str, quantity: &str, time: Option<f64>, reference: Option<Reference>) -> Measurement {
+    Measurement {
+        variant: variant.to_string(),
+        quantity: quantity.to_string(),
+        unit: "us".to_string(),
+        value: Some(1e6 * time.unwrap_or(f64::NAN)),
+        reference,
+    }
+}
+
+fn add_events(findings: &mut Findings, variant: &str, watch: &Watch) {
+    for ((quantity, found), paper) in EVENTS.iter().zip(watch.events()).zip(PAPER) {
+        let reference = paper.map(|time| Reference {
+            value: Some(1e6 * time),
+            kind: ReferenceKind::Literature,
+            source: "the words of the paper, section 5.2; the geometry is assumed".to_string(),
+        });
+        findings.measurements.push(in_microseconds(variant, quantity, found, reference));
+    }
+}
+
+fn add_invariants(findings: &mut Findings, variant: &str, scene: &Scene, watched: &Watched, factor: f64) {
+    let table = &watched.rings[0].table;
+    let column = |name: &str| table.column(name).unwrap_or_default();
+    let last = |name: &str| column(name).last().copied().unwrap_or(f64::NAN);
+    let initial = column("kinetic_j")[0];
+    let size = |name: &str| largest(column(name).iter().map(|value| value.abs()));
+    let fall = |name: &str| largest(column(name).windows(2).map(|pair| pair[0] - pair[1]));
+    let mut add = |quantity: &str, value: f64| findings.add(variant, quantity, value, None);
+    add("largest closure over the initial kinetic energy", size("closure_j") / initial);
+    add("largest fall of the fracture energy over its end", fall("fracture_j") / last("fracture_j"));
+    add("largest fall of the friction work over the initial kinetic energy", fall("friction_j") / initial);
+    add("contact loss over the initial kinetic energy", last("contact_loss_j") / initial);
+    add("transfer loss over the initial kinetic energy", last("transfer_loss_j") / initial);
+    add("fracture energy at the end, J", factor * last("fracture_j"));
+    if let [left, right] = &watched.rings[..] {
+        let [x, y] = scene.bodies[0].velocity;
+        let of_one = initial / x.hypot(y); // m v, and all kinetic energy is 2 · ½ m v²
+        let drift = |name: &str| largest(column(name).iter().map(|p| (p - column(name)[0]).abs()));
+        add("drift of the momentum over that of a ring", larger(drift("momentum_x"), drift("momentum_y")) / of_one);
+        let intact = column("elastic_asymmetry").iter().zip(column("min_phase_field")).filter(|(_, c)| **c > CRACKED);
+        add("asymmetry of the elastic energies before the first crack", largest(intact.map(|(a, _)| a.abs())));
+        add("asymmetry of the fracture energies at the end", last("fracture_asymmetry").abs());
+        let apart = left.events().into_iter().zip(right.events()).map(|(a, b)| match (a, b) {
+            (Some(a), Some(b)) => (a - b).abs() / a,
+            (None, None) => 0.0,
+            _ => f64::NAN,
+        });
+        add("event times of the rings apart", largest(apart));
+    }
+}
+
+/// Difference of a scene that models a part from the first, which models all.
+fn compare(findings: &mut Findings, variant: &str, first: &Watched, watched: &Watched, factor: f64) {
+    let [all, part] = [first, watched].map(|w| &w.rings[0].table);
+    let scale = largest(all.column("kinetic_j").unwrap_or_default().iter().copied());
+    for (column, words) in [("kinetic_j", "kinetic"), ("elastic_j", "elastic"), ("fracture_j", "fracture")] {
+        let pairs = all.column(column).unwrap_or_default().iter().zip(part.column(column).unwrap_or_default());
+        let apart = largest(pairs.map(|(all, part)| (all - factor * part).abs())) / scale;
+        findings.add(
+            variant,
+            &format!("{words} energy apart from the full model, over the initial kinetic energy"),
+            apart,
+            None,
+        );
+    }
+}

@@ -1,0 +1,97 @@
+//! Figures 5b and 6 of the paper: fracture energy against time with the events marked, and phase-field pictures.
+
+use super::{PAPER, Watched};
+use crate::case::Case;
+use crate::expand::CaseScene;
+use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Region, Scale};
+use crate::rings::events::{EVENTS, annulus};
+use crate::study::Findings;
+use crate::study::scene::{length_scale, microseconds, raster, series_stem};
+
+/// Adds the figures of a scene.
+pub fn add(findings: &mut Findings, case: &Case, case_scene: &CaseScene, watched: &Watched) {
+    let stem = series_stem(case, &case_scene.name);
+    let caption = caption(case_scene, watched);
+    let figure = |id: String, title: String, body: FigureBody| Figure {
+        id,
+        suite: case.suite.clone(),
+        title,
+        caption: caption.clone(),
+        deviations: case.deviations.clone(),
+        body,
+    };
+    let series = format!("series/{stem}.csv");
+    let factor = case_scene.energy_factor;
+    let energies = ["fracture_j", "kinetic_j", "elastic_j", "contact_loss_j", "transfer_loss_j", "closure_j"];
+    let curve = |column: &str| curve(&series, column, factor);
+    findings.figures.push(figure(
+        format!("{}-fracture-energy", case.name),
+        "Fracture energy of both rings, events of the paper marked".into(),
+        chart("fracture energy (J)", vec![curve("fracture_j")], events()),
+    ));
+    findings.figures.push(figure(
+        format!("{}-ledger", case.name),
+        "Energy ledger of both rings".into(),
+        chart("energy (J)", energies.iter().map(|column| curve(column)).collect(), Vec::new()),
+    ));
+    for picture in &watched.pictures {
+        let Some(phase) = &picture.phase else { continue };
+        let time = microseconds(picture.time);
+        let name = format!("{stem}-phase-{time}us");
+        findings.series.push((name.clone(), raster(picture, phase)));
+        findings.figures.push(figure(
+            format!("{}-phase-{time:.0}us", case.name),
+            format!("Phase field at {time:.0} µs"),
+            FigureBody::Field {
+                series: format!("series/{name}.csv"),
+                pixels: picture.pixels,
+                label: "phase field c".into(),
+                range: [0.0, 1.0],
+            },
+        ));
+    }
+}
+
+fn caption(CaseScene { scene, .. }: &CaseScene, watched: &Watched) -> String {
+    let radii = annulus(&scene.bodies[0].shape)
+        .map_or(String::new(), |(_, [inner, outer])| format!("radii {:.0} and {:.0} mm, ", 1e3 * inner, 1e3 * outer));
+    let l0 = length_scale(scene).unwrap_or(f64::NAN);
+    format!(
+        "Geometry assumed: {radii}l0 = {:.1} mm. p = {}, h = {:.3} mm, {} points, {} steps of {:.3e} s.",
+        1e3 * l0,
+        scene.mesh.degree[0],
+        1e3 * fisura::spans::largest_spans(&scene.mesh)[0],
+        watched.particles,
+        watched.steps,
+        watched.step
+    )
+}
+
+fn curve(series: &str, column: &str, factor: f64) -> Curve {
+    Curve {
+        label: column.trim_end_matches("_j").replace('_', " "),
+        series: series.to_string(),
+        x: "time_s".into(),
+        y: column.into(),
+        x_scale: 1e6,
+        y_scale: factor,
+        style: CurveStyle::Line,
+        uncertainty_absolute: 0.0,
+        uncertainty_relative: 0.0,
+    }
+}
+
+fn chart(label: &str, curves: Vec<Curve>, regions: Vec<Region>) -> FigureBody {
+    let axis = |label: &str| Axis { label: label.into(), scale: Scale::default(), range: None };
+    let (x, y) = (axis("time (µs)"), axis(label));
+    FigureBody::Chart { x, y, curves, regions, slopes: Vec::new(), floors: Vec::new() }
+}
+
+/// Lines at the times of the paper.
+fn events() -> Vec<Region> {
+    let region = |(name, time): (&&str, Option<f64>)| {
+        let time = 1e6 * time?;
+        Some(Region { label: (*name).to_string(), x: Some([time - 0.5, time + 0.5]), y: None })
+    };
+    EVENTS.iter().zip(PAPER).filter_map(region).collect()
+}
