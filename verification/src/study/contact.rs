@@ -16,6 +16,7 @@ use fisura::updated_frame::UpdatedFrame;
 use fisura::updated_frame::field::DiscreteField;
 
 use super::StudyError;
+use crate::extremes::{self, larger};
 use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind, Scale};
 
 /// Runs a scene to its end; `seen` looks at it at the start and after every step.
@@ -52,14 +53,9 @@ fn center(field: &DiscreteField) -> [f64; 2] {
     [0, 1].map(|d| field.points().iter().map(|p| p.volume * p.position[d]).sum::<f64>() / volume)
 }
 
-/// The larger of two numbers, or not-a-number if one is: a broken value must not hide.
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
-}
-
 /// The largest magnitude, or not-a-number if one is.
 fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().fold(0.0, |most, value| larger(most, value.abs()))
+    extremes::largest(values.into_iter().map(f64::abs))
 }
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use fisura::material::ElasticModuli;
 use fisura::scene::{Scene, Transfer};
+use fisura::spans::largest_spans;
 
 use super::{Books, chart, curve, exact, run, sample_is_due, sum};
 use crate::case::Case;
@@ -15,7 +16,7 @@ use crate::convergence::{Convergence, Curve, Level, Norm, Refined};
 use crate::expand::CaseScene;
 use crate::history::Table;
 use crate::record::CurveStyle;
-use crate::study::scene::{series_stem, span_lengths};
+use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 
 pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
@@ -30,7 +31,7 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
         curves.push(curve(name, &stem, ["time_c_over_l1", "force_over_plateau"], CurveStyle::Line));
         findings.series.push((stem, bars.table(&found)));
         meshes.entry(group(scene)).or_default().push(Level {
-            h: span_lengths(&scene.mesh)[0],
+            h: largest_spans(&scene.mesh)[0],
             unknowns: scene.mesh.knots[0].len(),
             seconds: 0.0,
             errors: vec![bars.exit_error(&found), found.loss],

@@ -4,12 +4,12 @@
 use std::collections::HashSet;
 
 use fisura::scene::Scene;
+use fisura::spans::largest_spans;
 use fisura::updated_frame::UpdatedFrame;
 
 use super::{dot, exact, larger, run};
 use crate::case::Case;
 use crate::expand::CaseScene;
-use crate::study::scene::span_lengths;
 use crate::study::{Findings, StudyError};
 
 pub(in super::super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
@@ -47,7 +47,7 @@ fn approach(scene: &Scene) -> Result<Onset, StudyError> {
     let (_, high) = one.shape.bounding_box();
     let (low, _) = two.shape.bounding_box();
     let (gap, closing) = (low[0] - high[0], one.velocity[0] - two.velocity[0]);
-    let span = span_lengths(&scene.mesh)[0];
+    let span = largest_spans(&scene.mesh)[0];
     let mut onset = Onset { gap: f64::NAN, sharing: f64::NAN, momentum: 0.0, force: f64::NAN };
     let mut first = vec![];
     run(scene, &mut |simulation, frame| {

@@ -14,13 +14,14 @@ use std::f64::consts::PI;
 
 use fisura::material::ElasticModuli;
 use fisura::scene::Scene;
+use fisura::spans::largest_spans;
 
 use super::{Books, center, chart, curve, exact, largest, run, sample_is_due, sum};
 use crate::case::Case;
 use crate::expand::CaseScene;
 use crate::history::Table;
 use crate::record::CurveStyle;
-use crate::study::scene::{series_stem, span_lengths};
+use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 
 pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
@@ -88,7 +89,7 @@ impl Column {
             heights,
             width: boxes[0].1[0] - boxes[0].0[0],
             modulus: moduli.lambda + 2.0 * moduli.mu,
-            span: span_lengths(&scene.mesh)[1],
+            span: largest_spans(&scene.mesh)[1],
         })
     }
 
