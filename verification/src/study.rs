@@ -6,6 +6,7 @@
 mod basis;
 mod compressive_step;
 mod constant_stress;
+mod contact;
 mod convergence;
 mod crack_profile;
 mod eigenfrequencies;
@@ -78,7 +79,7 @@ pub enum StudyError {
 type Study = fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>;
 
 /// Studies other than `scene`, by name.
-pub const STUDIES: [(&str, Study); 14] = [
+pub const STUDIES: [(&str, Study); 20] = [
     ("basis", basis::study),
     ("constant-stress", constant_stress::study),
     ("homogeneous-state", homogeneous_state::study),
@@ -91,6 +92,12 @@ pub const STUDIES: [(&str, Study); 14] = [
     ("rotation", rotation::study),
     ("eigenfrequencies", eigenfrequencies::study),
     ("linear-field", linear_field::study),
+    ("contact-impact", contact::impact::study),
+    ("contact-onset", contact::onset::study),
+    ("contact-incline", contact::incline::study),
+    ("contact-collision", contact::collision::study),
+    ("contact-hertz", contact::hertz::study),
+    ("contact-stack", contact::stack::study),
     ("rings", rings::study),
     ("rings-sweep", rings::sweep),
 ];
