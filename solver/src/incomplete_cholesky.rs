@@ -22,7 +22,7 @@ struct Update {
 
 /// Pivots below this fraction of the diagonal are replaced by it: dropped couplings can leave nothing of them, most of all where
 /// a control point has hardly any material.
-const LEAST_PIVOT: f64 = 1e-2;
+const LEAST_PIVOT: f64 = 1e-5;
 
 /// Factor of the blocks of a stencil matrix.
 #[derive(Debug, Clone)]

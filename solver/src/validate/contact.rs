@@ -3,7 +3,7 @@
 use super::Findings;
 use super::geometry::defect;
 use crate::contact::Surface;
-use crate::scene::{Body, Frame, Scene, Shape};
+use crate::scene::{Body, Frame, Scene, Shape, Transfer};
 use crate::spans::span_lengths;
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
@@ -17,6 +17,10 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
     if several && scene.analysis.frame == Frame::Total {
         let message = "several bodies, and contact, need shape functions at the moved positions";
         findings.error("analysis.frame", message, "use frame = \"updated\"");
+    }
+    if scene.contact.is_some() && scene.analysis.transfer == Transfer::Musl {
+        let message = "contact with MUSL, whose points follow a filtered motion that contact does not hold back";
+        findings.error("analysis.transfer", message, "use transfer = \"flip\" or \"apic\"");
     }
     for (i, body) in scene.bodies.iter().enumerate().filter(|(_, body)| body.rigid) {
         rigid(&format!("body.{i}"), body, scene, findings);

@@ -310,6 +310,7 @@ fn several_bodies_need_the_updated_frame_and_room() {
     };
     assert_eq!(changed(|s| s.analysis.frame = Frame::Total), ["analysis.frame"]);
     assert_eq!(changed(|s| s.contact = Some(Contact { friction: -0.1 })), ["contact.friction"]);
+    assert_eq!(changed(|s| s.analysis.transfer = Transfer::Musl), ["analysis.transfer"]);
     assert_eq!(changed(|s| s.bodies[1].name = "left".into()), ["body.1.name"]);
     assert!(changed(|s| s.bodies[1].rigid = true).is_empty());
     assert!(changed(|s| s.contact = None).is_empty(), "bodies that do not meet");
