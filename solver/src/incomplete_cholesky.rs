@@ -20,10 +20,6 @@ struct Update {
     target: usize,
 }
 
-/// Pivots below this fraction of the diagonal are replaced by it: dropped couplings can leave nothing of them, most of all where
-/// a control point has hardly any material.
-const LEAST_PIVOT: f64 = 1e-5;
-
 /// Factor of the blocks of a stencil matrix.
 #[derive(Debug, Clone)]
 pub struct IncompleteCholesky {
@@ -32,14 +28,22 @@ pub struct IncompleteCholesky {
     updates: Vec<Update>,
     /// Like the coefficients of the matrix: 1/D in place of the diagonal, L elsewhere.
     factor: Vec<f64>,
+    least_pivot: f64,
 }
 
 impl IncompleteCholesky {
     /// Factors `matrix`.
     pub fn new(matrix: &Stencil) -> Self {
+        Self::guarded(matrix, 0.0)
+    }
+
+    /// Factors `matrix`; pivots below a fraction of the diagonal are replaced by it. Dropped couplings can leave nothing of them,
+    /// most of all where a control point has hardly any material.
+    pub fn guarded(matrix: &Stencil, least_pivot: f64) -> Self {
         let offsets = matrix.offsets().to_vec();
         let updates = updates(&offsets, matrix.degree());
-        let mut factor = Self { grid: matrix.grid, offsets, updates, factor: vec![0.0; matrix.coefficients().len()] };
+        let mut factor =
+            Self { grid: matrix.grid, offsets, updates, factor: vec![0.0; matrix.coefficients().len()], least_pivot };
         factor.refactor(matrix);
         factor
     }
@@ -48,9 +52,9 @@ impl IncompleteCholesky {
     pub fn refactor(&mut self, matrix: &Stencil) {
         self.factor.copy_from_slice(matrix.coefficients());
         let block = BLOCK_ROWS * matrix.row_length();
-        let Self { grid, offsets, updates, factor } = self;
+        let Self { grid, offsets, updates, factor, least_pivot } = self;
         let blocks = factor.par_chunks_mut(block).zip(matrix.coefficients().par_chunks(block));
-        blocks.for_each(|(block, matrix)| factor_block(*grid, offsets, updates, matrix, block));
+        blocks.for_each(|(block, matrix)| factor_block(*grid, offsets, updates, *least_pivot, matrix, block));
     }
 
     /// `out = (L D Lᵀ)⁻¹ r`; returns `rᵀ out`.
@@ -89,14 +93,21 @@ fn updates(offsets: &[Offset], degree: [usize; 2]) -> Vec<Update> {
 }
 
 /// `block` holds a copy of the rows of `matrix`.
-fn factor_block(grid: ControlGrid, offsets: &[Offset], updates: &[Update], matrix: &[f64], block: &mut [f64]) {
+fn factor_block(
+    grid: ControlGrid,
+    offsets: &[Offset],
+    updates: &[Update],
+    least_pivot: f64,
+    matrix: &[f64],
+    block: &mut [f64],
+) {
     let row_length = offsets.len() * grid.stride;
     let rows = block.len() / row_length;
     for row in 0..rows {
         let reachable = offsets.iter().take_while(|o| row + o.rows < rows).count();
         for column in 0..grid.columns {
             let at = row * row_length + grid.index(column, 0);
-            let pivot = if block[at] > LEAST_PIVOT * matrix[at] { block[at] } else { matrix[at] };
+            let pivot = if block[at] > least_pivot * matrix[at] { block[at] } else { matrix[at] };
             let inverse = if pivot > 0.0 { 1.0 / pivot } else { 1.0 };
             let mut entries = [0.0; 64];
             for (index, entry) in entries.iter_mut().enumerate().take(reachable).skip(1) {

