@@ -4,7 +4,8 @@
 //! supports of quadratic and cubic splines overlap up to three spans earlier. The centre of every segment that faces another
 //! boundary measures the signed gap to it. What the segments of both bodies measure within a square as large as a span is one
 //! [`Touch`]: its position x and gap g are their means, so that touches are as many as control points can tell apart, and
-//! neither body is the master of the other. An impulse P acts there on one body, −P on the other. Both spread it over control points with weights W that stand for the same position x ([`handle`]),
+//! neither body is the master of the other. An impulse P acts there on one body, −P on the other. Both spread it over control
+//! points with weights W that stand for the same position x ([`handle`]),
 //!
 //! ```text
 //! f_I = ± W_I P,        v_rel = Σ W_I^b v_I^b − Σ W_I^a v_I^a,        Σ W_I = 1,   Σ W_I x_I = x,
@@ -25,13 +26,14 @@ pub mod impulse;
 pub mod rigid;
 pub mod surface;
 
+use std::collections::{BTreeMap, HashMap};
+
 use crate::patch::Patch;
 use crate::scene::Scene;
 use crate::updated_frame::field::DiscreteField;
 use handle::{DEPTH, handle};
 use impulse::Impulse;
 pub use rigid::RigidBody;
-use std::collections::{BTreeMap, HashMap};
 pub use surface::Surface;
 use surface::{Center, dot, unit};
 
