@@ -14,6 +14,10 @@
 //! `tau = dpsi/de`: for an isotropic energy it has the principal directions of e, and `tau : d` is the power per unit of
 //! reference volume for the rate of deformation d.
 
+/// Ratio q above which β comes from the larger eigenvalue and the determinant: q itself rounds to 1 and its atanh to infinity
+/// where one principal stretch is a hundred million times the other, as in broken material that is drawn out.
+const STRETCHED: f64 = 0.9;
+
 /// Tensor of the plane, `[i][j]` with i the component and j the direction of the derivative.
 pub type Gradient = [[f64; 2]; 2];
 
@@ -36,8 +40,13 @@ pub fn hencky_strain(displacement: &Gradient) -> [f64; 3] {
     let mean = xx + yy + 0.5 * (xx * xx + xy * xy + yx * yx + yy * yy);
     let half_difference = xx - yy + 0.5 * (xx * xx + xy * xy - yx * yx - yy * yy);
     let shear = xy + yx + (xx * yx + xy * yy);
-    let ratio = half_difference.hypot(shear) / (1.0 + mean);
-    let factor = atanh_over(ratio) / (2.0 * (1.0 + mean));
+    let radius = half_difference.hypot(shear);
+    let ratio = radius / (1.0 + mean);
+    let factor = if ratio < STRETCHED {
+        atanh_over(ratio) / (2.0 * (1.0 + mean))
+    } else {
+        (0.5 * (mean + radius).ln_1p() - half_log) / radius
+    };
     let deviator = factor * half_difference;
     [half_log + deviator, half_log - deviator, factor * shear]
 }
@@ -109,6 +118,18 @@ mod tests {
         move || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        }
+    }
+
+    #[test]
+    fn drawn_out_material_has_a_finite_strain() {
+        for (long, short) in [(3.0_f64, 0.5_f64), (1e3, 1e-3), (1e6, 1e-5), (1e10, 1e-3)] {
+            let strain = of(Matrix2::new(long, 0.0, 0.0, short));
+            assert!(apart(strain, [long.ln(), short.ln(), 0.0]) < 1e-5, "{long} {short}: {strain:?}");
+            let turned = of(rotation(0.3) * Matrix2::new(long, 0.0, 0.0, 1.0));
+            let (s, c) = 0.3_f64.sin_cos();
+            let exact = [c * c, s * s, c * s].map(|n| n * long.ln());
+            assert!(apart(turned, exact) < 1e-5, "{long}: {turned:?} {exact:?}");
         }
     }
 
