@@ -5,7 +5,7 @@
 //! boundary measures the signed gap to it. What the segments of both bodies measure within a square as large as a span is one
 //! [`Touch`]: its position x and gap g are their means, so that touches are as many as control points can tell apart, and
 //! neither body is the master of the other. An impulse P acts there on one body, −P on the other. Both spread it over control
-//! points with weights W that stand for the same position x ([`handle`]),
+//! points with weights W that stand for the same position x ([`mod@handle`]),
 //!
 //! ```text
 //! f_I = ± W_I P,        v_rel = Σ W_I^b v_I^b − Σ W_I^a v_I^a,        Σ W_I = 1,   Σ W_I x_I = x,
