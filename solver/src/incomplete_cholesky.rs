@@ -11,6 +11,12 @@ use crate::stencil::{Offset, Stencil};
 
 /// Rows of control points in a block.
 const BLOCK_ROWS: usize = 24;
+/// Least pivot beside the diagonal of the matrix; with a smaller one the diagonal of the block is raised.
+const LEAST_PIVOT: f64 = 1e-3;
+/// Relative shifts of the diagonal: the first that is tried, how it grows, and the last.
+const FIRST_SHIFT: f64 = 1e-3;
+const SHIFT_GROWTH: f64 = 4.0;
+const LARGEST_SHIFT: f64 = 1e3;
 
 /// A product of two factor entries that falls into the stencil: `A[i + first, i + second] −= L L D`.
 #[derive(Debug, Clone, Copy)]
@@ -28,33 +34,29 @@ pub struct IncompleteCholesky {
     updates: Vec<Update>,
     /// Like the coefficients of the matrix: 1/D in place of the diagonal, L elsewhere.
     factor: Vec<f64>,
-    least_pivot: f64,
 }
 
 impl IncompleteCholesky {
     /// Factors `matrix`.
     pub fn new(matrix: &Stencil) -> Self {
-        Self::guarded(matrix, 0.0)
-    }
-
-    /// Factors `matrix`; pivots below a fraction of the diagonal are replaced by it. Dropped couplings can leave nothing of them,
-    /// most of all where a control point has hardly any material.
-    pub fn guarded(matrix: &Stencil, least_pivot: f64) -> Self {
         let offsets = matrix.offsets().to_vec();
         let updates = updates(&offsets, matrix.degree());
-        let mut factor =
-            Self { grid: matrix.grid, offsets, updates, factor: vec![0.0; matrix.coefficients().len()], least_pivot };
+        let mut factor = Self { grid: matrix.grid, offsets, updates, factor: vec![0.0; matrix.coefficients().len()] };
         factor.refactor(matrix);
         factor
     }
 
     /// Factors `matrix` again in the same memory.
     pub fn refactor(&mut self, matrix: &Stencil) {
-        self.factor.copy_from_slice(matrix.coefficients());
         let block = BLOCK_ROWS * matrix.row_length();
-        let Self { grid, offsets, updates, factor, least_pivot } = self;
+        let Self { grid, offsets, updates, factor } = self;
         let blocks = factor.par_chunks_mut(block).zip(matrix.coefficients().par_chunks(block));
-        blocks.for_each(|(block, matrix)| factor_block(*grid, offsets, updates, *least_pivot, matrix, block));
+        blocks.for_each(|(block, matrix)| {
+            let mut shift = 0.0;
+            while !factor_block(*grid, offsets, updates, shift, matrix, block) && shift < LARGEST_SHIFT {
+                shift = (SHIFT_GROWTH * shift).max(FIRST_SHIFT);
+            }
+        });
     }
 
     /// `out = (L D Lᵀ)⁻¹ r`; returns `rᵀ out`.
@@ -92,23 +94,31 @@ fn updates(offsets: &[Offset], degree: [usize; 2]) -> Vec<Update> {
     updates
 }
 
-/// `block` holds a copy of the rows of `matrix`.
+/// Factors the rows of `matrix`, their diagonal times `1 + shift`, into `block`; false as soon as a pivot falls to nothing beside
+/// the diagonal: dropped couplings can leave nothing of it (Manteuffel 1980).
 fn factor_block(
     grid: ControlGrid,
     offsets: &[Offset],
     updates: &[Update],
-    least_pivot: f64,
+    shift: f64,
     matrix: &[f64],
     block: &mut [f64],
-) {
+) -> bool {
+    block.copy_from_slice(matrix);
     let row_length = offsets.len() * grid.stride;
     let rows = block.len() / row_length;
+    if shift > 0.0 {
+        let diagonals = (0..rows).map(|row| row * row_length);
+        diagonals.for_each(|start| block[start..start + grid.stride].iter_mut().for_each(|d| *d *= 1.0 + shift));
+    }
     for row in 0..rows {
         let reachable = offsets.iter().take_while(|o| row + o.rows < rows).count();
         for column in 0..grid.columns {
             let at = row * row_length + grid.index(column, 0);
-            let pivot = if block[at] > least_pivot * matrix[at] { block[at] } else { matrix[at] };
-            let inverse = if pivot > 0.0 { 1.0 / pivot } else { 1.0 };
+            if block[at] <= LEAST_PIVOT * matrix[at] && shift < LARGEST_SHIFT && matrix[at] > 0.0 {
+                return false;
+            }
+            let inverse = if block[at] > 0.0 { 1.0 / block[at] } else { 1.0 };
             let mut entries = [0.0; 64];
             for (index, entry) in entries.iter_mut().enumerate().take(reachable).skip(1) {
                 *entry = block[at + index * grid.stride];
@@ -129,6 +139,7 @@ fn factor_block(
             block[at] = inverse;
         }
     }
+    true
 }
 
 struct SolveBlock<'a> {

@@ -24,14 +24,9 @@ const ITERATION_LIMIT: usize = 2000;
 /// A lagged factor is renewed once a solve needs this many more iterations than the one after its renewal.
 const EXTRA_ITERATIONS: usize = 3;
 
-/// Least pivot of the factor where points move and leave control points with hardly any material.
-const MOVING_PIVOT: f64 = 1e-2;
-
 /// Diagonal and right-hand side of control points without material, as a fraction of the largest right-hand side: they
 /// hardly weigh in the norm that the tolerance refers to.
 const EMPTY: f64 = 1e-6;
-/// Right-hand side of control points with hardly any material, as such a fraction: points hardly see their values.
-const HARDLY: f64 = 1e-9;
 
 /// Counters of the phase-field solver.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -67,17 +62,17 @@ enum Method {
 }
 
 impl Method {
-    fn new(matrix: &Stencil, settings: &SolverSettings, least_pivot: f64) -> Self {
+    fn new(matrix: &Stencil, settings: &SolverSettings) -> Self {
         match settings.phase_field_solver {
             PhaseFieldSolver::Cholesky => Self::Direct(Box::default()),
-            PhaseFieldSolver::ConjugateGradients => Self::iterative(matrix, least_pivot),
+            PhaseFieldSolver::ConjugateGradients => Self::iterative(matrix),
         }
     }
 
-    fn iterative(matrix: &Stencil, least_pivot: f64) -> Self {
+    fn iterative(matrix: &Stencil) -> Self {
         Self::Iterative {
             workspace: Box::new(ConjugateGradients::new(matrix)),
-            factor: Box::new(IncompleteCholesky::guarded(matrix, least_pivot)),
+            factor: Box::new(IncompleteCholesky::new(matrix)),
             fresh_iterations: None,
         }
     }
@@ -92,7 +87,7 @@ impl PhaseField {
         let mut load = integrate_shape_functions(lattice);
         isolate_empty(&mut matrix, &mut load);
         let assembled = vec![Lane::ZERO; lattice.batches()];
-        Self::intact(matrix, load, assembled, model, settings, 0.0)
+        Self::intact(matrix, load, assembled, model, settings)
     }
 
     /// Phase field whose system is assembled anew at every step (see [`Self::system_mut`]), intact until the first solve.
@@ -102,7 +97,7 @@ impl PhaseField {
         model: FractureModel,
         settings: &SolverSettings,
     ) -> Self {
-        Self::intact(Stencil::zeros(grid, degree), grid.zeros(), Vec::new(), model, settings, MOVING_PIVOT)
+        Self::intact(Stencil::zeros(grid, degree), grid.zeros(), Vec::new(), model, settings)
     }
 
     fn intact(
@@ -111,7 +106,6 @@ impl PhaseField {
         assembled: Vec<Lane>,
         model: FractureModel,
         settings: &SolverSettings,
-        least_pivot: f64,
     ) -> Self {
         let mut phase = matrix.grid.zeros();
         matrix.grid.indices().for_each(|at| phase[at] = 1.0);
@@ -122,7 +116,7 @@ impl PhaseField {
             previous: phase.clone(),
             phase,
             assembled,
-            method: Method::new(&matrix, settings, least_pivot),
+            method: Method::new(&matrix, settings),
             matrix,
             counts: PhaseFieldCounts::default(),
         }
@@ -146,7 +140,7 @@ impl PhaseField {
         self.load = grid.zeros();
         self.method = match self.method {
             Method::Direct(_) => Method::Direct(Box::default()),
-            Method::Iterative { .. } => Method::iterative(&self.matrix, MOVING_PIVOT),
+            Method::Iterative { .. } => Method::iterative(&self.matrix),
         };
     }
 
@@ -278,17 +272,16 @@ impl PhaseField {
     }
 }
 
-/// Pulls control points with no or hardly any material to `c = 1`: nothing else would hold the latter, whose rows are too small
-/// for any tolerance to see and for the factor to divide by.
-pub(crate) fn isolate_empty(matrix: &mut Stencil, load: &mut [f64]) {
+/// Holds control points without material at `c = 1`.
+fn isolate_empty(matrix: &mut Stencil, load: &mut [f64]) {
     let grid = matrix.grid;
-    let largest = load.iter().copied().fold(0.0, f64::max);
+    let value = EMPTY * load.iter().copied().fold(0.0, f64::max);
     for row in 0..grid.rows {
         for column in 0..grid.columns {
             let at = grid.index(column, row);
-            if load[at] <= HARDLY * largest {
-                matrix.set_diagonal(column, row, matrix.diagonal(column, row) + EMPTY * largest);
-                load[at] += EMPTY * largest;
+            if matrix.diagonal(column, row) == 0.0 {
+                matrix.set_diagonal(column, row, value);
+                load[at] = value;
             }
         }
     }

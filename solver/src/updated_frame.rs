@@ -22,6 +22,7 @@ pub mod affine;
 pub mod assembly;
 pub mod cracking;
 pub mod departure;
+pub mod fictitious;
 pub mod field;
 pub mod follower;
 pub mod grid;

@@ -4,13 +4,13 @@
 //! K_IJ = Σ_p V_p [ (4 l0 (1 − k) H_p/Gc + 1) N_I N_J + 4 l0² grad N_I · grad N_J ],   load_I = Σ_p V_p N_I
 //! ```
 
+use super::fictitious::FictitiousMaterial;
 use super::points::{Cell, Cells, FracturePoint, Point};
 use super::transfer::{MAX_FUNCTIONS, walk};
 use super::windows::{Window, scatter};
 use crate::lane::{Vectorised, dispatch};
 use crate::material::FractureModel;
 use crate::patch::Patch;
-use crate::phase_field::isolate_empty;
 use crate::stencil::Stencil;
 
 /// Assembles matrix and right-hand side anew.
@@ -22,10 +22,10 @@ pub fn assemble(
     points: &[Point],
     fracture: &[FracturePoint],
     model: &FractureModel,
+    fictitious: &FictitiousMaterial,
 ) {
     let (grid, row_length) = (matrix.grid, matrix.row_length());
-    matrix.coefficients_mut().fill(0.0);
-    load.fill(0.0);
+    fictitious.begin(matrix, load);
     let fields = [matrix.coefficients_mut(), &mut *load];
     scatter(&cells.strips, fields, [row_length, grid.stride], |strip, window| {
         let cells = &cells.cells[strip.cells.clone()];
@@ -33,7 +33,6 @@ pub fn assemble(
         let lead = grid.index(0, 0);
         dispatch(AssembleStrip { patch, row_length, stride, lead, cells, points, fracture, model, window });
     });
-    isolate_empty(matrix, load);
 }
 
 struct AssembleStrip<'a> {

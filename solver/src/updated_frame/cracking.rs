@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::assembly::assemble;
+use super::fictitious::FictitiousMaterial;
 use super::points::{Cell, Cells, FracturePoint, Point};
 use super::transfer::{MAX_FUNCTIONS, contract, gather, walk};
 use super::windows::cut;
@@ -23,6 +24,7 @@ pub struct Cracking {
     pub points: Vec<FracturePoint>,
     /// Phase field on the control points.
     pub field: PhaseField,
+    fictitious: FictitiousMaterial,
     /// Iterations of the last solve.
     pub iterations: usize,
     /// Surface energy of the crack per unit thickness, J/m.
@@ -55,11 +57,18 @@ impl Cracking {
         Self {
             points: points.collect(),
             field: PhaseField::without_lattice(patch.control_grid(), degree, model, settings),
+            fictitious: FictitiousMaterial::new(patch, model.diffusion()),
             model,
             iterations: 0,
             surface_energy: 0.0,
             least_phase: 1.0,
         }
+    }
+
+    /// Goes over to another part of the patch, whose first control column and row lie `shift` columns and rows further.
+    pub fn relocate(&mut self, patch: &Patch, shift: [isize; 2]) {
+        self.field.relocate(patch.control_grid(), shift);
+        self.fictitious = FictitiousMaterial::new(patch, self.model.diffusion());
     }
 
     /// `H ← max(H, psi+)` (E 10).
@@ -77,7 +86,7 @@ impl Cracking {
     /// If the solve does not converge.
     pub fn solve(&mut self, patch: &Patch, cells: &Cells, points: &[Point], moved: bool) -> Result<(), NotConverged> {
         let (matrix, load) = self.field.system_mut();
-        assemble(matrix, load, patch, cells, points, &self.points, &self.model);
+        assemble(matrix, load, patch, cells, points, &self.points, &self.model, &self.fictitious);
         let first = self.field.counts().solves == 0;
         if moved && !first {
             self.field.renew_factor(); // other control points may have material now
@@ -115,7 +124,7 @@ impl Cracking {
 
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
-        self.points.len() * size_of::<FracturePoint>() + self.field.bytes()
+        self.points.len() * size_of::<FracturePoint>() + self.field.bytes() + self.fictitious.bytes()
     }
 }
 

@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use super::cracking::Cracking;
 use super::departure::Departure;
 use super::field::DiscreteField;
 use super::grid::NodalFields;
@@ -65,9 +64,9 @@ impl DiscreteField {
         if let Some(affine) = &mut self.affine {
             affine.follow(&patch);
         }
-        if let Some(Cracking { field, .. }) = &mut self.fracture {
+        if let Some(fracture) = &mut self.fracture {
             let shift = [0, 1].map(|d| origin[d] as isize - self.origin[d] as isize);
-            field.relocate(patch.control_grid(), shift);
+            fracture.relocate(&patch, shift);
         }
         (self.patch, self.origin) = (patch, origin);
         self.cells = Cells::default();
