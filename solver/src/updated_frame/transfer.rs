@@ -143,6 +143,14 @@ pub struct StripMotion {
     pub stress_work: f64,
 }
 
+/// What a step does to a point.
+struct PointMotion {
+    /// Strain of the step that the new stress works on.
+    strain_increment: [f64; 3],
+    /// Displacement of the step, m.
+    moved: [f64; 2],
+}
+
 impl<K: Kinematics> Vectorised for GridToPoints<'_, K> {
     type Output = StripMotion;
 
@@ -164,11 +172,11 @@ impl<K: Kinematics> GridToPoints<'_, K> {
             for first in all.clone().step_by(LANES) {
                 let some = first..(first + LANES).min(all.end);
                 for at in some.clone() {
-                    let increment = self.move_point(cell, at, &local, kx, ky, &mut motion);
-                    increments[at - first] = increment.0;
+                    let PointMotion { strain_increment, moved } =
+                        self.move_point(cell, at, &local, kx, ky, &mut motion);
+                    increments[at - first] = strain_increment;
                     if let Some(fracture) = self.fracture.get_mut(at) {
-                        fracture.strain_increment = increment.0;
-                        fracture.moved = increment.1;
+                        (fracture.strain_increment, fracture.moved) = (strain_increment, moved);
                     }
                 }
                 if let Some(moduli) = self.elastic {
@@ -194,7 +202,7 @@ impl<K: Kinematics> GridToPoints<'_, K> {
         local
     }
 
-    /// Moves and strains one point; returns its strain increment and displacement.
+    /// Moves and strains one point.
     #[inline(always)]
     fn move_point(
         &mut self,
@@ -204,7 +212,7 @@ impl<K: Kinematics> GridToPoints<'_, K> {
         kx: usize,
         ky: usize,
         motion: &mut StripMotion,
-    ) -> ([f64; 3], [f64; 2]) {
+    ) -> PointMotion {
         let [x, y] = &self.patch.spaces;
         let point = &mut self.points[at];
         let sx = x.shape_functions(cell.span[0], point.position[0]);
@@ -225,7 +233,7 @@ impl<K: Kinematics> GridToPoints<'_, K> {
             }
         }
         let step = [0, 1].map(|c| [self.dt * along_x[c], self.dt * along_y[c]]);
-        let increment = self.kinematics.strain(at, &mut point.strain, &step);
+        let strain_increment = self.kinematics.strain(at, &mut point.strain, &step);
         let moved = [0, 1].map(|d| self.dt * value[d]);
         for d in 0..2 {
             point.velocity[d] = self.kept * point.velocity[d] + value[2 + d];
@@ -235,7 +243,7 @@ impl<K: Kinematics> GridToPoints<'_, K> {
         }
         let spans = [&x.spans()[cell.span[0]], &y.spans()[cell.span[1]]];
         motion.left_span |= (0..2).any(|d| !(spans[d].left <= point.position[d] && point.position[d] < spans[d].right));
-        (increment, moved)
+        PointMotion { strain_increment, moved }
     }
 }
 

@@ -24,10 +24,10 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
         }
         findings.series.push((stem, found.energies));
     }
-    let title = format!("Energies over that at t = 0, {}", case.label);
     findings.figures.push(chart(
-        series_stem(case, "energies"),
-        &title,
+        case,
+        "energies",
+        "Energies over that at t = 0",
         "",
         ["time (s)", "energy over that at t = 0"],
         curves,

@@ -40,8 +40,14 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
         }
         findings.series.push((stem, found.forces));
     }
-    let title = format!("Normal forces over the weight above, {}", case.label);
-    findings.figures.push(chart(series_stem(case, "forces"), &title, "", ["time (s)", "force over weight"], curves));
+    findings.figures.push(chart(
+        case,
+        "forces",
+        "Normal forces over the weight above",
+        "",
+        ["time (s)", "force over weight"],
+        curves,
+    ));
     Ok(findings)
 }
 

@@ -3,7 +3,7 @@
 use super::{PAPER, Watched};
 use crate::case::Case;
 use crate::expand::CaseScene;
-use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Region, Scale};
+use crate::record::{Axis, Curve, Figure, FigureBody, Region};
 use crate::rings::events::{EVENTS, annulus};
 use crate::study::Findings;
 use crate::study::scene::{length_scale, microseconds, raster, series_stem};
@@ -23,7 +23,7 @@ pub fn add(findings: &mut Findings, case: &Case, case_scene: &CaseScene, watched
     let series = format!("series/{stem}.csv");
     let factor = case_scene.energy_factor;
     let energies = ["fracture_j", "kinetic_j", "elastic_j", "contact_loss_j", "transfer_loss_j", "closure_j"];
-    let curve = |column: &str| curve(&series, column, factor);
+    let curve = |column: &str| Curve::energy(&series, column, factor);
     findings.figures.push(figure(
         format!("{}-fracture-energy", case.name),
         "Fracture energy of both rings, events of the paper marked".into(),
@@ -67,24 +67,8 @@ fn caption(CaseScene { scene, .. }: &CaseScene, watched: &Watched) -> String {
     )
 }
 
-fn curve(series: &str, column: &str, factor: f64) -> Curve {
-    Curve {
-        label: column.trim_end_matches("_j").replace('_', " "),
-        series: series.to_string(),
-        x: "time_s".into(),
-        y: column.into(),
-        x_scale: 1e6,
-        y_scale: factor,
-        style: CurveStyle::Line,
-        uncertainty_absolute: 0.0,
-        uncertainty_relative: 0.0,
-    }
-}
-
 fn chart(label: &str, curves: Vec<Curve>, regions: Vec<Region>) -> FigureBody {
-    let axis = |label: &str| Axis { label: label.into(), scale: Scale::default(), range: None };
-    let (x, y) = (axis("time (µs)"), axis(label));
-    FigureBody::Chart { x, y, curves, regions, slopes: Vec::new(), floors: Vec::new() }
+    FigureBody::chart([Axis::linear("time (µs)"), Axis::linear(label)], curves, regions)
 }
 
 /// Lines at the times of the paper.
