@@ -82,15 +82,8 @@ impl UpdatedFrame {
 
     /// Parts of the transfer loss so far, J.
     pub fn transfer_losses(&self) -> TransferLosses {
-        self.fields.iter().fold(TransferLosses::default(), |sum, field| {
-            let part = field.transfer_losses();
-            TransferLosses {
-                kinetic: sum.kinetic + part.kinetic,
-                power: sum.power + part.power,
-                imposed: sum.imposed + part.imposed,
-                phase_field: sum.phase_field + part.phase_field,
-            }
-        })
+        let sum = |sum: TransferLosses, field: &DiscreteField| sum.plus(field.losses.times(self.thickness));
+        self.fields.iter().fold(TransferLosses::default(), sum)
     }
 
     /// Kinetic energy of the points of all bodies, J: see [`DiscreteField::point_kinetic_energy`].
@@ -187,13 +180,6 @@ impl DiscreteField {
             [p.position[0] + ahead, p.position[1]]
         });
         tips.max_by(|a, b| a[0].total_cmp(&b[0]))
-    }
-
-    /// Parts of the transfer loss so far, J.
-    pub fn transfer_losses(&self) -> TransferLosses {
-        let TransferLosses { kinetic, power, imposed, phase_field } = self.losses;
-        let t = self.thickness;
-        TransferLosses { kinetic: kinetic * t, power: power * t, imposed: imposed * t, phase_field: phase_field * t }
     }
 
     /// Kinetic energy of the points as the scheme keeps it, `1/2 Σ m v_p(n − 1/2) · v_p(n + 1/2)` with FLIP or MUSL, J; at

@@ -6,7 +6,7 @@
 
 use super::points::{Cell, FracturePoint, Point};
 use super::strain::Kinematics;
-use super::windows::Window;
+use super::windows::{Window, control_values};
 use crate::lane::{LANES, Lane, Vectorised};
 use crate::material::ElasticModuli;
 use crate::patch::{ControlGrid, Patch};
@@ -165,9 +165,11 @@ impl<K: Kinematics> GridToPoints<'_, K> {
     fn walk(mut self, kx: usize, ky: usize) -> StripMotion {
         let mut motion = StripMotion::default();
         let offset = self.cells.first().map_or(0, |cell| cell.points.start);
+        let ([ux, uy], [tx, ty]) = (self.motion, self.taken);
+        let fields = [ux, uy, tx, ty];
         let mut increments = [[0.0; 3]; LANES];
         for cell in self.cells {
-            let local = self.gather(cell, kx, ky);
+            let local = control_values(fields, self.grid, cell, kx, ky);
             let all = cell.points.start - offset..cell.points.end - offset;
             for first in all.clone().step_by(LANES) {
                 let some = first..(first + LANES).min(all.end);
@@ -185,21 +187,6 @@ impl<K: Kinematics> GridToPoints<'_, K> {
             }
         }
         motion
-    }
-
-    /// Motion and what is taken up, two components each, of the control points of a cell.
-    #[inline(always)]
-    fn gather(&self, cell: &Cell, kx: usize, ky: usize) -> [[f64; 4]; MAX_FUNCTIONS] {
-        let mut local = [[0.0; 4]; MAX_FUNCTIONS];
-        for l in 0..ky {
-            let base = self.grid.index(cell.first[0], cell.first[1] + l);
-            for k in 0..kx {
-                let [ux, uy] = self.motion.map(|field| field[base + k]);
-                let [tx, ty] = self.taken.map(|field| field[base + k]);
-                local[l * kx + k] = [ux, uy, tx, ty];
-            }
-        }
-        local
     }
 
     /// Moves and strains one point.

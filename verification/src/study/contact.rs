@@ -122,6 +122,11 @@ impl Books {
     }
 }
 
+/// What a curve shows, with its scene where that has a name.
+fn label(scene: &str, what: &str) -> String {
+    if scene.is_empty() { what.to_string() } else { format!("{scene}: {what}") }
+}
+
 /// A curve of two columns of a series.
 fn curve(label: &str, stem: &str, columns: [&str; 2], style: CurveStyle) -> Curve {
     Curve { style, ..Curve::line(label, &format!("series/{stem}.csv"), columns) }
