@@ -10,8 +10,7 @@
 //! with y half a span below x and the masses m are a linear fit weighted with mass: they give affine velocity fields at x
 //! exactly, spread an impulse with neither momentum nor torque lost, and let a control point take part as far as it has mass.
 
-use nalgebra::{Matrix3, Vector3};
-
+use crate::spline::MAX_ORDER;
 use crate::updated_frame::field::DiscreteField;
 use crate::updated_frame::follower::Follower;
 use crate::updated_frame::grid::VectorField;
@@ -27,36 +26,58 @@ pub struct Handle {
     count: usize,
 }
 
+/// Sums of weights, and of weights times arms and products of arms.
+#[derive(Default)]
+struct Moments {
+    weight: f64,
+    x: f64,
+    y: f64,
+    xx: f64,
+    xy: f64,
+    yy: f64,
+}
+
 impl Handle {
     /// Stands for `position` (m), near the point `inside` (m) of the body; `None` if it has no material there.
     pub fn new(field: &DiscreteField, position: [f64; 2], inside: [f64; 2]) -> Option<Self> {
         let (patch, nodes) = (field.patch(), field.nodes());
-        let [x, y] = Follower::nearest(inside, patch, field.cells())?.shape_functions(patch);
-        let per_span = [0, 1].map(|d| 1.0 / patch.spaces[d].spans()[0].length());
+        let [(column, nx), (row, ny)] = Follower::nearest(inside, patch, field.cells())?.shape_functions(patch);
+        let [kx, ky] = [0, 1].map(|d| patch.spaces[d].degree() + 1);
+        let arms = |d: usize, first: usize, count: usize| {
+            let per_span = 1.0 / patch.spaces[d].spans()[0].length();
+            let mut arms = [0.0; MAX_ORDER];
+            for (arm, x) in arms.iter_mut().zip(&nodes.greville[d][first..first + count]) {
+                *arm = (x - position[d]) * per_span;
+            }
+            arms
+        };
+        let (x, y) = (arms(0, column, kx), arms(1, row, ky));
+        let mut weights = [0.0; MAX_FUNCTIONS];
+        let mut moments = Moments::default();
+        for l in 0..ky {
+            for k in 0..kx {
+                let at = nodes.grid.index(column + k, row + l);
+                if nodes.inverse_mass[at] > 0.0 {
+                    let weight = (nx.value[k] * ny.value[l]).max(0.0) * nodes.mass[at];
+                    weights[l * kx + k] = weight;
+                    moments.add(weight, x[k], y[l]);
+                }
+            }
+        }
+        let fit = moments.fit()?;
         let mut handle = Self { weights: [(0, 0.0); MAX_FUNCTIONS], count: 0 };
-        let mut arms = [Vector3::zeros(); MAX_FUNCTIONS];
-        let mut moments = Matrix3::zeros();
-        for (row, ny) in y {
-            let arm_y = (nodes.greville[1][row] - position[1]) * per_span[1];
-            for (column, nx) in x.clone() {
-                let at = nodes.grid.index(column, row);
-                let weight = (nx * ny).max(0.0) * nodes.mass[at];
-                if weight > 0.0 && nodes.inverse_mass[at] > 0.0 {
-                    let arm = Vector3::new(1.0, (nodes.greville[0][column] - position[0]) * per_span[0], arm_y);
-                    moments.ger(weight, &arm, &arm, 1.0);
-                    arms[handle.count] = arm;
-                    handle.weights[handle.count] = (at, weight);
+        for l in 0..ky {
+            for k in 0..kx {
+                let weight = weights[l * kx + k];
+                if weight > 0.0 {
+                    let at = nodes.grid.index(column + k, row + l);
+                    handle.weights[handle.count] = (at, weight * (fit[0] + fit[1] * x[k] + fit[2] * y[l]));
                     handle.count += 1;
                 }
             }
         }
-        let fit = moments.cholesky()?.solve(&Vector3::x());
-        let weights = &mut handle.weights[..handle.count];
-        for ((_, weight), arm) in weights.iter_mut().zip(&arms) {
-            *weight *= fit.dot(arm);
-        }
-        let rounded: f64 = weights.iter().map(|(_, weight)| weight).sum();
-        weights.iter_mut().for_each(|(_, weight)| *weight /= rounded);
+        let rounded: f64 = handle.weights().iter().map(|(_, weight)| weight).sum();
+        handle.weights[..handle.count].iter_mut().for_each(|(_, weight)| *weight /= rounded);
         Some(handle)
     }
 
@@ -68,5 +89,47 @@ impl Handle {
     /// Value of a field on the control points at the position.
     pub fn value(&self, field: &VectorField) -> [f64; 2] {
         [0, 1].map(|c| self.weights().iter().map(|&(at, weight)| weight * field[c][at]).sum())
+    }
+}
+
+impl Moments {
+    #[inline]
+    fn add(&mut self, weight: f64, x: f64, y: f64) {
+        self.weight += weight;
+        self.x += weight * x;
+        self.y += weight * y;
+        self.xx += weight * x * x;
+        self.xy += weight * x * y;
+        self.yy += weight * y * y;
+    }
+
+    /// `a` and b of the fit `a + b · arm`, from the mean and the covariance of the arms; `None` if they lie on a line.
+    fn fit(&self) -> Option<[f64; 3]> {
+        let [x, y] = [self.x, self.y].map(|sum| sum / self.weight);
+        let (xx, xy, yy) = (self.xx - self.x * x, self.xy - self.x * y, self.yy - self.y * y);
+        let determinant = xx * yy - xy * xy;
+        let b = [xy * y - yy * x, xy * x - xx * y].map(|b| b / determinant);
+        (determinant > 0.0).then(|| [1.0 / self.weight - b[0] * x - b[1] * y, b[0], b[1]])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fit_stands_for_the_position_of_no_arm() {
+        let points = [(2.0, 0.5, -0.5), (1.0, -0.25, 1.0), (3.0, -1.0, 0.25), (0.5, 1.0, 1.5)];
+        let mut moments = Moments::default();
+        points.iter().for_each(|&(weight, x, y)| moments.add(weight, x, y));
+        let [a, bx, by] = moments.fit().unwrap();
+        let sum = |value: fn(f64, f64) -> f64| -> f64 {
+            points.iter().map(|&(weight, x, y)| weight * (a + bx * x + by * y) * value(x, y)).sum()
+        };
+        assert!((sum(|_, _| 1.0) - 1.0).abs() < 1e-14);
+        assert!(sum(|x, _| x).abs() < 1e-14 && sum(|_, y| y).abs() < 1e-14);
+        let mut line = Moments::default();
+        [0.0, 1.0, 2.0].iter().for_each(|&x| line.add(1.0, x, 0.0));
+        assert!(line.fit().is_none() && Moments::default().fit().is_none());
     }
 }

@@ -7,7 +7,7 @@
 use super::grid::VectorField;
 use super::points::{Cells, OutsidePatch};
 use crate::patch::{ControlGrid, Patch};
-use crate::spline::SplineSpace;
+use crate::spline::{ShapeFunctions, SplineSpace};
 
 /// A position that moves with a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,21 +49,22 @@ impl Follower {
 
     /// Calls `f` with control point and value of every shape function at the position.
     pub fn for_each_function(&self, patch: &Patch, grid: ControlGrid, mut f: impl FnMut(usize, f64)) {
-        let [x, y] = self.shape_functions(patch);
-        for (row, ny) in y {
-            for (column, nx) in x.clone() {
-                f(grid.index(column, row), nx * ny);
+        let [(column, x), (row, y)] = self.shape_functions(patch);
+        for l in 0..=patch.spaces[1].degree() {
+            for k in 0..=patch.spaces[0].degree() {
+                f(grid.index(column + k, row + l), x.value[k] * y.value[l]);
             }
         }
     }
 
-    /// Control columns and values of the shape functions in x at the position, and control rows and values of those in y.
-    pub fn shape_functions(&self, patch: &Patch) -> [impl Iterator<Item = (usize, f64)> + Clone + use<>; 2] {
-        [0, 1].map(|d| {
-            let space = &patch.spaces[d];
-            let values = space.shape_functions(self.span[d], self.position[d]).value;
-            (space.spans()[self.span[d]].first..).zip(values).take(space.degree() + 1)
-        })
+    /// Shape functions in x at the position with the control column of the first, and those in y with the control row.
+    #[inline]
+    pub fn shape_functions(&self, patch: &Patch) -> [(usize, ShapeFunctions); 2] {
+        let along = |d: usize| {
+            let (space, span) = (&patch.spaces[d], self.span[d]);
+            (space.spans()[span].first, space.shape_functions(span, self.position[d]))
+        };
+        [along(0), along(1)]
     }
 }
 
