@@ -148,11 +148,6 @@ fn stem(curve: &Curve) -> String {
     curve.series.trim_start_matches("series/").trim_end_matches(".csv").to_string()
 }
 
-/// Curves of a quantity against the time.
-fn over_time(label: &str, curves: Vec<Curve>, regions: Vec<Region>) -> FigureBody {
-    FigureBody::chart([Axis::linear("time (µs)"), Axis::linear(label)], curves, regions)
-}
-
 /// One quantity of some runs beside its references; ids begin with `prefix`.
 fn chart(
     quantity: &Quantity,
@@ -185,7 +180,7 @@ fn chart(
         title: quantity.title.into(),
         caption: captions(runs),
         deviations: deviations(runs),
-        body: over_time(quantity.label, curves, regions.collect()),
+        body: FigureBody::over_time(quantity.label, curves, regions.collect()),
     }
 }
 
@@ -247,7 +242,7 @@ fn ledger(run: &RunInfo) -> Figure {
         title: format!("Energy ledger, {}", run.label),
         caption: format!("{}.", run.resolution),
         deviations: run.deviations.clone(),
-        body: over_time("energy (J/m)", curves, Vec::new()),
+        body: FigureBody::over_time("energy (J/m)", curves, Vec::new()),
     }
 }
 

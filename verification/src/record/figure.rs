@@ -171,6 +171,11 @@ impl FigureBody {
     pub fn chart([x, y]: [Axis; 2], curves: Vec<Curve>, regions: Vec<Region>) -> Self {
         Self::Chart { x, y, curves, regions, slopes: Vec::new(), floors: Vec::new() }
     }
+
+    /// Curves and marked regions over the time in µs.
+    pub fn over_time(label: &str, curves: Vec<Curve>, regions: Vec<Region>) -> Self {
+        Self::chart([Axis::linear("time (µs)"), Axis::linear(label)], curves, regions)
+    }
 }
 
 /// One figure of the report.

@@ -3,7 +3,7 @@
 use super::{PAPER, Watched};
 use crate::case::Case;
 use crate::expand::CaseScene;
-use crate::record::{Axis, Curve, Figure, FigureBody, Region};
+use crate::record::{Curve, Figure, FigureBody, Region};
 use crate::rings::events::{EVENTS, annulus};
 use crate::study::Findings;
 use crate::study::scene::{length_scale, microseconds, raster, series_stem};
@@ -27,12 +27,12 @@ pub fn add(findings: &mut Findings, case: &Case, case_scene: &CaseScene, watched
     findings.figures.push(figure(
         format!("{}-fracture-energy", case.name),
         "Fracture energy of both rings, events of the paper marked".into(),
-        chart("fracture energy (J)", vec![curve("fracture_j")], events()),
+        FigureBody::over_time("fracture energy (J)", vec![curve("fracture_j")], events()),
     ));
     findings.figures.push(figure(
         format!("{}-ledger", case.name),
         "Energy ledger of both rings".into(),
-        chart("energy (J)", energies.iter().map(|column| curve(column)).collect(), Vec::new()),
+        FigureBody::over_time("energy (J)", energies.iter().map(|column| curve(column)).collect(), Vec::new()),
     ));
     for picture in &watched.pictures {
         let Some(phase) = &picture.phase else { continue };
@@ -65,10 +65,6 @@ fn caption(CaseScene { scene, .. }: &CaseScene, watched: &Watched) -> String {
         watched.steps,
         watched.step
     )
-}
-
-fn chart(label: &str, curves: Vec<Curve>, regions: Vec<Region>) -> FigureBody {
-    FigureBody::chart([Axis::linear("time (µs)"), Axis::linear(label)], curves, regions)
 }
 
 /// Lines at the times of the paper.
