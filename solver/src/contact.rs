@@ -31,7 +31,7 @@ use std::collections::{BTreeMap, HashMap};
 use crate::patch::Patch;
 use crate::scene::Scene;
 use crate::updated_frame::field::DiscreteField;
-use handle::{DEPTH, handle};
+use handle::{DEPTH, Handle};
 use impulse::Impulse;
 pub use rigid::RigidBody;
 pub use surface::Surface;
@@ -43,20 +43,21 @@ const FACING: f64 = -0.5;
 const NEAR: f64 = 0.1;
 
 /// A place, as large as a span, where the boundaries of two bodies are near each other.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Touch {
-    /// Numbers of the bodies a and b; rigid ones are counted after the others.
-    pub bodies: [usize; 2],
-    /// Column and row of the square it stands for.
-    pub square: [i32; 2],
-    /// Position, m.
-    pub position: [f64; 2],
     /// Gap, m; negative where the boundaries overlap.
     pub gap: f64,
+    /// Numbers of the bodies a and b; rigid ones are counted after the others, so only b may be rigid.
+    bodies: [usize; 2],
+    /// Column and row of the square it stands for.
+    square: [i32; 2],
+    /// Position, m.
+    position: [f64; 2],
     /// Unit normal from a to b.
-    pub normal: [f64; 2],
-    /// Index in the nodal fields and weight for both bodies; none of a rigid one.
-    weights: [Vec<(usize, f64)>; 2],
+    normal: [f64; 2],
+    /// Where the bodies are taken hold of; a rigid b is not.
+    on_a: Handle,
+    on_b: Option<Handle>,
 }
 
 /// Sums over the segments of both bodies whose middle of the gap lies in a square.
@@ -88,7 +89,7 @@ pub struct Contact {
     reach: f64,
     rigid: Vec<RigidBody>,
     touches: Vec<Touch>,
-    /// Impulses of the last step, where to start from.
+    /// Forces of the last step (impulses per second), where to start from.
     last: HashMap<([usize; 2], [i32; 2]), Impulse>,
     ledger: ContactLedger,
 }
@@ -167,12 +168,14 @@ impl Contact {
     fn touch(&self, bodies: [usize; 2], square: [i32; 2], sums: &Sums, fields: &[DiscreteField]) -> Option<Touch> {
         let position = sums.position.map(|sum| sum / sums.count);
         let normal = unit(sums.normal)?;
-        let hold = |side: usize, depth: f64| match fields.get(bodies[side]) {
-            Some(field) => handle(field, position, [0, 1].map(|d| position[d] + depth * self.reach * normal[d])),
-            None => Some(Vec::new()),
+        let inside = |depth: f64| [0, 1].map(|d| position[d] + depth * self.reach * normal[d]);
+        let [a, b] = bodies;
+        let on_a = Handle::new(&fields[a], position, inside(-DEPTH))?;
+        let on_b = match fields.get(b) {
+            Some(field) => Some(Handle::new(field, position, inside(DEPTH))?),
+            None => None,
         };
-        let weights = [hold(0, -DEPTH)?, hold(1, DEPTH)?];
-        Some(Touch { bodies, square, position, gap: sums.gap / sums.count, normal, weights })
+        Some(Touch { gap: sums.gap / sums.count, bodies, square, position, normal, on_a, on_b })
     }
 
     /// Where bodies are near each other.

@@ -21,7 +21,7 @@ pub struct Ledger {
 }
 
 /// State of a run at a whole step. Energies in J for the thickness of the scene.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sample {
     /// Time, s.
     pub time: f64,
@@ -130,6 +130,28 @@ impl Sample {
             transfer_loss: self.transfer_loss.zip(other.transfer_loss).map(|(a, b)| a + b),
             momentum: [0, 1].map(|d| self.momentum[d] + other.momentum[d]),
             angular_momentum: self.angular_momentum + other.angular_momentum,
+            ..self
+        }
+    }
+
+    /// A sample of a body a metre thick for another thickness, m.
+    #[must_use]
+    pub fn for_thickness(self, thickness: f64) -> Self {
+        Self {
+            kinetic: self.kinetic * thickness,
+            stagger: self.stagger * thickness,
+            elastic: self.elastic * thickness,
+            fracture: self.fracture.map(|f| FractureSample {
+                energy: f.energy * thickness,
+                history_work: f.history_work * thickness,
+                ..f
+            }),
+            external_work: self.external_work * thickness,
+            contact: self.contact.map(|c| ContactSample { loss: c.loss * thickness, friction: c.friction * thickness }),
+            transfer_loss: self.transfer_loss.map(|loss| loss * thickness),
+            closure: self.closure * thickness,
+            momentum: self.momentum.map(|p| p * thickness),
+            angular_momentum: self.angular_momentum * thickness,
             ..self
         }
     }

@@ -20,6 +20,7 @@
 
 pub mod affine;
 pub mod assembly;
+mod begin;
 pub mod cracking;
 pub mod departure;
 pub mod fictitious;
@@ -66,7 +67,6 @@ pub struct UpdatedFrame {
     fields: Vec<DiscreteField>,
     contact: Option<Contact>,
     thickness: f64,
-    steps: usize,
 }
 
 impl UpdatedFrame {
@@ -82,7 +82,7 @@ impl UpdatedFrame {
         if let Some(contact) = &mut contact {
             contact.find(&fields);
         }
-        Ok(Self { patch, fields, contact, thickness: scene.analysis.thickness, steps: 0 })
+        Ok(Self { patch, fields, contact, thickness: scene.analysis.thickness })
     }
 
     /// One time step of `dt` seconds.
@@ -97,18 +97,17 @@ impl UpdatedFrame {
                 fields[push.body].push(push.at, push.acceleration);
             }
         }
-        fields.iter_mut().try_for_each(|field| field.step(dt, kick.length))?;
+        fields.iter_mut().try_for_each(|field| field.step(dt))?;
         if let Some(contact) = contact {
             contact.move_rigid(fields[0].time());
             contact.find(fields);
         }
-        self.steps += 1;
         Ok(())
     }
 
-    /// The first kick is half a step: before it the points carry v(0).
+    /// The kick of the coming step: the same for all bodies.
     fn coming_kick(&self, dt: f64) -> Kick {
-        Kick { length: if self.steps == 0 { 0.5 * dt } else { dt }, step: dt }
+        Kick { length: self.fields[0].kick_length(dt), step: dt }
     }
 
     /// Critical time step of the undamaged bodies at the present positions, s; infinite if nothing can move.

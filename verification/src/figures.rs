@@ -5,7 +5,7 @@
 
 use crate::history::Table;
 use crate::measure::fitted_speed;
-use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Region, Scale};
+use crate::record::{Axis, Curve, Figure, FigureBody, Region};
 use crate::reference::{Library, ReferenceCurve};
 use crate::study::scene::RunInfo;
 
@@ -148,28 +148,6 @@ fn stem(curve: &Curve) -> String {
     curve.series.trim_start_matches("series/").trim_end_matches(".csv").to_string()
 }
 
-fn time_axis() -> Axis {
-    Axis { label: "time (µs)".into(), scale: Scale::Linear, range: None }
-}
-
-fn axis(label: &str) -> Axis {
-    Axis { label: label.into(), scale: Scale::Linear, range: None }
-}
-
-fn curve(label: &str, series: &str, y: &str, y_scale: f64) -> Curve {
-    Curve {
-        label: label.into(),
-        series: series.into(),
-        x: "time_s".into(),
-        y: y.into(),
-        x_scale: 1e6,
-        y_scale,
-        style: CurveStyle::Line,
-        uncertainty_absolute: 0.0,
-        uncertainty_relative: 0.0,
-    }
-}
-
 /// One quantity of some runs beside its references; ids begin with `prefix`.
 fn chart(
     quantity: &Quantity,
@@ -191,7 +169,7 @@ fn chart(
         let energy = quantity.column.ends_with("_j");
         let scale = quantity.scale * if energy { run.energy_factor } else { 1.0 };
         let series = if quantity.derived { run.derived() } else { run.series.clone() };
-        curves.push(curve(&run.label, &series, quantity.column, scale));
+        curves.push(Curve::history(&run.label, &series, quantity.column, scale));
     }
     let bands = quantity.bands.iter().filter_map(|name| library.band("plate-events", name));
     let regions =
@@ -202,14 +180,7 @@ fn chart(
         title: quantity.title.into(),
         caption: captions(runs),
         deviations: deviations(runs),
-        body: FigureBody::Chart {
-            x: time_axis(),
-            y: axis(quantity.label),
-            curves,
-            regions: regions.collect(),
-            slopes: Vec::new(),
-            floors: Vec::new(),
-        },
+        body: FigureBody::over_time(quantity.label, curves, regions.collect()),
     }
 }
 
@@ -245,10 +216,9 @@ fn closure_chart(suite: &str, runs: &[RunInfo]) -> Figure {
     let of_suite: Vec<&RunInfo> = runs.iter().filter(|r| r.suite == suite).collect();
     let curves = of_suite.iter().map(|run| {
         let label = if run.variant.is_empty() { run.case.clone() } else { format!("{}: {}", run.case, run.variant) };
-        let mut curve = curve(&label, &run.derived(), "closure_over_largest", 1.0);
-        (curve.x, curve.x_scale) = ("time_over_end".into(), 1.0);
-        curve
+        Curve::line(&label, &run.derived(), ["time_over_end", "closure_over_largest"])
     });
+    let axes = ["time / end time", "closure / largest energy"].map(Axis::linear);
     Figure {
         id: format!("{suite}-ledger-closure"),
         suite: suite.into(),
@@ -256,14 +226,7 @@ fn closure_chart(suite: &str, runs: &[RunInfo]) -> Figure {
         caption: "What is left of the ledger when every named term is added up, over the largest energy of the run."
             .into(),
         deviations: Vec::new(),
-        body: FigureBody::Chart {
-            x: axis("time / end time"),
-            y: axis("closure / largest energy"),
-            curves: curves.collect(),
-            regions: Vec::new(),
-            slopes: Vec::new(),
-            floors: Vec::new(),
-        },
+        body: FigureBody::chart(axes, curves.collect(), Vec::new()),
     }
 }
 
@@ -272,21 +235,14 @@ fn ledger(run: &RunInfo) -> Figure {
     let terms =
         ["kinetic_j", "elastic_j", "fracture_j", "external_work_j", "history_work_j", "transfer_loss_j", "closure_j"];
     let present = terms.into_iter().filter(|t| run.columns.iter().any(|c| c == t));
-    let words = |term: &str| term.trim_end_matches("_j").replace('_', " ");
+    let curves = present.map(|term| Curve::energy(&run.series, term, run.energy_factor)).collect();
     Figure {
         id: format!("plate-ledger-{}", run.case),
         suite: run.suite.clone(),
         title: format!("Energy ledger, {}", run.label),
         caption: format!("{}.", run.resolution),
         deviations: run.deviations.clone(),
-        body: FigureBody::Chart {
-            x: time_axis(),
-            y: axis("energy (J/m)"),
-            curves: present.map(|term| curve(&words(term), &run.series, term, run.energy_factor)).collect(),
-            regions: Vec::new(),
-            slopes: Vec::new(),
-            floors: Vec::new(),
-        },
+        body: FigureBody::over_time("energy (J/m)", curves, Vec::new()),
     }
 }
 

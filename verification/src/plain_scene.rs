@@ -33,6 +33,19 @@ pub const ROLLERS: [(Side, [bool; 2]); 4] = [
 ];
 
 impl PlainScene {
+    /// A bar of unit modulus and density that does not contract sideways, between rollers, with p + 1 Gauss points per span.
+    pub fn unit_bar(mesh: Mesh, mass: Mass) -> Self {
+        Self {
+            points: mesh.degree[0] + 1,
+            mesh,
+            material: Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None },
+            plane: Plane::Strain,
+            mass,
+            layout: Layout::Gauss,
+            held: ROLLERS.to_vec(),
+        }
+    }
+
     /// The scene, in the total frame with small strains.
     pub fn scene(self) -> Scene {
         let shape = match self.mesh.geometry {

@@ -3,9 +3,13 @@
 //! `results.json` holds one [`ResultSet`]; the numbers behind its figures stand beside it in `series/*.csv`. Everything
 //! a report shows is a pure function of that folder.
 
+mod figure;
+
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+
+pub use figure::{Axis, Curve, CurveStyle, Figure, FigureBody, Floor, Region, Scale, SlopeTriangle};
 
 /// Name of the schema written and read.
 pub const SCHEMA: &str = "fisura.results/1";
@@ -156,153 +160,6 @@ impl Record {
         });
         if holds { Status::Pass } else { Status::Fail }
     }
-}
-
-/// Scale of an axis.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Scale {
-    /// Linear.
-    #[default]
-    Linear,
-    /// Logarithmic, base 10.
-    Log,
-}
-
-/// An axis of a figure.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Axis {
-    /// Label with unit, as printed: `time (µs)`.
-    pub label: String,
-    /// Scale.
-    #[serde(default)]
-    pub scale: Scale,
-    /// Range, if it is not to be fitted to the curves.
-    #[serde(default)]
-    pub range: Option<[f64; 2]>,
-}
-
-/// How a curve is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum CurveStyle {
-    /// Result of this code: solid line.
-    Line,
-    /// Result with a marker at each row.
-    Markers,
-    /// Reference curve: dashed line, with its uncertainty as a band.
-    Reference,
-    /// Reference points, with their uncertainty as bars.
-    Points,
-}
-
-/// One curve: two columns of a series file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Curve {
-    /// Legend.
-    pub label: String,
-    /// Series, relative to the results folder.
-    pub series: String,
-    /// Column of the abscissa.
-    pub x: String,
-    /// Column of the ordinate.
-    pub y: String,
-    /// Factor applied to the abscissa before drawing (units of the axis).
-    pub x_scale: f64,
-    /// Factor applied to the ordinate before drawing.
-    pub y_scale: f64,
-    /// Style.
-    pub style: CurveStyle,
-    /// Half width of the uncertainty band: absolute, in drawn units.
-    #[serde(default)]
-    pub uncertainty_absolute: f64,
-    /// Half width of the uncertainty band: relative to the ordinate; the larger of the two is drawn.
-    #[serde(default)]
-    pub uncertainty_relative: f64,
-}
-
-/// A marked place in a chart: a band in which an event should fall.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Region {
-    /// Label.
-    pub label: String,
-    /// Range in drawn abscissa units, if the region is bounded in x.
-    pub x: Option<[f64; 2]>,
-    /// Range in drawn ordinate units, if the region is bounded in y.
-    pub y: Option<[f64; 2]>,
-}
-
-/// A triangle beside a curve that shows an order: its hypotenuse runs from `(x[0], y0)` with the slope of theory.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SlopeTriangle {
-    /// Abscissae of its ends, in drawn units.
-    pub x: [f64; 2],
-    /// Ordinate of the hypotenuse at `x[0]`, in drawn units.
-    pub y0: f64,
-    /// Slope along the axes as drawn: on two logarithmic axes the exponent of `y ~ x^slope`.
-    pub slope: f64,
-    /// Text beside the upright leg: `3`, `3/2`.
-    pub label: String,
-}
-
-/// A level below which values mean nothing, such as that of round-off; markers at or below it are drawn hollow.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Floor {
-    /// Ordinate in drawn units.
-    pub y: f64,
-    /// Label.
-    pub label: String,
-}
-
-/// What a figure shows.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "lowercase")]
-pub enum FigureBody {
-    /// Curves over common axes.
-    Chart {
-        /// Abscissa.
-        x: Axis,
-        /// Ordinate.
-        y: Axis,
-        /// Curves, in drawing order.
-        curves: Vec<Curve>,
-        /// Marked regions.
-        regions: Vec<Region>,
-        /// Orders of theory, beside the curves that should show them.
-        #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        slopes: Vec<SlopeTriangle>,
-        /// Levels below which values mean nothing.
-        #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        floors: Vec<Floor>,
-    },
-    /// A field on a regular raster: the series has columns `x_m, y_m, value`, one row per pixel centre, x fastest.
-    Field {
-        /// Series, relative to the results folder.
-        series: String,
-        /// Pixels per direction.
-        pixels: [usize; 2],
-        /// Label of the colour bar.
-        label: String,
-        /// Range of the colour bar.
-        range: [f64; 2],
-    },
-}
-
-/// One figure of the report.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Figure {
-    /// File name without ending: `plate-elastic-energy`. Below `timing/` if it shows measured time.
-    pub id: String,
-    /// Suite it belongs to.
-    pub suite: String,
-    /// Title.
-    pub title: String,
-    /// Caption: resolution, points, steps, dt.
-    pub caption: String,
-    /// Every deviation from the cited source.
-    pub deviations: Vec<String>,
-    /// Content.
-    pub body: FigureBody,
 }
 
 #[cfg(test)]

@@ -38,8 +38,6 @@ pub struct ContactForce {
     pub bodies: [usize; 2],
     /// Where it acts, m.
     pub position: [f64; 2],
-    /// Unit normal from a to b.
-    pub normal: [f64; 2],
     /// Force on b, per unit thickness, N/m.
     pub force: [f64; 2],
 }
@@ -75,7 +73,7 @@ struct Acting<'a> {
     touch: &'a Touch,
     /// Node and weight, negative for body a.
     weights: Vec<(usize, f64)>,
-    /// Velocity of a rigid body b less that of a rigid body a, m/s.
+    /// Velocity of body b if it is rigid, else zero, m/s.
     rigid: [f64; 2],
     /// How the relative velocity answers an impulse along normal and tangent, m/kg.
     answers: [f64; 2],
@@ -83,17 +81,19 @@ struct Acting<'a> {
 }
 
 impl Contact {
-    /// Accelerations that contact adds in the coming kick.
-    pub fn pushes(&self, fields: &[DiscreteField], kick: Kick) -> Vec<Push> {
-        self.solve(fields, kick).pushes(kick.length)
+    /// Accelerations that contact adds in the coming kick, and the ledger at the present whole step: with the half of that kick
+    /// that belongs to the step before.
+    pub fn coming(&self, fields: &[DiscreteField], kick: Kick) -> (Vec<Push>, ContactLedger) {
+        let problem = self.solve(fields, kick);
+        (problem.pushes(kick.length), self.ledger.plus(problem.arriving(kick)))
     }
 
     /// Forces in the coming kick.
     pub fn forces(&self, fields: &[DiscreteField], kick: Kick) -> Vec<ContactForce> {
         let force = |acting: &Acting| {
-            let Touch { bodies, position, normal, .. } = *acting.touch;
+            let Touch { bodies, position, .. } = *acting.touch;
             let force = acting.vector_of(acting.impulse).map(|impulse| impulse / kick.length);
-            (acting.impulse.normal > 0.0).then_some(ContactForce { bodies, position, normal, force })
+            (acting.impulse.normal > 0.0).then_some(ContactForce { bodies, position, force })
         };
         self.solve(fields, kick).touches.iter().filter_map(force).collect()
     }
@@ -101,21 +101,12 @@ impl Contact {
     /// The accelerations, and books the energies of the kick.
     pub fn act(&mut self, fields: &[DiscreteField], kick: Kick) -> Vec<Push> {
         let problem = self.solve(fields, kick);
-        let arriving = problem.arriving(kick);
-        let ledger = self.ledger.plus(arriving).plus(problem.energy(kick, |node| node.after));
-        let last = problem.touches.iter().map(|a| ((a.touch.bodies, a.touch.square), a.impulse));
-        let last = last
-            .filter(|(_, impulse)| impulse.normal > 0.0)
-            .map(|(key, impulse)| (key, impulse.times(1.0 / kick.length)));
-        let last = last.collect();
+        let ledger = self.ledger.plus(problem.arriving(kick)).plus(problem.energy(kick, |node| node.after));
+        let pushing = problem.touches.iter().filter(|acting| acting.impulse.normal > 0.0);
+        let last = pushing.map(|a| ((a.touch.bodies, a.touch.square), a.impulse.times(1.0 / kick.length))).collect();
         let pushes = problem.pushes(kick.length);
         (self.ledger, self.last) = (ledger, last);
         pushes
-    }
-
-    /// The ledger at the present whole step: with the half of the coming kick that belongs to the step before.
-    pub fn ledger_now(&self, fields: &[DiscreteField], kick: Kick) -> ContactLedger {
-        self.ledger.plus(self.solve(fields, kick).arriving(kick))
     }
 
     /// Impulses of the coming kick.
@@ -154,15 +145,15 @@ impl Contact {
         };
         let mut touches = Vec::with_capacity(self.touches.len());
         for touch in &self.touches {
-            let (mut weights, mut rigid) = (Vec::new(), [0.0; 2]);
-            for (side, sign) in [(0, -1.0), (1, 1.0)] {
-                let body = touch.bodies[side];
-                weights.extend(touch.weights[side].iter().map(|&(at, n)| (number(body, at), sign * n)));
-                if body >= fields.len() {
-                    let velocity = self.rigid[body - fields.len()].velocity_at(touch.position);
-                    rigid = velocity.map(|v| sign * v);
+            let [a, b] = touch.bodies;
+            let mut weights: Vec<_> = touch.on_a.weights().iter().map(|&(at, w)| (number(a, at), -w)).collect();
+            let rigid = match &touch.on_b {
+                Some(on_b) => {
+                    weights.extend(on_b.weights().iter().map(|&(at, w)| (number(b, at), w)));
+                    [0.0; 2]
                 }
-            }
+                None => self.rigid[b - fields.len()].velocity_at(touch.position),
+            };
             let impulse = self
                 .last
                 .get(&(touch.bodies, touch.square))

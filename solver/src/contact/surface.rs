@@ -2,15 +2,15 @@
 
 use rayon::prelude::*;
 
-use super::handle::{DEPTH, handle};
+use super::handle::{DEPTH, Handle};
 use crate::quadrature::MAX_POINTS;
 use crate::scene::{Body, Mesh, Shape};
 use crate::shape::polygon_edges;
 use crate::updated_frame::field::DiscreteField;
 use crate::updated_frame::grid::VectorField;
 
-/// Relative distance from the boundary within which a segment counts as lying on it.
-const ON_BOUNDARY: f64 = 1e-6;
+/// Distance from the boundary within which the middle of a segment counts as lying on it, over that of the points.
+const ON_BOUNDARY: f64 = 0.1;
 
 /// A boundary: segments with the body to their left.
 #[derive(Debug, Clone)]
@@ -43,13 +43,10 @@ impl Surface {
     /// The boundary of `body` at t = 0, in segments as long as its points stand apart.
     pub fn new(mesh: &Mesh, body: &Body) -> Self {
         let spacing = spacing(mesh, body);
-        let (low, high) = mesh.extent(&body.shape);
+        let shape = without_patch(&body.shape, mesh);
         let mut surface = Self { vertices: Vec::new(), segments: Vec::new(), neighbours: Vec::new() };
-        let shape =
-            if body.shape == Shape::Patch { Shape::Rectangle { min: low, max: high } } else { body.shape.clone() };
-        let tolerance = ON_BOUNDARY * (high[0] - low[0]).max(high[1] - low[1]);
         for ring in rings(&shape, spacing) {
-            surface.add(&ring, |middle| is_on_boundary(&shape, middle, tolerance.max(0.1 * spacing)));
+            surface.add(&ring, |middle| is_on_boundary(&shape, middle, ON_BOUNDARY * spacing));
         }
         surface.join();
         surface
@@ -93,9 +90,11 @@ impl Surface {
         let moved = (0..self.vertices.len()).into_par_iter().map(|vertex| {
             let position = self.vertices[vertex];
             let normal = self.vertex_normal(vertex);
-            let weights = handle(field, position, [0, 1].map(|d| position[d] - depth * normal[d])).unwrap_or_default();
-            let sum = |c: usize| weights.iter().map(|&(at, w)| w * velocity[c][at]).sum::<f64>();
-            [0, 1].map(|c| position[c] + dt * sum(c))
+            let inside = [0, 1].map(|d| position[d] - depth * normal[d]);
+            Handle::new(field, position, inside).map_or(position, |handle| {
+                let velocity = handle.value(velocity);
+                [0, 1].map(|d| position[d] + dt * velocity[d])
+            })
         });
         self.vertices = moved.collect();
     }
@@ -211,6 +210,18 @@ fn spacing(mesh: &Mesh, body: &Body) -> f64 {
     smallest(0).min(smallest(1))
 }
 
+/// The same shape with a rectangle for the whole patch, which is one in the updated frame.
+fn without_patch(shape: &Shape, mesh: &Mesh) -> Shape {
+    match shape {
+        Shape::Patch => Shape::Rectangle { min: mesh.origin(), max: mesh.end() },
+        Shape::Difference { of, minus } => {
+            let minus = minus.iter().map(|hole| without_patch(hole, mesh)).collect();
+            Shape::Difference { of: Box::new(without_patch(of, mesh)), minus }
+        }
+        other => other.clone(),
+    }
+}
+
 /// Closed lines that bound a shape, the body to their left, in steps of about `spacing`.
 fn rings(shape: &Shape, spacing: f64) -> Vec<Vec<[f64; 2]>> {
     let circle = |center: [f64; 2], radius: f64| -> Vec<[f64; 2]> {
@@ -246,7 +257,7 @@ fn rings(shape: &Shape, spacing: f64) -> Vec<Vec<[f64; 2]>> {
             lines
         }
         Shape::Polygon { points } => vec![polygon(points)],
-        Shape::Patch => Vec::new(), // replaced by its rectangle
+        Shape::Patch => Vec::new(), // see without_patch
         Shape::Difference { of, minus } => {
             let holes = minus.iter().flat_map(|hole| rings(hole, spacing)).map(|mut line| {
                 line.reverse();
@@ -268,7 +279,7 @@ fn normal(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [along[1] / length, -along[0] / length]
 }
 
-/// The direction of a vector, unless it is zero.
+/// The direction of a vector, unless it is next to nothing beside a unit vector.
 pub fn unit(vector: [f64; 2]) -> Option<[f64; 2]> {
     let length = vector[0].hypot(vector[1]);
     (length > 1e-6).then(|| vector.map(|x| x / length))

@@ -8,7 +8,7 @@ use crate::constraints::Constraints;
 use crate::energy::{FractureSample, Sample};
 use crate::forcing::Forcing;
 use crate::fracture::Fracturing;
-use crate::hencky::{growth, hencky_strain};
+use crate::hencky::{growth, hencky_strain, symmetric};
 use crate::lane::Lane;
 use crate::lattice::Lattice;
 use crate::mass::MassMatrix;
@@ -30,7 +30,6 @@ impl TotalFrame {
 
     /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at zero.
     pub fn sample(&self, dt: f64) -> Sample {
-        let thickness = self.thickness;
         let [x, y] = self.patch.control_positions();
         let kinetic = self.mass.half_square(&self.velocity);
         let stagger = 0.25 * dt * dt * self.mass.half_square(&self.acceleration);
@@ -43,27 +42,26 @@ impl TotalFrame {
         let fracture = self.fracture.as_ref().map(|f| {
             let (energy, min_phase) = f.surface_energy(&self.lattice);
             FractureSample {
-                energy: energy * thickness,
-                history_work: self.ledger.history_work * thickness,
+                energy,
+                history_work: self.ledger.history_work,
                 crack_tip: f.crack_tip(&self.lattice, self.lowest_tip),
                 min_phase,
                 iterations: f.iterations,
             }
         });
-        Sample {
+        let sample = Sample {
             time: self.time,
-            kinetic: kinetic * thickness,
-            stagger: stagger * thickness,
-            elastic: self.elastic_energy * thickness,
+            kinetic,
+            stagger,
+            elastic: self.elastic_energy,
             fracture,
-            external_work: self.ledger.external_work * thickness,
-            contact: None,
-            transfer_loss: None,
-            closure: 0.0,
-            momentum: momentum.map(|p| p * thickness),
-            angular_momentum: angular * thickness,
+            external_work: self.ledger.external_work,
+            momentum,
+            angular_momentum: angular,
             time_step: dt,
-        }
+            ..Sample::default()
+        };
+        sample.for_thickness(self.thickness)
     }
 
     /// Reference position (m) of a point that is turned inside out, if there is one; small strains know none.
@@ -81,9 +79,8 @@ impl TotalFrame {
 
     /// Strain `[xx, yy, xy]` of a displacement gradient, and by how much the volume grew.
     pub fn strain(&self, gradient: [[f64; 2]; 2]) -> ([f64; 3], f64) {
-        let [[xx, xy], [yx, yy]] = gradient;
         match self.kinematics {
-            Kinematics::Small => ([xx, yy, 0.5 * (xy + yx)], 1.0),
+            Kinematics::Small => (symmetric(gradient), 1.0),
             Kinematics::Finite => (hencky_strain(&gradient), growth(&gradient)),
         }
     }

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use super::grid::VectorField;
 use super::points::{Cell, Cells, Point};
 use super::transfer::{MAX_FUNCTIONS, walk};
-use super::windows::{Window, cut, scatter};
+use super::windows::{Window, control_values, cut, scatter};
 use crate::hencky::Gradient;
 use crate::lane::{Vectorised, dispatch};
 use crate::patch::{ControlGrid, Patch};
@@ -141,13 +141,7 @@ impl Take<'_> {
         let [x, y] = &self.patch.spaces;
         let offset = self.cells.first().map_or(0, |cell| cell.points.start);
         for cell in self.cells {
-            let mut local = [[0.0; 2]; MAX_FUNCTIONS];
-            for l in 0..ky {
-                let base = self.grid.index(cell.first[0], cell.first[1] + l);
-                for k in 0..kx {
-                    local[l * kx + k] = self.velocity.map(|f| f[base + k]);
-                }
-            }
+            let local = control_values(self.velocity, self.grid, cell, kx, ky);
             for at in cell.points.start - offset..cell.points.end - offset {
                 let position = self.points[at].position;
                 let sx = x.shape_functions(cell.span[0], position[0]);
@@ -199,7 +193,7 @@ impl Vectorised for Give<'_> {
 
 impl Give<'_> {
     #[inline(always)]
-    fn walk(self, kx: usize, ky: usize) {
+    fn walk(mut self, kx: usize, ky: usize) {
         let [x, y] = &self.patch.spaces;
         for cell in self.cells {
             let mut sums = [[0.0; 2]; MAX_FUNCTIONS];
@@ -220,14 +214,7 @@ impl Give<'_> {
                     }
                 }
             }
-            for l in 0..ky {
-                let base = self.grid.index(cell.first[0], cell.first[1] + l - self.window.first_row);
-                for k in 0..kx {
-                    for component in 0..2 {
-                        self.window.fields[component][base + k] += sums[l * kx + k][component];
-                    }
-                }
-            }
+            self.window.add(self.grid, cell, &sums, kx, ky);
         }
     }
 }

@@ -8,12 +8,11 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::Failure;
-use super::affine::{AffineVelocities, Fit};
+use super::affine::AffineVelocities;
 use super::cracking::Cracking;
 use super::departure::Departure;
 use super::grid::{ImposedEnergy, NodalFields};
 use super::losses::TransferLosses;
-use super::part;
 use super::points::{Cells, OutsidePatch, Point};
 use super::smoothing::Smoothing;
 use super::stiffness::Stiffness;
@@ -25,13 +24,12 @@ use super::windows::{cut, scatter};
 use crate::contact::Surface;
 use crate::critical_step::highest_frequency;
 use crate::energy::Ledger;
-use crate::fracture::{NotConverged, lowest_tip};
+use crate::fracture::NotConverged;
 use crate::hencky::Gradient;
 use crate::lane::dispatch;
-use crate::lattice::Lattice;
-use crate::material::{ElasticModuli, FractureModel};
+use crate::material::ElasticModuli;
 use crate::patch::Patch;
-use crate::scene::{Body, Boundary, Kinematics, Plane, Scene, Transfer};
+use crate::scene::Boundary;
 
 /// One body in the updated frame.
 #[derive(Debug, Clone)]
@@ -69,82 +67,19 @@ pub struct DiscreteField {
     pub(super) ledger: Ledger,
     pub(super) losses: TransferLosses,
     pub(super) time: f64,
-    /// Before the first step the points carry v(0) and the kick is half a step.
+    /// No step was taken yet: the points carry v(0).
     pub(super) at_start: bool,
     /// Bound of the distance any point moved since the critical step was taken, m.
-    travelled: f64,
+    pub(super) travelled: f64,
 }
 
 impl DiscreteField {
-    /// The body of `scene` at t = 0 with its initial accelerations.
-    ///
-    /// # Errors
-    /// If the initial phase field does not converge, or a point is not on the patch.
-    pub fn new(scene: &Scene, body: &Body, whole: &Arc<Patch>) -> Result<Self, Failure> {
-        let material = &scene.materials[&body.material];
-        let mut points = Point::of_lattice(&Lattice::new(whole, body));
-        let spans = part::spans_around(whole, &points)?;
-        let (patch, origin) = (whole.part(&spans), part::origin(whole, &spans));
-        let mut cells = Cells::default();
-        cells.sort(&patch, &mut points)?;
-        let crack = |f| Cracking::new(&patch, body, FractureModel::new(f), &scene.solver, &points);
-        let constraints = part::constraints(whole, &patch, origin, &scene.boundaries);
-        let affine = |fit| AffineVelocities::new(fit, &patch, points.len());
-        let center = center_of_mass(&points);
-        let mut field = Self {
-            fracture: material.fracture.as_ref().map(crack),
-            nodes: NodalFields::new(&patch, constraints),
-            departure: Departure::new(patch.control_grid(), scene.analysis.transfer),
-            affine: match scene.analysis.transfer {
-                Transfer::Apic => Some(affine(Fit::Weighted)),
-                Transfer::Tpic => Some(affine(Fit::Taylor)),
-                Transfer::Flip | Transfer::Pic | Transfer::Musl | Transfer::Xpic(_) => None,
-            },
-            deformation: (scene.analysis.kinematics == Kinematics::Finite).then(|| vec![[[0.0; 2]; 2]; points.len()]),
-            loads: body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t)).collect(),
-            forcing: None,
-            surface: scene.contact.is_some().then(|| Surface::new(&scene.mesh, body)),
-            moduli: ElasticModuli::new(material, scene.analysis.plane),
-            thickening: match scene.analysis.plane {
-                Plane::Strain => 1.0,
-                Plane::Stress => (1.0 - 2.0 * material.poisson_ratio) / (1.0 - material.poisson_ratio),
-            },
-            density: material.density,
-            thickness: scene.analysis.thickness,
-            gravity: scene.analysis.gravity,
-            lowest_tip: lowest_tip(scene, body),
-            elastic_energy: 0.0,
-            stress_work: 0.0,
-            driven_power: 0.0,
-            ledger: Ledger::default(),
-            losses: TransferLosses::default(),
-            time: 0.0,
-            at_start: true,
-            travelled: 0.0,
-            whole: Arc::clone(whole),
-            boundaries: scene.boundaries.clone(),
-            patch,
-            origin,
-            points,
-            cells,
-        };
-        let (velocity, spin) = (body.velocity, body.angular_velocity);
-        let rigidly = |x: [f64; 2]| [velocity[0] - spin * (x[1] - center[1]), velocity[1] + spin * (x[0] - center[0])];
-        field.points.iter_mut().for_each(|point| point.velocity = rigidly(point.position));
-        field.take_affine_velocities(rigidly);
-        field.attach_loads()?;
-        field.crack_and_stress(true)?;
-        (field.ledger, field.losses) = Default::default(); // there was no step yet
-        field.find_accelerations();
-        Ok(field)
-    }
-
-    /// One time step of `dt` seconds (E 14–24), whose kick lasts `kick` seconds.
+    /// One time step of `dt` seconds (E 14–24).
     ///
     /// # Errors
     /// If the phase field does not converge, or a point leaves the patch.
-    pub fn step(&mut self, dt: f64, kick: f64) -> Result<(), Failure> {
-        self.kick(dt, kick); // grid: v(n+1/2) = v(n−1/2) + dt a(n)
+    pub fn step(&mut self, dt: f64) -> Result<(), Failure> {
+        self.kick(dt); // grid: v(n+1/2) = v(n−1/2) + dt a(n)
         self.depart(); // transfer: what the points take up, and the motion they follow
         let leaving = self.leaving();
         let left_span = self.grid_to_points(dt); // G2P: velocities, positions, strains
@@ -160,8 +95,13 @@ impl DiscreteField {
         Ok(())
     }
 
-    fn kick(&mut self, dt: f64, kick: f64) {
-        self.nodes.kick(kick);
+    /// Length of the coming kick, s: half a step at the start, where the points carry v(0).
+    pub fn kick_length(&self, dt: f64) -> f64 {
+        if self.at_start { 0.5 * dt } else { dt }
+    }
+
+    fn kick(&mut self, dt: f64) {
+        self.nodes.kick(self.kick_length(dt));
         self.at_start = false;
         self.time += dt;
     }
@@ -354,10 +294,4 @@ impl DiscreteField {
         }
         due
     }
-}
-
-/// Centre of mass, m.
-fn center_of_mass(points: &[Point]) -> [f64; 2] {
-    let volume: f64 = points.iter().map(|p| p.volume).sum();
-    [0, 1].map(|d| points.iter().map(|p| p.volume * p.position[d]).sum::<f64>() / volume)
 }

@@ -24,10 +24,10 @@ impl Follower {
         Self { position, span: [0, 0] }
     }
 
-    /// A position evaluated with the polynomials of the span that `inside` (m) is in or nearest to; `None` if there is no
-    /// material within one span of that.
-    pub fn continued(position: [f64; 2], inside: [f64; 2], patch: &Patch, cells: &Cells) -> Option<Self> {
-        Some(Self { position, span: nearest_occupied_span(patch, cells, inside)? })
+    /// A position (m) with the polynomials of the span it is in or nearest to; `None` if there is no material within one span
+    /// of it.
+    pub fn nearest(position: [f64; 2], patch: &Patch, cells: &Cells) -> Option<Self> {
+        Some(Self { position, span: nearest_occupied_span(patch, cells, position)? })
     }
 
     /// Chooses the span anew.
@@ -49,20 +49,31 @@ impl Follower {
 
     /// Calls `f` with control point and value of every shape function at the position.
     pub fn for_each_function(&self, patch: &Patch, grid: ControlGrid, mut f: impl FnMut(usize, f64)) {
-        let shapes: [ShapeFunctions; 2] =
-            [0, 1].map(|d| patch.spaces[d].shape_functions(self.span[d], self.position[d]));
-        let first = [0, 1].map(|d| patch.spaces[d].spans()[self.span[d]].first);
+        let [(column, x), (row, y)] = self.shape_functions(patch);
         for l in 0..=patch.spaces[1].degree() {
             for k in 0..=patch.spaces[0].degree() {
-                f(grid.index(first[0] + k, first[1] + l), shapes[0].value[k] * shapes[1].value[l]);
+                f(grid.index(column + k, row + l), x.value[k] * y.value[l]);
             }
         }
+    }
+
+    /// Shape functions in x at the position with the control column of the first, and those in y with the control row.
+    #[inline]
+    pub fn shape_functions(&self, patch: &Patch) -> [(usize, ShapeFunctions); 2] {
+        let along = |d: usize| {
+            let (space, span) = (&patch.spaces[d], self.span[d]);
+            (space.spans()[span].first, space.shape_functions(span, self.position[d]))
+        };
+        [along(0), along(1)]
     }
 }
 
 /// The span with points that is nearest to a position, among its own and its eight neighbours.
 fn nearest_occupied_span(patch: &Patch, cells: &Cells, position: [f64; 2]) -> Option<[usize; 2]> {
     let home = [0, 1].map(|d| clamped_span(&patch.spaces[d], position[d]));
+    if cells.is_occupied(home) {
+        return Some(home);
+    }
     let near = |d: usize| home[d].saturating_sub(1)..(home[d] + 2).min(patch.spaces[d].spans().len());
     let distance = |span: &[usize; 2]| {
         let beyond = |d: usize| {
@@ -71,7 +82,7 @@ fn nearest_occupied_span(patch: &Patch, cells: &Cells, position: [f64; 2]) -> Op
         };
         beyond(0).hypot(beyond(1))
     };
-    let spans = std::iter::once(home).chain(near(1).flat_map(|j| near(0).map(move |i| [i, j])));
+    let spans = near(1).flat_map(|j| near(0).map(move |i| [i, j]));
     spans.filter(|span| cells.is_occupied(*span)).min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 

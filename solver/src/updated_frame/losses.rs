@@ -93,4 +93,22 @@ impl TransferLosses {
     pub fn sum(&self) -> f64 {
         self.kinetic + self.power + self.imposed + self.phase_field
     }
+
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self {
+            kinetic: self.kinetic + other.kinetic,
+            power: self.power + other.power,
+            imposed: self.imposed + other.imposed,
+            phase_field: self.phase_field + other.phase_field,
+        }
+    }
+
+    pub(super) fn times(self, factor: f64) -> Self {
+        Self {
+            kinetic: factor * self.kinetic,
+            power: factor * self.power,
+            imposed: factor * self.imposed,
+            phase_field: factor * self.phase_field,
+        }
+    }
 }

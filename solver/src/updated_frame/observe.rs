@@ -1,12 +1,14 @@
 //! What is read from the bodies of the updated frame: energies, momenta, crack tip.
 
+use std::borrow::Cow;
+
 use super::UpdatedFrame;
 use super::field::DiscreteField;
-use super::grid::NodalFields;
+use super::grid::{NodalFields, VectorField};
 use super::losses::TransferLosses;
 use super::points::{Cells, FracturePoint, Point};
-use crate::contact::impulse::ContactForce;
-use crate::contact::{Contact, Surface};
+use crate::contact::impulse::{ContactForce, Push};
+use crate::contact::{Contact, ContactLedger, Surface};
 use crate::energy::{ContactSample, FractureSample, Sample};
 use crate::fracture::BROKEN;
 use crate::hencky::{Gradient, growth};
@@ -17,26 +19,24 @@ use crate::phase_field::PhaseFieldCounts;
 impl UpdatedFrame {
     /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at zero.
     pub fn sample(&self, dt: f64) -> Sample {
-        let kick = self.coming_kick(dt);
-        let mut accelerations: Vec<_> = self.fields.iter().map(|field| field.nodes().acceleration.clone()).collect();
+        let mut accelerations: Vec<_> =
+            self.fields.iter().map(|field| Cow::Borrowed(&field.nodes.acceleration)).collect();
         let contact = self.contact.as_ref().map(|contact| {
-            for push in contact.pushes(&self.fields, kick) {
-                (0..2).for_each(|c| accelerations[push.body][c][push.at] += push.acceleration[c]);
+            let (pushes, ledger) = contact.coming(&self.fields, self.coming_kick(dt));
+            for Push { body, at, acceleration } in pushes {
+                let pushed = accelerations[body].to_mut();
+                (0..2).for_each(|c| pushed[c][at] += acceleration[c]);
             }
-            let ledger = contact.ledger_now(&self.fields, kick);
-            (
-                ContactSample { loss: ledger.loss * self.thickness, friction: ledger.friction * self.thickness },
-                ledger.work,
-            )
+            ledger
         });
         let mut bodies = self.fields.iter().zip(&accelerations).map(|(field, a)| field.sample(dt, a));
         let first = bodies.next().expect("a scene has a body");
         let mut sample = bodies.fold(first, Sample::with);
-        if let Some((contact, work)) = contact {
-            sample.external_work += work * self.thickness;
-            sample.contact = Some(contact);
+        if let Some(ContactLedger { loss, friction, work }) = contact {
+            sample.external_work += work;
+            sample.contact = Some(ContactSample { loss, friction });
         }
-        sample
+        sample.for_thickness(self.thickness)
     }
 
     /// The bodies that deform, in the order of the scene.
@@ -82,15 +82,8 @@ impl UpdatedFrame {
 
     /// Parts of the transfer loss so far, J.
     pub fn transfer_losses(&self) -> TransferLosses {
-        self.fields.iter().fold(TransferLosses::default(), |sum, field| {
-            let part = field.transfer_losses();
-            TransferLosses {
-                kinetic: sum.kinetic + part.kinetic,
-                power: sum.power + part.power,
-                imposed: sum.imposed + part.imposed,
-                phase_field: sum.phase_field + part.phase_field,
-            }
-        })
+        let sum = |sum: TransferLosses, field: &DiscreteField| sum.plus(field.losses.times(self.thickness));
+        self.fields.iter().fold(TransferLosses::default(), sum)
     }
 
     /// Kinetic energy of the points of all bodies, J: see [`DiscreteField::point_kinetic_energy`].
@@ -133,10 +126,10 @@ impl UpdatedFrame {
 }
 
 impl DiscreteField {
-    /// Energies, momenta and crack tip at the present whole step with the given accelerations (m/s²); `dt` is the step in
-    /// use. Closure is left at zero.
-    fn sample(&self, dt: f64, acceleration: &super::grid::VectorField) -> Sample {
-        let (thickness, nodes) = (self.thickness, &self.nodes);
+    /// Energies, momenta and crack tip of a body a metre thick at the present whole step with the given accelerations (m/s²);
+    /// `dt` is the step in use. Closure is left at zero.
+    fn sample(&self, dt: f64, acceleration: &VectorField) -> Sample {
+        let nodes = &self.nodes;
         let half = if self.at_start { 0.0 } else { 0.5 * dt };
         let (mut kinetic, mut stagger, mut momentum, mut angular) = (0.0, 0.0, [0.0; 2], 0.0);
         for at in nodes.grid.indices() {
@@ -150,25 +143,24 @@ impl DiscreteField {
             angular += m * (x * v[1] - y * v[0]);
         }
         let fracture = self.fracture.as_ref().map(|f| FractureSample {
-            energy: f.surface_energy * thickness,
-            history_work: self.ledger.history_work * thickness,
+            energy: f.surface_energy,
+            history_work: self.ledger.history_work,
             crack_tip: self.crack_tip(),
             min_phase: f.least_phase,
             iterations: f.iterations,
         });
         Sample {
             time: self.time,
-            kinetic: kinetic * thickness,
-            stagger: stagger * thickness,
-            elastic: self.elastic_energy * thickness,
+            kinetic,
+            stagger,
+            elastic: self.elastic_energy,
             fracture,
-            external_work: self.ledger.external_work * thickness,
-            contact: None,
-            transfer_loss: Some(self.ledger.transfer_loss * thickness),
-            closure: 0.0,
-            momentum: momentum.map(|p| p * thickness),
-            angular_momentum: angular * thickness,
+            external_work: self.ledger.external_work,
+            transfer_loss: Some(self.ledger.transfer_loss),
+            momentum,
+            angular_momentum: angular,
             time_step: dt,
+            ..Sample::default()
         }
     }
 
@@ -188,13 +180,6 @@ impl DiscreteField {
             [p.position[0] + ahead, p.position[1]]
         });
         tips.max_by(|a, b| a[0].total_cmp(&b[0]))
-    }
-
-    /// Parts of the transfer loss so far, J.
-    pub fn transfer_losses(&self) -> TransferLosses {
-        let TransferLosses { kinetic, power, imposed, phase_field } = self.losses;
-        let t = self.thickness;
-        TransferLosses { kinetic: kinetic * t, power: power * t, imposed: imposed * t, phase_field: phase_field * t }
     }
 
     /// Kinetic energy of the points as the scheme keeps it, `1/2 Σ m v_p(n − 1/2) · v_p(n + 1/2)` with FLIP or MUSL, J; at

@@ -7,7 +7,7 @@
 use super::grid::VectorField;
 use super::points::{Cell, Cells, Point};
 use super::transfer::{MAX_FUNCTIONS, walk};
-use super::windows::{Window, scatter};
+use super::windows::{Window, control_values, scatter};
 use crate::lane::{Vectorised, dispatch};
 use crate::patch::{ControlGrid, Patch};
 
@@ -64,16 +64,11 @@ impl Vectorised for ThereAndBack<'_> {
 
 impl ThereAndBack<'_> {
     #[inline(always)]
-    fn walk(self, kx: usize, ky: usize) {
+    fn walk(mut self, kx: usize, ky: usize) {
         let [x, y] = &self.patch.spaces;
         for cell in self.cells {
-            let control = |l: usize, first_row: usize| self.grid.index(cell.first[0], cell.first[1] + l - first_row);
-            let (mut local, mut sums) = ([[0.0; 2]; MAX_FUNCTIONS], [[0.0; 2]; MAX_FUNCTIONS]);
-            for l in 0..ky {
-                for k in 0..kx {
-                    local[l * kx + k] = self.field.map(|f| f[control(l, 0) + k]);
-                }
-            }
+            let local = control_values(self.field, self.grid, cell, kx, ky);
+            let mut sums = [[0.0; 2]; MAX_FUNCTIONS];
             for point in &self.points[cell.points.clone()] {
                 let sx = x.shape_functions(cell.span[0], point.position[0]);
                 let sy = y.shape_functions(cell.span[1], point.position[1]);
@@ -93,14 +88,7 @@ impl ThereAndBack<'_> {
                     }
                 }
             }
-            for l in 0..ky {
-                for k in 0..kx {
-                    for component in 0..2 {
-                        let at = control(l, self.window.first_row) + k;
-                        self.window.fields[component][at] += sums[l * kx + k][component];
-                    }
-                }
-            }
+            self.window.add(self.grid, cell, &sums, kx, ky);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::field::DiscreteField;
 use super::points::{Cell, Point};
 use super::transfer::{MAX_FUNCTIONS, walk};
-use super::windows::{Window, scatter};
+use super::windows::{Window, control_values, scatter};
 use crate::critical_step::StiffnessOperator;
 use crate::lane::{Vectorised, dispatch};
 use crate::material::ElasticModuli;
@@ -87,17 +87,12 @@ impl Vectorised for ElasticForces<'_> {
 
 impl ElasticForces<'_> {
     #[inline(always)]
-    fn walk(self, kx: usize, ky: usize) {
+    fn walk(mut self, kx: usize, ky: usize) {
         let [x, y] = &self.patch.spaces;
         let ElasticModuli { lambda, mu } = self.moduli;
         for cell in self.cells {
-            let control = |l: usize, first_row: usize| self.grid.index(cell.first[0], cell.first[1] + l - first_row);
-            let (mut local, mut forces) = ([[0.0; 2]; MAX_FUNCTIONS], [[0.0; 2]; MAX_FUNCTIONS]);
-            for l in 0..ky {
-                for k in 0..kx {
-                    local[l * kx + k] = self.field.map(|f| f[control(l, 0) + k]);
-                }
-            }
+            let local = control_values(self.field, self.grid, cell, kx, ky);
+            let mut forces = [[0.0; 2]; MAX_FUNCTIONS];
             for point in &self.points[cell.points.clone()] {
                 let sx = x.shape_functions(cell.span[0], point.position[0]);
                 let sy = y.shape_functions(cell.span[1], point.position[1]);
@@ -120,14 +115,7 @@ impl ElasticForces<'_> {
                     }
                 }
             }
-            for l in 0..ky {
-                for k in 0..kx {
-                    for component in 0..2 {
-                        let at = control(l, self.window.first_row) + k;
-                        self.window.fields[component][at] += forces[l * kx + k][component];
-                    }
-                }
-            }
+            self.window.add(self.grid, cell, &forces, kx, ky);
         }
     }
 }

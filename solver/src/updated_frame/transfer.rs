@@ -6,7 +6,7 @@
 
 use super::points::{Cell, FracturePoint, Point};
 use super::strain::Kinematics;
-use super::windows::Window;
+use super::windows::{Window, control_values};
 use crate::lane::{LANES, Lane, Vectorised};
 use crate::material::ElasticModuli;
 use crate::patch::{ControlGrid, Patch};
@@ -143,6 +143,14 @@ pub struct StripMotion {
     pub stress_work: f64,
 }
 
+/// What a step does to a point.
+struct PointMotion {
+    /// Strain of the step that the new stress works on.
+    strain_increment: [f64; 3],
+    /// Displacement of the step, m.
+    moved: [f64; 2],
+}
+
 impl<K: Kinematics> Vectorised for GridToPoints<'_, K> {
     type Output = StripMotion;
 
@@ -157,18 +165,20 @@ impl<K: Kinematics> GridToPoints<'_, K> {
     fn walk(mut self, kx: usize, ky: usize) -> StripMotion {
         let mut motion = StripMotion::default();
         let offset = self.cells.first().map_or(0, |cell| cell.points.start);
+        let ([ux, uy], [tx, ty]) = (self.motion, self.taken);
+        let fields = [ux, uy, tx, ty];
         let mut increments = [[0.0; 3]; LANES];
         for cell in self.cells {
-            let local = self.gather(cell, kx, ky);
+            let local = control_values(fields, self.grid, cell, kx, ky);
             let all = cell.points.start - offset..cell.points.end - offset;
             for first in all.clone().step_by(LANES) {
                 let some = first..(first + LANES).min(all.end);
                 for at in some.clone() {
-                    let increment = self.move_point(cell, at, &local, kx, ky, &mut motion);
-                    increments[at - first] = increment.0;
+                    let PointMotion { strain_increment, moved } =
+                        self.move_point(cell, at, &local, kx, ky, &mut motion);
+                    increments[at - first] = strain_increment;
                     if let Some(fracture) = self.fracture.get_mut(at) {
-                        fracture.strain_increment = increment.0;
-                        fracture.moved = increment.1;
+                        (fracture.strain_increment, fracture.moved) = (strain_increment, moved);
                     }
                 }
                 if let Some(moduli) = self.elastic {
@@ -179,22 +189,7 @@ impl<K: Kinematics> GridToPoints<'_, K> {
         motion
     }
 
-    /// Motion and what is taken up, two components each, of the control points of a cell.
-    #[inline(always)]
-    fn gather(&self, cell: &Cell, kx: usize, ky: usize) -> [[f64; 4]; MAX_FUNCTIONS] {
-        let mut local = [[0.0; 4]; MAX_FUNCTIONS];
-        for l in 0..ky {
-            let base = self.grid.index(cell.first[0], cell.first[1] + l);
-            for k in 0..kx {
-                let [ux, uy] = self.motion.map(|field| field[base + k]);
-                let [tx, ty] = self.taken.map(|field| field[base + k]);
-                local[l * kx + k] = [ux, uy, tx, ty];
-            }
-        }
-        local
-    }
-
-    /// Moves and strains one point; returns its strain increment and displacement.
+    /// Moves and strains one point.
     #[inline(always)]
     fn move_point(
         &mut self,
@@ -204,7 +199,7 @@ impl<K: Kinematics> GridToPoints<'_, K> {
         kx: usize,
         ky: usize,
         motion: &mut StripMotion,
-    ) -> ([f64; 3], [f64; 2]) {
+    ) -> PointMotion {
         let [x, y] = &self.patch.spaces;
         let point = &mut self.points[at];
         let sx = x.shape_functions(cell.span[0], point.position[0]);
@@ -225,7 +220,7 @@ impl<K: Kinematics> GridToPoints<'_, K> {
             }
         }
         let step = [0, 1].map(|c| [self.dt * along_x[c], self.dt * along_y[c]]);
-        let increment = self.kinematics.strain(at, &mut point.strain, &step);
+        let strain_increment = self.kinematics.strain(at, &mut point.strain, &step);
         let moved = [0, 1].map(|d| self.dt * value[d]);
         for d in 0..2 {
             point.velocity[d] = self.kept * point.velocity[d] + value[2 + d];
@@ -235,7 +230,7 @@ impl<K: Kinematics> GridToPoints<'_, K> {
         }
         let spans = [&x.spans()[cell.span[0]], &y.spans()[cell.span[1]]];
         motion.left_span |= (0..2).any(|d| !(spans[d].left <= point.position[d] && point.position[d] < spans[d].right));
-        (increment, moved)
+        PointMotion { strain_increment, moved }
     }
 }
 

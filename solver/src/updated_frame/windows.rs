@@ -1,10 +1,13 @@
-//! Passes over the strips of points: each strip writes its own points, or a window of nodal fields.
+//! Passes over the strips of points: each strip reads the control values of its cells, and writes its own points or a window of
+//! nodal fields.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::points::Strip;
+use super::points::{Cell, Strip};
+use super::transfer::MAX_FUNCTIONS;
+use crate::patch::ControlGrid;
 
 /// The control rows a strip may write, in `N` fields.
 #[derive(Debug)]
@@ -13,6 +16,40 @@ pub struct Window<'a, const N: usize> {
     pub first_row: usize,
     /// The fields.
     pub fields: [&'a mut [f64]; N],
+}
+
+impl<const N: usize> Window<'_, N> {
+    /// Adds the sums over the points of a cell with `kx` by `ky` control points, row by row.
+    #[inline(always)]
+    pub fn add(&mut self, grid: ControlGrid, cell: &Cell, sums: &[[f64; N]; MAX_FUNCTIONS], kx: usize, ky: usize) {
+        for l in 0..ky {
+            let base = grid.index(cell.first[0], cell.first[1] + l - self.first_row);
+            for k in 0..kx {
+                for component in 0..N {
+                    self.fields[component][base + k] += sums[l * kx + k][component];
+                }
+            }
+        }
+    }
+}
+
+/// Values of fields at the `kx` by `ky` control points of a cell, row by row.
+#[inline(always)]
+pub fn control_values<const N: usize>(
+    fields: [&[f64]; N],
+    grid: ControlGrid,
+    cell: &Cell,
+    kx: usize,
+    ky: usize,
+) -> [[f64; N]; MAX_FUNCTIONS] {
+    let mut values = [[0.0; N]; MAX_FUNCTIONS];
+    for l in 0..ky {
+        let base = grid.index(cell.first[0], cell.first[1] + l);
+        for k in 0..kx {
+            values[l * kx + k] = fields.map(|field| field[base + k]);
+        }
+    }
+    values
 }
 
 /// Runs `work` once per strip with its window of `fields`, rows of `row_lengths` numbers; results in the order of strips.

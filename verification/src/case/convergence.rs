@@ -148,8 +148,8 @@ pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
     let loading = fields.or("loading", Loading::Strong, |i| i.choice(&loadings));
     let step_power = fields.maybe("step_power", |i| i.quantity(Dimension::NONE));
     let refine = fields.or("refine", true, |i| i.choice(&[("mesh", true), ("time-step", false)]));
-    let safety = fields.or("safety", vec![0.4], |i| filled(i, "[0.4]", |n| positive(n, Dimension::NONE)));
-    let end_time = fields.maybe("end_time", |i| positive(i, Dimension::TIME));
+    let safety = fields.or("safety", vec![0.4], |i| filled(i, "[0.4]", |n| n.positive(Dimension::NONE)));
+    let end_time = fields.maybe("end_time", |i| i.positive(Dimension::TIME));
     let (degrees, points) = (degrees?, points?);
     if let Some(points) = &points
         && points.len() != degrees.len()
@@ -188,14 +188,6 @@ fn filled<'a, T>(item: &Item<'a>, like: &str, read: impl Fn(&Item<'a>) -> Option
         return item.fail("the list is empty", format!("give at least one entry, such as {like}"));
     }
     Some(entries)
-}
-
-fn positive(item: &Item<'_>, dimension: Dimension) -> Option<f64> {
-    let value = item.quantity(dimension)?;
-    if value <= 0.0 {
-        return item.fail(format!("{value} is not positive"), "give a number above zero");
-    }
-    Some(value)
 }
 
 #[cfg(test)]

@@ -70,6 +70,9 @@ fn default_models(document: &Document) -> Vec<String> {
     if fractures {
         models.push("phase field".to_string());
     }
+    if scene.get("contact").is_some() {
+        models.push("contact".to_string());
+    }
     models
 }
 

@@ -17,7 +17,7 @@ use crate::scene_file::units::Dimension;
 pub(super) fn read(item: &Item<'_>) -> Option<Vec<Geometry>> {
     let fields = item.fields(&["outer_radius", "inner_over_outer", "length_scale", "points"])?;
     let list = |key: &str, like: &str, dimension: Dimension| {
-        fields.need(key, like, |i| i.each(|entry| positive(entry, dimension)))
+        fields.need(key, like, |i| i.each(|entry| entry.positive(dimension)))
     };
     let outer = list("outer_radius", "outer_radius = [\"50 mm\"]", Dimension::LENGTH);
     let ratio = list("inner_over_outer", "inner_over_outer = [0.6]", Dimension::NONE);
@@ -38,12 +38,4 @@ pub(super) fn read(item: &Item<'_>) -> Option<Vec<Geometry>> {
         }
     }
     Some(geometries)
-}
-
-fn positive(item: &Item<'_>, dimension: Dimension) -> Option<f64> {
-    let value = item.quantity(dimension)?;
-    if value <= 0.0 {
-        return item.fail(format!("{value} is not positive"), "give numbers above zero");
-    }
-    Some(value)
 }

@@ -73,6 +73,16 @@ impl<'a> Item<'a> {
         self.fail("not a finite number", format!("give {}", dimension.example()))
     }
 
+    /// A quantity above zero.
+    pub fn positive(&self, dimension: Dimension) -> Option<f64> {
+        let value = self.quantity(dimension)?;
+        if value > 0.0 {
+            Some(value)
+        } else {
+            self.fail(format!("{value} is not positive"), "give a number above zero")
+        }
+    }
+
     /// A whole number between `min` and `max`.
     pub fn whole(&self, min: usize, max: usize) -> Option<usize> {
         let range = format!("a whole number between {min} and {max}");

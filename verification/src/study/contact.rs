@@ -10,14 +10,16 @@ pub(super) mod stack;
 
 use fisura::Simulation;
 use fisura::contact::impulse::ContactForce;
-use fisura::energy::Sample;
+use fisura::energy::{ContactSample, Sample};
 use fisura::scene::Scene;
 use fisura::updated_frame::UpdatedFrame;
 use fisura::updated_frame::field::DiscreteField;
 
 use super::StudyError;
+use super::scene::series_stem;
+use crate::case::Case;
 use crate::extremes::{self, larger};
-use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind, Scale};
+use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind};
 
 /// Runs a scene to its end; `seen` looks at it at the start and after every step.
 fn run(scene: &Scene, seen: &mut dyn FnMut(&Simulation, &UpdatedFrame)) -> Result<(), StudyError> {
@@ -92,7 +94,7 @@ struct Books {
 
 impl Books {
     fn enter(&mut self, sample: &Sample) {
-        let contact = sample.contact.unwrap_or(fisura::energy::ContactSample { loss: f64::NAN, friction: f64::NAN });
+        let contact = sample.contact.unwrap_or(ContactSample { loss: f64::NAN, friction: f64::NAN });
         let [x, y] = sample.momentum;
         let first = *self.start.get_or_insert([x, y, sample.angular_momentum, sample.kinetic + sample.elastic]);
         self.closure = larger(self.closure, sample.closure.abs());
@@ -120,27 +122,26 @@ impl Books {
     }
 }
 
-/// A curve of two columns of a series.
-fn curve(label: &str, stem: &str, [x, y]: [&str; 2], style: CurveStyle) -> Curve {
-    Curve {
-        label: label.into(),
-        series: format!("series/{stem}.csv"),
-        x: x.into(),
-        y: y.into(),
-        x_scale: 1.0,
-        y_scale: 1.0,
-        style,
-        uncertainty_absolute: 0.0,
-        uncertainty_relative: 0.0,
-    }
+/// What a curve shows, with its scene where that has a name.
+fn label(scene: &str, what: &str) -> String {
+    if scene.is_empty() { what.to_string() } else { format!("{scene}: {what}") }
 }
 
-/// A chart on linear axes.
-fn chart(id: String, title: &str, caption: &str, axes: [&str; 2], curves: Vec<Curve>) -> Figure {
-    let [x, y] = axes.map(|label| Axis { label: label.into(), scale: Scale::Linear, range: None });
-    let body = FigureBody::Chart { x, y, curves, regions: Vec::new(), slopes: Vec::new(), floors: Vec::new() };
-    let suite = "contact".into();
-    Figure { id, suite, title: title.into(), caption: caption.into(), deviations: Vec::new(), body }
+/// A curve of two columns of a series.
+fn curve(label: &str, stem: &str, columns: [&str; 2], style: CurveStyle) -> Curve {
+    Curve { style, ..Curve::line(label, &format!("series/{stem}.csv"), columns) }
+}
+
+/// A chart of all scenes of a case.
+fn chart(case: &Case, name: &str, title: &str, caption: &str, axes: [&str; 2], curves: Vec<Curve>) -> Figure {
+    Figure {
+        id: series_stem(case, name),
+        suite: case.suite.clone(),
+        title: format!("{title}, {}", case.label),
+        caption: caption.into(),
+        deviations: Vec::new(),
+        body: FigureBody::chart(axes.map(Axis::linear), curves, Vec::new()),
+    }
 }
 
 #[cfg(test)]
@@ -157,18 +158,12 @@ mod tests {
     #[test]
     fn the_books_keep_the_worst_of_all_samples() {
         let sample = |momentum: f64, friction: f64, closure: f64| Sample {
-            time: 0.0,
             kinetic: 2.0,
-            stagger: 0.0,
             elastic: 1.0,
-            fracture: None,
-            external_work: 0.0,
-            contact: Some(fisura::energy::ContactSample { loss: 2.0 * friction, friction }),
-            transfer_loss: None,
+            contact: Some(ContactSample { loss: 2.0 * friction, friction }),
             closure,
             momentum: [momentum, 0.0],
-            angular_momentum: 0.0,
-            time_step: 1.0,
+            ..Sample::default()
         };
         let mut books = Books::default();
         for (momentum, friction, closure) in [(1.0, 0.0, 0.0), (1.5, 0.3, -0.2), (1.1, 0.1, 0.1)] {

@@ -7,7 +7,7 @@ use fisura::assembly::{Constant, Form, add_form};
 use fisura::cholesky::SparseCholesky;
 use fisura::lattice::Lattice;
 use fisura::patch::Patch;
-use fisura::scene::{Layout, Mass, Material, Mesh, Plane};
+use fisura::scene::{Mass, Mesh};
 use fisura::stencil::Stencil;
 
 use super::{Findings, StudyError};
@@ -48,16 +48,7 @@ fn crack(degree: usize, per_length: usize) -> Result<(f64, f64), StudyError> {
     x.extend(vec![at(2 * half); degree]);
     let rows = Mesh::uniform([degree; 2], [0.0; 2], [1.0, HEIGHT], [1, 2]).knots[1].clone();
     let mesh = Mesh { degree: [degree; 2], knots: [x, rows], geometry: None };
-    let scene = PlainScene {
-        mesh,
-        material: Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None },
-        plane: Plane::Strain,
-        mass: Mass::Lumped,
-        layout: Layout::Gauss,
-        points: degree + 1,
-        held: vec![],
-    }
-    .scene();
+    let scene = PlainScene { held: vec![], ..PlainScene::unit_bar(mesh, Mass::Lumped) }.scene();
     let patch = Patch::new(&scene.mesh);
     let lattice = Lattice::new(&patch, &scene.bodies[0]);
     let grid = lattice.grid;

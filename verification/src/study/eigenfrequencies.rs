@@ -5,7 +5,7 @@
 //! densely. With the consistent mass frequencies are too high, by order 2 p; with the lumped one too low, by order 2.
 
 use fisura::critical_step::StiffnessOperator;
-use fisura::scene::{Layout, Mass, Material, Mesh, Plane, Scene};
+use fisura::scene::{Mass, Mesh, Scene};
 use fisura::total_frame::TotalFrame;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -13,7 +13,7 @@ use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::convergence::{Convergence, Curve, Level, Norm, Refined};
 use crate::expand::CaseScene;
-use crate::plain_scene::{PlainScene, ROLLERS};
+use crate::plain_scene::PlainScene;
 
 /// Spans along the bar.
 const MESHES: [usize; 4] = [8, 16, 32, 64];
@@ -91,16 +91,8 @@ fn relative_errors(mass: Mass, degree: usize, spans: usize) -> Result<(Vec<f64>,
 
 /// The strip, all of unit modulus, density and length.
 fn bar(mass: Mass, degree: usize, spans: usize) -> Scene {
-    let mut scene = PlainScene {
-        mesh: Mesh::uniform([degree, 1], [0.0; 2], [1.0, HEIGHT], [spans, 1]),
-        material: Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None },
-        plane: Plane::Strain,
-        mass,
-        layout: Layout::Gauss,
-        points: degree + 1,
-        held: ROLLERS.to_vec(),
-    }
-    .scene();
+    let mesh = Mesh::uniform([degree, 1], [0.0; 2], [1.0, HEIGHT], [spans, 1]);
+    let mut scene = PlainScene::unit_bar(mesh, mass).scene();
     scene.bodies[0].particles_per_cell[1] = 2; // linear over the height
     scene
 }

@@ -21,7 +21,7 @@ use crate::case::Case;
 use crate::expand::CaseScene;
 use crate::extremes::{larger, largest};
 use crate::history::Table;
-use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind, Scale};
+use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind};
 
 /// Strains looked at, over the strain at the peak.
 const STRAINS: usize = 40;
@@ -134,34 +134,21 @@ fn peak(table: &Table) -> (f64, f64) {
 }
 
 fn figure(case: &Case, stem: &str) -> Figure {
-    let curve = |label: &str, y: &str, style| Curve {
-        label: label.into(),
-        series: format!("series/{stem}.csv"),
-        x: "strain_over_peak".into(),
-        y: y.into(),
-        x_scale: 1.0,
-        y_scale: 1.0,
+    let curve = |label: &str, column: &str, style| Curve {
         style,
-        uncertainty_absolute: 0.0,
-        uncertainty_relative: 0.0,
+        ..Curve::line(label, &format!("series/{stem}.csv"), ["strain_over_peak", column])
     };
-    let axis = |label: &str| Axis { label: label.into(), scale: Scale::Linear, range: None };
+    let axes = ["strain / strain at the peak", "stress / peak stress"].map(Axis::linear);
+    let curves = vec![
+        curve("closed form", "closed_form", CurveStyle::Reference),
+        curve("material points", "stress_over_peak", CurveStyle::Markers),
+    ];
     Figure {
         id: stem.into(),
         suite: case.suite.clone(),
         title: "Homogeneous bar in uniaxial strain".into(),
         caption: "Stress over its closed-form peak against strain over its closed-form peak.".into(),
         deviations: Vec::new(),
-        body: FigureBody::Chart {
-            x: axis("strain / strain at the peak"),
-            y: axis("stress / peak stress"),
-            curves: vec![
-                curve("closed form", "closed_form", CurveStyle::Reference),
-                curve("material points", "stress_over_peak", CurveStyle::Markers),
-            ],
-            regions: Vec::new(),
-            slopes: Vec::new(),
-            floors: Vec::new(),
-        },
+        body: FigureBody::chart(axes, curves, Vec::new()),
     }
 }

@@ -9,14 +9,14 @@ use std::sync::Arc;
 
 use fisura::forcing::NoLoads;
 use fisura::projection::Projection;
-use fisura::scene::{Layout, Mass, Material, Mesh, Plane};
+use fisura::scene::{Mass, Mesh};
 use fisura::total_frame::TotalFrame;
 
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::expand::CaseScene;
 use crate::extremes::spread;
-use crate::plain_scene::{PlainScene, ROLLERS};
+use crate::plain_scene::PlainScene;
 use crate::record::{Reference, ReferenceKind};
 
 const SPANS: usize = 16;
@@ -50,16 +50,8 @@ struct Energies {
 
 fn vibrate(degree: usize, mass: Mass) -> Result<Energies, StudyError> {
     let height = 2.0 / SPANS as f64;
-    let scene = PlainScene {
-        mesh: Mesh::uniform([degree; 2], [0.0; 2], [1.0, height], [SPANS, 2]),
-        material: Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None },
-        plane: Plane::Strain,
-        mass,
-        layout: Layout::Gauss,
-        points: degree + 1,
-        held: ROLLERS.to_vec(),
-    }
-    .scene();
+    let mesh = Mesh::uniform([degree; 2], [0.0; 2], [1.0, height], [SPANS, 2]);
+    let scene = PlainScene::unit_bar(mesh, mass).scene();
     let broken = |_| StudyError::Other("no phase field is expected".into());
     let mut frame = TotalFrame::new(&scene).map_err(broken)?;
     let zeros = || frame.lattice().grid.zeros();

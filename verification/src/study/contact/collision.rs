@@ -3,7 +3,7 @@
 use fisura::scene::Scene;
 use fisura::updated_frame::field::DiscreteField;
 
-use super::{Books, center, chart, curve, dot, exact, largest, run, sample_is_due};
+use super::{Books, center, chart, curve, dot, exact, label, largest, run, sample_is_due};
 use crate::case::Case;
 use crate::expand::CaseScene;
 use crate::history::Table;
@@ -18,16 +18,15 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
         let found = collide(scene)?;
         found.add(scene, name, &mut findings);
         let stem = format!("{}-energies", series_stem(case, name));
-        for (label, column) in [("kinetic", "kinetic"), ("elastic", "elastic"), ("lost in contact", "contact_loss")] {
-            let label = if name.is_empty() { label.to_string() } else { format!("{name}: {label}") };
-            curves.push(curve(&label, &stem, ["time_s", column], CurveStyle::Line));
+        for (energy, column) in [("kinetic", "kinetic"), ("elastic", "elastic"), ("lost in contact", "contact_loss")] {
+            curves.push(curve(&label(name, energy), &stem, ["time_s", column], CurveStyle::Line));
         }
         findings.series.push((stem, found.energies));
     }
-    let title = format!("Energies over that at t = 0, {}", case.label);
     findings.figures.push(chart(
-        series_stem(case, "energies"),
-        &title,
+        case,
+        "energies",
+        "Energies over that at t = 0",
         "",
         ["time (s)", "energy over that at t = 0"],
         curves,

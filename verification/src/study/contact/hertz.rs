@@ -50,11 +50,10 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
     let stem = format!("{}-ellipse", series_stem(case, ""));
     findings.series.push((stem.clone(), ellipse()));
     curves.push(curve("Hertz", &stem, ["s_over_a", "pressure_over_p0"], CurveStyle::Reference));
-    let title = format!("Pressure across the contact, {}", case.label);
     let caption =
         "Forces of contact per length near the largest force, in units of Hertz's half width and peak pressure.";
     let axes = ["place across the contact over a", "pressure over p0"];
-    findings.figures.push(chart(series_stem(case, "pressure"), &title, caption, axes, curves));
+    findings.figures.push(chart(case, "pressure", "Pressure across the contact", caption, axes, curves));
     Ok(findings)
 }
 

@@ -40,11 +40,10 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
     let stem = format!("{}-rectangle", series_stem(case, ""));
     findings.series.push((stem.clone(), rectangle()));
     curves.push(curve("closed form", &stem, ["time_c_over_l1", "force_over_plateau"], CurveStyle::Reference));
-    let title = format!("Force of contact, {}", case.label);
     let caption =
         "Sum of the forces of contact over rho c V/2 per area; the closed form is a rectangle of length 2 L1/c.";
     let axes = ["(t − t of the closing gap) c/L1", "force over rho c V/2"];
-    findings.figures.push(chart(series_stem(case, "force"), &title, caption, axes, curves));
+    findings.figures.push(chart(case, "force", "Force of contact", caption, axes, curves));
     convergence(case, meshes).add_to(&mut findings);
     Ok(findings)
 }

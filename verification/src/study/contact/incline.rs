@@ -47,9 +47,8 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
         found.velocities.iter().step_by(every).for_each(|[t, v]| table.push(&[*t, *v, slope.acceleration() * t]));
         findings.series.push((stem, table));
     }
-    let title = format!("Velocity down the slope, {}", case.label);
     let axes = ["time (s)", "velocity of the centre of mass (m/s)"];
-    findings.figures.push(chart(series_stem(case, "velocity"), &title, "", axes, curves));
+    findings.figures.push(chart(case, "velocity", "Velocity down the slope", "", axes, curves));
     Ok(findings)
 }
 

@@ -16,7 +16,7 @@ use fisura::material::ElasticModuli;
 use fisura::scene::Scene;
 use fisura::spans::largest_spans;
 
-use super::{Books, center, chart, curve, exact, largest, run, sample_is_due, sum};
+use super::{Books, center, chart, curve, exact, label, largest, run, sample_is_due, sum};
 use crate::case::Case;
 use crate::expand::CaseScene;
 use crate::history::Table;
@@ -33,15 +33,25 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
         column.add(&found, name, &mut findings);
         let stem = format!("{}-forces", series_stem(case, name));
         for contact in 0..column.heights.len() {
-            let label =
+            let place =
                 if contact == 0 { "under the lowest block".to_string() } else { format!("above block {contact}") };
-            let label = if name.is_empty() { label } else { format!("{name}: {label}") };
-            curves.push(curve(&label, &stem, ["time_s", &format!("contact_{contact}")], CurveStyle::Line));
+            curves.push(curve(
+                &label(name, &place),
+                &stem,
+                ["time_s", &format!("contact_{contact}")],
+                CurveStyle::Line,
+            ));
         }
         findings.series.push((stem, found.forces));
     }
-    let title = format!("Normal forces over the weight above, {}", case.label);
-    findings.figures.push(chart(series_stem(case, "forces"), &title, "", ["time (s)", "force over weight"], curves));
+    findings.figures.push(chart(
+        case,
+        "forces",
+        "Normal forces over the weight above",
+        "",
+        ["time (s)", "force over weight"],
+        curves,
+    ));
     Ok(findings)
 }
 

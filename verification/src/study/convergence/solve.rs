@@ -15,7 +15,6 @@ use fisura::total_frame::TotalFrame;
 use nalgebra::DMatrix;
 
 use super::errors::{ErrorPoints, Squares};
-
 use super::problem::{Kind, Manufactured, Problem};
 use super::scene::scene;
 use super::{OnMesh, other};

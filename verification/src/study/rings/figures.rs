@@ -3,7 +3,7 @@
 use super::{PAPER, Watched};
 use crate::case::Case;
 use crate::expand::CaseScene;
-use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Region, Scale};
+use crate::record::{Curve, Figure, FigureBody, Region};
 use crate::rings::events::{EVENTS, annulus};
 use crate::study::Findings;
 use crate::study::scene::{length_scale, microseconds, raster, series_stem};
@@ -23,16 +23,16 @@ pub fn add(findings: &mut Findings, case: &Case, case_scene: &CaseScene, watched
     let series = format!("series/{stem}.csv");
     let factor = case_scene.energy_factor;
     let energies = ["fracture_j", "kinetic_j", "elastic_j", "contact_loss_j", "transfer_loss_j", "closure_j"];
-    let curve = |column: &str| curve(&series, column, factor);
+    let curve = |column: &str| Curve::energy(&series, column, factor);
     findings.figures.push(figure(
         format!("{}-fracture-energy", case.name),
         "Fracture energy of both rings, events of the paper marked".into(),
-        chart("fracture energy (J)", vec![curve("fracture_j")], events()),
+        FigureBody::over_time("fracture energy (J)", vec![curve("fracture_j")], events()),
     ));
     findings.figures.push(figure(
         format!("{}-ledger", case.name),
         "Energy ledger of both rings".into(),
-        chart("energy (J)", energies.iter().map(|column| curve(column)).collect(), Vec::new()),
+        FigureBody::over_time("energy (J)", energies.iter().map(|column| curve(column)).collect(), Vec::new()),
     ));
     for picture in &watched.pictures {
         let Some(phase) = &picture.phase else { continue };
@@ -65,26 +65,6 @@ fn caption(CaseScene { scene, .. }: &CaseScene, watched: &Watched) -> String {
         watched.steps,
         watched.step
     )
-}
-
-fn curve(series: &str, column: &str, factor: f64) -> Curve {
-    Curve {
-        label: column.trim_end_matches("_j").replace('_', " "),
-        series: series.to_string(),
-        x: "time_s".into(),
-        y: column.into(),
-        x_scale: 1e6,
-        y_scale: factor,
-        style: CurveStyle::Line,
-        uncertainty_absolute: 0.0,
-        uncertainty_relative: 0.0,
-    }
-}
-
-fn chart(label: &str, curves: Vec<Curve>, regions: Vec<Region>) -> FigureBody {
-    let axis = |label: &str| Axis { label: label.into(), scale: Scale::default(), range: None };
-    let (x, y) = (axis("time (µs)"), axis(label));
-    FigureBody::Chart { x, y, curves, regions, slopes: Vec::new(), floors: Vec::new() }
 }
 
 /// Lines at the times of the paper.

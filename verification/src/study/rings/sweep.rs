@@ -1,5 +1,7 @@
 //! Sweep over the geometries of a case's `[rings]` table: half a ring against a frictionless wall, scored by the events.
 
+use fisura::error::Breakdown;
+use fisura::scene::Scene;
 use rayon::prelude::*;
 
 use super::{PAPER, Watched, in_microseconds};
@@ -23,14 +25,41 @@ type Events = [Option<f64>; 6];
 struct Trial {
     geometry: Geometry,
     events: Events,
+    /// Part of the broken material aside the diameter at the end.
     aside: f64,
+    /// Not a number if the run broke down.
     score: f64,
+    /// Time at which the run broke down, s.
+    broke_down: Option<f64>,
 }
 
 impl Trial {
+    fn run(geometry: Geometry, template: &Scene) -> Result<Self, StudyError> {
+        match Watched::run(&geometry.quarter(template)) {
+            Ok(watched) => {
+                let ring = &watched.rings[0];
+                let events = ring.events();
+                let aside = ring.table.column("broken_aside").and_then(|column| column.last().copied());
+                let score = score(&events, template.analysis.end_time);
+                Ok(Self { geometry, events, aside: aside.unwrap_or(f64::NAN), score, broke_down: None })
+            }
+            Err(StudyError::Breakdown(Breakdown { time, .. })) => Ok(Self::broken(geometry, time)),
+            Err(other) => Err(other),
+        }
+    }
+
+    /// A run that broke down says nothing about its geometry.
+    fn broken(geometry: Geometry, time: f64) -> Self {
+        Self { geometry, events: [None; 6], aside: f64::NAN, score: f64::NAN, broke_down: Some(time) }
+    }
+
     /// Near the events of the paper with a ring that splits along the diameter.
     fn is_near(&self) -> bool {
-        self.score <= NEAR && self.aside <= ASIDE
+        self.score <= NEAR && self.splits()
+    }
+
+    fn splits(&self) -> bool {
+        self.aside <= ASIDE
     }
 }
 
@@ -45,35 +74,32 @@ pub fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> 
     let (Some(geometries), [template]) = (&case.rings, scenes) else {
         return Err(StudyError::Other("a sweep needs a [rings] table and one scene".into()));
     };
-    let end = template.scene.analysis.end_time;
-    let mut trials: Vec<Trial> = geometries
-        .par_iter()
-        .map(|&geometry| {
-            let watched = Watched::run(&geometry.quarter(&template.scene)).ok();
-            let ring = watched.as_ref().map(|watched| &watched.rings[0]);
-            let events = ring.map_or([None; 6], |ring| ring.events());
-            let aside = ring.and_then(|ring| ring.table.column("broken_aside")?.last().copied());
-            Trial { geometry, events, aside: aside.unwrap_or(f64::NAN), score: score(&events, end) }
-        })
-        .collect();
+    let runs = geometries.par_iter().map(|&geometry| Trial::run(geometry, &template.scene));
+    let mut trials = runs.collect::<Result<Vec<_>, _>>()?;
     trials.sort_by(|a, b| a.score.total_cmp(&b.score));
     let mut findings = Findings::default();
-    let best = |split: bool| trials.iter().find(|trial| !split || trial.aside <= ASIDE).map(|trial| trial.score);
-    findings.add("", "geometries run", trials.len() as f64, None);
-    let near = trials.iter().filter(|trial| trial.is_near()).count();
-    findings.add("", "geometries near the paper that split along the diameter", near as f64, None);
-    findings.measurements.push(in_microseconds("", "smallest score", best(false), None));
-    findings.measurements.push(in_microseconds(
-        "",
-        "smallest score of those that split along the diameter",
-        best(true),
-        None,
-    ));
+    add(&mut findings, &trials);
     findings.series.push((series_stem(case, ""), table(&trials)));
     Ok(findings)
 }
 
-/// All geometries, the best first; an event that does not come is NaN.
+/// Numbers for the checks; the best trials stand first.
+fn add(findings: &mut Findings, trials: &[Trial]) {
+    let mut count = |quantity: &str, counts: fn(&Trial) -> bool| {
+        findings.add("", quantity, trials.iter().filter(|trial| counts(trial)).count() as f64, None);
+    };
+    count("geometries run", |_| true);
+    count("geometries that broke down", |trial| trial.broke_down.is_some());
+    count("geometries near the paper that split along the diameter", Trial::is_near);
+    let mut smallest = |quantity: &str, counts: fn(&Trial) -> bool| {
+        let best = trials.iter().find(|trial| counts(trial)).map(|trial| trial.score);
+        findings.measurements.push(in_microseconds("", quantity, best, None));
+    };
+    smallest("smallest score", |_| true);
+    smallest("smallest score of those that split along the diameter", Trial::splits);
+}
+
+/// All geometries, the best first and those that broke down last; an event that does not come is NaN.
 fn table(trials: &[Trial]) -> Table {
     let mut table = Table::new(&[
         "outer_mm",
@@ -89,14 +115,16 @@ fn table(trials: &[Trial]) -> Table {
         "contact_end_us",
         "broken_aside",
         "score_us",
+        "broke_down_us",
     ]);
     let rounded = |value: f64| (1e3 * value).round() / 1e3;
-    for Trial { geometry, events, aside, score } in trials {
+    for Trial { geometry, events, aside, score, broke_down } in trials {
         let Geometry { outer, inner, length_scale, points } = *geometry;
         let h = points as f64 * geometry.spacing(PARTICLES);
         let mut row = vec![1e3 * outer, 1e3 * inner, 1e3 * length_scale, points as f64, 1e3 * h];
-        row.extend(events.map(|time| 1e6 * time.unwrap_or(f64::NAN)));
-        row.extend([*aside, 1e6 * score]);
+        let microseconds = |time: Option<f64>| 1e6 * time.unwrap_or(f64::NAN);
+        row.extend(events.map(microseconds));
+        row.extend([*aside, 1e6 * score, microseconds(*broke_down)]);
         table.push(&row.into_iter().map(rounded).collect::<Vec<_>>());
     }
     table
@@ -112,5 +140,22 @@ mod tests {
         assert!(score(&exact, 200e-6) < 1e-12);
         let late = [Some(30e-6), Some(60e-6), None, None, None, None];
         assert!((score(&late, 200e-6) - 100e-6 / 3_f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_run_that_broke_down_is_counted_and_never_the_best() {
+        let geometry = Geometry { outer: 0.05, inner: 0.03, length_scale: 1e-3, points: 2 };
+        let late = Trial { geometry, events: [None; 6], aside: 0.0, score: 9e-5, broke_down: None };
+        let trials = [late, Trial::broken(geometry, 4e-5)];
+        let mut findings = Findings::default();
+        add(&mut findings, &trials);
+        let value = |quantity: &str| {
+            findings.measurements.iter().find(|m| m.quantity == quantity).and_then(|m| m.value).unwrap()
+        };
+        assert_eq!([value("geometries run"), value("geometries that broke down")], [2.0, 1.0]);
+        assert!((value("smallest score") - 90.0).abs() < 1e-9);
+        let table = table(&trials);
+        let column = table.column("broke_down_us").unwrap();
+        assert!(column[0].is_nan() && column[1] == 40.0 && table.column("score_us").unwrap()[1].is_nan());
     }
 }
