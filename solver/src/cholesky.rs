@@ -1,14 +1,15 @@
 //! Sparse Cholesky factorisation of a stencil matrix by faer: for the consistent mass, and the reference of the iterative
 //! solver.
 //!
-//! The symbolic factorisation is done once and reused as long as the pattern stays.
+//! The symbolic factorisation is done once and reused as long as the pattern stays. All of it on one thread: the order of sums, and
+//! with it the bits, must not depend on their number.
 
 use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, factorize_symbolic_cholesky};
-use faer::sparse::{SparseColMat, Triplet};
-use faer::{Conj, Mat, Side, get_global_parallelism};
+use faer::sparse::{SparseColMat, SymbolicSparseColMat};
+use faer::{Conj, Mat, Par, Side};
 
 use crate::stencil::Stencil;
 
@@ -36,14 +37,14 @@ impl SparseCholesky {
         held.iter().for_each(|&at| is_held[at] = true);
         let indices: Vec<usize> = matrix.grid.indices().collect();
         let held: Vec<bool> = indices.iter().map(|&at| is_held[at]).collect();
-        let lower = lower_triangle(matrix, &held)?;
+        let lower = lower_triangle(matrix, &held);
         if self.symbolic.is_none() {
             let (pattern, settings) = (lower.symbolic(), Default::default());
             let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, Default::default(), settings).ok()?;
             self.symbolic = Some(Arc::new(symbolic));
         }
         let symbolic = self.symbolic.clone()?;
-        let (threads, regularization) = (get_global_parallelism(), Default::default());
+        let (threads, regularization) = (Par::Seq, Default::default());
         let mut values = vec![0.0; symbolic.len_val()];
         let mut room = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(threads, Default::default()));
         let room = MemStack::new(&mut room);
@@ -66,7 +67,7 @@ impl Factor {
     pub fn solve(&self, b: &[f64], x: &mut [f64]) {
         let value = |i: usize| if self.held[i] { 0.0 } else { b[self.indices[i]] };
         let mut solution = Mat::from_fn(self.indices.len(), 1, |i, _| value(i));
-        let threads = get_global_parallelism();
+        let threads = Par::Seq;
         let mut room = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(1, threads));
         LltRef::<usize, f64>::new(&self.symbolic, &self.values).solve_in_place_with_conj(
             Conj::No,
@@ -87,24 +88,26 @@ impl Factor {
 
 /// All structural entries on and below the diagonal, control points numbered row by row; those of held unknowns are zero
 /// but for a one on the diagonal.
-fn lower_triangle(matrix: &Stencil, held: &[bool]) -> Option<SparseColMat<usize, f64>> {
+fn lower_triangle(matrix: &Stencil, held: &[bool]) -> SparseColMat<usize, f64> {
     let grid = matrix.grid;
-    let mut triplets = Vec::new();
+    let n = grid.rows * grid.columns;
+    let (mut starts, mut rows, mut values) = (Vec::with_capacity(n + 1), Vec::new(), Vec::new());
     for row in 0..grid.rows {
         for column in 0..grid.columns {
+            starts.push(rows.len());
             for (index, offset) in matrix.offsets().iter().enumerate() {
                 let (other_row, other) = (row + offset.rows, column as isize + offset.columns);
                 if other_row < grid.rows && (0..grid.columns as isize).contains(&other) {
                     let (i, j) = (row * grid.columns + column, other_row * grid.columns + other as usize);
-                    let value = match held[i] || held[j] {
+                    rows.push(j); // offsets come in the order of the control points
+                    values.push(match held[i] || held[j] {
                         false => matrix.row(row, index)[grid.index(column, 0)],
                         true => f64::from(u8::from(i == j)),
-                    };
-                    triplets.push(Triplet::new(j, i, value));
+                    });
                 }
             }
         }
     }
-    let n = grid.rows * grid.columns;
-    SparseColMat::try_new_from_triplets(n, n, &triplets).ok()
+    starts.push(rows.len());
+    SparseColMat::new(SymbolicSparseColMat::new_checked(n, n, starts, None, rows), values)
 }

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use crate::incomplete_cholesky::IncompleteCholesky;
 use crate::lane::{LANES, Lane};
+use crate::preconditioner::Preconditioner;
 use crate::stencil::{CHUNK_ROWS, Stencil};
 
 /// Outcome of a solve.
@@ -37,7 +37,7 @@ impl ConjugateGradients {
     pub fn solve(
         &mut self,
         matrix: &Stencil,
-        preconditioner: &IncompleteCholesky,
+        preconditioner: &Preconditioner,
         b: &[f64],
         x: &mut [f64],
         tolerance: f64,

@@ -49,7 +49,7 @@
 //! | – | tractions, gravity, conditions on sides | [`loads`], [`constraints`] |
 //! | – | finite strain | [`hencky`], [`finite`] |
 //! | – | for verification: loads that vary in space, projection, elastostatics | [`forcing`], [`projection`], [`statics`] |
-//! | – | linear algebra of the phase field | [`stencil`], [`conjugate_gradients`], [`incomplete_cholesky`], [`cholesky`] |
+//! | – | linear algebra of the phase field | [`stencil`], [`conjugate_gradients`], [`incomplete_cholesky`], [`preconditioner`], [`cholesky`] |
 //! | – | critical step, plan of steps and samples | [`critical_step`], [`time_plan`] |
 //! | – | energy ledger, pictures | [`energy`], [`picture`] |
 //!
@@ -153,6 +153,7 @@ pub mod nurbs;
 pub mod patch;
 pub mod phase_field;
 pub mod picture;
+pub mod preconditioner;
 pub mod projection;
 pub mod quadrature;
 pub mod scene;

@@ -11,19 +11,16 @@
 use crate::assembly::{Constant, Form, PointCoefficients, add_form};
 use crate::cholesky::SparseCholesky;
 use crate::conjugate_gradients::{ConjugateGradients, Convergence};
-use crate::incomplete_cholesky::IncompleteCholesky;
 use crate::lane::{LANES, Lane};
 use crate::lattice::Lattice;
 use crate::material::FractureModel;
 use crate::patch::ControlGrid;
+use crate::preconditioner::Preconditioner;
 use crate::scene::{PhaseFieldSolver, SolverSettings};
 use crate::stencil::Stencil;
 
 /// Iterations after which a solve counts as failed.
 const ITERATION_LIMIT: usize = 2000;
-/// A lagged factor is renewed once a solve needs this many more iterations than the one after its renewal.
-const EXTRA_ITERATIONS: usize = 3;
-
 /// Diagonal and right-hand side of control points without material, as a fraction of the largest right-hand side: they
 /// hardly weigh in the norm that the tolerance refers to.
 const EMPTY: f64 = 1e-6;
@@ -57,7 +54,7 @@ pub struct PhaseField {
 
 #[derive(Debug, Clone)]
 enum Method {
-    Iterative { workspace: Box<ConjugateGradients>, factor: Box<IncompleteCholesky>, fresh_iterations: Option<usize> },
+    Iterative { workspace: Box<ConjugateGradients>, preconditioner: Box<Preconditioner> },
     Direct(Box<SparseCholesky>),
 }
 
@@ -72,8 +69,7 @@ impl Method {
     fn iterative(matrix: &Stencil) -> Self {
         Self::Iterative {
             workspace: Box::new(ConjugateGradients::new(matrix)),
-            factor: Box::new(IncompleteCholesky::new(matrix)),
-            fresh_iterations: None,
+            preconditioner: Box::new(Preconditioner::new(matrix)),
         }
     }
 }
@@ -161,7 +157,11 @@ impl PhaseField {
 
     /// Counters so far.
     pub fn counts(&self) -> PhaseFieldCounts {
-        self.counts
+        let factorisations = match &self.method {
+            Method::Iterative { preconditioner, .. } => preconditioner.factorisations,
+            Method::Direct(_) => 0,
+        };
+        PhaseFieldCounts { factorisations, ..self.counts }
     }
 
     /// Solves for c with the history energy (J/m³) of every batch of points.
@@ -187,18 +187,18 @@ impl PhaseField {
                 cholesky.solve(matrix, load, phase).ok_or(failed)?;
                 Convergence { iterations: 1, relative_residual: 0.0 }
             }
-            Method::Iterative { workspace, factor, fresh_iterations } => {
-                let stale = |limit: usize, iterations: usize| iterations > limit + EXTRA_ITERATIONS;
-                let result = workspace.solve(matrix, factor, load, phase, self.tolerance, ITERATION_LIMIT);
-                match *fresh_iterations {
-                    Some(limit) if !stale(limit, result.iterations) => {}
-                    Some(_) => {
-                        factor.refactor(matrix);
-                        self.counts.factorisations += 1;
-                        *fresh_iterations = None;
-                    }
-                    None => *fresh_iterations = Some(result.iterations),
+            Method::Iterative { workspace, preconditioner } => {
+                let mut solve = |preconditioner: &Preconditioner| {
+                    workspace.solve(matrix, preconditioner, load, phase, self.tolerance, ITERATION_LIMIT)
+                };
+                if preconditioner.is_complete() {
+                    preconditioner.renew(matrix);
                 }
+                let mut result = solve(preconditioner);
+                if result.iterations == ITERATION_LIMIT && preconditioner.complete(matrix) {
+                    result = solve(preconditioner);
+                }
+                preconditioner.learn(matrix, result.iterations);
                 result
             }
         };
@@ -221,20 +221,19 @@ impl PhaseField {
     /// # Errors
     /// As [`Self::solve`].
     pub fn initialise_system(&mut self) -> Result<Convergence, Convergence> {
-        self.renew_factor();
+        self.renew_preconditioner();
         let convergence = self.solve_system()?;
         self.previous.copy_from_slice(&self.phase);
-        if let Method::Iterative { fresh_iterations, .. } = &mut self.method {
-            *fresh_iterations = None;
+        if let Method::Iterative { preconditioner, .. } = &mut self.method {
+            preconditioner.forget();
         }
         Ok(convergence)
     }
 
-    /// Factors the preconditioner from the matrix as it stands.
-    pub fn renew_factor(&mut self) {
-        if let Method::Iterative { factor, .. } = &mut self.method {
-            factor.refactor(&self.matrix);
-            self.counts.factorisations += 1;
+    /// Makes the preconditioner anew from the matrix as it stands: control points may have gained or lost material.
+    pub fn renew_preconditioner(&mut self) {
+        if let Method::Iterative { preconditioner, .. } = &mut self.method {
+            preconditioner.renew(&self.matrix);
         }
     }
 
@@ -264,7 +263,7 @@ impl PhaseField {
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
         let method = match &self.method {
-            Method::Iterative { workspace, factor, .. } => workspace.bytes() + factor.bytes(),
+            Method::Iterative { workspace, preconditioner } => workspace.bytes() + preconditioner.bytes(),
             Method::Direct(_) => 0,
         };
         let vectors = self.load.len() + self.phase.len() + self.previous.len() + LANES * self.assembled.len();

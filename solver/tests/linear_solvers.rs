@@ -10,6 +10,7 @@ use fisura::incomplete_cholesky::IncompleteCholesky;
 use fisura::lane::Lane;
 use fisura::lattice::Lattice;
 use fisura::patch::{ControlGrid, Patch};
+use fisura::preconditioner::Preconditioner;
 use fisura::scene::*;
 use fisura::stencil::Stencil;
 use nalgebra::{DMatrix, DVector};
@@ -165,7 +166,7 @@ fn conjugate_gradients_reach_the_solution_of_the_direct_solver() {
             let mut direct = grid.zeros();
             SparseCholesky::default().solve(&matrix, &b, &mut direct).expect("positive definite");
             let mut x = grid.zeros();
-            let factor = IncompleteCholesky::new(&matrix);
+            let factor = Preconditioner::new(&matrix);
             let mut solver = ConjugateGradients::new(&matrix);
             let outcome = solver.solve(&matrix, &factor, &b, &mut x, 1e-12, 500);
             assert!(outcome.relative_residual <= 1e-12, "degree {degree}, contrast {contrast}: {outcome:?}");
@@ -180,6 +181,24 @@ fn conjugate_gradients_reach_the_solution_of_the_direct_solver() {
             assert!(relative <= 2e-12, "the residual that is reported is the true one: {relative:e}");
         }
     }
+}
+
+#[test]
+fn a_complete_factor_takes_over_where_the_incomplete_one_is_poor() {
+    let matrix = phase_field_matrix(3, [31, 57], 1e6);
+    let b = Random::new(5).field(matrix.grid, 1.0);
+    let mut solver = ConjugateGradients::new(&matrix);
+    let mut preconditioner = Preconditioner::new(&matrix);
+    let mut solve = |preconditioner: &Preconditioner| {
+        solver.solve(&matrix, preconditioner, &b, &mut matrix.grid.zeros(), 1e-10, 500).iterations
+    };
+    let incomplete = solve(&preconditioner);
+    preconditioner.learn(&matrix, incomplete);
+    assert_eq!(solve(&preconditioner), incomplete, "so few iterations call for nothing");
+    preconditioner.forget();
+    preconditioner.learn(&matrix, 100);
+    assert!(solve(&preconditioner) <= 2, "the factor is exact");
+    assert!(!preconditioner.complete(&matrix), "there is nothing beyond it");
 }
 
 #[test]
@@ -207,7 +226,7 @@ fn two_threads_give_the_bits_of_one() {
     let b = Random::new(13).field(matrix.grid, 1.0);
     let solve = || {
         let mut x = matrix.grid.zeros();
-        let factor = IncompleteCholesky::new(&matrix);
+        let factor = Preconditioner::new(&matrix);
         ConjugateGradients::new(&matrix).solve(&matrix, &factor, &b, &mut x, 1e-10, 500);
         x.iter().map(|x| x.to_bits()).collect::<Vec<_>>()
     };

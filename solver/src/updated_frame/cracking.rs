@@ -89,7 +89,7 @@ impl Cracking {
         assemble(matrix, load, patch, cells, points, &self.points, &self.model, &self.fictitious);
         let first = self.field.counts().solves == 0;
         if moved && !first {
-            self.field.renew_factor(); // other control points may have material now
+            self.field.renew_preconditioner();
         }
         let result = if first { self.field.initialise_system() } else { self.field.solve_system() };
         let convergence =
