@@ -54,9 +54,7 @@ impl Surface {
 
     /// About how many segments [`Self::new`] would make, without making them.
     pub(crate) fn expected_segments(mesh: &Mesh, body: &Body) -> f64 {
-        let (low, high) = mesh.extent(&Shape::Patch);
-        let around = 2.0 * ((high[0] - low[0]) + (high[1] - low[1]));
-        perimeter(&body.shape, around) / spacing(mesh, body)
+        perimeter(&without_patch(&body.shape, mesh)) / spacing(mesh, body)
     }
 
     /// Segments of a closed line, in order; those whose middle `keep` refuses are left out.
@@ -233,18 +231,16 @@ fn without_patch(shape: &Shape, mesh: &Mesh) -> Shape {
     }
 }
 
-/// Length of all lines that [`rings`] gives, m; `patch` is that of the whole patch.
-fn perimeter(shape: &Shape, patch: f64) -> f64 {
+/// Length of all lines that [`rings`] gives, m.
+fn perimeter(shape: &Shape) -> f64 {
     let circle = |radius: f64| std::f64::consts::TAU * radius;
     match shape {
         Shape::Rectangle { min, max } => 2.0 * ((max[0] - min[0]) + (max[1] - min[1])),
         Shape::Disk { radius, .. } => circle(*radius),
         Shape::Annulus { inner_radius, outer_radius, .. } => circle(*inner_radius) + circle(*outer_radius),
         Shape::Polygon { points } => polygon_edges(points).map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1])).sum(),
-        Shape::Patch => patch,
-        Shape::Difference { of, minus } => {
-            perimeter(of, patch) + minus.iter().map(|hole| perimeter(hole, patch)).sum::<f64>()
-        }
+        Shape::Patch => 0.0, // see without_patch
+        Shape::Difference { of, minus } => perimeter(of) + minus.iter().map(perimeter).sum::<f64>(),
     }
 }
 

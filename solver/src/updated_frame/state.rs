@@ -2,7 +2,6 @@
 
 use super::UpdatedFrame;
 use super::affine::AffineVelocities;
-use super::cracking::Cracking;
 use super::field::DiscreteField;
 use super::points::OutsidePatch;
 use crate::checkpoint::{Archive, StateError};
@@ -13,12 +12,11 @@ impl UpdatedFrame {
     /// # Errors
     /// Bytes of another scene, and loads that only the program knows.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { patch: _, fields, contact, thickness: _, steps } = self;
-        archive.value(steps)?;
+        let Self { patch: _, fields, contact, thickness: _ } = self;
         fields.iter_mut().try_for_each(|field| field.exchange(archive))?;
         if let Some(contact) = contact {
             contact.exchange(archive)?;
-            if archive.is_reader() && *steps > 0 {
+            if archive.is_reader() && fields[0].time() > 0.0 {
                 contact.move_rigid(fields[0].time());
                 contact.find(fields);
             }
@@ -50,7 +48,36 @@ impl DiscreteField {
 
     /// What points and surfaces carry.
     fn exchange_points(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { points, affine, deformation, loads, forcing, surface, fracture, time, at_start, .. } = self;
+        let Self {
+            whole: _,
+            patch: _,
+            origin: _,
+            boundaries: _,
+            moduli: _,
+            thickening: _,
+            density: _,
+            thickness: _,
+            gravity: _,
+            points,
+            cells: _,
+            nodes: _,
+            departure: _,
+            affine,
+            deformation,
+            loads,
+            forcing,
+            surface,
+            fracture,
+            lowest_tip: _,
+            elastic_energy: _, // see exchange_sums
+            stress_work: _,
+            driven_power: _,
+            ledger: _,
+            losses: _,
+            time,
+            at_start,
+            travelled: _,
+        } = self;
         if forcing.is_some() {
             return Err(StateError("loads that only the program knows cannot be stored".to_string()));
         }
@@ -67,12 +94,8 @@ impl DiscreteField {
         if let Some(surface) = surface {
             archive.list(surface.vertices_mut())?;
         }
-        if let Some(Cracking { model: _, points, field, iterations, surface_energy, least_phase }) = fracture {
-            archive.list(points)?;
-            field.exchange(archive)?;
-            archive.value(iterations)?;
-            archive.value(surface_energy)?;
-            archive.value(least_phase)?;
+        if let Some(fracture) = fracture {
+            fracture.exchange(archive)?;
         }
         Ok(())
     }

@@ -60,7 +60,7 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     for (i, body) in scene.bodies.iter().enumerate() {
         let segments = Surface::expected_segments(&scene.mesh, body);
         work += segments * complexity(&body.shape) as f64;
-        if !(work <= MOST_WORK) {
+        if work.is_nan() || work > MOST_WORK {
             let message = format!("a boundary of about {segments:.1e} segments, as long as its points stand apart");
             let remedy = "make the body no larger than it can be met, its outline simpler, or the cells larger";
             return findings.error(format!("body.{i}.shape"), message, remedy);
