@@ -24,9 +24,12 @@
 pub mod handle;
 pub mod impulse;
 pub mod rigid;
+mod state;
 pub mod surface;
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
 
 use crate::patch::Patch;
 use crate::scene::Scene;
@@ -70,7 +73,7 @@ struct Sums {
 }
 
 /// What contact took and gave so far, J per metre of thickness.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactLedger {
     /// Energy lost.
     pub loss: f64,
@@ -90,7 +93,7 @@ pub struct Contact {
     rigid: Vec<RigidBody>,
     touches: Vec<Touch>,
     /// Forces of the last step (impulses per second), where to start from.
-    last: HashMap<([usize; 2], [i32; 2]), Impulse>,
+    last: BTreeMap<([usize; 2], [i32; 2]), Impulse>,
     ledger: ContactLedger,
 }
 
@@ -104,7 +107,7 @@ impl Contact {
             reach: spans().map(|span| span.length()).fold(f64::INFINITY, f64::min),
             rigid: scene.bodies.iter().filter(|b| b.rigid).map(|b| RigidBody::new(&scene.mesh, b)).collect(),
             touches: Vec::new(),
-            last: HashMap::new(),
+            last: BTreeMap::new(),
             ledger: ContactLedger::default(),
         })
     }

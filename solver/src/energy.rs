@@ -9,8 +9,10 @@
 //! the kinetic energy at whole steps that velocity Verlet does not conserve. History work,
 //! `∬ 2 (1 − k) c (H − psi+)(−dc/dt)`, is what the model adds where the crack widens on remembered energy.
 
+use serde::{Deserialize, Serialize};
+
 /// Work and losses accumulated over a run, J per metre of thickness.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
     /// Work of tractions, gravity and driven sides.
     pub external_work: f64,

@@ -25,7 +25,10 @@ pub struct SceneWarning {
 
 /// A run that broke down.
 #[derive(Debug, Clone, PartialEq, Error)]
-#[error("the run broke down at step {step}, t = {time:.6e} s, near ({:.6e}, {:.6e}) m: {what}; likely cause: {cause}", place[0], place[1])]
+#[error(
+    "the run broke down at step {step}, t = {time:.6e} s, near {}({:.6e}, {:.6e}) m: {what}; likely cause: {cause}",
+    point.map_or_else(String::new, |point| format!("point {point} at ")), place[0], place[1]
+)]
 pub struct Breakdown {
     /// Step at which it was found.
     pub step: usize,
@@ -33,6 +36,8 @@ pub struct Breakdown {
     pub time: f64,
     /// Place, m.
     pub place: [f64; 2],
+    /// Number of the point there, in its body, where a point stands for the place.
+    pub point: Option<usize>,
     /// What happened.
     pub what: String,
     /// Likely cause and remedy.

@@ -72,6 +72,10 @@ impl IncompleteCholesky {
         parts.iter().sum()
     }
 
+    pub(crate) fn values_mut(&mut self) -> &mut Vec<f64> {
+        &mut self.factor
+    }
+
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
         8 * self.factor.len()

@@ -5,13 +5,14 @@
 //! whatever width the surrounding function may use. [`dispatch`] enters a function compiled for AVX2 and FMA where the
 //! processor has them, so a default build needs no compiler flags.
 
+use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Sub};
 
 /// Spans handled together.
 pub const LANES: usize = 8;
 
 /// One number for each of [`LANES`] neighbouring spans.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[repr(C, align(64))]
 pub struct Lane(pub [f64; LANES]);
 

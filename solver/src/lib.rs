@@ -131,6 +131,7 @@
 #![deny(unsafe_code)]
 
 pub mod assembly;
+pub mod checkpoint;
 pub mod cholesky;
 pub mod conjugate_gradients;
 pub mod constraints;
@@ -143,6 +144,7 @@ pub mod forcing;
 pub mod fracture;
 pub mod hencky;
 pub mod incomplete_cholesky;
+pub mod inspection;
 pub mod kernels;
 pub mod lane;
 pub mod lattice;

@@ -8,6 +8,10 @@
 //! The history energy H only grows, and so does K: only spans whose H grew since the last solve are added
 //! (delta assembly). An increment too small to move the relative residual by a hundredth of the tolerance waits.
 
+mod state;
+
+use serde::{Deserialize, Serialize};
+
 use crate::assembly::{Constant, Form, PointCoefficients, add_form};
 use crate::cholesky::SparseCholesky;
 use crate::conjugate_gradients::{ConjugateGradients, Convergence};
@@ -26,7 +30,7 @@ const ITERATION_LIMIT: usize = 2000;
 const EMPTY: f64 = 1e-6;
 
 /// Counters of the phase-field solver.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhaseFieldCounts {
     /// Systems solved.
     pub solves: usize,

@@ -1,6 +1,7 @@
 //! Fields on a regular raster, for pictures.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::material::ElasticModuli;
 use crate::nurbs::Location;
@@ -9,7 +10,7 @@ use crate::total_frame::TotalFrame;
 use crate::updated_frame::UpdatedFrame;
 
 /// Phase field and stress on a raster over the patch, x fastest; NaN outside the body.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
     /// Time, s.
     pub time: f64,

@@ -6,6 +6,7 @@
 //! need hundreds of iterations. A complete factor then costs less, although it is made anew for every solve: combinations of control
 //! values that vanish at the points of one step do not at those of the next, and an older factor takes them for soft.
 
+use crate::checkpoint::{Archive, StateError};
 use crate::cholesky::{Factor, SparseCholesky};
 use crate::incomplete_cholesky::IncompleteCholesky;
 use crate::stencil::Stencil;
@@ -28,7 +29,8 @@ pub struct Preconditioner {
 #[derive(Debug, Clone)]
 enum Kind {
     Incomplete(IncompleteCholesky),
-    Complete(SparseCholesky, Factor),
+    /// None until the next solve makes one.
+    Complete(SparseCholesky, Option<Factor>),
 }
 
 impl Preconditioner {
@@ -42,7 +44,10 @@ impl Preconditioner {
         match &self.factor {
             Kind::Incomplete(factor) => factor.apply(r, out),
             Kind::Complete(_, factor) => {
-                factor.solve(r, out);
+                match factor {
+                    Some(factor) => factor.solve(r, out),
+                    None => out.copy_from_slice(r),
+                }
                 r.iter().zip(out).map(|(r, out)| r * *out).sum()
             }
         }
@@ -52,11 +57,7 @@ impl Preconditioner {
     pub fn renew(&mut self, matrix: &Stencil) {
         match &mut self.factor {
             Kind::Incomplete(factor) => factor.refactor(matrix),
-            Kind::Complete(cholesky, factor) => {
-                if let Some(new) = cholesky.factor(matrix, &[]) {
-                    *factor = new;
-                }
-            }
+            Kind::Complete(cholesky, factor) => *factor = cholesky.factor(matrix, &[]),
         }
         self.factorisations += 1;
     }
@@ -92,7 +93,7 @@ impl Preconditioner {
         }
         let mut cholesky = SparseCholesky::default();
         let Some(factor) = cholesky.factor(matrix, &[]) else { return false };
-        self.factor = Kind::Complete(cholesky, factor);
+        self.factor = Kind::Complete(cholesky, Some(factor));
         self.fresh_iterations = None;
         self.factorisations += 1;
         true
@@ -102,7 +103,26 @@ impl Preconditioner {
     pub fn bytes(&self) -> usize {
         match &self.factor {
             Kind::Incomplete(factor) => factor.bytes(),
-            Kind::Complete(_, factor) => factor.bytes(),
+            Kind::Complete(_, factor) => factor.as_ref().map_or(0, |factor| factor.bytes()),
+        }
+    }
+
+    /// Stores or takes up what steps change. A complete factor is made anew for every solve, so that there is one is all that counts.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { factor, fresh_iterations, factorisations } = self;
+        archive.value(fresh_iterations)?;
+        archive.value(factorisations)?;
+        let mut complete = matches!(factor, Kind::Complete(..));
+        archive.value(&mut complete)?;
+        if complete && archive.is_reader() {
+            *factor = Kind::Complete(SparseCholesky::default(), None);
+        }
+        match factor {
+            Kind::Incomplete(factor) => archive.list(factor.values_mut()),
+            Kind::Complete(..) => Ok(()),
         }
     }
 }

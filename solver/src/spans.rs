@@ -12,21 +12,33 @@ pub fn largest_spans(mesh: &Mesh) -> [f64; 2] {
     [0, 1].map(|d| mesh.knots[d].windows(2).map(|k| k[1] - k[0]).fold(0.0, f64::max))
 }
 
-/// Smallest and largest length (m) of the spans under the box around a shape; of a patch with a geometry, of the chords
-/// between neighbouring knots through the middles of all spans.
-pub(crate) fn span_lengths(mesh: &Mesh, shape: &Shape) -> [f64; 2] {
-    let widen = |[least, most]: [f64; 2], length: f64| [least.min(length), most.max(length)];
-    let start = [f64::INFINITY, 0.0];
-    if let Some(Ok(patch)) = mesh.nurbs() {
-        return chords(&patch).flatten().fold(start, widen);
-    }
+/// Smallest span in either direction, m.
+pub fn smallest_span(mesh: &Mesh) -> f64 {
+    let [smallest, _] = match mesh.nurbs() {
+        Some(Ok(patch)) => lengths_of_chords(&patch),
+        _ => lengths_of_spans(mesh, &Shape::Patch),
+    };
+    smallest
+}
+
+/// Smallest and largest length (m) of the chords between neighbouring knots through the middles of all spans.
+pub(crate) fn lengths_of_chords(patch: &NurbsPatch) -> [f64; 2] {
+    extremes(chords(patch).flatten())
+}
+
+/// Smallest and largest length (m) of the spans of a rectangle under the box around a shape.
+pub(crate) fn lengths_of_spans(mesh: &Mesh, shape: &Shape) -> [f64; 2] {
     let (from, to) = mesh.extent(shape);
     let lengths = (0..2).flat_map(|d| {
         let tolerance = 1e-9 * (to[d] - from[d]);
         let overlaps = move |k: &&[f64]| k[1] > k[0] && k[1] > from[d] + tolerance && k[0] < to[d] - tolerance;
         mesh.knots[d].windows(2).filter(overlaps).map(|k| k[1] - k[0])
     });
-    lengths.fold(start, widen)
+    extremes(lengths)
+}
+
+fn extremes(lengths: impl Iterator<Item = f64>) -> [f64; 2] {
+    lengths.fold([f64::INFINITY, 0.0], |[least, most], length| [least.min(length), most.max(length)])
 }
 
 /// Both chords of every span.

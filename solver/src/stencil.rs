@@ -78,6 +78,10 @@ impl Stencil {
         &mut self.coefficients
     }
 
+    pub(crate) fn values_mut(&mut self) -> &mut Vec<f64> {
+        &mut self.coefficients
+    }
+
     /// Diagonal entry of a control point.
     pub fn diagonal(&self, column: usize, row: usize) -> f64 {
         self.row(row, 0)[self.grid.index(column, 0)]

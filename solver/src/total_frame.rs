@@ -6,7 +6,9 @@
 
 mod begin;
 mod forced;
+mod inspect;
 mod observe;
+mod state;
 mod stiffness;
 
 use rayon::prelude::*;

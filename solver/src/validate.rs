@@ -9,9 +9,14 @@ mod contact;
 mod geometry;
 mod material;
 mod mesh;
+mod size;
 
 use crate::error::{SceneError, SceneWarning};
-use crate::scene::{Frame, Scene};
+use crate::nurbs::NurbsPatch;
+use crate::scene::{Frame, Mesh, Scene, Shape};
+use crate::spans::{lengths_of_chords, lengths_of_spans};
+
+pub use size::{ExpectedSize, expected_size};
 
 /// Checks a scene; the warnings, if it can be modelled.
 ///
@@ -19,14 +24,37 @@ use crate::scene::{Frame, Scene};
 /// Everything that is wrong, in the order of the scene's tables.
 pub fn validate(scene: &Scene) -> Result<Vec<SceneWarning>, Vec<SceneError>> {
     let mut findings = Findings::default();
-    mesh::check(&scene.mesh, &mut findings);
-    let mesh_is_sound = findings.errors.is_empty();
-    analysis::check(scene, mesh_is_sound, &mut findings);
+    let patch = mesh::check(&scene.mesh, &mut findings);
+    let ground = Ground::new(&scene.mesh, findings.errors.is_empty(), patch);
+    analysis::check(scene, &ground, &mut findings);
     material::check(scene, &mut findings);
-    body::check(scene, mesh_is_sound, &mut findings);
-    contact::check(scene, mesh_is_sound, &mut findings);
+    body::check(scene, &ground, &mut findings);
+    contact::check(scene, &ground, &mut findings);
+    size::check(scene, &mut findings);
     unsupported(scene, &mut findings);
     if findings.errors.is_empty() { Ok(findings.warnings) } else { Err(findings.errors) }
+}
+
+/// What several checks ask of the mesh, found once: a general patch is not made for every body and crack.
+struct Ground<'a> {
+    mesh: &'a Mesh,
+    is_sound: bool,
+    /// The geometry, if the mesh has one that is sound.
+    patch: Option<NurbsPatch>,
+    /// Smallest and largest span of that, m.
+    patch_spans: [f64; 2],
+}
+
+impl<'a> Ground<'a> {
+    fn new(mesh: &'a Mesh, is_sound: bool, patch: Option<NurbsPatch>) -> Self {
+        let patch_spans = patch.as_ref().map_or([f64::INFINITY, 0.0], lengths_of_chords);
+        Self { mesh, is_sound, patch, patch_spans }
+    }
+
+    /// Smallest and largest span under a shape, m.
+    fn span_lengths(&self, shape: &Shape) -> [f64; 2] {
+        if self.patch.is_some() { self.patch_spans } else { lengths_of_spans(self.mesh, shape) }
+    }
 }
 
 /// What the checks found so far.

@@ -117,3 +117,31 @@ fn a_body_turned_inside_out_is_named() {
         assert!(found.cause.contains("inside out"), "{frame:?}: {found}");
     }
 }
+
+/// Loads so large that energies overflow: the step in which that begins says so at the point where it does, and does not blame the
+/// tolerance of the phase field, which is what met the numbers first.
+#[test]
+fn numbers_that_are_not_finite_are_named_where_they_begin() {
+    for frame in [Frame::Total, Frame::Updated] {
+        let mut scene = notched_plate(1e200);
+        scene.bodies[0].tractions[1].ramp = None;
+        scene.analysis.frame = frame;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let found = loop {
+            match simulation.step() {
+                Err(found) => break found,
+                Ok(()) => assert!(simulation.steps() < 5, "{frame:?}: the load was borne"),
+            }
+        };
+        let text = format!("{frame:?}: {found}");
+        assert!(found.step == simulation.steps() && found.step <= 3, "{text}");
+        assert!(found.place.iter().all(|x| x.is_finite()), "{text}");
+        assert!(!text.contains("tolerance") && !text.contains("enlarge mesh.size"), "{text}");
+        assert!(found.cause.contains("extreme loads"), "{text}");
+        let inspection = simulation.inspect();
+        assert!(inspection.not_finite > 0 || inspection.largest_strain > 1e3, "{text}: {inspection:?}");
+        assert_eq!(inspection.points, 3200);
+        let worst = &inspection.worst[0];
+        assert!(found.point.is_none_or(|point| point == worst.point && found.place == worst.position), "{text}");
+    }
+}

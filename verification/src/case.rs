@@ -152,7 +152,18 @@ impl Case {
     /// # Errors
     /// Everything wrong with the file outside its scene.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Self, SceneFileError> {
-        let mut document = Document::load(path)?;
+        Self::from_document(path, Document::load(path)?, overrides)
+    }
+
+    /// Reads a case from `text`; `path` says its suite and name.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn parse(path: &Path, text: &str, overrides: &[String]) -> Result<Self, SceneFileError> {
+        Self::from_document(path, Document::parse(&path.display().to_string(), text)?, overrides)
+    }
+
+    fn from_document(path: &Path, mut document: Document, overrides: &[String]) -> Result<Self, SceneFileError> {
         let in_scene: Vec<String> = overrides.iter().map(|o| format!("scene.{o}")).collect();
         document.apply(&in_scene)?;
         let problems = Problems::default();

@@ -8,6 +8,9 @@ use crate::case::{Case, Variant};
 use crate::scene_file::document::{Node, Value};
 use crate::scene_file::{Problem, SceneFileError, check_scene, read_scene};
 
+/// Most scenes of a case.
+const MOST_SCENES: usize = 100;
+
 /// One scene of a case.
 #[derive(Debug, Clone)]
 pub struct CaseScene {
@@ -66,11 +69,21 @@ impl Case {
         let Some(base) = self.scene_node() else { return Ok(Vec::new()) };
         let mut axes = Vec::new();
         find_axes(base, "", &mut axes);
+        let values =
+            axes.iter().map(|(_, values)| values.len()).fold(self.variants.len().max(1), usize::saturating_mul);
+        if values > MOST_SCENES {
+            let longest =
+                axes.iter().max_by_key(|(_, values)| values.len()).map_or("variant", |(path, _)| path.as_str());
+            let remedy = format!("give shorter lists: at most {MOST_SCENES} scenes in all");
+            return Err(self.error(&format!("scene.{longest}"), &format!("{values} scenes in one case"), &remedy));
+        }
         let start =
             Tree { name: String::new(), parameters: Vec::new(), energy_factor: self.energy_factor, node: base.clone() };
         let mut trees = vec![start];
         for (path, values) in &axes {
-            trees = trees.iter().flat_map(|tree| values.iter().map(|value| tree.along(path, value))).collect();
+            let pairs = trees.iter().flat_map(|tree| values.iter().map(move |value| (tree, value)));
+            let along: Result<Vec<Tree>, String> = pairs.map(|(tree, value)| tree.along(path, value)).collect();
+            trees = along.map_err(|e| self.error(&format!("scene.{path}"), &e, "use plain keys"))?;
         }
         if !self.variants.is_empty() {
             let pairs = trees.iter().flat_map(|tree| self.variants.iter().map(move |variant| (tree, variant)));
@@ -99,15 +112,15 @@ struct Tree {
 
 impl Tree {
     /// With one value of an axis.
-    fn along(&self, path: &str, value: &Node) -> Self {
+    fn along(&self, path: &str, value: &Node) -> Result<Self, String> {
         let mut tree = self.clone();
-        tree.node.set(path, value.clone()).expect("the path was found in this tree");
+        tree.node.set(path, value.clone())?;
         let key = path.rsplit('.').next().unwrap_or(path);
         let json = to_json(value);
         let shown = json.to_string().replace('"', "").replace(',', "x").replace(['[', ']'], "");
         tree.parameters.push((key.to_string(), json));
         tree.name = join_names(&tree.name, &format!("{key}={shown}"));
-        tree
+        Ok(tree)
     }
 
     /// With the keys of a variant changed.

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// A table of named columns of equal length, as it stands in a series file.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Table {
     /// Column names, in order.
     pub names: Vec<String>,
@@ -50,12 +51,15 @@ impl Table {
 
     /// Reads a CSV file with a header line; lines that start with `#` are comments.
     pub fn read(path: &Path) -> Result<Self, TableError> {
-        let fail = |message: String| TableError { path: path.display().to_string(), message };
-        let mut reader = csv::ReaderBuilder::new()
-            .comment(Some(b'#'))
-            .trim(csv::Trim::All)
-            .from_path(path)
-            .map_err(|e| fail(e.to_string()))?;
+        let name = path.display().to_string();
+        let file = std::fs::File::open(path).map_err(|e| TableError { path: name.clone(), message: e.to_string() })?;
+        Self::parse(&name, file)
+    }
+
+    /// [`Self::read`] from anything that gives bytes; `name` stands for it in messages.
+    pub fn parse(name: &str, bytes: impl std::io::Read) -> Result<Self, TableError> {
+        let fail = |message: String| TableError { path: name.to_string(), message };
+        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(bytes);
         let header = reader.headers().map_err(|e| fail(e.to_string()))?.clone();
         let mut table = Self::new(&header.iter().collect::<Vec<_>>());
         for record in reader.records() {

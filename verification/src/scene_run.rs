@@ -1,9 +1,13 @@
 //! A scene run to its end: history, pictures, and a summary of what it modelled and cost.
 //!
 //! [`run_scene`] steps a [`Simulation`], samples it at every multiple of the plan's interval, and takes each frame at
-//! the nearest step. A run that breaks down keeps what was computed until then. The clock is read here and in no
-//! solver module: preparation, steps, samples and pictures are timed from outside.
+//! the nearest step. A run that breaks down keeps what was computed until then. [`run_scene_kept`] stores checkpoints on the way
+//! and goes on from one. The clock is read here and in no solver module: preparation, steps, samples and pictures are
+//! timed from outside.
 
+mod breakdown;
+mod checkpoint;
+mod keep;
 mod summary;
 mod write;
 
@@ -15,9 +19,14 @@ use fisura::picture::Picture;
 use fisura::scene::Scene;
 use fisura::simulation::{Simulation, square_pixels};
 use fisura::validate::validate;
+use serde::{Deserialize, Serialize};
 
 use crate::history::Table;
 
+pub use breakdown::{BreakdownReport, Extremes, WorstPoint};
+pub use checkpoint::{CHECKPOINT, CheckpointError};
+use keep::Keeper;
+pub use keep::{Keep, KeepError, Outcome, run_scene_kept};
 pub use summary::{BreakdownSummary, Stages, Summary};
 pub use write::{OutputError, replace_file};
 
@@ -53,13 +62,20 @@ pub struct SceneRun {
     pub summary: Summary,
     /// How the run ended, if not as planned.
     pub breakdown: Option<Breakdown>,
+    /// The state at which it broke down.
+    pub breakdown_report: Option<BreakdownReport>,
 }
 
 /// Runs a valid scene (see [`validate`]) to its end; `progress` is called after every step.
 pub fn run_scene(scene: &Scene, progress: &mut dyn FnMut(Progress)) -> SceneRun {
-    let mut run = Run::new(scene);
-    let breakdown = run.prepare_and_run(scene, progress).err();
-    run.finish(breakdown)
+    let mut run = Run::new(scene, Record::default());
+    match timed(&mut run.record.stages.preparation, || Simulation::new(scene)) {
+        Err(breakdown) => run.finish(None, Some(breakdown), None),
+        Ok(mut simulation) => {
+            let breakdown = run.advance(&mut simulation, progress, &mut |_, _| false).err();
+            run.finish(Some(&simulation), breakdown, None)
+        }
+    }
 }
 
 /// Steps nearest to the frames, each once and in order, with a warning for frames that share a step.
@@ -74,104 +90,125 @@ pub fn frame_steps(times: &[f64], time_step: f64, steps: usize) -> (Vec<usize>, 
     (found, warnings)
 }
 
-/// A run in the making.
-struct Run {
+/// What a run has gathered so far: beside the state of the simulation, what a checkpoint holds.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+struct Record {
     history: Table,
     frames: Vec<Picture>,
-    summary: Summary,
     stages: Stages,
-    start: Instant,
+    /// Wall time until the last checkpoint, s.
+    wall_s: f64,
     largest_closure: f64,
     largest_energy: f64,
 }
 
-impl Run {
-    fn new(scene: &Scene) -> Self {
-        let found = validate(scene).unwrap_or_default();
-        let warnings = found.iter().map(|w| format!("{}: {}", w.key, w.message)).collect();
-        Self {
-            history: Table::default(),
-            frames: Vec::new(),
-            summary: Summary { title: scene.title.clone(), warnings, ..Summary::default() },
-            stages: Stages::default(),
-            start: Instant::now(),
-            largest_closure: 0.0,
-            largest_energy: 0.0,
-        }
+/// A run in the making.
+struct Run<'a> {
+    scene: &'a Scene,
+    record: Record,
+    /// Warnings about frames.
+    warnings: Vec<String>,
+    /// Since the run began or was taken up.
+    start: Instant,
+}
+
+impl<'a> Run<'a> {
+    fn new(scene: &'a Scene, record: Record) -> Self {
+        Self { scene, record, warnings: Vec::new(), start: Instant::now() }
     }
 
-    fn prepare_and_run(&mut self, scene: &Scene, progress: &mut dyn FnMut(Progress)) -> Result<(), Breakdown> {
-        let prepared = timed(&mut self.stages.preparation, || Simulation::new(scene));
-        let mut simulation = prepared?;
+    /// Takes the steps that are left, until `stop` says after one of them that it is enough; whether it did.
+    fn advance(
+        &mut self,
+        simulation: &mut Simulation,
+        progress: &mut dyn FnMut(Progress),
+        stop: &mut dyn FnMut(&Self, &mut Simulation) -> bool,
+    ) -> Result<bool, Breakdown> {
         let plan = *simulation.plan();
-        let (frames, warnings) = frame_steps(&scene.output.frames, plan.step, plan.steps());
-        self.describe(&simulation);
-        self.summary.warnings.extend(warnings);
-        self.sample(&simulation);
-        self.picture(scene, &simulation, &frames);
-        progress(Progress { step: 0, steps: plan.steps(), time: 0.0 });
+        let (frames, warnings) = frame_steps(&self.scene.output.frames, plan.step, plan.steps());
+        self.warnings = warnings;
+        if simulation.steps() == 0 {
+            self.sample(simulation);
+            self.picture(simulation, &frames);
+        }
+        let now = |simulation: &Simulation| Progress {
+            step: simulation.steps(),
+            steps: plan.steps(),
+            time: simulation.time(),
+        };
+        progress(now(simulation));
         while !simulation.finished() {
-            timed(&mut self.stages.steps, || simulation.step())?;
-            let step = simulation.steps();
-            self.summary.steps = step;
-            if step.is_multiple_of(plan.steps_per_sample) {
-                let sample = self.sample(&simulation);
+            timed(&mut self.record.stages.steps, || simulation.step())?;
+            if simulation.steps().is_multiple_of(plan.steps_per_sample) {
+                let sample = self.sample(simulation);
                 simulation.watch_ledger(&sample)?;
             }
-            self.picture(scene, &simulation, &frames);
-            progress(Progress { step, steps: plan.steps(), time: step as f64 * plan.step });
+            self.picture(simulation, &frames);
+            progress(now(simulation));
+            if stop(self, simulation) {
+                return Ok(true);
+            }
         }
-        Ok(())
-    }
-
-    /// What is modelled, how large it is, and the plan of its steps.
-    fn describe(&mut self, simulation: &Simulation) {
-        let (extent, plan) = (simulation.extent(), simulation.plan());
-        let summary = &mut self.summary;
-        summary.models = extent.models;
-        summary.particles = extent.particles;
-        summary.control_points = extent.control_points;
-        summary.planned_steps = plan.steps();
-        summary.time_step_s = Some(plan.step);
-        summary.critical_step_s = Some(plan.critical).filter(|c| c.is_finite());
-        summary.warnings.extend(simulation.warnings().iter().cloned());
+        Ok(false)
     }
 
     /// One row of the history.
     fn sample(&mut self, simulation: &Simulation) -> Sample {
-        let sample: Sample = timed(&mut self.stages.samples, || simulation.sample());
+        let record = &mut self.record;
+        let sample: Sample = timed(&mut record.stages.samples, || simulation.sample());
         let (names, values): (Vec<_>, Vec<_>) = sample.named_values().into_iter().unzip();
-        if self.history.names.is_empty() {
-            self.history = Table::new(&names);
+        if record.history.names.is_empty() {
+            record.history = Table::new(&names);
         }
-        self.history.push(&values);
-        self.largest_closure = self.largest_closure.max(sample.closure.abs());
-        self.largest_energy = self.largest_energy.max(sample.largest_term());
+        record.history.push(&values);
+        record.largest_closure = record.largest_closure.max(sample.closure.abs());
+        record.largest_energy = record.largest_energy.max(sample.largest_term());
         sample
     }
 
     /// A picture, if the present step is one of `frames`.
-    fn picture(&mut self, scene: &Scene, simulation: &Simulation, frames: &[usize]) {
+    fn picture(&mut self, simulation: &Simulation, frames: &[usize]) {
         if frames.binary_search(&simulation.steps()).is_ok() {
-            let (low, high) = (scene.mesh.origin(), scene.mesh.end());
+            let (low, high) = (self.scene.mesh.origin(), self.scene.mesh.end());
             let pixels = square_pixels([high[0] - low[0], high[1] - low[1]], FRAME_PIXELS);
-            self.frames.push(timed(&mut self.stages.pictures, || simulation.picture(pixels)));
+            let picture = timed(&mut self.record.stages.pictures, || simulation.picture(pixels));
+            self.record.frames.push(picture);
         }
     }
 
-    fn finish(mut self, breakdown: Option<Breakdown>) -> SceneRun {
-        let summary = &mut self.summary;
-        summary.wall_s = self.start.elapsed().as_secs_f64();
-        summary.stages_s = self.stages;
+    /// `simulation` is absent if the run never started, and so is `keeper` if nobody kept it.
+    fn finish(
+        self,
+        simulation: Option<&Simulation>,
+        breakdown: Option<Breakdown>,
+        keeper: Option<&Keeper<'_>>,
+    ) -> SceneRun {
+        let wall_s = self.wall_s();
+        let Record { history, frames, stages, largest_closure, largest_energy, .. } = self.record;
+        let mut summary = Summary { title: self.scene.title.clone(), wall_s, stages_s: stages, ..Summary::default() };
+        let found = validate(self.scene).unwrap_or_default();
+        summary.warnings = found.iter().map(|w| format!("{}: {}", w.key, w.message)).collect();
+        if let Some(simulation) = simulation {
+            summary.describe(simulation);
+        }
+        summary.warnings.extend(self.warnings);
+        summary.warnings.extend(keeper.and_then(|keeper| keeper.warning.clone()));
         let particle_steps = summary.particles as f64 * summary.steps as f64;
-        summary.ns_per_particle_step = (particle_steps > 0.0).then(|| 1e9 * self.stages.steps / particle_steps);
+        summary.ns_per_particle_step = (particle_steps > 0.0).then(|| 1e9 * stages.steps / particle_steps);
         summary.peak_memory_mb = summary::peak_memory_mb();
-        summary.final_energies_j = summary::final_energies(&self.history);
-        if self.largest_energy > 0.0 {
-            summary.largest_closure_over_largest_energy = self.largest_closure / self.largest_energy;
+        summary.final_energies_j = summary::final_energies(&history);
+        if largest_energy > 0.0 {
+            summary.largest_closure_over_largest_energy = largest_closure / largest_energy;
         }
         summary.breakdown = breakdown.as_ref().map(BreakdownSummary::from);
-        SceneRun { history: self.history, frames: self.frames, summary: self.summary, breakdown }
+        let last_checkpoint = keeper.and_then(|keeper| keeper.stored_time);
+        let report = breakdown.as_ref().map(|found| BreakdownReport::new(found, simulation, last_checkpoint));
+        SceneRun { history, frames, summary, breakdown, breakdown_report: report }
+    }
+
+    /// Wall time in all, s.
+    fn wall_s(&self) -> f64 {
+        self.record.wall_s + self.start.elapsed().as_secs_f64()
     }
 }
 

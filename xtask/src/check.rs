@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use fisura::material::ElasticModuli;
 use fisura::scene::{Frame, Plane, Scene};
 use fisura::simulation::{Extent, Simulation};
-use fisura::spans::largest_spans;
+use fisura::spans::{largest_spans, smallest_span};
 use fisura::time_plan::TimePlan;
+use fisura::validate::expected_size;
 use fisura_reports::number::{duration, plain};
 use serde::Serialize;
 
@@ -19,6 +20,17 @@ use crate::{console, scene_input};
 const MECHANICS: f64 = 15e-9;
 /// Rough wall time of the phase field per control point and step on two cores, s.
 const PHASE_FIELD: f64 = 150e-9;
+
+/// Points or control points up to which a scene is made ready to be checked: seconds, and less than 1 GiB.
+const MOST_PREPARED: usize = 1_000_000;
+/// Critical step over the time a dilatational wave takes to cross the smallest span, roughly; and memory of a point and
+/// of a control point, bytes, with and without a phase field.
+const CRITICAL: f64 = 0.5;
+const BYTES_OF_POINT: [usize; 2] = [60, 250];
+const BYTES_OF_CONTROL_POINT: [usize; 2] = [150, 500];
+const ROUGH: &str = "rough: 15 ns per particle and step, with fracture 150 ns per control point and step, two cores";
+const UNPREPARED: &str =
+    "too large to be made ready for a look: counts, memory and steps are estimated from cells and wave speed";
 
 /// Arguments of `check`.
 #[derive(Debug, clap::Args)]
@@ -34,18 +46,28 @@ pub struct Args {
 pub fn check(args: &Args, common: &Common) -> Result<Exit, Failure> {
     console::no_files(common, "check");
     let file = scene_input::load(&args.scene, common)?;
-    let simulation = Simulation::new(&file.scene).map_err(|breakdown| Failure::from(&breakdown))?;
-    let mut found = Findings::new(&file.scene, &simulation.extent(), simulation.plan());
-    found.warnings = file.warnings.iter().map(ToString::to_string).collect();
-    found.warnings.extend(simulation.warnings().iter().cloned());
-    for warning in simulation.warnings() {
+    let mut found = match prepared(&file.scene)? {
+        Some(simulation) => Findings::new(&file.scene, &simulation.extent(), simulation.plan(), simulation.warnings()),
+        None => Findings::unprepared(&file.scene),
+    };
+    for warning in &found.warnings {
         console::note(common, &format!("warning: {warning}"));
     }
+    found.warnings.splice(0..0, file.warnings.iter().map(ToString::to_string));
     match common.format {
         Format::Json => console::json(&found),
         Format::Text => console::result(&found.text()),
     }
     Ok(Exit::Done)
+}
+
+/// The scene ready to run, unless it is too large to be made ready only to be looked at.
+fn prepared(scene: &Scene) -> Result<Option<Simulation>, Failure> {
+    let size = expected_size(scene);
+    if size.points.max(size.control_points) > MOST_PREPARED {
+        return Ok(None);
+    }
+    Simulation::new(scene).map(Some).map_err(|breakdown| Failure::from(&breakdown))
 }
 
 /// What will be modelled and what it will cost.
@@ -94,7 +116,29 @@ struct MaterialFindings {
 }
 
 impl Findings {
-    fn new(scene: &Scene, extent: &Extent, plan: &TimePlan) -> Self {
+    /// Of a scene too large to be made ready.
+    fn unprepared(scene: &Scene) -> Self {
+        let size = expected_size(scene);
+        let fractures = scene.materials.values().any(|material| material.fracture.is_some());
+        let kind = usize::from(fractures);
+        let phase_field_bytes = if fractures { size.control_points * BYTES_OF_CONTROL_POINT[1] } else { 0 };
+        let mut models = vec!["momentum".to_string()];
+        models.extend(fractures.then(|| "phase field".to_string()));
+        models.extend(scene.contact.is_some().then(|| "contact".to_string()));
+        let extent = Extent {
+            models,
+            particles: size.points,
+            control_points: size.control_points,
+            mechanics_bytes: size.points * BYTES_OF_POINT[kind] + size.control_points * BYTES_OF_CONTROL_POINT[0],
+            phase_field_bytes,
+        };
+        let fastest = materials(scene, 1.0).values().map(|m| m.wave_speed_m_per_s).fold(0.0, f64::max);
+        let critical = CRITICAL * smallest_span(&scene.mesh) / fastest;
+        let (plan, warnings) = TimePlan::new(&scene.analysis, &scene.output, critical);
+        Self { estimate: UNPREPARED, ..Self::new(scene, &extent, &plan, &warnings) }
+    }
+
+    fn new(scene: &Scene, extent: &Extent, plan: &TimePlan, warnings: &[String]) -> Self {
         let span_m = largest_spans(&scene.mesh);
         let fractures = extent.phase_field_bytes > 0;
         let per_step = MECHANICS * extent.particles as f64
@@ -120,8 +164,8 @@ impl Findings {
             memory_mb: 1e-6 * (extent.mechanics_bytes + extent.phase_field_bytes) as f64,
             phase_field_memory_mb: 1e-6 * extent.phase_field_bytes as f64,
             estimated_wall_s: per_step * plan.steps() as f64,
-            estimate: "rough: 15 ns per particle and step, with fracture 150 ns per control point and step, two cores",
-            warnings: Vec::new(),
+            estimate: ROUGH,
+            warnings: warnings.to_vec(),
         }
     }
 

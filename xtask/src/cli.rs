@@ -9,7 +9,7 @@ use crate::{check, report, run, verify};
 
 const EXIT_STATUS: &str = "\
 Exit status: 0 all checks hold, 1 a check fails, 2 bad arguments or bad input, 3 a run broke down, \
-4 nothing was selected.";
+4 nothing was selected, 130 a run was interrupted.";
 
 /// Runs and verifies fisura, an explicit phase-field material point method.
 #[derive(Debug, Parser)]

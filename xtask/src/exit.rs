@@ -16,6 +16,8 @@ pub enum Exit {
     BrokeDown = 3,
     /// Nothing was selected.
     NothingSelected = 4,
+    /// A run was interrupted, stored, and can be taken up: what shells say of a program that Ctrl-C ended.
+    Interrupted = 130,
 }
 
 impl From<Exit> for ExitCode {

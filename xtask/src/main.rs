@@ -11,6 +11,7 @@ mod environment;
 mod exit;
 mod failure;
 mod folders;
+mod interrupt;
 mod list;
 mod pictures;
 mod progress;

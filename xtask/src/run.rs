@@ -2,14 +2,21 @@
 
 use std::fs;
 use std::path::Path;
+use std::str::FromStr;
+use std::time::Duration;
 
+use fisura::scene::Scene;
 use fisura_reports::number::{duration, plain};
-use fisura_verification::scene_run::{SceneRun, Summary, run_scene};
+use fisura_verification::scene_run::{
+    CHECKPOINT, Keep, KeepError, Outcome, Progress, SceneRun, Summary, replace_file, run_scene, run_scene_kept,
+};
+use indicatif::ProgressBar;
 
 use crate::cli::{Common, Format, SceneArgs};
+use crate::environment::environment;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::{console, folders, pictures, progress, scene_input};
+use crate::{console, folders, interrupt, pictures, progress, scene_input};
 
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
@@ -19,30 +26,46 @@ pub struct Args {
     /// Field files for ParaView; not offered yet
     #[arg(long, hide = true)]
     vtk: bool,
-    /// Go on from the last checkpoint; not offered yet
-    #[arg(long, hide = true)]
+    /// Go on from the checkpoint in the output folder, to the same bytes; from the start if there is none
+    #[arg(long)]
     resume: bool,
+    /// Wall time between checkpoints, or none; an interrupted run stores one too, and ends with status 130
+    #[arg(long, value_name = "SECONDS|none", default_value = "60")]
+    checkpoint: Interval,
+}
+
+/// Wall time between checkpoints; none if there are to be none.
+#[derive(Debug, Clone, Copy)]
+struct Interval(Option<Duration>);
+
+impl FromStr for Interval {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "none" {
+            return Ok(Self(None));
+        }
+        let seconds = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+        seconds.map(|seconds| Self(Some(seconds))).ok_or_else(|| "give seconds, such as 60, or none".to_string())
+    }
 }
 
 /// Runs a scene; what was computed is written even if the run breaks down.
 ///
 /// # Errors
-/// A bad scene, an output folder that cannot be written, a breakdown.
+/// A bad scene, a checkpoint that cannot be taken up, an output folder that cannot be written, a breakdown.
 pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
     refuse(args)?;
     let file = scene_input::load(&args.scene, common)?;
     let folder = folders::output(common, "run")?;
     let bar = progress::bar(common, progress::SPINNER, 0);
     bar.set_message("preparing");
-    let run = run_scene(&file.scene, &mut |progress| {
-        if progress.step == 0 {
-            bar.set_style(progress::style("{wide_bar} {pos}/{len} steps, {eta} left"));
-            bar.set_length(progress.steps as u64);
-            bar.reset_eta();
-        }
-        bar.set_position(progress.step as u64);
-    });
+    let outcome = simulate(args, common, &file.scene, &folder, &bar)?;
     bar.finish_and_clear();
+    let run = match outcome {
+        Outcome::Interrupted(at) => return Err(interrupted(at, &folder)),
+        Outcome::Ended(run) => *run,
+    };
     for warning in run.summary.warnings.iter().skip(file.warnings.len()) {
         console::note(common, &format!("warning: {warning}"));
     }
@@ -52,16 +75,72 @@ pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
         Format::Text => console::result(&text(&run.summary, &folder, &files)),
     }
     match &run.breakdown {
-        None => Ok(Exit::Done),
-        Some(breakdown) => Err(Failure::from(breakdown).help(format!("history up to there: {}", folder.display()))),
+        None => {
+            discard_checkpoint(&folder);
+            Ok(Exit::Done)
+        }
+        Some(breakdown) => {
+            let help = format!("history up to there, and the state there in breakdown.json: {}", folder.display());
+            Err(Failure::from(breakdown).help(help))
+        }
     }
 }
 
 fn refuse(args: &Args) -> Result<(), Failure> {
-    let refused = [(args.vtk, "--vtk"), (args.resume, "--resume")].into_iter().find(|(given, _)| *given);
-    refused.map_or(Ok(()), |(_, flag)| {
-        Err(Failure::new(Exit::BadInput, format!("run {flag} is not supported yet")).help(format!("leave out {flag}")))
+    if args.vtk {
+        return Err(Failure::new(Exit::BadInput, "run --vtk is not supported yet").help("leave out --vtk"));
+    }
+    if args.resume && args.checkpoint.0.is_none() {
+        let failure = Failure::new(Exit::BadInput, "--resume does not go with --checkpoint none");
+        return Err(failure.help("leave out one of the two"));
+    }
+    Ok(())
+}
+
+fn simulate(args: &Args, common: &Common, scene: &Scene, folder: &Path, bar: &ProgressBar) -> Result<Outcome, Failure> {
+    let mut started = false;
+    let mut advance = |progress: Progress| {
+        if !std::mem::replace(&mut started, true) {
+            bar.set_style(progress::style("{wide_bar} {pos}/{len} steps, {eta} left"));
+            bar.set_length(progress.steps as u64);
+            bar.reset_eta();
+        }
+        bar.set_position(progress.step as u64);
+    };
+    let Some(interval) = args.checkpoint.0 else {
+        return Ok(Outcome::Ended(Box::new(run_scene(scene, &mut advance))));
+    };
+    let keep = Keep { path: folder.join(CHECKPOINT), program: program(), interval, interrupted: interrupt::watch()? };
+    if args.resume && !keep.path.exists() {
+        let message = format!("no checkpoint in {}: the run begins at the start", folder.display());
+        console::note(common, &message);
+    }
+    run_scene_kept(scene, &keep, args.resume, &mut advance).map_err(|error| match error {
+        KeepError::Output(error) => error.into(),
+        KeepError::Checkpoint(error) => Failure::new(Exit::BadInput, error.to_string()).help(error.remedy),
     })
+}
+
+/// Name, version and commit of this program, as far as they are known.
+fn program() -> String {
+    let workspace = folders::workspace();
+    let found = if workspace.as_os_str().is_empty() { Default::default() } else { environment(&workspace) };
+    let changes = if found.dirty { " with changes" } else { "" };
+    let commit = if found.commit.is_empty() { String::new() } else { format!(" of commit {}{changes}", found.commit) };
+    format!("fisura {}{commit}", env!("CARGO_PKG_VERSION"))
+}
+
+fn interrupted(at: Progress, folder: &Path) -> Failure {
+    let Progress { step, steps, time } = at;
+    let message = format!("interrupted after step {step} of {steps}, t = {time:.6e} s; stored in {}", folder.display());
+    Failure::new(Exit::Interrupted, message).help("go on with the same command and --resume")
+}
+
+/// A run that reached its end needs none; nor a part of one that was killed while it was written.
+fn discard_checkpoint(folder: &Path) {
+    for name in [CHECKPOINT.to_string(), format!("{CHECKPOINT}.part")] {
+        let _ = fs::remove_file(folder.join(name)); // often there is none
+    }
 }
 
 /// Writes all files of a run in place of those of the run before; names them.
@@ -71,7 +150,7 @@ fn write(run: &SceneRun, folder: &Path, common: &Common) -> Result<Vec<String>, 
     for (name, drawing) in pictures::draw(run) {
         match drawing {
             Ok(svg) => {
-                fisura_verification::scene_run::replace_file(&folder.join(&name), |part| Ok(fs::write(part, svg)?))?;
+                replace_file(&folder.join(&name), |part| Ok(fs::write(part, svg)?))?;
                 files.push(name);
             }
             Err(error) => console::note(common, &format!("warning: {name} is not drawn: {error}")),
@@ -86,7 +165,7 @@ fn remove_files_of_earlier_run(folder: &Path) {
     for entry in entries.into_iter().flatten().flatten() {
         let name = entry.file_name().to_string_lossy().into_owned();
         let picture = (name.starts_with("phase-") || name.starts_with("stress-")) && name.ends_with(".svg");
-        if picture || ["history.csv", "summary.json", "energies.svg"].contains(&name.as_str()) {
+        if picture || ["history.csv", "summary.json", "energies.svg", "breakdown.json"].contains(&name.as_str()) {
             let _ = fs::remove_file(entry.path()); // what cannot be removed cannot be replaced, which is told then
         }
     }

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::surface::dot;
 use super::{Contact, ContactLedger, Touch};
 use crate::updated_frame::field::DiscreteField;
@@ -43,7 +45,7 @@ pub struct ContactForce {
 }
 
 /// Impulse at a touch along normal and tangent, kg/s per unit thickness.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Impulse {
     normal: f64,
     tangent: f64,

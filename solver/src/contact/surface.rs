@@ -52,6 +52,11 @@ impl Surface {
         surface
     }
 
+    /// About how many segments [`Self::new`] would make, without making them.
+    pub(crate) fn expected_segments(mesh: &Mesh, body: &Body) -> f64 {
+        perimeter(&without_patch(&body.shape, mesh)) / spacing(mesh, body)
+    }
+
     /// Segments of a closed line, in order; those whose middle `keep` refuses are left out.
     fn add(&mut self, ring: &[[f64; 2]], keep: impl Fn([f64; 2]) -> bool) {
         let first = self.vertices.len() as u32;
@@ -102,6 +107,10 @@ impl Surface {
     /// Moves every vertex to the place of a map, m.
     pub fn place(&mut self, place: impl Fn(usize) -> [f64; 2]) {
         self.vertices.iter_mut().enumerate().for_each(|(index, vertex)| *vertex = place(index));
+    }
+
+    pub(crate) fn vertices_mut(&mut self) -> &mut Vec<[f64; 2]> {
+        &mut self.vertices
     }
 
     /// Centroid of the region it bounds, m.
@@ -219,6 +228,19 @@ fn without_patch(shape: &Shape, mesh: &Mesh) -> Shape {
             Shape::Difference { of: Box::new(without_patch(of, mesh)), minus }
         }
         other => other.clone(),
+    }
+}
+
+/// Length of all lines that [`rings`] gives, m.
+fn perimeter(shape: &Shape) -> f64 {
+    let circle = |radius: f64| std::f64::consts::TAU * radius;
+    match shape {
+        Shape::Rectangle { min, max } => 2.0 * ((max[0] - min[0]) + (max[1] - min[1])),
+        Shape::Disk { radius, .. } => circle(*radius),
+        Shape::Annulus { inner_radius, outer_radius, .. } => circle(*inner_radius) + circle(*outer_radius),
+        Shape::Polygon { points } => polygon_edges(points).map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1])).sum(),
+        Shape::Patch => 0.0, // see without_patch
+        Shape::Difference { of, minus } => perimeter(of) + minus.iter().map(perimeter).sum::<f64>(),
     }
 }
 

@@ -1,5 +1,7 @@
 //! What a patch must satisfy before it is one.
 
+use rayon::prelude::*;
+
 use super::{NurbsError, NurbsPatch};
 use crate::quadrature::Rule;
 use crate::scene::Layout;
@@ -62,21 +64,18 @@ pub(super) fn control_net(
 /// Positive Jacobian determinant at the Gauss points, p + 1 per direction, of every span.
 pub(super) fn geometry(patch: &NurbsPatch) -> Result<(), NurbsError> {
     let rules = [0, 1].map(|d| Rule::new(Layout::Gauss, patch.spaces[d].degree() + 1));
-    for j in 0..patch.spaces[1].spans().len() {
-        for i in 0..patch.spaces[0].spans().len() {
-            let span = [i, j];
-            for &eta in &rules[1].points {
-                for &xi in &rules[0].points {
-                    let parameters = at(patch, span, [xi, eta]);
-                    let determinant = patch.map(&patch.shape_functions(span, parameters)).determinant();
-                    if !(determinant > 0.0 && determinant.is_finite()) {
-                        return Err(NurbsError::Folded { span, parameters, determinant });
-                    }
-                }
-            }
-        }
-    }
-    Ok(())
+    let folded = |span: [usize; 2]| {
+        let positions = rules[1].points.iter().flat_map(|&eta| rules[0].points.iter().map(move |&xi| [xi, eta]));
+        positions.map(|position| at(patch, span, position)).find_map(|parameters| {
+            let determinant = patch.map(&patch.shape_functions(span, parameters)).determinant();
+            let holds = determinant > 0.0 && determinant.is_finite();
+            (!holds).then_some(NurbsError::Folded { span, parameters, determinant })
+        })
+    };
+    let columns = patch.spaces[0].spans().len();
+    let rows = (0..patch.spaces[1].spans().len()).into_par_iter();
+    let first = rows.find_map_first(|j| (0..columns).find_map(|i| folded([i, j])));
+    first.map_or(Ok(()), Err)
 }
 
 /// Parameters at a fraction of a span.

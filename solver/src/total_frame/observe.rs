@@ -17,15 +17,15 @@ use crate::patch::Patch;
 use crate::scene::{Kinematics, Shape};
 
 impl TotalFrame {
-    /// Position of the fastest control point, m.
-    pub fn fastest_place(&self) -> [f64; 2] {
+    /// Position (m) of the fastest control point, and its speed (m/s), infinite if it is no number.
+    pub fn fastest_control_point(&self) -> ([f64; 2], f64) {
         let [vx, vy] = &self.velocity;
         let speed = |at: &usize| {
             let speed = vx[*at].hypot(vy[*at]);
             if speed.is_nan() { f64::INFINITY } else { speed }
         };
         let fastest = self.grid.indices().max_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or(0);
-        self.patch.control_positions().map(|x| x[fastest])
+        (self.patch.control_positions().map(|x| x[fastest]), speed(&fastest))
     }
 
     /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at zero.

@@ -7,6 +7,7 @@ use super::fictitious::FictitiousMaterial;
 use super::points::{Cell, Cells, FracturePoint, Point};
 use super::transfer::{MAX_FUNCTIONS, contract, gather, walk};
 use super::windows::cut;
+use crate::checkpoint::{Archive, StateError};
 use crate::fracture::{NotConverged, seed_energy};
 use crate::lane::{LANES, Lane, Vectorised, dispatch};
 use crate::material::{ElasticModuli, FractureModel};
@@ -120,6 +121,19 @@ impl Cracking {
         let total = sums.iter().fold(PointSums { least_phase: f64::INFINITY, ..Default::default() }, PointSums::add);
         (self.surface_energy, self.least_phase) = (total.surface_energy, total.least_phase);
         PointSums { history_work: (1.0 - model.residual_stiffness) * total.history_work, ..total }
+    }
+
+    /// Stores or takes up what steps change.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(super) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { model: _, points, field, fictitious: _, iterations, surface_energy, least_phase } = self;
+        archive.list(points)?;
+        field.exchange(archive)?;
+        archive.value(iterations)?;
+        archive.value(surface_energy)?;
+        archive.value(least_phase)
     }
 
     /// Heap memory, bytes.

@@ -34,11 +34,13 @@
 //! It swings with the period of a span where a body moves on as a whole, and grows where a crack opens and stretches the
 //! gradient of c across it. What then remains is the stress-work quadrature, O(dt²), as in the total frame.
 
+use serde::{Deserialize, Serialize};
+
 use super::field::DiscreteField;
 use super::grid::ImposedEnergy;
 
 /// Parts of the transfer loss so far, J per metre of thickness.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct TransferLosses {
     /// Fall of the kinetic energy between leaving one grid and arriving on the next.
     pub kinetic: f64,

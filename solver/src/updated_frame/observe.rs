@@ -101,10 +101,10 @@ impl UpdatedFrame {
         })
     }
 
-    /// Position (m) of the fastest control point with mass.
-    pub fn fastest_place(&self) -> [f64; 2] {
+    /// Position (m) of the fastest control point with mass, and its speed (m/s), infinite if it is no number.
+    pub fn fastest_control_point(&self) -> ([f64; 2], f64) {
         let fastest = self.fields.iter().map(|field| field.fastest_place());
-        fastest.max_by(|a, b| a.0.total_cmp(&b.0)).map_or([0.0; 2], |(_, place)| place)
+        fastest.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(([0.0; 2], 0.0), |(square, place)| (place, square.sqrt()))
     }
 
     /// Position (m) of a point that is turned inside out, if there is one.

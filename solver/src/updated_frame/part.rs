@@ -57,7 +57,22 @@ impl DiscreteField {
     /// A point outside the patch.
     pub(super) fn follow(&mut self) -> Result<(), OutsidePatch> {
         let spans = spans_around(&self.whole, &self.points)?;
-        let (patch, origin) = (self.whole.part(&spans), origin(&self.whole, &spans));
+        self.occupy(&spans);
+        self.cells.sort(&self.patch, &mut self.points)
+    }
+
+    /// Spans of the patch that the part consists of.
+    pub(super) fn covered_spans(&self) -> [Range<usize>; 2] {
+        [0, 1].map(|d| {
+            let (whole, part) = (self.whole.spaces[d].spans(), self.patch.spaces[d].spans());
+            let first = whole.partition_point(|span| span.left < part[0].left);
+            first..first + part.len()
+        })
+    }
+
+    /// Makes some spans of the patch the part; the points are to be sorted anew.
+    pub(super) fn occupy(&mut self, spans: &[Range<usize>; 2]) {
+        let (patch, origin) = (self.whole.part(spans), origin(&self.whole, spans));
         let constraints = constraints(&self.whole, &patch, origin, &self.boundaries);
         self.nodes = NodalFields::new(&patch, constraints);
         self.departure = Departure::new(patch.control_grid(), self.departure.transfer());
@@ -70,6 +85,5 @@ impl DiscreteField {
         }
         (self.patch, self.origin) = (patch, origin);
         self.cells = Cells::default();
-        self.cells.sort(&self.patch, &mut self.points)
     }
 }

@@ -6,6 +6,8 @@
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use crate::lattice::Lattice;
 use crate::patch::Patch;
 use crate::spline::{MAX_DEGREE, SplineSpace};
@@ -14,7 +16,7 @@ use crate::spline::{MAX_DEGREE, SplineSpace};
 const STRIP_ROWS: usize = MAX_DEGREE;
 
 /// What every material point carries.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Position, m.
     pub position: [f64; 2],
@@ -31,7 +33,7 @@ pub struct Point {
 }
 
 /// What a point of a fracturing body carries besides.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct FracturePoint {
     /// History energy H, J/m³.
     pub history: f64,

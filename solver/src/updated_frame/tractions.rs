@@ -2,6 +2,7 @@
 
 use super::follower::Follower;
 use super::points::{Cells, OutsidePatch};
+use crate::checkpoint::{Archive, StateError};
 use crate::loads::surface_points;
 use crate::patch::{ControlGrid, Patch};
 use crate::scene::{Body, Traction};
@@ -68,6 +69,16 @@ impl SurfaceLoad {
             let v = point.place.follow(patch, grid, velocity, dt);
             self.power += point.length * (self.stress[0] * v[0] + self.stress[1] * v[1]);
         }
+    }
+
+    /// Stores or takes up the positions of the points and their power.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { points, stress: _, ramp: _, power } = self;
+        points.iter_mut().try_for_each(|point| archive.value(&mut point.place.position))?;
+        archive.value(power)
     }
 
     /// Heap memory, bytes.

@@ -1,10 +1,9 @@
 //! Checks of times, step, solver, boundaries and output.
 
-use super::Findings;
 use super::material::plausible_speed;
+use super::{Findings, Ground};
 use crate::quadrature::Rule;
 use crate::scene::{Body, Boundary, Frame, Mass, Scene, Shape, Side, TimeStep, Transfer};
-use crate::spans::span_lengths;
 use crate::spline::SplineSpace;
 
 /// Most steps of a run.
@@ -14,7 +13,7 @@ const HIGHEST_XPIC: usize = 100;
 /// Relative tolerance of "on the side", of the size of the mesh.
 const TOLERANCE: f64 = 1e-9;
 
-pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) {
+pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     let analysis = &scene.analysis;
     findings.positive("analysis.thickness", analysis.thickness, "thickness = 1.0 (m)");
     let mut sound = findings.positive("analysis.end_time", analysis.end_time, "end_time = \"80 us\"");
@@ -22,7 +21,7 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
         sound &= findings.positive("analysis.time_step", step, "time_step = \"10 ns\", or \"auto\"");
     }
     if sound {
-        steps(scene, mesh_is_sound, findings);
+        steps(scene, ground, findings);
     }
     if !(analysis.safety > 0.0 && analysis.safety <= 1.0) {
         let message = format!("{} is no fraction of the critical step", analysis.safety);
@@ -35,7 +34,7 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
         findings.warn("analysis.transfer", message);
     }
     if analysis.mass == Mass::Consistent {
-        consistent_mass(scene, mesh_is_sound, findings);
+        consistent_mass(scene, ground, findings);
     }
     if let Transfer::Xpic(order) = analysis.transfer
         && !(1..=HIGHEST_XPIC).contains(&order)
@@ -45,7 +44,7 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
     }
     solver(scene, findings);
     boundaries(scene, findings);
-    if mesh_is_sound {
+    if ground.is_sound {
         for (i, boundary) in scene.boundaries.iter().enumerate() {
             held(&format!("boundary.{i}.side"), boundary, scene, findings);
         }
@@ -60,13 +59,14 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
 }
 
 /// The consistent mass needs the total frame, spans that no body cuts, and points that determine every control value.
-fn consistent_mass(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) {
+fn consistent_mass(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     let key = "analysis.mass";
     if scene.analysis.frame == Frame::Updated {
         let message = "the consistent mass with frame = \"updated\", where cut spans would collapse the critical step";
         return findings.error(key, message, "use mass = \"lumped\", or frame = \"total\"");
     }
-    for body in scene.bodies.iter().filter(|_| mesh_is_sound) {
+    for body in scene.bodies.iter().take(1).filter(|_| ground.is_sound) {
+        // the total frame has one
         let on_knots = |d: usize, x: f64| {
             let knots = &scene.mesh.knots[d];
             knots.iter().any(|k| (k - x).abs() <= TOLERANCE * (knots[knots.len() - 1] - knots[0]))
@@ -120,7 +120,7 @@ fn determined(space: &SplineSpace, [from, to]: [f64; 2], rule: &Rule) -> bool {
 }
 
 /// Whether the run has a number of steps that can be taken: with a step of choice, one span per step is the estimate.
-fn steps(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) {
+fn steps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     let end = scene.analysis.end_time;
     if let TimeStep::Fixed(step) = scene.analysis.time_step {
         let steps = end / step;
@@ -130,8 +130,8 @@ fn steps(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) {
             let remedy = "give a longer time_step, or \"auto\", or a shorter end_time";
             findings.error("analysis.time_step", message, remedy);
         }
-    } else if mesh_is_sound {
-        let steps = scene.bodies.iter().filter_map(|body| crossings(body, scene)).fold(0.0, f64::max);
+    } else if ground.is_sound {
+        let steps = scene.bodies.iter().filter_map(|body| crossings(body, scene, ground)).fold(0.0, f64::max);
         if steps > MOST_STEPS {
             let message = format!("{end:e} s are about {steps:.1e} steps of the smallest cell, above {MOST_STEPS:e}");
             findings.error("analysis.end_time", message, "give a shorter end_time with its unit, such as \"80 us\"");
@@ -141,9 +141,9 @@ fn steps(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) {
 
 /// How many times a dilatational wave crosses the smallest span under a body until the end; `None` without a material
 /// that makes sense.
-fn crossings(body: &Body, scene: &Scene) -> Option<f64> {
+fn crossings(body: &Body, scene: &Scene, ground: &Ground<'_>) -> Option<f64> {
     let speed = plausible_speed(scene.materials.get(&body.material)?, scene.analysis.plane)?;
-    let [smallest, _] = span_lengths(&scene.mesh, &body.shape);
+    let [smallest, _] = ground.span_lengths(&body.shape);
     Some(scene.analysis.end_time * speed / smallest)
 }
 

@@ -1,12 +1,11 @@
 //! Checks of bodies: shape, place in the mesh, points, resolution of the length scale, tractions, cracks.
 
-use super::Findings;
 use super::analysis::side_name;
-use super::geometry::{covered_side, defect, outline};
+use super::geometry::{complexity, covered_side, defect, outline};
+use super::{Findings, Ground};
 use crate::nurbs::{LocateError, NurbsPatch};
 use crate::quadrature::MAX_POINTS;
-use crate::scene::{Body, Crack, Edge, Fracture, Layout, Mesh, Scene, Shape, Traction};
-use crate::spans::span_lengths;
+use crate::scene::{Body, Crack, Edge, Fracture, Layout, Scene, Shape, Traction};
 
 /// Relative tolerance of "inside", of the size of the mesh or body.
 const TOLERANCE: f64 = 1e-9;
@@ -14,10 +13,14 @@ const TOLERANCE: f64 = 1e-9;
 const SEGMENT_INTERVALS: usize = 32;
 /// Most positions at which a crack is looked at.
 const MOST_CRACK_SAMPLES: usize = 10_000;
+/// Most tests of a position against a corner or circle, over all lines of a body: a tenth of a second.
+const MOST_LOOKS: usize = 10_000_000;
+/// Such tests that cost as much as to find a position on a general patch.
+const COST_OF_LOCATING: usize = 200;
 /// Most points of the Maclaurin rule.
 const MOST_MACLAURIN: usize = 5;
 
-pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) {
+pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     if scene.bodies.is_empty() {
         findings.error("body", "there is no body", "add a [[body]] with name, material and shape");
     }
@@ -34,18 +37,19 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
             findings.error(format!("{key}.shape"), message, remedy);
             continue;
         }
-        if mesh_is_sound
+        if ground.is_sound
             && !body.rigid
-            && inside_mesh(&key, body, &scene.mesh, findings)
+            && inside_mesh(&key, body, ground, findings)
             && let Some(fracture) = fracture
         {
-            resolution(body, fracture, &scene.mesh, findings);
+            resolution(body, fracture, ground, findings);
         }
+        let look = Look::new(body, ground);
         for (j, traction) in body.tractions.iter().enumerate() {
-            check_traction(&format!("{key}.traction.{j}"), traction, body, &scene.mesh, findings);
+            check_traction(&format!("{key}.traction.{j}"), traction, &look, findings);
         }
         for (j, crack) in body.cracks.iter().enumerate() {
-            check_crack(&format!("{key}.crack.{j}"), crack, body, fracture, &scene.mesh, findings);
+            check_crack(&format!("{key}.crack.{j}"), crack, fracture, &look, findings);
         }
     }
 }
@@ -91,19 +95,19 @@ fn material<'a>(key: &str, body: &Body, scene: &'a Scene, findings: &mut Finding
     material.fracture.as_ref().filter(|f| f.length_scale > 0.0)
 }
 
-fn inside_mesh(key: &str, body: &Body, mesh: &Mesh, findings: &mut Findings) -> bool {
-    match (&body.shape, mesh.nurbs()) {
+fn inside_mesh(key: &str, body: &Body, ground: &Ground<'_>, findings: &mut Findings) -> bool {
+    match (&body.shape, &ground.patch) {
         (Shape::Patch, Some(_)) => return true,
         (Shape::Patch, None) => {
             let remedy = "give the rectangle of the mesh: shape = { rectangle = { min = …, max = … } }";
             findings.error(format!("{key}.shape"), "the mesh is a rectangle without a geometry of its own", remedy);
             return false;
         }
-        (shape, Some(Ok(patch))) => return inside_patch(key, shape, &patch, findings),
+        (shape, Some(patch)) => return inside_patch(key, shape, patch, findings),
         _ => {}
     }
     let (min, max) = body.shape.bounding_box();
-    let (origin, end) = (mesh.origin(), mesh.end());
+    let (origin, end) = (ground.mesh.origin(), ground.mesh.end());
     let outside = |d: usize| {
         let tolerance = TOLERANCE * (end[d] - origin[d]);
         min[d] < origin[d] - tolerance || max[d] > end[d] + tolerance
@@ -145,13 +149,13 @@ fn inside_patch(key: &str, shape: &Shape, patch: &NurbsPatch, findings: &mut Fin
 }
 
 /// Largest span in the body against the length scale: above it the crack is coarse, above four times it is not there.
-fn resolution(body: &Body, fracture: &Fracture, mesh: &Mesh, findings: &mut Findings) {
-    let [_, h] = span_lengths(mesh, &body.shape);
+fn resolution(body: &Body, fracture: &Fracture, ground: &Ground<'_>, findings: &mut Findings) {
+    let [_, h] = ground.span_lengths(&body.shape);
     let l0 = fracture.length_scale;
     let sizes = format!("cells of h = {:.4} mm against l0 = {:.4} mm", 1e3 * h, 1e3 * l0);
     let key = format!("material.{}.fracture.length_scale", body.material);
     if h > 4.0 * l0 * (1.0 + TOLERANCE) {
-        let finer = if mesh.geometry.is_some() { "subdivide or mesh.cells" } else { "cells" };
+        let finer = if ground.mesh.geometry.is_some() { "subdivide or mesh.cells" } else { "cells" };
         let remedy = format!(
             "h may be at most l0, and never above 4 l0: refine mesh.{finer} {:.0} times, or raise length_scale",
             (h / l0 - TOLERANCE).ceil()
@@ -162,14 +166,15 @@ fn resolution(body: &Body, fracture: &Fracture, mesh: &Mesh, findings: &mut Find
     }
 }
 
-fn check_traction(key: &str, traction: &Traction, body: &Body, mesh: &Mesh, findings: &mut Findings) {
+fn check_traction(key: &str, traction: &Traction, look: &Look<'_>, findings: &mut Findings) {
+    let Look { body, ground, .. } = *look;
     findings.finite(format!("{key}.stress"), &traction.stress);
     if let Some(ramp) = traction.ramp {
         findings.positive(format!("{key}.ramp"), ramp, "ramp = \"1 us\", or leave it out for a load from t = 0");
     }
     match &traction.edge {
         Edge::Side(_) if body.shape == Shape::Patch => {}
-        _ if mesh.geometry.is_some() => {
+        _ if ground.mesh.geometry.is_some() => {
             let remedy =
                 "give the body shape = \"patch\" and the traction edge = \"left\", \"right\", \"bottom\" or \"top\"";
             let form = if matches!(traction.edge, Edge::Segment(_)) { "segment" } else { "edge" };
@@ -188,7 +193,7 @@ fn check_traction(key: &str, traction: &Traction, body: &Body, mesh: &Mesh, find
             }
             if ends[0] == ends[1] {
                 findings.error(key, "a segment of zero length", "give two different ends");
-            } else if let Some([x, y]) = first_outside(*ends, SEGMENT_INTERVALS, &body.shape, mesh) {
+            } else if let Some([x, y]) = look.first_outside(*ends, SEGMENT_INTERVALS) {
                 let message = format!("the segment leaves body {:?}: ({x}, {y}) m lies outside", body.name);
                 findings.error(key, message, "give two ends between which every point lies on the body's boundary");
             }
@@ -196,28 +201,46 @@ fn check_traction(key: &str, traction: &Traction, body: &Body, mesh: &Mesh, find
     }
 }
 
-/// First of `intervals + 1` equally spaced positions (m) between two ends, both included, that is not in the closure of
-/// a shape.
-fn first_outside([from, to]: [[f64; 2]; 2], intervals: usize, shape: &Shape, mesh: &Mesh) -> Option<[f64; 2]> {
-    let (min, max) = mesh.extent(shape);
-    let tolerance = TOLERANCE * (max[0] - min[0]).max(max[1] - min[1]);
-    let position = |i: usize| {
-        let t = i as f64 / intervals as f64;
-        [0, 1].map(|d| (1.0 - t) * from[d] + t * to[d])
-    };
-    let patch = mesh.nurbs().and_then(Result::ok);
-    let off_patch = |p: [f64; 2]| patch.as_ref().is_some_and(|patch| patch.locate(p, None).is_err());
-    (0..=intervals).map(position).find(|p| !shape.contains_within(*p, tolerance) || off_patch(*p))
+/// A body looked at position by position.
+struct Look<'a> {
+    body: &'a Body,
+    ground: &'a Ground<'a>,
+    tolerance: f64,
+    /// Most positions along one line: the more lines and corners, the fewer.
+    most: usize,
 }
 
-fn check_crack(
-    key: &str,
-    crack: &Crack,
-    body: &Body,
-    fracture: Option<&Fracture>,
-    mesh: &Mesh,
-    findings: &mut Findings,
-) {
+impl<'a> Look<'a> {
+    fn new(body: &'a Body, ground: &'a Ground<'a>) -> Self {
+        let (min, max) = ground.mesh.extent(&body.shape);
+        let lines = body.cracks.len() + body.tractions.len();
+        let cost = lines * (complexity(&body.shape) + if ground.patch.is_some() { COST_OF_LOCATING } else { 0 });
+        Self {
+            body,
+            ground,
+            tolerance: TOLERANCE * (max[0] - min[0]).max(max[1] - min[1]),
+            most: (MOST_LOOKS / cost.max(1)).clamp(2, MOST_CRACK_SAMPLES),
+        }
+    }
+
+    fn is_outside(&self, position: [f64; 2]) -> bool {
+        let off_patch = || self.ground.patch.as_ref().is_some_and(|patch| patch.locate(position, None).is_err());
+        !self.body.shape.contains_within(position, self.tolerance) || off_patch()
+    }
+
+    /// First of about `intervals + 1` equally spaced positions (m) between two ends, both included, that is not in the
+    /// closure of the body.
+    fn first_outside(&self, [from, to]: [[f64; 2]; 2], intervals: usize) -> Option<[f64; 2]> {
+        let intervals = intervals.min(self.most - 1);
+        let position = |i: usize| {
+            let t = i as f64 / intervals as f64;
+            [0, 1].map(|d| (1.0 - t) * from[d] + t * to[d])
+        };
+        (0..=intervals).map(position).find(|p| self.is_outside(*p))
+    }
+}
+
+fn check_crack(key: &str, crack: &Crack, fracture: Option<&Fracture>, look: &Look<'_>, findings: &mut Findings) {
     if let Some(half_width) = crack.half_width {
         let like = "half_width = \"0.125 mm\", or leave it out for l0/2";
         findings.positive(format!("{key}.half_width"), half_width, like);
@@ -229,9 +252,9 @@ fn check_crack(
         return findings.error(format!("{key}.to"), "a crack of zero length", "give two different ends");
     }
     let ends_inside = [("from", crack.from), ("to", crack.to)].map(|(name, [x, y])| {
-        let inside = first_outside([[x, y]; 2], 1, &body.shape, mesh).is_none();
+        let inside = !look.is_outside([x, y]);
         if !inside {
-            let message = format!("the end ({x}, {y}) m of the crack lies outside body {:?}", body.name);
+            let message = format!("the end ({x}, {y}) m of the crack lies outside body {:?}", look.body.name);
             findings.error(format!("{key}.{name}"), message, "give ends inside the body or on its boundary");
         }
         inside
@@ -240,9 +263,9 @@ fn check_crack(
     let finest = fracture.map_or(f64::INFINITY, |f| 0.5 * f.length_scale);
     let intervals = ((length / finest).ceil() as usize).clamp(2, MOST_CRACK_SAMPLES - 1);
     if ends_inside == [true, true]
-        && let Some([x, y]) = first_outside([crack.from, crack.to], intervals, &body.shape, mesh)
+        && let Some([x, y]) = look.first_outside([crack.from, crack.to], intervals)
     {
-        let message = format!("the crack leaves body {:?} between its ends, at ({x}, {y}) m", body.name);
+        let message = format!("the crack leaves body {:?} between its ends, at ({x}, {y}) m", look.body.name);
         findings.error(format!("{key}.from"), message, "give one crack for each part that lies inside the body");
     }
 }

@@ -1,15 +1,20 @@
 //! Checks of several bodies, rigid bodies and contact.
 
-use super::Findings;
-use super::geometry::defect;
+use super::geometry::{complexity, defect};
+use super::{Findings, Ground};
 use crate::contact::Surface;
 use crate::scene::{Body, Frame, Scene, Shape, Transfer};
-use crate::spans::span_lengths;
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
 const TOLERANCE: f64 = 1e-3;
 
-pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings) {
+/// Most segments of boundaries times corners and circles of their shapes: half a second.
+const MOST_WORK: f64 = 2e7;
+/// Overlaps that are told, and most distances that are taken for each.
+const MOST_OVERLAPS: usize = 10;
+const MOST_DISTANCES: usize = 1_000_000;
+
+pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     if !scene.bodies.is_empty() && scene.bodies.iter().all(|body| body.rigid) {
         findings.error("body", "every body is rigid: there is nothing to model", "add a body that is not rigid");
     }
@@ -27,7 +32,7 @@ pub(super) fn check(scene: &Scene, mesh_is_sound: bool, findings: &mut Findings)
     }
     match scene.contact {
         Some(_) if scene.bodies.len() == 1 => findings.warn("contact", "there is only one body; remove the table"),
-        Some(_) if mesh_is_sound => overlaps(scene, findings),
+        Some(_) if ground.is_sound => overlaps(scene, ground, findings),
         _ => (),
     }
 }
@@ -46,33 +51,50 @@ fn rigid(key: &str, body: &Body, scene: &Scene, findings: &mut Findings) {
 }
 
 /// Bodies that overlap at t = 0: contact would have to push them apart, and that energy comes from nowhere.
-fn overlaps(scene: &Scene, findings: &mut Findings) {
+fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
+    let errors = findings.errors.len();
     if scene.bodies.iter().any(|body| defect(&body.shape).is_some() || body.particles_per_cell.contains(&0)) {
         return; // said elsewhere
     }
+    let mut work = 0.0;
+    for (i, body) in scene.bodies.iter().enumerate() {
+        let segments = Surface::expected_segments(&scene.mesh, body);
+        work += segments * complexity(&body.shape) as f64;
+        if work.is_nan() || work > MOST_WORK {
+            let message = format!("a boundary of about {segments:.1e} segments, as long as its points stand apart");
+            let remedy = "make the body no larger than it can be met, its outline simpler, or the cells larger";
+            return findings.error(format!("body.{i}.shape"), message, remedy);
+        }
+    }
     let surfaces: Vec<Surface> = scene.bodies.iter().map(|body| Surface::new(&scene.mesh, body)).collect();
+    let boxes: Vec<_> = surfaces.iter().map(Surface::bounding_box).collect();
+    let spans: Vec<f64> = scene.bodies.iter().map(|body| ground.span_lengths(&body.shape)[0]).collect();
     for j in 1..surfaces.len() {
         for i in 0..j {
             let (a, b) = (&scene.bodies[i], &scene.bodies[j]);
-            if a.rigid && b.rigid {
+            let apart = (0..2).any(|d| boxes[i][1][d] < boxes[j][0][d] || boxes[j][1][d] < boxes[i][0][d]);
+            if apart || (a.rigid && b.rigid) {
                 continue;
             }
-            let [h, _] = span_lengths(&scene.mesh, &a.shape);
             let deepest = depth(&surfaces[i], &surfaces[j], &b.shape).max(depth(&surfaces[j], &surfaces[i], &a.shape));
-            if deepest > TOLERANCE * h {
+            if deepest > TOLERANCE * spans[i] {
                 let message = format!("body {:?} overlaps body {:?} by {deepest:.3e} m at t = 0", b.name, a.name);
                 findings.error(format!("body.{j}.shape"), message, "move the bodies apart until they touch at most");
+            }
+            if findings.errors.len() >= errors + MOST_OVERLAPS {
+                return; // enough to begin with
             }
         }
     }
 }
 
-/// How far the segments of one boundary reach into the body inside another, m.
+/// How far the segments of one boundary reach into the body inside another, m. Of very many segments, some are looked at.
 fn depth(one: &Surface, other: &Surface, inside: &Shape) -> f64 {
     let [low, high] = other.bounding_box();
     let all = other.segments_in([[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]]);
     let centers = one.segments_in([low, high]).into_iter().map(|segment| one.center(segment).position);
-    let within = centers.filter(|position| inside.contains(*position));
-    let nearest = within.filter_map(|position| other.nearest(position, &all, f64::INFINITY));
+    let within: Vec<_> = centers.filter(|position| inside.contains(*position)).collect();
+    let stride = within.len() * all.len() / MOST_DISTANCES + 1;
+    let nearest = within.into_iter().step_by(stride).filter_map(|x| other.nearest(x, &all, f64::INFINITY));
     nearest.map(|nearest| nearest.distance.abs()).fold(0.0, f64::max)
 }

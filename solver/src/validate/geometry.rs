@@ -6,6 +6,9 @@ use crate::shape::polygon_edges;
 
 type Point = [f64; 2];
 
+/// Most points looked at along a polygon, unless it has more corners.
+const MOST_OUTLINE: usize = 4096;
+
 /// Points looked at along a circle or a straight edge of a body on a general patch, and along a side of the patch.
 const OUTLINE_INTERVALS: usize = 64;
 
@@ -41,6 +44,15 @@ pub fn defect(shape: &Shape) -> Option<(String, &'static str)> {
     }
 }
 
+/// Corners and circles of a shape: what a test of a position against it costs.
+pub fn complexity(shape: &Shape) -> usize {
+    match shape {
+        Shape::Rectangle { .. } | Shape::Disk { .. } | Shape::Annulus { .. } | Shape::Patch => 1,
+        Shape::Polygon { points } => points.len(),
+        Shape::Difference { of, minus } => complexity(of) + minus.iter().map(complexity).sum::<usize>(),
+    }
+}
+
 /// Signed area of a polygon, m².
 fn area(points: &[Point]) -> f64 {
     polygon_edges(points).map(|[a, b]| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()
@@ -57,6 +69,7 @@ pub fn outline(shape: &Shape) -> Vec<[f64; 2]> {
     };
     let ring = |corners: &[[f64; 2]]| {
         let edges: Vec<_> = polygon_edges(corners).collect();
+        let n = (MOST_OUTLINE / edges.len().max(1)).clamp(1, n);
         let along =
             |[a, b]: [[f64; 2]; 2]| (0..n).map(move |i| [0, 1].map(|d| a[d] + (b[d] - a[d]) * i as f64 / n as f64));
         edges.into_iter().flat_map(along).collect::<Vec<_>>()

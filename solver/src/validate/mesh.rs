@@ -1,13 +1,14 @@
 //! Checks of the background mesh: degrees, open knot vectors, geometry.
 
 use super::Findings;
-use crate::nurbs::NurbsError;
+use crate::nurbs::{NurbsError, NurbsPatch};
 use crate::scene::Mesh;
 
 /// Largest number of spans of a mesh.
 const MOST_SPANS: usize = 50_000_000;
 
-pub(super) fn check(mesh: &Mesh, findings: &mut Findings) {
+/// The geometry of a mesh that has one and is sound.
+pub(super) fn check(mesh: &Mesh, findings: &mut Findings) -> Option<NurbsPatch> {
     for d in 0..2 {
         if (1..=4).contains(&mesh.degree[d]) {
             knots(d, mesh.degree[d], &mesh.knots[d], findings);
@@ -21,11 +22,11 @@ pub(super) fn check(mesh: &Mesh, findings: &mut Findings) {
         let remedy = format!("use fewer cells: at most {MOST_SPANS} in all");
         findings.error("mesh.cells", format!("a mesh of about {spans} cells"), remedy);
     }
-    if findings.errors.is_empty()
-        && let Some(Err(error)) = mesh.nurbs()
-    {
-        geometry(&error, mesh, findings);
+    if !findings.errors.is_empty() {
+        return None;
     }
+    let patch = mesh.nurbs()?;
+    patch.inspect_err(|error| geometry(error, mesh, findings)).ok()
 }
 
 /// What is wrong with a patch, by key, and what would be right.
@@ -76,10 +77,11 @@ fn knots(d: usize, degree: usize, knots: &[f64], findings: &mut Findings) {
         return findings.error(key, "no span of positive length", "give increasing knots");
     }
     let interior = &knots[ends..knots.len() - ends];
-    let repeated = |k: f64| knots.iter().filter(|other| **other == k).count();
-    let widest = interior.chunk_by(|a, b| a == b).find(|run| run.len() > degree || repeated(run[0]) > ends);
+    let at_end = |k: f64| k == first || k == last;
+    let widest = interior.chunk_by(|a, b| a == b).find(|run| run.len() > degree || at_end(run[0]));
     if let Some(run) = widest {
-        let message = format!("the knot {} stands {} times, so the basis breaks apart", run[0], repeated(run[0]));
+        let times = run.len() + if at_end(run[0]) { ends } else { 0 };
+        let message = format!("the knot {} stands {times} times, so the basis breaks apart", run[0]);
         findings.error(key, message, format!("repeat an inner knot at most {degree} times, the ends {ends} times"));
     }
 }

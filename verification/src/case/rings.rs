@@ -14,6 +14,9 @@ use crate::rings::Geometry;
 use crate::scene_file::fields::Item;
 use crate::scene_file::units::Dimension;
 
+/// Most geometries of a sweep.
+const MOST_GEOMETRIES: usize = 10_000;
+
 pub(super) fn read(item: &Item<'_>) -> Option<Vec<Geometry>> {
     let fields = item.fields(&["outer_radius", "inner_over_outer", "length_scale", "points"])?;
     let list = |key: &str, like: &str, dimension: Dimension| {
@@ -27,6 +30,10 @@ pub(super) fn read(item: &Item<'_>) -> Option<Vec<Geometry>> {
     if let Some(ratio) = ratio.iter().find(|ratio| **ratio >= 1.0) {
         let message = format!("an inner radius of {ratio} times the outer one");
         return fields.get("inner_over_outer")?.fail(message, "give ratios below 1");
+    }
+    let all = [outer.len(), ratio.len(), scale.len(), points.len()].into_iter().fold(1, usize::saturating_mul);
+    if all > MOST_GEOMETRIES {
+        return item.fail(format!("{all} geometries"), format!("give lists with at most {MOST_GEOMETRIES} in all"));
     }
     let mut geometries = Vec::new();
     for &outer in &outer {

@@ -6,6 +6,9 @@ use std::sync::Arc;
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, Severity, SourceCode};
 
+/// Most problems that are told one by one.
+const MOST_PROBLEMS: usize = 100;
+
 /// A place in the file or in one of the overrides.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Location {
@@ -83,7 +86,14 @@ impl Sources {
     pub fn error(&self, problems: &[Problem]) -> SceneFileError {
         let mut sorted: Vec<&Problem> = problems.iter().collect();
         sorted.sort_by(|a, b| a.location.cmp(&b.location));
-        SceneFileError { diagnostics: sorted.into_iter().map(|p| self.diagnose(p, Severity::Error)).collect() }
+        let mut diagnostics: Vec<_> =
+            sorted.iter().take(MOST_PROBLEMS).map(|p| self.diagnose(p, Severity::Error)).collect();
+        if let Some(first) = sorted.get(MOST_PROBLEMS) {
+            let message = format!("here and below: {} more errors", sorted.len() - MOST_PROBLEMS);
+            let rest = Problem { message, remedy: "correct those above first".into(), ..(*first).clone() };
+            diagnostics.push(self.diagnose(&rest, Severity::Error));
+        }
+        SceneFileError { diagnostics }
     }
 }
 

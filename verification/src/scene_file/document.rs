@@ -218,9 +218,12 @@ fn syntax_problems(text: &str, recovered: &DeTable<'_>, errors: &[toml::de::Erro
     let mut problems = Vec::new();
     let mut lines = Vec::new();
     for error in errors {
+        if lines.len() == MOST_SYNTAX_ERRORS {
+            break;
+        }
         let span = error.span().unwrap_or(text.len()..text.len());
         let line = text.as_bytes()[..span.start.min(text.len())].iter().filter(|b| **b == b'\n').count();
-        if lines.contains(&line) || lines.len() == MOST_SYNTAX_ERRORS {
+        if lines.contains(&line) {
             continue;
         }
         lines.push(line);

@@ -10,6 +10,13 @@ use super::document::{Document, Node, Value};
 /// Name of the source in messages about an override.
 const NAME: &str = "--set";
 
+/// Most keys in a path; the tree is walked by recursion.
+const DEEPEST: usize = 64;
+
+fn too_deep(keys: usize) -> String {
+    format!("a path of {keys} keys, where no scene has more than {DEEPEST}")
+}
+
 impl Node {
     /// Puts `value` at a path such as `body.0.crack.0.half_width`, in place of what stands there; keys of tables that
     /// are not there are created.
@@ -20,6 +27,9 @@ impl Node {
         let keys: Vec<&str> = path.split('.').collect();
         if keys.contains(&"") {
             return Err(format!("{path:?} has an empty key"));
+        }
+        if keys.len() > DEEPEST {
+            return Err(too_deep(keys.len()));
         }
         set(self, &keys, 0, value).map_err(|(message, remedy)| format!("{message}; {remedy}"))
     }
@@ -55,6 +65,9 @@ impl Document {
         let keys: Vec<&str> = path.split('.').map(str::trim).collect();
         if keys.iter().any(|k| k.is_empty()) {
             return Err(problem(path.trim(), "an empty key".to_string(), form()));
+        }
+        if keys.len() > DEEPEST {
+            return Err(problem("", too_deep(keys.len()), form()));
         }
         let mut node = parse_value(value, source, path.len() + 1).map_err(|(location, message)| Problem {
             key: path.trim().to_string(),

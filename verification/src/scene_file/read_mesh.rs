@@ -7,9 +7,10 @@ use super::fields::{Fields, Item};
 use super::read::{length, number, point};
 
 /// Largest number of spans in one direction.
-const MOST_CELLS: usize = 1_000_000;
-/// Largest number of spans of a patch with a geometry, of which every point keeps its map, in all and in one direction.
-const MOST_MAPPED_SPANS: usize = 1_000_000;
+const MOST_CELLS: usize = 100_000;
+/// Largest number of positions, (p + 1)(q + 1) in every span, at which a patch with a geometry is checked for folds: half a
+/// second; and of its spans in one direction.
+const MOST_MAPPED_POSITIONS: usize = 2_500_000;
 const MOST_MAPPED_IN_A_ROW: usize = 10_000;
 /// Angle short of a full turn that a ring has to leave open, rad.
 const LEAST_OPENING: f64 = 1e-9;
@@ -107,7 +108,7 @@ fn general(fields: &Fields<'_>, degree: [usize; 2]) -> Option<Mesh> {
     match mesh.nurbs()? {
         Ok(patch) if parts > 1 => {
             let spans = patch.spaces().each_ref().map(|space| space.spans().len().saturating_mul(parts));
-            few_enough(fields, "subdivide", spans)?;
+            few_enough(fields, "subdivide", spans, degree)?;
             refined(fields, "subdivide", patch.subdivide(parts))
         }
         _ => Some(mesh), // validation says what is wrong with a patch
@@ -129,7 +130,7 @@ fn annulus(item: &Item<'_>, fields: &Fields<'_>, degree: [usize; 2]) -> Option<M
         return fields.get("degree")?.fail("an arc is a rational curve of degree 2", remedy);
     }
     let (center, inner, outer, angles, cells) = (center?, inner?, outer?, angles?, cells?);
-    few_enough(fields, "cells", cells)?;
+    few_enough(fields, "cells", cells, degree)?;
     if angles[1] - angles[0] >= std::f64::consts::TAU - LEAST_OPENING {
         let message = "a full turn would leave a slit: the ends of the patch touch and are not joined";
         return item.fail(message, "give a sector with symmetry planes at its ends, such as half a turn");
@@ -170,13 +171,13 @@ fn annulus(item: &Item<'_>, fields: &Fields<'_>, degree: [usize; 2]) -> Option<M
     Some(mesh)
 }
 
-fn few_enough(fields: &Fields<'_>, key: &str, [columns, rows]: [usize; 2]) -> Option<()> {
+fn few_enough(fields: &Fields<'_>, key: &str, [columns, rows]: [usize; 2], degree: [usize; 2]) -> Option<()> {
     let spans = columns.saturating_mul(rows);
-    if spans <= MOST_MAPPED_SPANS && columns.max(rows) <= MOST_MAPPED_IN_A_ROW {
+    let most = MOST_MAPPED_POSITIONS / ((degree[0] + 1) * (degree[1] + 1));
+    if spans <= most && columns.max(rows) <= MOST_MAPPED_IN_A_ROW {
         return Some(());
     }
-    let remedy =
-        format!("give fewer: at most {MOST_MAPPED_SPANS} spans in all and {MOST_MAPPED_IN_A_ROW} in a direction");
+    let remedy = format!("give fewer: at most {most} spans in all and {MOST_MAPPED_IN_A_ROW} in a direction");
     fields.get(key)?.fail(format!("a general patch of {spans} spans"), remedy)
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use fisura::error::Breakdown;
+use fisura::simulation::Simulation;
 use serde::{Deserialize, Serialize};
 
 use crate::history::Table;
@@ -67,10 +68,28 @@ pub struct BreakdownSummary {
     pub time_s: f64,
     /// Place, m.
     pub place_m: [f64; 2],
+    /// Number of the point there, in its body, where a point stands for the place.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub point: Option<usize>,
     /// What happened.
     pub what: String,
     /// Likely cause and remedy.
     pub likely_cause: String,
+}
+
+impl Summary {
+    /// What is modelled, how large it is, how far it came, and what the solver warned of.
+    pub(super) fn describe(&mut self, simulation: &Simulation) {
+        let (extent, plan) = (simulation.extent(), simulation.plan());
+        self.models = extent.models;
+        self.particles = extent.particles;
+        self.control_points = extent.control_points;
+        self.steps = simulation.steps();
+        self.planned_steps = plan.steps();
+        self.time_step_s = Some(plan.step);
+        self.critical_step_s = Some(plan.critical).filter(|c| c.is_finite());
+        self.warnings.extend(simulation.warnings().iter().cloned());
+    }
 }
 
 impl From<&Breakdown> for BreakdownSummary {
@@ -79,6 +98,7 @@ impl From<&Breakdown> for BreakdownSummary {
             step: breakdown.step,
             time_s: breakdown.time,
             place_m: breakdown.place,
+            point: breakdown.point,
             what: breakdown.what.clone(),
             likely_cause: breakdown.cause.clone(),
         }

@@ -29,7 +29,8 @@ pub fn replace_file(
     let mut part: OsString = path.as_os_str().to_owned();
     part.push(".part");
     let part = PathBuf::from(part);
-    let renamed = write(&part).and_then(|()| Ok(fs::rename(&part, path)?));
+    let kept = |()| Ok(fs::File::open(&part)?.sync_all()?); // or a power failure could leave the name of an empty file
+    let renamed = write(&part).and_then(kept).and_then(|()| Ok(fs::rename(&part, path)?));
     renamed.map_err(|error| {
         let _ = fs::remove_file(&part); // may not exist; the error to tell is the first one
         OutputError { path: path.to_path_buf(), message: error.to_string() }
@@ -37,7 +38,8 @@ pub fn replace_file(
 }
 
 impl SceneRun {
-    /// Writes `history.csv` (if there is a row) and `summary.json` into `folder`, which must exist; names the files.
+    /// Writes `history.csv` (if there is a row), `summary.json` and, after a breakdown, `breakdown.json` into `folder`, which
+    /// must exist; names the files.
     ///
     /// # Errors
     /// The first file that cannot be written.
@@ -52,6 +54,12 @@ impl SceneRun {
             Ok(fs::write(part, text + "\n")?)
         })?;
         files.push("summary.json");
+        if let Some(report) = &self.breakdown_report {
+            replace_file(&folder.join("breakdown.json"), |part| {
+                Ok(fs::write(part, serde_json::to_string_pretty(report)? + "\n")?)
+            })?;
+            files.push("breakdown.json");
+        }
         Ok(files)
     }
 }

@@ -3,6 +3,7 @@
 mod check;
 mod help;
 mod report;
+mod resume;
 mod run;
 mod support;
 mod verify;

@@ -50,7 +50,7 @@ fn a_step_above_the_critical_one_ends_with_3_and_keeps_the_history() {
     let end = format!("analysis.end_time={:e}", 240.0 * critical);
     let arguments = ["run", "block.toml", "--out", "out", "--set", &step, "--set", &end, "--set", "output.frames=[0]"];
     let run = place.xtask(&[&arguments[..], &["--set", "output.samples=100"]].concat()).with_status(3);
-    let run = run.complains_of(&["at step", "t = ", "near (", "likely cause", "1.200 times the critical step"]);
+    let run = run.complains_of(&["at step", "t = ", "near point ", "likely cause", "1.200 times the critical step"]);
     assert!(run.out.contains("Block"), "the summary is printed: {run:?}");
     let rows = place.read("out/history.csv").lines().count() - 1;
     assert!((2..101).contains(&rows), "{rows} rows");
@@ -58,6 +58,14 @@ fn a_step_above_the_critical_one_ends_with_3_and_keeps_the_history() {
     let summary: serde_json::Value = serde_json::from_str(&place.read("out/summary.json")).unwrap();
     assert!(summary["breakdown"]["step"].as_u64().unwrap() > 1);
     assert!(place.path("out/stress-0s.svg").is_file());
+    let report: serde_json::Value = serde_json::from_str(&place.read("out/breakdown.json")).unwrap();
+    assert_eq!(report["step"], summary["breakdown"]["step"]);
+    assert_eq!((&report["points"], &report["points_not_finite"]), (&200.into(), &0.into()));
+    assert_eq!(report["worst_points"][0]["position_m"], summary["breakdown"]["place_m"]);
+    assert!(report["extremes"]["largest_strain"].as_f64().unwrap() > 0.0 && report["row"]["elastic_j"].is_f64());
+
+    place.xtask(&["run", "block.toml", "--out", "out"]).with_status(0);
+    assert!(!place.path("out/breakdown.json").exists(), "the breakdown of the run before is gone");
 }
 
 #[test]
@@ -93,9 +101,58 @@ fn an_output_folder_that_cannot_be_written_is_refused_before_the_run() {
 }
 
 #[test]
-fn what_is_not_offered_yet_is_refused() {
+fn vtk_is_not_offered_yet() {
     let place = Place::with("block.toml", BLOCK);
-    for flag in ["--vtk", "--resume"] {
-        place.xtask(&["run", "block.toml", flag]).with_status(2).complains_of(&[flag, "not supported yet"]);
-    }
+    place.xtask(&["run", "block.toml", "--vtk"]).with_status(2).complains_of(&["--vtk", "not supported yet"]);
+}
+
+#[test]
+fn scenes_that_cannot_be_read_or_modelled_end_with_2() {
+    let place = Place::with("block.toml", BLOCK);
+    place.write("bad.toml", "[mesh");
+    std::fs::write(place.path("bytes.toml"), [0xff, 0xfe, 0x00]).unwrap();
+    place.write("wrong.toml", &BLOCK.replace("poisson_ratio = 0.2", "poisson_ratio = 0.6"));
+    place.write("folder/x", "");
+    let refused = |arguments: &[&str], parts: &[&str]| {
+        let run = place.xtask(&[&["run"], arguments, &["--out", "out"]].concat()).with_status(2);
+        assert_eq!(run.complains_of(parts).out, "");
+    };
+    refused(&["absent.toml"], &["absent.toml"]);
+    refused(&["folder"], &["folder"]);
+    refused(&["bad.toml"], &["bad.toml:1:"]);
+    refused(&["bytes.toml"], &["bytes.toml", "UTF-8"]);
+    refused(&["wrong.toml"], &["wrong.toml:", "poisson_ratio"]);
+    refused(&["block.toml", "--set", "mesh.cells"], &["no '='"]);
+    refused(&["block.toml", "--set", "mesh.cells=[1, "], &["mesh.cells", "TOML"]);
+    refused(&["block.toml", "--set", "mesh.colour=1"], &["mesh.colour", "unknown key"]);
+    refused(&["block.toml", "--threads", "0"], &["--threads"]);
+    refused(&["block.toml", "--checkpoint=-1"], &["--checkpoint", "seconds"]);
+    refused(&[], &["SCENE.toml"]);
+    assert!(!place.path("out").exists(), "nothing was written");
+}
+
+#[test]
+fn a_point_that_leaves_the_mesh_ends_with_3_and_names_it() {
+    let text = BLOCK.replace("end_time = \"5 us\"", "end_time = \"5 us\"\nframe = \"updated\"");
+    let text = text.replace("particles_per_cell", "velocity = [1000, 0]\nparticles_per_cell");
+    let place = Place::with("gone.toml", &text);
+    let run = place.xtask(&["run", "gone.toml", "--out", "out"]).with_status(3);
+    run.complains_of(&["a point left the mesh", "at step", "enlarge mesh.size", "breakdown.json"]);
+    assert!(place.path("out/breakdown.json").is_file() && place.path("out/history.csv").is_file());
+}
+
+/// Files beyond a limit cannot be written, as on a full disk.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_ends_with_2_and_leaves_nothing_that_looks_finished() {
+    let place = Place::with("block.toml", BLOCK);
+    let script = format!("trap '' XFSZ; ulimit -f 1; exec {} run block.toml --out out", env!("CARGO_BIN_EXE_xtask"));
+    let mut command = std::process::Command::new("sh");
+    command.args(["-c", &script]).current_dir(place.path("")).env_remove("CARGO_MANIFEST_DIR");
+    let output = command.output().unwrap();
+    let err = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{err}");
+    assert!(err.contains("out/") && err.contains("cannot be written") && err.contains("--out"), "{err}");
+    assert!(place.files("out").iter().all(|name| !name.ends_with(".part")), "{:?}", place.files("out"));
+    assert!(!place.path("out/energies.svg").exists());
 }

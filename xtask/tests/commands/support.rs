@@ -135,19 +135,30 @@ impl Place {
 
     /// Starts `xtask` in another folder.
     pub fn xtask_in(&self, folder: &Path, arguments: &[&str]) -> Outcome {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
-        command.args(arguments).current_dir(folder);
-        ["CARGO_MANIFEST_DIR", "COLUMNS", "LINES"].iter().for_each(|name| {
-            command.env_remove(name);
-        });
-        command.envs(self.manifest.iter().map(|m| ("CARGO_MANIFEST_DIR", m)));
-        let output = command.output().expect("the binary starts");
+        let output = self.command_in(folder, arguments).output().expect("the binary starts");
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
         Outcome {
             status: output.status.code().expect("an exit status, not a signal"),
             out: text(output.stdout),
             err: text(output.stderr),
         }
+    }
+}
+
+impl Place {
+    /// `xtask` here, to be started.
+    pub fn command(&self, arguments: &[&str]) -> Command {
+        self.command_in(self.folder.path(), arguments)
+    }
+
+    fn command_in(&self, folder: &Path, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
+        command.args(arguments).current_dir(folder);
+        ["CARGO_MANIFEST_DIR", "COLUMNS", "LINES"].iter().for_each(|name| {
+            command.env_remove(name);
+        });
+        command.envs(self.manifest.iter().map(|m| ("CARGO_MANIFEST_DIR", m)));
+        command
     }
 }
 

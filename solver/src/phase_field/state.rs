@@ -1,0 +1,25 @@
+//! The state of the phase-field solver.
+
+use super::{Method, PhaseField};
+use crate::checkpoint::{Archive, StateError};
+
+impl PhaseField {
+    /// Stores or takes up what steps change. A system that is assembled anew at every step is not part of it.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { model: _, tolerance: _, matrix, load: _, phase, previous, assembled, method, counts } = self;
+        if !assembled.is_empty() {
+            archive.list(matrix.values_mut())?;
+        }
+        archive.list(phase)?;
+        archive.list(previous)?;
+        archive.list(assembled)?;
+        archive.value(counts)?;
+        match method {
+            Method::Iterative { workspace: _, preconditioner } => preconditioner.exchange(archive),
+            Method::Direct(_) => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! The bodies in the frame of their scene.
+
+use crate::checkpoint::{Archive, StateError};
+use crate::inspection::PointState;
+use crate::phase_field::PhaseFieldCounts;
+use crate::scene::{self, Scene};
+use crate::total_frame::TotalFrame;
+use crate::updated_frame::{Failure, UpdatedFrame};
+
+/// The bodies in the frame of their scene.
+#[derive(Debug)]
+pub(super) enum Frame {
+    Total(Box<TotalFrame>),
+    Updated(Box<UpdatedFrame>),
+}
+
+/// The same expression for either frame.
+macro_rules! either {
+    ($frame:expr, $body:ident => $value:expr) => {
+        match $frame {
+            Frame::Total($body) => $value,
+            Frame::Updated($body) => $value,
+        }
+    };
+}
+pub(super) use either;
+
+impl Frame {
+    pub(super) fn new(scene: &Scene) -> Result<Self, Failure> {
+        Ok(match scene.analysis.frame {
+            scene::Frame::Total => Self::Total(Box::new(TotalFrame::new(scene)?)),
+            scene::Frame::Updated => Self::Updated(Box::new(UpdatedFrame::new(scene)?)),
+        })
+    }
+
+    pub(super) fn step(&mut self, dt: f64) -> Result<(), Failure> {
+        match self {
+            Self::Total(body) => Ok(body.step(dt)?),
+            Self::Updated(body) => body.step(dt),
+        }
+    }
+
+    pub(super) fn particles(&self) -> usize {
+        match self {
+            Self::Total(body) => body.lattice().count(),
+            Self::Updated(frame) => frame.fields().iter().map(|field| field.points().len()).sum(),
+        }
+    }
+
+    /// Control points with mass, counted for each body.
+    pub(super) fn control_points(&self) -> usize {
+        let massive = |mass: &[f64]| mass.iter().filter(|m| **m > 0.0).count();
+        match self {
+            Self::Total(body) => massive(body.mass().row_sums()),
+            Self::Updated(frame) => frame.fields().iter().map(|field| massive(&field.nodes().mass)).sum(),
+        }
+    }
+
+    pub(super) fn phase_field_counts(&self) -> Option<PhaseFieldCounts> {
+        match self {
+            Self::Total(body) => body.fracture.as_ref().map(|f| f.field.counts()),
+            Self::Updated(frame) => frame.phase_field_counts(),
+        }
+    }
+
+    /// Calls `f` with the state of every point.
+    pub(super) fn for_each_point(&self, f: &mut dyn FnMut(PointState)) {
+        either!(self, body => body.for_each_point_state(f));
+    }
+
+    pub(super) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        either!(self, body => body.exchange(archive))
+    }
+}

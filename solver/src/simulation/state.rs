@@ -1,0 +1,63 @@
+//! Checkpoints: a run stored at a whole step and taken up again.
+
+use thiserror::Error;
+
+use super::Simulation;
+use crate::checkpoint::{Archive, StateError};
+use crate::error::Breakdown;
+use crate::scene::Scene;
+
+/// Why a run cannot be taken up.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ResumeError {
+    /// The state is damaged or of another scene.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// The scene does not start.
+    #[error(transparent)]
+    Breakdown(#[from] Breakdown),
+}
+
+impl Simulation {
+    /// The state at the present step: with the same scene, [`Self::resume`] goes on from it bit by bit. Storing it changes
+    /// nothing in the run.
+    ///
+    /// # Errors
+    /// If loads act that only the program knows, as in verification.
+    pub fn checkpoint(&mut self) -> Result<Vec<u8>, StateError> {
+        let mut archive = Archive::writer();
+        self.exchange(&mut archive)?;
+        archive.finish()
+    }
+
+    /// Takes up a run of `scene` where [`Self::checkpoint`] stored it.
+    ///
+    /// # Errors
+    /// If the state is damaged or of another scene, or the scene does not start.
+    pub fn resume(scene: &Scene, state: &[u8]) -> Result<Self, ResumeError> {
+        let mut simulation = Self::new(scene)?;
+        let mut archive = Archive::reader(state);
+        simulation.exchange(&mut archive)?;
+        archive.finish()?;
+        Ok(simulation)
+    }
+
+    fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self {
+            frame,
+            plan: _,
+            warnings,
+            steps,
+            initial,
+            energy_in,
+            warned_of_step,
+            warned_of_closure,
+            tolerance: _,
+        } = self;
+        archive.value(steps)?;
+        frame.exchange(archive)?;
+        archive.value(warnings)?;
+        [initial, energy_in].into_iter().try_for_each(|energy| archive.value(energy))?;
+        [warned_of_step, warned_of_closure].into_iter().try_for_each(|warned| archive.value(warned))
+    }
+}

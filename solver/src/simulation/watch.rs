@@ -1,0 +1,225 @@
+//! The watch over the numbers of a run, and what is said when they break.
+
+use super::Simulation;
+use super::frame::{Frame, either};
+use crate::energy::Sample;
+use crate::error::Breakdown;
+use crate::fracture::NotConverged;
+use crate::inspection::{Inspection, PointState};
+use crate::updated_frame::Failure;
+
+/// Elastic energy beyond this many times all energy that ever came in counts as numerical growth.
+const GROWTH_LIMIT: f64 = 10.0;
+
+/// A ledger open by more than this fraction of the energy that came in is worth a warning, and with a time step above the
+/// critical one the end of the run: damage eats an unstable mode before its elastic energy grows.
+const CLOSURE_LIMIT: f64 = 0.02;
+/// Closure below this fraction of the stored energy is round-off and tolerance of the phase field.
+const CLOSURE_FLOOR: f64 = 1e-6;
+
+/// A residual within this factor of the tolerance when iterations ended is held up by round-off.
+const NEAR_TOLERANCE: f64 = 1e3;
+
+const RAISE_TOLERANCE: &str = "solver.phase_field_tolerance is tighter than round-off allows for this length scale and \
+                               mesh; raise it, or try phase_field_solver = \"cholesky\"";
+const ILL_CONDITIONED: &str = "history energies so different that iterations do not settle; look for extreme loads or \
+                               seeds, or try phase_field_solver = \"cholesky\"";
+const ENLARGE_MESH: &str = "the body moves out of the mesh; enlarge mesh.size or move mesh.origin so that it holds the \
+                            whole motion, or end earlier";
+
+const BARE: &str = "a traction acts where there is no material any more";
+const TORN: &str = "the load has torn off the points under it; lower or ramp the traction, or end earlier";
+
+impl Simulation {
+    /// State of the worst points and extremes now: for looking at a run that broke down.
+    pub fn inspect(&self) -> Inspection {
+        let fastest = either!(&self.frame, body => body.fastest_control_point());
+        Inspection::new(fastest, |f| self.frame.for_each_point(f))
+    }
+
+    /// The step just taken was `result`; in the updated frame the critical step is taken again where points moved.
+    pub(super) fn judge(&mut self, result: Result<(), Failure>) -> Result<(), Breakdown> {
+        let healthy = self.is_healthy();
+        match result {
+            Ok(()) if healthy => {
+                self.watch_critical_step();
+                Ok(())
+            }
+            Err(failure) if healthy => Err(self.broken(failure)),
+            _ => Err(self.unstable()),
+        }
+    }
+
+    /// Warns once if the step in use exceeds the critical one at the moved positions.
+    fn watch_critical_step(&mut self) {
+        let Frame::Updated(frame) = &mut self.frame else { return };
+        if self.warned_of_step || !frame.critical_step_is_due() {
+            return;
+        }
+        let critical = frame.critical_step();
+        if self.plan.step > critical {
+            self.warned_of_step = true;
+            self.warnings.push(format!(
+                "from t = {:.4e} s on, the time step {:.4e} s is {:.3} times the critical step {critical:.4e} s at the \
+                 moved positions; lower analysis.safety or the time step",
+                self.time(),
+                self.plan.step,
+                self.plan.step / critical
+            ));
+        }
+    }
+
+    fn is_healthy(&mut self) -> bool {
+        let (elastic, work) = either!(&self.frame, body => (body.elastic_energy(), body.external_work().abs()));
+        self.energy_in = self.energy_in.max(work);
+        elastic.is_finite() && elastic <= GROWTH_LIMIT * (self.energy_in + self.initial.abs())
+    }
+
+    /// Holds a sample to its ledger: an open one is a warning, once, and a breakdown if the step is above the critical one.
+    ///
+    /// # Errors
+    /// If the ledger is open and the time step is too long to be stable.
+    pub fn watch_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
+        let Sample { closure, time, .. } = *sample;
+        let limit = CLOSURE_LIMIT * self.energy_in + CLOSURE_FLOOR * sample.stored().abs();
+        if closure.abs() <= limit {
+            return Ok(());
+        }
+        let what = format!("the energy ledger is open by {closure:.3e} J of {:.3e} J put in so far", self.energy_in);
+        if self.warned_of_step {
+            return Err(self.at_worst_point(what, None));
+        }
+        if !self.warned_of_closure {
+            self.warned_of_closure = true;
+            self.warnings.push(format!(
+                "at t = {time:.4e} s {what}: the quadrature of the stress work is coarse; lower analysis.safety (0.2 \
+                 leaves a sixteenth of it)"
+            ));
+        }
+        Ok(())
+    }
+
+    fn unstable(&self) -> Breakdown {
+        let elastic = either!(&self.frame, body => body.elastic_energy());
+        let what = if elastic.is_finite() {
+            format!("elastic energy {elastic:.3e} J exceeds {GROWTH_LIMIT} times all energy put in")
+        } else {
+            "the elastic energy is not a number".to_string()
+        };
+        self.at_worst_point(what, None)
+    }
+
+    /// A step that could not be taken though the elastic energy of the last one that could is well.
+    fn broken(&self, failure: Failure) -> Breakdown {
+        let not_finite = match failure {
+            Failure::Left(place) => !place.iter().all(|x| x.is_finite()),
+            Failure::NotConverged(found) => !found.relative_residual.is_finite(),
+        };
+        if let Failure::Left(place) = failure
+            && !not_finite
+            && self.is_far_outside(place)
+        {
+            let what = "a point was thrown out of the mesh, further than the mesh is wide, in one step";
+            return self.at_worst_point(what.to_string(), None);
+        }
+        if not_finite {
+            let what = match failure {
+                Failure::Left(_) => "the position of a point is not a number",
+                Failure::NotConverged(_) => "the phase-field solve ran into numbers that are not finite",
+            };
+            return self.at_worst_point(what.to_string(), None);
+        }
+        let (what, cause) = what_and_cause(failure, self.tolerance);
+        match failure {
+            Failure::Left(place) => {
+                let bare = self.updated_frame().is_some_and(|frame| frame.patch().locate(place).is_some());
+                let (what, cause) = if bare { (BARE.to_string(), TORN.to_string()) } else { (what, cause) };
+                let cause = if self.step_is_too_long() { self.cause_of_growth() } else { cause };
+                Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause }
+            }
+            Failure::NotConverged(_) => self.at_worst_point(what, Some(cause).filter(|_| !self.step_is_too_long())),
+        }
+    }
+
+    /// A breakdown at the point whose numbers are worst, which are added to what happened.
+    fn at_worst_point(&self, what: String, cause: Option<String>) -> Breakdown {
+        let inspection = self.inspect();
+        let worst = inspection.worst.first().filter(|point| point.position.iter().all(|x| x.is_finite()));
+        let what = worst.map_or(what.clone(), |point| format!("{what}; {} there", numbers(point)));
+        Breakdown {
+            step: self.steps,
+            time: self.time(),
+            place: worst.map_or(inspection.fastest.0, |point| point.position),
+            point: worst.map(|point| point.point),
+            what,
+            cause: cause.unwrap_or_else(|| self.cause_of_growth()),
+        }
+    }
+
+    /// Whether a position is further out of the mesh than that is wide.
+    fn is_far_outside(&self, place: [f64; 2]) -> bool {
+        let Some(frame) = self.updated_frame() else { return false };
+        let (low, high) = frame.patch().bounding_box();
+        (0..2).any(|d| (low[d] - place[d]).max(place[d] - high[d]) > high[d] - low[d])
+    }
+
+    fn step_is_too_long(&self) -> bool {
+        self.warned_of_step || self.plan.step > self.plan.critical
+    }
+
+    fn cause_of_growth(&self) -> String {
+        let ratio = self.plan.step / self.plan.critical;
+        if ratio > 1.0 {
+            format!(
+                "the time step {:.4e} s is {ratio:.3} times the critical step {:.4e} s; use time_step = \"auto\"",
+                self.plan.step, self.plan.critical
+            )
+        } else if let Some([x, y]) = either!(&self.frame, body => body.inverted_place()) {
+            format!(
+                "the body is turned inside out at ({x:.6e}, {y:.6e}) m: look for extreme loads or velocities, refine the mesh \
+                 there, or halve the safety factor"
+            )
+        } else if self.warned_of_step {
+            "the time step exceeds the critical one at the moved positions; lower analysis.safety".to_string()
+        } else {
+            "the time step is below the critical one of the undamaged body; look for extreme loads or velocities, \
+             and halve the safety factor"
+                .to_string()
+        }
+    }
+}
+
+/// What keeps a scene from starting, near `place` (m).
+pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> Breakdown {
+    let (what, cause) = what_and_cause(failure, tolerance);
+    let place = if let Failure::Left(place) = failure { place } else { place };
+    Breakdown { step: 0, time: 0.0, place, point: None, what, cause }
+}
+
+fn what_and_cause(failure: Failure, tolerance: f64) -> (String, String) {
+    let (what, cause) = match failure {
+        Failure::Left(_) => ("a point left the mesh".to_string(), ENLARGE_MESH),
+        Failure::NotConverged(NotConverged { iterations, relative_residual }) => (
+            format!(
+                "the phase-field solve stopped after {iterations} iterations at a relative residual of \
+                 {relative_residual:.3e}"
+            ),
+            if relative_residual <= NEAR_TOLERANCE * tolerance { RAISE_TOLERANCE } else { ILL_CONDITIONED },
+        ),
+    };
+    (what, cause.to_string())
+}
+
+/// The numbers of a point in words.
+fn numbers(point: &PointState) -> String {
+    let largest = |values: &[f64; 3]| {
+        let magnitudes = values.iter().map(|value| if value.is_nan() { f64::INFINITY } else { value.abs() });
+        let largest = magnitudes.fold(0.0, f64::max);
+        if largest.is_finite() { format!("{largest:.3e}") } else { "not finite".to_string() }
+    };
+    let mut text = format!("the strain is {}", largest(&point.strain));
+    if let Some(fracture) = point.fracture {
+        text += &format!(", the history energy {} J/m³", largest(&[fracture.history; 3]));
+    }
+    text
+}

@@ -1,0 +1,117 @@
+//! The state of the bodies in the updated frame: what the points and surfaces carry. Order and nodal fields follow from it.
+
+use super::UpdatedFrame;
+use super::affine::AffineVelocities;
+use super::field::DiscreteField;
+use super::points::OutsidePatch;
+use crate::checkpoint::{Archive, StateError};
+
+impl UpdatedFrame {
+    /// Stores or takes up what steps change.
+    ///
+    /// # Errors
+    /// Bytes of another scene, and loads that only the program knows.
+    pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { patch: _, fields, contact, thickness: _ } = self;
+        fields.iter_mut().try_for_each(|field| field.exchange(archive))?;
+        if let Some(contact) = contact {
+            contact.exchange(archive)?;
+            if archive.is_reader() && fields[0].time() > 0.0 {
+                contact.move_rigid(fields[0].time());
+                contact.find(fields);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl DiscreteField {
+    fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let mut spans = self.covered_spans();
+        archive.value(&mut spans)?;
+        if archive.is_reader() {
+            let inside =
+                (0..2).all(|d| spans[d].start < spans[d].end && spans[d].end <= self.whole.spaces[d].spans().len());
+            if !inside {
+                return Err(StateError("the state is of another scene: a body lies outside the mesh".to_string()));
+            }
+            self.occupy(&spans);
+        }
+        self.exchange_points(archive)?;
+        if archive.is_reader() {
+            self.rebuild().map_err(|OutsidePatch([x, y])| {
+                StateError(format!("the state is of another scene: a point lies at ({x:.6e}, {y:.6e}) m"))
+            })?;
+        }
+        self.exchange_sums(archive)
+    }
+
+    /// What points and surfaces carry.
+    fn exchange_points(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self {
+            whole: _,
+            patch: _,
+            origin: _,
+            boundaries: _,
+            moduli: _,
+            thickening: _,
+            density: _,
+            thickness: _,
+            gravity: _,
+            points,
+            cells: _,
+            nodes: _,
+            departure: _,
+            affine,
+            deformation,
+            loads,
+            forcing,
+            surface,
+            fracture,
+            lowest_tip: _,
+            elastic_energy: _, // see exchange_sums
+            stress_work: _,
+            driven_power: _,
+            ledger: _,
+            losses: _,
+            time,
+            at_start,
+            travelled: _,
+        } = self;
+        if forcing.is_some() {
+            return Err(StateError("loads that only the program knows cannot be stored".to_string()));
+        }
+        archive.value(time)?;
+        archive.value(at_start)?;
+        archive.list(points)?;
+        if let Some(AffineVelocities { gradients, .. }) = affine {
+            archive.list(gradients)?;
+        }
+        if let Some(gradients) = deformation {
+            archive.list(gradients)?;
+        }
+        loads.iter_mut().try_for_each(|load| load.exchange(archive))?;
+        if let Some(surface) = surface {
+            archive.list(surface.vertices_mut())?;
+        }
+        if let Some(fracture) = fracture {
+            fracture.exchange(archive)?;
+        }
+        Ok(())
+    }
+
+    /// Order of the points, spans of the surface points, nodal fields.
+    fn rebuild(&mut self) -> Result<(), OutsidePatch> {
+        self.cells.sort(&self.patch, &mut self.points)?; // they are sorted already: the order of all else stays
+        self.attach_loads()?;
+        self.find_accelerations();
+        Ok(())
+    }
+
+    fn exchange_sums(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { elastic_energy, stress_work, driven_power, ledger, losses, travelled, .. } = self;
+        [elastic_energy, stress_work, driven_power, travelled].into_iter().try_for_each(|sum| archive.value(sum))?;
+        archive.value(ledger)?;
+        archive.value(losses)
+    }
+}

@@ -1,0 +1,42 @@
+//! How large a scene will be, before anything is made of it.
+
+use super::Findings;
+use crate::scene::{Body, Scene};
+
+/// Most material points of a scene; each takes 100 to 300 bytes.
+const MOST_POINTS: usize = 500_000_000;
+
+/// About how large the model of a scene will be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ExpectedSize {
+    /// Material points, if every span under the box around a body is full of them.
+    pub points: usize,
+    /// Control points of the mesh.
+    pub control_points: usize,
+}
+
+/// Size of the model of a valid scene, to the points that lie outside a body in spans it cuts.
+pub fn expected_size(scene: &Scene) -> ExpectedSize {
+    let bodies = scene.bodies.iter().filter(|body| !body.rigid);
+    let points = bodies.map(|body| points(body, scene)).fold(0, usize::saturating_add);
+    let functions = |d: usize| scene.mesh.knots[d].len().saturating_sub(scene.mesh.degree[d] + 1);
+    ExpectedSize { points, control_points: functions(0).saturating_mul(functions(1)) }
+}
+
+pub(super) fn check(scene: &Scene, findings: &mut Findings) {
+    let points = expected_size(scene).points;
+    if points > MOST_POINTS {
+        let remedy = format!("use larger cells or fewer particles_per_cell: at most {MOST_POINTS} points in all");
+        findings.error("body", format!("bodies of about {points} points"), remedy);
+    }
+}
+
+fn points(body: &Body, scene: &Scene) -> usize {
+    let (from, to) = scene.mesh.extent(&body.shape);
+    let along = |d: usize| {
+        let spans = scene.mesh.knots[d].windows(2).filter(|k| k[1] > k[0]);
+        let under = |k: &&[f64]| scene.mesh.geometry.is_some() || (k[1] > from[d] && k[0] < to[d]);
+        spans.filter(under).count().saturating_mul(body.particles_per_cell[d])
+    };
+    along(0).saturating_mul(along(1))
+}

@@ -1,0 +1,127 @@
+//! Runs that survive: a checkpoint at intervals and on interrupt, and runs taken up from one.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use fisura::scene::Scene;
+use fisura::simulation::{ResumeError, Simulation};
+use thiserror::Error;
+
+use super::checkpoint::{self, CheckpointError};
+use super::write::OutputError;
+use super::{Progress, Record, Run, SceneRun, timed};
+
+/// How a run is kept safe.
+#[derive(Debug)]
+pub struct Keep<'a> {
+    /// File of the checkpoint.
+    pub path: PathBuf,
+    /// Name and version of the program: only the same one goes on with the same bits.
+    pub program: String,
+    /// Wall time between checkpoints.
+    pub interval: Duration,
+    /// Once this is set the run stores a checkpoint after the present step, and stops.
+    pub interrupted: &'a AtomicBool,
+}
+
+/// How a kept run ended.
+#[derive(Debug)]
+pub enum Outcome {
+    /// As planned, or with a breakdown.
+    Ended(Box<SceneRun>),
+    /// Stored, to be taken up.
+    Interrupted(Progress),
+}
+
+/// Why a run cannot be kept or taken up.
+#[derive(Debug, Error)]
+pub enum KeepError {
+    /// The checkpoint to go on from.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// The checkpoint to be written on interrupt.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
+
+/// Runs a valid scene as [`run_scene`](super::run_scene) does, storing checkpoints. With `resume` it goes on from the one that is
+/// there, if there is one: history and frames are then, bit by bit, those of a run that nobody disturbed.
+///
+/// A checkpoint that cannot be written at an interval is a warning in the summary, and tried again at the next.
+///
+/// # Errors
+/// A checkpoint that cannot be taken up, or cannot be written on interrupt.
+pub fn run_scene_kept(
+    scene: &Scene,
+    keep: &Keep<'_>,
+    resume: bool,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Outcome, KeepError> {
+    let stored = if resume { checkpoint::read(&keep.path, &keep.program, scene)? } else { None };
+    let (record, state): (Record, Option<Vec<u8>>) =
+        stored.map_or_else(Default::default, |(record, state)| (record, Some(state)));
+    let mut run = Run::new(scene, record);
+    let prepared = timed(&mut run.record.stages.preparation, || match &state {
+        Some(state) => Simulation::resume(scene, state),
+        None => Simulation::new(scene).map_err(ResumeError::from),
+    });
+    let mut keeper = Keeper { keep, stored: Instant::now(), stored_time: None, warning: None, failed: None };
+    let mut simulation = match prepared {
+        Ok(simulation) => simulation,
+        Err(ResumeError::Breakdown(breakdown)) => {
+            return Ok(Outcome::Ended(Box::new(run.finish(None, Some(breakdown), None))));
+        }
+        Err(ResumeError::State(error)) => return Err(CheckpointError::unfit(&keep.path, error.to_string()).into()),
+    };
+    keeper.stored_time = state.is_some().then(|| simulation.time());
+    match run.advance(&mut simulation, progress, &mut |run, simulation| keeper.after_step(run, simulation)) {
+        Ok(true) => match keeper.failed {
+            Some(error) => Err(error.into()),
+            None => Ok(Outcome::Interrupted(Progress {
+                step: simulation.steps(),
+                steps: simulation.plan().steps(),
+                time: simulation.time(),
+            })),
+        },
+        ended => Ok(Outcome::Ended(Box::new(run.finish(Some(&simulation), ended.err(), Some(&keeper))))),
+    }
+}
+
+/// Stores checkpoints.
+pub(super) struct Keeper<'a> {
+    keep: &'a Keep<'a>,
+    /// When the last checkpoint was stored, and its simulated time, s.
+    stored: Instant,
+    pub(super) stored_time: Option<f64>,
+    /// Of checkpoints that could not be written.
+    pub(super) warning: Option<String>,
+    /// Why the last one could not be written.
+    failed: Option<OutputError>,
+}
+
+impl Keeper<'_> {
+    /// Stores a checkpoint if it is time or the run is interrupted; whether it is.
+    fn after_step(&mut self, run: &Run<'_>, simulation: &mut Simulation) -> bool {
+        let interrupted = self.keep.interrupted.load(Ordering::Relaxed);
+        if interrupted || self.stored.elapsed() >= self.keep.interval {
+            self.failed = self.store(run, simulation).err();
+            if let Some(error) = &self.failed {
+                let step = simulation.steps();
+                self.warning = Some(format!("no checkpoint at step {step}: {error}"));
+            }
+            self.stored = Instant::now();
+        }
+        interrupted
+    }
+
+    fn store(&mut self, run: &Run<'_>, simulation: &mut Simulation) -> Result<(), OutputError> {
+        let Keep { path, program, .. } = self.keep;
+        let state =
+            simulation.checkpoint().map_err(|error| OutputError { path: path.clone(), message: error.to_string() })?;
+        let record = Record { wall_s: run.wall_s(), ..run.record.clone() };
+        checkpoint::write(path, program, run.scene, &record, state)?;
+        self.stored_time = Some(simulation.time());
+        Ok(())
+    }
+}

@@ -1,0 +1,399 @@
+//! Readers of scenes, cases and tables under mutated input: no panic, no hang, no flood of memory.
+//!
+//! Inputs are files of `tests/corpus` and of the project, changed by a few mutations of their tokens, lines, nesting and bytes.
+//! `FISURA_FUZZ=1000000 cargo test -p fisura-verification --release --test fuzz` takes a million of them; 10⁴ otherwise. What
+//! fails is shrunk to the fewest mutations and printed; it goes to the corpus.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use fisura::Simulation;
+use fisura::scene::Scene;
+use fisura_verification::case::Case;
+use fisura_verification::history::Table;
+use fisura_verification::scene_file::SceneFile;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
+
+/// Longest input, bytes.
+const LONGEST: usize = 64 << 10;
+/// Time an input may take. The machine may be busy, so the best of three counts.
+const PATIENCE: Duration = Duration::from_secs(1);
+/// Memory an input may take, bytes.
+const MEMORY: usize = 1 << 30;
+
+/// Counts what is allocated.
+struct Counting;
+
+static HELD: AtomicUsize = AtomicUsize::new(0);
+static MOST: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call goes to the system's allocator with the arguments that came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let held = HELD.fetch_add(layout.size(), Ordering::Relaxed) + layout.size();
+        MOST.fetch_max(held, Ordering::Relaxed);
+        // SAFETY: as the caller promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
+        HELD.fetch_sub(layout.size(), Ordering::Relaxed);
+        // SAFETY: as the caller promises.
+        unsafe { System.dealloc(at, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// A change of a text; the numbers choose place and kind.
+#[derive(Debug, Clone)]
+enum Mutation {
+    /// A number or string becomes an extreme one.
+    Token(usize, usize),
+    /// A line is taken away, doubled many times, or goes elsewhere.
+    Line(usize, usize, usize),
+    /// A token is wrapped in brackets, many times.
+    Nest(usize, usize, usize),
+    /// A piece of another file is put in.
+    Splice(usize, usize, usize, usize),
+    /// A byte becomes another.
+    Byte(usize, u8),
+    /// Bytes go away.
+    Cut(usize, usize),
+}
+
+fn mutation() -> impl Strategy<Value = Mutation> {
+    let n = || any::<usize>();
+    prop_oneof![
+        6 => (n(), n()).prop_map(|(a, b)| Mutation::Token(a, b)),
+        2 => (n(), n(), n()).prop_map(|(a, b, c)| Mutation::Line(a, b, c)),
+        1 => (n(), n(), n()).prop_map(|(a, b, c)| Mutation::Nest(a, b, c)),
+        1 => (n(), n(), n(), n()).prop_map(|(a, b, c, d)| Mutation::Splice(a, b, c, d)),
+        2 => (n(), any::<u8>()).prop_map(|(a, b)| Mutation::Byte(a, b)),
+        1 => (n(), n()).prop_map(|(a, b)| Mutation::Cut(a, b)),
+    ]
+}
+
+/// Values that hurt: counts, magnitudes, what is no number, units, words of the format.
+const EXTREMES: [&str; 56] = [
+    "0",
+    "-0.0",
+    "-1",
+    "1",
+    "2",
+    "3",
+    "4",
+    "5",
+    "16",
+    "17",
+    "100",
+    "1e5",
+    "100000",
+    "1000000",
+    "1000000000",
+    "9223372036854775807",
+    "-9223372036854775808",
+    "99999999999999999999",
+    "1e-308",
+    "5e-324",
+    "1e18",
+    "1e154",
+    "1e308",
+    "1e400",
+    "-1e308",
+    "nan",
+    "inf",
+    "-inf",
+    "0x7fffffff",
+    "0.1",
+    "1e-9",
+    "1e9",
+    "\"\"",
+    "\"nan\"",
+    "\"1e400 m\"",
+    "\"1e308 Gm\"",
+    "\"1 m^9\"",
+    "\"1 ((((m))))\"",
+    "\"1 (((((m)))))\"",
+    "\"1 kg/(m s^-2)/m^9^9\"",
+    "\"1 \u{3bc}m\"",
+    "\"\\u0000\"",
+    "\"-0 mm\"",
+    "\"1e-300 mm\"",
+    "\"1 mm/s\"",
+    "\"patch\"",
+    "\"auto\"",
+    "true",
+    "[]",
+    "{}",
+    "[[]]",
+    "[0, 0]",
+    "[1, 1e300]",
+    "[[0, 0], [1, 1], [0, 1], [1, 0]]",
+    "1979-05-27",
+    "updated",
+];
+
+/// Byte ranges of what stands between separators.
+fn tokens(text: &[u8]) -> Vec<(usize, usize)> {
+    let is_part = |b: u8| !matches!(b, b' ' | b'\n' | b'\r' | b'\t' | b',' | b'[' | b']' | b'{' | b'}' | b'=');
+    let (mut found, mut start, mut quoted) = (Vec::new(), None, false);
+    for (at, &byte) in text.iter().enumerate() {
+        quoted ^= byte == b'"';
+        match (start, quoted || is_part(byte)) {
+            (None, true) => start = Some(at),
+            (Some(from), false) => {
+                found.push((from, at));
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    found.extend(start.map(|from| (from, text.len())));
+    found
+}
+
+fn lines(text: &[u8]) -> Vec<&[u8]> {
+    text.split_inclusive(|b| *b == b'\n').collect()
+}
+
+impl Mutation {
+    fn apply(&self, text: Vec<u8>, corpus: &[Vec<u8>]) -> Vec<u8> {
+        if text.is_empty() {
+            return text;
+        }
+        let replaced = |(from, to): (usize, usize), new: &[u8]| [&text[..from], new, &text[to..]].concat();
+        let token = |n: usize| {
+            let tokens = tokens(&text);
+            (!tokens.is_empty()).then(|| tokens[n % tokens.len()])
+        };
+        match *self {
+            Self::Token(which, what) => {
+                token(which).map_or(text.clone(), |at| replaced(at, EXTREMES[what % EXTREMES.len()].as_bytes()))
+            }
+            Self::Nest(which, kind, times) => {
+                let Some((from, to)) = token(which) else { return text };
+                let times = [1, 2, 5, 100, 10_000][times % 5];
+                let [open, close] =
+                    [["[", "]"], ["{a=", "}"], ["(", ")"], ["a.", ""], ["{ difference = { of = ", "}}"]][kind % 5];
+                let inner = String::from_utf8_lossy(&text[from..to]).into_owned();
+                replaced((from, to), (open.repeat(times) + &inner + &close.repeat(times)).as_bytes())
+            }
+            Self::Line(which, kind, times) => {
+                let mut lines = lines(&text);
+                let (at, other) = (which % lines.len(), times % lines.len());
+                match kind % 3 {
+                    0 => drop(lines.remove(at)),
+                    1 => {
+                        let line = lines[at];
+                        lines.splice(at..at, std::iter::repeat_n(line, [1, 3, 30, 3000][times % 4]));
+                    }
+                    _ => lines.swap(at, other),
+                }
+                lines.concat()
+            }
+            Self::Splice(at, which, from, to) => {
+                let other = lines(&corpus[which % corpus.len()]);
+                let (from, to) = (from % (other.len() + 1), to % (other.len() + 1));
+                let mut lines = lines(&text);
+                let at = at % (lines.len() + 1);
+                lines.splice(at..at, other[from.min(to)..from.max(to)].iter().copied());
+                lines.concat()
+            }
+            Self::Byte(at, byte) => {
+                let at = at % text.len();
+                replaced((at, at + 1), &[byte])
+            }
+            Self::Cut(from, length) => {
+                let from = from % text.len();
+                replaced((from, (from + length % 64).min(text.len())), b"")
+            }
+        }
+    }
+}
+
+/// Files with an extension below some folders of this crate, in the order of their names.
+fn files(folders: &[&str], extension: &str) -> Vec<Vec<u8>> {
+    fn walk(folder: &Path, extension: &str, found: &mut Vec<PathBuf>) {
+        for entry in fs::read_dir(folder).expect("a folder").flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                walk(&path, extension, found);
+            } else if path.extension().is_some_and(|e| e == extension) {
+                found.push(path);
+            }
+        }
+    }
+    let mut found = Vec::new();
+    for folder in folders {
+        walk(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder), extension, &mut found);
+    }
+    found.sort();
+    let read = |path: &PathBuf| fs::read(path).expect("a file");
+    let texts: Vec<_> = found.iter().map(read).filter(|text| text.len() < LONGEST).collect();
+    assert!(!texts.is_empty(), "nothing below {folders:?}");
+    texts
+}
+
+static CASES: LazyLock<u32> =
+    LazyLock::new(|| std::env::var("FISURA_FUZZ").ok().and_then(|n| n.parse().ok()).unwrap_or(10_000));
+
+/// Feeds `reader` with mutated files of the corpus: `part` of all inputs.
+fn fuzz(part: f64, corpus: &[Vec<u8>], reader: impl Fn(&[u8])) {
+    let cases = (part * f64::from(*CASES)) as u32;
+    corpus.iter().for_each(|text| watched(text, &reader).expect("the corpus itself"));
+    let config = Config { cases, failure_persistence: None, max_shrink_iters: 200, ..Config::default() };
+    let mut runner = TestRunner::new(config);
+    let input = (any::<prop::sample::Index>(), prop::collection::vec(mutation(), 1..6));
+    let result = runner.run(&input, |(which, mutations)| {
+        let start = which.get(corpus).clone();
+        let mut text = mutations.iter().fold(start, |text, mutation| mutation.apply(text, corpus));
+        text.truncate(LONGEST);
+        watched(&text, &reader).map_err(|what| {
+            let shown = String::from_utf8_lossy(&text[..text.len().min(4000)]).into_owned();
+            TestCaseError::fail(format!("{what}:\n{shown}"))
+        })
+    });
+    result.unwrap_or_else(|error| panic!("{error}"));
+}
+
+/// Time and memory of reading one input.
+fn watched(text: &[u8], reader: &impl Fn(&[u8])) -> Result<(), String> {
+    let mut best = Duration::MAX;
+    for _ in 0..3 {
+        let before = HELD.load(Ordering::Relaxed);
+        MOST.store(before, Ordering::Relaxed);
+        let start = Instant::now();
+        reader(text);
+        best = best.min(start.elapsed());
+        let memory = MOST.load(Ordering::Relaxed).saturating_sub(before);
+        if memory > MEMORY {
+            return Err(format!("{} MiB of memory", memory >> 20));
+        }
+        if best <= PATIENCE {
+            return Ok(());
+        }
+    }
+    Err(format!("{best:?}"))
+}
+
+/// What validation let through starts, if it is small, and its first steps pass or break down in words.
+fn begin(scene: &Scene) {
+    let spans = scene.mesh.knots.each_ref().map(Vec::len).into_iter().product::<usize>();
+    let points = scene.bodies.iter().map(|b| b.particles_per_cell[0] * b.particles_per_cell[1]).sum::<usize>();
+    if spans * points > 20_000 {
+        return;
+    }
+    if let Ok(mut simulation) = Simulation::new(scene) {
+        for _ in 0..2 {
+            if simulation.finished() || simulation.step().is_err() {
+                break;
+            }
+        }
+        simulation.inspect();
+    }
+}
+
+#[test]
+fn readers_survive_any_input() {
+    let scenes = files(&["tests/corpus/scene", "scenes"], "toml");
+    fuzz(0.5, &scenes, |bytes| {
+        let text = String::from_utf8_lossy(bytes);
+        match SceneFile::parse("scene.toml", &text, &[]) {
+            Ok(file) => begin(&file.scene),
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    });
+    let overrides = [b"body.0.crack.0.half_width=0.25 mm\nmesh.cells=[8, 4]\noutput.frames=[]".to_vec()];
+    let scene = String::from_utf8(scenes[3].clone()).expect("UTF-8");
+    fuzz(0.05, &overrides, |bytes| {
+        let text = String::from_utf8_lossy(bytes);
+        let overrides: Vec<String> = text.lines().map(String::from).collect();
+        let _ = SceneFile::parse("scene.toml", &scene, &overrides);
+    });
+    fuzz(0.3, &files(&["tests/corpus/case", "cases"], "toml"), |bytes| {
+        let text = String::from_utf8_lossy(bytes);
+        if let Ok(case) = Case::parse(Path::new("suite/case.toml"), &text, &[]) {
+            let _ = case.scenes();
+        }
+    });
+    fuzz(0.15, &files(&["tests/corpus/csv", "../reference-data"], "csv"), |bytes| {
+        if let Ok(table) = Table::parse("table.csv", bytes) {
+            assert!(table.columns.iter().all(|column| column.len() == table.rows()));
+        }
+    });
+}
+
+/// Inputs made to be slow or large: counts at their limits, times counts.
+#[test]
+fn readers_survive_what_is_made_to_hurt_them() {
+    let scene = |mesh: &str, frame: &str, rest: &str| {
+        let head = "[material.a]\nyoung_modulus = 1e9\npoisson_ratio = 0.3\ndensity = 1000\n[material.a.fracture]\n\
+                    critical_energy_release_rate = 1\nlength_scale = 1e-3\n";
+        format!("[mesh]\n{mesh}\n[analysis]\nend_time = 1e-6\nframe = {frame:?}\n{head}{rest}")
+    };
+    let body =
+        |name: usize, rest: &str| format!("[[body]]\nname=\"{name}\"\nmaterial=\"a\"\nparticles_per_cell=3\n{rest}\n");
+    let whole = body(0, "shape = \"patch\"");
+    let many = |n: usize, f: &dyn Fn(usize) -> String| (0..n).map(f).collect::<String>();
+    let uniform = |cells: &str| format!("degree = 2\norigin = [0, 0]\nsize = [1, 1]\ncells = {cells}");
+    let corners = many(3000, &|i| format!("[{:.3},{}],", 0.5 + 0.4 * (i as f64 / 477.0).sin(), i % 3));
+    let crack = "[[body.crack]]\nfrom=[0.2,0.2]\nto=[0.8,0.8]\n";
+    let polygon = body(0, &format!("shape = {{ polygon = {{ points = [{corners}] }} }}\n{}", crack.repeat(500)));
+    let curved = |degree: usize, parts: usize| {
+        let knots = format!("{}{}", "0, ".repeat(degree + 1), "1, ".repeat(degree + 1));
+        let points = many((degree + 1) * (degree + 1), &|i| format!("[{}, {}],", i % (degree + 1), i / (degree + 1)));
+        format!("degree = {degree}\nknots = [[{knots}], [{knots}]]\ncontrol_points = [{points}]\nsubdivide = {parts}")
+    };
+    let discs = many(700, &|i| body(i, "shape={disk={center=[0.5,0.5],radius=0.4}}"));
+    let rigid = body(1, "rigid = true\nshape = { rectangle = { min = [-1e9, -1e9], max = [1e9, -1] } }");
+    let cases = [
+        scene(&uniform("[100000, 490]"), "total", &whole),
+        scene(&uniform("[100000, 1]"), "total", &whole),
+        scene(&uniform("[7000, 7000]"), "updated", &(discs.clone() + "[contact]\nfriction = 0.1\n")),
+        scene(&uniform("[10, 10]"), "updated", &(discs + "[contact]\nfriction = 0.1\n")),
+        scene(&uniform("[10, 10]"), "updated", &(whole.clone() + &rigid + "[contact]\nfriction = 0.1\n")),
+        scene(&uniform("[100, 100]"), "total", &polygon),
+        scene(&curved(2, 527), "total", &whole),
+        scene(&curved(4, 316), "total", &(whole + &crack.repeat(500))),
+        scene(&curved(1, 500), "total", &polygon),
+        format!("a = {}{}", "[".repeat(30_000), "]".repeat(30_000)),
+        format!("{}a = 1", "a.".repeat(30_000)),
+        many(6000, &|i| format!("a{i} = 1\n")),
+        format!("output = {{ frames = [{}] }}", "\"x\", ".repeat(10_000)),
+    ];
+    for text in &cases {
+        assert!(text.len() < LONGEST, "{} bytes", text.len());
+        let start = Instant::now();
+        let outcome = watched(text.as_bytes(), &|bytes: &[u8]| {
+            let _ = SceneFile::parse("scene.toml", &String::from_utf8_lossy(bytes), &[]);
+        });
+        let name = text.lines().take(8).collect::<String>();
+        eprintln!("{:.3} s: {}", start.elapsed().as_secs_f64(), &name[..name.len().min(100)]);
+        outcome.unwrap_or_else(|what| panic!("{what}: {}", &name[..name.len().min(200)]));
+    }
+    let list = |n: usize| (1..=n).map(|i| format!("{i}, ")).collect::<String>();
+    let head = "claim = \"c\"\nseconds = 1\n[[check]]\nquantity = \"q\"\n";
+    let rings = format!(
+        "{head}[rings]\nouter_radius = [{0}]\ninner_over_outer = [{1}]\nlength_scale = [{0}]\npoints = [{2}]",
+        list(2000),
+        "0.5, ".repeat(2000),
+        "2, ".repeat(2000)
+    );
+    let axes = format!("{head}[scene]\n{}", many(100, &|i| format!("a{i} = [{}]\n", list(100))));
+    for text in [rings, axes] {
+        watched(text.as_bytes(), &|bytes: &[u8]| {
+            let case = Case::parse(Path::new("suite/case.toml"), &String::from_utf8_lossy(bytes), &[]);
+            assert!(case.and_then(|case| case.scenes().map(|_| ())).is_err());
+        })
+        .unwrap_or_else(|what| panic!("{what}: {}", &text[..200]));
+    }
+    let deep = format!("{}a=1", "a.".repeat(30_000));
+    assert!(SceneFile::parse("scene.toml", &cases[0], &[deep]).is_err());
+}

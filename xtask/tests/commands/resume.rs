@@ -1,0 +1,119 @@
+//! `run --resume`: killed and interrupted runs go on to the same bytes; checkpoints of others are refused.
+
+use std::process::{Child, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use super::support::{Place, notched};
+
+/// A cracking plate that takes a second or two, with frames on the way.
+fn plate() -> Place {
+    let text = notched().replacen("cells  = [10, 5]", "cells  = [80, 40]", 1);
+    let text =
+        text.replacen("frames  = [\"0 us\", \"5 us\"]", "frames  = [\"0 us\", \"2 us\", \"6 us\", \"20 us\"]", 1);
+    let text = text.replacen("end_time = \"5 us\"", "end_time = \"20 us\"", 1);
+    Place::with("plate.toml", &text.replacen("samples = 10", "samples = 200", 1))
+}
+
+const ARGUMENTS: [&str; 5] = ["run", "plate.toml", "--threads", "2", "--out"];
+const OFTEN: [&str; 2] = ["--checkpoint", "0.02"];
+
+fn start(place: &Place, more: &[&str]) -> Child {
+    let mut command = place.command(&[&ARGUMENTS[..], &["killed"], &OFTEN, more].concat());
+    command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the binary starts")
+}
+
+/// Histories and pictures are those of the undisturbed run, and nothing else is left.
+#[track_caller]
+fn same_files(place: &Place) {
+    let names = place.files("undisturbed");
+    assert_eq!(place.files("killed"), names);
+    for name in names.iter().filter(|name| *name != "summary.json") {
+        assert!(place.read(&format!("killed/{name}")) == place.read(&format!("undisturbed/{name}")), "{name} differs");
+    }
+    assert!(names.iter().any(|name| name == "history.csv") && names.len() == 3 + 2 * 4, "{names:?}");
+}
+
+#[test]
+fn a_run_killed_again_and_again_gives_the_bytes_of_an_undisturbed_one() {
+    let place = plate();
+    let clock = Instant::now();
+    place.xtask(&[&ARGUMENTS[..], &["undisturbed", "--checkpoint", "none"]].concat()).with_status(0);
+    let whole = clock.elapsed();
+    for part in [0.05, 0.3, 0.1, 0.45, 0.2] {
+        let mut child = start(&place, &["--resume"]);
+        sleep(whole.mul_f64(part));
+        child.kill().expect("SIGKILL");
+        child.wait().expect("it ends");
+        let finished = place.path("killed/summary.json").exists();
+        assert!(finished || !place.path("killed/history.csv").exists(), "a part of a history looks finished");
+    }
+    assert!(place.path("killed/checkpoint.bin").exists(), "in {whole:?} no checkpoint was reached");
+    place.xtask(&[&ARGUMENTS[..], &["killed", "--resume"]].concat()).with_status(0);
+    same_files(&place);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_stores_where_it_is_and_ends_with_130() {
+    for signal in ["-INT", "-TERM"] {
+        let place = plate();
+        place.xtask(&[&ARGUMENTS[..], &["undisturbed"]].concat()).with_status(0);
+        let mut command = place.command(&[&ARGUMENTS[..], &["killed"]].concat());
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the binary starts");
+        sleep(Duration::from_millis(400));
+        let id = child.id().to_string();
+        assert!(std::process::Command::new("kill").args([signal, &id]).status().expect("kill").success());
+        let output = child.wait_with_output().expect("it ends");
+        let err = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(130), "{signal}: {err}");
+        assert!(err.contains("interrupted after step") && err.contains("--resume"), "{err}");
+        assert_eq!(place.files("killed"), ["checkpoint.bin"]);
+        let run = place.xtask(&[&ARGUMENTS[..], &["killed", "--resume"]].concat()).with_status(0);
+        assert_eq!(run.err, "");
+        same_files(&place);
+    }
+}
+
+#[test]
+fn without_a_checkpoint_the_run_begins_at_the_start_and_says_so() {
+    let place = Place::with("block.toml", super::support::BLOCK);
+    let run = place.xtask(&["run", "block.toml", "--out", "out", "--resume"]).with_status(0);
+    run.complains_of(&["no checkpoint in out", "begins at the start"]);
+    assert!(place.path("out/history.csv").is_file() && !place.path("out/checkpoint.bin").exists());
+}
+
+#[test]
+fn a_checkpoint_of_another_scene_or_damaged_is_refused_with_2() {
+    let place = plate();
+    let mut child = start(&place, &[]);
+    let clock = Instant::now();
+    while !place.path("killed/checkpoint.bin").exists() && clock.elapsed() < Duration::from_secs(60) {
+        sleep(Duration::from_millis(5));
+    }
+    child.kill().expect("SIGKILL");
+    child.wait().expect("it ends");
+    let resumed = |more: &[&str]| place.xtask(&[&ARGUMENTS[..], &["killed", "--resume"], more].concat());
+    let refused = |more: &[&str], parts: &[&str]| {
+        assert_eq!(resumed(more).with_status(2).complains_of(parts).out, "");
+    };
+    refused(&["--set", "output.samples=100"], &["checkpoint.bin cannot be taken up", "another scene", "--set"]);
+    refused(&["--checkpoint", "none"], &["--resume does not go with --checkpoint none"]);
+    refused(&["--checkpoint", "soon"], &["soon", "seconds"]);
+    let path = place.path("killed/checkpoint.bin");
+    let whole = std::fs::read(&path).expect("a checkpoint");
+    let mut flipped = whole.clone();
+    *flipped.last_mut().expect("bytes") ^= 1;
+    let older = [b"fisura checkpoint 0\n", &whole[20..]].concat();
+    for (bytes, part) in [
+        (&flipped[..], "check sum"),
+        (&whole[..whole.len() / 2], "check sum"),
+        (&older, "another version"),
+        (b"", "no checkpoint"),
+    ] {
+        std::fs::write(&path, bytes).expect("a file");
+        refused(&[], &[part, "--resume"]);
+    }
+    std::fs::write(&path, &whole).expect("a file");
+    resumed(&[]).with_status(0);
+}
