@@ -15,8 +15,7 @@ use crate::stencil::Stencil;
 
 /// Assembles matrix and right-hand side anew.
 pub fn assemble(
-    matrix: &mut Stencil,
-    load: &mut [f64],
+    (matrix, load): (&mut Stencil, &mut Vec<f64>),
     patch: &Patch,
     cells: &Cells,
     points: &[Point],
@@ -26,7 +25,7 @@ pub fn assemble(
 ) {
     let (grid, row_length) = (matrix.grid, matrix.row_length());
     fictitious.begin(matrix, load);
-    let fields = [matrix.coefficients_mut(), &mut *load];
+    let fields = [matrix.coefficients_mut(), load.as_mut_slice()];
     scatter(&cells.strips, fields, [row_length, grid.stride], |strip, window| {
         let cells = &cells.cells[strip.cells.clone()];
         let stride = grid.stride;

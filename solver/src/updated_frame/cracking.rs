@@ -86,8 +86,7 @@ impl Cracking {
     /// # Errors
     /// If the solve does not converge.
     pub fn solve(&mut self, patch: &Patch, cells: &Cells, points: &[Point], moved: bool) -> Result<(), NotConverged> {
-        let (matrix, load) = self.field.system_mut();
-        assemble(matrix, load, patch, cells, points, &self.points, &self.model, &self.fictitious);
+        assemble(self.field.system_mut(), patch, cells, points, &self.points, &self.model, &self.fictitious);
         let first = self.field.counts().solves == 0;
         if moved && !first {
             self.field.renew_preconditioner();
