@@ -11,14 +11,18 @@
 //! | `junit.xml` | the test view of a CI service | [`junit`] |
 //! | `metrics.json` | trend charts over commits | [`metrics`] |
 //!
+//! [`compare`] holds two such sets side by side, [`annotations`] marks failed checks in the view of a CI service.
+//!
 //! [`text`] prints the verdict on a terminal, [`run_report`] draws the pictures of a single run. Below them lie
 //! [`series`] (the numbers behind figures and what can be wrong with them), [`axis`] (ranges and ticks), [`colour`]
 //! (the map of fields), [`number`] (digits as they are printed), [`rates`] (orders of convergence among records) and
 //! [`view`] (verdicts in words, records in groups).
 
+pub mod annotations;
 pub mod axis;
 pub mod chart;
 pub mod colour;
+pub mod compare;
 pub mod error;
 pub mod field;
 pub mod figure;

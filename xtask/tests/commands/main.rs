@@ -1,7 +1,9 @@
 //! The built binary on small scenes: exit statuses, streams, files, help.
 
 mod check;
+mod compare;
 mod help;
+mod merge;
 mod report;
 mod resume;
 mod run;
