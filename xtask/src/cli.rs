@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::{check, compare, merge, report, run, verify};
+use crate::{check, compare, figures, merge, report, run, verify};
 
 const EXIT_STATUS: &str = "\
 Exit status: 0 all checks hold, 1 a check fails, 2 bad arguments or bad input, 3 a run broke down, \
@@ -38,6 +38,8 @@ pub enum Command {
     Run(run::Args),
     /// Validate a scene and say what will be modelled and what it will cost, without running it
     Check(check::Args),
+    /// Reproduce the figures of the paper, or redraw them from stored results
+    Figures(figures::Args),
     /// Render the report of a results folder again, without running anything
     Report(report::Args),
 }

@@ -1,4 +1,5 @@
-//! The commands of the fisura workspace: `cargo xtask verify`, `merge`, `compare`, `list`, `run`, `check`, `report`.
+//! The commands of the fisura workspace: `cargo xtask verify`, `merge`, `compare`, `list`, `run`, `check`, `figures`,
+//! `report`.
 //!
 //! One file per command; beside them [`cli`] (what can be said on the command line), [`exit`] (statuses), [`failure`]
 //! (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go), [`progress`]
@@ -11,6 +12,7 @@ mod console;
 mod environment;
 mod exit;
 mod failure;
+mod figures;
 mod folders;
 mod interrupt;
 mod list;
@@ -39,6 +41,7 @@ fn main() -> ExitCode {
         Command::List => list::list(&common),
         Command::Run(args) => run::run(&args, &common),
         Command::Check(args) => check::check(&args, &common),
+        Command::Figures(args) => figures::figures(&args, &common),
         Command::Report(args) => report::report(&args, &common),
     });
     outcome.unwrap_or_else(|failure| failure.show()).into()

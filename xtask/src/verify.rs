@@ -78,7 +78,7 @@ pub fn verify(args: &Args, common: &Common) -> Result<Exit, Failure> {
         Some(part) => suite::verify_slice(&cases, part, &options, &watch),
         None => suite::verify(&cases, &options, &watch),
     };
-    watch.bar.finish_and_clear();
+    watch.finish();
     conclude(&results?, &folder, common)
 }
 
@@ -182,16 +182,22 @@ fn verdict(records: &[Record]) -> Exit {
 }
 
 /// A bar on a terminal; elsewhere a line per finished case.
-struct Watch<'a> {
+pub struct Watch<'a> {
     common: &'a Common,
     bar: ProgressBar,
     present: Mutex<(String, Instant)>,
 }
 
 impl<'a> Watch<'a> {
-    fn new(common: &'a Common) -> Self {
+    /// Watches cases that are about to be run.
+    pub fn new(common: &'a Common) -> Self {
         let bar = progress::bar(common, "{msg} {wide_bar} {percent} %, {elapsed}", PARTS);
         Self { common, bar, present: Mutex::new((String::new(), Instant::now())) }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
     }
 }
 
