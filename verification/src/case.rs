@@ -178,11 +178,10 @@ impl Case {
 
     /// Fingerprint of what the case simulates: everything but its claim, checks, label and estimated time.
     pub fn inputs(&self) -> String {
-        let mut table: toml::Table = self.document.text().parse().unwrap_or_default();
-        for key in ["claim", "check", "label", "seconds", "tier", "deviations"] {
-            table.remove(key);
-        }
-        fingerprint([table.to_string()])
+        let others = ["claim", "check", "label", "seconds", "tier", "deviations"];
+        let entries = self.document.root.as_table().into_iter().flatten();
+        let simulated = entries.filter(|(key, _)| !others.contains(&key.as_str()));
+        fingerprint(simulated.map(|(key, node)| format!("{key} = {}", node.canonical())))
     }
 
     /// An error at a key of the file.

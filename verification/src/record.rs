@@ -28,6 +28,9 @@ pub struct ResultSet {
     pub schema: String,
     /// Where and when it was run.
     pub environment: Environment,
+    /// Fingerprint of what each case simulated, by its id.
+    #[serde(default)]
+    pub inputs: BTreeMap<String, String>,
     /// One record per check, in the order of the plan.
     pub records: Vec<Record>,
     /// Figures, in the order of the report.

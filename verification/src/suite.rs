@@ -6,6 +6,7 @@ pub mod part;
 pub mod partition;
 mod resume;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
@@ -120,7 +121,7 @@ pub fn select(cases: Vec<Case>, selection: &Selection) -> Vec<Case> {
 pub fn verify(cases: &[Case], options: &Options, progress: &dyn Progress) -> Result<ResultSet, VerifyError> {
     let library = Library::load(options.reference_data)?;
     let (outcomes, store) = run_cases(cases, options, &library, progress)?;
-    let results = assemble(options.out, outcomes, options.environment.clone(), &library)?;
+    let results = assemble(options.out, outcomes, inputs(cases), options.environment.clone(), &library)?;
     store.finish();
     Ok(results)
 }
@@ -139,8 +140,9 @@ pub fn verify_slice(
     let (outcomes, store) = run_cases(cases, options, &library, progress)?;
     let named = cases.iter().map(Case::id).zip(outcomes.iter().cloned()).collect();
     let environment = options.environment.clone();
-    let results = assemble(options.out, outcomes, environment.clone(), &library)?;
-    Part { schema: PART_SCHEMA.to_string(), slice, plan, environment, outcomes: named }.write(options.out)?;
+    let inputs = inputs(cases);
+    let results = assemble(options.out, outcomes, inputs.clone(), environment.clone(), &library)?;
+    Part { schema: PART_SCHEMA.to_string(), slice, plan, environment, inputs, outcomes: named }.write(options.out)?;
     store.finish();
     Ok(results)
 }
@@ -179,6 +181,7 @@ fn run_cases(
 fn assemble(
     out: &Path,
     outcomes: Vec<CaseOutcome>,
+    inputs: BTreeMap<String, String>,
     environment: Environment,
     library: &Library,
 ) -> Result<ResultSet, VerifyError> {
@@ -192,9 +195,14 @@ fn assemble(
         write_series(out, &stem, &table)?;
     }
     let records = outcomes.into_iter().flat_map(|o| o.records).collect();
-    let results = ResultSet { schema: SCHEMA.to_string(), environment, records, figures };
+    let results = ResultSet { schema: SCHEMA.to_string(), environment, inputs, records, figures };
     write_json(&out.join("results.json"), &results)?;
     Ok(results)
+}
+
+/// What each case simulates.
+fn inputs(cases: &[Case]) -> BTreeMap<String, String> {
+    cases.iter().map(|case| (case.id(), case.inputs())).collect()
 }
 
 /// Series and figures of an earlier run, if the folder is one of results: they would pass for those of this one.

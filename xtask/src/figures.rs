@@ -49,10 +49,9 @@ pub fn figures(args: &Args, common: &Common) -> Result<Exit, Failure> {
     };
     let mut found = wanted.find(&results, &source)?;
     found.sort_by(|a, b| a.0.cmp(&b.0));
-    let cases = load_cases(&cases_folder()?, &[])?;
     let mut files = Vec::new();
     for (name, figure) in &found {
-        let inputs = inputs(&results, figure, &cases);
+        let inputs = inputs(&results, figure);
         let written = bundle::write((&source, figure), (&folder, name), &results.environment, inputs)?;
         files.extend(written.into_iter().map(|file| folder.join(file).display().to_string()));
     }
@@ -128,8 +127,8 @@ fn run(wanted: &[PaperFigure], out: &Path, common: &Common) -> Result<ResultSet,
     Ok(results?)
 }
 
-/// Fingerprints of what the cases behind a figure simulate.
-fn inputs(set: &ResultSet, figure: &Figure, cases: &[Case]) -> BTreeMap<String, String> {
-    let of = |id: String| Some((id.clone(), cases.iter().find(|case| case.id() == id)?.inputs()));
+/// Fingerprints of what the cases behind a figure simulated.
+fn inputs(set: &ResultSet, figure: &Figure) -> BTreeMap<String, String> {
+    let of = |id: String| Some((id.clone(), set.inputs.get(&id)?.clone()));
     cases_of(set, figure).into_iter().filter_map(of).collect()
 }

@@ -92,6 +92,7 @@ pub fn merge(folders: &[PathBuf], out: &Path, reference_data: &Path) -> Result<R
     }
     let environment = environment(&parts);
     let plan = first.plan.clone();
+    let inputs = parts.iter().flat_map(|part| part.inputs.clone()).collect();
     let mut found: Vec<(String, CaseOutcome)> = parts.into_iter().flat_map(|part| part.outcomes).collect();
     let mut outcomes = Vec::new();
     for (id, _) in plan.cases {
@@ -103,7 +104,7 @@ pub fn merge(folders: &[PathBuf], out: &Path, reference_data: &Path) -> Result<R
     for folder in folders {
         copy(&folder.join("series"), &out.join("series"))?;
     }
-    Ok(assemble(out, outcomes, environment, &library)?)
+    Ok(assemble(out, outcomes, inputs, environment, &library)?)
 }
 
 fn read(folder: &Path) -> Result<Part, MergeError> {

@@ -1,5 +1,6 @@
 //! What a slice of a plan leaves for `merge`: `part.json`, beside the results of the slice itself.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -113,6 +114,8 @@ pub struct Part {
     pub plan: Plan,
     /// Where and when it was run.
     pub environment: Environment,
+    /// Fingerprint of what each of its cases simulated.
+    pub inputs: BTreeMap<String, String>,
     /// Id and outcome of its cases, in the order of the plan.
     pub outcomes: Vec<(String, CaseOutcome)>,
 }
