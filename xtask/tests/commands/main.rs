@@ -2,10 +2,12 @@
 
 mod check;
 mod compare;
+mod figures;
 mod help;
 mod merge;
 mod report;
 mod resume;
 mod run;
 mod support;
+mod templates;
 mod verify;

@@ -9,7 +9,7 @@ use super::support::{Place, notched};
 use super::verify::{case, case_of, workspace_with};
 
 /// Five cases in two suites; those of the plate have pictures and curves that several runs share.
-fn workspace() -> Place {
+pub fn workspace() -> Place {
     let mut cases = vec![("energy/block".to_string(), case("The ledger closes", "quick", 1e-12))];
     for (name, seconds) in [("a", 5), ("b", 3), ("c", 2), ("d", 1)] {
         let largest = if name == "c" { -1.0 } else { 1e-2 };
