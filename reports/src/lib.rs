@@ -11,14 +11,23 @@
 //! | `junit.xml` | the test view of a CI service | [`junit`] |
 //! | `metrics.json` | trend charts over commits | [`metrics`] |
 //!
+//! [`compare`] holds two such sets side by side, [`annotations`] marks failed checks in the view of a CI service.
+//!
+//! [`paper`] finds the figures of the source paper, [`bundle`] writes a figure with its numbers, caption and provenance.
+//!
+//! [`vtk`] writes the files that ParaView opens.
+//!
 //! [`text`] prints the verdict on a terminal, [`run_report`] draws the pictures of a single run. Below them lie
 //! [`series`] (the numbers behind figures and what can be wrong with them), [`axis`] (ranges and ticks), [`colour`]
 //! (the map of fields), [`number`] (digits as they are printed), [`rates`] (orders of convergence among records) and
 //! [`view`] (verdicts in words, records in groups).
 
+pub mod annotations;
 pub mod axis;
+pub mod bundle;
 pub mod chart;
 pub mod colour;
+pub mod compare;
 pub mod error;
 pub mod field;
 pub mod figure;
@@ -27,12 +36,15 @@ pub mod junit;
 pub mod markdown;
 pub mod metrics;
 pub mod number;
+pub mod paper;
 pub mod rates;
 pub mod run_report;
 pub mod series;
 pub mod text;
 pub mod view;
+pub mod vtk;
 
+mod compact;
 mod frame;
 mod guides;
 mod legend;

@@ -88,7 +88,7 @@ fn reference(record: &Record) -> String {
 }
 
 /// Text of a table cell: one line, nothing that Markdown or HTML would take for its own.
-fn cell(text: &str) -> String {
+pub(crate) fn cell(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('|', "\\|");
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -34,6 +34,7 @@ pub fn page(
 fn finish(raw: &str, id: &str, title: &str, description: &str, size: (f64, f64), below: &str) -> String {
     let body = raw.split_once(">\n").map_or(raw, |(_, body)| body);
     let body = body.replace(" opacity=\"1\"", "").replace(" font-family=\"sans-serif\"", "").replace(" \"/>", "\"/>");
+    let body = crate::compact::compact(&body);
     let id = slug(id);
     let (width, height) = size;
     let (outer_width, outer_height) = (width * SCALE, height * SCALE);

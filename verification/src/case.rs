@@ -16,6 +16,7 @@ use crate::rings::Geometry;
 use crate::scene_file::document::{Document, Node};
 use crate::scene_file::fields::{Item, Problems};
 use crate::scene_file::{Problem, SceneFileError};
+use crate::suite::part::fingerprint;
 
 /// How much a run may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -173,6 +174,14 @@ impl Case {
             Some(case) if found.is_empty() => Ok(case),
             _ => Err(document.error(&found)),
         }
+    }
+
+    /// Fingerprint of what the case simulates: everything but its claim, checks, label and estimated time.
+    pub fn inputs(&self) -> String {
+        let others = ["claim", "check", "label", "seconds", "tier", "deviations"];
+        let entries = self.document.root.as_table().into_iter().flatten();
+        let simulated = entries.filter(|(key, _)| !others.contains(&key.as_str()));
+        fingerprint(simulated.map(|(key, node)| format!("{key} = {}", node.canonical())))
     }
 
     /// An error at a key of the file.

@@ -7,6 +7,7 @@ mod figure;
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use figure::{Axis, Curve, CurveStyle, Figure, FigureBody, Floor, Region, Scale, SlopeTriangle};
@@ -14,13 +15,22 @@ pub use figure::{Axis, Curve, CurveStyle, Figure, FigureBody, Floor, Region, Sca
 /// Name of the schema written and read.
 pub const SCHEMA: &str = "fisura.results/1";
 
+/// JSON Schema of `results.json`, made from the types below; committed as `verification/schema/results.schema.json`.
+pub fn json_schema() -> serde_json::Value {
+    schemars::schema_for!(ResultSet).to_value()
+}
+
 /// Everything one invocation found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ResultSet {
     /// [`SCHEMA`].
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: String,
     /// Where and when it was run.
     pub environment: Environment,
+    /// Fingerprint of what each case simulated, by its id.
+    #[serde(default)]
+    pub inputs: BTreeMap<String, String>,
     /// One record per check, in the order of the plan.
     pub records: Vec<Record>,
     /// Figures, in the order of the report.
@@ -28,7 +38,7 @@ pub struct ResultSet {
 }
 
 /// Where and when; exempt from byte-for-byte comparison.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Environment {
     /// Commit of the work tree, or empty.
     pub commit: String,
@@ -45,7 +55,7 @@ pub struct Environment {
 }
 
 /// Verdict of one check.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
     /// Within its bounds.
@@ -59,7 +69,7 @@ pub enum Status {
 }
 
 /// Kind of reference.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ReferenceKind {
     /// A closed form.
@@ -77,7 +87,7 @@ pub enum ReferenceKind {
 }
 
 /// What a value is held against.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reference {
     /// Value, if it is one number.
     pub value: Option<f64>,
@@ -88,7 +98,7 @@ pub struct Reference {
 }
 
 /// Bounds and why they are what they are.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Accept {
     /// Smallest value that passes.
     pub min: Option<f64>,
@@ -99,7 +109,7 @@ pub struct Accept {
 }
 
 /// Measured time; exempt from byte-for-byte comparison.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Timing {
     /// Wall time of the runs behind the record, s.
     pub wall_s: f64,
@@ -110,7 +120,7 @@ pub struct Timing {
 }
 
 /// One check and what it found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Record {
     /// `suite/case[/variant]/quantity`.
     pub id: String,

@@ -1,8 +1,12 @@
 //! Suites: which cases there are, which are chosen, and running them into a folder of results.
 
 mod judge;
+pub mod merge;
+pub mod part;
+pub mod partition;
 mod resume;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
@@ -13,6 +17,9 @@ use crate::record::{Environment, Figure, Record, ResultSet, SCHEMA, Status};
 use crate::reference::{Library, ReferenceError};
 use crate::scene_file::SceneFileError;
 use crate::study::scene::RunInfo;
+
+use part::{PART_SCHEMA, Part, Plan};
+use partition::Slice;
 
 /// Which cases to run.
 #[derive(Debug, Clone)]
@@ -113,20 +120,53 @@ pub fn select(cases: Vec<Case>, selection: &Selection) -> Vec<Case> {
 /// If a case or reference file is wrong, or the folder cannot be written. A failed check is a record, not an error.
 pub fn verify(cases: &[Case], options: &Options, progress: &dyn Progress) -> Result<ResultSet, VerifyError> {
     let library = Library::load(options.reference_data)?;
+    let (outcomes, store) = run_cases(cases, options, &library, progress)?;
+    let results = assemble(options.out, outcomes, inputs(cases), options.environment.clone(), &library)?;
+    store.finish();
+    Ok(results)
+}
+
+/// The same for a slice of a plan, `cases` being those of the slice; leaves a part for [`merge::merge`] as well.
+///
+/// # Errors
+/// As [`verify`].
+pub fn verify_slice(
+    cases: &[Case],
+    (slice, plan): (Slice, Plan),
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<ResultSet, VerifyError> {
+    let library = Library::load(options.reference_data)?;
+    let (outcomes, store) = run_cases(cases, options, &library, progress)?;
+    let named = cases.iter().map(Case::id).zip(outcomes.iter().cloned()).collect();
+    let environment = options.environment.clone();
+    let inputs = inputs(cases);
+    let results = assemble(options.out, outcomes, inputs.clone(), environment.clone(), &library)?;
+    Part { schema: PART_SCHEMA.to_string(), slice, plan, environment, inputs, outcomes: named }.write(options.out)?;
+    store.finish();
+    Ok(results)
+}
+
+/// The outcome of every case, run or taken up, and the store that still holds them.
+fn run_cases(
+    cases: &[Case],
+    options: &Options,
+    library: &Library,
+    progress: &dyn Progress,
+) -> Result<(Vec<CaseOutcome>, resume::Store), VerifyError> {
     let series = options.out.join("series");
-    std::fs::create_dir_all(&series).map_err(|e| VerifyError::output(&series, e))?;
     let store = resume::Store::open(options)?;
     if !store.has_finished_cases() {
         remove_old_results(options.out);
-        std::fs::create_dir_all(&series).map_err(|e| VerifyError::output(&series, e))?;
     }
+    std::fs::create_dir_all(&series).map_err(|e| VerifyError::output(&series, e))?;
     let mut outcomes = Vec::new();
     for (index, case) in cases.iter().enumerate() {
         progress.started(case, index, cases.len());
         let outcome = match store.load(case) {
             Some(outcome) => outcome,
             None => {
-                let outcome = judge::run_case(case, options.out, &library, progress)?;
+                let outcome = judge::run_case(case, options.out, library, progress)?;
                 store.save(case, &outcome)?;
                 outcome
             }
@@ -134,29 +174,41 @@ pub fn verify(cases: &[Case], options: &Options, progress: &dyn Progress) -> Res
         progress.finished(case, &outcome.records);
         outcomes.push(outcome);
     }
+    Ok((outcomes, store))
+}
+
+/// Writes what the outcomes of all cases give together: figures over several runs, their reference curves, the records.
+fn assemble(
+    out: &Path,
+    outcomes: Vec<CaseOutcome>,
+    inputs: BTreeMap<String, String>,
+    environment: Environment,
+    library: &Library,
+) -> Result<ResultSet, VerifyError> {
     let runs: Vec<RunInfo> = outcomes.iter().flat_map(|o| o.runs.clone()).collect();
     let mut figures: Vec<Figure> = outcomes.iter().flat_map(|o| o.figures.clone()).collect();
-    let mut tables = figures::add_references(&mut figures, &library);
-    let (drawn, of_runs) = figures::of_runs(&runs, &library);
+    let mut tables = figures::add_references(&mut figures, library);
+    let (drawn, of_runs) = figures::of_runs(&runs, library);
     tables.extend(of_runs);
     figures.extend(drawn);
     for (stem, table) in tables {
-        write_series(options.out, &stem, &table)?;
+        write_series(out, &stem, &table)?;
     }
-    let results = ResultSet {
-        schema: SCHEMA.to_string(),
-        environment: options.environment.clone(),
-        records: outcomes.into_iter().flat_map(|o| o.records).collect(),
-        figures,
-    };
-    write_json(&options.out.join("results.json"), &results)?;
-    store.finish();
+    let records = outcomes.into_iter().flat_map(|o| o.records).collect();
+    let results = ResultSet { schema: SCHEMA.to_string(), environment, inputs, records, figures };
+    write_json(&out.join("results.json"), &results)?;
     Ok(results)
+}
+
+/// What each case simulates.
+fn inputs(cases: &[Case]) -> BTreeMap<String, String> {
+    cases.iter().map(|case| (case.id(), case.inputs())).collect()
 }
 
 /// Series and figures of an earlier run, if the folder is one of results: they would pass for those of this one.
 fn remove_old_results(out: &Path) {
     if out.join("results.json").exists() {
+        let _ = std::fs::remove_file(out.join(part::PART_FILE)); // as below
         for folder in ["series", "figures"] {
             // What cannot be removed is overwritten where it matters, and writing reports the reason.
             let _ = std::fs::remove_dir_all(out.join(folder));

@@ -14,7 +14,13 @@ fn between<'a>(text: &'a str, open: &str, close: &str) -> Vec<&'a str> {
 
 #[test]
 fn every_link_leads_to_a_file() {
-    for document in ["README.md", "METHODOLOGY.md", "reports/gallery/README.md", "reference-data/README.md"] {
+    for document in [
+        "README.md",
+        "METHODOLOGY.md",
+        "verification/TUTORIAL.md",
+        "reports/gallery/README.md",
+        "reference-data/README.md",
+    ] {
         let path = root().join(document);
         let text = std::fs::read_to_string(&path).unwrap();
         for link in between(&text, "](", ")").into_iter().filter(|l| !l.starts_with("http") && !l.starts_with('#')) {

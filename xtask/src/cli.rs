@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::{check, report, run, verify};
+use crate::{check, compare, figures, merge, report, run, verify};
 
 const EXIT_STATUS: &str = "\
 Exit status: 0 all checks hold, 1 a check fails, 2 bad arguments or bad input, 3 a run broke down, \
@@ -28,12 +28,18 @@ pub struct Cli {
 pub enum Command {
     /// Run the verification suites, write the report, and say whether every check holds
     Verify(verify::Args),
+    /// Join the results of all slices of `verify --partition`
+    Merge(merge::Args),
+    /// Compare two results folders: unchanged, minor, major, missing, new; accuracy and speed
+    Compare(compare::Args),
     /// List the cases: what each claims and models, its tier and estimated time
     List,
     /// Run a scene to its end and write its history, summary and pictures
     Run(run::Args),
     /// Validate a scene and say what will be modelled and what it will cost, without running it
     Check(check::Args),
+    /// Reproduce the figures of the paper, or redraw them from stored results
+    Figures(figures::Args),
     /// Render the report of a results folder again, without running anything
     Report(report::Args),
 }

@@ -1,4 +1,5 @@
-//! The commands of the fisura workspace: `cargo xtask verify`, `list`, `run`, `check`, `report`.
+//! The commands of the fisura workspace: `cargo xtask verify`, `merge`, `compare`, `list`, `run`, `check`, `figures`,
+//! `report`.
 //!
 //! One file per command; beside them [`cli`] (what can be said on the command line), [`exit`] (statuses), [`failure`]
 //! (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go), [`progress`]
@@ -6,13 +7,16 @@
 
 mod check;
 mod cli;
+mod compare;
 mod console;
 mod environment;
 mod exit;
 mod failure;
+mod figures;
 mod folders;
 mod interrupt;
 mod list;
+mod merge;
 mod pictures;
 mod progress;
 mod report;
@@ -32,9 +36,12 @@ fn main() -> ExitCode {
     let Cli { command, common } = Cli::parse();
     let outcome = set_threads(&common).and_then(|()| match command {
         Command::Verify(args) => verify::verify(&args, &common),
+        Command::Merge(args) => merge::merge(&args, &common),
+        Command::Compare(args) => compare::compare(&args, &common),
         Command::List => list::list(&common),
         Command::Run(args) => run::run(&args, &common),
         Command::Check(args) => check::check(&args, &common),
+        Command::Figures(args) => figures::figures(&args, &common),
         Command::Report(args) => report::report(&args, &common),
     });
     outcome.unwrap_or_else(|failure| failure.show()).into()

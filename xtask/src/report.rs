@@ -39,7 +39,8 @@ pub fn report(args: &Args, common: &Common) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-fn unreadable(error: ReportError, folder: &Path) -> Failure {
+/// Results that cannot be read, with what would help.
+pub fn unreadable(error: ReportError, folder: &Path) -> Failure {
     let missing = !folder.join("results.json").is_file();
     let help =
         if missing { "give the folder that `cargo xtask verify` wrote" } else { "run `cargo xtask verify` again" };

@@ -1,18 +1,21 @@
 //! `verify`: runs the suites, writes the report, says whether every check holds.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::Instant;
 
+use fisura_reports::annotations::render_annotations;
 use fisura_reports::number::duration;
 use fisura_reports::text::render_text;
 use fisura_verification::record::{Record, ResultSet, Status};
+use fisura_verification::suite::part::{Invocation, Plan};
+use fisura_verification::suite::partition::Slice;
 use fisura_verification::suite::{self, Case, Options, Selection, Tier, VerifyError, load_cases, select, worst};
 use indicatif::ProgressBar;
 
 use crate::cli::{Common, Format};
-use crate::environment::environment;
+use crate::environment::{changes, environment};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::{console, folders, progress};
@@ -32,6 +35,9 @@ pub struct Args {
     /// quick (minutes in all), or full (the same and paper resolution)
     #[arg(long, value_name = "TIER", default_value = "quick", value_parser = str::parse::<Tier>)]
     tier: Tier,
+    /// Only the K-th of N slices of what is selected, balanced by the estimated time of the cases; see `merge`
+    #[arg(long, value_name = "slice:K/N", value_parser = str::parse::<Slice>)]
+    partition: Option<Slice>,
     /// Change a value in the scene of every case; entries count from 0
     #[arg(long, value_name = "key.path=value")]
     set: Vec<String>,
@@ -43,28 +49,58 @@ pub struct Args {
 /// Unknown suites, a bad pattern, nothing selected, a case or reference file that is wrong, a folder that cannot be
 /// written.
 pub fn verify(args: &Args, common: &Common) -> Result<Exit, Failure> {
-    let cases = selected(args, common)?;
-    let folder = folders::output(common, "verify")?;
-    if args.tier == Tier::Full {
+    let workspace = folders::workspace();
+    let reference_data = workspace.join("reference-data");
+    let environment = environment(&workspace);
+    let mut cases = selected(args, common)?;
+    let mut part = None;
+    if let Some(slice) = args.partition {
+        let invocation = Invocation {
+            selection: &args.selection(),
+            set: &args.set,
+            commit: &environment.commit,
+            changes: &changes(&workspace),
+            reference_data: &reference_data,
+        };
+        part = Some((slice, Plan::new(&cases, slice.count, invocation)?));
+        cases = slice.take(cases);
+        let seconds = cases.iter().map(|case| case.seconds).sum();
+        console::note(common, &format!("{slice}: {} cases, estimated {} on two cores", cases.len(), duration(seconds)));
+    } else if args.tier == Tier::Full {
         let seconds = cases.iter().map(|case| case.seconds).sum();
         console::note(common, &format!("{} cases, estimated {} on two cores", cases.len(), duration(seconds)));
     }
-    let workspace = folders::workspace();
-    let options = Options {
-        out: &folder,
-        reference_data: &workspace.join("reference-data"),
-        environment: environment(&workspace),
-        resume: args.tier == Tier::Full,
-    };
+    let folder = folders::output(common, "verify")?;
+    let resume = args.tier == Tier::Full;
+    let options = Options { out: &folder, reference_data: &reference_data, environment, resume };
     let watch = Watch::new(common);
-    let results = suite::verify(&cases, &options, &watch);
-    watch.bar.finish_and_clear();
-    let results = results?;
-    let rendered = fisura_reports::render(&folder);
-    print(&results, common);
+    let results = match part {
+        Some(part) => suite::verify_slice(&cases, part, &options, &watch),
+        None => suite::verify(&cases, &options, &watch),
+    };
+    watch.finish();
+    conclude(&results?, &folder, common)
+}
+
+/// Renders the report of finished results, prints them, and gives the verdict.
+///
+/// # Errors
+/// A report that cannot be written.
+pub fn conclude(results: &ResultSet, folder: &Path, common: &Common) -> Result<Exit, Failure> {
+    let rendered = fisura_reports::render(folder);
+    print(results, common);
+    if std::env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {
+        console::error_text(&render_annotations(results));
+    }
     console::note(common, &format!("report: {}", folder.join("report.html").display()));
     rendered?;
     Ok(verdict(&results.records))
+}
+
+impl Args {
+    fn selection(&self) -> Selection {
+        Selection { suites: self.suite.clone(), case_glob: self.case.clone(), tier: self.tier }
+    }
 }
 
 impl From<VerifyError> for Failure {
@@ -102,8 +138,7 @@ fn selected(args: &Args, common: &Common) -> Result<Vec<Case>, Failure> {
         let known = known.into_iter().collect::<Vec<_>>().join(", ");
         return Err(bad(format!("unknown suite: {}", unknown.join(", "))).help(format!("known suites: {known}")));
     }
-    let selection = Selection { suites: args.suite.clone(), case_glob: args.case.clone(), tier: args.tier };
-    let cases = select(cases, &selection);
+    let cases = select(cases, &args.selection());
     if cases.is_empty() {
         let message = format!("no case of the {} tier is selected", args.tier);
         return Err(Failure::new(Exit::NothingSelected, message).help("see `cargo xtask list` for what there is"));
@@ -147,16 +182,22 @@ fn verdict(records: &[Record]) -> Exit {
 }
 
 /// A bar on a terminal; elsewhere a line per finished case.
-struct Watch<'a> {
+pub struct Watch<'a> {
     common: &'a Common,
     bar: ProgressBar,
     present: Mutex<(String, Instant)>,
 }
 
 impl<'a> Watch<'a> {
-    fn new(common: &'a Common) -> Self {
+    /// Watches cases that are about to be run.
+    pub fn new(common: &'a Common) -> Self {
         let bar = progress::bar(common, "{msg} {wide_bar} {percent} %, {elapsed}", PARTS);
         Self { common, bar, present: Mutex::new((String::new(), Instant::now())) }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
     }
 }
 

@@ -1,9 +1,10 @@
 //! Figures: curves over axes, and fields on a raster.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Scale of an axis.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Scale {
     /// Linear.
@@ -14,7 +15,7 @@ pub enum Scale {
 }
 
 /// An axis of a figure.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Axis {
     /// Label with unit, as printed: `time (µs)`.
     pub label: String,
@@ -34,7 +35,7 @@ impl Axis {
 }
 
 /// How a curve is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum CurveStyle {
     /// Result of this code: solid line.
@@ -48,7 +49,7 @@ pub enum CurveStyle {
 }
 
 /// One curve: two columns of a series file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Curve {
     /// Legend.
     pub label: String,
@@ -100,7 +101,7 @@ impl Curve {
 }
 
 /// A marked place in a chart: a band in which an event should fall.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Region {
     /// Label.
     pub label: String,
@@ -111,7 +112,7 @@ pub struct Region {
 }
 
 /// A triangle beside a curve that shows an order: its hypotenuse runs from `(x[0], y0)` with the slope of theory.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SlopeTriangle {
     /// Abscissae of its ends, in drawn units.
     pub x: [f64; 2],
@@ -124,7 +125,7 @@ pub struct SlopeTriangle {
 }
 
 /// A level below which values mean nothing, such as that of round-off; markers at or below it are drawn hollow.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Floor {
     /// Ordinate in drawn units.
     pub y: f64,
@@ -133,7 +134,7 @@ pub struct Floor {
 }
 
 /// What a figure shows.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum FigureBody {
     /// Curves over common axes.
@@ -179,7 +180,7 @@ impl FigureBody {
 }
 
 /// One figure of the report.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Figure {
     /// File name without ending: `plate-elastic-energy`. Below `timing/` if it shows measured time.
     pub id: String,

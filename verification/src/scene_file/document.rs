@@ -65,6 +65,21 @@ impl Node {
         Self::new(value, Some(location))
     }
 
+    /// The value in one form, wherever it stands and however it was written.
+    pub fn canonical(&self) -> String {
+        let joined = |items: Vec<String>| items.join(", ");
+        match &self.value {
+            Value::Array(array) => format!("[{}]", joined(array.iter().map(Self::canonical).collect())),
+            Value::Table(table) => {
+                format!(
+                    "{{{}}}",
+                    joined(table.iter().map(|(key, node)| format!("{key} = {}", node.canonical())).collect())
+                )
+            }
+            scalar => format!("{scalar:?}"),
+        }
+    }
+
     /// Kind of value, with an article: `a string`.
     pub fn kind(&self) -> &'static str {
         match &self.value {

@@ -1,9 +1,13 @@
 //! The built binary on small scenes: exit statuses, streams, files, help.
 
 mod check;
+mod compare;
+mod figures;
 mod help;
+mod merge;
 mod report;
 mod resume;
 mod run;
 mod support;
+mod templates;
 mod verify;

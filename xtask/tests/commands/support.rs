@@ -52,6 +52,8 @@ pub struct Place {
     folder: TempDir,
     /// Value of `CARGO_MANIFEST_DIR`, as cargo would set it.
     pub manifest: Option<PathBuf>,
+    /// Further variables of the environment.
+    pub variables: Vec<(&'static str, &'static str)>,
 }
 
 /// What a command left behind.
@@ -91,7 +93,7 @@ impl Outcome {
 impl Place {
     /// An empty folder.
     pub fn new() -> Self {
-        Self { folder: tempfile::tempdir().expect("a temporary folder"), manifest: None }
+        Self { folder: tempfile::tempdir().expect("a temporary folder"), manifest: None, variables: Vec::new() }
     }
 
     /// A folder with a scene file.
@@ -154,10 +156,11 @@ impl Place {
     fn command_in(&self, folder: &Path, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
         command.args(arguments).current_dir(folder);
-        ["CARGO_MANIFEST_DIR", "COLUMNS", "LINES"].iter().for_each(|name| {
+        ["CARGO_MANIFEST_DIR", "COLUMNS", "LINES", "GITHUB_ACTIONS"].iter().for_each(|name| {
             command.env_remove(name);
         });
         command.envs(self.manifest.iter().map(|m| ("CARGO_MANIFEST_DIR", m)));
+        command.envs(self.variables.iter().copied());
         command
     }
 }

@@ -7,8 +7,13 @@ const SOURCE: &str = "citation = \"Nobody (1900)\"\nobtained = \"text\"\nkind = 
                       resolution = \"none\"\n";
 
 /// The block as the scene of a case.
-fn case(claim: &str, tier: &str, largest_closure: f64) -> String {
-    let scene: String = BLOCK
+pub fn case(claim: &str, tier: &str, largest_closure: f64) -> String {
+    case_of(BLOCK, claim, tier, largest_closure)
+}
+
+/// A scene as that of a case that bounds the closure of its ledger.
+pub fn case_of(scene: &str, claim: &str, tier: &str, largest_closure: f64) -> String {
+    let scene: String = scene
         .lines()
         .map(|line| match line.trim_start_matches('[') {
             table if table.len() < line.len() => {
@@ -26,13 +31,22 @@ fn case(claim: &str, tier: &str, largest_closure: f64) -> String {
     )
 }
 
-fn workspace() -> Place {
+/// A workspace with these cases.
+pub fn workspace_with(cases: &[(String, String)]) -> Place {
     let mut place = Place::with("Cargo.toml", "[workspace]\n");
-    place.write("verification/cases/energy/block.toml", &case("The ledger closes", "quick", 1e-12));
-    place.write("verification/cases/strict/block.toml", &case("The ledger closes exactly", "full", -1.0));
+    for (id, text) in cases {
+        place.write(&format!("verification/cases/{id}.toml"), text);
+    }
     place.write("reference-data/nobody-1900/source.toml", SOURCE);
     place.manifest = Some(place.path("xtask"));
     place
+}
+
+fn workspace() -> Place {
+    workspace_with(&[
+        ("energy/block".to_string(), case("The ledger closes", "quick", 1e-12)),
+        ("strict/block".to_string(), case("The ledger closes exactly", "full", -1.0)),
+    ])
 }
 
 #[test]

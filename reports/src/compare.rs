@@ -1,0 +1,275 @@
+//! Two result sets side by side: what is unchanged, a minor or a major change, missing or new, in accuracy and speed.
+//!
+//! Accuracy is measured in units of what the bounds allow, as METHODOLOGY defines it: values of different kinds are
+//! comparable then, and round-off of a value far inside its bounds is no change. [`speed`] holds times against their
+//! spread; [`words`] writes text and Markdown.
+
+mod speed;
+mod words;
+
+use std::collections::BTreeMap;
+
+use fisura_verification::record::{Environment, Record, Reference, ResultSet, Status};
+use serde::Serialize;
+
+pub use speed::{Speed, SpeedChange};
+pub use words::{render_markdown, render_text};
+
+/// Name of the schema written.
+pub const COMPARISON_SCHEMA: &str = "fisura.comparison/1";
+/// Moves up to this part of the tolerance are none.
+const NO_MOVE: f64 = 0.01;
+/// A loss is major if it uses up more than this part of the room to the bound …
+const MAJOR_ROOM: f64 = 0.5;
+/// … and is more than this part of the tolerance.
+const MAJOR_TOLERANCE: f64 = 0.1;
+/// Relative change of a value without bounds that is none.
+const NO_CHANGE: f64 = 1e-6;
+
+/// How much changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Change {
+    /// Nothing that matters.
+    Unchanged,
+    /// Something to look at.
+    Minor,
+    /// A verdict, or most of what was left to the bound.
+    Major,
+    /// Only in the base.
+    Missing,
+    /// Only in the new results.
+    New,
+}
+
+/// For better or worse.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Effect {
+    /// Unchanged, or nothing says which.
+    Neutral,
+    /// A gain.
+    Better,
+    /// A loss.
+    Worse,
+}
+
+/// Value and verdict of one side.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Side {
+    /// Value, if there is one.
+    pub value: Option<f64>,
+    /// Verdict.
+    pub status: Status,
+}
+
+/// One record, compared.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Id of the record.
+    pub id: String,
+    /// Unit of its value.
+    pub unit: String,
+    /// How much its accuracy changed.
+    pub accuracy: Change,
+    /// For better or worse.
+    pub effect: Effect,
+    /// In words; empty if unchanged.
+    pub why: String,
+    /// In the base.
+    pub base: Option<Side>,
+    /// In the new results.
+    pub new: Option<Side>,
+    /// How much the time of its run changed; absent where times are not comparable.
+    pub speed: Option<SpeedChange>,
+}
+
+impl Comparison {
+    /// Whether a claim that held is lost, or nearly so.
+    pub fn is_major_loss(&self) -> bool {
+        matches!(self.accuracy, Change::Major | Change::New) && self.effect == Effect::Worse
+    }
+}
+
+/// All records, compared.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ComparedSets {
+    /// [`COMPARISON_SCHEMA`].
+    pub schema: &'static str,
+    /// Where and when the base was run.
+    pub base: Environment,
+    /// Where and when the new results were run.
+    pub new: Environment,
+    /// How many records of each change there are.
+    pub counts: BTreeMap<Change, usize>,
+    /// Major losses of accuracy and of speed.
+    pub major_losses: usize,
+    /// Times as a whole, and of every measured run.
+    pub speed: Speed,
+    /// Records of the base in its order, then new ones.
+    pub records: Vec<Comparison>,
+}
+
+impl ComparedSets {
+    /// How many records changed in this way.
+    pub fn count(&self, change: Change) -> usize {
+        self.counts.get(&change).copied().unwrap_or(0)
+    }
+
+    /// Whether nothing at all changed, times included.
+    pub fn is_unchanged(&self) -> bool {
+        self.count(Change::Unchanged) == self.records.len()
+            && self.speed.runs.iter().all(|run| run.change == Change::Unchanged)
+    }
+}
+
+/// Compares two result sets record by record.
+pub fn compare(base: &ResultSet, new: &ResultSet) -> ComparedSets {
+    let speed = Speed::of(base, new);
+    let by_id: BTreeMap<&str, &Record> = new.records.iter().map(|r| (r.id.as_str(), r)).collect();
+    let old_ids: BTreeMap<&str, &Record> = base.records.iter().map(|r| (r.id.as_str(), r)).collect();
+    let mut records: Vec<Comparison> = base
+        .records
+        .iter()
+        .map(|old| match by_id.get(old.id.as_str()) {
+            Some(new) => both(old, new, &speed),
+            None => one_sided(old, Change::Missing),
+        })
+        .collect();
+    let added = new.records.iter().filter(|r| !old_ids.contains_key(r.id.as_str()));
+    records.extend(added.map(|r| one_sided(r, Change::New)));
+    let mut counts = BTreeMap::new();
+    for change in [Change::Unchanged, Change::Minor, Change::Major, Change::Missing, Change::New] {
+        counts.insert(change, records.iter().filter(|r| r.accuracy == change).count());
+    }
+    let slower = speed.runs.iter().filter(|run| run.is_major_loss()).count();
+    let major_losses = records.iter().filter(|r| r.is_major_loss()).count() + slower;
+    ComparedSets {
+        schema: COMPARISON_SCHEMA,
+        base: base.environment.clone(),
+        new: new.environment.clone(),
+        counts,
+        major_losses,
+        speed,
+        records,
+    }
+}
+
+fn side(record: &Record) -> Option<Side> {
+    Some(Side { value: record.value, status: record.status })
+}
+
+/// A record that only one side has. A new one that does not hold is a loss: a study that breaks down has fewer records,
+/// with ids of their own.
+fn one_sided(record: &Record, accuracy: Change) -> Comparison {
+    let holds = rank(record.status) == 0;
+    let (base, new) = if accuracy == Change::New { (None, side(record)) } else { (side(record), None) };
+    let (effect, why) = match (accuracy, holds) {
+        (Change::New, false) => (Effect::Worse, format!("new, and does not hold: {}", crate::view::reason(record))),
+        (Change::New, true) => (Effect::Neutral, "new".to_string()),
+        _ => (Effect::Neutral, "missing".to_string()),
+    };
+    Comparison { id: record.id.clone(), unit: record.unit.clone(), accuracy, effect, why, base, new, speed: None }
+}
+
+fn both(base: &Record, new: &Record, speed: &Speed) -> Comparison {
+    let (accuracy, effect, why) = accuracy(base, new);
+    Comparison {
+        id: base.id.clone(),
+        unit: new.unit.clone(),
+        accuracy,
+        effect,
+        why,
+        base: side(base),
+        new: side(new),
+        speed: speed.of_record(base, new),
+    }
+}
+
+/// Holds, does not hold, broke down.
+fn rank(status: Status) -> u8 {
+    match status {
+        Status::Pass | Status::Info => 0,
+        Status::Fail => 1,
+        Status::Error => 2,
+    }
+}
+
+/// How a record changed, in accuracy. The bounds of the base count: looser ones must not hide a loss.
+fn accuracy(base: &Record, new: &Record) -> (Change, Effect, String) {
+    let word = crate::view::word;
+    let under_base = if new.status == Status::Error { Status::Error } else { Record::judge(new.value, &base.accept) };
+    let found = if rank(under_base) > rank(new.status) { under_base } else { new.status };
+    if rank(found) > rank(base.status) {
+        let whose = if found == new.status { "" } else { " by the bounds of the base" };
+        return (Change::Major, Effect::Worse, format!("{} → {}{whose}", word(base.status), word(found)));
+    }
+    if rank(found) < rank(base.status) {
+        return (Change::Major, Effect::Better, format!("{} → {}", word(base.status), word(found)));
+    }
+    if base.status != Status::Info && new.status == Status::Info {
+        return (Change::Major, Effect::Worse, "it has lost its bounds".to_string());
+    }
+    let bounds = [base.accept.min, base.accept.max];
+    let rebound = bounds != [new.accept.min, new.accept.max];
+    let (change, effect, why) = match (base.value, new.value) {
+        (None, None) => (Change::Unchanged, Effect::Neutral, String::new()),
+        (Some(_), None) => (Change::Minor, Effect::Neutral, "it has no value any more".to_string()),
+        (None, Some(_)) => (Change::Minor, Effect::Neutral, "it has a value now".to_string()),
+        (Some(from), Some(to)) if bounds == [None, None] => unbounded(from, to),
+        (Some(from), Some(to)) => bounded(from, to, bounds, base.reference.as_ref()),
+    };
+    if rebound && change < Change::Major {
+        let why = if why.is_empty() { "other bounds".to_string() } else { format!("other bounds; {why}") };
+        return (Change::Minor, effect, why);
+    }
+    (change, effect, why)
+}
+
+/// A value that nothing bounds: nothing says how much is too much, or which way is better.
+fn unbounded(from: f64, to: f64) -> (Change, Effect, String) {
+    let relative = (to - from).abs() / from.abs().max(to.abs()).max(f64::MIN_POSITIVE);
+    if relative <= NO_CHANGE {
+        return (Change::Unchanged, Effect::Neutral, String::new());
+    }
+    (Change::Minor, Effect::Neutral, format!("changed by {} %, no bounds", crate::number::plain(100.0 * relative, 2)))
+}
+
+/// A value within, or outside, bounds: the move in parts of the tolerance and of the room to the bound.
+fn bounded(from: f64, to: f64, bounds: [Option<f64>; 2], reference: Option<&Reference>) -> (Change, Effect, String) {
+    let room = |value: f64| {
+        let below = bounds[0].map_or(f64::INFINITY, |min| value - min);
+        let above = bounds[1].map_or(f64::INFINITY, |max| max - value);
+        below.min(above)
+    };
+    let tolerance = tolerance(bounds, reference);
+    let part = (to - from).abs() / tolerance;
+    if part <= NO_MOVE {
+        return (Change::Unchanged, Effect::Neutral, String::new());
+    }
+    let loss = room(from) - room(to);
+    let effect = if loss > 0.0 { Effect::Worse } else { Effect::Better };
+    let percent = |part: f64| crate::number::plain(100.0 * part, 2);
+    if loss > MAJOR_ROOM * room(from) && loss > MAJOR_TOLERANCE * tolerance && room(from) > 0.0 {
+        let used = percent(loss / room(from));
+        return (Change::Major, effect, format!("{used} % of the room to its bound is used up"));
+    }
+    let towards = if loss > 0.0 { "towards" } else { "away from" };
+    (Change::Minor, effect, format!("{} % of the tolerance, {towards} the bound", percent(part)))
+}
+
+/// What the bounds allow: half the width of a band, or the distance of a single bound from the reference, or from zero.
+fn tolerance(bounds: [Option<f64>; 2], reference: Option<&Reference>) -> f64 {
+    let width = match bounds {
+        [Some(min), Some(max)] => 0.5 * (max - min),
+        [Some(bound), None] | [None, Some(bound)] => {
+            let from_reference = reference.and_then(|r| r.value).map(|r| (bound - r).abs()).filter(|d| *d > 0.0);
+            from_reference.unwrap_or(bound.abs())
+        }
+        [None, None] => 0.0,
+    };
+    width.max(f64::MIN_POSITIVE)
+}
+
+#[cfg(test)]
+mod tests;

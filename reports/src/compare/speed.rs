@@ -1,0 +1,140 @@
+//! Times of two result sets, held against their spread.
+//!
+//! A single time says little on a shared machine. The spread comes from the comparison itself: how far the ratios of all
+//! runs scatter about their median. A change of all runs together shows in the median.
+
+use std::collections::BTreeMap;
+
+use fisura_verification::record::{Record, ResultSet};
+use serde::Serialize;
+
+use super::{Change, Effect};
+use crate::view::{run_id, runs, timing};
+
+/// Times below this in both results are noise, s.
+const FLOOR: f64 = 1.0;
+/// The logarithm of a ratio is taken to scatter by at least this.
+const LEAST_SPREAD: f64 = 0.1;
+/// A minor change is beyond this ratio and this many spreads.
+const MINOR: (f64, f64) = (1.5, 4.0);
+/// A major change is beyond this ratio and this many spreads.
+const MAJOR: (f64, f64) = (2.0, 6.0);
+
+/// How the time of one run changed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpeedChange {
+    /// The run; the first of a study whose runs are timed as one.
+    pub run: String,
+    /// Wall time in the base, s.
+    pub base_s: f64,
+    /// Wall time in the new results, s.
+    pub new_s: f64,
+    /// New over base.
+    pub ratio: f64,
+    /// How much it changed.
+    pub change: Change,
+    /// For better or worse.
+    pub effect: Effect,
+}
+
+impl SpeedChange {
+    /// Whether it became slower by far more than times scatter.
+    pub fn is_major_loss(&self) -> bool {
+        self.change == Change::Major && self.effect == Effect::Worse
+    }
+}
+
+/// Times of all runs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Speed {
+    /// Why times are not compared; absent if they are.
+    pub not_compared: Option<String>,
+    /// Median of the ratios new over base.
+    pub median_ratio: Option<f64>,
+    /// Spread of the logarithm of the ratios about their median, 1.4826 times the median absolute deviation.
+    pub spread: f64,
+    /// Every time that was measured and is above the floor of 1 s, once.
+    pub runs: Vec<SpeedChange>,
+}
+
+impl Speed {
+    /// Compares the times of the runs that both have.
+    pub(super) fn of(base: &ResultSet, new: &ResultSet) -> Self {
+        let none = |why: &str| Self {
+            not_compared: Some(why.into()),
+            median_ratio: None,
+            spread: LEAST_SPREAD,
+            runs: Vec::new(),
+        };
+        if (&base.environment.cpu, base.environment.threads) != (&new.environment.cpu, new.environment.threads) {
+            return none("other processor or number of threads");
+        }
+        let times = measured(base, new);
+        let Some(median_ratio) = median(times.iter().map(|t| t.1[1] / t.1[0])) else {
+            return none("no run that both have takes a second");
+        };
+        let deviations = times.iter().map(|t| (t.1[1] / t.1[0] / median_ratio).ln().abs());
+        let spread = (1.4826 * median(deviations).unwrap_or(0.0)).max(LEAST_SPREAD);
+        let runs = times.into_iter().map(|(run, [base_s, new_s])| judge(run, base_s, new_s, spread)).collect();
+        Self { not_compared: None, median_ratio: Some(median_ratio), spread, runs }
+    }
+
+    /// The change of the run that a record belongs to; absent if its time was not compared.
+    pub(super) fn of_record(&self, base: &Record, new: &Record) -> Option<SpeedChange> {
+        let case = format!("{}/{}", base.suite, base.case);
+        let same = |run: &&SpeedChange| {
+            run.run.starts_with(&case) && (run.base_s, run.new_s) == (base.timing.wall_s, new.timing.wall_s)
+        };
+        let named = self.runs.iter().find(|run| run.run == run_id(base));
+        named.or_else(|| self.runs.iter().find(same)).cloned()
+    }
+}
+
+/// Times above the floor, each measurement once: runs of one study repeat the time of the whole.
+fn measured(base: &ResultSet, new: &ResultSet) -> Vec<(String, [f64; 2])> {
+    let of = |set: &ResultSet| -> Vec<(String, String, f64)> {
+        let grouped = runs(&set.records);
+        grouped
+            .iter()
+            .map(|(run, of)| (run.to_string(), format!("{}/{}", of[0].suite, of[0].case), timing(of).wall_s))
+            .collect()
+    };
+    let there: BTreeMap<String, f64> = of(new).into_iter().map(|(run, _, wall)| (run, wall)).collect();
+    let mut seen = Vec::new();
+    let mut times = Vec::new();
+    for (run, case, wall) in of(base) {
+        let Some(&other) = there.get(&run) else { continue };
+        let once = (case, wall.to_bits(), other.to_bits());
+        if wall.max(other) < FLOOR || wall <= 0.0 || other <= 0.0 || seen.contains(&once) {
+            continue;
+        }
+        seen.push(once);
+        times.push((run, [wall, other]));
+    }
+    times
+}
+
+fn judge(run: String, base_s: f64, new_s: f64, spread: f64) -> SpeedChange {
+    let ratio = new_s / base_s;
+    let size = ratio.ln().abs();
+    let beyond = |(least, spreads): (f64, f64)| size > f64::max(least.ln(), spreads * spread);
+    let change = match (beyond(MINOR), beyond(MAJOR)) {
+        (_, true) => Change::Major,
+        (true, false) => Change::Minor,
+        (false, false) => Change::Unchanged,
+    };
+    let effect = match change {
+        Change::Unchanged => Effect::Neutral,
+        _ if ratio > 1.0 => Effect::Worse,
+        _ => Effect::Better,
+    };
+    SpeedChange { run, base_s, new_s, ratio, change, effect }
+}
+
+/// The median; the mean of the two in the middle for an even count.
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    let (low, high) = (sorted.len().checked_sub(1)? / 2, sorted.len() / 2);
+    Some(0.5 * (sorted[low] + sorted[high]))
+}

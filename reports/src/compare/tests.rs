@@ -1,0 +1,128 @@
+//! What counts as unchanged, minor and major.
+
+use fisura_verification::record::{Accept, Record, ReferenceKind, Status};
+
+use super::*;
+use crate::example::results;
+
+/// A record with these bounds.
+fn record(value: f64, min: Option<f64>, max: Option<f64>) -> Record {
+    let mut record = results().records.remove(0);
+    record.reference = None;
+    record.accept = Accept { min, max, why: "a test".into() };
+    record.value = Some(value);
+    record.status = Record::judge(record.value, &record.accept);
+    record
+}
+
+fn changed(base: &Record, value: f64) -> (Change, Effect) {
+    let new = Record { value: Some(value), status: Record::judge(Some(value), &base.accept), ..base.clone() };
+    let (change, effect, _) = accuracy(base, &new);
+    (change, effect)
+}
+
+#[test]
+fn a_set_against_itself_is_unchanged() {
+    let set = results();
+    let compared = compare(&set, &set);
+    assert!(compared.is_unchanged(), "{}", render_text(&compared));
+    assert_eq!(compared.major_losses, 0);
+    assert!(render_text(&compared).contains(&format!("No change: {} records unchanged", set.records.len())));
+}
+
+#[test]
+fn a_verdict_that_changes_is_major_either_way() {
+    let base = record(3.0, None, Some(10.0));
+    assert_eq!(changed(&base, 11.0), (Change::Major, Effect::Worse));
+    assert_eq!(changed(&record(11.0, None, Some(10.0)), 3.0), (Change::Major, Effect::Better));
+    let broken = Record { value: None, status: Status::Error, ..base.clone() };
+    assert_eq!(accuracy(&base, &broken).0, Change::Major);
+}
+
+#[test]
+fn moves_within_bounds_count_by_tolerance_and_room() {
+    let closure = record(3e-16, None, Some(1e-12));
+    assert_eq!(changed(&closure, 9e-16).0, Change::Unchanged, "round-off far inside");
+    assert_eq!(changed(&closure, 1e-13), (Change::Minor, Effect::Worse));
+    assert_eq!(changed(&closure, 6e-13), (Change::Major, Effect::Worse));
+    let close = record(9.5, None, Some(10.0));
+    assert_eq!(changed(&close, 9.8), (Change::Minor, Effect::Worse), "60 % of the room, but 3 % of the tolerance");
+    assert_eq!(changed(&close, 5.0), (Change::Minor, Effect::Better));
+    let band = record(3.05, Some(2.9), Some(3.5));
+    assert_eq!(changed(&band, 3.051).0, Change::Unchanged);
+    assert_eq!(
+        changed(&band, 2.95),
+        (Change::Major, Effect::Worse),
+        "two thirds of the room, a third of the tolerance"
+    );
+    assert_eq!(changed(&band, 3.2), (Change::Minor, Effect::Better));
+    let mut order = record(3.99, Some(3.9), None);
+    order.reference = Some(Reference { value: Some(4.0), kind: ReferenceKind::Theory, source: "p + 1".into() });
+    assert_eq!(changed(&order, 3.93), (Change::Major, Effect::Worse), "the tolerance is 0.1");
+}
+
+#[test]
+fn looser_or_dropped_bounds_do_not_hide_a_loss() {
+    let base = record(9.0, None, Some(10.0));
+    let looser = record(12.0, None, Some(20.0));
+    let (change, effect, why) = accuracy(&base, &looser);
+    assert_eq!((change, effect), (Change::Major, Effect::Worse));
+    assert!(why.contains("bounds of the base"), "{why}");
+    assert_eq!(accuracy(&base, &record(9.0, None, None)).0, Change::Major);
+    assert_eq!(accuracy(&base, &record(9.0, None, Some(20.0))).0, Change::Minor, "other bounds, same value");
+}
+
+#[test]
+fn a_value_without_bounds_is_never_major() {
+    let base = record(0.25, None, None);
+    assert_eq!(changed(&base, 0.25 * (1.0 + 1e-9)).0, Change::Unchanged);
+    assert_eq!(changed(&base, 2.5), (Change::Minor, Effect::Neutral));
+    let gone = Record { value: None, ..base.clone() };
+    assert_eq!(accuracy(&base, &gone).0, Change::Minor);
+}
+
+#[test]
+fn missing_and_new_records_are_named_and_a_new_one_that_fails_is_a_loss() {
+    let (base, mut new) = (results(), results());
+    new.records.retain(|r| r.status != Status::Info);
+    let mut added = record(11.0, None, Some(10.0));
+    added.id = "plate/impact/added".into();
+    new.records.push(added);
+    let compared = compare(&base, &new);
+    let gone = base.records.len() + 1 - new.records.len();
+    assert_eq!((compared.count(Change::Missing), compared.count(Change::New), compared.major_losses), (gone, 1, 1));
+    let text = render_markdown(&compared);
+    assert!(text.contains("## missing") && text.contains("`plate/impact/added`"), "{text}");
+}
+
+#[test]
+fn times_are_held_against_their_spread() {
+    let timed = |walls: &[f64]| {
+        let mut set = results();
+        let records = walls.iter().enumerate().map(|(i, wall)| {
+            let mut record = record(1.0, None, Some(10.0));
+            record.id = format!("energy/bar-{i}/closure");
+            record.case = format!("bar-{i}");
+            record.timing.wall_s = *wall;
+            record
+        });
+        set.records = records.collect();
+        set
+    };
+    let change = |base: &[f64], new: &[f64]| {
+        let compared = compare(&timed(base), &timed(new));
+        compared.speed.runs.iter().map(|run| run.change).collect::<Vec<_>>()
+    };
+    use Change::{Major, Minor, Unchanged};
+    let base = [10.0, 20.0, 5.0, 8.0, 4.0];
+    assert_eq!(change(&base, &[10.5, 21.0, 5.2, 8.1, 9.9]), [Unchanged, Unchanged, Unchanged, Unchanged, Major]);
+    assert_eq!(change(&base, &[10.5, 21.0, 5.2, 8.1, 6.8]).last(), Some(&Minor));
+    assert_eq!(change(&base, &[4.0, 40.0, 2.0, 20.0, 9.9]).last(), Some(&Unchanged), "all times scatter like that");
+    assert_eq!(change(&base, &base.map(|t| 3.0 * t)), [Major; 5], "everything is slower");
+    assert_eq!(change(&[0.1, 0.2], &[0.9, 0.8]), [], "below the floor");
+    let mut elsewhere = timed(&base.map(|t| 3.0 * t));
+    elsewhere.environment.cpu = "another".into();
+    let compared = compare(&timed(&base), &elsewhere);
+    assert_eq!((compared.major_losses, compared.records[0].speed.is_none()), (0, true));
+    assert!(compare(&timed(&base), &timed(&base.map(|t| 3.0 * t))).major_losses == 5);
+}

@@ -1,0 +1,131 @@
+//! A comparison as text for a terminal and as Markdown for a step summary.
+
+use super::{Change, ComparedSets, Comparison, Effect, SpeedChange};
+use crate::markdown::{LIMIT, cell};
+use crate::number::{DIGITS, duration, plain};
+use crate::view::with_unit;
+
+/// Headings of the changes that are listed, in the order of reading.
+const LISTED: [(Change, &str); 4] =
+    [(Change::Major, "major"), (Change::New, "new"), (Change::Missing, "missing"), (Change::Minor, "minor")];
+
+/// One line: no change, or how many losses and changes there are.
+pub fn headline(sets: &ComparedSets) -> String {
+    let records = sets.records.len();
+    if sets.is_unchanged() {
+        return format!("No change: {records} records unchanged");
+    }
+    let counts: Vec<String> =
+        sets.counts.iter().map(|(change, n)| format!("{n} {}", format!("{change:?}").to_lowercase())).collect();
+    let losses = match sets.major_losses {
+        0 => "No major loss".to_string(),
+        1 => "1 major loss".to_string(),
+        n => format!("{n} major losses"),
+    };
+    format!("{losses}: of {records} records {}", counts.join(", "))
+}
+
+/// The comparison for a terminal.
+pub fn render_text(sets: &ComparedSets) -> String {
+    let mut out = String::new();
+    for (change, word) in LISTED {
+        for record in of_change(sets, change) {
+            let mark = mark(record.effect);
+            out.push_str(&format!("{mark} {word:7}  {}  {}  ({})\n", record.id, values(record), record.why));
+        }
+    }
+    for run in changed_runs(sets) {
+        out.push_str(&format!("{} speed    {}  {}\n", mark(run.effect), run.run, times(run)));
+    }
+    format!("{out}{}\n{}\n", speed(sets), headline(sets))
+}
+
+/// The comparison as Markdown, cut at the size of a step summary with a note.
+pub fn render_markdown(sets: &ComparedSets) -> String {
+    let mut out = format!("# {}\n\n", headline(sets));
+    for (name, environment) in [("Base", &sets.base), ("New", &sets.new)] {
+        let dirty = if environment.dirty { " with uncommitted changes" } else { "" };
+        let commit = if environment.commit.is_empty() { "unknown commit" } else { &environment.commit };
+        out.push_str(&format!("{name}: {}{dirty}, {}. ", cell(commit), cell(&environment.cpu)));
+    }
+    out.push_str(&format!("\n\n{}\n\n", speed(sets)));
+    let mut left_out = 0;
+    let mut line = |out: &mut String, line: String| {
+        if out.len() + line.len() > LIMIT { left_out += 1 } else { out.push_str(&line) }
+    };
+    for (change, word) in LISTED {
+        let records: Vec<&Comparison> = of_change(sets, change).collect();
+        if !records.is_empty() {
+            line(
+                &mut out,
+                format!("## {word}: {}\n\n| | check | base → new | what |\n|---|---|---|---|\n", records.len()),
+            );
+        }
+        for r in &records {
+            line(
+                &mut out,
+                format!("| {} | `{}` | {} | {} |\n", mark(r.effect), cell(&r.id), cell(&values(r)), cell(&r.why)),
+            );
+        }
+        out.push_str(if records.is_empty() { "" } else { "\n" });
+    }
+    let runs = changed_runs(sets);
+    if !runs.is_empty() {
+        line(&mut out, "## speed\n\n| | run | wall time |\n|---|---|---|\n".to_string());
+    }
+    for run in &runs {
+        line(&mut out, format!("| {} | `{}` | {} |\n", mark(run.effect), cell(&run.run), times(run)));
+    }
+    if left_out > 0 {
+        out.push_str(&format!("\n{left_out} more lines are left out here; `comparison.json` has them all.\n"));
+    }
+    out
+}
+
+/// Records of one change, losses first.
+fn of_change(sets: &ComparedSets, change: Change) -> impl Iterator<Item = &Comparison> {
+    let with = move |worse: bool| {
+        sets.records.iter().filter(move |r| r.accuracy == change && (r.effect == Effect::Worse) == worse)
+    };
+    with(true).chain(with(false))
+}
+
+fn changed_runs(sets: &ComparedSets) -> Vec<&SpeedChange> {
+    let mut runs: Vec<&SpeedChange> = sets.speed.runs.iter().filter(|run| run.change != Change::Unchanged).collect();
+    runs.sort_by(|a, b| b.ratio.total_cmp(&a.ratio));
+    runs
+}
+
+fn mark(effect: Effect) -> &'static str {
+    match effect {
+        Effect::Worse => "✗",
+        Effect::Better => "✓",
+        Effect::Neutral => "·",
+    }
+}
+
+fn values(record: &Comparison) -> String {
+    let show = |side: &Option<super::Side>| match side.as_ref().and_then(|s| s.value) {
+        Some(value) => plain(value, DIGITS + 1),
+        None => "none".to_string(),
+    };
+    with_unit(&format!("{} → {}", show(&record.base), show(&record.new)), &record.unit)
+}
+
+fn times(run: &SpeedChange) -> String {
+    format!("{} → {}, ×{}", duration(run.base_s), duration(run.new_s), plain(run.ratio, 3))
+}
+
+/// Times in one sentence.
+fn speed(sets: &ComparedSets) -> String {
+    let speed = &sets.speed;
+    match (&speed.not_compared, speed.median_ratio) {
+        (None, Some(ratio)) => format!(
+            "Speed: {} runs of a second or more, median time ×{}, spread {} %.",
+            speed.runs.len(),
+            plain(ratio, 3),
+            plain(100.0 * speed.spread.exp_m1(), 2)
+        ),
+        (why, _) => format!("Speed is not compared: {}.", why.as_deref().unwrap_or("nothing was timed")),
+    }
+}

@@ -1,0 +1,154 @@
+//! What a slice of a plan leaves for `merge`: `part.json`, beside the results of the slice itself.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::partition::Slice;
+use super::{CaseOutcome, Selection, VerifyError, write_json};
+use crate::case::Case;
+use crate::record::Environment;
+
+/// Name of the schema written and read.
+pub const PART_SCHEMA: &str = "fisura.part/1";
+/// File of a part in its results folder.
+pub const PART_FILE: &str = "part.json";
+
+/// What was to be run in all slices together; parts go together only if theirs are the same.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// Commit of the work tree, or empty.
+    pub commit: String,
+    /// Fingerprint of uncommitted changes of tracked files; empty without any.
+    pub changes: String,
+    /// Tier.
+    pub tier: String,
+    /// Suites; empty: all.
+    pub suites: Vec<String>,
+    /// Pattern of case ids, if one was given.
+    pub case_glob: Option<String>,
+    /// Changes of `--set`.
+    pub set: Vec<String>,
+    /// Number of slices.
+    pub slices: usize,
+    /// Fingerprint of the reference data.
+    pub reference_data: String,
+    /// Id and fingerprint of every case, in order.
+    pub cases: Vec<(String, String)>,
+}
+
+/// What the caller knows of a plan beside its cases.
+#[derive(Debug, Clone, Copy)]
+pub struct Invocation<'a> {
+    /// What was selected.
+    pub selection: &'a Selection,
+    /// Changes of `--set`.
+    pub set: &'a [String],
+    /// Commit of the work tree, or empty.
+    pub commit: &'a str,
+    /// Fingerprint of uncommitted changes.
+    pub changes: &'a str,
+    /// Folder of reference data.
+    pub reference_data: &'a Path,
+}
+
+impl Plan {
+    /// The plan of `cases` in `slices` slices.
+    ///
+    /// # Errors
+    /// Reference data that cannot be read.
+    pub fn new(cases: &[Case], slices: usize, invocation: Invocation) -> Result<Self, VerifyError> {
+        let Invocation { selection, set, commit, changes, reference_data } = invocation;
+        Ok(Self {
+            commit: commit.to_string(),
+            changes: changes.to_string(),
+            tier: selection.tier.to_string(),
+            suites: selection.suites.clone(),
+            case_glob: selection.case_glob.clone(),
+            set: set.to_vec(),
+            slices,
+            reference_data: folder_fingerprint(reference_data)?,
+            cases: cases.iter().map(|case| (case.id(), fingerprint([case.document.text()]))).collect(),
+        })
+    }
+
+    /// In what two plans differ first, and how: name, this one, the other.
+    pub fn difference(&self, other: &Self) -> Option<(&'static str, String, String)> {
+        let of = |plan: &Self| {
+            let list = |all: &[String]| if all.is_empty() { "none".to_string() } else { all.join(", ") };
+            let word = |text: &str| if text.is_empty() { "none".to_string() } else { text.to_string() };
+            [
+                ("commit", word(&plan.commit)),
+                ("uncommitted changes", word(&plan.changes)),
+                ("number of slices", plan.slices.to_string()),
+                ("tier", plan.tier.clone()),
+                ("suites", list(&plan.suites)),
+                ("pattern of cases", word(plan.case_glob.as_deref().unwrap_or_default())),
+                ("changes of --set", list(&plan.set)),
+                ("reference data", plan.reference_data.clone()),
+            ]
+        };
+        let differing = of(self).into_iter().zip(of(other)).find(|(a, b)| a != b);
+        let named = differing.map(|((name, here), (_, there))| (name, here, there));
+        named.or_else(|| {
+            let case = |plan: &Self, at: usize| {
+                plan.cases.get(at).map_or("none".into(), |(id, print)| format!("{id} ({print})"))
+            };
+            let count = self.cases.len().max(other.cases.len());
+            let at = (0..count).find(|&i| self.cases.get(i) != other.cases.get(i))?;
+            Some(("cases", case(self, at), case(other, at)))
+        })
+    }
+}
+
+/// What one slice found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    /// [`PART_SCHEMA`].
+    pub schema: String,
+    /// Which slice.
+    pub slice: Slice,
+    /// What it is a slice of.
+    pub plan: Plan,
+    /// Where and when it was run.
+    pub environment: Environment,
+    /// Fingerprint of what each of its cases simulated.
+    pub inputs: BTreeMap<String, String>,
+    /// Id and outcome of its cases, in the order of the plan.
+    pub outcomes: Vec<(String, CaseOutcome)>,
+}
+
+impl Part {
+    pub(super) fn write(&self, out: &Path) -> Result<(), VerifyError> {
+        write_json(&out.join(PART_FILE), self)
+    }
+}
+
+/// The first 16 hexadecimal digits of the SHA-256 of some texts, each ended by a zero byte.
+pub fn fingerprint<T: AsRef<[u8]>>(texts: impl IntoIterator<Item = T>) -> String {
+    let mut hasher = Sha256::new();
+    for text in texts {
+        hasher.update(text.as_ref());
+        hasher.update([0]);
+    }
+    hasher.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Fingerprint of all TOML and CSV files below a folder, with their names.
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn folder_fingerprint(folder: &Path) -> Result<String, VerifyError> {
+    let mut texts: Vec<Vec<u8>> = Vec::new();
+    for ending in ["toml", "csv"] {
+        let pattern = folder.join("**").join(format!("*.{ending}"));
+        for path in glob::glob(&pattern.to_string_lossy()).into_iter().flatten().flatten() {
+            let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace('\\', "/");
+            texts.push(name.into_bytes());
+            texts.push(std::fs::read(&path).map_err(|e| VerifyError::output(&path, e))?);
+        }
+    }
+    Ok(fingerprint(texts))
+}

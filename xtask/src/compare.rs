@@ -1,0 +1,49 @@
+//! `compare BASE NEW`: two results folders side by side.
+
+use std::fs;
+use std::path::PathBuf;
+
+use fisura_reports::compare::{compare as side_by_side, render_markdown, render_text};
+use fisura_reports::read_results;
+use fisura_verification::scene_run::replace_file;
+
+use crate::cli::{Common, Format};
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::report::unreadable;
+use crate::{console, folders};
+
+/// Arguments of `compare`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Results folder to compare with
+    #[arg(value_name = "BASE")]
+    base: PathBuf,
+    /// Results folder that is judged
+    #[arg(value_name = "NEW")]
+    new: PathBuf,
+}
+
+/// Compares record by record, in accuracy and speed; writes `comparison.md` and `comparison.json`.
+///
+/// # Errors
+/// Results that cannot be read, that have nothing in common, or files that cannot be written.
+pub fn compare(args: &Args, common: &Common) -> Result<Exit, Failure> {
+    let [base, new] = [&args.base, &args.new].map(|f| read_results(f).map_err(|error| unreadable(error, f)));
+    let (base, new) = (base?, new?);
+    let compared = side_by_side(&base, &new);
+    if !compared.records.iter().any(|record| record.base.is_some() && record.new.is_some()) {
+        let message = format!("{} and {} have no record in common", args.base.display(), args.new.display());
+        return Err(Failure::new(Exit::NothingSelected, message).help("compare results of the same suites"));
+    }
+    let folder = folders::output(common, "compare")?;
+    replace_file(&folder.join("comparison.md"), |part| Ok(fs::write(part, render_markdown(&compared))?))?;
+    replace_file(&folder.join("comparison.json"), |part| {
+        Ok(fs::write(part, serde_json::to_string_pretty(&compared)? + "\n")?)
+    })?;
+    match common.format {
+        Format::Json => console::json(&compared),
+        Format::Text => console::result(&render_text(&compared)),
+    }
+    Ok(if compared.major_losses > 0 { Exit::CheckFailed } else { Exit::Done })
+}

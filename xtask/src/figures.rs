@@ -1,0 +1,134 @@
+//! `figures`: the figures of the paper, run or drawn from stored results.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use fisura_reports::number::duration;
+use fisura_reports::paper::{PaperFigure, cases_of};
+use fisura_reports::{bundle, read_results};
+use fisura_verification::record::{Figure, ResultSet};
+use fisura_verification::suite::{Case, Options, load_cases, verify};
+use serde_json::json;
+
+use crate::cli::{Common, Format};
+use crate::environment::environment;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::report::unreadable;
+use crate::verify::{Watch, cases_folder};
+use crate::{console, folders};
+
+/// Arguments of `figures`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The paper; Estrada (2024) is the one there is
+    #[arg(long, value_name = "PAPER", default_value = "estrada2024", value_parser = ["estrada2024"])]
+    paper: String,
+    /// Only these, separated by commas: 3a, 3b, 4, 5b, 6; or ids of figures in the results of --from
+    #[arg(long, value_name = "FIGURE,…", value_delimiter = ',')]
+    figure: Vec<String>,
+    /// Draw from this results folder instead of running anything
+    #[arg(long, value_name = "DIR")]
+    from: Option<PathBuf>,
+}
+
+/// Writes each figure as SVG with its numbers, caption and provenance.
+///
+/// # Errors
+/// Unknown figures, results that do not hold them, files that cannot be read or written.
+pub fn figures(args: &Args, common: &Common) -> Result<Exit, Failure> {
+    let wanted = Wanted::of(args)?;
+    let folder = folders::output(common, "figures")?;
+    let (source, results) = match &args.from {
+        Some(from) => (from.clone(), read_results(from).map_err(|error| unreadable(error, from))?),
+        None => {
+            let source = folder.join("results");
+            let results = run(&wanted.paper, &source, common)?;
+            (source, results)
+        }
+    };
+    let mut found = wanted.find(&results, &source)?;
+    found.sort_by(|a, b| a.0.cmp(&b.0));
+    let mut files = Vec::new();
+    for (name, figure) in &found {
+        let inputs = inputs(&results, figure);
+        let written = bundle::write((&source, figure), (&folder, name), &results.environment, inputs)?;
+        files.extend(written.into_iter().map(|file| folder.join(file).display().to_string()));
+    }
+    match common.format {
+        Format::Json => console::json(&json!({ "paper": args.paper, "files": files })),
+        Format::Text => console::result(&(files.join("\n") + "\n")),
+    }
+    Ok(Exit::Done)
+}
+
+/// What is asked for.
+struct Wanted {
+    paper: Vec<PaperFigure>,
+    others: Vec<String>,
+}
+
+impl Wanted {
+    fn of(args: &Args) -> Result<Self, Failure> {
+        let (mut paper, mut others) = (Vec::new(), Vec::new());
+        for word in &args.figure {
+            match word.parse::<PaperFigure>() {
+                Ok(figure) => paper.push(figure),
+                Err(_) if args.from.is_some() => others.push(word.clone()),
+                Err(known) => {
+                    let help = format!("{known}; any other figure is drawn from results, with --from");
+                    return Err(Failure::new(Exit::BadInput, format!("unknown figure {word}")).help(help));
+                }
+            }
+        }
+        if args.figure.is_empty() {
+            paper = PaperFigure::ALL.to_vec();
+        }
+        Ok(Self { paper, others })
+    }
+
+    /// Name and figure of all that is wanted.
+    fn find(&self, set: &ResultSet, source: &Path) -> Result<Vec<(String, Figure)>, Failure> {
+        let missing = |what: String, help: String| {
+            Failure::new(Exit::BadInput, format!("the results in {} hold no figure {what}", source.display()))
+                .help(help)
+        };
+        let mut found = Vec::new();
+        for figure in &self.paper {
+            let parts = figure.find(set);
+            if parts.is_empty() {
+                let help = format!("it needs {}; leave out --from to run what is needed", figure.cases().join(", "));
+                return Err(missing(figure.to_string(), help));
+            }
+            found.extend(parts);
+        }
+        for id in &self.others {
+            let figure = set.figures.iter().find(|f| f.id == *id);
+            let known = || set.figures.iter().map(|f| f.id.as_str()).collect::<Vec<_>>().join(", ");
+            let figure = figure.ok_or_else(|| missing(id.clone(), format!("it holds {}", known())))?;
+            found.push((id.replace('/', "-"), figure.clone()));
+        }
+        Ok(found)
+    }
+}
+
+/// Runs the cases that the figures need, which may take long: that is said first.
+fn run(wanted: &[PaperFigure], out: &Path, common: &Common) -> Result<ResultSet, Failure> {
+    let needed = |case: &Case| wanted.iter().any(|figure| figure.cases().contains(&case.id().as_str()));
+    let cases: Vec<Case> = load_cases(&cases_folder()?, &[])?.into_iter().filter(needed).collect();
+    let seconds = cases.iter().map(|case| case.seconds).sum();
+    console::note(common, &format!("{} cases to run, estimated {} on two cores", cases.len(), duration(seconds)));
+    let workspace = folders::workspace();
+    let reference_data = workspace.join("reference-data");
+    let options = Options { out, reference_data: &reference_data, environment: environment(&workspace), resume: true };
+    let watch = Watch::new(common);
+    let results = verify(&cases, &options, &watch);
+    watch.finish();
+    Ok(results?)
+}
+
+/// Fingerprints of what the cases behind a figure simulated.
+fn inputs(set: &ResultSet, figure: &Figure) -> BTreeMap<String, String> {
+    let of = |id: String| Some((id.clone(), set.inputs.get(&id)?.clone()));
+    cases_of(set, figure).into_iter().filter_map(of).collect()
+}

@@ -1,0 +1,51 @@
+//! `merge DIR…`: the results of all slices of a plan as one.
+
+use std::path::PathBuf;
+
+use fisura_verification::suite::merge::{MergeError, merge as join};
+
+use crate::cli::Common;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::verify::conclude;
+use crate::{console, folders};
+
+/// Arguments of `merge`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Folders that `verify --partition` wrote, one per slice, in any order
+    #[arg(value_name = "DIR", required = true)]
+    folders: Vec<PathBuf>,
+}
+
+/// Joins parts, renders the report, and says whether every check holds.
+///
+/// # Errors
+/// Parts of different plans, slices missing or doubled, folders that cannot be read or written.
+pub fn merge(args: &Args, common: &Common) -> Result<Exit, Failure> {
+    let folder = folders::output(common, "merge")?;
+    let results = join(&args.folders, &folder, &folders::workspace().join("reference-data"))?;
+    if results.environment.dirty {
+        console::note(
+            common,
+            "warning: the parts were run with uncommitted changes; new files among them are not compared",
+        );
+    }
+    conclude(&results, &folder, common)
+}
+
+impl From<MergeError> for Failure {
+    fn from(error: MergeError) -> Self {
+        let help = match &error {
+            MergeError::Unreadable { .. } => "give the folders that `cargo xtask verify --partition slice:K/N` wrote",
+            MergeError::Differs { .. } => "run all slices of one commit with the same selection, tier and changes",
+            MergeError::Doubled { .. } => "give every slice once",
+            MergeError::Missing { .. } => "run the missing slices, and give all folders at once",
+            MergeError::NoOutcome(_) => "run its slice again",
+            MergeError::OtherReferences => "check out the commit of the parts, with the same reference-data/",
+            MergeError::OverPart(_) => "give another folder with --out",
+            MergeError::Reference(_) | MergeError::File(_) => return Self::new(Exit::BadInput, error.to_string()),
+        };
+        Self::new(Exit::BadInput, error.to_string()).help(help)
+    }
+}

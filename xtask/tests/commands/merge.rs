@@ -1,0 +1,158 @@
+//! `verify --partition` and `merge`: slices joined are the run of the whole plan.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::support::{Place, notched};
+use super::verify::{case, case_of, workspace_with};
+
+/// Five cases in two suites; those of the plate have pictures and curves that several runs share.
+pub fn workspace() -> Place {
+    let mut cases = vec![("energy/block".to_string(), case("The ledger closes", "quick", 1e-12))];
+    for (name, seconds) in [("a", 5), ("b", 3), ("c", 2), ("d", 1)] {
+        let largest = if name == "c" { -1.0 } else { 1e-2 };
+        let text = case_of(&notched(), "The ledger closes", "quick", largest);
+        let text = text.replace("seconds = 1\n", &format!("seconds = {seconds}\nlabel = \"block {name}\"\n"));
+        cases.push((format!("plate/{name}"), text));
+    }
+    workspace_with(&cases)
+}
+
+/// Runs all three slices into `part-1` to `part-3`.
+fn slices(place: &Place, more: &[&str]) {
+    for slice in ["1", "2", "3"] {
+        let (partition, out) = (format!("slice:{slice}/3"), format!("part-{slice}"));
+        place.xtask(&[&["verify", "--partition", &partition, "--out", &out][..], more].concat());
+    }
+}
+
+/// Files below a folder with their bytes, what is exempt of `results.json` left out.
+fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut all = Vec::new();
+    let mut folders = vec![folder.to_path_buf()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(&next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
+                all.push((name, fs::read(&path).unwrap()));
+            }
+        }
+    }
+    all.sort();
+    all
+}
+
+/// `results.json` as text, without environment and timing.
+fn without_times(text: &str) -> String {
+    let mut results: Value = serde_json::from_str(text).unwrap();
+    results["environment"] = Value::Null;
+    results["records"].as_array_mut().unwrap().iter_mut().for_each(|record| record["timing"] = Value::Null);
+    serde_json::to_string_pretty(&results).unwrap()
+}
+
+#[test]
+fn three_slices_joined_are_the_whole_run() {
+    let place = workspace();
+    place.xtask(&["verify", "--out", "whole"]).with_status(1);
+    slices(&place, &[]);
+    let merged = place.xtask(&["merge", "part-3", "part-1", "part-2", "--out", "merged"]).with_status(1);
+    assert!(merged.out.contains("FAIL") && merged.out.contains("plate/c"), "{merged:?}");
+    let (whole, merged) = (contents(&place.path("whole")), contents(&place.path("merged")));
+    let names = |all: &[(String, Vec<u8>)]| all.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&merged), names(&whole));
+    let exempt = ["metrics.json", "junit.xml", "report.html", "summary.md"];
+    for ((name, merged), (_, whole)) in
+        merged.iter().zip(&whole).filter(|((name, _), _)| !exempt.contains(&name.as_str()))
+    {
+        if name == "results.json" {
+            let text = |bytes: &[u8]| without_times(std::str::from_utf8(bytes).unwrap());
+            assert_eq!(text(merged), text(whole));
+        } else {
+            assert_eq!(merged, whole, "{name}");
+        }
+    }
+    assert!(whole.iter().any(|(name, _)| name == "series/plate-a.csv"), "{:?}", names(&whole));
+}
+
+#[test]
+fn slices_are_balanced_and_each_case_is_in_one() {
+    let place = workspace();
+    slices(&place, &["--quiet"]);
+    let cases = |slice: usize| -> Vec<String> {
+        let part: Value = serde_json::from_str(&place.read(&format!("part-{slice}/part.json"))).unwrap();
+        part["outcomes"].as_array().unwrap().iter().map(|o| o[0].as_str().unwrap().to_string()).collect()
+    };
+    assert_eq!(cases(1), ["plate/a"], "5 s");
+    assert_eq!(cases(2), ["plate/b", "plate/d"], "3 + 1 s");
+    assert_eq!(cases(3), ["energy/block", "plate/c"], "1 + 2 s");
+}
+
+#[test]
+fn an_empty_slice_is_a_part_as_well() {
+    let place = workspace();
+    for slice in ["1", "2"] {
+        let (partition, out) = (format!("slice:{slice}/2"), format!("part-{slice}"));
+        place.xtask(&["verify", "--suite", "energy", "--partition", &partition, "--out", &out]).with_status(0);
+    }
+    place.xtask(&["merge", "part-1", "part-2"]).with_status(0);
+    assert!(place.path("target/fisura/merge/report.html").is_file());
+}
+
+#[test]
+fn parts_that_do_not_belong_together_end_with_2() {
+    let place = workspace();
+    slices(&place, &[]);
+    let refused = |folders: &[&str], words: &[&str]| {
+        let arguments = [&["merge", "--out", "merged"][..], folders].concat();
+        place.xtask(&arguments).with_status(2).complains_of(words);
+        assert!(!place.path("merged/results.json").exists());
+    };
+    refused(&["part-1", "part-3"], &["of 3 slices", "missing: 2", "help:"]);
+    refused(&["part-1", "part-2", "part-2", "part-3"], &["slice 2 is there twice", "part-2"]);
+    refused(&["part-1", "absent"], &["absent/part.json"]);
+    place
+        .xtask(&["merge", "part-1", "part-2", "part-3", "--out", "part-2"])
+        .with_status(2)
+        .complains_of(&["part-2 is one of"]);
+
+    let other = |arguments: &[&str], words: &[&str]| {
+        place.xtask(&[&["verify", "--out", "other", "--partition"][..], arguments].concat());
+        refused(&["part-1", "other", "part-3"], &[&["part-1 and other differ"][..], words].concat());
+    };
+    other(&["slice:2/4"], &["number of slices", "3 and 4"]);
+    other(&["slice:2/3", "--tier", "full"], &["tier", "quick and full"]);
+    other(&["slice:2/3", "--suite", "plate"], &["suites", "none and plate"]);
+    other(&["slice:2/3", "--case", "*/*"], &["pattern"]);
+    other(&["slice:2/3", "--set", "mesh.degree=1"], &["--set", "mesh.degree=1"]);
+
+    place.write("verification/cases/plate/d.toml", &case("Another claim", "quick", 1e-12));
+    other(&["slice:2/3"], &["cases", "plate/d"]);
+    place.write("part-2/part.json", "{\"schema\": \"fisura.part/9\"}");
+    refused(&["part-1", "part-2", "part-3"], &["fisura.part/9"]);
+}
+
+#[test]
+fn parts_of_another_commit_or_other_references_end_with_2() {
+    let place = workspace();
+    slices(&place, &[]);
+    let text = place.read("part-2/part.json");
+    place.write("part-2/part.json", &text.replace("\"commit\": \"\"", "\"commit\": \"0123abcd\""));
+    let joined = |place: &Place| place.xtask(&["merge", "part-1", "part-2", "part-3"]).with_status(2);
+    joined(&place).complains_of(&["commit", "none and 0123abcd"]);
+    place.write("part-2/part.json", &text);
+    place.write("reference-data/nobody-1900/more.csv", "x\n1\n");
+    joined(&place).complains_of(&["reference data"]);
+}
+
+#[test]
+fn slices_that_cannot_be_end_with_2() {
+    let place = workspace();
+    place.xtask(&["verify", "--partition", "slice:4/3"]).with_status(2).complains_of(&["slice 4 of 3"]);
+    place.xtask(&["verify", "--partition", "1/3"]).with_status(2).complains_of(&["slice:K/N"]);
+    place.xtask(&["merge"]).with_status(2).complains_of(&["DIR"]);
+}
