@@ -80,6 +80,7 @@ impl<'a> Chart<'a> {
         let traces = traces.collect::<Result<Vec<_>, _>>()?;
         let marked = curves.iter().any(|c| matches!(c.style, CurveStyle::Markers | CurveStyle::Points));
         let abscissae = traces.iter().flat_map(|t| t.points.iter().map(|p| p.0));
+        let abscissae = abscissae.chain(traces.iter().flat_map(|t| t.spread.iter().copied().flatten()));
         let abscissae = abscissae.chain(regions.iter().flat_map(|r| r.x.into_iter().flatten()));
         let abscissae = abscissae.chain(slopes.iter().flat_map(|s| s.x));
         let x = AxisScale::fit(axes[0], abscissae, if marked { 0.04 } else { 0.0 }, 7);
@@ -141,6 +142,7 @@ impl<'a> Chart<'a> {
             let lines = lines.flat_map(|line| dash(&line, trace.look.dashes, x, y, size));
             frame.draw_series(lines.map(|line| PathElement::new(line, stroke)))?;
         }
+        self.draw_spread(frame, trace)?;
         let seen: Vec<Point> = points.into_iter().filter(|p| visible(*p, x, y)).collect();
         let marker = trace.look.marker.or((seen.len() == 1).then_some(crate::style::Marker::Circle));
         let Some(marker) = marker else { return Ok(()) };
@@ -149,6 +151,23 @@ impl<'a> Chart<'a> {
         let floor = self.marks.floors.iter().map(|f| y.coordinate(f.y)).fold(f64::NEG_INFINITY, f64::max);
         for p in marked {
             draw_marker(page, frame.backend_coord(&p), marker, radius, trace.look.colour, p.1 <= floor)?;
+        }
+        Ok(())
+    }
+
+    /// Bars along the abscissa from the least to the largest of repeated measurements.
+    fn draw_spread(&self, frame: &mut Frame, trace: &Trace) -> Drawn {
+        let [x, y] = &self.axes;
+        let stroke = trace.look.colour.stroke_width(px(1.2) as u32);
+        let cap = 3.0 / self.place.height * (y.high - y.low);
+        for (point, ends) in trace.points.iter().zip(&trace.spread) {
+            let (at, ends) = (y.coordinate(point.1), ends.map(|end| x.coordinate(end)));
+            if !visible((x.coordinate(point.0), at), x, y) || ends.iter().any(|end| !end.is_finite()) {
+                continue;
+            }
+            let caps = ends.map(|end| PathElement::new(vec![(end, at - cap), (end, at + cap)], stroke));
+            frame.draw_series([PathElement::new(ends.map(|end| (end, at)).to_vec(), stroke)])?;
+            frame.draw_series(caps)?;
         }
         Ok(())
     }

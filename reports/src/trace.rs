@@ -22,6 +22,8 @@ pub struct Trace {
     pub points: Vec<Point>,
     /// Half width of the uncertainty at each row; empty if there is none.
     pub half_widths: Vec<f64>,
+    /// Least and largest abscissa at each row; empty if the series has no columns `<x>_min` and `<x>_max`.
+    pub spread: Vec<[f64; 2]>,
 }
 
 impl Trace {
@@ -50,7 +52,10 @@ impl Trace {
         let uncertain = absolute.max(relative) > 0.0;
         let half_widths =
             if uncertain { points.iter().map(|p| absolute.max(relative * p.1.abs())).collect() } else { Vec::new() };
-        Ok(Self { label: curve.label.clone(), style: curve.style, look, points, half_widths })
+        let table = set.table(figure, &curve.series)?;
+        let [low, high] = ["min", "max"].map(|end| table.column(&format!("{}_{end}", curve.x)).unwrap_or_default());
+        let spread = low.iter().zip(high).map(|(low, high)| [low * curve.x_scale, high * curve.x_scale]).collect();
+        Ok(Self { label: curve.label.clone(), style: curve.style, look, points, half_widths, spread })
     }
 
     /// All ordinates that should be seen, uncertainty included, except where it would make a positive value negative.

@@ -1,5 +1,6 @@
 //! Cases, checks and records that verify the fisura solver.
 
+pub mod bench;
 pub mod case;
 pub mod convergence;
 pub mod exact;

@@ -7,7 +7,7 @@ mod basis;
 mod compressive_step;
 mod constant_stress;
 mod contact;
-mod convergence;
+pub(crate) mod convergence;
 mod crack_profile;
 mod eigenfrequencies;
 mod homogeneous_state;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::{check, compare, figures, merge, report, run, verify};
+use crate::{bench, check, compare, figures, merge, report, run, verify};
 
 const EXIT_STATUS: &str = "\
 Exit status: 0 all checks hold, 1 a check fails, 2 bad arguments or bad input, 3 a run broke down, \
@@ -42,6 +42,8 @@ pub enum Command {
     Figures(figures::Args),
     /// Render the report of a results folder again, without running anything
     Report(report::Args),
+    /// Measure speed against error: diagrams, stages of the step, threads, ceilings, scenes
+    Bench(bench::Args),
 }
 
 /// Flags of every command.

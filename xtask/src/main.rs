@@ -1,10 +1,11 @@
 //! The commands of the fisura workspace: `cargo xtask verify`, `merge`, `compare`, `list`, `run`, `check`, `figures`,
-//! `report`.
+//! `report`, `bench`.
 //!
 //! One file per command; beside them [`cli`] (what can be said on the command line), [`exit`] (statuses), [`failure`]
 //! (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go), [`progress`]
 //! (bars), [`pictures`] (figures of a run), [`environment`] (where and when).
 
+mod bench;
 mod check;
 mod cli;
 mod compare;
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::check(&args, &common),
         Command::Figures(args) => figures::figures(&args, &common),
         Command::Report(args) => report::report(&args, &common),
+        Command::Bench(args) => bench::bench(&args, &common),
     });
     outcome.unwrap_or_else(|failure| failure.show()).into()
 }

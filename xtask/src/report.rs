@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fisura_reports::{ReportError, read_results, render};
+use fisura_reports::{ReportError, bench, read_results, render};
 use fisura_verification::scene_run::replace_file;
 use serde_json::json;
 
@@ -15,7 +15,7 @@ use crate::{console, folders};
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Folder with results.json and series/; the report is written there, or to --out
+    /// Folder with results.json or bench.json; the report is written there, or to --out
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }
@@ -25,13 +25,18 @@ pub struct Args {
 /// # Errors
 /// `results.json` is missing or foreign, a file cannot be written, or a figure cannot be drawn.
 pub fn report(args: &Args, common: &Common) -> Result<Exit, Failure> {
-    read_results(&args.folder).map_err(|error| unreadable(error, &args.folder))?;
+    let of_bench = bench::is_bench(&args.folder);
+    if of_bench {
+        bench::read(&args.folder)?;
+    } else {
+        read_results(&args.folder).map_err(|error| unreadable(error, &args.folder))?;
+    }
     let folder = match &common.out {
-        Some(_) => copied(&args.folder, common)?,
+        Some(_) => copied(&args.folder, if of_bench { "bench.json" } else { "results.json" }, common)?,
         None => args.folder.clone(),
     };
-    let rendered = render(&folder)?;
-    let files: Vec<String> = rendered.files.iter().map(|f| folder.join(f).display().to_string()).collect();
+    let rendered = if of_bench { bench::render(&folder)? } else { render(&folder)?.files };
+    let files: Vec<String> = rendered.iter().map(|f| folder.join(f).display().to_string()).collect();
     match common.format {
         Format::Json => console::json(&json!({ "files": files })),
         Format::Text => console::result(&(files.join("\n") + "\n")),
@@ -48,11 +53,11 @@ pub fn unreadable(error: ReportError, folder: &Path) -> Failure {
 }
 
 /// The results and their series in the folder of `--out`.
-fn copied(from: &Path, common: &Common) -> Result<PathBuf, Failure> {
+fn copied(from: &Path, results: &str, common: &Common) -> Result<PathBuf, Failure> {
     let to = folders::output(common, "report")?;
     let same = fs::canonicalize(from).ok() == fs::canonicalize(&to).ok();
     if !same {
-        copy(&from.join("results.json"), &to.join("results.json"))?;
+        copy(&from.join(results), &to.join(results))?;
         if from.join("series").is_dir() {
             copy(&from.join("series"), &to.join("series"))?;
         }

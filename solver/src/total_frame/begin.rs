@@ -75,18 +75,28 @@ impl TotalFrame {
         velocity: VectorField,
         forcing: Arc<dyn Forcing>,
     ) -> Result<(), NotConverged> {
+        let mut forced = Forced::new(forcing, &self.patch, &self.lattice);
+        forced.update_forces(&self.lattice, 0.0);
+        if let Some(fracture) = &mut self.fracture {
+            fracture.field.set_load(forced.phase_load(&self.lattice, 0.0));
+        }
+        self.forced = Some(Box::new(forced));
+        self.start_with(displacement, velocity)
+    }
+
+    /// Begins anew at t = 0 from given control values of displacement (m) and velocity (m/s), under the loads it has.
+    ///
+    /// # Errors
+    /// If the initial phase field does not converge.
+    pub fn start_with(&mut self, displacement: VectorField, velocity: VectorField) -> Result<(), NotConverged> {
         (self.displacement, self.velocity) = (displacement, velocity);
         self.constraints.apply_velocity(&mut self.velocity);
         self.ledger = Ledger::default();
         self.time = 0.0;
-        let mut forced = Forced::new(forcing, &self.patch, &self.lattice);
-        forced.update_forces(&self.lattice, 0.0);
         if let Some(fracture) = &mut self.fracture {
             fracture.update_history(&self.lattice, self.moduli, self.kinematics, &self.displacement);
-            fracture.field.set_load(forced.phase_load(&self.lattice, 0.0));
             fracture.field.initialise(&self.lattice, &fracture.history)?;
         }
-        self.forced = Some(Box::new(forced));
         self.begin();
         Ok(())
     }

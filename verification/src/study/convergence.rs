@@ -4,8 +4,8 @@
 //! unless the case gives another power. Errors are relative. In the total frame they are integrated with an independent,
 //! finer quadrature, in the updated frame they are those of the points.
 
-mod errors;
-mod moving;
+pub(crate) mod errors;
+pub(crate) mod moving;
 mod problem;
 mod scene;
 mod solve;

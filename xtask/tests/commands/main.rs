@@ -1,5 +1,6 @@
 //! The built binary on small scenes: exit statuses, streams, files, help.
 
+mod bench;
 mod check;
 mod compare;
 mod figures;

@@ -9,13 +9,13 @@ use fisura::scene::{Body, Layout};
 const FINER: usize = 3;
 
 /// Quadrature points for errors on the patch of a body.
-pub(super) struct ErrorPoints {
+pub(crate) struct ErrorPoints {
     lattice: Lattice,
 }
 
 /// Squares of an error and of the exact field, integrated, m² times their units squared.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Squares {
+pub(crate) struct Squares {
     error: [f64; 2],
     exact: [f64; 2],
 }

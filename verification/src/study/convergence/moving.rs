@@ -59,29 +59,11 @@ impl<'a> Moving<'a> {
         self.frame.set_initial_velocity(|x| solution.velocity(x, 0.0));
         let moved = |p: &Point| solution.displacement(p.position, 0.0).iter().any(|u| u.abs() > AT_REST);
         if self.frame.fields()[0].points().iter().any(moved) {
-            self.displace()?;
+            displace(&mut self.frame, &self.scene.bodies[0], |x| solution.displacement(x, 0.0))?;
         }
         let (solution, loading) = (self.problem.solution.clone(), self.setup.loading);
         self.frame.apply_forcing(Arc::new(Manufactured { solution, loading, diffusion: 0.0, moved: true }));
         Ok(())
-    }
-
-    /// Displaces the points from rest by the projection of the exact displacement at t = 0, whose error is of order
-    /// p + 1, within one second, and sets the clock back to zero.
-    fn displace(&mut self) -> Result<(), StudyError> {
-        let patch = self.frame.patch();
-        let whole = Body { shape: Shape::Patch, layout: Layout::Gauss, ..self.scene.bodies[0].clone() };
-        let lattice = Lattice::new(patch, &whole);
-        let projection =
-            Projection::new(&lattice, &[]).ok_or_else(|| other("the points do not determine a projection"))?;
-        let control = [0, 1].map(|i| projection.project(|x| self.problem.solution.displacement(x, 0.0)[i]));
-        let (grid, greville) = (patch.control_grid(), [0, 1].map(|d| patch.spaces[d].greville()));
-        let at = |x: [f64; 2]| {
-            let [i, j] = [0, 1].map(|d| greville[d].partition_point(|g| *g < x[d]));
-            [0, 1].map(|c: usize| control[c][grid.index(i, j)])
-        };
-        self.frame.prescribe_motion(at, 1.0).map_err(broken)?;
-        self.frame.prescribe_motion(|_| [0.0; 2], -1.0).map_err(broken)
     }
 
     /// Relative errors of displacement, velocity, and velocity in the middle at the end (s) of steps of `dt` (s).
@@ -145,6 +127,27 @@ impl OnMesh for Moving<'_> {
         });
         (spans[0] * spans[1]).sqrt()
     }
+}
+
+/// Displaces the points of a body from rest by the projection of a displacement (m), whose error is of order p + 1, within one
+/// second, and sets the clock back to zero.
+pub(crate) fn displace(
+    frame: &mut UpdatedFrame,
+    body: &Body,
+    displacement: impl Fn([f64; 2]) -> [f64; 2] + Sync,
+) -> Result<(), StudyError> {
+    let patch = frame.patch();
+    let whole = Body { shape: Shape::Patch, layout: Layout::Gauss, ..body.clone() };
+    let lattice = Lattice::new(patch, &whole);
+    let projection = Projection::new(&lattice, &[]).ok_or_else(|| other("the points do not determine a projection"))?;
+    let control = [0, 1].map(|i: usize| projection.project(|x| displacement(x)[i]));
+    let (grid, greville) = (patch.control_grid(), [0, 1].map(|d| patch.spaces[d].greville()));
+    let at = |x: [f64; 2]| {
+        let [i, j] = [0, 1].map(|d| greville[d].partition_point(|g| *g < x[d]));
+        [0, 1].map(|c: usize| control[c][grid.index(i, j)])
+    };
+    frame.prescribe_motion(at, 1.0).map_err(broken)?;
+    frame.prescribe_motion(|_| [0.0; 2], -1.0).map_err(broken)
 }
 
 /// Ends of a spline space, m.

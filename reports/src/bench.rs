@@ -1,0 +1,158 @@
+//! The report of `cargo xtask bench`: figures, tables and readings of a folder with `bench.json`.
+//!
+//! [`render`] writes `samples.csv` (every sample), `figures/timing/*.svg`, `summary.md` (with links to the figures) and
+//! `bench.html` (figures inline). Everything is a pure function of `bench.json`: [`work_precision`], [`stages`] and
+//! [`conditions`] make the exhibits, [`ratios`] holds the targets, [`bars`] draws bars, [`page`] puts it together.
+
+pub mod bars;
+pub mod conditions;
+pub mod page;
+pub mod pareto;
+pub mod ratios;
+pub mod stages;
+pub mod work_precision;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use fisura_verification::bench::record::{BenchRecord, BenchSet, SCHEMA};
+
+use crate::error::ReportError;
+use crate::series::FigureError;
+use crate::write;
+
+/// A figure with what it says.
+#[derive(Debug, Clone)]
+pub struct Plot {
+    /// File name without ending, below `timing/`.
+    pub id: String,
+    /// Title.
+    pub title: String,
+    /// What was run.
+    pub caption: String,
+    /// A sentence computed from the numbers.
+    pub reading: String,
+    /// The drawing, or why there is none.
+    pub svg: Result<String, FigureError>,
+}
+
+/// A table with what it says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// Title.
+    pub title: String,
+    /// Names of the columns.
+    pub head: Vec<String>,
+    /// Rows of cells.
+    pub rows: Vec<Vec<String>>,
+    /// What to know about it.
+    pub note: String,
+}
+
+/// Something in a section.
+#[derive(Debug, Clone)]
+pub enum Exhibit {
+    /// A figure.
+    Plot(Plot),
+    /// A table.
+    Grid(Grid),
+}
+
+/// A part of the report.
+#[derive(Debug, Clone)]
+pub struct Section {
+    /// Title.
+    pub title: String,
+    /// What it shows, in order.
+    pub exhibits: Vec<Exhibit>,
+}
+
+/// The records of a set, found by id or family.
+#[derive(Debug, Clone, Copy)]
+pub struct Records<'a>(pub &'a [BenchRecord]);
+
+impl<'a> Records<'a> {
+    /// The record of that id.
+    pub fn get(self, id: &str) -> Option<&'a BenchRecord> {
+        self.0.iter().find(|record| record.id == id)
+    }
+
+    /// All records whose id begins so.
+    pub fn below(self, prefix: &str) -> Vec<&'a BenchRecord> {
+        self.0.iter().filter(|record| record.id.starts_with(prefix)).collect()
+    }
+}
+
+/// All sections that have something to show.
+pub fn sections(set: &BenchSet) -> Vec<Section> {
+    let records = Records(&set.records);
+    let parts = [
+        ("Targets", ratios::exhibits(records)),
+        ("Work and precision", work_precision::exhibits(records)),
+        ("The plate", work_precision::plate(records, &set.fem)),
+        ("Where the time of a step goes", stages::exhibits(records)),
+        ("Solving for the phase field", stages::solves(records)),
+        ("Threads", conditions::threads(records)),
+        ("Ceilings", conditions::ceilings(records)),
+        ("Only what a scene declares", conditions::scenes(records)),
+        ("Other codes", conditions::peers(set)),
+        ("All records", vec![Exhibit::Grid(page::all_records(set))]),
+    ];
+    let named = parts.into_iter().filter(|(_, exhibits)| !exhibits.is_empty());
+    named.map(|(title, exhibits)| Section { title: title.into(), exhibits }).collect()
+}
+
+/// Whether a folder holds benchmarks.
+pub fn is_bench(folder: &Path) -> bool {
+    folder.join("bench.json").is_file()
+}
+
+/// Reads `bench.json` of a folder.
+///
+/// # Errors
+/// The file is missing, malformed or of another schema.
+pub fn read(folder: &Path) -> Result<BenchSet, ReportError> {
+    let path = folder.join("bench.json");
+    let text = fs::read_to_string(&path).map_err(|source| ReportError::File { path: path.clone(), source })?;
+    let malformed = |e: serde_json::Error| ReportError::Results { path: path.clone(), message: e.to_string() };
+    let value: serde_json::Value = serde_json::from_str(&text).map_err(malformed)?;
+    let found = value.get("schema").and_then(|s| s.as_str()).unwrap_or_default().to_string();
+    if found != SCHEMA {
+        return Err(ReportError::Schema { path, found, expected: SCHEMA });
+    }
+    serde_json::from_str(&text).map_err(malformed)
+}
+
+/// Writes `bench.json`.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn store(folder: &Path, set: &BenchSet) -> Result<PathBuf, ReportError> {
+    let path = folder.join("bench.json");
+    let text = serde_json::to_string_pretty(set).map_err(|e| ReportError::Results { path, message: e.to_string() })?;
+    write(folder, "bench.json", &(text + "\n"))
+}
+
+/// Renders the benchmarks in `folder`; names the files written, relative to it.
+///
+/// # Errors
+/// `bench.json` cannot be read, or a file cannot be written. Figures that cannot be drawn give [`ReportError::Figures`], after
+/// everything else was written.
+pub fn render(folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
+    let set = read(folder)?;
+    let sections = sections(&set);
+    let mut files = vec![write(folder, "samples.csv", &page::samples(&set))?];
+    let mut broken = Vec::new();
+    for exhibit in sections.iter().flat_map(|section| &section.exhibits) {
+        let Exhibit::Plot(plot) = exhibit else { continue };
+        match &plot.svg {
+            Ok(svg) => files.push(write(folder, &page::file(plot), svg)?),
+            Err(error) => broken.push(error.clone()),
+        }
+    }
+    files.push(write(folder, "summary.md", &page::markdown(&set, &sections))?);
+    let html = page::html(&set, &sections);
+    let html = html.map_err(|e| ReportError::Render { file: "bench.html", message: e.to_string() })?;
+    files.push(write(folder, "bench.html", &html)?);
+    if broken.is_empty() { Ok(files) } else { Err(ReportError::Figures(broken)) }
+}

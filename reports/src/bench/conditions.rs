@@ -1,0 +1,219 @@
+//! Threads, ceilings of the machine, scenes with more and less physics, other codes.
+
+use fisura_verification::bench::record::{BenchRecord, BenchSet, Spread};
+
+use super::bars::{BarChart, render_bars};
+use super::{Exhibit, Grid, Plot, Records};
+use crate::number::{plain, pretty};
+
+/// Steps with 1, 2, … threads.
+pub fn threads(records: Records) -> Vec<Exhibit> {
+    let all = records.below("threads/");
+    let mut numbers: Vec<usize> = all.iter().map(|r| r.threads).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let mut scenes: Vec<&str> = all.iter().filter_map(|r| r.id.split('/').nth(1)).collect();
+    scenes.dedup();
+    if scenes.is_empty() {
+        return Vec::new();
+    }
+    let of = |scene: &str, threads: usize| records.get(&format!("threads/{scene}/{threads}"));
+    let row = |scene: &&str| {
+        let label = of(scene, 1).map_or(scene.to_string(), |r| r.label.clone());
+        (label, numbers.iter().map(|&n| of(scene, n).map(|r| r.ns_per_unit)).collect())
+    };
+    let count = |n: &usize| if *n == 1 { "1 thread".to_string() } else { format!("{n} threads") };
+    let chart = BarChart {
+        id: "timing/threads".into(),
+        title: "Steps with more threads".into(),
+        axis: "wall time per particle-step (ns)".into(),
+        series: numbers.iter().map(count).collect(),
+        rows: scenes.iter().map(row).collect(),
+    };
+    let most = numbers.last().copied().unwrap_or(1);
+    let sentence = |scene: &&str| -> Option<String> {
+        let (one, many) = (of(scene, 1)?, of(scene, most)?);
+        let gain = one.ns_per_unit.median / many.ns_per_unit.median;
+        let best = one.ns_per_unit.min / many.ns_per_unit.min;
+        let bits = if many.verified { "with the same bits" } else { "with DIFFERENT bits" };
+        let (gain, best) = (pretty(gain, 3), pretty(best, 3));
+        Some(format!("{}: {} take {gain} times less wall time {bits} (least times: {best}).", one.label, count(&most)))
+    };
+    let reading = scenes.iter().filter_map(sentence).collect::<Vec<_>>().join(" ");
+    let caption =
+        "Wall time: what else runs on the machine counts. Bars: median, whiskers: least and largest of the rounds";
+    let svg = render_bars(&chart);
+    vec![Exhibit::Plot(Plot { id: chart.id, title: chart.title, caption: caption.into(), reading, svg })]
+}
+
+/// Bandwidth, arithmetic, and how far the elastic sweep is from both.
+pub fn ceilings(records: Records) -> Vec<Exhibit> {
+    let (Some(triad), Some(add)) = (records.get("ceilings/triad"), records.get("ceilings/multiply-add")) else {
+        return Vec::new();
+    };
+    let (byte, flop) = (triad.ns_per_unit.median, add.ns_per_unit.median);
+    let mut rows = vec![rate(triad, "GB/s"), rate(add, "GF/s")];
+    let mut notes = Vec::new();
+    for sweep in records.below("ceilings/elastic-sweep/") {
+        let per_point = |name: &str| sweep.number(name).unwrap_or(f64::NAN);
+        let (flops, bytes) = (per_point("flops_per_point"), per_point("bytes_per_point"));
+        let (by_flops, by_bytes) = (flops * flop, bytes * byte);
+        let Spread { median, min, max } = sweep.ns_per_unit;
+        let bound = if by_flops > by_bytes { "arithmetic" } else { "bandwidth" };
+        let distance = median / by_flops.max(by_bytes);
+        rows.push(vec![
+            sweep.label.clone(),
+            format!("{} ns per point", plain(median, 3)),
+            format!("{} to {}", plain(min, 3), plain(max, 3)),
+            format!(
+                "{} ns by {} operations, {} ns by {} bytes",
+                plain(by_flops, 3),
+                plain(flops, 4),
+                plain(by_bytes, 3),
+                plain(bytes, 3)
+            ),
+        ]);
+        let degree = sweep.number("degree").unwrap_or(f64::NAN);
+        notes.push(format!("the sweep of p = {degree} takes {} times its ceiling, {bound}", plain(distance, 3)));
+    }
+    let moving =
+        records.below("ceilings/elastic-sweep/").iter().find_map(|r| r.number("bytes_per_point_of_moving_points"));
+    if let Some(bytes) = moving {
+        notes.push(format!("moving points alone stream {bytes} bytes a step, {} ns", plain(bytes * byte, 3)));
+    }
+    vec![Exhibit::Grid(Grid {
+        title: "What this machine can do on one thread".into(),
+        head: ["", "median", "rounds", "ceilings"].map(String::from).to_vec(),
+        rows,
+        note: format!(
+            "Operations and bytes are counted from the code, not by hardware, in processor time of this run: {}.",
+            notes.join("; ")
+        ),
+    })]
+}
+
+/// A ceiling as a rate.
+fn rate(record: &BenchRecord, unit: &str) -> Vec<String> {
+    let Spread { median, min, max } = record.ns_per_unit;
+    let rates = [median, max, min].map(|ns| plain(1.0 / ns, 3));
+    vec![record.label.clone(), format!("{} {unit}", rates[0]), format!("{} to {}", rates[1], rates[2]), String::new()]
+}
+
+/// Time and memory of scenes by what they model.
+pub fn scenes(records: Records) -> Vec<Exhibit> {
+    let all = records.below("scenes/");
+    if all.is_empty() {
+        return Vec::new();
+    }
+    let bytes = |record: &BenchRecord| record.memory_bytes as f64 / record.number("particles").unwrap_or(f64::NAN);
+    let text = |record: &BenchRecord, name: &str| match record.parameters.get(name) {
+        Some(serde_json::Value::String(s)) => s.clone(),
+        Some(serde_json::Value::Array(a)) => a.iter().filter_map(|v| v.as_str()).collect::<Vec<_>>().join(", "),
+        _ => String::new(),
+    };
+    let row = |record: &&BenchRecord| {
+        let Spread { median, min, max } = record.ns_per_unit;
+        vec![
+            record.label.clone(),
+            text(record, "frame"),
+            text(record, "models"),
+            plain(median, 3),
+            format!("{} to {}", plain(min, 3), plain(max, 3)),
+            plain(bytes(record), 3),
+            plain(record.number("phase_field_bytes").unwrap_or(0.0) / record.number("particles").unwrap_or(1.0), 3),
+            if record.verified { record.answer.clone() } else { format!("does NOT hold: {}", record.answer) },
+        ]
+    };
+    let head = [
+        "scene",
+        "frame",
+        "models",
+        "ns per particle-step",
+        "rounds",
+        "bytes per point",
+        "of these phase field",
+        "verified",
+    ];
+    let note = |frame: &str| -> Option<String> {
+        let of = |name: &str| records.get(&format!("scenes/{frame}/{name}"));
+        let (elastic, fracture) = (of("elastic")?, of("fracture")?);
+        let carried = elastic.number("phase_field_bytes").unwrap_or(f64::NAN);
+        Some(format!(
+            "In the {frame} frame a growing crack takes {} times the time and {} times the memory of the elastic block, which \
+             carries {carried} bytes of a phase field.",
+            plain(fracture.ns_per_unit.median / elastic.ns_per_unit.median, 3),
+            plain(bytes(fracture) / bytes(elastic), 3)
+        ))
+    };
+    let mut notes: Vec<String> = ["total", "updated"].into_iter().filter_map(note).collect();
+    let halves = ["half-of-the-plate", "the-whole-plate"].map(|name| records.get(&format!("scenes/total/{name}")));
+    if let [Some(half), Some(whole)] = halves {
+        notes.push(format!(
+            "Half of the plate takes {} % of the time and {} % of the memory of the whole.",
+            plain(100.0 * half.cpu_s.median / whole.cpu_s.median, 3),
+            plain(100.0 * half.memory_bytes as f64 / whole.memory_bytes as f64, 3)
+        ));
+    }
+    vec![Exhibit::Grid(Grid {
+        title: "Scenes by what they model".into(),
+        head: head.map(String::from).to_vec(),
+        rows: all.iter().map(row).collect(),
+        note: notes.join(" "),
+    })]
+}
+
+/// Stored ratios to other codes, carried over by the kernels; and the program of the user, if it was run.
+pub fn peers(set: &BenchSet) -> Vec<Exhibit> {
+    let records = Records(&set.records);
+    let mut exhibits = Vec::new();
+    if let (Some(ours), Some(theirs)) = (records.get("peer/fisura"), records.get("peer/command")) {
+        let row = |record: &BenchRecord| {
+            let Spread { median, min, max } = record.ns_per_unit;
+            let range = format!("{} to {}", plain(min, 3), plain(max, 3));
+            vec![record.label.clone(), plain(median, 3), range, record.answer.clone()]
+        };
+        let factor = theirs.ns_per_unit.median / ours.ns_per_unit.median;
+        let trust = if theirs.verified { "" } else { " Its answer is not verified: do not believe its time." };
+        exhibits.push(Exhibit::Grid(Grid {
+            title: "The given program on the same block".into(),
+            head: ["program", "ns per particle-step", "rounds", "verified"].map(String::from).to_vec(),
+            rows: vec![row(ours), row(theirs)],
+            note: format!(
+                "It takes {} times our time, start and end of the program left out.{trust}",
+                plain(factor, 3)
+            ),
+        }));
+    }
+    let tuned: Vec<_> = set.peers.iter().filter(|p| p.quantity == "over-tuned-kernel").collect();
+    let Some(first) = tuned.first() else { return exhibits };
+    let row = |peer: &&fisura_verification::bench::record::NamedPeer| {
+        let naive = set
+            .peers
+            .iter()
+            .find(|p| p.code == peer.code && p.degree == peer.degree && p.quantity == "over-naive-kernel");
+        let naive = naive.map(|p| p.value);
+        let estimate = naive.and_then(|naive| Some(naive * kernel_over_ours(records, peer.degree)?));
+        let or_dash = |value: Option<f64>| value.map_or("–".into(), |v| plain(v, 3));
+        let degree = peer.degree.to_string();
+        vec![peer.code.clone(), degree, plain(peer.value, 3), or_dash(naive), or_dash(estimate), peer.remark.clone()]
+    };
+    let head = ["code", "p", "over a tuned kernel", "over a naive kernel", "over fisura, estimated", "remark"];
+    exhibits.push(Exhibit::Grid(Grid {
+        title: "Named codes on an elastic block, stored ratios".into(),
+        head: head.map(String::from).to_vec(),
+        rows: tuned.iter().map(row).collect(),
+        note: format!(
+            "Not measured in this run: {}. Kernels are those of that run. The estimate multiplies the ratio to its naive kernel by \
+             the time of the minimal kernel over an elastic step of fisura in the updated frame in this run, as if the two \
+             kernels were the same; they are alike, no more.",
+            first.conditions
+        ),
+    }));
+    exhibits
+}
+
+/// Time of the minimal kernel over our elastic step in the updated frame.
+fn kernel_over_ours(records: Records, degree: usize) -> Option<f64> {
+    let of = |phase: &str| Some(records.get(&format!("stages/p{degree}/{phase}"))?.ns_per_unit.median);
+    Some(of("minimal-step")? / of("elastic-step-updated")?)
+}

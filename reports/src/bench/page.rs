@@ -1,0 +1,163 @@
+//! The report as Markdown, as one HTML page, and its samples as CSV.
+
+use fisura_verification::bench::record::{BenchSet, Spread};
+use fisura_verification::history::format_number;
+use minijinja::Environment;
+use minijinja::value::Serde;
+use serde::Serialize;
+
+use super::{Exhibit, Grid, Plot, Section};
+use crate::number::plain;
+use crate::svg::slug;
+
+const TEMPLATE: &str = include_str!("../../templates/bench.html");
+
+/// File of a figure, relative to the folder.
+pub fn file(plot: &Plot) -> String {
+    format!("figures/{}.svg", plot.id)
+}
+
+/// Every sample: `id, round, wall_s, cpu_s, work, unit`.
+pub fn samples(set: &BenchSet) -> String {
+    let mut out = String::from("id,round,wall_s,cpu_s,work,unit\n");
+    for record in &set.records {
+        for (round, sample) in record.samples.iter().enumerate() {
+            let [wall, cpu, work] = [sample.wall_s, sample.cpu_s, record.work.amount].map(format_number);
+            out.push_str(&format!("{},{round},{wall},{cpu},{work},{}\n", record.id, record.work.unit));
+        }
+    }
+    out
+}
+
+/// One row per record.
+pub fn all_records(set: &BenchSet) -> Grid {
+    let row = |record: &fisura_verification::bench::record::BenchRecord| {
+        let Spread { median, min, max } = record.ns_per_unit;
+        let error = record.error.as_ref().map_or("–".into(), |e| plain(e.value, 3));
+        let memory = if record.memory_bytes == 0 { "–".into() } else { plain(record.memory_bytes as f64 / 1e6, 3) };
+        vec![
+            record.id.clone(),
+            record.threads.to_string(),
+            plain(record.cpu_s.median, 3),
+            plain(record.wall_s.median, 3),
+            format!("{} ({} to {}) per {}", plain(median, 3), plain(min, 3), plain(max, 3), record.work.unit),
+            error,
+            memory,
+            if record.verified { record.answer.clone() } else { format!("does NOT hold: {}", record.answer) },
+        ]
+    };
+    let broken = set.records.iter().filter(|r| !r.verified).count();
+    let note = match broken {
+        0 => format!("The answers of all {} records hold.", set.records.len()),
+        n => format!("The answers of {n} of {} records do NOT hold; their times mean nothing.", set.records.len()),
+    };
+    let head = ["record", "threads", "processor s", "wall s", "ns", "error", "MB", "verified"];
+    Grid {
+        title: "Every record".into(),
+        head: head.map(String::from).to_vec(),
+        rows: set.records.iter().map(row).collect(),
+        note,
+    }
+}
+
+/// Where and when, in a line.
+fn conditions(set: &BenchSet) -> String {
+    let e = &set.environment;
+    let commit: String = e.commit.chars().take(12).collect();
+    let dirty = if e.dirty { ", with changes" } else { "" };
+    let size = if set.quick { "quick" } else { "full" };
+    format!("{size} run on {} with {} threads, {}; commit {commit}{dirty}; {}", e.cpu, e.threads, e.started, e.rustc)
+}
+
+/// Text of a table cell in Markdown.
+fn cell(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('|', "\\|")
+}
+
+/// The report with links to its figures.
+pub fn markdown(set: &BenchSet, sections: &[Section]) -> String {
+    let mut out = format!("# Speed against error\n\n{}.\n", conditions(set));
+    for section in sections {
+        out.push_str(&format!("\n## {}\n", section.title));
+        for exhibit in &section.exhibits {
+            match exhibit {
+                Exhibit::Plot(plot) => out.push_str(&of_plot(plot)),
+                Exhibit::Grid(grid) => out.push_str(&of_grid(grid)),
+            }
+        }
+    }
+    out
+}
+
+fn of_plot(plot: &Plot) -> String {
+    let picture = match &plot.svg {
+        Ok(_) => format!("![{}]({})", plot.title, file(plot)),
+        Err(error) => format!("Not drawn: {error}"),
+    };
+    format!("\n{picture}\n\n{}\n\n*{}. {}.*\n", plot.reading, plot.title, plot.caption)
+}
+
+fn of_grid(grid: &Grid) -> String {
+    let line = |cells: &[String]| format!("| {} |\n", cells.iter().map(|c| cell(c)).collect::<Vec<_>>().join(" | "));
+    let rule = format!("|{}\n", "---|".repeat(grid.head.len()));
+    let rows: String = grid.rows.iter().map(|row| line(row)).collect();
+    format!("\n### {}\n\n{}{rule}{rows}\n{}\n", grid.title, line(&grid.head), grid.note)
+}
+
+#[derive(Serialize)]
+struct Part {
+    anchor: String,
+    title: String,
+    exhibits: Vec<Shown>,
+}
+
+/// An exhibit as the template takes it: the fields of a figure or of a table are empty.
+#[derive(Serialize)]
+struct Shown {
+    title: String,
+    svg: String,
+    error: String,
+    caption: String,
+    text: String,
+    head: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+fn shown(exhibit: &Exhibit) -> Shown {
+    match exhibit {
+        Exhibit::Plot(plot) => {
+            let (svg, error) = match &plot.svg {
+                Ok(svg) => (svg.clone(), String::new()),
+                Err(error) => (String::new(), error.to_string()),
+            };
+            let (title, caption, text) = (plot.title.clone(), plot.caption.clone(), plot.reading.clone());
+            Shown { title, svg, error, caption, text, head: vec![], rows: vec![] }
+        }
+        Exhibit::Grid(grid) => Shown {
+            title: grid.title.clone(),
+            svg: String::new(),
+            error: String::new(),
+            caption: String::new(),
+            text: grid.note.clone(),
+            head: grid.head.clone(),
+            rows: grid.rows.clone(),
+        },
+    }
+}
+
+/// The page, complete in itself.
+///
+/// # Errors
+/// Only if the template cannot be filled, which has no cause in the records.
+pub fn html(set: &BenchSet, sections: &[Section]) -> Result<String, minijinja::Error> {
+    let mut environment = Environment::new();
+    environment.add_template("bench.html", TEMPLATE)?;
+    let part = |section: &Section| Part {
+        anchor: slug(&section.title),
+        title: section.title.clone(),
+        exhibits: section.exhibits.iter().map(shown).collect(),
+    };
+    let parts: Vec<Part> = sections.iter().map(part).collect();
+    let page = minijinja::context! { conditions => conditions(set), parts => Serde(parts) };
+    environment.get_template("bench.html")?.render(page)
+}

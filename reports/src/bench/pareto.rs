@@ -1,0 +1,55 @@
+//! Which of many ways is worth its cost.
+
+/// Indices of the points `(cost, error)` that no other point beats in both, from the cheapest to the most accurate. Points
+/// that are no numbers take no part.
+pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
+    let usable = |i: &usize| points[*i].0.is_finite() && points[*i].1.is_finite();
+    let mut order: Vec<usize> = (0..points.len()).filter(usable).collect();
+    let by = |i: usize, j: usize| points[i].0.total_cmp(&points[j].0).then(points[i].1.total_cmp(&points[j].1));
+    order.sort_by(|i, j| by(*i, *j));
+    let mut front: Vec<usize> = Vec::new();
+    for i in order {
+        if front.last().is_none_or(|&last| points[i].1 < points[last].1) {
+            front.push(i);
+        }
+    }
+    front
+}
+
+/// Cost of an error on a curve of points `(cost, error)`, between two neighbours on logarithmic axes; `None` where the curve
+/// does not reach.
+pub fn cost_of(curve: &[(f64, f64)], error: f64) -> Option<f64> {
+    let mut sorted = curve.to_vec();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let between = |pair: &&[(f64, f64)]| pair[0].1 >= error && pair[1].1 <= error && pair[0].1 > pair[1].1;
+    sorted.windows(2).find(between).map(|pair| {
+        let t = (pair[0].1 / error).ln() / (pair[0].1 / pair[1].1).ln();
+        pair[0].0 * (pair[1].0 / pair[0].0).powf(t)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_front_has_what_nothing_beats() {
+        let points = [(1.0, 1.0), (2.0, 0.1), (2.0, 0.5), (3.0, 0.2), (f64::NAN, 0.0), (4.0, 0.01), (0.5, 2.0)];
+        assert_eq!(front(&points), [6, 0, 1, 5]);
+        assert!(front(&[]).is_empty());
+    }
+
+    #[test]
+    fn of_two_equal_points_one_is_on_the_front() {
+        assert_eq!(front(&[(1.0, 1.0), (1.0, 1.0)]).len(), 1);
+    }
+
+    #[test]
+    fn costs_between_points_follow_power_laws() {
+        let curve = [(1.0, 1.0), (100.0, 1e-4)];
+        let found = cost_of(&curve, 1e-2).unwrap();
+        assert!((found - 10.0).abs() <= 1e-12, "{found}");
+        assert_eq!(cost_of(&curve, 1e-6), None);
+        assert_eq!(cost_of(&curve, 2.0), None);
+    }
+}

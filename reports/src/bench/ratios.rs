@@ -1,0 +1,271 @@
+//! The targets of speed, as ratios of times taken in one run.
+
+use fisura_verification::bench::record::{BenchRecord, Spread};
+
+use super::{Exhibit, Grid, Records};
+use crate::number::plain;
+
+/// A bound of a ratio.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Target {
+    /// At most.
+    AtMost(f64),
+    /// At least.
+    AtLeast(f64),
+    /// A number to know.
+    None,
+}
+
+/// A ratio of sums of times per unit of work: terms are `(sign, id)`.
+struct Ratio {
+    what: &'static str,
+    above: &'static [(f64, &'static str)],
+    below: &'static [(f64, &'static str)],
+    target: Target,
+}
+
+const fn ratio(
+    what: &'static str,
+    above: &'static [(f64, &'static str)],
+    below: &'static [(f64, &'static str)],
+    target: Target,
+) -> Ratio {
+    Ratio { what, above, below, target }
+}
+
+const KERNEL: Target = Target::AtMost(1.4);
+
+/// What is asked for, and what is good to know beside it.
+const RATIOS: [Ratio; 17] = [
+    ratio(
+        "elastic step over the minimal kernel, total frame, p = 2",
+        &[(1.0, "stages/p2/elastic-step")],
+        &[(1.0, "stages/p2/minimal-step")],
+        KERNEL,
+    ),
+    ratio("the same, p = 3", &[(1.0, "stages/p3/elastic-step")], &[(1.0, "stages/p3/minimal-step")], KERNEL),
+    ratio(
+        "elastic step over the minimal kernel, updated frame, p = 2",
+        &[(1.0, "stages/p2/elastic-step-updated")],
+        &[(1.0, "stages/p2/minimal-step")],
+        KERNEL,
+    ),
+    ratio("the same, p = 3", &[(1.0, "stages/p3/elastic-step-updated")], &[(1.0, "stages/p3/minimal-step")], KERNEL),
+    ratio(
+        "p = 3 over p = 2 per particle-step, total frame",
+        &[(1.0, "stages/p3/elastic-step")],
+        &[(1.0, "stages/p2/elastic-step")],
+        KERNEL,
+    ),
+    ratio(
+        "p = 3 over p = 2 per particle-step, updated frame",
+        &[(1.0, "stages/p3/elastic-step-updated")],
+        &[(1.0, "stages/p2/elastic-step-updated")],
+        KERNEL,
+    ),
+    ratio(
+        "spectral split: its part of a step of the plate",
+        &[
+            (1.0, "stages/p2/history-sweep"),
+            (-1.0, "stages/p2/history-sweep-no-split"),
+            (1.0, "stages/p2/stress-sweep"),
+            (-1.0, "stages/p2/stress-sweep-no-split"),
+        ],
+        &[(1.0, "plate/share/step")],
+        Target::AtMost(0.1),
+    ),
+    ratio(
+        "split and history, with the second interpolation: part of a step of the plate",
+        &[(1.0, "stages/p2/history-sweep"), (1.0, "stages/p2/stress-sweep"), (-1.0, "stages/p2/elastic-sweep")],
+        &[(1.0, "plate/share/step")],
+        Target::None,
+    ),
+    ratio(
+        "phase field: part of a step of the plate",
+        &[(1.0, "plate/share/phase-field")],
+        &[(1.0, "plate/share/step")],
+        Target::AtMost(0.6),
+    ),
+    ratio(
+        "Jacobi over incomplete Cholesky, cold crack, h = l0/2, p = 2",
+        &[(1.0, "solves/p2/l2/jacobi")],
+        &[(1.0, "solves/p2/l2/incomplete-cholesky")],
+        Target::AtLeast(3.0),
+    ),
+    ratio(
+        "the same, p = 3",
+        &[(1.0, "solves/p3/l2/jacobi")],
+        &[(1.0, "solves/p3/l2/incomplete-cholesky")],
+        Target::AtLeast(9.0),
+    ),
+    ratio(
+        "sparse Cholesky over incomplete Cholesky, h = l0/2, p = 2",
+        &[(1.0, "solves/p2/l2/cholesky")],
+        &[(1.0, "solves/p2/l2/incomplete-cholesky")],
+        Target::None,
+    ),
+    ratio(
+        "the same, p = 3",
+        &[(1.0, "solves/p3/l2/cholesky")],
+        &[(1.0, "solves/p3/l2/incomplete-cholesky")],
+        Target::None,
+    ),
+    ratio(
+        "two threads against one, elastic block",
+        &[(1.0, "threads/elastic/1")],
+        &[(1.0, "threads/elastic/2")],
+        Target::AtLeast(1.7),
+    ),
+    ratio(
+        "two threads against one, plate",
+        &[(1.0, "threads/plate/1")],
+        &[(1.0, "threads/plate/2")],
+        Target::AtLeast(1.7),
+    ),
+    ratio(
+        "fracture with a frozen crack over elastic, total frame",
+        &[(1.0, "scenes/total/elastic-with-a-frozen-crack")],
+        &[(1.0, "scenes/total/elastic")],
+        Target::None,
+    ),
+    ratio(
+        "the whole plate over half of it, time per step",
+        &[(1.0, "scenes/total/the-whole-plate")],
+        &[(1.0, "scenes/total/half-of-the-plate")],
+        Target::None,
+    ),
+];
+
+/// A ratio with its spread and whether its target is met; `verified` if all answers behind it hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// In words.
+    pub what: String,
+    /// Value: round by round where all have as many samples, else of medians alone.
+    pub value: Spread,
+    /// Target.
+    pub target: Target,
+    /// Whether all answers hold.
+    pub verified: bool,
+}
+
+impl Found {
+    /// Whether the median meets the target, if there is one.
+    pub fn holds(&self) -> Option<bool> {
+        match self.target {
+            Target::AtMost(limit) => Some(self.verified && self.value.median <= limit),
+            Target::AtLeast(limit) => Some(self.verified && self.value.median >= limit),
+            Target::None => None,
+        }
+    }
+}
+
+/// All ratios whose records are there.
+pub fn found(records: Records) -> Vec<Found> {
+    RATIOS.iter().filter_map(|ratio| value(ratio, records)).collect()
+}
+
+fn value(ratio: &Ratio, records: Records) -> Option<Found> {
+    let terms = |terms: &[(f64, &str)]| -> Option<Vec<(f64, &BenchRecord)>> {
+        terms.iter().map(|(sign, id)| Some((*sign, records.get(id)?))).collect()
+    };
+    let (above, below) = (terms(ratio.above)?, terms(ratio.below)?);
+    let all = || above.iter().chain(&below).map(|(_, record)| *record);
+    let rounds = above[0].1.samples.len();
+    let paired = rounds > 0 && all().all(|record| record.samples.len() == rounds);
+    // per step of all points, where the numbers of points differ
+    let whole = ratio.what.contains("time per step");
+    let unit = |record: &BenchRecord| if whole { record.work.amount } else { 1.0 };
+    let sum = |terms: &[(f64, &BenchRecord)], time: &dyn Fn(&BenchRecord) -> f64| {
+        terms.iter().map(|(sign, record)| sign * unit(record) * time(record)).sum::<f64>()
+    };
+    let quotient = |time: &dyn Fn(&BenchRecord) -> f64| sum(&above, time) / sum(&below, time);
+    let of_medians = quotient(&|record| record.ns_per_unit.median);
+    let value = if paired {
+        let spread = Spread::of((0..rounds).map(|round| quotient(&|record| record.times()[round])));
+        Spread { median: of_medians.clamp(spread.min, spread.max), ..spread }
+    } else {
+        Spread { median: of_medians, min: of_medians, max: of_medians }
+    };
+    let verified = all().all(|record| record.verified);
+    Some(Found { what: ratio.what.into(), value, target: ratio.target, verified })
+}
+
+/// The table of targets.
+pub fn exhibits(records: Records) -> Vec<Exhibit> {
+    let found = found(records);
+    if found.is_empty() {
+        return Vec::new();
+    }
+    let judged: Vec<bool> = found.iter().filter_map(Found::holds).collect();
+    let met = judged.iter().filter(|holds| **holds).count();
+    let rows = found.iter().map(|ratio| {
+        let target = match ratio.target {
+            Target::AtMost(limit) => format!("≤ {}", plain(limit, 3)),
+            Target::AtLeast(limit) => format!("≥ {}", plain(limit, 3)),
+            Target::None => "–".into(),
+        };
+        let verdict = match (ratio.verified, ratio.holds()) {
+            (false, _) => "answer does not hold",
+            (true, Some(true)) => "met",
+            (true, Some(false)) => "missed",
+            (true, None) => "–",
+        };
+        let Spread { median, min, max } = ratio.value;
+        vec![
+            ratio.what.clone(),
+            plain(median, 3),
+            format!("{} to {}", plain(min, 3), plain(max, 3)),
+            target,
+            verdict.into(),
+        ]
+    });
+    vec![Exhibit::Grid(Grid {
+        title: "Ratios within this run".into(),
+        head: ["ratio", "median", "rounds", "target", "verdict"].map(String::from).to_vec(),
+        rows: rows.collect(),
+        note: format!("{met} of {} targets are met in this run.", judged.len()),
+    })]
+}
+
+#[cfg(test)]
+mod tests {
+    use fisura_verification::bench::record::Sample;
+
+    use super::*;
+
+    fn record(id: &str, seconds: &[f64]) -> BenchRecord {
+        let mut record = BenchRecord::new(id, id, 1.0, "particle-step");
+        record.samples = seconds.iter().map(|&s| Sample { wall_s: s, cpu_s: s }).collect();
+        record.verify(true, "");
+        record.summarise();
+        record
+    }
+
+    fn first(records: &[BenchRecord]) -> Found {
+        found(Records(records)).remove(0)
+    }
+
+    #[test]
+    fn ratios_are_taken_round_by_round_and_judged_by_the_median() {
+        let mut records = vec![
+            record("stages/p2/elastic-step", &[1.0, 2.0, 3.0]),
+            record("stages/p2/minimal-step", &[1.0, 1.0, 4.0]),
+        ];
+        let ratio = first(&records);
+        assert_eq!(ratio.value, Spread { median: 2.0, min: 0.75, max: 2.0 });
+        assert_eq!(ratio.holds(), Some(false));
+        records[1].samples.pop();
+        records[1].summarise();
+        assert_eq!(first(&records).value, Spread { median: 2.0, min: 2.0, max: 2.0 });
+    }
+
+    #[test]
+    fn an_answer_that_does_not_hold_meets_no_target() {
+        let mut records = vec![record("stages/p2/elastic-step", &[1.0]), record("stages/p2/minimal-step", &[1.0])];
+        assert_eq!(first(&records).holds(), Some(true));
+        records[0].verified = false;
+        assert_eq!(first(&records).holds(), Some(false));
+        assert!(found(Records(&[])).is_empty());
+    }
+}

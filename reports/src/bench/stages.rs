@@ -1,0 +1,173 @@
+//! Phases of the step and solvers, as bars.
+
+use fisura_verification::bench::record::{BenchRecord, Spread};
+
+use super::bars::{BarChart, render_bars};
+use super::{Exhibit, Grid, Plot, Records};
+use crate::number::{plain, pretty};
+
+/// Degrees that are drawn side by side.
+const DEGREES: [usize; 2] = [2, 3];
+
+/// Bars of the phases, of the whole steps, and of the plate.
+pub fn exhibits(records: Records) -> Vec<Exhibit> {
+    let whole = |record: &BenchRecord| record.id.contains("step");
+    let [steps, phases] = [true, false].map(|of_steps| {
+        let all = records.below("stages/p2/").into_iter().filter(|r| whole(r) == of_steps);
+        all.map(|r| r.id.trim_start_matches("stages/p2/").to_string()).collect::<Vec<_>>()
+    });
+    if steps.is_empty() {
+        return Vec::new();
+    }
+    let per_step = "time per particle-step (ns)";
+    let mut exhibits = vec![
+        bars(
+            records,
+            "stages/p",
+            &phases,
+            "timing/stages",
+            "Phases of the step",
+            per_step,
+            1.0,
+            reading_of_phases(records),
+        ),
+        bars(records, "stages/p", &steps, "timing/steps", "Whole steps", per_step, 1.0, reading_of_steps(records)),
+    ];
+    exhibits.extend(shares(records));
+    exhibits
+}
+
+/// A bar for each phase, p = 2 and 3 side by side.
+#[expect(clippy::too_many_arguments, reason = "the parts of one figure")]
+fn bars(
+    records: Records,
+    prefix: &str,
+    names: &[String],
+    id: &str,
+    title: &str,
+    axis: &str,
+    scale: f64,
+    reading: String,
+) -> Exhibit {
+    let of = |degree: usize, name: &str| records.get(&format!("{prefix}{degree}/{name}"));
+    let row = |name: &String| {
+        let label = of(DEGREES[0], name).map_or(name.clone(), |r| r.label.clone());
+        (label, DEGREES.map(|p| of(p, name).map(|r| r.ns_per_unit.scaled(scale))).to_vec())
+    };
+    let chart = BarChart {
+        id: id.into(),
+        title: title.into(),
+        axis: axis.into(),
+        series: DEGREES.map(|p| format!("p = {p}")).to_vec(),
+        rows: names.iter().map(row).collect(),
+    };
+    let caption = match names.first().and_then(|name| of(DEGREES[0], name)) {
+        Some(first) => conditions(first),
+        None => String::new(),
+    };
+    let svg = render_bars(&chart);
+    Exhibit::Plot(Plot { id: chart.id, title: chart.title, caption, reading, svg })
+}
+
+fn conditions(record: &BenchRecord) -> String {
+    let what = match (record.number("cells"), record.number("unknowns")) {
+        (Some(n), _) => format!("block of {n} × {n} spans with 2 × 2 points"),
+        (None, Some(n)) => format!("{n} unknowns"),
+        (None, None) => "block of points".into(),
+    };
+    let samples = record.samples.len();
+    format!("{what}, one thread, processor time; bars: median of {samples} rounds, whiskers: least and largest")
+}
+
+fn median(records: Records, id: &str) -> Option<f64> {
+    Some(records.get(id)?.ns_per_unit.median)
+}
+
+fn reading_of_phases(records: Records) -> String {
+    let sentence = |p: usize| -> Option<String> {
+        let of = |phase: &str| median(records, &format!("stages/p{p}/{phase}"));
+        let sweeps = of("history-sweep")? + of("stress-sweep")?;
+        let split = sweeps - of("history-sweep-no-split")? - of("stress-sweep-no-split")?;
+        Some(format!(
+            "p = {p}: history and stress take {} ns per particle-step, {} times the elastic sweep; the spectral split is {} % of \
+             them, and assembling the whole matrix would take {} times as long as both.",
+            pretty(sweeps, 3),
+            pretty(sweeps / of("elastic-sweep")?, 2),
+            pretty(100.0 * split / sweeps, 2),
+            pretty(of("assembly")? / sweeps, 2)
+        ))
+    };
+    DEGREES.into_iter().filter_map(sentence).collect::<Vec<_>>().join(" ")
+}
+
+fn reading_of_steps(records: Records) -> String {
+    let sentence = |p: usize| -> Option<String> {
+        let of = |phase: &str| median(records, &format!("stages/p{p}/{phase}"));
+        let kernel = of("minimal-step")?;
+        Some(format!(
+            "p = {p}: an elastic step of the solver takes {} times the minimal kernel's {} ns in the total frame and {} times in \
+             the updated one.",
+            pretty(of("elastic-step")? / kernel, 2),
+            pretty(kernel, 3),
+            pretty(of("elastic-step-updated")? / kernel, 2)
+        ))
+    };
+    DEGREES.into_iter().filter_map(sentence).collect::<Vec<_>>().join(" ")
+}
+
+/// The part of the phase field in a step of the plate.
+fn shares(records: Records) -> Option<Exhibit> {
+    let (step, field) = (records.get("plate/share/step")?, records.get("plate/share/phase-field")?);
+    let mechanics = Spread::of(step.times().iter().zip(field.times()).map(|(step, field)| step - field));
+    let share = field.ns_per_unit.median / step.ns_per_unit.median;
+    let row = |name: &str, spread: Spread| {
+        let range = format!("{} to {}", plain(spread.min, 3), plain(spread.max, 3));
+        vec![name.to_string(), plain(spread.median, 3), range]
+    };
+    Some(Exhibit::Grid(Grid {
+        title: "A step of the plate while it cracks".into(),
+        head: ["part", "ns per particle-step", "steps"].map(String::from).to_vec(),
+        rows: vec![
+            row("the whole step", step.ns_per_unit),
+            row("phase field: assembly and solve", field.ns_per_unit),
+            row("everything else", mechanics),
+        ],
+        note: format!(
+            "{} points, one thread, {} steps; the phase field is {} % of the median step. {}.",
+            step.number("particles").unwrap_or(0.0),
+            step.samples.len(),
+            plain(100.0 * share, 3),
+            step.answer
+        ),
+    }))
+}
+
+/// Bars of the solvers, for a length scale of one span and of two.
+pub fn solves(records: Records) -> Vec<Exhibit> {
+    [1, 2].into_iter().filter_map(|spans| solves_of(records, spans)).collect()
+}
+
+fn solves_of(records: Records, spans: usize) -> Option<Exhibit> {
+    let prefix = format!("solves/p2/l{spans}/");
+    let names: Vec<String> =
+        records.below(&prefix).iter().map(|r| format!("l{spans}/{}", r.id.trim_start_matches(&prefix))).collect();
+    names.first()?;
+    let sentence = |p: usize| -> Option<String> {
+        let of = |name: &str| records.get(&format!("solves/p{p}/l{spans}/{name}"));
+        let (incomplete, jacobi, direct) = (of("incomplete-cholesky")?, of("jacobi")?, of("cholesky")?);
+        let time = |record: &BenchRecord| record.ns_per_unit.median;
+        Some(format!(
+            "p = {p}: incomplete Cholesky needs {} iterations where Jacobi needs {}, and with its factorisation is {} times as \
+             fast; the direct solver takes {} times as long as it.",
+            incomplete.number("iterations")?,
+            jacobi.number("iterations")?,
+            pretty(time(jacobi) / time(incomplete), 2),
+            pretty(time(direct) / time(incomplete), 2)
+        ))
+    };
+    let reading = DEGREES.into_iter().filter_map(sentence).collect::<Vec<_>>().join(" ");
+    let axis = "time of a solve from c = 1, factorisation included (ms)";
+    let length = if spans == 1 { "h = l0" } else { "h = l0/2" };
+    let (id, title) = (format!("timing/solves-l{spans}"), format!("Phase field of a cold crack, {length}"));
+    Some(bars(records, "solves/p", &names, &id, &title, axis, 1e-6, reading))
+}

@@ -1,0 +1,275 @@
+//! Error against cost: processor time, particle-steps, memory; with the front of what nothing beats.
+
+use fisura_verification::bench::record::{BenchRecord, CostPoint, Spread};
+use fisura_verification::history::Table;
+use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Floor, Scale};
+
+use super::pareto::{cost_of, front};
+use super::{Exhibit, Plot, Records};
+use crate::figure::render_figure;
+use crate::number::{DIGITS, pretty};
+use crate::series::SeriesSet;
+use crate::svg::slug;
+
+/// What is paid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Cost {
+    Time,
+    ParticleSteps,
+    Memory,
+}
+
+impl Cost {
+    const ALL: [Self; 3] = [Self::Time, Self::ParticleSteps, Self::Memory];
+
+    fn of(self, record: &BenchRecord) -> Spread {
+        let exactly = |value: f64| Spread { median: value, min: value, max: value };
+        match self {
+            Self::Time => record.cpu_s,
+            Self::ParticleSteps => exactly(record.work.amount),
+            Self::Memory => exactly(record.memory_bytes as f64 / 1e6),
+        }
+    }
+
+    /// Name in ids, label of the axis, unit in sentences.
+    fn words(self) -> [&'static str; 3] {
+        match self {
+            Self::Time => ["time", "processor time of the steps (s)", "s"],
+            Self::ParticleSteps => ["particle-steps", "particle-steps", "particle-steps"],
+            Self::Memory => ["memory", "memory of the model (MB)", "MB"],
+        }
+    }
+}
+
+/// One curve: a label and its points.
+struct Line<'a> {
+    label: String,
+    records: Vec<&'a BenchRecord>,
+}
+
+impl Line<'_> {
+    /// Cost and error of each verified point.
+    fn points(&self, cost: Cost) -> Vec<(f64, f64)> {
+        self.records.iter().map(|r| (cost.of(r).median, error(r))).collect()
+    }
+}
+
+fn error(record: &BenchRecord) -> f64 {
+    record.error.as_ref().map_or(f64::NAN, |error| error.value)
+}
+
+/// Records whose answers hold, by label, in the order in which labels appear.
+fn lines<'a>(records: impl IntoIterator<Item = &'a BenchRecord>) -> Vec<Line<'a>> {
+    let mut lines: Vec<Line> = Vec::new();
+    for record in records.into_iter().filter(|r| r.verified && error(r).is_finite()) {
+        match lines.iter_mut().find(|line| line.label == record.label) {
+            Some(line) => line.records.push(record),
+            None => lines.push(Line { label: record.label.clone(), records: vec![record] }),
+        }
+    }
+    lines
+}
+
+/// The diagrams of the manufactured problem: a figure for each group of curves and each cost.
+pub fn exhibits(records: Records) -> Vec<Exhibit> {
+    let all = records.below("work-precision/");
+    let mut groups: Vec<&str> = all.iter().filter_map(|r| r.parameters.get("group")?.as_str()).collect();
+    groups.dedup();
+    let mut exhibits = Vec::new();
+    for cost in Cost::ALL {
+        let front = Line { label: "front of all".into(), records: frontier(&all, cost) };
+        for group in &groups {
+            let own = all.iter().copied().filter(|r| r.parameters.get("group").and_then(|g| g.as_str()) == Some(group));
+            let lines = lines(own);
+            if lines.is_empty() {
+                continue;
+            }
+            let [name, axis, _] = cost.words();
+            let id = format!("timing/work-precision-{}-{name}", slug(group));
+            let title = format!("Standing wave, {group}: error against {axis}");
+            let chart = Chart { id, title, lines: &lines, front: Some(&front), fem: &[], cost, axis, uncertainty: 0.0 };
+            let reading = reading(&lines, &front, cost);
+            exhibits.push(
+                chart.plot("2-D standing wave on rollers, one thread; bars: least and largest of the rounds", reading),
+            );
+        }
+    }
+    exhibits
+}
+
+/// The records that no other beats, from the cheapest to the most accurate.
+fn frontier<'a>(records: &[&'a BenchRecord], cost: Cost) -> Vec<&'a BenchRecord> {
+    let usable: Vec<&BenchRecord> = records.iter().copied().filter(|r| r.verified).collect();
+    let points: Vec<(f64, f64)> = usable.iter().map(|r| (cost.of(r).median, error(r))).collect();
+    front(&points).into_iter().map(|i| usable[i]).collect()
+}
+
+/// The plate, with the finite elements beside it.
+pub fn plate(records: Records, fem: &[CostPoint]) -> Vec<Exhibit> {
+    let lines = lines(records.below("plate/p"));
+    let Some(first) = lines.first().and_then(|line| line.records.first()) else { return Vec::new() };
+    let uncertainty = first.error.as_ref().map_or(0.0, |e| e.uncertainty);
+    let particles: Vec<String> =
+        lines.iter().flat_map(|l| &l.records).map(|r| format!("{}", r.number("particles").unwrap_or(0.0))).collect();
+    let caption = format!(
+        "Half plate to 80 µs, whole runs on {} threads; kinetic energy from 5 to 80 µs against {}; {} points",
+        first.threads,
+        first.error.as_ref().map_or("", |e| e.reference.as_str()),
+        particles.join(", ")
+    );
+    let axis = "processor time of all threads (s)";
+    let title = "The plate: error against processor time".to_string();
+    let id = "timing/plate-error-against-time".to_string();
+    let chart = Chart { id, title, lines: &lines, front: None, fem, cost: Cost::Time, axis, uncertainty };
+    vec![chart.plot(&caption, reading_of_plate(&lines, fem))]
+}
+
+/// Everything a diagram is drawn from.
+struct Chart<'a> {
+    id: String,
+    title: String,
+    lines: &'a [Line<'a>],
+    front: Option<&'a Line<'a>>,
+    fem: &'a [CostPoint],
+    cost: Cost,
+    axis: &'a str,
+    /// Relative uncertainty of the reference.
+    uncertainty: f64,
+}
+
+impl Chart<'_> {
+    fn plot(&self, caption: &str, reading: String) -> Exhibit {
+        let mut set = SeriesSet::default();
+        let mut curves = Vec::new();
+        for line in self.lines {
+            curves.push(self.curve(&line.label, &line.records, CurveStyle::Markers, &mut set));
+        }
+        if let Some(front) = self.front.filter(|front| !front.records.is_empty()) {
+            curves.push(self.curve(&front.label, &front.records, CurveStyle::Reference, &mut set));
+        }
+        if !self.fem.is_empty() {
+            let mut table = Table::new(&["cost", "error"]);
+            self.fem.iter().for_each(|point| table.push(&[point.cpu_s, point.error]));
+            let label = format!("{} ({})", self.fem[0].label, self.fem[0].conditions);
+            curves.push(self.of_table(&label, table, CurveStyle::Points, &mut set));
+        }
+        let axis = |label: &str| Axis { label: label.into(), scale: Scale::Log, range: None };
+        let quantity = self.lines.iter().flat_map(|line| &line.records).find_map(|r| r.error.as_ref());
+        let quantity = quantity.map_or("error", |error| error.quantity.as_str());
+        let floor = Floor { y: self.uncertainty, label: "uncertainty of the reference".into() };
+        let figure = Figure {
+            id: self.id.clone(),
+            suite: "bench".into(),
+            title: self.title.clone(),
+            caption: caption.into(),
+            deviations: vec![],
+            body: FigureBody::Chart {
+                x: axis(self.axis),
+                y: axis(quantity),
+                curves,
+                regions: vec![],
+                slopes: vec![],
+                floors: if self.uncertainty > 0.0 { vec![floor] } else { vec![] },
+            },
+        };
+        let svg = render_figure(&figure, &set);
+        Exhibit::Plot(Plot { id: self.id.clone(), title: self.title.clone(), caption: caption.into(), reading, svg })
+    }
+
+    fn curve(&self, label: &str, records: &[&BenchRecord], style: CurveStyle, set: &mut SeriesSet) -> Curve {
+        let mut table = Table::new(&["cost", "error", "cost_min", "cost_max"]);
+        for record in records {
+            let Spread { median, min, max } = self.cost.of(record);
+            table.push(&[median, error(record), min, max]);
+        }
+        if style == CurveStyle::Reference || self.cost != Cost::Time {
+            table.names.truncate(2);
+            table.columns.truncate(2);
+        }
+        self.of_table(label, table, style, set)
+    }
+
+    fn of_table(&self, label: &str, table: Table, style: CurveStyle, set: &mut SeriesSet) -> Curve {
+        let series = format!("{}-{}", self.id, slug(label));
+        set.insert(series.clone(), table);
+        Curve {
+            label: label.into(),
+            series,
+            x: "cost".into(),
+            y: "error".into(),
+            x_scale: 1.0,
+            y_scale: 1.0,
+            style,
+            uncertainty_absolute: 0.0,
+            uncertainty_relative: 0.0,
+        }
+    }
+}
+
+/// Decades of error that are read off.
+const DECADES: std::ops::RangeInclusive<i32> = 1..=12;
+
+/// Which curve is the cheapest at each decade of error, and what the next one takes; and which touch the front.
+fn reading(lines: &[Line], front: &Line, cost: Cost) -> String {
+    let mut sentences: Vec<String> = DECADES.filter_map(|k| cheapest(lines, 10f64.powi(-k), cost)).collect();
+    if sentences.is_empty() {
+        sentences.push("No curve crosses a decade of error.".into());
+    }
+    let touches = |line: &&Line| line.records.iter().any(|r| front.records.iter().any(|f| f.id == r.id));
+    let touching: Vec<&str> = lines.iter().filter(touches).map(|line| line.label.as_str()).collect();
+    sentences.push(match touching.as_slice() {
+        [] => "None of these curves touches the front of all ways.".into(),
+        touching => format!("On the front of all ways: {}.", touching.join("; ")),
+    });
+    sentences.join(" ")
+}
+
+/// The cheapest curve at an error and the next, if a curve reaches it.
+fn cheapest(lines: &[Line], error: f64, cost: Cost) -> Option<String> {
+    let mut costs: Vec<(&str, f64)> =
+        lines.iter().filter_map(|l| Some((l.label.as_str(), cost_of(&l.points(cost), error)?))).collect();
+    costs.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let first = costs.first()?;
+    let beside = match costs.get(1) {
+        Some(next) => format!("; next {}, {} times that", next.0, pretty(next.1 / first.1, 3)),
+        None => " alone".into(),
+    };
+    let unit = cost.words()[2];
+    Some(format!("Error {}: {}, {} {unit}{beside}.", pretty(error, 1), first.0, pretty(first.1, 3)))
+}
+
+/// What our runs take at the errors of the finite elements, or the nearest that can be said.
+fn reading_of_plate(lines: &[Line], fem: &[CostPoint]) -> String {
+    let best = |error: f64| {
+        let costs = lines.iter().filter_map(|l| Some((l.label.as_str(), cost_of(&l.points(Cost::Time), error)?)));
+        costs.min_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let sentence = |point: &CostPoint| match best(point.error) {
+        Some((label, seconds)) => format!(
+            "At the error of {} % that the finite elements bought with {} s, {label} takes {} s: {} times less.",
+            pretty(100.0 * point.error, 2),
+            pretty(point.cpu_s, DIGITS),
+            pretty(seconds, 3),
+            pretty(point.cpu_s / seconds, 2)
+        ),
+        None => {
+            let all = lines.iter().flat_map(|line| line.points(Cost::Time).into_iter().map(move |p| (line, p)));
+            let least = all.min_by(|a, b| a.1.1.total_cmp(&b.1.1));
+            let least = least.map_or(String::new(), |(line, (cost, error))| {
+                format!(
+                    " the smallest error is {} % ({}, {} s).",
+                    pretty(100.0 * error, 2),
+                    line.label,
+                    pretty(cost, 3)
+                )
+            });
+            format!("No curve here crosses the finite elements' error of {} %:{least}", pretty(100.0 * point.error, 2))
+        }
+    };
+    let mut sentences: Vec<String> = fem.iter().map(sentence).collect();
+    if fem.is_empty() {
+        sentences.push("There is nothing to compare with.".into());
+    }
+    sentences.push("The machines differ (see the legend): read the factors as orders.".into());
+    sentences.join(" ")
+}

@@ -1,0 +1,197 @@
+//! Speed against error: the benchmarks of `cargo xtask bench`.
+//!
+//! A benchmark is data: a [`BenchRecord`] with what was run, the error of its answer, and samples of time. An answer is
+//! verified before its time is believed: a record says how, and whether it held. Each family is one file; what it measures
+//! is timed in round robin ([`timing`]), so that a disturbance meets all of its contestants. Nothing here draws or judges:
+//! ratios, fronts and readings are made from the records in `fisura-reports`.
+//!
+//! | family | question |
+//! |---|---|
+//! | `work-precision` | what an error costs: degrees, mass, layouts and frames on one manufactured problem ([`wave`]) |
+//! | `plate` | what an error of the plate costs, against the independent finite elements ([`plate`]) |
+//! | `stages` | where the time of a step goes, and what a straightforward kernel takes ([`stages`], [`minimal`]) |
+//! | `solves` | the phase-field solver against plain ones ([`solves`]) |
+//! | `threads` | what another thread brings ([`threads`]) |
+//! | `ceilings` | bandwidth and arithmetic of this machine, and the distance to them ([`ceilings`]) |
+//! | `scenes` | what the physics that a scene declares costs ([`scenes`]) |
+//! | `peer` | a program of the user on the same block of points ([`peer`]) |
+
+pub mod block;
+pub mod ceilings;
+pub mod minimal;
+pub mod moving_block;
+pub mod peer;
+pub mod plate;
+pub mod record;
+pub mod scenes;
+pub mod solves;
+pub mod stages;
+pub mod threads;
+pub mod timing;
+pub mod wave;
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::record::Environment;
+use crate::reference::{Library, ReferenceError};
+use crate::scene_file::SceneFileError;
+use crate::study::StudyError;
+use record::{BenchRecord, BenchSet, NamedPeer, SCHEMA};
+
+/// What is to be measured, and where the files are.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// Few meshes and repetitions.
+    pub quick: bool,
+    /// Most threads.
+    pub threads: usize,
+    /// Folder with `verification/cases` and `reference-data`.
+    pub workspace: PathBuf,
+    /// Folder for what a peer reads.
+    pub out: PathBuf,
+    /// Command of a peer, if there is one.
+    pub peer: Option<String>,
+    /// Families to run; empty: all.
+    pub families: Vec<String>,
+}
+
+impl Settings {
+    /// Times a contestant is run.
+    pub fn rounds(&self) -> usize {
+        if self.quick { 3 } else { 7 }
+    }
+
+    /// Seconds after which a contestant is not run once more.
+    pub fn budget(&self) -> f64 {
+        if self.quick { 1.5 } else { 20.0 }
+    }
+
+    /// A case of the plate.
+    pub fn plate_case(&self, name: &str) -> PathBuf {
+        self.workspace.join("verification/cases/plate").join(name).with_extension("toml")
+    }
+
+    /// All reference data.
+    ///
+    /// # Errors
+    /// As [`Library::load`].
+    pub fn library(&self) -> Result<Library, BenchError> {
+        Ok(Library::load(&self.workspace.join("reference-data"))?)
+    }
+}
+
+/// A benchmark that could not be carried out.
+#[derive(Debug, Error)]
+pub enum BenchError {
+    /// A run broke down.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// A case file is wrong.
+    #[error(transparent)]
+    Case(#[from] SceneFileError),
+    /// Reference data are wrong.
+    #[error(transparent)]
+    Reference(#[from] ReferenceError),
+    /// The program of a peer did not do its part.
+    #[error("peer {command}: {message}")]
+    Peer {
+        /// Its command line.
+        command: String,
+        /// What went wrong.
+        message: String,
+    },
+}
+
+impl BenchError {
+    /// A run that went wrong in its own words.
+    pub fn other(message: impl Into<String>) -> Self {
+        Self::Study(StudyError::Other(message.into()))
+    }
+}
+
+impl From<fisura::error::Breakdown> for BenchError {
+    fn from(breakdown: fisura::error::Breakdown) -> Self {
+        Self::Study(breakdown.into())
+    }
+}
+
+/// Measures one family.
+type Family = fn(&Settings) -> Result<Vec<BenchRecord>, BenchError>;
+
+/// All families, in the order of the report.
+pub const FAMILIES: [(&str, Family); 8] = [
+    ("work-precision", wave::family),
+    ("plate", plate::family),
+    ("stages", stages::family),
+    ("solves", solves::family),
+    ("threads", threads::family),
+    ("ceilings", ceilings::family),
+    ("scenes", scenes::family),
+    ("peer", peer::family),
+];
+
+/// Measures every family that is asked for; `tell` hears the name of each before it begins.
+///
+/// # Errors
+/// The first family that could not be measured; an answer that does not hold is no error but an unverified record.
+pub fn run(settings: &Settings, environment: Environment, tell: &dyn Fn(&str)) -> Result<BenchSet, BenchError> {
+    let peers = named_peers(&settings.library()?);
+    let fem = plate::finite_elements(&settings.library()?);
+    let mut records = Vec::new();
+    for (name, family) in FAMILIES {
+        let wanted = settings.families.is_empty() || settings.families.iter().any(|f| f == name);
+        let possible = name != "peer" || settings.peer.is_some();
+        if wanted && possible {
+            tell(name);
+            records.extend(family(settings)?);
+        }
+    }
+    Ok(BenchSet { schema: SCHEMA.into(), environment, quick: settings.quick, records, peers, fem })
+}
+
+/// Folder of the reference data with ratios to other codes.
+const PEERS: &str = "peers-2026";
+
+/// The ratios of the reference data to other codes: names are `code/pN/…`.
+fn named_peers(library: &Library) -> Vec<NamedPeer> {
+    let Some(source) = library.source(PEERS) else { return Vec::new() };
+    let of_peers = library.values().iter().filter(|value| value.id == PEERS);
+    of_peers
+        .filter_map(|value| {
+            let mut parts = value.name.split('/');
+            let (code, degree, quantity) = (parts.next()?, parts.next()?, parts.next()?);
+            Some(NamedPeer {
+                code: code.into(),
+                degree: degree.trim_start_matches('p').parse().ok()?,
+                quantity: quantity.into(),
+                value: value.value,
+                remark: value.note.clone(),
+                conditions: source.resolution.clone(),
+            })
+        })
+        .collect()
+}
+
+/// The workspace this crate was built in, for tests.
+#[cfg(test)]
+pub(crate) fn own_workspace() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn named_peers_come_from_the_reference_data_with_their_conditions() {
+        let library = Library::load(&own_workspace().join("reference-data")).unwrap();
+        let peers = named_peers(&library);
+        let warp = peers.iter().find(|p| p.code.starts_with("Warp") && p.quantity == "over-tuned-kernel").unwrap();
+        assert_eq!((warp.degree, warp.value), (2, 3.2));
+        assert!(warp.conditions.contains("2026") && warp.conditions.contains("2.5 GHz"), "{}", warp.conditions);
+        let fem = plate::finite_elements(&library);
+        assert_eq!(fem.iter().map(|point| point.cpu_s).collect::<Vec<_>>(), [49.0, 412.0]);
+    }
+}

@@ -1,0 +1,223 @@
+//! The block in the updated frame, and the phases of its step one by one: P2G, grid, G2P.
+
+use fisura::Simulation;
+use fisura::lane::dispatch;
+use fisura::material::ElasticModuli;
+use fisura::patch::Patch;
+use fisura::scene::{Frame, Scene};
+use fisura::updated_frame::UpdatedFrame;
+use fisura::updated_frame::grid::NodalFields;
+use fisura::updated_frame::points::{Cells, Point};
+use fisura::updated_frame::strain::Small;
+use fisura::updated_frame::transfer::{GridToPoints, PointsToGrid, StripMotion};
+use fisura::updated_frame::windows::{cut, scatter};
+use rayon::prelude::*;
+
+use super::block::{DENSITY, elastic_scene};
+use super::{BenchError, minimal::Minimal};
+
+/// An elastic block in the updated frame after a few steps.
+pub struct MovingBlock {
+    patch: Patch,
+    points: Vec<Point>,
+    cells: Cells,
+    nodes: NodalFields,
+    moduli: ElasticModuli,
+}
+
+/// The elastic block of [`elastic_scene`] in the updated frame (FLIP).
+pub fn moving_scene(degree: usize, points: usize, cells: usize) -> Scene {
+    let mut scene = elastic_scene(degree, points, cells, degree);
+    scene.analysis.frame = Frame::Updated;
+    scene
+}
+
+/// A velocity that strains: m/s at a position in m.
+fn velocity([x, y]: [f64; 2]) -> [f64; 2] {
+    [(900.0 * x + 300.0 * y).sin(), (500.0 * x - 1100.0 * y).cos()]
+}
+
+impl MovingBlock {
+    /// The block after `steps` steps.
+    ///
+    /// # Errors
+    /// If a step cannot be taken.
+    pub fn new(degree: usize, points: usize, cells: usize, steps: usize) -> Result<Self, BenchError> {
+        let (frame, _) = moved(&moving_scene(degree, points, cells), steps)?;
+        let field = &frame.fields()[0];
+        Ok(Self {
+            patch: field.patch().clone(),
+            points: field.points().to_vec(),
+            cells: field.cells().clone(),
+            nodes: field.nodes().clone(),
+            moduli: field.moduli(),
+        })
+    }
+
+    /// Number of points.
+    pub fn count(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Shape functions of all points; their sum, which is the number of points.
+    pub fn basis(&self) -> f64 {
+        let [x, y] = &self.patch.spaces;
+        let mut sum = 0.0;
+        for cell in &self.cells.cells {
+            for point in &self.points[cell.points.clone()] {
+                let sx = x.shape_functions(cell.span[0], point.position[0]);
+                let sy = y.shape_functions(cell.span[1], point.position[1]);
+                sum += sx.value.iter().sum::<f64>() * sy.value.iter().sum::<f64>();
+            }
+        }
+        sum
+    }
+
+    /// Mass, momentum and forces of the points on the grid.
+    pub fn points_to_grid(&mut self) {
+        let Self { patch, points, cells, nodes, .. } = self;
+        let (patch, points, cells) = (&*patch, &points[..], &*cells);
+        nodes.clear();
+        let grid = nodes.grid;
+        let NodalFields { mass, arrived: [px, py], force: [fx, fy], .. } = nodes;
+        scatter(&cells.strips, [mass, px, py, fx, fy], [grid.stride; 5], |strip, window| {
+            let cells = &cells.cells[strip.cells.clone()];
+            dispatch(PointsToGrid { patch, grid, density: DENSITY, cells, points, window });
+        });
+    }
+
+    /// Velocities and accelerations of the control points, and a kick of `dt` seconds. What [`Self::points_to_grid`] left is
+    /// used up.
+    pub fn grid(&mut self, dt: f64) {
+        self.nodes.divide_by_mass();
+        self.nodes.impose_velocities();
+        self.nodes.accelerate();
+        self.nodes.kick(dt);
+    }
+
+    /// Velocity, position, strain and stress of the points after a step of `dt` seconds; zero leaves them where they are.
+    pub fn grid_to_points(&mut self, dt: f64) -> StripMotion {
+        let Self { patch, points, cells, nodes, moduli } = self;
+        let patch = &*patch;
+        let motion = nodes.velocity.each_ref().map(|f| &f[..]);
+        let taken = nodes.acceleration.each_ref().map(|f| &f[..]);
+        let kept = 1.0;
+        let strips = cut(points, cells.strips.iter().map(|s| s.points.clone())).into_par_iter().zip(&cells.strips);
+        let motions: Vec<StripMotion> = strips
+            .map(|(points, strip)| {
+                dispatch(GridToPoints {
+                    patch,
+                    grid: nodes.grid,
+                    dt,
+                    motion,
+                    taken,
+                    kept,
+                    kinematics: Small,
+                    elastic: Some(*moduli),
+                    cells: &cells.cells[strip.cells.clone()],
+                    points,
+                    fracture: &mut [],
+                })
+            })
+            .collect();
+        motions.into_iter().fold(StripMotion::default(), |sum, part| StripMotion {
+            left_span: sum.left_span || part.left_span,
+            fastest: sum.fastest.max(part.fastest),
+            elastic_energy: sum.elastic_energy + part.elastic_energy,
+            stress_work: sum.stress_work + part.stress_work,
+        })
+    }
+
+    /// Largest difference of the accelerations, recomputed phase by phase, from those of the solver's own step, over the
+    /// largest of these.
+    pub fn deviation(&self) -> f64 {
+        let mut again = Self {
+            patch: self.patch.clone(),
+            points: self.points.clone(),
+            cells: self.cells.clone(),
+            nodes: self.nodes.clone(),
+            moduli: self.moduli,
+        };
+        again.points_to_grid();
+        again.grid(0.0);
+        let difference = |d: usize| largest_difference(&again.nodes.acceleration[d], &self.nodes.acceleration[d]);
+        let size = self.nodes.acceleration.iter().flatten().fold(0.0, |m: f64, a| m.max(a.abs()));
+        difference(0).max(difference(1)) / size
+    }
+}
+
+/// Largest absolute difference of two fields.
+fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, |m, d| if d > m || d.is_nan() { d } else { m })
+}
+
+/// The scene after some steps from [`velocity`], and the length of its steps, s.
+fn moved(scene: &Scene, steps: usize) -> Result<(UpdatedFrame, f64), BenchError> {
+    let dt = Simulation::new(scene)?.plan().step;
+    let broken = |_| BenchError::other("a step of the block cannot be taken");
+    let mut frame = UpdatedFrame::new(scene).map_err(broken)?;
+    frame.set_initial_velocity(velocity);
+    (0..steps).try_for_each(|_| frame.step(dt)).map_err(broken)?;
+    Ok((frame, dt))
+}
+
+/// The minimal kernel on the points of the same block at t = 0, and the time step of the solver, s.
+///
+/// # Errors
+/// If the scene cannot be started.
+pub fn minimal<const P: usize>(points: usize, cells: usize) -> Result<(Minimal<P>, f64), BenchError> {
+    let scene = moving_scene(P, points, cells);
+    let (frame, dt) = moved(&scene, 0)?;
+    let field = &frame.fields()[0];
+    Ok((Minimal::new(&scene.mesh, field.points(), field.moduli(), DENSITY), dt))
+}
+
+/// Takes `steps` steps with the solver and with the minimal kernel on a block of `cells` × `cells` spans: the largest difference
+/// of their nodal accelerations over the largest acceleration.
+///
+/// # Errors
+/// If a step cannot be taken.
+pub fn minimal_deviation<const P: usize>(points: usize, cells: usize, steps: usize) -> Result<f64, BenchError> {
+    let (frame, _) = moved(&moving_scene(P, points, cells), steps)?;
+    let (mut minimal, dt) = self::minimal::<P>(points, cells)?;
+    (0..steps).for_each(|_| minimal.step(dt));
+    let (field, whole) = (&frame.fields()[0], frame.patch());
+    let (nodes, part) = (field.nodes(), field.patch());
+    // the nodal fields of the solver cover a part of the patch
+    let first = [0, 1].map(|d| {
+        let left = part.spaces[d].spans()[0].left;
+        whole.spaces[d].spans().iter().position(|span| span.left == left).unwrap_or(0)
+    });
+    let (mut difference, mut size) = (0.0_f64, 0.0_f64);
+    for at in nodes.grid.indices() {
+        let (column, row) = (nodes.grid.column_of(at) + first[0], nodes.grid.row_of(at) + first[1]);
+        let other = minimal.acceleration(column, row);
+        for d in 0..2 {
+            let own = nodes.acceleration[d][at];
+            difference = difference.max((own - other[d]).abs());
+            size = size.max(own.abs());
+        }
+    }
+    Ok(difference / size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_minimal_kernel_moves_as_the_solver_does() {
+        for deviation in [minimal_deviation::<2>(2, 12, 4), minimal_deviation::<3>(2, 12, 4)] {
+            let deviation = deviation.unwrap();
+            assert!(deviation <= 1e-10 && deviation > 0.0, "{deviation:e}");
+        }
+    }
+
+    #[test]
+    fn the_phases_put_together_are_the_step_of_the_solver() {
+        let mut block = MovingBlock::new(2, 2, 12, 3).unwrap();
+        assert!(block.deviation() <= 1e-13, "{:e}", block.deviation());
+        assert!((block.basis() / block.count() as f64 - 1.0).abs() <= 1e-13);
+        assert!(block.grid_to_points(0.0).elastic_energy > 0.0);
+    }
+}

@@ -1,0 +1,261 @@
+//! The data model of `bench.json`, schema `fisura.bench/1`.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::record::Environment;
+
+/// Name of the schema written and read.
+pub const SCHEMA: &str = "fisura.bench/1";
+
+/// Everything one invocation measured; all of it is exempt from byte-for-byte comparison.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BenchSet {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// Where and when.
+    pub environment: Environment,
+    /// Few meshes and repetitions.
+    pub quick: bool,
+    /// Records, in the order of the families.
+    pub records: Vec<BenchRecord>,
+    /// Stored ratios to other codes.
+    pub peers: Vec<NamedPeer>,
+    /// What bilinear finite elements took for the plate.
+    pub fem: Vec<CostPoint>,
+}
+
+/// One run of one thing.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Sample {
+    /// Wall time, s.
+    pub wall_s: f64,
+    /// Processor time of all threads of the process, s; the wall time where the system does not tell.
+    pub cpu_s: f64,
+}
+
+/// Median and extremes of samples.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// Median.
+    pub median: f64,
+    /// Smallest.
+    pub min: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+impl Spread {
+    /// Spread of some values; zeros if there are none. The median of an even number is the mean of the middle two.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        let mut sorted: Vec<f64> = values.into_iter().collect();
+        sorted.sort_by(f64::total_cmp);
+        let (Some(&min), Some(&max)) = (sorted.first(), sorted.last()) else { return Self::default() };
+        let (low, high) = (sorted[(sorted.len() - 1) / 2], sorted[sorted.len() / 2]);
+        Self { median: 0.5 * (low + high), min, max }
+    }
+
+    /// All three times a factor.
+    pub fn scaled(self, factor: f64) -> Self {
+        Self { median: factor * self.median, min: factor * self.min, max: factor * self.max }
+    }
+}
+
+/// The error of an answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AnswerError {
+    /// In words.
+    pub quantity: String,
+    /// Relative error.
+    pub value: f64,
+    /// What it is measured against.
+    pub reference: String,
+    /// Relative uncertainty of the reference; zero if it is exact.
+    pub uncertainty: f64,
+}
+
+/// How much of what one sample does.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Work {
+    /// Amount.
+    pub amount: f64,
+    /// `particle-step`, `solve`, `byte` or `flop`.
+    pub unit: String,
+}
+
+/// Which time counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Clock {
+    /// That of the processor, over all threads: what other programs do meanwhile does not count.
+    Processor,
+    /// That on the wall: what more threads bring.
+    Wall,
+}
+
+/// One benchmark.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BenchRecord {
+    /// `family/…`.
+    pub id: String,
+    /// First part of the id.
+    pub family: String,
+    /// Curve or row it belongs to.
+    pub label: String,
+    /// What was run.
+    pub parameters: BTreeMap<String, Value>,
+    /// Threads it ran on.
+    pub threads: usize,
+    /// Which time counts.
+    pub clock: Clock,
+    /// Error of the answer, where there is a reference for it.
+    pub error: Option<AnswerError>,
+    /// Work of one sample.
+    pub work: Work,
+    /// Heap memory of the model, bytes; zero where it was not counted.
+    pub memory_bytes: u64,
+    /// Whether the answer held.
+    pub verified: bool,
+    /// What was verified, with the number found.
+    pub answer: String,
+    /// Every sample, in the order of the rounds.
+    pub samples: Vec<Sample>,
+    /// Wall time, s.
+    pub wall_s: Spread,
+    /// Processor time, s.
+    pub cpu_s: Spread,
+    /// Time per unit of work by the clock that counts, ns.
+    pub ns_per_unit: Spread,
+}
+
+impl BenchRecord {
+    /// A record of one thread and nothing measured, whose work is counted in `unit`.
+    pub fn new(id: impl Into<String>, label: impl Into<String>, amount: f64, unit: &str) -> Self {
+        let id = id.into();
+        Self {
+            family: id.split('/').next().unwrap_or_default().to_string(),
+            id,
+            label: label.into(),
+            parameters: BTreeMap::new(),
+            threads: 1,
+            clock: Clock::Processor,
+            error: None,
+            work: Work { amount, unit: unit.to_string() },
+            memory_bytes: 0,
+            verified: false,
+            answer: "nothing was verified".into(),
+            samples: Vec::new(),
+            wall_s: Spread::default(),
+            cpu_s: Spread::default(),
+            ns_per_unit: Spread::default(),
+        }
+    }
+
+    /// With a parameter.
+    pub fn with(mut self, name: &str, value: impl Into<Value>) -> Self {
+        self.parameters.insert(name.to_string(), value.into());
+        self
+    }
+
+    /// Notes whether the answer held, and what it was.
+    pub fn verify(&mut self, holds: bool, answer: impl Into<String>) {
+        (self.verified, self.answer) = (holds, answer.into());
+    }
+
+    /// The same with a number that is to be at most `limit`; not-a-number fails.
+    pub fn verify_at_most(&mut self, what: &str, value: f64, limit: f64) {
+        self.verify(value <= limit, format!("{what}: {value:.1e}, at most {limit:.0e}"));
+    }
+
+    /// A numeric parameter.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.parameters.get(name)?.as_f64()
+    }
+
+    /// Particle-steps of one sample, if its work is counted in them.
+    pub fn particle_steps(&self) -> Option<f64> {
+        (self.work.unit == "particle-step").then_some(self.work.amount)
+    }
+
+    /// Spreads of the samples.
+    pub fn summarise(&mut self) {
+        self.wall_s = Spread::of(self.samples.iter().map(|s| s.wall_s));
+        self.cpu_s = Spread::of(self.samples.iter().map(|s| s.cpu_s));
+        self.ns_per_unit = Spread::of(self.times());
+    }
+
+    /// Time per unit of work of each sample, ns.
+    pub fn times(&self) -> Vec<f64> {
+        let time = |sample: &Sample| match self.clock {
+            Clock::Processor => sample.cpu_s,
+            Clock::Wall => sample.wall_s,
+        };
+        self.samples.iter().map(|sample| 1e9 * time(sample) / self.work.amount).collect()
+    }
+}
+
+/// A stored ratio to another code.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NamedPeer {
+    /// Code and version.
+    pub code: String,
+    /// Degree of its splines.
+    pub degree: usize,
+    /// `over-tuned-kernel` or `over-naive-kernel`: the kernel timed beside it in that run.
+    pub quantity: String,
+    /// Ratio.
+    pub value: f64,
+    /// What to know before quoting it.
+    pub remark: String,
+    /// Date and machine.
+    pub conditions: String,
+}
+
+/// A cost and the error it bought.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CostPoint {
+    /// In words.
+    pub label: String,
+    /// Processor time, s.
+    pub cpu_s: f64,
+    /// Relative error.
+    pub error: f64,
+    /// Date and machine.
+    pub conditions: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians_and_extremes() {
+        assert_eq!(Spread::of([3.0, 1.0, 2.0]), Spread { median: 2.0, min: 1.0, max: 3.0 });
+        assert_eq!(Spread::of([4.0, 1.0, 2.0, 100.0]), Spread { median: 3.0, min: 1.0, max: 100.0 });
+        assert_eq!(Spread::of([]), Spread::default());
+    }
+
+    #[test]
+    fn each_record_has_its_clock() {
+        let mut record = BenchRecord::new("stages/p2/sweep", "sweep", 1e9, "particle-step");
+        record.samples = vec![Sample { wall_s: 4.0, cpu_s: 2.0 }, Sample { wall_s: 8.0, cpu_s: 3.0 }];
+        record.summarise();
+        assert_eq!(record.family, "stages");
+        assert_eq!(record.ns_per_unit, Spread { median: 2.5, min: 2.0, max: 3.0 });
+        record.clock = Clock::Wall;
+        record.summarise();
+        assert_eq!(record.ns_per_unit.median, 6.0);
+    }
+
+    #[test]
+    fn an_answer_that_is_no_number_does_not_hold() {
+        let mut record = BenchRecord::new("a/b", "b", 1.0, "solve");
+        assert!(!record.verified);
+        record.verify_at_most("closure", 1e-13, 1e-12);
+        assert!(record.verified);
+        record.verify_at_most("closure", f64::NAN, 1e-12);
+        assert!(!record.verified && record.answer.contains("NaN"));
+    }
+}

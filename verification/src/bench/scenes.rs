@@ -1,0 +1,186 @@
+//! Only what a scene declares is modelled: time and memory of scenes that differ in their physics, in both frames; and half of
+//! a symmetric plate against the whole.
+//!
+//! Blocks of equal numbers of points, p = 2 with 2 × 2 points per span, one thread.
+
+use fisura::Simulation;
+use fisura::scene::{Body, Contact, Edge, Frame, Mesh, Scene, Shape, Side, Traction};
+
+use super::block::{SPAN, cracked_scene, elastic_scene};
+use super::plate;
+use super::record::BenchRecord;
+use super::timing::{Contestant, Stopwatch, pool, round_robin};
+use super::{BenchError, Settings};
+use crate::case::Case;
+
+/// Degree of the blocks, and spans that the mesh reaches beyond them.
+const DEGREE: usize = 2;
+const MARGIN: usize = 4;
+/// Steps of a sample.
+const STEPS: usize = 10;
+/// The ledger of a cracking body closes to this fraction of the largest energy, as the suites ask.
+const CLOSURE: f64 = 1e-3;
+
+/// What must have happened in a scene for its time to count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Happens {
+    /// There is no phase field, and nothing meets.
+    Motion,
+    /// The phase field is solved for, and its start is accepted every time.
+    NothingGrows,
+    /// Its solves take iterations.
+    CrackGrows,
+    /// Two bodies, and no force of contact.
+    Apart,
+    /// Forces of contact.
+    Contact,
+}
+
+/// Times the scenes.
+///
+/// # Errors
+/// If a scene cannot be run.
+pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
+    let cells = if settings.quick { 64 } else { 192 };
+    pool(1)?.install(|| {
+        let mut contestants = Vec::new();
+        for frame in [Frame::Total, Frame::Updated] {
+            for (name, scene, happens) in scenes(cells, frame) {
+                contestants.push(contestant(settings, name, frame, &scene, happens)?);
+            }
+        }
+        let mut records = round_robin(contestants, settings.rounds(), settings.budget())?;
+        records.extend(halves(settings)?);
+        Ok(records)
+    })
+}
+
+fn scenes(cells: usize, frame: Frame) -> Vec<(&'static str, Scene, Happens)> {
+    let margin = if frame == Frame::Updated { MARGIN } else { 0 };
+    let elastic = elastic_scene(DEGREE, 2, cells, margin);
+    let frozen = cracked_scene(DEGREE, 2, cells, margin);
+    let mut fracture = frozen.clone();
+    let pulled = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: None };
+    fracture.bodies[0].tractions = vec![pulled(Side::Top, 4e6), pulled(Side::Bottom, -4e6)];
+    let mut scenes = vec![
+        ("elastic", elastic, Happens::Motion),
+        ("elastic with a frozen crack", frozen, Happens::NothingGrows),
+        ("fracture", fracture, Happens::CrackGrows),
+    ];
+    if frame == Frame::Updated {
+        let contact = Some(Contact { friction: 0.3 });
+        scenes.push(("two bodies, no contact declared", pair(cells, 2.0, None), Happens::Motion));
+        scenes.push(("two bodies apart, contact declared", pair(cells, 4.0, contact.clone()), Happens::Apart));
+        scenes.push(("two bodies in contact", pair(cells, 0.0, contact), Happens::Contact));
+    }
+    for (_, scene, _) in &mut scenes {
+        scene.analysis.frame = frame;
+    }
+    scenes
+}
+
+/// Two halves of the elastic block, `gap` spans apart, that move towards each other.
+fn pair(cells: usize, gap: f64, contact: Option<Contact>) -> Scene {
+    let mut scene = elastic_scene(DEGREE, 2, cells, MARGIN);
+    let (edge, half) = (SPAN * MARGIN as f64, SPAN * (cells / 2) as f64);
+    let (width, height) = (2.0 * half + SPAN * gap.ceil(), SPAN * cells as f64);
+    let spans = [cells + gap.ceil() as usize + 2 * MARGIN, cells + 2 * MARGIN];
+    scene.mesh = Mesh::uniform([DEGREE; 2], [-edge; 2], [width + 2.0 * edge, height + 2.0 * edge], spans);
+    let body = |name: &str, left: f64, velocity: f64| Body {
+        name: name.into(),
+        shape: Shape::Rectangle { min: [left, 0.0], max: [left + half, height] },
+        velocity: [velocity, 0.0],
+        angular_velocity: 0.0,
+        ..scene.bodies[0].clone()
+    };
+    scene.bodies = vec![body("left", 0.0, 1.0), body("right", half + SPAN * gap, -1.0)];
+    scene.contact = contact;
+    scene
+}
+
+fn contestant(
+    settings: &Settings,
+    name: &str,
+    frame: Frame,
+    scene: &Scene,
+    happens: Happens,
+) -> Result<Contestant<'static>, BenchError> {
+    let mut simulation = Simulation::new(scene)?;
+    let run_up = match (happens, settings.quick) {
+        (Happens::CrackGrows, true) => 60,
+        (Happens::CrackGrows, false) => 200,
+        _ => 5,
+    };
+    advance(&mut simulation, run_up)?;
+    let extent = simulation.extent();
+    let word = if frame == Frame::Total { "total" } else { "updated" };
+    let id = format!("scenes/{word}/{}", name.replace([',', ' '], "-").replace("--", "-"));
+    let mut record = BenchRecord::new(id, name, (extent.particles * STEPS) as f64, "particle-step")
+        .with("frame", word)
+        .with("particles", extent.particles)
+        .with("models", extent.models)
+        .with("phase_field_bytes", extent.phase_field_bytes);
+    record.memory_bytes = (extent.mechanics_bytes + extent.phase_field_bytes) as u64;
+    let run = move |record: &mut BenchRecord| {
+        let before = simulation.phase_field_counts();
+        let watch = Stopwatch::start();
+        advance(&mut simulation, STEPS)?;
+        let sample = watch.read();
+        let counts = simulation.phase_field_counts();
+        let [solves, iterations] = [counts.solves - before.solves, counts.iterations - before.iterations];
+        let forces = simulation.updated_frame().map_or(0, |f| f.contact_forces(simulation.plan().step).len());
+        let found = simulation.sample();
+        let closure = found.closure.abs() / found.largest_term().max(f64::MIN_POSITIVE);
+        let holds = match happens {
+            Happens::Motion => solves == 0 && forces == 0,
+            Happens::NothingGrows => solves == STEPS && iterations == 0,
+            Happens::CrackGrows => solves == STEPS && iterations >= STEPS,
+            Happens::Apart => solves == 0 && forces == 0,
+            Happens::Contact => forces > 0,
+        };
+        let answer = format!(
+            "{solves} solves with {iterations} iterations in {STEPS} steps, {forces} forces of contact, ledger closed to {closure:.0e}"
+        );
+        record.verify(holds && closure <= CLOSURE, answer);
+        Ok(sample)
+    };
+    Ok(Contestant { record, run: Box::new(run) })
+}
+
+fn advance(simulation: &mut Simulation, steps: usize) -> Result<(), fisura::error::Breakdown> {
+    (0..steps).try_for_each(|_| simulation.step())
+}
+
+/// Half of the plate and all of it at h = l0, from the start; the energies of both must agree.
+fn halves(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
+    let half = plate::half(settings, 2, 1.0)?;
+    let whole = Case::load(&settings.plate_case("half-against-full-p2-h1"), &[])?.scenes()?;
+    let whole = whole.into_iter().find(|s| s.energy_factor == 1.0);
+    let whole = whole.ok_or_else(|| BenchError::other("the case half-against-full-p2-h1 has no whole plate"))?;
+    let mut contestants = Vec::new();
+    let mut kinetic = Vec::new();
+    for (name, case) in [("half of the plate", half), ("the whole plate", whole)] {
+        let mut simulation = Simulation::new(&case.scene)?;
+        advance(&mut simulation, 100)?;
+        kinetic.push(case.energy_factor * simulation.sample().kinetic);
+        let extent = simulation.extent();
+        let id = format!("scenes/total/{}", name.replace(' ', "-"));
+        let mut record = BenchRecord::new(id, name, (extent.particles * STEPS) as f64, "particle-step")
+            .with("frame", "total")
+            .with("particles", extent.particles)
+            .with("models", extent.models)
+            .with("phase_field_bytes", extent.phase_field_bytes);
+        record.memory_bytes = (extent.mechanics_bytes + extent.phase_field_bytes) as u64;
+        let run = move |_: &mut BenchRecord| {
+            let watch = Stopwatch::start();
+            advance(&mut simulation, STEPS)?;
+            Ok(watch.read())
+        };
+        contestants.push(Contestant { record, run: Box::new(run) });
+    }
+    let difference = (kinetic[0] / kinetic[1] - 1.0).abs();
+    for contestant in &mut contestants {
+        contestant.record.verify_at_most("difference of the kinetic energies after 100 steps", difference, 1e-2);
+    }
+    round_robin(contestants, settings.rounds(), settings.budget())
+}

@@ -1,0 +1,101 @@
+//! What more threads bring: steps of an elastic block and of the plate while it cracks, in wall time. The displacements after
+//! all steps must be the same bits for any number of threads.
+
+use fisura::Simulation;
+use fisura::scene::Scene;
+use rayon::ThreadPool;
+
+use super::block::elastic_scene;
+use super::plate;
+use super::record::{BenchRecord, Clock};
+use super::timing::{Stopwatch, pool};
+use super::{BenchError, Settings};
+
+/// A scene on its way with some number of threads.
+struct Runner {
+    pool: ThreadPool,
+    simulation: Simulation,
+    record: BenchRecord,
+}
+
+/// Numbers of threads to try: 1, 2, 4, … and the most.
+fn numbers(most: usize) -> Vec<usize> {
+    let mut numbers: Vec<usize> = std::iter::successors(Some(1), |n| Some(2 * n)).take_while(|n| *n < most).collect();
+    numbers.push(most.max(1));
+    numbers.dedup();
+    numbers
+}
+
+/// Times the steps.
+///
+/// # Errors
+/// If a scene cannot be run.
+pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
+    let cells = if settings.quick { 192 } else { 256 };
+    let plate = plate::half(settings, 2, if settings.quick { 1.0 } else { 0.5 })?.scene;
+    let mut records = scaled(settings, "elastic", "elastic block, p = 2", &elastic_scene(2, 2, cells, 0), [5, 20])?;
+    let steps = if settings.quick { [400, 10] } else { [800, 20] };
+    records.extend(scaled(settings, "plate", "plate with a growing crack, p = 2", &plate, steps)?);
+    Ok(records)
+}
+
+/// One scene with every number of threads: `run_up` steps, then samples of `steps` steps in turn.
+fn scaled(
+    settings: &Settings,
+    name: &str,
+    label: &str,
+    scene: &Scene,
+    [run_up, steps]: [usize; 2],
+) -> Result<Vec<BenchRecord>, BenchError> {
+    let mut runners = Vec::new();
+    for threads in numbers(settings.threads) {
+        let pool = pool(threads)?;
+        let mut simulation = pool.install(|| Simulation::new(scene))?;
+        pool.install(|| advance(&mut simulation, run_up))?;
+        let extent = simulation.extent();
+        let work = (extent.particles * steps) as f64;
+        let mut record = BenchRecord::new(format!("threads/{name}/{threads}"), label, work, "particle-step")
+            .with("threads", threads);
+        (record.threads, record.clock) = (threads, Clock::Wall);
+        record.memory_bytes = (extent.mechanics_bytes + extent.phase_field_bytes) as u64;
+        runners.push(Runner { pool, simulation, record });
+    }
+    for _ in 0..settings.rounds() {
+        for Runner { pool, simulation, record } in &mut runners {
+            let watch = Stopwatch::start();
+            pool.install(|| advance(simulation, steps))?;
+            record.samples.push(watch.read());
+        }
+    }
+    let first = bits(&runners[0].simulation);
+    let finish = |mut runner: Runner| {
+        let same = bits(&runner.simulation) == first;
+        runner.record.verify(same, "displacement and phase field are the same bits as with one thread");
+        runner.record.summarise();
+        runner.record
+    };
+    Ok(runners.into_iter().map(finish).collect())
+}
+
+fn advance(simulation: &mut Simulation, steps: usize) -> Result<(), fisura::error::Breakdown> {
+    (0..steps).try_for_each(|_| simulation.step())
+}
+
+/// Displacement and phase field, bit for bit.
+fn bits(simulation: &Simulation) -> Vec<u64> {
+    let Some(frame) = simulation.total_frame() else { return Vec::new() };
+    let phase = frame.fracture.as_ref().map_or(&[][..], |f| f.field.control_values());
+    frame.displacement().iter().flatten().chain(phase).map(|x| x.to_bits()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_threads_double_and_end_with_the_most() {
+        assert_eq!(numbers(1), [1]);
+        assert_eq!(numbers(2), [1, 2]);
+        assert_eq!(numbers(6), [1, 2, 4, 6]);
+    }
+}

@@ -1,0 +1,97 @@
+//! `bench`: speed against error.
+
+use fisura_reports::bench::{self as report, Exhibit, Records, Section};
+use fisura_verification::bench::record::BenchSet;
+use fisura_verification::bench::{self, BenchError, FAMILIES, Settings};
+use fisura_verification::study::StudyError;
+
+use crate::cli::{Common, Format};
+use crate::environment::environment;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::{console, folders};
+
+/// Arguments of `bench`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Few meshes and repetitions: under five minutes on a quiet machine
+    #[arg(long)]
+    quick: bool,
+    /// Only these families, separated by commas: work-precision, plate, stages, solves, threads, ceilings, scenes
+    #[arg(long, value_name = "FAMILY,…", value_delimiter = ',')]
+    family: Vec<String>,
+    /// Time this program as well; its last argument is a folder with particles.csv and block.json
+    #[arg(long, value_name = "CMD")]
+    peer: Option<String>,
+}
+
+/// Measures, writes the report, and says which targets are met.
+///
+/// # Errors
+/// An unknown family, a case or reference file that is wrong, a run that breaks down, a peer that fails, a folder that cannot
+/// be written.
+pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
+    let known: Vec<&str> = FAMILIES.iter().map(|(name, _)| *name).collect();
+    if let Some(unknown) = args.family.iter().find(|name| !known.contains(&name.as_str())) {
+        let failure = Failure::new(Exit::BadInput, format!("unknown family: {unknown}"));
+        return Err(failure.help(format!("known families: {}", known.join(", "))));
+    }
+    if args.family.iter().any(|name| name == "peer") && args.peer.is_none() {
+        return Err(Failure::new(Exit::BadInput, "the family peer needs a program").help("give one with --peer CMD"));
+    }
+    let folder = folders::output(common, "bench")?;
+    let workspace = folders::workspace();
+    let settings = Settings {
+        quick: args.quick,
+        threads: rayon::current_num_threads(),
+        workspace: workspace.clone(),
+        out: folder.clone(),
+        peer: args.peer.clone(),
+        families: args.family.clone(),
+    };
+    let set = bench::run(&settings, environment(&workspace), &|family| console::note(common, family))?;
+    report::store(&folder, &set)?;
+    let rendered = report::render(&folder);
+    match common.format {
+        Format::Json => console::json(&set),
+        Format::Text => console::result(&text(&set)),
+    }
+    console::note(common, &format!("report: {}", folder.join("bench.html").display()));
+    rendered?;
+    Ok(if set.records.iter().all(|record| record.verified) { Exit::Done } else { Exit::CheckFailed })
+}
+
+/// The targets, the readings, and what does not hold.
+fn text(set: &BenchSet) -> String {
+    let mut rows: Vec<(String, String)> = Vec::new();
+    for ratio in report::ratios::found(Records(&set.records)) {
+        let word = ratio.holds().map_or("", |met| if met { ", target met" } else { ", target missed" });
+        rows.push((ratio.what, format!("{:.3}{word}", ratio.value.median)));
+    }
+    let rows: Vec<(&str, String)> = rows.iter().map(|(what, value)| (what.as_str(), value.clone())).collect();
+    let mut out = console::table(&rows);
+    for Section { exhibits, .. } in report::sections(set) {
+        for exhibit in exhibits {
+            if let Exhibit::Plot(plot) = exhibit {
+                out.push_str(&format!("\n{}: {}\n", plot.title, plot.reading));
+            }
+        }
+    }
+    for record in set.records.iter().filter(|record| !record.verified) {
+        out.push_str(&format!("\nFAIL {}: {}\n", record.id, record.answer));
+    }
+    out
+}
+
+impl From<BenchError> for Failure {
+    fn from(error: BenchError) -> Self {
+        match error {
+            BenchError::Study(StudyError::Breakdown(breakdown)) => Self::from(&breakdown),
+            BenchError::Study(StudyError::Other(message)) => Self::new(Exit::BrokeDown, message),
+            BenchError::Case(error) => error.into(),
+            BenchError::Reference(error) => Self::new(Exit::BadInput, error.to_string()),
+            peer @ BenchError::Peer { .. } => Self::new(Exit::BadInput, peer.to_string())
+                .help("it must run by itself with a folder as its last argument, and end with status 0"),
+        }
+    }
+}
