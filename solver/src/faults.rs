@@ -1,6 +1,6 @@
 //! Planted errors: proof that the checks of the verification can fail.
 //!
-//! With the feature `faults`, which no release has, one of [`FAULTS`] can be planted in a process with [`plant`], once and
+//! With the feature `faults`, which no release has, one of `FAULTS` can be planted in a process with `plant`, once and
 //! before anything is simulated; `cargo xtask faults` does so and looks for checks that turn red. Each has its site in the
 //! code, `fault!("gradient-sign", right => wrong)`. Without the feature that is `right` and nothing else.
 
