@@ -48,7 +48,7 @@ impl Constraints {
     /// Removes the components from a field (accelerations, directions).
     pub fn remove(&self, field: &mut [Vec<f64>; 2]) {
         for (at, component, _) in self.iter() {
-            field[component][at] = 0.0;
+            field[component][at] = fault!("held-side-let-go", 0.0 => field[component][at]);
         }
     }
 }

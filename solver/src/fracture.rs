@@ -131,7 +131,8 @@ impl Fracturing {
         let history_work: f64 = kernels.iter().map(|k| k.history_work.sum()).sum();
         StressSums {
             elastic_energy: kernels.iter().map(|k| k.energy.sum()).sum(),
-            history_work: (1.0 - model.residual_stiffness) * history_work,
+            history_work: (1.0 - model.residual_stiffness)
+                * fault!("history-work-halved", history_work => 0.5 * history_work),
         }
     }
 

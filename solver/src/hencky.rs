@@ -48,7 +48,8 @@ pub fn hencky_strain(displacement: &Gradient) -> [f64; 3] {
         (0.5 * (mean + radius).ln_1p() - half_log) / radius
     };
     let deviator = factor * half_difference;
-    [half_log + deviator, half_log - deviator, factor * shear]
+    let strain = [half_log + deviator, half_log - deviator, factor * shear];
+    fault!("hencky-without-half", strain => strain.map(|e| 2.0 * e))
 }
 
 /// `A (I + A)⁻¹`: the same motion as `A = dt grad v`, differentiated with respect to the positions it ends at.

@@ -54,7 +54,8 @@ impl PointKernel for HistoryUpdate<'_> {
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
         let state = split(&self.moduli, self.model.split, strain(values.gradient));
-        self.history[at] = self.history[at].max(state.energy_plus);
+        let old = self.history[at];
+        self.history[at] = fault!("history-forgets", old.max(state.energy_plus) => state.energy_plus);
         Stress::ZERO
     }
 }
@@ -122,8 +123,8 @@ impl PointKernel for SurfaceEnergy {
         let FractureModel { toughness, length_scale, .. } = self.model;
         let broken = Lane::splat(1.0) - values.phase;
         let [gx, gy] = values.phase_gradient;
-        let density =
-            broken * broken * (toughness / (4.0 * length_scale)) + (gx * gx + gy * gy) * (toughness * length_scale);
+        let density = broken * broken * (toughness / (fault!("surface-energy-doubled", 4.0 => 2.0) * length_scale))
+            + (gx * gx + gy * gy) * (toughness * length_scale);
         self.energy = self.energy.add_product::<FMA>(weight, density);
         let exists = values.phase.zip(weight, |c, w| if w > 0.0 { c } else { f64::INFINITY });
         self.least = self.least.min(exists);

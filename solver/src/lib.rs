@@ -130,6 +130,9 @@
 
 #![deny(unsafe_code)]
 
+#[macro_use]
+pub mod faults;
+
 pub mod assembly;
 pub mod checkpoint;
 pub mod cholesky;

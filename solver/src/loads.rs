@@ -17,7 +17,9 @@ pub struct SurfacePoint {
 /// sums over the edge then fit those over the body, which the patch test needs for equally spaced points.
 pub fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<SurfacePoint> {
     let ends = match edge {
-        Edge::Side(side) => body.shape.side(*side).unwrap_or_default(),
+        Edge::Side(side) => {
+            body.shape.side(fault!("traction-on-wrong-edge", *side => Side::Bottom)).unwrap_or_default()
+        }
         Edge::Segment(ends) => *ends,
     };
     let [from, to] = ends;

@@ -54,7 +54,7 @@ impl MassMatrix {
         let mut row_sums = lattice.integrate(|_, _, _| 1.0);
         row_sums.iter_mut().for_each(|m| *m *= density);
         let negligible = NEGLIGIBLE * row_sums.iter().copied().fold(0.0, f64::max);
-        let kind = match mass {
+        let kind = match fault!("mass-lumped", mass => scene::Mass::Lumped) {
             scene::Mass::Lumped => {
                 let inverse = row_sums.iter().map(|&m| if m > negligible { 1.0 / m } else { 0.0 }).collect();
                 Kind::Lumped { inverse }

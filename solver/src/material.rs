@@ -23,7 +23,9 @@ impl ElasticModuli {
         let mu = young / (2.0 * (1.0 + nu));
         let lambda = match plane {
             Plane::Strain => young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
-            Plane::Stress => young * nu / (1.0 - nu * nu),
+            Plane::Stress => {
+                fault!("plane-stress-lambda", young * nu / (1.0 - nu * nu) => young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)))
+            }
         };
         Self { lambda, mu }
     }
@@ -38,7 +40,8 @@ impl ElasticModuli {
     pub fn stress(&self, strain: [Lane; 3]) -> [Lane; 3] {
         let spherical = (strain[0] + strain[1]) * self.lambda;
         let twice = 2.0 * self.mu;
-        [spherical + strain[0] * twice, spherical + strain[1] * twice, strain[2] * twice]
+        let shear = fault!("shear-halved", strain[2] * twice => strain[2] * self.mu);
+        [spherical + strain[0] * twice, spherical + strain[1] * twice, shear]
     }
 
     /// Energy density of an intact batch, J/m³.
@@ -68,7 +71,7 @@ impl FractureModel {
     pub fn new(fracture: &Fracture) -> Self {
         Self {
             toughness: fracture.critical_energy_release_rate,
-            length_scale: fracture.length_scale,
+            length_scale: fault!("length-scale-doubled", fracture.length_scale => 2.0 * fracture.length_scale),
             residual_stiffness: fracture.residual_stiffness,
             split: match fracture.split {
                 Split::Spectral => EnergySplit::Spectral,
@@ -82,16 +85,17 @@ impl FractureModel {
     #[inline(always)]
     pub fn degradation(&self, phase: Lane) -> Lane {
         let k = self.residual_stiffness;
-        (phase * phase).map(|c2| (1.0 - k) * c2 + k)
+        fault!("degradation-linear", phase * phase => phase).map(|c2| (1.0 - k) * c2 + k)
     }
 
     /// Coefficient of c in the phase-field equation per unit of history energy: `4 l0 (1 − k)/Gc`, m³/J.
     pub fn reaction_per_energy(&self) -> f64 {
-        4.0 * self.length_scale * (1.0 - self.residual_stiffness) / self.toughness
+        let k = fault!("one-minus-k-missing", self.residual_stiffness => 0.0);
+        4.0 * self.length_scale * (1.0 - k) / self.toughness
     }
 
     /// Coefficient of the gradient term, `4 l0²`, m².
     pub fn diffusion(&self) -> f64 {
-        4.0 * self.length_scale * self.length_scale
+        fault!("phase-gradient-halved", 4.0 => 2.0) * self.length_scale * self.length_scale
     }
 }

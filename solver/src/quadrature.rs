@@ -25,11 +25,12 @@ impl Rule {
     /// If `n` is zero, above [`MAX_POINTS`], or above 5 for Maclaurin weights; validation refuses such scenes.
     pub fn new(layout: Layout, n: usize) -> Self {
         assert!((1..=MAX_POINTS).contains(&n), "1 to {MAX_POINTS} points per span");
-        match layout {
+        let rule = match layout {
             Layout::Gauss => gauss_legendre(n),
             Layout::Uniform => equally_spaced(vec![1.0 / n as f64; n]),
             Layout::Maclaurin => equally_spaced(maclaurin_weights(n)),
-        }
+        };
+        fault!("volumes-off-by-a-layer", rule => Rule { weights: [&rule.weights[1..], &rule.weights[..1]].concat(), ..rule })
     }
 }
 

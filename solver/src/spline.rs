@@ -102,7 +102,8 @@ impl SplineSpace {
         if !(left..=right).contains(&x) {
             return None;
         }
-        Some(self.spans.partition_point(|span| span.right <= x).min(self.spans.len() - 1))
+        let index = self.spans.partition_point(|span| span.right <= x);
+        Some(fault!("knot-span-off-by-one", index => index + 1).min(self.spans.len() - 1))
     }
 
     /// Shape functions at `x` (m), which should lie in `span`.
@@ -120,7 +121,7 @@ impl SplineSpace {
                 value = value * t + polynomial[m];
             }
             shape.value[k] = value;
-            shape.derivative[k] = slope * scale;
+            shape.derivative[k] = fault!("gradient-sign", slope * scale => -slope * scale);
         }
         shape
     }

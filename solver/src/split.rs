@@ -45,7 +45,7 @@ pub fn tensile_strain([xx, yy, xy]: [Lane; 3]) -> ([Lane; 3], [Lane; 2]) {
     let mean = (xx + yy) * 0.5;
     let half_difference = (xx - yy) * 0.5;
     let radius = half_difference.zip(xy, scaled_hypot);
-    let (e1, e2) = (mean + radius, mean - radius);
+    let (e1, e2) = fault!("split-swapped", (mean + radius, mean - radius) => (mean - radius, mean + radius));
     let factor = e1.zip(radius, |e1, r| if e1 <= 0.0 { 0.0 } else { e1 / (2.0 * r) });
     let factor = factor.zip(e2, |f, e2| if e2 >= 0.0 { 1.0 } else { f });
     let shift = e2.min(Lane::ZERO);

@@ -112,7 +112,7 @@ impl TotalFrame {
             let v = self.velocity[component].par_chunks_mut(chunk);
             v.zip(self.acceleration[component].par_chunks(chunk)).for_each(|(v, a)| {
                 for (v, a) in v.iter_mut().zip(a) {
-                    *v += 0.5 * dt * a;
+                    *v += fault!("whole-kick", 0.5 * dt => dt) * a;
                 }
             });
         }
@@ -152,7 +152,7 @@ impl TotalFrame {
     fn external_minus_internal(&mut self) {
         let chunk = CHUNK_ROWS * self.grid.stride;
         for component in 0..2 {
-            let gravity = self.gravity[component];
+            let gravity = fault!("gravity-upwards", self.gravity[component] => -self.gravity[component]);
             let a = self.acceleration[component].par_chunks_mut(chunk);
             let mass = self.mass.row_sums().par_chunks(chunk);
             a.zip(self.internal[component].par_chunks(chunk)).zip(mass).for_each(|((a, f), m)| {
@@ -189,7 +189,7 @@ impl TotalFrame {
         if let Some(forced) = &self.forced {
             power += forced.mean_power(velocity);
         }
-        let driven = self.power_of_driven_sides();
+        let driven = fault!("driven-work-left-out", self.power_of_driven_sides() => 0.0);
         power += 0.5 * (self.driven_power + driven);
         self.driven_power = driven;
         self.ledger.external_work += dt * power;

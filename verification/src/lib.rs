@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod case;
 pub mod convergence;
+pub mod dense;
 pub mod exact;
 pub mod expand;
 pub mod extremes;

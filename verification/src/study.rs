@@ -17,6 +17,7 @@ mod pulse;
 mod rings;
 mod rotation;
 pub mod scene;
+mod stability;
 mod vibration;
 
 use thiserror::Error;
@@ -79,7 +80,7 @@ pub enum StudyError {
 type Study = fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>;
 
 /// Studies other than `scene`, by name.
-pub const STUDIES: [(&str, Study); 20] = [
+pub const STUDIES: [(&str, Study); 29] = [
     ("basis", basis::study),
     ("constant-stress", constant_stress::study),
     ("homogeneous-state", homogeneous_state::study),
@@ -100,6 +101,15 @@ pub const STUDIES: [(&str, Study); 20] = [
     ("contact-stack", contact::stack::study),
     ("rings", rings::study),
     ("rings-sweep", rings::sweep),
+    ("critical-step", stability::critical_step::study),
+    ("step-growth", stability::growth::study),
+    ("incompressible", stability::incompressible::study),
+    ("split-families", stability::split_families::study),
+    ("boundary-points", stability::boundary_points::study),
+    ("unit-systems", stability::units::study),
+    ("repeatability", stability::repeatability::study),
+    ("unloading", stability::unloading::study),
+    ("stick-slip", stability::stick_slip::study),
 ];
 
 /// The study of that name.

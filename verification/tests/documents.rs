@@ -38,7 +38,8 @@ fn every_case_that_is_named_exists() {
         for word in text.split('`').skip(1).step_by(2) {
             let Some((suite, case)) = word.split_once('/') else { continue };
             let plain = case.chars().all(|c| c.is_ascii_alphanumeric() || c == '-') && !case.is_empty();
-            if ["contact", "convergence", "energy", "fracture", "manufactured", "patch", "plate"].contains(&suite)
+            if ["contact", "convergence", "energy", "fracture", "manufactured", "patch", "plate", "stability"]
+                .contains(&suite)
                 && plain
             {
                 let file = root().join(format!("verification/cases/{suite}/{case}.toml"));

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::{bench, check, compare, figures, merge, report, run, verify};
+use crate::{bench, check, compare, faults, figures, merge, report, run, verify};
 
 const EXIT_STATUS: &str = "\
 Exit status: 0 all checks hold, 1 a check fails, 2 bad arguments or bad input, 3 a run broke down, \
@@ -44,6 +44,8 @@ pub enum Command {
     Report(report::Args),
     /// Measure speed against error: diagrams, stages of the step, threads, ceilings, scenes
     Bench(bench::Args),
+    /// Plant known errors in the solver, one at a time, and show which checks catch each
+    Faults(faults::Args),
 }
 
 /// Flags of every command.

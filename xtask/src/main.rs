@@ -1,5 +1,5 @@
 //! The commands of the fisura workspace: `cargo xtask verify`, `merge`, `compare`, `list`, `run`, `check`, `figures`,
-//! `report`, `bench`.
+//! `report`, `bench`, `faults`.
 //!
 //! One file per command; beside them [`cli`] (what can be said on the command line), [`exit`] (statuses), [`failure`]
 //! (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go), [`progress`]
@@ -13,6 +13,7 @@ mod console;
 mod environment;
 mod exit;
 mod failure;
+mod faults;
 mod figures;
 mod folders;
 mod interrupt;
@@ -35,6 +36,10 @@ use failure::Failure;
 
 fn main() -> ExitCode {
     let Cli { command, common } = Cli::parse();
+    #[cfg(feature = "faults")]
+    if let Err(failure) = faults::plant_from_environment() {
+        return failure.show().into();
+    }
     let outcome = set_threads(&common).and_then(|()| match command {
         Command::Verify(args) => verify::verify(&args, &common),
         Command::Merge(args) => merge::merge(&args, &common),
@@ -45,6 +50,7 @@ fn main() -> ExitCode {
         Command::Figures(args) => figures::figures(&args, &common),
         Command::Report(args) => report::report(&args, &common),
         Command::Bench(args) => bench::bench(&args, &common),
+        Command::Faults(args) => faults::faults(&args, &common),
     });
     outcome.unwrap_or_else(|failure| failure.show()).into()
 }

@@ -148,7 +148,9 @@ impl Contact {
         let mut touches = Vec::with_capacity(self.touches.len());
         for touch in &self.touches {
             let [a, b] = touch.bodies;
-            let mut weights: Vec<_> = touch.on_a.weights().iter().map(|&(at, w)| (number(a, at), -w)).collect();
+            let on_a = touch.on_a.weights().iter();
+            let mut weights: Vec<_> =
+                on_a.map(|&(at, w)| (number(a, at), fault!("impulse-one-sided", -w => -0.9 * w))).collect();
             let rigid = match &touch.on_b {
                 Some(on_b) => {
                     weights.extend(on_b.weights().iter().map(|&(at, w)| (number(b, at), w)));
@@ -238,7 +240,7 @@ impl Acting<'_> {
             let allowed = -self.touch.gap.max(0.0) / step;
             normal = (normal + (allowed - dot(relative, self.touch.normal)) / along_normal).max(0.0);
         }
-        let most = friction * normal;
+        let most = fault!("friction-twice", friction * normal => 2.0 * friction * normal);
         if along_tangent > 0.0 {
             tangent = (tangent - dot(relative, self.tangent()) / along_tangent).clamp(-most, most);
         }

@@ -297,7 +297,7 @@ fn is_on_boundary(shape: &Shape, position: [f64; 2], tolerance: f64) -> bool {
 /// Unit normal to the right of the way from `a` to `b`.
 fn normal(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     let along = [b[0] - a[0], b[1] - a[1]];
-    let length = along[0].hypot(along[1]);
+    let length = fault!("normal-not-normalised", along[0].hypot(along[1]) => 1.0);
     [along[1] / length, -along[0] / length]
 }
 

@@ -71,7 +71,7 @@ impl Lattice {
     pub(super) fn map_by(&mut self, patch: &NurbsPatch) {
         let mut weights = self.grid.zeros();
         for (at, weight) in self.grid.indices().zip(patch.weights()) {
-            weights[at] = *weight;
+            weights[at] = fault!("rational-weights-ignored", *weight => 1.0);
         }
         let mut points = vec![MappedPoint::ZERO; self.batches()];
         let mut determinants = vec![Lane::ZERO; self.batches()];
@@ -83,7 +83,7 @@ impl Lattice {
                 let (image, weight) = patch.image(span, parameters);
                 let [[xu, xv], [yu, yv]] = image.jacobian;
                 let determinant = image.determinant();
-                determinants[batch][lane] = determinant;
+                determinants[batch][lane] = fault!("jacobian-missing", determinant => 1.0);
                 let point = &mut points[batch];
                 point.inverse_weight[lane] = 1.0 / weight.value;
                 for d in 0..2 {

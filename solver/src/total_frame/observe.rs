@@ -61,7 +61,7 @@ impl TotalFrame {
             time_step: dt,
             ..Sample::default()
         };
-        sample.for_thickness(self.thickness)
+        sample.for_thickness(fault!("thickness-forgotten", self.thickness => 1.0))
     }
 
     /// Reference position (m) of a point that is turned inside out, if there is one; small strains know none.

@@ -204,7 +204,8 @@ impl Give<'_> {
                 let lx = levers(&self.greville[0], cell.first[0], kx, point.position[0]);
                 let ly = levers(&self.greville[1], cell.first[1], ky, point.position[1]);
                 let mass = self.density * point.volume;
-                let [cx, cy] = self.gradients[at].map(|row| row.map(|c| mass * c));
+                let [[xx, xy], [yx, yy]] = self.gradients[at].map(|row| row.map(|c| mass * c));
+                let [cx, cy] = fault!("affine-transposed", [[xx, xy], [yx, yy]] => [[xx, yx], [xy, yy]]);
                 for l in 0..ky {
                     for k in 0..kx {
                         let n = sx.value[k] * sy.value[l];

@@ -170,7 +170,8 @@ impl Vectorised for UpdateHistory<'_> {
             let strain = [0, 1, 2].map(|i| gather(points, |p| p.strain[i]));
             let energy = split::split(self.moduli, self.model.split, strain).energy_plus;
             for (lane, point) in fracture.iter_mut().enumerate() {
-                point.history = if energy[lane] > point.history { energy[lane] } else { point.history };
+                let grows = fault!("history-forgets", energy[lane] > point.history => true);
+                point.history = if grows { energy[lane] } else { point.history };
             }
         }
     }

@@ -58,7 +58,8 @@ impl Departure {
 
     /// Fraction of `1/ω_max` up to which the step is stable (see the module).
     pub fn stable_fraction(&self) -> f64 {
-        if self.transfer == Transfer::Musl { 2.0 } else { std::f64::consts::SQRT_2 }
+        let others = fault!("stable-fraction-of-musl", std::f64::consts::SQRT_2 => 2.0);
+        if self.transfer == Transfer::Musl { 2.0 } else { others }
     }
 
     /// The transfer.
@@ -69,7 +70,8 @@ impl Departure {
     /// From the velocities that arrived on and leave the grid.
     pub fn leave(&mut self, nodes: &NodalFields, smoothing: &Smoothing) {
         let Self { motion, taken, kept, transfer } = self;
-        *kept = if matches!(transfer, Transfer::Flip | Transfer::Musl) { 1.0 } else { 0.0 };
+        let of_flip = fault!("transfer-keeps-less", 1.0 => 0.999);
+        *kept = if matches!(transfer, Transfer::Flip | Transfer::Musl) { of_flip } else { 0.0 };
         copy(motion, &nodes.velocity);
         copy(taken, &nodes.velocity);
         match *transfer {

@@ -2,7 +2,7 @@
 //!
 //! Where a body is cut, or drawn out once it is broken, a span holds fewer points than functions: the points leave combinations of
 //! control values open that vanish at all of them, and the system is singular to round-off. The whole part of the patch is therefore filled
-//! with intact material of [`WEIGHT`] times the body's,
+//! with intact material of `WEIGHT` times the body's,
 //!
 //! ```text
 //! K0_IJ = α ∫ (N_I N_J + 4 l0² grad N_I · grad N_J) dx,   load0_I = α ∫ N_I dx

@@ -193,7 +193,7 @@ impl DiscreteField {
         }
         let cells = &self.cells;
         if let Some(fracture) = &mut self.fracture {
-            cells.reorder(&mut fracture.points);
+            fault!("history-left-behind", cells.reorder(&mut fracture.points) => ());
         }
         if let Some(affine) = &mut self.affine {
             cells.reorder(&mut affine.gradients);

@@ -82,7 +82,7 @@ impl DiscreteField {
         let on_points = now + forced_now + weight - self.stress_work / dt;
         self.losses.kinetic += leaving.kinetic - self.nodes.kinetic_energy(&self.nodes.arrived);
         self.losses.power += 0.5 * dt * (leaving.not_followed + on_points - self.nodes.power_followed());
-        self.losses.imposed += imposed.loss;
+        self.losses.imposed += fault!("loss-forgotten", imposed.loss => 0.0);
         self.ledger.external_work += imposed.work + dt * weight + 0.5 * dt * (before + now);
         self.ledger.external_work += 0.5 * dt * (forced_before + forced_now + self.driven_power + driven);
         self.ledger.transfer_loss = self.losses.sum();

@@ -130,7 +130,7 @@ impl DiscreteField {
     /// `dt` is the step in use. Closure is left at zero.
     fn sample(&self, dt: f64, acceleration: &VectorField) -> Sample {
         let nodes = &self.nodes;
-        let half = if self.at_start { 0.0 } else { 0.5 * dt };
+        let half = if self.at_start { 0.0 } else { fault!("half-step-velocity", 0.5 * dt => 0.0) };
         let (mut kinetic, mut stagger, mut momentum, mut angular) = (0.0, 0.0, [0.0; 2], 0.0);
         for at in nodes.grid.indices() {
             let m = nodes.mass[at];

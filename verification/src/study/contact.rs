@@ -22,7 +22,7 @@ use crate::extremes::{self, larger};
 use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind};
 
 /// Runs a scene to its end; `seen` looks at it at the start and after every step.
-fn run(scene: &Scene, seen: &mut dyn FnMut(&Simulation, &UpdatedFrame)) -> Result<(), StudyError> {
+pub(super) fn run(scene: &Scene, seen: &mut dyn FnMut(&Simulation, &UpdatedFrame)) -> Result<(), StudyError> {
     let mut simulation = Simulation::new(scene)?;
     loop {
         let Some(frame) = simulation.updated_frame() else {
@@ -50,7 +50,7 @@ fn sum<'a>(forces: impl IntoIterator<Item = &'a ContactForce>) -> [f64; 2] {
 }
 
 /// Centre of mass of a body, m.
-fn center(field: &DiscreteField) -> [f64; 2] {
+pub(super) fn center(field: &DiscreteField) -> [f64; 2] {
     let volume: f64 = field.points().iter().map(|p| p.volume).sum();
     [0, 1].map(|d| field.points().iter().map(|p| p.volume * p.position[d]).sum::<f64>() / volume)
 }
@@ -128,12 +128,19 @@ fn label(scene: &str, what: &str) -> String {
 }
 
 /// A curve of two columns of a series.
-fn curve(label: &str, stem: &str, columns: [&str; 2], style: CurveStyle) -> Curve {
+pub(super) fn curve(label: &str, stem: &str, columns: [&str; 2], style: CurveStyle) -> Curve {
     Curve { style, ..Curve::line(label, &format!("series/{stem}.csv"), columns) }
 }
 
 /// A chart of all scenes of a case.
-fn chart(case: &Case, name: &str, title: &str, caption: &str, axes: [&str; 2], curves: Vec<Curve>) -> Figure {
+pub(super) fn chart(
+    case: &Case,
+    name: &str,
+    title: &str,
+    caption: &str,
+    axes: [&str; 2],
+    curves: Vec<Curve>,
+) -> Figure {
     Figure {
         id: series_stem(case, name),
         suite: case.suite.clone(),

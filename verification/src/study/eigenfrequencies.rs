@@ -7,11 +7,11 @@
 use fisura::critical_step::StiffnessOperator;
 use fisura::scene::{Mass, Mesh, Scene};
 use fisura::total_frame::TotalFrame;
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::convergence::{Convergence, Curve, Level, Norm, Refined};
+use crate::dense;
 use crate::expand::CaseScene;
 use crate::plain_scene::PlainScene;
 
@@ -70,20 +70,7 @@ fn relative_errors(mass: Mass, degree: usize, spans: usize) -> Result<(Vec<f64>,
     let frame = TotalFrame::new(&scene).map_err(|_| other("there is no phase field"))?;
     let mut operator = frame.stiffness_operator();
     let n = operator.size();
-    let (mut stiffness, mut inverse_mass) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
-    let (mut unit, mut image) = (vec![0.0; n], vec![0.0; n]);
-    for column in 0..n {
-        unit[column] = 1.0;
-        operator.stiffness(&unit, &mut image);
-        stiffness.set_column(column, &DVector::from_column_slice(&image));
-        operator.divide_by_mass(&unit, &mut image);
-        inverse_mass.set_column(column, &DVector::from_column_slice(&image));
-        unit[column] = 0.0;
-    }
-    let factor = inverse_mass.cholesky().ok_or_else(|| other("the mass is not positive definite"))?.l();
-    let matrix = factor.transpose() * stiffness * factor;
-    let mut eigenvalues: Vec<f64> = SymmetricEigen::new(matrix).eigenvalues.iter().copied().collect();
-    eigenvalues.sort_by(f64::total_cmp);
+    let eigenvalues = dense::eigenvalues(&mut operator).ok_or_else(|| other("the mass is not positive definite"))?;
     let exact = |mode: usize| mode as f64 * std::f64::consts::PI; // unit modulus, density and length
     let error = |(i, eigenvalue): (usize, &f64)| eigenvalue.sqrt() / exact(i + 1) - 1.0;
     Ok((eigenvalues.iter().take(MODES).enumerate().map(error).collect(), n))

@@ -5,7 +5,7 @@
 //! where c = 3/4 and sigma = (9/16) sqrt(M Gc/(6 l0)). Constants are in the space and the same sums stand on both sides,
 //! so the discrete solution is exact for every degree and layout. The displacement is imposed on the control points; strain,
 //! split, history and degraded stress are those of the solver's own sweeps, and the stress is the reaction on the right
-//! side over its height. (The reaction of equally spaced points is exact for p up to 2 only; see the patch test.)
+//! side over its height. The closed form takes its numbers from the scene, not from the solver. (The reaction of equally spaced points is exact for p up to 2 only; see the patch test.)
 
 use fisura::fracture::Fracturing;
 use fisura::lane::Lane;
@@ -13,7 +13,7 @@ use fisura::lattice::Lattice;
 use fisura::material::{ElasticModuli, FractureModel};
 use fisura::patch::Patch;
 use fisura::phase_field::PhaseField;
-use fisura::scene::{Kinematics, Side};
+use fisura::scene::{Fracture, Kinematics, Material, Plane, Side};
 use fisura::sweep::StripForces;
 
 use super::{Findings, StudyError};
@@ -57,9 +57,9 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
         material.fracture.as_ref().ok_or_else(|| StudyError::Other("the material has no fracture".into()))?;
     let model = FractureModel::new(fracture);
     let moduli = ElasticModuli::new(material, scene.analysis.plane);
-    let modulus = moduli.lambda + 2.0 * moduli.mu;
-    let peak_strain = (model.toughness / (6.0 * model.length_scale * modulus)).sqrt();
-    let peak_stress = 9.0 / 16.0 * (modulus * model.toughness / (6.0 * model.length_scale)).sqrt();
+    let modulus = uniaxial_modulus(material, scene.analysis.plane);
+    let strength = fracture.critical_energy_release_rate / (6.0 * fracture.length_scale); // J/m³
+    let (peak_strain, peak_stress) = ((strength / modulus).sqrt(), 9.0 / 16.0 * (modulus * strength).sqrt());
     let patch = Patch::new(&scene.mesh);
     let lattice = Lattice::new(&patch, body);
     let (low, high) = body.shape.bounding_box();
@@ -79,17 +79,29 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
     for step in 0..=STRAINS {
         let strain = FURTHEST * peak_strain * step as f64 / STRAINS as f64;
         let (phase, stress) = points.strained_by(strain)?;
-        let exact = closed_form(&model, modulus, strain);
+        let exact = closed_form(fracture, modulus, strain);
         worst = phase.into_iter().map(|c| (c - exact).abs()).fold(worst, larger);
-        let degraded = (1.0 - model.residual_stiffness) * exact * exact + model.residual_stiffness;
+        let k = fracture.residual_stiffness;
+        let degraded = (1.0 - k) * exact * exact + k;
         table.push(&[strain / peak_strain, stress / peak_stress, degraded * modulus * strain / peak_stress]);
     }
     Ok((table, worst))
 }
 
 /// `c = 1/(1 + (1 − k) 2 l0 M e²/Gc)`.
-fn closed_form(model: &FractureModel, modulus: f64, strain: f64) -> f64 {
-    1.0 / (1.0 + model.reaction_per_energy() * 0.5 * modulus * strain * strain)
+fn closed_form(fracture: &Fracture, modulus: f64, strain: f64) -> f64 {
+    let Fracture { critical_energy_release_rate, length_scale, residual_stiffness, .. } = fracture;
+    let energy = 0.5 * modulus * strain * strain;
+    1.0 / (1.0 + 4.0 * length_scale * (1.0 - residual_stiffness) * energy / critical_energy_release_rate)
+}
+
+/// Stress over strain in uniaxial strain, Pa: `E (1 − nu)/((1 + nu)(1 − 2 nu))`, and `E/(1 − nu²)` in plane stress.
+fn uniaxial_modulus(material: &Material, plane: Plane) -> f64 {
+    let (young, nu) = (material.young_modulus, material.poisson_ratio);
+    match plane {
+        Plane::Strain => young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        Plane::Stress => young / (1.0 - nu * nu),
+    }
 }
 
 /// The material points of the body and their phase field: the solver's own kernels, driven by a displacement.

@@ -6,7 +6,7 @@ use super::support::Place;
 fn help_says_what_there_is() {
     let place = Place::new();
     insta::assert_snapshot!("help", place.xtask(&["--help"]).with_status(0).out);
-    for command in ["verify", "merge", "compare", "list", "run", "check", "figures", "report", "bench"] {
+    for command in ["verify", "merge", "compare", "list", "run", "check", "figures", "report", "bench", "faults"] {
         insta::assert_snapshot!(format!("help-{command}"), place.xtask(&[command, "--help"]).with_status(0).out);
     }
 }

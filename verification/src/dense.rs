@@ -1,0 +1,61 @@
+//! Dense matrices of the solver's operators, for eigenvalues that do not come from its own iteration.
+
+use fisura::assembly::{Constant, Form, add_form};
+use fisura::critical_step::StiffnessOperator;
+use fisura::stencil::Stencil;
+use fisura::total_frame::TotalFrame;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+/// The matrix of a linear map on `n` numbers.
+pub fn matrix(n: usize, mut map: impl FnMut(&[f64], &mut [f64])) -> DMatrix<f64> {
+    let mut matrix = DMatrix::zeros(n, n);
+    let (mut unit, mut image) = (vec![0.0; n], vec![0.0; n]);
+    for column in 0..n {
+        unit[column] = 1.0;
+        map(&unit, &mut image);
+        matrix.set_column(column, &DVector::from_column_slice(&image));
+        unit[column] = 0.0;
+    }
+    matrix
+}
+
+/// Squares of the angular frequencies of a body with the mass it has, increasing, and their number; `None` if its mass is not
+/// positive definite.
+pub fn eigenvalues(operator: &mut impl StiffnessOperator) -> Option<Vec<f64>> {
+    let n = operator.size();
+    let stiffness = matrix(n, |x, out| operator.stiffness(x, out));
+    let inverse_mass = matrix(n, |x, out| operator.divide_by_mass(x, out));
+    let factor = inverse_mass.cholesky()?.l();
+    Some(sorted(factor.transpose() * stiffness * factor))
+}
+
+/// The same with the consistent mass of `density` (kg/m³), also where a body cuts spans: masses are scaled to a unit diagonal
+/// before they are factored, so that next to nothing in a span stays well conditioned.
+pub fn eigenvalues_of_consistent_mass(frame: &TotalFrame, density: f64) -> Option<Vec<f64>> {
+    let mut operator = frame.stiffness_operator();
+    let free = operator.degrees_of_freedom().to_vec();
+    let n = free.len();
+    let lattice = frame.lattice();
+    let mut stencil = Stencil::zeros(lattice.grid, lattice.degree);
+    add_form(&mut stencil, lattice, Form::Mass, &Constant(density));
+    let mass = matrix(n, |x, out| {
+        let (mut field, mut image) = ([lattice.grid.zeros(), lattice.grid.zeros()], lattice.grid.zeros());
+        free.iter().zip(x).for_each(|(&(at, component), x)| field[component][at] = *x);
+        for (component, field) in field.iter().enumerate() {
+            stencil.apply(field, &mut image);
+            let own = free.iter().zip(&mut *out).filter(|((_, c), _)| *c == component);
+            own.for_each(|(&(at, _), out)| *out = image[at]);
+        }
+    });
+    let stiffness = matrix(n, |x, out| operator.stiffness(x, out));
+    let scale = DMatrix::from_diagonal(&mass.diagonal().map(|m| 1.0 / m.sqrt()));
+    let lower = (&scale * mass * &scale).cholesky()?.l();
+    let half = lower.solve_lower_triangular(&(&scale * stiffness * &scale))?;
+    Some(sorted(lower.solve_lower_triangular(&half.transpose())?))
+}
+
+fn sorted(matrix: DMatrix<f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = SymmetricEigen::new(matrix).eigenvalues.iter().copied().collect();
+    values.sort_by(f64::total_cmp);
+    values
+}

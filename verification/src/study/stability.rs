@@ -1,0 +1,46 @@
+//! Studies of hard cases: steps near the critical one, cut spans, nearly incompressible material, strains at the ends of what
+//! numbers hold, points on knots, other units, and runs that have to be the same.
+
+pub(super) mod boundary_points;
+pub(super) mod critical_step;
+pub(super) mod growth;
+pub(super) mod incompressible;
+pub(super) mod repeatability;
+pub(super) mod split_families;
+pub(super) mod stick_slip;
+pub(super) mod units;
+pub(super) mod unloading;
+
+use fisura::scene::Scene;
+use fisura::total_frame::TotalFrame;
+
+use super::StudyError;
+use super::scene::series_stem;
+use crate::case::Case;
+use crate::record::{Axis, Curve, Figure, FigureBody, Reference, ReferenceKind, Scale};
+
+/// The body of a scene without a phase field in the total frame.
+fn total_frame(scene: &Scene) -> Result<TotalFrame, StudyError> {
+    TotalFrame::new(scene).map_err(|_| StudyError::Other("the initial phase field did not converge".into()))
+}
+
+fn exact(value: f64, source: &str) -> Option<Reference> {
+    Some(Reference { value: Some(value), kind: ReferenceKind::Exact, source: source.into() })
+}
+
+fn theory(value: f64, source: &str) -> Option<Reference> {
+    Some(Reference { value: Some(value), kind: ReferenceKind::Theory, source: source.into() })
+}
+
+/// A chart with logarithmic axes.
+fn logarithmic(case: &Case, name: &str, title: &str, caption: &str, axes: [&str; 2], curves: Vec<Curve>) -> Figure {
+    let axes = axes.map(|label| Axis { scale: Scale::Log, ..Axis::linear(label) });
+    Figure {
+        id: series_stem(case, name),
+        suite: case.suite.clone(),
+        title: title.into(),
+        caption: caption.into(),
+        deviations: Vec::new(),
+        body: FigureBody::chart(axes, curves, Vec::new()),
+    }
+}

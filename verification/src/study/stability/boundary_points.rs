@@ -1,0 +1,139 @@
+//! Points exactly on knots, on the edge of the patch, and beyond it; bodies that overlap from the start.
+//!
+//! A block of equally spaced points, two a span, flies a sixteenth of a span in every step: its points stand on knots again
+//! and again. Powers of two make positions exact, or nearly so. Nothing may happen to it until its first point is off the mesh, which has to end the
+//! run in words at the step at which it happens. For p = 1 that is not so: a point a rounding beyond a knot gives a control point next to
+//! no mass but a whole gradient, and no step is short enough. Bodies that overlap at t = 0 have to be refused.
+
+use fisura::Simulation;
+use fisura::error::Breakdown;
+use fisura::scene::{Body, Contact, Frame, Layout, Mass, Material, Mesh, Plane, Scene, Shape, TimeStep, Transfer};
+use fisura::validate::validate;
+
+use super::exact;
+use crate::case::Case;
+use crate::expand::CaseScene;
+use crate::extremes::{larger, largest};
+use crate::plain_scene::PlainScene;
+use crate::study::{Findings, StudyError};
+
+/// Spans of the mesh along x, all of length one; the block is two long and begins at one.
+const SPANS: usize = 12;
+/// Time step, s; the speed is one.
+const STEP: f64 = 0.0625;
+
+pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    for degree in 1..=3 {
+        for (word, transfer) in [("FLIP", Transfer::Flip), ("APIC", Transfer::Apic)] {
+            let (name, flight) = (format!("p={degree}, {word}"), fly(&flying(degree, transfer))?);
+            if degree == 1 { flight.add_limit(&name, &mut findings) } else { flight.add(&name, &mut findings) }
+        }
+    }
+    for depth in [1e-2, 0.5, 1.0] {
+        let refused = validate(&overlapping(depth)).err();
+        let named = refused.is_some_and(|errors| errors.iter().any(|e| e.message.contains("overlaps")));
+        let name = format!("{depth} of a span deep");
+        findings.add(
+            &name,
+            "overlapping bodies are refused (1 is yes)",
+            f64::from(u8::from(named)),
+            exact(1.0, "refused"),
+        );
+    }
+    let touching = validate(&overlapping(0.0)).is_ok();
+    findings.add(
+        "touching",
+        "touching bodies are taken (1 is yes)",
+        f64::from(u8::from(touching)),
+        exact(1.0, "taken"),
+    );
+    Ok(findings)
+}
+
+/// A block whose points stand a quarter of a span from knots at t = 0, and fly at unit speed.
+fn flying(degree: usize, transfer: Transfer) -> Scene {
+    let mut scene = PlainScene {
+        mesh: Mesh::uniform([degree; 2], [0.0; 2], [SPANS as f64, 4.0], [SPANS, 4]),
+        material: Material { young_modulus: 1.0, poisson_ratio: 0.25, density: 1.0, fracture: None },
+        plane: Plane::Strain,
+        mass: Mass::Lumped,
+        layout: Layout::Uniform,
+        points: 2,
+        held: vec![],
+    }
+    .scene();
+    scene.analysis.frame = Frame::Updated;
+    scene.analysis.transfer = transfer;
+    scene.analysis.time_step = TimeStep::Fixed(STEP);
+    scene.analysis.end_time = SPANS as f64;
+    scene.bodies[0].shape = Shape::Rectangle { min: [1.0, 1.0], max: [3.0, 3.0] };
+    scene.bodies[0].velocity = [1.0, 0.0];
+    scene
+}
+
+/// What became of the block.
+struct Flight {
+    /// How often a point stood on a knot.
+    on_knots: usize,
+    /// Largest change of a velocity, and strain.
+    off: f64,
+    ending: Option<Breakdown>,
+    warned: bool,
+}
+
+fn fly(scene: &Scene) -> Result<Flight, StudyError> {
+    let mut simulation = Simulation::new(scene)?;
+    let (mut on_knots, mut off) = (0_usize, 0.0_f64);
+    let ending = loop {
+        if simulation.finished() {
+            break None;
+        }
+        if let Err(ending) = simulation.step() {
+            break Some(ending);
+        }
+        let frame = simulation.updated_frame().ok_or_else(|| StudyError::Other("not the updated frame".into()))?;
+        let points = frame.fields()[0].points();
+        on_knots += points.iter().filter(|p| (p.position[0] - p.position[0].round()).abs() < 1e-12).count();
+        let speed = points.iter().flat_map(|p| [(p.velocity[0] - 1.0).abs(), p.velocity[1].abs()]);
+        off = larger(off, largest(speed));
+        off = larger(off, largest(points.iter().flat_map(|p| p.strain).map(f64::abs)));
+    };
+    let warned = simulation.warnings().iter().any(|warning| warning.contains("times the critical step"));
+    Ok(Flight { on_knots, off, ending, warned })
+}
+
+impl Flight {
+    fn add(&self, name: &str, findings: &mut Findings) {
+        let Self { on_knots, off, ending, .. } = self;
+        findings.add(name, "points that stood on a knot", *on_knots as f64, None);
+        findings.add(name, "change of velocity, and strain, over the speed", *off, exact(0.0, "a rigid translation"));
+        // The foremost points stand at 2.75 + t: beyond 12 from t = 9.25 + STEP on; those of a step before are on the edge.
+        let expected = 9.25 + STEP;
+        let time = ending.as_ref().map_or(f64::NAN, |ending| ending.time);
+        findings.add(name, "time at which the run ends, s", time, exact(expected, "the first point beyond the edge"));
+        let named =
+            ending.as_ref().is_some_and(|e| e.to_string().contains("left the mesh") && e.cause.contains("mesh"));
+        findings.add(name, "the ending names what left, and a remedy (1 is yes)", f64::from(u8::from(named)), None);
+    }
+
+    fn add_limit(&self, name: &str, findings: &mut Findings) {
+        findings.add(name, "bilinears on knots: change of velocity, and strain, over the speed", self.off, None);
+        let warned = f64::from(u8::from(self.warned));
+        findings.add(name, "bilinears on knots: the run says that its step is too long (1 is yes)", warned, None);
+    }
+}
+
+/// Two blocks, one span a side, that overlap by some of a span.
+fn overlapping(depth: f64) -> Scene {
+    let mut scene = flying(2, Transfer::Flip);
+    scene.contact = Some(Contact { friction: 0.0 });
+    scene.bodies[0].velocity = [0.0; 2];
+    let other = Body {
+        name: "other".into(),
+        shape: Shape::Rectangle { min: [3.0 - depth, 1.0], max: [5.0, 3.0] },
+        ..scene.bodies[0].clone()
+    };
+    scene.bodies.push(other);
+    scene
+}

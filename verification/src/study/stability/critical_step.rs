@@ -1,0 +1,162 @@
+//! Critical steps of bodies whose edge cuts a span, and the step the solver takes against dense eigenvalues.
+//!
+//! In one dimension, as a strip so high that only waves along it count (nu = 0), the largest eigenvalue of a bar held at its
+//! left end gives `c dt/h = 2/ω_max`. A function that lives on the cut part η h alone has stiffness over mass of
+//! `K/M ~ η^(2p−1)/η^(p+1)` with the lumped mass: the step falls as η^((2−p)/2) for p = 1 and not for p ≥ 2; with the consistent mass
+//! `η^(2p−1)/η^(2p+1)`, so that it falls as η.
+
+use fisura::scene::{Analysis, Frame, Layout, Mass, Material, Mesh, Plane, Scene, Shape, Side};
+use fisura::updated_frame::UpdatedFrame;
+
+use super::super::contact::curve;
+use super::{exact, logarithmic, theory, total_frame};
+use crate::case::Case;
+use crate::dense;
+use crate::expand::CaseScene;
+use crate::history::Table;
+use crate::plain_scene::PlainScene;
+use crate::record::{CurveStyle, Reference, ReferenceKind};
+use crate::study::scene::series_stem;
+use crate::study::{Findings, StudyError};
+
+/// Whole spans of the bar, and the cut part of the next one.
+const SPANS: usize = 16;
+const CUTS: [f64; 13] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0];
+
+/// The finest two cuts whose function has a mass that counts, 1e-12 of the largest, for p = 1, 2, 3: `η^(p+1)/(p+1)!` of a
+/// span. With less a control point is not accelerated, and the step is that of a body without the cut part.
+const FINEST_CUTS: [[f64; 2]; 3] = [[1e-4, 1e-3], [1e-3, 1e-2], [1e-2, 3e-2]];
+
+/// `c dt/h` at η = 0.1, 1e-2, 1e-3 and 1e-4 from an independent program in one dimension, where that function counts.
+const TABLE: [(usize, Mass, [f64; 4]); 6] = [
+    (1, Mass::Lumped, [0.445, 0.141, 0.045, 0.014]),
+    (1, Mass::Consistent, [0.104, 0.011, 0.0012, 0.0001]),
+    (2, Mass::Lumped, [0.944, 0.987, 0.999, f64::NAN]),
+    (2, Mass::Consistent, [0.067, 0.0076, 0.0008, f64::NAN]),
+    (3, Mass::Lumped, [1.14, 1.14, 1.14, 1.14]),
+    (3, Mass::Consistent, [0.047, 0.0055, f64::NAN, f64::NAN]),
+];
+
+pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    bars(case, &mut findings)?;
+    for degree in 1..=3 {
+        for (word, mass, cut) in
+            [("lumped", Mass::Lumped, 1.0), ("consistent", Mass::Consistent, 1.0), ("lumped, cut", Mass::Lumped, 1e-3)]
+        {
+            let scene = patch(degree, mass, cut);
+            let frame = total_frame(&scene)?;
+            let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator()).ok_or_else(indefinite)?;
+            let frequency = largest_frequency(&eigenvalues);
+            let variant = format!("p={degree}, {word}");
+            let source = exact(1.0, "2/ω of the dense eigenvalue");
+            let ratio = frame.critical_step() * frequency / 2.0;
+            findings.add(&variant, "critical step of a square over that of the dense eigenvalue", ratio, source);
+            if mass == Mass::Lumped {
+                let moving = Scene { analysis: Analysis { frame: Frame::Updated, ..scene.analysis.clone() }, ..scene };
+                let moving =
+                    UpdatedFrame::new(&moving).map_err(|_| StudyError::Other("a point is off the mesh".into()))?;
+                let ratio = moving.critical_step() * frequency / std::f64::consts::SQRT_2;
+                let source = theory(1.0, "√2/ω, the limit of FLIP for waves the points do not see");
+                findings.add(&variant, "critical step in the updated frame over that of theory", ratio, source);
+            }
+        }
+    }
+    Ok(findings)
+}
+
+fn indefinite() -> StudyError {
+    StudyError::Other("the mass is not positive definite".into())
+}
+
+fn largest_frequency(eigenvalues: &[f64]) -> f64 {
+    eigenvalues.last().copied().unwrap_or(f64::NAN).sqrt()
+}
+
+/// Critical steps of cut bars against the table, their scaling, and their chart.
+fn bars(case: &Case, findings: &mut Findings) -> Result<(), StudyError> {
+    let stem = series_stem(case, "cut");
+    let mut table =
+        Table::new(&["cut", "p1_lumped", "p1_consistent", "p2_lumped", "p2_consistent", "p3_lumped", "p3_consistent"]);
+    let mut steps: Vec<Vec<f64>> = Vec::new();
+    for cut in CUTS {
+        let row: Result<Vec<f64>, StudyError> =
+            TABLE.iter().map(|&(degree, mass, _)| bar_step(degree, mass, cut)).collect();
+        let row = row?;
+        table.push(&[&[cut], &row[..]].concat());
+        steps.push(row);
+    }
+    let step_at = |cut: f64, column: usize| {
+        let row = CUTS.iter().position(|known| *known == cut);
+        row.map_or(f64::NAN, |row| steps[row][column])
+    };
+    let mut curves = Vec::new();
+    for (column, (degree, mass, published)) in TABLE.iter().enumerate() {
+        let word = if *mass == Mass::Lumped { "lumped" } else { "consistent" };
+        for (cut, published) in [0.1, 1e-2, 1e-3, 1e-4].into_iter().zip(published) {
+            if published.is_finite() {
+                let found = step_at(cut, column);
+                let source = "an independent program in one dimension".to_string();
+                let reference = Reference { value: Some(*published), kind: ReferenceKind::IndependentCode, source };
+                let quantity = format!("c dt/h, {word} mass");
+                findings.add(&format!("p={degree}, cut {cut:e}"), &quantity, found, Some(reference));
+            }
+        }
+        let [less, more] = FINEST_CUTS[degree - 1];
+        let slope = (step_at(more, column) / step_at(less, column)).ln() / (more / less).ln();
+        let expected = match (mass, degree) {
+            (Mass::Consistent, _) => 1.0,
+            (Mass::Lumped, 1) => 0.5,
+            (Mass::Lumped, _) => 0.0,
+        };
+        let source = theory(expected, "stiffness over mass of the function on the cut part");
+        findings.add(&format!("p={degree}, {word}"), "exponent of the critical step in the cut part", slope, source);
+        let style = if *mass == Mass::Lumped { CurveStyle::Markers } else { CurveStyle::Line };
+        curves.push(curve(&format!("p = {degree}, {word}"), &stem, ["cut", &table.names[column + 1]], style));
+    }
+    let caption = "A bar held at one end, whose free end cuts a span; 2/ω of dense eigenvalues. Where the curves of p = 2 and 3 jump, the mass of the last control point is below 1e-12 of the largest and no longer counts.";
+    let axes = ["cut part of the span", "c dt/h"];
+    findings.figures.push(logarithmic(
+        case,
+        "cut",
+        "Critical step against the cut part of a span",
+        caption,
+        axes,
+        curves,
+    ));
+    findings.series.push((stem, table));
+    Ok(())
+}
+
+/// `c dt/h` of a bar of unit spans, modulus and density with a free end at a fraction of a span.
+fn bar_step(degree: usize, mass: Mass, cut: f64) -> Result<f64, StudyError> {
+    let height = 100.0; // in spans: slow waves across the bar alone
+    let mesh = Mesh::uniform([degree, 1], [0.0; 2], [SPANS as f64 + 1.0, height], [SPANS + 1, 1]);
+    let mut plain = PlainScene::unit_bar(mesh, Mass::Lumped);
+    plain.held.retain(|(side, _)| *side != Side::Right);
+    let mut scene = plain.scene();
+    scene.bodies[0].particles_per_cell[1] = 2;
+    scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [SPANS as f64 + cut, height] };
+    let frame = total_frame(&scene)?;
+    let eigenvalues = match mass {
+        Mass::Lumped => dense::eigenvalues(&mut frame.stiffness_operator()),
+        Mass::Consistent => dense::eigenvalues_of_consistent_mass(&frame, 1.0),
+    };
+    Ok(2.0 / largest_frequency(&eigenvalues.ok_or_else(indefinite)?))
+}
+
+/// A free square of 6 spans a side; `cut` of the last span in each direction belongs to it.
+fn patch(degree: usize, mass: Mass, cut: f64) -> Scene {
+    let plain = PlainScene {
+        mesh: Mesh::uniform([degree; 2], [0.0; 2], [6.0; 2], [6; 2]),
+        material: Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None },
+        plane: Plane::Strain,
+        mass,
+        layout: Layout::Gauss,
+        points: degree + 1,
+        held: vec![],
+    };
+    let mut scene = plain.scene();
+    scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [5.0 + cut; 2] };
+    scene
+}

@@ -1,0 +1,107 @@
+//! Poisson's ratio towards 1/2 in plane strain: locking, and the step that goes with the bulk modulus.
+//!
+//! The lowest frequency of a square held at its bottom (shear and bending, hardly any change of volume) on 8 × 8 spans is held
+//! against that of quartics on 12 × 12. Where a space cannot deform without changing its volume the frequency rises
+//! with the bulk modulus, as `1/(1 − 2 nu)` in its square: it locks. A run at nu = 0.4999 is held to its ledger.
+
+use fisura::Simulation;
+use fisura::scene::{Boundary, Layout, Mass, Material, Mesh, Plane, Scene, Side, TimeStep};
+
+use super::super::contact::curve;
+use super::{exact, logarithmic, total_frame};
+use crate::case::Case;
+use crate::dense;
+use crate::expand::CaseScene;
+use crate::extremes::larger;
+use crate::history::Table;
+use crate::plain_scene::PlainScene;
+use crate::record::{CurveStyle, Reference, ReferenceKind};
+use crate::study::scene::series_stem;
+use crate::study::{Findings, StudyError};
+
+const RATIOS: [f64; 4] = [0.3, 0.49, 0.499, 0.4999];
+const SPANS: usize = 8;
+/// Degree and spans of the reference.
+const FINE: (usize, usize) = (4, 12);
+const STEPS: usize = 2000;
+
+pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    let stem = series_stem(case, "locking");
+    let mut table = Table::new(&["one_less_twice_nu", "p1", "p2", "p3"]);
+    for nu in RATIOS {
+        let reference = lowest_frequency(&square(FINE.0, FINE.1, nu))?;
+        let mut row = vec![1.0 - 2.0 * nu];
+        for degree in 1..=3 {
+            let error = lowest_frequency(&square(degree, SPANS, nu))? / reference - 1.0;
+            let source = "quartics on 12 × 12 spans".to_string();
+            let reference = Reference { value: Some(0.0), kind: ReferenceKind::SelfConvergence, source };
+            let quantity = "lowest frequency, relative error";
+            findings.add(&format!("p={degree}, nu={nu}"), quantity, error, Some(reference));
+            row.push(error.abs());
+        }
+        table.push(&row);
+    }
+    for degree in 1..=3 {
+        let scene = square(degree, SPANS, RATIOS[3]);
+        let frame = total_frame(&scene)?;
+        let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator()).unwrap_or_default();
+        let largest = eigenvalues.last().copied().unwrap_or(f64::NAN).sqrt();
+        let variant = format!("p={degree}, nu={}", RATIOS[3]);
+        let ratio = frame.critical_step() * largest / 2.0;
+        findings.add(&variant, "critical step over that of the dense eigenvalue", ratio, exact(1.0, "2/ω"));
+        findings.add(
+            &variant,
+            "closure of the ledger over the energy",
+            closure(scene, 0.9 * frame.critical_step())?,
+            None,
+        );
+    }
+    let name = |degree: usize| format!("p{degree}");
+    let curves =
+        (1..=3).map(|p| curve(&format!("p = {p}"), &stem, ["one_less_twice_nu", &name(p)], CurveStyle::Markers));
+    let caption = "A square of 8 × 8 spans held at its bottom, plane strain, lumped mass.";
+    let axes = ["1 − 2 nu", "relative error of the lowest frequency"];
+    let title = "Error towards an incompressible material";
+    findings.figures.push(logarithmic(case, "locking", title, caption, axes, curves.collect()));
+    findings.series.push((stem, table));
+    Ok(findings)
+}
+
+/// A unit square of unit modulus and density held at its bottom.
+fn square(degree: usize, spans: usize, nu: f64) -> Scene {
+    let mut scene = PlainScene {
+        mesh: Mesh::uniform([degree; 2], [0.0; 2], [1.0; 2], [spans; 2]),
+        material: Material { young_modulus: 1.0, poisson_ratio: nu, density: 1.0, fracture: None },
+        plane: Plane::Strain,
+        mass: Mass::Lumped,
+        layout: Layout::Gauss,
+        points: degree + 1,
+        held: vec![],
+    }
+    .scene();
+    scene.boundaries = vec![Boundary { side: Side::Bottom, fix: [true; 2], velocity: [0.0; 2] }];
+    scene
+}
+
+fn lowest_frequency(scene: &Scene) -> Result<f64, StudyError> {
+    let frame = total_frame(scene)?;
+    let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator());
+    let lowest = eigenvalues.and_then(|all| all.first().copied());
+    lowest.map(f64::sqrt).ok_or_else(|| StudyError::Other("the mass is not positive definite".into()))
+}
+
+/// Largest closure over the energy at t = 0 of a run of steps of `dt` (s).
+fn closure(mut scene: Scene, dt: f64) -> Result<f64, StudyError> {
+    scene.bodies[0].velocity = [1e-3, 3e-4];
+    scene.analysis.time_step = TimeStep::Fixed(dt);
+    scene.analysis.end_time = dt * STEPS as f64;
+    scene.output.samples = 20;
+    let mut simulation = Simulation::new(&scene)?;
+    let energy = simulation.sample().stored();
+    let mut closure = 0.0_f64;
+    while !simulation.finished() {
+        closure = larger(closure, simulation.advance_to_next_sample()?.closure.abs());
+    }
+    Ok(closure / energy)
+}

@@ -1,0 +1,119 @@
+//! Runs that have to be the same: with any number of threads bit for bit, and mirror images in symmetric scenes.
+//!
+//! Sums are cut by data and added in a fixed order. A mirror image adds the same numbers in another order, so symmetry
+//! holds to round-off, which a linear run does not amplify, and not bit for bit.
+
+use fisura::Simulation;
+use fisura::scene::{
+    Boundary, Crack, Edge, Fracture, Frame, Layout, Mass, Material, Mesh, PhaseFieldSolver, Plane, Scene, Side, Split,
+    Traction,
+};
+
+use super::exact;
+use crate::case::Case;
+use crate::expand::CaseScene;
+use crate::extremes::{larger, largest};
+use crate::plain_scene::PlainScene;
+use crate::study::{Findings, StudyError};
+
+pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    for (name, frame) in [("total frame", Frame::Total), ("updated frame", Frame::Updated)] {
+        let scene = notched(frame);
+        let one = on_threads(1, &scene)?;
+        for threads in [2, 5] {
+            let other = on_threads(threads, &scene)?;
+            let differ = one.iter().zip(&other).filter(|(a, b)| a != b).count() + one.len().abs_diff(other.len());
+            let variant = format!("{name}, {threads} threads");
+            findings.add(
+                &variant,
+                "numbers that differ from those of one thread",
+                differ as f64,
+                exact(0.0, "fixed sums"),
+            );
+        }
+    }
+    for degree in 1..=3 {
+        let off = asymmetry(&symmetric(degree))?;
+        let quantity = "mirror images, largest difference of displacements over the largest";
+        findings.add(&format!("p={degree}"), quantity, off, exact(0.0, "the scene is its own mirror image"));
+    }
+    Ok(findings)
+}
+
+fn glass(cells: [usize; 2], degree: usize, fracture: Option<Fracture>) -> Scene {
+    PlainScene {
+        mesh: Mesh::uniform([degree; 2], [0.0; 2], [8e-3, 4e-3], cells),
+        material: Material { young_modulus: 32e9, poisson_ratio: 0.2, density: 2450.0, fracture },
+        plane: Plane::Strain,
+        mass: Mass::Lumped,
+        layout: Layout::Gauss,
+        points: degree + 1,
+        held: vec![],
+    }
+    .scene()
+}
+
+/// A plate with a crack, pulled apart.
+fn notched(frame: Frame) -> Scene {
+    let fracture = Fracture {
+        critical_energy_release_rate: 3.0,
+        length_scale: 0.25e-3,
+        residual_stiffness: 0.0,
+        split: Split::Spectral,
+    };
+    let mut scene = glass([32, 40], 2, Some(fracture));
+    scene.solver.phase_field_solver = PhaseFieldSolver::ConjugateGradients;
+    scene.solver.phase_field_tolerance = 1e-8;
+    scene.analysis.frame = frame;
+    scene.analysis.end_time = 0.5e-6;
+    scene.output.samples = 4;
+    let pull = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: None };
+    scene.bodies[0].tractions = vec![pull(Side::Top, 6e6), pull(Side::Bottom, -6e6)];
+    scene.bodies[0].cracks = vec![Crack { from: [0.0, 2e-3], to: [4e-3, 2e-3], half_width: None }];
+    if frame == Frame::Updated {
+        // Room to move, with the body off the edges of the mesh.
+        scene.mesh = Mesh::uniform([2; 2], [-1e-3; 2], [10e-3, 6e-3], [40, 60]);
+    }
+    scene
+}
+
+/// Every number of every sample of a run on some threads, as bits.
+fn on_threads(threads: usize, scene: &Scene) -> Result<Vec<u64>, StudyError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|e| StudyError::Other(format!("{threads} threads cannot be started: {e}")))?;
+    pool.install(|| {
+        let mut simulation = Simulation::new(scene)?;
+        let mut bits = Vec::new();
+        while !simulation.finished() {
+            let sample = simulation.advance_to_next_sample()?;
+            bits.extend(sample.named_values().into_iter().map(|(_, value)| value.to_bits()));
+        }
+        Ok(bits)
+    })
+}
+
+/// A plate pulled at both ends.
+fn symmetric(degree: usize) -> Scene {
+    let mut scene = glass([16, 8], degree, None);
+    scene.analysis.end_time = 2e-5;
+    let pull = |side, stress| Traction { edge: Edge::Side(side), stress: [stress, 0.0], ramp: None };
+    scene.bodies[0].tractions = vec![pull(Side::Left, -1e6), pull(Side::Right, 1e6)];
+    scene.boundaries = vec![Boundary { side: Side::Bottom, fix: [false, true], velocity: [0.0; 2] }];
+    scene
+}
+
+/// Largest difference of a displacement from its mirror image over the largest displacement.
+fn asymmetry(scene: &Scene) -> Result<f64, StudyError> {
+    let mut simulation = Simulation::new(scene)?;
+    let mut worst = 0.0_f64;
+    while !simulation.finished() {
+        simulation.advance_to_next_sample()?;
+        let frame = simulation.total_frame().ok_or_else(|| StudyError::Other("not the total frame".into()))?;
+        let ([x, y], grid) = (frame.displacement(), frame.lattice().grid);
+        let mirrored = |at: usize| grid.index(grid.columns - 1 - grid.column_of(at), grid.row_of(at));
+        let off = grid.indices().flat_map(|at| [(x[at] + x[mirrored(at)]).abs(), (y[at] - y[mirrored(at)]).abs()]);
+        worst = larger(worst, largest(off) / largest(x.iter().chain(y).map(|u| u.abs())));
+    }
+    Ok(worst)
+}
