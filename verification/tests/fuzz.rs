@@ -351,7 +351,7 @@ fn readers_survive_what_is_made_to_hurt_them() {
         let points = many((degree + 1) * (degree + 1), &|i| format!("[{}, {}],", i % (degree + 1), i / (degree + 1)));
         format!("degree = {degree}\nknots = [[{knots}], [{knots}]]\ncontrol_points = [{points}]\nsubdivide = {parts}")
     };
-    let discs = many(700, &|i| body(i, "shape={disk={center=[0.5,0.5],radius=0.4}}"));
+    let discs = many(600, &|i| body(i, "shape={disk={center=[0.5,0.5],radius=0.4}}"));
     let rigid = body(1, "rigid = true\nshape = { rectangle = { min = [-1e9, -1e9], max = [1e9, -1] } }");
     let cases = [
         scene(&uniform("[100000, 490]"), "total", &whole),

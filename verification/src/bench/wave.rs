@@ -274,14 +274,15 @@ mod tests {
         let total =
             |mass, degree| Way { frame: Frame::Total, transfer: Transfer::Flip, mass, layout: Layout::Gauss, degree };
         let updated = |transfer| Way { frame: Frame::Updated, transfer, ..total(Mass::Lumped, 2) };
-        for (way, least) in [
-            (total(Mass::Lumped, 2), 3.0),
-            (total(Mass::Consistent, 3), 12.0),
-            (updated(Transfer::Flip), 2.0),
-            (updated(Transfer::Apic), 2.0),
+        // Points that cross spans have larger errors on such meshes, and are of order 2 as the lumped mass is.
+        for (way, least, largest) in [
+            (total(Mass::Lumped, 2), 3.0, 0.2),
+            (total(Mass::Consistent, 3), 12.0, 0.2),
+            (updated(Transfer::Flip), 2.0, 0.5),
+            (updated(Transfer::Apic), 2.0, 0.5),
         ] {
             let found = errors(way);
-            assert!(found[0] / found[1] > least && found[1] < 0.2, "{way:?}: {found:?}");
+            assert!(found[0] / found[1] > least && found[1] < largest, "{way:?}: {found:?}");
         }
     }
 }
