@@ -1,6 +1,7 @@
-//! What a run looks like where it broke down: the points whose numbers are worst, and the extremes.
+//! What a point carries, and what a run looks like where it broke down: the points whose numbers are worst, and the
+//! extremes.
 //!
-//! Nothing of this is computed while a run is well.
+//! Nothing of this is computed while a run is well, unless someone asks for the points.
 
 /// Points that are kept as the worst ones.
 const WORST: usize = 8;
@@ -14,6 +15,12 @@ pub struct PointState {
     pub point: usize,
     /// Position, m; that at t = 0 in the total frame.
     pub position: [f64; 2],
+    /// Position now, m.
+    pub present: [f64; 2],
+    /// Displacement since t = 0, m.
+    pub displacement: [f64; 2],
+    /// Velocity, m/s; in the updated frame that of half a step before, at t = 0 the initial one.
+    pub velocity: [f64; 2],
     /// Strain `[xx, yy, xy]`: linear, or Hencky's with finite kinematics.
     pub strain: [f64; 3],
     /// Stress of the degraded material `[xx, yy, xy]`, Pa; Kirchhoff's with finite kinematics.
@@ -64,7 +71,8 @@ pub struct FractureExtremes {
 impl PointState {
     /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {
-        let vectors = self.position.iter().chain(&self.strain).chain(&self.stress);
+        let motion = self.position.iter().chain(&self.displacement).chain(&self.velocity);
+        let vectors = motion.chain(&self.strain).chain(&self.stress);
         let fracture = self.fracture.iter().flat_map(|f| [f.history, f.phase]);
         vectors.copied().chain(fracture).all(f64::is_finite)
     }
@@ -132,6 +140,9 @@ mod tests {
             body: 0,
             point: number,
             position: [0.0; 2],
+            present: [0.0; 2],
+            displacement: [0.0; 2],
+            velocity: [0.0; 2],
             strain: [strain, 0.0, 0.0],
             stress: [1.0; 3],
             fracture,

@@ -51,7 +51,7 @@
 //! | – | for verification: loads that vary in space, projection, elastostatics | [`forcing`], [`projection`], [`statics`] |
 //! | – | linear algebra of the phase field | [`stencil`], [`conjugate_gradients`], [`incomplete_cholesky`], [`preconditioner`], [`cholesky`] |
 //! | – | critical step, plan of steps and samples | [`critical_step`], [`time_plan`] |
-//! | – | energy ledger, pictures | [`energy`], [`picture`] |
+//! | – | energy ledger, pictures, points and spans for a look | [`energy`], [`picture`], [`inspection`], [`span_grid`] |
 //!
 //! Where the paper prints a slip, the module that uses the equation says so.
 //!
@@ -164,6 +164,7 @@ pub mod quadrature;
 pub mod scene;
 pub mod shape;
 pub mod simulation;
+pub mod span_grid;
 pub mod spans;
 pub mod spline;
 pub mod split;

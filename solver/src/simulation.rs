@@ -6,10 +6,12 @@ mod watch;
 
 use crate::energy::Sample;
 use crate::error::Breakdown;
+use crate::inspection::PointState;
 use crate::lane::LANES;
 use crate::phase_field::PhaseFieldCounts;
 use crate::picture::Picture;
 use crate::scene::Scene;
+use crate::span_grid::SpanGrid;
 use crate::time_plan::TimePlan;
 use crate::total_frame::TotalFrame;
 use crate::updated_frame::UpdatedFrame;
@@ -163,6 +165,16 @@ impl Simulation {
             mechanics_bytes,
             phase_field_bytes,
         }
+    }
+
+    /// Calls `f` with the state of every material point now, body by body.
+    pub fn for_each_point(&self, f: &mut dyn FnMut(PointState)) {
+        self.frame.for_each_point(f);
+    }
+
+    /// The spans of the mesh with material points, and position, velocity and phase field at their corners now.
+    pub fn span_grid(&self) -> SpanGrid {
+        self.frame.span_grid()
     }
 
     /// Fields on a raster of `pixels` over the patch.

@@ -66,13 +66,18 @@ pub struct SceneRun {
     pub breakdown_report: Option<BreakdownReport>,
 }
 
-/// Runs a valid scene (see [`validate`]) to its end; `progress` is called after every step.
-pub fn run_scene(scene: &Scene, progress: &mut dyn FnMut(Progress)) -> SceneRun {
+/// Called at a frame with its number, counted from 0, and the state then. A run that is taken up again may come to a frame
+/// a second time, with the same state.
+pub type OnFrame<'a> = dyn FnMut(usize, &Simulation) + 'a;
+
+/// Runs a valid scene (see [`validate`]) to its end; `progress` is called after every step, and `on_frame` at every frame
+/// with its number.
+pub fn run_scene(scene: &Scene, progress: &mut dyn FnMut(Progress), on_frame: &mut OnFrame<'_>) -> SceneRun {
     let mut run = Run::new(scene, Record::default());
     match timed(&mut run.record.stages.preparation, || Simulation::new(scene)) {
         Err(breakdown) => run.finish(None, Some(breakdown), None),
         Ok(mut simulation) => {
-            let breakdown = run.advance(&mut simulation, progress, &mut |_, _| false).err();
+            let breakdown = run.advance(&mut simulation, progress, on_frame, &mut |_, _| false).err();
             run.finish(Some(&simulation), breakdown, None)
         }
     }
@@ -122,6 +127,7 @@ impl<'a> Run<'a> {
         &mut self,
         simulation: &mut Simulation,
         progress: &mut dyn FnMut(Progress),
+        on_frame: &mut OnFrame<'_>,
         stop: &mut dyn FnMut(&Self, &mut Simulation) -> bool,
     ) -> Result<bool, Breakdown> {
         let plan = *simulation.plan();
@@ -129,7 +135,7 @@ impl<'a> Run<'a> {
         self.warnings = warnings;
         if simulation.steps() == 0 {
             self.sample(simulation);
-            self.picture(simulation, &frames);
+            self.picture(simulation, &frames, on_frame);
         }
         let now = |simulation: &Simulation| Progress {
             step: simulation.steps(),
@@ -143,7 +149,7 @@ impl<'a> Run<'a> {
                 let sample = self.sample(simulation);
                 simulation.watch_ledger(&sample)?;
             }
-            self.picture(simulation, &frames);
+            self.picture(simulation, &frames, on_frame);
             progress(now(simulation));
             if stop(self, simulation) {
                 return Ok(true);
@@ -167,12 +173,13 @@ impl<'a> Run<'a> {
     }
 
     /// A picture, if the present step is one of `frames`.
-    fn picture(&mut self, simulation: &Simulation, frames: &[usize]) {
-        if frames.binary_search(&simulation.steps()).is_ok() {
+    fn picture(&mut self, simulation: &Simulation, frames: &[usize], on_frame: &mut OnFrame<'_>) {
+        if let Ok(number) = frames.binary_search(&simulation.steps()) {
             let (low, high) = (self.scene.mesh.origin(), self.scene.mesh.end());
             let pixels = square_pixels([high[0] - low[0], high[1] - low[1]], FRAME_PIXELS);
             let picture = timed(&mut self.record.stages.pictures, || simulation.picture(pixels));
             self.record.frames.push(picture);
+            timed(&mut self.record.stages.pictures, || on_frame(number, simulation));
         }
     }
 

@@ -3,7 +3,7 @@
 //!
 //! One file per command; beside them [`cli`] (what can be said on the command line), [`exit`] (statuses), [`failure`]
 //! (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go), [`progress`]
-//! (bars), [`pictures`] (figures of a run), [`environment`] (where and when).
+//! (bars), [`pictures`] (figures of a run), [`vtk`] (its files for ParaView), [`environment`] (where and when).
 
 mod bench;
 mod check;
@@ -25,6 +25,7 @@ mod report;
 mod run;
 mod scene_input;
 mod verify;
+mod vtk;
 
 use std::process::ExitCode;
 

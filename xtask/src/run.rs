@@ -6,9 +6,10 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use fisura::scene::Scene;
+use fisura::simulation::Simulation;
 use fisura_reports::number::{duration, plain};
 use fisura_verification::scene_run::{
-    CHECKPOINT, Keep, KeepError, Outcome, Progress, SceneRun, Summary, replace_file, run_scene, run_scene_kept,
+    CHECKPOINT, Keep, KeepError, OnFrame, Outcome, Progress, SceneRun, Summary, replace_file, run_scene, run_scene_kept,
 };
 use indicatif::ProgressBar;
 
@@ -16,15 +17,15 @@ use crate::cli::{Common, Format, SceneArgs};
 use crate::environment::environment;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::{console, folders, interrupt, pictures, progress, scene_input};
+use crate::{console, folders, interrupt, pictures, progress, scene_input, vtk};
 
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Field files for ParaView; not offered yet
-    #[arg(long, hide = true)]
+    /// Files for ParaView at every frame: points.pvd (material points) and grid.pvd (mesh) open them
+    #[arg(long)]
     vtk: bool,
     /// Go on from the checkpoint in the output folder, to the same bytes; from the start if there is none
     #[arg(long)]
@@ -58,9 +59,19 @@ pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
     refuse(args)?;
     let file = scene_input::load(&args.scene, common)?;
     let folder = folders::output(common, "run")?;
+    let goes_on = args.resume && folder.join(CHECKPOINT).exists();
+    if !goes_on {
+        vtk::remove(&folder);
+    }
+    let mut vtk = args.vtk.then(|| vtk::Files::new(&folder, &file.scene, common));
     let bar = progress::bar(common, progress::SPINNER, 0);
     bar.set_message("preparing");
-    let outcome = simulate(args, common, &file.scene, &folder, &bar)?;
+    let mut on_frame = |number: usize, simulation: &Simulation| {
+        if let Some(vtk) = &mut vtk {
+            vtk.write(number, simulation);
+        }
+    };
+    let outcome = simulate(args, common, &file.scene, &folder, &bar, &mut on_frame)?;
     bar.finish_and_clear();
     let run = match outcome {
         Outcome::Interrupted(at) => return Err(interrupted(at, &folder)),
@@ -69,7 +80,12 @@ pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
     for warning in run.summary.warnings.iter().skip(file.warnings.len()) {
         console::note(common, &format!("warning: {warning}"));
     }
-    let files = write(&run, &folder, common)?;
+    let mut files = write(&run, &folder, common)?;
+    match &vtk {
+        Some(vtk) => files.extend(vtk.after(run.frames.len())),
+        None if goes_on => vtk::remove(&folder),
+        None => (),
+    }
     match common.format {
         Format::Json => console::json(&run.summary),
         Format::Text => console::result(&text(&run.summary, &folder, &files)),
@@ -77,7 +93,7 @@ pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
     match &run.breakdown {
         None => {
             discard_checkpoint(&folder);
-            Ok(Exit::Done)
+            vtk.and_then(|vtk| vtk.failed).map_or(Ok(Exit::Done), |error| Err(error.into()))
         }
         Some(breakdown) => {
             let help = format!("history up to there, and the state there in breakdown.json: {}", folder.display());
@@ -87,9 +103,6 @@ pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
 }
 
 fn refuse(args: &Args) -> Result<(), Failure> {
-    if args.vtk {
-        return Err(Failure::new(Exit::BadInput, "run --vtk is not supported yet").help("leave out --vtk"));
-    }
     if args.resume && args.checkpoint.0.is_none() {
         let failure = Failure::new(Exit::BadInput, "--resume does not go with --checkpoint none");
         return Err(failure.help("leave out one of the two"));
@@ -97,7 +110,14 @@ fn refuse(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-fn simulate(args: &Args, common: &Common, scene: &Scene, folder: &Path, bar: &ProgressBar) -> Result<Outcome, Failure> {
+fn simulate(
+    args: &Args,
+    common: &Common,
+    scene: &Scene,
+    folder: &Path,
+    bar: &ProgressBar,
+    on_frame: &mut OnFrame<'_>,
+) -> Result<Outcome, Failure> {
     let mut started = false;
     let mut advance = |progress: Progress| {
         if !std::mem::replace(&mut started, true) {
@@ -108,14 +128,14 @@ fn simulate(args: &Args, common: &Common, scene: &Scene, folder: &Path, bar: &Pr
         bar.set_position(progress.step as u64);
     };
     let Some(interval) = args.checkpoint.0 else {
-        return Ok(Outcome::Ended(Box::new(run_scene(scene, &mut advance))));
+        return Ok(Outcome::Ended(Box::new(run_scene(scene, &mut advance, on_frame))));
     };
     let keep = Keep { path: folder.join(CHECKPOINT), program: program(), interval, interrupted: interrupt::watch()? };
     if args.resume && !keep.path.exists() {
         let message = format!("no checkpoint in {}: the run begins at the start", folder.display());
         console::note(common, &message);
     }
-    run_scene_kept(scene, &keep, args.resume, &mut advance).map_err(|error| match error {
+    run_scene_kept(scene, &keep, args.resume, &mut advance, on_frame).map_err(|error| match error {
         KeepError::Output(error) => error.into(),
         KeepError::Checkpoint(error) => Failure::new(Exit::BadInput, error.to_string()).help(error.remedy),
     })

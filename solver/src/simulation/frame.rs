@@ -4,6 +4,7 @@ use crate::checkpoint::{Archive, StateError};
 use crate::inspection::PointState;
 use crate::phase_field::PhaseFieldCounts;
 use crate::scene::{self, Scene};
+use crate::span_grid::SpanGrid;
 use crate::total_frame::TotalFrame;
 use crate::updated_frame::{Failure, UpdatedFrame};
 
@@ -66,6 +67,11 @@ impl Frame {
     /// Calls `f` with the state of every point.
     pub(super) fn for_each_point(&self, f: &mut dyn FnMut(PointState)) {
         either!(self, body => body.for_each_point_state(f));
+    }
+
+    /// The spans with material and the fields at their corners.
+    pub(super) fn span_grid(&self) -> SpanGrid {
+        either!(self, body => body.span_grid())
     }
 
     pub(super) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {

@@ -1,8 +1,11 @@
-//! The points of a body in the total frame, one by one, for looking at a run that broke down.
+//! The points of a body in the total frame, one by one, and the spans they are in: for looking at a run.
+
+use std::collections::BTreeSet;
 
 use super::TotalFrame;
 use crate::inspection::{PointFracture, PointState};
 use crate::lane::Lane;
+use crate::span_grid::{Corner, SpanGrid};
 use crate::split::split;
 
 impl TotalFrame {
@@ -10,7 +13,12 @@ impl TotalFrame {
     pub(crate) fn for_each_point_state(&self, f: &mut dyn FnMut(PointState)) {
         let mut point = 0;
         self.lattice.for_each_point(|batch, lane, position, _| {
-            let [x, y] = self.displacement.each_ref().map(|u| self.patch.evaluate(u, position).unwrap_or_default());
+            let functions = self.patch.functions_at(position);
+            let value = |field: &Vec<f64>| functions.as_ref().map(|f| f.interpolate(field)).unwrap_or_default();
+            let [x, y] = self.displacement.each_ref().map(value);
+            let displacement = [x.value, y.value];
+            let velocity = self.velocity.each_ref().map(|v| value(v).value);
+            let present = [0, 1].map(|d| position[d] + displacement[d]);
             let (strain, _) = self.strain([x.gradient, y.gradient]);
             let lanes = strain.map(Lane::splat);
             let fracture = self.fracture.as_ref();
@@ -24,8 +32,34 @@ impl TotalFrame {
             };
             let fracture =
                 fracture.map(|f| PointFracture { history: f.history[batch][lane], phase: f.phase[batch][lane] });
-            f(PointState { body: 0, point, position, strain, stress, fracture });
+            f(PointState { body: 0, point, position, present, displacement, velocity, strain, stress, fracture });
             point += 1;
         });
+    }
+
+    /// The spans with points; their corners move with the body.
+    pub(crate) fn span_grid(&self) -> SpanGrid {
+        let mut grid = SpanGrid::default();
+        grid.add(&self.patch, self.spans_with_points(), |functions| {
+            let value = |field: &Vec<f64>| functions.interpolate(field).value;
+            let displacement = self.displacement.each_ref().map(value);
+            Corner {
+                body: 0,
+                position: [0, 1].map(|d| functions.position[d] + displacement[d]),
+                velocity: self.velocity.each_ref().map(value),
+                phase: self.fracture.as_ref().map(|f| functions.interpolate(f.field.control_values()).value),
+            }
+        });
+        grid
+    }
+
+    fn spans_with_points(&self) -> BTreeSet<[usize; 2]> {
+        let span = |d: usize, first: usize| self.patch.spaces[d].spans().partition_point(|span| span.first < first);
+        let mut spans = BTreeSet::new();
+        self.lattice.for_each_point(|batch, lane, _, _| {
+            let (row, tile, _, _) = self.lattice.unbatch(batch);
+            spans.insert([span(0, self.lattice.tiles[tile].first + lane), span(1, self.lattice.rows[row].first)]);
+        });
+        spans
     }
 }

@@ -150,7 +150,7 @@ fn plate<'a>(
     record.memory_bytes = (extent.mechanics_bytes + extent.phase_field_bytes) as u64;
     let run = move |record: &mut BenchRecord| {
         let watch = Stopwatch::start();
-        let run = run_scene(&case.scene, &mut |_| {});
+        let run = run_scene(&case.scene, &mut |_| {}, &mut |_, _| {});
         let sample = watch.read();
         if let Some(breakdown) = run.breakdown {
             return Err(breakdown.into());

@@ -10,7 +10,7 @@ use thiserror::Error;
 
 use super::checkpoint::{self, CheckpointError};
 use super::write::OutputError;
-use super::{Progress, Record, Run, SceneRun, timed};
+use super::{OnFrame, Progress, Record, Run, SceneRun, timed};
 
 /// How a run is kept safe.
 #[derive(Debug)]
@@ -57,6 +57,7 @@ pub fn run_scene_kept(
     keep: &Keep<'_>,
     resume: bool,
     progress: &mut dyn FnMut(Progress),
+    on_frame: &mut OnFrame<'_>,
 ) -> Result<Outcome, KeepError> {
     let stored = if resume { checkpoint::read(&keep.path, &keep.program, scene)? } else { None };
     let (record, state): (Record, Option<Vec<u8>>) =
@@ -75,7 +76,8 @@ pub fn run_scene_kept(
         Err(ResumeError::State(error)) => return Err(CheckpointError::unfit(&keep.path, error.to_string()).into()),
     };
     keeper.stored_time = state.is_some().then(|| simulation.time());
-    match run.advance(&mut simulation, progress, &mut |run, simulation| keeper.after_step(run, simulation)) {
+    let mut stop = |run: &Run<'_>, simulation: &mut Simulation| keeper.after_step(run, simulation);
+    match run.advance(&mut simulation, progress, on_frame, &mut stop) {
         Ok(true) => match keeper.failed {
             Some(error) => Err(error.into()),
             None => Ok(Outcome::Interrupted(Progress {

@@ -55,7 +55,7 @@ pub struct Stages {
     pub steps: f64,
     /// Rows of the history.
     pub samples: f64,
-    /// Pictures of the frames.
+    /// Pictures of the frames, and files for ParaView.
     pub pictures: f64,
 }
 

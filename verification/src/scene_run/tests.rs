@@ -32,8 +32,8 @@ fn block() -> Scene {
 
 #[test]
 fn a_run_has_its_rows_its_frames_and_no_columns_of_what_it_does_not_model() {
-    let mut calls = Vec::new();
-    let run = run_scene(&block(), &mut |p| calls.push(p));
+    let (mut calls, mut frames) = (Vec::new(), Vec::new());
+    let run = run_scene(&block(), &mut |p| calls.push(p), &mut |n, simulation| frames.push((n, simulation.time())));
     assert_eq!(run.breakdown, None);
     assert_eq!(run.history.rows(), 11);
     assert_eq!(run.history.column("time_s").unwrap()[0], 0.0);
@@ -48,6 +48,7 @@ fn a_run_has_its_rows_its_frames_and_no_columns_of_what_it_does_not_model() {
 
     let step = summary.time_step_s.unwrap();
     let times: Vec<f64> = run.frames.iter().map(|f| f.time).collect();
+    assert_eq!(frames, times.iter().copied().enumerate().collect::<Vec<_>>());
     assert_eq!(times.len(), 3, "two of the four frames share a step: {times:?}");
     assert!(summary.warnings.iter().any(|w| w.contains("1 of 4 frames")), "{:?}", summary.warnings);
     assert!((times[1] - 2.5e-6).abs() <= 0.5 * step && (times[2] - 5e-6).abs() < 1e-15);
@@ -57,11 +58,11 @@ fn a_run_has_its_rows_its_frames_and_no_columns_of_what_it_does_not_model() {
 #[test]
 fn a_breakdown_keeps_what_was_computed_and_is_written() {
     let mut scene = block();
-    let critical = run_scene(&scene, &mut |_| {}).summary.critical_step_s.unwrap();
+    let critical = run_scene(&scene, &mut |_| {}, &mut |_, _| {}).summary.critical_step_s.unwrap();
     scene.analysis.time_step = TimeStep::Fixed(1.2 * critical);
     scene.analysis.end_time = 240.0 * critical;
     scene.output = fisura::scene::Output { samples: 100, frames: vec![0.0] };
-    let run = run_scene(&scene, &mut |_| {});
+    let run = run_scene(&scene, &mut |_| {}, &mut |_, _| {});
     let breakdown = run.breakdown.as_ref().expect("1.2 times the critical step is unstable");
     assert!(run.history.rows() >= 2 && run.history.rows() < 101);
     assert!(run.history.column("elastic_j").unwrap().iter().all(|e| e.is_finite()));

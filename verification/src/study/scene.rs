@@ -14,7 +14,7 @@ use crate::measure::grid_convergence::{over_meshes, span};
 use crate::measure::{Measured, Run, fitted_speed, measure};
 use crate::record::Timing;
 use crate::reference::Library;
-use crate::scene_run::{SceneRun, run_scene};
+use crate::scene_run::{Progress, SceneRun, run_scene};
 
 /// What figures need to know of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -90,8 +90,8 @@ pub fn run_scenes(scenes: Vec<CaseScene>, advanced: &dyn Fn(f64)) -> Vec<Finishe
         .into_iter()
         .enumerate()
         .map(|(index, case_scene)| {
-            let run =
-                run_scene(&case_scene.scene, &mut |progress| advanced((index as f64 + progress.fraction()) / count));
+            let mut progress = |progress: Progress| advanced((index as f64 + progress.fraction()) / count);
+            let run = run_scene(&case_scene.scene, &mut progress, &mut |_, _| {});
             let particle_steps = run.summary.particles as u64 * run.summary.steps as u64;
             let timing = Timing {
                 wall_s: run.summary.wall_s,

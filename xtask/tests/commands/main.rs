@@ -12,3 +12,4 @@ mod run;
 mod support;
 mod templates;
 mod verify;
+mod vtk;

@@ -101,12 +101,6 @@ fn an_output_folder_that_cannot_be_written_is_refused_before_the_run() {
 }
 
 #[test]
-fn vtk_is_not_offered_yet() {
-    let place = Place::with("block.toml", BLOCK);
-    place.xtask(&["run", "block.toml", "--vtk"]).with_status(2).complains_of(&["--vtk", "not supported yet"]);
-}
-
-#[test]
 fn scenes_that_cannot_be_read_or_modelled_end_with_2() {
     let place = Place::with("block.toml", BLOCK);
     place.write("bad.toml", "[mesh");

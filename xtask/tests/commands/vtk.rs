@@ -1,0 +1,85 @@
+//! `run --vtk`: files for ParaView at every frame, and none without it.
+
+use super::support::{BLOCK, Place, notched};
+
+const FILES: [&str; 6] = ["grid-0.vtu", "grid-1.vtu", "grid.pvd", "points-0.vtu", "points-1.vtu", "points.pvd"];
+
+const RUN: [&str; 4] = ["run", "scene.toml", "--out", "out"];
+
+fn vtk_files(place: &Place) -> Vec<String> {
+    place.files("out").into_iter().filter(|name| name.ends_with(".vtu") || name.ends_with(".pvd")).collect()
+}
+
+/// Header, points, cells, names of the fields, and bytes behind the header.
+fn parse(place: &Place, name: &str) -> (usize, usize, Vec<String>) {
+    let bytes = std::fs::read(place.path(&format!("out/{name}"))).expect("a file");
+    let mark = b"<AppendedData encoding=\"raw\">\n_";
+    let start = bytes.windows(mark.len()).position(|window| window == mark).expect("appended data");
+    let header = std::str::from_utf8(&bytes[..start]).expect("text");
+    let attribute = |element: &str, name: &str| -> String {
+        element.split(&format!("{name}=\"")).nth(1).expect(name).split('"').next().expect("a value").to_string()
+    };
+    let number = |element: &str, name: &str| attribute(element, name).parse::<usize>().expect("a number");
+    let piece = header.split('<').find(|element| element.starts_with("Piece")).expect("a piece");
+    let mut end = 0;
+    let arrays: Vec<&str> = header.split('<').filter(|element| element.starts_with("DataArray")).collect();
+    for array in &arrays {
+        assert_eq!(number(array, "offset"), end, "arrays follow each other");
+        let at = start + mark.len() + end;
+        end += 8 + u64::from_le_bytes(bytes[at..at + 8].try_into().expect("eight bytes")) as usize;
+    }
+    assert!(bytes[start + mark.len() + end..].starts_with(b"\n</AppendedData>"), "nothing is left over");
+    let fields = header.split("</PointData>").next().expect("fields").split("Name=\"").skip(1);
+    let names = fields.map(|rest| rest.split('"').next().expect("a name").to_string()).collect();
+    (number(piece, "NumberOfPoints"), number(piece, "NumberOfCells"), names)
+}
+
+#[test]
+fn a_cracking_scene_gives_points_and_grid_of_every_frame() {
+    for frame in ["total", "updated"] {
+        let text = notched().replace("end_time = \"5 us\"", &format!("end_time = \"5 us\"\nframe = \"{frame}\""));
+        let place = Place::with("scene.toml", &text);
+        let run = place.xtask(&[&RUN[..], &["--vtk"]].concat()).with_status(0);
+        assert!(FILES.iter().all(|name| run.out.contains(name)), "{run:?}");
+        assert_eq!(vtk_files(&place), FILES);
+        let summary: serde_json::Value = serde_json::from_str(&place.read("out/summary.json")).unwrap();
+        let particles = summary["particles"].as_u64().unwrap() as usize;
+        for number in [0, 1] {
+            let (points, cells, names) = parse(&place, &format!("points-{number}.vtu"));
+            assert_eq!((points, cells), (particles, particles), "{frame}");
+            let fracture = ["phase field", "history energy (J/m^3)"];
+            let vectors = ["displacement (m)", "velocity (m/s)"];
+            assert!(vectors.iter().chain(&fracture).all(|name| names.iter().any(|n| n == name)), "{names:?}");
+            let (points, cells, names) = parse(&place, &format!("grid-{number}.vtu"));
+            assert_eq!((points, cells), (11 * 6, 10 * 5), "{frame}: the body fills the mesh");
+            assert_eq!(names, ["velocity (m/s)", "body", "phase field"]);
+        }
+        for kind in ["points", "grid"] {
+            let collection = place.read(&format!("out/{kind}.pvd"));
+            assert!(collection.contains(&format!("timestep=\"0e0\" part=\"0\" file=\"{kind}-0.vtu\"")), "{collection}");
+            assert!(collection.contains(&format!("file=\"{kind}-1.vtu\"")), "{collection}");
+        }
+    }
+}
+
+#[test]
+fn without_vtk_there_are_no_files_for_paraview_and_those_of_the_run_before_go() {
+    let place = Place::with("scene.toml", BLOCK);
+    place.xtask(&[&RUN[..], &["--vtk"]].concat()).with_status(0);
+    assert!(parse(&place, "points-0.vtu").2.iter().all(|name| !name.contains("phase")), "an elastic body has none");
+    place.write("out/points-mine.vtu", "mine");
+    place.xtask(&[&RUN[..], &["--vtk", "--set", "output.frames=[0]"]].concat()).with_status(0);
+    assert_eq!(vtk_files(&place), ["grid-0.vtu", "grid.pvd", "points-0.vtu", "points-mine.vtu", "points.pvd"]);
+    place.xtask(&RUN).with_status(0);
+    assert_eq!(vtk_files(&place), ["points-mine.vtu"]);
+}
+
+#[test]
+fn a_file_for_paraview_that_cannot_be_written_costs_nothing_else() {
+    let place = Place::with("scene.toml", BLOCK);
+    place.write("out/points-0.vtu/file", "in the way");
+    let run = place.xtask(&[&RUN[..], &["--vtk"]].concat()).with_status(2);
+    run.complains_of(&["points-0.vtu cannot be written", "the run goes on", "--out"]);
+    assert!(place.path("out/history.csv").is_file() && place.path("out/points-1.vtu").is_file());
+    assert!(!place.read("out/points.pvd").contains("points-0.vtu"), "what is not there is not listed");
+}
