@@ -16,8 +16,11 @@ use fisura_verification::scene_run::{CHECKPOINT, OutputError, frame_steps, repla
 use crate::cli::Common;
 use crate::console;
 
-/// Material points, and spans of the mesh.
-const KINDS: [&str; 2] = ["points", "grid"];
+/// Material points.
+const POINTS: &str = "points";
+/// Spans of the mesh.
+const GRID: &str = "grid";
+const KINDS: [&str; 2] = [POINTS, GRID];
 
 /// Phase field of a body that does not fracture, beside one that does.
 const INTACT: f64 = 1.0;
@@ -51,7 +54,7 @@ impl<'a> Files<'a> {
     }
 
     fn write_kind(&self, kind: &str, number: usize, simulation: &Simulation) -> Result<(), OutputError> {
-        let bytes = if kind == KINDS[0] { points(simulation) } else { grid(simulation) };
+        let bytes = if kind == POINTS { points(simulation) } else { grid(simulation) };
         self.replace(&file_name(kind, number), &bytes)?;
         let plan = simulation.plan();
         let (steps, _) = frame_steps(self.times, plan.step, plan.steps());
@@ -90,7 +93,7 @@ impl<'a> Files<'a> {
 
 /// Removes the files of an earlier run from a folder that a run wrote to.
 pub fn remove(folder: &Path) {
-    let ours = ["summary.json", CHECKPOINT, &collection_name(KINDS[0])].iter().any(|name| folder.join(name).is_file());
+    let ours = ["summary.json", CHECKPOINT, &collection_name(POINTS)].iter().any(|name| folder.join(name).is_file());
     let entries = fs::read_dir(folder).ok().filter(|_| ours);
     for entry in entries.into_iter().flatten().flatten() {
         if is_file_of_run(&entry.file_name().to_string_lossy()) {
