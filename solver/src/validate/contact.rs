@@ -3,6 +3,7 @@
 use super::geometry::{complexity, defect};
 use super::{Findings, Ground};
 use crate::contact::Surface;
+use crate::contact::surface::Center;
 use crate::scene::{Body, Frame, Scene, Shape, Transfer};
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
@@ -76,8 +77,11 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
             if apart || (a.rigid && b.rigid) {
                 continue;
             }
-            let deepest = depth(&surfaces[i], &surfaces[j], &b.shape).max(depth(&surfaces[j], &surfaces[i], &a.shape));
-            if deepest > TOLERANCE * spans[i] {
+            let least = TOLERANCE * spans[i];
+            let [a_in_b, b_in_a] = [(i, j, &b.shape), (j, i, &a.shape)]
+                .map(|(one, other, inside)| depth(&surfaces[one], &surfaces[other], inside, 2.0 * least));
+            let deepest = a_in_b.max(b_in_a);
+            if deepest > least {
                 let message = format!("body {:?} overlaps body {:?} by {deepest:.3e} m at t = 0", b.name, a.name);
                 findings.error(format!("body.{j}.shape"), message, "move the bodies apart until they touch at most");
             }
@@ -88,12 +92,20 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     }
 }
 
-/// How far the segments of one boundary reach into the body inside another, m. Of very many segments, some are looked at.
-fn depth(one: &Surface, other: &Surface, inside: &Shape) -> f64 {
+/// How far what lies `beneath` (m) the boundary of one body reaches into the body inside another, m: the boundaries of bodies that
+/// coincide do not cross. Of very many segments, some are looked at.
+fn depth(one: &Surface, other: &Surface, inside: &Shape, beneath: f64) -> f64 {
     let [low, high] = other.bounding_box();
+    let below = |segment: u32| {
+        let Center { position, normal } = one.center(segment);
+        [0, 1].map(|d| position[d] - beneath * normal[d])
+    };
+    let below = one.segments_in([low, high]).into_iter().map(below);
+    let within: Vec<_> = below.filter(|position| inside.contains(*position)).collect();
+    if within.is_empty() {
+        return 0.0;
+    }
     let all = other.segments_in([[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]]);
-    let centers = one.segments_in([low, high]).into_iter().map(|segment| one.center(segment).position);
-    let within: Vec<_> = centers.filter(|position| inside.contains(*position)).collect();
     let stride = within.len() * all.len() / MOST_DISTANCES + 1;
     let nearest = within.into_iter().step_by(stride).filter_map(|x| other.nearest(x, &all, f64::INFINITY));
     nearest.map(|nearest| nearest.distance.abs()).fold(0.0, f64::max)

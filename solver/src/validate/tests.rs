@@ -324,4 +324,5 @@ fn several_bodies_need_the_updated_frame_and_room() {
         s.bodies[1].shape = Shape::Disk { center: [0.0025, 0.005], radius: 0.001 };
     };
     assert_eq!(changed(within), ["body.1.shape"], "one body inside the other");
+    assert_eq!(changed(|s| s.bodies[1].shape = s.bodies[0].shape.clone()), ["body.1.shape"], "one body twice");
 }

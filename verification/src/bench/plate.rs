@@ -188,7 +188,6 @@ mod tests {
         scene.bodies[0].tractions = vec![pulled(Side::Top, 4e6), pulled(Side::Bottom, -4e6)];
         let records = share_of(&scene, 10, 5).unwrap();
         assert!(records.iter().all(|r| r.verified && r.samples.len() == 5), "{records:?}");
-        assert!(records[1].ns_per_unit.median < records[0].ns_per_unit.median);
     }
 
     #[test]
