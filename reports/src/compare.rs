@@ -1,8 +1,8 @@
 //! Two result sets side by side: what is unchanged, a minor or a major change, missing or new, in accuracy and speed.
 //!
 //! Accuracy is measured in units of what the bounds allow, as METHODOLOGY defines it: values of different kinds are
-//! comparable then, and round-off of a value far inside its bounds is no change. [`speed`] holds times against their
-//! spread; [`words`] writes text and Markdown.
+//! comparable then, and round-off of a value far inside its bounds is no change. `speed` holds times against their
+//! spread; `words` writes text and Markdown.
 
 mod speed;
 mod words;

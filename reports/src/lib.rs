@@ -17,7 +17,7 @@
 //!
 //! [`vtk`] writes the files that ParaView opens.
 //!
-//! [`text`] prints the verdict on a terminal, [`run_report`] draws the pictures of a single run, [`bench`] the benchmarks. Below them lie
+//! [`text`] prints the verdict on a terminal, [`run_report`] draws the pictures of a single run, [`mod@bench`] the benchmarks. Below them lie
 //! [`series`] (the numbers behind figures and what can be wrong with them), [`axis`] (ranges and ticks), [`colour`]
 //! (the map of fields), [`number`] (digits as they are printed), [`rates`] (orders of convergence among records) and
 //! [`view`] (verdicts in words, records in groups).
