@@ -1,5 +1,7 @@
 //! Checks of bodies: shape, place in the mesh, points, resolution of the length scale, tractions, cracks.
 
+use std::cell::Cell;
+
 use super::analysis::side_name;
 use super::geometry::{complexity, covered_side, defect, outline};
 use super::{Findings, Ground};
@@ -126,8 +128,11 @@ fn inside_mesh(key: &str, body: &Body, ground: &Ground<'_>, findings: &mut Findi
 /// hole would.
 fn inside_patch(key: &str, shape: &Shape, patch: &NurbsPatch, findings: &mut Findings) -> bool {
     let tolerance = TOLERANCE * patch.size();
+    let mut last = None;
     for point in outline(shape) {
-        if let Err(LocateError::Outside { nearest: [x, y], distance, .. }) = patch.locate(point, None)
+        let found = patch.locate(point, last);
+        last = found.as_ref().ok().map(|location| location.parameters).or(last);
+        if let Err(LocateError::Outside { nearest: [x, y], distance, .. }) = found
             && distance > tolerance
         {
             let message = format!("the point ({}, {}) m of the body lies outside the patch", point[0], point[1]);
@@ -206,6 +211,8 @@ struct Look<'a> {
     body: &'a Body,
     ground: &'a Ground<'a>,
     tolerance: f64,
+    /// Parameters of the last position found on the patch.
+    last: Cell<Option<[f64; 2]>>,
     /// Most positions along one line: the more lines and corners, the fewer.
     most: usize,
 }
@@ -219,13 +226,20 @@ impl<'a> Look<'a> {
             body,
             ground,
             tolerance: TOLERANCE * (max[0] - min[0]).max(max[1] - min[1]),
+            last: Cell::new(None),
             most: (MOST_LOOKS / cost.max(1)).clamp(2, MOST_CRACK_SAMPLES),
         }
     }
 
     fn is_outside(&self, position: [f64; 2]) -> bool {
-        let off_patch = || self.ground.patch.as_ref().is_some_and(|patch| patch.locate(position, None).is_err());
+        let off_patch = || self.ground.patch.as_ref().is_some_and(|patch| !self.is_on(patch, position));
         !self.body.shape.contains_within(position, self.tolerance) || off_patch()
+    }
+
+    /// Whether a position (m) is on a patch; searched from the one before, which is near.
+    fn is_on(&self, patch: &NurbsPatch, position: [f64; 2]) -> bool {
+        let found = patch.locate(position, self.last.get());
+        found.map(|location| self.last.set(Some(location.parameters))).is_ok()
     }
 
     /// First of about `intervals + 1` equally spaced positions (m) between two ends, both included, that is not in the
