@@ -12,14 +12,13 @@ pub mod ratios;
 pub mod stages;
 pub mod work_precision;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use fisura_verification::bench::record::{BenchRecord, BenchSet, SCHEMA};
 
 use crate::error::ReportError;
 use crate::series::FigureError;
-use crate::write;
+use crate::{read_json, write};
 
 /// A figure with what it says.
 #[derive(Debug, Clone)]
@@ -112,15 +111,7 @@ pub fn is_bench(folder: &Path) -> bool {
 /// # Errors
 /// The file is missing, malformed or of another schema.
 pub fn read(folder: &Path) -> Result<BenchSet, ReportError> {
-    let path = folder.join("bench.json");
-    let text = fs::read_to_string(&path).map_err(|source| ReportError::File { path: path.clone(), source })?;
-    let malformed = |e: serde_json::Error| ReportError::Results { path: path.clone(), message: e.to_string() };
-    let value: serde_json::Value = serde_json::from_str(&text).map_err(malformed)?;
-    let found = value.get("schema").and_then(|s| s.as_str()).unwrap_or_default().to_string();
-    if found != SCHEMA {
-        return Err(ReportError::Schema { path, found, expected: SCHEMA });
-    }
-    serde_json::from_str(&text).map_err(malformed)
+    read_json(folder.join("bench.json"), SCHEMA)
 }
 
 /// Writes `bench.json`.

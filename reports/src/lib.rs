@@ -58,6 +58,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use fisura_verification::record::{ResultSet, SCHEMA};
+use serde::de::DeserializeOwned;
 
 pub use error::ReportError;
 pub use series::{FigureError, SeriesSet};
@@ -115,13 +116,17 @@ pub fn render(folder: &Path) -> Result<Rendered, ReportError> {
 /// # Errors
 /// The file is missing, malformed or of another schema.
 pub fn read_results(folder: &Path) -> Result<ResultSet, ReportError> {
-    let path = folder.join("results.json");
+    read_json(folder.join("results.json"), SCHEMA)
+}
+
+/// Reads a JSON document that names its schema.
+fn read_json<T: DeserializeOwned>(path: PathBuf, schema: &'static str) -> Result<T, ReportError> {
     let text = fs::read_to_string(&path).map_err(|source| ReportError::File { path: path.clone(), source })?;
     let malformed = |e: serde_json::Error| ReportError::Results { path: path.clone(), message: e.to_string() };
     let value: serde_json::Value = serde_json::from_str(&text).map_err(malformed)?;
     let found = value.get("schema").and_then(|s| s.as_str()).unwrap_or_default().to_string();
-    if found != SCHEMA {
-        return Err(ReportError::Schema { path, found, expected: SCHEMA });
+    if found != schema {
+        return Err(ReportError::Schema { path, found, expected: schema });
     }
     // read from the text again, so that the error has line and column
     serde_json::from_str(&text).map_err(malformed)

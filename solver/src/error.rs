@@ -2,6 +2,9 @@
 
 use thiserror::Error;
 
+use crate::fracture::NotConverged;
+use crate::updated_frame::points::OutsidePatch;
+
 /// One thing wrong with a scene, found before anything runs.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{key}: {message}")]
@@ -21,6 +24,29 @@ pub struct SceneWarning {
     pub key: String,
     /// What is suspicious, and what to do about it.
     pub message: String,
+}
+
+/// Why a body cannot begin, or take a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Failure {
+    /// The phase-field solve stopped short of its tolerance.
+    NotConverged(NotConverged),
+    /// A point left the patch, m.
+    Left([f64; 2]),
+    /// The consistent mass matrix is singular to round-off.
+    SingularMass,
+}
+
+impl From<NotConverged> for Failure {
+    fn from(failure: NotConverged) -> Self {
+        Self::NotConverged(failure)
+    }
+}
+
+impl From<OutsidePatch> for Failure {
+    fn from(OutsidePatch(position): OutsidePatch) -> Self {
+        Self::Left(position)
+    }
 }
 
 /// A run that broke down.

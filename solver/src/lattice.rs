@@ -15,7 +15,7 @@ mod tables;
 pub use mapped::{MappedPoint, Mapping};
 
 use crate::lane::{LANES, Lane};
-use crate::nurbs::MAX_FUNCTIONS;
+use crate::nurbs::{Location, MAX_FUNCTIONS};
 use crate::patch::{ControlGrid, Patch};
 use crate::quadrature::Rule;
 use crate::scene::{Body, Layout, Shape};
@@ -231,8 +231,21 @@ impl Lattice {
         if let Some(mapping) = &self.mapping {
             return mapping.points[batch].position.map(|x| x[lane]);
         }
+        self.parameters(batch, lane)
+    }
+
+    /// Parameters of the point of a batch in a lane; its position (m) over a rectangle.
+    fn parameters(&self, batch: usize, lane: usize) -> [f64; 2] {
         let (row, tile, b, a) = self.unbatch(batch);
         [self.tiles[tile].position[a][lane], self.rows[row].position[b]]
+    }
+
+    /// Span and parameters on `patch` of the point of a batch in a lane.
+    pub fn location(&self, patch: &Patch, batch: usize, lane: usize) -> Location {
+        let (row, tile, _, _) = self.unbatch(batch);
+        let first = [self.tiles[tile].first + lane, self.rows[row].first];
+        let span = [0, 1].map(|d| patch.spaces[d].spans().partition_point(|span| span.first < first[d]));
+        Location { span, parameters: self.parameters(batch, lane) }
     }
 
     /// Every point: batch, lane, position (m) and weight (m²).

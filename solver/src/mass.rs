@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use crate::assembly::{Constant, Form, add_form};
 use crate::cholesky::{Factor, SparseCholesky};
+use crate::error::Failure;
 use crate::lattice::Lattice;
 use crate::scene;
 use crate::stencil::Stencil;
@@ -48,9 +49,9 @@ struct Consistent {
 impl MassMatrix {
     /// Mass of a body of `density` (kg/m³) whose components of velocity are prescribed at the `held` control points.
     ///
-    /// # Panics
-    /// If the consistent matrix is not positive definite: too few points per span, which validation refuses.
-    pub fn new(lattice: &Lattice, density: f64, mass: scene::Mass, held: [Vec<usize>; 2]) -> Self {
+    /// # Errors
+    /// If the consistent matrix is singular to round-off. Validation refuses too few points per span, which make it so exactly.
+    pub fn new(lattice: &Lattice, density: f64, mass: scene::Mass, held: [Vec<usize>; 2]) -> Result<Self, Failure> {
         let mut row_sums = lattice.integrate(|_, _, _| 1.0);
         row_sums.iter_mut().for_each(|m| *m *= density);
         let negligible = NEGLIGIBLE * row_sums.iter().copied().fold(0.0, f64::max);
@@ -61,10 +62,11 @@ impl MassMatrix {
             }
             scene::Mass::Consistent => {
                 let empty: Vec<usize> = lattice.grid.indices().filter(|&at| row_sums[at] <= negligible).collect();
-                Kind::Consistent(Box::new(Consistent::new(lattice, density, held, &empty)))
+                let consistent = Consistent::new(lattice, density, held, &empty).ok_or(Failure::SingularMass)?;
+                Kind::Consistent(Box::new(consistent))
             }
         };
-        Self { row_sums, negligible, kind }
+        Ok(Self { row_sums, negligible, kind })
     }
 
     /// Row sums, kg/m: the mass of each control point.
@@ -132,16 +134,17 @@ impl MassMatrix {
 }
 
 impl Consistent {
-    fn new(lattice: &Lattice, density: f64, held: [Vec<usize>; 2], empty: &[usize]) -> Self {
+    /// None if the matrix is not positive definite.
+    fn new(lattice: &Lattice, density: f64, held: [Vec<usize>; 2], empty: &[usize]) -> Option<Self> {
         let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
         add_form(&mut matrix, lattice, Form::Mass, &Constant(density));
         let mut cholesky = SparseCholesky::default(); // one symbolic factorisation for all
         let mut factor = |held: &[usize]| {
             let out: Vec<usize> = held.iter().chain(empty).copied().collect();
-            cholesky.factor(&matrix, &out).expect("enough points per span")
+            cholesky.factor(&matrix, &out)
         };
         let factors =
-            if held[0] == held[1] { vec![factor(&held[0])] } else { held.iter().map(|held| factor(held)).collect() };
-        Self { matrix, factors }
+            if held[0] == held[1] { vec![factor(&held[0])?] } else { vec![factor(&held[0])?, factor(&held[1])?] };
+        Some(Self { matrix, factors })
     }
 }

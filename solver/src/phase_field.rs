@@ -36,8 +36,6 @@ pub struct PhaseFieldCounts {
     pub solves: usize,
     /// Iterations in all.
     pub iterations: usize,
-    /// Incomplete factorisations.
-    pub factorisations: usize,
 }
 
 /// Phase field of one body on its control points.
@@ -161,11 +159,7 @@ impl PhaseField {
 
     /// Counters so far.
     pub fn counts(&self) -> PhaseFieldCounts {
-        let factorisations = match &self.method {
-            Method::Iterative { preconditioner, .. } => preconditioner.factorisations,
-            Method::Direct(_) => 0,
-        };
-        PhaseFieldCounts { factorisations, ..self.counts }
+        self.counts
     }
 
     /// Solves for c with the history energy (J/m³) of every batch of points.

@@ -22,8 +22,6 @@ pub struct Preconditioner {
     factor: Kind,
     /// Iterations of the first solve with the present factor.
     fresh_iterations: Option<usize>,
-    /// Factorisations so far.
-    pub factorisations: usize,
 }
 
 #[derive(Debug, Clone)]
@@ -36,7 +34,7 @@ enum Kind {
 impl Preconditioner {
     /// Incomplete factor of `matrix`.
     pub fn new(matrix: &Stencil) -> Self {
-        Self { factor: Kind::Incomplete(IncompleteCholesky::new(matrix)), fresh_iterations: None, factorisations: 0 }
+        Self { factor: Kind::Incomplete(IncompleteCholesky::new(matrix)), fresh_iterations: None }
     }
 
     /// `out = M⁻¹ r`; returns `rᵀ out`.
@@ -59,7 +57,6 @@ impl Preconditioner {
             Kind::Incomplete(factor) => factor.refactor(matrix),
             Kind::Complete(cholesky, factor) => *factor = cholesky.factor(matrix, &[]),
         }
-        self.factorisations += 1;
     }
 
     /// Whether the factor serves one solve alone.
@@ -95,7 +92,6 @@ impl Preconditioner {
         let Some(factor) = cholesky.factor(matrix, &[]) else { return false };
         self.factor = Kind::Complete(cholesky, Some(factor));
         self.fresh_iterations = None;
-        self.factorisations += 1;
         true
     }
 
@@ -112,9 +108,8 @@ impl Preconditioner {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { factor, fresh_iterations, factorisations } = self;
+        let Self { factor, fresh_iterations } = self;
         archive.value(fresh_iterations)?;
-        archive.value(factorisations)?;
         let mut complete = matches!(factor, Kind::Complete(..));
         archive.value(&mut complete)?;
         if complete && archive.is_reader() {

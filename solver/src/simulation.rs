@@ -54,7 +54,7 @@ impl Simulation {
     /// Prepares a valid scene (see [`crate::validate::validate`]).
     ///
     /// # Errors
-    /// If the initial phase field does not converge.
+    /// If the initial phase field does not converge, or the mass matrix is singular to round-off.
     pub fn new(scene: &Scene) -> Result<Self, Breakdown> {
         let tolerance = scene.solver.phase_field_tolerance;
         let frame = Frame::new(scene).map_err(|failure| watch::not_started(scene.mesh.origin(), tolerance, failure))?;

@@ -47,20 +47,10 @@ use std::sync::Arc;
 
 use crate::contact::Contact;
 use crate::contact::impulse::Kick;
-use crate::fracture::NotConverged;
+use crate::error::Failure;
 use crate::patch::Patch;
 use crate::scene::Scene;
 use field::DiscreteField;
-use points::OutsidePatch;
-
-/// Why a step could not be taken.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Failure {
-    /// The phase-field solve stopped short of its tolerance.
-    NotConverged(NotConverged),
-    /// A point left the patch, m.
-    Left([f64; 2]),
-}
 
 /// The bodies of a scene in the updated frame.
 #[derive(Debug, Clone)]
@@ -121,17 +111,5 @@ impl UpdatedFrame {
     /// the critical step again.
     pub fn critical_step_is_due(&mut self) -> bool {
         self.fields.iter_mut().any(|field| field.critical_step_is_due())
-    }
-}
-
-impl From<NotConverged> for Failure {
-    fn from(failure: NotConverged) -> Self {
-        Self::NotConverged(failure)
-    }
-}
-
-impl From<OutsidePatch> for Failure {
-    fn from(OutsidePatch(position): OutsidePatch) -> Self {
-        Self::Left(position)
     }
 }

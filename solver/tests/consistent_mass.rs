@@ -5,6 +5,7 @@ mod common;
 use common::{annulus, bent_patch, body, elastic_scene, patch_scene, rectangle, run};
 use fisura::Simulation;
 use fisura::energy::Sample;
+use fisura::nurbs::NurbsPatch;
 use fisura::scene::*;
 use fisura::validate::validate;
 
@@ -180,4 +181,17 @@ fn too_few_points_are_refused() {
         assert_refused(&one, &["singular", &format!("give {} particles_per_cell", degree + 1)]);
         assert!(validate(&consistent(elastic_scene(degree, [0.01, 0.008], [1, 1]), degree + 1)).is_ok());
     }
+}
+
+/// A corner twenty orders further away than the others, of a weight nine orders larger, leaves functions that points cannot
+/// tell apart: a breakdown in words.
+#[test]
+fn a_matrix_that_is_singular_to_round_off_is_said_to_be() {
+    let controls = vec![[0.0, 0.0], [0.5, 0.2], [1.0, 0.0], [0.0, 1.0], [0.5, 1.0], [1e20, 1.0]];
+    let knots: [&[f64]; 2] = [&[0.0, 0.0, 0.0, 1.0, 1.0, 1.0], &[0.0, 0.0, 1.0, 1.0]];
+    let patch = NurbsPatch::new([2, 1], knots, controls, vec![1.0, 0.8, 1.0, 1.0, 1.0, 2e9]).unwrap();
+    let scene = consistent(patch_scene(&patch.subdivide(8).unwrap(), 3), 3);
+    assert!(validate(&scene).is_ok());
+    let broken = Simulation::new(&scene).unwrap_err();
+    assert!(broken.what.contains("singular") && broken.cause.contains("lumped"), "{broken}");
 }

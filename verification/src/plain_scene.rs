@@ -33,17 +33,16 @@ pub const ROLLERS: [(Side, [bool; 2]); 4] = [
 ];
 
 impl PlainScene {
+    /// A free body in plane strain with the lumped mass and `points` by `points` Gauss points per span.
+    pub fn free(mesh: Mesh, material: Material, points: usize) -> Self {
+        Self { mesh, material, plane: Plane::Strain, mass: Mass::Lumped, layout: Layout::Gauss, points, held: vec![] }
+    }
+
     /// A bar of unit modulus and density that does not contract sideways, between rollers, with p + 1 Gauss points per span.
     pub fn unit_bar(mesh: Mesh, mass: Mass) -> Self {
-        Self {
-            points: mesh.degree[0] + 1,
-            mesh,
-            material: Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None },
-            plane: Plane::Strain,
-            mass,
-            layout: Layout::Gauss,
-            held: ROLLERS.to_vec(),
-        }
+        let material = Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None };
+        let points = mesh.degree[0] + 1;
+        Self { mass, held: ROLLERS.to_vec(), ..Self::free(mesh, material, points) }
     }
 
     /// The scene, in the total frame with small strains.

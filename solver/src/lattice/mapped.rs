@@ -78,7 +78,7 @@ impl Lattice {
         for batch in 0..self.batches() {
             let (_, tile, _, _) = self.unbatch(batch);
             for lane in 0..self.tiles[tile].count {
-                let parameters = self.position(batch, lane);
+                let parameters = self.parameters(batch, lane);
                 let Some(span) = patch.find_span(parameters) else { continue };
                 let (image, weight) = patch.image(span, parameters);
                 let [[xu, xv], [yu, yv]] = image.jacobian;

@@ -1,12 +1,13 @@
 //! The bodies in the frame of their scene.
 
 use crate::checkpoint::{Archive, StateError};
+use crate::error::Failure;
 use crate::inspection::PointState;
 use crate::phase_field::PhaseFieldCounts;
 use crate::scene::{self, Scene};
 use crate::span_grid::SpanGrid;
 use crate::total_frame::TotalFrame;
-use crate::updated_frame::{Failure, UpdatedFrame};
+use crate::updated_frame::UpdatedFrame;
 
 /// The bodies in the frame of their scene.
 #[derive(Debug)]

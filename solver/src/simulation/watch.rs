@@ -3,10 +3,9 @@
 use super::Simulation;
 use super::frame::{Frame, either};
 use crate::energy::Sample;
-use crate::error::Breakdown;
+use crate::error::{Breakdown, Failure};
 use crate::fracture::NotConverged;
 use crate::inspection::{Inspection, PointState};
-use crate::updated_frame::Failure;
 
 /// Elastic energy beyond this many times all energy that ever came in counts as numerical growth.
 const GROWTH_LIMIT: f64 = 10.0;
@@ -24,9 +23,14 @@ const RAISE_TOLERANCE: &str = "solver.phase_field_tolerance is tighter than roun
                                mesh; raise it, or try phase_field_solver = \"cholesky\"";
 const ILL_CONDITIONED: &str = "history energies so different that iterations do not settle; look for extreme loads or \
                                seeds, or try phase_field_solver = \"cholesky\"";
+const SINGULAR_MASS: &str = "weights or sizes of cells too different for the mass matrix; use mass = \"lumped\", or a mesh \
+                             with weights and cells more alike";
 const ENLARGE_MESH: &str = "the body moves out of the mesh; enlarge mesh.size or move mesh.origin so that it holds the \
                             whole motion, or end earlier";
 
+const LOST: &str = "the position of a point is not a number";
+const THROWN: &str = "a point was thrown out of the mesh, further than the mesh is wide, in one step";
+const NOT_FINITE: &str = "the phase-field solve ran into numbers that are not finite";
 const BARE: &str = "a traction acts where there is no material any more";
 const TORN: &str = "the load has torn off the points under it; lower or ramp the traction, or end earlier";
 
@@ -111,33 +115,23 @@ impl Simulation {
 
     /// A step that could not be taken though the elastic energy of the last one that could is well.
     fn broken(&self, failure: Failure) -> Breakdown {
-        let not_finite = match failure {
-            Failure::Left(place) => !place.iter().all(|x| x.is_finite()),
-            Failure::NotConverged(found) => !found.relative_residual.is_finite(),
-        };
-        if let Failure::Left(place) = failure
-            && !not_finite
-            && self.is_far_outside(place)
-        {
-            let what = "a point was thrown out of the mesh, further than the mesh is wide, in one step";
-            return self.at_worst_point(what.to_string(), None);
-        }
-        if not_finite {
-            let what = match failure {
-                Failure::Left(_) => "the position of a point is not a number",
-                Failure::NotConverged(_) => "the phase-field solve ran into numbers that are not finite",
-            };
-            return self.at_worst_point(what.to_string(), None);
-        }
-        let (what, cause) = what_and_cause(failure, self.tolerance);
         match failure {
+            Failure::Left(place) if !place.iter().all(|x| x.is_finite()) => self.at_worst_point(LOST.to_string(), None),
+            Failure::Left(place) if self.is_far_outside(place) => self.at_worst_point(THROWN.to_string(), None),
             Failure::Left(place) => {
                 let bare = self.updated_frame().is_some_and(|frame| frame.patch().locate(place).is_some());
-                let (what, cause) = if bare { (BARE.to_string(), TORN.to_string()) } else { (what, cause) };
+                let torn = (BARE.to_string(), TORN.to_string());
+                let (what, cause) = if bare { torn } else { what_and_cause(failure, self.tolerance) };
                 let cause = if self.step_is_too_long() { self.cause_of_growth() } else { cause };
                 Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause }
             }
-            Failure::NotConverged(_) => self.at_worst_point(what, Some(cause).filter(|_| !self.step_is_too_long())),
+            Failure::NotConverged(found) if !found.relative_residual.is_finite() => {
+                self.at_worst_point(NOT_FINITE.to_string(), None)
+            }
+            Failure::NotConverged(_) | Failure::SingularMass => {
+                let (what, cause) = what_and_cause(failure, self.tolerance);
+                self.at_worst_point(what, Some(cause).filter(|_| !self.step_is_too_long()))
+            }
         }
     }
 
@@ -206,6 +200,7 @@ fn what_and_cause(failure: Failure, tolerance: f64) -> (String, String) {
             ),
             if relative_residual <= NEAR_TOLERANCE * tolerance { RAISE_TOLERANCE } else { ILL_CONDITIONED },
         ),
+        Failure::SingularMass => ("the consistent mass matrix is singular to round-off".to_string(), SINGULAR_MASS),
     };
     (what, cause.to_string())
 }

@@ -6,6 +6,7 @@ use super::forced::Forced;
 use super::{TotalFrame, VectorField};
 use crate::constraints::Constraints;
 use crate::energy::Ledger;
+use crate::error::Failure;
 use crate::forcing::Forcing;
 use crate::fracture::{Fracturing, NotConverged, lowest_tip};
 use crate::lattice::Lattice;
@@ -20,8 +21,8 @@ impl TotalFrame {
     /// The body of `scene` at t = 0 with its initial accelerations.
     ///
     /// # Errors
-    /// If the initial phase field does not converge.
-    pub fn new(scene: &Scene) -> Result<Self, NotConverged> {
+    /// If the initial phase field does not converge, or a consistent mass matrix is singular to round-off.
+    pub fn new(scene: &Scene) -> Result<Self, Failure> {
         let patch = Patch::new(&scene.mesh);
         let body = &scene.bodies[0];
         let material = &scene.materials[&body.material];
@@ -38,7 +39,7 @@ impl TotalFrame {
         let mut frame = Self {
             loads: body.tractions.iter().map(|t| NodalLoad::new(&patch, body, t)).collect(),
             forced: None,
-            mass: MassMatrix::new(&lattice, material.density, scene.analysis.mass, held),
+            mass: MassMatrix::new(&lattice, material.density, scene.analysis.mass, held)?,
             constraints,
             moduli: ElasticModuli::new(material, scene.analysis.plane),
             kinematics: scene.analysis.kinematics,

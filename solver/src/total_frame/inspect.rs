@@ -13,8 +13,8 @@ impl TotalFrame {
     pub(crate) fn for_each_point_state(&self, f: &mut dyn FnMut(PointState)) {
         let mut point = 0;
         self.lattice.for_each_point(|batch, lane, position, _| {
-            let functions = self.patch.functions_at(position);
-            let value = |field: &Vec<f64>| functions.as_ref().map(|f| f.interpolate(field)).unwrap_or_default();
+            let functions = self.patch.functions(self.lattice.location(&self.patch, batch, lane));
+            let value = |field: &Vec<f64>| functions.interpolate(field);
             let [x, y] = self.displacement.each_ref().map(value);
             let displacement = [x.value, y.value];
             let velocity = self.velocity.each_ref().map(|v| value(v).value);
@@ -54,11 +54,9 @@ impl TotalFrame {
     }
 
     fn spans_with_points(&self) -> BTreeSet<[usize; 2]> {
-        let span = |d: usize, first: usize| self.patch.spaces[d].spans().partition_point(|span| span.first < first);
         let mut spans = BTreeSet::new();
         self.lattice.for_each_point(|batch, lane, _, _| {
-            let (row, tile, _, _) = self.lattice.unbatch(batch);
-            spans.insert([span(0, self.lattice.tiles[tile].first + lane), span(1, self.lattice.rows[row].first)]);
+            spans.insert(self.lattice.location(&self.patch, batch, lane).span);
         });
         spans
     }

@@ -67,8 +67,9 @@ impl TotalFrame {
     /// Reference position (m) of a point that is turned inside out, if there is one; small strains know none.
     pub fn inverted_place(&self) -> Option<[f64; 2]> {
         let mut inverted = None;
-        self.lattice.for_each_point(|_, _, position, _| {
-            let [x, y] = self.displacement.each_ref().map(|u| self.patch.evaluate(u, position).unwrap_or_default());
+        self.lattice.for_each_point(|batch, lane, position, _| {
+            let functions = self.patch.functions(self.lattice.location(&self.patch, batch, lane));
+            let [x, y] = self.displacement.each_ref().map(|u| functions.interpolate(u));
             let (_, growth) = self.strain([x.gradient, y.gradient]);
             if inverted.is_none() && growth <= 0.0 {
                 inverted = Some(position);

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::Failure;
 use super::affine::{AffineVelocities, Fit};
 use super::cracking::Cracking;
 use super::departure::Departure;
@@ -14,6 +13,7 @@ use super::points::{Cells, Point};
 use super::tractions::SurfaceLoad;
 use crate::contact::Surface;
 use crate::energy::Ledger;
+use crate::error::Failure;
 use crate::fracture::lowest_tip;
 use crate::lattice::Lattice;
 use crate::material::{ElasticModuli, FractureModel};

@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::Failure;
 use super::affine::AffineVelocities;
 use super::cracking::Cracking;
 use super::departure::Departure;
@@ -24,6 +23,7 @@ use super::windows::{cut, scatter};
 use crate::contact::Surface;
 use crate::critical_step::highest_frequency;
 use crate::energy::Ledger;
+use crate::error::Failure;
 use crate::fracture::NotConverged;
 use crate::hencky::Gradient;
 use crate::lane::dispatch;

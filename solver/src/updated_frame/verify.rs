@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use super::UpdatedFrame;
 use super::field::DiscreteField;
 use super::volume_forcing::VolumeForcing;
-use super::{Failure, UpdatedFrame};
+use crate::error::Failure;
 use crate::forcing::Forcing;
 
 impl UpdatedFrame {

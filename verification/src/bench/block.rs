@@ -9,9 +9,7 @@ use fisura::lattice::Lattice;
 use fisura::material::{ElasticModuli, FractureModel};
 use fisura::patch::Patch;
 use fisura::phase_field::PhaseField;
-use fisura::scene::{
-    Crack, Fracture, Layout, Mass, Material, Mesh, PhaseFieldSolver, Plane, Scene, Shape, SolverSettings, Split,
-};
+use fisura::scene::{Crack, Fracture, Material, Mesh, PhaseFieldSolver, Plane, Scene, Shape, SolverSettings, Split};
 use fisura::split::EnergySplit;
 use fisura::stencil::Stencil;
 use fisura::sweep::{Fields, StripForces, sweep};
@@ -36,15 +34,11 @@ pub fn cracked_scene(degree: usize, points: usize, cells: usize, margin: usize) 
     let glass = Material { young_modulus: 32e9, poisson_ratio: 0.2, density: DENSITY, fracture: Some(fracture) };
     let size = SPAN * cells as f64;
     let edge = SPAN * margin as f64;
-    let plain = PlainScene {
-        mesh: Mesh::uniform([degree; 2], [-edge; 2], [size + 2.0 * edge; 2], [cells + 2 * margin; 2]),
-        material: glass,
-        plane: Plane::Strain,
-        mass: Mass::Lumped,
-        layout: Layout::Gauss,
+    let plain = PlainScene::free(
+        Mesh::uniform([degree; 2], [-edge; 2], [size + 2.0 * edge; 2], [cells + 2 * margin; 2]),
+        glass,
         points,
-        held: vec![],
-    };
+    );
     let mut scene = plain.scene();
     scene.analysis.safety = 0.8;
     scene.analysis.end_time = 1e-3;

@@ -50,15 +50,14 @@ pub struct Minimal<const P: usize> {
 /// Values of the uniform splines of degree P over a span and their slopes, at `t` in [0, 1).
 #[inline(always)]
 fn splines<const P: usize>(t: f64) -> Splines {
+    const { assert!(P == 2 || P == 3, "uniform splines of degree 2 and 3") };
     let s = 1.0 - t;
-    match P {
-        2 => ([0.5 * s * s, 0.5 + t * s, 0.5 * t * t, 0.0], [-s, 1.0 - 2.0 * t, t, 0.0]),
-        3 => {
-            let (second, third) = ((3.0 * t - 6.0) * t * t + 4.0, (3.0 * s - 6.0) * s * s + 4.0);
-            let slopes = [-0.5 * s * s, (1.5 * t - 2.0) * t, (2.0 - 1.5 * s) * s, 0.5 * t * t];
-            ([s * s * s / 6.0, second / 6.0, third / 6.0, t * t * t / 6.0], slopes)
-        }
-        _ => unimplemented!("uniform splines of degree 2 and 3"),
+    if P == 2 {
+        ([0.5 * s * s, 0.5 + t * s, 0.5 * t * t, 0.0], [-s, 1.0 - 2.0 * t, t, 0.0])
+    } else {
+        let (second, third) = ((3.0 * t - 6.0) * t * t + 4.0, (3.0 * s - 6.0) * s * s + 4.0);
+        let slopes = [-0.5 * s * s, (1.5 * t - 2.0) * t, (2.0 - 1.5 * s) * s, 0.5 * t * t];
+        ([s * s * s / 6.0, second / 6.0, third / 6.0, t * t * t / 6.0], slopes)
     }
 }
 

@@ -67,9 +67,9 @@ fn share(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
 /// The same of a scene in the total frame, after some steps.
 fn share_of(scene: &Scene, run_up: usize, steps: usize) -> Result<Vec<BenchRecord>, BenchError> {
     let dt = Simulation::new(scene)?.plan().step;
-    let broken = |_| BenchError::other("the phase field of the plate does not converge");
-    let mut frame = TotalFrame::new(scene).map_err(broken)?;
-    (0..run_up).try_for_each(|_| frame.step(dt)).map_err(broken)?;
+    let broken = || BenchError::other("the phase field of the plate does not converge");
+    let mut frame = TotalFrame::new(scene).map_err(|_| broken())?;
+    (0..run_up).try_for_each(|_| frame.step(dt)).map_err(|_| broken())?;
     let points = frame.lattice().count();
     let record = |name: &str, label: &str| {
         BenchRecord::new(format!("plate/share/{name}"), label, points as f64, "particle-step").with("particles", points)
@@ -81,12 +81,12 @@ fn share_of(scene: &Scene, run_up: usize, steps: usize) -> Result<Vec<BenchRecor
     for _ in 0..steps {
         let mut before = frame.fracture.clone().ok_or_else(|| BenchError::other("the plate does not fracture"))?;
         let watch = Stopwatch::start();
-        frame.step(dt).map_err(broken)?;
+        frame.step(dt).map_err(|_| broken())?;
         whole.samples.push(watch.read());
         let after = frame.fracture.as_ref().ok_or_else(|| BenchError::other("the plate does not fracture"))?;
         before.history.clone_from(&after.history);
         let watch = Stopwatch::start();
-        before.solve_phase_field(frame.lattice()).map_err(broken)?;
+        before.solve_phase_field(frame.lattice()).map_err(|_| broken())?;
         solve.samples.push(watch.read());
         same &= before.field.control_values() == after.field.control_values();
         iterations += after.iterations;

@@ -6,13 +6,14 @@
 //! proportion to h^((p + 1)/2), so that time and space are of the same order. The error is that of the displacement at the
 //! end, relative, in L2 (in the updated frame: at the points, weighted with their volumes).
 
+use fisura::energy;
 use fisura::projection::Projection;
 use fisura::scene::{Frame, Layout, Mass, Mesh, Plane, Scene, Transfer};
 use fisura::total_frame::TotalFrame;
 use fisura::updated_frame::UpdatedFrame;
 use rayon::prelude::*;
 
-use super::record::{AnswerError, BenchRecord};
+use super::record::{AnswerError, BenchRecord, Sample};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
 use super::{BenchError, Settings};
 use crate::exact::standing_wave::SIZE;
@@ -197,29 +198,16 @@ impl Wave {
     }
 
     /// Runs to the end; error and closure go into the record.
-    fn run(&self, record: &mut BenchRecord) -> Result<super::record::Sample, BenchError> {
+    fn run(&self, record: &mut BenchRecord) -> Result<Sample, BenchError> {
         let dt = END / self.steps as f64;
-        let broken = || BenchError::other(format!("{} breaks down", record.id));
-        let (sample, error, closure) = match &self.body {
+        let (timed, error, closure) = match &self.body {
             Body::Total(frame, points) => {
-                let mut frame = frame.clone();
-                let initial = frame.sample(dt).stored();
-                let watch = Stopwatch::start();
-                (0..self.steps).try_for_each(|_| frame.step(dt)).map_err(|_| broken())?;
-                let sample = watch.read();
-                let mut end = frame.sample(dt);
-                end.close(initial);
-                (sample, self.error_of_field(points, frame.displacement()), end.closure / end.largest_term())
+                let (timed, end, closure) = self.march(frame, |f| f.step(dt).is_ok(), |f| f.sample(dt), &record.id)?;
+                (timed, self.error_of_field(points, end.displacement()), closure)
             }
             Body::Updated(frame) => {
-                let mut frame = frame.clone();
-                let initial = frame.sample(dt).stored();
-                let watch = Stopwatch::start();
-                (0..self.steps).try_for_each(|_| frame.step(dt)).map_err(|_| broken())?;
-                let sample = watch.read();
-                let mut end = frame.sample(dt);
-                end.close(initial);
-                (sample, self.error_at_points(&frame), end.closure / end.largest_term())
+                let (timed, end, closure) = self.march(frame, |f| f.step(dt).is_ok(), |f| f.sample(dt), &record.id)?;
+                (timed, self.error_at_points(&end), closure)
             }
         };
         record.verify_at_most("closure of the ledger over its largest term", closure.abs(), CLOSURE);
@@ -229,7 +217,28 @@ impl Wave {
             reference: "exact solution".into(),
             uncertainty: 0.0,
         });
-        Ok(sample)
+        Ok(timed)
+    }
+
+    /// Steps a copy of a body to the end: what the steps took, the body, and the closure of its ledger over the largest term.
+    fn march<B: Clone>(
+        &self,
+        body: &B,
+        step: impl Fn(&mut B) -> bool,
+        energies: impl Fn(&B) -> energy::Sample,
+        id: &str,
+    ) -> Result<(Sample, B, f64), BenchError> {
+        let mut body = body.clone();
+        let initial = energies(&body).stored();
+        let watch = Stopwatch::start();
+        if !(0..self.steps).all(|_| step(&mut body)) {
+            return Err(BenchError::other(format!("{id} breaks down")));
+        }
+        let timed = watch.read();
+        let mut end = energies(&body);
+        end.close(initial);
+        let closure = end.closure / end.largest_term();
+        Ok((timed, body, closure))
     }
 
     fn error_of_field(&self, points: &ErrorPoints, field: &[Vec<f64>; 2]) -> f64 {

@@ -52,8 +52,8 @@ fn vibrate(degree: usize, mass: Mass) -> Result<Energies, StudyError> {
     let height = 2.0 / SPANS as f64;
     let mesh = Mesh::uniform([degree; 2], [0.0; 2], [1.0, height], [SPANS, 2]);
     let scene = PlainScene::unit_bar(mesh, mass).scene();
-    let broken = |_| StudyError::Other("no phase field is expected".into());
-    let mut frame = TotalFrame::new(&scene).map_err(broken)?;
+    let broken = || StudyError::Other("no phase field is expected".into());
+    let mut frame = TotalFrame::new(&scene).map_err(|_| broken())?;
     let zeros = || frame.lattice().grid.zeros();
     let held = frame.constraints().held(0);
     let projection = Projection::new(frame.lattice(), &held)
@@ -61,13 +61,13 @@ fn vibrate(degree: usize, mass: Mass) -> Result<Energies, StudyError> {
     let velocity = [projection.project(|[x, _]| (std::f64::consts::PI * x).sin()), zeros()];
     let still = [zeros(), zeros()];
     drop(projection);
-    frame.start_from(still, velocity, Arc::new(NoLoads)).map_err(broken)?;
+    frame.start_from(still, velocity, Arc::new(NoLoads)).map_err(|_| broken())?;
     let dt = SAFETY * frame.critical_step();
     let phase = std::f64::consts::PI * dt;
     let steps = (PERIODS * std::f64::consts::TAU / phase).ceil() as usize;
     let mut energies = Energies { whole: vec![], staggered: vec![], phase_squared: phase * phase };
     for _ in 0..steps {
-        frame.step(dt).map_err(broken)?;
+        frame.step(dt).map_err(|_| broken())?;
         let sample = frame.sample(dt);
         energies.whole.push(sample.kinetic + sample.elastic);
         energies.staggered.push(sample.kinetic - sample.stagger + sample.elastic);

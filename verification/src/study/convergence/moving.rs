@@ -7,12 +7,13 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use fisura::error::Failure;
 use fisura::lattice::Lattice;
 use fisura::projection::Projection;
 use fisura::scene::{Body, Layout, Scene, Shape, Transfer};
 use fisura::spline::SplineSpace;
+use fisura::updated_frame::UpdatedFrame;
 use fisura::updated_frame::points::Point;
-use fisura::updated_frame::{Failure, UpdatedFrame};
 
 use super::problem::{Manufactured, Problem};
 use super::scene::scene;
@@ -164,6 +165,7 @@ fn is_in_middle(x: f64, [left, right]: [f64; 2]) -> bool {
 fn broken(failure: Failure) -> StudyError {
     match failure {
         Failure::NotConverged(_) => other("the phase field does not converge"),
+        Failure::SingularMass => other("the mass matrix is singular to round-off"),
         Failure::Left([x, y]) => other(format!("a point left the mesh at ({x}, {y})")),
     }
 }

@@ -7,7 +7,7 @@
 
 use fisura::Simulation;
 use fisura::error::Breakdown;
-use fisura::scene::{Body, Contact, Frame, Layout, Mass, Material, Mesh, Plane, Scene, Shape, TimeStep, Transfer};
+use fisura::scene::{Body, Contact, Frame, Layout, Material, Mesh, Scene, Shape, TimeStep, Transfer};
 use fisura::validate::validate;
 
 use super::exact;
@@ -54,13 +54,12 @@ pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Fin
 /// A block whose points stand a quarter of a span from knots at t = 0, and fly at unit speed.
 fn flying(degree: usize, transfer: Transfer) -> Scene {
     let mut scene = PlainScene {
-        mesh: Mesh::uniform([degree; 2], [0.0; 2], [SPANS as f64, 4.0], [SPANS, 4]),
-        material: Material { young_modulus: 1.0, poisson_ratio: 0.25, density: 1.0, fracture: None },
-        plane: Plane::Strain,
-        mass: Mass::Lumped,
         layout: Layout::Uniform,
-        points: 2,
-        held: vec![],
+        ..PlainScene::free(
+            Mesh::uniform([degree; 2], [0.0; 2], [SPANS as f64, 4.0], [SPANS, 4]),
+            Material { young_modulus: 1.0, poisson_ratio: 0.25, density: 1.0, fracture: None },
+            2,
+        )
     }
     .scene();
     scene.analysis.frame = Frame::Updated;

@@ -5,7 +5,7 @@
 //! `K/M ~ η^(2p−1)/η^(p+1)` with the lumped mass: the step falls as η^((2−p)/2) for p = 1 and not for p ≥ 2; with the consistent mass
 //! `η^(2p−1)/η^(2p+1)`, so that it falls as η.
 
-use fisura::scene::{Analysis, Frame, Layout, Mass, Material, Mesh, Plane, Scene, Shape, Side};
+use fisura::scene::{Analysis, Frame, Mass, Material, Mesh, Scene, Shape, Side};
 use fisura::updated_frame::UpdatedFrame;
 
 use super::super::contact::curve;
@@ -148,13 +148,12 @@ fn bar_step(degree: usize, mass: Mass, cut: f64) -> Result<f64, StudyError> {
 /// A free square of 6 spans a side; `cut` of the last span in each direction belongs to it.
 fn patch(degree: usize, mass: Mass, cut: f64) -> Scene {
     let plain = PlainScene {
-        mesh: Mesh::uniform([degree; 2], [0.0; 2], [6.0; 2], [6; 2]),
-        material: Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None },
-        plane: Plane::Strain,
         mass,
-        layout: Layout::Gauss,
-        points: degree + 1,
-        held: vec![],
+        ..PlainScene::free(
+            Mesh::uniform([degree; 2], [0.0; 2], [6.0; 2], [6; 2]),
+            Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None },
+            degree + 1,
+        )
     };
     let mut scene = plain.scene();
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [5.0 + cut; 2] };

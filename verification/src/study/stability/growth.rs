@@ -5,7 +5,7 @@
 //! eigenvalue. Below, the staggered energy is constant and bounds the elastic energy by `1/(1 − (ω dt/2)²)` of it.
 
 use fisura::Simulation;
-use fisura::scene::{Boundary, Layout, Mass, Material, Mesh, Plane, Scene, Shape, Side, TimeStep};
+use fisura::scene::{Boundary, Material, Mesh, Scene, Shape, Side, TimeStep};
 
 use super::super::contact::curve;
 use super::{theory, total_frame};
@@ -69,15 +69,11 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
 
 /// A square of 4.25 spans a side, held at its left side, in motion.
 fn cut_block(degree: usize) -> Scene {
-    let mut scene = PlainScene {
-        mesh: Mesh::uniform([degree; 2], [0.0; 2], [5.0; 2], [5; 2]),
-        material: Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None },
-        plane: Plane::Strain,
-        mass: Mass::Lumped,
-        layout: Layout::Gauss,
-        points: degree + 1,
-        held: vec![],
-    }
+    let mut scene = PlainScene::free(
+        Mesh::uniform([degree; 2], [0.0; 2], [5.0; 2], [5; 2]),
+        Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None },
+        degree + 1,
+    )
     .scene();
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [4.25; 2] };
     scene.bodies[0].velocity = [1e-3, 3e-4];

@@ -5,7 +5,7 @@
 //! with the bulk modulus, as `1/(1 − 2 nu)` in its square: it locks. A run at nu = 0.4999 is held to its ledger.
 
 use fisura::Simulation;
-use fisura::scene::{Boundary, Layout, Mass, Material, Mesh, Plane, Scene, Side, TimeStep};
+use fisura::scene::{Boundary, Material, Mesh, Scene, Side, TimeStep};
 
 use super::super::contact::curve;
 use super::{exact, logarithmic, total_frame};
@@ -70,15 +70,11 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
 
 /// A unit square of unit modulus and density held at its bottom.
 fn square(degree: usize, spans: usize, nu: f64) -> Scene {
-    let mut scene = PlainScene {
-        mesh: Mesh::uniform([degree; 2], [0.0; 2], [1.0; 2], [spans; 2]),
-        material: Material { young_modulus: 1.0, poisson_ratio: nu, density: 1.0, fracture: None },
-        plane: Plane::Strain,
-        mass: Mass::Lumped,
-        layout: Layout::Gauss,
-        points: degree + 1,
-        held: vec![],
-    }
+    let mut scene = PlainScene::free(
+        Mesh::uniform([degree; 2], [0.0; 2], [1.0; 2], [spans; 2]),
+        Material { young_modulus: 1.0, poisson_ratio: nu, density: 1.0, fracture: None },
+        degree + 1,
+    )
     .scene();
     scene.boundaries = vec![Boundary { side: Side::Bottom, fix: [true; 2], velocity: [0.0; 2] }];
     scene

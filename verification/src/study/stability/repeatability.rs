@@ -5,8 +5,7 @@
 
 use fisura::Simulation;
 use fisura::scene::{
-    Boundary, Crack, Edge, Fracture, Frame, Layout, Mass, Material, Mesh, PhaseFieldSolver, Plane, Scene, Side, Split,
-    Traction,
+    Boundary, Crack, Edge, Fracture, Frame, Material, Mesh, PhaseFieldSolver, Scene, Side, Split, Traction,
 };
 
 use super::exact;
@@ -42,15 +41,11 @@ pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Fin
 }
 
 fn glass(cells: [usize; 2], degree: usize, fracture: Option<Fracture>) -> Scene {
-    PlainScene {
-        mesh: Mesh::uniform([degree; 2], [0.0; 2], [8e-3, 4e-3], cells),
-        material: Material { young_modulus: 32e9, poisson_ratio: 0.2, density: 2450.0, fracture },
-        plane: Plane::Strain,
-        mass: Mass::Lumped,
-        layout: Layout::Gauss,
-        points: degree + 1,
-        held: vec![],
-    }
+    PlainScene::free(
+        Mesh::uniform([degree; 2], [0.0; 2], [8e-3, 4e-3], cells),
+        Material { young_modulus: 32e9, poisson_ratio: 0.2, density: 2450.0, fracture },
+        degree + 1,
+    )
     .scene()
 }
 

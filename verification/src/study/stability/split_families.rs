@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use fisura::hencky::hencky_strain;
 use fisura::lane::Lane;
-use fisura::scene::{Boundary, Fracture, Layout, Mass, Material, Mesh, Plane, Scene, Side, Split};
+use fisura::scene::{Boundary, Fracture, Material, Mesh, Scene, Side, Split};
 use fisura::split::tensile_strain;
 
 use super::super::contact::curve;
@@ -145,15 +145,11 @@ fn block(size: f64) -> Scene {
         residual_stiffness: 0.0,
         split: Split::Spectral,
     };
-    let mut scene = PlainScene {
-        mesh: Mesh::uniform([2; 2], [0.0; 2], [2.0, 1.0], [8, 4]),
-        material: Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: Some(fracture) },
-        plane: Plane::Strain,
-        mass: Mass::Lumped,
-        layout: Layout::Gauss,
-        points: 3,
-        held: vec![],
-    }
+    let mut scene = PlainScene::free(
+        Mesh::uniform([2; 2], [0.0; 2], [2.0, 1.0], [8, 4]),
+        Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: Some(fracture) },
+        3,
+    )
     .scene();
     scene.bodies[0].velocity = [1e-3 * size, 3e-4 * size];
     scene.boundaries = vec![Boundary { side: Side::Left, fix: [true; 2], velocity: [0.0; 2] }];

@@ -6,9 +6,7 @@
 
 use fisura::Simulation;
 use fisura::energy::Sample;
-use fisura::scene::{
-    Boundary, Crack, Edge, Fracture, Layout, Mass, Material, Mesh, Plane, Scene, Shape, Side, Split, Traction,
-};
+use fisura::scene::{Boundary, Crack, Edge, Fracture, Material, Mesh, Scene, Shape, Side, Split, Traction};
 
 use super::super::contact::{chart, curve};
 use super::exact;
@@ -114,16 +112,7 @@ fn plate(units: Units, cracked: bool) -> Scene {
         density: 2450.0 * units.mass / units.length.powi(3),
         fracture,
     };
-    let mut scene = PlainScene {
-        mesh: Mesh::uniform([2; 2], [0.0; 2], [width, height], [16, 32]),
-        material,
-        plane: Plane::Strain,
-        mass: Mass::Lumped,
-        layout: Layout::Gauss,
-        points: 3,
-        held: vec![],
-    }
-    .scene();
+    let mut scene = PlainScene::free(Mesh::uniform([2; 2], [0.0; 2], [width, height], [16, 32]), material, 3).scene();
     scene.analysis.thickness = THICKNESS * units.length;
     scene.analysis.end_time = if cracked { 2e-6 } else { 1e-6 };
     scene.output.samples = SAMPLES;

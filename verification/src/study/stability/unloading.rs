@@ -4,7 +4,7 @@
 //! energy of a body that is nowhere broken, may only rise.
 
 use fisura::Simulation;
-use fisura::scene::{Boundary, Fracture, Frame, Layout, Mass, Material, Mesh, Plane, Scene, Shape, Side, Split};
+use fisura::scene::{Boundary, Fracture, Frame, Material, Mesh, Scene, Shape, Side, Split};
 
 use super::super::contact::{chart, curve};
 use super::exact;
@@ -77,15 +77,11 @@ fn bar(frame: Frame) -> Scene {
         residual_stiffness: 0.0,
         split: Split::Spectral,
     };
-    let mut scene = PlainScene {
-        mesh: Mesh::uniform([2; 2], [0.0; 2], [2.5, 0.5], [20, 4]),
-        material: Material { young_modulus: 1.0, poisson_ratio: 0.2, density: 1.0, fracture: Some(fracture) },
-        plane: Plane::Strain,
-        mass: Mass::Lumped,
-        layout: Layout::Gauss,
-        points: 2,
-        held: vec![],
-    }
+    let mut scene = PlainScene::free(
+        Mesh::uniform([2; 2], [0.0; 2], [2.5, 0.5], [20, 4]),
+        Material { young_modulus: 1.0, poisson_ratio: 0.2, density: 1.0, fracture: Some(fracture) },
+        2,
+    )
     .scene();
     scene.analysis.frame = frame;
     scene.analysis.end_time = 40.0;
