@@ -201,6 +201,50 @@ fn a_complete_factor_takes_over_where_the_incomplete_one_is_poor() {
     assert!(!preconditioner.complete(&matrix), "there is nothing beyond it");
 }
 
+/// Kershaw's ring of four (1978): positive definite, but the coupling that is dropped makes the last pivot negative.
+#[test]
+fn a_factor_whose_pivot_falls_is_shifted() {
+    let grid = ControlGrid { columns: 3, rows: 3, stride: 24 };
+    let mut matrix = Stencil::zeros(grid, [1, 1]);
+    (0..9).for_each(|n| matrix.set_diagonal(n % 3, n / 3, if n % 2 == 1 { 3.0 } else { 1.0 }));
+    for (column, row, columns, value) in [(1, 0, -1, -2.0), (1, 0, 1, 2.0), (0, 1, 1, -2.0), (2, 1, -1, -2.0)] {
+        let offset = Stencil::offset_index([1, 1], columns, 1);
+        let at = row * matrix.row_length() + offset * grid.stride + grid.index(column, 0);
+        matrix.coefficients_mut()[at] = value;
+    }
+    // On the stencil the factor is the matrix with its diagonal times 1 + s. The last pivot is positive for 3 (1 + s) > √12.
+    let factor = IncompleteCholesky::new(&matrix);
+    let mut inverse = DMatrix::zeros(9, 9);
+    for (n, at) in grid.indices().enumerate() {
+        let (mut unit, mut column) = (grid.zeros(), grid.zeros());
+        unit[at] = 1.0;
+        factor.apply(&unit, &mut column);
+        inverse.set_column(n, &packed(grid, &column));
+    }
+    let (product, full) = (inverse.try_inverse().expect("a factor that is not singular"), dense(&matrix));
+    let shift = product[(1, 1)] / 3.0 - 1.0;
+    assert!(shift > (12f64.sqrt() / 3.0 - 1.0) && shift < 0.7, "{shift}");
+    for (i, j) in (0..9).flat_map(|i| (0..9).map(move |j| (i, j))) {
+        let expected = if i == j { (1.0 + shift) * full[(i, i)] } else { full[(i, j)] };
+        let dropped = [(3, 5), (5, 3)].contains(&(i, j));
+        assert!(
+            dropped || (product[(i, j)] - expected).abs() <= 1e-13,
+            "({i}, {j}): {} for {expected}",
+            product[(i, j)]
+        );
+    }
+    let mut random = Random::new(3);
+    let exact = full.cholesky().expect("positive definite");
+    let b = random.field(grid, 1.0);
+    let (mut x, preconditioner) = (grid.zeros(), Preconditioner::new(&matrix));
+    let outcome = ConjugateGradients::new(&matrix).solve(&matrix, &preconditioner, &b, &mut x, 1e-13, 20);
+    assert!(outcome.relative_residual <= 1e-13, "{outcome:?}");
+    let exact = exact.solve(&packed(grid, &b));
+    grid.indices()
+        .zip(exact.iter())
+        .for_each(|(at, exact)| approx::assert_relative_eq!(x[at], *exact, max_relative = 1e-11));
+}
+
 #[test]
 fn sparse_cholesky_agrees_with_a_dense_one() {
     let mut solver = SparseCholesky::default();
