@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
 use crate::figure::render_figure;
+use crate::read_json;
 use crate::series::{SeriesSet, names};
 
 /// Name of the schema written and read.
@@ -78,14 +79,7 @@ pub fn write(
 /// # Errors
 /// The file is missing, malformed or of another schema.
 pub fn read(folder: &Path, name: &str) -> Result<Bundle, ReportError> {
-    let path = folder.join(format!("{name}.json"));
-    let text = fs::read_to_string(&path).map_err(|source| ReportError::File { path: path.clone(), source })?;
-    let bundle: Bundle =
-        serde_json::from_str(&text).map_err(|e| ReportError::Results { path: path.clone(), message: e.to_string() })?;
-    if bundle.schema != BUNDLE_SCHEMA {
-        return Err(ReportError::Schema { path, found: bundle.schema, expected: BUNDLE_SCHEMA });
-    }
-    Ok(bundle)
+    read_json(folder.join(format!("{name}.json")), BUNDLE_SCHEMA)
 }
 
 /// Draws a figure again from the files beside its definition.

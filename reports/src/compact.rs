@@ -1,9 +1,15 @@
 //! Shapes of one look that plotters draws one after the other, as one path with relative coordinates: every dash and
-//! every grid line is an element of its own otherwise, and a report has many.
+//! every grid line is an element of its own otherwise, and a report has many. Points of a curve that nobody could see go
+//! (Ramer 1972; Douglas and Peucker 1973).
 
 use std::fmt::Write;
 
+use crate::style::SCALE;
+
 type Point = (i64, i64);
+
+/// How far a curve may move where points are left out: a tenth of a pixel of the nominal size.
+const TOLERANCE: f64 = 0.1 * SCALE;
 
 /// One line of an SVG that is a shape made of straight lines.
 struct Shape<'a> {
@@ -27,13 +33,17 @@ struct Path {
 pub fn compact(body: &str) -> String {
     let mut out = String::with_capacity(body.len() / 2);
     let mut path = Path::default();
+    let mut within_text = false;
     for line in body.lines() {
         match Shape::parse(line) {
             Some(shape) => path.add(&shape, &mut out),
             None => {
                 path.finish(&mut out);
                 out.push_str(line);
-                out.push('\n');
+                within_text = line.starts_with("<text") || within_text && !line.starts_with('<');
+                if !within_text {
+                    out.push('\n');
+                }
             }
         }
     }
@@ -61,7 +71,28 @@ impl<'a> Shape<'a> {
         let point = |pair: &str| pair.split_once(',').and_then(|(x, y)| Some((x.parse().ok()?, y.parse().ok()?)));
         let points = pairs.map(point).collect::<Option<Vec<Point>>>()?;
         let closed = name == "polygon";
+        let points = if closed { points } else { simplified(&points) };
         (!points.is_empty() && (closed || name == "polyline")).then_some(Self { look, closed, points })
+    }
+}
+
+/// The points of a curve that it needs to stay within the tolerance of itself.
+fn simplified(points: &[Point]) -> Vec<Point> {
+    let [start, .., end] = *points else { return points.to_vec() };
+    let distance = |&(x, y): &Point| {
+        let [dx, dy, ex, ey] = [x - start.0, y - start.1, end.0 - start.0, end.1 - start.1].map(|n| n as f64);
+        let along = ((dx * ex + dy * ey) / (ex * ex + ey * ey).max(1.0)).clamp(0.0, 1.0);
+        (dx - along * ex).hypot(dy - along * ey)
+    };
+    let inner = points[1..points.len() - 1].iter().map(distance).enumerate();
+    match inner.max_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((at, furthest)) if furthest > TOLERANCE => {
+            let mut first = simplified(&points[..at + 2]);
+            first.pop();
+            first.append(&mut simplified(&points[at + 1..]));
+            first
+        }
+        _ => vec![start, end],
     }
 }
 
@@ -120,11 +151,28 @@ mod tests {
                     <polygon fill=\"#000\" points=\"10,10 15,15 20,10\"/>\n\
                     <circle cx=\"1\" cy=\"1\" r=\"1\"/>\n";
         let expected = "<path fill=\"none\" stroke=\"#E6E6E6\" stroke-width=\"6\" d=\"m10 20l0-15m10 15l0-15\"/>\n\
-                        <text x=\"1\">\nwords\n</text>\n\
+                        <text x=\"1\">words</text>\n\
                         <path fill=\"none\" stroke=\"#000\" d=\"m0 0l5 5 5-5\"/>\n\
                         <path fill=\"#000\" d=\"m0 0l5 5 5-5zm10 10l5 5 5-5z\"/>\n\
                         <circle cx=\"1\" cy=\"1\" r=\"1\"/>\n";
         assert_eq!(compact(body), expected);
+    }
+
+    #[test]
+    fn a_curve_keeps_its_shape_with_fewer_points() {
+        let wave: Vec<Point> = (0..=6000).map(|x| (x, (1000.0 * (x as f64 / 500.0).sin()).round() as i64)).collect();
+        let fewer = simplified(&wave);
+        assert!(fewer.len() < 250, "{}", fewer.len());
+        assert_eq!((fewer[0], fewer.last()), (wave[0], wave.last()));
+        for ends in fewer.windows(2) {
+            for &(x, y) in &wave[ends[0].0 as usize..=ends[1].0 as usize] {
+                let slope = (ends[1].1 - ends[0].1) as f64 / (ends[1].0 - ends[0].0) as f64;
+                let off = (y - ends[0].1) as f64 - slope * (x - ends[0].0) as f64;
+                assert!(off.abs() / slope.hypot(1.0) <= TOLERANCE + 1e-9, "{off} at {x}");
+            }
+        }
+        let there_and_back = [(0, 0), (100, 0), (0, 0)];
+        assert_eq!(simplified(&there_and_back), there_and_back);
     }
 
     #[test]

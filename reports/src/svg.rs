@@ -33,7 +33,11 @@ pub fn page(
 /// Gives the document its nominal size, a title and a description, and drops attributes that say nothing.
 fn finish(raw: &str, id: &str, title: &str, description: &str, size: (f64, f64), below: &str) -> String {
     let body = raw.split_once(">\n").map_or(raw, |(_, body)| body);
-    let body = body.replace(" opacity=\"1\"", "").replace(" font-family=\"sans-serif\"", "").replace(" \"/>", "\"/>");
+    let body = body
+        .replace(" opacity=\"1\"", "")
+        .replace(" font-family=\"sans-serif\"", "")
+        .replace(" \"/>", "\"/>")
+        .replace(".00000000000001\"", "\"");
     let body = crate::compact::compact(&body);
     let id = slug(id);
     let (width, height) = size;
