@@ -97,7 +97,12 @@ impl PointKernel for DegradedStress<'_> {
         let g = self.model.degradation(c);
         let energy = state.energy_minus.add_product::<FMA>(g, state.energy_plus);
         self.energy = self.energy.add_product::<FMA>(weight, energy);
-        Stress::symmetric([0, 1, 2].map(|i| state.stress_minus[i].add_product::<FMA>(g, state.stress_plus[i])))
+        // no array::map: it is compiled on its own, without FMA, where each product would be a call of the library
+        let mut stress = state.stress_minus;
+        for (stress, plus) in stress.iter_mut().zip(state.stress_plus) {
+            *stress = stress.add_product::<FMA>(g, plus);
+        }
+        Stress::symmetric(stress)
     }
 }
 

@@ -113,7 +113,8 @@ impl Simulation {
     /// the patch.
     pub fn step(&mut self) -> Result<(), Breakdown> {
         self.steps += 1;
-        let result = self.frame.step(self.plan.step);
+        // within the pool of rayon: from outside, every parallel loop would wake it and wait for it
+        let result = rayon::scope(|_| self.frame.step(self.plan.step));
         self.judge(result)
     }
 

@@ -41,17 +41,20 @@ fn main() -> ExitCode {
     if let Err(failure) = faults::plant_from_environment() {
         return failure.show().into();
     }
-    let outcome = set_threads(&common).and_then(|()| match command {
-        Command::Verify(args) => verify::verify(&args, &common),
-        Command::Merge(args) => merge::merge(&args, &common),
-        Command::Compare(args) => compare::compare(&args, &common),
-        Command::List => list::list(&common),
-        Command::Run(args) => run::run(&args, &common),
-        Command::Check(args) => check::check(&args, &common),
-        Command::Figures(args) => figures::figures(&args, &common),
-        Command::Report(args) => report::report(&args, &common),
-        Command::Bench(args) => bench::bench(&args, &common),
-        Command::Faults(args) => faults::faults(&args, &common),
+    // within the pool: from outside, every parallel loop of a step would wake it and wait for it
+    let outcome = set_threads(&common).and_then(|()| {
+        rayon::scope(|_| match command {
+            Command::Verify(args) => verify::verify(&args, &common),
+            Command::Merge(args) => merge::merge(&args, &common),
+            Command::Compare(args) => compare::compare(&args, &common),
+            Command::List => list::list(&common),
+            Command::Run(args) => run::run(&args, &common),
+            Command::Check(args) => check::check(&args, &common),
+            Command::Figures(args) => figures::figures(&args, &common),
+            Command::Report(args) => report::report(&args, &common),
+            Command::Bench(args) => bench::bench(&args, &common),
+            Command::Faults(args) => faults::faults(&args, &common),
+        })
     });
     outcome.unwrap_or_else(|failure| failure.show()).into()
 }
