@@ -2,10 +2,13 @@
 //!
 //! The factor keeps couplings within blocks of rows only, so blocks are factored and solved independently (block Jacobi
 //! between them). Blocks come from the number of rows, never from the number of threads.
+//!
+//! It is kept in single precision: what it is applied with takes as long as reading it, it stays symmetric and positive definite,
+//! and conjugate gradients work in double precision around it.
 
 use rayon::prelude::*;
 
-use crate::lane::{LANES, Lane, Vectorised, dispatch};
+use crate::lane::{LANES, Lane, Vectorised, add_product, dispatch};
 use crate::patch::ControlGrid;
 use crate::stencil::{Offset, Stencil};
 
@@ -33,7 +36,7 @@ pub struct IncompleteCholesky {
     offsets: Vec<Offset>,
     updates: Vec<Update>,
     /// Like the coefficients of the matrix: 1/D in place of the diagonal, L elsewhere.
-    factor: Vec<f64>,
+    factor: Vec<f32>,
 }
 
 impl IncompleteCholesky {
@@ -51,11 +54,12 @@ impl IncompleteCholesky {
         let block = BLOCK_ROWS * matrix.row_length();
         let Self { grid, offsets, updates, factor } = self;
         let blocks = factor.par_chunks_mut(block).zip(matrix.coefficients().par_chunks(block));
-        blocks.for_each(|(block, matrix)| {
-            let mut shift = 0.0;
-            while !factor_block(*grid, offsets, updates, shift, matrix, block) && shift < LARGEST_SHIFT {
+        blocks.for_each(|(factor, matrix)| {
+            let (mut block, mut shift) = (matrix.to_vec(), 0.0);
+            while !factor_block(*grid, offsets, updates, shift, matrix, &mut block) && shift < LARGEST_SHIFT {
                 shift = (SHIFT_GROWTH * shift).max(FIRST_SHIFT);
             }
+            factor.iter_mut().zip(block).for_each(|(single, double)| *single = double as f32);
         });
     }
 
@@ -72,13 +76,13 @@ impl IncompleteCholesky {
         parts.iter().sum()
     }
 
-    pub(crate) fn values_mut(&mut self) -> &mut Vec<f64> {
+    pub(crate) fn values_mut(&mut self) -> &mut Vec<f32> {
         &mut self.factor
     }
 
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
-        8 * self.factor.len()
+        size_of::<f32>() * self.factor.len()
     }
 }
 
@@ -149,14 +153,14 @@ fn factor_block(
 struct SolveBlock<'a> {
     grid: ControlGrid,
     offsets: &'a [Offset],
-    factor: &'a [f64],
+    factor: &'a [f32],
     r: &'a [f64],
     out: &'a mut [f64],
 }
 
 impl SolveBlock<'_> {
     #[inline(always)]
-    fn row(&self, row: usize, offset: usize) -> &[f64] {
+    fn row(&self, row: usize, offset: usize) -> &[f32] {
         let start = (row * self.offsets.len() + offset) * self.grid.stride;
         &self.factor[start..start + self.grid.stride]
     }
@@ -172,7 +176,7 @@ impl SolveBlock<'_> {
                 if row >= offset.rows {
                     let here = at.wrapping_add_signed(-offset.columns);
                     let earlier = Lane::load(self.out, here + (row - offset.rows) * grid.stride);
-                    let coefficient = Lane::load(self.row(row - offset.rows, index), here);
+                    let coefficient = Lane::load_single(self.row(row - offset.rows, index), here);
                     sum = sum.add_product::<FMA>(coefficient * -1.0, earlier);
                 }
             }
@@ -184,7 +188,8 @@ impl SolveBlock<'_> {
         for at in grid.index(0, 0)..grid.index(grid.columns, 0) {
             let mut value = out[at];
             for index in (1..same_row).rev() {
-                value -= self.factor[start + index * grid.stride + at - index] * out[at - index];
+                let coefficient = -f64::from(self.factor[start + index * grid.stride + at - index]);
+                value = add_product::<FMA>(value, coefficient, out[at - index]);
             }
             out[at] = value;
         }
@@ -196,11 +201,11 @@ impl SolveBlock<'_> {
         let grid = self.grid;
         for column in (0..grid.columns).step_by(LANES) {
             let at = grid.index(column, 0);
-            let mut sum = Lane::load(self.out, at + row * grid.stride) * Lane::load(self.row(row, 0), at);
+            let mut sum = Lane::load(self.out, at + row * grid.stride) * Lane::load_single(self.row(row, 0), at);
             for (index, offset) in self.offsets.iter().enumerate().skip(same_row) {
                 if row + offset.rows < rows {
                     let there = (at + (row + offset.rows) * grid.stride).wrapping_add_signed(offset.columns);
-                    let coefficient = Lane::load(self.row(row, index), at);
+                    let coefficient = Lane::load_single(self.row(row, index), at);
                     sum = sum.add_product::<FMA>(coefficient * -1.0, Lane::load(self.out, there));
                 }
             }
@@ -212,7 +217,8 @@ impl SolveBlock<'_> {
         for at in (grid.index(0, 0)..grid.index(grid.columns, 0)).rev() {
             let mut value = out[at];
             for index in (1..same_row).rev() {
-                value -= self.factor[start + index * grid.stride + at] * out[at + index];
+                let coefficient = -f64::from(self.factor[start + index * grid.stride + at]);
+                value = add_product::<FMA>(value, coefficient, out[at + index]);
             }
             out[at] = value;
         }

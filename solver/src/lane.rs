@@ -34,6 +34,16 @@ impl Lane {
         lane
     }
 
+    /// Reads eight neighbours in single precision.
+    #[inline(always)]
+    pub fn load_single(values: &[f32], at: usize) -> Self {
+        let mut lane = Self::ZERO;
+        for (lane, value) in lane.0.iter_mut().zip(&values[at..at + LANES]) {
+            *lane = f64::from(*value);
+        }
+        lane
+    }
+
     /// Adds to eight neighbours.
     #[inline(always)]
     pub fn add_to(self, values: &mut [f64], at: usize) {
@@ -67,7 +77,7 @@ impl Lane {
     pub fn add_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
         let mut out = self;
         for l in 0..LANES {
-            out.0[l] = if FMA { a.0[l].mul_add(b.0[l], out.0[l]) } else { out.0[l] + a.0[l] * b.0[l] };
+            out.0[l] = add_product::<FMA>(out.0[l], a.0[l], b.0[l]);
         }
         out
     }
@@ -96,6 +106,12 @@ impl Lane {
         let v = self.0;
         ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]))
     }
+}
+
+/// `sum + a b`, with one rounding if `FMA`.
+#[inline(always)]
+pub fn add_product<const FMA: bool>(sum: f64, a: f64, b: f64) -> f64 {
+    if FMA { a.mul_add(b, sum) } else { sum + a * b }
 }
 
 impl Index<usize> for Lane {

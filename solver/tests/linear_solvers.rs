@@ -15,6 +15,8 @@ use fisura::scene::*;
 use fisura::stencil::Stencil;
 use nalgebra::{DMatrix, DVector};
 
+/// Round-off of a factor that is kept in single precision (6e-8), with room for the condition of the matrices here.
+const SINGLE: f64 = 2e-6;
 /// Span of the test meshes, m: the length scale of the model.
 const SPAN: f64 = 0.25e-3;
 
@@ -104,7 +106,7 @@ fn without_fill_the_factor_is_exact() {
         let product = IncompleteCholesky::new(&matrix).apply(&r, &mut x);
         let exact = dense(&matrix).cholesky().expect("positive definite").solve(&packed(grid, &r));
         for (i, at) in grid.indices().enumerate() {
-            approx::assert_abs_diff_eq!(x[at], exact[i], epsilon = 1e-12 * exact.amax());
+            approx::assert_abs_diff_eq!(x[at], exact[i], epsilon = SINGLE * exact.amax());
         }
         approx::assert_relative_eq!(product, inner(&r, &x), max_relative = 1e-13);
     }
@@ -129,7 +131,7 @@ fn uncoupled_rows_are_solved_exactly_across_blocks() {
     let (mut x, mut back) = (grid.zeros(), grid.zeros());
     IncompleteCholesky::new(&matrix).apply(&r, &mut x);
     matrix.apply(&x, &mut back);
-    assert!(difference(&r, &back) <= 1e-13, "{}", difference(&r, &back));
+    assert!(difference(&r, &back) <= SINGLE, "{}", difference(&r, &back));
 }
 
 #[test]
@@ -228,7 +230,7 @@ fn a_factor_whose_pivot_falls_is_shifted() {
         let expected = if i == j { (1.0 + shift) * full[(i, i)] } else { full[(i, j)] };
         let dropped = [(3, 5), (5, 3)].contains(&(i, j));
         assert!(
-            dropped || (product[(i, j)] - expected).abs() <= 1e-13,
+            dropped || (product[(i, j)] - expected).abs() <= SINGLE,
             "({i}, {j}): {} for {expected}",
             product[(i, j)]
         );
