@@ -121,7 +121,26 @@ pub fn plate(records: Records, fem: &[CostPoint]) -> Vec<Exhibit> {
     let title = "The plate: error against processor time".to_string();
     let id = "timing/plate-error-against-time".to_string();
     let chart = Chart { id, title, lines: &lines, front: None, fem, cost: Cost::Time, axis, uncertainty };
-    vec![chart.plot(&caption, reading_of_plate(&lines, fem))]
+    let mut exhibits = vec![chart.plot(&caption, reading_of_plate(&lines, fem))];
+    exhibits.extend(tolerances(records, axis));
+    exhibits
+}
+
+/// What the tolerance of the phase field does to the energies of the plate.
+fn tolerances(records: Records, axis: &'static str) -> Option<Exhibit> {
+    let found = records.below("plate/tolerance/");
+    let lines = lines(found.iter().copied());
+    let reference = found.first()?.error.as_ref()?;
+    let caption = format!("Half plate to 80 µs; {} from a run with {}", reference.quantity, reference.reference);
+    let word = |r: &&BenchRecord| {
+        let tolerance = r.id.rsplit('/').next().unwrap_or_default();
+        format!("{tolerance}: {} % in {} s", pretty(100.0 * error(r), 2), pretty(Cost::Time.of(r).median, 3))
+    };
+    let reading = format!("Tolerance: {}.", found.iter().map(word).collect::<Vec<_>>().join("; "));
+    let title = "The plate: tolerance of the phase field against processor time".to_string();
+    let id = "timing/plate-tolerance-against-time".to_string();
+    let chart = Chart { id, title, lines: &lines, front: None, fem: &[], cost: Cost::Time, axis, uncertainty: 0.0 };
+    Some(chart.plot(&caption, reading))
 }
 
 /// Everything a diagram is drawn from.
