@@ -11,11 +11,13 @@ use criterion::{BatchSize, Bencher, BenchmarkId, Criterion, Throughput, criterio
 use fisura::Simulation;
 use fisura::critical_step::highest_frequency;
 use fisura::incomplete_cholesky::IncompleteCholesky;
+use fisura::scene::Contact;
 use fisura::split::EnergySplit;
 use fisura::sweep::StripForces;
 use fisura_verification::bench::block::{Block, DENSITY, SPAN, elastic_scene};
 use fisura_verification::bench::minimal::Minimal;
 use fisura_verification::bench::moving_block::{MovingBlock, minimal, minimal_deviation, moving_scene};
+use fisura_verification::bench::scenes::pair;
 
 /// Round-off in sums of forces.
 const BALANCED: f64 = 1e-12;
@@ -169,6 +171,28 @@ fn updated_frame<const P: usize>(criterion: &mut Criterion, points: usize, cells
     timed("minimal_step", &name, &mut || kernel.step(dt));
 }
 
+/// Two bodies that meet: finding where they touch, and a whole step beside one of the same bodies without contact.
+fn contact(criterion: &mut Criterion, cells: usize) {
+    let begun = |declared: Option<Contact>| {
+        let mut simulation = Simulation::new(&pair(cells, 0.0, declared)).expect("the scene starts");
+        (0..5).for_each(|_| simulation.step().expect("a stable step"));
+        simulation
+    };
+    let (mut apart, mut meeting) = (begun(None), begun(Some(Contact { friction: 0.3 })));
+    let frame = meeting.updated_frame().expect("the frame of contact");
+    let mut found = frame.contact().expect("it is declared").clone();
+    let forces = frame.contact_forces(meeting.plan().step);
+    assert!(!found.touches().is_empty() && !forces.is_empty(), "the bodies meet");
+    let (name, points) = (format!("p2_2x2_{cells}_spans"), meeting.extent().particles);
+    let mut timed = |name_of_phase: &str, routine: &mut dyn FnMut()| {
+        measure(criterion, name_of_phase, &name, points, |bencher| bencher.iter(&mut *routine));
+    };
+    let fields = frame.fields().to_vec();
+    timed("contact_find", &mut || found.find(&fields));
+    timed("step_of_two_bodies", &mut || apart.step().expect("a stable step"));
+    timed("step_of_two_bodies_in_contact", &mut || meeting.step().expect("a stable step"));
+}
+
 fn all(criterion: &mut Criterion) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread();
     pool.build_global().expect("the first pool of this process");
@@ -182,6 +206,7 @@ fn all(criterion: &mut Criterion) {
     }
     updated_frame::<2>(criterion, 2, 128);
     updated_frame::<3>(criterion, 3, 85);
+    contact(criterion, 128);
 }
 
 criterion_group!(benches, all);

@@ -80,7 +80,7 @@ fn scenes(cells: usize, frame: Frame) -> Vec<(&'static str, Scene, Happens)> {
 }
 
 /// Two halves of the elastic block, `gap` spans apart, that move towards each other.
-fn pair(cells: usize, gap: f64, contact: Option<Contact>) -> Scene {
+pub fn pair(cells: usize, gap: f64, contact: Option<Contact>) -> Scene {
     let mut scene = elastic_scene(DEGREE, 2, cells, MARGIN);
     let (edge, half) = (SPAN * MARGIN as f64, SPAN * (cells / 2) as f64);
     let (width, height) = (2.0 * half + SPAN * gap.ceil(), SPAN * cells as f64);
