@@ -96,7 +96,7 @@ fn logarithmic_axes_have_clean_labels() {
     render(folder.path()).unwrap();
     let svg = read(folder.path(), "figures/timing/order.svg");
     for label in ["10⁻⁶", "10⁻⁷", "0.05", "0.1"] {
-        assert!(svg.contains(&format!("\n{label}\n")), "{label} is missing in {svg}");
+        assert!(svg.contains(&format!(">{label}</text>")), "{label} is missing in {svg}");
     }
     assert!(!svg.contains("99999"), "{svg}");
 }
@@ -106,7 +106,7 @@ fn slopes_of_theory_and_floors_stand_in_the_chart() {
     let folder = folder();
     render(folder.path()).unwrap();
     let svg = read(folder.path(), "figures/timing/order.svg");
-    assert!(svg.contains("\nround-off\n") && svg.contains("\n3\n"), "both are labelled: {svg}");
+    assert!(svg.contains(">round-off</text>") && svg.contains(">3</text>"), "both are labelled: {svg}");
     assert!(svg.contains("Slopes of theory: 3."), "and told to those who cannot see it");
     let hollow = |svg: &str| svg.lines().filter(|l| l.starts_with("<circle")).count();
     assert_eq!(hollow(&svg), 2 * 5 + 1, "four markers and the sample have a rim, the one below the floor a hole");
