@@ -4,7 +4,7 @@
 //!
 //! Besides equal spans and the tolerance of the suite there is what someone in a hurry would run: spans twice as long where no
 //! crack runs, and a tolerance of the phase field that changes the energies by far less than their error. What a tolerance
-//! does to the energies is a diagram of its own, against a run with [`TIGHT_TOLERANCE`].
+//! does to the energies is a diagram of its own, against a run with 1e-10.
 
 use std::sync::Arc;
 
