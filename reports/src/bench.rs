@@ -66,19 +66,25 @@ pub struct Section {
     pub exhibits: Vec<Exhibit>,
 }
 
-/// The records of a set, found by id or family.
+/// The records of a set, found by id or family. What is drawn, read off or compared goes by [`Self::get`] and [`Self::below`],
+/// which leave out records whose answers do not hold; [`page::all_records`] lists those.
 #[derive(Debug, Clone, Copy)]
 pub struct Records<'a>(pub &'a [BenchRecord]);
 
 impl<'a> Records<'a> {
-    /// The record of that id.
-    pub fn get(self, id: &str) -> Option<&'a BenchRecord> {
+    /// The record of that id, whether or not its answer holds.
+    pub fn find(self, id: &str) -> Option<&'a BenchRecord> {
         self.0.iter().find(|record| record.id == id)
     }
 
-    /// All records whose id begins so.
+    /// The record of that id, if its answer holds.
+    pub fn get(self, id: &str) -> Option<&'a BenchRecord> {
+        self.find(id).filter(|record| record.verified)
+    }
+
+    /// All records whose id begins so and whose answers hold.
     pub fn below(self, prefix: &str) -> Vec<&'a BenchRecord> {
-        self.0.iter().filter(|record| record.id.starts_with(prefix)).collect()
+        self.0.iter().filter(|record| record.verified && record.id.starts_with(prefix)).collect()
     }
 }
 
@@ -132,6 +138,7 @@ pub fn store(folder: &Path, set: &BenchSet) -> Result<PathBuf, ReportError> {
 pub fn render(folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
     let set = read(folder)?;
     let sections = sections(&set);
+    let _ = std::fs::remove_dir_all(folder.join("figures/timing")); // of an earlier set; often there is none
     let mut files = vec![write(folder, "samples.csv", &page::samples(&set))?];
     let mut broken = Vec::new();
     for exhibit in sections.iter().flat_map(|section| &section.exhibits) {

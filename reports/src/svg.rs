@@ -30,7 +30,8 @@ pub fn page(
     Ok(finish(&buffer, figure, title, description, (width, height), below.as_deref().unwrap_or("")))
 }
 
-/// Gives the document its nominal size, a title and a description, and drops attributes that say nothing.
+/// Gives the document its nominal size, a title and a description, and drops attributes that say nothing and the round-off
+/// of sizes of fonts, which plotters divides by a factor that `style` multiplies them with.
 fn finish(raw: &str, id: &str, title: &str, description: &str, size: (f64, f64), below: &str) -> String {
     let body = raw.split_once(">\n").map_or(raw, |(_, body)| body);
     let body = body

@@ -18,7 +18,8 @@ pub struct Ledger {
     pub external_work: f64,
     /// Work of the history field.
     pub history_work: f64,
-    /// Kinetic energy lost between leaving the grid and arriving at the next.
+    /// Energy lost by the transfers of the updated frame between grid and points, and what conditions take
+    /// (see [`losses`](crate::updated_frame::losses)).
     pub transfer_loss: f64,
 }
 

@@ -55,7 +55,7 @@ impl IncompleteCholesky {
         let Self { grid, offsets, updates, factor } = self;
         let blocks = factor.par_chunks_mut(block).zip(matrix.coefficients().par_chunks(block));
         blocks.for_each(|(factor, matrix)| {
-            let (mut block, mut shift) = (matrix.to_vec(), 0.0);
+            let (mut block, mut shift) = (vec![0.0; matrix.len()], 0.0);
             while !factor_block(*grid, offsets, updates, shift, matrix, &mut block) && shift < LARGEST_SHIFT {
                 shift = (SHIFT_GROWTH * shift).max(FIRST_SHIFT);
             }

@@ -45,12 +45,13 @@
 //! | – | material points: layouts, tiles of spans | [`quadrature`], [`lattice`], [`shape`] |
 //! | – | several bodies, frictional contact, rigid bodies | [`updated_frame::field`], [`contact`] |
 //! | – | what the points take from the grid, and its losses | [`updated_frame::departure`], [`updated_frame::losses`] |
-//! | – | finite strain | [`hencky`] |
-//! | – | tractions, gravity, conditions on sides | [`loads`], [`constraints`] |
+//! | – | tractions, conditions on sides | [`loads`], [`constraints`] |
 //! | – | finite strain | [`hencky`], [`finite`] |
 //! | – | for verification: loads that vary in space, projection, elastostatics | [`forcing`], [`projection`], [`statics`] |
 //! | – | linear algebra of the phase field | [`stencil`], [`conjugate_gradients`], [`incomplete_cholesky`], [`preconditioner`], [`cholesky`] |
 //! | – | critical step, plan of steps and samples | [`critical_step`], [`time_plan`] |
+//! | – | breakdowns and their causes, checkpoints | [`error`], [`checkpoint`] |
+//! | – | eight spans side by side, and the instructions of the processor | [`lane`], [`spans`] |
 //! | – | energy ledger, pictures, points and spans for a look | [`energy`], [`picture`], [`inspection`], [`span_grid`] |
 //!
 //! Where the paper prints a slip, the module that uses the equation says so.
@@ -68,8 +69,8 @@
 //!
 //! # Not modelled yet
 //!
-//! Contact of a body with itself; general patches in the updated frame; the consistent mass matrix there or
-//! where a body cuts spans. [`validate::validate`] refuses a scene that asks for one of these.
+//! Contact of a body with itself, which no scene can ask for; general patches in the updated frame and the consistent mass
+//! matrix there or where a body cuts spans, which [`validate::validate`] refuses.
 //!
 //! # Example
 //!

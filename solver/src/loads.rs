@@ -1,4 +1,4 @@
-//! External loads: tractions carried by surface points, and gravity.
+//! External loads: tractions carried by surface points.
 
 use crate::patch::{BoundaryPoint, Patch};
 use crate::quadrature::Rule;

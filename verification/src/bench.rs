@@ -51,7 +51,7 @@ pub struct Settings {
     pub workspace: PathBuf,
     /// Folder for what a peer reads.
     pub out: PathBuf,
-    /// Command of a peer, if there is one.
+    /// Command of a peer, if there is one; it is then run whatever families are asked for.
     pub peer: Option<String>,
     /// Families to run; empty: all.
     pub families: Vec<String>,
@@ -94,6 +94,9 @@ pub enum BenchError {
     /// Reference data are wrong.
     #[error(transparent)]
     Reference(#[from] ReferenceError),
+    /// What is asked for, or a file it needs, is wrong.
+    #[error("{0}")]
+    Input(String),
     /// The program of a peer did not do its part.
     #[error("peer {command}: {message}")]
     Peer {
@@ -105,6 +108,11 @@ pub enum BenchError {
 }
 
 impl BenchError {
+    /// Something missing or impossible in what was given.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self::Input(message.into())
+    }
+
     /// A run that went wrong in its own words.
     pub fn other(message: impl Into<String>) -> Self {
         Self::Study(StudyError::Other(message.into()))
@@ -141,14 +149,19 @@ pub fn run(settings: &Settings, environment: Environment, tell: &dyn Fn(&str)) -
     let fem = plate::finite_elements(&settings.library()?);
     let mut records = Vec::new();
     for (name, family) in FAMILIES {
-        let wanted = settings.families.is_empty() || settings.families.iter().any(|f| f == name);
-        let possible = name != "peer" || settings.peer.is_some();
-        if wanted && possible {
+        let listed = settings.families.is_empty() || settings.families.iter().any(|f| f == name);
+        let wanted = if name == "peer" { settings.peer.is_some() } else { listed };
+        if wanted {
             tell(name);
             records.extend(family(settings)?);
         }
     }
     Ok(BenchSet { schema: SCHEMA.into(), environment, quick: settings.quick, records, peers, fem })
+}
+
+/// Largest absolute value: zero of none, not-a-number if one of them is.
+fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().map(f64::abs).fold(0.0, |most, value| if value > most || value.is_nan() { value } else { most })
 }
 
 /// Folder of the reference data with ratios to other codes.

@@ -102,6 +102,10 @@ fn every_form_of_a_key_is_read() {
         + "[contact]\nfriction = 0.65\n";
     let scene = read_scene(&Document::parse("forms.toml", &text).unwrap().root, "").unwrap();
     assert_eq!(scene.mesh.knots[0], [0.0, 0.0, 0.0, 0.025, 0.1 * 0.75, 0.1, 0.1, 0.1]);
+    let cut = text.replace("knots =", "subdivide = 2\nknots =");
+    let cut = read_scene(&Document::parse("cut.toml", &cut).unwrap().root, "").unwrap().mesh.knots;
+    assert_eq!(cut[0], [0.0, 0.0, 0.0, 0.0125, 0.025, 0.05, 0.1 * 0.75, 0.1 * 0.875, 0.1, 0.1, 0.1]);
+    assert_eq!(cut[1], [0.0, 0.0, 0.0, 0.02, 0.04, 0.04, 0.04]);
     assert_eq!(scene.analysis.transfer, Transfer::Xpic(5));
     assert_eq!(scene.contact, Some(Contact { friction: 0.65 }));
     assert_eq!(scene.bodies[0].tractions[1].edge, Edge::Segment([[0.0, 0.0], [0.05, 0.0]]));
@@ -131,6 +135,8 @@ const BROKEN: &[Broken] = &[
     ("cells  = [400, 160]", "weights = [1]", 7, "mesh.weights", &["does not go with a rectangle", "origin, size, cells, knots"]),
     ("cells  = [400, 160]", "cells = [4, 4]\nknots = [[0, 0, 1, 1], [0, 1]]", 7, "mesh.cells", &["remove one"]),
     ("cells  = [400, 160]", "knots = [[1, 1, 0, 0], [0, 1]]", 7, "mesh.knots", &["increasing"]),
+    ("cells  = [400, 160]", "cells = [4, 4]\nsubdivide = 2", 8, "mesh.subdivide", &["without knots", "more cells"]),
+    ("cells  = [400, 160]", "knots = [[0, 0, 0, 1, 2, 2, 2], [0, 0, 0, 1, 1, 1]]\nsubdivide = 60000", 8, "mesh.subdivide", &["120000 x 60000", "at most 100000"]),
     ("plane      = \"strain\"", "plane = \"strian\"", 10, "analysis.plane", &["did you mean \"strain\"", "\"stress\""]),
     ("\"80 us\"", "\"80 mm\"", 14, "analysis.end_time", &["is a length, expected a time", "\"80 us\""]),
     ("\"80 us\"", "\"80 usec\"", 14, "analysis.end_time", &["unknown unit \"usec\"", "\"80 us\""]),

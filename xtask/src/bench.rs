@@ -65,7 +65,11 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
 fn text(set: &BenchSet) -> String {
     let mut rows: Vec<(String, String)> = Vec::new();
     for ratio in report::ratios::found(Records(&set.records)) {
-        let word = ratio.holds().map_or("", |met| if met { ", target met" } else { ", target missed" });
+        let word = match (ratio.verified, ratio.holds()) {
+            (true, None) => String::new(),
+            (true, Some(_)) => format!(", target {}", ratio.word()),
+            (false, _) => format!(", {}", ratio.word()),
+        };
         rows.push((ratio.what, format!("{:.3}{word}", ratio.value.median)));
     }
     let rows: Vec<(&str, String)> = rows.iter().map(|(what, value)| (what.as_str(), value.clone())).collect();
@@ -89,6 +93,8 @@ impl From<BenchError> for Failure {
             BenchError::Study(StudyError::Breakdown(breakdown)) => Self::from(&breakdown),
             BenchError::Study(StudyError::Other(message)) => Self::new(Exit::BrokeDown, message),
             BenchError::Case(error) => error.into(),
+            BenchError::Input(message) => Self::new(Exit::BadInput, message)
+                .help("verification/cases and reference-data of the workspace are read"),
             BenchError::Reference(error) => Self::new(Exit::BadInput, error.to_string()),
             peer @ BenchError::Peer { .. } => Self::new(Exit::BadInput, peer.to_string())
                 .help("it must run by itself with a folder as its last argument, and end with status 0"),

@@ -23,8 +23,8 @@ const PHASE_FIELD: f64 = 150e-9;
 
 /// Points or control points up to which a scene is made ready to be checked: seconds, and less than 1 GiB.
 const MOST_PREPARED: usize = 1_000_000;
-/// Critical step over the time a dilatational wave takes to cross the smallest span, roughly; and memory of a point and
-/// of a control point, bytes, with and without a phase field.
+/// Critical step over the time a dilatational wave takes to cross the smallest span, roughly; memory of a point, bytes, without and
+/// with a phase field; and of a control point, bytes, of the mechanics and what a phase field adds.
 const CRITICAL: f64 = 0.5;
 const BYTES_OF_POINT: [usize; 2] = [60, 250];
 const BYTES_OF_CONTROL_POINT: [usize; 2] = [150, 500];

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::cli::Common;
 use crate::exit::Exit;
 
-/// Writes a result to standard output. A reader that went away ends the program quietly.
+/// Writes a result to standard output. A reader that went away is no error.
 pub fn result(text: &str) {
     let mut out = stdout().lock();
     if let Err(error) = out.write_all(text.as_bytes()).and_then(|()| out.flush())

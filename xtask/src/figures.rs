@@ -15,7 +15,7 @@ use crate::environment::environment;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::report::unreadable;
-use crate::verify::{Watch, cases_folder};
+use crate::verify::{Watch, cases_folder, verdict};
 use crate::{console, folders};
 
 /// Arguments of `figures`.
@@ -32,22 +32,27 @@ pub struct Args {
     from: Option<PathBuf>,
 }
 
-/// Writes each figure as SVG with its numbers, caption and provenance.
+/// Writes each figure as SVG with its numbers, caption and provenance. Where the cases were run for it, a check that does not hold
+/// or a run that broke down decides the exit status as in `verify`.
 ///
 /// # Errors
 /// Unknown figures, results that do not hold them, files that cannot be read or written.
 pub fn figures(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let wanted = Wanted::of(args)?;
     let folder = folders::output(common, "figures")?;
-    let (source, results) = match &args.from {
-        Some(from) => (from.clone(), read_results(from).map_err(|error| unreadable(error, from))?),
+    let (source, results, exit) = match &args.from {
+        Some(from) => (from.clone(), read_results(from).map_err(|error| unreadable(error, from))?, Exit::Done),
         None => {
             let source = folder.join("results");
             let results = run(&wanted.paper, &source, common)?;
-            (source, results)
+            let exit = verdict(&results.records);
+            if exit != Exit::Done {
+                console::note(common, &format!("warning: not every check holds: see {}", source.display()));
+            }
+            (source, results, exit)
         }
     };
-    let mut found = wanted.find(&results, &source)?;
+    let mut found = wanted.find(&results, &source, args.from.is_none())?;
     found.sort_by(|a, b| a.0.cmp(&b.0));
     let mut files = Vec::new();
     for (name, figure) in &found {
@@ -59,7 +64,7 @@ pub fn figures(args: &Args, common: &Common) -> Result<Exit, Failure> {
         Format::Json => console::json(&json!({ "paper": args.paper, "files": files })),
         Format::Text => console::result(&(files.join("\n") + "\n")),
     }
-    Ok(Exit::Done)
+    Ok(exit)
 }
 
 /// What is asked for.
@@ -88,16 +93,21 @@ impl Wanted {
     }
 
     /// Name and figure of all that is wanted.
-    fn find(&self, set: &ResultSet, source: &Path) -> Result<Vec<(String, Figure)>, Failure> {
+    fn find(&self, set: &ResultSet, source: &Path, fresh: bool) -> Result<Vec<(String, Figure)>, Failure> {
         let missing = |what: String, help: String| {
-            Failure::new(Exit::BadInput, format!("the results in {} hold no figure {what}", source.display()))
-                .help(help)
+            let exit = if fresh { verdict(&set.records).max(Exit::BadInput) } else { Exit::BadInput };
+            Failure::new(exit, format!("the results in {} hold no figure {what}", source.display())).help(help)
         };
         let mut found = Vec::new();
         for figure in &self.paper {
             let parts = figure.find(set);
             if parts.is_empty() {
-                let help = format!("it needs {}; leave out --from to run what is needed", figure.cases().join(", "));
+                let cases = figure.cases().join(", ");
+                let help = if fresh {
+                    format!("it is drawn from {cases}, which did not get that far")
+                } else {
+                    format!("it needs {cases}; leave out --from to run what is needed")
+                };
                 return Err(missing(figure.to_string(), help));
             }
             found.extend(parts);

@@ -74,7 +74,7 @@ fn stress_svg(frame: &Picture, scale: &StressScale, id: &str, title: &str) -> Re
         id: id.to_string(),
         suite: String::new(),
         title: format!("{title}, largest principal stress at {} µs", pretty(1e6 * frame.time, 4)),
-        caption: "The colour bar is common to all frames of the run; 0.5 % of the pixels lie beyond either end."
+        caption: "The colour bar is common to all frames of the run; at most 0.5 % of the pixels of all frames lie beyond either end."
             .to_string(),
         deviations: Vec::new(),
         body,

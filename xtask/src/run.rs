@@ -14,7 +14,7 @@ use fisura_verification::scene_run::{
 use indicatif::ProgressBar;
 
 use crate::cli::{Common, Format, SceneArgs};
-use crate::environment::environment;
+use crate::environment::{changes, environment};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::{console, folders, interrupt, pictures, progress, scene_input, vtk};
@@ -80,7 +80,7 @@ pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
     for warning in run.summary.warnings.iter().skip(file.warnings.len()) {
         console::note(common, &format!("warning: {warning}"));
     }
-    let mut files = write(&run, &folder, common)?;
+    let (mut files, undrawn) = write(&run, &folder)?;
     match &vtk {
         Some(vtk) => files.extend(vtk.after(run.frames.len())),
         None if goes_on => vtk::remove(&folder),
@@ -93,6 +93,9 @@ pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
     match &run.breakdown {
         None => {
             discard_checkpoint(&folder);
+            if !undrawn.is_empty() {
+                return Err(Failure::new(Exit::BadInput, format!("not drawn: {}", undrawn.join("; "))));
+            }
             vtk.and_then(|vtk| vtk.failed).map_or(Ok(Exit::Done), |error| Err(error.into()))
         }
         Some(breakdown) => {
@@ -145,7 +148,7 @@ fn simulate(
 fn program() -> String {
     let workspace = folders::workspace();
     let found = if workspace.as_os_str().is_empty() { Default::default() } else { environment(&workspace) };
-    let changes = if found.dirty { " with changes" } else { "" };
+    let changes = if found.dirty { format!(" with changes {}", changes(&workspace)) } else { String::new() };
     let commit = if found.commit.is_empty() { String::new() } else { format!(" of commit {}{changes}", found.commit) };
     format!("fisura {}{commit}", env!("CARGO_PKG_VERSION"))
 }
@@ -163,20 +166,21 @@ fn discard_checkpoint(folder: &Path) {
     }
 }
 
-/// Writes all files of a run in place of those of the run before; names them.
-fn write(run: &SceneRun, folder: &Path, common: &Common) -> Result<Vec<String>, Failure> {
+/// Writes all files of a run in place of those of the run before; names them, and what cannot be drawn, with the reason.
+fn write(run: &SceneRun, folder: &Path) -> Result<(Vec<String>, Vec<String>), Failure> {
     remove_files_of_earlier_run(folder);
     let mut files: Vec<String> = run.write(folder)?.into_iter().map(String::from).collect();
+    let mut undrawn = Vec::new();
     for (name, drawing) in pictures::draw(run) {
         match drawing {
             Ok(svg) => {
                 replace_file(&folder.join(&name), |part| Ok(fs::write(part, svg)?))?;
                 files.push(name);
             }
-            Err(error) => console::note(common, &format!("warning: {name} is not drawn: {error}")),
+            Err(error) => undrawn.push(format!("{name}: {error}")),
         }
     }
-    Ok(files)
+    Ok((files, undrawn))
 }
 
 /// Pictures of another run beside this one's history would mislead. Only a folder with a summary is one of ours.

@@ -173,7 +173,8 @@ fn print(results: &ResultSet, common: &Common) {
     }
 }
 
-fn verdict(records: &[Record]) -> Exit {
+/// Exit status that the records deserve.
+pub fn verdict(records: &[Record]) -> Exit {
     match worst(records) {
         Some(Status::Error) => Exit::BrokeDown,
         Some(Status::Fail) => Exit::CheckFailed,

@@ -11,6 +11,13 @@
 #   array=$(sbatch --parsable xtask/templates/slurm.sh --tier full)
 #   sbatch --dependency=afterok:$array --wrap 'cargo xtask merge target/fisura/array/part-* --out target/fisura/array/merged'
 #
+# Run on one node with Slurm 22.05 from Debian's packages (slurm-wlm), where /etc/slurm/slurm.conf names the controller and
+#
+#   SelectType=select/cons_tres
+#   SelectTypeParameters=CR_CPU
+#   NodeName=<host> CPUs=2 State=UNKNOWN
+#   PartitionName=main Nodes=<host> Default=YES MaxTime=INFINITE State=UP
+#
 # A slice with a failed check ends with 1; it is merged all the same, and the merge gives the verdict.
 set -euo pipefail
 status=0

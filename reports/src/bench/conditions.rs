@@ -35,9 +35,14 @@ pub fn threads(records: Records) -> Vec<Exhibit> {
         let (one, many) = (of(scene, 1)?, of(scene, most)?);
         let gain = one.ns_per_unit.median / many.ns_per_unit.median;
         let best = one.ns_per_unit.min / many.ns_per_unit.min;
-        let bits = if many.verified { "with the same bits" } else { "with DIFFERENT bits" };
         let (gain, best) = (pretty(gain, 3), pretty(best, 3));
-        Some(format!("{}: {} take {gain} times less wall time {bits} (least times: {best}).", one.label, count(&most)))
+        (most > 1).then(|| {
+            format!(
+                "{}: {} take {gain} times less wall time with the same bits (least times: {best}).",
+                one.label,
+                count(&most)
+            )
+        })
     };
     let reading = scenes.iter().filter_map(sentence).collect::<Vec<_>>().join(" ");
     let caption =
@@ -74,7 +79,9 @@ pub fn ceilings(records: Records) -> Vec<Exhibit> {
             ),
         ]);
         let degree = sweep.number("degree").unwrap_or(f64::NAN);
-        notes.push(format!("the sweep of p = {degree} takes {} times its ceiling, {bound}", plain(distance, 3)));
+        let beyond = if distance < 1.0 { "; what is measured as the ceiling is none" } else { "" };
+        let distance = plain(distance, 3);
+        notes.push(format!("the sweep of p = {degree} takes {distance} times its ceiling, {bound}{beyond}"));
     }
     let moving =
         records.below("ceilings/elastic-sweep/").iter().find_map(|r| r.number("bytes_per_point_of_moving_points"));
@@ -101,7 +108,7 @@ fn rate(record: &BenchRecord, unit: &str) -> Vec<String> {
 
 /// Time and memory of scenes by what they model.
 pub fn scenes(records: Records) -> Vec<Exhibit> {
-    let all = records.below("scenes/");
+    let all: Vec<&BenchRecord> = records.0.iter().filter(|record| record.family == "scenes").collect();
     if all.is_empty() {
         return Vec::new();
     }
@@ -166,7 +173,7 @@ pub fn scenes(records: Records) -> Vec<Exhibit> {
 pub fn peers(set: &BenchSet) -> Vec<Exhibit> {
     let records = Records(&set.records);
     let mut exhibits = Vec::new();
-    if let (Some(ours), Some(theirs)) = (records.get("peer/fisura"), records.get("peer/command")) {
+    if let (Some(ours), Some(theirs)) = (records.get("peer/fisura"), records.find("peer/command")) {
         let row = |record: &BenchRecord| {
             let Spread { median, min, max } = record.ns_per_unit;
             let range = format!("{} to {}", plain(min, 3), plain(max, 3));

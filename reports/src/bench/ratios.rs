@@ -22,6 +22,8 @@ struct Ratio {
     above: &'static [(f64, &'static str)],
     below: &'static [(f64, &'static str)],
     target: Target,
+    /// Times are those of a step of all points, not per point: where the numbers of points differ.
+    whole: bool,
 }
 
 const fn ratio(
@@ -30,7 +32,7 @@ const fn ratio(
     below: &'static [(f64, &'static str)],
     target: Target,
 ) -> Ratio {
-    Ratio { what, above, below, target }
+    Ratio { what, above, below, target, whole: false }
 }
 
 const KERNEL: Target = Target::AtMost(1.4);
@@ -128,12 +130,13 @@ const RATIOS: [Ratio; 17] = [
         &[(1.0, "scenes/total/elastic")],
         Target::None,
     ),
-    ratio(
-        "the whole plate over half of it, time per step",
-        &[(1.0, "scenes/total/the-whole-plate")],
-        &[(1.0, "scenes/total/half-of-the-plate")],
-        Target::None,
-    ),
+    Ratio {
+        what: "the whole plate over half of it, time per step",
+        above: &[(1.0, "scenes/total/the-whole-plate")],
+        below: &[(1.0, "scenes/total/half-of-the-plate")],
+        target: Target::None,
+        whole: true,
+    },
 ];
 
 /// A ratio with its spread and whether its target is met; `verified` if all answers behind it hold.
@@ -141,7 +144,7 @@ const RATIOS: [Ratio; 17] = [
 pub struct Found {
     /// In words.
     pub what: String,
-    /// Value: round by round where all have as many samples, else of medians alone.
+    /// Value: of the ratios of all rounds where all records have as many, else of medians alone.
     pub value: Spread,
     /// Target.
     pub target: Target,
@@ -150,6 +153,16 @@ pub struct Found {
 }
 
 impl Found {
+    /// Verdict in words; a dash where there is no target.
+    pub fn word(&self) -> &'static str {
+        match (self.verified, self.holds()) {
+            (false, _) => "answer does not hold",
+            (true, Some(true)) => "met",
+            (true, Some(false)) => "missed",
+            (true, None) => "–",
+        }
+    }
+
     /// Whether the median meets the target, if there is one.
     pub fn holds(&self) -> Option<bool> {
         match self.target {
@@ -160,35 +173,32 @@ impl Found {
     }
 }
 
-/// All ratios whose records are there.
+/// All ratios whose records are there and took any time.
 pub fn found(records: Records) -> Vec<Found> {
     RATIOS.iter().filter_map(|ratio| value(ratio, records)).collect()
 }
 
 fn value(ratio: &Ratio, records: Records) -> Option<Found> {
     let terms = |terms: &[(f64, &str)]| -> Option<Vec<(f64, &BenchRecord)>> {
-        terms.iter().map(|(sign, id)| Some((*sign, records.get(id)?))).collect()
+        terms.iter().map(|(sign, id)| Some((*sign, records.find(id)?))).collect()
     };
     let (above, below) = (terms(ratio.above)?, terms(ratio.below)?);
     let all = || above.iter().chain(&below).map(|(_, record)| *record);
     let rounds = above[0].1.samples.len();
     let paired = rounds > 0 && all().all(|record| record.samples.len() == rounds);
-    // per step of all points, where the numbers of points differ
-    let whole = ratio.what.contains("time per step");
-    let unit = |record: &BenchRecord| if whole { record.work.amount } else { 1.0 };
+    let unit = |record: &BenchRecord| if ratio.whole { record.work.amount } else { 1.0 };
     let sum = |terms: &[(f64, &BenchRecord)], time: &dyn Fn(&BenchRecord) -> f64| {
         terms.iter().map(|(sign, record)| sign * unit(record) * time(record)).sum::<f64>()
     };
     let quotient = |time: &dyn Fn(&BenchRecord) -> f64| sum(&above, time) / sum(&below, time);
-    let of_medians = quotient(&|record| record.ns_per_unit.median);
     let value = if paired {
-        let spread = Spread::of((0..rounds).map(|round| quotient(&|record| record.times()[round])));
-        Spread { median: of_medians.clamp(spread.min, spread.max), ..spread }
+        Spread::of((0..rounds).map(|round| quotient(&|record| record.times()[round])))
     } else {
-        Spread { median: of_medians, min: of_medians, max: of_medians }
+        Spread::of([quotient(&|record| record.ns_per_unit.median)])
     };
     let verified = all().all(|record| record.verified);
-    Some(Found { what: ratio.what.into(), value, target: ratio.target, verified })
+    let found = Found { what: ratio.what.into(), value, target: ratio.target, verified };
+    [value.median, value.min, value.max].iter().all(|v| v.is_finite()).then_some(found)
 }
 
 /// The table of targets.
@@ -205,19 +215,13 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
             Target::AtLeast(limit) => format!("≥ {}", plain(limit, 3)),
             Target::None => "–".into(),
         };
-        let verdict = match (ratio.verified, ratio.holds()) {
-            (false, _) => "answer does not hold",
-            (true, Some(true)) => "met",
-            (true, Some(false)) => "missed",
-            (true, None) => "–",
-        };
         let Spread { median, min, max } = ratio.value;
         vec![
             ratio.what.clone(),
             plain(median, 3),
             format!("{} to {}", plain(min, 3), plain(max, 3)),
             target,
-            verdict.into(),
+            ratio.word().into(),
         ]
     });
     vec![Exhibit::Grid(Grid {
@@ -253,11 +257,15 @@ mod tests {
             record("stages/p2/minimal-step", &[1.0, 1.0, 4.0]),
         ];
         let ratio = first(&records);
-        assert_eq!(ratio.value, Spread { median: 2.0, min: 0.75, max: 2.0 });
-        assert_eq!(ratio.holds(), Some(false));
+        assert_eq!(ratio.value, Spread { median: 1.0, min: 0.75, max: 2.0 });
+        assert_eq!(ratio.holds(), Some(true));
         records[1].samples.pop();
         records[1].summarise();
-        assert_eq!(first(&records).value, Spread { median: 2.0, min: 2.0, max: 2.0 });
+        let ratio = first(&records);
+        assert_eq!((ratio.value, ratio.word()), (Spread { median: 2.0, min: 2.0, max: 2.0 }, "missed"));
+        records[1].samples.clear();
+        records[1].summarise();
+        assert!(found(Records(&records)).is_empty(), "nothing is a multiple of no time");
     }
 
     #[test]
@@ -265,7 +273,7 @@ mod tests {
         let mut records = vec![record("stages/p2/elastic-step", &[1.0]), record("stages/p2/minimal-step", &[1.0])];
         assert_eq!(first(&records).holds(), Some(true));
         records[0].verified = false;
-        assert_eq!(first(&records).holds(), Some(false));
+        assert_eq!((first(&records).holds(), first(&records).word()), (Some(false), "answer does not hold"));
         assert!(found(Records(&[])).is_empty());
     }
 }

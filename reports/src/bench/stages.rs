@@ -61,22 +61,30 @@ fn bars(
         series: DEGREES.map(|p| format!("p = {p}")).to_vec(),
         rows: names.iter().map(row).collect(),
     };
-    let caption = match names.first().and_then(|name| of(DEGREES[0], name)) {
-        Some(first) => conditions(first),
-        None => String::new(),
-    };
+    let drawn: Vec<&BenchRecord> = names.iter().flat_map(|name| DEGREES.map(|p| of(p, name))).flatten().collect();
+    let caption = conditions(&drawn);
     let svg = render_bars(&chart);
     Exhibit::Plot(Plot { id: chart.id, title: chart.title, caption, reading, svg })
 }
 
-fn conditions(record: &BenchRecord) -> String {
-    let what = match (record.number("cells"), record.number("unknowns")) {
-        (Some(n), _) => format!("block of {n} × {n} spans with 2 × 2 points"),
-        (None, Some(n)) => format!("{n} unknowns"),
-        (None, None) => "block of points".into(),
+/// What the records have in common, or each value of it.
+fn conditions(drawn: &[&BenchRecord]) -> String {
+    let all = |values: Vec<f64>| {
+        let mut values = values;
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        values.iter().map(|v| v.to_string()).collect::<Vec<_>>().join(" or ")
     };
-    let samples = record.samples.len();
-    format!("{what}, one thread, processor time; bars: median of {samples} rounds, whiskers: least and largest")
+    let numbers = |name: &str| all(drawn.iter().filter_map(|record| record.number(name)).collect());
+    let what = match (numbers("cells"), numbers("unknowns")) {
+        (n, unknowns) if n.is_empty() => format!("{unknowns} unknowns"),
+        (n, _) => {
+            let points = numbers("points_per_direction");
+            format!("block of {n} × {n} spans with {points} × {points} points")
+        }
+    };
+    let rounds = all(drawn.iter().map(|record| record.samples.len() as f64).collect());
+    format!("{what}, one thread, processor time; bars: median of {rounds} rounds, whiskers: least and largest")
 }
 
 fn median(records: Records, id: &str) -> Option<f64> {
@@ -118,7 +126,6 @@ fn reading_of_steps(records: Records) -> String {
 /// The part of the phase field in a step of the plate.
 fn shares(records: Records) -> Option<Exhibit> {
     let (step, field) = (records.get("plate/share/step")?, records.get("plate/share/phase-field")?);
-    let mechanics = Spread::of(step.times().iter().zip(field.times()).map(|(step, field)| step - field));
     let share = field.ns_per_unit.median / step.ns_per_unit.median;
     let row = |name: &str, spread: Spread| {
         let range = format!("{} to {}", plain(spread.min, 3), plain(spread.max, 3));
@@ -130,7 +137,11 @@ fn shares(records: Records) -> Option<Exhibit> {
         rows: vec![
             row("the whole step", step.ns_per_unit),
             row("phase field: assembly and solve", field.ns_per_unit),
-            row("everything else", mechanics),
+            vec![
+                "everything else: the difference of the medians".into(),
+                plain(step.ns_per_unit.median - field.ns_per_unit.median, 3),
+                "–".into(),
+            ],
         ],
         note: format!(
             "{} points, one thread, {} steps; the phase field is {} % of the median step. {}.",

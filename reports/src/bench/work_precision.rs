@@ -89,9 +89,8 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
             let title = format!("Standing wave, {group}: error against {axis}");
             let chart = Chart { id, title, lines: &lines, front: Some(&front), fem: &[], cost, axis, uncertainty: 0.0 };
             let reading = reading(&lines, &front, cost);
-            exhibits.push(
-                chart.plot("2-D standing wave on rollers, one thread; bars: least and largest of the rounds", reading),
-            );
+            let bars = if cost == Cost::Time { "; bars: least and largest of the rounds" } else { "" };
+            exhibits.push(chart.plot(&format!("2-D standing wave on rollers, one thread{bars}"), reading));
         }
     }
     exhibits
@@ -131,7 +130,10 @@ fn tolerances(records: Records, axis: &'static str) -> Option<Exhibit> {
     let found = records.below("plate/tolerance/");
     let lines = lines(found.iter().copied());
     let reference = found.first()?.error.as_ref()?;
-    let caption = format!("Half plate to 80 µs; {} from a run with {}", reference.quantity, reference.reference);
+    let caption = format!(
+        "Half plate to 80 µs; {} (kinetic, elastic, fracture) from a run with {}",
+        reference.quantity, reference.reference
+    );
     let word = |r: &&BenchRecord| {
         let tolerance = r.id.rsplit('/').next().unwrap_or_default();
         format!("{tolerance}: {} % in {} s", pretty(100.0 * error(r), 2), pretty(Cost::Time.of(r).median, 3))
@@ -265,11 +267,15 @@ fn reading_of_plate(lines: &[Line], fem: &[CostPoint]) -> String {
     };
     let sentence = |point: &CostPoint| match best(point.error) {
         Some((label, seconds)) => format!(
-            "At the error of {} % that the finite elements bought with {} s, {label} takes {} s: {} times less.",
+            "At the error of {} % that the finite elements bought with {} s, {label} takes {} s: {}.",
             pretty(100.0 * point.error, 2),
             pretty(point.cpu_s, DIGITS),
             pretty(seconds, 3),
-            pretty(point.cpu_s / seconds, 2)
+            if seconds <= point.cpu_s {
+                format!("{} times less", pretty(point.cpu_s / seconds, 2))
+            } else {
+                format!("{} times more", pretty(seconds / point.cpu_s, 2))
+            }
         ),
         None => {
             let all = lines.iter().flat_map(|line| line.points(Cost::Time).into_iter().map(move |p| (line, p)));
@@ -285,10 +291,9 @@ fn reading_of_plate(lines: &[Line], fem: &[CostPoint]) -> String {
             format!("No curve here crosses the finite elements' error of {} %:{least}", pretty(100.0 * point.error, 2))
         }
     };
-    let mut sentences: Vec<String> = fem.iter().map(sentence).collect();
     if fem.is_empty() {
-        sentences.push("There is nothing to compare with.".into());
+        return "There is nothing to compare with.".into();
     }
-    sentences.push("The machines differ (see the legend): read the factors as orders.".into());
-    sentences.join(" ")
+    let sentences: Vec<String> = fem.iter().map(sentence).collect();
+    format!("{} The machines differ (see the legend): read the factors as orders.", sentences.join(" "))
 }

@@ -20,7 +20,7 @@ use crate::spline::{MAX_ORDER, SplineSpace};
 use crate::stencil::{Offset, Stencil};
 
 /// Its weight α, against that of the body.
-const WEIGHT: f64 = 1e-6;
+pub const WEIGHT: f64 = 1e-6;
 
 /// Integrals over the whole part of the patch.
 #[derive(Debug, Clone)]
@@ -95,53 +95,5 @@ impl Integrals {
             }
         }
         integrals
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::assembly::{Constant, Form, add_form};
-    use crate::lattice::Lattice;
-    use crate::scene::{Body, Mesh, Shape};
-
-    /// Points that fill the patch, with weights that integrate its functions exactly, make the same system times α.
-    #[test]
-    fn it_is_a_body_that_fills_the_patch() {
-        for degree in 1..=4 {
-            let mesh = Mesh::uniform([degree; 2], [0.1, -0.2], [1.2, 0.7], [6, 9]);
-            let patch = Patch::new(&mesh);
-            let body = Body {
-                name: String::new(),
-                material: String::new(),
-                shape: Shape::Patch,
-                particles_per_cell: [degree + 1; 2],
-                layout: Layout::Gauss,
-                velocity: [0.0; 2],
-                angular_velocity: 0.0,
-                rigid: false,
-                tractions: vec![],
-                cracks: vec![],
-            };
-            let (lattice, diffusion) = (Lattice::new(&patch, &body), 0.37);
-            let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
-            let mut expected = matrix.clone();
-            add_form(&mut expected, &lattice, Form::Mass, &Constant(WEIGHT));
-            add_form(&mut expected, &lattice, Form::Diffusion, &Constant(WEIGHT * diffusion));
-            let mut load = vec![f64::NAN; lattice.grid.len()];
-            FictitiousMaterial::new(&patch, diffusion).begin(&mut matrix, &mut load);
-            let expected_load = lattice.integrate(|_, _, _| WEIGHT);
-            let largest = expected.coefficients().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-            for (row, offset) in (0..9).flat_map(|row| (0..matrix.offsets().len()).map(move |offset| (row, offset))) {
-                for column in 0..lattice.grid.columns {
-                    let at = lattice.grid.index(column, 0);
-                    let (found, expected) = (matrix.row(row, offset)[at], expected.row(row, offset)[at]);
-                    assert!((found - expected).abs() <= 1e-14 * largest, "p = {degree}: {found} for {expected}");
-                }
-            }
-            for at in lattice.grid.indices() {
-                approx::assert_relative_eq!(load[at], expected_load[at], max_relative = 1e-13);
-            }
-        }
     }
 }

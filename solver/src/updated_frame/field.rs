@@ -1,7 +1,7 @@
 //! One body of the updated frame: its points and its own nodal fields, a discrete field on the shared patch.
 //!
 //! The nodal fields cover the part of the patch the body is in and a few spans around it; the part follows the body
-//! ([`Self::follow`](DiscreteField)). Bodies know nothing of each other: see [`crate::contact`].
+//! ([`part`](super::part)). Bodies know nothing of each other: see [`crate::contact`].
 
 use std::sync::Arc;
 

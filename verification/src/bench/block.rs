@@ -14,7 +14,7 @@ use fisura::split::EnergySplit;
 use fisura::stencil::Stencil;
 use fisura::sweep::{Fields, StripForces, sweep};
 
-use super::BenchError;
+use super::{BenchError, largest};
 use crate::plain_scene::PlainScene;
 
 /// Span length, m: the length scale.
@@ -173,7 +173,7 @@ impl Block {
             let (sum, size) = component.iter().fold((0.0, 0.0), |(s, a), f| (s + f, a + f.abs()));
             f64::abs(sum) / size
         };
-        forces.iter().map(imbalance).fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
+        largest(forces.iter().map(imbalance))
     }
 
     /// The whole phase-field matrix.

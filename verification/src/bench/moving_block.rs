@@ -14,7 +14,7 @@ use fisura::updated_frame::windows::{cut, scatter};
 use rayon::prelude::*;
 
 use super::block::{DENSITY, elastic_scene};
-use super::{BenchError, minimal::Minimal};
+use super::{BenchError, largest, minimal::Minimal};
 
 /// An elastic block in the updated frame after a few steps.
 pub struct MovingBlock {
@@ -141,14 +141,13 @@ impl MovingBlock {
         again.points_to_grid();
         again.grid(0.0);
         let difference = |d: usize| largest_difference(&again.nodes.acceleration[d], &self.nodes.acceleration[d]);
-        let size = self.nodes.acceleration.iter().flatten().fold(0.0, |m: f64, a| m.max(a.abs()));
-        difference(0).max(difference(1)) / size
+        largest([difference(0), difference(1)]) / largest(self.nodes.acceleration.iter().flatten().copied())
     }
 }
 
 /// Largest absolute difference of two fields.
 fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, |m, d| if d > m || d.is_nan() { d } else { m })
+    largest(a.iter().zip(b).map(|(a, b)| a - b))
 }
 
 /// The scene after some steps from [`velocity`], and the length of its steps, s.
@@ -188,14 +187,13 @@ pub fn minimal_deviation<const P: usize>(points: usize, cells: usize, steps: usi
         let left = part.spaces[d].spans()[0].left;
         whole.spaces[d].spans().iter().position(|span| span.left == left).unwrap_or(0)
     });
-    let (mut difference, mut size) = (0.0_f64, 0.0_f64);
+    let (mut difference, mut size) = (0.0, 0.0);
     for at in nodes.grid.indices() {
         let (column, row) = (nodes.grid.column_of(at) + first[0], nodes.grid.row_of(at) + first[1]);
         let other = minimal.acceleration(column, row);
         for d in 0..2 {
             let own = nodes.acceleration[d][at];
-            difference = difference.max((own - other[d]).abs());
-            size = size.max(own.abs());
+            (difference, size) = (largest([difference, own - other[d]]), largest([size, own]));
         }
     }
     Ok(difference / size)

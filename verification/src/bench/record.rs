@@ -174,11 +174,6 @@ impl BenchRecord {
         self.parameters.get(name)?.as_f64()
     }
 
-    /// Particle-steps of one sample, if its work is counted in them.
-    pub fn particle_steps(&self) -> Option<f64> {
-        (self.work.unit == "particle-step").then_some(self.work.amount)
-    }
-
     /// Spreads of the samples.
     pub fn summarise(&mut self) {
         self.wall_s = Spread::of(self.samples.iter().map(|s| s.wall_s));

@@ -71,7 +71,8 @@ impl System {
         let mut cholesky = SparseCholesky::default();
         let singular = || BenchError::other("the matrix of the phase field is not positive definite");
         cholesky.solve(matrix, load, &mut self.start.clone()).ok_or_else(singular)?;
-        let memory = [factor.bytes() + workspace.bytes(), 5 * 8 * load.len(), cholesky_bytes(matrix)?];
+        // of the solver alone: neither the matrix nor the load and the solution
+        let memory = [factor.bytes() + workspace.bytes(), 4 * 8 * load.len(), cholesky_bytes(matrix)?];
         let incomplete: Solver = Box::new(move |x| {
             factor.renew(matrix);
             workspace.solve(matrix, &factor, load, x, TOLERANCE, LIMIT).iterations

@@ -15,7 +15,7 @@ use super::block::{Block, elastic_scene};
 use super::moving_block::{MovingBlock, minimal, minimal_deviation, moving_scene};
 use super::record::{BenchRecord, Sample};
 use super::timing::{Contestant, Stopwatch, pool, round_robin, time};
-use super::{BenchError, Settings};
+use super::{BenchError, Settings, largest};
 
 /// Points per span and direction.
 const POINTS: usize = 2;
@@ -54,7 +54,11 @@ fn phases<const P: usize>(settings: &Settings) -> Result<Vec<BenchRecord>, Bench
     contestants.extend(steps::<P>(&block, cells)?);
     let mut records = round_robin(contestants, settings.rounds(), settings.budget())?;
     for record in &mut records {
-        record.parameters.extend([("degree".to_string(), P.into()), ("cells".to_string(), cells.into())]);
+        record.parameters.extend([
+            ("degree".to_string(), P.into()),
+            ("cells".to_string(), cells.into()),
+            ("points_per_direction".to_string(), POINTS.into()),
+        ]);
     }
     Ok(records)
 }
@@ -139,8 +143,10 @@ fn phase_field<'a, const P: usize>(block: &'a Block) -> Result<Vec<Contestant<'a
         let run = move |_: &mut BenchRecord| {
             let mut field = start.clone();
             let watch = Stopwatch::start();
-            let _ = black_box(field.solve(&block.lattice, &history));
-            Ok(watch.read())
+            let solved = black_box(field.solve(&block.lattice, &history));
+            let sample = watch.read();
+            solved.map_err(|_| BenchError::other("the phase field does not converge"))?;
+            Ok(sample)
         };
         contestants.push(Contestant { record: of_solve, run: Box::new(run) });
     }
@@ -203,13 +209,11 @@ fn steps<'a, const P: usize>(block: &'a Block, cells: usize) -> Result<Vec<Conte
         of_step.memory_bytes = (extent.mechanics_bytes + extent.phase_field_bytes) as u64;
         let closure = sample.closure.abs() / sample.largest_term();
         of_step.verify_at_most("closure of the ledger over the largest term", closure, 1e-11);
-        contestants.push(Contestant::short(of_step, move || {
-            simulation.step().expect("a step after many like it");
-        }));
+        contestants.push(Contestant::steps(of_step, simulation)?);
     }
     let (mut kernel, dt) = minimal::<P>(POINTS, cells)?;
     let mut of_kernel = record::<P>("minimal-step", "elastic step, minimal kernel", kernel.count());
-    let deviation = minimal_deviation::<P>(POINTS, SMALL, RUN_UP)?.max(sweep_deviation::<P>()?);
+    let deviation = largest([minimal_deviation::<P>(POINTS, SMALL, RUN_UP)?, sweep_deviation::<P>()?]);
     of_kernel.verify_at_most("accelerations against the solver's, both frames", deviation, 1e-10);
     (0..RUN_UP).for_each(|_| kernel.step(dt));
     contestants.push(Contestant::short(of_kernel, move || kernel.step(dt)));
@@ -228,12 +232,12 @@ fn sweep_deviation<const P: usize>() -> Result<f64, BenchError> {
     let frame = frame.map_err(|_| BenchError::other("the block cannot be started"))?;
     let (mut kernel, _) = minimal::<P>(POINTS, SMALL)?;
     kernel.strain_by(|column, row| [0, 1].map(|d: usize| block.displacement[d][grid.index(column, row)]));
-    let (mut difference, mut size) = (0.0_f64, 0.0_f64);
+    let (mut difference, mut size) = (0.0, 0.0);
     for at in grid.indices().filter(|&at| frame.mass().moves(at)) {
         let other = kernel.acceleration(grid.column_of(at), grid.row_of(at));
         for d in 0..2 {
             let own = -forces[d][at] / frame.mass().row_sums()[at];
-            (difference, size) = (difference.max((own - other[d]).abs()), size.max(own.abs()));
+            (difference, size) = (largest([difference, own - other[d]]), largest([size, own]));
         }
     }
     Ok(difference / size)

@@ -11,6 +11,9 @@ use super::record::{BenchRecord, Clock};
 use super::timing::{Stopwatch, pool};
 use super::{BenchError, Settings};
 
+/// Largest closure of the ledger over its largest term, as for the plate.
+const CLOSURE: f64 = 1e-3;
+
 /// A scene on its way with some number of threads.
 struct Runner {
     pool: ThreadPool,
@@ -69,8 +72,12 @@ fn scaled(
     }
     let first = bits(&runners[0].simulation);
     let finish = |mut runner: Runner| {
-        let same = bits(&runner.simulation) == first;
-        runner.record.verify(same, "displacement and phase field are the same bits as with one thread");
+        let sample = runner.simulation.sample();
+        let closure = sample.closure.abs() / sample.largest_term();
+        runner.record.verify_at_most("closure of the ledger over the largest term", closure, CLOSURE);
+        if bits(&runner.simulation) != first {
+            runner.record.verify(false, "displacement and phase field are not the same bits as with one thread");
+        }
         runner.record.summarise();
         runner.record
     };

@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use fisura::Simulation;
+
 use super::BenchError;
 use super::record::{BenchRecord, Sample};
 
@@ -46,10 +48,9 @@ pub fn time(work: impl FnOnce()) -> Sample {
     watch.read()
 }
 
-/// Calls of a short piece of work that make a sample of about a twentieth of a second.
-pub fn calls(mut work: impl FnMut()) -> usize {
-    let once = time(&mut work).cpu_s.max(1e-7);
-    ((0.05 / once).ceil() as usize).clamp(1, 2000)
+/// Calls of a short piece of work, given the time of one, that make a sample of about a twentieth of a second.
+fn calls_of(once: Sample) -> usize {
+    ((0.05 / once.cpu_s.max(1e-7)).ceil() as usize).clamp(1, 2000)
 }
 
 /// One contestant: its record, and what runs it once. It may note in the record what it found.
@@ -66,9 +67,26 @@ pub type Run<'a> = Box<dyn FnMut(&mut BenchRecord) -> Result<Sample, BenchError>
 impl<'a> Contestant<'a> {
     /// A short piece of work, `amount` units a call, called as often as a sample needs.
     pub fn short(mut record: BenchRecord, mut work: impl FnMut() + 'a) -> Self {
-        let calls = calls(&mut work);
+        let calls = calls_of(time(&mut work));
         record.work.amount *= calls as f64;
         Self { record, run: Box::new(move |_| Ok(time(|| (0..calls).for_each(|_| work())))) }
+    }
+
+    /// Steps of a simulation, as many as a sample needs.
+    ///
+    /// # Errors
+    /// A step that breaks down; so does the run of the contestant.
+    pub fn steps(mut record: BenchRecord, mut simulation: Simulation) -> Result<Self, BenchError> {
+        let watch = Stopwatch::start();
+        simulation.step()?;
+        let calls = calls_of(watch.read());
+        record.work.amount *= calls as f64;
+        let run = move |_: &mut BenchRecord| {
+            let watch = Stopwatch::start();
+            (0..calls).try_for_each(|_| simulation.step())?;
+            Ok(watch.read())
+        };
+        Ok(Self { record, run: Box::new(run) })
     }
 }
 
@@ -103,7 +121,7 @@ pub fn round_robin(
 /// If they cannot be started.
 pub fn pool(threads: usize) -> Result<rayon::ThreadPool, BenchError> {
     let built = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    built.map_err(|e| BenchError::other(format!("{threads} threads cannot be started: {e}")))
+    built.map_err(|e| BenchError::input(format!("{threads} threads cannot be started: {e}")))
 }
 
 #[cfg(test)]
@@ -130,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn processor_time_of_busy_work_is_counted_and_sleep_is_not() {
+    fn processor_time_of_busy_work_and_wall_time_of_sleep_are_counted() {
         let mut x = 1.0_f64;
         let busy = time(|| (0..20_000_000).for_each(|i| x += (i as f64).sqrt()));
         assert!(x > 1.0 && busy.cpu_s > 0.0 && busy.wall_s > 0.0);

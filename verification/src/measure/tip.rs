@@ -10,6 +10,9 @@ use crate::extremes::larger;
 
 /// Distance from the axis that counts as having left it, m.
 const OFF_AXIS: f64 = 0.25e-3;
+/// Phase field of a pixel beyond which a crack along its row has ended. The centre of a pixel stands up to half a pixel off the crack,
+/// where c need not fall below [`BROKEN`] on a mesh that resolves the crack.
+const INTACT: f64 = 0.5;
 /// Half width of the window in which a speed is fitted, s.
 const SPEED_WINDOW: f64 = 2e-6;
 
@@ -84,15 +87,20 @@ pub(super) fn exit_offset(check: &Check, run: &Run) -> Result<Option<f64>, Strin
     Ok(tips(run)?.into_iter().find(|row| row[1] >= goal).map(|row| (row[2] - axis).abs()))
 }
 
-/// Where the crack along the axis ends: the last broken pixel in an unbroken row of them, in the last picture, m.
+/// Where the crack along the axis ends: the last broken pixel before the first intact one, in the last picture, m.
 pub(super) fn end_along_axis(run: &Run) -> Option<f64> {
     let picture = run.frames.last()?;
     let phase = picture.phase.as_ref()?;
     let row = ((axis(run) - picture.origin[1]) / picture.pixel[1]).floor().max(0.0) as usize;
     let columns = picture.pixels[0];
     let row = row.min(picture.pixels[1] - 1) * columns;
-    let broken = phase[row..row + columns].iter().take_while(|c| **c < BROKEN).count();
-    (broken > 0).then(|| picture.origin[0] + broken as f64 * picture.pixel[0])
+    Some(picture.origin[0] + cracked(&phase[row..row + columns])? as f64 * picture.pixel[0])
+}
+
+/// Pixels of a row up to the last broken one before the first intact one.
+fn cracked(row: &[f64]) -> Option<usize> {
+    let damaged = row.iter().take_while(|c| **c < INTACT);
+    damaged.enumerate().filter(|(_, c)| **c < BROKEN).last().map(|(last, _)| last + 1)
 }
 
 /// Separate broken stretches at or above the axis on the vertical line x = `at` of the last picture.
@@ -121,4 +129,15 @@ pub(super) fn asymmetry(run: &Run) -> Option<f64> {
     let [columns, rows] = picture.pixels;
     let mirrored = |index: usize| phase[(rows - 1 - index / columns) * columns + index % columns];
     (0..phase.len()).map(|index| (phase[index] - mirrored(index)).abs()).reduce(larger)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::cracked;
+
+    #[test]
+    fn a_crack_thinner_than_a_pixel_goes_on_and_ends_at_the_last_broken_one() {
+        assert_eq!(cracked(&[0.0, 0.01, 0.1, 0.02, 0.2, 0.6, 0.01]), Some(4));
+        assert_eq!(cracked(&[0.3, 0.6, 0.0]), None);
+    }
 }

@@ -24,7 +24,7 @@ pub(super) fn mesh(item: &Item<'_>) -> Option<Mesh> {
     let allowed: &[&str] = match form {
         Some("control_points") => &["degree", "knots", "control_points", "weights", "subdivide"],
         Some(_) => &["degree", "cells", "annulus"],
-        None => &["degree", "origin", "size", "cells", "knots"],
+        None => &["degree", "origin", "size", "cells", "knots", "subdivide"],
     };
     let mut complete = true;
     for key in KEYS.into_iter().filter(|key| !allowed.contains(key)) {
@@ -53,10 +53,14 @@ fn rectangle(fields: &Fields<'_>, degree: Option<[usize; 2]>) -> Option<Mesh> {
         (Some(cells), _) => cells.whole_per_direction(1, MOST_CELLS),
         (None, _) => Some([1, 1]),
     };
-    let (degree, origin, size, knots, cells) = (degree?, origin?, size?, knots?, cells?);
+    let parts = match (fields.get("subdivide"), &knots) {
+        (Some(item), Some(None)) => item.fail("subdivide without knots", "give more cells, or the knots to subdivide"),
+        _ => fields.or("subdivide", 1, |item| item.whole(1, MOST_CELLS)),
+    };
+    let (degree, origin, size, knots, cells, parts) = (degree?, origin?, size?, knots?, cells?, parts?);
     match knots {
         None => Some(Mesh::uniform(degree, origin, size, cells)),
-        Some(knots) => graded(fields, degree, origin, size, knots),
+        Some(knots) => graded(fields, degree, origin, size, knots, parts),
     }
 }
 
@@ -67,13 +71,15 @@ fn size(item: &Item<'_>) -> Option<[f64; 2]> {
     })
 }
 
-/// Each knot vector scaled affinely: the first knot to `origin`, the last to `origin + size`.
+/// Each knot vector scaled affinely, the first knot to `origin`, the last to `origin + size`, and every span cut into equal
+/// parts.
 fn graded(
     fields: &Fields<'_>,
     degree: [usize; 2],
     origin: [f64; 2],
     size: [f64; 2],
     knots: [Vec<f64>; 2],
+    parts: usize,
 ) -> Option<Mesh> {
     let item = fields.get("knots")?;
     for d in 0..2 {
@@ -84,10 +90,19 @@ fn graded(
             return item.fail("the last knot must be larger than the first", "give increasing knots");
         }
     }
+    let spans = knots.each_ref().map(|knots| parts * knots.windows(2).filter(|k| k[0] < k[1]).count());
+    if parts > 1 && spans.into_iter().any(|spans| spans > MOST_CELLS) {
+        let remedy = format!("give a smaller number: at most {MOST_CELLS} spans in a direction");
+        return fields.get("subdivide")?.fail(format!("{} x {} spans", spans[0], spans[1]), remedy);
+    }
     let knots = [0, 1].map(|d| {
         let (first, last) = (knots[d][0], knots[d][knots[d].len() - 1]);
-        let scale = |k: &f64| origin[d] + size[d] * ((k - first) / (last - first));
-        knots[d].iter().map(scale).collect()
+        let cut = |k: &[f64]| -> Vec<f64> {
+            let parts = if k[0] < k[1] { parts } else { 1 };
+            (0..parts).map(|i| k[0] + (k[1] - k[0]) * (i as f64 / parts as f64)).collect()
+        };
+        let cut = knots[d].windows(2).flat_map(cut).chain([last]);
+        cut.map(|k| origin[d] + size[d] * ((k - first) / (last - first))).collect()
     });
     Some(Mesh { degree, knots, geometry: None })
 }
