@@ -59,8 +59,8 @@ fn triad(numbers: usize) -> Contestant<'static> {
     })
 }
 
-/// Chains of multiply-adds in registers, compiled as the sweeps are: lanes that come from memory are kept in the widest registers,
-/// which equal constants are not.
+/// Chains of multiply-adds, compiled as the sweeps are. The compiler does not keep all of them in registers of full width: the
+/// rate is a lower bound of what the processor can do, and the report says so where the sweep is faster.
 struct Chains {
     factor: Lane,
     shift: Lane,
