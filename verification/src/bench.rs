@@ -159,11 +159,6 @@ pub fn run(settings: &Settings, environment: Environment, tell: &dyn Fn(&str)) -
     Ok(BenchSet { schema: SCHEMA.into(), environment, quick: settings.quick, records, peers, fem })
 }
 
-/// Largest absolute value: zero of none, not-a-number if one of them is.
-fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().map(f64::abs).fold(0.0, |most, value| if value > most || value.is_nan() { value } else { most })
-}
-
 /// Folder of the reference data with ratios to other codes.
 const PEERS: &str = "peers-2026";
 

@@ -14,7 +14,8 @@ use fisura::split::EnergySplit;
 use fisura::stencil::Stencil;
 use fisura::sweep::{Fields, StripForces, sweep};
 
-use super::{BenchError, largest};
+use super::BenchError;
+use crate::extremes::largest;
 use crate::plain_scene::PlainScene;
 
 /// Span length, m: the length scale.

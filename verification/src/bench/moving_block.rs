@@ -14,7 +14,8 @@ use fisura::updated_frame::windows::{cut, scatter};
 use rayon::prelude::*;
 
 use super::block::{DENSITY, elastic_scene};
-use super::{BenchError, largest, minimal::Minimal};
+use super::{BenchError, minimal::Minimal};
+use crate::extremes::{larger, largest};
 
 /// An elastic block in the updated frame after a few steps.
 pub struct MovingBlock {
@@ -141,13 +142,14 @@ impl MovingBlock {
         again.points_to_grid();
         again.grid(0.0);
         let difference = |d: usize| largest_difference(&again.nodes.acceleration[d], &self.nodes.acceleration[d]);
-        largest([difference(0), difference(1)]) / largest(self.nodes.acceleration.iter().flatten().copied())
+        let size = largest(self.nodes.acceleration.iter().flatten().map(|a| a.abs()));
+        larger(difference(0), difference(1)) / size
     }
 }
 
 /// Largest absolute difference of two fields.
 fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
-    largest(a.iter().zip(b).map(|(a, b)| a - b))
+    largest(a.iter().zip(b).map(|(a, b)| (a - b).abs()))
 }
 
 /// The scene after some steps from [`velocity`], and the length of its steps, s.
@@ -193,7 +195,7 @@ pub fn minimal_deviation<const P: usize>(points: usize, cells: usize, steps: usi
         let other = minimal.acceleration(column, row);
         for d in 0..2 {
             let own = nodes.acceleration[d][at];
-            (difference, size) = (largest([difference, own - other[d]]), largest([size, own]));
+            (difference, size) = (larger(difference, (own - other[d]).abs()), larger(size, own.abs()));
         }
     }
     Ok(difference / size)

@@ -3,8 +3,8 @@
 //! the cases of the suite measure it; the finite elements themselves stand beside it with what they took.
 //!
 //! Besides equal spans and the tolerance of the suite there is what someone in a hurry would run: spans twice as long where no
-//! crack runs, and a tolerance of the phase field that changes the energies by about as much as the finest meshes are off. What a tolerance
-//! does to the energies is a diagram of its own, against a run with 1e-10.
+//! crack runs, and a tolerance of the phase field that changes the energies by about as much as the finest meshes are off. What
+//! a tolerance does to the energies is a diagram of its own, against a run with 1e-10.
 
 use std::sync::Arc;
 
@@ -14,9 +14,10 @@ use fisura::total_frame::TotalFrame;
 
 use super::record::{AnswerError, BenchRecord, CostPoint};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
-use super::{BenchError, Settings, largest};
+use super::{BenchError, Settings};
 use crate::case::Case;
 use crate::expand::CaseScene;
+use crate::extremes::{larger, largest};
 use crate::history::Table;
 use crate::reference::{Library, ReferenceCurve, relative_rms};
 use crate::scene_run::run_scene;
@@ -255,9 +256,9 @@ fn difference_of_energies(history: &Table, other: &Table) -> Option<AnswerError>
     let mut value = 0.0;
     for name in ["kinetic_j", "elastic_j", "fracture_j"] {
         let (ours, theirs) = (history.column(name)?, other.column(name)?);
-        let size = largest(theirs.iter().copied());
+        let size = largest(theirs.iter().map(|x| x.abs()));
         let pairs = (ours.len() == theirs.len() && size > 0.0).then(|| ours.iter().zip(theirs))?;
-        value = largest(pairs.map(|(a, b)| (a - b) / size).chain([value]));
+        value = larger(value, largest(pairs.map(|(a, b)| (a - b).abs() / size)));
     }
     Some(AnswerError {
         quantity: "largest relative difference of an energy".into(),

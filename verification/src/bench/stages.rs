@@ -15,7 +15,8 @@ use super::block::{Block, elastic_scene};
 use super::moving_block::{MovingBlock, minimal, minimal_deviation, moving_scene};
 use super::record::{BenchRecord, Sample};
 use super::timing::{Contestant, Stopwatch, pool, round_robin, time};
-use super::{BenchError, Settings, largest};
+use super::{BenchError, Settings};
+use crate::extremes::larger;
 
 /// Points per span and direction.
 const POINTS: usize = 2;
@@ -213,7 +214,7 @@ fn steps<'a, const P: usize>(block: &'a Block, cells: usize) -> Result<Vec<Conte
     }
     let (mut kernel, dt) = minimal::<P>(POINTS, cells)?;
     let mut of_kernel = record::<P>("minimal-step", "elastic step, minimal kernel", kernel.count());
-    let deviation = largest([minimal_deviation::<P>(POINTS, SMALL, RUN_UP)?, sweep_deviation::<P>()?]);
+    let deviation = larger(minimal_deviation::<P>(POINTS, SMALL, RUN_UP)?, sweep_deviation::<P>()?);
     of_kernel.verify_at_most("accelerations against the solver's, both frames", deviation, 1e-10);
     (0..RUN_UP).for_each(|_| kernel.step(dt));
     contestants.push(Contestant::short(of_kernel, move || kernel.step(dt)));
@@ -237,7 +238,7 @@ fn sweep_deviation<const P: usize>() -> Result<f64, BenchError> {
         let other = kernel.acceleration(grid.column_of(at), grid.row_of(at));
         for d in 0..2 {
             let own = -forces[d][at] / frame.mass().row_sums()[at];
-            (difference, size) = (largest([difference, own - other[d]]), largest([size, own]));
+            (difference, size) = (larger(difference, (own - other[d]).abs()), larger(size, own.abs()));
         }
     }
     Ok(difference / size)
