@@ -15,6 +15,7 @@ pub mod work_precision;
 use std::path::{Path, PathBuf};
 
 use fisura_verification::bench::record::{BenchRecord, BenchSet, SCHEMA};
+use fisura_verification::output::write_json;
 
 use crate::error::ReportError;
 use crate::series::FigureError;
@@ -125,9 +126,8 @@ pub fn read(folder: &Path) -> Result<BenchSet, ReportError> {
 /// # Errors
 /// If it cannot be written.
 pub fn store(folder: &Path, set: &BenchSet) -> Result<PathBuf, ReportError> {
-    let path = folder.join("bench.json");
-    let text = serde_json::to_string_pretty(set).map_err(|e| ReportError::Results { path, message: e.to_string() })?;
-    write(folder, "bench.json", &(text + "\n"))
+    write_json(&folder.join("bench.json"), set)?;
+    Ok("bench.json".into())
 }
 
 /// Renders the benchmarks in `folder`; names the files written, relative to it.

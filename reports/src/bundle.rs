@@ -5,12 +5,11 @@
 //! column their ordinates, and values are rounded to a thousandth of the colour bar.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use fisura_verification::history::{Table, format_number};
+use fisura_verification::output;
 use fisura_verification::record::{Environment, Figure, FigureBody};
-use fisura_verification::scene_run::replace_file;
 use fisura_verification::suite::part::fingerprint;
 use serde::{Deserialize, Serialize};
 
@@ -54,9 +53,7 @@ pub fn write(
     let mut data = BTreeMap::new();
     let mut files = Vec::new();
     let mut store = |file: String, bytes: &[u8]| {
-        let path = folder.join(&file);
-        replace_file(&path, |part| Ok(fs::write(part, bytes)?))
-            .map_err(|e| ReportError::File { path, source: std::io::Error::other(e.message) })?;
+        output::write(&folder.join(&file), bytes)?;
         files.push(file);
         Ok::<(), ReportError>(())
     };

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use fisura_verification::output::OutputError;
 use thiserror::Error;
 
 use crate::series::FigureError;
@@ -9,7 +10,10 @@ use crate::series::FigureError;
 /// A report that cannot be written, or not completely.
 #[derive(Debug, Error)]
 pub enum ReportError {
-    /// A file cannot be read or written.
+    /// A file cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A file cannot be read, or a folder made.
     #[error("{path}: {source}", path = path.display())]
     File {
         /// File.

@@ -57,6 +57,7 @@ mod trace;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use fisura_verification::output;
 use fisura_verification::record::{ResultSet, SCHEMA};
 use serde::de::DeserializeOwned;
 
@@ -136,17 +137,13 @@ fn failed(file: &'static str, error: impl std::fmt::Display) -> ReportError {
     ReportError::Render { file, message: error.to_string() }
 }
 
-/// Writes a file of the folder so that it is either there in full or not at all.
+/// Writes a file of the folder.
 fn write(folder: &Path, name: &str, content: &str) -> Result<PathBuf, ReportError> {
     let path = folder.join(name);
-    let fail = |source| ReportError::File { path: path.clone(), source };
     if let Some(parent) = path.parent() {
-        fs::create_dir_all(parent).map_err(fail)?;
+        fs::create_dir_all(parent).map_err(|source| ReportError::File { path: parent.into(), source })?;
     }
-    let mut part = path.clone().into_os_string();
-    part.push(".part");
-    fs::write(&part, content).map_err(fail)?;
-    fs::rename(&part, &path).map_err(fail)?;
+    output::write(&path, content)?;
     Ok(PathBuf::from(name))
 }
 

@@ -32,10 +32,12 @@ pub mod wave;
 
 use std::path::PathBuf;
 
+use fisura::Simulation;
+use fisura::error::Breakdown;
 use thiserror::Error;
 
 use crate::record::Environment;
-use crate::reference::{Library, ReferenceError};
+use crate::reference::{Library, ReferenceError, ReferenceValue};
 use crate::scene_file::SceneFileError;
 use crate::study::StudyError;
 use record::{BenchRecord, BenchSet, NamedPeer, SCHEMA};
@@ -119,8 +121,8 @@ impl BenchError {
     }
 }
 
-impl From<fisura::error::Breakdown> for BenchError {
-    fn from(breakdown: fisura::error::Breakdown) -> Self {
+impl From<Breakdown> for BenchError {
+    fn from(breakdown: Breakdown) -> Self {
         Self::Study(breakdown.into())
     }
 }
@@ -145,7 +147,7 @@ pub const FAMILIES: [(&str, Family); 8] = [
 /// # Errors
 /// The first family that could not be measured; an answer that does not hold is no error but an unverified record.
 pub fn run(settings: &Settings, environment: Environment, tell: &dyn Fn(&str)) -> Result<BenchSet, BenchError> {
-    let peers = named_peers(&settings.library()?);
+    let peers = named_peers(&settings.library()?)?;
     let fem = plate::finite_elements(&settings.library()?);
     let mut records = Vec::new();
     for (name, family) in FAMILIES {
@@ -159,27 +161,41 @@ pub fn run(settings: &Settings, environment: Environment, tell: &dyn Fn(&str)) -
     Ok(BenchSet { schema: SCHEMA.into(), environment, quick: settings.quick, records, peers, fem })
 }
 
+/// Takes `steps` steps.
+fn advance(simulation: &mut Simulation, steps: usize) -> Result<(), Breakdown> {
+    (0..steps).try_for_each(|_| simulation.step())
+}
+
 /// Folder of the reference data with ratios to other codes.
 const PEERS: &str = "peers-2026";
 
-/// The ratios of the reference data to other codes: names are `code/pN/…`.
-fn named_peers(library: &Library) -> Vec<NamedPeer> {
-    let Some(source) = library.source(PEERS) else { return Vec::new() };
+/// The ratios of the reference data to other codes: names are `code/pN/quantity`.
+fn named_peers(library: &Library) -> Result<Vec<NamedPeer>, BenchError> {
+    let Some(source) = library.source(PEERS) else { return Ok(Vec::new()) };
     let of_peers = library.values().iter().filter(|value| value.id == PEERS);
-    of_peers
-        .filter_map(|value| {
-            let mut parts = value.name.split('/');
-            let (code, degree, quantity) = (parts.next()?, parts.next()?, parts.next()?);
-            Some(NamedPeer {
-                code: code.into(),
-                degree: degree.trim_start_matches('p').parse().ok()?,
-                quantity: quantity.into(),
-                value: value.value,
-                remark: value.note.clone(),
-                conditions: source.resolution.clone(),
-            })
+    let peer = |value: &ReferenceValue| {
+        let (code, degree, quantity) = parts_of_name(&value.name).ok_or_else(|| {
+            BenchError::input(format!(
+                "reference-data: {PEERS}: name = {:?} is not of the form code/pN/quantity",
+                value.name
+            ))
+        })?;
+        Ok(NamedPeer {
+            code: code.into(),
+            degree,
+            quantity: quantity.into(),
+            value: value.value,
+            remark: value.note.clone(),
+            conditions: source.resolution.clone(),
         })
-        .collect()
+    };
+    of_peers.map(peer).collect()
+}
+
+fn parts_of_name(name: &str) -> Option<(&str, usize, &str)> {
+    let (code, rest) = name.split_once('/')?;
+    let (degree, quantity) = rest.strip_prefix('p')?.split_once('/')?;
+    Some((code, degree.parse().ok()?, quantity))
 }
 
 /// The workspace this crate was built in, for tests.
@@ -193,9 +209,17 @@ mod tests {
     use super::*;
 
     #[test]
+    fn names_of_peers_have_three_parts() {
+        assert_eq!(parts_of_name("Warp 1.15/p2/step"), Some(("Warp 1.15", 2, "step")));
+        for name in ["Warp/2/step", "Warp/p2", "p2/step", "Warp/pp/step"] {
+            assert_eq!(parts_of_name(name), None, "{name}");
+        }
+    }
+
+    #[test]
     fn named_peers_come_from_the_reference_data_with_their_conditions() {
         let library = Library::load(&own_workspace().join("reference-data")).unwrap();
-        let peers = named_peers(&library);
+        let peers = named_peers(&library).unwrap();
         let warp = peers.iter().find(|p| p.code.starts_with("Warp") && p.quantity == "over-tuned-kernel").unwrap();
         assert_eq!((warp.degree, warp.value), (2, 3.2));
         assert!(warp.conditions.contains("2026") && warp.conditions.contains("2.5 GHz"), "{}", warp.conditions);

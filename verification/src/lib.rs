@@ -10,6 +10,7 @@ pub mod extremes;
 pub mod figures;
 pub mod history;
 pub mod measure;
+pub mod output;
 pub mod patches;
 pub mod plain_scene;
 pub mod random;

@@ -28,7 +28,6 @@ pub use checkpoint::{CHECKPOINT, CheckpointError};
 use keep::Keeper;
 pub use keep::{Keep, KeepError, Outcome, run_scene_kept};
 pub use summary::{BreakdownSummary, Stages, Summary};
-pub use write::{OutputError, replace_file};
 
 /// Pixels of a frame along its longer side.
 pub const FRAME_PIXELS: usize = 400;

@@ -13,6 +13,7 @@ use thiserror::Error;
 
 pub use crate::case::{Case, Tier};
 use crate::figures;
+use crate::output::{OutputError, replace_file, write_json};
 use crate::record::{Environment, Figure, Record, ResultSet, SCHEMA, Status};
 use crate::reference::{Library, ReferenceError};
 use crate::scene_file::SceneFileError;
@@ -64,7 +65,10 @@ pub enum VerifyError {
     /// Reference data are wrong.
     #[error(transparent)]
     Reference(#[from] ReferenceError),
-    /// The results folder cannot be written.
+    /// A file of the results cannot be written.
+    #[error(transparent)]
+    File(#[from] OutputError),
+    /// The results folder cannot be made or read.
     #[error("{path}: {message}")]
     Output {
         /// File or folder.
@@ -233,18 +237,7 @@ fn write_series(out: &Path, stem: &str, table: &crate::history::Table) -> Result
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(|e| VerifyError::output(folder, e))?;
     }
-    let temporary = path.with_extension("csv.part");
-    table.write(&temporary).map_err(|e| VerifyError::output(&path, e))?;
-    std::fs::rename(&temporary, &path).map_err(|e| VerifyError::output(&path, e))
-}
-
-/// Writes JSON, whole or not at all.
-fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), VerifyError> {
-    let mut text = serde_json::to_string_pretty(value).map_err(|e| VerifyError::output(path, e))?;
-    text.push('\n');
-    let temporary = path.with_extension("json.part");
-    std::fs::write(&temporary, text).map_err(|e| VerifyError::output(path, e))?;
-    std::fs::rename(&temporary, path).map_err(|e| VerifyError::output(path, e))
+    Ok(replace_file(&path, |part| Ok(table.write(part)?))?)
 }
 
 #[cfg(test)]

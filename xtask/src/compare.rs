@@ -1,11 +1,10 @@
 //! `compare BASE NEW`: two results folders side by side.
 
-use std::fs;
 use std::path::PathBuf;
 
 use fisura_reports::compare::{compare as side_by_side, render_markdown, render_text};
 use fisura_reports::read_results;
-use fisura_verification::scene_run::replace_file;
+use fisura_verification::output::{write, write_json};
 
 use crate::cli::{Common, Format};
 use crate::exit::Exit;
@@ -37,10 +36,8 @@ pub fn compare(args: &Args, common: &Common) -> Result<Exit, Failure> {
         return Err(Failure::new(Exit::NothingSelected, message).help("compare results of the same suites"));
     }
     let folder = folders::output(common, "compare")?;
-    replace_file(&folder.join("comparison.md"), |part| Ok(fs::write(part, render_markdown(&compared))?))?;
-    replace_file(&folder.join("comparison.json"), |part| {
-        Ok(fs::write(part, serde_json::to_string_pretty(&compared)? + "\n")?)
-    })?;
+    write(&folder.join("comparison.md"), render_markdown(&compared))?;
+    write_json(&folder.join("comparison.json"), &compared)?;
     match common.format {
         Format::Json => console::json(&compared),
         Format::Text => console::result(&render_text(&compared)),

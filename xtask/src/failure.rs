@@ -4,8 +4,8 @@ use std::fmt;
 
 use fisura::error::Breakdown;
 use fisura_reports::ReportError;
+use fisura_verification::output::OutputError;
 use fisura_verification::scene_file::{SceneDiagnostic, SceneFileError};
-use fisura_verification::scene_run::OutputError;
 use miette::{Diagnostic, LabeledSpan, MietteDiagnostic, MietteHandler, MietteHandlerOpts, ReportHandler, Severity};
 
 use crate::console;
@@ -88,7 +88,10 @@ impl From<&Breakdown> for Failure {
 
 impl From<ReportError> for Failure {
     fn from(error: ReportError) -> Self {
-        Self::new(Exit::BadInput, error.to_string())
+        match error {
+            ReportError::Output(error) => error.into(),
+            other => Self::new(Exit::BadInput, other.to_string()),
+        }
     }
 }
 

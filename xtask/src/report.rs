@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use fisura_reports::{ReportError, bench, read_results, render};
-use fisura_verification::scene_run::replace_file;
+use fisura_verification::output::replace_file;
 use serde_json::json;
 
 use crate::cli::{Common, Format};
@@ -23,9 +23,14 @@ pub struct Args {
 /// Renders a results folder and names the files written.
 ///
 /// # Errors
-/// `results.json` is missing or foreign, a file cannot be written, or a figure cannot be drawn.
+/// `results.json` is missing or foreign, or there beside `bench.json`, a file cannot be written, or a figure cannot be drawn.
 pub fn report(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let of_bench = bench::is_bench(&args.folder);
+    if of_bench && args.folder.join("results.json").is_file() {
+        let message = format!("{}: results.json and bench.json are both there", args.folder.display());
+        return Err(Failure::new(Exit::BadInput, message)
+            .help("their reports have files of the same names; give one of them a folder of its own"));
+    }
     if of_bench {
         bench::read(&args.folder)?;
     } else {

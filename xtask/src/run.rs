@@ -8,8 +8,9 @@ use std::time::Duration;
 use fisura::scene::Scene;
 use fisura::simulation::Simulation;
 use fisura_reports::number::{duration, plain};
+use fisura_verification::output;
 use fisura_verification::scene_run::{
-    CHECKPOINT, Keep, KeepError, OnFrame, Outcome, Progress, SceneRun, Summary, replace_file, run_scene, run_scene_kept,
+    CHECKPOINT, Keep, KeepError, OnFrame, Outcome, Progress, SceneRun, Summary, run_scene, run_scene_kept,
 };
 use indicatif::ProgressBar;
 
@@ -174,7 +175,7 @@ fn write(run: &SceneRun, folder: &Path) -> Result<(Vec<String>, Vec<String>), Fa
     for (name, drawing) in pictures::draw(run) {
         match drawing {
             Ok(svg) => {
-                replace_file(&folder.join(&name), |part| Ok(fs::write(part, svg)?))?;
+                output::write(&folder.join(&name), svg)?;
                 files.push(name);
             }
             Err(error) => undrawn.push(format!("{name}: {error}")),

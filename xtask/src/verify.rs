@@ -107,6 +107,7 @@ impl From<VerifyError> for Failure {
     fn from(error: VerifyError) -> Self {
         match error {
             VerifyError::Case(error) => error.into(),
+            VerifyError::File(error) => error.into(),
             other => Self::new(Exit::BadInput, other.to_string()),
         }
     }

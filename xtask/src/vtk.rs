@@ -11,7 +11,8 @@ use fisura::scene::Scene;
 use fisura::simulation::Simulation;
 use fisura::span_grid::Corner;
 use fisura_reports::vtk::{Cells, Field, Piece, pvd, vtu};
-use fisura_verification::scene_run::{CHECKPOINT, OutputError, frame_steps, replace_file};
+use fisura_verification::output::{self, OutputError};
+use fisura_verification::scene_run::{CHECKPOINT, frame_steps};
 
 use crate::cli::Common;
 use crate::console;
@@ -55,16 +56,12 @@ impl<'a> Files<'a> {
 
     fn write_kind(&self, kind: &str, number: usize, simulation: &Simulation) -> Result<(), OutputError> {
         let bytes = if kind == POINTS { points(simulation) } else { grid(simulation) };
-        self.replace(&file_name(kind, number), &bytes)?;
+        output::write(&self.folder.join(file_name(kind, number)), bytes)?;
         let plan = simulation.plan();
         let (steps, _) = frame_steps(self.times, plan.step, plan.steps());
         let there = (0..=number).filter(|&n| self.has(kind, n));
         let frames: Vec<_> = there.map(|n| (steps[n] as f64 * plan.step, 0, file_name(kind, n))).collect();
-        self.replace(&collection_name(kind), pvd(&frames).as_bytes())
-    }
-
-    fn replace(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
-        replace_file(&self.folder.join(name), |part| Ok(fs::write(part, bytes)?))
+        output::write(&self.folder.join(collection_name(kind)), pvd(&frames))
     }
 
     fn has(&self, kind: &str, number: usize) -> bool {

@@ -10,7 +10,7 @@ use super::block::{SPAN, cracked_scene, elastic_scene};
 use super::plate;
 use super::record::BenchRecord;
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
-use super::{BenchError, Settings};
+use super::{BenchError, Settings, advance};
 use crate::case::Case;
 
 /// Degree of the blocks, and spans that the mesh reaches beyond them.
@@ -145,10 +145,6 @@ fn contestant(
         Ok(sample)
     };
     Ok(Contestant { record, run: Box::new(run) })
-}
-
-fn advance(simulation: &mut Simulation, steps: usize) -> Result<(), fisura::error::Breakdown> {
-    (0..steps).try_for_each(|_| simulation.step())
 }
 
 /// Half of the plate and all of it at h = l0, from the start; the energies of both must agree.

@@ -9,7 +9,7 @@ use super::block::elastic_scene;
 use super::plate;
 use super::record::{BenchRecord, Clock};
 use super::timing::{Stopwatch, pool};
-use super::{BenchError, Settings};
+use super::{BenchError, Settings, advance};
 
 /// Largest closure of the ledger over its largest term, as for the plate.
 const CLOSURE: f64 = 1e-3;
@@ -82,10 +82,6 @@ fn scaled(
         runner.record
     };
     Ok(runners.into_iter().map(finish).collect())
-}
-
-fn advance(simulation: &mut Simulation, steps: usize) -> Result<(), fisura::error::Breakdown> {
-    (0..steps).try_for_each(|_| simulation.step())
 }
 
 /// Displacement and phase field, bit for bit.

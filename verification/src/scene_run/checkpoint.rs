@@ -13,7 +13,7 @@ use fisura::scene::Scene;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::write::{OutputError, replace_file};
+use crate::output::{OutputError, replace_file};
 
 /// First line of the file, with the version of its form.
 const FORM: &[u8] = b"fisura checkpoint 1\n";

@@ -9,8 +9,8 @@ use fisura::simulation::{ResumeError, Simulation};
 use thiserror::Error;
 
 use super::checkpoint::{self, CheckpointError};
-use super::write::OutputError;
 use super::{OnFrame, Progress, Record, Run, SceneRun, timed};
+use crate::output::OutputError;
 
 /// How a run is kept safe.
 #[derive(Debug)]

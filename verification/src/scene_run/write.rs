@@ -1,41 +1,9 @@
-//! Files of a run: each appears in full or not at all.
+//! Files of a run.
 
-use std::ffi::OsString;
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use thiserror::Error;
+use std::path::Path;
 
 use super::SceneRun;
-
-/// A file of a run that cannot be written.
-#[derive(Debug, Error)]
-#[error("{} cannot be written: {message}", path.display())]
-pub struct OutputError {
-    /// File.
-    pub path: PathBuf,
-    /// Reason.
-    pub message: String,
-}
-
-/// Lets `write` fill a temporary file beside `path`, then gives it that name.
-///
-/// # Errors
-/// What `write` says, or a name that cannot be given; the temporary file is removed.
-pub fn replace_file(
-    path: &Path,
-    write: impl FnOnce(&Path) -> Result<(), Box<dyn std::error::Error>>,
-) -> Result<(), OutputError> {
-    let mut part: OsString = path.as_os_str().to_owned();
-    part.push(".part");
-    let part = PathBuf::from(part);
-    let kept = |()| Ok(fs::File::open(&part)?.sync_all()?); // or a power failure could leave the name of an empty file
-    let renamed = write(&part).and_then(kept).and_then(|()| Ok(fs::rename(&part, path)?));
-    renamed.map_err(|error| {
-        let _ = fs::remove_file(&part); // may not exist; the error to tell is the first one
-        OutputError { path: path.to_path_buf(), message: error.to_string() }
-    })
-}
+use crate::output::{OutputError, replace_file, write_json};
 
 impl SceneRun {
     /// Writes `history.csv` (if there is a row), `summary.json` and, after a breakdown, `breakdown.json` into `folder`, which
@@ -49,15 +17,10 @@ impl SceneRun {
             replace_file(&folder.join("history.csv"), |part| Ok(self.history.write(part)?))?;
             files.push("history.csv");
         }
-        replace_file(&folder.join("summary.json"), |part| {
-            let text = serde_json::to_string_pretty(&self.summary)?;
-            Ok(fs::write(part, text + "\n")?)
-        })?;
+        write_json(&folder.join("summary.json"), &self.summary)?;
         files.push("summary.json");
         if let Some(report) = &self.breakdown_report {
-            replace_file(&folder.join("breakdown.json"), |part| {
-                Ok(fs::write(part, serde_json::to_string_pretty(report)? + "\n")?)
-            })?;
+            write_json(&folder.join("breakdown.json"), report)?;
             files.push("breakdown.json");
         }
         Ok(files)

@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::partition::Slice;
-use super::{CaseOutcome, Selection, VerifyError, write_json};
+use super::{CaseOutcome, Selection, VerifyError};
 use crate::case::Case;
+use crate::output::write_json;
 use crate::record::Environment;
 
 /// Name of the schema written and read.
@@ -122,7 +123,7 @@ pub struct Part {
 
 impl Part {
     pub(super) fn write(&self, out: &Path) -> Result<(), VerifyError> {
-        write_json(&out.join(PART_FILE), self)
+        Ok(write_json(&out.join(PART_FILE), self)?)
     }
 }
 

@@ -5,8 +5,9 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
 
-use super::{CaseOutcome, Options, VerifyError, write_json};
+use super::{CaseOutcome, Options, VerifyError};
 use crate::case::Case;
+use crate::output::write_json;
 
 /// Outcomes on disk.
 pub(super) struct Store {
@@ -43,7 +44,7 @@ impl Store {
     }
 
     pub(super) fn save(&self, case: &Case, outcome: &CaseOutcome) -> Result<(), VerifyError> {
-        write_json(&self.path(case), outcome)
+        Ok(write_json(&self.path(case), outcome)?)
     }
 
     /// The run is complete: nothing is left to take up. A folder that cannot be removed does no harm.

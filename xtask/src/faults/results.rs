@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
+use fisura_verification::output::{OutputError, write, write_json};
 use fisura_verification::record::{ResultSet, Status};
 use serde::Serialize;
 
@@ -109,17 +110,9 @@ impl Results {
     ///
     /// # Errors
     /// If they cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<(), Failure> {
-        let bad = |name: &str, error: &dyn std::fmt::Display| {
-            Failure::new(Exit::BadInput, format!("{}: {error}", folder.join(name).display()))
-        };
-        let json = serde_json::to_string_pretty(self).map_err(|e| bad("faults.json", &e))? + "\n";
-        for (name, text) in [("faults.json", json), ("faults.md", self.markdown())] {
-            let part = folder.join(format!("{name}.part"));
-            let written = fs::write(&part, text).and_then(|()| fs::rename(&part, folder.join(name)));
-            written.map_err(|e| bad(name, &e))?;
-        }
-        Ok(())
+    pub fn write(&self, folder: &Path) -> Result<(), OutputError> {
+        write_json(&folder.join("faults.json"), self)?;
+        write(&folder.join("faults.md"), self.markdown())
     }
 
     /// One line per fault.

@@ -27,5 +27,11 @@ fn missing_or_foreign_results_end_with_2() {
     place.write("broken/results.json", "{\"schema\": \"fisura.results/1\", \"records\": 3}");
     place.xtask(&["report", "absent"]).with_status(2).complains_of(&["absent/results.json", "verify"]);
     place.xtask(&["report", "foreign"]).with_status(2).complains_of(&["other/7", "fisura.results/1"]);
+    place.write("both/results.json", RESULTS);
+    place.write("both/bench.json", "{}");
+    place
+        .xtask(&["report", "both"])
+        .with_status(2)
+        .complains_of(&["results.json and bench.json", "a folder of its own"]);
     place.xtask(&["report", "broken"]).with_status(2).complains_of(&["broken/results.json", "line 1"]);
 }
