@@ -1,8 +1,9 @@
-//! `report.html`: one page with everything, that needs no script and no other file.
+//! `report.html`: one page with everything, that needs no script and no other file. Figures beyond 5 MB are links to their files.
 
 mod page;
 
-use std::collections::BTreeMap;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet};
 
 use fisura_verification::record::{Figure, FigureBody, Record, ReferenceKind, ResultSet};
 use minijinja::Environment;
@@ -23,16 +24,53 @@ const STYLE: &str = include_str!("../templates/report.css");
 /// Drawn figures by their id; a figure that could not be drawn has its error instead.
 pub type Drawings = BTreeMap<String, Result<String, String>>;
 
-/// Renders the page.
+/// The page stays below this many bytes, so that it opens anywhere and can be sent.
+const MOST_BYTES: usize = 5_000_000;
+/// At most what stands in the place of a figure that is left out.
+const NOTE_BYTES: usize = 500;
+
+/// Renders the page; figures that would make it too large are named instead of drawn.
 ///
 /// # Errors
 /// Only if the template cannot be filled, which has no cause in the results.
 pub fn render_html(set: &ResultSet, drawings: &Drawings) -> Result<String, minijinja::Error> {
+    render_below(MOST_BYTES, set, drawings)
+}
+
+fn render_below(bytes: usize, set: &ResultSet, drawings: &Drawings) -> Result<String, minijinja::Error> {
+    let page = fill(set, drawings, &BTreeSet::new())?;
+    if page.len() < bytes {
+        return Ok(page);
+    }
+    fill(set, drawings, &left_out(set, drawings, page.len() + 1 - bytes))
+}
+
+/// Figures to leave out so that the page becomes `excess` bytes shorter: those that show the curves of another one once more
+/// over the unknowns, then those of the suites with the most figures, in both the largest first.
+fn left_out<'a>(set: &'a ResultSet, drawings: &Drawings, excess: usize) -> BTreeSet<&'a str> {
+    let drawn = |figure: &'a Figure| Some((figure, drawings.get(&figure.id)?.as_ref().ok()?.len()));
+    let of_suite = |suite: &str| set.figures.iter().filter(|figure| figure.suite == suite).count();
+    let mut candidates: Vec<(&Figure, usize)> = set.figures.iter().filter_map(drawn).collect();
+    candidates.retain(|(_, length)| *length > NOTE_BYTES);
+    candidates.sort_by_key(|(figure, length)| {
+        (!figure.id.ends_with("-unknowns"), Reverse(of_suite(&figure.suite)), Reverse(*length))
+    });
+    let mut saved = 0;
+    let enough = candidates.into_iter().take_while(|(_, length)| {
+        let needed = saved < excess;
+        saved += length - NOTE_BYTES;
+        needed
+    });
+    enough.map(|(figure, _)| figure.id.as_str()).collect()
+}
+
+fn fill(set: &ResultSet, drawings: &Drawings, left_out: &BTreeSet<&str>) -> Result<String, minijinja::Error> {
     let mut environment = Environment::new();
     environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build()?);
     environment.add_template("report.html", TEMPLATE)?;
     let counts = Counts::of(&set.records);
     let timed = set.figures.iter().filter(|f| is_timing(f));
+    let pictures = |figure: &Figure| picture(figure, drawings, left_out);
     let page = Page {
         style: STYLE,
         verdict: Verdict::of(counts.verdict()),
@@ -40,8 +78,8 @@ pub fn render_html(set: &ResultSet, drawings: &Drawings) -> Result<String, minij
         counts: counts.list(),
         environment: view::environment(set),
         broken: view::broken(set).into_iter().map(|r| row(r, &r.id)).collect(),
-        suites: view::suites(set).into_iter().map(|name| suite(set, name, drawings)).collect(),
-        timing: timed.map(|f| picture(f, drawings)).collect(),
+        suites: view::suites(set).into_iter().map(|name| suite(set, name, &pictures)).collect(),
+        timing: timed.map(pictures).collect(),
         sources: sources(&set.records),
         deviations: deviations(set),
     };
@@ -53,7 +91,7 @@ fn is_timing(figure: &Figure) -> bool {
     figure.id.starts_with("timing/")
 }
 
-fn suite(set: &ResultSet, name: &str, drawings: &Drawings) -> Suite {
+fn suite(set: &ResultSet, name: &str, picture: &dyn Fn(&Figure) -> Picture) -> Suite {
     let records: Vec<&Record> = set.records.iter().filter(|r| r.suite == name).collect();
     let counts = Counts::of(records.iter().copied());
     let figures = set.figures.iter().filter(|f| f.suite == name && !is_timing(f));
@@ -65,7 +103,7 @@ fn suite(set: &ResultSet, name: &str, drawings: &Drawings) -> Suite {
         verdict: Verdict::of(counts.verdict()),
         orders: orders(&records),
         cases: cases.map(case).collect(),
-        figures: figures.map(|f| picture(f, drawings)).collect(),
+        figures: figures.map(picture).collect(),
     }
 }
 
@@ -157,8 +195,10 @@ fn row(record: &Record, name: &str) -> Row {
     }
 }
 
-fn picture(figure: &Figure, drawings: &Drawings) -> Picture {
+fn picture(figure: &Figure, drawings: &Drawings, left_out: &BTreeSet<&str>) -> Picture {
+    let left_out = left_out.contains(figure.id.as_str());
     let (svg, error) = match drawings.get(&figure.id) {
+        _ if left_out => Default::default(),
         Some(Ok(svg)) => (svg.clone(), String::new()),
         Some(Err(error)) => (String::new(), error.clone()),
         None => (String::new(), "it was not drawn".to_string()),
@@ -170,6 +210,7 @@ fn picture(figure: &Figure, drawings: &Drawings) -> Picture {
         caption: figure.caption.clone(),
         deviations: figure.deviations.clone(),
         svg,
+        left_out,
         error,
         file: crate::figure::file_name(&figure.id).unwrap_or_default(),
         series: names(figure),
@@ -206,4 +247,40 @@ fn deviations(set: &ResultSet) -> Vec<Deviations> {
         }
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::example::results;
+
+    #[test]
+    fn twins_over_the_unknowns_are_left_out_first_then_figures_of_the_suites_with_most() {
+        let mut set = results();
+        let template = set.figures[0].clone();
+        let figure = |(suite, id): (&str, &str)| Figure { id: id.into(), suite: suite.into(), ..template.clone() };
+        set.figures = [("s", "a"), ("t", "b"), ("t", "c"), ("t", "broken"), ("s", "a-unknowns")].map(figure).to_vec();
+        let drawing = |id: &str, length: usize| (id.to_string(), Ok("x".repeat(length)));
+        let mut drawings = Drawings::from([drawing("a", 9_000), drawing("b", 3_000), drawing("c", 4_000)]);
+        drawings.extend([drawing("a-unknowns", 2_000), ("broken".into(), Err("no such column".into()))]);
+        let names = |excess| left_out(&set, &drawings, excess).into_iter().collect::<Vec<_>>();
+        assert_eq!(names(1_500), ["a-unknowns"]);
+        assert_eq!(names(1_501), ["a-unknowns", "c"]);
+        assert_eq!(names(5_001), ["a-unknowns", "b", "c"]);
+        assert_eq!(names(1_000_000), ["a", "a-unknowns", "b", "c"]);
+    }
+
+    #[test]
+    fn a_page_that_would_be_too_large_names_figures_instead_of_drawing_them() {
+        let set = results();
+        let drawing = |f: &Figure| (f.id.clone(), Ok(format!("<svg>{}</svg>", "x".repeat(20_000))));
+        let drawings: Drawings = set.figures.iter().map(drawing).collect();
+        let whole = render_below(usize::MAX, &set, &drawings).unwrap();
+        let below = render_below(whole.len() - 1_000, &set, &drawings).unwrap();
+        assert!(below.len() < whole.len() - 1_000, "{} of {}", below.len(), whole.len());
+        assert_eq!(below.matches("<svg>").count() + 1, whole.matches("<svg>").count());
+        assert_eq!(below.matches("class=\"card left-out\"").count(), 1);
+        assert!(!whole.contains("class=\"card left-out\""));
+        assert_eq!(render_below(whole.len() + 1, &set, &drawings).unwrap(), whole);
+    }
 }

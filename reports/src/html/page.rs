@@ -83,6 +83,8 @@ pub(super) struct Picture {
     pub caption: String,
     pub deviations: Vec<String>,
     pub svg: String,
+    /// Not on the page because of its size.
+    pub left_out: bool,
     pub error: String,
     pub file: String,
     pub series: Vec<String>,
