@@ -2,8 +2,9 @@
 //! `report`, `bench`, `faults`.
 //!
 //! One file per command; beside them [`cli`] (what can be said on the command line), [`exit`] (statuses), [`failure`]
-//! (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go), [`scene_input`] (scene files
-//! with their overrides), [`interrupt`] (Ctrl-C), [`progress`] (bars), [`pictures`] (figures of a run), [`vtk`] (its files for ParaView), [`environment`] (where and when).
+//! (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go), [`scene_input`] (scene
+//! files with their overrides), [`interrupt`] (Ctrl-C), [`progress`] (bars), [`pictures`] (figures of a run), [`vtk`] (its
+//! files for ParaView), [`environment`] (where and when).
 
 mod bench;
 mod check;
