@@ -3,6 +3,7 @@
 //! A case is one TOML file `cases/<suite>/<case>.toml`. Its `[scene]` table has the form of a scene file, and may have a
 //! list where a scene has one value: a study axis. `[[variant]]` tables change several keys together.
 
+mod check;
 pub mod convergence;
 mod read;
 mod rings;
@@ -51,6 +52,10 @@ impl FromStr for Tier {
 /// What a check measures, and the parameters of the measure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Check {
+    /// Last part of the ids of its records: it stays when the words of `quantity` change.
+    pub id: String,
+    /// Ids it had before.
+    pub formerly: Vec<String>,
     /// Quantity in words.
     pub quantity: String,
     /// Unit of the value.
@@ -87,6 +92,13 @@ pub struct Check {
     pub order: Option<f64>,
     /// Bounds.
     pub accept: Accept,
+}
+
+impl Check {
+    /// Whether a run can have a record of both: neither names a variant, or both the same.
+    fn shares_runs_with(&self, other: &Self) -> bool {
+        self.variant.is_none() || other.variant.is_none() || self.variant == other.variant
+    }
 }
 
 /// Keys changed together.

@@ -122,8 +122,11 @@ pub struct Timing {
 /// One check and what it found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Record {
-    /// `suite/case[/variant]/quantity`.
+    /// `suite/case[/variant]/check`.
     pub id: String,
+    /// Ids that earlier results have for it.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub formerly: Vec<String>,
     /// Suite.
     pub suite: String,
     /// Case.

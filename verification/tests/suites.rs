@@ -65,12 +65,13 @@ fn run(root: &Path, environment: Environment) -> Result<ResultSet, VerifyError> 
     verify(&cases, &options, &Silent)
 }
 
-const CLOSURE: &str = "[[check]]\nquantity = \"closure\"\nmeasure = \"closure\"\nmax = 1e-12\nwhy = \"round-off\"";
+const CLOSURE: &str =
+    "[[check]]\nid = \"closure\"\nquantity = \"closure\"\nmeasure = \"closure\"\nmax = 1e-12\nwhy = \"round-off\"";
 
 #[test]
 fn bounds_decide_between_pass_and_fail() {
     let root = tempfile::tempdir().unwrap();
-    let hopeless = "[[check]]\nquantity = \"kinetic energy\"\nmeasure = \"initial\"\ncolumn = \"kinetic_j\"\nmax = 0.0\nwhy = \"never\"";
+    let hopeless = "[[check]]\nid = \"kinetic-energy\"\nquantity = \"kinetic energy\"\nmeasure = \"initial\"\ncolumn = \"kinetic_j\"\nmax = 0.0\nwhy = \"never\"";
     write_case(root.path(), "a", SCENE, CLOSURE);
     write_case(root.path(), "b", SCENE, hopeless);
     let results = run(root.path(), Environment::default()).unwrap();
@@ -80,6 +81,16 @@ fn bounds_decide_between_pass_and_fail() {
         serde_json::from_slice(&std::fs::read(root.path().join("out/results.json")).unwrap()).unwrap();
     assert_eq!(stored, results);
     assert!(root.path().join("out/series/trial-a.csv").exists());
+}
+
+#[test]
+fn a_record_carries_the_ids_it_had_before() {
+    let root = tempfile::tempdir().unwrap();
+    let renamed = CLOSURE.replace("id = \"closure\"", "id = \"ledger\"\nformerly = [\"closure\", \"balance\"]");
+    write_case(root.path(), "a", &SCENE.replace("degree = 2", "degree = [1, 2]"), &renamed);
+    let records = run(root.path(), Environment::default()).unwrap().records;
+    assert_eq!(records[1].id, "trial/a/degree=2/ledger");
+    assert_eq!(records[1].formerly, ["trial/a/degree=2/closure", "trial/a/degree=2/balance"]);
 }
 
 #[test]
@@ -96,11 +107,17 @@ fn a_run_that_breaks_down_is_an_error_with_step_and_place() {
 #[test]
 fn a_check_that_asks_for_what_is_not_there_names_its_line() {
     for (check, expected) in [
-        ("[[check]]\nquantity = \"q\"\nmeasure = \"closuer\"", "unknown measure"),
-        ("[[check]]\nquantity = \"q\"\nmeasure = \"initial\"\ncolumn = \"fracture_j\"", "no column \"fracture_j\""),
-        ("[[check]]\nquantity = \"q\"\nmeasure = \"closure\"\nvariant = \"none\"", "no run of this case"),
-        ("[[check]]\nquantity = \"q\"\nmeasure = \"closure\"\nmax = 1.0", "bounds without a reason"),
-        ("[[check]]\nquantity = \"q\"\nmeasure = \"closure\"\nband = \"plate-events/none\"", "no reference band"),
+        ("[[check]]\nid = \"q\"\nquantity = \"q\"\nmeasure = \"closuer\"", "unknown measure"),
+        (
+            "[[check]]\nid = \"q\"\nquantity = \"q\"\nmeasure = \"initial\"\ncolumn = \"fracture_j\"",
+            "no column \"fracture_j\"",
+        ),
+        ("[[check]]\nid = \"q\"\nquantity = \"q\"\nmeasure = \"closure\"\nvariant = \"none\"", "no run of this case"),
+        ("[[check]]\nid = \"q\"\nquantity = \"q\"\nmeasure = \"closure\"\nmax = 1.0", "bounds without a reason"),
+        (
+            "[[check]]\nid = \"q\"\nquantity = \"q\"\nmeasure = \"closure\"\nband = \"plate-events/none\"",
+            "no reference band",
+        ),
     ] {
         let root = tempfile::tempdir().unwrap();
         write_case(root.path(), "wrong", SCENE, check);
@@ -121,7 +138,7 @@ fn lists_where_a_scene_has_one_value_are_axes() {
     assert_eq!(results.records[5].parameters["cells"], serde_json::json!([16, 8]));
 }
 
-const ORDER: &str = "[[check]]\nquantity = \"order of the initial energy\"\nmeasure = \"initial\"\ncolumn = \"kinetic_j\"\nmeshes = \"observed-order\"";
+const ORDER: &str = "[[check]]\nid = \"order-of-the-initial-energy\"\nquantity = \"order of the initial energy\"\nmeasure = \"initial\"\ncolumn = \"kinetic_j\"\nmeshes = \"observed-order\"";
 
 /// The scene on three meshes, and a check that combines them.
 fn three_meshes() -> String {
@@ -131,7 +148,7 @@ fn three_meshes() -> String {
 #[test]
 fn a_check_over_meshes_is_one_record_of_the_finest() {
     let root = tempfile::tempdir().unwrap();
-    let constant = ORDER.replace("initial energy", "initial elastic energy").replace("kinetic_j", "elastic_j");
+    let constant = ORDER.replace("initial-energy", "elastic-energy").replace("kinetic_j", "elastic_j");
     write_case(root.path(), "meshes", &three_meshes(), &format!("{ORDER}\n{constant}"));
     let results = run(root.path(), Environment::default()).unwrap();
     let [order, none] = results.records.as_slice() else { panic!("two records: {:?}", results.records) };
@@ -184,7 +201,7 @@ fn two_runs_agree_and_a_clean_commit_takes_up_finished_cases() {
     assert_eq!(timeless(first), timeless(second));
     assert!(!root.path().join("out/partial").exists(), "a complete run leaves nothing to take up");
 
-    write_case(root.path(), "b", SCENE, "[[check]]\nquantity = \"q\"\nmeasure = \"closuer\"");
+    write_case(root.path(), "b", SCENE, "[[check]]\nid = \"q\"\nquantity = \"q\"\nmeasure = \"closuer\"");
     run(root.path(), clean()).unwrap_err();
     let kept = std::fs::read_dir(root.path().join("out/partial")).unwrap().count();
     assert_eq!(kept, 1, "case a was finished before case b failed");

@@ -2,12 +2,10 @@
 
 use std::path::Path;
 
-use super::{Case, Check, Tier, Variant, convergence, rings};
-use crate::measure::grid_convergence::Estimate;
-use crate::record::{Accept, ReferenceKind};
+use super::{Case, Tier, Variant, check, convergence, rings};
 use crate::scene_file::document::{Document, Node, Value};
-use crate::scene_file::fields::{Fields, Item};
-use crate::scene_file::units::{self, Dimension};
+use crate::scene_file::fields::Item;
+use crate::scene_file::units::Dimension;
 
 const KEYS: [&str; 13] = [
     "claim",
@@ -39,7 +37,7 @@ pub(super) fn case(item: &Item<'_>, path: &Path, document: &Document) -> Option<
     let variants = fields.or("variant", Vec::new(), |i| i.tables()?.iter().map(read_variant).collect());
     let convergence = fields.maybe("convergence", convergence::read);
     let rings = fields.maybe("rings", rings::read);
-    let checks = fields.need("check", "at least one [[check]]", |i| i.tables()?.iter().map(read_check).collect());
+    let checks = fields.need("check", "at least one [[check]]", check::read);
     let stem = |p: Option<&std::ffi::OsStr>| p.map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     Some(Case {
         suite: stem(path.parent().and_then(Path::file_name)),
@@ -85,114 +83,4 @@ fn read_variant(item: &Item<'_>) -> Option<Variant> {
     });
     let energy_factor = fields.maybe("energy_factor", |i| i.quantity(Dimension::NONE));
     Some(Variant { name: name?, set: set?, energy_factor: energy_factor? })
-}
-
-const CHECK_KEYS: [&str; 22] = [
-    "quantity",
-    "unit",
-    "measure",
-    "column",
-    "reference",
-    "from",
-    "to",
-    "at",
-    "expect",
-    "expect_kind",
-    "expect_source",
-    "scale",
-    "band",
-    "variant",
-    "against",
-    "meshes",
-    "order",
-    "min",
-    "max",
-    "below",
-    "above",
-    "why",
-];
-
-fn read_check(item: &Item<'_>) -> Option<Check> {
-    let fields = item.fields(&CHECK_KEYS)?;
-    let text = |key: &str| fields.maybe(key, Item::text);
-    let number = |key: &str| fields.maybe(key, any_quantity);
-    let time = |key: &str, default| fields.or(key, default, |i| i.quantity(Dimension::TIME));
-    let quantity = fields.need("quantity", "quantity = \"what is measured, in words\"", Item::text);
-    let unit = fields.or("unit", "1".to_string(), Item::text);
-    let (measure, column, reference) = (text("measure"), text("column"), text("reference"));
-    let window = [time("from", f64::NEG_INFINITY), time("to", f64::INFINITY)];
-    let (at, expect) = (number("at"), number("expect"));
-    let kind = fields.or("expect_kind", ReferenceKind::Exact, reference_kind);
-    let expect_source = fields.or("expect_source", String::new(), Item::text);
-    let scale = fields.or("scale", 1.0, |i| i.quantity(Dimension::NONE));
-    let (band, variant, against) = (text("band"), text("variant"), text("against"));
-    let around_reference = read_around(&fields);
-    let meshes = fields.maybe("meshes", |i| i.choice(&Estimate::WORDS));
-    let order = number("order");
-    let accept = read_accept(&fields);
-    Some(Check {
-        quantity: quantity?,
-        unit: unit?,
-        measure: measure?,
-        column: column?,
-        reference: reference?,
-        window: [window[0]?, window[1]?],
-        at: at?,
-        expect: expect?,
-        expect_kind: kind?,
-        expect_source: expect_source?,
-        scale: scale?,
-        band: band?,
-        variant: variant?,
-        against: against?,
-        around_reference: around_reference?,
-        meshes: meshes?,
-        order: order?,
-        accept: accept?,
-    })
-}
-
-/// `below = 0.1, above = 0.5`: bounds around the reference value.
-fn read_around(fields: &Fields<'_>) -> Option<Option<[f64; 2]>> {
-    let (below, above) = (fields.maybe("below", any_quantity)?, fields.maybe("above", any_quantity)?);
-    match (below, above) {
-        (None, None) => Some(None),
-        (Some(below), Some(above)) => Some(Some([below, above])),
-        _ => fields.item().fail("one of below and above is missing", "give both: how far from the reference value"),
-    }
-}
-
-/// Bounds need a reason.
-fn read_accept(fields: &Fields<'_>) -> Option<Accept> {
-    let number = |key: &str| fields.maybe(key, any_quantity);
-    let (min, max) = (number("min"), number("max"));
-    let why = fields.or("why", String::new(), Item::text);
-    let (min, max, why) = (min?, max?, why?);
-    let bounded = ["min", "max", "below", "above"].iter().any(|key| fields.get(key).is_some());
-    if bounded && why.is_empty() {
-        return fields.item().fail("bounds without a reason", "add why = \"where the bound comes from\"");
-    }
-    Some(Accept { min, max, why })
-}
-
-fn reference_kind(item: &Item<'_>) -> Option<ReferenceKind> {
-    item.choice(&[
-        ("exact", ReferenceKind::Exact),
-        ("theory", ReferenceKind::Theory),
-        ("literature", ReferenceKind::Literature),
-        ("independent-code", ReferenceKind::IndependentCode),
-        ("self-convergence", ReferenceKind::SelfConvergence),
-        ("regression", ReferenceKind::Regression),
-    ])
-}
-
-/// A number, or a string with any unit, in SI.
-fn any_quantity(item: &Item<'_>) -> Option<f64> {
-    match item.node.as_str() {
-        None => item.quantity(Dimension::NONE),
-        Some(text) => match units::parse(text) {
-            Ok(quantity) => Some(quantity.value),
-            Err(e) => item.fail(e.message, e.remedy),
-        },
-    }
 }

@@ -172,8 +172,10 @@ fn judge(record: &mut Record, measured: Measured) {
 
 fn bare_record(case: &Case, check: &Check, variant: &str) -> Record {
     let middle = if variant.is_empty() { String::new() } else { format!("{variant}/") };
+    let full = |id: &String| format!("{}/{}/{middle}{id}", case.suite, case.name);
     Record {
-        id: format!("{}/{}/{middle}{}", case.suite, case.name, slug(&check.quantity)),
+        id: full(&check.id),
+        formerly: check.formerly.iter().map(full).collect(),
         suite: case.suite.clone(),
         case: case.name.clone(),
         tier: case.tier.to_string(),
@@ -206,10 +208,4 @@ fn parameters(scene: &CaseScene) -> BTreeMap<String, serde_json::Value> {
     parameters.insert("mass".into(), format!("{:?}", scene.analysis.mass).to_lowercase().into());
     parameters.insert("frame".into(), format!("{:?}", scene.analysis.frame).to_lowercase().into());
     parameters
-}
-
-/// Words joined by dashes, for ids.
-fn slug(words: &str) -> String {
-    let mapped: String = words.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { ' ' }).collect();
-    mapped.split_whitespace().collect::<Vec<_>>().join("-")
 }

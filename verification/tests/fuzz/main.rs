@@ -224,7 +224,7 @@ fn readers_survive_what_is_made_to_hurt_them() {
         outcome.unwrap_or_else(|what| panic!("{what}: {}", &name[..name.len().min(200)]));
     }
     let list = |n: usize| (1..=n).map(|i| format!("{i}, ")).collect::<String>();
-    let head = "claim = \"c\"\nseconds = 1\n[[check]]\nquantity = \"q\"\n";
+    let head = "claim = \"c\"\nseconds = 1\n[[check]]\nid = \"q\"\nquantity = \"q\"\n";
     let rings = format!(
         "{head}[rings]\nouter_radius = [{0}]\ninner_over_outer = [{1}]\nlength_scale = [{0}]\npoints = [{2}]",
         list(2000),

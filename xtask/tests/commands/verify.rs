@@ -26,6 +26,7 @@ pub fn case_of(scene: &str, claim: &str, tier: &str, largest_closure: f64) -> St
         .collect();
     format!(
         "claim = \"{claim}\"\ntier = \"{tier}\"\nseconds = 1\n\n{scene}\n[[check]]\n\
+         id = \"closure-of-the-energy-ledger-over-the-largest-energy\"\n\
          quantity = \"closure of the energy ledger over the largest energy\"\nmeasure = \"closure\"\n\
          max = {largest_closure:e}\nwhy = \"round-off\"\n"
     )

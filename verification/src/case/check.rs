@@ -1,0 +1,167 @@
+//! The `[[check]]` tables of a case file.
+
+use super::Check;
+use crate::measure::grid_convergence::Estimate;
+use crate::record::{Accept, ReferenceKind};
+use crate::scene_file::fields::{Fields, Item};
+use crate::scene_file::units::{self, Dimension};
+
+const KEYS: [&str; 24] = [
+    "id",
+    "formerly",
+    "quantity",
+    "unit",
+    "measure",
+    "column",
+    "reference",
+    "from",
+    "to",
+    "at",
+    "expect",
+    "expect_kind",
+    "expect_source",
+    "scale",
+    "band",
+    "variant",
+    "against",
+    "meshes",
+    "order",
+    "min",
+    "max",
+    "below",
+    "above",
+    "why",
+];
+
+/// All checks, no two of which give records of one id.
+pub(super) fn read(item: &Item<'_>) -> Option<Vec<Check>> {
+    let tables = item.tables()?;
+    if tables.is_empty() {
+        return item.fail("there is no check", "add at least one [[check]]");
+    }
+    let checks: Vec<Check> = tables.iter().map(read_check).collect::<Option<_>>()?;
+    let mut distinct = Some(());
+    for (index, (check, table)) in checks.iter().zip(&tables).enumerate() {
+        let others =
+            || checks[..index].iter().chain(&checks[index + 1..]).filter(|other| other.shares_runs_with(check));
+        if checks[..index].iter().any(|other| other.id == check.id && other.shares_runs_with(check)) {
+            let message = format!("a second check with the id {:?}", check.id);
+            distinct = table.fail(message, "give it an id of its own, or remove it if it is the same check");
+        }
+        if let Some(old) = check.formerly.iter().find(|old| **old == check.id || others().any(|o| o.id == **old)) {
+            let message = format!("the former id {old:?} is that of a check of today");
+            distinct = table.fail(message, "name in formerly only ids that are no longer in use");
+        }
+    }
+    distinct.map(|()| checks)
+}
+
+fn read_check(item: &Item<'_>) -> Option<Check> {
+    let fields = item.fields(&KEYS)?;
+    let text = |key: &str| fields.maybe(key, Item::text);
+    let number = |key: &str| fields.maybe(key, any_quantity);
+    let time = |key: &str, default| fields.or(key, default, |i| i.quantity(Dimension::TIME));
+    let quantity = fields.need("quantity", "quantity = \"what is measured, in words\"", Item::text);
+    let like = format!(
+        "id = {:?}, by which later results are compared with earlier ones",
+        quantity.as_deref().map_or("…".into(), identifier)
+    );
+    let id = fields.need("id", &like, read_id);
+    let formerly = fields.or("formerly", Vec::new(), |i| i.each(read_id));
+    let unit = fields.or("unit", "1".to_string(), Item::text);
+    let (measure, column, reference) = (text("measure"), text("column"), text("reference"));
+    let window = [time("from", f64::NEG_INFINITY), time("to", f64::INFINITY)];
+    let (at, expect) = (number("at"), number("expect"));
+    let kind = fields.or("expect_kind", ReferenceKind::Exact, reference_kind);
+    let expect_source = fields.or("expect_source", String::new(), Item::text);
+    let scale = fields.or("scale", 1.0, |i| i.quantity(Dimension::NONE));
+    let (band, variant, against) = (text("band"), text("variant"), text("against"));
+    let around_reference = read_around(&fields);
+    let meshes = fields.maybe("meshes", |i| i.choice(&Estimate::WORDS));
+    let order = number("order");
+    let accept = read_accept(&fields);
+    Some(Check {
+        id: id?,
+        formerly: formerly?,
+        quantity: quantity?,
+        unit: unit?,
+        measure: measure?,
+        column: column?,
+        reference: reference?,
+        window: [window[0]?, window[1]?],
+        at: at?,
+        expect: expect?,
+        expect_kind: kind?,
+        expect_source: expect_source?,
+        scale: scale?,
+        band: band?,
+        variant: variant?,
+        against: against?,
+        around_reference: around_reference?,
+        meshes: meshes?,
+        order: order?,
+        accept: accept?,
+    })
+}
+
+/// `below = 0.1, above = 0.5`: bounds around the reference value.
+fn read_around(fields: &Fields<'_>) -> Option<Option<[f64; 2]>> {
+    let (below, above) = (fields.maybe("below", any_quantity)?, fields.maybe("above", any_quantity)?);
+    match (below, above) {
+        (None, None) => Some(None),
+        (Some(below), Some(above)) => Some(Some([below, above])),
+        _ => fields.item().fail("one of below and above is missing", "give both: how far from the reference value"),
+    }
+}
+
+/// Bounds need a reason.
+fn read_accept(fields: &Fields<'_>) -> Option<Accept> {
+    let number = |key: &str| fields.maybe(key, any_quantity);
+    let (min, max) = (number("min"), number("max"));
+    let why = fields.or("why", String::new(), Item::text);
+    let (min, max, why) = (min?, max?, why?);
+    let bounded = ["min", "max", "below", "above"].iter().any(|key| fields.get(key).is_some());
+    if bounded && why.is_empty() {
+        return fields.item().fail("bounds without a reason", "add why = \"where the bound comes from\"");
+    }
+    Some(Accept { min, max, why })
+}
+
+fn reference_kind(item: &Item<'_>) -> Option<ReferenceKind> {
+    item.choice(&[
+        ("exact", ReferenceKind::Exact),
+        ("theory", ReferenceKind::Theory),
+        ("literature", ReferenceKind::Literature),
+        ("independent-code", ReferenceKind::IndependentCode),
+        ("self-convergence", ReferenceKind::SelfConvergence),
+        ("regression", ReferenceKind::Regression),
+    ])
+}
+
+/// Words of letters and digits joined by dashes.
+fn read_id(item: &Item<'_>) -> Option<String> {
+    let text = item.text()?;
+    let plain = identifier(&text);
+    if plain == text && !text.is_empty() {
+        return Some(text);
+    }
+    let like = if plain.is_empty() { "largest-error" } else { &plain };
+    item.fail(format!("{text:?} is no id"), format!("join lower-case words by dashes: {like:?}"))
+}
+
+/// Words as an id.
+fn identifier(words: &str) -> String {
+    let mapped: String = words.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { ' ' }).collect();
+    mapped.split_whitespace().collect::<Vec<_>>().join("-")
+}
+
+/// A number, or a string with any unit, in SI.
+fn any_quantity(item: &Item<'_>) -> Option<f64> {
+    match item.node.as_str() {
+        None => item.quantity(Dimension::NONE),
+        Some(text) => match units::parse(text) {
+            Ok(quantity) => Some(quantity.value),
+            Err(e) => item.fail(e.message, e.remedy),
+        },
+    }
+}
