@@ -80,8 +80,7 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
-    let mut material = Material::new(32e9, 0.2, options.plane_stress);
-    material.residual = 0.0;
+    let material = Material::new(32e9, 0.2, options.plane_stress);
     let grading = Grading { fine_from: options.fine_from_mm * 1e-3, fine_to: options.fine_mm * 1e-3 };
     let plate = Plate {
         h: options.h_mm * 1e-3,
