@@ -94,13 +94,6 @@ pub struct Check {
     pub accept: Accept,
 }
 
-impl Check {
-    /// Whether a run can have a record of both: neither names a variant, or both the same.
-    fn shares_runs_with(&self, other: &Self) -> bool {
-        self.variant.is_none() || other.variant.is_none() || self.variant == other.variant
-    }
-}
-
 /// Keys changed together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variant {

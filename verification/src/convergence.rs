@@ -161,14 +161,14 @@ impl Convergence {
                     |value| Reference { value: Some(value), kind: ReferenceKind::Theory, source: self.theory.clone() };
                 measurements.push(Measurement {
                     variant: curve.name.clone(),
-                    quantity: format!("order of the {}", norm.quantity),
+                    quantity: Norm::order_of(&norm.quantity),
                     unit: "1".into(),
                     value: observed_order(&levels, norm.floor),
                     reference: curve.orders[index].map(theory),
                 });
                 measurements.push(Measurement {
                     variant: curve.name.clone(),
-                    quantity: format!("{} {}", norm.quantity, self.refined.finest()),
+                    quantity: self.refined.at_the_finest(&norm.quantity),
                     unit: norm.unit.clone(),
                     value: levels.last().map(|level| level.1),
                     reference: None,
@@ -232,6 +232,11 @@ impl Convergence {
 }
 
 impl Norm {
+    /// The quantity of its observed order.
+    pub fn order_of(quantity: &str) -> String {
+        format!("order of the {quantity}")
+    }
+
     /// Column of the error in series: `displacement_error_in_l2`.
     pub fn column(&self) -> String {
         words(&self.quantity, "_")
@@ -253,11 +258,13 @@ impl Refined {
         }
     }
 
-    fn finest(self) -> &'static str {
-        match self {
+    /// The quantity of its last error.
+    pub fn at_the_finest(self, quantity: &str) -> String {
+        let finest = match self {
             Self::Mesh { .. } => "on the finest mesh",
             Self::TimeStep => "with the smallest step",
-        }
+        };
+        format!("{quantity} {finest}")
     }
 }
 

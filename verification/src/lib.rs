@@ -21,3 +21,4 @@ pub mod scene_file;
 pub mod scene_run;
 pub mod study;
 pub mod suite;
+pub mod watch;

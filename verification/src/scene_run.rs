@@ -22,6 +22,7 @@ use fisura::validate::validate;
 use serde::{Deserialize, Serialize};
 
 use crate::history::Table;
+use crate::watch;
 
 pub use breakdown::{BreakdownReport, Extremes, WorstPoint};
 pub use checkpoint::{CHECKPOINT, CheckpointError};
@@ -69,14 +70,14 @@ pub struct SceneRun {
 /// a second time, with the same state.
 pub type OnFrame<'a> = dyn FnMut(usize, &Simulation) + 'a;
 
-/// Runs a valid scene (see [`validate`]) to its end; `progress` is called after every step, and `on_frame` at every frame
-/// with its number.
+/// Runs a valid scene (see [`validate`]) to its end, or until its [`watch`](crate::watch) stops it; `progress` is called after
+/// every step, and `on_frame` at every frame with its number.
 pub fn run_scene(scene: &Scene, progress: &mut dyn FnMut(Progress), on_frame: &mut OnFrame<'_>) -> SceneRun {
     let mut run = Run::new(scene, Record::default());
     match timed(&mut run.record.stages.preparation, || Simulation::new(scene)) {
         Err(breakdown) => run.finish(None, Some(breakdown), None),
         Ok(mut simulation) => {
-            let breakdown = run.advance(&mut simulation, progress, on_frame, &mut |_, _| false).err();
+            let breakdown = run.advance(&mut simulation, progress, on_frame, &mut |_, _| watch::check().is_err()).err();
             run.finish(Some(&simulation), breakdown, None)
         }
     }

@@ -13,6 +13,7 @@ mod eigenfrequencies;
 mod homogeneous_state;
 mod linear_field;
 mod nurbs;
+mod offers;
 mod pulse;
 mod rings;
 mod rotation;
@@ -20,6 +21,7 @@ pub mod scene;
 mod stability;
 mod vibration;
 
+pub use offers::{Offer, Offers};
 use thiserror::Error;
 
 use crate::case::Case;
@@ -72,47 +74,110 @@ pub enum StudyError {
     /// A run broke down.
     #[error(transparent)]
     Breakdown(#[from] fisura::error::Breakdown),
+    /// The case is over its time.
+    #[error(transparent)]
+    Stopped(#[from] crate::watch::Stopped),
     /// Something else.
     #[error("{0}")]
     Other(String),
 }
 
-type Study = fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>;
+/// What a study offers for a case, or why it cannot be carried out.
+pub type Offered = Result<Offers, StudyError>;
 
-/// Studies other than `scene`, by name.
-pub const STUDIES: [(&str, Study); 29] = [
-    ("basis", basis::study),
-    ("constant-stress", constant_stress::study),
-    ("homogeneous-state", homogeneous_state::study),
-    ("compressive-step", compressive_step::study),
-    ("nurbs", nurbs::study),
-    ("convergence", convergence::study),
-    ("vibration", vibration::study),
-    ("pulse", pulse::study),
-    ("crack-profile", crack_profile::study),
-    ("rotation", rotation::study),
-    ("eigenfrequencies", eigenfrequencies::study),
-    ("linear-field", linear_field::study),
-    ("contact-impact", contact::impact::study),
-    ("contact-onset", contact::onset::study),
-    ("contact-incline", contact::incline::study),
-    ("contact-collision", contact::collision::study),
-    ("contact-hertz", contact::hertz::study),
-    ("contact-stack", contact::stack::study),
-    ("rings", rings::study),
-    ("rings-sweep", rings::sweep),
-    ("critical-step", stability::critical_step::study),
-    ("step-growth", stability::growth::study),
-    ("incompressible", stability::incompressible::study),
-    ("split-families", stability::split_families::study),
-    ("boundary-points", stability::boundary_points::study),
-    ("unit-systems", stability::units::study),
-    ("repeatability", stability::repeatability::study),
-    ("unloading", stability::unloading::study),
-    ("stick-slip", stability::stick_slip::study),
+/// A way to run a case and to measure.
+#[derive(Debug, Clone, Copy)]
+pub struct Study {
+    /// Name in case files.
+    pub name: &'static str,
+    /// Tables of a case that it reads, of [`INPUTS`]; the first has to be there.
+    pub reads: &'static [&'static str],
+    /// What it will measure.
+    pub offers: fn(&Case, &[CaseScene]) -> Offered,
+    /// Runs it.
+    pub run: fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>,
+}
+
+/// Tables and keys of a case file that not every study reads.
+pub const INPUTS: [&str; 5] = ["scene", "variant", "energy_factor", "convergence", "rings"];
+
+const NOTHING: &[&str] = &[];
+const SCENES: &[&str] = &["scene", "variant"];
+
+/// Studies other than `scene`.
+pub static STUDIES: [Study; 29] = [
+    Study { name: "basis", reads: NOTHING, offers: basis::offers, run: basis::study },
+    Study { name: "constant-stress", reads: SCENES, offers: constant_stress::offers, run: constant_stress::study },
+    Study {
+        name: "homogeneous-state",
+        reads: SCENES,
+        offers: homogeneous_state::offers,
+        run: homogeneous_state::study,
+    },
+    Study { name: "compressive-step", reads: SCENES, offers: compressive_step::offers, run: compressive_step::study },
+    Study { name: "nurbs", reads: NOTHING, offers: nurbs::offers, run: nurbs::study },
+    Study { name: "convergence", reads: &["convergence"], offers: convergence::offers, run: convergence::study },
+    Study { name: "vibration", reads: NOTHING, offers: vibration::offers, run: vibration::study },
+    Study { name: "pulse", reads: NOTHING, offers: pulse::offers, run: pulse::study },
+    Study { name: "crack-profile", reads: NOTHING, offers: crack_profile::offers, run: crack_profile::study },
+    Study { name: "rotation", reads: SCENES, offers: rotation::offers, run: rotation::study },
+    Study { name: "eigenfrequencies", reads: NOTHING, offers: eigenfrequencies::offers, run: eigenfrequencies::study },
+    Study { name: "linear-field", reads: NOTHING, offers: linear_field::offers, run: linear_field::study },
+    Study { name: "contact-impact", reads: SCENES, offers: contact::impact::offers, run: contact::impact::study },
+    Study { name: "contact-onset", reads: SCENES, offers: contact::onset::offers, run: contact::onset::study },
+    Study { name: "contact-incline", reads: SCENES, offers: contact::incline::offers, run: contact::incline::study },
+    Study {
+        name: "contact-collision",
+        reads: SCENES,
+        offers: contact::collision::offers,
+        run: contact::collision::study,
+    },
+    Study { name: "contact-hertz", reads: SCENES, offers: contact::hertz::offers, run: contact::hertz::study },
+    Study { name: "contact-stack", reads: SCENES, offers: contact::stack::offers, run: contact::stack::study },
+    Study { name: "rings", reads: &["scene", "variant", "energy_factor"], offers: rings::offers, run: rings::study },
+    Study { name: "rings-sweep", reads: &["rings", "scene"], offers: rings::sweep_offers, run: rings::sweep },
+    Study {
+        name: "critical-step",
+        reads: NOTHING,
+        offers: stability::critical_step::offers,
+        run: stability::critical_step::study,
+    },
+    Study { name: "step-growth", reads: NOTHING, offers: stability::growth::offers, run: stability::growth::study },
+    Study {
+        name: "incompressible",
+        reads: NOTHING,
+        offers: stability::incompressible::offers,
+        run: stability::incompressible::study,
+    },
+    Study {
+        name: "split-families",
+        reads: NOTHING,
+        offers: stability::split_families::offers,
+        run: stability::split_families::study,
+    },
+    Study {
+        name: "boundary-points",
+        reads: NOTHING,
+        offers: stability::boundary_points::offers,
+        run: stability::boundary_points::study,
+    },
+    Study { name: "unit-systems", reads: NOTHING, offers: stability::units::offers, run: stability::units::study },
+    Study {
+        name: "repeatability",
+        reads: NOTHING,
+        offers: stability::repeatability::offers,
+        run: stability::repeatability::study,
+    },
+    Study { name: "unloading", reads: NOTHING, offers: stability::unloading::offers, run: stability::unloading::study },
+    Study {
+        name: "stick-slip",
+        reads: SCENES,
+        offers: stability::stick_slip::offers,
+        run: stability::stick_slip::study,
+    },
 ];
 
 /// The study of that name.
-pub fn find(name: &str) -> Option<Study> {
-    STUDIES.iter().find(|(known, _)| *known == name).map(|(_, study)| *study)
+pub fn find(name: &str) -> Option<&'static Study> {
+    STUDIES.iter().find(|study| study.name == name)
 }

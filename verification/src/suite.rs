@@ -4,10 +4,15 @@ mod judge;
 pub mod merge;
 pub mod part;
 pub mod partition;
+pub mod prepare;
 mod resume;
+mod selection;
+mod supervise;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
 
 use thiserror::Error;
 
@@ -18,20 +23,12 @@ use crate::record::{Environment, Figure, Record, ResultSet, SCHEMA, Status};
 use crate::reference::{Library, ReferenceError};
 use crate::scene_file::SceneFileError;
 use crate::study::scene::RunInfo;
+pub use selection::{Malformed, Selection, load_cases, read_cases, select};
 
 use part::{PART_SCHEMA, Part, Plan};
 use partition::Slice;
-
-/// Which cases to run.
-#[derive(Debug, Clone)]
-pub struct Selection {
-    /// Suites; empty: all.
-    pub suites: Vec<String>,
-    /// Pattern that case ids match; absent: all.
-    pub case_glob: Option<String>,
-    /// Tier; the full tier includes the quick one.
-    pub tier: Tier,
-}
+use prepare::{Prepared, prepare};
+use supervise::supervised;
 
 /// Where and how to run.
 #[derive(Debug, Clone)]
@@ -44,6 +41,8 @@ pub struct Options<'a> {
     pub environment: Environment,
     /// Takes up the cases that an interrupted run of the same commit finished.
     pub resume: bool,
+    /// Longest time of a case; absent: ten times its estimate, and no less than five minutes.
+    pub case_timeout: Option<Duration>,
 }
 
 /// Told what is going on.
@@ -52,6 +51,8 @@ pub trait Progress: Sync {
     fn started(&self, case: &Case, index: usize, count: usize);
     /// The finished fraction of the case.
     fn advanced(&self, fraction: f64);
+    /// A case is over its time and was asked to stop.
+    fn late(&self, case: &Case, limit: Duration);
     /// A case is finished.
     fn finished(&self, case: &Case, records: &[Record]);
 }
@@ -95,35 +96,13 @@ pub struct CaseOutcome {
     pub runs: Vec<RunInfo>,
 }
 
-/// Every case below `folder`, `<suite>/<case>.toml`, in order of suite and name.
-///
-/// # Errors
-/// The first case file that is wrong. `overrides` are `--set` keys, applied to the scene of every case.
-pub fn load_cases(folder: &Path, overrides: &[String]) -> Result<Vec<Case>, SceneFileError> {
-    let pattern = folder.join("*").join("*.toml");
-    let paths = glob::glob(&pattern.to_string_lossy()).into_iter().flatten().flatten();
-    let mut paths: Vec<PathBuf> = paths.collect();
-    paths.sort();
-    paths.iter().map(|path| Case::load(path, overrides)).collect()
-}
-
-/// The cases a selection names.
-pub fn select(cases: Vec<Case>, selection: &Selection) -> Vec<Case> {
-    let pattern = selection.case_glob.as_deref().and_then(|g| glob::Pattern::new(g).ok());
-    let chosen = |case: &Case| {
-        (selection.suites.is_empty() || selection.suites.contains(&case.suite))
-            && (selection.case_glob.is_none() || pattern.as_ref().is_some_and(|p| p.matches(&case.id())))
-            && case.tier <= selection.tier
-    };
-    cases.into_iter().filter(chosen).collect()
-}
-
 /// Runs the cases and writes `results.json` and `series/*.csv` into the results folder.
 ///
 /// # Errors
-/// If a case or reference file is wrong, or the folder cannot be written. A failed check is a record, not an error.
+/// If a case or reference file is wrong, which is known before anything runs, or the folder cannot be written. A failed check
+/// is a record, not an error, and so is a case that breaks down, panics or exceeds its time.
 pub fn verify(cases: &[Case], options: &Options, progress: &dyn Progress) -> Result<ResultSet, VerifyError> {
-    let library = Library::load(options.reference_data)?;
+    let library = Arc::new(Library::load(options.reference_data)?);
     let (outcomes, store) = run_cases(cases, options, &library, progress)?;
     let results = assemble(options.out, outcomes, inputs(cases), options.environment.clone(), &library)?;
     store.finish();
@@ -140,7 +119,7 @@ pub fn verify_slice(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<ResultSet, VerifyError> {
-    let library = Library::load(options.reference_data)?;
+    let library = Arc::new(Library::load(options.reference_data)?);
     let (outcomes, store) = run_cases(cases, options, &library, progress)?;
     let named = cases.iter().map(Case::id).zip(outcomes.iter().cloned()).collect();
     let environment = options.environment.clone();
@@ -155,9 +134,10 @@ pub fn verify_slice(
 fn run_cases(
     cases: &[Case],
     options: &Options,
-    library: &Library,
+    library: &Arc<Library>,
     progress: &dyn Progress,
 ) -> Result<(Vec<CaseOutcome>, resume::Store), VerifyError> {
+    let prepared: Vec<Prepared> = cases.iter().map(|case| prepare(case, library)).collect::<Result<_, _>>()?;
     let series = options.out.join("series");
     let store = resume::Store::open(options)?;
     if !store.has_finished_cases() {
@@ -165,20 +145,49 @@ fn run_cases(
     }
     std::fs::create_dir_all(&series).map_err(|e| VerifyError::output(&series, e))?;
     let mut outcomes = Vec::new();
-    for (index, case) in cases.iter().enumerate() {
+    for (index, (case, prepared)) in cases.iter().zip(prepared).enumerate() {
         progress.started(case, index, cases.len());
         let outcome = match store.load(case) {
             Some(outcome) => outcome,
-            None => {
-                let outcome = judge::run_case(case, options.out, library, progress)?;
-                store.save(case, &outcome)?;
-                outcome
-            }
+            None => match run_case(case, &Arc::new(prepared), options, library, progress) {
+                Ok(outcome) => {
+                    let outcome = outcome?;
+                    store.save(case, &outcome)?;
+                    outcome
+                }
+                Err(broken) => broken, // to be tried again, and not taken up
+            },
         };
         progress.finished(case, &outcome.records);
         outcomes.push(outcome);
     }
     Ok((outcomes, store))
+}
+
+/// Least limit for the time of a case.
+const LEAST_TIME: Duration = Duration::from_secs(300);
+/// Limit for the time of a case over its estimate.
+const PATIENCE: f64 = 10.0;
+
+/// Runs a case under supervision: what it found, or what cannot be written; an outcome of errors alone if it did not end well.
+fn run_case(
+    case: &Case,
+    prepared: &Arc<Prepared>,
+    options: &Options,
+    library: &Arc<Library>,
+    progress: &dyn Progress,
+) -> Result<Result<CaseOutcome, VerifyError>, CaseOutcome> {
+    let estimated = Duration::from_secs_f64((PATIENCE * case.seconds).min(1e9));
+    let limit = options.case_timeout.unwrap_or(estimated.max(LEAST_TIME));
+    let (judged, out) = (case.clone(), options.out.to_path_buf());
+    let (plan, references) = (Arc::clone(prepared), Arc::clone(library));
+    let work = move || judge::run_case(&judged, &plan, &out, &references);
+    or_broken(case, prepared, supervised(limit, &|part| progress.advanced(part), &|| progress.late(case, limit), work))
+}
+
+/// A case that panicked or exceeded its time has an error for each of its records.
+fn or_broken<T>(case: &Case, prepared: &Prepared, ended: Result<T, String>) -> Result<T, CaseOutcome> {
+    ended.map_err(|message| judge::broken(case, prepared, &message))
 }
 
 /// Writes what the outcomes of all cases give together: figures over several runs, their reference curves, the records.
@@ -259,5 +268,22 @@ mod tests {
         std::fs::write(out.join("results.json"), "{}").unwrap();
         remove_old_results(out);
         assert!(!out.join("series").exists());
+    }
+
+    #[test]
+    fn a_panic_is_an_error_for_every_record_of_the_case() {
+        let text = "claim = \"c\"\nseconds = 1\nstudy = \"basis\"\n[[check]]\nid = \"unity\"\n\
+                    quantity = \"partition of unity, largest error\"\n";
+        let case = Case::parse(Path::new("trial/case.toml"), text, &[]).unwrap();
+        let prepared = prepare(&case, &Library::default()).unwrap();
+        let ended = supervised(LEAST_TIME, &|_| (), &|| (), || -> () { panic!("planted") });
+        let records = or_broken(&case, &prepared, ended).unwrap_err().records;
+        let ids: Vec<&str> = records.iter().map(|record| record.id.as_str()).collect();
+        assert_eq!(ids, ["p=1", "p=2", "p=3", "p=4"].map(|p| format!("trial/case/{p}/unity")));
+        for record in &records {
+            assert_eq!(record.status, Status::Error);
+            let message = record.message.as_deref().unwrap();
+            assert!(message.contains("planted") && message.contains("suite.rs"), "{message}");
+        }
     }
 }

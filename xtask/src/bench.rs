@@ -91,7 +91,7 @@ impl From<BenchError> for Failure {
     fn from(error: BenchError) -> Self {
         match error {
             BenchError::Study(StudyError::Breakdown(breakdown)) => Self::from(&breakdown),
-            BenchError::Study(StudyError::Other(message)) => Self::new(Exit::BrokeDown, message),
+            BenchError::Study(other) => Self::new(Exit::BrokeDown, other.to_string()),
             BenchError::Case(error) => error.into(),
             BenchError::Input(message) => Self::new(Exit::BadInput, message)
                 .help("verification/cases and reference-data of the workspace are read"),

@@ -7,7 +7,7 @@ use fisura_reports::number::duration;
 use fisura_reports::paper::{PaperFigure, cases_of};
 use fisura_reports::{bundle, read_results};
 use fisura_verification::record::{Figure, ResultSet};
-use fisura_verification::suite::{Case, Options, load_cases, verify};
+use fisura_verification::suite::{Case, Options, read_cases, verify};
 use serde_json::json;
 
 use crate::cli::{Common, Format};
@@ -124,13 +124,23 @@ impl Wanted {
 
 /// Runs the cases that the figures need, which may take long: that is said first.
 fn run(wanted: &[PaperFigure], out: &Path, common: &Common) -> Result<ResultSet, Failure> {
-    let needed = |case: &Case| wanted.iter().any(|figure| figure.cases().contains(&case.id().as_str()));
-    let cases: Vec<Case> = load_cases(&cases_folder()?, &[])?.into_iter().filter(needed).collect();
+    let needed = |id: &str| wanted.iter().any(|figure| figure.cases().contains(&id));
+    let (cases, malformed) = read_cases(&cases_folder()?, &[]);
+    if let Some(file) = malformed.into_iter().find(|file| needed(&file.id)) {
+        return Err(file.error.into());
+    }
+    let cases: Vec<Case> = cases.into_iter().filter(|case| needed(&case.id())).collect();
     let seconds = cases.iter().map(|case| case.seconds).sum();
     console::note(common, &format!("{} cases to run, estimated {} on two cores", cases.len(), duration(seconds)));
     let workspace = folders::workspace();
     let reference_data = workspace.join("reference-data");
-    let options = Options { out, reference_data: &reference_data, environment: environment(&workspace), resume: true };
+    let options = Options {
+        out,
+        reference_data: &reference_data,
+        environment: environment(&workspace),
+        resume: true,
+        case_timeout: None,
+    };
     let watch = Watch::new(common);
     let results = verify(&cases, &options, &watch);
     watch.finish();

@@ -3,15 +3,19 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use fisura_reports::annotations::render_annotations;
 use fisura_reports::number::duration;
 use fisura_reports::text::render_text;
 use fisura_verification::record::{Record, ResultSet, Status};
+use fisura_verification::reference::Library;
 use fisura_verification::suite::part::{Invocation, Plan};
 use fisura_verification::suite::partition::Slice;
-use fisura_verification::suite::{self, Case, Options, Selection, Tier, VerifyError, load_cases, select, worst};
+use fisura_verification::suite::prepare::prepare;
+use fisura_verification::suite::{
+    self, Case, Malformed, Options, Selection, Tier, VerifyError, read_cases, select, worst,
+};
 use indicatif::ProgressBar;
 
 use crate::cli::{Common, Format};
@@ -38,9 +42,19 @@ pub struct Args {
     /// Only the K-th of N slices of what is selected, balanced by the estimated time of the cases; see `merge`
     #[arg(long, value_name = "slice:K/N", value_parser = str::parse::<Slice>)]
     partition: Option<Slice>,
+    /// Stop a case after that many seconds: its records are errors, the others run [default: ten times its estimate, at least
+    /// 300]
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    case_timeout: Option<Duration>,
     /// Change a value in the scene of every case; entries count from 0
     #[arg(long, value_name = "key.path=value")]
     set: Vec<String>,
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse::<f64>().map_err(|error| error.to_string())?;
+    let duration = Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())?;
+    if duration.is_zero() { Err("no case runs in no time".to_string()) } else { Ok(duration) }
 }
 
 /// Runs what is selected.
@@ -72,7 +86,8 @@ pub fn verify(args: &Args, common: &Common) -> Result<Exit, Failure> {
     }
     let folder = folders::output(common, "verify")?;
     let resume = args.tier == Tier::Full;
-    let options = Options { out: &folder, reference_data: &reference_data, environment, resume };
+    let options =
+        Options { out: &folder, reference_data: &reference_data, environment, resume, case_timeout: args.case_timeout };
     let watch = Watch::new(common);
     let results = match part {
         Some(part) => suite::verify_slice(&cases, part, &options, &watch),
@@ -87,14 +102,21 @@ pub fn verify(args: &Args, common: &Common) -> Result<Exit, Failure> {
 /// # Errors
 /// A report that cannot be written.
 pub fn conclude(results: &ResultSet, folder: &Path, common: &Common) -> Result<Exit, Failure> {
-    let rendered = fisura_reports::render(folder);
+    let rendered = fisura_reports::render(folder).map_err(Failure::from);
     print(results, common);
     if std::env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {
         console::error_text(&render_annotations(results));
     }
     console::note(common, &format!("report: {}", folder.join("report.html").display()));
-    rendered?;
-    Ok(verdict(&results.records))
+    // what the checks say is more than that a figure cannot be drawn
+    match (verdict(&results.records), rendered) {
+        (Exit::Done, rendered) => rendered.map(|_| Exit::Done),
+        (verdict, Ok(_)) => Ok(verdict),
+        (verdict, Err(failure)) => {
+            failure.show();
+            Ok(verdict)
+        }
+    }
 }
 
 impl Args {
@@ -126,20 +148,41 @@ pub fn cases_folder() -> Result<PathBuf, Failure> {
     Err(Failure::new(Exit::BadInput, message).help("start it with `cargo xtask` or in the root of the workspace"))
 }
 
+/// The reference data.
+///
+/// # Errors
+/// If they are wrong.
+pub fn library() -> Result<Library, Failure> {
+    Ok(Library::load(&folders::workspace().join("reference-data")).map_err(VerifyError::from)?)
+}
+
 fn selected(args: &Args, common: &Common) -> Result<Vec<Case>, Failure> {
     let bad = |message: String| Failure::new(Exit::BadInput, message);
     if let Some(pattern) = &args.case {
         glob::Pattern::new(pattern)
             .map_err(|e| bad(format!("--case {pattern}: {e}")).help("write a pattern such as plate/*"))?;
     }
-    let cases = load_cases(&cases_folder()?, &[])?;
-    let known: BTreeSet<&str> = cases.iter().map(|case| case.suite.as_str()).collect();
+    let (cases, malformed) = read_cases(&cases_folder()?, &[]);
+    let suites = cases.iter().map(|case| &case.suite).chain(malformed.iter().map(|file| &file.suite));
+    let known: BTreeSet<&str> = suites.map(String::as_str).collect();
     let unknown: Vec<&str> = args.suite.iter().map(String::as_str).filter(|s| !known.contains(s)).collect();
     if !unknown.is_empty() {
         let known = known.into_iter().collect::<Vec<_>>().join(", ");
         return Err(bad(format!("unknown suite: {}", unknown.join(", "))).help(format!("known suites: {known}")));
     }
-    let cases = select(cases, &args.selection());
+    let selection = args.selection();
+    let (meant, others): (Vec<&Malformed>, Vec<&Malformed>) =
+        malformed.iter().partition(|file| selection.names(&file.suite, &file.id));
+    if let Some((first, rest)) = meant.split_first() {
+        for file in rest {
+            Failure::from(file.error.clone()).show();
+        }
+        return Err(first.error.clone().into());
+    }
+    for file in others {
+        console::note(common, &format!("warning: {} is not valid and not selected; see `cargo xtask list`", file.id));
+    }
+    let cases = select(cases, &selection);
     if cases.is_empty() {
         let message = format!("no case of the {} tier is selected", args.tier);
         return Err(Failure::new(Exit::NothingSelected, message).help("see `cargo xtask list` for what there is"));
@@ -147,9 +190,10 @@ fn selected(args: &Args, common: &Common) -> Result<Vec<Case>, Failure> {
     changed(args, cases, common)
 }
 
-/// The cases with the changes of `--set`, every scene of them known to be valid before anything runs. A case without a
+/// The cases with the changes of `--set`, everything about them known to be valid before anything runs. A case without a
 /// scene has nothing that could be changed: it is said, and the case stays as it is.
 fn changed(args: &Args, cases: Vec<Case>, common: &Common) -> Result<Vec<Case>, Failure> {
+    let library = library()?;
     let mut ready = Vec::new();
     for case in cases {
         let case = match case.scene_node() {
@@ -161,7 +205,7 @@ fn changed(args: &Args, cases: Vec<Case>, common: &Common) -> Result<Vec<Case>, 
                 case
             }
         };
-        case.scenes()?;
+        prepare(&case, &library)?;
         ready.push(case);
     }
     Ok(ready)
@@ -215,6 +259,15 @@ impl suite::Progress for Watch<'_> {
 
     fn advanced(&self, fraction: f64) {
         self.bar.set_position((fraction.clamp(0.0, 1.0) * PARTS as f64) as u64);
+    }
+
+    fn late(&self, case: &Case, limit: Duration) {
+        let line = format!("warning: {} is over its time of {} s and is asked to stop", case.id(), limit.as_secs_f64());
+        if console::interactive(self.common) {
+            self.bar.println(line);
+        } else {
+            console::note(self.common, &line);
+        }
     }
 
     fn finished(&self, _case: &Case, records: &[Record]) {

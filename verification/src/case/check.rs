@@ -33,27 +33,14 @@ const KEYS: [&str; 24] = [
     "why",
 ];
 
-/// All checks, no two of which give records of one id.
+/// All checks, at least one.
 pub(super) fn read(item: &Item<'_>) -> Option<Vec<Check>> {
     let tables = item.tables()?;
     if tables.is_empty() {
         return item.fail("there is no check", "add at least one [[check]]");
     }
-    let checks: Vec<Check> = tables.iter().map(read_check).collect::<Option<_>>()?;
-    let mut distinct = Some(());
-    for (index, (check, table)) in checks.iter().zip(&tables).enumerate() {
-        let others =
-            || checks[..index].iter().chain(&checks[index + 1..]).filter(|other| other.shares_runs_with(check));
-        if checks[..index].iter().any(|other| other.id == check.id && other.shares_runs_with(check)) {
-            let message = format!("a second check with the id {:?}", check.id);
-            distinct = table.fail(message, "give it an id of its own, or remove it if it is the same check");
-        }
-        if let Some(old) = check.formerly.iter().find(|old| **old == check.id || others().any(|o| o.id == **old)) {
-            let message = format!("the former id {old:?} is that of a check of today");
-            distinct = table.fail(message, "name in formerly only ids that are no longer in use");
-        }
-    }
-    distinct.map(|()| checks)
+    let checks: Vec<Option<Check>> = tables.iter().map(read_check).collect();
+    checks.into_iter().collect()
 }
 
 fn read_check(item: &Item<'_>) -> Option<Check> {
@@ -61,7 +48,7 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
     let text = |key: &str| fields.maybe(key, Item::text);
     let number = |key: &str| fields.maybe(key, any_quantity);
     let time = |key: &str, default| fields.or(key, default, |i| i.quantity(Dimension::TIME));
-    let quantity = fields.need("quantity", "quantity = \"what is measured, in words\"", Item::text);
+    let quantity = fields.need("quantity", "quantity = \"what is measured, in words\"", Item::words);
     let like = format!(
         "id = {:?}, by which later results are compared with earlier ones",
         quantity.as_deref().map_or("…".into(), identifier)
@@ -70,10 +57,18 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
     let formerly = fields.or("formerly", Vec::new(), |i| i.each(read_id));
     let unit = fields.or("unit", "1".to_string(), Item::text);
     let (measure, column, reference) = (text("measure"), text("column"), text("reference"));
-    let window = [time("from", f64::NEG_INFINITY), time("to", f64::INFINITY)];
+    let (from, to) = (time("from", f64::NEG_INFINITY), time("to", f64::INFINITY));
+    if let (Some(from), Some(to)) = (from, to)
+        && from > to
+    {
+        fields.get("to").and_then(|i| i.fail::<()>("to is before from", "give the earlier time as from"));
+    }
     let (at, expect) = (number("at"), number("expect"));
     let kind = fields.or("expect_kind", ReferenceKind::Exact, reference_kind);
     let expect_source = fields.or("expect_source", String::new(), Item::text);
+    for key in ["expect_kind", "expect_source"].into_iter().filter(|_| fields.get("expect").is_none()) {
+        fields.get(key).and_then(|i| i.fail::<()>(format!("{key} without expect"), "add expect, or remove it"));
+    }
     let scale = fields.or("scale", 1.0, |i| i.quantity(Dimension::NONE));
     let (band, variant, against) = (text("band"), text("variant"), text("against"));
     let around_reference = read_around(&fields);
@@ -88,7 +83,7 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
         measure: measure?,
         column: column?,
         reference: reference?,
-        window: [window[0]?, window[1]?],
+        window: [from?, to?],
         at: at?,
         expect: expect?,
         expect_kind: kind?,
@@ -109,7 +104,10 @@ fn read_around(fields: &Fields<'_>) -> Option<Option<[f64; 2]>> {
     let (below, above) = (fields.maybe("below", any_quantity)?, fields.maybe("above", any_quantity)?);
     match (below, above) {
         (None, None) => Some(None),
-        (Some(below), Some(above)) => Some(Some([below, above])),
+        (Some(below), Some(above)) if below >= 0.0 && above >= 0.0 => Some(Some([below, above])),
+        (Some(_), Some(_)) => {
+            fields.get("below")?.fail("below or above is negative", "give how far the value may lie to either side")
+        }
         _ => fields.item().fail("one of below and above is missing", "give both: how far from the reference value"),
     }
 }
@@ -120,8 +118,17 @@ fn read_accept(fields: &Fields<'_>) -> Option<Accept> {
     let (min, max) = (number("min"), number("max"));
     let why = fields.or("why", String::new(), Item::text);
     let (min, max, why) = (min?, max?, why?);
-    let bounded = ["min", "max", "below", "above"].iter().any(|key| fields.get(key).is_some());
-    if bounded && why.is_empty() {
+    let given = |keys: &[&str]| keys.iter().any(|key| fields.get(key).is_some());
+    let kinds = [given(&["min", "max"]), given(&["below", "above"]), given(&["band"])];
+    if kinds.into_iter().filter(|kind| *kind).count() > 1 {
+        return fields.item().fail("bounds of two kinds", "give min and max, or below and above, or band");
+    }
+    if let (Some(low), Some(high)) = (min, max)
+        && low > high
+    {
+        return fields.get("min")?.fail(format!("min {low} is above max {high}"), "no value lies between them");
+    }
+    if given(&["min", "max", "below", "above"]) && why.trim().is_empty() {
         return fields.item().fail("bounds without a reason", "add why = \"where the bound comes from\"");
     }
     Some(Accept { min, max, why })

@@ -26,12 +26,12 @@ const KEYS: [&str; 13] = [
 pub(super) fn case(item: &Item<'_>, path: &Path, document: &Document) -> Option<Case> {
     let fields = item.fields(&KEYS)?;
     let words = |item: &Item<'_>| item.each(|entry| entry.text());
-    let claim = fields.need("claim", "claim = \"one sentence that a check can refute\"", Item::text);
+    let claim = fields.need("claim", "claim = \"one sentence that a check can refute\"", Item::words);
     let tier = fields.or("tier", Tier::Quick, |i| i.choice(&[("quick", Tier::Quick), ("full", Tier::Full)]));
-    let seconds = fields.need("seconds", "seconds = 10, the estimated wall time", |i| i.quantity(Dimension::NONE));
+    let seconds = fields.need("seconds", "seconds = 10, the estimated wall time", |i| i.positive(Dimension::NONE));
     let study = fields.or("study", "scene".to_string(), Item::text);
     let label = fields.or("label", String::new(), Item::text);
-    let energy_factor = fields.or("energy_factor", 1.0, |i| i.quantity(Dimension::NONE));
+    let energy_factor = fields.or("energy_factor", 1.0, |i| i.positive(Dimension::NONE));
     let deviations = fields.or("deviations", Vec::new(), words);
     let models = fields.or("models", default_models(document), words);
     let variants = fields.or("variant", Vec::new(), |i| i.tables()?.iter().map(read_variant).collect());
@@ -76,11 +76,11 @@ fn default_models(document: &Document) -> Vec<String> {
 
 fn read_variant(item: &Item<'_>) -> Option<Variant> {
     let fields = item.fields(&["name", "set", "energy_factor"])?;
-    let name = fields.need("name", "name = \"…\"", Item::text);
+    let name = fields.need("name", "name = \"…\"", Item::words);
     let set = fields.need("set", "set = { \"mesh.degree\" = 3 }", |i| match &i.node.value {
         Value::Table(table) => Some(table.iter().map(|(key, node)| (key.clone(), node.clone())).collect()),
         _ => i.fail("expected a table", "write set = { \"mesh.degree\" = 3 }"),
     });
-    let energy_factor = fields.maybe("energy_factor", |i| i.quantity(Dimension::NONE));
+    let energy_factor = fields.maybe("energy_factor", |i| i.positive(Dimension::NONE));
     Some(Variant { name: name?, set: set?, energy_factor: energy_factor? })
 }

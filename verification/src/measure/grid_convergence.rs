@@ -17,13 +17,13 @@
 //! order departs from it by more than a tenth, p is limited to the range from 1/2 to theory and F is 3 (Oberkampf and Roy,
 //! Verification and Validation in Scientific Computing, 2010, section 8.6.3); within a tenth, p is that of theory.
 
+use fisura::scene::Mesh;
 use fisura::spans::largest_spans;
 
 use super::{Measured, Run, expected, measure};
-use crate::case::{Case, Check};
+use crate::case::Check;
 use crate::expand::CaseScene;
 use crate::reference::Library;
-use crate::scene_file::SceneFileError;
 
 /// Extrapolation by an order below this would go far beyond what was computed.
 const LEAST_ORDER: f64 = 0.5;
@@ -51,9 +51,9 @@ impl Estimate {
     ];
 }
 
-/// Representative span length of a run's mesh, m.
-pub fn span(run: &Run) -> f64 {
-    let [x, y] = largest_spans(&run.scene.mesh);
+/// Representative span length of a mesh, m.
+pub fn span(mesh: &Mesh) -> f64 {
+    let [x, y] = largest_spans(mesh);
     (x * y).sqrt()
 }
 
@@ -66,7 +66,7 @@ pub fn over_meshes(estimate: Estimate, check: &Check, runs: &[Run], library: &Li
     let mut missing = Vec::new();
     for run in runs {
         match measure(check, run, runs, library)?.value {
-            Some(value) => meshes.push((span(run), value)),
+            Some(value) => meshes.push((span(&run.scene.mesh), value)),
             None => missing.push(run.name),
         }
     }
@@ -141,43 +141,11 @@ fn order([fine, coarse]: [f64; 2], [r21, r32]: [f64; 2]) -> Result<f64, String> 
     Err("the iteration for the order does not converge: ratios of the meshes too uneven".into())
 }
 
-/// Refuses checks with `meshes` whose case gives them nothing to work with, before anything is run.
+/// Whether the scenes of a case give a check with `meshes` something to work with: what is wrong, and what would help.
 ///
 /// # Errors
-/// With file, line and key.
-pub fn validate(case: &Case, scenes: &[CaseScene]) -> Result<(), SceneFileError> {
-    for (index, check) in case.checks.iter().enumerate() {
-        let Some(estimate) = check.meshes else {
-            if check.order.is_some() {
-                let message = "an order of theory without meshes";
-                return Err(case.error(
-                    &format!("check.{index}.order"),
-                    message,
-                    "add meshes = \"richardson\" or remove it",
-                ));
-            }
-            continue;
-        };
-        if let Err((message, remedy)) = usable(case, check, estimate, scenes) {
-            return Err(case.error(&format!("check.{index}.meshes"), message, remedy));
-        }
-    }
-    Ok(())
-}
-
-/// What is wrong, and what would help.
-fn usable(
-    case: &Case,
-    check: &Check,
-    estimate: Estimate,
-    scenes: &[CaseScene],
-) -> Result<(), (&'static str, &'static str)> {
-    if case.study != "scene" {
-        return Err((
-            "only the runs of a scene study can be combined",
-            "remove meshes; other studies measure themselves",
-        ));
-    }
+/// If not.
+pub fn usable(check: &Check, estimate: Estimate, scenes: &[CaseScene]) -> Result<(), (&'static str, &'static str)> {
     if check.measure.as_deref() == Some("order-in-step") || check.variant.is_some() || check.against.is_some() {
         return Err(("it combines all variants", "remove variant, against, or the measure order-in-step"));
     }

@@ -100,6 +100,12 @@ impl<'a> Item<'a> {
         self.node.as_str().map(String::from).or_else(|| self.wrong_kind("a string"))
     }
 
+    /// A string that says something.
+    pub fn words(&self) -> Option<String> {
+        let text = self.text()?;
+        if text.trim().is_empty() { self.fail("nothing but space", "write it in words") } else { Some(text) }
+    }
+
     /// `true` or `false`.
     pub fn flag(&self) -> Option<bool> {
         match self.node.value {

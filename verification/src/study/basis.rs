@@ -15,6 +15,22 @@ const KNOT_VECTORS: u64 = 20;
 const SPANS: usize = 12;
 const POINTS: usize = 50;
 
+pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
+    let mut offers = super::Offers::default();
+    for degree in 1..=4 {
+        offers.bare(
+            &format!("p={degree}"),
+            [
+                "partition of unity, largest error",
+                "linear precision, largest error",
+                "gradients, largest error times span length",
+                "continuity at inner knots, largest jump",
+            ],
+        );
+    }
+    Ok(offers)
+}
+
 pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     for degree in 1..=4 {

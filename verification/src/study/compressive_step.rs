@@ -10,12 +10,18 @@ use crate::case::Case;
 use crate::expand::CaseScene;
 use crate::extremes::{larger, largest};
 
+pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
+    let bare = &["largest history energy over mean elastic energy density"];
+    Ok(super::Offers::of_scenes(scenes, &[], bare))
+}
+
 pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     for scene in scenes {
         let mut simulation = Simulation::new(&scene.scene)?;
         let mut most_elastic = 0.0_f64;
         while !simulation.finished() {
+            crate::watch::check()?;
             most_elastic = larger(most_elastic, simulation.advance_to_next_sample()?.elastic);
         }
         let area: f64 = {

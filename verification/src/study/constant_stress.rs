@@ -16,6 +16,15 @@ use crate::case::Case;
 use crate::expand::CaseScene;
 use crate::extremes::larger;
 
+pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
+    let bare = &[
+        "constant stress xx, largest error at a point",
+        "constant stress yy, largest error at a point",
+        "constant stress xy, largest error at a point",
+    ];
+    Ok(super::Offers::of_scenes(scenes, &[], bare))
+}
+
 pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     for scene in scenes {

@@ -25,6 +25,7 @@ use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, Refe
 pub(super) fn run(scene: &Scene, seen: &mut dyn FnMut(&Simulation, &UpdatedFrame)) -> Result<(), StudyError> {
     let mut simulation = Simulation::new(scene)?;
     loop {
+        crate::watch::check()?;
         let Some(frame) = simulation.updated_frame() else {
             return Err(StudyError::Other("contact needs frame = \"updated\"".into()));
         };

@@ -37,14 +37,51 @@ trait OnMesh {
     fn span_length(&self) -> f64;
 }
 
-pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let setup =
-        case.convergence.as_ref().ok_or_else(|| StudyError::Other("a [convergence] table is missing".into()))?;
+pub(super) fn offers(case: &Case, _scenes: &[CaseScene]) -> super::Offered {
+    let (setup, problem, norms) = problem_of(case)?;
+    let mut offers = super::Offers::default();
+    let refined = refined(setup);
+    for (n, &degree) in setup.degrees.iter().enumerate() {
+        for &transfer in &setup.transfers {
+            let name = curve_name(setup, n, transfer);
+            for &(norm, below) in &norms {
+                offers.curve(&name, refined, &[norm], &[theory(setup, &problem, degree, below)]);
+                if setup.frame == Frame::Total {
+                    offers.bare(&name, [over_best(norm)]);
+                }
+            }
+        }
+    }
+    Ok(offers)
+}
+
+/// Norms in words, and how many orders an error in them stands below that of the displacement.
+type Norms = Vec<(&'static str, usize)>;
+
+/// What the case solves, and the norms of its errors.
+fn problem_of(case: &Case) -> Result<(&ConvergenceSetup, Problem, Norms), StudyError> {
+    let setup = case.convergence.as_ref().ok_or_else(|| other("a [convergence] table is missing"))?;
     let problem = problem::find(setup).map_err(StudyError::Other)?;
     let norms = match setup.frame {
         Frame::Total => Discrete::norms(&problem),
         Frame::Updated => moving::NORMS.to_vec(),
     };
+    Ok((setup, problem, norms))
+}
+
+fn refined(setup: &ConvergenceSetup) -> Refined {
+    match setup.refine {
+        Refine::Mesh(_) => Refined::Mesh { dimensions: 2 },
+        Refine::TimeStep => Refined::TimeStep,
+    }
+}
+
+fn over_best(norm: &str) -> String {
+    format!("{norm} over that of the best approximation")
+}
+
+pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let (setup, problem, norms) = problem_of(case)?;
     let mut findings = Findings::default();
     let mut curves = Vec::new();
     for (n, &degree) in setup.degrees.iter().enumerate() {
@@ -54,8 +91,7 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
             let (levels, best) = levels(setup, &problem, n, transfer)?;
             for (index, best) in best.into_iter().enumerate() {
                 let error = levels.last().map_or(f64::NAN, |level| level.errors[index]);
-                let quantity = format!("{} over that of the best approximation", norms[index].0);
-                findings.add(&name, &quantity, error / best, None);
+                findings.add(&name, &over_best(norms[index].0), error / best, None);
             }
             curves.push(Curve { name, levels, orders });
         }
@@ -68,10 +104,7 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
         caption: caption(setup, &problem),
         deviations: case.deviations.clone(),
         theory: words_of_theory(setup, &problem),
-        refined: match setup.refine {
-            Refine::Mesh(_) => Refined::Mesh { dimensions: 2 },
-            Refine::TimeStep => Refined::TimeStep,
-        },
+        refined: refined(setup),
         norms: norms.iter().map(norm).collect(),
         curves,
     };

@@ -23,6 +23,18 @@ const LENGTH: f64 = 1.0;
 const HALF_WIDTH: usize = 24;
 const HEIGHT: f64 = 2.0;
 
+pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
+    let mut offers = super::Offers::default();
+    for degree in [2, 3] {
+        for per_length in [1, 2] {
+            let variant = format!("p={degree}, h=l0/{per_length}");
+            offers.held(&variant, ["surface energy of the crack over Gc"]);
+            offers.bare(&variant, ["phase field, largest error at a control line of its knots"]);
+        }
+    }
+    Ok(offers)
+}
+
 pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     for degree in [2, 3] {

@@ -23,6 +23,26 @@ const HEIGHT: f64 = 0.05;
 /// Relative errors at or below this are round-off: the spectrum spans four decades and the eigenvalues are squares.
 const FLOOR: f64 = 5e-12;
 
+pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
+    let mut offers = super::Offers::default();
+    for (words, consistent) in [("consistent", true), ("lumped", false)] {
+        for degree in 1..=3 {
+            let name = format!("{words}, p={degree}");
+            let spans = MESHES[MESHES.len() - 1];
+            offers.bare(
+                &name,
+                (1..=MODES).map(|mode| format!("relative frequency error of mode {mode} on {spans} spans")),
+            );
+            let order = if consistent { 2.0 * f64::from(degree) } else { 2.0 };
+            for mode in 1..=MODES {
+                let norm = format!("frequency error of mode {mode}");
+                offers.curve(&name, Refined::Mesh { dimensions: 1 }, &[&norm], &[Some(order)]);
+            }
+        }
+    }
+    Ok(offers)
+}
+
 pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     let mut curves = Vec::new();

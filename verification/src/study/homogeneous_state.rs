@@ -27,6 +27,12 @@ use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, Refe
 const STRAINS: usize = 40;
 const FURTHEST: f64 = 4.0;
 
+pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
+    let held = &["strain at the peak over closed form", "stress at the peak over closed form"];
+    let bare = &["phase field, largest error", "stress, largest error over the peak stress"];
+    Ok(super::Offers::of_scenes(scenes, held, bare))
+}
+
 pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     for scene in scenes {

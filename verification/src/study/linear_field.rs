@@ -30,6 +30,25 @@ const GRADIENT: [[f64; 2]; 2] = [[0.3, -0.7], [0.2, 0.5]];
 const STRESS: [[f64; 2]; 2] = [[1.0, 0.4], [0.4, -0.6]];
 const FLOOR: f64 = 1e-13;
 
+const NORMS: [&str; 2] = ["equilibrium residual of a linear field", "work of the residual on a smooth field"];
+
+pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
+    let mut offers = super::Offers::default();
+    for (_, words, _) in FAMILIES {
+        for degree in [2, 3] {
+            let name = format!("{words}, p={degree}");
+            offers.bare(&name, ["linear field, largest error at a point", "its gradient, largest error at a point"]);
+            let residual = |points| format!("equilibrium residual of a linear field on 8 or 9 spans, {points} points");
+            offers.bare(&name, ["p + 6", "3"].map(residual));
+            for points in [2, 3, 4] {
+                let name = format!("{name}, {points}x{points} points");
+                offers.curve(&name, Refined::Mesh { dimensions: 2 }, &NORMS, &[Some(1.0); 2]);
+            }
+        }
+    }
+    Ok(offers)
+}
+
 pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     let mut curves = Vec::new();
@@ -79,9 +98,7 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
         theory: "n Gauss points per direction integrate smooth integrands with order 2 n, less p for single functions"
             .into(),
         refined: Refined::Mesh { dimensions: 2 },
-        norms: ["equilibrium residual of a linear field", "work of the residual on a smooth field"]
-            .map(|quantity| Norm { quantity: quantity.into(), unit: "1".into(), floor: FLOOR })
-            .to_vec(),
+        norms: NORMS.map(|quantity| Norm { quantity: quantity.into(), unit: "1".into(), floor: FLOOR }).to_vec(),
         curves,
     };
     study.add_to(&mut findings);

@@ -21,6 +21,36 @@ const FRACTIONS: [f64; 6] = [0.0, 0.11, 0.35, 0.5, 0.72, 1.0];
 const STEP: f64 = 3e-6;
 const ARC_POINTS: usize = 1000;
 
+pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
+    let mut offers = super::Offers::default();
+    for degree in 1..=4 {
+        let variant = format!("p={degree}");
+        offers.bare(
+            &variant,
+            [
+                "partition of unity, largest error",
+                "sum of gradients, largest error times span length",
+                "gradients against differences, largest error times span length",
+                "linear field, largest error",
+                "gradient of a linear field, largest error times length",
+                "knot insertion, largest change of the geometry",
+                "equal weights against the general path, largest difference",
+                "affine grid against the general path, largest difference",
+                "inverse map, largest distance",
+                "patches with weights tamed to keep them unfolded",
+            ],
+        );
+        if degree < 4 {
+            offers.bare(&variant, ["degree elevation, largest change of the geometry"]);
+        }
+        if degree > 1 {
+            let arcs = ["quarter annulus", "refined quarter annulus"];
+            offers.bare(&variant, arcs.map(|name| format!("{name}, largest relative error of a radius")));
+        }
+    }
+    Ok(offers)
+}
+
 pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     for degree in 1..=4 {

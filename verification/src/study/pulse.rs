@@ -35,6 +35,17 @@ const WAVES: usize = 41;
 const START: f64 = 1.0;
 const FLIGHT: f64 = 1.0;
 
+pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
+    let mut offers = super::Offers::default();
+    for degree in [2, 3] {
+        for word in ["strain", "stress"] {
+            let variant = format!("p={degree}, plane {word}");
+            offers.held(&variant, ["speed of a dilatational pulse over c_d", "speed of a Rayleigh pulse over c_R"]);
+        }
+    }
+    Ok(offers)
+}
+
 pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     let one = |source: &str| Some(Reference { value: Some(1.0), kind: ReferenceKind::Exact, source: source.into() });
@@ -161,6 +172,7 @@ impl Flying {
         let start = self.centroid(side, component);
         let steps = (time / (SAFETY * self.frame.critical_step())).ceil();
         for _ in 0..steps as usize {
+            crate::watch::check()?;
             self.frame.step(time / steps).map_err(broken)?;
         }
         Ok(self.centroid(side, component) - start)

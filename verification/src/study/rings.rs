@@ -16,7 +16,7 @@ use crate::extremes::{larger, largest};
 use crate::record::{Reference, ReferenceKind};
 use crate::rings::events::{EVENTS, Watch};
 use crate::scene_run::frame_steps;
-pub(super) use sweep::study as sweep;
+pub(super) use sweep::{offers as sweep_offers, study as sweep};
 
 /// Times (s) of the events in the paper's words; the end of the crack through the rear wall is not among them.
 pub const PAPER: [Option<f64>; 6] = [Some(30e-6), Some(60e-6), Some(100e-6), None, Some(150e-6), Some(400e-6)];
@@ -39,13 +39,14 @@ impl Watched {
     fn run(scene: &Scene) -> Result<Self, StudyError> {
         let rings: Vec<Watch> = (0..scene.bodies.len()).filter_map(|body| Watch::new(scene, body)).collect();
         if rings.is_empty() {
-            return Err(StudyError::Other("no body is a brittle ring".into()));
+            return Err(no_ring());
         }
         let mut simulation = Simulation::new(scene)?;
         let (particles, plan) = (simulation.extent().particles, *simulation.plan());
         let (frames, _) = frame_steps(&scene.output.frames, plan.step, plan.steps());
         let mut watched = Self { rings, pictures: Vec::new(), particles, step: plan.step, steps: plan.steps() };
         loop {
+            crate::watch::check()?;
             if frames.contains(&simulation.steps()) {
                 let (low, high) = (scene.mesh.origin(), scene.mesh.end());
                 let pixels = square_pixels([0, 1].map(|d| high[d] - low[d]), PIXELS);
@@ -62,6 +63,52 @@ impl Watched {
             simulation.step()?;
         }
     }
+}
+
+pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
+    let bare = &[
+        "largest closure over the initial kinetic energy",
+        "largest fall of the fracture energy over its end",
+        "largest fall of the friction work over the initial kinetic energy",
+        "contact loss over the initial kinetic energy",
+        "transfer loss over the initial kinetic energy",
+        "broken material aside the diameter at the end",
+        "fracture energy at the end, J",
+    ];
+    let both = [
+        "drift of the momentum over that of a ring",
+        "asymmetry of the elastic energies before the first crack",
+        "asymmetry of the fracture energies at the end",
+        "event times of the rings apart",
+    ];
+    let mut offers = super::Offers::of_scenes(scenes, &[], bare);
+    for (index, CaseScene { name, scene, .. }) in scenes.iter().enumerate() {
+        let rings = (0..scene.bodies.len()).filter_map(|body| Watch::new(scene, body)).count();
+        if rings == 0 {
+            return Err(no_ring());
+        }
+        for (quantity, paper) in EVENTS.iter().zip(PAPER) {
+            offers.push(name, quantity, "us", paper.is_some());
+        }
+        if rings == 2 {
+            offers.bare(name, both);
+        }
+        if index > 0 {
+            offers.bare(name, PARTS.map(|(_, words)| apart_from_the_full_model(words)));
+        }
+    }
+    Ok(offers)
+}
+
+fn no_ring() -> StudyError {
+    StudyError::Other("no body is a brittle ring".into())
+}
+
+/// Energies in which a part is compared with the full model: columns and words.
+const PARTS: [(&str, &str); 3] = [("kinetic_j", "kinetic"), ("elastic_j", "elastic"), ("fracture_j", "fracture")];
+
+fn apart_from_the_full_model(energy: &str) -> String {
+    format!("{energy} energy apart from the full model, over the initial kinetic energy")
 }
 
 /// Events and invariants of every scene of a case.
@@ -140,14 +187,9 @@ fn add_invariants(findings: &mut Findings, variant: &str, scene: &Scene, watched
 fn compare(findings: &mut Findings, variant: &str, first: &Watched, watched: &Watched, factor: f64) {
     let [all, part] = [first, watched].map(|w| &w.rings[0].table);
     let scale = largest(all.column("kinetic_j").unwrap_or_default().iter().copied());
-    for (column, words) in [("kinetic_j", "kinetic"), ("elastic_j", "elastic"), ("fracture_j", "fracture")] {
+    for (column, words) in PARTS {
         let pairs = all.column(column).unwrap_or_default().iter().zip(part.column(column).unwrap_or_default());
         let apart = largest(pairs.map(|(all, part)| (all - factor * part).abs())) / scale;
-        findings.add(
-            variant,
-            &format!("{words} energy apart from the full model, over the initial kinetic energy"),
-            apart,
-            None,
-        );
+        findings.add(variant, &apart_from_the_full_model(words), apart, None);
     }
 }

@@ -16,6 +16,11 @@ use crate::record::{Reference, ReferenceKind};
 
 const INCREMENTS: usize = 1000;
 
+pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
+    let held = &["strain after a revolution, less the exact one", "displacement after a revolution"];
+    Ok(super::Offers::of_scenes(scenes, held, &[]))
+}
+
 pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     let (sine, cosine) = (TAU / INCREMENTS as f64).sin_cos();
@@ -24,6 +29,7 @@ pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, Stud
         let mut frame = UpdatedFrame::new(scene).map_err(broken)?;
         let turn = |[x, y]: [f64; 2]| [(cosine - 1.0) * x - sine * y, sine * x + (cosine - 1.0) * y];
         for _ in 0..INCREMENTS {
+            crate::watch::check()?;
             frame.prescribe_motion(turn, 1.0).map_err(broken)?;
         }
         let left = match scene.analysis.kinematics {

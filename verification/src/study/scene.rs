@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use fisura::error::Breakdown;
 use fisura::picture::Picture;
 use fisura::scene::Scene;
 use fisura::spans::largest_spans;
@@ -15,6 +14,7 @@ use crate::measure::{Measured, Run, fitted_speed, measure};
 use crate::record::Timing;
 use crate::reference::Library;
 use crate::scene_run::{Progress, SceneRun, run_scene};
+use crate::watch::{self, Stopped};
 
 /// What figures need to know of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -83,62 +83,75 @@ impl FinishedScene {
     }
 }
 
-/// Runs the scenes of a case one after the other; `advanced` gets the finished fraction.
-pub fn run_scenes(scenes: Vec<CaseScene>, advanced: &dyn Fn(f64)) -> Vec<FinishedScene> {
+/// Runs the scenes of a case one after the other, until one of them is stopped: those that ended, and why the others did not.
+pub fn run_scenes(scenes: &[CaseScene]) -> (Vec<FinishedScene>, Option<Stopped>) {
     let count = scenes.len() as f64;
-    scenes
-        .into_iter()
-        .enumerate()
-        .map(|(index, case_scene)| {
-            let mut progress = |progress: Progress| advanced((index as f64 + progress.fraction()) / count);
-            let run = run_scene(&case_scene.scene, &mut progress, &mut |_, _| {});
-            let particle_steps = run.summary.particles as u64 * run.summary.steps as u64;
-            let timing = Timing {
-                wall_s: run.summary.wall_s,
-                particle_steps,
-                ns_per_particle_step: 1e9 * run.summary.wall_s / particle_steps.max(1) as f64,
-            };
-            FinishedScene { case_scene, run, timing }
-        })
-        .collect()
+    let mut finished = Vec::new();
+    for (index, case_scene) in scenes.iter().enumerate() {
+        let mut progress = |progress: Progress| watch::advanced((index as f64 + progress.fraction()) / count);
+        let run = run_scene(&case_scene.scene, &mut progress, &mut |_, _| {});
+        if let Err(stopped) = watch::check() {
+            return (finished, Some(stopped));
+        }
+        let particle_steps = run.summary.particles as u64 * run.summary.steps as u64;
+        let timing = Timing {
+            wall_s: run.summary.wall_s,
+            particle_steps,
+            ns_per_particle_step: 1e9 * run.summary.wall_s / particle_steps.max(1) as f64,
+        };
+        finished.push(FinishedScene { case_scene: case_scene.clone(), run, timing });
+    }
+    (finished, None)
 }
 
-/// Runs a check applies to; the finest for one that combines all meshes.
-pub fn applies<'a>(check: &Check, finished: &'a [FinishedScene]) -> Vec<&'a FinishedScene> {
-    let about = |f: &&FinishedScene| match (&check.variant, &check.against) {
-        (Some(variant), _) => f.case_scene.name == *variant,
-        (None, Some(against)) => f.case_scene.name != *against,
+/// Numbers of the scenes that a check has a record for; the finest for one that combines all meshes.
+pub fn concerned(check: &Check, scenes: &[CaseScene]) -> Vec<usize> {
+    let about = |index: &usize| match (&check.variant, &check.against) {
+        (Some(variant), _) => scenes[*index].name == *variant,
+        (None, Some(against)) => scenes[*index].name != *against,
         (None, None) => true,
     };
-    let all: Vec<_> = finished.iter().filter(about).collect();
+    let all = (0..scenes.len()).filter(about);
     if check.meshes.is_some() {
-        let finest = all.into_iter().min_by(|a, b| span(&a.as_run()).total_cmp(&span(&b.as_run())));
-        return finest.into_iter().collect();
+        let size = |index: &usize| span(&scenes[*index].scene.mesh);
+        return all.min_by(|a, b| size(a).total_cmp(&size(b))).into_iter().collect();
     }
-    if check.measure.as_deref() == Some("order-in-step") { all.into_iter().take(1).collect() } else { all }
+    if check.measure.as_deref() == Some("order-in-step") { all.take(1).collect() } else { all.collect() }
 }
 
-/// Evaluates a check on one run.
+/// Whether a check on the run `of` needs the run `other` as well.
+fn needs(check: &Check, of: &str, other: &str) -> bool {
+    let all = check.meshes.is_some() || check.measure.as_deref() == Some("order-in-step");
+    all || of == other || check.against.as_deref() == Some(other)
+}
+
+/// Evaluates a check on one run; `stopped` says why there are not more.
 ///
 /// # Errors
-/// If the check asks for something that is not there.
+/// A run that the check needs and that broke down or is missing, or something that is not there.
 pub fn evaluate(
     check: &Check,
-    of: &FinishedScene,
-    finished: &[FinishedScene],
+    of: &CaseScene,
+    (scenes, finished): (&[CaseScene], &[FinishedScene]),
+    stopped: Option<&Stopped>,
     library: &Library,
 ) -> Result<Measured, String> {
-    let runs: Vec<Run> = finished.iter().map(FinishedScene::as_run).collect();
-    match check.meshes {
-        Some(estimate) => over_meshes(estimate, check, &runs, library),
-        None => measure(check, &of.as_run(), &runs, library),
+    for scene in scenes.iter().filter(|scene| needs(check, &of.name, &scene.name)) {
+        let run = finished.iter().find(|run| run.case_scene.name == scene.name);
+        let ending = match run {
+            Some(run) => run.run.breakdown.as_ref().map(ToString::to_string),
+            None => Some(stopped.map_or_else(|| "it did not run".to_string(), ToString::to_string)),
+        };
+        if let Some(ending) = ending {
+            return Err(if scene.name == of.name { ending } else { format!("variant {:?}: {ending}", scene.name) });
+        }
     }
-}
-
-/// What broke a run that a check on `of` needs.
-pub fn breakdown<'a>(check: &Check, of: &'a FinishedScene, finished: &'a [FinishedScene]) -> Option<&'a Breakdown> {
-    let any = || finished.iter().find_map(|f| f.run.breakdown.as_ref());
-    if check.meshes.is_some() { any() } else { of.run.breakdown.as_ref() }
+    let runs: Vec<Run> = finished.iter().map(FinishedScene::as_run).collect();
+    match (check.meshes, runs.iter().find(|run| run.name == of.name)) {
+        (Some(estimate), _) => over_meshes(estimate, check, &runs, library),
+        (None, Some(run)) => measure(check, run, &runs, library),
+        (None, None) => Err("it did not run".to_string()),
+    }
 }
 
 /// File name without ending of the series of a run.

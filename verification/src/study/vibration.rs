@@ -24,6 +24,18 @@ const PERIODS: f64 = 100.0;
 /// Time step over the critical one.
 const SAFETY: f64 = 0.2;
 
+pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
+    let mut offers = super::Offers::default();
+    for degree in 1..=3 {
+        for word in ["consistent", "lumped"] {
+            let variant = format!("p={degree}, {word} mass");
+            offers.held(&variant, ["energy at whole steps, oscillation over (omega dt)^2"]);
+            offers.bare(&variant, ["energy at whole steps, relative drift", "staggered energy, relative spread"]);
+        }
+    }
+    Ok(offers)
+}
+
 pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     for degree in 1..=3 {
@@ -67,6 +79,7 @@ fn vibrate(degree: usize, mass: Mass) -> Result<Energies, StudyError> {
     let steps = (PERIODS * std::f64::consts::TAU / phase).ceil() as usize;
     let mut energies = Energies { whole: vec![], staggered: vec![], phase_squared: phase * phase };
     for _ in 0..steps {
+        crate::watch::check()?;
         frame.step(dt).map_err(|_| broken())?;
         let sample = frame.sample(dt);
         energies.whole.push(sample.kinetic + sample.elastic);

@@ -4,43 +4,45 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
-use super::{CaseOutcome, Progress, VerifyError, write_series};
+use super::prepare::{Planned, Prepared, bounds_around, find_band};
+use super::{CaseOutcome, VerifyError, write_series};
 use crate::case::{Case, Check};
 use crate::expand::CaseScene;
-use crate::measure::Measured;
-use crate::measure::grid_convergence::validate;
+use crate::measure::{Measured, expected};
 use crate::record::{Accept, Record, Status, Timing};
 use crate::reference::{Library, ReferenceBand};
-use crate::study::scene::{FinishedScene, applies, breakdown, describe, evaluate, run_scenes};
-use crate::study::{Findings, STUDIES, StudyError, find};
+use crate::study::scene::{FinishedScene, describe, evaluate, run_scenes};
+use crate::study::{Findings, Study, find};
+use crate::watch::{self, Stopped};
 
+/// Every record of the plan, whatever becomes of the study.
 pub(super) fn run_case(
     case: &Case,
+    prepared: &Prepared,
     out: &Path,
     library: &Library,
-    progress: &dyn Progress,
 ) -> Result<CaseOutcome, VerifyError> {
-    let scenes = case.scenes()?;
-    validate(case, &scenes)?;
-    if case.study == "scene" {
-        let finished = run_scenes(scenes, &|fraction| progress.advanced(fraction));
-        return judge_runs(case, &finished, out, library);
+    match find(&case.study) {
+        None => {
+            let (finished, stopped) = run_scenes(&prepared.scenes);
+            judge_runs(case, prepared, &finished, stopped.as_ref(), out, library)
+        }
+        Some(study) => judge_study(case, prepared, study, out),
     }
-    let Some(study) = find(&case.study) else {
-        let known: Vec<_> = STUDIES.iter().map(|(name, _)| *name).collect();
-        let message = format!("unknown study {:?}", case.study);
-        return Err(case.error("study", &message, &format!("known: scene, {}", known.join(", "))).into());
-    };
-    let start = Instant::now();
-    let found = study(case, &scenes);
-    let timing = Timing { wall_s: start.elapsed().as_secs_f64(), ..Timing::default() };
-    judge_findings(case, &scenes, found, timing, out)
+}
+
+/// A case that gave nothing: each of its records is an error.
+pub(super) fn broken(case: &Case, prepared: &Prepared, message: &str) -> CaseOutcome {
+    let records = prepared.records.iter().map(|planned| failed(bare_record(case, planned), message));
+    CaseOutcome { records: records.collect(), figures: Vec::new(), runs: Vec::new() }
 }
 
 /// Checks of a scene study.
 fn judge_runs(
     case: &Case,
+    Prepared { scenes, records }: &Prepared,
     finished: &[FinishedScene],
+    stopped: Option<&Stopped>,
     out: &Path,
     library: &Library,
 ) -> Result<CaseOutcome, VerifyError> {
@@ -52,39 +54,29 @@ fn judge_runs(
             write_series(out, &stem, &table)?;
         }
     }
-    for (index, check) in case.checks.iter().enumerate() {
-        let concerned = applies(check, finished);
-        if concerned.is_empty() {
-            return Err(unknown_variant(case, index));
-        }
-        for run in concerned {
-            let variant = if check.meshes.is_some() { "" } else { &run.case_scene.name };
-            let mut record = bare_record(case, check, variant);
-            record.timing = run.timing;
-            record.parameters = parameters(&run.case_scene);
-            record.series = outcome.runs.iter().find(|i| i.variant == run.case_scene.name).map(|i| i.series.clone());
-            if let Some(breakdown) = breakdown(check, run, finished) {
-                record.status = Status::Error;
-                record.message = Some(breakdown.to_string());
-            } else {
-                let wrong = |message: String| case.error(&format!("check.{index}"), &message, "correct the check");
-                let mut measured = evaluate(check, run, finished, library).map_err(wrong)?;
-                if let Some(name) = &check.band {
-                    let band = find_band(library, name).ok_or_else(|| wrong(format!("no reference band {name:?}")))?;
-                    record.accept = bounds_of(band, check.scale);
-                    measured.reference = Some(band.reference());
-                }
-                judge(&mut record, measured);
-            }
-            outcome.records.push(record);
-        }
+    for planned in records {
+        let scene = &scenes[planned.scene.unwrap_or_default()];
+        let check = &case.checks[planned.check];
+        let mut record = bare_record(case, planned);
+        record.timing =
+            finished.iter().find(|run| run.case_scene.name == scene.name).map_or(record.timing, |run| run.timing);
+        record.parameters = parameters(scene);
+        record.series = outcome.runs.iter().find(|run| run.variant == scene.name).map(|run| run.series.clone());
+        let found = evaluate(check, scene, (scenes, finished), stopped, library);
+        outcome.records.push(match found.and_then(|measured| in_band(&mut record, check, measured, library)) {
+            Ok(measured) => judge(record, check, measured),
+            Err(message) => failed(record, &message),
+        });
     }
     Ok(outcome)
 }
 
-fn find_band<'a>(library: &'a Library, path: &str) -> Option<&'a ReferenceBand> {
-    let (folder, name) = path.split_once('/')?;
-    library.band(folder, name)
+/// The bounds of a reference band, for a check that names one.
+fn in_band(record: &mut Record, check: &Check, measured: Measured, library: &Library) -> Result<Measured, String> {
+    let Some(path) = &check.band else { return Ok(measured) };
+    let band = find_band(library, path).ok_or_else(|| format!("no reference band {path:?}"))?;
+    record.accept = bounds_of(band, check.scale);
+    Ok(Measured { reference: Some(band.reference()), ..measured })
 }
 
 fn bounds_of(band: &ReferenceBand, scale: f64) -> Accept {
@@ -92,75 +84,55 @@ fn bounds_of(band: &ReferenceBand, scale: f64) -> Accept {
     Accept { min: Some(band.min * scale), max: Some(band.max * scale), why }
 }
 
-/// Checks of any other study: each names a quantity that the study measured.
-fn judge_findings(
-    case: &Case,
-    scenes: &[CaseScene],
-    found: Result<Findings, StudyError>,
-    timing: Timing,
-    out: &Path,
-) -> Result<CaseOutcome, VerifyError> {
+/// Checks of any other study: each names a quantity that the study measures.
+fn judge_study(case: &Case, prepared: &Prepared, study: &Study, out: &Path) -> Result<CaseOutcome, VerifyError> {
+    let start = Instant::now();
+    let found = (study.run)(case, &prepared.scenes).and_then(|findings| {
+        watch::check()?;
+        Ok(findings)
+    });
+    let timing = Timing { wall_s: start.elapsed().as_secs_f64(), ..Timing::default() };
     let findings = match found {
         Ok(findings) => findings,
-        Err(error) => return Ok(broken(case, &error)),
+        Err(error) => return Ok(broken(case, prepared, &error.to_string())),
     };
     for (stem, table) in &findings.series {
         write_series(out, stem, table)?;
     }
-    let mut outcome = CaseOutcome { records: Vec::new(), figures: findings.figures.clone(), runs: Vec::new() };
-    for (index, check) in case.checks.iter().enumerate() {
-        let named = |variant: &str| check.variant.as_deref().is_none_or(|wanted| wanted == variant);
-        let matching = findings.measurements.iter().filter(|m| m.quantity == check.quantity && named(&m.variant));
-        let before = outcome.records.len();
-        for measurement in matching {
-            let mut record = bare_record(case, check, &measurement.variant);
-            record.timing = timing;
-            record.parameters =
-                scenes.iter().find(|s| s.name == measurement.variant).map(parameters).unwrap_or_default();
-            record.unit.clone_from(&measurement.unit);
-            if let (Some([below, above]), Some(value)) =
-                (check.around_reference, measurement.reference.as_ref().and_then(|r| r.value))
-            {
-                record.accept.min = Some(value - below);
-                record.accept.max = Some(value + above);
-            }
-            record.series = findings.series.first().map(|(stem, _)| format!("series/{stem}.csv"));
-            let (value, reference) = (measurement.value, measurement.reference.clone());
-            judge(&mut record, Measured { value, reference, message: None });
-            outcome.records.push(record);
-        }
-        if outcome.records.len() == before {
-            return Err(unknown_quantity(case, index, &findings));
-        }
-    }
-    Ok(outcome)
-}
-
-fn unknown_variant(case: &Case, index: usize) -> VerifyError {
-    let names: Vec<String> = case.scenes().unwrap_or_default().into_iter().map(|s| s.name).collect();
-    let remedy = format!("known variants: {}", names.join("; "));
-    case.error(&format!("check.{index}"), "no run of this case is meant", &remedy).into()
-}
-
-fn unknown_quantity(case: &Case, index: usize, findings: &Findings) -> VerifyError {
-    let mut known: Vec<_> = findings.measurements.iter().map(|m| m.quantity.as_str()).collect();
-    known.dedup();
-    let remedy = format!("it measures: {}", known.join("; "));
-    case.error(&format!("check.{index}.quantity"), "the study does not measure this", &remedy).into()
-}
-
-/// Every check of a study that could not be carried out is an error.
-fn broken(case: &Case, error: &StudyError) -> CaseOutcome {
-    let records = case.checks.iter().map(|check| {
-        let mut record = bare_record(case, check, "");
-        record.status = Status::Error;
-        record.message = Some(error.to_string());
-        record
+    let series = findings.series.first().map(|(stem, _)| format!("series/{stem}.csv"));
+    let judged = prepared.records.iter().map(|planned| {
+        let mut record = bare_record(case, planned);
+        (record.timing, record.series) = (timing, series.clone());
+        let scene = prepared.scenes.iter().find(|scene| scene.name == planned.variant);
+        record.parameters = scene.map(parameters).unwrap_or_default();
+        judge_finding(record, &case.checks[planned.check], planned, &findings)
     });
-    CaseOutcome { records: records.collect(), figures: Vec::new(), runs: Vec::new() }
+    let records = judged.collect();
+    Ok(CaseOutcome { records, figures: findings.figures.clone(), runs: Vec::new() })
 }
 
-fn judge(record: &mut Record, measured: Measured) {
+fn judge_finding(mut record: Record, check: &Check, planned: &Planned, findings: &Findings) -> Record {
+    let mut all = findings.measurements.iter();
+    let found = all.find(|m| m.quantity == check.quantity && m.variant == planned.variant);
+    let Some(measurement) = found else { return failed(record, "the study did not measure this, as it should") };
+    record.unit.clone_from(&measurement.unit);
+    let reference = expected(check, 1.0).or_else(|| measurement.reference.clone());
+    judge(record, check, Measured { value: measurement.value, reference, message: None })
+}
+
+/// A record of what could not be measured.
+fn failed(mut record: Record, message: &str) -> Record {
+    record.status = Status::Error;
+    record.message = Some(message.to_string());
+    record
+}
+
+fn judge(mut record: Record, check: &Check, measured: Measured) -> Record {
+    match bounds_around(check, measured.reference.as_ref()) {
+        Ok(None) => (),
+        Ok(Some([min, max])) => (record.accept.min, record.accept.max) = (Some(min), Some(max)),
+        Err(message) => return failed(record, &message),
+    }
     record.value = measured.value;
     record.reference = measured.reference;
     record.status = Record::judge(record.value, &record.accept);
@@ -168,14 +140,14 @@ fn judge(record: &mut Record, measured: Measured) {
         let otherwise = || "what is measured did not happen within the run".to_string();
         record.message = Some(measured.message.unwrap_or_else(otherwise));
     }
+    record
 }
 
-fn bare_record(case: &Case, check: &Check, variant: &str) -> Record {
-    let middle = if variant.is_empty() { String::new() } else { format!("{variant}/") };
-    let full = |id: &String| format!("{}/{}/{middle}{id}", case.suite, case.name);
+fn bare_record(case: &Case, planned: &Planned) -> Record {
+    let check = &case.checks[planned.check];
     Record {
-        id: full(&check.id),
-        formerly: check.formerly.iter().map(full).collect(),
+        id: planned.id(case),
+        formerly: planned.formerly(case),
         suite: case.suite.clone(),
         case: case.name.clone(),
         tier: case.tier.to_string(),

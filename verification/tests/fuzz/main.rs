@@ -7,6 +7,7 @@
 mod mutation;
 
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::collections::BTreeSet;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -18,7 +19,9 @@ use fisura::Simulation;
 use fisura::scene::Scene;
 use fisura_verification::case::Case;
 use fisura_verification::history::Table;
+use fisura_verification::reference::Library;
 use fisura_verification::scene_file::SceneFile;
+use fisura_verification::suite::prepare::prepare;
 use mutation::mutation;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
@@ -128,6 +131,19 @@ fn watched(text: &[u8], reader: &impl Fn(&[u8])) -> Result<(), String> {
     Err(format!("{best:?}"))
 }
 
+/// A case that is taken has a record for each of its checks, no two of one id; one that is refused is told why.
+fn look_at_plan(case: &Case, library: &Library) {
+    match prepare(case, library) {
+        Ok(prepared) => {
+            let ids: BTreeSet<String> = prepared.records.iter().map(|planned| planned.id(case)).collect();
+            assert_eq!(ids.len(), prepared.records.len(), "two records of one id");
+            let planned: BTreeSet<usize> = prepared.records.iter().map(|planned| planned.check).collect();
+            assert!(planned.into_iter().eq(0..case.checks.len()), "a check without a record");
+        }
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+}
+
 /// What validation let through starts, if it is small, and its first steps pass or break down in words.
 fn begin(scene: &Scene) {
     let spans = scene.mesh.knots.each_ref().map(Vec::len).into_iter().product::<usize>();
@@ -162,10 +178,11 @@ fn readers_survive_any_input() {
         let overrides: Vec<String> = text.lines().map(String::from).collect();
         let _ = SceneFile::parse("scene.toml", &scene, &overrides);
     });
+    let library = Library::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../reference-data")).expect("references");
     fuzz(0.3, &files(&["tests/corpus/case", "cases"], "toml"), |bytes| {
         let text = String::from_utf8_lossy(bytes);
         if let Ok(case) = Case::parse(Path::new("suite/case.toml"), &text, &[]) {
-            let _ = case.scenes();
+            look_at_plan(&case, &library);
         }
     });
     fuzz(0.15, &files(&["tests/corpus/csv", "../reference-data"], "csv"), |bytes| {

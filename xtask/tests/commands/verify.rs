@@ -104,3 +104,55 @@ fn a_bad_selection_or_change_ends_with_2_before_anything_runs() {
     outcome.complains_of(&["mesh.degree", "between 1 and 4"]);
     assert!(!place.path("target/fisura/verify/results.json").exists());
 }
+
+#[test]
+fn a_malformed_case_stops_only_what_would_run_it() {
+    let place = workspace();
+    let misspelt = case("The ledger closes", "quick", 1e-12).replace("measure =", "mesure =");
+    place.write("verification/cases/energy/misspelt.toml", &misspelt);
+    let ignored = case("The ledger closes", "quick", 1e-12).replace("why =", "against = \"block\"\nwhy =");
+    place.write("verification/cases/strict/ignored.toml", &ignored);
+    for lock in [".#block.toml", "block.toml~", ".block.toml.swp"] {
+        place.write(&format!("verification/cases/energy/{lock}"), "nobody");
+    }
+    let named = place.xtask(&["verify", "--case", "energy/block"]).with_status(0);
+    assert_eq!(
+        named.complains_of(&["energy/misspelt is not valid and not selected"]).err.matches("not valid").count(),
+        1
+    );
+    let all = place.xtask(&["verify", "--out", "all"]).with_status(2);
+    all.complains_of(&["misspelt.toml:", "mesure", "did you mean \"measure\""]);
+    place
+        .xtask(&["verify", "--suite", "strict", "--tier", "full", "--out", "all"])
+        .with_status(2)
+        .complains_of(&["ignored.toml:", "does not read \"against\""]);
+    assert!(!place.path("all/results.json").exists(), "nothing has run");
+    let list = place.xtask(&["list"]).with_status(2);
+    let list = list.complains_of(&["misspelt.toml:", "ignored.toml:", "does not read \"against\""]);
+    assert!(list.out.contains("energy/block") && !list.out.contains("strict/ignored"), "{list:?}");
+}
+
+#[test]
+fn a_case_beyond_its_time_ends_with_3_and_the_others_are_there() {
+    let place = workspace();
+    let endless = case("It ends", "quick", 1.0).replace("end_time = \"5 us\"", "end_time = \"100 s\"");
+    place.write("verification/cases/energy/aeon.toml", &endless);
+    let outcome = place.xtask(&["verify", "--case-timeout", "1", "--out", "out"]).with_status(3);
+    let outcome = outcome.complains_of(&["energy/aeon is over its time of 1 s", "[2/2] energy/block pass"]);
+    assert!(outcome.out.contains("ERROR") && outcome.out.contains("--case-timeout"), "{outcome:?}");
+    for wrong in ["0", "-1", "nan", "soon"] {
+        let timeout = format!("--case-timeout={wrong}");
+        place.xtask(&["verify", &timeout]).with_status(2).complains_of(&["case-timeout"]);
+    }
+}
+
+#[test]
+fn a_report_that_cannot_be_written_does_not_hide_what_the_checks_say() {
+    let place = workspace();
+    place.xtask(&["verify", "--out", "out"]).with_status(0);
+    std::fs::remove_file(place.path("out/junit.xml")).expect("a file");
+    std::fs::create_dir_all(place.path("out/junit.xml/in-the-way")).expect("a folder");
+    place.xtask(&["verify", "--out", "out"]).with_status(2).complains_of(&["junit.xml"]);
+    let changes = ["--set", "analysis.time_step=1 us", "--set", "analysis.end_time=500 us", "--out", "out"];
+    place.xtask(&[&["verify"][..], &changes].concat()).with_status(3).complains_of(&["junit.xml"]);
+}

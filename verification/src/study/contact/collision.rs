@@ -11,6 +11,29 @@ use crate::record::CurveStyle;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 
+pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
+    let held = &[
+        "drift of the momentum over that of one body",
+        "drift of the angular momentum over momentum times distance of one body",
+        "velocities, departure from the mirror image over the speed",
+        "centres, departure from the mirror image over their distance",
+        "kinetic energies, difference over the energy at t = 0",
+        "energy lost in contact and transfers, without friction, over the energy at t = 0",
+    ];
+    let bare = &[
+        "share of the angular momentum that spins the bodies in the end",
+        "closure of the energy ledger over the energy at t = 0",
+        "rebound: velocity of separation over that of approach",
+        "kinetic energy in the end over that at t = 0",
+        "elastic energy in the end over the energy at t = 0",
+        "loss of the transfers over the energy at t = 0",
+        "energy lost in contact over the energy at t = 0",
+        "energy lost to friction over the energy at t = 0",
+        "largest decrease of the friction loss in a step over the energy at t = 0",
+    ];
+    Ok(crate::study::Offers::of_scenes(scenes, held, bare))
+}
+
 pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     let mut curves = vec![];

@@ -36,6 +36,23 @@ const MIDDLE: f64 = 0.25;
 /// Half width and depth of the region in which points show the stress under the contact, in a.
 const UNDER: [f64; 2] = [0.125, 0.5];
 
+pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
+    let held = &[
+        "half width of the contact over Hertz's",
+        "peak pressure from the forces in the middle over Hertz's",
+        "stress of points under the contact over Hertz's",
+        "momentum less the impulses of contact over the momentum",
+    ];
+    let bare = &[
+        "points across half the width",
+        "half width over R",
+        "half width over the shortest span",
+        "share of the contact that is seen after the largest force",
+        "closure of the energy ledger over the energy at t = 0",
+    ];
+    Ok(crate::study::Offers::of_scenes(scenes, held, bare))
+}
+
 pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     let mut curves = vec![];

@@ -19,6 +19,28 @@ use crate::record::CurveStyle;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 
+pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
+    let mut groups: BTreeMap<String, usize> = BTreeMap::new();
+    for CaseScene { scene, .. } in scenes {
+        Bars::of(scene)?;
+        *groups.entry(group(scene)).or_default() += 1;
+    }
+    let held = &[
+        "velocity of the first bar after the impact over V",
+        "velocity of the second bar after the impact over V",
+        "coefficient of restitution",
+        "duration of the contact over 2 L1/c",
+        "mean force in the middle half of the contact over rho c V/2",
+        "energy lost in contact over the energy at t = 0",
+    ];
+    let bare = &["drift of the momentum over that of one bar", "closure of the energy ledger over the energy at t = 0"];
+    let mut offers = crate::study::Offers::of_scenes(scenes, held, bare);
+    for (name, _) in groups.iter().filter(|(_, meshes)| **meshes >= MESHES) {
+        offers.curve(name, Refined::Mesh { dimensions: 1 }, &NORMS, &ORDERS);
+    }
+    Ok(offers)
+}
+
 pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     let mut curves = vec![];
@@ -48,6 +70,12 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
     Ok(findings)
 }
 
+/// Meshes from which on there are orders.
+const MESHES: usize = 3;
+const NORMS: [&str; 2] = ["error of the exit velocities", "energy lost in contact"];
+/// Orders of theory.
+const ORDERS: [Option<f64>; 2] = [Some(2.0 / 3.0), Some(1.0)];
+
 /// Runs that differ in the mesh only.
 fn group(scene: &Scene) -> String {
     let transfer = match scene.analysis.transfer {
@@ -60,9 +88,8 @@ fn group(scene: &Scene) -> String {
 
 /// Errors against h where there are three meshes.
 fn convergence(case: &Case, meshes: BTreeMap<String, Vec<Level>>) -> Convergence {
-    let norm = |quantity: &str| Norm { quantity: quantity.into(), unit: "1".into(), floor: 0.0 };
-    let studied = meshes.into_iter().filter(|(_, levels)| levels.len() >= 3);
-    let orders = vec![Some(2.0 / 3.0), Some(1.0)];
+    let norm = |quantity: &&str| Norm { quantity: quantity.to_string(), unit: "1".into(), floor: 0.0 };
+    let studied = meshes.into_iter().filter(|(_, levels)| levels.len() >= MESHES);
     Convergence {
         suite: "contact".into(),
         stem: series_stem(case, ""),
@@ -72,8 +99,8 @@ fn convergence(case: &Case, meshes: BTreeMap<String, Vec<Level>>) -> Convergence
         theory: "a front in a bar of lumped mass is (h² L)^(1/3) wide; what the impact of two end masses loses is their share"
             .into(),
         refined: Refined::Mesh { dimensions: 1 },
-        norms: vec![norm("error of the exit velocities"), norm("energy lost in contact")],
-        curves: studied.map(|(name, levels)| Curve { name, levels, orders: orders.clone() }).collect(),
+        norms: NORMS.iter().map(norm).collect(),
+        curves: studied.map(|(name, levels)| Curve { name, levels, orders: ORDERS.to_vec() }).collect(),
     }
 }
 

@@ -27,6 +27,41 @@ use crate::study::{Findings, StudyError};
 /// Rows of a series.
 const ROWS: usize = 200;
 
+pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
+    let mut offers = crate::study::Offers::default();
+    for CaseScene { name, scene, .. } in scenes {
+        let slope = Slope::of(scene)?;
+        if slope.acceleration() > 0.0 {
+            offers.held(name, ["acceleration down the slope over the closed form"]);
+        } else {
+            offers.held(
+                name,
+                [
+                    "acceleration down the slope over that without friction",
+                    "creep down the slope over the length of the body",
+                ],
+            );
+        }
+        offers.held(
+            name,
+            slope.spin().map(|spin| match spin > 0.0 {
+                true => "angular acceleration over the closed form",
+                false => "angular acceleration times diameter over the acceleration",
+            }),
+        );
+        offers.held(name, ["velocity out of the plane in the end over that of free fall"]);
+        offers.bare(
+            name,
+            [
+                "energy that friction took over the largest energy",
+                "largest decrease of it in a step over the largest energy",
+                "closure of the energy ledger over the largest energy",
+            ],
+        );
+    }
+    Ok(offers)
+}
+
 pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     let mut curves = vec![];

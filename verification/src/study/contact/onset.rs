@@ -12,6 +12,15 @@ use crate::case::Case;
 use crate::expand::CaseScene;
 use crate::study::{Findings, StudyError};
 
+pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
+    let held = &["gap at the first force of contact, in spans", "change of momentum before it, over the momentum"];
+    let bare = &[
+        "gap at which the supports of control points first overlap, in spans",
+        "force of contact in the end over the momentum per second",
+    ];
+    Ok(crate::study::Offers::of_scenes(scenes, held, bare))
+}
+
 pub(in super::super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     for CaseScene { name, scene, .. } in scenes {

@@ -24,6 +24,34 @@ use crate::record::CurveStyle;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 
+pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
+    let held =
+        &["largest way sideways over the width", "layer that gives way besides, per side of a contact, in spans"];
+    let bare = &[
+        "largest kinetic energy of the last tenth over the largest",
+        "deepest overlap of boundaries in spans",
+        "energy lost in contact and transfers together over the largest energy",
+        "energy lost in contact over the largest energy",
+        "closure of the energy ledger over the largest energy",
+    ];
+    let mut offers = crate::study::Offers::of_scenes(scenes, held, bare);
+    for CaseScene { name, scene, .. } in scenes {
+        for i in 0..Column::of(scene)?.heights.len() {
+            offers.held(name, [mean_force(i), mean_settlement(i)]);
+        }
+    }
+    Ok(offers)
+}
+
+fn mean_force(i: usize) -> String {
+    let place = if i == 0 { "under the lowest block".to_string() } else { format!("on block {i}") };
+    format!("mean force {place} over the weight above")
+}
+
+fn mean_settlement(i: usize) -> String {
+    format!("mean settlement of block {} over that of a column", i + 1)
+}
+
 pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     let mut curves = vec![];
@@ -188,11 +216,13 @@ impl Column {
     fn add(&self, found: &Settled, name: &str, findings: &mut Findings) {
         let settlement = self.settlement();
         for i in 0..self.heights.len() {
-            let place = if i == 0 { "under the lowest block".to_string() } else { format!("on block {i}") };
-            let quantity = format!("mean force {place} over the weight above");
-            findings.add(name, &quantity, found.means[i] / self.above(i), exact(1.0, "equilibrium in the mean"));
-            let quantity = format!("mean settlement of block {} over that of a column", i + 1);
-            findings.add(name, &quantity, found.settlement[i] / settlement[i], exact(1.0, "an elastic column"));
+            findings.add(name, &mean_force(i), found.means[i] / self.above(i), exact(1.0, "equilibrium in the mean"));
+            findings.add(
+                name,
+                &mean_settlement(i),
+                found.settlement[i] / settlement[i],
+                exact(1.0, "an elastic column"),
+            );
         }
         findings.add(name, "largest way sideways over the width", found.sideways / self.width, exact(0.0, "symmetry"));
         let kinetic = "largest kinetic energy of the last tenth over the largest";

@@ -109,6 +109,7 @@ impl OnMesh for Moving<'_> {
         let steps = (end / step).ceil().max(1.0);
         let dt = end / steps;
         for _ in 0..steps as usize {
+            crate::watch::check()?;
             self.frame.step(dt).map_err(broken)?;
         }
         let errors = self.errors(end, dt);

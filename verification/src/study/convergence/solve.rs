@@ -268,6 +268,7 @@ impl<'a> Discrete<'a> {
         self.frame.start_from(displacement, velocity, self.manufactured()).map_err(broken)?;
         let steps = (end / step).ceil().max(1.0);
         for _ in 0..steps as usize {
+            crate::watch::check()?;
             self.frame.step(end / steps).map_err(broken)?;
         }
         Ok(end)

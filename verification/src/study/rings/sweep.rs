@@ -70,10 +70,29 @@ fn score(events: &Events, end: f64) -> f64 {
     (scored.map(|(found, paper)| (found - paper).powi(2)).sum::<f64>() / SCORED as f64).sqrt()
 }
 
+pub fn offers(case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
+    setup(case, scenes)?;
+    let mut offers = crate::study::Offers::default();
+    offers.bare(
+        "",
+        ["geometries run", "geometries that broke down", "geometries near the paper that split along the diameter"],
+    );
+    for quantity in ["smallest score", "smallest score of those that split along the diameter"] {
+        offers.push("", quantity, "us", false);
+    }
+    Ok(offers)
+}
+
+/// Geometries, and the scene they change.
+fn setup<'a>(case: &'a Case, scenes: &'a [CaseScene]) -> Result<(&'a [Geometry], &'a CaseScene), StudyError> {
+    match (&case.rings, scenes) {
+        (Some(geometries), [template]) if !geometries.is_empty() => Ok((geometries, template)),
+        _ => Err(StudyError::Other("a sweep needs a [rings] table with geometries, and one scene".into())),
+    }
+}
+
 pub fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
-    let (Some(geometries), [template]) = (&case.rings, scenes) else {
-        return Err(StudyError::Other("a sweep needs a [rings] table and one scene".into()));
-    };
+    let (geometries, template) = setup(case, scenes)?;
     let runs = geometries.par_iter().map(|&geometry| Trial::run(geometry, &template.scene));
     let mut trials = runs.collect::<Result<Vec<_>, _>>()?;
     trials.sort_by(|a, b| a.score.total_cmp(&b.score));

@@ -19,8 +19,38 @@ use crate::study::{Findings, StudyError};
 
 /// Spans of the mesh along x, all of length one; the block is two long and begins at one.
 const SPANS: usize = 12;
+/// Overlaps of bodies that have to be refused, in spans.
+const DEPTHS: [f64; 3] = [1e-2, 0.5, 1.0];
 /// Time step, s; the speed is one.
 const STEP: f64 = 0.0625;
+
+pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
+    let mut offers = crate::study::Offers::default();
+    for degree in 1..=3 {
+        for word in ["FLIP", "APIC"] {
+            let name = format!("p={degree}, {word}");
+            if degree == 1 {
+                offers.bare(
+                    &name,
+                    [
+                        "bilinears on knots: change of velocity, and strain, over the speed",
+                        "bilinears on knots: the run says that its step is too long (1 is yes)",
+                    ],
+                );
+            } else {
+                let bare = ["points that stood on a knot", "the ending names what left, and a remedy (1 is yes)"];
+                offers.bare(&name, bare);
+                let held = ["change of velocity, and strain, over the speed", "time at which the run ends, s"];
+                offers.held(&name, held);
+            }
+        }
+    }
+    for depth in DEPTHS {
+        offers.held(&format!("{depth} of a span deep"), ["overlapping bodies are refused (1 is yes)"]);
+    }
+    offers.held("touching", ["touching bodies are taken (1 is yes)"]);
+    Ok(offers)
+}
 
 pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
@@ -30,7 +60,7 @@ pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Fin
             if degree == 1 { flight.add_limit(&name, &mut findings) } else { flight.add(&name, &mut findings) }
         }
     }
-    for depth in [1e-2, 0.5, 1.0] {
+    for depth in DEPTHS {
         let refused = validate(&overlapping(depth)).err();
         let named = refused.is_some_and(|errors| errors.iter().any(|e| e.message.contains("overlaps")));
         let name = format!("{depth} of a span deep");
@@ -85,6 +115,7 @@ fn fly(scene: &Scene) -> Result<Flight, StudyError> {
     let mut simulation = Simulation::new(scene)?;
     let (mut on_knots, mut off) = (0_usize, 0.0_f64);
     let ending = loop {
+        crate::watch::check()?;
         if simulation.finished() {
             break None;
         }

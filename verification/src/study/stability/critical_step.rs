@@ -27,7 +27,14 @@ const CUTS: [f64; 13] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.2, 0.3, 0.5,
 /// span. With less a control point is not accelerated, and the step is that of a body without the cut part.
 const FINEST_CUTS: [[f64; 2]; 3] = [[1e-4, 1e-3], [1e-3, 1e-2], [1e-2, 3e-2]];
 
-/// `c dt/h` at η = 0.1, 1e-2, 1e-3 and 1e-4 from an independent program in one dimension, where that function counts.
+/// Squares whose critical step is held against a dense eigenvalue: words, mass, cut part of the last span.
+const SQUARES: [(&str, Mass, f64); 3] =
+    [("lumped", Mass::Lumped, 1.0), ("consistent", Mass::Consistent, 1.0), ("lumped, cut", Mass::Lumped, 1e-3)];
+
+/// Cut parts η of [`TABLE`].
+const PUBLISHED_CUTS: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
+
+/// `c dt/h` at those from an independent program in one dimension, where that function counts.
 const TABLE: [(usize, Mass, [f64; 4]); 6] = [
     (1, Mass::Lumped, [0.445, 0.141, 0.045, 0.014]),
     (1, Mass::Consistent, [0.104, 0.011, 0.0012, 0.0001]),
@@ -37,13 +44,40 @@ const TABLE: [(usize, Mass, [f64; 4]); 6] = [
     (3, Mass::Consistent, [0.047, 0.0055, f64::NAN, f64::NAN]),
 ];
 
+pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
+    let mut offers = crate::study::Offers::default();
+    for (degree, mass, published) in TABLE {
+        let word = word_of(mass);
+        for (cut, _) in PUBLISHED_CUTS.into_iter().zip(published).filter(|(_, step)| step.is_finite()) {
+            offers.held(&format!("p={degree}, cut {cut:e}"), [cut_step(word)]);
+        }
+        offers.held(&format!("p={degree}, {word}"), ["exponent of the critical step in the cut part"]);
+    }
+    for degree in 1..=3 {
+        for (word, mass, _) in SQUARES {
+            let variant = format!("p={degree}, {word}");
+            offers.held(&variant, ["critical step of a square over that of the dense eigenvalue"]);
+            if mass == Mass::Lumped {
+                offers.held(&variant, ["critical step in the updated frame over that of theory"]);
+            }
+        }
+    }
+    Ok(offers)
+}
+
+fn word_of(mass: Mass) -> &'static str {
+    if mass == Mass::Lumped { "lumped" } else { "consistent" }
+}
+
+fn cut_step(word: &str) -> String {
+    format!("c dt/h, {word} mass")
+}
+
 pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     bars(case, &mut findings)?;
     for degree in 1..=3 {
-        for (word, mass, cut) in
-            [("lumped", Mass::Lumped, 1.0), ("consistent", Mass::Consistent, 1.0), ("lumped, cut", Mass::Lumped, 1e-3)]
-        {
+        for (word, mass, cut) in SQUARES {
             let scene = patch(degree, mass, cut);
             let frame = total_frame(&scene)?;
             let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator()).ok_or_else(indefinite)?;
@@ -80,6 +114,7 @@ fn bars(case: &Case, findings: &mut Findings) -> Result<(), StudyError> {
         Table::new(&["cut", "p1_lumped", "p1_consistent", "p2_lumped", "p2_consistent", "p3_lumped", "p3_consistent"]);
     let mut steps: Vec<Vec<f64>> = Vec::new();
     for cut in CUTS {
+        crate::watch::check()?;
         let row: Result<Vec<f64>, StudyError> =
             TABLE.iter().map(|&(degree, mass, _)| bar_step(degree, mass, cut)).collect();
         let row = row?;
@@ -92,14 +127,13 @@ fn bars(case: &Case, findings: &mut Findings) -> Result<(), StudyError> {
     };
     let mut curves = Vec::new();
     for (column, (degree, mass, published)) in TABLE.iter().enumerate() {
-        let word = if *mass == Mass::Lumped { "lumped" } else { "consistent" };
-        for (cut, published) in [0.1, 1e-2, 1e-3, 1e-4].into_iter().zip(published) {
+        let word = word_of(*mass);
+        for (cut, published) in PUBLISHED_CUTS.into_iter().zip(published) {
             if published.is_finite() {
                 let found = step_at(cut, column);
                 let source = "an independent program in one dimension".to_string();
                 let reference = Reference { value: Some(*published), kind: ReferenceKind::IndependentCode, source };
-                let quantity = format!("c dt/h, {word} mass");
-                findings.add(&format!("p={degree}, cut {cut:e}"), &quantity, found, Some(reference));
+                findings.add(&format!("p={degree}, cut {cut:e}"), &cut_step(word), found, Some(reference));
             }
         }
         let [less, more] = FINEST_CUTS[degree - 1];

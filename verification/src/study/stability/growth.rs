@@ -19,11 +19,40 @@ use crate::record::{Axis, CurveStyle, Figure, FigureBody, Scale};
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 
+/// Time steps over the critical one.
+const RATIOS: [f64; 3] = [BELOW, 1.01, ABOVE];
+const BELOW: f64 = 0.95;
+const ABOVE: f64 = 1.05;
 /// Steps of the runs below the critical step.
 const LONG: usize = 10_000;
 /// Steps between which growth is measured: when the fastest mode has left the others behind, and before numbers end.
 const FROM: usize = 100;
 const TO: usize = 300;
+
+pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
+    let mut offers = crate::study::Offers::default();
+    for degree in 1..=3 {
+        for ratio in RATIOS {
+            let variant = variant(degree, ratio);
+            if ratio > 1.0 {
+                offers.held(&variant, ["growth per step over that of theory"]);
+            }
+            if ratio == BELOW {
+                offers.held(&variant, ["largest elastic energy of 10000 steps over its bound"]);
+                offers.bare(&variant, ["closure of the ledger after 10000 steps over the energy"]);
+            }
+            if ratio == ABOVE {
+                offers
+                    .bare(&variant, ["steps until the run breaks down", "place, time and cause are named (1 is yes)"]);
+            }
+        }
+    }
+    Ok(offers)
+}
+
+fn variant(degree: usize, ratio: f64) -> String {
+    format!("p={degree}, {ratio} of the critical step")
+}
 
 pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
@@ -37,9 +66,9 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
         let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator());
         let fastest = eigenvalues.and_then(|all| all.last().copied());
         let frequency = fastest.ok_or_else(|| StudyError::Other("the mass is not positive definite".into()))?.sqrt();
-        for ratio in [0.95, 1.01, 1.05] {
+        for ratio in RATIOS {
             let energies = elastic_energies(&scene, ratio * 2.0 / frequency, TO)?;
-            let variant = format!("p={degree}, {ratio} of the critical step");
+            let variant = variant(degree, ratio);
             if ratio > 1.0 {
                 let rate = (energies[TO] / energies[FROM]).ln() / (2.0 * (TO - FROM) as f64);
                 let exact = 2.0 * f64::acosh(ratio);
@@ -85,6 +114,7 @@ fn elastic_energies(scene: &Scene, dt: f64, steps: usize) -> Result<Vec<f64>, St
     let mut frame = total_frame(scene)?;
     let mut energies = vec![frame.sample(dt).kinetic]; // nothing is strained yet: the scale of what follows
     for _ in 0..steps {
+        crate::watch::check()?;
         frame.step(dt).map_err(|_| StudyError::Other("no phase field is expected".into()))?;
         energies.push(frame.elastic_energy());
     }
@@ -100,16 +130,17 @@ fn with_step(scene: &Scene, dt: f64, steps: usize) -> Result<Simulation, StudyEr
 }
 
 fn below(degree: usize, scene: &Scene, frequency: f64, findings: &mut Findings) -> Result<(), StudyError> {
-    let ratio = 0.95;
+    let ratio = BELOW;
     let mut simulation = with_step(scene, ratio * 2.0 / frequency, LONG)?;
     let start = simulation.sample();
     let (mut elastic, mut closure) = (0.0_f64, 0.0_f64);
     while !simulation.finished() {
+        crate::watch::check()?;
         let sample = simulation.advance_to_next_sample()?;
         elastic = larger(elastic, sample.elastic);
         closure = larger(closure, sample.closure.abs());
     }
-    let variant = format!("p={degree}, {ratio} of the critical step");
+    let variant = variant(degree, ratio);
     let energy = start.stored();
     let bound = 1.0 / (1.0 - ratio * ratio);
     let quantity = "largest elastic energy of 10000 steps over its bound";
@@ -120,10 +151,11 @@ fn below(degree: usize, scene: &Scene, frequency: f64, findings: &mut Findings) 
 
 /// A step above the critical one has to end the run, with place, time and cause.
 fn above(degree: usize, scene: &Scene, frequency: f64, findings: &mut Findings) -> Result<(), StudyError> {
-    let ratio = 1.05;
+    let ratio = ABOVE;
     let mut simulation = with_step(scene, ratio * 2.0 / frequency, LONG)?;
-    let variant = format!("p={degree}, {ratio} of the critical step");
+    let variant = variant(degree, ratio);
     let found = loop {
+        crate::watch::check()?;
         match simulation.step() {
             Err(found) => break Some(found),
             Ok(()) if simulation.finished() => break None,

@@ -25,6 +25,21 @@ const SPANS: usize = 8;
 const FINE: (usize, usize) = (4, 12);
 const STEPS: usize = 2000;
 
+pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
+    let mut offers = crate::study::Offers::default();
+    for nu in RATIOS {
+        for degree in 1..=3 {
+            offers.held(&format!("p={degree}, nu={nu}"), ["lowest frequency, relative error"]);
+        }
+    }
+    for degree in 1..=3 {
+        let variant = format!("p={degree}, nu={}", RATIOS[3]);
+        offers.held(&variant, ["critical step over that of the dense eigenvalue"]);
+        offers.bare(&variant, ["closure of the ledger over the energy"]);
+    }
+    Ok(offers)
+}
+
 pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     let stem = series_stem(case, "locking");

@@ -15,12 +15,30 @@ use crate::extremes::{larger, largest};
 use crate::plain_scene::PlainScene;
 use crate::study::{Findings, StudyError};
 
+pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
+    let mut offers = crate::study::Offers::default();
+    for frame in ["total frame", "updated frame"] {
+        for threads in THREADS {
+            let variant = format!("{frame}, {threads} threads");
+            offers.held(&variant, ["numbers that differ from those of one thread"]);
+        }
+    }
+    for degree in 1..=3 {
+        let quantity = "mirror images, largest difference of displacements over the largest";
+        offers.held(&format!("p={degree}"), [quantity]);
+    }
+    Ok(offers)
+}
+
+/// Numbers of threads that are compared with one.
+const THREADS: [usize; 2] = [2, 5];
+
 pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     for (name, frame) in [("total frame", Frame::Total), ("updated frame", Frame::Updated)] {
         let scene = notched(frame);
         let one = on_threads(1, &scene)?;
-        for threads in [2, 5] {
+        for threads in THREADS {
             let other = on_threads(threads, &scene)?;
             let differ = one.iter().zip(&other).filter(|(a, b)| a != b).count() + one.len().abs_diff(other.len());
             let variant = format!("{name}, {threads} threads");

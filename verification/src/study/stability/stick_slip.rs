@@ -14,6 +14,12 @@ use crate::record::CurveStyle;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 
+pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
+    let held = &["distance of sliding over the closed form", "creep after it has stopped over the distance"];
+    let bare = &["largest way back in a step over the distance"];
+    Ok(crate::study::Offers::of_scenes(scenes, held, bare))
+}
+
 pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     let mut curves = Vec::new();

@@ -42,6 +42,22 @@ impl Units {
     }
 }
 
+pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
+    let mut offers = crate::study::Offers::default();
+    for (name, cracked) in [("elastic", false), ("cracking", true)] {
+        let energies = ["kinetic energy", "elastic energy", "external work"];
+        offers.held(name, energies.iter().chain(cracked.then_some(&"fracture energy")).map(|e| in_other_units(e)));
+        if !cracked {
+            offers.held(name, ["external work over that of plane waves"]);
+        }
+    }
+    Ok(offers)
+}
+
+fn in_other_units(energy: &str) -> String {
+    format!("{energy} in other units, largest difference over the largest")
+}
+
 pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     let mut curves = Vec::new();
@@ -61,8 +77,7 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
             let scale = largest(si.iter().map(|s| value(s).abs()));
             if scale > 0.0 {
                 let difference = si.iter().zip(&other).map(|(a, b)| (value(a) - value(b) / factor).abs());
-                let quantity = format!("{quantity} in other units, largest difference over the largest");
-                findings.add(name, &quantity, largest(difference) / scale, exact(0.0, "the same body"));
+                findings.add(name, &in_other_units(quantity), largest(difference) / scale, exact(0.0, "the same body"));
             }
         }
         for (units, samples, factor) in [("m, kg", &si, 1.0), ("mm, t", &other, factor)] {
@@ -91,6 +106,7 @@ fn run(scene: &Scene) -> Result<Vec<Sample>, StudyError> {
     let mut simulation = Simulation::new(scene)?;
     let mut samples = vec![simulation.sample()];
     while !simulation.finished() {
+        crate::watch::check()?;
         samples.push(simulation.advance_to_next_sample()?);
     }
     Ok(samples)

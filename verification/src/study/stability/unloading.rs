@@ -17,6 +17,15 @@ use crate::record::CurveStyle;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 
+pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
+    let mut offers = crate::study::Offers::default();
+    for name in ["total", "updated"] {
+        offers.held(name, ["largest fall of the history field in a step over its last value"]);
+        offers.bare(name, ["peaks of the elastic energy"]);
+    }
+    Ok(offers)
+}
+
 pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     let mut curves = Vec::new();
@@ -49,6 +58,7 @@ fn vibrate(frame: Frame) -> Result<Table, StudyError> {
     let mut simulation = Simulation::new(&bar(frame))?;
     let mut table = Table::new(&["time_s", "history_j_per_m", "elastic_j_per_m"]);
     while !simulation.finished() {
+        crate::watch::check()?;
         simulation.step()?;
         let sample = simulation.sample();
         let history = sum_of_history(&simulation).ok_or_else(|| StudyError::Other("nothing fractures here".into()))?;

@@ -1,72 +1,19 @@
 //! Suites end to end on small cases: verdicts, breakdowns, wrong checks, resuming, reference curves in figures.
 
+mod case_files;
+mod endings;
+mod support;
+
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use fisura_verification::figures;
-use fisura_verification::record::{Environment, FigureBody, Record, ResultSet, Status, Timing};
+use fisura_verification::record::{Environment, FigureBody, ResultSet, Status, Timing};
 use fisura_verification::reference::Library;
 use fisura_verification::study::scene::RunInfo;
-use fisura_verification::suite::{Case, Options, Progress, Selection, Tier, VerifyError, load_cases, select, verify};
-
-const SCENE: &str = r#"
-[scene.mesh]
-degree = 2
-origin = [0.0, 0.0]
-size = [1.0, 0.5]
-cells = [8, 4]
-
-[scene.analysis]
-end_time = 1.0
-
-[scene.material.solid]
-young_modulus = 1.0
-poisson_ratio = 0.3
-density = 1.0
-
-[[scene.body]]
-name = "block"
-material = "solid"
-shape = { rectangle = { min = [0.0, 0.0], max = [1.0, 0.5] } }
-velocity = [0.01, 0.0]
-
-[[scene.boundary]]
-side = "left"
-fix = ["x"]
-
-[scene.output]
-samples = 10
-"#;
-
-struct Silent;
-
-impl Progress for Silent {
-    fn started(&self, _case: &Case, _index: usize, _count: usize) {}
-    fn advanced(&self, _fraction: f64) {}
-    fn finished(&self, _case: &Case, _records: &[Record]) {}
-}
-
-fn repository(folder: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder)
-}
-
-fn write_case(root: &Path, name: &str, scene: &str, check: &str) {
-    let folder = root.join("cases/trial");
-    std::fs::create_dir_all(&folder).unwrap();
-    let text = format!("claim = \"a trial\"\nseconds = 1\n{scene}\n{check}\n");
-    std::fs::write(folder.join(format!("{name}.toml")), text).unwrap();
-}
-
-fn run(root: &Path, environment: Environment) -> Result<ResultSet, VerifyError> {
-    let cases = load_cases(&root.join("cases"), &[])?;
-    let reference_data = repository("reference-data");
-    let out = root.join("out");
-    let options = Options { out: &out, reference_data: &reference_data, environment, resume: true };
-    verify(&cases, &options, &Silent)
-}
-
-const CLOSURE: &str =
-    "[[check]]\nid = \"closure\"\nquantity = \"closure\"\nmeasure = \"closure\"\nmax = 1e-12\nwhy = \"round-off\"";
+use fisura_verification::suite::prepare::prepare;
+use fisura_verification::suite::{Selection, Tier, load_cases, select};
+use support::{CLOSURE, Killed, SCENE, repository, run, run_watched, write_case};
 
 #[test]
 fn bounds_decide_between_pass_and_fail() {
@@ -201,11 +148,11 @@ fn two_runs_agree_and_a_clean_commit_takes_up_finished_cases() {
     assert_eq!(timeless(first), timeless(second));
     assert!(!root.path().join("out/partial").exists(), "a complete run leaves nothing to take up");
 
-    write_case(root.path(), "b", SCENE, "[[check]]\nid = \"q\"\nquantity = \"q\"\nmeasure = \"closuer\"");
-    run(root.path(), clean()).unwrap_err();
-    let kept = std::fs::read_dir(root.path().join("out/partial")).unwrap().count();
-    assert_eq!(kept, 1, "case a was finished before case b failed");
     write_case(root.path(), "b", SCENE, CLOSURE);
+    let killed = || run_watched(root.path(), clean(), None, &Killed("b"));
+    std::panic::catch_unwind(killed).unwrap_err();
+    let kept = std::fs::read_dir(root.path().join("out/partial")).unwrap().count();
+    assert_eq!(kept, 1, "case a was finished before case b started");
     let marked = root.path().join("out/partial").read_dir().unwrap().next().unwrap().unwrap().path();
     let text = std::fs::read_to_string(&marked).unwrap().replace("a trial", "a trial taken up");
     std::fs::write(&marked, text).unwrap();
@@ -218,17 +165,16 @@ fn two_runs_agree_and_a_clean_commit_takes_up_finished_cases() {
 fn every_committed_case_is_sound_and_ids_are_unique() {
     let cases = load_cases(&repository("verification/cases"), &[]).unwrap();
     assert!(cases.len() >= 20);
+    let library = Library::load(&repository("reference-data")).unwrap();
     let mut ids = BTreeSet::new();
     for case in &cases {
-        assert!(!case.claim.is_empty() && case.seconds > 0.0, "{}", case.id());
-        let scenes = case.scenes().unwrap_or_else(|e| panic!("{e}"));
-        assert!(case.study != "scene" || !scenes.is_empty(), "{} has no scene", case.id());
-        assert_eq!(case.study == "convergence", case.convergence.is_some(), "{}", case.id());
-        for check in &case.checks {
-            let key = (case.id(), check.quantity.clone(), check.variant.clone(), check.against.clone());
-            assert!(ids.insert(key), "{}: {} is checked twice", case.id(), check.quantity);
+        let prepared = prepare(case, &library).unwrap_or_else(|e| panic!("{e}"));
+        for planned in &prepared.records {
+            let id = planned.id(case);
+            assert!(ids.insert(id.clone()), "{id} is there twice");
         }
     }
+    assert!(ids.len() >= 1500, "{} records", ids.len());
     let quick = Selection { suites: vec!["plate".into()], case_glob: None, tier: Tier::Quick };
     let full = Selection { tier: Tier::Full, ..quick.clone() };
     assert_eq!(select(cases.clone(), &quick).len(), 1);

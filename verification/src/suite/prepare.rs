@@ -1,0 +1,267 @@
+//! Everything about a case that can be judged before it runs: what its study reads and yields, which records it will have.
+//!
+//! A check that no run could ever judge is an error here, with its place and a remedy, and so is a key that nobody reads.
+
+mod scene_checks;
+
+use std::collections::BTreeMap;
+
+use crate::case::{Case, Check};
+use crate::expand::CaseScene;
+use crate::measure::grid_convergence;
+use crate::record::Reference;
+use crate::reference::{Library, ReferenceBand};
+use crate::scene_file::suggest::nearest;
+use crate::scene_file::{Problem, SceneFileError};
+use crate::study::scene::concerned;
+use crate::study::{INPUTS, Offer, STUDIES, Study, find};
+
+/// Keys of a check that every study reads.
+const EVERYWHERE: [&str; 13] = [
+    "id",
+    "formerly",
+    "quantity",
+    "unit",
+    "variant",
+    "expect",
+    "expect_kind",
+    "expect_source",
+    "min",
+    "max",
+    "below",
+    "above",
+    "why",
+];
+
+/// A case that can run.
+#[derive(Debug, Clone)]
+pub struct Prepared {
+    /// Its scenes.
+    pub scenes: Vec<CaseScene>,
+    /// Its records, in order.
+    pub records: Vec<Planned>,
+}
+
+/// A record that a case will have.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Planned {
+    /// Number of the check.
+    pub check: usize,
+    /// Variant in its id, or empty.
+    pub variant: String,
+    /// Number of the scene whose run is measured, in a scene study.
+    pub scene: Option<usize>,
+}
+
+impl Planned {
+    /// Id of the record: `suite/case[/variant]/check`.
+    pub fn id(&self, case: &Case) -> String {
+        self.with(case, &case.checks[self.check].id)
+    }
+
+    /// Ids that the record had before.
+    pub fn formerly(&self, case: &Case) -> Vec<String> {
+        case.checks[self.check].formerly.iter().map(|id| self.with(case, id)).collect()
+    }
+
+    fn with(&self, case: &Case, check: &str) -> String {
+        let middle = if self.variant.is_empty() { String::new() } else { format!("{}/", self.variant) };
+        format!("{}/{}/{middle}{check}", case.suite, case.name)
+    }
+}
+
+/// Finds everything that is wrong with a case, and plans its records.
+///
+/// # Errors
+/// All problems, each with file, line, key and remedy.
+pub fn prepare(case: &Case, library: &Library) -> Result<Prepared, SceneFileError> {
+    let study = find(&case.study);
+    let mut wrong = Wrong { case, problems: Vec::new() };
+    if study.is_none() && case.study != "scene" {
+        let known: Vec<&str> = std::iter::once("scene").chain(STUDIES.iter().map(|study| study.name)).collect();
+        let meant = nearest(&case.study, &known).map_or(String::new(), |name| format!("did you mean {name:?}? "));
+        wrong.note("study", format!("unknown study {:?}", case.study), format!("{meant}known: {}", known.join(", ")));
+        return Err(wrong.error());
+    }
+    wrong.look_at_inputs(study);
+    if !wrong.problems.is_empty() {
+        return Err(wrong.error());
+    }
+    let scenes = case.scenes()?;
+    let mut records = Vec::new();
+    match study {
+        None => {
+            for (index, check) in case.checks.iter().enumerate() {
+                scene_checks::look(&mut wrong, index, check, &scenes, library);
+                records.extend(of_runs(index, check, &scenes));
+            }
+        }
+        Some(study) => {
+            let offers = (study.offers)(case, &scenes).map_err(|error| {
+                case.error("study", &error.to_string(), "see the cases of this study in verification/cases")
+            })?;
+            for (index, check) in case.checks.iter().enumerate() {
+                records.extend(wrong.look_at_offers(index, check, offers.all()));
+            }
+        }
+    }
+    wrong.look_for_twins(&records);
+    wrong.look_for_copies();
+    if wrong.problems.is_empty() { Ok(Prepared { scenes, records }) } else { Err(wrong.error()) }
+}
+
+/// Records of a check of a scene study.
+fn of_runs(index: usize, check: &Check, scenes: &[CaseScene]) -> Vec<Planned> {
+    let name = |scene: usize| if check.meshes.is_some() { String::new() } else { scenes[scene].name.clone() };
+    let planned = |scene| Planned { check: index, variant: name(scene), scene: Some(scene) };
+    concerned(check, scenes).into_iter().map(planned).collect()
+}
+
+/// What is wrong with a case.
+struct Wrong<'a> {
+    case: &'a Case,
+    problems: Vec<Problem>,
+}
+
+impl Wrong<'_> {
+    fn note(&mut self, key: impl Into<String>, message: impl Into<String>, remedy: impl Into<String>) {
+        let key = key.into();
+        let location = self.case.document.root.locate(&key);
+        self.problems.push(Problem { key, location, message: message.into(), remedy: remedy.into() });
+    }
+
+    fn error(&self) -> SceneFileError {
+        self.case.document.error(&self.problems)
+    }
+
+    /// Tables and keys that the study does not read, or misses.
+    fn look_at_inputs(&mut self, study: Option<&Study>) {
+        let reads = study.map_or(&["scene", "variant", "energy_factor"][..], |study| study.reads);
+        let root = &self.case.document.root;
+        let name = &self.case.study;
+        for key in INPUTS.into_iter().filter(|key| !reads.contains(key) && root.get(key).is_some()) {
+            self.note(key, format!("the study {name:?} does not read {key}"), "remove it, or name the study that does");
+        }
+        if let Some(needed) = reads.first().filter(|key| root.get(key).is_none()) {
+            self.note(*needed, "missing", format!("the study {name:?} needs a [{needed}] table"));
+        }
+        let factor = |index: &usize| self.case.variants[*index].energy_factor.is_some();
+        let factors: Vec<usize> = (0..self.case.variants.len()).filter(factor).collect();
+        for index in factors.into_iter().filter(|_| !reads.contains(&"energy_factor")) {
+            let key = format!("variant.{index}.energy_factor");
+            self.note(key, format!("the study {name:?} does not read energy_factor"), "remove it");
+        }
+    }
+
+    /// Notes every key of a check that is not among those that are read.
+    fn look_at_keys(&mut self, index: usize, what: &str, reads: &[&[&str]]) {
+        let table = self.case.document.root.at(&format!("check.{index}"));
+        let keys = table.and_then(|node| node.as_table()).into_iter().flat_map(|table| table.keys());
+        for key in keys.filter(|key| !reads.iter().any(|read| read.contains(&key.as_str()))) {
+            let known = reads.concat().join(", ");
+            self.note(
+                format!("check.{index}.{key}"),
+                format!("{what} does not read {key:?}"),
+                format!("remove it; read are {known}"),
+            );
+        }
+    }
+
+    /// A check of a study that says itself what it measures.
+    fn look_at_offers(&mut self, index: usize, check: &Check, offers: &[Offer]) -> Vec<Planned> {
+        self.look_at_keys(index, &format!("the study {:?}", self.case.study), &[&EVERYWHERE]);
+        let key = |name: &str| format!("check.{index}.{name}");
+        let found: Vec<&Offer> = offers.iter().filter(|offer| offer.quantity == check.quantity).collect();
+        if found.is_empty() {
+            let known = distinct(offers.iter().map(|offer| offer.quantity.as_str()));
+            let meant =
+                nearest(&check.quantity, &known).map_or(String::new(), |near| format!("did you mean {near:?}? "));
+            let remedy = format!("{meant}it measures: {}", known.join("; "));
+            self.note(key("quantity"), "the study does not measure this", remedy);
+            return Vec::new();
+        }
+        let named = |offer: &&&Offer| check.variant.as_ref().is_none_or(|variant| *variant == offer.variant);
+        let meant: Vec<&&Offer> = found.iter().filter(named).collect();
+        if meant.is_empty() {
+            let known = distinct(found.iter().map(|offer| offer.variant.as_str()));
+            self.note(key("variant"), "no run of this case is meant", format!("known variants: {}", known.join("; ")));
+        }
+        if check.around_reference.is_some() && check.expect.is_none() && !meant.iter().all(|offer| offer.held) {
+            let remedy = "give min and max, or the value with expect";
+            self.note(key("below"), "there is no reference value from which below and above could count", remedy);
+        }
+        if check.expect.is_some() && meant.iter().any(|offer| offer.held) {
+            let remedy = "remove expect; below and above count from the value of the study";
+            self.note(key("expect"), "the study has a reference value of its own", remedy);
+        }
+        let given = self.case.document.root.at(&key("unit")).is_some();
+        if let Some(offer) = meant.iter().find(|offer| given && offer.unit != check.unit) {
+            let message = format!("the study gives this in {:?}", offer.unit);
+            self.note(key("unit"), message, format!("unit = {:?}, or leave it out", offer.unit));
+        }
+        meant.iter().map(|offer| Planned { check: index, variant: offer.variant.clone(), scene: None }).collect()
+    }
+
+    /// Records with one id would hide each other, and a former id that is one of today leads astray.
+    fn look_for_twins(&mut self, records: &[Planned]) {
+        let case = self.case;
+        let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+        for planned in records {
+            let id = planned.id(case);
+            if let Some(first) = seen.insert(id.clone(), planned.check) {
+                let remedy = match first == planned.check {
+                    true => "give variants names of their own, and axes values that differ",
+                    false => "give each check an id of its own, or remove what is there twice",
+                };
+                self.note(format!("check.{}.id", planned.check), format!("two records of the id {id}"), remedy);
+            }
+        }
+        for planned in records {
+            if let Some(id) = planned.formerly(case).into_iter().find(|id| seen.contains_key(id)) {
+                let message = format!("the former id {id} is that of a record of today");
+                let key = format!("check.{}.formerly", planned.check);
+                self.note(key, message, "name in formerly only ids that are no longer in use");
+            }
+        }
+    }
+
+    /// Checks that differ in nothing but words count one finding twice.
+    fn look_for_copies(&mut self) {
+        let case = self.case;
+        let tables =
+            (0..case.checks.len()).filter_map(|index| case.document.root.at(&format!("check.{index}"))?.as_table());
+        let mut seen = BTreeMap::new();
+        for (index, table) in tables.enumerate() {
+            let said = table.iter().filter(|(key, _)| !["id", "formerly", "why"].contains(&key.as_str()));
+            let said: Vec<String> = said.map(|(key, node)| format!("{key} = {}", node.canonical())).collect();
+            if let Some(first) = seen.insert(said, index) {
+                let message = format!("this says what check.{first} says");
+                self.note(format!("check.{index}"), message, "remove one of the two");
+            }
+        }
+    }
+}
+
+fn distinct<'a>(words: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut all: Vec<&str> = words.collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+/// The band at a path `folder/name`.
+pub(super) fn find_band<'a>(library: &'a Library, path: &str) -> Option<&'a ReferenceBand> {
+    let (folder, name) = path.split_once('/')?;
+    library.band(folder, name)
+}
+
+/// Bounds of a check that count from its reference value, if any do.
+///
+/// # Errors
+/// If there is no value to count from.
+pub(super) fn bounds_around(check: &Check, reference: Option<&Reference>) -> Result<Option<[f64; 2]>, String> {
+    let Some([below, above]) = check.around_reference else { return Ok(None) };
+    let value = reference.and_then(|reference| reference.value);
+    let value = value.ok_or("there is no reference value from which below and above could count")?;
+    Ok(Some([value - below, value + above]))
+}

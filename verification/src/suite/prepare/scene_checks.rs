@@ -1,0 +1,166 @@
+//! Checks of a scene study before it runs: measures, columns, windows, references, variants.
+
+use fisura::energy::{ContactSample, FractureSample, Sample};
+use fisura::scene::{Frame, Scene};
+
+use super::{EVERYWHERE, Wrong, distinct, find_band, grid_convergence};
+use crate::case::Check;
+use crate::expand::CaseScene;
+use crate::measure::{LooksAt, Measure, find};
+use crate::reference::Library;
+use crate::scene_file::suggest::nearest;
+use crate::study::scene::concerned;
+
+/// Keys that every measure reads, beside those of every study.
+const MEASURED: [&str; 5] = ["measure", "scale", "band", "meshes", "order"];
+/// Times that differ by less than this part are the same.
+const SLACK: f64 = 1e-9;
+
+/// Notes what is wrong with a check.
+pub(super) fn look(wrong: &mut Wrong<'_>, index: usize, check: &Check, scenes: &[CaseScene], library: &Library) {
+    let at = |name: &str| format!("check.{index}.{name}");
+    let measure = match find(check.measure.as_deref()) {
+        Ok(measure) => measure,
+        Err(message) => return wrong.note(at("measure"), message, "name one of them"),
+    };
+    wrong.look_at_keys(
+        index,
+        &format!("the measure {:?}", measure.name),
+        &[&EVERYWHERE, &MEASURED, measure.needs, measure.takes],
+    );
+    let table = wrong.case.document.root.at(&format!("check.{index}"));
+    for key in measure.needs.iter().filter(|key| table.is_none_or(|table| table.get(key).is_none())) {
+        wrong.note(at(key), format!("the measure {:?} needs {key}", measure.name), format!("add {key} = …"));
+    }
+    look_at_references(wrong, index, check, library);
+    if !look_at_variants(wrong, index, check, scenes) {
+        return;
+    }
+    for scene in concerned(check, scenes) {
+        if let Err((key, message, remedy)) = look_at_run(measure, check, &scenes[scene].scene) {
+            wrong.note(at(key), message, remedy);
+            break; // the other runs of the check would say the same
+        }
+    }
+}
+
+fn look_at_references(wrong: &mut Wrong<'_>, index: usize, check: &Check, library: &Library) {
+    let at = |name: &str| format!("check.{index}.{name}");
+    if let Some(path) = &check.reference {
+        let curve = path.split_once('/').and_then(|(folder, quantity)| library.curve(folder, quantity));
+        match curve {
+            None => {
+                let remedy = "write reference = \"folder/quantity\" as in reference-data";
+                wrong.note(at("reference"), format!("no reference curve {path:?}"), remedy);
+            }
+            Some(curve) => {
+                let [from, to] = check.window;
+                if !curve.x.iter().any(|x| (from..=to).contains(x)) {
+                    let [first, last] = curve.range();
+                    let remedy = format!("choose from and to between {first:e} s and {last:e} s");
+                    wrong.note(at("from"), "the reference curve has no point between from and to", remedy);
+                }
+            }
+        }
+    }
+    if let Some(path) = &check.band
+        && find_band(library, path).is_none()
+    {
+        let bands = library.bands().iter().map(|band| format!("{}/{}", band.id, band.name)).collect::<Vec<_>>();
+        wrong.note(at("band"), format!("no reference band {path:?}"), format!("known: {}", bands.join(", ")));
+    }
+    if check.band.is_some() && check.expect.is_some() {
+        wrong.note(at("expect"), "a band and an expected value", "remove one of the two");
+    }
+    if check.around_reference.is_some() && check.expect.is_none() {
+        let remedy = "add expect, or give min and max";
+        wrong.note(at("below"), "there is no reference value from which below and above could count", remedy);
+    }
+}
+
+/// Whether the check names variants that there are.
+fn look_at_variants(wrong: &mut Wrong<'_>, index: usize, check: &Check, scenes: &[CaseScene]) -> bool {
+    let at = |name: &str| format!("check.{index}.{name}");
+    let before = wrong.problems.len();
+    let known = distinct(scenes.iter().map(|scene| scene.name.as_str()));
+    for (key, name) in [("variant", &check.variant), ("against", &check.against)] {
+        if let Some(name) = name.as_deref().filter(|name| !known.contains(name)) {
+            let meant = nearest(name, &known).map_or(String::new(), |near| format!("did you mean {near:?}? "));
+            let remedy = format!("{meant}known variants: {}", known.join("; "));
+            wrong.note(at(key), format!("no run of this case is meant by {name:?}"), remedy);
+        }
+    }
+    if check.against.is_some() && check.variant == check.against {
+        wrong.note(at("against"), "a run compared with itself", "name two variants");
+    }
+    if check.order.is_some() && check.meshes.is_none() {
+        let remedy = "add meshes = \"richardson\" or remove it";
+        wrong.note(at("order"), "an order of theory without meshes", remedy);
+    }
+    if let Some(estimate) = check.meshes
+        && let Err((message, remedy)) = grid_convergence::usable(check, estimate, scenes)
+    {
+        wrong.note(at("meshes"), message, remedy);
+    }
+    if wrong.problems.len() == before && concerned(check, scenes).is_empty() {
+        wrong.note(at("against"), "there is no other run to compare", "add a [[variant]], or remove the check");
+    }
+    wrong.problems.len() == before
+}
+
+/// What one run would not have: key, message, remedy.
+fn look_at_run(measure: &Measure, check: &Check, scene: &Scene) -> Result<(), (&'static str, String, String)> {
+    let columns = columns(scene);
+    let words = check.column.iter().flat_map(|column| column.split_whitespace());
+    let mut named = words.filter(|word| !["+", "-"].contains(word)).peekable();
+    if check.column.is_some() && named.peek().is_none() {
+        return Err(("column", "no column is named".into(), format!("known columns: {}", columns.join(", "))));
+    }
+    if let Some(unknown) = named.find(|word| !columns.contains(word)) {
+        let remedy = format!("it has {}", columns.join(", "));
+        return Err(("column", format!("the history has no column {unknown:?}"), remedy));
+    }
+    let fractures = columns.contains(&"min_phase_field");
+    if matches!(measure.looks_at, LooksAt::Tip | LooksAt::PhaseField) && !fractures {
+        let remedy = "add [scene.material.NAME.fracture], or choose another measure";
+        return Err(("measure", format!("{:?} looks at a crack, and nothing fractures", measure.name), remedy.into()));
+    }
+    if matches!(measure.looks_at, LooksAt::Pictures | LooksAt::PhaseField) && scene.output.frames.is_empty() {
+        let message = format!("{:?} looks at pictures, and there are none", measure.name);
+        return Err(("measure", message, "add scene.output.frames".into()));
+    }
+    look_at_times(measure, check, scene)
+}
+
+/// Times outside the run.
+fn look_at_times(measure: &Measure, check: &Check, scene: &Scene) -> Result<(), (&'static str, String, String)> {
+    let end = scene.analysis.end_time;
+    let slack = SLACK * end;
+    if matches!(measure.name, "value-at" | "increment-at")
+        && let Some(time) = check.at.filter(|time| !(-slack..=end + slack).contains(time))
+    {
+        return Err(("at", format!("{time:e} s is outside the run"), format!("choose a time from 0 to {end:e} s")));
+    }
+    let interval = end / scene.output.samples.max(1) as f64;
+    let [from, to] = check.window.map(|time| time.clamp(-interval, end + interval));
+    let first = (((from - slack) / interval).ceil() * interval).max(0.0);
+    if first > (to + slack).min(end + slack) {
+        let remedy = format!("the run ends at {end:e} s and has a sample every {interval:e} s");
+        return Err(("from", "no sample lies between from and to".into(), remedy));
+    }
+    Ok(())
+}
+
+/// Columns of the history of a scene.
+fn columns(scene: &Scene) -> Vec<&'static str> {
+    let moving = scene.bodies.iter().filter(|body| !body.rigid);
+    let mut materials = moving.filter_map(|body| scene.materials.get(&body.material));
+    let fracture = FractureSample { energy: 0.0, history_work: 0.0, crack_tip: None, min_phase: 1.0, iterations: 0 };
+    let sample = Sample {
+        fracture: materials.any(|material| material.fracture.is_some()).then_some(fracture),
+        contact: scene.contact.is_some().then_some(ContactSample { loss: 0.0, friction: 0.0 }),
+        transfer_loss: (scene.analysis.frame == Frame::Updated).then_some(0.0),
+        ..Sample::default()
+    };
+    sample.named_values().into_iter().map(|(name, _)| name).collect()
+}

@@ -1,0 +1,88 @@
+//! The watch over a case: how far it has come, whether it should stop, and what it panicked of.
+//!
+//! A case runs in a pool of threads of its own, and every thread of that pool knows the watch. A loop over time steps calls
+//! [`check`] in every round; without a watch, as in `run`, that never stops anything.
+
+use std::cell::RefCell;
+use std::panic::PanicHookInfo;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, Once, PoisonError};
+
+use thiserror::Error;
+
+thread_local! {
+    static WATCH: RefCell<Option<Arc<Watch>>> = const { RefCell::new(None) };
+}
+
+/// The case is to stop; why.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct Stopped(String);
+
+/// Shared by the threads of a case and the one that waits for it.
+#[derive(Debug, Default)]
+pub struct Watch {
+    /// Finished fraction, as bits.
+    fraction: AtomicU64,
+    stop: Mutex<Option<Stopped>>,
+    panic: Mutex<Option<String>>,
+}
+
+impl Watch {
+    /// The present thread works for the case under this watch from now on.
+    pub fn enter(self: Arc<Self>) {
+        WATCH.set(Some(self));
+    }
+
+    /// Asks the case to stop.
+    pub fn stop(&self, why: String) {
+        *self.stop.lock().unwrap_or_else(PoisonError::into_inner) = Some(Stopped(why));
+    }
+
+    /// The finished fraction.
+    pub fn fraction(&self) -> f64 {
+        f64::from_bits(self.fraction.load(Ordering::Relaxed))
+    }
+
+    /// Message and place of the first panic.
+    pub fn panic(&self) -> Option<String> {
+        self.panic.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    fn note(&self, info: &PanicHookInfo<'_>) {
+        let words = info.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+        self.panic.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(words);
+    }
+}
+
+fn with<T>(ask: impl FnOnce(&Watch) -> T) -> Option<T> {
+    WATCH.try_with(|watch| watch.try_borrow().ok()?.as_deref().map(ask)).ok().flatten()
+}
+
+/// Whether the case may go on.
+///
+/// # Errors
+/// If it is to stop.
+pub fn check() -> Result<(), Stopped> {
+    match with(|watch| watch.stop.lock().unwrap_or_else(PoisonError::into_inner).clone()).flatten() {
+        Some(stopped) => Err(stopped),
+        None => Ok(()),
+    }
+}
+
+/// Says how far the case has come, 0 to 1.
+pub fn advanced(fraction: f64) {
+    with(|watch| watch.fraction.store(fraction.to_bits(), Ordering::Relaxed));
+}
+
+/// From now on a panic in a case is noted by its watch, and shown as it was before.
+pub fn note_panics() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let shown = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |info| {
+            with(|watch| watch.note(info));
+            shown(info);
+        }));
+    });
+}
