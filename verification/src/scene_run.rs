@@ -70,7 +70,7 @@ pub struct SceneRun {
 /// a second time, with the same state.
 pub type OnFrame<'a> = dyn FnMut(usize, &Simulation) + 'a;
 
-/// Runs a valid scene (see [`validate`]) to its end, or until its [`watch`](crate::watch) stops it; `progress` is called after
+/// Runs a valid scene (see [`validate`]) to its end, or until its [`watch`] stops it; `progress` is called after
 /// every step, and `on_frame` at every frame with its number.
 pub fn run_scene(scene: &Scene, progress: &mut dyn FnMut(Progress), on_frame: &mut OnFrame<'_>) -> SceneRun {
     let mut run = Run::new(scene, Record::default());
