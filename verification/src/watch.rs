@@ -6,7 +6,7 @@
 use std::cell::RefCell;
 use std::panic::PanicHookInfo;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, Once, PoisonError};
+use std::sync::{Arc, Once, OnceLock};
 
 use thiserror::Error;
 
@@ -24,8 +24,8 @@ pub struct Stopped(String);
 pub struct Watch {
     /// Finished fraction, as bits.
     fraction: AtomicU64,
-    stop: Mutex<Option<Stopped>>,
-    panic: Mutex<Option<String>>,
+    stop: OnceLock<Stopped>,
+    panic: OnceLock<String>,
 }
 
 impl Watch {
@@ -34,9 +34,9 @@ impl Watch {
         WATCH.set(Some(self));
     }
 
-    /// Asks the case to stop.
+    /// Asks the case to stop; the first reason counts.
     pub fn stop(&self, why: String) {
-        *self.stop.lock().unwrap_or_else(PoisonError::into_inner) = Some(Stopped(why));
+        self.stop.get_or_init(|| Stopped(why));
     }
 
     /// The finished fraction.
@@ -45,13 +45,13 @@ impl Watch {
     }
 
     /// Message and place of the first panic.
-    pub fn panic(&self) -> Option<String> {
-        self.panic.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    pub fn panic(&self) -> Option<&str> {
+        self.panic.get().map(String::as_str)
     }
 
     fn note(&self, info: &PanicHookInfo<'_>) {
         let words = info.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-        self.panic.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(words);
+        self.panic.get_or_init(|| words);
     }
 }
 
@@ -64,10 +64,7 @@ fn with<T>(ask: impl FnOnce(&Watch) -> T) -> Option<T> {
 /// # Errors
 /// If it is to stop.
 pub fn check() -> Result<(), Stopped> {
-    match with(|watch| watch.stop.lock().unwrap_or_else(PoisonError::into_inner).clone()).flatten() {
-        Some(stopped) => Err(stopped),
-        None => Ok(()),
-    }
+    with(|watch| watch.stop.get().cloned()).flatten().map_or(Ok(()), Err)
 }
 
 /// Says how far the case has come, 0 to 1.

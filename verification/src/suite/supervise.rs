@@ -47,7 +47,7 @@ pub(super) fn supervised<T: Send + 'static>(
         match receiver.recv_timeout(LOOK) {
             Ok(Ok(_)) if asked => return Err(over()),
             Ok(Ok(value)) => return Ok(value),
-            Ok(Err(payload)) => return Err(watch.panic().unwrap_or_else(|| words(payload.as_ref()))),
+            Ok(Err(payload)) => return Err(watch.panic().map_or_else(|| words(payload.as_ref()), String::from)),
             Err(RecvTimeoutError::Disconnected) => return Err("its thread ended without a result".to_string()),
             Err(RecvTimeoutError::Timeout) => advanced(watch.fraction()),
         }
