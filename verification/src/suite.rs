@@ -28,7 +28,7 @@ pub use selection::{Malformed, Selection, load_cases, read_cases, select};
 use part::{PART_SCHEMA, Part, Plan};
 use partition::Slice;
 use prepare::{Prepared, prepare};
-use supervise::supervised;
+use supervise::{Ended, supervised};
 
 /// Where and how to run.
 #[derive(Debug, Clone)]
@@ -149,14 +149,19 @@ fn run_cases(
         progress.started(case, index, cases.len());
         let outcome = match store.load(case) {
             Some(outcome) => outcome,
-            None => match run_case(case, &Arc::new(prepared), options, library, progress) {
-                Ok(outcome) => {
-                    let outcome = outcome?;
-                    store.save(case, &outcome)?;
-                    outcome
+            None => {
+                let prepared = Arc::new(prepared);
+                match run_case(case, &prepared, options, library, progress) {
+                    Ended::InTime(outcome) => {
+                        let outcome = outcome?;
+                        store.save(case, &outcome)?;
+                        outcome
+                    }
+                    // to be tried again, and not taken up
+                    Ended::Stopped(outcome) => outcome?,
+                    Ended::Broken(message) => judge::broken(case, &prepared, &message),
                 }
-                Err(broken) => broken, // to be tried again, and not taken up
-            },
+            }
         };
         progress.finished(case, &outcome.records);
         outcomes.push(outcome);
@@ -169,25 +174,20 @@ const LEAST_TIME: Duration = Duration::from_secs(300);
 /// Limit for the time of a case over its estimate.
 const PATIENCE: f64 = 10.0;
 
-/// Runs a case under supervision: what it found, or what cannot be written; an outcome of errors alone if it did not end well.
+/// Runs a case under supervision.
 fn run_case(
     case: &Case,
     prepared: &Arc<Prepared>,
     options: &Options,
     library: &Arc<Library>,
     progress: &dyn Progress,
-) -> Result<Result<CaseOutcome, VerifyError>, CaseOutcome> {
+) -> Ended<Result<CaseOutcome, VerifyError>> {
     let estimated = Duration::from_secs_f64((PATIENCE * case.seconds).min(1e9));
     let limit = options.case_timeout.unwrap_or(estimated.max(LEAST_TIME));
     let (judged, out) = (case.clone(), options.out.to_path_buf());
     let (plan, references) = (Arc::clone(prepared), Arc::clone(library));
     let work = move || judge::run_case(&judged, &plan, &out, &references);
-    or_broken(case, prepared, supervised(limit, &|part| progress.advanced(part), &|| progress.late(case, limit), work))
-}
-
-/// A case that panicked or exceeded its time has an error for each of its records.
-fn or_broken<T>(case: &Case, prepared: &Prepared, ended: Result<T, String>) -> Result<T, CaseOutcome> {
-    ended.map_err(|message| judge::broken(case, prepared, &message))
+    supervised(limit, &|part| progress.advanced(part), &|| progress.late(case, limit), work)
 }
 
 /// Writes what the outcomes of all cases give together: figures over several runs, their reference curves, the records.
@@ -277,7 +277,8 @@ mod tests {
         let case = Case::parse(Path::new("trial/case.toml"), text, &[]).unwrap();
         let prepared = prepare(&case, &Library::default()).unwrap();
         let ended = supervised(LEAST_TIME, &|_| (), &|| (), || -> () { panic!("planted") });
-        let records = or_broken(&case, &prepared, ended).unwrap_err().records;
+        let Ended::Broken(message) = ended else { panic!("it ended well") };
+        let records = judge::broken(&case, &prepared, &message).records;
         let ids: Vec<&str> = records.iter().map(|record| record.id.as_str()).collect();
         assert_eq!(ids, ["p=1", "p=2", "p=3", "p=4"].map(|p| format!("trial/case/{p}/unity")));
         for record in &records {

@@ -16,22 +16,36 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Least time that a case has to stop.
 const GRACE: Duration = Duration::from_secs(2);
 
-/// What becomes of `work`, if it ends as planned and within `limit`; else what happened. `advanced` is told the finished
-/// fraction now and then, and `late` once the time is over.
+/// How supervised work ended.
+#[derive(Debug, PartialEq)]
+pub(super) enum Ended<T> {
+    /// Within its time.
+    InTime(T),
+    /// When it was asked to: what it has until then.
+    Stopped(T),
+    /// With a panic, or not at all: what happened.
+    Broken(String),
+}
+
+/// Runs `work`, and asks it to stop after `limit`. `advanced` is told the finished fraction now and then, and `late` once the
+/// time is over.
 pub(super) fn supervised<T: Send + 'static>(
     limit: Duration,
     advanced: &dyn Fn(f64),
     late: &dyn Fn(),
     work: impl FnOnce() -> T + Send + 'static,
-) -> Result<T, String> {
+) -> Ended<T> {
     watch::note_panics();
     let watch = Arc::new(Watch::default());
     let entered = Arc::clone(&watch);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(rayon::current_num_threads())
         .start_handler(move |_| Arc::clone(&entered).enter())
-        .build()
-        .map_err(|error| format!("no threads could be started for it: {error}"))?;
+        .build();
+    let pool = match pool {
+        Ok(pool) => pool,
+        Err(error) => return Ended::Broken(format!("no threads could be started for it: {error}")),
+    };
     let (sender, receiver) = channel();
     pool.spawn(move || {
         // nobody listens any more to a case that was left behind
@@ -45,10 +59,14 @@ pub(super) fn supervised<T: Send + 'static>(
     let mut asked = false;
     loop {
         match receiver.recv_timeout(LOOK) {
-            Ok(Ok(_)) if asked => return Err(over()),
-            Ok(Ok(value)) => return Ok(value),
-            Ok(Err(payload)) => return Err(watch.panic().map_or_else(|| words(payload.as_ref()), String::from)),
-            Err(RecvTimeoutError::Disconnected) => return Err("its thread ended without a result".to_string()),
+            Ok(Ok(value)) if asked => return Ended::Stopped(value),
+            Ok(Ok(value)) => return Ended::InTime(value),
+            Ok(Err(payload)) => {
+                return Ended::Broken(watch.panic().map_or_else(|| words(payload.as_ref()), String::from));
+            }
+            Err(RecvTimeoutError::Disconnected) => {
+                return Ended::Broken("its thread ended without a result".to_string());
+            }
             Err(RecvTimeoutError::Timeout) => advanced(watch.fraction()),
         }
         let elapsed = start.elapsed();
@@ -58,7 +76,7 @@ pub(super) fn supervised<T: Send + 'static>(
             late();
         }
         if elapsed > limit.saturating_add(limit.max(GRACE)) {
-            return Err(format!("{}, and did not end when asked to: it runs on beside what follows", over()));
+            return Ended::Broken(format!("{}, and did not end when asked to: it runs on beside what follows", over()));
         }
     }
 }
@@ -74,35 +92,41 @@ fn words(payload: &(dyn std::any::Any + Send)) -> String {
 mod tests {
     use super::*;
 
-    fn run<T: Send + 'static>(seconds: f64, work: impl FnOnce() -> T + Send + 'static) -> Result<T, String> {
+    fn run<T: Send + 'static>(seconds: f64, work: impl FnOnce() -> T + Send + 'static) -> Ended<T> {
         supervised(Duration::from_secs_f64(seconds), &|_| (), &|| (), work)
+    }
+
+    /// What is told of work that broke.
+    #[track_caller]
+    fn told<T>(ended: Ended<T>) -> String {
+        match ended {
+            Ended::Broken(message) => message,
+            _ => panic!("it ended well"),
+        }
     }
 
     #[test]
     fn what_ends_in_time_gives_its_value() {
-        assert_eq!(run(60.0, || rayon::current_num_threads()), Ok(rayon::current_num_threads()));
+        assert_eq!(run(60.0, rayon::current_num_threads), Ended::InTime(rayon::current_num_threads()));
     }
 
     #[test]
     fn a_panic_is_told_with_its_place_also_from_another_thread_of_the_pool() {
-        let parallel = || rayon::join(|| (), || [1, 2][std::hint::black_box(2)]).1;
-        let told = run(60.0, parallel).unwrap_err();
-        assert!(told.contains("supervise.rs") && told.contains("index out of bounds"), "{told}");
-        assert!(run(60.0, || -> () { std::panic::resume_unwind(Box::new("quiet")) }).unwrap_err().contains("quiet"));
+        let message = told(run(60.0, || rayon::join(|| (), || [1, 2][std::hint::black_box(2)]).1));
+        assert!(message.contains("supervise.rs") && message.contains("index out of bounds"), "{message}");
+        assert!(told(run(60.0, || -> () { std::panic::resume_unwind(Box::new("quiet")) })).contains("quiet"));
     }
 
     #[test]
     fn a_loop_that_looks_stops_and_one_that_does_not_is_left_behind() {
-        let looks = || while watch::check().is_ok() {};
-        let told = run(0.05, looks).unwrap_err();
-        assert!(told.contains("over the limit of 0.05 s") && !told.contains("runs on"), "{told}");
-        let told = run(0.05, || std::thread::sleep(Duration::from_secs(3600))).unwrap_err();
-        assert!(told.contains("runs on beside"), "{told}");
-    }
-
-    #[test]
-    fn work_beyond_its_time_does_not_count_even_if_it_ends() {
-        let slow = || std::thread::sleep(Duration::from_millis(400));
-        assert!(run(0.05, slow).unwrap_err().contains("stopped after"));
+        let looks = || loop {
+            if let Err(stopped) = watch::check() {
+                return stopped.to_string();
+            }
+        };
+        let Ended::Stopped(why) = run(0.05, looks) else { panic!("it stops") };
+        assert!(why.contains("over the limit of 0.05 s"), "{why}");
+        let message = told(run(0.05, || std::thread::sleep(Duration::from_secs(3600))));
+        assert!(message.contains("runs on beside"), "{message}");
     }
 }

@@ -45,6 +45,10 @@ fn a_case_beyond_its_time_is_a_record_and_the_others_run() {
     let root = tempfile::tempdir().unwrap();
     let endless = SCENE.replace("end_time = 1.0", "end_time = 1e7").replace("degree = 2", "degree = [2, 3]");
     write_case(root.path(), "a", &endless, CLOSURE);
+    let short = endless.replace("degree = [2, 3]", "degree = 2");
+    let variant = "[[variant]]\nname = \"short\"\nset = { \"analysis.end_time\" = 1.0 }\n\
+                   [[variant]]\nname = \"endless\"\nset = { \"mesh.degree\" = 2 }\n";
+    write_case(root.path(), "d", &short, &format!("{variant}{CLOSURE}"));
     let incline = "study = \"stick-slip\"\n".to_string() + SLIDE;
     let creep = "[[check]]\nid = \"creep\"\nquantity = \"creep after it has stopped over the distance\"";
     write_case(root.path(), "b", &incline, creep);
@@ -56,9 +60,11 @@ fn a_case_beyond_its_time_is_a_record_and_the_others_run() {
         ("trial/a/degree=3/closure", Status::Error),
         ("trial/b/creep", Status::Error),
         ("trial/c/closure", Status::Pass),
+        ("trial/d/short/closure", Status::Pass),
+        ("trial/d/endless/closure", Status::Error),
     ];
     assert_eq!(ids(&results.records), expected);
-    for record in &results.records[..3] {
+    for record in results.records.iter().filter(|record| record.status == Status::Error) {
         let message = record.message.as_deref().unwrap();
         assert!(message.contains("limit of 1 s") && message.contains("--case-timeout"), "{message}");
         assert!(!message.contains("runs on"), "it stopped when asked: {message}");
