@@ -10,6 +10,10 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 
 use crate::number::{power_of_ten, pretty};
 
+/// Values beyond are not drawn, and ranges do not go beyond: spans would not be numbers.
+const LARGEST: [f64; 2] = [1e290, 1e300];
+/// Least span of a range, absolute and relative to its larger end: below, ticks and pixels have no digits left.
+const LEAST_SPAN: [f64; 2] = [1e-300, 1e-12];
 /// Decades up to which minor ticks have grid lines; beyond, they would be a grey wash.
 const FINE_GRID: f64 = 3.0;
 
@@ -38,7 +42,7 @@ impl AxisScale {
         let fitted = if fitted.0 <= fitted.1 { fitted } else { (0.0, 1.0) };
         let given = axis.range.map(|[a, b]| (coordinate(axis.scale, a), coordinate(axis.scale, b)));
         let (low, high) = match given {
-            Some((a, b)) if a.is_finite() && b.is_finite() && a < b => (a, b),
+            Some((a, b)) if is_range(a, b) => (a, b),
             _ => pad(fitted, padding, axis.scale),
         };
         Self::with_range(axis.scale, low, high, target)
@@ -73,7 +77,8 @@ impl Ranged for AxisScale {
 
     fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
         let fraction = (value - self.low) / (self.high - self.low);
-        (limit.0 as f64 + fraction * (limit.1 - limit.0) as f64).round() as i32
+        // what lies far outside is clipped or left out anyway, and must not overflow
+        (limit.0 as f64 + fraction.clamp(-1.0, 2.0) * (limit.1 - limit.0) as f64).round() as i32
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
@@ -93,8 +98,15 @@ impl ValueFormatter<f64> for AxisScale {
     }
 }
 
+/// Whether a range from `low` to `high`, in axis coordinates, can be divided into ticks and pixels.
+pub fn is_range(low: f64, high: f64) -> bool {
+    let least = LEAST_SPAN[0].max(LEAST_SPAN[1] * low.abs().max(high.abs()));
+    low.abs().max(high.abs()) <= LARGEST[1] && high - low >= least
+}
+
 fn coordinate(scale: Scale, value: f64) -> f64 {
     match scale {
+        Scale::Linear if value.abs() > LARGEST[0] => f64::NAN,
         Scale::Linear => value,
         Scale::Log if value > 0.0 => value.log10(),
         Scale::Log => f64::NAN,
@@ -104,9 +116,13 @@ fn coordinate(scale: Scale, value: f64) -> f64 {
 /// Widens a fitted range; starts a linear axis at zero where the data come near it.
 fn pad((low, high): (f64, f64), padding: f64, scale: Scale) -> (f64, f64) {
     let span = high - low;
-    if span <= 1e-12 * low.abs().max(high.abs()) {
-        let half = if scale == Scale::Log { 0.5 } else { 0.05 * low.abs().max(f64::MIN_POSITIVE) };
-        return if low == 0.0 && scale == Scale::Linear { (-1.0, 1.0) } else { (low - half, high + half) };
+    if !is_range(low, high) {
+        let half = if scale == Scale::Log { 0.5 } else { 0.05 * low.abs().max(high.abs()) };
+        return if low.abs() < LEAST_SPAN[0] && scale == Scale::Linear {
+            (-1.0, 1.0)
+        } else {
+            (low - half, high + half)
+        };
     }
     let margin = padding * span;
     let near_zero = scale == Scale::Linear && padding > 0.0 && low >= 0.0 && low < 0.3 * high;
@@ -121,6 +137,9 @@ fn linear_values(low: f64, high: f64, target: usize) -> (Vec<f64>, f64) {
     let rough = (high - low) / target.max(1) as f64;
     let power = 10f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 2.5, 5.0].iter().map(|m| m * power).find(|s| *s >= rough * 0.999).unwrap_or(10.0 * power);
+    if !(step.is_normal() && is_range(low, high)) {
+        return (Vec::new(), 1.0);
+    }
     let slack = 1e-9 * (high - low);
     let first = ((low - slack) / step).ceil() as i64;
     let last = ((high + slack) / step).floor() as i64;
@@ -205,6 +224,20 @@ mod tests {
         let tiny = AxisScale::with_range(Scale::Linear, 0.0, 4e-9, 5);
         assert_eq!(tiny.factor, Some(-9));
         assert_eq!(tiny.ticks[1].1, "1");
+    }
+
+    #[test]
+    fn ranges_without_digits_are_widened() {
+        let denormal = 5e-324;
+        let axis = |range| Axis { label: String::new(), scale: Scale::Linear, range };
+        for values in [[0.0, denormal], [denormal, denormal], [-1.7e308, 1.7e308], [1e300, 1e300], [1.0, 1.0 + 1e-15]] {
+            for fitted in
+                [AxisScale::fit(&axis(None), values, 0.05, 5), AxisScale::fit(&axis(Some(values)), [], 0.0, 5)]
+            {
+                assert!(is_range(fitted.low, fitted.high) && fitted.ticks.len() < 20, "{fitted:?}");
+            }
+        }
+        assert!(AxisScale::with_range(Scale::Log, -323.3, -323.2, 5).ticks.len() < 20);
     }
 
     #[test]

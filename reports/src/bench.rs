@@ -21,6 +21,9 @@ use crate::error::ReportError;
 use crate::series::FigureError;
 use crate::{read_json, write};
 
+/// Most records of a set.
+const MOST_RECORDS: usize = 10_000;
+
 /// A figure with what it says.
 #[derive(Debug, Clone)]
 pub struct Plot {
@@ -118,7 +121,12 @@ pub fn is_bench(folder: &Path) -> bool {
 /// # Errors
 /// The file is missing, malformed or of another schema.
 pub fn read(folder: &Path) -> Result<BenchSet, ReportError> {
-    read_json(folder.join("bench.json"), SCHEMA)
+    let set: BenchSet = read_json(folder, "bench.json", SCHEMA)?;
+    if set.records.len() > MOST_RECORDS {
+        let message = format!("{} records; at most {MOST_RECORDS} are read", set.records.len());
+        return Err(ReportError::Results { path: folder.join("bench.json"), message });
+    }
+    Ok(set)
 }
 
 /// Writes `bench.json`.

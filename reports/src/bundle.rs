@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::ReportError;
 use crate::figure::render_figure;
 use crate::read_json;
-use crate::series::{SeriesSet, names};
+use crate::series::{self, SeriesSet, names};
 
 /// Name of the schema written and read.
 pub const BUNDLE_SCHEMA: &str = "fisura.figure/1";
@@ -76,7 +76,7 @@ pub fn write(
 /// # Errors
 /// The file is missing, malformed or of another schema.
 pub fn read(folder: &Path, name: &str) -> Result<Bundle, ReportError> {
-    read_json(folder.join(format!("{name}.json")), BUNDLE_SCHEMA)
+    read_json(folder, &format!("{name}.json"), BUNDLE_SCHEMA)
 }
 
 /// Draws a figure again from the files beside its definition.
@@ -84,11 +84,11 @@ pub fn read(folder: &Path, name: &str) -> Result<Bundle, ReportError> {
 /// # Errors
 /// A file that cannot be read, or a figure that cannot be drawn.
 pub fn redraw(folder: &Path, bundle: &Bundle) -> Result<String, ReportError> {
+    let mut left = series::MOST_BYTES;
     let table = |file: &String| {
-        let path = folder.join(file);
-        Table::read(&path)
+        series::read(folder, file, &mut left)
             .map(|table| (file.clone(), table))
-            .map_err(|e| ReportError::Results { path, message: e.message })
+            .map_err(|message| ReportError::Results { path: folder.join(file), message })
     };
     let tables = bundle.data.keys().map(table).collect::<Result<_, _>>()?;
     draw(&bundle.figure, tables).map_err(|e| ReportError::Figures(vec![e]))
@@ -109,7 +109,7 @@ fn own_series(figure: &Figure, name: &str, set: &SeriesSet) -> Result<(Figure, V
     let mut own = figure.clone();
     let file = |series: &str| {
         let stem = series.trim_start_matches("series/").trim_start_matches("timing/").trim_end_matches(".csv");
-        format!("{name}-{stem}.csv")
+        format!("{name}-{}.csv", stem.replace('/', "-"))
     };
     let mut tables = Vec::new();
     match &mut own.body {

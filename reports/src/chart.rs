@@ -11,10 +11,15 @@ use crate::regions::{self, Labels};
 use crate::series::{FigureError, SeriesSet};
 use crate::style::{AXIS, CURVE_WIDTH, TICK_SIZE, WIDTH, looks, px, text_width};
 use crate::svg::{self, Drawn, Page};
-use crate::trace::{Point, Trace, dash, pieces, thin, visible};
+use crate::thin::{drawable, markable, thin};
+use crate::trace::{Point, Trace, dash, pieces, visible};
 
 /// Nominal height of the frame.
 const HEIGHT: f64 = 340.0;
+/// Least width of the frame, whatever stands beside it.
+const NARROWEST: f64 = 120.0;
+/// Most curves, and most regions, slopes and floors of each.
+const MOST: [usize; 2] = [500, 100];
 /// Markers on a line that has them only to be told apart.
 const SPARSE: usize = 9;
 
@@ -51,6 +56,12 @@ pub fn render_chart(
     marks: Marks,
     set: &SeriesSet,
 ) -> Result<String, FigureError> {
+    let counts = [curves.len(), marks.regions.len().max(marks.slopes.len()).max(marks.floors.len())];
+    if counts[0] > MOST[0] || counts[1] > MOST[1] {
+        let ([curves, marks], [most, most_marks]) = (counts, MOST);
+        let message = format!("{curves} curves and {marks} marks of a kind; at most {most} and {most_marks} are drawn");
+        return Err(FigureError::Drawing { figure: figure.id.clone(), message });
+    }
     let chart = Chart::prepare(&figure.id, axes, curves, marks, set)?;
     let labels: Vec<&str> = curves.iter().map(|c| c.label.as_str()).collect();
     let theory: Vec<&str> = marks.slopes.iter().map(|s| s.label.as_str()).collect();
@@ -93,7 +104,7 @@ impl<'a> Chart<'a> {
         let left = frame::room_left(&y) + EDGE;
         let last = x.ticks.last().map_or(0.0, |t| 0.5 * text_width(&t.1, TICK_SIZE));
         let beside = Labels::place(regions, &x, WIDTH).width();
-        let width = (WIDTH - left - 8.0 - (beside + 4.0).max(last + 6.0)).round();
+        let width = (WIDTH - left - 8.0 - (beside + 4.0).max(last + 6.0)).round().max(NARROWEST);
         let labels = Labels::place(regions, &x, width);
         let top = (12.0 + labels.height()).max(if y.factor.is_some() { 28.0 } else { 0.0 });
         let legend = Legend::arrange(&traces, WIDTH - left - 20.0);
@@ -120,7 +131,8 @@ impl<'a> Chart<'a> {
         let bands = self.traces.iter().filter(|t| t.style == CurveStyle::Reference);
         for trace in bands {
             let fill = trace.look.colour.mix(BAND).filled();
-            let outlines = trace.band(&self.axes[0], &self.axes[1]);
+            let outlines = trace.band(&self.axes[0], &self.axes[1], self.place.width);
+            bounded(trace, drawable(&outlines, &self.axes[0], &self.axes[1], (self.place.width, self.place.height)))?;
             frame.draw_series(outlines.into_iter().map(|outline| Polygon::new(outline, fill)))?;
         }
         for trace in &self.traces {
@@ -138,8 +150,9 @@ impl<'a> Chart<'a> {
             self.draw_bars(frame, trace)?;
         } else {
             let size = (self.place.width, self.place.height);
-            let lines = pieces(&points, x, y).into_iter().map(|line| thin(line, x, y, size));
-            let lines = lines.flat_map(|line| dash(&line, trace.look.dashes, x, y, size));
+            let lines: Vec<_> = pieces(&points, x, y).into_iter().map(|line| thin(line, x, y, size)).collect();
+            bounded(trace, drawable(&lines, x, y, size))?;
+            let lines = lines.iter().flat_map(|line| dash(line, trace.look.dashes, x, y, size));
             frame.draw_series(lines.map(|line| PathElement::new(line, stroke)))?;
         }
         self.draw_spread(frame, trace)?;
@@ -147,6 +160,7 @@ impl<'a> Chart<'a> {
         let marker = trace.look.marker.or((seen.len() == 1).then_some(crate::style::Marker::Circle));
         let Some(marker) = marker else { return Ok(()) };
         let marked = marked(&seen, trace, &self.traces);
+        bounded(trace, markable(marked.len()))?;
         let radius = if marked.len() > 24 { 2.6 } else { 3.6 };
         let floor = self.marks.floors.iter().map(|f| y.coordinate(f.y)).fold(f64::NEG_INFINITY, f64::max);
         for p in marked {
@@ -160,8 +174,9 @@ impl<'a> Chart<'a> {
         let [x, y] = &self.axes;
         let stroke = trace.look.colour.stroke_width(px(1.2) as u32);
         let cap = 3.0 / self.place.height * (y.high - y.low);
+        bounded(trace, markable(trace.spread.len()))?;
         for (point, ends) in trace.points.iter().zip(&trace.spread) {
-            let (at, ends) = (y.coordinate(point.1), ends.map(|end| x.coordinate(end)));
+            let (at, ends) = (y.coordinate(point.1), ends.map(|end| x.coordinate(end).clamp(x.low, x.high)));
             if !visible((x.coordinate(point.0), at), x, y) || ends.iter().any(|end| !end.is_finite()) {
                 continue;
             }
@@ -176,6 +191,7 @@ impl<'a> Chart<'a> {
         let [x, y] = &self.axes;
         let stroke = trace.look.colour.stroke_width(px(1.2) as u32);
         let cap = 3.0 / self.place.width * (x.high - x.low);
+        bounded(trace, markable(trace.half_widths.len()))?;
         for (p, half) in trace.points.iter().zip(&trace.half_widths) {
             let at = x.coordinate(p.0);
             if !visible((at, y.low), x, y) || !y.coordinate(p.1).is_finite() {
@@ -189,6 +205,11 @@ impl<'a> Chart<'a> {
         }
         Ok(())
     }
+}
+
+/// The same with the name of the curve.
+fn bounded(trace: &Trace, outcome: Result<(), String>) -> Drawn {
+    Ok(outcome.map_err(|why| format!("{:?}: {why}", trace.label))?)
 }
 
 /// Points that get a marker: all of them, or a few along a plain line, shifted from line to line.

@@ -11,6 +11,9 @@ type Point = (i64, i64);
 /// How far a curve may move where points are left out: a tenth of a pixel of the nominal size.
 const TOLERANCE: f64 = 0.1 * SCALE;
 
+/// Points of a curve that are simplified together.
+const PIECE: usize = 2000;
+
 /// One line of an SVG that is a shape made of straight lines.
 struct Shape<'a> {
     /// Attributes that say how it looks.
@@ -76,24 +79,30 @@ impl<'a> Shape<'a> {
     }
 }
 
-/// The points of a curve that it needs to stay within the tolerance of itself.
+/// The points of a curve that it needs to stay within the tolerance of itself. Of long curves pieces are looked at one by
+/// one, since the time grows with the square of the points where every one of them counts.
 fn simplified(points: &[Point]) -> Vec<Point> {
-    let [start, .., end] = *points else { return points.to_vec() };
-    let distance = |&(x, y): &Point| {
-        let [dx, dy, ex, ey] = [x - start.0, y - start.1, end.0 - start.0, end.1 - start.1].map(|n| n as f64);
-        let along = ((dx * ex + dy * ey) / (ex * ex + ey * ey).max(1.0)).clamp(0.0, 1.0);
-        (dx - along * ex).hypot(dy - along * ey)
-    };
-    let inner = points[1..points.len() - 1].iter().map(distance).enumerate();
-    match inner.max_by(|a, b| a.1.total_cmp(&b.1)) {
-        Some((at, furthest)) if furthest > TOLERANCE => {
-            let mut first = simplified(&points[..at + 2]);
-            first.pop();
-            first.append(&mut simplified(&points[at + 1..]));
-            first
-        }
-        _ => vec![start, end],
+    let mut kept = vec![false; points.len()];
+    let mut open: Vec<[usize; 2]> = Vec::new();
+    for start in (0..points.len()).step_by(PIECE) {
+        open.push([start, (start + PIECE).min(points.len() - 1)]);
     }
+    while let Some([first, last]) = open.pop() {
+        (kept[first], kept[last]) = (true, true);
+        let (start, end) = (points[first], points[last]);
+        let distance = |&(x, y): &Point| {
+            let [dx, dy, ex, ey] = [x - start.0, y - start.1, end.0 - start.0, end.1 - start.1].map(|n| n as f64);
+            let along = ((dx * ex + dy * ey) / (ex * ex + ey * ey).max(1.0)).clamp(0.0, 1.0);
+            (dx - along * ex).hypot(dy - along * ey)
+        };
+        let inner = (first + 1..last).map(|at| (at, distance(&points[at])));
+        if let Some((at, furthest)) = inner.max_by(|a, b| a.1.total_cmp(&b.1))
+            && furthest > TOLERANCE
+        {
+            open.extend([[first, at], [at, last]]);
+        }
+    }
+    points.iter().zip(kept).filter(|(_, kept)| *kept).map(|(point, _)| *point).collect()
 }
 
 impl Path {

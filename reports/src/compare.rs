@@ -7,11 +7,12 @@
 mod speed;
 mod words;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 
 use fisura_verification::record::{Environment, Record, Reference, ResultSet, Status};
 use serde::Serialize;
 
+use speed::Lookup;
 pub use speed::{Speed, SpeedChange};
 pub use words::{render_markdown, render_text};
 
@@ -87,7 +88,7 @@ pub struct Comparison {
 impl Comparison {
     /// Whether a claim that held is lost, or nearly so.
     pub fn is_major_loss(&self) -> bool {
-        matches!(self.accuracy, Change::Major | Change::New) && self.effect == Effect::Worse
+        matches!(self.accuracy, Change::Major | Change::Missing | Change::New) && self.effect == Effect::Worse
     }
 }
 
@@ -126,18 +127,18 @@ impl ComparedSets {
 /// Compares two result sets record by record.
 pub fn compare(base: &ResultSet, new: &ResultSet) -> ComparedSets {
     let speed = Speed::of(base, new);
-    let by_id: BTreeMap<&str, &Record> = new.records.iter().map(|r| (r.id.as_str(), r)).collect();
-    let old_ids: BTreeMap<&str, &Record> = base.records.iter().map(|r| (r.id.as_str(), r)).collect();
-    let mut records: Vec<Comparison> = base
-        .records
-        .iter()
-        .map(|old| match by_id.get(old.id.as_str()) {
-            Some(new) => both(old, new, &speed),
+    let mut records = Vec::new();
+    let lookup = speed.lookup();
+    let partners = partners(&base.records, &new.records);
+    for (old, partner) in base.records.iter().zip(&partners) {
+        records.push(match partner {
+            Some(at) => both(old, &new.records[*at], &lookup),
             None => one_sided(old, Change::Missing),
-        })
-        .collect();
-    let added = new.records.iter().filter(|r| !old_ids.contains_key(r.id.as_str()));
-    records.extend(added.map(|r| one_sided(r, Change::New)));
+        });
+    }
+    let known: HashSet<usize> = partners.into_iter().flatten().collect();
+    let added = new.records.iter().enumerate().filter(|(at, _)| !known.contains(at));
+    records.extend(added.map(|(_, record)| one_sided(record, Change::New)));
     let mut counts = BTreeMap::new();
     for change in [Change::Unchanged, Change::Minor, Change::Major, Change::Missing, Change::New] {
         counts.insert(change, records.iter().filter(|r| r.accuracy == change).count());
@@ -155,27 +156,58 @@ pub fn compare(base: &ResultSet, new: &ResultSet) -> ComparedSets {
     }
 }
 
+/// For each record of the base the place of the new one with its id, else of one that names this id among its former ones.
+/// An id that is there twice is found twice, in the same order.
+fn partners(base: &[Record], new: &[Record]) -> Vec<Option<usize>> {
+    let mut present: HashMap<&str, VecDeque<usize>> = HashMap::new();
+    let mut former: HashMap<&str, VecDeque<usize>> = HashMap::new();
+    for (at, record) in new.iter().enumerate() {
+        present.entry(&record.id).or_default().push_back(at);
+        record.formerly.iter().for_each(|id| former.entry(id).or_default().push_back(at));
+    }
+    let mut taken = vec![false; new.len()];
+    let mut found: Vec<Option<usize>> =
+        base.iter().map(|record| present.get_mut(record.id.as_str())?.pop_front()).collect();
+    found.iter().flatten().for_each(|at| taken[*at] = true);
+    for (record, partner) in base.iter().zip(&mut found).filter(|(_, partner)| partner.is_none()) {
+        let heirs = former.get_mut(record.id.as_str());
+        *partner = heirs.and_then(|heirs| std::iter::from_fn(|| heirs.pop_front()).find(|at| !taken[*at]));
+        partner.iter().for_each(|at| taken[*at] = true);
+    }
+    found
+}
+
 fn side(record: &Record) -> Option<Side> {
     Some(Side { value: record.value, status: record.status })
 }
 
-/// A record that only one side has. A new one that does not hold is a loss: a study that breaks down has fewer records,
-/// with ids of their own.
+/// A record that only one side has. A check that is gone is a loss: nothing shows any more that its claim holds. A new one
+/// that does not hold is a loss, too: a study that breaks down has fewer records, with ids of their own.
 fn one_sided(record: &Record, accuracy: Change) -> Comparison {
     let holds = rank(record.status) == 0;
     let (base, new) = if accuracy == Change::New { (None, side(record)) } else { (side(record), None) };
     let (effect, why) = match (accuracy, holds) {
         (Change::New, false) => (Effect::Worse, format!("new, and does not hold: {}", crate::view::reason(record))),
         (Change::New, true) => (Effect::Neutral, "new".to_string()),
+        _ if matches!(record.status, Status::Pass | Status::Fail) => {
+            let remedy = "if it has another id now, its case names this one in formerly";
+            (Effect::Worse, format!("the check is gone; {remedy}"))
+        }
         _ => (Effect::Neutral, "missing".to_string()),
     };
     Comparison { id: record.id.clone(), unit: record.unit.clone(), accuracy, effect, why, base, new, speed: None }
 }
 
-fn both(base: &Record, new: &Record, speed: &Speed) -> Comparison {
-    let (accuracy, effect, why) = accuracy(base, new);
+fn both(base: &Record, new: &Record, speed: &Lookup) -> Comparison {
+    let (mut accuracy, effect, mut why) = accuracy(base, new);
+    let renamed = (base.id != new.id).then(|| format!("formerly {}", base.id));
+    let reworded = (base.quantity != new.quantity).then(|| format!("it read {:?}", base.quantity));
+    for note in [renamed, reworded].into_iter().flatten() {
+        accuracy = accuracy.max(Change::Minor);
+        why = if why.is_empty() { note } else { format!("{why}; {note}") };
+    }
     Comparison {
-        id: base.id.clone(),
+        id: new.id.clone(),
         unit: new.unit.clone(),
         accuracy,
         effect,
@@ -198,7 +230,11 @@ fn rank(status: Status) -> u8 {
 /// How a record changed, in accuracy. The bounds of the base count: looser ones must not hide a loss.
 fn accuracy(base: &Record, new: &Record) -> (Change, Effect, String) {
     let word = crate::view::word;
-    let under_base = if new.status == Status::Error { Status::Error } else { Record::judge(new.value, &base.accept) };
+    let under_base = match new.status {
+        Status::Error => Status::Error,
+        _ if base.unit != new.unit => new.status, // the bounds of the base are numbers of another unit
+        _ => Record::judge(new.value, &base.accept),
+    };
     let found = if rank(under_base) > rank(new.status) { under_base } else { new.status };
     if rank(found) > rank(base.status) {
         let whose = if found == new.status { "" } else { " by the bounds of the base" };
@@ -209,6 +245,13 @@ fn accuracy(base: &Record, new: &Record) -> (Change, Effect, String) {
     }
     if base.status != Status::Info && new.status == Status::Info {
         return (Change::Major, Effect::Worse, "it has lost its bounds".to_string());
+    }
+    if base.unit != new.unit {
+        let why = format!("the unit was {:?} and is {:?}: values are not compared", base.unit, new.unit);
+        return match base.status {
+            Status::Info => (Change::Minor, Effect::Neutral, why),
+            _ => (Change::Major, Effect::Worse, why),
+        };
     }
     let bounds = [base.accept.min, base.accept.max];
     let rebound = bounds != [new.accept.min, new.accept.max];

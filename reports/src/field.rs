@@ -7,7 +7,7 @@ use fisura_verification::record::{Axis, Figure, Scale};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use crate::axis::AxisScale;
+use crate::axis::{AxisScale, is_range};
 use crate::colour::{LEVELS, level, level_colour};
 use crate::frame::{self, BELOW, EDGE, Place};
 use crate::series::{FigureError, SeriesSet};
@@ -16,6 +16,10 @@ use crate::svg::{self, Drawn, Page};
 
 /// Largest nominal height of the body.
 const TALLEST: f64 = 460.0;
+/// Most pixels in all, and along one direction.
+const MOST: [usize; 2] = [1_000_000, 10_000];
+/// Largest ratio of the sides of a picture.
+const SLIMMEST: f64 = 1000.0;
 /// Nominal width of the colour bar.
 const BAR: f64 = 16.0;
 /// Nominal distance of the colour bar from the frame.
@@ -55,8 +59,11 @@ impl Raster {
 
     fn new(pixels: [usize; 2], x: &[f64], y: &[f64], value: &[f64]) -> Result<Self, String> {
         let [nx, ny] = pixels;
-        if nx < 2 || ny < 2 || nx * ny != value.len() {
+        if nx < 2 || ny < 2 || nx.checked_mul(ny) != Some(value.len()) {
             return Err(format!("{nx} x {ny} pixels are declared (at least 2 x 2), {} rows are there", value.len()));
+        }
+        if nx * ny > MOST[0] || nx.max(ny) > MOST[1] {
+            return Err(format!("{nx} x {ny} pixels; at most {} are drawn, and {} along a side", MOST[0], MOST[1]));
         }
         let (last_x, last_y) = (x[nx - 1], y[nx * (ny - 1)]);
         let step = [(last_x - x[0]) / (nx - 1) as f64, (last_y - y[0]) / (ny - 1) as f64];
@@ -76,12 +83,14 @@ impl Raster {
             rows.reverse();
         }
         let half = [0.5 * step[0], 0.5 * step[1].abs()];
-        Ok(Self {
-            pixels,
-            low: [x[0] - half[0], y[0].min(last_y) - half[1]],
-            high: [last_x + half[0], y[0].max(last_y) + half[1]],
-            values: rows.concat(),
-        })
+        let low = [x[0] - half[0], y[0].min(last_y) - half[1]];
+        let high = [last_x + half[0], y[0].max(last_y) + half[1]];
+        let ratio = (high[1] - low[1]) / (high[0] - low[0]);
+        let fits = [0, 1].into_iter().all(|k| is_range(1e3 * low[k], 1e3 * high[k]));
+        if !fits || !(1.0 / SLIMMEST..=SLIMMEST).contains(&ratio) {
+            return Err(format!("a picture from {low:?} to {high:?} m cannot be shown with equal scales"));
+        }
+        Ok(Self { pixels, low, high, values: rows.concat() })
     }
 
     /// One path per colour, in units of pixels from the upper left corner. Runs of one colour in a row are one
@@ -93,7 +102,8 @@ impl Raster {
         for row in 0..ny {
             let mut next = runs(&self.values[(ny - 1 - row) * nx..][..nx], row, range);
             for run in open {
-                match next.iter_mut().find(|n| (n.level, n.start, n.end) == (run.level, run.start, run.end)) {
+                let same = next.binary_search_by_key(&run.start, |n| n.start).ok().map(|at| &mut next[at]);
+                match same.filter(|n| (n.level, n.end) == (run.level, run.end)) {
                     Some(same) => same.top = run.top,
                     None => run.close(row, &mut paths),
                 }
@@ -143,7 +153,7 @@ fn runs(values: &[f64], top: usize, range: [f64; 2]) -> Vec<Run> {
 /// # Errors
 /// A range of the colour bar that is empty or not finite.
 pub fn render_field(figure: &Figure, raster: &Raster, label: &str, range: [f64; 2]) -> Result<String, FigureError> {
-    if !(range[0] < range[1] && range[0].is_finite() && range[1].is_finite()) {
+    if !is_range(range[0], range[1]) {
         let message = format!("the colour bar cannot go from {} to {}", range[0], range[1]);
         return Err(FigureError::Drawing { figure: figure.id.clone(), message });
     }
@@ -154,7 +164,7 @@ pub fn render_field(figure: &Figure, raster: &Raster, label: &str, range: [f64; 
     let left = frame::room_left(&axes[1]) + EDGE;
     let room = WIDTH - left - GAP - BAR - 10.0 - labels - LABEL_SIZE - 16.0;
     let ratio = (axes[1].high - axes[1].low) / (axes[0].high - axes[0].low);
-    let width = room.min(TALLEST / ratio).round();
+    let width = room.min(TALLEST / ratio).round().max(1.0);
     // a narrow picture stands in the middle
     let left = left + (0.5 * (room - width)).round();
     let place = Place { left, top: 20.0, width, height: (width * ratio).round().max(40.0) };

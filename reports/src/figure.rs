@@ -1,7 +1,6 @@
 //! Any figure as SVG.
 
-use std::path::{Component, Path};
-
+use fisura_verification::foreign::is_plain;
 use fisura_verification::record::{Figure, FigureBody};
 
 use crate::chart::{Marks, render_chart};
@@ -27,8 +26,7 @@ pub fn render_figure(figure: &Figure, set: &SeriesSet) -> Result<String, FigureE
 
 /// File of a figure below the results folder: `figures/<id>.svg`.
 pub fn file_name(id: &str) -> Result<String, FigureError> {
-    let plain = Path::new(id).components().all(|c| matches!(c, Component::Normal(_)));
-    if id.is_empty() || !plain || id.split('/').any(str::is_empty) || id.contains(['\\', ':']) {
+    if !is_plain(id) {
         return Err(FigureError::Name { figure: id.to_string() });
     }
     Ok(format!("figures/{id}.svg"))

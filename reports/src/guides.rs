@@ -8,7 +8,7 @@ use crate::axis::AxisScale;
 use crate::frame::{Frame, Place};
 use crate::style::{AXIS, INK, REGION, TICK_SIZE, px, text, text_width};
 use crate::svg::{Drawn, Page};
-use crate::trace::{Point, dash, meets};
+use crate::trace::{Point, dash, meets, visible};
 
 /// Height of a label.
 const LINE: f64 = 16.0;
@@ -29,7 +29,7 @@ pub fn draw_slopes(page: &Page, frame: &mut Frame, slopes: &[SlopeTriangle], axe
         let low = axes[1].coordinate(triangle.y0);
         let high = low + triangle.slope * (right - left);
         let corners = [(left, low), (right, high), if triangle.slope > 0.0 { (right, low) } else { (left, high) }];
-        if corners.iter().any(|c| !(c.0.is_finite() && c.1.is_finite())) {
+        if !corners.iter().all(|corner| visible(*corner, &axes[0], &axes[1])) {
             continue;
         }
         frame.draw_series([Polygon::new(corners.to_vec(), REGION.mix(0.14).filled())])?;

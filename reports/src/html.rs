@@ -2,10 +2,12 @@
 
 mod page;
 
+use std::borrow::Cow;
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use fisura_verification::record::{Figure, FigureBody, Record, ReferenceKind, ResultSet};
+use fisura_verification::foreign::is_plain;
+use fisura_verification::record::{Figure, FigureBody, Record, ReferenceKind, ResultSet, Status};
 use minijinja::Environment;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
@@ -16,7 +18,9 @@ use crate::series::names;
 use crate::svg::slug;
 use crate::view::{self, Counts};
 
-use page::{Case, Deviations, Order, Orders, Page, Parameters, Picture, ReferenceCell, Row, Source, Suite, Verdict};
+use page::{
+    Case, Deviations, Link, Order, Orders, Page, Parameters, Picture, ReferenceCell, Row, Source, Suite, Verdict,
+};
 
 const TEMPLATE: &str = include_str!("../templates/report.html");
 const STYLE: &str = include_str!("../templates/report.css");
@@ -29,7 +33,8 @@ const MOST_BYTES: usize = 5_000_000;
 /// At most what stands in the place of a figure that is left out.
 const NOTE_BYTES: usize = 500;
 
-/// Renders the page; figures that would make it too large are named instead of drawn.
+/// Renders the page; figures that would make it too large are named instead of drawn, and where that is not enough records
+/// and figures are left out, those that hold first.
 ///
 /// # Errors
 /// Only if the template cannot be filled, which has no cause in the results.
@@ -38,11 +43,33 @@ pub fn render_html(set: &ResultSet, drawings: &Drawings) -> Result<String, minij
 }
 
 fn render_below(bytes: usize, set: &ResultSet, drawings: &Drawings) -> Result<String, minijinja::Error> {
-    let page = fill(set, drawings, &BTreeSet::new())?;
+    let page = fill(set, set, drawings, &BTreeSet::new())?;
     if page.len() < bytes {
         return Ok(page);
     }
-    fill(set, drawings, &left_out(set, drawings, page.len() + 1 - bytes))
+    let mut page = fill(set, set, drawings, &left_out(set, drawings, page.len() + 1 - bytes))?;
+    let mut shown = Cow::Borrowed(set);
+    while page.len() >= bytes && shown.records.len() + shown.figures.len() > 0 {
+        let part = 0.8 * bytes as f64 / page.len() as f64;
+        shown = Cow::Owned(reduced(&shown, part));
+        page = fill(set, &shown, drawings, &left_out(&shown, drawings, usize::MAX))?;
+    }
+    Ok(page)
+}
+
+/// A part of the records and figures; records that do not hold come first, the rest is in the same order.
+fn reduced(set: &ResultSet, part: f64) -> ResultSet {
+    let count = |all: usize| (part * all as f64) as usize;
+    let mut places: Vec<usize> = (0..set.records.len()).collect();
+    places.sort_by_key(|&at| matches!(set.records[at].status, Status::Pass | Status::Info));
+    places.truncate(count(set.records.len()));
+    places.sort_unstable();
+    ResultSet {
+        records: places.into_iter().map(|at| set.records[at].clone()).collect(),
+        figures: set.figures[..count(set.figures.len())].to_vec(),
+        inputs: BTreeMap::new(),
+        ..set.clone()
+    }
 }
 
 /// Figures to leave out so that the page becomes `excess` bytes shorter: those that show the curves of another one once more
@@ -64,24 +91,34 @@ fn left_out<'a>(set: &'a ResultSet, drawings: &Drawings, excess: usize) -> BTree
     enough.map(|(figure, _)| figure.id.as_str()).collect()
 }
 
-fn fill(set: &ResultSet, drawings: &Drawings, left_out: &BTreeSet<&str>) -> Result<String, minijinja::Error> {
+/// The page of the records and figures of `shown`, with the verdict on all of `set`.
+fn fill(
+    set: &ResultSet,
+    shown: &ResultSet,
+    drawings: &Drawings,
+    left_out: &BTreeSet<&str>,
+) -> Result<String, minijinja::Error> {
     let mut environment = Environment::new();
     environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build()?);
     environment.add_template("report.html", TEMPLATE)?;
     let counts = Counts::of(&set.records);
-    let timed = set.figures.iter().filter(|f| is_timing(f));
+    let timed = shown.figures.iter().filter(|f| is_timing(f));
+    let [records, figures] = [set.records.len() - shown.records.len(), set.figures.len() - shown.figures.len()];
+    let missing =
+        if records + figures == 0 { String::new() } else { format!("{records} records and {figures} figures") };
     let pictures = |figure: &Figure| picture(figure, drawings, left_out);
     let page = Page {
         style: STYLE,
         verdict: Verdict::of(counts.verdict()),
         sentence: counts.sentence(),
         counts: counts.list(),
+        missing,
         environment: view::environment(set),
-        broken: view::broken(set).into_iter().map(|r| row(r, &r.id)).collect(),
-        suites: view::suites(set).into_iter().map(|name| suite(set, name, &pictures)).collect(),
+        broken: view::broken(shown).into_iter().map(|r| row(r, &r.id)).collect(),
+        suites: suites(shown, &pictures),
         timing: timed.map(pictures).collect(),
-        sources: sources(&set.records),
-        deviations: deviations(set),
+        sources: sources(&shown.records),
+        deviations: deviations(shown),
     };
     environment.get_template("report.html")?.render(Serde(page))
 }
@@ -91,19 +128,26 @@ fn is_timing(figure: &Figure) -> bool {
     figure.id.starts_with("timing/")
 }
 
-fn suite(set: &ResultSet, name: &str, picture: &dyn Fn(&Figure) -> Picture) -> Suite {
-    let records: Vec<&Record> = set.records.iter().filter(|r| r.suite == name).collect();
+fn suites(set: &ResultSet, picture: &dyn Fn(&Figure) -> Picture) -> Vec<Suite> {
+    let mut figures: HashMap<&str, Vec<&Figure>> = HashMap::new();
+    for figure in set.figures.iter().filter(|f| !is_timing(f)) {
+        figures.entry(&figure.suite).or_default().push(figure);
+    }
+    let all = view::by_suite(set).into_iter();
+    all.map(|(name, records)| suite(name, &records, &figures.remove(name).unwrap_or_default(), picture)).collect()
+}
+
+fn suite(name: &str, records: &[&Record], figures: &[&Figure], picture: &dyn Fn(&Figure) -> Picture) -> Suite {
     let counts = Counts::of(records.iter().copied());
-    let figures = set.figures.iter().filter(|f| f.suite == name && !is_timing(f));
     let cases = records.chunk_by(|a, b| a.case == b.case);
     Suite {
         anchor: format!("suite-{}", slug(name)),
         name: name.to_string(),
         counts: counts.list(),
         verdict: Verdict::of(counts.verdict()),
-        orders: orders(&records),
+        orders: orders(records),
         cases: cases.map(case).collect(),
-        figures: figures.map(picture).collect(),
+        figures: figures.iter().map(|figure| picture(figure)).collect(),
     }
 }
 
@@ -142,7 +186,7 @@ fn case(records: &[&Record]) -> Case {
         models: first.models.join(", "),
         parameters: parameters(records),
         deviations: view::deviations(records).into_iter().map(String::from).collect(),
-        series,
+        series: series.iter().map(|name| link(name)).collect(),
         time: time(records),
         open: counts.fail + counts.error > 0,
         rows: records.iter().map(|r| row(r, run(r))).collect(),
@@ -160,15 +204,9 @@ fn parameters(records: &[&Record]) -> Vec<Parameters> {
 
 /// Measured time of a case in words: the sum over its runs, each measurement once.
 fn time(records: &[&Record]) -> String {
-    let mut timings = Vec::new();
-    for (_, run) in view::runs(records.iter().copied()) {
-        let timing = view::timing(&run);
-        if !timings.contains(&timing) {
-            timings.push(timing);
-        }
-    }
+    let timings = view::own_times(records);
     let wall: f64 = timings.iter().map(|t| t.wall_s).sum();
-    let steps: u64 = timings.iter().map(|t| t.particle_steps).sum();
+    let steps = timings.iter().fold(0u64, |sum, t| sum.saturating_add(t.particle_steps));
     if wall <= 0.0 {
         return String::new();
     }
@@ -212,17 +250,32 @@ fn picture(figure: &Figure, drawings: &Drawings, left_out: &BTreeSet<&str>) -> P
         svg,
         left_out,
         error,
-        file: crate::figure::file_name(&figure.id).unwrap_or_default(),
-        series: names(figure),
+        file: link(&crate::figure::file_name(&figure.id).unwrap_or_default()),
+        series: names(figure).iter().map(|name| link(name)).collect(),
     }
+}
+
+/// A file of the folder as a link; without an address if its name is not plain, since that could lead anywhere.
+fn link(name: &str) -> Link {
+    let encoded = |c: char| match c {
+        '%' => "%25".into(),
+        '#' => "%23".into(),
+        '?' => "%3F".into(),
+        ' ' => "%20".into(),
+        c => c.to_string(),
+    };
+    let address = if is_plain(name) { name.chars().map(encoded).collect() } else { String::new() };
+    Link { address, text: name.strip_prefix("series/").unwrap_or(name).to_string() }
 }
 
 /// What the records cite beyond closed forms and theory, each source once with the number of its checks.
 fn sources(records: &[Record]) -> Vec<Source> {
     let mut sources: Vec<Source> = Vec::new();
+    let mut place = HashMap::new();
     let cited = records.iter().filter_map(|r| r.reference.as_ref());
     for reference in cited.filter(|r| matches!(r.kind, ReferenceKind::Literature | ReferenceKind::IndependentCode)) {
-        match sources.iter_mut().find(|s| s.text == reference.source) {
+        let at = *place.entry(&reference.source).or_insert(sources.len());
+        match sources.get_mut(at) {
             Some(source) => source.checks += 1,
             None => sources.push(Source { text: reference.source.clone(), kind: view::kind(reference), checks: 1 }),
         }
@@ -233,17 +286,18 @@ fn sources(records: &[Record]) -> Vec<Source> {
 /// Every deviation from a cited source, with the cases that deviate.
 fn deviations(set: &ResultSet) -> Vec<Deviations> {
     let mut all: Vec<Deviations> = Vec::new();
-    for record in &set.records {
+    let mut place = HashMap::new();
+    let mut seen = HashSet::new();
+    for (record, text) in set.records.iter().flat_map(|r| r.deviations.iter().map(move |text| (r, text))) {
+        if !seen.insert((text, &record.suite, &record.case)) {
+            continue;
+        }
         let case = format!("{}/{}", record.suite, record.case);
-        for text in &record.deviations {
-            match all.iter_mut().find(|d| d.text == *text) {
-                Some(known) if known.cases.iter().any(|(_, id)| *id == case) => {}
-                Some(known) => known.cases.push((format!("case-{}", slug(&case)), case.clone())),
-                None => {
-                    let cases = vec![(format!("case-{}", slug(&case)), case.clone())];
-                    all.push(Deviations { text: text.clone(), cases });
-                }
-            }
+        let case = (format!("case-{}", slug(&case)), case);
+        let at = *place.entry(text).or_insert(all.len());
+        match all.get_mut(at) {
+            Some(known) => known.cases.push(case),
+            None => all.push(Deviations { text: text.clone(), cases: vec![case] }),
         }
     }
     all

@@ -6,41 +6,42 @@ use fisura_verification::record::{Record, ResultSet, Status};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use crate::number::plain;
-use crate::view::{bounds, kind, reason, runs, suites, timing, value, with_unit};
+use crate::view::{bounds, by_suite, kind, own_times, reason, value, with_unit};
 
 /// The report as XML. A value outside its bounds is a failure, a run that broke down an error; a record without
-/// bounds passes, with its value in the output.
+/// bounds is skipped, with its value in the message, since nothing was judged. The time of a run, or of a study, stands
+/// in its first record only, so that times add up.
 ///
 /// # Errors
 /// Only if the XML cannot be written, which has no cause in the results.
 pub fn render_junit(set: &ResultSet) -> Result<String, quick_junit::SerializeError> {
     let mut report = Report::new("fisura");
     let mut total = Duration::ZERO;
-    for name in suites(set) {
-        let records: Vec<&Record> = set.records.iter().filter(|r| r.suite == name).collect();
-        if records.is_empty() {
-            continue;
-        }
+    for (name, records) in by_suite(set).into_iter().filter(|(_, records)| !records.is_empty()) {
+        let times: Vec<Duration> = own_times(&records).iter().map(|timing| seconds(timing.wall_s)).collect();
         let mut suite = TestSuite::new(name);
-        // records of one run repeat its time; the suite counts it once
-        let time = runs(records.iter().copied()).iter().map(|(_, run)| seconds(timing(run).wall_s)).sum();
+        let time = times.iter().sum();
         suite.set_time(time);
         total += time;
-        suite.add_test_cases(records.into_iter().map(case));
+        suite.add_test_cases(records.into_iter().zip(times).map(|(record, time)| case(record, time)));
         report.add_test_suite(suite);
     }
     report.set_time(total);
     report.to_string()
 }
 
-fn case(record: &Record) -> TestCase {
+fn case(record: &Record, time: Duration) -> TestCase {
     let mut status = match record.status {
-        Status::Pass | Status::Info => TestCaseStatus::success(),
+        Status::Pass => TestCaseStatus::success(),
+        Status::Info => TestCaseStatus::skipped(),
         Status::Fail => TestCaseStatus::non_success(NonSuccessKind::Failure),
         Status::Error => TestCaseStatus::non_success(NonSuccessKind::Error),
     };
     match record.status {
-        Status::Pass | Status::Info => {}
+        Status::Pass => {}
+        Status::Info => {
+            status.set_message(message(record));
+        }
         Status::Fail => {
             status.set_type("out of bounds").set_message(message(record));
         }
@@ -50,7 +51,7 @@ fn case(record: &Record) -> TestCase {
     }
     let mut case = TestCase::new(record.id.as_str(), status);
     case.set_classname(format!("{}.{}", record.suite, record.case));
-    case.set_time(seconds(record.timing.wall_s));
+    case.set_time(time);
     case.set_system_out(message(record));
     case
 }
@@ -72,6 +73,7 @@ fn message(record: &Record) -> String {
     text
 }
 
+/// At most 30 years, of which any number can be added.
 fn seconds(value: f64) -> Duration {
-    Duration::try_from_secs_f64(value).unwrap_or(Duration::ZERO)
+    Duration::try_from_secs_f64(value.min(1e9)).unwrap_or(Duration::ZERO)
 }

@@ -2,6 +2,8 @@
 //!
 //! [`render`] takes a results folder (`results.json`, `series/*.csv`) and writes beside it what people and machines
 //! read. Nothing here runs a simulation, reads a clock or judges a value: the same results give the same bytes.
+//! Results may come from anywhere: what is opened, linked, printed and drawn of them is bounded, see
+//! [`fisura_verification::foreign`].
 //!
 //! | file | for | module |
 //! |---|---|---|
@@ -52,19 +54,26 @@ mod legend;
 mod regions;
 mod style;
 mod svg;
+mod thin;
 mod trace;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fisura_verification::output;
-use fisura_verification::record::{ResultSet, SCHEMA};
+use fisura_verification::record::{Figure, ResultSet, SCHEMA};
+use fisura_verification::{foreign, output};
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 pub use error::ReportError;
 pub use series::{FigureError, SeriesSet};
 
 use html::Drawings;
+
+/// Most records and figures of a result set.
+const MOST: [usize; 2] = [50_000, 5_000];
+/// Most rows that the curves and pictures of one report are drawn from.
+const MOST_ROWS: usize = 50_000_000;
 
 /// What [`render`] wrote.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,9 +96,9 @@ pub fn render(folder: &Path) -> Result<Rendered, ReportError> {
     let mut files = Vec::new();
     let mut drawings = Drawings::new();
     let mut broken = Vec::new();
+    let mut rows = 0;
     for figure in &results.figures {
-        let drawn = figure::file_name(&figure.id).and_then(|name| Ok((name, figure::render_figure(figure, &series)?)));
-        let drawing = match drawn {
+        let drawing = match draw(figure, &series, &mut rows) {
             Ok((name, svg)) => {
                 files.push(write(folder, &name, &svg)?);
                 Ok(svg)
@@ -112,25 +121,58 @@ pub fn render(folder: &Path) -> Result<Rendered, ReportError> {
     if broken.is_empty() { Ok(Rendered { results, files }) } else { Err(ReportError::Figures(broken)) }
 }
 
-/// Reads `results.json` of a folder.
-///
-/// # Errors
-/// The file is missing, malformed or of another schema.
-pub fn read_results(folder: &Path) -> Result<ResultSet, ReportError> {
-    read_json(folder.join("results.json"), SCHEMA)
+/// Name of the file of a figure and its drawing; `rows` counts what all figures so far have drawn.
+fn draw(figure: &Figure, series: &SeriesSet, rows: &mut usize) -> Result<(String, String), FigureError> {
+    let name = figure::file_name(&figure.id)?;
+    *rows += series.rows(figure);
+    if *rows > MOST_ROWS {
+        let message = format!("this figure and those before it have more than {MOST_ROWS} rows");
+        return Err(FigureError::Drawing { figure: figure.id.clone(), message });
+    }
+    Ok((name, figure::render_figure(figure, series)?))
 }
 
-/// Reads a JSON document that names its schema.
-fn read_json<T: DeserializeOwned>(path: PathBuf, schema: &'static str) -> Result<T, ReportError> {
-    let text = fs::read_to_string(&path).map_err(|source| ReportError::File { path: path.clone(), source })?;
-    let malformed = |e: serde_json::Error| ReportError::Results { path: path.clone(), message: e.to_string() };
-    let value: serde_json::Value = serde_json::from_str(&text).map_err(malformed)?;
-    let found = value.get("schema").and_then(|s| s.as_str()).unwrap_or_default().to_string();
-    if found != schema {
-        return Err(ReportError::Schema { path, found, expected: schema });
+/// Reads `results.json` of a folder. Its texts are those of the file without characters that steer a terminal, on one
+/// line and of bounded length.
+///
+/// # Errors
+/// The file is missing, no regular file, malformed, of another schema, or too large.
+pub fn read_results(folder: &Path) -> Result<ResultSet, ReportError> {
+    let set: ResultSet = read_json(folder, "results.json", SCHEMA)?;
+    let counts = [set.records.len(), set.figures.len()];
+    if counts[0] > MOST[0] || counts[1] > MOST[1] {
+        let ([records, figures], [most, most_figures]) = (counts, MOST);
+        let message = format!("{records} records and {figures} figures; at most {most} and {most_figures} are read");
+        return Err(ReportError::Results { path: folder.join("results.json"), message });
     }
-    // read from the text again, so that the error has line and column
-    serde_json::from_str(&text).map_err(malformed)
+    Ok(set)
+}
+
+/// The one key that every document has.
+#[derive(Deserialize)]
+struct Named {
+    #[serde(default)]
+    schema: String,
+}
+
+/// Reads a JSON document that names its schema, with clean texts.
+fn read_json<T: DeserializeOwned + Serialize>(
+    folder: &Path,
+    name: &str,
+    schema: &'static str,
+) -> Result<T, ReportError> {
+    let path = folder.join(name);
+    let bytes = foreign::read(folder, name, foreign::DOCUMENT_BYTES);
+    let bytes = bytes.map_err(|source| ReportError::File { path: path.clone(), source })?;
+    let malformed = |e: serde_json::Error| ReportError::Results { path: path.clone(), message: e.to_string() };
+    let found = serde_json::from_slice::<Named>(&bytes).map_err(malformed)?.schema;
+    if found != schema {
+        return Err(ReportError::Schema { path, found: foreign::line(&found).into_owned(), expected: schema });
+    }
+    let document: T = serde_json::from_slice(&bytes).map_err(malformed)?;
+    let mut value = serde_json::to_value(document).map_err(malformed)?;
+    foreign::clean(&mut value);
+    serde_json::from_value(value).map_err(malformed)
 }
 
 fn failed(file: &'static str, error: impl std::fmt::Display) -> ReportError {
@@ -140,6 +182,10 @@ fn failed(file: &'static str, error: impl std::fmt::Display) -> ReportError {
 /// Writes a file of the folder.
 fn write(folder: &Path, name: &str, content: &str) -> Result<PathBuf, ReportError> {
     let path = folder.join(name);
+    if !foreign::is_plain(name) {
+        let message = "a file is named by plain names below its folder, joined by single slashes".to_string();
+        return Err(ReportError::Results { path, message });
+    }
     if let Some(parent) = path.parent() {
         fs::create_dir_all(parent).map_err(|source| ReportError::File { path: parent.into(), source })?;
     }

@@ -1,10 +1,11 @@
 //! `summary.md`: what a step summary of a CI run shows first.
 
+use fisura_verification::foreign::line;
 use fisura_verification::record::{Record, ResultSet, Status};
 
 use crate::number::plain;
 use crate::rates::rates;
-use crate::view::{Counts, bounds, broken, environment, kind, reason, suites, symbol, value, with_unit, word};
+use crate::view::{Counts, bounds, broken, by_suite, environment, kind, reason, symbol, value, with_unit, word};
 
 /// Largest size in bytes; a step summary over 1 MiB is dropped whole by GitHub.
 pub const LIMIT: usize = 900_000;
@@ -26,36 +27,25 @@ fn render_limited(set: &ResultSet, limit: usize) -> String {
     if !broken.is_empty() {
         budget.table("## Does not hold", "| | check | value | accepted | why |\n|---|---|---|---|---|", &broken, |r| {
             let why = format!("{}. {}", r.claim.trim_end_matches('.'), reason(r));
-            [verdict(r.status), format!("`{}`", r.id), value(r, plain), bounds(&r.accept, plain), why]
+            [verdict(r.status), code(&r.id), cell(&value(r, plain)), bounds(&r.accept, plain), cell(&why)]
         });
     }
-    for suite in suites(set) {
-        let mut records: Vec<&Record> = set.records.iter().filter(|r| r.suite == suite).collect();
-        if records.is_empty() {
-            continue;
-        }
+    for (suite, mut records) in by_suite(set).into_iter().filter(|(_, records)| !records.is_empty()) {
         let rates = rates(&records);
         records.sort_by_key(|r| rank(r.status));
         let title = format!("## {}: {}", cell(suite), Counts::of(records.iter().copied()).list());
         let head = "| | check | quantity | value | reference | accepted |\n|---|---|---|---|---|---|";
         budget.table(&title, head, &records, |r| {
-            let quantity = r.quantity.clone();
-            [
-                verdict(r.status),
-                format!("`{}`", r.id),
-                quantity,
-                value(r, plain),
-                reference(r),
-                bounds(&r.accept, plain),
-            ]
+            let [quantity, value, reference] = [&r.quantity, &value(r, plain), &reference(r)].map(|text| cell(text));
+            [verdict(r.status), code(&r.id), quantity, value, reference, bounds(&r.accept, plain)]
         });
         if !rates.is_empty() {
             let title = format!("### Orders of convergence: {}", cell(suite));
             let head = "| | problem | degree | norm | theory | observed | accepted | error on the finest mesh |\n\
                         |---|---|---|---|---|---|---|---|";
             budget.table(&title, head, &rates, |rate| {
-                let [degree, norm, theory, observed, band, error] = rate.cells(plain);
-                let problem = format!("`{}`", rate.record.case);
+                let [degree, norm, theory, observed, band, error] = rate.cells(plain).map(|text| cell(&text));
+                let problem = code(&rate.record.case);
                 [verdict(rate.record.status), problem, degree, norm, theory, observed, band, error]
             });
         }
@@ -87,10 +77,23 @@ fn reference(record: &Record) -> String {
     }
 }
 
-/// Text of a table cell: one line, nothing that Markdown or HTML would take for its own.
+/// Text as itself: one line, nothing that Markdown or HTML would take for its own.
 pub(crate) fn cell(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('|', "\\|");
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    let mut out = String::with_capacity(text.len());
+    for c in line(text).split_whitespace().collect::<Vec<_>>().join(" ").chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '|' | '\\' | '`' | '*' | '_' | '[' | ']' | '~' | '$' | '#' | '!' => out.extend(['\\', c]),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// An id as code in a table, where a bar needs a backslash and nothing else can be escaped.
+pub(crate) fn code(id: &str) -> String {
+    format!("`{}`", line(id).replace('`', "'").replace('\\', "/").replace('|', "\\|"))
 }
 
 /// Output that stops growing at a limit and remembers what it left out.
@@ -101,6 +104,7 @@ struct Budget {
 }
 
 impl Budget {
+    /// A table of finished cells.
     fn table<T, const N: usize>(&mut self, title: &str, head: &str, records: &[T], row: impl Fn(&T) -> [String; N]) {
         let top = format!("{title}\n\n{head}\n");
         if self.out.len() + top.len() > self.limit {
@@ -109,7 +113,7 @@ impl Budget {
         }
         self.out.push_str(&top);
         for record in records {
-            let line = format!("| {} |\n", row(record).map(|c| cell(&c)).join(" | "));
+            let line = format!("| {} |\n", row(record).join(" | "));
             if self.out.len() + line.len() > self.limit {
                 self.left_out += 1;
             } else {
@@ -146,5 +150,7 @@ mod tests {
     #[test]
     fn cells_stay_cells() {
         assert_eq!(cell("a | b\n<c>"), "a \\| b &lt;c>");
+        assert_eq!(cell("![x](javascript:y) **z** `q` $e$"), r"\!\[x\](javascript:y) \*\*z\*\* \`q\` \$e\$");
+        assert_eq!(code("a|b`c\u{1b}"), "`a\\|b'c\u{fffd}`");
     }
 }

@@ -4,6 +4,8 @@
 //! its reference. The error itself is the record of the same run whose quantity is that name with `on the finest mesh` or
 //! `with the smallest step`.
 
+use std::collections::HashMap;
+
 use fisura_verification::record::Record;
 
 use crate::number::plain;
@@ -13,6 +15,9 @@ use crate::view::{bounds, with_unit};
 const ORDER_DIGITS: usize = 4;
 /// Digits of an error.
 const ERROR_DIGITS: usize = 3;
+
+/// How the quantity of the error itself ends.
+const ENDS: [&str; 2] = [" on the finest mesh", " with the smallest step"];
 
 /// Digits of a number, for a table or for reading: `plain` or `pretty`.
 pub type Show = fn(f64, usize) -> String;
@@ -32,15 +37,17 @@ pub struct Rate<'a> {
 
 /// The rates among records, in their order.
 pub fn rates<'a>(records: &[&'a Record]) -> Vec<Rate<'a>> {
+    let mut found: HashMap<_, &'a Record> = HashMap::new();
+    for record in records {
+        let name = ENDS.iter().find_map(|end| record.quantity.strip_suffix(end));
+        if let Some(name) = name {
+            found.entry((&record.suite, &record.case, variant(record), name)).or_insert(record);
+        }
+    }
     let rate = |record: &&'a Record| {
-        let norm = norm(record)?;
-        let names = ["on the finest mesh", "with the smallest step"].map(|end| format!("{norm} {end}"));
-        let same = |other: &&&'a Record| {
-            (&other.suite, &other.case) == (&record.suite, &record.case)
-                && variant(other) == variant(record)
-                && names.contains(&other.quantity)
-        };
-        Some(Rate { record, norm, variant: variant(record), finest: records.iter().find(same).copied() })
+        let (norm, variant) = (norm(record)?, variant(record));
+        let finest = found.get(&(&record.suite, &record.case, variant, norm)).copied();
+        Some(Rate { record, norm, variant, finest })
     };
     records.iter().filter_map(rate).collect()
 }

@@ -1,8 +1,9 @@
 //! The numbers behind the figures, and what can be wrong with them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
+use fisura_verification::foreign;
 use fisura_verification::history::Table;
 use fisura_verification::record::{Figure, FigureBody};
 use thiserror::Error;
@@ -74,6 +75,9 @@ pub enum FigureError {
     },
 }
 
+/// Most bytes of all series of one report.
+pub(crate) const MOST_BYTES: u64 = 512 << 20;
+
 /// Series tables by their name relative to the results folder.
 #[derive(Debug, Clone, Default)]
 pub struct SeriesSet {
@@ -90,11 +94,20 @@ impl SeriesSet {
     /// comes up when a figure asks for it.
     pub fn load<'a>(folder: &Path, figures: impl IntoIterator<Item = &'a Figure>) -> Self {
         let mut set = Self::default();
+        let mut left = MOST_BYTES;
         for name in figures.into_iter().flat_map(names) {
-            let read = |name: &String| Table::read(&folder.join(name)).map_err(|e| e.message);
-            set.tables.entry(name).or_insert_with_key(read);
+            set.tables.entry(name).or_insert_with_key(|name| read(folder, name, &mut left));
         }
         set
+    }
+
+    /// Rows from which a figure is drawn, those of each curve for itself.
+    pub(crate) fn rows(&self, figure: &Figure) -> usize {
+        let rows = |series: &String| self.tables.get(series).and_then(|t| t.as_ref().ok()).map_or(0, Table::rows);
+        match &figure.body {
+            FigureBody::Chart { curves, .. } => curves.iter().map(|curve| rows(&curve.series)).sum(),
+            FigureBody::Field { series, .. } => rows(series),
+        }
     }
 
     /// The table of that name, for a figure.
@@ -123,18 +136,21 @@ impl SeriesSet {
     }
 }
 
+/// Reads one series; `left` is what all of them may still have, bytes.
+pub(crate) fn read(folder: &Path, name: &str, left: &mut u64) -> Result<Table, String> {
+    let bytes = foreign::read(folder, name, foreign::SERIES_BYTES).map_err(|e| e.to_string())?;
+    *left = left.checked_sub(bytes.len() as u64).ok_or("the series of one report have more than 512 MiB")?;
+    Table::parse(name, bytes.as_slice()).map_err(|e| foreign::line(&e.message).into_owned())
+}
+
 /// Names of the series behind a figure, each once, in the order of its curves.
 pub fn names(figure: &Figure) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
     match &figure.body {
         FigureBody::Chart { curves, .. } => {
-            for curve in curves {
-                if !names.contains(&curve.series) {
-                    names.push(curve.series.clone());
-                }
-            }
+            let mut seen = HashSet::new();
+            let first = curves.iter().filter(|curve| seen.insert(curve.series.as_str()));
+            first.map(|curve| curve.series.clone()).collect()
         }
-        FigureBody::Field { series, .. } => names.push(series.clone()),
+        FigureBody::Field { series, .. } => vec![series.clone()],
     }
-    names
 }

@@ -1,5 +1,6 @@
 //! From what plotters writes to an SVG that scales, speaks and stays small.
 
+use fisura_verification::foreign::steers;
 use plotters::prelude::*;
 
 use crate::series::FigureError;
@@ -76,7 +77,7 @@ pub fn escape(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
-            c if c.is_control() => out.push(' '),
+            c if steers(c) => out.push(' '),
             c => out.push(c),
         }
     }

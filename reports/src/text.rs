@@ -1,10 +1,11 @@
 //! The verdict for a terminal.
 
+use fisura_verification::foreign::line;
 use fisura_verification::record::{Record, ResultSet};
 
 use crate::number::plain;
 use crate::style::wrap_columns;
-use crate::view::{Counts, bounds, broken, reason, suites, value, word};
+use crate::view::{Counts, bounds, broken, by_suite, reason, value, word};
 
 /// A plain-text table: what does not hold with value, bounds and reason, counts per suite, the verdict on the whole in
 /// the last line.
@@ -13,13 +14,13 @@ pub fn render_text(set: &ResultSet) -> String {
     for record in broken(set) {
         out.push_str(&block(record));
     }
-    let suites = suites(set);
-    let widest = suites.iter().map(|s| s.chars().count()).max().unwrap_or(0).max("suite".len());
+    let suites: Vec<_> = by_suite(set).into_iter().map(|(suite, records)| (line(suite), records)).collect();
+    let widest = suites.iter().map(|s| s.0.chars().count()).max().unwrap_or(0).max("suite".len());
     if !set.records.is_empty() {
         out.push_str(&format!("{:widest$}  {:>5} {:>5} {:>5} {:>5}\n", "suite", "pass", "fail", "error", "info"));
     }
-    for suite in suites {
-        let c = Counts::of(set.records.iter().filter(|r| r.suite == suite));
+    for (suite, records) in suites {
+        let c = Counts::of(records);
         if c != Counts::default() {
             out.push_str(&format!("{suite:widest$}  {:>5} {:>5} {:>5} {:>5}\n", c.pass, c.fail, c.error, c.info));
         }
@@ -32,7 +33,7 @@ pub fn render_text(set: &ResultSet) -> String {
 
 /// One record that does not hold.
 fn block(record: &Record) -> String {
-    let mut out = format!("{} {}\n", word(record.status).to_uppercase(), record.id);
+    let mut out = format!("{} {}\n", word(record.status).to_uppercase(), line(&record.id));
     let lines = [
         ("claim", record.claim.clone()),
         ("value", format!("{} ({})", value(record, plain), record.quantity)),

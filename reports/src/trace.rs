@@ -5,6 +5,7 @@ use fisura_verification::record::{Curve, CurveStyle, Scale};
 use crate::axis::AxisScale;
 use crate::series::{FigureError, SeriesSet};
 use crate::style::Look;
+use crate::thin::by_column;
 
 /// A point in drawn units or in axis coordinates.
 pub type Point = (f64, f64);
@@ -71,8 +72,8 @@ impl Trace {
     }
 
     /// The outline of the uncertainty band in axis coordinates, one closed polygon per unbroken stretch, within the
-    /// frame.
-    pub fn band(&self, x: &AxisScale, y: &AxisScale) -> Vec<Vec<Point>> {
+    /// frame of nominal `width`.
+    pub fn band(&self, x: &AxisScale, y: &AxisScale, width: f64) -> Vec<Vec<Point>> {
         let edge = |sign: f64| -> Vec<Point> {
             let rows = self.points.iter().zip(&self.half_widths);
             rows.map(|(p, h)| {
@@ -86,11 +87,10 @@ impl Trace {
         let (lower, upper) = (edge(-1.0), edge(1.0));
         let stretches = stretches(&upper.iter().zip(&lower).map(|(a, b)| (a.0, a.1 + b.1)).collect::<Vec<_>>());
         let polygons = stretches.into_iter().map(|range| {
-            let mut outline = within(&upper[range.clone()], x, y);
-            outline.extend(within(&lower[range], x, y).into_iter().rev());
-            outline
+            let [upper, lower] = [&upper, &lower].map(|edge| by_column(within(&edge[range.clone()], x, y), x, width));
+            upper.into_iter().chain(lower.into_iter().rev()).collect()
         });
-        polygons.filter(|outline| outline.len() > 2).collect()
+        polygons.filter(|outline: &Vec<Point>| outline.len() > 2).collect()
     }
 }
 
@@ -137,21 +137,6 @@ pub fn pieces(points: &[Point], x: &AxisScale, y: &AxisScale) -> Vec<Vec<Point>>
         }
     }
     pieces
-}
-
-/// Drops points that lie within a third of a nominal pixel of the one before, so that a long history stays a small
-/// file; the ends are kept.
-pub fn thin(line: Vec<Point>, x: &AxisScale, y: &AxisScale, size: (f64, f64)) -> Vec<Point> {
-    let (unit_x, unit_y) = (size.0 / (x.high - x.low), size.1 / (y.high - y.low));
-    let last = line.len().saturating_sub(1);
-    let mut kept: Vec<Point> = Vec::new();
-    for (i, p) in line.into_iter().enumerate() {
-        let far = kept.last().is_none_or(|k| ((p.0 - k.0) * unit_x).hypot((p.1 - k.1) * unit_y) > 1.0 / 3.0);
-        if far || i == last {
-            kept.push(p);
-        }
-    }
-    kept
 }
 
 /// Whether a point in axis coordinates lies in the frame.
@@ -242,14 +227,6 @@ mod tests {
     fn lines_end_at_the_frame() {
         let pieces = pieces(&[(-1.0, 0.5), (0.5, 0.5), (0.5, 3.0), (0.7, 3.0)], &unit(), &unit());
         assert_eq!(pieces, [vec![(0.0, 0.5), (0.5, 0.5), (0.5, 1.0)]]);
-    }
-
-    #[test]
-    fn a_long_history_is_thinned_to_the_pixels() {
-        let line: Vec<Point> = (0..=100_000).map(|i| (i as f64 * 1e-5, 0.5)).collect();
-        let thin = thin(line.clone(), &unit(), &unit(), (600.0, 300.0));
-        assert!(thin.len() < 2000, "{}", thin.len());
-        assert_eq!((thin[0], thin[thin.len() - 1]), (line[0], line[100_000]));
     }
 
     #[test]

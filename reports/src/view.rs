@@ -1,6 +1,8 @@
 //! What all written reports say in common: verdicts in words, bounds, references, records grouped by suite and run.
 
-use fisura_verification::record::{Accept, Record, Reference, ReferenceKind, ResultSet, Status};
+use std::collections::{HashMap, HashSet};
+
+use fisura_verification::record::{Accept, Record, Reference, ReferenceKind, ResultSet, Status, Timing};
 
 use crate::number::{DIGITS, plain};
 
@@ -97,13 +99,16 @@ pub fn broken(set: &ResultSet) -> Vec<&Record> {
 
 /// Suites in the order in which they first appear, those with figures only at the end.
 pub fn suites(set: &ResultSet) -> Vec<&str> {
-    let mut suites: Vec<&str> = Vec::new();
-    for suite in set.records.iter().map(|r| &r.suite).chain(set.figures.iter().map(|f| &f.suite)) {
-        if !suites.contains(&suite.as_str()) {
-            suites.push(suite);
-        }
-    }
-    suites
+    let mut seen = HashSet::new();
+    let all = set.records.iter().map(|r| r.suite.as_str()).chain(set.figures.iter().map(|f| f.suite.as_str()));
+    all.filter(|suite| seen.insert(*suite)).collect()
+}
+
+/// The suites in the same order, with their records; none for a suite with figures only.
+pub fn by_suite(set: &ResultSet) -> Vec<(&str, Vec<&Record>)> {
+    let mut of: HashMap<&str, Vec<&Record>> = HashMap::new();
+    set.records.iter().for_each(|record| of.entry(&record.suite).or_default().push(record));
+    suites(set).into_iter().map(|suite| (suite, of.remove(suite).unwrap_or_default())).collect()
 }
 
 /// Records of one run: the id without its last part. A study over levels is one run here.
@@ -114,14 +119,27 @@ pub fn run_id(record: &Record) -> &str {
 /// Records grouped by run, in order of first appearance.
 pub fn runs<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<(&'a str, Vec<&'a Record>)> {
     let mut runs: Vec<(&str, Vec<&Record>)> = Vec::new();
+    let mut place = HashMap::new();
     for record in records {
         let id = run_id(record);
-        match runs.iter_mut().find(|(run, _)| *run == id) {
+        let at = *place.entry(id).or_insert(runs.len());
+        match runs.get_mut(at) {
             Some((_, members)) => members.push(record),
             None => runs.push((id, vec![record])),
         }
     }
     runs
+}
+
+/// The time of each record, where it is the first of its case with that measurement: records of one run, and runs of one
+/// study, repeat the time of the whole.
+pub fn own_times<'a>(records: &[&'a Record]) -> Vec<Timing> {
+    let mut seen = HashSet::new();
+    let mut first = |record: &&'a Record| {
+        let Timing { wall_s, particle_steps, .. } = record.timing;
+        seen.insert((record.suite.as_str(), record.case.as_str(), wall_s.to_bits(), particle_steps))
+    };
+    records.iter().map(|record| if first(record) { record.timing } else { Timing::default() }).collect()
 }
 
 /// A value with its unit: as many digits as it takes to see on which side of its bounds it lies.
@@ -190,17 +208,12 @@ pub fn parameters(record: &Record) -> String {
 
 /// Everything that differs from the source in a group of records, each once.
 pub fn deviations<'a>(records: &[&'a Record]) -> Vec<&'a str> {
-    let mut all: Vec<&str> = Vec::new();
-    for deviation in records.iter().flat_map(|r| &r.deviations) {
-        if !all.contains(&deviation.as_str()) {
-            all.push(deviation);
-        }
-    }
-    all
+    let mut seen = HashSet::new();
+    records.iter().flat_map(|r| &r.deviations).map(String::as_str).filter(|text| seen.insert(*text)).collect()
 }
 
 /// Timing of a run: that of its longest record, as records of one run repeat it.
-pub fn timing(records: &[&Record]) -> fisura_verification::record::Timing {
+pub fn timing(records: &[&Record]) -> Timing {
     let longer = |a: &&&Record, b: &&&Record| a.timing.wall_s.total_cmp(&b.timing.wall_s);
     records.iter().max_by(longer).map(|r| r.timing).unwrap_or_default()
 }

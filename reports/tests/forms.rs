@@ -65,7 +65,7 @@ fn rules(element: &str) -> Option<(&'static [&'static str], &'static [&'static s
             &["classname", "time", "assertions", "status"],
             &["skipped", "error", "failure", "system-out", "system-err"],
         ),
-        "failure" | "error" => (&[], &["type", "message"], &[]),
+        "failure" | "error" | "skipped" => (&[], &["type", "message"], &[]),
         "system-out" => (&[], &[], &[]),
         _ => return None,
     })
@@ -101,28 +101,66 @@ fn number(element: &BytesStart, key: &str) -> usize {
     String::from_utf8(attribute.value.to_vec()).unwrap().parse().unwrap()
 }
 
+fn count(name: &str, found: &mut [usize; 4]) {
+    for (at, element) in [(1, "failure"), (2, "error"), (3, "skipped")] {
+        found[at] += usize::from(name == element);
+    }
+}
+
+/// Wall times that a JUnit file declares for its suites and for its cases.
+fn times(text: &str) -> [f64; 2] {
+    let of = |element: &str| -> f64 {
+        let start = format!("<{element} ");
+        let starts = text.split(&start).skip(1);
+        starts
+            .map(|rest| rest.split("time=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>().unwrap())
+            .sum()
+    };
+    ["testsuite", "testcase"].map(of)
+}
+
+#[test]
+fn the_time_of_a_study_is_counted_once() {
+    let mut set = fixture::results();
+    let template = set.records[2].clone();
+    let record = |case: &str, variant: &str, wall_s: f64| {
+        let mut record = template.clone();
+        record.id = format!("energy/{case}/{variant}/closure");
+        record.case = case.to_string();
+        record.timing.wall_s = wall_s;
+        record
+    };
+    // a study of three variants timed as a whole, and a case of two runs timed one by one, with two checks each
+    set.records = ["p=1", "p=2", "p=3"].iter().map(|p| record("study", p, 30.5)).collect();
+    set.records.extend([("a", 2.0), ("a", 2.0), ("b", 4.0), ("b", 4.0)].map(|(run, wall)| record("scene", run, wall)));
+    assert_eq!(times(&render_junit(&set).unwrap()), [36.5, 36.5]);
+    set.records[0].timing.wall_s = 1e300;
+    assert!(render_junit(&set).is_ok());
+}
+
 #[test]
 fn junit_keeps_to_its_schema_and_counts_right() {
     let text = render_junit(&fixture::results()).unwrap();
     let mut reader = Reader::from_str(&text);
     let mut parents: Vec<String> = Vec::new();
-    let (mut declared, mut found) = ([0; 3], [0; 3]);
+    let (mut declared, mut found) = ([0; 4], [0; 4]);
     loop {
         match reader.read_event().unwrap() {
             Event::Start(element) => {
                 let name = check_element(&element, &parents);
                 if name == "testsuites" {
-                    declared = ["tests", "failures", "errors"].map(|key| number(&element, key));
+                    declared[..3].copy_from_slice(&["tests", "failures", "errors"].map(|key| number(&element, key)));
+                }
+                if name == "testsuite" {
+                    declared[3] += number(&element, "skipped");
                 }
                 found[0] += usize::from(name == "testcase");
-                found[1] += usize::from(name == "failure");
-                found[2] += usize::from(name == "error");
+                count(&name, &mut found);
                 parents.push(name);
             }
             Event::Empty(element) => {
                 let name = check_element(&element, &parents);
-                found[1] += usize::from(name == "failure");
-                found[2] += usize::from(name == "error");
+                count(&name, &mut found);
             }
             Event::End(_) => drop(parents.pop()),
             Event::Eof => break,
@@ -130,7 +168,7 @@ fn junit_keeps_to_its_schema_and_counts_right() {
         }
     }
     assert_eq!(declared, found);
-    assert_eq!(found, [11, 2, 1], "records, failures, errors of the fixture");
+    assert_eq!(found, [11, 2, 1, 3], "records, failures, errors of the fixture, and what was not judged");
 }
 
 /// `customSmallerIsBetter` of github-action-benchmark.

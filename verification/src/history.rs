@@ -5,6 +5,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+/// Most columns of a file.
+const MOST_COLUMNS: usize = 10_000;
+
 /// A table of named columns of equal length, as it stands in a series file.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Table {
@@ -61,6 +64,9 @@ impl Table {
         let fail = |message: String| TableError { path: name.to_string(), message };
         let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(bytes);
         let header = reader.headers().map_err(|e| fail(e.to_string()))?.clone();
+        if header.len() > MOST_COLUMNS {
+            return Err(fail(format!("it has {} columns; at most {MOST_COLUMNS} are read", header.len())));
+        }
         let mut table = Self::new(&header.iter().collect::<Vec<_>>());
         for record in reader.records() {
             let record = record.map_err(|e| fail(e.to_string()))?;

@@ -8,6 +8,7 @@ pub mod exact;
 pub mod expand;
 pub mod extremes;
 pub mod figures;
+pub mod foreign;
 pub mod history;
 pub mod measure;
 pub mod output;

@@ -18,6 +18,7 @@ use thiserror::Error;
 
 pub use crate::case::{Case, Tier};
 use crate::figures;
+use crate::foreign;
 use crate::output::{OutputError, replace_file, write_json};
 use crate::record::{Environment, Figure, Record, ResultSet, SCHEMA, Status};
 use crate::reference::{Library, ReferenceError};
@@ -125,7 +126,9 @@ pub fn verify_slice(
     let environment = options.environment.clone();
     let inputs = inputs(cases);
     let results = assemble(options.out, outcomes, inputs.clone(), environment.clone(), &library)?;
-    Part { schema: PART_SCHEMA.to_string(), slice, plan, environment, inputs, outcomes: named }.write(options.out)?;
+    let files = part::series_fingerprints(options.out)?;
+    let (schema, digest) = (PART_SCHEMA.to_string(), String::new());
+    Part { schema, slice, plan, environment, inputs, outcomes: named, files, digest }.write(options.out)?;
     store.finish();
     Ok(results)
 }
@@ -242,7 +245,11 @@ pub fn worst(records: &[Record]) -> Option<Status> {
 
 /// Writes `series/<stem>.csv`, whole or not at all; a stem such as `timing/bar` has a folder of its own.
 fn write_series(out: &Path, stem: &str, table: &crate::history::Table) -> Result<(), VerifyError> {
-    let path = out.join("series").join(format!("{stem}.csv"));
+    let name = format!("series/{stem}.csv");
+    let path = out.join(&name);
+    if !foreign::is_plain(&name) {
+        return Err(VerifyError::output(&path, "a series is named by plain names joined by single slashes"));
+    }
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(|e| VerifyError::output(folder, e))?;
     }

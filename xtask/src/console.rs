@@ -1,8 +1,12 @@
 //! What goes to which stream: results to standard output, everything else to standard error.
+//!
+//! Names, titles and messages may come from files of others. Characters that steer a terminal are replaced here, on the way
+//! out; only the pictures of diagnostics, which have colours of their own, are cleaned where they are made.
 
 use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
 use std::process::exit;
 
+use fisura_verification::foreign;
 use serde::Serialize;
 
 use crate::cli::Common;
@@ -10,6 +14,7 @@ use crate::exit::Exit;
 
 /// Writes a result to standard output. A reader that went away is no error.
 pub fn result(text: &str) {
+    let text = foreign::text(text);
     let mut out = stdout().lock();
     if let Err(error) = out.write_all(text.as_bytes()).and_then(|()| out.flush())
         && error.kind() != ErrorKind::BrokenPipe
@@ -22,13 +27,31 @@ pub fn result(text: &str) {
 /// Writes a result to standard output as JSON.
 pub fn json(value: &impl Serialize) {
     match serde_json::to_string_pretty(value) {
-        Ok(text) => result(&(text + "\n")),
+        Ok(text) => result(&(escaped(&text) + "\n")),
         Err(error) => error_text(&format!("error: no JSON can be made of the result: {error}\n")),
     }
 }
 
+/// JSON, in which characters that steer a terminal can stand in texts only, with these as escapes.
+fn escaped(json: &str) -> String {
+    let mut out = String::with_capacity(json.len());
+    for c in json.chars() {
+        if c != '\n' && foreign::steers(c) {
+            out.push_str(&format!("\\u{:04x}", c as u32));
+        } else {
+            out.push(c);
+        }
+    }
+    out
+}
+
 /// Writes to standard error.
 pub fn error_text(text: &str) {
+    picture(&foreign::text(text));
+}
+
+/// Writes what has colours of its own to standard error; texts of others in it are clean already.
+pub fn picture(text: &str) {
     let _ = stderr().lock().write_all(text.as_bytes()); // there is no other place left to complain
 }
 
@@ -59,5 +82,20 @@ pub fn graphical() -> bool {
 /// Rows of name and value, the values aligned.
 pub fn table(rows: &[(&str, String)]) -> String {
     let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
-    rows.iter().map(|(name, value)| format!("{name:width$}  {value}\n")).collect()
+    rows.iter().map(|(name, value)| format!("{name:width$}  {}\n", foreign::line(value))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_of_others_keep_to_their_row_and_json_stays_the_same() {
+        let title = "a\u{1b}]0;owned\u{7}\u{9b}2J\nclosure  0".to_string();
+        assert_eq!(table(&[("title", title.clone())]).lines().count(), 1);
+        let json = serde_json::to_string_pretty(&[&title]).unwrap_or_default();
+        let shown = escaped(&json);
+        assert!(!shown.contains('\u{9b}') && shown.contains("\\u009b"), "{shown}");
+        assert_eq!(serde_json::from_str::<Vec<String>>(&shown).ok(), Some(vec![title]));
+    }
 }

@@ -4,6 +4,7 @@ use std::fmt;
 
 use fisura::error::Breakdown;
 use fisura_reports::ReportError;
+use fisura_verification::foreign::text;
 use fisura_verification::output::OutputError;
 use fisura_verification::scene_file::{SceneDiagnostic, SceneFileError};
 use miette::{Diagnostic, LabeledSpan, MietteDiagnostic, MietteHandler, MietteHandlerOpts, ReportHandler, Severity};
@@ -43,7 +44,13 @@ impl Failure {
 
     /// Writes the failure to standard error and gives its exit status.
     pub fn show(&self) -> Exit {
-        console::error_text(&self.render(console::graphical()));
+        let graphical = console::graphical();
+        let shown = self.render(graphical);
+        if graphical {
+            console::picture(&shown)
+        } else {
+            console::error_text(&shown)
+        }
         match self {
             Self::SceneFile(_) => Exit::BadInput,
             Self::Other { exit, .. } => *exit,
@@ -54,9 +61,9 @@ impl Failure {
         match self {
             Self::SceneFile(error) => error.diagnostics.iter().map(|d| render(d, graphical)).collect(),
             Self::Other { message, help, .. } if graphical => {
-                let diagnostic = MietteDiagnostic::new(message);
+                let diagnostic = MietteDiagnostic::new(text(message));
                 picture(&match help {
-                    Some(help) => diagnostic.with_help(help),
+                    Some(help) => diagnostic.with_help(text(help)),
                     None => diagnostic,
                 })
             }
@@ -98,7 +105,7 @@ impl From<ReportError> for Failure {
 /// One finding in a file: `error: file:line:column: key: message; remedy`, or with the excerpt around it.
 pub fn render(diagnostic: &SceneDiagnostic, graphical: bool) -> String {
     if graphical {
-        return picture(&Excerpt(diagnostic));
+        return picture(&Excerpt(diagnostic.for_terminal()));
     }
     let word = if diagnostic.severity == Severity::Error { "error" } else { "warning" };
     format!("{word}: {diagnostic}\n")
@@ -106,19 +113,19 @@ pub fn render(diagnostic: &SceneDiagnostic, graphical: bool) -> String {
 
 /// A finding whose place is told by its excerpt and whose remedy by its help, and not once more in its title.
 #[derive(Debug)]
-struct Excerpt<'a>(&'a SceneDiagnostic);
+struct Excerpt(SceneDiagnostic);
 
-impl fmt::Display for Excerpt<'_> {
+impl fmt::Display for Excerpt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let SceneDiagnostic { file, line, column, key, message, .. } = self.0;
+        let SceneDiagnostic { file, line, column, key, message, .. } = &self.0;
         write!(f, "{file}:{line}:{column}: ")?;
         if key.is_empty() { f.write_str(message) } else { write!(f, "{key}: {message}") }
     }
 }
 
-impl std::error::Error for Excerpt<'_> {}
+impl std::error::Error for Excerpt {}
 
-impl Diagnostic for Excerpt<'_> {
+impl Diagnostic for Excerpt {
     fn severity(&self) -> Option<Severity> {
         self.0.severity()
     }
@@ -164,6 +171,21 @@ mod tests {
             let text = broken().render(graphical);
             for part in ["scene.toml:2:", "mesh.degree", "between 1 and 4"] {
                 assert!(text.contains(part), "{part:?} is missing from\n{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_a_file_or_a_message_holds_does_not_steer_the_terminal() {
+        let scene = "# \u{9b}2J \u{202e}\r\n[mesh]\ndegree = 7 # \u{1b}]0;owned\u{7}\n\"a\u{7f}b\" = 1\n";
+        let failures = [
+            SceneFile::parse("sc\u{1b}[2Jene.toml", scene, &[]).unwrap_err().into(),
+            Failure::new(Exit::BadInput, "no \u{9b}2J").help("yes \u{1b}[1A"),
+        ];
+        for failure in failures {
+            let pictured = failure.render(true);
+            for sequence in ["\u{1b}]0", "\u{1b}[2J", "\u{1b}[1A", "\u{9b}", "\u{7f}", "\u{7}", "\u{202e}"] {
+                assert!(!pictured.contains(sequence), "{sequence:?} in {pictured:?}");
             }
         }
     }

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use fisura_reports::number::duration;
+use fisura_verification::foreign::line;
 use fisura_verification::scene_file::SceneFileError;
 use fisura_verification::suite::prepare::{Prepared, prepare};
 use fisura_verification::suite::{Case, read_cases};
@@ -57,13 +58,13 @@ fn entry(case: &Case, prepared: &Prepared) -> Value {
 }
 
 fn text(cases: &[&Case]) -> String {
-    let ids: Vec<String> = cases.iter().map(|case| case.id()).collect();
+    let ids: Vec<String> = cases.iter().map(|case| line(&case.id()).into_owned()).collect();
     let width = ids.iter().map(|id| id.chars().count()).max().unwrap_or(0);
     let mut out = String::new();
     for (case, id) in cases.iter().zip(&ids) {
         let (tier, seconds) = (case.tier.to_string(), duration(case.seconds));
         let models = case.models.join(", ");
-        out.push_str(&format!("{id:width$}  {tier:5}  {seconds:>10}  {} [{models}]\n", case.claim));
+        out.push_str(&format!("{id:width$}  {tier:5}  {seconds:>10}  {} [{models}]\n", line(&case.claim)));
     }
     for tier in ["quick", "full"] {
         let of_tier = cases.iter().filter(|case| case.tier.to_string() == tier);

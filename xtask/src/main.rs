@@ -4,9 +4,10 @@
 //! One file per command; beside them [`cli`] (what can be said on the command line), [`exit`] (statuses), [`failure`]
 //! (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go), [`scene_input`] (scene
 //! files with their overrides), [`interrupt`] (Ctrl-C), [`progress`] (bars), [`pictures`] (figures of a run), [`vtk`] (its
-//! files for ParaView), [`environment`] (where and when).
+//! files for ParaView), [`environment`] (where and when), [`built`] (from which sources).
 
 mod bench;
+mod built;
 mod check;
 mod cli;
 mod compare;

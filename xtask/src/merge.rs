@@ -8,7 +8,7 @@ use crate::cli::Common;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::verify::conclude;
-use crate::{console, folders};
+use crate::{built, console, folders};
 
 /// Arguments of `merge`.
 #[derive(Debug, clap::Args)]
@@ -21,15 +21,13 @@ pub struct Args {
 /// Joins parts, renders the report, and says whether every check holds.
 ///
 /// # Errors
-/// Parts of different plans, slices missing or doubled, folders that cannot be read or written.
+/// Parts of different plans or programs, emptied or edited parts, slices missing or doubled, folders that cannot be read or
+/// written.
 pub fn merge(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let folder = folders::output(common, "merge")?;
-    let results = join(&args.folders, &folder, &folders::workspace().join("reference-data"))?;
+    let results = join(&args.folders, &folder, &folders::workspace().join("reference-data"), built::SOURCES)?;
     if results.environment.dirty {
-        console::note(
-            common,
-            "warning: the parts were run with uncommitted changes; new files among them are not compared",
-        );
+        console::note(common, "warning: the parts were run with uncommitted changes, the same in all of them");
     }
     conclude(&results, &folder, common)
 }
@@ -41,7 +39,11 @@ impl From<MergeError> for Failure {
             MergeError::Differs { .. } => "run all slices of one commit with the same selection, tier and changes",
             MergeError::Doubled { .. } => "give every slice once",
             MergeError::Missing { .. } => "run the missing slices, and give all folders at once",
-            MergeError::NoOutcome(_) => "run its slice again",
+            MergeError::NoOutcome(_) | MergeError::Changed { .. } => "run its slice again",
+            MergeError::Unplanned(_) => "run all slices again, of one plan",
+            MergeError::OtherProgram { .. } => {
+                "check out the commit of the parts, with the same changes, and build it anew"
+            }
             MergeError::OtherReferences => "check out the commit of the parts, with the same reference-data/",
             MergeError::OverPart(_) => "give another folder with --out",
             MergeError::Reference(_) | MergeError::File(_) => return Self::new(Exit::BadInput, error.to_string()),

@@ -1,10 +1,12 @@
 //! `report DIR`: the report of stored results once more.
 
 use std::fs;
+use std::io::Error;
 use std::path::{Path, PathBuf};
 
 use fisura_reports::{ReportError, bench, read_results, render};
-use fisura_verification::output::replace_file;
+use fisura_verification::foreign;
+use fisura_verification::output::write;
 use serde_json::json;
 
 use crate::cli::{Common, Format};
@@ -57,31 +59,26 @@ pub fn unreadable(error: ReportError, folder: &Path) -> Failure {
     Failure::from(error).help(help)
 }
 
-/// The results and their series in the folder of `--out`.
+/// The results and their series in the folder of `--out`. What is to be copied is known before the first file is written, so
+/// that a folder below that of the results is no part of it.
 fn copied(from: &Path, results: &str, common: &Common) -> Result<PathBuf, Failure> {
+    let fail = |name: &str, error: Error| {
+        let message = format!("{} cannot be copied: {error}", from.join(name).display());
+        Failure::new(Exit::BadInput, message).help("remove it, or render the report in its folder, without --out")
+    };
+    let series = foreign::series_files(from).map_err(|error| fail("series", error))?;
     let to = folders::output(common, "report")?;
-    let same = fs::canonicalize(from).ok() == fs::canonicalize(&to).ok();
-    if !same {
-        copy(&from.join(results), &to.join(results))?;
-        if from.join("series").is_dir() {
-            copy(&from.join("series"), &to.join("series"))?;
+    if fs::canonicalize(from).ok() == fs::canonicalize(&to).ok() {
+        return Ok(to);
+    }
+    for name in std::iter::once(results).chain(series.iter().map(String::as_str)) {
+        let most = if name == results { foreign::DOCUMENT_BYTES } else { foreign::SERIES_BYTES };
+        let bytes = foreign::read(from, name, most).map_err(|error| fail(name, error))?;
+        let target = to.join(name);
+        if let Some(folder) = target.parent() {
+            fs::create_dir_all(folder).map_err(|error| fail(name, error))?;
         }
+        write(&target, bytes)?;
     }
     Ok(to)
-}
-
-/// Copies a file, or a folder with all that is in it.
-fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
-    let fail = |error: std::io::Error| {
-        Failure::new(Exit::BadInput, format!("{} cannot be copied to {}: {error}", from.display(), to.display()))
-    };
-    if !from.is_dir() {
-        return Ok(replace_file(to, |part| Ok(fs::copy(from, part).map(|_| ())?))?);
-    }
-    fs::create_dir_all(to).map_err(fail)?;
-    for entry in fs::read_dir(from).map_err(fail)? {
-        let entry = entry.map_err(fail)?;
-        copy(&entry.path(), &to.join(entry.file_name()))?;
-    }
-    Ok(())
 }

@@ -14,7 +14,8 @@ pub fn load(args: &SceneArgs, common: &Common) -> Result<SceneFile, Failure> {
     let mut file = SceneFile::load(&args.scene, &args.set)?;
     if !common.quiet {
         let graphical = console::graphical();
-        file.warnings.iter().for_each(|w| console::error_text(&failure::render(w, graphical)));
+        let show = if graphical { console::picture } else { console::error_text };
+        file.warnings.iter().for_each(|w| show(&failure::render(w, graphical)));
     }
     if file.scene.title.is_empty() {
         file.scene.title = args.scene.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use fisura_reports::annotations::render_annotations;
 use fisura_reports::number::duration;
 use fisura_reports::text::render_text;
+use fisura_verification::foreign::line;
 use fisura_verification::record::{Record, ResultSet, Status};
 use fisura_verification::reference::Library;
 use fisura_verification::suite::part::{Invocation, Plan};
@@ -19,10 +20,10 @@ use fisura_verification::suite::{
 use indicatif::ProgressBar;
 
 use crate::cli::{Common, Format};
-use crate::environment::{changes, environment};
+use crate::environment::environment;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::{console, folders, progress};
+use crate::{built, console, folders, progress};
 
 /// Parts into which the bar of a case is divided.
 const PARTS: u64 = 1000;
@@ -73,7 +74,7 @@ pub fn verify(args: &Args, common: &Common) -> Result<Exit, Failure> {
             selection: &args.selection(),
             set: &args.set,
             commit: &environment.commit,
-            changes: &changes(&workspace),
+            sources: built::SOURCES,
             reference_data: &reference_data,
         };
         part = Some((slice, Plan::new(&cases, slice.count, invocation)?));
@@ -245,11 +246,20 @@ impl<'a> Watch<'a> {
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }
+
+    /// One line, above the bar where there is one.
+    fn say(&self, text: &str) {
+        if console::interactive(self.common) {
+            self.bar.println(line(text));
+        } else {
+            console::note(self.common, &line(text));
+        }
+    }
 }
 
 impl suite::Progress for Watch<'_> {
     fn started(&self, case: &Case, index: usize, count: usize) {
-        let place = format!("[{}/{count}] {}", index + 1, case.id());
+        let place = line(&format!("[{}/{count}] {}", index + 1, case.id())).into_owned();
         self.bar.set_message(place.clone());
         self.bar.set_position(0);
         if let Ok(mut present) = self.present.lock() {
@@ -262,12 +272,8 @@ impl suite::Progress for Watch<'_> {
     }
 
     fn late(&self, case: &Case, limit: Duration) {
-        let line = format!("warning: {} is over its time of {} s and is asked to stop", case.id(), limit.as_secs_f64());
-        if console::interactive(self.common) {
-            self.bar.println(line);
-        } else {
-            console::note(self.common, &line);
-        }
+        let seconds = limit.as_secs_f64();
+        self.say(&format!("warning: {} is over its time of {seconds} s and is asked to stop", case.id()));
     }
 
     fn finished(&self, _case: &Case, records: &[Record]) {
@@ -278,11 +284,6 @@ impl suite::Progress for Watch<'_> {
             Some(Status::Pass) => "pass",
             Some(Status::Info) | None => "info",
         };
-        let line = format!("{} {word}, {}", present.0, duration(present.1.elapsed().as_secs_f64()));
-        if console::interactive(self.common) {
-            self.bar.println(line);
-        } else {
-            console::note(self.common, &line);
-        }
+        self.say(&format!("{} {word}, {}", present.0, duration(present.1.elapsed().as_secs_f64())));
     }
 }

@@ -7,6 +7,7 @@ use minijinja::value::Serde;
 use serde::Serialize;
 
 use super::{Exhibit, Grid, Plot, Section};
+use crate::markdown::cell;
 use crate::number::plain;
 use crate::svg::slug;
 
@@ -69,14 +70,9 @@ fn conditions(set: &BenchSet) -> String {
     format!("{size} run on {} with {} threads, {}; commit {commit}{dirty}; {}", e.cpu, e.threads, e.started, e.rustc)
 }
 
-/// Text of a table cell in Markdown.
-fn cell(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('|', "\\|")
-}
-
 /// The report with links to its figures.
 pub fn markdown(set: &BenchSet, sections: &[Section]) -> String {
-    let mut out = format!("# Speed against error\n\n{}.\n", conditions(set));
+    let mut out = format!("# Speed against error\n\n{}.\n", cell(&conditions(set)));
     for section in sections {
         out.push_str(&format!("\n## {}\n", section.title));
         for exhibit in &section.exhibits {
@@ -91,17 +87,18 @@ pub fn markdown(set: &BenchSet, sections: &[Section]) -> String {
 
 fn of_plot(plot: &Plot) -> String {
     let picture = match &plot.svg {
-        Ok(_) => format!("![{}]({})", plot.title, file(plot)),
-        Err(error) => format!("Not drawn: {error}"),
+        Ok(_) => format!("![{}]({})", cell(&plot.title), file(plot)),
+        Err(error) => format!("Not drawn: {}", cell(&error.to_string())),
     };
-    format!("\n{picture}\n\n{}\n\n*{}. {}.*\n", plot.reading, plot.title, plot.caption)
+    let [reading, title, caption] = [&plot.reading, &plot.title, &plot.caption].map(|text| cell(text));
+    format!("\n{picture}\n\n{reading}\n\n*{title}. {caption}.*\n")
 }
 
 fn of_grid(grid: &Grid) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.iter().map(|c| cell(c)).collect::<Vec<_>>().join(" | "));
     let rule = format!("|{}\n", "---|".repeat(grid.head.len()));
     let rows: String = grid.rows.iter().map(|row| line(row)).collect();
-    format!("\n### {}\n\n{}{rule}{rows}\n{}\n", grid.title, line(&grid.head), grid.note)
+    format!("\n### {}\n\n{}{rule}{rows}\n{}\n", cell(&grid.title), line(&grid.head), cell(&grid.note))
 }
 
 #[derive(Serialize)]

@@ -3,7 +3,7 @@
 //! A single time says little on a shared machine. The spread comes from the comparison itself: how far the ratios of all
 //! runs scatter about their median. A change of all runs together shows in the median.
 
-use std::collections::BTreeMap;
+use std::collections::{HashMap, HashSet};
 
 use fisura_verification::record::{Record, ResultSet};
 use serde::Serialize;
@@ -79,14 +79,30 @@ impl Speed {
         Self { not_compared: None, median_ratio: Some(median_ratio), spread, runs }
     }
 
+    /// The changes by run, and by case and times.
+    pub(super) fn lookup(&self) -> Lookup<'_> {
+        let by_run = self.runs.iter().map(|run| (run.run.as_str(), run)).collect();
+        let mut by_time = HashMap::new();
+        for run in &self.runs {
+            let case = run.run.match_indices('/').nth(1).map_or(run.run.as_str(), |(end, _)| &run.run[..end]);
+            by_time.entry((case.to_string(), [run.base_s, run.new_s].map(f64::to_bits))).or_insert(run);
+        }
+        Lookup { by_run, by_time }
+    }
+}
+
+/// Finds the change of the run that a record belongs to.
+pub(super) struct Lookup<'a> {
+    by_run: HashMap<&'a str, &'a SpeedChange>,
+    by_time: HashMap<(String, [u64; 2]), &'a SpeedChange>,
+}
+
+impl Lookup<'_> {
     /// The change of the run that a record belongs to; absent if its time was not compared.
     pub(super) fn of_record(&self, base: &Record, new: &Record) -> Option<SpeedChange> {
-        let case = format!("{}/{}", base.suite, base.case);
-        let same = |run: &&SpeedChange| {
-            run.run.starts_with(&case) && (run.base_s, run.new_s) == (base.timing.wall_s, new.timing.wall_s)
-        };
-        let named = self.runs.iter().find(|run| run.run == run_id(base));
-        named.or_else(|| self.runs.iter().find(same)).cloned()
+        let times = [base, new].map(|record| record.timing.wall_s.to_bits());
+        let same = || self.by_time.get(&(format!("{}/{}", base.suite, base.case), times));
+        self.by_run.get(run_id(base)).or_else(same).map(|run| (*run).clone())
     }
 }
 
@@ -99,17 +115,15 @@ fn measured(base: &ResultSet, new: &ResultSet) -> Vec<(String, [f64; 2])> {
             .map(|(run, of)| (run.to_string(), format!("{}/{}", of[0].suite, of[0].case), timing(of).wall_s))
             .collect()
     };
-    let there: BTreeMap<String, f64> = of(new).into_iter().map(|(run, _, wall)| (run, wall)).collect();
-    let mut seen = Vec::new();
+    let there: HashMap<String, f64> = of(new).into_iter().map(|(run, _, wall)| (run, wall)).collect();
+    let mut seen = HashSet::new();
     let mut times = Vec::new();
     for (run, case, wall) in of(base) {
         let Some(&other) = there.get(&run) else { continue };
         let once = (case, wall.to_bits(), other.to_bits());
-        if wall.max(other) < FLOOR || wall <= 0.0 || other <= 0.0 || seen.contains(&once) {
-            continue;
+        if wall.max(other) >= FLOOR && wall > 0.0 && other > 0.0 && seen.insert(once) {
+            times.push((run, [wall, other]));
         }
-        seen.push(once);
-        times.push((run, [wall, other]));
     }
     times
 }

@@ -91,8 +91,66 @@ fn missing_and_new_records_are_named_and_a_new_one_that_fails_is_a_loss() {
     let compared = compare(&base, &new);
     let gone = base.records.len() + 1 - new.records.len();
     assert_eq!((compared.count(Change::Missing), compared.count(Change::New), compared.major_losses), (gone, 1, 1));
+    let lost = compared.records.iter().filter(|r| r.accuracy == Change::Missing && r.effect == Effect::Worse);
+    assert_eq!(lost.count(), 0, "what is gone was not judged");
     let text = render_markdown(&compared);
     assert!(text.contains("## missing") && text.contains("`plate/impact/added`"), "{text}");
+}
+
+#[test]
+fn a_check_that_is_gone_is_a_loss_unless_another_one_was_it_formerly() {
+    let (base, mut new) = (results(), results());
+    let old = new.records[0].id.clone();
+    new.records[0].id = "plate/impact/p2/slope".into();
+    let reworded = compare(&base, &new);
+    assert_eq!(reworded.major_losses, 1, "{}", render_text(&reworded));
+    assert!(reworded.records[0].why.contains("formerly"), "the remedy is named: {:?}", reworded.records[0]);
+    new.records[0].formerly = vec!["plate/impact/p2/never".into(), old.clone()];
+    let renamed = compare(&base, &new);
+    assert_eq!((renamed.major_losses, renamed.count(Change::Missing), renamed.count(Change::New)), (0, 0, 0));
+    let record = &renamed.records[0];
+    assert_eq!((record.id.as_str(), record.accuracy), ("plate/impact/p2/slope", Change::Minor));
+    assert!(record.why.contains(&old), "{record:?}");
+    new.records[0].value = Some(0.0);
+    new.records[0].status = Status::Fail;
+    assert_eq!(compare(&base, &new).major_losses, 1, "a new name hides nothing");
+    new.records.remove(0);
+    assert_eq!(compare(&base, &new).major_losses, 1);
+    let mut broken = results();
+    broken.records.retain(|r| r.status == Status::Error);
+    new.records.retain(|r| r.status != Status::Error);
+    assert_eq!(compare(&broken, &new).major_losses, 1, "what broke down is gone, and one new record fails");
+}
+
+#[test]
+fn one_heir_stands_for_one_check_and_twins_for_each_other() {
+    let mut base = results();
+    base.records = vec![record(1.0, None, Some(10.0)), record(2.0, None, Some(10.0))];
+    let twins = compare(&base, &base);
+    assert!(twins.is_unchanged(), "an id that is there twice: {}", render_text(&twins));
+    let mut new = base.clone();
+    new.records.truncate(1);
+    assert_eq!(compare(&base, &new).major_losses, 1, "one of two is gone");
+    (base.records[0].id, base.records[1].id) = ("a/b/one".into(), "a/b/two".into());
+    new.records[0].id = "a/b/three".into();
+    new.records[0].formerly = vec!["a/b/one".into(), "a/b/two".into()];
+    let merged = compare(&base, &new);
+    assert_eq!((merged.count(Change::Missing), merged.major_losses), (1, 1));
+}
+
+#[test]
+fn another_unit_is_reported_and_its_numbers_are_not_compared() {
+    let base = record(9.0, None, Some(10.0));
+    let other = Record { unit: "mm".into(), value: Some(9000.0), ..record(9000.0, None, Some(10_000.0)) };
+    let (change, effect, why) = accuracy(&base, &other);
+    assert_eq!((change, effect), (Change::Major, Effect::Worse));
+    assert!(why.contains("\"mm\"") && why.contains(&format!("{:?}", base.unit)), "{why}");
+    let shown = record(0.25, None, None);
+    assert_eq!(accuracy(&shown, &Record { unit: "mm".into(), ..shown.clone() }).0, Change::Minor);
+    let mut words = results();
+    words.records[0].quantity = "the same in other words".into();
+    let compared = compare(&results(), &words);
+    assert_eq!((compared.records[0].accuracy, compared.major_losses), (Change::Minor, 0));
 }
 
 #[test]

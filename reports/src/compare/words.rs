@@ -1,7 +1,7 @@
 //! A comparison as text for a terminal and as Markdown for a step summary.
 
 use super::{Change, ComparedSets, Comparison, Effect, SpeedChange};
-use crate::markdown::{LIMIT, cell};
+use crate::markdown::{LIMIT, cell, code};
 use crate::number::{DIGITS, duration, plain};
 use crate::view::with_unit;
 
@@ -64,7 +64,7 @@ pub fn render_markdown(sets: &ComparedSets) -> String {
         for r in &records {
             line(
                 &mut out,
-                format!("| {} | `{}` | {} | {} |\n", mark(r.effect), cell(&r.id), cell(&values(r)), cell(&r.why)),
+                format!("| {} | {} | {} | {} |\n", mark(r.effect), code(&r.id), cell(&values(r)), cell(&r.why)),
             );
         }
         out.push_str(if records.is_empty() { "" } else { "\n" });
@@ -74,7 +74,7 @@ pub fn render_markdown(sets: &ComparedSets) -> String {
         line(&mut out, "## speed\n\n| | run | wall time |\n|---|---|---|\n".to_string());
     }
     for run in &runs {
-        line(&mut out, format!("| {} | `{}` | {} |\n", mark(run.effect), cell(&run.run), times(run)));
+        line(&mut out, format!("| {} | {} | {} |\n", mark(run.effect), code(&run.run), times(run)));
     }
     if left_out > 0 {
         out.push_str(&format!("\n{left_out} more lines are left out here; `comparison.json` has them all.\n"));

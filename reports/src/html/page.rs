@@ -37,6 +37,14 @@ pub(super) struct ReferenceCell {
     pub source: String,
 }
 
+/// A file beside the page.
+#[derive(Serialize)]
+pub(super) struct Link {
+    /// Relative address; empty if there is none to follow.
+    pub address: String,
+    pub text: String,
+}
+
 #[derive(Serialize)]
 pub(super) struct Parameters {
     pub run: String,
@@ -54,7 +62,7 @@ pub(super) struct Case {
     pub models: String,
     pub parameters: Vec<Parameters>,
     pub deviations: Vec<String>,
-    pub series: Vec<String>,
+    pub series: Vec<Link>,
     pub time: String,
     pub open: bool,
     pub rows: Vec<Row>,
@@ -86,8 +94,8 @@ pub(super) struct Picture {
     /// Not on the page because of its size.
     pub left_out: bool,
     pub error: String,
-    pub file: String,
-    pub series: Vec<String>,
+    pub file: Link,
+    pub series: Vec<Link>,
 }
 
 #[derive(Serialize)]
@@ -120,6 +128,8 @@ pub(super) struct Page {
     pub verdict: Verdict,
     pub sentence: String,
     pub counts: String,
+    /// What is not on the page because of its size.
+    pub missing: String,
     pub environment: Vec<(&'static str, String)>,
     pub broken: Vec<Row>,
     pub suites: Vec<Suite>,

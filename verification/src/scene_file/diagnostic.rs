@@ -6,6 +6,8 @@ use std::sync::Arc;
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, Severity, SourceCode};
 
+use crate::foreign::{line, steers};
+
 /// Most problems that are told one by one.
 const MOST_PROBLEMS: usize = 100;
 
@@ -127,14 +129,27 @@ pub struct SceneDiagnostic {
     source: Arc<NamedSource<String>>,
 }
 
+impl SceneDiagnostic {
+    /// The same without characters that steer a terminal; in the text of the file as many bytes stand in their place.
+    pub fn for_terminal(&self) -> Self {
+        let steers = |c: char| steers(c) && !matches!(c, '\n' | '\t');
+        let seen = |c: char| if steers(c) { "?".repeat(c.len_utf8()) } else { c.to_string() };
+        let text: String = self.source.inner().replace("\r\n", " \n").chars().map(seen).collect();
+        let [file, key, message, remedy] =
+            [&self.file, &self.key, &self.message, &self.remedy].map(|text| line(text).into_owned());
+        let source = Arc::new(NamedSource::new(line(self.source.name()), text));
+        Self { file, key, message, remedy, source, span: self.span.clone(), ..*self }
+    }
+}
+
 impl fmt::Display for SceneDiagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}:{}: ", self.file, self.line, self.column)?;
+        write!(f, "{}:{}:{}: ", line(&self.file), self.line, self.column)?;
         if !self.key.is_empty() {
-            write!(f, "{}: ", self.key)?;
+            write!(f, "{}: ", line(&self.key))?;
         }
-        f.write_str(&self.message)?;
-        if self.remedy.is_empty() { Ok(()) } else { write!(f, "; {}", self.remedy) }
+        f.write_str(&line(&self.message))?;
+        if self.remedy.is_empty() { Ok(()) } else { write!(f, "; {}", line(&self.remedy)) }
     }
 }
 

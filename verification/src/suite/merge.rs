@@ -1,14 +1,20 @@
 //! The parts of a plan joined: what one run of the whole plan writes, byte for byte but for times and environment.
 
+use std::collections::{BTreeMap, HashMap};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::part::{PART_FILE, PART_SCHEMA, Part, folder_fingerprint};
+use super::part::{PART_FILE, PART_SCHEMA, Part, fingerprint, folder_fingerprint};
 use super::{CaseOutcome, VerifyError, assemble, remove_old_results};
+use crate::foreign;
+use crate::output::write;
 use crate::record::{Environment, ResultSet};
 use crate::reference::{Library, ReferenceError};
+
+/// Most missing slices that are named.
+const MOST_NAMED: usize = 100;
 
 /// Why parts cannot be joined.
 #[derive(Debug, Error)]
@@ -50,12 +56,31 @@ pub enum MergeError {
     Missing {
         /// How many the plan has.
         count: usize,
-        /// Which are missing.
+        /// Which are missing, the first hundred.
         slices: Vec<usize>,
     },
-    /// A case of the plan has no outcome in the parts.
+    /// A part does not hold what it was sealed with.
+    #[error("{} was changed after it was written: {message}", path.display())]
+    Changed {
+        /// File.
+        path: PathBuf,
+        /// How that is known.
+        message: String,
+    },
+    /// A case of the plan has no outcome in the parts, or one without a record.
     #[error("no part holds the outcome of {0}")]
     NoOutcome(String),
+    /// A case has two outcomes, or one that no slice was to find.
+    #[error("the parts hold an outcome of {0} beyond those of the plan")]
+    Unplanned(String),
+    /// The parts would be put together by another program than the one that made them.
+    #[error("this program was built from the sources {here}, the parts come from one of {parts}")]
+    OtherProgram {
+        /// Fingerprint of the sources of this program.
+        here: String,
+        /// Fingerprint of those of the parts.
+        parts: String,
+    },
     /// The figures would be drawn beside other references than those the checks used.
     #[error("the reference data here are not those of the parts")]
     OtherReferences,
@@ -74,17 +99,24 @@ fn list(slices: &[usize]) -> String {
     slices.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
 }
 
-/// Joins the parts in `folders` into `out`: `results.json` and `series/`.
+/// Joins the parts in `folders` into `out`: `results.json` and `series/`. `sources` is the fingerprint of the sources of the
+/// present program.
 ///
 /// # Errors
-/// Parts of different plans, slices missing or doubled, files that cannot be read or written; nothing is written then
-/// but what the last two leave.
-pub fn merge(folders: &[PathBuf], out: &Path, reference_data: &Path) -> Result<ResultSet, MergeError> {
+/// Parts of different plans or programs, emptied or edited ones, slices missing or doubled, files that cannot be read or
+/// written; nothing is written then but what the last one leaves.
+pub fn merge(folders: &[PathBuf], out: &Path, reference_data: &Path, sources: &str) -> Result<ResultSet, MergeError> {
     let parts = folders.iter().map(|folder| read(folder)).collect::<Result<Vec<Part>, _>>()?;
     let Some(first) = parts.first() else { return Err(MergeError::Missing { count: 0, slices: Vec::new() }) };
     check(folders, &parts)?;
+    if first.plan.sources != sources {
+        return Err(MergeError::OtherProgram { here: sources.to_string(), parts: first.plan.sources.clone() });
+    }
     if folder_fingerprint(reference_data)? != first.plan.reference_data {
         return Err(MergeError::OtherReferences);
+    }
+    for (folder, name, print) in files(folders, &parts) {
+        content(folder, name, print)?;
     }
     let same = |folder: &&PathBuf| fs::canonicalize(folder).ok().is_some_and(|f| fs::canonicalize(out).ok() == Some(f));
     if let Some(part) = folders.iter().find(same) {
@@ -93,29 +125,79 @@ pub fn merge(folders: &[PathBuf], out: &Path, reference_data: &Path) -> Result<R
     let environment = environment(&parts);
     let plan = first.plan.clone();
     let inputs = parts.iter().flat_map(|part| part.inputs.clone()).collect();
-    let mut found: Vec<(String, CaseOutcome)> = parts.into_iter().flat_map(|part| part.outcomes).collect();
-    let mut outcomes = Vec::new();
-    for (id, _) in plan.cases {
-        let at = found.iter().position(|(found, _)| *found == id).ok_or_else(|| MergeError::NoOutcome(id.clone()))?;
-        outcomes.push(found.swap_remove(at).1);
-    }
+    let outcomes = outcomes(plan.cases, &parts)?;
     let library = Library::load(reference_data)?;
     remove_old_results(out);
-    for folder in folders {
-        copy(&folder.join("series"), &out.join("series"))?;
+    for (folder, name, print) in files(folders, &parts) {
+        let path = out.join(name);
+        if let Some(above) = path.parent() {
+            fs::create_dir_all(above).map_err(|e| VerifyError::output(above, e))?;
+        }
+        write(&path, content(folder, name, print)?).map_err(VerifyError::from)?;
     }
     Ok(assemble(out, outcomes, inputs, environment, &library)?)
+}
+
+/// Every series file of every part: folder, name, fingerprint.
+fn files<'a>(folders: &'a [PathBuf], parts: &'a [Part]) -> impl Iterator<Item = (&'a Path, &'a str, &'a str)> {
+    let of_part = |(folder, part): (&'a PathBuf, &'a Part)| {
+        part.files.iter().map(|(name, print)| (folder.as_path(), name.as_str(), print.as_str()))
+    };
+    folders.iter().zip(parts).flat_map(of_part)
+}
+
+/// The bytes of a series file, if they are those that the part was written with.
+fn content(folder: &Path, name: &str, print: &str) -> Result<Vec<u8>, MergeError> {
+    let changed = |message: String| MergeError::Changed { path: folder.join(foreign::line(name).as_ref()), message };
+    if !(name.starts_with("series/") && name.ends_with(".csv")) {
+        return Err(changed("a part has CSV files below series/ only".to_string()));
+    }
+    let bytes = foreign::read(folder, name, foreign::SERIES_BYTES).map_err(|e| changed(e.to_string()))?;
+    if fingerprint([&bytes]) != print {
+        return Err(changed("its fingerprint is another one".to_string()));
+    }
+    Ok(bytes)
+}
+
+/// The outcome of every case of the plan, in its order: one each, with records.
+fn outcomes(cases: Vec<(String, String)>, parts: &[Part]) -> Result<Vec<CaseOutcome>, MergeError> {
+    let mut found: HashMap<&str, &CaseOutcome> = HashMap::new();
+    for (id, outcome) in parts.iter().flat_map(|part| &part.outcomes) {
+        if found.insert(id, outcome).is_some() {
+            return Err(MergeError::Unplanned(id.clone()));
+        }
+    }
+    let mut outcomes = Vec::new();
+    for (id, _) in cases {
+        match found.remove(id.as_str()).filter(|outcome| !outcome.records.is_empty()) {
+            Some(outcome) => outcomes.push(outcome.clone()),
+            None => return Err(MergeError::NoOutcome(id)),
+        }
+    }
+    found.keys().min().map_or(Ok(outcomes), |id| Err(MergeError::Unplanned(id.to_string())))
 }
 
 fn read(folder: &Path) -> Result<Part, MergeError> {
     let path = folder.join(PART_FILE);
     let fail = |message: String| MergeError::Unreadable { path: path.clone(), message };
-    let text = fs::read_to_string(&path).map_err(|e| fail(e.to_string()))?;
-    let value: serde_json::Value = serde_json::from_str(&text).map_err(|e| fail(e.to_string()))?;
-    match value.get("schema").and_then(|s| s.as_str()) {
-        Some(PART_SCHEMA) => serde_json::from_str(&text).map_err(|e| fail(e.to_string())),
-        found => Err(fail(format!("its schema is {:?}, not {PART_SCHEMA:?}", found.unwrap_or_default()))),
+    let bytes = foreign::read(folder, PART_FILE, foreign::DOCUMENT_BYTES).map_err(|e| fail(e.to_string()))?;
+    let found = serde_json::from_slice::<Named>(&bytes).map_err(|e| fail(e.to_string()))?.schema;
+    if found != PART_SCHEMA {
+        return Err(fail(format!("its schema is {found:?}, not {PART_SCHEMA:?}")));
     }
+    let part: Part = serde_json::from_slice(&bytes).map_err(|e| fail(e.to_string()))?;
+    if !part.is_whole() {
+        let message = "its records are not those it was sealed with".to_string();
+        return Err(MergeError::Changed { path, message });
+    }
+    Ok(part)
+}
+
+/// The one key that every document has.
+#[derive(serde::Deserialize)]
+struct Named {
+    #[serde(default)]
+    schema: String,
 }
 
 /// One plan, every slice once.
@@ -126,17 +208,18 @@ fn check(folders: &[PathBuf], parts: &[Part]) -> Result<(), MergeError> {
         }
     }
     let count = parts[0].plan.slices;
-    let mut missing = Vec::new();
-    for slice in 1..=count {
-        let mut holders = folders.iter().zip(parts).filter(|(_, part)| part.slice.index == slice).map(|(f, _)| f);
-        match (holders.next(), holders.next()) {
-            (Some(first), Some(other)) => {
-                return Err(MergeError::Doubled { slice, first: first.clone(), other: other.clone() });
-            }
-            (None, _) => missing.push(slice),
-            (Some(_), None) => {}
+    let mut holders: BTreeMap<usize, &PathBuf> = BTreeMap::new();
+    for (folder, part) in folders.iter().zip(parts) {
+        let slice = part.slice.index;
+        if !(1..=count).contains(&slice) {
+            let message = format!("it calls itself slice {slice} of {count}");
+            return Err(MergeError::Unreadable { path: folder.join(PART_FILE), message });
+        }
+        if let Some(first) = holders.insert(slice, folder) {
+            return Err(MergeError::Doubled { slice, first: first.clone(), other: folder.clone() });
         }
     }
+    let missing: Vec<usize> = (1..=count).filter(|slice| !holders.contains_key(slice)).take(MOST_NAMED).collect();
     if missing.is_empty() { Ok(()) } else { Err(MergeError::Missing { count, slices: missing }) }
 }
 
@@ -154,19 +237,4 @@ fn environment(parts: &[Part]) -> Environment {
         joined.started = joined.started.min(environment.started);
         joined
     })
-}
-
-/// Copies all finished files of a folder; one that is not there has nothing to copy.
-fn copy(from: &Path, to: &Path) -> Result<(), VerifyError> {
-    fs::create_dir_all(to).map_err(|e| VerifyError::output(to, e))?;
-    for entry in fs::read_dir(from).into_iter().flatten() {
-        let entry = entry.map_err(|e| VerifyError::output(from, e))?;
-        let (source, target) = (entry.path(), to.join(entry.file_name()));
-        if source.is_dir() {
-            copy(&source, &target)?;
-        } else if source.extension().is_some_and(|ending| ending == "csv") {
-            fs::copy(&source, &target).map_err(|e| VerifyError::output(&source, e))?;
-        }
-    }
-    Ok(())
 }

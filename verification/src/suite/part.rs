@@ -9,11 +9,12 @@ use sha2::{Digest, Sha256};
 use super::partition::Slice;
 use super::{CaseOutcome, Selection, VerifyError};
 use crate::case::Case;
+use crate::foreign;
 use crate::output::write_json;
 use crate::record::Environment;
 
 /// Name of the schema written and read.
-pub const PART_SCHEMA: &str = "fisura.part/1";
+pub const PART_SCHEMA: &str = "fisura.part/2";
 /// File of a part in its results folder.
 pub const PART_FILE: &str = "part.json";
 
@@ -22,8 +23,8 @@ pub const PART_FILE: &str = "part.json";
 pub struct Plan {
     /// Commit of the work tree, or empty.
     pub commit: String,
-    /// Fingerprint of uncommitted changes of tracked files; empty without any.
-    pub changes: String,
+    /// Fingerprint of the sources that the program was built from.
+    pub sources: String,
     /// Tier.
     pub tier: String,
     /// Suites; empty: all.
@@ -49,8 +50,8 @@ pub struct Invocation<'a> {
     pub set: &'a [String],
     /// Commit of the work tree, or empty.
     pub commit: &'a str,
-    /// Fingerprint of uncommitted changes.
-    pub changes: &'a str,
+    /// Fingerprint of the sources that the program was built from.
+    pub sources: &'a str,
     /// Folder of reference data.
     pub reference_data: &'a Path,
 }
@@ -61,10 +62,10 @@ impl Plan {
     /// # Errors
     /// Reference data that cannot be read.
     pub fn new(cases: &[Case], slices: usize, invocation: Invocation) -> Result<Self, VerifyError> {
-        let Invocation { selection, set, commit, changes, reference_data } = invocation;
+        let Invocation { selection, set, commit, sources, reference_data } = invocation;
         Ok(Self {
             commit: commit.to_string(),
-            changes: changes.to_string(),
+            sources: sources.to_string(),
             tier: selection.tier.to_string(),
             suites: selection.suites.clone(),
             case_glob: selection.case_glob.clone(),
@@ -82,7 +83,7 @@ impl Plan {
             let word = |text: &str| if text.is_empty() { "none".to_string() } else { text.to_string() };
             [
                 ("commit", word(&plan.commit)),
-                ("uncommitted changes", word(&plan.changes)),
+                ("sources of the program", word(&plan.sources)),
                 ("number of slices", plan.slices.to_string()),
                 ("tier", plan.tier.clone()),
                 ("suites", list(&plan.suites)),
@@ -119,12 +120,42 @@ pub struct Part {
     pub inputs: BTreeMap<String, String>,
     /// Id and outcome of its cases, in the order of the plan.
     pub outcomes: Vec<(String, CaseOutcome)>,
+    /// Fingerprint of every series file, by its name relative to the folder.
+    pub files: BTreeMap<String, String>,
+    /// Fingerprint of all of the above.
+    pub digest: String,
 }
 
 impl Part {
-    pub(super) fn write(&self, out: &Path) -> Result<(), VerifyError> {
-        Ok(write_json(&out.join(PART_FILE), self)?)
+    /// The same part with the fingerprint of what it holds. Whoever can write the file can make one: it tells a part that was
+    /// cut off or edited from a whole one, not who made it.
+    pub fn sealed(self) -> Self {
+        Self { digest: self.content(), ..self }
     }
+
+    /// Whether it holds what it was sealed with.
+    pub fn is_whole(&self) -> bool {
+        self.digest == self.content()
+    }
+
+    fn content(&self) -> String {
+        let content = Self { digest: String::new(), ..self.clone() };
+        fingerprint([serde_json::to_vec(&content).unwrap_or_default()]) // plain data, which JSON can hold
+    }
+
+    pub(super) fn write(self, out: &Path) -> Result<(), VerifyError> {
+        Ok(write_json(&out.join(PART_FILE), &self.sealed())?)
+    }
+}
+
+/// Fingerprints of the series files in a results folder, by their names.
+pub(super) fn series_fingerprints(out: &Path) -> Result<BTreeMap<String, String>, VerifyError> {
+    let names = foreign::series_files(out).map_err(|e| VerifyError::output(out, e))?;
+    let print = |name: String| {
+        let bytes = foreign::read(out, &name, foreign::SERIES_BYTES);
+        bytes.map(|bytes| (name.clone(), fingerprint([bytes]))).map_err(|e| VerifyError::output(&out.join(&name), e))
+    };
+    names.into_iter().map(print).collect()
 }
 
 /// The first 16 hexadecimal digits of the SHA-256 of some texts, each ended by a zero byte.

@@ -33,7 +33,7 @@ pub fn mutation() -> impl Strategy<Value = Mutation> {
 }
 
 /// Values that hurt: counts, magnitudes, what is no number, units, words of the format.
-const EXTREMES: [&str; 56] = [
+const EXTREMES: [&str; 63] = [
     "0",
     "-0.0",
     "-1",
@@ -88,6 +88,13 @@ const EXTREMES: [&str; 56] = [
     "[0, 0]",
     "[1, 1e300]",
     "[[0, 0], [1, 1], [0, 1], [1, 0]]",
+    "null",
+    "\"../outside\"",
+    "\"/dev/zero\"",
+    "\"series/../../outside/plate.csv\"",
+    "\"javascript:alert(1)\"",
+    "\"\\u001b]0;x\\u0007\\u009b2J\\u202e\"",
+    "\"quick\"",
     "1979-05-27",
     "updated",
 ];

@@ -33,14 +33,35 @@ fn a_lost_claim_ends_with_1() {
 }
 
 #[test]
-fn what_is_missing_is_named_and_nothing_in_common_ends_with_4() {
+fn a_check_that_is_gone_ends_with_1_and_nothing_in_common_with_4() {
     let place = workspace();
     place.xtask(&["verify", "--out", "one", "--case", "energy/block"]).with_status(0);
     place.xtask(&["verify", "--out", "other", "--case", "energy/twin"]).with_status(0);
-    let outcome = place.xtask(&["compare", "base", "one"]).with_status(0);
-    assert!(outcome.out.contains("· missing  energy/twin/"), "{outcome:?}");
+    let outcome = place.xtask(&["compare", "base", "one"]).with_status(1);
+    assert!(
+        outcome.out.contains("✗ missing  energy/twin/") && outcome.out.contains("the check is gone"),
+        "{outcome:?}"
+    );
+    place.xtask(&["compare", "one", "base"]).with_status(0);
     place.xtask(&["compare", "one", "other"]).with_status(4).complains_of(&["no record in common"]);
     place.xtask(&["compare", "one", "absent"]).with_status(2).complains_of(&["absent/results.json"]);
+}
+
+#[test]
+fn a_check_with_another_id_is_a_loss_unless_it_names_the_old_one() {
+    let place = workspace();
+    let text = place.read("verification/cases/energy/twin.toml");
+    let id =
+        text.lines().find_map(|line| line.strip_prefix("id = ")).expect("a declared id").trim_matches('"').to_string();
+    let renamed = text.replace(&format!("id = \"{id}\""), "id = \"ledger\"");
+    place.write("verification/cases/energy/twin.toml", &renamed);
+    place.xtask(&["verify", "--out", "new"]).with_status(0);
+    place.xtask(&["compare", "base", "new"]).with_status(1);
+    let heir = renamed.replace("id = \"ledger\"", &format!("id = \"ledger\"\nformerly = [\"{id}\"]"));
+    place.write("verification/cases/energy/twin.toml", &heir);
+    place.xtask(&["verify", "--out", "new"]).with_status(0);
+    let outcome = place.xtask(&["compare", "base", "new"]).with_status(0);
+    assert!(outcome.out.contains(&format!("formerly energy/twin/{id}")), "{outcome:?}");
 }
 
 #[test]

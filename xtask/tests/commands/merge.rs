@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use fisura_verification::suite::part::Part;
 use serde_json::Value;
 
 use super::support::{Place, notched};
@@ -136,17 +137,66 @@ fn parts_that_do_not_belong_together_end_with_2() {
     refused(&["part-1", "part-2", "part-3"], &["fisura.part/9"]);
 }
 
+/// A part with changes, sealed anew.
+fn change(place: &Place, name: &str, edit: impl FnOnce(&mut Part)) {
+    let mut part: Part = serde_json::from_str(&place.read(name)).unwrap();
+    edit(&mut part);
+    place.write(name, &serde_json::to_string(&part.sealed()).unwrap());
+}
+
 #[test]
-fn parts_of_another_commit_or_other_references_end_with_2() {
+fn parts_of_another_commit_or_program_or_other_references_end_with_2() {
     let place = workspace();
     slices(&place, &[]);
     let text = place.read("part-2/part.json");
-    place.write("part-2/part.json", &text.replace("\"commit\": \"\"", "\"commit\": \"0123abcd\""));
     let joined = |place: &Place| place.xtask(&["merge", "part-1", "part-2", "part-3"]).with_status(2);
+    change(&place, "part-2/part.json", |part| part.plan.commit = "0123abcd".into());
     joined(&place).complains_of(&["commit", "none and 0123abcd"]);
+    place.write("part-2/part.json", &text);
+    change(&place, "part-2/part.json", |part| part.plan.sources = "feed".into());
+    joined(&place).complains_of(&["sources of the program", "feed", "help:"]);
+    let all: Vec<String> = (1..=3).map(|slice| format!("part-{slice}/part.json")).collect();
+    let originals: Vec<String> = all.iter().map(|name| place.read(name)).collect();
+    all.iter().for_each(|name| change(&place, name, |part| part.plan.sources = "feed".into()));
+    joined(&place).complains_of(&["this program was built from the sources", "feed", "build it anew"]);
+    all.iter().zip(&originals).for_each(|(name, text)| place.write(name, text));
     place.write("part-2/part.json", &text);
     place.write("reference-data/nobody-1900/more.csv", "x\n1\n");
     joined(&place).complains_of(&["reference data"]);
+}
+
+#[test]
+fn emptied_and_edited_parts_end_with_2() {
+    let place = workspace();
+    slices(&place, &[]);
+    let refused = |words: &[&str]| {
+        place.xtask(&["merge", "part-1", "part-2", "part-3", "--out", "merged"]).with_status(2).complains_of(words);
+        assert!(!place.path("merged/results.json").exists());
+    };
+    let text = place.read("part-3/part.json");
+    let status = text.replace("\"status\": \"fail\"", "\"status\": \"pass\"");
+    assert_ne!(status, text, "a check fails there");
+    place.write("part-3/part.json", &status);
+    refused(&["part-3/part.json was changed after it was written", "run its slice again"]);
+    place.write("part-3/part.json", &text);
+    change(&place, "part-3/part.json", |part| part.outcomes.clear());
+    refused(&["no part holds the outcome of energy/block"]);
+    place.write("part-3/part.json", &text);
+    change(&place, "part-3/part.json", |part| part.outcomes[0].1.records.clear());
+    refused(&["no part holds the outcome of energy/block"]);
+    place.write("part-3/part.json", &text);
+    change(&place, "part-2/part.json", |part| part.outcomes.push(("plate/a".into(), part.outcomes[0].1.clone())));
+    refused(&["an outcome of plate/a beyond those of the plan"]);
+    slices(&place, &[]);
+
+    let series = place.read("part-2/series/plate-b.csv");
+    place.write("part-2/series/plate-b.csv", &series.replacen('1', "2", 1));
+    refused(&["part-2/series/plate-b.csv was changed", "fingerprint"]);
+    std::fs::remove_file(place.path("part-2/series/plate-b.csv")).unwrap();
+    refused(&["part-2/series/plate-b.csv was changed"]);
+    place.write("part-2/series/plate-b.csv", &series);
+    change(&place, "part-2/part.json", |part| drop(part.files.insert("../plate-b.csv".into(), "feed".into())));
+    refused(&["below series/ only"]);
 }
 
 #[test]

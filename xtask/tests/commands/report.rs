@@ -22,6 +22,56 @@ fn a_report_is_written_beside_its_results_or_elsewhere() {
 }
 
 #[test]
+fn a_folder_below_that_of_the_results_is_no_part_of_them() {
+    let place = Place::with("results/results.json", RESULTS);
+    place.write("results/series/a.csv", "x\n1\n");
+    for out in ["results/series/copy", "results/copy"] {
+        for _ in 0..2 {
+            place.xtask(&["report", "results", "--out", out]).with_status(0);
+        }
+        assert_eq!(place.read(&format!("{out}/series/a.csv")), "x\n1\n");
+    }
+    assert!(!place.path("results/series/copy/series/copy/series/copy").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn links_and_pipes_are_not_copied() {
+    let place = Place::with("results/results.json", RESULTS);
+    place.write("secret.csv", "x\n1\n");
+    place.write("results/series/a.csv", "x\n1\n");
+    let refused = |name: &str| {
+        place.xtask(&["report", "results", "--out", "copy"]).with_status(2).complains_of(&[
+            name,
+            "regular files",
+            "help:",
+        ]);
+        assert!(!place.path("copy/series").exists(), "nothing is copied");
+        std::fs::remove_file(place.path("results").join(name)).unwrap();
+    };
+    std::os::unix::fs::symlink(place.path("secret.csv"), place.path("results/series/b.csv")).unwrap();
+    refused("series/b.csv");
+    let pipe = std::process::Command::new("mkfifo").arg(place.path("results/series/c.csv")).status().unwrap();
+    assert!(pipe.success());
+    refused("series/c.csv");
+    place.xtask(&["report", "results", "--out", "copy"]).with_status(0);
+}
+
+#[test]
+fn texts_of_results_do_not_steer_the_terminal() {
+    let steering = "\\u001b]0;owned\\u0007\\u009b2J";
+    let place =
+        Place::with("results/results.json", &RESULTS.replace("\"cpu\": \"\"", &format!("\"cpu\": \"{steering}\"")));
+    for format in ["text", "json"] {
+        let outcome = place.xtask(&["report", "results", "--format", format]).with_status(0);
+        assert!(!(outcome.out + &outcome.err).contains(['\u{1b}', '\u{9b}']));
+    }
+    place.write("foreign/results.json", &RESULTS.replace("fisura.results/1", steering));
+    let outcome = place.xtask(&["report", "foreign"]).with_status(2);
+    assert!(!outcome.err.contains(['\u{1b}', '\u{9b}']), "{outcome:?}");
+}
+
+#[test]
 fn missing_or_foreign_results_end_with_2() {
     let place = Place::with("foreign/results.json", "{\"schema\": \"other/7\"}");
     place.write("broken/results.json", "{\"schema\": \"fisura.results/1\", \"records\": 3}");

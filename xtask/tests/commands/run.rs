@@ -21,6 +21,26 @@ fn an_elastic_scene_has_nothing_of_fracture() {
 }
 
 #[test]
+fn titles_and_names_do_not_steer_the_terminal() {
+    let steering = "\\u001b]0;owned\\u0007\\u009b2J\\nclosure  0";
+    let scene = BLOCK.replace("title = \"Block\"", &format!("title = \"{steering}\""));
+    let place = Place::with("block.toml", &scene);
+    let wrong = scene.replace("[analysis]", &format!("[analysis]\n\"{steering}\" = \"{steering}\""));
+    place.write("wrong.toml", &wrong);
+    for (arguments, status) in [(["run", "block.toml"], 0), (["check", "block.toml"], 0), (["check", "wrong.toml"], 2)]
+    {
+        for format in ["text", "json"] {
+            let arguments = [&arguments[..], &["--format", format]].concat();
+            let outcome = place.xtask(&arguments).with_status(status);
+            let shown = outcome.out.clone() + &outcome.err;
+            assert!(!shown.contains(['\u{1b}', '\u{7}', '\u{9b}']), "{outcome:?}");
+            assert!(shown.contains("]0;owned"), "{outcome:?}");
+            assert!(!shown.lines().any(|line| line.starts_with("closure  0")), "{outcome:?}");
+        }
+    }
+}
+
+#[test]
 fn a_fracture_scene_gives_the_same_bytes_for_one_and_two_threads() {
     let place = Place::with("notched.toml", &notched());
     for threads in ["1", "2"] {
