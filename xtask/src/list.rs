@@ -6,30 +6,45 @@ use fisura_reports::number::duration;
 use fisura_verification::foreign::line;
 use fisura_verification::scene_file::SceneFileError;
 use fisura_verification::suite::prepare::{Prepared, prepare};
-use fisura_verification::suite::{Case, read_cases};
+use fisura_verification::suite::{Case, Selection, Tier, read_cases, select};
 use serde_json::{Value, json};
 
 use crate::cli::{Common, Format};
 use crate::console;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::verify::{cases_folder, library};
+use crate::verify::{cases_folder, checked_glob, library};
 
-/// Prints every case of every suite.
+/// Arguments of `list`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Only cases whose id matches, such as plate/*, with the records that each will have
+    #[arg(long, value_name = "GLOB")]
+    case: Option<String>,
+}
+
+/// Prints every case of every suite, or those that match with their records.
 ///
 /// # Errors
-/// No folder of cases, and case files that are wrong: they are shown after what is sound.
-pub fn list(common: &Common) -> Result<Exit, Failure> {
+/// No folder of cases, a bad pattern, and case files that are wrong: they are shown after what is sound.
+pub fn list(args: &Args, common: &Common) -> Result<Exit, Failure> {
     console::no_files(common, "list");
+    let selection = Selection { suites: Vec::new(), case_glob: checked_glob(args.case.as_deref())?, tier: Tier::Full };
     let (cases, malformed) = read_cases(&cases_folder()?, &[]);
     let library = library()?;
-    let mut wrong: Vec<SceneFileError> = malformed.into_iter().map(|file| file.error).collect();
+    let meant = malformed.into_iter().filter(|file| selection.names(&file.suite, &file.id));
+    let mut wrong: Vec<SceneFileError> = meant.map(|file| file.error).collect();
     let mut sound = Vec::new();
-    for case in cases {
+    for case in select(cases, &selection) {
         match prepare(&case, &library) {
             Ok(prepared) => sound.push((case, prepared)),
             Err(error) => wrong.push(error),
         }
+    }
+    if sound.is_empty() && wrong.is_empty() {
+        return Err(
+            Failure::new(Exit::NothingSelected, "no case matches").help("see `cargo xtask list` for what there is")
+        );
     }
     let cases: Vec<&Case> = sound.iter().map(|(case, _)| case).collect();
     match common.format {
@@ -38,6 +53,7 @@ pub fn list(common: &Common) -> Result<Exit, Failure> {
             let suites: BTreeSet<&str> = cases.iter().map(|case| case.suite.as_str()).collect();
             console::json(&json!({ "suites": suites, "tiers": ["quick", "full"], "cases": entries }));
         }
+        Format::Text if args.case.is_some() => console::result(&sound.iter().map(expanded).collect::<String>()),
         Format::Text => console::result(&text(&cases)),
     }
     Ok(wrong.into_iter().fold(Exit::Done, |_, error| Failure::from(error).show()))
@@ -55,6 +71,17 @@ fn entry(case: &Case, prepared: &Prepared) -> Value {
         "seconds": case.seconds,
         "records": records,
     })
+}
+
+/// A case and its records, each with what is measured.
+fn expanded((case, prepared): &(Case, Prepared)) -> String {
+    let records = prepared.records.iter().map(|planned| {
+        let check = &case.checks[planned.check];
+        format!("  {}: {}\n", line(&planned.id(case)), line(&check.quantity))
+    });
+    let (seconds, models) = (duration(case.seconds), case.models.join(", "));
+    let head = format!("{}: {} [{models}], {}, {seconds}\n", line(&case.id()), line(&case.claim), case.tier);
+    head + &records.collect::<String>()
 }
 
 fn text(cases: &[&Case]) -> String {

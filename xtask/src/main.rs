@@ -49,7 +49,7 @@ fn main() -> ExitCode {
             Command::Verify(args) => verify::verify(&args, &common),
             Command::Merge(args) => merge::merge(&args, &common),
             Command::Compare(args) => compare::compare(&args, &common),
-            Command::List => list::list(&common),
+            Command::List(args) => list::list(&args, &common),
             Command::Run(args) => run::run(&args, &common),
             Command::Check(args) => check::check(&args, &common),
             Command::Figures(args) => figures::figures(&args, &common),

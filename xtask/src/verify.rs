@@ -149,6 +149,21 @@ pub fn cases_folder() -> Result<PathBuf, Failure> {
     Err(Failure::new(Exit::BadInput, message).help("start it with `cargo xtask` or in the root of the workspace"))
 }
 
+/// The pattern of `--case`.
+///
+/// # Errors
+/// If it is none.
+pub fn checked_glob(pattern: Option<&str>) -> Result<Option<String>, Failure> {
+    let Some(pattern) = pattern else { return Ok(None) };
+    match glob::Pattern::new(pattern) {
+        Ok(_) => Ok(Some(pattern.to_string())),
+        Err(error) => {
+            Err(Failure::new(Exit::BadInput, format!("--case {pattern}: {error}"))
+                .help("write a pattern such as plate/*"))
+        }
+    }
+}
+
 /// The reference data.
 ///
 /// # Errors
@@ -159,10 +174,7 @@ pub fn library() -> Result<Library, Failure> {
 
 fn selected(args: &Args, common: &Common) -> Result<Vec<Case>, Failure> {
     let bad = |message: String| Failure::new(Exit::BadInput, message);
-    if let Some(pattern) = &args.case {
-        glob::Pattern::new(pattern)
-            .map_err(|e| bad(format!("--case {pattern}: {e}")).help("write a pattern such as plate/*"))?;
-    }
+    checked_glob(args.case.as_deref())?;
     let (cases, malformed) = read_cases(&cases_folder()?, &[]);
     let suites = cases.iter().map(|case| &case.suite).chain(malformed.iter().map(|file| &file.suite));
     let known: BTreeSet<&str> = suites.map(String::as_str).collect();

@@ -57,6 +57,11 @@ fn cases_are_listed() {
     assert!(text.contains("energy/block") && text.contains("The ledger closes"), "{text}");
     let cases = place.xtask(&["list", "--format", "json"]).with_status(0).json();
     insta::assert_json_snapshot!("list", cases);
+    let one = place.xtask(&["list", "--case", "strict/*"]).with_status(0).out;
+    let record = "  strict/block/closure-of-the-energy-ledger-over-the-largest-energy: closure of the energy ledger";
+    assert!(one.contains(record) && !one.contains("energy/block:"), "{one}");
+    place.xtask(&["list", "--case", "nope/*"]).with_status(4).complains_of(&["no case matches"]);
+    place.xtask(&["list", "--case", "[a"]).with_status(2).complains_of(&["--case [a"]);
 }
 
 #[test]
