@@ -253,6 +253,9 @@ fn accuracy(base: &Record, new: &Record) -> (Change, Effect, String) {
             _ => (Change::Major, Effect::Worse, why),
         };
     }
+    if base.expectation.as_ref().is_some_and(|expected| expected.met) && new.misses_expectation() {
+        return (Change::Minor, Effect::Worse, "what was expected of it is no longer met".to_string());
+    }
     let bounds = [base.accept.min, base.accept.max];
     let rebound = bounds != [new.accept.min, new.accept.max];
     let (change, effect, why) = match (base.value, new.value) {

@@ -12,14 +12,15 @@ use minijinja::Environment;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
 
-use crate::number::{DIGITS, duration, grouped, plain, pretty};
+use crate::number::{duration, grouped, plain, pretty};
 use crate::rates::{Rate, rates};
 use crate::series::names;
 use crate::svg::slug;
 use crate::view::{self, Counts};
 
 use page::{
-    Case, Deviations, Link, Order, Orders, Page, Parameters, Picture, ReferenceCell, Row, Source, Suite, Verdict,
+    Case, Deviations, ExpectationCell, Link, Order, Orders, Page, Parameters, Picture, ReferenceCell, Row, Source, Suite,
+    Verdict,
 };
 
 const TEMPLATE: &str = include_str!("../templates/report.html");
@@ -112,9 +113,11 @@ fn fill(
         verdict: Verdict::of(counts.verdict()),
         sentence: counts.sentence(),
         counts: counts.list(),
+        remarks: counts.remarks(),
         missing,
         environment: view::environment(set),
         broken: view::broken(shown).into_iter().map(|r| row(r, &r.id)).collect(),
+        unmet: view::unmet(shown).into_iter().map(|r| row(r, &r.id)).collect(),
         suites: suites(shown, &pictures),
         timing: timed.map(pictures).collect(),
         sources: sources(&shown.records),
@@ -216,9 +219,10 @@ fn time(records: &[&Record]) -> String {
 
 fn row(record: &Record, name: &str) -> Row {
     let reference = record.reference.as_ref().map(|r| ReferenceCell {
-        value: r.value.map(|v| view::with_unit(&pretty(v, DIGITS), &record.unit)).unwrap_or_default(),
+        value: view::reference_value(r, &record.unit, pretty),
         kind: view::kind(r),
         source: r.source.clone(),
+        comparison: view::comparison(record, pretty).unwrap_or_default(),
     });
     Row {
         anchor: format!("check-{}", slug(&record.id)),
@@ -227,8 +231,13 @@ fn row(record: &Record, name: &str) -> Row {
         quantity: record.quantity.clone(),
         value: view::value(record, pretty),
         reference,
-        bounds: view::bounds(&record.accept, pretty),
+        bounds: view::accepted(record, pretty),
         why: record.accept.why.clone(),
+        expectation: record.expectation.as_ref().map(|e| ExpectationCell {
+            range: view::expected(record, pretty).unwrap_or_default(),
+            met: e.met,
+            source: e.source.clone(),
+        }),
         message: record.message.clone().unwrap_or_default(),
     }
 }

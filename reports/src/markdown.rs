@@ -5,7 +5,10 @@ use fisura_verification::record::{Record, ResultSet, Status};
 
 use crate::number::plain;
 use crate::rates::rates;
-use crate::view::{Counts, bounds, broken, by_suite, environment, kind, reason, symbol, value, with_unit, word};
+use crate::view::{
+    Counts, accepted, broken, by_suite, comparison, environment, expected, kind, reason, reference_value, symbol, unmet,
+    value, word,
+};
 
 /// Largest size in bytes; a step summary over 1 MiB is dropped whole by GitHub.
 pub const LIMIT: usize = 900_000;
@@ -18,6 +21,10 @@ pub fn render_markdown(set: &ResultSet) -> String {
 fn render_limited(set: &ResultSet, limit: usize) -> String {
     let counts = Counts::of(&set.records);
     let mut out = format!("# {} {}\n\n{}.", symbol(counts.verdict()), counts.sentence(), counts.list());
+    let remarks = counts.remarks();
+    if !remarks.is_empty() {
+        out.push_str(&format!(" {remarks}."));
+    }
     for (name, text) in environment(set) {
         out.push_str(&format!(" {name}: {}.", cell(&text)));
     }
@@ -27,7 +34,16 @@ fn render_limited(set: &ResultSet, limit: usize) -> String {
     if !broken.is_empty() {
         budget.table("## Does not hold", "| | check | value | accepted | why |\n|---|---|---|---|---|", &broken, |r| {
             let why = format!("{}. {}", r.claim.trim_end_matches('.'), reason(r));
-            [verdict(r.status), code(&r.id), cell(&value(r, plain)), bounds(&r.accept, plain), cell(&why)]
+            [verdict(r.status), code(&r.id), cell(&value(r, plain)), accepted(r, plain), cell(&why)]
+        });
+    }
+    let unmet = unmet(set);
+    if !unmet.is_empty() {
+        let head = "| check | value | expected | by | accepted |\n|---|---|---|---|---|";
+        budget.table("## Expected, and not met", head, &unmet, |r| {
+            let source = r.expectation.as_ref().map(|e| cell(&e.source)).unwrap_or_default();
+            let expected = expected(r, plain).unwrap_or_default();
+            [code(&r.id), cell(&value(r, plain)), expected, source, accepted(r, plain)]
         });
     }
     for (suite, mut records) in by_suite(set).into_iter().filter(|(_, records)| !records.is_empty()) {
@@ -37,7 +53,7 @@ fn render_limited(set: &ResultSet, limit: usize) -> String {
         let head = "| | check | quantity | value | reference | accepted |\n|---|---|---|---|---|---|";
         budget.table(&title, head, &records, |r| {
             let [quantity, value, reference] = [&r.quantity, &value(r, plain), &reference(r)].map(|text| cell(text));
-            [verdict(r.status), code(&r.id), quantity, value, reference, bounds(&r.accept, plain)]
+            [verdict(r.status), code(&r.id), quantity, value, reference, accepted(r, plain)]
         });
         if !rates.is_empty() {
             let title = format!("### Orders of convergence: {}", cell(suite));
@@ -70,10 +86,13 @@ fn verdict(status: Status) -> String {
 fn reference(record: &Record) -> String {
     match &record.reference {
         None => "none".to_string(),
-        Some(r) => match r.value {
-            Some(v) => format!("{} ({})", with_unit(&plain(v, crate::number::DIGITS), &record.unit), kind(r)),
-            None => kind(r).to_string(),
-        },
+        Some(r) => {
+            let number = match reference_value(r, &record.unit, plain) {
+                none if none.is_empty() => kind(r).to_string(),
+                number => format!("{number} ({})", kind(r)),
+            };
+            comparison(record, plain).map_or(number.clone(), |words| format!("{number}; {words}"))
+        }
     }
 }
 

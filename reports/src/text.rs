@@ -5,7 +5,7 @@ use fisura_verification::record::{Record, ResultSet};
 
 use crate::number::plain;
 use crate::style::wrap_columns;
-use crate::view::{Counts, bounds, broken, by_suite, reason, value, word};
+use crate::view::{Counts, accepted, broken, by_suite, expected, reason, unmet, value, word};
 
 /// A plain-text table: what does not hold with value, bounds and reason, counts per suite, the verdict on the whole in
 /// the last line.
@@ -13,6 +13,11 @@ pub fn render_text(set: &ResultSet) -> String {
     let mut out = String::new();
     for record in broken(set) {
         out.push_str(&block(record));
+    }
+    for record in unmet(set) {
+        let expected = expected(record, plain).unwrap_or_default();
+        let text = line(&format!("NOT MET {}: {}, expected {expected}", record.id, value(record, plain)));
+        out.push_str(&(wrap_columns(&text, 106).join("\n  ") + "\n"));
     }
     let suites: Vec<_> = by_suite(set).into_iter().map(|(suite, records)| (line(suite), records)).collect();
     let widest = suites.iter().map(|s| s.0.chars().count()).max().unwrap_or(0).max("suite".len());
@@ -26,6 +31,10 @@ pub fn render_text(set: &ResultSet) -> String {
         }
     }
     let counts = Counts::of(&set.records);
+    let remarks = counts.remarks();
+    if !remarks.is_empty() {
+        out.push_str(&(remarks + "\n"));
+    }
     let verdict = word(counts.verdict()).to_uppercase();
     out.push_str(&format!("{verdict}: {} ({})\n", counts.sentence().to_lowercase(), counts.list()));
     out
@@ -37,7 +46,7 @@ fn block(record: &Record) -> String {
     let lines = [
         ("claim", record.claim.clone()),
         ("value", format!("{} ({})", value(record, plain), record.quantity)),
-        ("accepted", bounds(&record.accept, plain)),
+        ("accepted", accepted(record, plain)),
         ("why", reason(record)),
     ];
     for (name, text) in lines {

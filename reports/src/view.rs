@@ -2,9 +2,14 @@
 
 use std::collections::{HashMap, HashSet};
 
-use fisura_verification::record::{Accept, Record, Reference, ReferenceKind, ResultSet, Status, Timing};
+use fisura_verification::record::{
+    Accept, Agreement, BoundKind, Record, Reference, ReferenceKind, ResultSet, Status, Timing, Validation,
+};
 
 use crate::number::{DIGITS, plain};
+
+/// Digits of an uncertainty; more mean nothing.
+const UNCERTAINTY_DIGITS: usize = 2;
 
 /// How often each verdict was given.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -17,6 +22,14 @@ pub struct Counts {
     pub error: usize,
     /// No bounds.
     pub info: usize,
+    /// Those held against bounds that were chosen after the result.
+    pub regression: usize,
+    /// Those of which something was expected that is not met.
+    pub unmet: usize,
+    /// Those compared with a reference of known uncertainty.
+    pub compared: usize,
+    /// Those of them that agree within the validation uncertainty.
+    pub agreeing: usize,
 }
 
 impl Counts {
@@ -30,6 +43,10 @@ impl Counts {
                 Status::Error => counts.error += 1,
                 Status::Info => counts.info += 1,
             }
+            counts.regression += usize::from(record.is_regression());
+            counts.unmet += usize::from(record.misses_expectation());
+            counts.compared += usize::from(record.validation.is_some());
+            counts.agreeing += usize::from(record.validation.as_ref().is_some_and(|v| v.verdict == Agreement::Agrees));
         }
         counts
     }
@@ -69,6 +86,19 @@ impl Counts {
         let errors = if self.error == 1 { "error" } else { "errors" };
         format!("{} pass, {} fail, {} {errors}, {} info", self.pass, self.fail, self.error, self.info)
     }
+
+    /// What pass and fail leave out: `2 checks by bounds of regression; 1 expectation not met; …`; empty if there is nothing.
+    pub fn remarks(&self) -> String {
+        let many = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
+        let compared = many(self.compared, "value");
+        let remarks = [
+            (self.regression, format!("{} by bounds of regression", many(self.regression, "check"))),
+            (self.unmet, format!("{} not met", many(self.unmet, "expectation"))),
+            (self.compared, format!("{} of {compared} within the uncertainty of the comparison", self.agreeing)),
+        ];
+        let said = remarks.into_iter().filter(|(count, _)| *count > 0).map(|(_, words)| words);
+        said.collect::<Vec<_>>().join("; ")
+    }
 }
 
 /// A verdict as a word.
@@ -95,6 +125,11 @@ pub fn symbol(status: Status) -> &'static str {
 pub fn broken(set: &ResultSet) -> Vec<&Record> {
     let with = |status| set.records.iter().filter(move |r| r.status == status);
     with(Status::Fail).chain(with(Status::Error)).collect()
+}
+
+/// Records of which something was expected that is not met, in the order of the plan.
+pub fn unmet(set: &ResultSet) -> Vec<&Record> {
+    set.records.iter().filter(|r| r.misses_expectation()).collect()
 }
 
 /// Suites in the order in which they first appear, those with figures only at the end.
@@ -164,8 +199,52 @@ pub fn with_unit(number: &str, unit: &str) -> String {
 
 /// The accepted range: `≤ 0.01`, `3.9 to 4.5`, `none`.
 pub fn bounds(accept: &Accept, show: fn(f64, usize) -> String) -> String {
+    range(accept.min, accept.max, show)
+}
+
+/// The accepted range, with a word on bounds of a kind of their own: `3.9 to 4.5 (regression)`.
+pub fn accepted(record: &Record, show: fn(f64, usize) -> String) -> String {
+    let kind = match record.accept.kind {
+        _ if record.is_regression() => " (regression)",
+        Some(BoundKind::Validation) => " (U_val)",
+        _ => "",
+    };
+    bounds(&record.accept, show) + kind
+}
+
+/// The range in which a value is expected beside its bounds, if there is one: `0.165 to 0.2`.
+pub fn expected(record: &Record, show: fn(f64, usize) -> String) -> Option<String> {
+    record.expectation.as_ref().map(|e| range(e.min, e.max, show))
+}
+
+/// A reference value with unit and uncertainty: `31 ± 0.3 us`; of a curve its uncertainty alone.
+pub fn reference_value(reference: &Reference, unit: &str, show: fn(f64, usize) -> String) -> String {
+    let parts = [
+        reference.value.map(|v| show(v, DIGITS)),
+        reference.uncertainty.map(|u| format!("± {}", show(u, UNCERTAINTY_DIGITS))),
+    ];
+    match parts.into_iter().flatten().collect::<Vec<_>>().join(" ") {
+        empty if empty.is_empty() => empty,
+        number => with_unit(&number, unit),
+    }
+}
+
+/// The comparison with the uncertainty of the reference: `agrees: |E| = 0.1 ≤ U_val = 0.3`.
+pub fn comparison(record: &Record, show: fn(f64, usize) -> String) -> Option<String> {
+    let Validation { error, u_num, u_val, at_least, .. } = record.validation.as_ref()?;
+    let [e, u] = [error.abs(), *u_val].map(|v| show(v, UNCERTAINTY_DIGITS));
+    let mesh = if u_num.is_some() { "" } else { " without the mesh" };
+    Some(match at_least {
+        None => format!("agrees: |E| = {e} ≤ U_val = {u}{mesh}"),
+        Some(least) => {
+            format!("off by at least {}: |E| = {e}, U_val = {u}{mesh}", show(*least, UNCERTAINTY_DIGITS))
+        }
+    })
+}
+
+fn range(min: Option<f64>, max: Option<f64>, show: fn(f64, usize) -> String) -> String {
     let show = |v| show(v, DIGITS + 1);
-    match (accept.min, accept.max) {
+    match (min, max) {
         (None, None) => "none".to_string(),
         (Some(min), None) => format!("≥ {}", show(min)),
         (None, Some(max)) => format!("≤ {}", show(max)),

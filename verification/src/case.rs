@@ -76,11 +76,13 @@ pub struct Check {
     pub expect_kind: ReferenceKind,
     /// Where the expected value comes from.
     pub expect_source: String,
+    /// Half width of the uncertainty of the expected value, in its unit.
+    pub uncertainty: Option<f64>,
     /// Factor from the measured to the reported unit.
     pub scale: f64,
     /// Reference band that gives the bounds: `folder/name`.
     pub band: Option<String>,
-    /// Variant the check is about; absent: each.
+    /// Variant the check is about, or a pattern of variants; absent: each.
     pub variant: Option<String>,
     /// Variant it is compared with.
     pub against: Option<String>,
@@ -92,6 +94,27 @@ pub struct Check {
     pub order: Option<f64>,
     /// Bounds.
     pub accept: Accept,
+    /// A band in which the value is expected, beside bounds that are those of a known limit.
+    pub expectation: Option<ExpectedBand>,
+}
+
+impl Check {
+    /// Whether it is about a variant: it names none, this one, or a pattern such as `p=[234]` that matches it.
+    pub fn is_about(&self, variant: &str) -> bool {
+        let matches = |wanted: &str| glob::Pattern::new(wanted).is_ok_and(|pattern| pattern.matches(variant));
+        self.variant.as_deref().is_none_or(|wanted| wanted == variant || matches(wanted))
+    }
+}
+
+/// What a check expects without failing for it: the `expectation` table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExpectedBand {
+    /// Smallest and largest value, in the unit of the check.
+    pub range: [Option<f64>; 2],
+    /// Reference band that gives them instead: `folder/name`.
+    pub band: Option<String>,
+    /// Who expects it.
+    pub source: String,
 }
 
 /// Keys changed together.

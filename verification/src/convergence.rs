@@ -157,8 +157,7 @@ impl Convergence {
         for curve in &self.curves {
             for (index, norm) in self.norms.iter().enumerate() {
                 let levels = curve.errors(index);
-                let theory =
-                    |value| Reference { value: Some(value), kind: ReferenceKind::Theory, source: self.theory.clone() };
+                let theory = |value| Reference::new(Some(value), ReferenceKind::Theory, &self.theory);
                 measurements.push(Measurement {
                     variant: curve.name.clone(),
                     quantity: Norm::order_of(&norm.quantity),

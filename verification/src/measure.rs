@@ -12,7 +12,7 @@ use fisura::scene::Scene;
 
 use crate::case::Check;
 use crate::history::Table;
-use crate::record::{Reference, ReferenceKind};
+use crate::record::Reference;
 use crate::reference::Library;
 
 use table::Question;
@@ -43,6 +43,8 @@ pub struct Measured {
     pub reference: Option<Reference>,
     /// Why there is no value, if the measure knows.
     pub message: Option<String>,
+    /// Numerical uncertainty of the value, from a study over meshes.
+    pub u_num: Option<f64>,
 }
 
 impl Measured {
@@ -107,15 +109,27 @@ impl Run<'_> {
 pub fn measure(check: &Check, run: &Run, runs: &[Run], library: &Library) -> Result<Measured, String> {
     let measure = find(check.measure.as_deref())?;
     let measured = (measure.find)(&Question { check, run, runs, library })?;
-    let finite = measured.value.filter(|v| v.is_finite());
-    let reference = expected(check, check.scale).or(measured.reference);
-    Ok(Measured { value: finite.map(|v| v * check.scale), reference, message: measured.message })
+    let value = measured.value.filter(|v| v.is_finite()).map(|v| v * check.scale);
+    let reference = match measure.compares_curves() {
+        true => measured.reference,
+        false => held_against(check, check.scale, library)?.or(measured.reference),
+    };
+    Ok(Measured { value, reference, ..measured })
+}
+
+/// What the value of a check is held against, times `factor`: its expected value, or what the library has under `reference`.
+fn held_against(check: &Check, factor: f64, library: &Library) -> Result<Option<Reference>, String> {
+    let Some(path) = check.reference.as_deref().filter(|_| check.expect.is_none()) else {
+        return Ok(expected(check, factor));
+    };
+    library.reference(path, check.at, factor).map(Some)
 }
 
 /// The expected value of a check as a reference, times `factor`.
 pub fn expected(check: &Check, factor: f64) -> Option<Reference> {
-    let source = check.expect_source.clone();
-    check.expect.map(|value| Reference { value: Some(value * factor), kind: check.expect_kind, source })
+    let uncertainty = check.uncertainty.map(|u| u * factor.abs());
+    let of = |value| Reference::new(Some(value * factor), check.expect_kind, &check.expect_source);
+    check.expect.map(|value| Reference { uncertainty, ..of(value) })
 }
 
 fn column(check: &Check) -> Result<&str, String> {
@@ -124,8 +138,4 @@ fn column(check: &Check) -> Result<&str, String> {
 
 fn position(check: &Check) -> Result<f64, String> {
     check.at.ok_or_else(|| "this measure needs at = …".to_string())
-}
-
-fn curve_reference(kind: ReferenceKind, label: &str) -> Option<Reference> {
-    Some(Reference { value: None, kind, source: label.to_string() })
 }

@@ -4,6 +4,7 @@
 //! a report shows is a pure function of that folder.
 
 mod figure;
+mod verdict;
 
 use std::collections::BTreeMap;
 
@@ -11,6 +12,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use figure::{Axis, Curve, CurveStyle, Figure, FigureBody, Floor, Region, Scale, SlopeTriangle};
+pub use verdict::{Agreement, BoundKind, Expectation, Validation};
 
 /// Name of the schema written and read.
 pub const SCHEMA: &str = "fisura.results/1";
@@ -55,7 +57,7 @@ pub struct Environment {
 }
 
 /// Verdict of one check.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
     /// Within its bounds.
@@ -65,14 +67,16 @@ pub enum Status {
     /// The run broke down.
     Error,
     /// No bounds: a figure to read.
+    #[default]
     Info,
 }
 
 /// Kind of reference.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ReferenceKind {
     /// A closed form.
+    #[default]
     Exact,
     /// A theorem or an asymptotic rate.
     Theory,
@@ -87,7 +91,7 @@ pub enum ReferenceKind {
 }
 
 /// What a value is held against.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reference {
     /// Value, if it is one number.
     pub value: Option<f64>,
@@ -95,6 +99,17 @@ pub struct Reference {
     pub kind: ReferenceKind,
     /// Where it comes from.
     pub source: String,
+    /// Half width of its uncertainty, in the unit of the record: of the value, or of the curve in the norm of the record;
+    /// absent where none is known.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub uncertainty: Option<f64>,
+}
+
+impl Reference {
+    /// A reference whose uncertainty is not known, or does not matter.
+    pub fn new(value: Option<f64>, kind: ReferenceKind, source: impl Into<String>) -> Self {
+        Self { value, kind, source: source.into(), uncertainty: None }
+    }
 }
 
 /// Bounds and why they are what they are.
@@ -106,6 +121,9 @@ pub struct Accept {
     pub max: Option<f64>,
     /// Reason.
     pub why: String,
+    /// Where they come from, if they were not set before the result.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub kind: Option<BoundKind>,
 }
 
 /// Measured time; exempt from byte-for-byte comparison.
@@ -120,7 +138,7 @@ pub struct Timing {
 }
 
 /// One check and what it found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Record {
     /// `suite/case[/variant]/check`.
     pub id: String,
@@ -153,6 +171,12 @@ pub struct Record {
     pub accept: Accept,
     /// Verdict.
     pub status: Status,
+    /// Comparison with the uncertainty of the reference, where it has one.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub validation: Option<Validation>,
+    /// A band in which the value was expected; missing it fails nothing and is counted.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub expectation: Option<Expectation>,
     /// How, where and when, for errors and remarks.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub message: Option<String>,
@@ -160,32 +184,4 @@ pub struct Record {
     pub series: Option<String>,
     /// Measured time.
     pub timing: Timing,
-}
-
-impl Record {
-    /// The verdict that `value` deserves under `accept`: a missing or non-finite value fails unless there are no bounds.
-    pub fn judge(value: Option<f64>, accept: &Accept) -> Status {
-        if accept.min.is_none() && accept.max.is_none() {
-            return Status::Info;
-        }
-        let holds = value.is_some_and(|v| {
-            v.is_finite() && accept.min.is_none_or(|min| v >= min) && accept.max.is_none_or(|max| v <= max)
-        });
-        if holds { Status::Pass } else { Status::Fail }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_value_outside_its_bounds_or_missing_fails() {
-        let accept = Accept { min: Some(1.0), max: Some(2.0), why: String::new() };
-        assert_eq!(Record::judge(Some(1.5), &accept), Status::Pass);
-        for bad in [Some(0.9), Some(2.1), Some(f64::NAN), None] {
-            assert_eq!(Record::judge(bad, &accept), Status::Fail, "{bad:?}");
-        }
-        assert_eq!(Record::judge(None, &Accept::default()), Status::Info);
-    }
 }

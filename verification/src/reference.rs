@@ -15,7 +15,7 @@ mod source_file;
 
 use std::path::Path;
 
-pub use compare::{relative_rms, rms_difference};
+pub use compare::{relative_rms, relative_uncertainty, rms_difference, rms_uncertainty};
 pub use curve::ReferenceCurve;
 pub use error::ReferenceError;
 pub use quantity::quantities;
@@ -57,6 +57,8 @@ pub struct ReferenceValue {
     pub unit: &'static str,
     /// Value, SI.
     pub value: f64,
+    /// Half width of its uncertainty, SI; absent where none is known.
+    pub uncertainty: Option<f64>,
     /// What it is.
     pub note: String,
     /// Citation of its source.
@@ -89,10 +91,11 @@ pub struct ReferenceBand {
 }
 
 impl ReferenceValue {
-    /// The reference entry of a record that is held against this number.
-    pub fn reference(&self) -> Reference {
+    /// The reference entry of a record that is held against this number times `factor`.
+    pub fn reference(&self, factor: f64) -> Reference {
         let source = format!("{}: {} ({})", self.id, self.citation, self.name);
-        Reference { value: Some(self.value), kind: self.kind, source }
+        let uncertainty = self.uncertainty.map(|u| u * factor.abs());
+        Reference { uncertainty, ..Reference::new(Some(self.value * factor), self.kind, source) }
     }
 }
 
@@ -100,7 +103,7 @@ impl ReferenceBand {
     /// The reference entry of a record that is held against this band.
     pub fn reference(&self) -> Reference {
         let from = if self.sources.is_empty() { self.citation.clone() } else { self.sources.join(", ") };
-        Reference { value: None, kind: self.kind, source: format!("{}, {}: {from}", self.id, self.name) }
+        Reference::new(None, self.kind, format!("{}, {}: {from}", self.id, self.name))
     }
 }
 
@@ -152,6 +155,21 @@ impl Library {
     /// The number called `name` in folder `id`.
     pub fn value(&self, id: &str, name: &str) -> Option<&ReferenceValue> {
         self.values.iter().find(|v| v.id == id && v.name == name)
+    }
+
+    /// What is at the path `folder/name`, times `factor`: a number, or a curve (`folder/quantity`) at the time `at`, s.
+    ///
+    /// # Errors
+    /// If there is neither, or the curve has no ordinate at that time.
+    pub fn reference(&self, path: &str, at: Option<f64>, factor: f64) -> Result<Reference, String> {
+        let (folder, name) = path.split_once('/').ok_or("write reference = \"folder/name\"")?;
+        if let Some(value) = self.value(folder, name) {
+            return Ok(value.reference(factor));
+        }
+        let curve = self.curve(folder, name).ok_or_else(|| format!("no reference value or curve {path:?}"))?;
+        let at = at.ok_or_else(|| format!("{path:?} is a curve, and this measure has no time at which to read it"))?;
+        let outside = || format!("the curve {path:?} has no ordinate at {at:e} s");
+        curve.reference_at(at, factor).ok_or_else(outside)
     }
 
     /// All bands, in the order of the files.

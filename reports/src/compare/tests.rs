@@ -9,7 +9,7 @@ use crate::example::results;
 fn record(value: f64, min: Option<f64>, max: Option<f64>) -> Record {
     let mut record = results().records.remove(0);
     record.reference = None;
-    record.accept = Accept { min, max, why: "a test".into() };
+    record.accept = Accept { min, max, why: "a test".into(), kind: None };
     record.value = Some(value);
     record.status = Record::judge(record.value, &record.accept);
     record
@@ -57,7 +57,7 @@ fn moves_within_bounds_count_by_tolerance_and_room() {
     );
     assert_eq!(changed(&band, 3.2), (Change::Minor, Effect::Better));
     let mut order = record(3.99, Some(3.9), None);
-    order.reference = Some(Reference { value: Some(4.0), kind: ReferenceKind::Theory, source: "p + 1".into() });
+    order.reference = Some(Reference::new(Some(4.0), ReferenceKind::Theory, "p + 1"));
     assert_eq!(changed(&order, 3.93), (Change::Major, Effect::Worse), "the tolerance is 0.1");
 }
 

@@ -27,7 +27,15 @@ pub(super) struct Row {
     pub reference: Option<ReferenceCell>,
     pub bounds: String,
     pub why: String,
+    pub expectation: Option<ExpectationCell>,
     pub message: String,
+}
+
+#[derive(Serialize)]
+pub(super) struct ExpectationCell {
+    pub range: String,
+    pub met: bool,
+    pub source: String,
 }
 
 #[derive(Serialize)]
@@ -35,6 +43,7 @@ pub(super) struct ReferenceCell {
     pub value: String,
     pub kind: &'static str,
     pub source: String,
+    pub comparison: String,
 }
 
 /// A file beside the page.
@@ -128,10 +137,12 @@ pub(super) struct Page {
     pub verdict: Verdict,
     pub sentence: String,
     pub counts: String,
+    pub remarks: String,
     /// What is not on the page because of its size.
     pub missing: String,
     pub environment: Vec<(&'static str, String)>,
     pub broken: Vec<Row>,
+    pub unmet: Vec<Row>,
     pub suites: Vec<Suite>,
     pub timing: Vec<Picture>,
     pub sources: Vec<Source>,

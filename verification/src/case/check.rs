@@ -1,12 +1,12 @@
 //! The `[[check]]` tables of a case file.
 
-use super::Check;
+use super::{Check, ExpectedBand};
 use crate::measure::grid_convergence::Estimate;
-use crate::record::{Accept, ReferenceKind};
+use crate::record::{Accept, BoundKind, ReferenceKind};
 use crate::scene_file::fields::{Fields, Item};
 use crate::scene_file::units::{self, Dimension};
 
-const KEYS: [&str; 24] = [
+const KEYS: [&str; 27] = [
     "id",
     "formerly",
     "quantity",
@@ -20,6 +20,7 @@ const KEYS: [&str; 24] = [
     "expect",
     "expect_kind",
     "expect_source",
+    "uncertainty",
     "scale",
     "band",
     "variant",
@@ -30,7 +31,9 @@ const KEYS: [&str; 24] = [
     "max",
     "below",
     "above",
+    "bounds",
     "why",
+    "expectation",
 ];
 
 /// All checks, at least one.
@@ -66,7 +69,8 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
     let (at, expect) = (number("at"), number("expect"));
     let kind = fields.or("expect_kind", ReferenceKind::Exact, reference_kind);
     let expect_source = fields.or("expect_source", String::new(), Item::text);
-    for key in ["expect_kind", "expect_source"].into_iter().filter(|_| fields.get("expect").is_none()) {
+    let uncertainty = fields.maybe("uncertainty", positive);
+    for key in ["expect_kind", "expect_source", "uncertainty"].into_iter().filter(|_| fields.get("expect").is_none()) {
         fields.get(key).and_then(|i| i.fail::<()>(format!("{key} without expect"), "add expect, or remove it"));
     }
     let scale = fields.or("scale", 1.0, |i| i.quantity(Dimension::NONE));
@@ -75,6 +79,7 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
     let meshes = fields.maybe("meshes", |i| i.choice(&Estimate::WORDS));
     let order = number("order");
     let accept = read_accept(&fields);
+    let expectation = fields.maybe("expectation", read_expectation);
     Some(Check {
         id: id?,
         formerly: formerly?,
@@ -88,6 +93,7 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
         expect: expect?,
         expect_kind: kind?,
         expect_source: expect_source?,
+        uncertainty: uncertainty?,
         scale: scale?,
         band: band?,
         variant: variant?,
@@ -96,7 +102,26 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
         meshes: meshes?,
         order: order?,
         accept: accept?,
+        expectation: expectation?,
     })
+}
+
+/// `expectation = { min = 0.165, max = 0.2, source = "…" }`, or `{ band = "plate-events/…" }`.
+fn read_expectation(item: &Item<'_>) -> Option<ExpectedBand> {
+    let fields = item.fields(&["min", "max", "band", "source"])?;
+    let number = |key: &str| fields.maybe(key, any_quantity);
+    let (min, max) = (number("min")?, number("max")?);
+    let (band, source) = (fields.maybe("band", Item::text)?, fields.or("source", String::new(), Item::text)?);
+    if band.is_some() != (min.is_none() && max.is_none()) {
+        return item.fail("an expectation is a band of the reference data or has bounds", "give band, or min and max");
+    }
+    if band.is_none() && source.trim().is_empty() {
+        return item.fail("an expectation without a source", "add source = \"who expects it\"");
+    }
+    if min.zip(max).is_some_and(|(min, max)| min > max) {
+        return item.fail("min is above max", "swap the two");
+    }
+    Some(ExpectedBand { range: [min, max], band, source })
 }
 
 /// `below = 0.1, above = 0.5`: bounds around the reference value.
@@ -112,12 +137,14 @@ fn read_around(fields: &Fields<'_>) -> Option<Option<[f64; 2]>> {
     }
 }
 
-/// Bounds need a reason.
+/// Bounds need a reason, and those by uncertainty an uncertainty.
 fn read_accept(fields: &Fields<'_>) -> Option<Accept> {
     let number = |key: &str| fields.maybe(key, any_quantity);
     let (min, max) = (number("min"), number("max"));
     let why = fields.or("why", String::new(), Item::text);
-    let (min, max, why) = (min?, max?, why?);
+    let known = [("regression", BoundKind::Regression), ("validation", BoundKind::Validation)];
+    let kind = fields.maybe("bounds", |i| i.choice(&known));
+    let (min, max, why, kind) = (min?, max?, why?, kind?);
     let given = |keys: &[&str]| keys.iter().any(|key| fields.get(key).is_some());
     let kinds = [given(&["min", "max"]), given(&["below", "above"]), given(&["band"])];
     if kinds.into_iter().filter(|kind| *kind).count() > 1 {
@@ -128,10 +155,23 @@ fn read_accept(fields: &Fields<'_>) -> Option<Accept> {
     {
         return fields.get("min")?.fail(format!("min {low} is above max {high}"), "no value lies between them");
     }
-    if given(&["min", "max", "below", "above"]) && why.trim().is_empty() {
+    let bounded = given(&["min", "max", "below", "above"]);
+    if (bounded || kind.is_some()) && why.trim().is_empty() {
         return fields.item().fail("bounds without a reason", "add why = \"where the bound comes from\"");
     }
-    Some(Accept { min, max, why })
+    let wrong = |message, remedy| fields.get("bounds")?.fail(message, remedy);
+    match kind {
+        Some(BoundKind::Validation) if bounded || given(&["band"]) => {
+            wrong("bounds of its own beside those of the uncertainty", "remove min, max, below, above and band")
+        }
+        Some(BoundKind::Validation) if given(&["expect"]) && !given(&["uncertainty"]) => {
+            wrong("bounds by an uncertainty that is not given", "add uncertainty, the half width of that of expect")
+        }
+        Some(BoundKind::Regression) if !bounded => {
+            wrong("bounds = \"regression\" without bounds", "give min and max, or below and above")
+        }
+        _ => Some(Accept { min, max, why, kind }),
+    }
 }
 
 fn reference_kind(item: &Item<'_>) -> Option<ReferenceKind> {
@@ -160,6 +200,14 @@ fn read_id(item: &Item<'_>) -> Option<String> {
 fn identifier(words: &str) -> String {
     let mapped: String = words.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { ' ' }).collect();
     mapped.split_whitespace().collect::<Vec<_>>().join("-")
+}
+
+/// As [`any_quantity`], above zero.
+fn positive(item: &Item<'_>) -> Option<f64> {
+    match any_quantity(item)? {
+        value if value > 0.0 => Some(value),
+        value => item.fail(format!("{value} is no uncertainty"), "give a positive number, or none if it is unknown"),
+    }
 }
 
 /// A number, or a string with any unit, in SI.

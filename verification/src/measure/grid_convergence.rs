@@ -16,13 +16,17 @@
 //! **Safety factor** F: 1.25 with three meshes, 3 with two and an order of theory. Where theory is known and the observed
 //! order departs from it by more than a tenth, p is limited to the range from 1/2 to theory and F is 3 (Oberkampf and Roy,
 //! Verification and Validation in Scientific Computing, 2010, section 8.6.3); within a tenth, p is that of theory.
+//!
+//! **Numerical uncertainty** of the value on the finest mesh, for its comparison with a reference: U_num = GCI |f1|. A sequence
+//! that has no index still has an uncertainty, three times its range (Eça and Hoekstra, J. Mar. Sci. Technol. 14, 2009).
 
 use fisura::scene::Mesh;
 use fisura::spans::largest_spans;
 
-use super::{Measured, Run, expected, measure};
+use super::{Measured, Run, expected, held_against, measure};
 use crate::case::Check;
 use crate::expand::CaseScene;
+use crate::extremes::spread;
 use crate::reference::Library;
 
 /// Extrapolation by an order below this would go far beyond what was computed.
@@ -30,6 +34,8 @@ const LEAST_ORDER: f64 = 0.5;
 /// Observed and theoretical order agree within this fraction.
 const AGREEMENT: f64 = 0.1;
 const ITERATIONS: usize = 500;
+/// Uncertainty over the range of a sequence without an order.
+const NO_ORDER: f64 = 3.0;
 
 /// What a check makes of the values of its measure on all meshes: the key `meshes`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,14 +46,17 @@ pub enum Estimate {
     Richardson,
     /// Relative uncertainty of the value on the finest mesh.
     GridConvergenceIndex,
+    /// The value on the finest mesh, with its numerical uncertainty.
+    FinestMesh,
 }
 
 impl Estimate {
     /// Words of the key.
-    pub const WORDS: [(&str, Self); 3] = [
+    pub const WORDS: [(&str, Self); 4] = [
         ("observed-order", Self::ObservedOrder),
         ("richardson", Self::Richardson),
         ("grid-convergence-index", Self::GridConvergenceIndex),
+        ("finest-mesh", Self::FinestMesh),
     ];
 }
 
@@ -70,16 +79,32 @@ pub fn over_meshes(estimate: Estimate, check: &Check, runs: &[Run], library: &Li
             None => missing.push(run.name),
         }
     }
+    let mut u_num = None;
     let found = match missing.as_slice() {
+        [] if estimate == Estimate::FinestMesh => on_finest_mesh(meshes, check.order).map(|(value, uncertainty)| {
+            u_num = Some(uncertainty);
+            value
+        }),
         [] => combine(estimate, meshes, check.order),
         names => Err(format!("what is measured did not happen on every mesh: not in {}", names.join(", "))),
     };
-    let factor = if estimate == Estimate::Richardson { check.scale } else { 1.0 };
-    let reference = expected(check, factor);
-    Ok(match found {
-        Ok(value) => Measured { value: Some(value), reference, message: None },
-        Err(message) => Measured { value: None, reference, message: Some(message) },
-    })
+    let reference = match estimate {
+        Estimate::Richardson | Estimate::FinestMesh => held_against(check, check.scale, library)?,
+        _ => expected(check, 1.0),
+    };
+    let (value, message) = found.map_or_else(|message| (None, Some(message)), |value| (Some(value), None));
+    Ok(Measured { value, reference, message, u_num })
+}
+
+/// The value on the finest of the meshes (h, value), in any order, and its numerical uncertainty.
+fn on_finest_mesh(mut meshes: Vec<(f64, f64)>, theory: Option<f64>) -> Result<(f64, f64), String> {
+    meshes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    meshes.truncate(3);
+    let &(_, value) = meshes.first().ok_or("there is no mesh")?;
+    let range = spread(&meshes.iter().map(|(_, value)| *value).collect::<Vec<_>>());
+    let index = combine(Estimate::GridConvergenceIndex, meshes.clone(), theory);
+    let uncertainty = index.map_or(NO_ORDER * range, |index| index * value.abs());
+    if uncertainty.is_finite() { Ok((value, uncertainty)) } else { Err("a value is not a number".into()) }
 }
 
 /// The estimate from pairs (h, value) in any order; the finest three count. The error says why there is none.
@@ -110,6 +135,7 @@ fn combine(estimate: Estimate, mut meshes: Vec<(f64, f64)>, theory: Option<f64>)
     let correction = (f1 - f2) / (ratio.powf(p) - 1.0);
     match estimate {
         Estimate::Richardson => Ok(f1 + correction),
+        Estimate::FinestMesh => Ok(*f1),
         _ if *f1 == 0.0 => Err("the value is zero, and a relative index has no meaning".into()),
         _ => Ok(safety * (correction / f1).abs()),
     }

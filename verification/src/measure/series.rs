@@ -4,11 +4,11 @@ use fisura::material::ElasticModuli;
 use nalgebra::{DMatrix, DVector};
 
 use super::tip::fitted_slope;
-use super::{Measured, Run, column, curve_reference, position};
+use super::{Measured, Run, column, position};
 use crate::case::Check;
 use crate::extremes::{self, larger};
 use crate::record::{Reference, ReferenceKind};
-use crate::reference::{self, Library};
+use crate::reference::{Library, relative_rms, relative_uncertainty, rms_difference, rms_uncertainty};
 
 /// Root mean square against a reference curve, relative or absolute. Curves of energy increments are compared with
 /// increments.
@@ -19,9 +19,15 @@ pub(super) fn against_curve(name: &str, check: &Check, run: &Run, library: &Libr
     let column = column(check)?;
     let values = if quantity.ends_with("increment") { run.increment(column)? } else { run.column(column)? };
     let [from, to] = check.window;
-    let compare = if name == "relative-rms" { reference::relative_rms } else { reference::rms_difference };
-    let value = compare(curve, run.times()?, &values, from, to);
-    Ok(Measured { value, reference: curve_reference(curve.kind, &curve.label), message: None })
+    let times = run.times()?;
+    let (value, uncertainty) = if name == "relative-rms" {
+        (relative_rms(curve, times, &values, from, to), relative_uncertainty(curve, from, to))
+    } else {
+        let uncertainty = rms_uncertainty(curve, from, to).map(|u| u * check.scale.abs());
+        (rms_difference(curve, times, &values, from, to), uncertainty)
+    };
+    let reference = Some(Reference { uncertainty, ..Reference::new(None, curve.kind, &curve.label) });
+    Ok(Measured { value, reference, ..Measured::default() })
 }
 
 /// Linear interpolation at the time `at`.
@@ -53,12 +59,8 @@ pub(super) fn slope_over_plane_wave_power(check: &Check, run: &Run) -> Result<Me
     let stress = body.tractions.first().ok_or("no traction")?.stress[1];
     let impedance = material.density * moduli.dilatational_speed(material.density);
     let power = (high[0] - low[0]) * stress * stress / impedance * scene.analysis.thickness;
-    let reference = Reference {
-        value: check.expect,
-        kind: ReferenceKind::Exact,
-        source: "two plane waves: W sigma²/(rho c_d)".to_string(),
-    };
-    Ok(Measured { value: Some(slope(check, run)? / power), reference: Some(reference), message: None })
+    let reference = Some(Reference::new(check.expect, ReferenceKind::Exact, "two plane waves: W sigma²/(rho c_d)"));
+    Ok(Measured { value: Some(slope(check, run)? / power), reference, ..Measured::default() })
 }
 
 /// Largest |closure| over the largest energy of the run.

@@ -75,6 +75,13 @@ pub static MEASURES: [Measure; 24] = [
     looking("asymmetry", LooksAt::PhaseField, &[], |q| some(tip::asymmetry(q.run))),
 ];
 
+impl Measure {
+    /// Whether it compares the run with a curve of the reference data, as a whole.
+    pub fn compares_curves(&self) -> bool {
+        self.needs.contains(&"reference")
+    }
+}
+
 const fn of_column(
     name: &'static str,
     needs: &'static [&'static str],

@@ -36,6 +36,33 @@ pub fn rms_difference(reference: &ReferenceCurve, x: &[f64], y: &[f64], from: f6
     Some((squares(&pairs) / pairs.len() as f64).sqrt())
 }
 
+/// The uncertainty of the reference in the norm of [`relative_rms`]: the distance of a result that is off by it everywhere.
+///
+/// `None` if the reference has no point in [from, to], is zero there, or if none is known.
+pub fn relative_uncertainty(reference: &ReferenceCurve, from: f64, to: f64) -> Option<f64> {
+    let rows = rows(reference, from, to);
+    let scale = root_of_squares(rows.iter().map(|&i| reference.y[i]));
+    let size = root_of_squares(rows.iter().map(|&i| reference.uncertainty_at_row(i)));
+    (scale > 0.0 && size > 0.0).then(|| size / scale)
+}
+
+/// The uncertainty of the reference in the norm of [`rms_difference`]; SI, `None` as [`relative_uncertainty`].
+pub fn rms_uncertainty(reference: &ReferenceCurve, from: f64, to: f64) -> Option<f64> {
+    let rows = rows(reference, from, to);
+    let size = root_of_squares(rows.iter().map(|&i| reference.uncertainty_at_row(i)));
+    (size > 0.0).then(|| size / (rows.len() as f64).sqrt())
+}
+
+fn root_of_squares(values: impl Iterator<Item = f64>) -> f64 {
+    values.map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// Rows of the reference in [from, to], whose ends are stretched by 1e-9 of the larger one.
+fn rows(reference: &ReferenceCurve, from: f64, to: f64) -> Vec<usize> {
+    let slack = 1e-9 * from.abs().max(to.abs());
+    (0..reference.x.len()).filter(|&i| (from - slack..=to + slack).contains(&reference.x[i])).collect()
+}
+
 fn squares(pairs: &[(f64, f64)]) -> f64 {
     pairs.iter().map(|(y, r)| (y - r) * (y - r)).sum()
 }

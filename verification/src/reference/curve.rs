@@ -2,7 +2,7 @@
 
 use super::Obtained;
 use crate::history::Table;
-use crate::record::{Curve, CurveStyle, ReferenceKind};
+use crate::record::{Curve, CurveStyle, Reference, ReferenceKind};
 
 /// A curve from elsewhere, in SI units, with its uncertainty.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,6 +33,8 @@ pub struct ReferenceCurve {
     pub uncertainty_absolute: f64,
     /// Half width of the uncertainty relative to the ordinate; the larger of the two holds.
     pub uncertainty_relative: f64,
+    /// Half width of the uncertainty of the abscissae, SI: moves a steep ordinate by its slope.
+    pub uncertainty_x: f64,
     /// How the uncertainty was estimated, or that none is known.
     pub uncertainty_note: String,
 }
@@ -55,6 +57,24 @@ impl ReferenceCurve {
     /// Half width of the uncertainty at an ordinate, SI; 0 where none is known.
     pub fn uncertainty(&self, y: f64) -> f64 {
         self.uncertainty_absolute.max(self.uncertainty_relative * y.abs())
+    }
+
+    /// Half width of the uncertainty at row `i`, SI, with what the abscissa adds where the curve is steep; 0 where none is
+    /// known.
+    pub(super) fn uncertainty_at_row(&self, i: usize) -> f64 {
+        let (before, after) = (i.saturating_sub(1), (i + 1).min(self.x.len() - 1));
+        let slope =
+            if after > before { (self.y[after] - self.y[before]) / (self.x[after] - self.x[before]) } else { 0.0 };
+        self.uncertainty(self.y[i]).hypot(self.uncertainty_x * slope)
+    }
+
+    /// The ordinate at `x` as what a record is held against, times `factor`; `None` as [`Self::at`].
+    pub fn reference_at(&self, x: f64, factor: f64) -> Option<Reference> {
+        let (i, weight) = bracket(&self.x, x)?;
+        let value = self.at(x)?;
+        let uncertainty = self.uncertainty_at_row(if weight < 0.5 { i } else { i + 1 }) * factor.abs();
+        let known = (uncertainty > 0.0).then_some(uncertainty);
+        Some(Reference { uncertainty: known, ..Reference::new(Some(value * factor), self.kind, &self.label) })
     }
 
     /// Path of the curve's series in a results folder.

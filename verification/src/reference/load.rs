@@ -126,11 +126,17 @@ impl SourceReader {
     fn value(&self, spanned: &Spanned<ValueEntry>) -> Result<ReferenceValue, ReferenceError> {
         let entry = spanned.as_ref();
         let unit = Unit::read(&entry.unit, None).map_err(self.unit_error(spanned, "[[value]] unit"))?;
+        if let Some(uncertainty) = entry.uncertainty.filter(|u| !(u.is_finite() && *u > 0.0)) {
+            let message = format!("{uncertainty} is not possible");
+            return Err(self.error(spanned, "[[value]] uncertainty", message, "a positive number, or none if unknown"));
+        }
+        let uncertainty = entry.uncertainty.map(|u| unit.to_si(u)).transpose();
         Ok(ReferenceValue {
             id: self.source.id.clone(),
             name: entry.name.clone(),
             unit: unit.si,
             value: unit.to_si(entry.value).map_err(self.unit_error(spanned, "[[value]] value"))?,
+            uncertainty: uncertainty.map_err(self.unit_error(spanned, "[[value]] uncertainty"))?,
             note: entry.note.clone(),
             citation: self.source.citation.clone(),
             kind: self.source.kind,

@@ -70,6 +70,7 @@ impl SourceReader {
         self.check_order(spanned, &mut points)?;
         let gap = entry.max_gap.map(|gap| x_unit.to_si(gap)).transpose();
         let absolute = y_unit.to_si(entry.uncertainty_absolute);
+        let along = x_unit.to_si(entry.uncertainty_x);
         let (x, y) = points.into_iter().unzip();
         Ok(Some(ReferenceCurve {
             id: entry.variant.as_ref().map_or(self.source.id.clone(), |v| format!("{}/{v}", self.source.id)),
@@ -85,6 +86,7 @@ impl SourceReader {
             max_gap: gap.map_err(self.unit_error(spanned, "max_gap"))?,
             uncertainty_absolute: absolute.map_err(self.unit_error(spanned, "uncertainty_absolute"))?,
             uncertainty_relative: entry.uncertainty_relative,
+            uncertainty_x: along.map_err(self.unit_error(spanned, "uncertainty_x"))?,
             uncertainty_note: entry.uncertainty_note.clone(),
         }))
     }
@@ -94,6 +96,7 @@ impl SourceReader {
         let parts = [
             ("uncertainty_absolute", entry.uncertainty_absolute),
             ("uncertainty_relative", entry.uncertainty_relative),
+            ("uncertainty_x", entry.uncertainty_x),
             ("max_gap", entry.max_gap.unwrap_or(0.0)),
         ];
         if let Some((key, value)) = parts.iter().find(|(_, v)| !v.is_finite() || *v < 0.0) {

@@ -74,6 +74,8 @@ pub(super) struct CurveEntry {
     pub(super) subtract_first: bool,
     pub(super) uncertainty_absolute: f64,
     pub(super) uncertainty_relative: f64,
+    #[serde(default)]
+    pub(super) uncertainty_x: f64,
     pub(super) uncertainty_note: String,
 }
 
@@ -84,6 +86,7 @@ pub(super) struct ValueEntry {
     pub(super) name: String,
     pub(super) unit: String,
     pub(super) value: f64,
+    pub(super) uncertainty: Option<f64>,
     pub(super) note: String,
 }
 

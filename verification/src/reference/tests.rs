@@ -197,6 +197,26 @@ fn distances_follow_their_formulas() {
 }
 
 #[test]
+fn uncertainties_are_measured_in_the_norms_of_the_distances() {
+    let steep = curve("0,100\n1,100\n2,104\n3,108", "uncertainty_x = 0.5\n");
+    // relative 0.1, and 0.5 us of a slope of 0, 2, 4 and 4 per us
+    let rows = [10.0_f64, 10.0_f64.hypot(1.0), 10.4_f64.hypot(2.0), 10.8_f64.hypot(2.0)];
+    let norm = rows.iter().map(|u| u * u).sum::<f64>().sqrt();
+    let size = [100.0_f64, 100.0, 104.0, 108.0].iter().map(|y| y * y).sum::<f64>().sqrt();
+    let close =
+        |found: Option<f64>, expected: f64| assert!((found.unwrap() / expected - 1.0).abs() < 1e-12, "{found:?}");
+    close(relative_uncertainty(&steep, 0.0, 3e-6), norm / size);
+    close(rms_uncertainty(&steep, 0.0, 3e-6), norm / 2.0);
+    close(rms_uncertainty(&steep, 2e-6, 2e-6), rows[2]);
+    close(steep.reference_at(2e-6, -2.0).unwrap().uncertainty, 2.0 * rows[2]);
+    assert_eq!(steep.reference_at(2e-6, -2.0).unwrap().value, Some(-208.0));
+    assert_eq!(relative_uncertainty(&steep, 4e-6, 5e-6), None, "no row there");
+    let unknown = ReferenceCurve { uncertainty_absolute: 0.0, uncertainty_relative: 0.0, uncertainty_x: 0.0, ..steep };
+    assert_eq!((relative_uncertainty(&unknown, 0.0, 3e-6), rms_uncertainty(&unknown, 0.0, 3e-6)), (None, None));
+    assert_eq!(unknown.reference_at(2e-6, 1.0).unwrap().uncertainty, None);
+}
+
+#[test]
 fn a_run_that_ended_early_has_no_distance() {
     let curve = curve("0,3\n1,4\n2,5\n", "");
     assert_eq!(relative_rms(&curve, &[0.0, 1e-6], &[3.0, 4.0], 0.0, 2e-6), None);
@@ -229,6 +249,7 @@ fn what_is_wrong_is_named_with_its_place_and_remedy() {
         (good.replace("curve.csv", "gone.csv"), csv, vec!["line 7", "gone.csv", "picture-only"]),
         (good.replace("y = \"elastic_j_per_m\"", "y = \"e\""), csv, vec!["no column \"e\"", "elastic_j_per_m"]),
         (good.replace("absolute = 0.5", "absolute = -0.5"), csv, vec!["uncertainty_absolute", "at least 0"]),
+        (format!("{good}uncertainty_x = -1.0\n"), csv, vec!["uncertainty_x", "at least 0"]),
         (good.replace("note = \"made up\"", "note = \"\""), csv, vec!["uncertainty_note", "estimated"]),
         (format!("{good}{CURVE}"), csv, vec!["line 19", "a second curve", "variant"]),
         (good.clone(), "time_us,elastic_j_per_m\n0,1\n0,2\n", vec!["stands still", "sort"]),

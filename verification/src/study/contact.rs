@@ -70,7 +70,7 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 fn exact(value: f64, source: &str) -> Option<Reference> {
-    Some(Reference { value: Some(value), kind: ReferenceKind::Exact, source: source.into() })
+    Some(Reference::new(Some(value), ReferenceKind::Exact, source))
 }
 
 /// What the ledger of a run has to show, gathered sample by sample.

@@ -41,7 +41,7 @@ pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stu
         for per_length in [1, 2] {
             let (energy, error) = crack(degree, per_length)?;
             let variant = format!("p={degree}, h=l0/{per_length}");
-            let one = Reference { value: Some(1.0), kind: ReferenceKind::Exact, source: "AT2 in one dimension".into() };
+            let one = Reference::new(Some(1.0), ReferenceKind::Exact, "AT2 in one dimension");
             findings.add(&variant, "surface energy of the crack over Gc", energy, Some(one));
             findings.add(&variant, "phase field, largest error at a control line of its knots", error, None);
         }

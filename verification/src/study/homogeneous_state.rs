@@ -41,7 +41,7 @@ pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, Study
         let stress = largest(table.columns[1].iter().zip(&table.columns[2]).map(|(a, b)| (a - b).abs()));
         findings.add(&scene.name, "stress, largest error over the peak stress", stress, None);
         let (peak_strain, peak_stress) = peak(&table);
-        let exact = |what: &str| Some(Reference { value: Some(1.0), kind: ReferenceKind::Exact, source: what.into() });
+        let exact = |what: &str| Some(Reference::new(Some(1.0), ReferenceKind::Exact, what));
         findings.add(&scene.name, "strain at the peak over closed form", peak_strain, exact("sqrt(Gc/(6 l0 M))"));
         let source = exact("(9/16) sqrt(M Gc/(6 l0))");
         findings.add(&scene.name, "stress at the peak over closed form", peak_stress, source);

@@ -48,7 +48,7 @@ pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
 
 pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
-    let one = |source: &str| Some(Reference { value: Some(1.0), kind: ReferenceKind::Exact, source: source.into() });
+    let one = |source: &str| Some(Reference::new(Some(1.0), ReferenceKind::Exact, source));
     for degree in [2, 3] {
         for (plane, word) in [(Plane::Strain, "strain"), (Plane::Stress, "stress")] {
             let speeds = Speeds::new(plane);

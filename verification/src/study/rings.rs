@@ -142,11 +142,8 @@ fn in_microseconds(variant: &str, quantity: &str, time: Option<f64>, reference: 
 
 fn add_events(findings: &mut Findings, variant: &str, watch: &Watch) {
     for ((quantity, found), paper) in EVENTS.iter().zip(watch.events()).zip(PAPER) {
-        let reference = paper.map(|time| Reference {
-            value: Some(1e6 * time),
-            kind: ReferenceKind::Literature,
-            source: "the words of the paper, section 5.2; the geometry is assumed".to_string(),
-        });
+        let source = "the words of the paper, section 5.2; the geometry is assumed";
+        let reference = paper.map(|time| Reference::new(Some(1e6 * time), ReferenceKind::Literature, source));
         findings.measurements.push(in_microseconds(variant, quantity, found, reference));
     }
 }

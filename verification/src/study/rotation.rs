@@ -38,8 +38,7 @@ pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, Stud
         };
         let off = frame.fields()[0].points().iter().flat_map(|p| [p.strain[0] - left, p.strain[1] - left, p.strain[2]]);
         let back = frame.fields()[0].points().iter().flat_map(|p| p.displacement);
-        let exact =
-            |source: &str| Some(Reference { value: Some(0.0), kind: ReferenceKind::Exact, source: source.to_string() });
+        let exact = |source: &str| Some(Reference::new(Some(0.0), ReferenceKind::Exact, source));
         let source = exact("no strain (Hencky); 1000 (cos θ − 1) in both directions (linear)");
         findings.add(name, "strain after a revolution, less the exact one", largest(off.map(f64::abs)), source);
         findings.add(name, "displacement after a revolution", largest(back.map(f64::abs)), exact("none"));

@@ -107,7 +107,7 @@ pub fn run_scenes(scenes: &[CaseScene]) -> (Vec<FinishedScene>, Option<Stopped>)
 /// Numbers of the scenes that a check has a record for; the finest for one that combines all meshes.
 pub fn concerned(check: &Check, scenes: &[CaseScene]) -> Vec<usize> {
     let about = |index: &usize| match (&check.variant, &check.against) {
-        (Some(variant), _) => scenes[*index].name == *variant,
+        (Some(_), _) => check.is_about(&scenes[*index].name),
         (None, Some(against)) => scenes[*index].name != *against,
         (None, None) => true,
     };

@@ -25,11 +25,11 @@ fn total_frame(scene: &Scene) -> Result<TotalFrame, StudyError> {
 }
 
 fn exact(value: f64, source: &str) -> Option<Reference> {
-    Some(Reference { value: Some(value), kind: ReferenceKind::Exact, source: source.into() })
+    Some(Reference::new(Some(value), ReferenceKind::Exact, source))
 }
 
 fn theory(value: f64, source: &str) -> Option<Reference> {
-    Some(Reference { value: Some(value), kind: ReferenceKind::Theory, source: source.into() })
+    Some(Reference::new(Some(value), ReferenceKind::Theory, source))
 }
 
 /// A chart with logarithmic axes.

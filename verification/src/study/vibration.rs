@@ -42,8 +42,7 @@ pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stu
         for (mass, word) in [(Mass::Consistent, "consistent"), (Mass::Lumped, "lumped")] {
             let energies = vibrate(degree, mass)?;
             let variant = format!("p={degree}, {word} mass");
-            let quarter =
-                Reference { value: Some(0.25), kind: ReferenceKind::Theory, source: "velocity Verlet".into() };
+            let quarter = Reference::new(Some(0.25), ReferenceKind::Theory, "velocity Verlet");
             let oscillation = "energy at whole steps, oscillation over (omega dt)^2";
             findings.add(&variant, oscillation, energies.oscillation(), Some(quarter));
             findings.add(&variant, "energy at whole steps, relative drift", energies.drift(), None);

@@ -9,7 +9,7 @@ use super::{CaseOutcome, VerifyError, write_series};
 use crate::case::{Case, Check};
 use crate::expand::CaseScene;
 use crate::measure::{Measured, expected};
-use crate::record::{Accept, Record, Status, Timing};
+use crate::record::{Accept, BoundKind, Expectation, Record, Status, Timing};
 use crate::reference::{Library, ReferenceBand};
 use crate::study::scene::{FinishedScene, describe, evaluate, run_scenes};
 use crate::study::{Findings, Study, find};
@@ -27,7 +27,7 @@ pub(super) fn run_case(
             let (finished, stopped) = run_scenes(&prepared.scenes);
             judge_runs(case, prepared, &finished, stopped.as_ref(), out, library)
         }
-        Some(study) => judge_study(case, prepared, study, out),
+        Some(study) => judge_study(case, prepared, study, out, library),
     }
 }
 
@@ -58,6 +58,7 @@ fn judge_runs(
         let scene = &scenes[planned.scene.unwrap_or_default()];
         let check = &case.checks[planned.check];
         let mut record = bare_record(case, planned);
+        record.expectation = expectation(check, library);
         record.timing =
             finished.iter().find(|run| run.case_scene.name == scene.name).map_or(record.timing, |run| run.timing);
         record.parameters = parameters(scene);
@@ -76,16 +77,35 @@ fn in_band(record: &mut Record, check: &Check, measured: Measured, library: &Lib
     let Some(path) = &check.band else { return Ok(measured) };
     let band = find_band(library, path).ok_or_else(|| format!("no reference band {path:?}"))?;
     record.accept = bounds_of(band, check.scale);
-    Ok(Measured { reference: Some(band.reference()), ..measured })
+    Ok(Measured { reference: measured.reference.or(Some(band.reference())), ..measured })
 }
 
 fn bounds_of(band: &ReferenceBand, scale: f64) -> Accept {
     let why = format!("what the sources say: {}", band.sources.join(", "));
-    Accept { min: Some(band.min * scale), max: Some(band.max * scale), why }
+    Accept { min: Some(band.min * scale), max: Some(band.max * scale), why, kind: None }
+}
+
+/// What a check expects beside its bounds, not yet held against anything.
+fn expectation(check: &Check, library: &Library) -> Option<Expectation> {
+    let expected = check.expectation.as_ref()?;
+    let ([mut min, mut max], mut source) = (expected.range, expected.source.clone());
+    if let Some(band) = expected.band.as_ref().and_then(|path| find_band(library, path)) {
+        (min, max) = (Some(band.min * check.scale), Some(band.max * check.scale));
+        if source.is_empty() {
+            source = band.reference().source;
+        }
+    }
+    Some(Expectation { min, max, met: false, source })
 }
 
 /// Checks of any other study: each names a quantity that the study measures.
-fn judge_study(case: &Case, prepared: &Prepared, study: &Study, out: &Path) -> Result<CaseOutcome, VerifyError> {
+fn judge_study(
+    case: &Case,
+    prepared: &Prepared,
+    study: &Study,
+    out: &Path,
+    library: &Library,
+) -> Result<CaseOutcome, VerifyError> {
     let start = Instant::now();
     let found = (study.run)(case, &prepared.scenes).and_then(|findings| {
         watch::check()?;
@@ -103,6 +123,7 @@ fn judge_study(case: &Case, prepared: &Prepared, study: &Study, out: &Path) -> R
     let judged = prepared.records.iter().map(|planned| {
         let mut record = bare_record(case, planned);
         (record.timing, record.series) = (timing, series.clone());
+        record.expectation = expectation(&case.checks[planned.check], library);
         let scene = prepared.scenes.iter().find(|scene| scene.name == planned.variant);
         record.parameters = scene.map(parameters).unwrap_or_default();
         judge_finding(record, &case.checks[planned.check], planned, &findings)
@@ -117,7 +138,7 @@ fn judge_finding(mut record: Record, check: &Check, planned: &Planned, findings:
     let Some(measurement) = found else { return failed(record, "the study did not measure this, as it should") };
     record.unit.clone_from(&measurement.unit);
     let reference = expected(check, 1.0).or_else(|| measurement.reference.clone());
-    judge(record, check, Measured { value: measurement.value, reference, message: None })
+    judge(record, check, Measured { value: measurement.value, reference, ..Measured::default() })
 }
 
 /// A record of what could not be measured.
@@ -135,10 +156,12 @@ fn judge(mut record: Record, check: &Check, measured: Measured) -> Record {
     }
     record.value = measured.value;
     record.reference = measured.reference;
-    record.status = Record::judge(record.value, &record.accept);
+    record.decide(measured.u_num);
     if record.value.is_none() {
         let otherwise = || "what is measured did not happen within the run".to_string();
         record.message = Some(measured.message.unwrap_or_else(otherwise));
+    } else if record.accept.kind == Some(BoundKind::Validation) && record.validation.is_none() {
+        record.message = Some("the reference has no uncertainty to be judged by".to_string());
     }
     record
 }
@@ -161,6 +184,8 @@ fn bare_record(case: &Case, planned: &Planned) -> Record {
         reference: None,
         accept: check.accept.clone(),
         status: Status::Info,
+        validation: None,
+        expectation: None,
         message: None,
         series: None,
         timing: Timing::default(),

@@ -17,7 +17,7 @@ use crate::study::scene::concerned;
 use crate::study::{INPUTS, Offer, STUDIES, Study, find};
 
 /// Keys of a check that every study reads.
-const EVERYWHERE: [&str; 13] = [
+const EVERYWHERE: [&str; 16] = [
     "id",
     "formerly",
     "quantity",
@@ -26,11 +26,14 @@ const EVERYWHERE: [&str; 13] = [
     "expect",
     "expect_kind",
     "expect_source",
+    "uncertainty",
     "min",
     "max",
     "below",
     "above",
+    "bounds",
     "why",
+    "expectation",
 ];
 
 /// A case that can run.
@@ -105,6 +108,7 @@ pub fn prepare(case: &Case, library: &Library) -> Result<Prepared, SceneFileErro
             }
         }
     }
+    wrong.look_at_expectations(library);
     wrong.look_for_twins(&records);
     wrong.look_for_copies();
     if wrong.problems.is_empty() { Ok(Prepared { scenes, records }) } else { Err(wrong.error()) }
@@ -180,7 +184,7 @@ impl Wrong<'_> {
             self.note(key("quantity"), "the study does not measure this", remedy);
             return Vec::new();
         }
-        let named = |offer: &&&Offer| check.variant.as_ref().is_none_or(|variant| *variant == offer.variant);
+        let named = |offer: &&&Offer| check.is_about(&offer.variant);
         let meant: Vec<&&Offer> = found.iter().filter(named).collect();
         if meant.is_empty() {
             let known = distinct(found.iter().map(|offer| offer.variant.as_str()));
@@ -200,6 +204,17 @@ impl Wrong<'_> {
             self.note(key("unit"), message, format!("unit = {:?}, or leave it out", offer.unit));
         }
         meant.iter().map(|offer| Planned { check: index, variant: offer.variant.clone(), scene: None }).collect()
+    }
+
+    /// Expectations in bands that are not there.
+    fn look_at_expectations(&mut self, library: &Library) {
+        for (index, check) in self.case.checks.iter().enumerate() {
+            let band = check.expectation.as_ref().and_then(|expected| expected.band.as_ref());
+            if let Some(path) = band.filter(|path| find_band(library, path).is_none()) {
+                let key = format!("check.{index}.expectation.band");
+                self.note(key, format!("no reference band {path:?}"), "name one of reference-data: folder/name");
+            }
+        }
     }
 
     /// Records with one id would hide each other, and a former id that is one of today leads astray.

@@ -3,6 +3,7 @@
 mod case_files;
 mod endings;
 mod support;
+mod verdicts;
 
 use std::collections::BTreeSet;
 use std::path::Path;

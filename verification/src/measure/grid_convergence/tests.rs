@@ -57,7 +57,7 @@ fn what_does_not_converge_gives_words_and_no_number() {
         ([1.0, 1.0, 1.0], "does not change between any of the meshes"),
         ([1.0, f64::NAN, 1.0], "no convergence"),
     ] {
-        for (_, estimate) in Estimate::WORDS {
+        for estimate in [Estimate::ObservedOrder, Estimate::Richardson, Estimate::GridConvergenceIndex] {
             let why = combine(estimate, on(values), Some(2.0)).unwrap_err();
             assert!(why.contains(expected) && why.contains("from coarse to fine"), "{values:?}: {why}");
         }
@@ -67,4 +67,17 @@ fn what_does_not_converge_gives_words_and_no_number() {
     close(combine(Estimate::ObservedOrder, slow, None), 0.2);
     let zero = vec![(0.4, 16.0), (0.2, 4.0), (0.1, 0.0)];
     assert!(combine(Estimate::GridConvergenceIndex, zero, None).unwrap_err().contains("zero"));
+}
+
+#[test]
+fn the_finest_mesh_has_an_uncertainty_whether_its_sequence_converges_or_not() {
+    let (value, uncertainty) = on_finest_mesh(power(&[0.4, 0.2, 0.1], 2.0, 1.0), Some(2.0)).unwrap();
+    assert!((value - 3.01).abs() < 1e-12 && (uncertainty - 1.25 * 0.01).abs() < 1e-9, "{value} {uncertainty}");
+    for values in [[1.0, 1.2, 1.1], [1.0, 1.1, 1.3], [1.2, 1.0, 1.0]] {
+        let meshes = [0.4, 0.2, 0.1].into_iter().zip(values).collect();
+        let range = values.into_iter().fold(0.0, f64::max) - values.into_iter().fold(9.0, f64::min);
+        assert_eq!(on_finest_mesh(meshes, Some(2.0)).unwrap(), (values[2], 3.0 * range), "{values:?}");
+    }
+    let broken = [0.4, 0.2, 0.1].into_iter().zip([1.0, f64::NAN, 1.0]).collect();
+    assert!(on_finest_mesh(broken, Some(2.0)).is_err(), "not a number is no value");
 }

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::{PAPER, Watched, in_microseconds};
 use crate::case::Case;
 use crate::expand::CaseScene;
+use crate::extremes::{larger, largest};
 use crate::history::Table;
 use crate::rings::{Geometry, PARTICLES};
 use crate::study::scene::series_stem;
@@ -27,6 +28,8 @@ struct Trial {
     events: Events,
     /// Part of the broken material aside the diameter at the end.
     aside: f64,
+    /// Fracture energy at the end over that of the walls that broke on the line of centres; none without such a wall.
+    energy_over_walls: Option<f64>,
     /// Not a number if the run broke down.
     score: f64,
     /// Time at which the run broke down, s.
@@ -41,7 +44,11 @@ impl Trial {
                 let events = ring.events();
                 let aside = ring.table.column("broken_aside").and_then(|column| column.last().copied());
                 let score = score(&events, template.analysis.end_time);
-                Ok(Self { geometry, events, aside: aside.unwrap_or(f64::NAN), score, broke_down: None })
+                let energy = ring.table.column("fracture_j").and_then(|column| column.last().copied());
+                let energy_over_walls =
+                    walls(&geometry, &events, template).map(|least| energy.unwrap_or(f64::NAN) / least);
+                let aside = aside.unwrap_or(f64::NAN);
+                Ok(Self { geometry, events, aside, energy_over_walls, score, broke_down: None })
             }
             Err(StudyError::Breakdown(Breakdown { time, .. })) => Ok(Self::broken(geometry, time)),
             Err(other) => Err(other),
@@ -50,7 +57,8 @@ impl Trial {
 
     /// A run that broke down says nothing about its geometry.
     fn broken(geometry: Geometry, time: f64) -> Self {
-        Self { geometry, events: [None; 6], aside: f64::NAN, score: f64::NAN, broke_down: Some(time) }
+        let (aside, score) = (f64::NAN, f64::NAN);
+        Self { geometry, events: [None; 6], aside, energy_over_walls: None, score, broke_down: Some(time) }
     }
 
     /// Near the events of the paper with a ring that splits along the diameter.
@@ -58,9 +66,25 @@ impl Trial {
         self.score <= NEAR && self.splits()
     }
 
+    /// Its cracks come in the paper's order, one after the other.
+    fn is_in_order(&self) -> bool {
+        let times = self.events[..SCORED].iter().copied().collect::<Option<Vec<f64>>>();
+        times.is_some_and(|times| times.windows(2).all(|pair| pair[0] < pair[1]))
+    }
+
     fn splits(&self) -> bool {
         self.aside <= ASIDE
     }
+}
+
+/// Energy (J) that the walls broken on the line of centres cost at least, in the upper half of a ring: Gc per unit area of
+/// crack, half of it on this side, over the depth that counts as reached; none if no wall is broken through.
+fn walls(geometry: &Geometry, events: &Events, template: &Scene) -> Option<f64> {
+    let broken = [events[1], events[3]].iter().flatten().count();
+    let fracture = template.materials.values().find_map(|material| material.fracture.as_ref())?;
+    let depth = geometry.outer - geometry.inner - 2.0 * geometry.length_scale;
+    let of_one = 0.5 * fracture.critical_energy_release_rate * template.analysis.thickness * depth;
+    (broken > 0).then_some(broken as f64 * of_one)
 }
 
 /// Root mean square of the scored events' differences from the paper, s; an event that does not come counts as at the end.
@@ -75,7 +99,14 @@ pub fn offers(case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
     let mut offers = crate::study::Offers::default();
     offers.bare(
         "",
-        ["geometries run", "geometries that broke down", "geometries near the paper that split along the diameter"],
+        [
+            "geometries that broke down",
+            "geometries whose cracks come in the paper's order",
+            "geometries near the paper",
+            "geometries near the paper that split along the diameter",
+            "largest number of points apart from the paper's",
+            "least fracture energy over that of the broken walls",
+        ],
     );
     for quantity in ["smallest score", "smallest score of those that split along the diameter"] {
         offers.push("", quantity, "us", false);
@@ -107,9 +138,15 @@ fn add(findings: &mut Findings, trials: &[Trial]) {
     let mut count = |quantity: &str, counts: fn(&Trial) -> bool| {
         findings.add("", quantity, trials.iter().filter(|trial| counts(trial)).count() as f64, None);
     };
-    count("geometries run", |_| true);
     count("geometries that broke down", |trial| trial.broke_down.is_some());
+    count("geometries whose cracks come in the paper's order", Trial::is_in_order);
+    count("geometries near the paper", |trial| trial.score <= NEAR);
     count("geometries near the paper that split along the diameter", Trial::is_near);
+    let apart = |trial: &Trial| trial.geometry.count(trial.geometry.spacing(PARTICLES)).abs_diff(PARTICLES) as f64;
+    findings.add("", "largest number of points apart from the paper's", largest(trials.iter().map(apart)), None);
+    let ratios = trials.iter().filter_map(|trial| trial.energy_over_walls);
+    let least = ratios.map(|ratio| -ratio).reduce(larger).map_or(f64::NAN, |ratio| -ratio);
+    findings.add("", "least fracture energy over that of the broken walls", least, None);
     let mut smallest = |quantity: &str, counts: fn(&Trial) -> bool| {
         let best = trials.iter().find(|trial| counts(trial)).map(|trial| trial.score);
         findings.measurements.push(in_microseconds("", quantity, best, None));
@@ -137,7 +174,7 @@ fn table(trials: &[Trial]) -> Table {
         "broke_down_us",
     ]);
     let rounded = |value: f64| (1e3 * value).round() / 1e3;
-    for Trial { geometry, events, aside, score, broke_down } in trials {
+    for Trial { geometry, events, aside, score, broke_down, .. } in trials {
         let Geometry { outer, inner, length_scale, points } = *geometry;
         let h = points as f64 * geometry.spacing(PARTICLES);
         let mut row = vec![1e3 * outer, 1e3 * inner, 1e3 * length_scale, points as f64, 1e3 * h];
@@ -162,16 +199,39 @@ mod tests {
     }
 
     #[test]
+    fn what_is_counted_tells_good_geometries_from_bad() {
+        let geometry = Geometry { outer: 0.05, inner: 0.03, length_scale: 1e-3, points: 2 };
+        let trial = |events: [f64; 3], score: f64, aside: f64, energy: Option<f64>| {
+            let [a, b, c] = events.map(Some);
+            let events = [a, b, c, None, None, None];
+            Trial { events, score, aside, energy_over_walls: energy, broke_down: None, ..Trial::broken(geometry, 0.0) }
+        };
+        let near = trial([29e-6, 61e-6, 99e-6], 1e-6, 0.05, Some(1.25));
+        let aside = trial([29e-6, 61e-6, 99e-6], 1e-6, 0.5, Some(1.5));
+        let backwards = trial([99e-6, 61e-6, 29e-6], 6e-5, 0.0, None);
+        let mut findings = Findings::default();
+        add(&mut findings, &[near, aside, backwards]);
+        let value =
+            |quantity: &str| findings.measurements.iter().find(|m| m.quantity == quantity).unwrap().value.unwrap();
+        assert_eq!(value("geometries whose cracks come in the paper's order"), 2.0);
+        assert_eq!(value("geometries near the paper"), 2.0);
+        assert_eq!(value("geometries near the paper that split along the diameter"), 1.0);
+        assert_eq!(value("least fracture energy over that of the broken walls"), 1.25);
+        assert!(value("largest number of points apart from the paper's") <= 4.0);
+    }
+
+    #[test]
     fn a_run_that_broke_down_is_counted_and_never_the_best() {
         let geometry = Geometry { outer: 0.05, inner: 0.03, length_scale: 1e-3, points: 2 };
-        let late = Trial { geometry, events: [None; 6], aside: 0.0, score: 9e-5, broke_down: None };
+        let late = Trial { score: 9e-5, aside: 0.0, broke_down: None, ..Trial::broken(geometry, 0.0) };
         let trials = [late, Trial::broken(geometry, 4e-5)];
         let mut findings = Findings::default();
         add(&mut findings, &trials);
         let value = |quantity: &str| {
             findings.measurements.iter().find(|m| m.quantity == quantity).and_then(|m| m.value).unwrap()
         };
-        assert_eq!([value("geometries run"), value("geometries that broke down")], [2.0, 1.0]);
+        assert_eq!(value("geometries that broke down"), 1.0);
+        assert!(value("least fracture energy over that of the broken walls").is_nan(), "no wall broke");
         assert!((value("smallest score") - 90.0).abs() < 1e-9);
         let table = table(&trials);
         let column = table.column("broke_down_us").unwrap();

@@ -34,21 +34,29 @@ const SQUARES: [(&str, Mass, f64); 3] =
 /// Cut parts η of [`TABLE`].
 const PUBLISHED_CUTS: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
 
-/// `c dt/h` at those from an independent program in one dimension, where that function counts.
-const TABLE: [(usize, Mass, [f64; 4]); 6] = [
-    (1, Mass::Lumped, [0.445, 0.141, 0.045, 0.014]),
-    (1, Mass::Consistent, [0.104, 0.011, 0.0012, 0.0001]),
-    (2, Mass::Lumped, [0.944, 0.987, 0.999, f64::NAN]),
-    (2, Mass::Consistent, [0.067, 0.0076, 0.0008, f64::NAN]),
-    (3, Mass::Lumped, [1.14, 1.14, 1.14, 1.14]),
-    (3, Mass::Consistent, [0.047, 0.0055, f64::NAN, f64::NAN]),
+/// `c dt/h` at those as an independent program in one dimension printed it, where that function counts.
+const TABLE: [(usize, Mass, [&str; 4]); 6] = [
+    (1, Mass::Lumped, ["0.445", "0.141", "0.045", "0.014"]),
+    (1, Mass::Consistent, ["0.104", "0.011", "0.0012", "0.0001"]),
+    (2, Mass::Lumped, ["0.944", "0.987", "0.999", ""]),
+    (2, Mass::Consistent, ["0.067", "0.0076", "0.0008", ""]),
+    (3, Mass::Lumped, ["1.14", "1.14", "1.14", "1.14"]),
+    (3, Mass::Consistent, ["0.047", "0.0055", "", ""]),
 ];
+
+/// An entry of the table, uncertain by half a unit of its last digit; none where it is empty.
+fn printed(entry: &str) -> Option<Reference> {
+    let (_, decimals) = entry.split_once('.')?;
+    let uncertainty = Some(0.5 * 0.1_f64.powi(decimals.len() as i32));
+    let source = "an independent program in one dimension, as printed";
+    Some(Reference { uncertainty, ..Reference::new(entry.parse().ok(), ReferenceKind::IndependentCode, source) })
+}
 
 pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
     let mut offers = crate::study::Offers::default();
     for (degree, mass, published) in TABLE {
         let word = word_of(mass);
-        for (cut, _) in PUBLISHED_CUTS.into_iter().zip(published).filter(|(_, step)| step.is_finite()) {
+        for (cut, _) in PUBLISHED_CUTS.into_iter().zip(published).filter(|(_, entry)| printed(entry).is_some()) {
             offers.held(&format!("p={degree}, cut {cut:e}"), [cut_step(word)]);
         }
         offers.held(&format!("p={degree}, {word}"), ["exponent of the critical step in the cut part"]);
@@ -129,11 +137,9 @@ fn bars(case: &Case, findings: &mut Findings) -> Result<(), StudyError> {
     for (column, (degree, mass, published)) in TABLE.iter().enumerate() {
         let word = word_of(*mass);
         for (cut, published) in PUBLISHED_CUTS.into_iter().zip(published) {
-            if published.is_finite() {
-                let found = step_at(cut, column);
-                let source = "an independent program in one dimension".to_string();
-                let reference = Reference { value: Some(*published), kind: ReferenceKind::IndependentCode, source };
-                findings.add(&format!("p={degree}, cut {cut:e}"), &cut_step(word), found, Some(reference));
+            if let Some(reference) = printed(published) {
+                let variant = format!("p={degree}, cut {cut:e}");
+                findings.add(&variant, &cut_step(word), step_at(cut, column), Some(reference));
             }
         }
         let [less, more] = FINEST_CUTS[degree - 1];
@@ -192,4 +198,18 @@ fn patch(degree: usize, mass: Mass, cut: f64) -> Scene {
     let mut scene = plain.scene();
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [5.0 + cut; 2] };
     scene
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_entry_is_uncertain_by_half_a_unit_of_its_last_digit() {
+        let reference = printed("0.0012").unwrap();
+        assert_eq!(reference.value, Some(0.0012));
+        assert!((reference.uncertainty.unwrap() - 0.00005).abs() < 1e-18);
+        assert!(printed("").is_none());
+        assert!(TABLE.iter().flat_map(|row| row.2).all(|entry| entry.is_empty() || printed(entry).is_some()));
+    }
 }

@@ -50,7 +50,7 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
         for degree in 1..=3 {
             let error = lowest_frequency(&square(degree, SPANS, nu))? / reference - 1.0;
             let source = "quartics on 12 × 12 spans".to_string();
-            let reference = Reference { value: Some(0.0), kind: ReferenceKind::SelfConvergence, source };
+            let reference = Reference::new(Some(0.0), ReferenceKind::SelfConvergence, source);
             let quantity = "lowest frequency, relative error";
             findings.add(&format!("p={degree}, nu={nu}"), quantity, error, Some(reference));
             row.push(error.abs());

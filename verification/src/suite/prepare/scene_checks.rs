@@ -7,12 +7,13 @@ use super::{EVERYWHERE, Wrong, distinct, find_band, grid_convergence};
 use crate::case::Check;
 use crate::expand::CaseScene;
 use crate::measure::{LooksAt, Measure, find};
-use crate::reference::Library;
+use crate::record::BoundKind;
+use crate::reference::{Library, relative_uncertainty};
 use crate::scene_file::suggest::nearest;
 use crate::study::scene::concerned;
 
 /// Keys that every measure reads, beside those of every study.
-const MEASURED: [&str; 5] = ["measure", "scale", "band", "meshes", "order"];
+const MEASURED: [&str; 6] = ["measure", "scale", "band", "reference", "meshes", "order"];
 /// Times that differ by less than this part are the same.
 const SLACK: f64 = 1e-9;
 
@@ -32,7 +33,8 @@ pub(super) fn look(wrong: &mut Wrong<'_>, index: usize, check: &Check, scenes: &
     for key in measure.needs.iter().filter(|key| table.is_none_or(|table| table.get(key).is_none())) {
         wrong.note(at(key), format!("the measure {:?} needs {key}", measure.name), format!("add {key} = …"));
     }
-    look_at_references(wrong, index, check, library);
+    look_at_reference(wrong, index, measure, check, library);
+    look_at_band(wrong, index, check, library);
     if !look_at_variants(wrong, index, check, scenes) {
         return;
     }
@@ -44,25 +46,41 @@ pub(super) fn look(wrong: &mut Wrong<'_>, index: usize, check: &Check, scenes: &
     }
 }
 
-fn look_at_references(wrong: &mut Wrong<'_>, index: usize, check: &Check, library: &Library) {
+/// Curves of measures that compare with one, and numbers or points of curves that other measures are held against.
+fn look_at_reference(wrong: &mut Wrong<'_>, index: usize, measure: &Measure, check: &Check, library: &Library) {
+    let Some(path) = &check.reference else { return };
     let at = |name: &str| format!("check.{index}.{name}");
-    if let Some(path) = &check.reference {
-        let curve = path.split_once('/').and_then(|(folder, quantity)| library.curve(folder, quantity));
-        match curve {
-            None => {
-                let remedy = "write reference = \"folder/quantity\" as in reference-data";
-                wrong.note(at("reference"), format!("no reference curve {path:?}"), remedy);
-            }
-            Some(curve) => {
-                let [from, to] = check.window;
-                if !curve.x.iter().any(|x| (from..=to).contains(x)) {
-                    let [first, last] = curve.range();
-                    let remedy = format!("choose from and to between {first:e} s and {last:e} s");
-                    wrong.note(at("from"), "the reference curve has no point between from and to", remedy);
-                }
-            }
+    if !measure.compares_curves() {
+        if check.expect.is_some() {
+            wrong.note(at("expect"), "a reference and an expected value", "remove one of the two");
         }
+        match library.reference(path, check.at, 1.0) {
+            Err(message) => {
+                wrong.note(at("reference"), message, "write reference = \"folder/name\" as in reference-data");
+            }
+            Ok(reference) if reference.uncertainty.is_none() && check.accept.kind == Some(BoundKind::Validation) => {
+                wrong.note(at("bounds"), "the reference has no uncertainty", "give bounds of another kind");
+            }
+            Ok(_) => {}
+        }
+        return;
     }
+    let Some(curve) = path.split_once('/').and_then(|(folder, quantity)| library.curve(folder, quantity)) else {
+        let remedy = "write reference = \"folder/quantity\" as in reference-data";
+        return wrong.note(at("reference"), format!("no reference curve {path:?}"), remedy);
+    };
+    let [from, to] = check.window;
+    if !curve.x.iter().any(|x| (from..=to).contains(x)) {
+        let [first, last] = curve.range();
+        let remedy = format!("choose from and to between {first:e} s and {last:e} s");
+        wrong.note(at("from"), "the reference curve has no point between from and to", remedy);
+    } else if relative_uncertainty(curve, from, to).is_none() && check.accept.kind == Some(BoundKind::Validation) {
+        wrong.note(at("bounds"), "the reference curve has no uncertainty", "give bounds of another kind");
+    }
+}
+
+fn look_at_band(wrong: &mut Wrong<'_>, index: usize, check: &Check, library: &Library) {
+    let at = |name: &str| format!("check.{index}.{name}");
     if let Some(path) = &check.band
         && find_band(library, path).is_none()
     {
@@ -83,8 +101,9 @@ fn look_at_variants(wrong: &mut Wrong<'_>, index: usize, check: &Check, scenes: 
     let at = |name: &str| format!("check.{index}.{name}");
     let before = wrong.problems.len();
     let known = distinct(scenes.iter().map(|scene| scene.name.as_str()));
+    let patterned = scenes.iter().any(|scene| check.is_about(&scene.name));
     for (key, name) in [("variant", &check.variant), ("against", &check.against)] {
-        if let Some(name) = name.as_deref().filter(|name| !known.contains(name)) {
+        if let Some(name) = name.as_deref().filter(|name| !(known.contains(name) || key == "variant" && patterned)) {
             let meant = nearest(name, &known).map_or(String::new(), |near| format!("did you mean {near:?}? "));
             let remedy = format!("{meant}known variants: {}", known.join("; "));
             wrong.note(at(key), format!("no run of this case is meant by {name:?}"), remedy);
