@@ -24,7 +24,8 @@ pub trait StiffnessOperator {
     fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]);
 }
 
-/// Bound of the largest angular frequency, rad per unit time (see the module); zero if there is no stiffness.
+/// Bound of the largest angular frequency, rad per unit time (see the module); zero if there is no stiffness, not a number
+/// if that is none.
 ///
 /// Lanczos iteration on `M⁻¹ K` in the inner product of M: of every vector q its image `M q` is kept, so M is never applied.
 pub fn highest_frequency(operator: &mut impl StiffnessOperator) -> f64 {
@@ -48,7 +49,11 @@ pub fn highest_frequency(operator: &mut impl StiffnessOperator) -> f64 {
         }
         diagonal.push(alpha);
         operator.divide_by_mass(&residual_image, &mut vector);
-        let next = dot(&vector, &residual_image).max(0.0).sqrt();
+        let next = dot(&vector, &residual_image);
+        if !(alpha.is_finite() && next.is_finite()) {
+            return f64::NAN;
+        }
+        let next = next.max(0.0).sqrt();
         let exhausted = next <= 1e-12 * diagonal[0].abs() || diagonal.len() == MOST.min(n);
         if exhausted || diagonal.len().is_multiple_of(STRIDE) {
             let (value, residual) = largest_ritz(&diagonal, &off_diagonal, next);

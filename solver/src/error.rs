@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::fracture::NotConverged;
+use crate::loads::LostTraction;
 use crate::updated_frame::points::OutsidePatch;
 
 /// One thing wrong with a scene, found before anything runs.
@@ -35,6 +36,17 @@ pub enum Failure {
     Left([f64; 2]),
     /// The consistent mass matrix is singular to round-off.
     SingularMass,
+    /// The body of that number in the scene holds no material point.
+    NoPoints(usize),
+    /// A part of a traction would not act.
+    LostTraction {
+        /// Number of the body in the scene.
+        body: usize,
+        /// Number of its traction.
+        traction: usize,
+        /// What is lost, and where.
+        lost: LostTraction,
+    },
 }
 
 impl From<NotConverged> for Failure {
@@ -68,4 +80,6 @@ pub struct Breakdown {
     pub what: String,
     /// Likely cause and remedy.
     pub cause: String,
+    /// What is wrong with the scene, if that keeps it from starting: bad input, and no run that broke down.
+    pub scene: Option<Box<SceneError>>,
 }

@@ -7,12 +7,12 @@ use crate::lane::Lane;
 use crate::lattice::Lattice;
 use crate::material::{ElasticModuli, FractureModel};
 use crate::phase_field::PhaseField;
-use crate::scene::{Body, Boundary, Kinematics, Scene, Side, SolverSettings};
+use crate::scene::{Body, Boundary, Crack, Kinematics, Scene, Side, SolverSettings};
 use crate::shape::distance_to_segment;
 use crate::sweep::{Fields, StripForces, sweep};
 
 /// Ratio of the largest initial history energy to Gc/(4 l0) on a seeded crack (Borden et al. 2012).
-const SEED_STRENGTH: f64 = 1000.0;
+pub const SEED_STRENGTH: f64 = 1000.0;
 /// Phase field below which a point counts as broken.
 pub const BROKEN: f64 = 0.05;
 
@@ -202,6 +202,11 @@ impl Fracturing {
     }
 }
 
+/// Half width (m) of the initial history field of a crack.
+pub fn half_width(crack: &Crack, length_scale: f64) -> f64 {
+    crack.half_width.unwrap_or(0.5 * length_scale)
+}
+
 /// Height from which the crack tip is looked for: the middle of the body, or its foot if the body is the upper half of a
 /// symmetric one: it stands on the bottom side, a roller holds that side, and a crack lies along it.
 pub(crate) fn lowest_tip(scene: &Scene, body: &Body) -> f64 {
@@ -217,8 +222,8 @@ pub(crate) fn lowest_tip(scene: &Scene, body: &Body) -> f64 {
 /// Initial history energy `H0(d) = B Gc/(4 l0) (1 − d/w)` within the half width w of a crack, else zero.
 pub fn seed_energy(model: &FractureModel, body: &Body, position: [f64; 2]) -> f64 {
     let strength = SEED_STRENGTH * model.toughness / (4.0 * model.length_scale);
-    let of_crack = |crack: &crate::scene::Crack| {
-        let half_width = crack.half_width.unwrap_or(0.5 * model.length_scale);
+    let of_crack = |crack: &Crack| {
+        let half_width = half_width(crack, model.length_scale);
         strength * (1.0 - distance_to_segment(position, crack.from, crack.to) / half_width)
     };
     body.cracks.iter().map(of_crack).fold(0.0, f64::max)

@@ -106,6 +106,61 @@ impl PointKernel for DegradedStress<'_> {
     }
 }
 
+/// Degraded stress (E 6) with the phase field held as it is at the points.
+#[derive(Debug)]
+pub struct HeldPhaseStress<'a> {
+    /// Moduli.
+    pub moduli: ElasticModuli,
+    /// Fracture constants.
+    pub model: FractureModel,
+    /// Phase field at the points of the strip.
+    pub phase: &'a [Lane],
+}
+
+impl PointKernel for HeldPhaseStress<'_> {
+    const DISPLACEMENT: bool = true;
+    const PHASE: bool = false;
+    const PHASE_GRADIENT: bool = false;
+    const STRESS: bool = true;
+
+    #[inline(always)]
+    fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
+        let state = split(&self.moduli, self.model.split, strain(values.gradient));
+        let g = self.model.degradation(self.phase[at]);
+        let mut stress = state.stress_minus;
+        for (stress, plus) in stress.iter_mut().zip(state.stress_plus) {
+            *stress = stress.add_product::<FMA>(g, plus);
+        }
+        Stress::symmetric(stress)
+    }
+}
+
+/// Smallest principal stretch, squared: the smaller eigenvalue of `F Fᵀ` (see [`crate::hencky`]).
+#[derive(Debug)]
+pub struct LeastStretch {
+    /// Smallest of the strip; not a number if one is not.
+    pub squared: Lane,
+}
+
+impl PointKernel for LeastStretch {
+    const DISPLACEMENT: bool = true;
+    const PHASE: bool = false;
+    const PHASE_GRADIENT: bool = false;
+    const STRESS: bool = false;
+
+    #[inline(always)]
+    fn points<const FMA: bool>(&mut self, _at: usize, weight: Lane, values: &PointValues) -> Stress {
+        let [xx, xy, yx, yy] = values.gradient;
+        let mean = xx + yy + (xx * xx + xy * xy + yx * yx + yy * yy) * 0.5;
+        let half_difference = xx - yy + (xx * xx + xy * xy - yx * yx - yy * yy) * 0.5;
+        let shear = xy + yx + (xx * yx + xy * yy);
+        let radius = (half_difference * half_difference + shear * shear).map(f64::sqrt);
+        let squared = (mean - radius + Lane::splat(1.0)).zip(weight, |x, w| if w > 0.0 { x } else { f64::INFINITY });
+        self.squared = self.squared.zip(squared, |least, x| if x < least || x.is_nan() { x } else { least });
+        Stress::ZERO
+    }
+}
+
 /// Surface energy `Gc [(1 − c)²/(4 l0) + l0 |grad c|²]` (E 3) and the smallest c.
 #[derive(Debug)]
 pub struct SurfaceEnergy {

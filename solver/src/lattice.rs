@@ -19,8 +19,8 @@ use crate::nurbs::{Location, MAX_FUNCTIONS};
 use crate::patch::{ControlGrid, Patch};
 use crate::quadrature::Rule;
 use crate::scene::{Body, Layout, Shape};
-use crate::spline::MAX_ORDER;
-use tables::{columns, tiles};
+use crate::spline::{MAX_ORDER, SplineSpace};
+use tables::{Columns, columns, tiles};
 
 /// Rows of spans in a strip; at least the highest degree, so that only neighbouring strips share control points.
 const STRIP_ROWS: usize = 8;
@@ -88,18 +88,33 @@ pub struct BatchFunctions {
     pub gradient: [[Lane; 2]; MAX_FUNCTIONS],
 }
 
+/// Positions of the points of `body` along both directions of a patch with these spaces, m; parameters if they are `mapped`.
+/// Unless [`fills_lattice`], the points are those of all pairs that lie in the shape.
+pub(crate) fn point_axes(body: &Body, spaces: &[SplineSpace; 2], mapped: bool) -> [Vec<f64>; 2] {
+    columns_of(body, spaces, mapped).map(|columns| columns.into_iter().flat_map(|c| c.position).collect())
+}
+
+/// Whether no point of a lattice lies outside the shape.
+pub(crate) fn fills_lattice(mapped: bool, shape: &Shape) -> bool {
+    *shape == Shape::Patch || (!mapped && matches!(shape, Shape::Rectangle { .. }))
+}
+
+/// Tables of the spans that meet the box around a body. A rectangle cuts them, unless the lattice is one of parameters.
+fn columns_of(body: &Body, spaces: &[SplineSpace; 2], mapped: bool) -> [Vec<Columns>; 2] {
+    let shape = if mapped { &Shape::Patch } else { &body.shape };
+    let (low, high) = shape.bounding_box();
+    let clip = matches!(shape, Shape::Rectangle { .. });
+    [0, 1].map(|d| {
+        let rule = Rule::new(body.layout, body.particles_per_cell[d]);
+        columns(&spaces[d], &rule, low[d], high[d], clip)
+    })
+}
+
 impl Lattice {
     /// The points of `body` on `patch`.
     pub fn new(patch: &Patch, body: &Body) -> Self {
-        let (low, high) = match patch.geometry {
-            None => body.shape.bounding_box(),
-            Some(_) => Shape::Patch.bounding_box(), // a lattice of parameters
-        };
-        let clip = matches!(body.shape, Shape::Rectangle { .. }) && patch.geometry.is_none();
-        let [x, y] = [0, 1].map(|d| {
-            let rule = Rule::new(body.layout, body.particles_per_cell[d]);
-            columns(&patch.spaces[d], &rule, low[d], high[d], clip)
-        });
+        let mapped = patch.geometry.is_some();
+        let [x, y] = columns_of(body, &patch.spaces, mapped);
         let degree = [0, 1].map(|d| patch.spaces[d].degree());
         let rows = y
             .into_iter()
@@ -124,7 +139,7 @@ impl Lattice {
         if let Some(geometry) = &patch.geometry {
             lattice.map_by(geometry);
         }
-        if !(clip || body.shape == Shape::Patch) {
+        if !fills_lattice(mapped, &body.shape) {
             lattice.keep_inside(&body.shape);
         }
         lattice

@@ -155,6 +155,7 @@ pub mod lattice;
 pub mod loads;
 pub mod mass;
 pub mod material;
+pub mod nearest_span;
 pub mod nurbs;
 pub mod patch;
 pub mod phase_field;

@@ -8,6 +8,8 @@ use std::ops::Range;
 
 /// Highest polynomial degree.
 pub const MAX_DEGREE: usize = 4;
+/// Positions beyond an end of a patch by up to this fraction of its length are on it: an end at `0.1 + 0.7` lies short of 0.8.
+pub const ROUND_OFF: f64 = 1e-9;
 /// Most basis functions on a span, `MAX_DEGREE + 1`.
 pub const MAX_ORDER: usize = MAX_DEGREE + 1;
 
@@ -96,10 +98,12 @@ impl SplineSpace {
         &self.spans
     }
 
-    /// Index of the span that holds `x`; the end of the patch belongs to the last span. `None` outside.
+    /// Index of the span that holds `x`; the ends of the patch, and what lies beyond them by [`ROUND_OFF`], belong to the end
+    /// spans. `None` outside.
     pub fn find_span(&self, x: f64) -> Option<usize> {
         let (left, right) = (self.spans.first()?.left, self.spans.last()?.right);
-        if !(left..=right).contains(&x) {
+        let reach = ROUND_OFF * (right - left);
+        if !(left - reach..=right + reach).contains(&x) {
             return None;
         }
         let index = self.spans.partition_point(|span| span.right <= x);
@@ -229,7 +233,9 @@ mod tests {
         let space = graded(3);
         assert_eq!(space.find_span(0.0), Some(0));
         assert_eq!(space.find_span(1.0), Some(space.spans().len() - 1));
-        assert_eq!(space.find_span(1.0 + 1e-12), None);
+        assert_eq!(space.find_span(-1e-10), Some(0), "but for round-off");
+        assert_eq!(space.find_span(1.0 + 1e-10), Some(space.spans().len() - 1), "but for round-off");
+        assert_eq!(space.find_span(1.0 + 1e-8), None);
         assert_eq!(space.find_span(f64::NAN), None);
     }
 }

@@ -10,6 +10,7 @@ mod inspect;
 mod observe;
 mod state;
 mod stiffness;
+mod tangent;
 
 use rayon::prelude::*;
 
@@ -60,6 +61,8 @@ pub struct TotalFrame {
     ledger: Ledger,
     time: f64,
     driven_power: f64,
+    /// Stiffening by finite strains at which the critical step was last taken.
+    judged_stiffening: f64,
 }
 
 impl TotalFrame {

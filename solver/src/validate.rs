@@ -9,12 +9,15 @@ mod contact;
 mod geometry;
 mod material;
 mod mesh;
+mod points;
+mod seed;
 mod size;
 
 use crate::error::{SceneError, SceneWarning};
 use crate::nurbs::NurbsPatch;
 use crate::scene::{Frame, Mesh, Scene, Shape};
 use crate::spans::{lengths_of_chords, lengths_of_spans};
+use crate::spline::SplineSpace;
 
 pub use size::{ExpectedSize, expected_size};
 
@@ -43,12 +46,15 @@ struct Ground<'a> {
     patch: Option<NurbsPatch>,
     /// Smallest and largest span of that, m.
     patch_spans: [f64; 2],
+    /// Spline spaces of both directions, if the mesh is sound.
+    spaces: Option<[SplineSpace; 2]>,
 }
 
 impl<'a> Ground<'a> {
     fn new(mesh: &'a Mesh, is_sound: bool, patch: Option<NurbsPatch>) -> Self {
         let patch_spans = patch.as_ref().map_or([f64::INFINITY, 0.0], lengths_of_chords);
-        Self { mesh, is_sound, patch, patch_spans }
+        let spaces = is_sound.then(|| [0, 1].map(|d| SplineSpace::new(mesh.degree[d], &mesh.knots[d])));
+        Self { mesh, is_sound, patch, patch_spans, spaces }
     }
 
     /// Smallest and largest span under a shape, m.

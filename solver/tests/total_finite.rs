@@ -99,3 +99,64 @@ fn a_spinning_disk_in_a_larger_mesh_keeps_running() {
         assert!(sample.closure.abs() <= 1e-2 * sample.largest_term());
     }
 }
+
+/// A block squeezed between clamped sides, at rest under a uniform stretch.
+fn squeezed(stretch: [f64; 2], safety: f64) -> (TotalFrame, f64) {
+    let mut scene = elastic_scene(2, [0.01, 0.008], [6, 5]);
+    scene.analysis.kinematics = Kinematics::Finite;
+    let clamped = |side| Boundary { side, fix: [true, true], velocity: [0.0; 2] };
+    scene.boundaries = [Side::Left, Side::Right, Side::Bottom, Side::Top].map(clamped).to_vec();
+    let mut frame = TotalFrame::new(&scene).unwrap();
+    let positions = frame.patch().control_positions();
+    let squeezed = [0, 1].map(|d| positions[d].iter().map(|x| (stretch[d] - 1.0) * x).collect::<Vec<_>>());
+    let mut state = 7_u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    let velocity = [0, 1].map(|_| positions[0].iter().map(|_| 1e-6 * random()).collect::<Vec<_>>());
+    frame.start_with(squeezed, velocity).unwrap();
+    let undeformed = frame.critical_step();
+    let critical = frame.shortened_critical_step(1e3 * undeformed, undeformed).unwrap();
+    assert_eq!(frame.shortened_critical_step(1e3 * undeformed, undeformed), None, "no stiffer than before");
+    (frame, safety * critical)
+}
+
+/// Small vibrations about a compressed state last just below the critical step of that state, and grow just above it.
+#[test]
+fn the_critical_step_of_a_compressed_body_is_where_vibrations_begin_to_grow() {
+    for stretch in [[0.8, 0.8], [0.7, 1.0], [0.9, 0.75]] {
+        let fastest = |safety: f64| {
+            let (mut frame, step) = squeezed(stretch, safety);
+            assert!(step < 0.85 * frame.critical_step(), "{stretch:?} stiffens");
+            (0..1500).for_each(|_| frame.step(step).unwrap());
+            frame.fastest_control_point().1
+        };
+        assert!(fastest(0.99) < 1e-4, "{stretch:?}: {}", fastest(0.99));
+        assert!(fastest(1.03) > 1.0, "{stretch:?}: {}", fastest(1.03));
+    }
+}
+
+/// A block that a driven side compresses to half its width: the step of the undeformed body becomes too long, and the run says so
+/// before it breaks down.
+#[test]
+fn a_body_that_stiffens_is_told_to_be_stepped_too_far() {
+    let warnings = |kinematics: Kinematics, safety: f64, speed: f64| {
+        let mut scene = elastic_scene(2, [0.01, 0.005], [10, 5]);
+        scene.analysis.kinematics = kinematics;
+        scene.analysis.safety = safety;
+        scene.analysis.end_time = 0.005 / 100.0;
+        let across = |side, speed| Boundary { side, fix: [true, false], velocity: [speed, 0.0] };
+        let along = |side| Boundary { side, fix: [false, true], velocity: [0.0; 2] };
+        scene.boundaries =
+            vec![across(Side::Left, 0.0), across(Side::Right, speed), along(Side::Bottom), along(Side::Top)];
+        let mut simulation = Simulation::new(&scene).unwrap();
+        while !simulation.finished() && simulation.advance_to_next_sample().is_ok() {}
+        let told = |w: &&String| w.contains("times the critical step") && w.contains("moved positions");
+        simulation.warnings().iter().filter(told).count()
+    };
+    assert_eq!(warnings(Kinematics::Finite, 0.9, -100.0), 1);
+    assert_eq!(warnings(Kinematics::Finite, 0.2, -100.0), 0, "a step that is short enough");
+    assert_eq!(warnings(Kinematics::Finite, 0.9, 100.0), 0, "tension softens");
+    assert_eq!(warnings(Kinematics::Small, 0.9, -100.0), 0, "small strains do not stiffen");
+}

@@ -33,6 +33,7 @@ pub struct SceneFile {
     pub warnings: Vec<SceneDiagnostic>,
     /// Text of the file, without the overrides.
     pub source: String,
+    document: Document,
 }
 
 impl SceneFile {
@@ -58,7 +59,22 @@ impl SceneFile {
         let scene = read_scene(&document.root, "").map_err(|problems| document.error(&problems))?;
         let warnings = check_scene(&scene, &document.root, "").map_err(|problems| document.error(&problems))?;
         let warnings = warnings.iter().map(|w| document.warning(w)).collect();
-        Ok(Self { scene, warnings, source: document.text().to_string() })
+        Ok(Self { scene, warnings, source: document.text().to_string(), document })
+    }
+
+    /// What is wrong with the scene and shows only when it is made ready to run, at its place in the file.
+    pub fn error(&self, error: &SceneError) -> SceneFileError {
+        self.document.error(&[place(&self.document.root, "", &error.key, &error.message, &error.remedy)])
+    }
+}
+
+/// A finding at its key in `node`, which stands at key path `prefix`.
+fn place(node: &Node, prefix: &str, key: &str, message: &str, remedy: &str) -> Problem {
+    Problem {
+        key: [prefix, key].iter().filter(|s| !s.is_empty()).copied().collect::<Vec<_>>().join("."),
+        location: node.locate(key),
+        message: message.to_string(),
+        remedy: remedy.to_string(),
     }
 }
 
@@ -67,16 +83,8 @@ impl SceneFile {
 /// # Errors
 /// Everything that makes the scene impossible to model.
 pub fn check_scene(scene: &Scene, node: &Node, prefix: &str) -> Result<Vec<Problem>, Vec<Problem>> {
-    let place = |key: &str, message: &str, remedy: &str| Problem {
-        key: [prefix, key].iter().filter(|s| !s.is_empty()).copied().collect::<Vec<_>>().join("."),
-        location: node.locate(key),
-        message: message.to_string(),
-        remedy: remedy.to_string(),
-    };
     match validate(scene) {
-        Ok(warnings) => Ok(warnings.iter().map(|w| place(&w.key, &w.message, "")).collect()),
-        Err(errors) => {
-            Err(errors.iter().map(|SceneError { key, message, remedy }| place(key, message, remedy)).collect())
-        }
+        Ok(warnings) => Ok(warnings.iter().map(|w| place(node, prefix, &w.key, &w.message, "")).collect()),
+        Err(errors) => Err(errors.iter().map(|e| place(node, prefix, &e.key, &e.message, &e.remedy)).collect()),
     }
 }

@@ -37,7 +37,7 @@ fn units_give_the_double_of_the_si_value() {
         ("2 rad/s", Dimension::RATE, 2.0),
         ("60 rpm", Dimension::RATE, std::f64::consts::TAU),
         ("50 1/s", Dimension::RATE, 50.0),
-        ("1 kHz", Dimension::RATE, 1e3),
+        ("1 kHz", Dimension::FREQUENCY, 1e3),
         ("20 %", Dimension::NONE, 0.2),
         ("0.2", Dimension::NONE, 0.2),
         (" +.5 m ", Dimension::LENGTH, 0.5),
@@ -86,4 +86,21 @@ fn what_is_no_quantity_is_refused_with_a_remedy() {
     assert!(parse(&format!("1 {}", "m ".repeat(1000))).is_err());
     assert!(parse("1 ((((Tm^9)^9)^9)^9)^9").is_err());
     assert_eq!(parse("0 m").unwrap().value, 0.0);
+}
+
+/// 159.15 Hz are 1000 rad/s, and not 159.15.
+#[test]
+fn a_frequency_is_no_angular_velocity() {
+    for text in ["159.15 Hz", "0.15915 kHz", "159.15 Hz m/m", "2 J Hz/J"] {
+        let error = parse_as(text, Dimension::RATE).expect_err(text).to_string();
+        assert!(error.contains("is a frequency, expected an angular velocity") && error.contains("2 pi"), "{error}");
+    }
+    let error = parse_as("159.15 Hz", Dimension::RATE).unwrap_err().to_string();
+    assert!(error.contains("\"999.96"), "the angular velocity it is: {error}");
+    for text in ["1 1/Hz", "1 Hz^-1"] {
+        let error = parse_as(text, Dimension::TIME).expect_err(text).to_string();
+        assert!(error.contains("cycle^-1"), "{error}");
+    }
+    let full_turn = parse_as("360 deg/s", Dimension::RATE).unwrap();
+    assert!((full_turn - std::f64::consts::TAU).abs() < 1e-14);
 }

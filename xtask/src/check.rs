@@ -9,6 +9,7 @@ use fisura::spans::{largest_spans, smallest_span};
 use fisura::time_plan::TimePlan;
 use fisura::validate::expected_size;
 use fisura_reports::number::{duration, plain};
+use fisura_verification::scene_file::SceneFile;
 use serde::Serialize;
 
 use crate::cli::{Common, Format, SceneArgs};
@@ -46,7 +47,7 @@ pub struct Args {
 pub fn check(args: &Args, common: &Common) -> Result<Exit, Failure> {
     console::no_files(common, "check");
     let file = scene_input::load(&args.scene, common)?;
-    let mut found = match prepared(&file.scene)? {
+    let mut found = match prepared(&file)? {
         Some(simulation) => Findings::new(&file.scene, &simulation.extent(), simulation.plan(), simulation.warnings()),
         None => Findings::unprepared(&file.scene),
     };
@@ -62,12 +63,12 @@ pub fn check(args: &Args, common: &Common) -> Result<Exit, Failure> {
 }
 
 /// The scene ready to run, unless it is too large to be made ready only to be looked at.
-fn prepared(scene: &Scene) -> Result<Option<Simulation>, Failure> {
-    let size = expected_size(scene);
+fn prepared(file: &SceneFile) -> Result<Option<Simulation>, Failure> {
+    let size = expected_size(&file.scene);
     if size.points.max(size.control_points) > MOST_PREPARED {
         return Ok(None);
     }
-    Simulation::new(scene).map(Some).map_err(|breakdown| Failure::from(&breakdown))
+    Simulation::new(&file.scene).map(Some).map_err(|breakdown| Failure::of_run(&breakdown, file))
 }
 
 /// What will be modelled and what it will cost.

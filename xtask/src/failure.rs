@@ -6,7 +6,7 @@ use fisura::error::Breakdown;
 use fisura_reports::ReportError;
 use fisura_verification::foreign::text;
 use fisura_verification::output::OutputError;
-use fisura_verification::scene_file::{SceneDiagnostic, SceneFileError};
+use fisura_verification::scene_file::{SceneDiagnostic, SceneFile, SceneFileError};
 use miette::{Diagnostic, LabeledSpan, MietteDiagnostic, MietteHandler, MietteHandlerOpts, ReportHandler, Severity};
 
 use crate::console;
@@ -32,6 +32,11 @@ impl Failure {
     /// A failure without help.
     pub fn new(exit: Exit, message: impl Into<String>) -> Self {
         Self::Other { exit, message: message.into(), help: None }
+    }
+
+    /// A run of the scene in `file` that broke down, or could not start because of what the file says.
+    pub fn of_run(breakdown: &Breakdown, file: &SceneFile) -> Self {
+        breakdown.scene.as_ref().map_or_else(|| breakdown.into(), |error| file.error(error).into())
     }
 
     /// The same with what would be right.
@@ -89,7 +94,10 @@ impl From<OutputError> for Failure {
 
 impl From<&Breakdown> for Failure {
     fn from(breakdown: &Breakdown) -> Self {
-        Self::new(Exit::BrokeDown, breakdown.to_string())
+        match &breakdown.scene {
+            Some(error) => Self::new(Exit::BadInput, error.to_string()).help(error.remedy.clone()),
+            None => Self::new(Exit::BrokeDown, breakdown.to_string()),
+        }
     }
 }
 
@@ -157,8 +165,6 @@ fn picture(diagnostic: &dyn Diagnostic) -> String {
 
 #[cfg(test)]
 mod tests {
-    use fisura_verification::scene_file::SceneFile;
-
     use super::*;
 
     fn broken() -> Failure {

@@ -78,6 +78,9 @@ pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
         Outcome::Interrupted(at) => return Err(interrupted(at, &folder)),
         Outcome::Ended(run) => *run,
     };
+    if let Some(breakdown) = run.breakdown.as_ref().filter(|breakdown| breakdown.scene.is_some()) {
+        return Err(Failure::of_run(breakdown, &file));
+    }
     for warning in run.summary.warnings.iter().skip(file.warnings.len()) {
         console::note(common, &format!("warning: {warning}"));
     }

@@ -3,9 +3,10 @@
 use super::Simulation;
 use super::frame::{Frame, either};
 use crate::energy::Sample;
-use crate::error::{Breakdown, Failure};
+use crate::error::{Breakdown, Failure, SceneError};
 use crate::fracture::NotConverged;
 use crate::inspection::{Inspection, PointState};
+use crate::loads::LostTraction;
 
 /// Elastic energy beyond this many times all energy that ever came in counts as numerical growth.
 const GROWTH_LIMIT: f64 = 10.0;
@@ -15,6 +16,9 @@ const GROWTH_LIMIT: f64 = 10.0;
 const CLOSURE_LIMIT: f64 = 0.02;
 /// Closure below this fraction of the stored energy is round-off and tolerance of the phase field.
 const CLOSURE_FLOOR: f64 = 1e-6;
+
+/// Steps between two looks at the deformation of a body in the total frame, each a third of a step's work.
+const STEPS_BETWEEN_LOOKS: usize = 64;
 
 /// A residual within this factor of the tolerance when iterations ended is held up by round-off.
 const NEAR_TOLERANCE: f64 = 1e3;
@@ -27,6 +31,9 @@ const SINGULAR_MASS: &str = "weights or sizes of cells too different for the mas
                              with weights and cells more alike";
 const ENLARGE_MESH: &str = "the body moves out of the mesh; enlarge mesh.size or move mesh.origin so that it holds the \
                             whole motion, or end earlier";
+
+const ADD_POINTS: &str = "use smaller cells or more particles_per_cell, so that a point lies inside the body";
+const CARRY_TRACTION: &str = "use smaller cells or more particles_per_cell there, or let the edge follow the body";
 
 const LOST: &str = "the position of a point is not a number";
 const THROWN: &str = "a point was thrown out of the mesh, further than the mesh is wide, in one step";
@@ -56,21 +63,23 @@ impl Simulation {
 
     /// Warns once if the step in use exceeds the critical one at the moved positions.
     fn watch_critical_step(&mut self) {
-        let Frame::Updated(frame) = &mut self.frame else { return };
-        if self.warned_of_step || !frame.critical_step_is_due() {
+        if self.warned_of_step {
             return;
         }
-        let critical = frame.critical_step();
-        if self.plan.step > critical {
-            self.warned_of_step = true;
-            self.warnings.push(format!(
-                "from t = {:.4e} s on, the time step {:.4e} s is {:.3} times the critical step {critical:.4e} s at the \
-                 moved positions; lower analysis.safety or the time step",
-                self.time(),
-                self.plan.step,
-                self.plan.step / critical
-            ));
-        }
+        let (step, look) = (self.plan.step, self.steps.is_multiple_of(STEPS_BETWEEN_LOOKS));
+        let critical = match &mut self.frame {
+            Frame::Updated(frame) => frame.critical_step_is_due().then(|| frame.critical_step()),
+            Frame::Total(frame) if look => frame.shortened_critical_step(step, self.plan.critical),
+            Frame::Total(_) => None,
+        };
+        let Some(critical) = critical.filter(|critical| step > *critical) else { return };
+        self.warned_of_step = true;
+        self.warnings.push(format!(
+            "from t = {:.4e} s on, the time step {step:.4e} s is {:.3} times the critical step {critical:.4e} s at the \
+             moved positions; lower analysis.safety or the time step",
+            self.time(),
+            step / critical
+        ));
     }
 
     fn is_healthy(&mut self) -> bool {
@@ -123,12 +132,12 @@ impl Simulation {
                 let torn = (BARE.to_string(), TORN.to_string());
                 let (what, cause) = if bare { torn } else { what_and_cause(failure, self.tolerance) };
                 let cause = if self.step_is_too_long() { self.cause_of_growth() } else { cause };
-                Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause }
+                Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause, scene: None }
             }
             Failure::NotConverged(found) if !found.relative_residual.is_finite() => {
                 self.at_worst_point(NOT_FINITE.to_string(), None)
             }
-            Failure::NotConverged(_) | Failure::SingularMass => {
+            Failure::NotConverged(_) | Failure::SingularMass | Failure::NoPoints(_) | Failure::LostTraction { .. } => {
                 let (what, cause) = what_and_cause(failure, self.tolerance);
                 self.at_worst_point(what, Some(cause).filter(|_| !self.step_is_too_long()))
             }
@@ -147,6 +156,7 @@ impl Simulation {
             point: worst.map(|point| point.point),
             what,
             cause: cause.unwrap_or_else(|| self.cause_of_growth()),
+            scene: None,
         }
     }
 
@@ -186,8 +196,17 @@ impl Simulation {
 /// What keeps a scene from starting, near `place` (m).
 pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> Breakdown {
     let (what, cause) = what_and_cause(failure, tolerance);
-    let place = if let Failure::Left(place) = failure { place } else { place };
-    Breakdown { step: 0, time: 0.0, place, point: None, what, cause }
+    let (place, key) = match failure {
+        Failure::Left(place) => (place, None),
+        Failure::NoPoints(body) => (place, Some(format!("body.{body}.shape"))),
+        Failure::LostTraction { body, traction, lost: LostTraction::Bare(place) }
+        | Failure::LostTraction { body, traction, lost: LostTraction::Unbalanced { place, .. } } => {
+            (place, Some(format!("body.{body}.traction.{traction}")))
+        }
+        Failure::NotConverged(_) | Failure::SingularMass => (place, None),
+    };
+    let scene = key.map(|key| Box::new(SceneError { key, message: what.clone(), remedy: cause.clone() }));
+    Breakdown { step: 0, time: 0.0, place, point: None, what, cause, scene }
 }
 
 fn what_and_cause(failure: Failure, tolerance: f64) -> (String, String) {
@@ -201,6 +220,18 @@ fn what_and_cause(failure: Failure, tolerance: f64) -> (String, String) {
             if relative_residual <= NEAR_TOLERANCE * tolerance { RAISE_TOLERANCE } else { ILL_CONDITIONED },
         ),
         Failure::SingularMass => ("the consistent mass matrix is singular to round-off".to_string(), SINGULAR_MASS),
+        Failure::NoPoints(_) => ("the body holds no material point".to_string(), ADD_POINTS),
+        Failure::LostTraction { lost: LostTraction::Bare([x, y]), .. } => (
+            format!("there is no material point within a cell of ({x:.6e}, {y:.6e}) m, where the traction acts"),
+            CARRY_TRACTION,
+        ),
+        Failure::LostTraction { lost: LostTraction::Unbalanced { force, moment, .. }, .. } => (
+            format!(
+                "the forces on the control points miss the traction by {force:.1e} of its force and {moment:.1e} of its \
+                 moment"
+            ),
+            CARRY_TRACTION,
+        ),
     };
     (what, cause.to_string())
 }

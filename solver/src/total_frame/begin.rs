@@ -21,12 +21,16 @@ impl TotalFrame {
     /// The body of `scene` at t = 0 with its initial accelerations.
     ///
     /// # Errors
-    /// If the initial phase field does not converge, or a consistent mass matrix is singular to round-off.
+    /// If the body holds no material point, a part of a traction would be lost, the initial phase field does not converge, or a
+    /// consistent mass matrix is singular to round-off.
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
         let patch = Patch::new(&scene.mesh);
         let body = &scene.bodies[0];
         let material = &scene.materials[&body.material];
         let lattice = Lattice::new(&patch, body);
+        if lattice.count() == 0 {
+            return Err(Failure::NoPoints(0));
+        }
         let grid = lattice.grid;
         let constraints = Constraints::new(grid, &scene.boundaries);
         let held = [0, 1].map(|component| constraints.held(component));
@@ -35,11 +39,16 @@ impl TotalFrame {
             .as_ref()
             .map(|f| Fracturing::new(&lattice, body, FractureModel::new(f), &scene.solver))
             .transpose()?;
+        let mass = MassMatrix::new(&lattice, material.density, scene.analysis.mass, held)?;
+        let load = |(number, traction)| {
+            let load = NodalLoad::new(&patch, body, traction, |at| mass.moves(at));
+            load.map_err(|lost| Failure::LostTraction { body: 0, traction: number, lost })
+        };
         let zeros = || [grid.zeros(), grid.zeros()];
         let mut frame = Self {
-            loads: body.tractions.iter().map(|t| NodalLoad::new(&patch, body, t)).collect(),
+            loads: body.tractions.iter().enumerate().map(load).collect::<Result<_, _>>()?,
             forced: None,
-            mass: MassMatrix::new(&lattice, material.density, scene.analysis.mass, held)?,
+            mass,
             constraints,
             moduli: ElasticModuli::new(material, scene.analysis.plane),
             kinematics: scene.analysis.kinematics,
@@ -56,6 +65,7 @@ impl TotalFrame {
             ledger: Ledger::default(),
             time: 0.0,
             driven_power: 0.0,
+            judged_stiffening: 1.0,
             patch,
             grid,
             lattice,

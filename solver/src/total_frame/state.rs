@@ -34,6 +34,7 @@ impl TotalFrame {
             ledger,
             time,
             driven_power,
+            judged_stiffening,
         } = self;
         if forced.is_some() {
             return Err(StateError("loads that only the program knows cannot be stored".to_string()));
@@ -46,7 +47,9 @@ impl TotalFrame {
             field.exchange(archive)?;
             archive.value(iterations)?;
         }
-        [elastic_energy, time, driven_power].into_iter().try_for_each(|value| archive.value(value))?;
+        [elastic_energy, time, driven_power, judged_stiffening]
+            .into_iter()
+            .try_for_each(|value| archive.value(value))?;
         archive.value(ledger)
     }
 }

@@ -9,13 +9,14 @@ use super::field::DiscreteField;
 use super::grid::NodalFields;
 use super::losses::TransferLosses;
 use super::part;
-use super::points::{Cells, Point};
+use super::points::{Cells, OutsidePatch, Point};
 use super::tractions::SurfaceLoad;
 use crate::contact::Surface;
 use crate::energy::Ledger;
 use crate::error::Failure;
 use crate::fracture::lowest_tip;
 use crate::lattice::Lattice;
+use crate::loads::{Balance, LostTraction};
 use crate::material::{ElasticModuli, FractureModel};
 use crate::patch::Patch;
 use crate::scene::{Body, Kinematics, Material, Plane, Scene, Transfer};
@@ -24,24 +25,43 @@ impl DiscreteField {
     /// The body of `scene` at t = 0 with its initial velocities and accelerations.
     ///
     /// # Errors
-    /// If the initial phase field does not converge, or a point is not on the patch.
+    /// If the body holds no material point, a part of a traction would be lost, the initial phase field does not converge, or a
+    /// point is not on the patch.
     pub fn new(scene: &Scene, body: &Body, whole: &Arc<Patch>) -> Result<Self, Failure> {
         let mut field = Self::at_rest(scene, body, whole)?;
         let (center, velocity, spin) = (center_of_mass(&field.points), body.velocity, body.angular_velocity);
         let rigidly = |x: [f64; 2]| [velocity[0] - spin * (x[1] - center[1]), velocity[1] + spin * (x[0] - center[0])];
         field.points.iter_mut().for_each(|point| point.velocity = rigidly(point.position));
         field.take_affine_velocities(rigidly);
-        field.attach_loads()?;
+        let number = number_of(body, scene);
+        field.attach_first(number)?;
         field.crack_and_stress(true)?;
         (field.ledger, field.losses) = Default::default(); // there was no step yet
         field.find_accelerations();
+        for (traction, load) in field.loads.iter().enumerate() {
+            let balance = Balance::of_edge(body, &body.tractions[traction].edge);
+            let shares = load.shares(&field.patch, &field.nodes);
+            balance.check(shares).map_err(|lost| Failure::LostTraction { body: number, traction, lost })?;
+        }
         Ok(field)
+    }
+
+    /// Finds the first spans for the surface points of loads.
+    fn attach_first(&mut self, body: usize) -> Result<(), Failure> {
+        for (traction, load) in self.loads.iter_mut().enumerate() {
+            let bare = |OutsidePatch(place)| Failure::LostTraction { body, traction, lost: LostTraction::Bare(place) };
+            load.attach(&self.patch, &self.cells).map_err(bare)?;
+        }
+        Ok(())
     }
 
     /// Sorted points at rest, on nodal fields of zeros.
     fn at_rest(scene: &Scene, body: &Body, whole: &Arc<Patch>) -> Result<Self, Failure> {
         let (material, analysis) = (&scene.materials[&body.material], &scene.analysis);
         let mut points = Point::of_lattice(&Lattice::new(whole, body));
+        if points.is_empty() {
+            return Err(Failure::NoPoints(number_of(body, scene)));
+        }
         let spans = part::spans_around(whole, &points)?;
         let (patch, origin) = (whole.part(&spans), part::origin(whole, &spans));
         let mut cells = Cells::default();
@@ -79,6 +99,11 @@ impl DiscreteField {
             cells,
         })
     }
+}
+
+/// Number of a body in its scene.
+fn number_of(body: &Body, scene: &Scene) -> usize {
+    scene.bodies.iter().position(|other| std::ptr::eq(other, body)).unwrap_or_default()
 }
 
 /// Where the points take their velocity gradients from, if the transfer carries them.

@@ -6,8 +6,9 @@
 
 use super::grid::VectorField;
 use super::points::{Cells, OutsidePatch};
+use crate::nearest_span::nearest_span;
 use crate::patch::{ControlGrid, Patch};
-use crate::spline::{ShapeFunctions, SplineSpace};
+use crate::spline::ShapeFunctions;
 
 /// A position that moves with a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,26 +69,7 @@ impl Follower {
     }
 }
 
-/// The span with points that is nearest to a position, among its own and its eight neighbours.
+/// The span with points that is nearest to a position.
 fn nearest_occupied_span(patch: &Patch, cells: &Cells, position: [f64; 2]) -> Option<[usize; 2]> {
-    let home = [0, 1].map(|d| clamped_span(&patch.spaces[d], position[d]));
-    if cells.is_occupied(home) {
-        return Some(home);
-    }
-    let near = |d: usize| home[d].saturating_sub(1)..(home[d] + 2).min(patch.spaces[d].spans().len());
-    let distance = |span: &[usize; 2]| {
-        let beyond = |d: usize| {
-            let s = &patch.spaces[d].spans()[span[d]];
-            (s.left - position[d]).max(position[d] - s.right).max(0.0)
-        };
-        beyond(0).hypot(beyond(1))
-    };
-    let spans = near(1).flat_map(|j| near(0).map(move |i| [i, j]));
-    spans.filter(|span| cells.is_occupied(*span)).min_by(|a, b| distance(a).total_cmp(&distance(b)))
-}
-
-/// The span of `x`, or the end span nearest to it.
-fn clamped_span(space: &SplineSpace, x: f64) -> usize {
-    let last = space.spans().len() - 1;
-    space.find_span(x).unwrap_or(if x > space.spans()[last].right { last } else { 0 })
+    nearest_span(&patch.spaces, position, |span| cells.is_occupied(span))
 }

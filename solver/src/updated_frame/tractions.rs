@@ -1,6 +1,7 @@
 //! Tractions on surface points that move with the body.
 
 use super::follower::Follower;
+use super::grid::NodalFields;
 use super::points::{Cells, OutsidePatch};
 use crate::checkpoint::{Archive, StateError};
 use crate::loads::surface_points;
@@ -48,6 +49,24 @@ impl SurfaceLoad {
     /// A surface point with no material within one span of it.
     pub fn attach(&mut self, patch: &Patch, cells: &Cells) -> Result<(), OutsidePatch> {
         self.points.iter_mut().try_for_each(|point| point.place.attach(patch, cells))
+    }
+
+    /// Position (m) of every control point with mass on which the load acts, and its share of the length of the edge, m: once for
+    /// each surface point.
+    pub fn shares<'a>(
+        &'a self,
+        patch: &'a Patch,
+        nodes: &'a NodalFields,
+    ) -> impl Iterator<Item = ([f64; 2], f64)> + 'a {
+        self.points.iter().flat_map(move |point| {
+            let mut shares = Vec::new();
+            point.place.for_each_function(patch, nodes.grid, |at, n| {
+                if nodes.mass[at] > 0.0 {
+                    shares.push((nodes.position(at), point.length * n));
+                }
+            });
+            shares
+        })
     }
 
     /// Adds the nodal forces at a time, N/m.

@@ -11,7 +11,7 @@ const MOST_STEPS: f64 = 1e9;
 /// Highest order of XPIC: each costs a transfer to the points and back per step.
 const HIGHEST_XPIC: usize = 100;
 /// Relative tolerance of "on the side", of the size of the mesh.
-const TOLERANCE: f64 = 1e-9;
+const TOLERANCE: f64 = crate::spline::ROUND_OFF;
 
 pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     let analysis = &scene.analysis;
@@ -44,6 +44,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     }
     solver(scene, findings);
     boundaries(scene, findings);
+    corners(scene, findings);
     if ground.is_sound {
         for (i, boundary) in scene.boundaries.iter().enumerate() {
             held(&format!("boundary.{i}.side"), boundary, scene, findings);
@@ -204,6 +205,25 @@ fn boundaries(scene: &Scene, findings: &mut Findings) {
                 let message = format!("the {name} velocity has no effect, because {name} is not in fix");
                 findings.warn(format!("{key}.velocity"), message);
             }
+        }
+    }
+}
+
+/// Sides that meet in a corner and prescribe a component of its velocity differently.
+fn corners(scene: &Scene, findings: &mut Findings) {
+    let is_upright = |side: Side| matches!(side, Side::Left | Side::Right);
+    for (i, boundary) in scene.boundaries.iter().enumerate() {
+        for (j, other) in scene.boundaries[..i].iter().enumerate() {
+            let meet = is_upright(boundary.side) != is_upright(other.side);
+            let differ = |d: &usize| boundary.fix[*d] && other.fix[*d] && boundary.velocity[*d] != other.velocity[*d];
+            let Some(d) = (0..2).find(|d| meet && differ(d)) else { continue };
+            let (name, [here, there]) = (["x", "y"][d], [boundary, other].map(|b| (side_name(b.side), b.velocity[d])));
+            let message = format!(
+                "the corner of the {} and the {} side would move at {} m/s and at {} m/s (boundary.{j}) in {name}",
+                here.0, there.0, here.1, there.1
+            );
+            let remedy = format!("give both sides the same velocity in {name}, or leave {name} free on one of them");
+            findings.error(format!("boundary.{i}.velocity"), message, remedy);
         }
     }
 }

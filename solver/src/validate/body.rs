@@ -4,13 +4,14 @@ use std::cell::Cell;
 
 use super::analysis::side_name;
 use super::geometry::{complexity, covered_side, defect, outline};
-use super::{Findings, Ground};
+use super::points::Points;
+use super::{Findings, Ground, seed};
 use crate::nurbs::{LocateError, NurbsPatch};
 use crate::quadrature::MAX_POINTS;
 use crate::scene::{Body, Crack, Edge, Fracture, Layout, Scene, Shape, Traction};
 
 /// Relative tolerance of "inside", of the size of the mesh or body.
-const TOLERANCE: f64 = 1e-9;
+const TOLERANCE: f64 = crate::spline::ROUND_OFF;
 /// Intervals between the positions at which the segment of a traction is looked at.
 const SEGMENT_INTERVALS: usize = 32;
 /// Most positions at which a crack is looked at.
@@ -39,11 +40,9 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
             findings.error(format!("{key}.shape"), message, remedy);
             continue;
         }
-        if ground.is_sound
-            && !body.rigid
-            && inside_mesh(&key, body, ground, findings)
-            && let Some(fracture) = fracture
-        {
+        let placed = ground.is_sound && !body.rigid && inside_mesh(&key, body, ground, findings);
+        let before = findings.errors.len();
+        if placed && let Some(fracture) = fracture {
             resolution(body, fracture, ground, findings);
         }
         let look = Look::new(body, ground);
@@ -53,6 +52,22 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         for (j, crack) in body.cracks.iter().enumerate() {
             check_crack(&format!("{key}.crack.{j}"), crack, fracture, &look, findings);
         }
+        if placed && (0..2).all(|d| has_rule(body, d)) {
+            material_points(&key, body, fracture.filter(|_| findings.errors.len() == before), ground, findings);
+        }
+    }
+}
+
+/// The body has material points, and the seeds of its cracks, if they are sound, reach them.
+fn material_points(key: &str, body: &Body, fracture: Option<&Fracture>, ground: &Ground<'_>, findings: &mut Findings) {
+    let Some(points) = Points::new(body, ground) else { return };
+    let [_, h] = ground.span_lengths(&body.shape);
+    if !points.exist() {
+        let message = format!("no material point lies in body {:?}: its cells are up to {h:.3e} m wide", body.name);
+        let remedy = "use smaller cells or more particles_per_cell, or make the body larger";
+        findings.error(format!("{key}.shape"), message, remedy);
+    } else if let Some(fracture) = fracture {
+        seed::check(key, body, fracture, &points, h, findings);
     }
 }
 

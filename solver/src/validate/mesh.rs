@@ -4,6 +4,12 @@ use super::Findings;
 use crate::nurbs::{NurbsError, NurbsPatch};
 use crate::scene::Mesh;
 
+/// Weights of control points: beyond, sums of them lose the smallest ones, and control points are left without mass.
+const WEIGHTS: (f64, f64) = (1e-3, 1e3);
+/// Extent of a mesh in a direction, m or unit of the knots: beyond, areas and stiffnesses over- or underflow.
+const EXTENT: (f64, f64) = (1e-12, 1e12);
+/// Shortest span of a direction, of the extent: below, it is within round-off of its neighbours.
+const SHORTEST: f64 = crate::spline::ROUND_OFF;
 /// Largest number of spans of a mesh.
 const MOST_SPANS: usize = 50_000_000;
 
@@ -26,7 +32,26 @@ pub(super) fn check(mesh: &Mesh, findings: &mut Findings) -> Option<NurbsPatch> 
         return None;
     }
     let patch = mesh.nurbs()?;
-    patch.inspect_err(|error| geometry(error, mesh, findings)).ok()
+    let patch = patch.inspect_err(|error| geometry(error, mesh, findings)).ok()?;
+    magnitudes(&patch, findings).then_some(patch)
+}
+
+/// Whether weights and control points of a patch are of sizes that can be computed with.
+fn magnitudes(patch: &NurbsPatch, findings: &mut Findings) -> bool {
+    let (low, high) = WEIGHTS;
+    if let Some(weight) = patch.weights().iter().find(|w| !(low..=high).contains(*w)) {
+        let remedy = "give weights of about 1: a common factor of all changes nothing";
+        findings.error("mesh.weights", format!("a weight of {weight:e} is outside {low:e} to {high:e}"), remedy);
+        return false;
+    }
+    let (least, most) = EXTENT;
+    let far = patch.control_points().iter().any(|p| p.iter().any(|x| x.abs() > most));
+    if far || patch.size() < least {
+        let message = format!("a patch smaller than {least:e} m, or with control points beyond {most:e} m");
+        findings.error("mesh.control_points", message, "check the unit of the control points");
+        return false;
+    }
+    true
 }
 
 /// What is wrong with a patch, by key, and what would be right.
@@ -75,6 +100,21 @@ fn knots(d: usize, degree: usize, knots: &[f64], findings: &mut Findings) {
     }
     if first == last {
         return findings.error(key, "no span of positive length", "give increasing knots");
+    }
+    let (least, most) = EXTENT;
+    if !(least..=most).contains(&(last - first)) {
+        let message = format!("from {first:e} to {last:e}: an extent outside {least:e} to {most:e}");
+        return findings.error(
+            key,
+            message,
+            "check the unit of a size; knots of a general patch can be scaled to 0 to 1",
+        );
+    }
+    let spans = knots.windows(2).map(|k| k[1] - k[0]).filter(|span| *span > 0.0);
+    let shortest = spans.fold(f64::INFINITY, f64::min);
+    if shortest < SHORTEST * (last - first) {
+        let message = format!("a span of {shortest:e} in a mesh of {:e}: too short to be told from none", last - first);
+        return findings.error(key, message, "repeat a knot exactly, or keep the spans alike");
     }
     let interior = &knots[ends..knots.len() - ends];
     let at_end = |k: f64| k == first || k == last;

@@ -1,6 +1,7 @@
 //! Checks that a reader of files never lets through, and the exact bounds of the others.
 
 use super::validate;
+use crate::nurbs::NurbsPatch;
 use crate::scene::*;
 
 /// A fracturing square, 10 mm by 10 mm.
@@ -95,11 +96,17 @@ fn a_mesh_that_is_none_is_refused() {
 
 #[test]
 fn the_resolution_counts_only_where_the_body_is() {
-    assert!(warnings(|s| glass(s).fracture.as_mut().unwrap().length_scale = 0.25e-3).is_empty());
+    let length_scale = |l0: f64| {
+        move |s: &mut Scene| {
+            glass(s).fracture.as_mut().unwrap().length_scale = l0;
+            s.bodies[0].cracks[0].half_width = Some(0.25e-3);
+        }
+    };
+    assert!(warnings(length_scale(0.25e-3)).is_empty());
     let key = "material.glass.fracture.length_scale";
-    assert_eq!(warnings(|s| glass(s).fracture.as_mut().unwrap().length_scale = 0.24e-3), [key]);
-    assert_eq!(warnings(|s| glass(s).fracture.as_mut().unwrap().length_scale = 0.25e-3 / 4.0), [key]);
-    assert_eq!(errors(|s| glass(s).fracture.as_mut().unwrap().length_scale = 0.24e-3 / 4.0), [key]);
+    assert_eq!(warnings(length_scale(0.24e-3)), [key]);
+    assert_eq!(warnings(length_scale(0.25e-3 / 4.0)), [key]);
+    assert_eq!(errors(length_scale(0.24e-3 / 4.0)), [key]);
     let graded = |s: &mut Scene| s.mesh.knots[0].splice(42.., [0.01, 0.05, 0.05, 0.05]).for_each(drop);
     let sound = with(graded);
     assert_eq!(sound.mesh.knots[0].len(), 46);
@@ -325,4 +332,52 @@ fn several_bodies_need_the_updated_frame_and_room() {
     };
     assert_eq!(changed(within), ["body.1.shape"], "one body inside the other");
     assert_eq!(changed(|s| s.bodies[1].shape = s.bodies[0].shape.clone()), ["body.1.shape"], "one body twice");
+}
+
+/// The corner of two sides has what either prescribes, whatever their order; they may not contradict each other.
+#[test]
+fn sides_that_meet_agree_in_their_corner() {
+    let side = |side, fix, velocity| Boundary { side, fix, velocity };
+    let both = |a: &Boundary, b: &Boundary| {
+        let keys = errors(|s| s.boundaries = vec![a.clone(), b.clone()]);
+        assert_eq!(keys, errors(|s| s.boundaries = vec![b.clone(), a.clone()]), "in the other order");
+        keys
+    };
+    let driven = side(Side::Left, [true, true], [2.0, 0.0]);
+    assert_eq!(both(&driven, &side(Side::Top, [true, false], [1.0, 0.0])), ["boundary.1.velocity"]);
+    assert_eq!(both(&driven, &side(Side::Bottom, [true, true], [0.0; 2])), ["boundary.1.velocity"]);
+    assert!(both(&driven, &side(Side::Top, [true, false], [2.0, 0.0])).is_empty(), "the same velocity");
+    assert!(both(&driven, &side(Side::Top, [false, true], [0.0; 2])).is_empty(), "x is prescribed once");
+    assert!(both(&driven, &side(Side::Right, [true, true], [-2.0, 0.0])).is_empty(), "these do not meet");
+}
+
+#[test]
+fn weights_and_knots_beyond_what_sums_can_hold_are_refused() {
+    let general = |weight: f64, knot: f64, scale: f64| {
+        errors(|s| {
+            let mut mesh = Mesh::of(&NurbsPatch::quarter_annulus(1.0, 2.0).unwrap().subdivide(2).unwrap());
+            mesh.knots[0].iter_mut().filter(|k| **k == 1.0).for_each(|k| *k = knot);
+            let geometry = mesh.geometry.as_mut().unwrap();
+            geometry.weights[0] = weight;
+            geometry.control_points.iter_mut().flatten().for_each(|x| *x *= scale);
+            s.mesh = mesh;
+            s.materials.get_mut("glass").unwrap().fracture = None;
+            s.bodies[0].cracks.clear();
+            s.bodies[0].shape = Shape::Patch;
+        })
+    };
+    assert!(general(1.0, 1.0, 1.0).is_empty() && general(100.0, 1.0, 1.0).is_empty());
+    assert_eq!(general(1e-300, 1.0, 1.0), ["mesh.weights"]);
+    assert_eq!(general(1e8, 1.0, 1.0), ["mesh.weights"]);
+    assert_eq!(general(1.0, 1e300, 1.0), ["mesh.knots.0"]);
+    assert_eq!(general(1.0, 1e11, 1.0), ["mesh.knots.0"], "a span of 0.5 in 1e11");
+    assert_eq!(general(1.0, 1.0, 1e14), ["mesh.control_points"]);
+    let stretched = |end: f64| {
+        errors(|s| {
+            s.mesh = Mesh::uniform([2, 2], [0.0; 2], [end, 0.01], [40, 40]);
+            s.bodies[0].cracks.clear();
+        })
+    };
+    assert_eq!(stretched(1e300), ["mesh.knots.0"]);
+    assert_eq!(stretched(1e-300), ["mesh.knots.0"]);
 }

@@ -20,7 +20,7 @@ const QUANTITIES: [(&str, Dimension, Dimension); 10] = [
 ];
 
 /// SI unit of the dimensions that reference data have.
-const SI: [(Dimension, &str); 10] = [
+const SI: [(Dimension, &str); 11] = [
     (Dimension::NONE, "1"),
     (Dimension::TIME, "s"),
     (Dimension::LENGTH, "m"),
@@ -31,6 +31,7 @@ const SI: [(Dimension, &str); 10] = [
     (ENERGY_PER_THICKNESS, "J/m"),
     (Dimension::ENERGY, "J"),
     (Dimension::RATE, "1/s"),
+    (Dimension::FREQUENCY, "Hz"),
 ];
 
 /// Names of all quantities that curves can have.

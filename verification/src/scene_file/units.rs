@@ -1,7 +1,8 @@
 //! Quantities with units: `"32 GPa"`, `"0.25 mm"`, `"2450 kg/m^3"` to SI.
 //!
 //! A quantity is a number and a unit: a product, quotient or power of symbols, each with an optional SI prefix. The
-//! dimension is the vector of exponents of mass, length and time; angles have none. Powers of ten of prefixes are added
+//! dimension is the vector of exponents of mass, length, time and cycles; angles have none. A frequency in Hz counts cycles, so it
+//! is no angular velocity, which is 2 pi times as large. Powers of ten of prefixes are added
 //! to the decimal exponent before the number is read, so that `"80 us"` is exactly the double `80e-6`.
 
 mod expression;
@@ -10,7 +11,7 @@ use std::fmt;
 
 use expression::{Factor, unit_factor};
 
-/// Exponents of mass, length and time.
+/// Exponents of mass, length, time and cycles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dimension {
     /// Exponent of mass (kg).
@@ -19,10 +20,12 @@ pub struct Dimension {
     pub length: i32,
     /// Exponent of time (s).
     pub time: i32,
+    /// Exponent of cycles: 1 for a frequency in Hz.
+    pub cycles: i32,
 }
 
 /// Name and example of the dimensions that scene files use.
-const NAMED: [(Dimension, &str, &str); 14] = [
+const NAMED: [(Dimension, &str, &str); 15] = [
     (Dimension::NONE, "a plain number", "0.2"),
     (Dimension::LENGTH, "a length", "\"0.25 mm\""),
     (Dimension::TIME, "a time", "\"80 us\""),
@@ -30,6 +33,7 @@ const NAMED: [(Dimension, &str, &str); 14] = [
     (Dimension::VELOCITY, "a velocity", "\"10 m/s\""),
     (Dimension::ACCELERATION, "an acceleration", "\"9.81 m/s^2\""),
     (Dimension::RATE, "an angular velocity or rate", "\"60 rpm\""),
+    (Dimension::FREQUENCY, "a frequency", "\"50 Hz\""),
     (Dimension::STRESS, "a stress", "\"32 GPa\""),
     (Dimension::DENSITY, "a density", "\"2450 kg/m^3\""),
     (Dimension::ENERGY_PER_AREA, "an energy per area", "\"3 J/m^2\""),
@@ -54,6 +58,8 @@ impl Dimension {
     pub const ACCELERATION: Self = Self::new(0, 1, -2);
     /// rad/s or 1/s.
     pub const RATE: Self = Self::new(0, 0, -1);
+    /// Hz.
+    pub const FREQUENCY: Self = Self { cycles: 1, ..Self::RATE };
     /// Pa.
     pub const STRESS: Self = Self::new(1, -1, -2);
     /// kg/m³.
@@ -65,9 +71,9 @@ impl Dimension {
     /// J.
     pub const ENERGY: Self = Self::new(1, 2, -2);
 
-    /// The dimension with these exponents.
+    /// The dimension with these exponents and no cycles.
     pub const fn new(mass: i32, length: i32, time: i32) -> Self {
-        Self { mass, length, time }
+        Self { mass, length, time, cycles: 0 }
     }
 
     /// In words with an article: `a length`.
@@ -85,14 +91,20 @@ impl Dimension {
 
     /// `self · other^power`.
     fn times(self, other: Self, power: i32) -> Self {
-        Self::new(self.mass + power * other.mass, self.length + power * other.length, self.time + power * other.time)
+        let sum = |own: i32, other: i32| own + power * other;
+        Self {
+            mass: sum(self.mass, other.mass),
+            length: sum(self.length, other.length),
+            time: sum(self.time, other.time),
+            cycles: sum(self.cycles, other.cycles),
+        }
     }
 }
 
-/// SI base units with exponents: `kg m^-1 s^-2`.
+/// SI base units and cycles with exponents: `kg m^-1 s^-2`.
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let parts: Vec<String> = [("kg", self.mass), ("m", self.length), ("s", self.time)]
+        let parts: Vec<String> = [("kg", self.mass), ("m", self.length), ("s", self.time), ("cycle", self.cycles)]
             .iter()
             .filter(|(_, n)| *n != 0)
             .map(|(s, n)| if *n == 1 { s.to_string() } else { format!("{s}^{n}") })
@@ -138,7 +150,10 @@ pub fn parse_as(text: &str, expected: Dimension) -> Result<f64, UnitError> {
         return Ok(quantity.value);
     }
     let message = format!("{text:?} is {}, expected {}", quantity.dimension.name(), expected.name());
-    let remedy = if quantity.dimension == Dimension::NONE {
+    let remedy = if expected == Dimension::RATE && quantity.dimension == Dimension::FREQUENCY {
+        let angular = std::f64::consts::TAU * quantity.value;
+        format!("a cycle is 2 pi rad: a frequency of {} Hz is \"{angular} rad/s\"", quantity.value)
+    } else if quantity.dimension == Dimension::NONE {
         format!("give {}, or a bare number (SI) without quotes", expected.example())
     } else {
         format!("give {}", expected.example())

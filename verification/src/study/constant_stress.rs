@@ -115,7 +115,8 @@ impl<'a> PatchTest<'a> {
                 continue;
             }
             let traction = Traction { edge: Edge::Side(side), stress, ramp: None };
-            for (at, force) in NodalLoad::new(self.frame.patch(), body, &traction).forces {
+            let load = NodalLoad::new(self.frame.patch(), body, &traction, |at| self.frame.mass().moves(at));
+            for (at, force) in load.expect("the sides of the body are carried by its points").forces {
                 forces[0][at] += force[0];
                 forces[1][at] += force[1];
             }

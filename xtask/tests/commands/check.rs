@@ -58,6 +58,43 @@ fn a_broken_scene_ends_with_2_and_names_place_key_and_remedy() {
     }
 }
 
+/// Tractions, cracks and bodies that would be lost without a word.
+#[test]
+fn what_would_not_happen_is_refused_before_anything_runs() {
+    let rectangle = "{ rectangle = { min = [\"0 mm\", \"0 mm\"], max = [\"10 mm\", \"5 mm\"] } }";
+    let needle = "{ polygon = { points = [[0, 0], [2e-3, 0], [9e-3, 3e-6], [2e-3, 1e-5], [2e-3, 2e-3], [0, 2e-3]] } }";
+    let on_needle = |frame: &str| {
+        let text =
+            BLOCK.replacen(rectangle, needle, 1).replacen("[analysis]", &format!("[analysis]\nframe = {frame:?}"), 1);
+        text.replacen("edge   = \"top\"", "segment = [[5e-3, 3e-6], [8e-3, 3e-6]]", 1)
+    };
+    let elastic = |from: &str, to: &str| BLOCK.replacen(from, to, 1);
+    let cracked = |half_width: &str| notched().replacen("half_width = \"1 mm\"", half_width, 1);
+    let corner = "[[boundary]]\nside = \"left\"\nfix = [\"y\"]\n\n[[boundary]]\nside = \"top\"\nfix = [\"y\"]\nvelocity = [0, 1]\n";
+    for (text, parts) in [
+        (on_needle("total"), &["body.0.traction.0: ", "no material point within a cell of"][..]),
+        (on_needle("updated"), &["body.0.traction.0: ", "no material point within a cell of"]),
+        (
+            elastic(rectangle, "{ disk = { center = [1e-3, 1e-3], radius = 1e-4 } }"),
+            &["body.0.shape: ", "no material point lies in body", "smaller cells"],
+        ),
+        (cracked("half_width = \"0.1 mm\""), &["body.0.crack.0.half_width: ", "there is no crack", "at least 2.9"]),
+        (cracked("half_width = \"20 mm\""), &["body.0.crack.0.half_width: ", "covers all", "smaller half width"]),
+        (
+            elastic("particles_per_cell = [2, 2]", "angular_velocity = \"159.15 Hz\""),
+            &["body.0.angular_velocity: ", "a frequency", "2 pi", "rad/s"],
+        ),
+        (format!("{BLOCK}\n{corner}"), &["boundary.1.velocity: ", "the corner of the top and the left side"]),
+    ] {
+        let place = Place::with("s.toml", &text);
+        for command in ["check", "run"] {
+            let outcome = place.xtask(&[command, "s.toml"]).with_status(2).complains_of(parts);
+            assert!(outcome.out.is_empty() && outcome.err.contains("s.toml:"), "{outcome:?}");
+            assert!(!outcome.err.contains("panicked"), "{}", outcome.err);
+        }
+    }
+}
+
 #[test]
 fn a_missing_file_and_a_bad_override_end_with_2() {
     let place = Place::with("block.toml", BLOCK);

@@ -41,7 +41,7 @@ const SYMBOLS: [(&str, bool, i32, f64, Dimension); 16] = [
     ("bar", true, 5, 1.0, Dimension::STRESS),
     ("J", true, 0, 1.0, Dimension::ENERGY),
     ("W", true, 0, 1.0, Dimension::new(1, 2, -3)),
-    ("Hz", true, 0, 1.0, Dimension::RATE),
+    ("Hz", true, 0, 1.0, Dimension::FREQUENCY),
     ("rad", true, 0, 1.0, Dimension::NONE),
     ("deg", false, 0, PI / 180.0, Dimension::NONE),
     ("°", false, 0, PI / 180.0, Dimension::NONE),

@@ -1,0 +1,163 @@
+//! Where the material points of a body will be, before anything is made of them.
+
+use std::ops::Range;
+
+use super::Ground;
+use super::geometry::complexity;
+use crate::lattice::{fills_lattice, point_axes};
+use crate::nurbs::NurbsPatch;
+use crate::scene::Body;
+use crate::shape::distance_to_segment;
+
+type Point = [f64; 2];
+
+/// Most tests of a point against a corner or circle, over all looks at a body: a tenth of a second.
+const MOST_LOOKS: usize = 10_000_000;
+/// Most points that are mapped by a geometry: half a second.
+const MOST_MAPPED: usize = 2_000_000;
+
+/// The points of a body: pairs of its positions along both directions of the mesh that lie in its shape.
+pub(super) struct Points<'a> {
+    body: &'a Body,
+    axes: [Vec<f64>; 2],
+    /// Positions of all pairs on a patch with a geometry, first direction fastest, m.
+    mapped: Option<Vec<Point>>,
+    fills: bool,
+    /// Points that may be looked at.
+    most: usize,
+}
+
+/// A point near a segment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Near {
+    /// Where along the segment it is nearest, m.
+    pub along: f64,
+    /// Distance from the segment, m.
+    pub distance: f64,
+    /// Length of a span there along the segment, m.
+    pub span: f64,
+    /// What it stands for, m².
+    pub area: f64,
+}
+
+impl<'a> Points<'a> {
+    /// The points of a body with a sound shape and layout on a sound mesh; `None` if there are too many to be mapped.
+    pub fn new(body: &'a Body, ground: &Ground<'_>) -> Option<Self> {
+        let (spaces, patch) = (ground.spaces.as_ref()?, ground.patch.as_ref());
+        let axes = point_axes(body, spaces, patch.is_some());
+        let fills = fills_lattice(patch.is_some(), &body.shape);
+        let needed = !fills || !body.cracks.is_empty();
+        if patch.is_some() && needed && axes[0].len().saturating_mul(axes[1].len()) > MOST_MAPPED {
+            return None;
+        }
+        let mapped = patch.filter(|_| needed).map(|patch| positions(patch, &axes));
+        let most = MOST_LOOKS / ((1 + body.cracks.len()) * complexity(&body.shape).max(1));
+        Some(Self { body, axes, mapped, fills, most })
+    }
+
+    /// Whether there are points at all.
+    pub fn exist(&self) -> bool {
+        let pairs = self.axes.iter().all(|axis| !axis.is_empty());
+        pairs && (self.fills || self.any(|_| true))
+    }
+
+    /// Whether some point is `wanted`, or none was found among as many as may be looked at.
+    pub fn any(&self, wanted: impl Fn(Point) -> bool) -> bool {
+        let [columns, rows] = self.axes.each_ref().map(Vec::len);
+        let mut pairs = (0..rows).flat_map(|j| (0..columns).map(move |i| [i, j])).map(|pair| self.position(pair));
+        let found = pairs.by_ref().take(self.most).any(|x| wanted(x) && self.is_inside(x));
+        found || pairs.next().is_some()
+    }
+
+    /// The points within a span of a segment, and within `reach` (m), in their order along it; `None` if there are too many to be
+    /// looked at.
+    pub fn near(&self, [from, to]: [Point; 2], reach: f64) -> Option<Vec<Near>> {
+        let along = [to[0] - from[0], to[1] - from[1]];
+        let length = along[0].hypot(along[1]);
+        let candidates = self.candidates(from, along, reach);
+        if candidates.iter().map(|(columns, _)| columns.len()).sum::<usize>() > self.most {
+            return None;
+        }
+        let mut near = Vec::new();
+        for pair in candidates.into_iter().flat_map(|(columns, j)| columns.map(move |i| [i, j])) {
+            let position = self.position(pair);
+            let spans = [0, 1].map(|d| self.span(pair, d));
+            let [[ax, ay], [bx, by]] = spans;
+            let diagonal = (ax * ax + ay * ay + bx * bx + by * by).sqrt();
+            let distance = distance_to_segment(position, from, to);
+            if distance <= diagonal.max(reach) && self.is_inside(position) {
+                let project = |v: Point| (v[0] * along[0] + v[1] * along[1]) / length;
+                let foot = project([position[0] - from[0], position[1] - from[1]]);
+                let span = spans.into_iter().map(|span| project(span).abs()).sum();
+                let points: usize = self.body.particles_per_cell.into_iter().product();
+                let area = (ax * by - ay * bx).abs() / points as f64;
+                near.push(Near { along: foot.clamp(0.0, length), distance, span, area });
+            }
+        }
+        near.sort_by(|a, b| a.along.total_cmp(&b.along));
+        Some(near)
+    }
+
+    /// Columns and row of the pairs that may lie within a span, or `reach` (m), of a segment: over a rectangle those under it, row by row.
+    fn candidates(&self, from: Point, along: Point, reach: f64) -> Vec<(Range<usize>, usize)> {
+        let [xs, ys] = &self.axes;
+        if self.mapped.is_some() {
+            return (0..ys.len()).map(|j| (0..xs.len(), j)).collect();
+        }
+        let longest = |d: usize| {
+            let ways = (0..self.axes[d].len()).map(|i| {
+                let mut pair = [0; 2];
+                pair[d] = i;
+                self.span(pair, d)[d].abs()
+            });
+            ways.fold(0.0, f64::max)
+        };
+        let reach = longest(0).hypot(longest(1)).max(reach);
+        let within = |axis: &[f64], low: f64, high: f64| {
+            axis.partition_point(|x| *x < low - reach)..axis.partition_point(|x| *x <= high + reach)
+        };
+        let in_row = |j: usize| {
+            // the ends of the part of the segment that is no further up or down
+            let at = |y: f64| if along[1] == 0.0 { 0.0 } else { ((y - from[1]) / along[1]).clamp(0.0, 1.0) };
+            let ends = if along[1] == 0.0 { [0.0, 1.0] } else { [at(ys[j] - reach), at(ys[j] + reach)] };
+            let [a, b] = ends.map(|t| from[0] + t * along[0]);
+            (within(xs, a.min(b), a.max(b)), j)
+        };
+        let to = from[1] + along[1];
+        within(ys, from[1].min(to), from[1].max(to)).map(in_row).collect()
+    }
+
+    fn is_inside(&self, position: Point) -> bool {
+        self.fills || self.body.shape.contains(position)
+    }
+
+    fn position(&self, [i, j]: [usize; 2]) -> Point {
+        match &self.mapped {
+            None => [self.axes[0][i], self.axes[1][j]],
+            Some(positions) => positions[j * self.axes[0].len() + i],
+        }
+    }
+
+    /// The longer of the ways (m) from a point to those at the same place in the spans before and after it.
+    fn span(&self, pair: [usize; 2], d: usize) -> Point {
+        let step = self.body.particles_per_cell[d];
+        let way = |to: usize| {
+            let mut other = pair;
+            other[d] = to;
+            let (here, there) = (self.position(pair), self.position(other));
+            [there[0] - here[0], there[1] - here[1]]
+        };
+        let before = way(pair[d].saturating_sub(step));
+        let after = way((pair[d] + step).min(self.axes[d].len() - 1));
+        if before[0].hypot(before[1]) > after[0].hypot(after[1]) { before } else { after }
+    }
+}
+
+/// Images of all pairs of parameters, m.
+fn positions(patch: &NurbsPatch, [xs, ys]: &[Vec<f64>; 2]) -> Vec<Point> {
+    let position = |parameters: Point| {
+        let span = patch.find_span(parameters).expect("points lie in spans");
+        patch.map(&patch.shape_functions(span, parameters)).position
+    };
+    ys.iter().flat_map(|y| xs.iter().map(|x| position([*x, *y]))).collect()
+}

@@ -1,0 +1,116 @@
+//! Whether the seeds of cracks break their bodies: a crack is there only in the material points that its history energy reaches.
+//!
+//! A history energy H over a narrow band holds `c0 = 1/(1 + S/(4 l0))` at its middle against the gradient of c, with the
+//! strength `S = ∫ 4 l0 H/Gc dn` across the band: the solution of (E 8) on a line. On a mesh of spans h the field varies no faster
+//! than over h, which is like a longer l0. The strength is summed over the points, in every stretch of the length of a span.
+
+use super::Findings;
+use super::points::{Near, Points};
+use crate::fracture::{BROKEN, SEED_STRENGTH, half_width};
+use crate::scene::{Body, Crack, Fracture};
+use crate::shape::distance_to_segment;
+
+/// Relative tolerance of lengths along a crack.
+const TOLERANCE: f64 = 1e-6;
+/// Strength, of 4 l0 + h, at which c0 is [`BROKEN`] in half of a body that is symmetric about the crack, and 0.095 in a whole one.
+const BREAKING: f64 = 0.5 * (1.0 / BROKEN - 1.0);
+/// Distance from a crack up to which points are counted, of l0: they are enough to break it.
+const COUNTED: f64 = 0.25;
+
+/// Errors for seeds that leave their cracks whole somewhere, and for seeds that cover their body; `h` is the largest span, m.
+pub(super) fn check(key: &str, body: &Body, fracture: &Fracture, points: &Points<'_>, h: f64, findings: &mut Findings) {
+    let l0 = fracture.length_scale;
+    let width = |crack: &Crack| half_width(crack, l0);
+    for (j, crack) in body.cracks.iter().enumerate() {
+        let (ends, width) = ([crack.from, crack.to], width(crack));
+        let Some(near) = points.near(ends, width.min(COUNTED * l0)) else { continue };
+        let length = (crack.to[0] - crack.from[0]).hypot(crack.to[1] - crack.from[1]);
+        if let Some(whole) = whole_stretch(&near, length, width, l0) {
+            findings.error(
+                format!("{key}.crack.{j}.half_width"),
+                whole.message(width),
+                remedy(&near, length, width, l0, h),
+            );
+        }
+    }
+    let widest = (0..body.cracks.len()).max_by(|a, b| width(&body.cracks[*a]).total_cmp(&width(&body.cracks[*b])));
+    let spared = |x| body.cracks.iter().all(|crack| distance_to_segment(x, crack.from, crack.to) >= width(crack));
+    if let Some(widest) = widest
+        && !points.any(spared)
+    {
+        let message =
+            format!("the initial history of the cracks covers all of body {:?}: nothing is left whole", body.name);
+        let remedy = format!("give a smaller half width; the default is l0/2 = {} m", 0.5 * l0);
+        findings.error(format!("{key}.crack.{widest}.half_width"), message, remedy);
+    }
+}
+
+/// Where a seed leaves a crack whole.
+enum Whole {
+    Everywhere,
+    /// Between two places along the crack, m.
+    Stretch([f64; 2]),
+}
+
+impl Whole {
+    fn message(&self, width: f64) -> String {
+        match self {
+            Self::Everywhere => format!("no material point lies within the half width of {width} m: there is no crack"),
+            Self::Stretch([from, to]) => format!(
+                "the half width of {width} m reaches too few material points to break the body from {from:.3e} m to \
+                 {to:.3e} m along the crack"
+            ),
+        }
+    }
+}
+
+/// The first stretch of a crack that a seed of half width `width` (m) does not break. Stretches without any point near them do
+/// not count.
+fn whole_stretch(near: &[Near], length: f64, width: f64, l0: f64) -> Option<Whole> {
+    let strength = |p: &Near| SEED_STRENGTH * p.area * (1.0 - p.distance / width).max(0.0);
+    let sums: Vec<f64> = std::iter::once(0.0)
+        .chain(near.iter().scan(0.0, |sum, point| {
+            *sum += strength(point);
+            Some(*sum)
+        }))
+        .collect();
+    let (Some(first), Some(last)) = (near.first(), near.last()) else { return Some(Whole::Everywhere) };
+    if sums[near.len()] == 0.0 {
+        return Some(Whole::Everywhere);
+    }
+    let before = |along: f64| near.partition_point(|point| point.along <= along);
+    let is_whole = |[from, to]: [f64; 2], span: f64, points: std::ops::Range<usize>| {
+        let needed = BREAKING * (4.0 * l0 + span) * (to - from);
+        !points.is_empty() && sums[points.end] - sums[points.start] < needed * (1.0 - TOLERANCE)
+    };
+    let end_from = (length - last.span).max(0.0);
+    let ends = [([0.0, first.span.min(length)], first.span), ([end_from, length], last.span)];
+    let mut stretches = ends.into_iter().map(|([from, to], span)| {
+        let margin = TOLERANCE * span;
+        ([from, to], span, before(from - margin)..before(to + margin))
+    });
+    let mut between = near.iter().filter(|point| point.along + point.span <= length).map(|point| {
+        let ([from, to], margin) = ([point.along, point.along + point.span], TOLERANCE * point.span);
+        ([from, to], point.span, before(from + margin)..before(to + margin))
+    });
+    let mut found = |(ends, span, points)| is_whole(ends, span, points).then_some(Whole::Stretch(ends));
+    stretches.find_map(&mut found).or_else(|| between.find_map(&mut found))
+}
+
+/// The least half width, and the largest cells, that would do; rounded so that the figures in the text do too.
+fn remedy(near: &[Near], length: f64, width: f64, l0: f64, h: f64) -> String {
+    let breaks = |width: f64, l0: f64| whole_stretch(near, length, width, l0).is_none();
+    let widest = near.iter().map(|point| point.distance).fold(width, f64::max) * 100.0;
+    if !breaks(widest, l0) {
+        return "use smaller cells, or more particles_per_cell".to_string();
+    }
+    let (mut least, mut enough) = (width, widest);
+    while enough > 1.0001 * least {
+        let middle = (least * enough).sqrt();
+        *(if breaks(middle, l0) { &mut enough } else { &mut least }) = middle;
+    }
+    let wider = format!("give a half_width of at least {:.3e} m", 1.0006 * enough);
+    // smaller cells are like a larger width and length scale
+    let smaller = (1..150).map(|n| 0.97_f64.powi(n)).find(|part| breaks(width / part, l0 / part));
+    smaller.map_or(wider.clone(), |part| format!("{wider}, or cells of at most {:.2e} m", 0.99 * part * h))
+}
