@@ -19,8 +19,8 @@ use crate::svg::slug;
 use crate::view::{self, Counts};
 
 use page::{
-    Case, Deviations, ExpectationCell, Link, Order, Orders, Page, Parameters, Picture, ReferenceCell, Row, Source, Suite,
-    Verdict,
+    Case, Deviations, ExpectationCell, Link, Order, Orders, Page, Parameters, Picture, ReferenceCell, Row, Source,
+    Suite, Verdict,
 };
 
 const TEMPLATE: &str = include_str!("../templates/report.html");

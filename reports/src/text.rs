@@ -16,8 +16,8 @@ pub fn render_text(set: &ResultSet) -> String {
     }
     for record in unmet(set) {
         let expected = expected(record, plain).unwrap_or_default();
-        let text = line(&format!("NOT MET {}: {}, expected {expected}", record.id, value(record, plain)));
-        out.push_str(&(wrap_columns(&text, 106).join("\n  ") + "\n"));
+        let text = format!("NOT MET {}: {}, expected {expected}", record.id, value(record, plain));
+        out.push_str(&(wrap_columns(&line(&text), 106).join("\n  ") + "\n"));
     }
     let suites: Vec<_> = by_suite(set).into_iter().map(|(suite, records)| (line(suite), records)).collect();
     let widest = suites.iter().map(|s| s.0.chars().count()).max().unwrap_or(0).max("suite".len());
