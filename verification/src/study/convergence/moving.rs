@@ -168,6 +168,8 @@ fn broken(failure: Failure) -> StudyError {
         Failure::NotConverged(_) => other("the phase field does not converge"),
         Failure::SingularMass => other("the mass matrix is singular to round-off"),
         Failure::Left([x, y]) => other(format!("a point left the mesh at ({x}, {y})")),
+        Failure::NoPoints(_) => other("the body holds no material point"),
+        Failure::LostTraction { .. } => other("a part of a traction would not act"),
     }
 }
 
