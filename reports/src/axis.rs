@@ -3,6 +3,7 @@
 //! An [`AxisScale`] works in *axis coordinates*: the value itself on a linear axis, its decimal logarithm on a
 //! logarithmic one. Both run linearly along the page.
 
+use fisura_verification::extremes::{larger, smaller};
 use std::ops::Range;
 
 use fisura_verification::record::{Axis, Scale};
@@ -38,7 +39,7 @@ impl AxisScale {
     /// `target` ticks are labelled. The axis' own range wins where it is given and usable.
     pub fn fit(axis: &Axis, values: impl IntoIterator<Item = f64>, padding: f64, target: usize) -> Self {
         let coordinates = values.into_iter().map(|v| coordinate(axis.scale, v)).filter(|u| u.is_finite());
-        let fitted = coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), u| (a.min(u), b.max(u)));
+        let fitted = coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), u| (smaller(a, u), larger(b, u)));
         let fitted = if fitted.0 <= fitted.1 { fitted } else { (0.0, 1.0) };
         let given = axis.range.map(|[a, b]| (coordinate(axis.scale, a), coordinate(axis.scale, b)));
         let (low, high) = match given {

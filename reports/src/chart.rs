@@ -1,5 +1,6 @@
 //! Line charts: curves over common axes, reference bands, marked regions, slopes of theory, a legend below.
 
+use fisura_verification::extremes::larger;
 use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, Floor, Region, SlopeTriangle};
 use plotters::prelude::*;
 
@@ -162,7 +163,7 @@ impl<'a> Chart<'a> {
         let marked = marked(&seen, trace, &self.traces);
         bounded(trace, markable(marked.len()))?;
         let radius = if marked.len() > 24 { 2.6 } else { 3.6 };
-        let floor = self.marks.floors.iter().map(|f| y.coordinate(f.y)).fold(f64::NEG_INFINITY, f64::max);
+        let floor = self.marks.floors.iter().map(|f| y.coordinate(f.y)).fold(f64::NEG_INFINITY, larger);
         for p in marked {
             draw_marker(page, frame.backend_coord(&p), marker, radius, trace.look.colour, p.1 <= floor)?;
         }

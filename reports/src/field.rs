@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use fisura_verification::extremes::larger;
 use fisura_verification::history::Table;
 use fisura_verification::record::{Axis, Figure, Scale};
 use plotters::prelude::*;
@@ -160,7 +161,7 @@ pub fn render_field(figure: &Figure, raster: &Raster, label: &str, range: [f64; 
     let axes = [0, 1].map(|k| AxisScale::with_range(Scale::Linear, 1e3 * raster.low[k], 1e3 * raster.high[k], 6));
     let none = Axis { label: String::new(), scale: Scale::Linear, range: Some(range) };
     let bar = AxisScale::fit(&none, [], 0.0, 5);
-    let labels = bar.ticks.iter().map(|t| text_width(&t.1, TICK_SIZE)).fold(0.0, f64::max);
+    let labels = bar.ticks.iter().map(|t| text_width(&t.1, TICK_SIZE)).fold(0.0, larger);
     let left = frame::room_left(&axes[1]) + EDGE;
     let room = WIDTH - left - GAP - BAR - 10.0 - labels - LABEL_SIZE - 16.0;
     let ratio = (axes[1].high - axes[1].low) / (axes[0].high - axes[0].low);

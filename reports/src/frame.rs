@@ -1,5 +1,6 @@
 //! The frame of a figure: axes, ticks, grid, axis titles.
 
+use fisura_verification::extremes::larger;
 use plotters::coord::cartesian::Cartesian2d;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -34,7 +35,7 @@ pub struct Place {
 
 /// Room left of the frame for the labels and the title of the ordinate.
 pub fn room_left(y: &AxisScale) -> f64 {
-    let widest = y.ticks.iter().map(|t| text_width(&t.1, TICK_SIZE)).fold(0.0, f64::max);
+    let widest = y.ticks.iter().map(|t| text_width(&t.1, TICK_SIZE)).fold(0.0, larger);
     (widest + LABEL_SIZE + 26.0).round()
 }
 

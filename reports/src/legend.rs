@@ -1,5 +1,6 @@
 //! The legend, in columns below the frame, so that it never covers a curve.
 
+use fisura_verification::extremes::larger;
 use fisura_verification::record::CurveStyle;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -39,7 +40,7 @@ impl Legend {
             let band = trace.style == CurveStyle::Reference && !trace.half_widths.is_empty();
             if band { format!("{} (band: uncertainty)", trace.label) } else { trace.label.clone() }
         };
-        let widest = traces.iter().map(|t| text_width(&label(t), LABEL_SIZE)).fold(0.0, f64::max);
+        let widest = traces.iter().map(|t| text_width(&label(t), LABEL_SIZE)).fold(0.0, larger);
         let cell = SAMPLE + 10.0 + widest + 22.0;
         let columns = ((width + 22.0) / cell).floor().clamp(1.0, 4.0) as usize;
         let cell = if columns == 1 { width } else { (width / columns as f64).max(cell) };

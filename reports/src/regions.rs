@@ -1,5 +1,6 @@
 //! Marked regions of a chart: shaded, with labels where no curve runs.
 
+use fisura_verification::extremes::larger;
 use fisura_verification::record::Region;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -49,12 +50,12 @@ impl Labels {
 
     /// Nominal height that the labels need above the frame.
     pub fn height(&self) -> f64 {
-        self.above.iter().map(|l| (l.2 + 1) as f64 * ROW).fold(0.0, f64::max)
+        self.above.iter().map(|l| (l.2 + 1) as f64 * ROW).fold(0.0, larger)
     }
 
     /// Nominal width that the labels need right of the frame.
     pub fn width(&self) -> f64 {
-        self.beside.iter().map(|l| text_width(&l.0, TICK_SIZE) + 6.0).fold(0.0, f64::max)
+        self.beside.iter().map(|l| text_width(&l.0, TICK_SIZE) + 6.0).fold(0.0, larger)
     }
 
     /// Prints the labels around the frame.

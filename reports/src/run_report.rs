@@ -1,5 +1,6 @@
 //! Pictures of a single run: energies against time, and one phase-field picture per frame.
 
+use fisura_verification::extremes::larger;
 use fisura_verification::history::Table;
 use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Scale};
 
@@ -19,10 +20,10 @@ const HISTORY: &str = "history.csv";
 pub fn energies_svg(history: &Table, title: &str) -> Result<String, FigureError> {
     let largest = |name: &str| {
         let values = history.column(name).unwrap_or_default();
-        values.iter().filter(|v| v.is_finite()).fold(None, |m: Option<f64>, v| Some(m.unwrap_or(0.0).max(v.abs())))
+        values.iter().filter(|v| v.is_finite()).map(|v| v.abs()).reduce(larger)
     };
     let drawn: Vec<&String> = history.names.iter().filter(|n| n.ends_with("_j") && largest(n).is_some()).collect();
-    let top = drawn.iter().filter_map(|n| largest(n)).fold(0.0, f64::max);
+    let top = drawn.iter().filter_map(|n| largest(n)).fold(0.0, larger);
     let (energy_scale, energy_unit) = unit(top, &[("kJ", 1e3), ("J", 1.0), ("mJ", 1e-3), ("µJ", 1e-6), ("nJ", 1e-9)]);
     let (time_scale, time_unit) = unit(largest("time_s").unwrap_or(0.0), &TIMES);
     let curves: Vec<Curve> = drawn

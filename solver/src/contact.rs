@@ -31,6 +31,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::extremes::smaller;
 use crate::patch::Patch;
 use crate::scene::Scene;
 use crate::updated_frame::field::DiscreteField;
@@ -104,7 +105,7 @@ impl Contact {
         Some(Self {
             friction: scene.contact.as_ref()?.friction,
             origin: [0, 1].map(|d| whole.spaces[d].spans()[0].left),
-            reach: spans().map(|span| span.length()).fold(f64::INFINITY, f64::min),
+            reach: spans().map(|span| span.length()).fold(f64::INFINITY, smaller),
             rigid: scene.bodies.iter().filter(|b| b.rigid).map(|b| RigidBody::new(&scene.mesh, b)).collect(),
             touches: Vec::new(),
             last: BTreeMap::new(),

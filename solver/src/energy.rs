@@ -9,6 +9,7 @@
 //! the kinetic energy at whole steps that velocity Verlet does not conserve. History work,
 //! `∬ 2 (1 − k) c (H − psi+)(−dc/dt)`, is what the model adds where the crack widens on remembered energy.
 
+use crate::extremes::{larger, smaller};
 use serde::{Deserialize, Serialize};
 
 /// Work and losses accumulated over a run, J per metre of thickness.
@@ -83,7 +84,7 @@ impl FractureSample {
             energy: self.energy + other.energy,
             history_work: self.history_work + other.history_work,
             crack_tip: tips.max_by(|a, b| a[0].total_cmp(&b[0])),
-            min_phase: self.min_phase.min(other.min_phase),
+            min_phase: smaller(self.min_phase, other.min_phase),
             iterations: self.iterations + other.iterations,
         }
     }
@@ -115,6 +116,12 @@ impl Sample {
         row.push(("time_step_s", self.time_step));
         row.extend(fracture.map(|f| ("phase_field_iterations", f.iterations as f64)));
         row
+    }
+
+    /// The first column that is not finite, if one is not. A body without a crack has no tip.
+    pub fn not_finite(&self) -> Option<&'static str> {
+        let mut columns = self.named_values().into_iter();
+        columns.find(|(name, value)| !value.is_finite() && !name.starts_with("crack_tip")).map(|(name, _)| name)
     }
 
     /// This sample with another body's: energies and momenta are added, the tip is that of the crack that is further.
@@ -174,6 +181,6 @@ impl Sample {
     /// Largest single energy of the row, J: the scale of closure.
     pub fn largest_term(&self) -> f64 {
         let fracture = self.fracture.as_ref().map_or(0.0, |f| f.energy);
-        [self.kinetic, self.elastic, fracture, self.external_work].into_iter().map(f64::abs).fold(0.0, f64::max)
+        [self.kinetic, self.elastic, fracture, self.external_work].into_iter().map(f64::abs).fold(0.0, larger)
     }
 }

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::fracture::NotConverged;
+use crate::conjugate_gradients::SolveFailure;
 use crate::loads::LostTraction;
 use crate::updated_frame::points::OutsidePatch;
 
@@ -30,8 +30,8 @@ pub struct SceneWarning {
 /// Why a body cannot begin, or take a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Failure {
-    /// The phase-field solve stopped short of its tolerance.
-    NotConverged(NotConverged),
+    /// The phase field could not be solved for.
+    PhaseField(SolveFailure),
     /// A point left the patch, m.
     Left([f64; 2]),
     /// The consistent mass matrix is singular to round-off.
@@ -49,9 +49,9 @@ pub enum Failure {
     },
 }
 
-impl From<NotConverged> for Failure {
-    fn from(failure: NotConverged) -> Self {
-        Self::NotConverged(failure)
+impl From<SolveFailure> for Failure {
+    fn from(failure: SolveFailure) -> Self {
+        Self::PhaseField(failure)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Fracture of one body in the total frame: history energy, phase field, and what is measured of them.
 
-use crate::conjugate_gradients::Convergence;
+use crate::conjugate_gradients::SolveFailure;
+use crate::extremes::{larger, smaller};
 use crate::finite::sweep_with;
 use crate::kernels::{DegradedStress, HistoryUpdate, SurfaceEnergy};
 use crate::lane::Lane;
@@ -42,21 +43,6 @@ pub struct StressSums {
     pub history_work: f64,
 }
 
-/// A phase-field solve that stopped short of its tolerance.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NotConverged {
-    /// Iterations spent.
-    pub iterations: usize,
-    /// Relative residual reached.
-    pub relative_residual: f64,
-}
-
-impl From<Convergence> for NotConverged {
-    fn from(Convergence { iterations, relative_residual }: Convergence) -> Self {
-        Self { iterations, relative_residual }
-    }
-}
-
 impl Fracturing {
     /// Seeds the cracks of `body` and solves for the initial phase field.
     ///
@@ -67,13 +53,11 @@ impl Fracturing {
         body: &Body,
         model: FractureModel,
         settings: &SolverSettings,
-    ) -> Result<Self, NotConverged> {
+    ) -> Result<Self, SolveFailure> {
         let history = seeded_history(lattice, body, &model);
         let zeros = vec![Lane::ZERO; lattice.batches()];
         let mut field = PhaseField::new(lattice, model, settings);
-        let convergence = field
-            .initialise(lattice, &history)
-            .map_err(|c| NotConverged { iterations: c.iterations, relative_residual: c.relative_residual })?;
+        let convergence = field.initialise(lattice, &history)?;
         Ok(Self { model, history, phase: zeros.clone(), remembered: zeros, field, iterations: convergence.iterations })
     }
 
@@ -96,7 +80,7 @@ impl Fracturing {
     ///
     /// # Errors
     /// If the solve does not converge.
-    pub fn solve_phase_field(&mut self, lattice: &Lattice) -> Result<(), NotConverged> {
+    pub fn solve_phase_field(&mut self, lattice: &Lattice) -> Result<(), SolveFailure> {
         self.iterations = self.field.solve(lattice, &self.history)?.iterations;
         Ok(())
     }
@@ -144,7 +128,7 @@ impl Fracturing {
         let fields = Fields { displacement: [&[], &[]], phase: self.field.control_values() };
         sweep(lattice, fields, &mut kernels, None);
         let energy = kernels.iter().map(|k| k.energy.sum()).sum();
-        let least = kernels.iter().flat_map(|k| k.least.0).fold(f64::INFINITY, f64::min);
+        let least = kernels.iter().flat_map(|k| k.least.0).fold(f64::INFINITY, smaller);
         (energy, least)
     }
 
@@ -226,7 +210,7 @@ pub fn seed_energy(model: &FractureModel, body: &Body, position: [f64; 2]) -> f6
         let half_width = half_width(crack, model.length_scale);
         strength * (1.0 - distance_to_segment(position, crack.from, crack.to) / half_width)
     };
-    body.cracks.iter().map(of_crack).fold(0.0, f64::max)
+    body.cracks.iter().map(of_crack).fold(0.0, larger)
 }
 
 fn seeded_history(lattice: &Lattice, body: &Body, model: &FractureModel) -> Vec<Lane> {

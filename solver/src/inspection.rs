@@ -3,6 +3,8 @@
 //!
 //! Nothing of this is computed while a run is well, unless someone asks for the points.
 
+use crate::extremes::larger;
+
 /// Points that are kept as the worst ones.
 const WORST: usize = 8;
 
@@ -27,6 +29,24 @@ pub struct PointState {
     pub stress: [f64; 3],
     /// What only a point of a fracturing body has.
     pub fracture: Option<PointFracture>,
+}
+
+/// A point whose deformation is turned inside out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InvertedPoint {
+    /// Number of the point in its body.
+    pub point: usize,
+    /// Position, m; that at t = 0 in the total frame.
+    pub position: [f64; 2],
+    /// Determinant of its deformation gradient: zero or less.
+    pub determinant: f64,
+}
+
+impl InvertedPoint {
+    /// The one of two that is turned further.
+    pub(crate) fn worse(self, other: Self) -> Self {
+        if other.determinant < self.determinant { other } else { self }
+    }
 }
 
 /// What only a point of a fracturing body has.
@@ -127,7 +147,7 @@ impl Inspection {
 
 /// Largest magnitude of the finite ones.
 fn largest(values: &[f64]) -> f64 {
-    values.iter().map(|value| value.abs()).filter(|value| value.is_finite()).fold(0.0, f64::max)
+    values.iter().map(|value| value.abs()).filter(|value| value.is_finite()).fold(0.0, larger)
 }
 
 #[cfg(test)]

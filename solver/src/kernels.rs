@@ -1,5 +1,6 @@
 //! What happens at the material points in the total frame, one kernel per sweep.
 
+use crate::extremes::smaller;
 use crate::lane::Lane;
 use crate::material::{ElasticModuli, FractureModel};
 use crate::split::split;
@@ -55,7 +56,7 @@ impl PointKernel for HistoryUpdate<'_> {
     fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
         let state = split(&self.moduli, self.model.split, strain(values.gradient));
         let old = self.history[at];
-        self.history[at] = fault!("history-forgets", old.max(state.energy_plus) => state.energy_plus);
+        self.history[at] = fault!("history-forgets", state.energy_plus.at_least(old) => state.energy_plus);
         Stress::ZERO
     }
 }
@@ -187,7 +188,7 @@ impl PointKernel for SurfaceEnergy {
             + (gx * gx + gy * gy) * (toughness * length_scale);
         self.energy = self.energy.add_product::<FMA>(weight, density);
         let exists = values.phase.zip(weight, |c, w| if w > 0.0 { c } else { f64::INFINITY });
-        self.least = self.least.min(exists);
+        self.least = self.least.zip(exists, smaller);
         Stress::ZERO
     }
 }

@@ -88,16 +88,17 @@ impl Lane {
         self.add_product::<FMA>(a, Self::splat(b))
     }
 
-    /// Lane-wise maximum.
+    /// The larger one of each lane and its floor. A lane that is not a number stays one, which costs nothing: the vector
+    /// instruction takes its second operand unless the first is larger. A floor that is not a number is lost.
     #[inline(always)]
-    pub fn max(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a > b { a } else { b })
+    pub fn at_least(self, floor: Self) -> Self {
+        floor.zip(self, |floor, value| if floor > value { floor } else { value })
     }
 
-    /// Lane-wise minimum.
+    /// The smaller one of each lane and its ceiling; what is not a number as in [`Self::at_least`].
     #[inline(always)]
-    pub fn min(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a < b { a } else { b })
+    pub fn at_most(self, ceiling: Self) -> Self {
+        ceiling.zip(self, |ceiling, value| if ceiling < value { ceiling } else { value })
     }
 
     /// Sum over the lanes, always in the same order.

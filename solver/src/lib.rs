@@ -143,6 +143,7 @@ pub mod contact;
 pub mod critical_step;
 pub mod energy;
 pub mod error;
+pub mod extremes;
 pub mod finite;
 pub mod forcing;
 pub mod fracture;

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::assembly::{Constant, Form, add_form};
 use crate::cholesky::{Factor, SparseCholesky};
 use crate::error::Failure;
+use crate::extremes::larger;
 use crate::lattice::Lattice;
 use crate::scene;
 use crate::stencil::Stencil;
@@ -54,7 +55,7 @@ impl MassMatrix {
     pub fn new(lattice: &Lattice, density: f64, mass: scene::Mass, held: [Vec<usize>; 2]) -> Result<Self, Failure> {
         let mut row_sums = lattice.integrate(|_, _, _| 1.0);
         row_sums.iter_mut().for_each(|m| *m *= density);
-        let negligible = NEGLIGIBLE * row_sums.iter().copied().fold(0.0, f64::max);
+        let negligible = NEGLIGIBLE * row_sums.iter().copied().fold(0.0, larger);
         let kind = match fault!("mass-lumped", mass => scene::Mass::Lumped) {
             scene::Mass::Lumped => {
                 let inverse = row_sums.iter().map(|&m| if m > negligible { 1.0 / m } else { 0.0 }).collect();

@@ -37,6 +37,7 @@ pub(crate) use functions::products;
 pub use functions::{MAX_FUNCTIONS, MapPoint, RationalFunctions, rational_functions};
 pub use locate::{INVERSION_TOLERANCE, Location};
 
+use crate::extremes::larger;
 use crate::patch::PointValue;
 use crate::spline::SplineSpace;
 
@@ -102,9 +103,8 @@ impl NurbsPatch {
         check::control_net([columns, rows], &control_points, &weights)?;
         let spaces = [0, 1].map(|d| SplineSpace::new(degree[d], knots[d]));
         let from = control_points[0];
-        let size =
-            control_points.iter().map(|p| (p[0] - from[0]).abs().max((p[1] - from[1]).abs())).fold(0.0, f64::max);
-        let reach = control_points.as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let size = control_points.iter().map(|p| (p[0] - from[0]).abs().max((p[1] - from[1]).abs())).fold(0.0, larger);
+        let reach = control_points.as_flattened().iter().fold(0.0, |m: f64, x| larger(m, x.abs()));
         let patch = Self { spaces, control_points, weights, form, size, reach };
         check::geometry(&patch)?;
         Ok(patch)

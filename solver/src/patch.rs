@@ -8,6 +8,7 @@
 
 use std::ops::Range;
 
+use crate::extremes::{larger, smaller};
 use crate::lane::LANES;
 use crate::nurbs::{Location, NurbsError, NurbsPatch, RationalFunctions};
 use crate::quadrature::Rule;
@@ -72,7 +73,7 @@ impl Patch {
         let positions = self.control_positions();
         let ends = |d: usize| {
             let values = self.control_grid().indices().map(|at| positions[d][at]).collect::<Vec<_>>();
-            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)))
+            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (smaller(l, x), larger(h, x)))
         };
         let [x, y] = [0, 1].map(ends);
         ([x.0, y.0], [x.1, y.1])

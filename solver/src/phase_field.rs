@@ -6,27 +6,38 @@
 //!
 //! The points' volumes enter once (the source prints them twice in E 24) and the `+ 1` stands (E 9 and 11 drop it).
 //! The history energy H only grows, and so does K: only spans whose H grew since the last solve are added
-//! (delta assembly). An increment too small to move the relative residual by a hundredth of the tolerance waits.
+//! (delta assembly). An increment too small to move c by a hundredth of the tolerance anywhere waits.
+//!
+//! # The tolerance
+//!
+//! A solve ends when its error e in c is, in the energy norm of the equation over the diffusion `4 l0²`, about the tolerance:
+//!
+//! ```text
+//! ∫ [ (4 l0 (1 − k) H/Gc + 1) e²/(4 l0²) + |grad e|² ] dx ≤ tolerance²
+//! ```
+//!
+//! Every part of the body obeys it alone: in any square of side 2 l0 the root mean square of e is at most the tolerance,
+//! wherever it lies, however fine the mesh is there, and however large the body around it. The norm of the residual over that of
+//! the right-hand side, a sum of volumes, would allow more at the crack the larger the mesh is.
 
+mod method;
 mod state;
 
 use serde::{Deserialize, Serialize};
 
 use crate::assembly::{Constant, Form, PointCoefficients, add_form};
-use crate::cholesky::SparseCholesky;
-use crate::conjugate_gradients::{ConjugateGradients, Convergence};
+use crate::conjugate_gradients::{Convergence, SolveFailure};
+use crate::extremes::larger;
 use crate::lane::{LANES, Lane};
 use crate::lattice::Lattice;
 use crate::material::FractureModel;
 use crate::patch::ControlGrid;
-use crate::preconditioner::Preconditioner;
-use crate::scene::{PhaseFieldSolver, SolverSettings};
+use crate::preconditioner::TOO_MANY;
+use crate::scene::SolverSettings;
 use crate::stencil::Stencil;
+use method::{ITERATION_LIMIT, Method};
 
-/// Iterations after which a solve counts as failed.
-const ITERATION_LIMIT: usize = 2000;
-/// Diagonal and right-hand side of control points without material, as a fraction of the largest right-hand side: they
-/// hardly weigh in the norm that the tolerance refers to.
+/// Diagonal and right-hand side of control points without material, as a fraction of the largest right-hand side.
 const EMPTY: f64 = 1e-6;
 
 /// Counters of the phase-field solver.
@@ -52,28 +63,6 @@ pub struct PhaseField {
     assembled: Vec<Lane>,
     method: Method,
     counts: PhaseFieldCounts,
-}
-
-#[derive(Debug, Clone)]
-enum Method {
-    Iterative { workspace: Box<ConjugateGradients>, preconditioner: Box<Preconditioner> },
-    Direct(Box<SparseCholesky>),
-}
-
-impl Method {
-    fn new(matrix: &Stencil, settings: &SolverSettings) -> Self {
-        match settings.phase_field_solver {
-            PhaseFieldSolver::Cholesky => Self::Direct(Box::default()),
-            PhaseFieldSolver::ConjugateGradients => Self::iterative(matrix),
-        }
-    }
-
-    fn iterative(matrix: &Stencil) -> Self {
-        Self::Iterative {
-            workspace: Box::new(ConjugateGradients::new(matrix)),
-            preconditioner: Box::new(Preconditioner::new(matrix)),
-        }
-    }
 }
 
 impl PhaseField {
@@ -114,7 +103,7 @@ impl PhaseField {
             previous: phase.clone(),
             phase,
             assembled,
-            method: Method::new(&matrix, settings),
+            method: Method::new(&matrix, settings.phase_field_solver),
             matrix,
             counts: PhaseFieldCounts::default(),
         }
@@ -136,10 +125,7 @@ impl PhaseField {
         (self.phase, self.previous) = (moved(&self.phase), moved(&self.previous));
         self.matrix = Stencil::zeros(grid, self.matrix.degree());
         self.load = grid.zeros();
-        self.method = match self.method {
-            Method::Direct(_) => Method::Direct(Box::default()),
-            Method::Iterative { .. } => Method::iterative(&self.matrix),
-        };
+        self.method = self.method.anew(&self.matrix);
     }
 
     /// Matrix and right-hand side, to be assembled by the caller.
@@ -165,8 +151,8 @@ impl PhaseField {
     /// Solves for c with the history energy (J/m³) of every batch of points.
     ///
     /// # Errors
-    /// The relative residual reached, if it is not the tolerance.
-    pub fn solve(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Convergence, Convergence> {
+    /// If the tolerance is not reached, or the system has no solution; errors are in the norm of the tolerance.
+    pub fn solve(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Convergence, SolveFailure> {
         self.assemble_increments(lattice, history);
         self.solve_system()
     }
@@ -175,41 +161,33 @@ impl PhaseField {
     ///
     /// # Errors
     /// As [`Self::solve`].
-    pub fn solve_system(&mut self) -> Result<Convergence, Convergence> {
+    pub fn solve_system(&mut self) -> Result<Convergence, SolveFailure> {
+        self.solve_with(TOO_MANY)
+    }
+
+    /// Solves the system as it stands; `patience` is the number of iterations that an incomplete factor is granted.
+    fn solve_with(&mut self, patience: usize) -> Result<Convergence, SolveFailure> {
         self.extrapolate();
         self.counts.solves += 1;
-        let Self { matrix, load, phase, .. } = self;
-        let failed = Convergence { iterations: 0, relative_residual: f64::NAN };
-        let convergence = match &mut self.method {
-            Method::Direct(cholesky) => {
-                cholesky.solve(matrix, load, phase).ok_or(failed)?;
-                Convergence { iterations: 1, relative_residual: 0.0 }
+        let unit = self.model.diffusion().sqrt();
+        let found = self.method.solve(&self.matrix, &self.load, &mut self.phase, unit * self.tolerance, patience);
+        let found = found.map_err(|failure| match failure {
+            SolveFailure::NotConverged { iterations, error } => {
+                SolveFailure::NotConverged { iterations, error: error / unit }
             }
-            Method::Iterative { workspace, preconditioner } => {
-                let mut solve = |preconditioner: &Preconditioner| {
-                    workspace.solve(matrix, preconditioner, load, phase, self.tolerance, ITERATION_LIMIT)
-                };
-                if preconditioner.is_complete() {
-                    preconditioner.renew(matrix);
-                }
-                let mut result = solve(preconditioner);
-                if result.iterations == ITERATION_LIMIT && preconditioner.complete(matrix) {
-                    result = solve(preconditioner);
-                }
-                preconditioner.learn(matrix, result.iterations);
-                result
-            }
-        };
+            SolveFailure::NotPositiveDefinite if !is_finite(&self.matrix) => SolveFailure::NotFinite,
+            other => other,
+        })?;
+        let convergence = Convergence { error: found.error / unit, ..found };
         self.counts.iterations += convergence.iterations;
-        let direct = matches!(self.method, Method::Direct(_));
-        if direct || convergence.relative_residual <= self.tolerance { Ok(convergence) } else { Err(convergence) }
+        Ok(convergence)
     }
 
     /// First solve with a seeded crack: the factor is made for it, and there is nothing to extrapolate from.
     ///
     /// # Errors
     /// As [`Self::solve`].
-    pub fn initialise(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Convergence, Convergence> {
+    pub fn initialise(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Convergence, SolveFailure> {
         self.assemble_increments(lattice, history);
         self.initialise_system()
     }
@@ -218,11 +196,11 @@ impl PhaseField {
     ///
     /// # Errors
     /// As [`Self::solve`].
-    pub fn initialise_system(&mut self) -> Result<Convergence, Convergence> {
+    pub fn initialise_system(&mut self) -> Result<Convergence, SolveFailure> {
         self.renew_preconditioner();
-        let convergence = self.solve_system()?;
+        let convergence = self.solve_with(ITERATION_LIMIT)?; // from afar: says nothing of the solves to come
         self.previous.copy_from_slice(&self.phase);
-        if let Method::Iterative { preconditioner, .. } = &mut self.method {
+        if let Some(preconditioner) = self.method.preconditioner() {
             preconditioner.forget();
         }
         Ok(convergence)
@@ -230,8 +208,8 @@ impl PhaseField {
 
     /// Makes the preconditioner anew from the matrix as it stands: control points may have gained or lost material.
     pub fn renew_preconditioner(&mut self) {
-        if let Method::Iterative { preconditioner, .. } = &mut self.method {
-            preconditioner.renew(&self.matrix);
+        if let Some(preconditioner) = self.method.preconditioner().filter(|p| !p.is_complete()) {
+            preconditioner.renew(&self.matrix); // a complete factor is made anew for every solve as it is
         }
     }
 
@@ -260,19 +238,15 @@ impl PhaseField {
 
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
-        let method = match &self.method {
-            Method::Iterative { workspace, preconditioner } => workspace.bytes() + preconditioner.bytes(),
-            Method::Direct(_) => 0,
-        };
         let vectors = self.load.len() + self.phase.len() + self.previous.len() + LANES * self.assembled.len();
-        self.matrix.bytes() + 8 * vectors + method
+        self.matrix.bytes() + 8 * vectors + self.method.bytes()
     }
 }
 
 /// Holds control points without material at `c = 1`.
 fn isolate_empty(matrix: &mut Stencil, load: &mut [f64]) {
     let grid = matrix.grid;
-    let value = EMPTY * load.iter().copied().fold(0.0, f64::max);
+    let value = EMPTY * load.iter().copied().fold(0.0, larger);
     for row in 0..grid.rows {
         for column in 0..grid.columns {
             let at = grid.index(column, row);
@@ -284,12 +258,17 @@ fn isolate_empty(matrix: &mut Stencil, load: &mut [f64]) {
     }
 }
 
+/// Whether all coefficients are finite.
+fn is_finite(matrix: &Stencil) -> bool {
+    matrix.coefficients().iter().all(|value| value.is_finite())
+}
+
 /// Whether the history energy of a span row of a tile grew beyond the threshold.
 #[inline(always)]
 fn grew(assembled: &[Lane], history: &[Lane], threshold: f64) -> bool {
     let mut most = Lane::ZERO;
     for (assembled, history) in assembled.iter().zip(history) {
-        most = most.max(*history - *assembled);
+        most = (*history - *assembled).at_least(most);
     }
     most.0.iter().any(|&growth| growth > threshold)
 }

@@ -6,6 +6,8 @@
 //! need hundreds of iterations. A complete factor then costs less, although it is made anew for every solve: combinations of control
 //! values that vanish at the points of one step do not at those of the next, and an older factor takes them for soft.
 
+use serde::{Deserialize, Serialize};
+
 use crate::checkpoint::{Archive, StateError};
 use crate::cholesky::{Factor, SparseCholesky};
 use crate::incomplete_cholesky::IncompleteCholesky;
@@ -14,14 +16,21 @@ use crate::stencil::Stencil;
 /// A factor is renewed once a solve needs this many more iterations than the one after its renewal.
 const EXTRA_ITERATIONS: usize = 3;
 /// More iterations than this with a fresh incomplete factor call for a complete one: five times what a cracked plate needs.
-const TOO_MANY: usize = 80;
+pub const TOO_MANY: usize = 80;
+/// Solves with complete factors before the incomplete one is tried again; twice as many each time it is still too poor, up to the
+/// last. Looking for it so costs at most five iterations a solve, and in the end a sixth of one.
+const FIRST_PAUSE: usize = 16;
+const LONGEST_PAUSE: usize = 512;
 
 /// Factor of a matrix as it was some solves ago.
 #[derive(Debug, Clone)]
 pub struct Preconditioner {
     factor: Kind,
+    /// Whether the matrix is still the one that was factored.
+    is_fresh: bool,
     /// Iterations of the first solve with the present factor.
     fresh_iterations: Option<usize>,
+    pause: Pause,
 }
 
 #[derive(Debug, Clone)]
@@ -31,10 +40,24 @@ enum Kind {
     Complete(SparseCholesky, Option<Factor>),
 }
 
+/// How long complete factors serve.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Pause {
+    /// Solves until the incomplete factor is tried again.
+    left: usize,
+    /// Solves of the next pause.
+    next: usize,
+}
+
 impl Preconditioner {
     /// Incomplete factor of `matrix`.
     pub fn new(matrix: &Stencil) -> Self {
-        Self { factor: Kind::Incomplete(IncompleteCholesky::new(matrix)), fresh_iterations: None }
+        Self {
+            factor: Kind::Incomplete(IncompleteCholesky::new(matrix)),
+            is_fresh: true,
+            fresh_iterations: None,
+            pause: Pause { left: 0, next: FIRST_PAUSE },
+        }
     }
 
     /// `out = M⁻¹ r`; returns `rᵀ out`.
@@ -57,6 +80,20 @@ impl Preconditioner {
             Kind::Incomplete(factor) => factor.refactor(matrix),
             Kind::Complete(cholesky, factor) => *factor = cholesky.factor(matrix, &[]),
         }
+        self.is_fresh = true;
+    }
+
+    /// Makes ready for a solve: a complete factor is made anew, unless its time is over and the incomplete one is tried again.
+    pub fn prepare(&mut self, matrix: &Stencil) {
+        if !self.is_complete() {
+            return;
+        }
+        if self.pause.left == 0 {
+            *self = Self { pause: self.pause, ..Self::new(matrix) };
+        } else {
+            self.pause.left -= 1;
+            self.renew(matrix);
+        }
     }
 
     /// Whether the factor serves one solve alone.
@@ -69,29 +106,35 @@ impl Preconditioner {
         self.fresh_iterations = None;
     }
 
-    /// Learns what the last solve needed, and renews a stale factor.
+    /// Learns what a solve needed that came to its end, and renews a stale factor.
     pub fn learn(&mut self, matrix: &Stencil, iterations: usize) {
-        let Some(fresh) = self.fresh_iterations else {
-            if iterations <= TOO_MANY || !self.complete(matrix) {
-                self.fresh_iterations = Some(iterations);
-            }
+        self.is_fresh = false;
+        if self.is_complete() {
             return;
-        };
+        }
+        self.pause.next = FIRST_PAUSE;
+        let fresh = *self.fresh_iterations.get_or_insert(iterations);
         if iterations > fresh + EXTRA_ITERATIONS {
             self.renew(matrix);
             self.forget();
         }
     }
 
-    /// Goes over to a complete factor; false if there is one already, or none to be had.
-    pub fn complete(&mut self, matrix: &Stencil) -> bool {
+    /// A better factor for the solve under way: a fresh one, or else a complete one for this solve and some to come; false if
+    /// there is none to be had.
+    pub fn improve(&mut self, matrix: &Stencil) -> bool {
+        self.forget();
+        if !self.is_fresh {
+            self.renew(matrix);
+            return true;
+        }
         if self.is_complete() {
             return false;
         }
         let mut cholesky = SparseCholesky::default();
         let Some(factor) = cholesky.factor(matrix, &[]) else { return false };
         self.factor = Kind::Complete(cholesky, Some(factor));
-        self.fresh_iterations = None;
+        self.pause = Pause { left: self.pause.next, next: (2 * self.pause.next).min(LONGEST_PAUSE) };
         true
     }
 
@@ -107,13 +150,18 @@ impl Preconditioner {
     ///
     /// # Errors
     /// Bytes of another scene.
-    pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { factor, fresh_iterations } = self;
+    pub(crate) fn exchange(&mut self, archive: &mut Archive, matrix: &Stencil) -> Result<(), StateError> {
+        let Self { factor, is_fresh, fresh_iterations, pause } = self;
+        archive.value(is_fresh)?;
         archive.value(fresh_iterations)?;
+        archive.value(pause)?;
         let mut complete = matches!(factor, Kind::Complete(..));
         archive.value(&mut complete)?;
-        if complete && archive.is_reader() {
-            *factor = Kind::Complete(SparseCholesky::default(), None);
+        if archive.is_reader() {
+            *factor = match complete {
+                true => Kind::Complete(SparseCholesky::default(), None),
+                false => Kind::Incomplete(IncompleteCholesky::new(matrix)),
+            };
         }
         match factor {
             Kind::Incomplete(factor) => archive.list(factor.values_mut()),

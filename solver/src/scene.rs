@@ -4,6 +4,7 @@
 //! phase field in memory or in the step, without [`Contact`] no contact search. [`crate::Simulation::new`] turns a
 //! scene into a running model; [`crate::validate::validate`] says what is wrong with one, by key.
 
+use crate::extremes::{larger, smaller};
 use std::collections::BTreeMap;
 
 /// One simulation.
@@ -67,7 +68,7 @@ impl Mesh {
     pub fn origin(&self) -> [f64; 2] {
         [0, 1].map(|d| match &self.geometry {
             None => self.knots[d].first().copied().unwrap_or(0.0),
-            Some(geometry) => geometry.control_points.iter().map(|p| p[d]).fold(f64::INFINITY, f64::min),
+            Some(geometry) => geometry.control_points.iter().map(|p| p[d]).fold(f64::INFINITY, smaller),
         })
     }
 
@@ -75,7 +76,7 @@ impl Mesh {
     pub fn end(&self) -> [f64; 2] {
         [0, 1].map(|d| match &self.geometry {
             None => self.knots[d].last().copied().unwrap_or(0.0),
-            Some(geometry) => geometry.control_points.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, f64::max),
+            Some(geometry) => geometry.control_points.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, larger),
         })
     }
 
@@ -186,7 +187,7 @@ pub enum PhaseFieldSolver {
 /// Tolerances of the linear solvers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolverSettings {
-    /// Relative residual of the phase-field system.
+    /// Error of the phase field in the energy norm over 2 l0: see [`crate::phase_field`].
     pub phase_field_tolerance: f64,
     /// Which solver.
     pub phase_field_solver: PhaseFieldSolver,

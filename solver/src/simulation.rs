@@ -46,7 +46,7 @@ pub struct Simulation {
     energy_in: f64,
     warned_of_step: bool,
     warned_of_closure: bool,
-    /// Relative residual that phase-field solves are to reach.
+    /// Error that phase-field solves are to reach.
     tolerance: f64,
 }
 

@@ -1,15 +1,16 @@
 //! Lengths of the spans of a mesh, m: differences of knots over a rectangle; on a patch with a geometry, whose knots are
 //! parameters, the chords between neighbouring knots through the middles of the spans.
 
+use crate::extremes::{larger, smaller};
 use crate::nurbs::NurbsPatch;
 use crate::scene::{Mesh, Shape};
 
 /// Largest span in either direction, m.
 pub fn largest_spans(mesh: &Mesh) -> [f64; 2] {
     if let Some(Ok(patch)) = mesh.nurbs() {
-        return chords(&patch).fold([0.0; 2], |[x, y], [a, b]| [a.max(x), b.max(y)]);
+        return chords(&patch).fold([0.0; 2], |[x, y], [a, b]| [larger(a, x), larger(b, y)]);
     }
-    [0, 1].map(|d| mesh.knots[d].windows(2).map(|k| k[1] - k[0]).fold(0.0, f64::max))
+    [0, 1].map(|d| mesh.knots[d].windows(2).map(|k| k[1] - k[0]).fold(0.0, larger))
 }
 
 /// Smallest span in either direction, m.
@@ -38,7 +39,7 @@ pub(crate) fn lengths_of_spans(mesh: &Mesh, shape: &Shape) -> [f64; 2] {
 }
 
 fn extremes(lengths: impl Iterator<Item = f64>) -> [f64; 2] {
-    lengths.fold([f64::INFINITY, 0.0], |[least, most], length| [least.min(length), most.max(length)])
+    lengths.fold([f64::INFINITY, 0.0], |[least, most], length| [smaller(least, length), larger(most, length)])
 }
 
 /// Both chords of every span.

@@ -3,7 +3,8 @@
 //! With `m = (exx + eyy)/2` and `r = hypot((exx − eyy)/2, exy)` the principal strains are `m ± r`, and the tensile part
 //! is `e+ = a (e − b I)` with (a, b) = (1, 0) where both are tensile, (0, ·) where both are compressive and
 //! `(e1/(2 r), e2)` between, where `2 r ≥ max(|e1|, |e2|)`: nothing is ever divided by a small number, so equal and nearly
-//! equal principal strains need no special care. The hypotenuse is scaled, so squares do not underflow.
+//! equal principal strains need no special care. The hypotenuse is scaled, so squares do not underflow. A strain that is not a
+//! number has energies and stresses that are none: the energy of a body tells that one of its points has lost its numbers.
 
 use crate::lane::Lane;
 use crate::material::ElasticModuli;
@@ -48,7 +49,7 @@ pub fn tensile_strain([xx, yy, xy]: [Lane; 3]) -> ([Lane; 3], [Lane; 2]) {
     let (e1, e2) = fault!("split-swapped", (mean + radius, mean - radius) => (mean - radius, mean + radius));
     let factor = e1.zip(radius, |e1, r| if e1 <= 0.0 { 0.0 } else { e1 / (2.0 * r) });
     let factor = factor.zip(e2, |f, e2| if e2 >= 0.0 { 1.0 } else { f });
-    let shift = e2.min(Lane::ZERO);
+    let shift = e2.at_most(Lane::ZERO);
     ([(xx - shift) * factor, (yy - shift) * factor, xy * factor], [e1, e2])
 }
 
@@ -66,10 +67,10 @@ fn spectral(moduli: &ElasticModuli, strain: [Lane; 3]) -> SplitState {
     let ElasticModuli { lambda, mu } = *moduli;
     let (tensile, [e1, e2]) = tensile_strain(strain);
     let trace = strain[0] + strain[1];
-    let (trace_plus, trace_minus) = (trace.max(Lane::ZERO), trace.min(Lane::ZERO));
+    let (trace_plus, trace_minus) = (trace.at_least(Lane::ZERO), trace.at_most(Lane::ZERO));
     let square = |a: Lane, b: Lane| a * a + b * b;
-    let plus = square(e1.max(Lane::ZERO), e2.max(Lane::ZERO));
-    let minus = square(e1.min(Lane::ZERO), e2.min(Lane::ZERO));
+    let plus = square(e1.at_least(Lane::ZERO), e2.at_least(Lane::ZERO));
+    let minus = square(e1.at_most(Lane::ZERO), e2.at_most(Lane::ZERO));
     let stress = |trace: Lane, [xx, yy, xy]: [Lane; 3]| {
         [trace * lambda + xx * (2.0 * mu), trace * lambda + yy * (2.0 * mu), xy * (2.0 * mu)]
     };

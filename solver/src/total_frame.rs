@@ -14,9 +14,10 @@ mod tangent;
 
 use rayon::prelude::*;
 
+use crate::conjugate_gradients::SolveFailure;
 use crate::constraints::Constraints;
 use crate::energy::Ledger;
-use crate::fracture::{Fracturing, NotConverged};
+use crate::fracture::Fracturing;
 use crate::lattice::Lattice;
 use crate::loads::NodalLoad;
 use crate::mass::MassMatrix;
@@ -77,8 +78,8 @@ impl TotalFrame {
     /// One time step of `dt` seconds (E 14–18).
     ///
     /// # Errors
-    /// If the phase field does not converge.
-    pub fn step(&mut self, dt: f64) -> Result<(), NotConverged> {
+    /// If the phase field cannot be solved for.
+    pub fn step(&mut self, dt: f64) -> Result<(), SolveFailure> {
         self.predict(dt);
         self.update_loads();
         if let Some(fracture) = &mut self.fracture {

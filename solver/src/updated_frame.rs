@@ -48,6 +48,7 @@ use std::sync::Arc;
 use crate::contact::Contact;
 use crate::contact::impulse::Kick;
 use crate::error::Failure;
+use crate::extremes::smaller;
 use crate::patch::Patch;
 use crate::scene::Scene;
 use field::DiscreteField;
@@ -104,7 +105,7 @@ impl UpdatedFrame {
 
     /// Critical time step of the undamaged bodies at the present positions, s; infinite if nothing can move.
     pub fn critical_step(&self) -> f64 {
-        self.fields.iter().map(|field| field.critical_step()).fold(f64::INFINITY, f64::min)
+        self.fields.iter().map(|field| field.critical_step()).fold(f64::INFINITY, smaller)
     }
 
     /// Whether a point may have moved a quarter of the smallest span since the last call that said so: the time to take

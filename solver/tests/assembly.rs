@@ -4,6 +4,7 @@ mod common;
 
 use common::{Random, body, graded_knots, rectangle, with_threads};
 use fisura::assembly::{Constant, Form, PointCoefficients, add_form};
+use fisura::extremes::larger;
 use fisura::lane::Lane;
 use fisura::lattice::Lattice;
 use fisura::patch::Patch;
@@ -81,7 +82,7 @@ fn compare(mesh: &Mesh, body: &Body, skip: usize) {
                 }
             }
         });
-        let largest = expected.iter().fold(0.0, |m: f64, e| m.max(e.abs()));
+        let largest = expected.iter().fold(0.0, |m: f64, e| larger(m, e.abs()));
         assert!(largest > 0.0, "{name}");
         for (at, (seen, expected)) in matrix.coefficients().iter().zip(&expected).enumerate() {
             assert!((seen - expected).abs() <= 1e-13 * largest, "{name}, {form:?}: {at} is {seen} for {expected}");

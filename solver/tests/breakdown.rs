@@ -95,26 +95,61 @@ fn below_the_critical_step_an_open_ledger_is_a_warning() {
     }
 }
 
-/// A load no solid bears turns the body inside out: the message says so instead of blaming the time step.
+/// A load no solid bears turns the body inside out, elastic or fracturing: the run ends at that step and says so instead of blaming
+/// the time step.
 #[test]
 fn a_body_turned_inside_out_is_named() {
-    for frame in [Frame::Total, Frame::Updated] {
-        let mut scene = elastic_scene(2, [0.01, 0.005], [20, 10]);
-        scene.analysis.frame = frame;
-        scene.analysis.kinematics = Kinematics::Finite;
-        scene.bodies[0].shape = common::rectangle([0.003, 0.001], [0.007, 0.004]);
-        scene.bodies[0].tractions = vec![
-            Traction { edge: Edge::Side(Side::Right), stress: [-2e12, 0.0], ramp: None },
-            Traction { edge: Edge::Side(Side::Left), stress: [2e12, 0.0], ramp: None },
-        ];
-        let mut simulation = Simulation::new(&scene).unwrap();
-        let found = loop {
-            match simulation.step() {
-                Err(found) => break found,
-                Ok(()) => assert!(!simulation.finished(), "{frame:?}: the load was borne"),
+    let brittle_with = |split| Some(Fracture { split, ..common::brittle() });
+    for fracture in [None, brittle_with(Split::Spectral), brittle_with(Split::None)] {
+        for frame in [Frame::Total, Frame::Updated] {
+            let mut scene = elastic_scene(2, [0.01, 0.005], [40, 20]);
+            scene.analysis.frame = frame;
+            scene.analysis.kinematics = Kinematics::Finite;
+            scene.materials.get_mut("glass").unwrap().fracture = fracture.clone();
+            scene.bodies[0].shape = common::rectangle([0.003, 0.001], [0.007, 0.004]);
+            scene.bodies[0].tractions = vec![
+                Traction { edge: Edge::Side(Side::Right), stress: [-2e12, 0.0], ramp: None },
+                Traction { edge: Edge::Side(Side::Left), stress: [2e12, 0.0], ramp: None },
+            ];
+            let name = format!("{frame:?}, {fracture:?}");
+            let (simulation, found) = first_breakdown(&scene, &name);
+            assert!(found.what.contains("a material point is inverted, det F = -"), "{name}: {found}");
+            assert!(found.cause.contains("inside out"), "{name}: {found}");
+            assert!(found.step == simulation.steps() && found.point.is_some(), "{name}: {found:?}");
+            let inside = |d: usize| (0.0..=[0.01, 0.005][d]).contains(&found.place[d]);
+            assert!(inside(0) && inside(1), "{name}: {found}");
+        }
+    }
+}
+
+/// Steps up to the breakdown.
+fn first_breakdown(scene: &Scene, name: &str) -> (Simulation, Breakdown) {
+    let mut simulation = Simulation::new(scene).unwrap();
+    loop {
+        match simulation.step() {
+            Err(found) => return (simulation, found),
+            Ok(()) => assert!(!simulation.finished(), "{name}: the load was borne"),
+        }
+    }
+}
+
+/// Energies that overflow in a body of either kinematics and material: the run ends where the first number is none.
+#[test]
+fn no_number_that_is_not_finite_outlives_its_step() {
+    for kinematics in [Kinematics::Small, Kinematics::Finite] {
+        for frame in [Frame::Total, Frame::Updated] {
+            for mut scene in [notched_plate(1e200), common::pulled_plate(1e200)] {
+                scene.bodies[0].tractions.iter_mut().for_each(|traction| traction.ramp = None);
+                (scene.analysis.frame, scene.analysis.kinematics) = (frame, kinematics);
+                let fractures = scene.materials["glass"].fracture.is_some();
+                let name = format!("{frame:?}, {kinematics:?}, fracture: {fractures}");
+                let (simulation, found) = first_breakdown(&scene, &name);
+                assert!(found.step == simulation.steps() && found.step <= 3, "{name}: {found}");
+                assert!(found.place.iter().all(|x| x.is_finite()), "{name}: {found}");
+                let named = ["not finite", "is not a number", "inverted", "exceeds", "thrown"];
+                assert!(named.iter().any(|words| found.what.contains(words)), "{name}: {found}");
             }
-        };
-        assert!(found.cause.contains("inside out"), "{frame:?}: {found}");
+        }
     }
 }
 

@@ -5,6 +5,7 @@ mod common;
 use common::{annulus, bent_patch, body, elastic_scene, patch_scene, rectangle, run};
 use fisura::Simulation;
 use fisura::energy::Sample;
+use fisura::extremes::larger;
 use fisura::nurbs::NurbsPatch;
 use fisura::scene::*;
 use fisura::validate::validate;
@@ -72,7 +73,7 @@ fn rigid_motion_has_the_energy_of_a_rigid_body() {
 }
 
 fn closure(samples: &[Sample]) -> f64 {
-    samples.iter().map(|s| s.closure.abs() / s.largest_term().max(1e-300)).fold(0.0, f64::max)
+    samples.iter().map(|s| s.closure.abs() / s.largest_term().max(1e-300)).fold(0.0, larger)
 }
 
 /// A free spinning body under a moving load: momentum is the impulse, angular momentum stays where no load has a moment.

@@ -4,6 +4,7 @@ mod common;
 
 use common::body;
 use fisura::assembly::{Constant, Form, add_form};
+use fisura::extremes::larger;
 use fisura::lattice::Lattice;
 use fisura::patch::Patch;
 use fisura::scene::{Mesh, Shape};
@@ -23,7 +24,7 @@ fn it_is_a_body_that_fills_the_patch() {
         let mut load = vec![f64::NAN; lattice.grid.len()];
         FictitiousMaterial::new(&patch, diffusion).begin(&mut matrix, &mut load);
         let expected_load = lattice.integrate(|_, _, _| WEIGHT);
-        let largest = expected.coefficients().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let largest = expected.coefficients().iter().fold(0.0, |m: f64, x| larger(m, x.abs()));
         let couplings =
             (0..lattice.grid.rows).flat_map(|row| (0..matrix.offsets().len()).map(move |offset| (row, offset)));
         for (row, offset) in couplings {

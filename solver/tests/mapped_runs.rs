@@ -5,6 +5,7 @@ mod common;
 
 use common::{annulus, bent_patch, brittle, elastic_scene, notched_plate, patch_scene, run, with_threads};
 use fisura::energy::Sample;
+use fisura::extremes::larger;
 use fisura::nurbs::NurbsPatch;
 use fisura::scene::*;
 
@@ -25,13 +26,13 @@ fn difference(a: &Scene, b: &Scene) -> [f64; 2] {
     let ((a, rows), (b, other_rows)) = (run(a), run(b));
     assert!(a.steps() >= 30 && a.steps() == b.steps(), "{} and {} steps", a.steps(), b.steps());
     let [a, b] = [&a, &b].map(|s| s.total_frame().unwrap().displacement().concat());
-    let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, |m: f64, x| m.max(x.abs()));
+    let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, |m: f64, x| larger(m, x.abs()));
     let displacement = largest(&mut a.iter().zip(&b).map(|(a, b)| a - b)) / largest(&mut a.iter().copied());
     let terms = |s: &Sample| {
         let fracture = s.fracture.as_ref().map_or(0.0, |f| f.energy + f.history_work);
         [s.kinetic, s.elastic, s.external_work, fracture]
     };
-    let scale = rows.iter().map(Sample::largest_term).fold(0.0, f64::max);
+    let scale = rows.iter().map(Sample::largest_term).fold(0.0, larger);
     let gaps = rows.iter().zip(&other_rows).flat_map(|(a, b)| {
         let (a, b) = (terms(a), terms(b));
         (0..4).map(move |i| a[i] - b[i])
@@ -133,7 +134,7 @@ fn pictures_and_tips_lie_where_the_patch_does() {
     let radius = |s: &Sample| tip(s)[0].hypot(tip(s)[1]);
     let last = samples.last().unwrap();
     assert!(radius(last) >= radius(&samples[0]) && radius(last) <= 2.0, "{} to {}", radius(&samples[0]), radius(last));
-    let closure = samples.iter().map(|s| s.closure.abs() / s.largest_term()).fold(0.0, f64::max);
+    let closure = samples.iter().map(|s| s.closure.abs() / s.largest_term()).fold(0.0, larger);
     assert!(closure <= 1e-3, "closure {closure:e}");
 
     let picture = simulation.picture([60, 60]);
@@ -171,7 +172,7 @@ fn elastic_energies_close_on_curved_patches() {
             scene.bodies[0].tractions = vec![load];
             let (simulation, samples) = run(&scene);
             assert!(simulation.steps() >= 30 && samples.last().unwrap().external_work > 0.0);
-            let closure = samples.iter().map(|s| s.closure.abs() / s.largest_term().max(1e-300)).fold(0.0, f64::max);
+            let closure = samples.iter().map(|s| s.closure.abs() / s.largest_term().max(1e-300)).fold(0.0, larger);
             assert!(closure <= 1e-12, "{name}, {mass:?}: closure {closure:e}");
         }
     }

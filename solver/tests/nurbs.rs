@@ -1,6 +1,7 @@
 //! NURBS patches with random knots, weights and degrees: what must hold for each, and what refinement must not change.
 
 use approx::assert_abs_diff_eq;
+use fisura::extremes::larger;
 use fisura::nurbs::{Form, LocateError, NurbsError, NurbsPatch, RationalFunctions, rational_functions};
 use fisura::patch::Patch;
 use fisura::scene::Mesh;
@@ -143,7 +144,7 @@ proptest! {
             assert_abs_diff_eq!(f.interpolate(&field), 3.0 + 2.0 * point.position[0] - point.position[1], epsilon = 1e-13);
             // 1/h in space: the parametric gradients times the inverse of the Jacobian.
             let gradient = f.physical_gradients(&point);
-            let largest = |numbers: &[f64]| numbers.iter().fold(0.0, |m: f64, g| m.max(g.abs()));
+            let largest = |numbers: &[f64]| numbers.iter().fold(0.0, |m: f64, g| larger(m, g.abs()));
             let inverse = largest(point.jacobian.as_flattened()) / point.determinant().abs();
             let per_length = inverse * largest(f.gradient[..f.count].as_flattened());
             for (d, expected) in [2.0, -1.0].into_iter().enumerate() {

@@ -4,6 +4,7 @@
 mod common;
 
 use common::{notched_plate, rectangle};
+use fisura::extremes::larger;
 use fisura::nurbs::NurbsPatch;
 use fisura::scene::*;
 use fisura::total_frame::TotalFrame;
@@ -41,7 +42,7 @@ fn largest_phase(scene: &Scene) -> f64 {
         let position = [0, 1].map(|d| (1.0 - t) * from[d] + t * to[d]);
         frame.patch().evaluate(field, position).unwrap().value
     };
-    (0..=400).map(at).fold(f64::NEG_INFINITY, f64::max)
+    (0..=400).map(at).fold(f64::NEG_INFINITY, larger)
 }
 
 fn number_after(text: &str, words: &str) -> f64 {

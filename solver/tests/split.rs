@@ -3,6 +3,7 @@
 mod common;
 
 use common::moduli;
+use fisura::extremes::larger;
 use fisura::lane::Lane;
 use fisura::material::ElasticModuli;
 use fisura::split::{EnergySplit, SplitState, split, tensile_strain};
@@ -40,7 +41,7 @@ fn product(a: Strain, b: Strain) -> f64 {
 
 /// `Σ <e_i>+ n_i n_i` from eigenvectors, scaled so that squares of small strains do not underflow.
 fn oracle(strain: Strain) -> Strain {
-    let scale = strain.iter().fold(0.0, |m: f64, e| m.max(e.abs()));
+    let scale = strain.iter().fold(0.0, |m: f64, e| larger(m, e.abs()));
     if scale == 0.0 {
         return [0.0; 3];
     }
@@ -172,5 +173,25 @@ proptest! {
             let power = product(stress.map(|s| s[0]), direction);
             prop_assert!((slope - power).abs() <= 1e-7 * moduli.mu * 4.0, "{slope} for {power}");
         }
+    }
+}
+
+/// A point that has lost its numbers makes the energy of its body none, whichever component lost them.
+#[test]
+fn what_is_not_a_number_has_no_energy_and_no_stress() {
+    for law in [EnergySplit::Spectral, EnergySplit::Whole] {
+        for (component, base) in [0, 1, 2].into_iter().flat_map(|c| [-1e-3, 0.0, 1e-3].map(|base| (c, base))) {
+            let mut strain = [base, -0.5 * base, 0.3 * base];
+            strain[component] = f64::NAN;
+            let state = split(&moduli(), law, strain.map(Lane::splat));
+            let energy = state.energy_plus[0] + state.energy_minus[0];
+            assert!(energy.is_nan(), "{law:?}, {strain:?}: energy {energy}");
+            let stress: f64 = state.stress_plus.iter().chain(&state.stress_minus).map(|s| s[0]).sum();
+            assert!(stress.is_nan(), "{law:?}, {strain:?}: stress {stress}");
+        }
+        assert!(
+            Lane::splat(f64::NAN).at_least(Lane::ZERO)[0].is_nan()
+                && Lane::splat(f64::NAN).at_most(Lane::ZERO)[0].is_nan()
+        );
     }
 }

@@ -3,6 +3,7 @@
 mod common;
 
 use common::{Random, body, graded_knots, rectangle};
+use fisura::extremes::larger;
 use fisura::lane::{LANES, Lane};
 use fisura::lattice::Lattice;
 use fisura::patch::Patch;
@@ -78,7 +79,7 @@ fn naive(
             let error = (c.gradient[d] - seen.phase_gradient[d][lane]).abs();
             result.gradient_error = result.gradient_error.max(error);
         }
-        result.scale = gradient.iter().fold(result.scale, |m: f64, g| m.max(g.abs()));
+        result.scale = gradient.iter().fold(result.scale, |m: f64, g| larger(m, g.abs()));
         result.points += 1;
         let term = weight - lost; // compensated: thousands of weights must add up to the last digits
         let area = result.area + term;
@@ -131,7 +132,7 @@ fn compare(mesh: &Mesh, body: &Body) -> (usize, f64) {
     });
     assert!(plain.gradient_error <= 1e-13 * plain.scale, "{name}: gradients {:e}", plain.gradient_error / plain.scale);
     assert!(plain.phase_error <= 1e-13, "{name}: phase {:e}", plain.phase_error);
-    let largest = plain.forces.iter().flatten().fold(0.0, |m: f64, f| m.max(f.abs()));
+    let largest = plain.forces.iter().flatten().fold(0.0, |m: f64, f| larger(m, f.abs()));
     for component in 0..2 {
         let mut total = 0.0;
         for at in 0..lattice.grid.len() {

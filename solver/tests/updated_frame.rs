@@ -4,6 +4,7 @@ mod common;
 
 use common::{brittle, glass, rectangle, relative_closure, run, updated_scene, with_threads};
 use fisura::energy::Sample;
+use fisura::extremes::larger;
 use fisura::scene::*;
 use fisura::simulation::Simulation;
 use fisura::updated_frame::UpdatedFrame;
@@ -58,7 +59,7 @@ fn a_rigid_translation_through_the_mesh_leaves_velocity_and_strain_alone() {
             for point in updated(&simulation).fields()[0].points() {
                 let off = (point.velocity[0] - velocity[0]).hypot(point.velocity[1] - velocity[1]);
                 assert!(off <= 1e-13 * 345.0, "p = {degree}, {layout:?}: velocity off by {off:e} m/s");
-                let strain = point.strain.iter().fold(0.0_f64, |a, e| a.max(e.abs()));
+                let strain = point.strain.iter().fold(0.0_f64, |a, e| larger(a, e.abs()));
                 assert!(strain <= 1e-13, "p = {degree}, {layout:?}: strain {strain:e}");
                 let [x, y] = [0, 1].map(|d| point.displacement[d] - velocity[d] * 10e-6);
                 assert!(x.hypot(y) <= 1e-16, "p = {degree}, {layout:?}: displaced {x:e}, {y:e} m too far");
@@ -126,9 +127,9 @@ fn small_vibrations_are_those_of_the_total_frame_and_the_ledger_closes() {
         fixed.analysis.frame = Frame::Total;
         let (_, moving) = run(&moving);
         let (_, fixed) = run(&fixed);
-        let scale = fixed.iter().map(Sample::largest_term).fold(0.0, f64::max);
+        let scale = fixed.iter().map(Sample::largest_term).fold(0.0, larger);
         let apart = |f: fn(&Sample) -> f64| {
-            moving.iter().zip(&fixed).map(|(a, b)| (f(a) - f(b)).abs()).fold(0.0, f64::max) / scale
+            moving.iter().zip(&fixed).map(|(a, b)| (f(a) - f(b)).abs()).fold(0.0, larger) / scale
         };
         let apart = [apart(|s| s.kinetic), apart(|s| s.elastic), apart(|s| s.external_work)];
         let loss = moving.last().unwrap().transfer_loss.unwrap() / scale;
@@ -169,7 +170,7 @@ fn notched_plate_in_both_frames(cells: usize) -> ([f64; 4], f64) {
         .points()
         .iter()
         .flat_map(|p| p.displacement)
-        .fold(0.0_f64, |a, u| a.max(u.abs()));
+        .fold(0.0_f64, |a, u| larger(a, u.abs()));
     assert!(moved <= 0.1 * 0.01 / cells as f64, "displacements of {moved:e} m are not small against h");
     assert!(relative_closure(&moving) <= 1e-3, "closure {:e}", relative_closure(&moving));
     let (mut apart, mut tips_apart) = ([0.0_f64; 4], 0.0_f64);

@@ -6,7 +6,6 @@ pub mod convergence;
 pub mod dense;
 pub mod exact;
 pub mod expand;
-pub mod extremes;
 pub mod figures;
 pub mod foreign;
 pub mod history;
@@ -23,3 +22,5 @@ pub mod scene_run;
 pub mod study;
 pub mod suite;
 pub mod watch;
+
+pub use fisura::extremes;

@@ -21,6 +21,7 @@ use fisura::simulation::{Simulation, square_pixels};
 use fisura::validate::validate;
 use serde::{Deserialize, Serialize};
 
+use crate::extremes::larger;
 use crate::history::Table;
 use crate::watch;
 
@@ -167,8 +168,8 @@ impl<'a> Run<'a> {
             record.history = Table::new(&names);
         }
         record.history.push(&values);
-        record.largest_closure = record.largest_closure.max(sample.closure.abs());
-        record.largest_energy = record.largest_energy.max(sample.largest_term());
+        record.largest_closure = larger(record.largest_closure, sample.closure.abs());
+        record.largest_energy = larger(record.largest_energy, sample.largest_term());
         sample
     }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use fisura::extremes::larger;
 use fisura::material::ElasticModuli;
 use fisura::scene::{Frame, Plane, Scene};
 use fisura::simulation::{Extent, Simulation};
@@ -133,7 +134,7 @@ impl Findings {
             mechanics_bytes: size.points * BYTES_OF_POINT[kind] + size.control_points * BYTES_OF_CONTROL_POINT[0],
             phase_field_bytes,
         };
-        let fastest = materials(scene, 1.0).values().map(|m| m.wave_speed_m_per_s).fold(0.0, f64::max);
+        let fastest = materials(scene, 1.0).values().map(|m| m.wave_speed_m_per_s).fold(0.0, larger);
         let critical = CRITICAL * smallest_span(&scene.mesh) / fastest;
         let (plan, warnings) = TimePlan::new(&scene.analysis, &scene.output, critical);
         Self { estimate: UNPREPARED, ..Self::new(scene, &extent, &plan, &warnings) }

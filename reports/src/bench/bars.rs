@@ -1,6 +1,7 @@
 //! Horizontal bars with their spread: for things that have names instead of abscissae.
 
 use fisura_verification::bench::record::Spread;
+use fisura_verification::extremes::larger;
 use fisura_verification::record::Scale;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -54,10 +55,10 @@ fn describe(name: &str, values: &[Option<Spread>]) -> String {
 }
 
 fn draw(page: &Page, chart: &BarChart, row: f64) -> Drawn {
-    let widest = chart.rows.iter().map(|(name, _)| text_width(name, TICK_SIZE)).fold(0.0, f64::max);
+    let widest = chart.rows.iter().map(|(name, _)| text_width(name, TICK_SIZE)).fold(0.0, larger);
     let left = (widest + 14.0).min(0.55 * WIDTH);
     let width = WIDTH - left - 64.0; // room for the number beside the longest bar
-    let largest = chart.rows.iter().flat_map(|(_, v)| v.iter().flatten()).map(|v| v.max).fold(0.0, f64::max);
+    let largest = chart.rows.iter().flat_map(|(_, v)| v.iter().flatten()).map(|v| v.max).fold(0.0, larger);
     let axis = AxisScale::with_range(Scale::Linear, 0.0, if largest > 0.0 { largest } else { 1.0 }, 6);
     let place = |value: f64| left + width * (value / axis.high).clamp(0.0, 1.0);
     let bottom = TOP + row * chart.rows.len() as f64;

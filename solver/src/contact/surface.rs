@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::handle::{DEPTH, Handle};
+use crate::extremes::smaller;
 use crate::quadrature::MAX_POINTS;
 use crate::scene::{Body, Mesh, Shape};
 use crate::shape::polygon_edges;
@@ -214,7 +215,7 @@ impl Surface {
 fn spacing(mesh: &Mesh, body: &Body) -> f64 {
     let smallest = |d: usize| {
         let spans = mesh.knots[d].windows(2).map(|pair| pair[1] - pair[0]).filter(|length| *length > 0.0);
-        spans.fold(f64::INFINITY, f64::min) / body.particles_per_cell[d].clamp(1, MAX_POINTS) as f64
+        spans.fold(f64::INFINITY, smaller) / body.particles_per_cell[d].clamp(1, MAX_POINTS) as f64
     };
     smallest(0).min(smallest(1))
 }

@@ -1,6 +1,6 @@
 //! The state of the phase-field solver.
 
-use super::{Method, PhaseField};
+use super::PhaseField;
 use crate::checkpoint::{Archive, StateError};
 
 impl PhaseField {
@@ -17,9 +17,6 @@ impl PhaseField {
         archive.list(previous)?;
         archive.list(assembled)?;
         archive.value(counts)?;
-        match method {
-            Method::Iterative { workspace: _, preconditioner } => preconditioner.exchange(archive),
-            Method::Direct(_) => Ok(()),
-        }
+        method.preconditioner().map_or(Ok(()), |preconditioner| preconditioner.exchange(archive, matrix))
     }
 }

@@ -2,10 +2,11 @@
 
 use super::Simulation;
 use super::frame::{Frame, either};
+use crate::conjugate_gradients::SolveFailure;
 use crate::energy::Sample;
 use crate::error::{Breakdown, Failure, SceneError};
-use crate::fracture::NotConverged;
-use crate::inspection::{Inspection, PointState};
+use crate::extremes::larger;
+use crate::inspection::{Inspection, InvertedPoint, PointState};
 use crate::loads::LostTraction;
 
 /// Elastic energy beyond this many times all energy that ever came in counts as numerical growth.
@@ -20,7 +21,7 @@ const CLOSURE_FLOOR: f64 = 1e-6;
 /// Steps between two looks at the deformation of a body in the total frame, each a third of a step's work.
 const STEPS_BETWEEN_LOOKS: usize = 64;
 
-/// A residual within this factor of the tolerance when iterations ended is held up by round-off.
+/// An error within this factor of the tolerance when iterations ended is held up by round-off.
 const NEAR_TOLERANCE: f64 = 1e3;
 
 const RAISE_TOLERANCE: &str = "solver.phase_field_tolerance is tighter than round-off allows for this length scale and \
@@ -34,10 +35,15 @@ const ENLARGE_MESH: &str = "the body moves out of the mesh; enlarge mesh.size or
 
 const ADD_POINTS: &str = "use smaller cells or more particles_per_cell, so that a point lies inside the body";
 const CARRY_TRACTION: &str = "use smaller cells or more particles_per_cell there, or let the edge follow the body";
-
+const INSIDE_OUT: &str = "the body is turned inside out there: look for extreme loads or velocities, refine the mesh there, \
+                          or halve the safety factor";
 const LOST: &str = "the position of a point is not a number";
 const THROWN: &str = "a point was thrown out of the mesh, further than the mesh is wide, in one step";
 const NOT_FINITE: &str = "the phase-field solve ran into numbers that are not finite";
+const INDEFINITE: &str = "the matrix of the phase field is not positive definite to round-off";
+const TOO_FEW_POINTS: &str = "spans with fewer points than the phase field has unknowns there, or history energies many \
+                              orders of magnitude apart; use more particles_per_cell or a lower degree";
+const EXTREME: &str = "material constants, lengths or seeds so extreme that their products overflow";
 const BARE: &str = "a traction acts where there is no material any more";
 const TORN: &str = "the load has torn off the points under it; lower or ramp the traction, or end earlier";
 
@@ -82,17 +88,21 @@ impl Simulation {
         ));
     }
 
+    /// A point whose numbers are not finite makes the sum over all points so, which no fold or comparison on the way loses.
     fn is_healthy(&mut self) -> bool {
         let (elastic, work) = either!(&self.frame, body => (body.elastic_energy(), body.external_work().abs()));
-        self.energy_in = self.energy_in.max(work);
+        self.energy_in = larger(self.energy_in, work);
         elastic.is_finite() && elastic <= GROWTH_LIMIT * (self.energy_in + self.initial.abs())
     }
 
     /// Holds a sample to its ledger: an open one is a warning, once, and a breakdown if the step is above the critical one.
     ///
     /// # Errors
-    /// If the ledger is open and the time step is too long to be stable.
+    /// If a number of the sample is not finite, or the ledger is open and the time step is too long to be stable.
     pub fn watch_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
+        if let Some(name) = sample.not_finite() {
+            return Err(self.at_worst_point(format!("{name} of the history is not a finite number"), None));
+        }
         let Sample { closure, time, .. } = *sample;
         let limit = CLOSURE_LIMIT * self.energy_in + CLOSURE_FLOOR * sample.stored().abs();
         if closure.abs() <= limit {
@@ -114,18 +124,28 @@ impl Simulation {
 
     fn unstable(&self) -> Breakdown {
         let elastic = either!(&self.frame, body => body.elastic_energy());
-        let what = if elastic.is_finite() {
-            format!("elastic energy {elastic:.3e} J exceeds {GROWTH_LIMIT} times all energy put in")
-        } else {
-            "the elastic energy is not a number".to_string()
+        if elastic.is_finite() {
+            let what = format!("elastic energy {elastic:.3e} J exceeds {GROWTH_LIMIT} times all energy put in");
+            return self.at_worst_point(what, None);
+        }
+        self.not_finite("numbers are not finite: the elastic energy is none")
+    }
+
+    /// Numbers that are not finite: because a point is inverted, which has no strain, or for another reason.
+    fn not_finite(&self, what: &str) -> Breakdown {
+        let inverted = either!(&self.frame, body => body.inverted_point());
+        let Some(InvertedPoint { point, position, determinant }) = inverted else {
+            return self.at_worst_point(what.to_string(), None);
         };
-        self.at_worst_point(what, None)
+        let what = format!("a material point is inverted, det F = {determinant:.4e}");
+        let cause = if self.step_is_too_long() { self.cause_of_growth() } else { INSIDE_OUT.to_string() };
+        Breakdown { step: self.steps, time: self.time(), place: position, point: Some(point), what, cause, scene: None }
     }
 
     /// A step that could not be taken though the elastic energy of the last one that could is well.
     fn broken(&self, failure: Failure) -> Breakdown {
         match failure {
-            Failure::Left(place) if !place.iter().all(|x| x.is_finite()) => self.at_worst_point(LOST.to_string(), None),
+            Failure::Left(place) if !place.iter().all(|x| x.is_finite()) => self.not_finite(LOST),
             Failure::Left(place) if self.is_far_outside(place) => self.at_worst_point(THROWN.to_string(), None),
             Failure::Left(place) => {
                 let bare = self.updated_frame().is_some_and(|frame| frame.patch().locate(place).is_some());
@@ -134,10 +154,8 @@ impl Simulation {
                 let cause = if self.step_is_too_long() { self.cause_of_growth() } else { cause };
                 Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause, scene: None }
             }
-            Failure::NotConverged(found) if !found.relative_residual.is_finite() => {
-                self.at_worst_point(NOT_FINITE.to_string(), None)
-            }
-            Failure::NotConverged(_) | Failure::SingularMass | Failure::NoPoints(_) | Failure::LostTraction { .. } => {
+            Failure::PhaseField(SolveFailure::NotFinite) => self.not_finite(NOT_FINITE),
+            Failure::PhaseField(_) | Failure::SingularMass | Failure::NoPoints(_) | Failure::LostTraction { .. } => {
                 let (what, cause) = what_and_cause(failure, self.tolerance);
                 self.at_worst_point(what, Some(cause).filter(|_| !self.step_is_too_long()))
             }
@@ -178,11 +196,6 @@ impl Simulation {
                 "the time step {:.4e} s is {ratio:.3} times the critical step {:.4e} s; use time_step = \"auto\"",
                 self.plan.step, self.plan.critical
             )
-        } else if let Some([x, y]) = either!(&self.frame, body => body.inverted_place()) {
-            format!(
-                "the body is turned inside out at ({x:.6e}, {y:.6e}) m: look for extreme loads or velocities, refine the mesh \
-                 there, or halve the safety factor"
-            )
         } else if self.warned_of_step {
             "the time step exceeds the critical one at the moved positions; lower analysis.safety".to_string()
         } else {
@@ -203,7 +216,7 @@ pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> 
         | Failure::LostTraction { body, traction, lost: LostTraction::Unbalanced { place, .. } } => {
             (place, Some(format!("body.{body}.traction.{traction}")))
         }
-        Failure::NotConverged(_) | Failure::SingularMass => (place, None),
+        Failure::PhaseField(_) | Failure::SingularMass => (place, None),
     };
     let scene = key.map(|key| Box::new(SceneError { key, message: what.clone(), remedy: cause.clone() }));
     Breakdown { step: 0, time: 0.0, place, point: None, what, cause, scene }
@@ -212,13 +225,12 @@ pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> 
 fn what_and_cause(failure: Failure, tolerance: f64) -> (String, String) {
     let (what, cause) = match failure {
         Failure::Left(_) => ("a point left the mesh".to_string(), ENLARGE_MESH),
-        Failure::NotConverged(NotConverged { iterations, relative_residual }) => (
-            format!(
-                "the phase-field solve stopped after {iterations} iterations at a relative residual of \
-                 {relative_residual:.3e}"
-            ),
-            if relative_residual <= NEAR_TOLERANCE * tolerance { RAISE_TOLERANCE } else { ILL_CONDITIONED },
+        Failure::PhaseField(SolveFailure::NotConverged { iterations, error }) => (
+            format!("the phase-field solve stopped after {iterations} iterations at an error of {error:.3e}"),
+            if error <= NEAR_TOLERANCE * tolerance { RAISE_TOLERANCE } else { ILL_CONDITIONED },
         ),
+        Failure::PhaseField(SolveFailure::NotPositiveDefinite) => (INDEFINITE.to_string(), TOO_FEW_POINTS),
+        Failure::PhaseField(SolveFailure::NotFinite) => (NOT_FINITE.to_string(), EXTREME),
         Failure::SingularMass => ("the consistent mass matrix is singular to round-off".to_string(), SINGULAR_MASS),
         Failure::NoPoints(_) => ("the body holds no material point".to_string(), ADD_POINTS),
         Failure::LostTraction { lost: LostTraction::Bare([x, y]), .. } => (
@@ -240,7 +252,7 @@ fn what_and_cause(failure: Failure, tolerance: f64) -> (String, String) {
 fn numbers(point: &PointState) -> String {
     let largest = |values: &[f64; 3]| {
         let magnitudes = values.iter().map(|value| if value.is_nan() { f64::INFINITY } else { value.abs() });
-        let largest = magnitudes.fold(0.0, f64::max);
+        let largest = magnitudes.fold(0.0, larger);
         if largest.is_finite() { format!("{largest:.3e}") } else { "not finite".to_string() }
     };
     let mut text = format!("the strain is {}", largest(&point.strain));

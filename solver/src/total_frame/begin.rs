@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use super::forced::Forced;
 use super::{TotalFrame, VectorField};
+use crate::conjugate_gradients::SolveFailure;
 use crate::constraints::Constraints;
 use crate::energy::Ledger;
 use crate::error::Failure;
 use crate::forcing::Forcing;
-use crate::fracture::{Fracturing, NotConverged, lowest_tip};
+use crate::fracture::{Fracturing, lowest_tip};
 use crate::lattice::Lattice;
 use crate::loads::NodalLoad;
 use crate::mass::MassMatrix;
@@ -85,7 +86,7 @@ impl TotalFrame {
         displacement: VectorField,
         velocity: VectorField,
         forcing: Arc<dyn Forcing>,
-    ) -> Result<(), NotConverged> {
+    ) -> Result<(), SolveFailure> {
         let mut forced = Forced::new(forcing, &self.patch, &self.lattice);
         forced.update_forces(&self.lattice, 0.0);
         if let Some(fracture) = &mut self.fracture {
@@ -99,7 +100,7 @@ impl TotalFrame {
     ///
     /// # Errors
     /// If the initial phase field does not converge.
-    pub fn start_with(&mut self, displacement: VectorField, velocity: VectorField) -> Result<(), NotConverged> {
+    pub fn start_with(&mut self, displacement: VectorField, velocity: VectorField) -> Result<(), SolveFailure> {
         (self.displacement, self.velocity) = (displacement, velocity);
         self.constraints.apply_velocity(&mut self.velocity);
         self.ledger = Ledger::default();

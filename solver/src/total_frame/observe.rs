@@ -9,6 +9,7 @@ use crate::energy::{FractureSample, Sample};
 use crate::forcing::Forcing;
 use crate::fracture::Fracturing;
 use crate::hencky::{growth, hencky_strain, symmetric};
+use crate::inspection::InvertedPoint;
 use crate::lane::Lane;
 use crate::lattice::Lattice;
 use crate::mass::MassMatrix;
@@ -64,18 +65,20 @@ impl TotalFrame {
         sample.for_thickness(fault!("thickness-forgotten", self.thickness => 1.0))
     }
 
-    /// Reference position (m) of a point that is turned inside out, if there is one; small strains know none.
-    pub fn inverted_place(&self) -> Option<[f64; 2]> {
-        let mut inverted = None;
+    /// The point that is turned inside out furthest, if one is; small strains know none.
+    pub fn inverted_point(&self) -> Option<InvertedPoint> {
+        let (mut worst, mut point) = (None, 0);
         self.lattice.for_each_point(|batch, lane, position, _| {
             let functions = self.patch.functions(self.lattice.location(&self.patch, batch, lane));
             let [x, y] = self.displacement.each_ref().map(|u| functions.interpolate(u));
-            let (_, growth) = self.strain([x.gradient, y.gradient]);
-            if inverted.is_none() && growth <= 0.0 {
-                inverted = Some(position);
+            let (_, determinant) = self.strain([x.gradient, y.gradient]);
+            if determinant <= 0.0 {
+                let inverted = InvertedPoint { point, position, determinant };
+                worst = Some(worst.map_or(inverted, |worst: InvertedPoint| worst.worse(inverted)));
             }
+            point += 1;
         });
-        inverted
+        worst
     }
 
     /// Strain `[xx, yy, xy]` of a displacement gradient, and by how much the volume grew.

@@ -3,6 +3,7 @@
 use super::stiffness::{Stiffness, elastic_forces};
 use super::{TotalFrame, VectorField};
 use crate::critical_step::{StiffnessOperator, highest_frequency};
+use crate::extremes::{largest, smaller};
 use crate::finite::sweep_with;
 use crate::kernels::{HeldPhaseStress, LeastStretch};
 use crate::lane::Lane;
@@ -76,7 +77,7 @@ impl<'a> Tangent<'a> {
     fn new(frame: &'a TotalFrame) -> Self {
         let spans = frame.patch.spaces.iter().flat_map(|space| space.spans());
         let shortest_span = match &frame.patch.geometry {
-            None => spans.map(|span| span.length()).fold(f64::INFINITY, f64::min),
+            None => spans.map(|span| span.length()).fold(f64::INFINITY, smaller),
             Some(patch) => lengths_of_chords(patch)[0],
         };
         let zeros = || [frame.grid.zeros(), frame.grid.zeros()];
@@ -99,7 +100,7 @@ impl StiffnessOperator for Tangent<'_> {
     fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
         let Self { frame, undeformed, strips, displacement, forces, .. } = self;
         let free = undeformed.degrees_of_freedom();
-        let probe = PROBE * self.shortest_span / x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let probe = PROBE * self.shortest_span / largest(x.iter().map(|x| x.abs()));
         for (sign, forces) in [1.0, -1.0].into_iter().zip(forces.iter_mut()) {
             for (&(at, component), x) in free.iter().zip(x) {
                 displacement[component][at] = frame.displacement[component][at] + sign * probe * x;

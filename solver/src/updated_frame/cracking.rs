@@ -8,7 +8,9 @@ use super::points::{Cell, Cells, FracturePoint, Point};
 use super::transfer::{MAX_FUNCTIONS, contract, gather, walk};
 use super::windows::cut;
 use crate::checkpoint::{Archive, StateError};
-use crate::fracture::{NotConverged, seed_energy};
+use crate::conjugate_gradients::SolveFailure;
+use crate::extremes::smaller;
+use crate::fracture::seed_energy;
 use crate::lane::{LANES, Lane, Vectorised, dispatch};
 use crate::material::{ElasticModuli, FractureModel};
 use crate::patch::{ControlGrid, Patch};
@@ -84,17 +86,15 @@ impl Cracking {
     /// Assembles and solves the phase-field system at the present positions; `moved` says that points changed spans.
     ///
     /// # Errors
-    /// If the solve does not converge.
-    pub fn solve(&mut self, patch: &Patch, cells: &Cells, points: &[Point], moved: bool) -> Result<(), NotConverged> {
+    /// If there is no solution to the tolerance.
+    pub fn solve(&mut self, patch: &Patch, cells: &Cells, points: &[Point], moved: bool) -> Result<(), SolveFailure> {
         assemble(self.field.system_mut(), patch, cells, points, &self.points, &self.model, &self.fictitious);
         let first = self.field.counts().solves == 0;
         if moved && !first {
             self.field.renew_preconditioner();
         }
         let result = if first { self.field.initialise_system() } else { self.field.solve_system() };
-        let convergence =
-            result.map_err(|c| NotConverged { iterations: c.iterations, relative_residual: c.relative_residual })?;
-        self.iterations = convergence.iterations;
+        self.iterations = result?.iterations;
         Ok(())
     }
 
@@ -149,7 +149,7 @@ impl PointSums {
             history_work: self.history_work + other.history_work,
             gained_in_motion: self.gained_in_motion + other.gained_in_motion,
             surface_energy: self.surface_energy + other.surface_energy,
-            least_phase: self.least_phase.min(other.least_phase),
+            least_phase: smaller(self.least_phase, other.least_phase),
         }
     }
 }
@@ -264,7 +264,7 @@ impl UpdateStress<'_> {
         let gradient_square = along_x * along_x + along_y * along_y;
         let density = (1.0 - c) * (1.0 - c) / (4.0 * length_scale) + length_scale * gradient_square;
         sums.surface_energy += point.volume * toughness * density;
-        sums.least_phase = sums.least_phase.min(c);
+        sums.least_phase = smaller(sums.least_phase, c);
         let by_value = 2.0 * (1.0 - residual_stiffness) * c * history - toughness * (1.0 - c) / (2.0 * length_scale);
         let by_gradient = 2.0 * toughness * length_scale;
         let slope = [

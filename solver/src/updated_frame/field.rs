@@ -20,11 +20,12 @@ use super::tractions::SurfaceLoad;
 use super::transfer::{GridToPoints, PointsToGrid, StripMotion};
 use super::volume_forcing::VolumeForcing;
 use super::windows::{cut, scatter};
+use crate::conjugate_gradients::SolveFailure;
 use crate::contact::Surface;
 use crate::critical_step::highest_frequency;
 use crate::energy::Ledger;
 use crate::error::Failure;
-use crate::fracture::NotConverged;
+use crate::extremes::{larger, smaller};
 use crate::hencky::Gradient;
 use crate::lane::dispatch;
 use crate::material::ElasticModuli;
@@ -147,7 +148,7 @@ impl DiscreteField {
         if let Some(forcing) = forcing {
             forcing.after_motion(points, self.time, dt);
         }
-        let fastest = motions.iter().map(|m| m.fastest).fold(0.0, f64::max);
+        let fastest = motions.iter().map(|m| m.fastest).fold(0.0, larger);
         self.travelled += dt * (2.0 * fastest).sqrt();
         self.elastic_energy = motions.iter().map(|m| m.elastic_energy).sum();
         self.stress_work = motions.iter().map(|m| m.stress_work).sum();
@@ -213,7 +214,7 @@ impl DiscreteField {
     }
 
     /// History, phase field and degraded stress; an elastic body has its stress from G2P.
-    pub(super) fn crack_and_stress(&mut self, moved: bool) -> Result<(), NotConverged> {
+    pub(super) fn crack_and_stress(&mut self, moved: bool) -> Result<(), SolveFailure> {
         let Self { patch, cells, points, moduli, .. } = self;
         let Some(fracture) = &mut self.fracture else { return Ok(()) };
         fracture.update_history(moduli, cells, points);
@@ -282,7 +283,7 @@ impl DiscreteField {
     /// Length of the shortest span, m.
     pub fn shortest_span(&self) -> f64 {
         let spans = self.patch.spaces.iter().flat_map(|space| space.spans());
-        spans.map(|span| span.length()).fold(f64::INFINITY, f64::min)
+        spans.map(|span| span.length()).fold(f64::INFINITY, smaller)
     }
 
     /// Whether a point may have moved a quarter of the smallest span since the last call that said so: the time to take

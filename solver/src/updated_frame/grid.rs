@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::constraints::Constraints;
+use crate::extremes::larger;
 use crate::patch::{ControlGrid, Patch};
 
 /// Masses below this fraction of the largest give no acceleration; their control points keep their velocity.
@@ -73,7 +74,7 @@ impl NodalFields {
 
     /// Velocity from momentum, and the inverse masses.
     pub fn divide_by_mass(&mut self) {
-        let negligible = NEGLIGIBLE_MASS * self.mass.iter().copied().fold(0.0, f64::max);
+        let negligible = NEGLIGIBLE_MASS * self.mass.iter().copied().fold(0.0, larger);
         let [x, y] = &mut self.arrived;
         let nodes = self.mass.iter().zip(&mut self.inverse_mass).zip(x.iter_mut().zip(y));
         for ((&mass, inverse), (x, y)) in nodes {

@@ -12,6 +12,7 @@ use crate::contact::{Contact, ContactLedger, Surface};
 use crate::energy::{ContactSample, FractureSample, Sample};
 use crate::fracture::BROKEN;
 use crate::hencky::{Gradient, growth};
+use crate::inspection::InvertedPoint;
 use crate::material::ElasticModuli;
 use crate::patch::Patch;
 use crate::phase_field::PhaseFieldCounts;
@@ -103,12 +104,9 @@ impl UpdatedFrame {
         fastest.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(([0.0; 2], 0.0), |(square, place)| (place, square.sqrt()))
     }
 
-    /// Position (m) of a point that is turned inside out, if there is one.
-    pub fn inverted_place(&self) -> Option<[f64; 2]> {
-        self.fields.iter().find_map(|field| {
-            let inverted = field.deformation.as_ref()?.iter().position(|f| growth(f) <= 0.0)?;
-            Some(field.points[inverted].position)
-        })
+    /// The point of a body that is turned inside out furthest, if one is; small strains know none.
+    pub fn inverted_point(&self) -> Option<InvertedPoint> {
+        self.fields.iter().filter_map(DiscreteField::inverted_point).reduce(InvertedPoint::worse)
     }
 
     /// Heap memory of mechanics and of the phase fields, bytes.
@@ -191,6 +189,14 @@ impl DiscreteField {
         };
         let half = if self.at_start { 0.0 } else { 0.5 * dt };
         (points + half * (kick(0) + kick(1))) * self.thickness
+    }
+
+    fn inverted_point(&self) -> Option<InvertedPoint> {
+        let gradients = self.deformation.as_ref()?.iter().map(growth).zip(&self.points).enumerate();
+        let inverted = gradients.filter(|(_, (determinant, _))| *determinant <= 0.0);
+        let named =
+            inverted.map(|(point, (determinant, at))| InvertedPoint { point, position: at.position, determinant });
+        named.reduce(InvertedPoint::worse)
     }
 
     /// Elastic energy, J.

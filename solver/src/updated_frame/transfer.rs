@@ -7,6 +7,7 @@
 use super::points::{Cell, FracturePoint, Point};
 use super::strain::Kinematics;
 use super::windows::{Window, control_values};
+use crate::extremes::larger;
 use crate::lane::{LANES, Lane, Vectorised};
 use crate::material::ElasticModuli;
 use crate::patch::{ControlGrid, Patch};
@@ -226,7 +227,7 @@ impl<K: Kinematics> GridToPoints<'_, K> {
             point.velocity[d] = self.kept * point.velocity[d] + value[2 + d];
             point.displacement[d] += moved[d];
             point.position[d] += moved[d];
-            motion.fastest = motion.fastest.max(value[d] * value[d]);
+            motion.fastest = larger(motion.fastest, value[d] * value[d]);
         }
         let spans = [&x.spans()[cell.span[0]], &y.spans()[cell.span[1]]];
         motion.left_span |= (0..2).any(|d| !(spans[d].left <= point.position[d] && point.position[d] < spans[d].right));

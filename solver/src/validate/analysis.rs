@@ -2,6 +2,7 @@
 
 use super::material::plausible_speed;
 use super::{Findings, Ground};
+use crate::extremes::larger;
 use crate::quadrature::Rule;
 use crate::scene::{Body, Boundary, Frame, Mass, Scene, Shape, Side, TimeStep, Transfer};
 use crate::spline::SplineSpace;
@@ -132,7 +133,7 @@ fn steps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
             findings.error("analysis.time_step", message, remedy);
         }
     } else if ground.is_sound {
-        let steps = scene.bodies.iter().filter_map(|body| crossings(body, scene, ground)).fold(0.0, f64::max);
+        let steps = scene.bodies.iter().filter_map(|body| crossings(body, scene, ground)).fold(0.0, larger);
         if steps > MOST_STEPS {
             let message = format!("{end:e} s are about {steps:.1e} steps of the smallest cell, above {MOST_STEPS:e}");
             findings.error("analysis.end_time", message, "give a shorter end_time with its unit, such as \"80 us\"");
@@ -179,7 +180,7 @@ fn held(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) 
 fn solver(scene: &Scene, findings: &mut Findings) {
     let tolerance = scene.solver.phase_field_tolerance;
     if !(tolerance > 1e-15 && tolerance <= 1e-2) {
-        let message = format!("a relative residual of {tolerance:e} is outside (1e-15, 1e-2]");
+        let message = format!("an error of {tolerance:e} of the phase field is outside (1e-15, 1e-2]");
         findings.error("solver.phase_field_tolerance", message, "give a number such as 1e-8");
     }
 }

@@ -4,6 +4,7 @@ use super::geometry::{complexity, defect};
 use super::{Findings, Ground};
 use crate::contact::Surface;
 use crate::contact::surface::Center;
+use crate::extremes::larger;
 use crate::scene::{Body, Frame, Scene, Shape, Transfer};
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
@@ -108,5 +109,5 @@ fn depth(one: &Surface, other: &Surface, inside: &Shape, beneath: f64) -> f64 {
     let all = other.segments_in([[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]]);
     let stride = within.len() * all.len() / MOST_DISTANCES + 1;
     let nearest = within.into_iter().step_by(stride).filter_map(|x| other.nearest(x, &all, f64::INFINITY));
-    nearest.map(|nearest| nearest.distance.abs()).fold(0.0, f64::max)
+    nearest.map(|nearest| nearest.distance.abs()).fold(0.0, larger)
 }

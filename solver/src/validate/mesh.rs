@@ -1,6 +1,7 @@
 //! Checks of the background mesh: degrees, open knot vectors, geometry.
 
 use super::Findings;
+use crate::extremes::smaller;
 use crate::nurbs::{NurbsError, NurbsPatch};
 use crate::scene::Mesh;
 
@@ -111,7 +112,7 @@ fn knots(d: usize, degree: usize, knots: &[f64], findings: &mut Findings) {
         );
     }
     let spans = knots.windows(2).map(|k| k[1] - k[0]).filter(|span| *span > 0.0);
-    let shortest = spans.fold(f64::INFINITY, f64::min);
+    let shortest = spans.fold(f64::INFINITY, smaller);
     if shortest < SHORTEST * (last - first) {
         let message = format!("a span of {shortest:e} in a mesh of {:e}: too short to be told from none", last - first);
         return findings.error(key, message, "repeat a knot exactly, or keep the spans alike");

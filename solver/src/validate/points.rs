@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::Ground;
 use super::geometry::complexity;
+use crate::extremes::larger;
 use crate::lattice::{fills_lattice, point_axes};
 use crate::nurbs::NurbsPatch;
 use crate::scene::Body;
@@ -110,7 +111,7 @@ impl<'a> Points<'a> {
                 pair[d] = i;
                 self.span(pair, d)[d].abs()
             });
-            ways.fold(0.0, f64::max)
+            ways.fold(0.0, larger)
         };
         let reach = longest(0).hypot(longest(1)).max(reach);
         let within = |axis: &[f64], low: f64, high: f64| {

@@ -6,6 +6,7 @@
 
 use super::Findings;
 use super::points::{Near, Points};
+use crate::extremes::larger;
 use crate::fracture::{BROKEN, SEED_STRENGTH, half_width};
 use crate::scene::{Body, Crack, Fracture};
 use crate::shape::distance_to_segment;
@@ -100,7 +101,7 @@ fn whole_stretch(near: &[Near], length: f64, width: f64, l0: f64) -> Option<Whol
 /// The least half width, and the largest cells, that would do; rounded so that the figures in the text do too.
 fn remedy(near: &[Near], length: f64, width: f64, l0: f64, h: f64) -> String {
     let breaks = |width: f64, l0: f64| whole_stretch(near, length, width, l0).is_none();
-    let widest = near.iter().map(|point| point.distance).fold(width, f64::max) * 100.0;
+    let widest = near.iter().map(|point| point.distance).fold(width, larger) * 100.0;
     if !breaks(widest, l0) {
         return "use smaller cells, or more particles_per_cell".to_string();
     }

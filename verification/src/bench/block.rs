@@ -45,7 +45,7 @@ pub fn cracked_scene(degree: usize, points: usize, cells: usize, margin: usize) 
     scene.analysis.end_time = 1e-3;
     scene.output.samples = 1;
     scene.solver =
-        SolverSettings { phase_field_tolerance: 1e-8, phase_field_solver: PhaseFieldSolver::ConjugateGradients };
+        SolverSettings { phase_field_tolerance: 2e-6, phase_field_solver: PhaseFieldSolver::ConjugateGradients };
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [size; 2] };
     scene.bodies[0].cracks = vec![Crack { from: [0.0, 0.5 * size], to: [0.5 * size; 2], half_width: None }];
     scene

@@ -1,6 +1,7 @@
 //! Figures of a convergence study: error against h, unknowns and measured cost on two logarithmic axes.
 
 use super::{Convergence, Curve, Norm, Refined, above_floor, has_times, words};
+use crate::extremes::{larger, smaller};
 use crate::record::{self, Axis, CurveStyle, Figure, FigureBody, Floor, Scale, SlopeTriangle};
 
 /// Column of the unknowns.
@@ -107,7 +108,7 @@ fn floor(norm: &Norm, index: usize, curves: &[&Curve]) -> Option<Floor> {
 fn triangles(study: &Convergence, index: usize, against: Against, curves: &[&Curve]) -> Vec<SlopeTriangle> {
     let lines: Vec<Vec<Point>> = curves.iter().map(|curve| points(curve, index, against, 0.0)).collect();
     let ordinates = || lines.iter().flatten().map(|p| p.1);
-    let gap = GAP * (ordinates().fold(f64::MIN, f64::max) - ordinates().fold(f64::MAX, f64::min));
+    let gap = GAP * (ordinates().fold(f64::MIN, larger) - ordinates().fold(f64::MAX, smaller));
     let mut slopes: Vec<f64> = curves.iter().filter_map(|curve| slope(study, curve.orders[index]?, against)).collect();
     slopes.sort_by(f64::total_cmp);
     slopes.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
@@ -182,7 +183,7 @@ impl Place {
             Some((low - y).max(y - hypotenuse(s)))
         };
         let distances = others.flat_map(|line| [0.0, 0.5, 1.0].map(|s| distance(line, s))).flatten();
-        distances.fold(f64::INFINITY, f64::min)
+        distances.fold(f64::INFINITY, smaller)
     }
 
     fn triangle(self, slope: f64) -> SlopeTriangle {

@@ -62,7 +62,7 @@ pub(super) fn largest_speed_before_branching(check: &Check, run: &Run) -> Result
     let (times, x): (Vec<f64>, Vec<f64>) = tips.iter().map(|row| (row[0], row[1])).unzip();
     let last = tips.last().map_or(0.0, |row| row[0]);
     let centers = tips.iter().map(|row| row[0]).filter(|t| *t >= SPEED_WINDOW && *t <= (end.min(last) - SPEED_WINDOW));
-    Ok(centers.map(|t| fitted_speed(&times, &x, t)).filter(|v| v.is_finite()).reduce(f64::max).map(|v| v / unit))
+    Ok(centers.map(|t| fitted_speed(&times, &x, t)).filter(|v| v.is_finite()).reduce(larger).map(|v| v / unit))
 }
 
 /// Slope of a straight line fitted to positions x (m) within ±2 µs of `center` (s), m/s; NaN without two of them.

@@ -6,6 +6,7 @@ use fisura::fracture::BROKEN;
 use fisura::scene::{Scene, Shape};
 use fisura::updated_frame::field::DiscreteField;
 
+use crate::extremes::smaller;
 use crate::history::Table;
 
 /// Part of the final fracture energy at which it counts as levelled off.
@@ -77,7 +78,7 @@ impl Watch {
         let (center, radii) = annulus(&body.shape)?;
         let fracture = scene.materials[&body.material].fracture.as_ref()?;
         let spans = scene.mesh.knots[0].windows(2).map(|k| k[1] - k[0]).filter(|h| *h > 0.0);
-        let spacing = spans.fold(f64::INFINITY, f64::min) / body.particles_per_cell[0] as f64;
+        let spacing = spans.fold(f64::INFINITY, smaller) / body.particles_per_cell[0] as f64;
         let names = [
             "front_broken",
             "rear_broken",

@@ -152,7 +152,7 @@ pub fn transfer(item: &Item<'_>) -> Option<Transfer> {
 }
 
 fn default_solver() -> SolverSettings {
-    SolverSettings { phase_field_tolerance: 1e-8, phase_field_solver: PhaseFieldSolver::ConjugateGradients }
+    SolverSettings { phase_field_tolerance: 2e-6, phase_field_solver: PhaseFieldSolver::ConjugateGradients }
 }
 
 fn solver(item: &Item<'_>) -> Option<SolverSettings> {

@@ -132,9 +132,8 @@ impl Points<'_> {
             displacement[0][at] = strain * self.greville[grid.column_of(at)];
         }
         fracture.update_history(lattice, *moduli, Kinematics::Small, &displacement);
-        fracture.solve_phase_field(lattice).map_err(|c| {
-            StudyError::Other(format!("the phase field did not converge: residual {:e}", c.relative_residual))
-        })?;
+        let solved = fracture.solve_phase_field(lattice);
+        solved.map_err(|failure| StudyError::Other(format!("the phase-field solve {failure}")))?;
         fracture.degraded_forces(lattice, *moduli, Kinematics::Small, [&displacement[0], &displacement[1]], forces);
         let mut nodal = [grid.zeros(), grid.zeros()];
         forces.assemble(grid.stride, &mut nodal);

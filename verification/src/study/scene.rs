@@ -8,6 +8,7 @@ use fisura::spans::largest_spans;
 
 use crate::case::{Case, Check};
 use crate::expand::CaseScene;
+use crate::extremes::{larger, smaller};
 use crate::history::Table;
 use crate::measure::grid_convergence::{over_meshes, span};
 use crate::measure::{Measured, Run, fitted_speed, measure};
@@ -202,7 +203,7 @@ fn derived(history: &Table) -> Table {
     let largest = ["kinetic_j", "elastic_j", "fracture_j", "external_work_j"]
         .into_iter()
         .flat_map(|name| column(name).iter().map(|v| v.abs()))
-        .fold(f64::MIN_POSITIVE, f64::max);
+        .fold(f64::MIN_POSITIVE, larger);
     let times = column("time_s");
     let end = times.last().copied().unwrap_or(0.0).max(f64::MIN_POSITIVE);
     for (time, closure) in times.iter().zip(column("closure_j")) {
@@ -255,5 +256,5 @@ fn resolution(finished: &FinishedScene) -> String {
 /// Smallest length scale of the materials in use, m.
 pub fn length_scale(scene: &Scene) -> Option<f64> {
     let fractures = scene.materials.values().filter_map(|m| m.fracture.as_ref());
-    fractures.map(|f| f.length_scale).reduce(f64::min)
+    fractures.map(|f| f.length_scale).reduce(smaller)
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use fisura::scene::Plane;
 
 use crate::exact::{ExactSolution, NAMES, find};
+use crate::extremes::larger;
 
 /// Largest difference allowed, relative to the largest entry of the same kind in the table (and to 1e-3 at least).
 const TOLERANCE: f64 = 1e-12;
@@ -60,7 +61,7 @@ fn solutions_agree_with_their_symbolic_derivations() {
             let (at, time) = ([number(row, "x"), number(row, "y")], number(row, "t"));
             for group in quantities(solution.as_ref(), at, time) {
                 let entries = group.iter().flat_map(|(column, _)| rows.iter().map(|r| number(r, column).abs()));
-                let scale = entries.fold(1e-3, f64::max);
+                let scale = entries.fold(1e-3, larger);
                 for (column, value) in group {
                     let difference = (value - number(row, column)).abs() / scale;
                     assert!(

@@ -21,6 +21,7 @@ use fisura::updated_frame::field::DiscreteField;
 use super::{Books, chart, curve, dot, exact, larger, run, sample_is_due, sum};
 use crate::case::Case;
 use crate::expand::CaseScene;
+use crate::extremes::smaller;
 use crate::history::Table;
 use crate::record::CurveStyle;
 use crate::study::scene::series_stem;
@@ -113,7 +114,7 @@ impl Hertz {
         let total = |part: &dyn Fn(&Body) -> f64| scene.bodies.iter().map(part).sum::<f64>();
         let points = scene.bodies[0].particles_per_cell[0] as f64;
         let shortest = |d: usize| {
-            scene.mesh.knots[d].windows(2).map(|w| w[1] - w[0]).filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min)
+            scene.mesh.knots[d].windows(2).map(|w| w[1] - w[0]).filter(|l| *l > 0.0).fold(f64::INFINITY, smaller)
         };
         let segment = shortest(0).min(shortest(1)) / points;
         Ok(Self {

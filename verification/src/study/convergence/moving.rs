@@ -165,7 +165,7 @@ fn is_in_middle(x: f64, [left, right]: [f64; 2]) -> bool {
 
 fn broken(failure: Failure) -> StudyError {
     match failure {
-        Failure::NotConverged(_) => other("the phase field does not converge"),
+        Failure::PhaseField(failure) => other(format!("the phase-field solve {failure}")),
         Failure::SingularMass => other("the mass matrix is singular to round-off"),
         Failure::Left([x, y]) => other(format!("a point left the mesh at ({x}, {y})")),
         Failure::NoPoints(_) => other("the body holds no material point"),

@@ -1,0 +1,93 @@
+//! How the system of the phase field is solved: conjugate gradients, or sparse Cholesky for reference.
+
+use crate::cholesky::SparseCholesky;
+use crate::conjugate_gradients::{ConjugateGradients, Convergence, SolveFailure};
+use crate::preconditioner::Preconditioner;
+use crate::scene::PhaseFieldSolver;
+use crate::stencil::Stencil;
+
+/// Iterations after which a solve counts as failed.
+pub const ITERATION_LIMIT: usize = 2000;
+
+#[derive(Debug, Clone)]
+pub(super) enum Method {
+    Iterative { workspace: Box<ConjugateGradients>, preconditioner: Box<Preconditioner> },
+    Direct(Box<SparseCholesky>),
+}
+
+impl Method {
+    pub fn new(matrix: &Stencil, solver: PhaseFieldSolver) -> Self {
+        match solver {
+            PhaseFieldSolver::Cholesky => Self::Direct(Box::default()),
+            PhaseFieldSolver::ConjugateGradients => Self::iterative(matrix),
+        }
+    }
+
+    fn iterative(matrix: &Stencil) -> Self {
+        Self::Iterative {
+            workspace: Box::new(ConjugateGradients::new(matrix)),
+            preconditioner: Box::new(Preconditioner::new(matrix)),
+        }
+    }
+
+    /// The same method for another matrix.
+    pub fn anew(&self, matrix: &Stencil) -> Self {
+        match self {
+            Self::Direct(_) => Self::Direct(Box::default()),
+            Self::Iterative { .. } => Self::iterative(matrix),
+        }
+    }
+
+    /// Improves `x` until its error in the energy norm is about `tolerance`. An incomplete factor is granted `patience`
+    /// iterations before a better one takes over where it left off.
+    pub fn solve(
+        &mut self,
+        matrix: &Stencil,
+        load: &[f64],
+        x: &mut [f64],
+        tolerance: f64,
+        mut patience: usize,
+    ) -> Result<Convergence, SolveFailure> {
+        let (workspace, preconditioner) = match self {
+            Self::Direct(cholesky) => {
+                let solved = cholesky.solve(matrix, load, x).map(|()| Convergence { iterations: 1, error: 0.0 });
+                return solved.ok_or(SolveFailure::NotPositiveDefinite);
+            }
+            Self::Iterative { workspace, preconditioner } => (workspace, preconditioner),
+        };
+        preconditioner.prepare(matrix);
+        let mut spent = 0;
+        loop {
+            let limit = if preconditioner.is_complete() { ITERATION_LIMIT } else { patience };
+            match workspace.solve(matrix, preconditioner, load, x, tolerance, limit) {
+                Ok(Convergence { iterations, error }) => {
+                    preconditioner.learn(matrix, iterations);
+                    return Ok(Convergence { iterations: spent + iterations, error });
+                }
+                Err(SolveFailure::NotConverged { iterations, .. }) if preconditioner.improve(matrix) => {
+                    spent += iterations;
+                }
+                Err(SolveFailure::NotConverged { iterations, .. }) if limit < ITERATION_LIMIT => {
+                    (spent, patience) = (spent + iterations, ITERATION_LIMIT);
+                }
+                Err(failure) => return Err(failure),
+            }
+        }
+    }
+
+    /// What preconditions an iterative method.
+    pub fn preconditioner(&mut self) -> Option<&mut Preconditioner> {
+        match self {
+            Self::Iterative { preconditioner, .. } => Some(preconditioner),
+            Self::Direct(_) => None,
+        }
+    }
+
+    /// Heap memory, bytes.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Self::Iterative { workspace, preconditioner } => workspace.bytes() + preconditioner.bytes(),
+            Self::Direct(_) => 0,
+        }
+    }
+}
