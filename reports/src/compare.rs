@@ -2,16 +2,18 @@
 //!
 //! Accuracy is measured in units of what the bounds allow, as METHODOLOGY defines it: values of different kinds are
 //! comparable then, and round-off of a value far inside its bounds is no change. `speed` holds times against their
-//! spread; `words` writes text and Markdown.
+//! spread; `partners` finds what is to be compared; `words` writes text and Markdown.
 
+mod partners;
 mod speed;
 mod words;
 
-use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
+use std::collections::{BTreeMap, HashSet};
 
 use fisura_verification::record::{Environment, Record, Reference, ResultSet, Status};
 use serde::Serialize;
 
+use partners::partners;
 use speed::Lookup;
 pub use speed::{Speed, SpeedChange};
 pub use words::{render_markdown, render_text};
@@ -154,27 +156,6 @@ pub fn compare(base: &ResultSet, new: &ResultSet) -> ComparedSets {
         speed,
         records,
     }
-}
-
-/// For each record of the base the place of the new one with its id, else of one that names this id among its former ones.
-/// An id that is there twice is found twice, in the same order.
-fn partners(base: &[Record], new: &[Record]) -> Vec<Option<usize>> {
-    let mut present: HashMap<&str, VecDeque<usize>> = HashMap::new();
-    let mut former: HashMap<&str, VecDeque<usize>> = HashMap::new();
-    for (at, record) in new.iter().enumerate() {
-        present.entry(&record.id).or_default().push_back(at);
-        record.formerly.iter().for_each(|id| former.entry(id).or_default().push_back(at));
-    }
-    let mut taken = vec![false; new.len()];
-    let mut found: Vec<Option<usize>> =
-        base.iter().map(|record| present.get_mut(record.id.as_str())?.pop_front()).collect();
-    found.iter().flatten().for_each(|at| taken[*at] = true);
-    for (record, partner) in base.iter().zip(&mut found).filter(|(_, partner)| partner.is_none()) {
-        let heirs = former.get_mut(record.id.as_str());
-        *partner = heirs.and_then(|heirs| std::iter::from_fn(|| heirs.pop_front()).find(|at| !taken[*at]));
-        partner.iter().for_each(|at| taken[*at] = true);
-    }
-    found
 }
 
 fn side(record: &Record) -> Option<Side> {

@@ -1,13 +1,13 @@
 //! `report.html`: one page with everything, that needs no script and no other file. Figures beyond 5 MB are links to their files.
 
 mod page;
+mod size;
 
 use std::borrow::Cow;
-use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use fisura_verification::foreign::is_plain;
-use fisura_verification::record::{Figure, FigureBody, Record, ReferenceKind, ResultSet, Status};
+use fisura_verification::record::{Figure, FigureBody, Record, ReferenceKind, ResultSet};
 use minijinja::Environment;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
@@ -22,6 +22,7 @@ use page::{
     Case, Deviations, ExpectationCell, Link, Order, Orders, Page, Parameters, Picture, ReferenceCell, Row, Source,
     Suite, Verdict,
 };
+use size::{left_out, reduced};
 
 const TEMPLATE: &str = include_str!("../templates/report.html");
 const STYLE: &str = include_str!("../templates/report.css");
@@ -31,8 +32,6 @@ pub type Drawings = BTreeMap<String, Result<String, String>>;
 
 /// The page stays below this many bytes, so that it opens anywhere and can be sent.
 const MOST_BYTES: usize = 5_000_000;
-/// At most what stands in the place of a figure that is left out.
-const NOTE_BYTES: usize = 500;
 
 /// Renders the page; figures that would make it too large are named instead of drawn, and where that is not enough records
 /// and figures are left out, those that hold first.
@@ -56,40 +55,6 @@ fn render_below(bytes: usize, set: &ResultSet, drawings: &Drawings) -> Result<St
         page = fill(set, &shown, drawings, &left_out(&shown, drawings, usize::MAX))?;
     }
     Ok(page)
-}
-
-/// A part of the records and figures; records that do not hold come first, the rest is in the same order.
-fn reduced(set: &ResultSet, part: f64) -> ResultSet {
-    let count = |all: usize| (part * all as f64) as usize;
-    let mut places: Vec<usize> = (0..set.records.len()).collect();
-    places.sort_by_key(|&at| matches!(set.records[at].status, Status::Pass | Status::Info));
-    places.truncate(count(set.records.len()));
-    places.sort_unstable();
-    ResultSet {
-        records: places.into_iter().map(|at| set.records[at].clone()).collect(),
-        figures: set.figures[..count(set.figures.len())].to_vec(),
-        inputs: BTreeMap::new(),
-        ..set.clone()
-    }
-}
-
-/// Figures to leave out so that the page becomes `excess` bytes shorter: those that show the curves of another one once more
-/// over the unknowns, then those of the suites with the most figures, in both the largest first.
-fn left_out<'a>(set: &'a ResultSet, drawings: &Drawings, excess: usize) -> BTreeSet<&'a str> {
-    let drawn = |figure: &'a Figure| Some((figure, drawings.get(&figure.id)?.as_ref().ok()?.len()));
-    let of_suite = |suite: &str| set.figures.iter().filter(|figure| figure.suite == suite).count();
-    let mut candidates: Vec<(&Figure, usize)> = set.figures.iter().filter_map(drawn).collect();
-    candidates.retain(|(_, length)| *length > NOTE_BYTES);
-    candidates.sort_by_key(|(figure, length)| {
-        (!figure.id.ends_with("-unknowns"), Reverse(of_suite(&figure.suite)), Reverse(*length))
-    });
-    let mut saved = 0;
-    let enough = candidates.into_iter().take_while(|(_, length)| {
-        let needed = saved < excess;
-        saved += length - NOTE_BYTES;
-        needed
-    });
-    enough.map(|(figure, _)| figure.id.as_str()).collect()
 }
 
 /// The page of the records and figures of `shown`, with the verdict on all of `set`.
@@ -316,22 +281,6 @@ fn deviations(set: &ResultSet) -> Vec<Deviations> {
 mod tests {
     use super::*;
     use crate::example::results;
-
-    #[test]
-    fn twins_over_the_unknowns_are_left_out_first_then_figures_of_the_suites_with_most() {
-        let mut set = results();
-        let template = set.figures[0].clone();
-        let figure = |(suite, id): (&str, &str)| Figure { id: id.into(), suite: suite.into(), ..template.clone() };
-        set.figures = [("s", "a"), ("t", "b"), ("t", "c"), ("t", "broken"), ("s", "a-unknowns")].map(figure).to_vec();
-        let drawing = |id: &str, length: usize| (id.to_string(), Ok("x".repeat(length)));
-        let mut drawings = Drawings::from([drawing("a", 9_000), drawing("b", 3_000), drawing("c", 4_000)]);
-        drawings.extend([drawing("a-unknowns", 2_000), ("broken".into(), Err("no such column".into()))]);
-        let names = |excess| left_out(&set, &drawings, excess).into_iter().collect::<Vec<_>>();
-        assert_eq!(names(1_500), ["a-unknowns"]);
-        assert_eq!(names(1_501), ["a-unknowns", "c"]);
-        assert_eq!(names(5_001), ["a-unknowns", "b", "c"]);
-        assert_eq!(names(1_000_000), ["a", "a-unknowns", "b", "c"]);
-    }
 
     #[test]
     fn a_page_that_would_be_too_large_names_figures_instead_of_drawing_them() {

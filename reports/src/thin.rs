@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn a_saw_tooth_of_two_million_rows_keeps_its_envelope() {
-        let tooth = |i: u32| (f64::from(i) / 2e6, if i % 2 == 0 { 0.1 } else { 0.9 });
+        let tooth = |i: u32| (f64::from(i) / 2e6, if i.is_multiple_of(2) { 0.1 } else { 0.9 });
         let lines = [thin((0..=2_000_000).map(tooth).collect(), &unit(), &unit(), SIZE)];
         assert!(lines[0].len() <= 4 * 601, "{}", lines[0].len());
         for column in lines[0].chunk_by(|a, b| (a.0 * 600.0).floor() == (b.0 * 600.0).floor()).skip(1) {
@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn what_runs_to_and_fro_without_end_is_refused() {
-        let sway = |i: u32| (if i % 2 == 0 { 0.1 } else { 0.9 }, f64::from(i) / 2e6);
+        let sway = |i: u32| (if i.is_multiple_of(2) { 0.1 } else { 0.9 }, f64::from(i) / 2e6);
         let lines = [thin((0..2_000_000).map(sway).collect(), &unit(), &unit(), SIZE)];
         assert!(drawable(&lines, &unit(), &unit(), SIZE).unwrap_err().contains("2000000 points"));
         assert!(markable(5000).is_ok() && markable(5001).is_err());

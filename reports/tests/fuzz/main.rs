@@ -240,7 +240,7 @@ fn reports_survive_what_is_made_to_hurt_them() {
         }
     };
     let figures = |set: &mut ResultSet| {
-        for i in 0..200 {
+        for i in 0..50 {
             let mut figure = set.figures[0].clone();
             figure.id = format!("more/{i}");
             set.figures.push(figure);
