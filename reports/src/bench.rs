@@ -15,7 +15,7 @@ pub mod work_precision;
 use std::path::{Path, PathBuf};
 
 use fisura_verification::bench::record::{BenchRecord, BenchSet, SCHEMA};
-use fisura_verification::output::write_json;
+use fisura_verification::output::OutputFolder;
 
 use crate::error::ReportError;
 use crate::series::FigureError;
@@ -133,32 +133,33 @@ pub fn read(folder: &Path) -> Result<BenchSet, ReportError> {
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn store(folder: &Path, set: &BenchSet) -> Result<PathBuf, ReportError> {
-    write_json(&folder.join("bench.json"), set)?;
+pub fn store(out: &OutputFolder, set: &BenchSet) -> Result<PathBuf, ReportError> {
+    out.write_json("bench.json", set)?;
     Ok("bench.json".into())
 }
 
-/// Renders the benchmarks in `folder`; names the files written, relative to it.
+/// Renders the benchmarks in `folder` to `out`, which may be the same; names the files written, relative to that.
 ///
 /// # Errors
 /// `bench.json` cannot be read, or a file cannot be written. Figures that cannot be drawn give [`ReportError::Figures`], after
 /// everything else was written.
-pub fn render(folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
+pub fn render(folder: &Path, out: &OutputFolder) -> Result<Vec<PathBuf>, ReportError> {
     let set = read(folder)?;
     let sections = sections(&set);
-    let _ = std::fs::remove_dir_all(folder.join("figures/timing")); // of an earlier set; often there is none
-    let mut files = vec![write(folder, "samples.csv", &page::samples(&set))?];
+    let old = out.files().into_iter().filter(|name| name.starts_with("figures/timing/"));
+    old.into_iter().try_for_each(|name| out.remove(&name))?;
+    let mut files = vec![write(out, "samples.csv", &page::samples(&set))?];
     let mut broken = Vec::new();
     for exhibit in sections.iter().flat_map(|section| &section.exhibits) {
         let Exhibit::Plot(plot) = exhibit else { continue };
         match &plot.svg {
-            Ok(svg) => files.push(write(folder, &page::file(plot), svg)?),
+            Ok(svg) => files.push(write(out, &page::file(plot), svg)?),
             Err(error) => broken.push(error.clone()),
         }
     }
-    files.push(write(folder, "summary.md", &page::markdown(&set, &sections))?);
+    files.push(write(out, "summary.md", &page::markdown(&set, &sections))?);
     let html = page::html(&set, &sections);
     let html = html.map_err(|e| ReportError::Render { file: "bench.html", message: e.to_string() })?;
-    files.push(write(folder, "bench.html", &html)?);
+    files.push(write(out, "bench.html", &html)?);
     if broken.is_empty() { Ok(files) } else { Err(ReportError::Figures(broken)) }
 }

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use fisura_verification::history::{Table, format_number};
-use fisura_verification::output;
+use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{Environment, Figure, FigureBody};
 use fisura_verification::suite::part::fingerprint;
 use serde::{Deserialize, Serialize};
@@ -44,7 +44,7 @@ pub struct Bundle {
 /// A series that cannot be read or drawn, or a file that cannot be written.
 pub fn write(
     (from, figure): (&Path, &Figure),
-    (folder, name): (&Path, &str),
+    (folder, name): (&OutputFolder, &str),
     environment: &Environment,
     inputs: BTreeMap<String, String>,
 ) -> Result<Vec<String>, ReportError> {
@@ -53,7 +53,7 @@ pub fn write(
     let mut data = BTreeMap::new();
     let mut files = Vec::new();
     let mut store = |file: String, bytes: &[u8]| {
-        output::write(&folder.join(&file), bytes)?;
+        folder.write(&file, bytes)?;
         files.push(file);
         Ok::<(), ReportError>(())
     };

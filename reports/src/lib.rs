@@ -57,11 +57,11 @@ mod svg;
 mod thin;
 mod trace;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
+use fisura_verification::foreign;
+use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{Figure, ResultSet, SCHEMA};
-use fisura_verification::{foreign, output};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -80,17 +80,17 @@ const MOST_ROWS: usize = 50_000_000;
 pub struct Rendered {
     /// The results that were read.
     pub results: ResultSet,
-    /// Files written, relative to the folder, in the order in which they were written.
+    /// Files written, relative to their folder, in the order in which they were written.
     pub files: Vec<PathBuf>,
 }
 
-/// Renders the results in `folder`: figures, `report.html`, `summary.md`, `junit.xml`, `metrics.json`, each written
-/// under a temporary name first.
+/// Renders the results in `folder` to `out`, which may be the same: figures, `report.html`, `summary.md`, `junit.xml`,
+/// `metrics.json`.
 ///
 /// # Errors
 /// `results.json` is missing, malformed or of another schema, or a file cannot be written. Figures that cannot be drawn
 /// give [`ReportError::Figures`] with all of them, after everything else was written; the page says so in their place.
-pub fn render(folder: &Path) -> Result<Rendered, ReportError> {
+pub fn render(folder: &Path, out: &OutputFolder) -> Result<Rendered, ReportError> {
     let results = read_results(folder)?;
     let series = SeriesSet::load(folder, &results.figures);
     let mut files = Vec::new();
@@ -100,7 +100,7 @@ pub fn render(folder: &Path) -> Result<Rendered, ReportError> {
     for figure in &results.figures {
         let drawing = match draw(figure, &series, &mut rows) {
             Ok((name, svg)) => {
-                files.push(write(folder, &name, &svg)?);
+                files.push(write(out, &name, &svg)?);
                 Ok(svg)
             }
             Err(error) => {
@@ -112,12 +112,12 @@ pub fn render(folder: &Path) -> Result<Rendered, ReportError> {
         drawings.insert(figure.id.clone(), drawing);
     }
     let page = html::render_html(&results, &drawings).map_err(|e| failed("report.html", e))?;
-    files.push(write(folder, "report.html", &page)?);
-    files.push(write(folder, "summary.md", &markdown::render_markdown(&results))?);
+    files.push(write(out, "report.html", &page)?);
+    files.push(write(out, "summary.md", &markdown::render_markdown(&results))?);
     let junit = junit::render_junit(&results).map_err(|e| failed("junit.xml", e))?;
-    files.push(write(folder, "junit.xml", &junit)?);
+    files.push(write(out, "junit.xml", &junit)?);
     let metrics = metrics::render_metrics(&results).map_err(|e| failed("metrics.json", e))?;
-    files.push(write(folder, "metrics.json", &metrics)?);
+    files.push(write(out, "metrics.json", &metrics)?);
     if broken.is_empty() { Ok(Rendered { results, files }) } else { Err(ReportError::Figures(broken)) }
 }
 
@@ -180,16 +180,8 @@ fn failed(file: &'static str, error: impl std::fmt::Display) -> ReportError {
 }
 
 /// Writes a file of the folder.
-fn write(folder: &Path, name: &str, content: &str) -> Result<PathBuf, ReportError> {
-    let path = folder.join(name);
-    if !foreign::is_plain(name) {
-        let message = "a file is named by plain names below its folder, joined by single slashes".to_string();
-        return Err(ReportError::Results { path, message });
-    }
-    if let Some(parent) = path.parent() {
-        fs::create_dir_all(parent).map_err(|source| ReportError::File { path: parent.into(), source })?;
-    }
-    output::write(&path, content)?;
+fn write(out: &OutputFolder, name: &str, content: &str) -> Result<PathBuf, ReportError> {
+    out.write(name, content)?;
     Ok(PathBuf::from(name))
 }
 

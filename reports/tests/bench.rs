@@ -8,6 +8,7 @@ use fisura_reports::bench::{is_bench, read, render, store};
 use fisura_verification::bench::record::{
     AnswerError, BenchRecord, BenchSet, Clock, CostPoint, NamedPeer, SCHEMA, Sample,
 };
+use fisura_verification::output::OutputFolder;
 use fisura_verification::record::Environment;
 
 /// A verified record whose samples are 0.9, 1 and 1.2 times `seconds`.
@@ -117,6 +118,10 @@ fn set() -> BenchSet {
     }
 }
 
+fn out_in(folder: &tempfile::TempDir) -> OutputFolder {
+    OutputFolder::open(folder.path(), "bench").unwrap()
+}
+
 fn read_file(folder: &Path, name: &str) -> String {
     fs::read_to_string(folder.join(name)).unwrap()
 }
@@ -124,10 +129,11 @@ fn read_file(folder: &Path, name: &str) -> String {
 #[test]
 fn everything_is_written_and_says_what_the_numbers_say() {
     let folder = tempfile::tempdir().unwrap();
-    store(folder.path(), &set()).unwrap();
+    let out = out_in(&folder);
+    store(&out, &set()).unwrap();
     assert!(is_bench(folder.path()));
     assert_eq!(read(folder.path()).unwrap(), set());
-    let files = render(folder.path()).unwrap();
+    let files = render(folder.path(), &out).unwrap();
     for figure in
         ["work-precision-lumped-mass-time", "plate-error-against-time", "stages", "steps", "solves-l2", "threads"]
     {
@@ -163,8 +169,9 @@ fn everything_is_written_and_says_what_the_numbers_say() {
 fn two_renderings_are_the_same_bytes() {
     let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
     let files = folders.each_ref().map(|folder| {
-        store(folder.path(), &set()).unwrap();
-        render(folder.path()).unwrap()
+        let out = out_in(folder);
+        store(&out, &set()).unwrap();
+        render(folder.path(), &out).unwrap()
     });
     assert_eq!(files[0], files[1]);
     for file in &files[0] {
@@ -180,8 +187,9 @@ fn what_does_not_hold_is_neither_drawn_nor_passed_over() {
     for record in set.records.iter_mut().filter(|r| r.label == "p = 3, gauss") {
         record.verify(false, "the ledger is open");
     }
-    store(folder.path(), &set).unwrap();
-    render(folder.path()).unwrap();
+    let out = out_in(&folder);
+    store(&out, &set).unwrap();
+    render(folder.path(), &out).unwrap();
     let summary = read_file(folder.path(), "summary.md");
     assert!(summary.contains("The answers of 3 of 41 records do NOT hold"), "{summary}");
     assert!(summary.contains("does NOT hold: the ledger is open"));
@@ -192,8 +200,10 @@ fn what_does_not_hold_is_neither_drawn_nor_passed_over() {
 #[test]
 fn a_foreign_file_is_refused() {
     let folder = tempfile::tempdir().unwrap();
+    let other = tempfile::tempdir().unwrap();
+    let out = out_in(&other);
     fs::write(folder.path().join("bench.json"), "{\"schema\": \"other/1\"}").unwrap();
-    assert!(matches!(render(folder.path()), Err(ReportError::Schema { .. })));
+    assert!(matches!(render(folder.path(), &out), Err(ReportError::Schema { .. })));
     fs::write(folder.path().join("bench.json"), "{").unwrap();
-    assert!(matches!(render(folder.path()), Err(ReportError::Results { .. })));
+    assert!(matches!(render(folder.path(), &out), Err(ReportError::Results { .. })));
 }

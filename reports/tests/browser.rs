@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use fisura_reports::render;
+use fisura_verification::output::OutputFolder;
 
 /// Added to a copy of the page, as the page itself has no script: what the browser made of it.
 const PROBE: &str = "<script>document.title = [document.documentElement.scrollWidth, innerWidth, \
@@ -40,7 +41,7 @@ fn the_page_fits_wide_and_narrow_windows_in_light_and_dark() {
     };
     let folder = tempfile::tempdir().unwrap();
     fixture::write(folder.path());
-    render(folder.path()).unwrap();
+    render(folder.path(), &OutputFolder::reopen(folder.path()).unwrap()).unwrap();
     let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     let copy = folder.path().join("probe.html");
     std::fs::write(&copy, page.replace("</body>", PROBE)).unwrap();
@@ -60,7 +61,7 @@ fn the_page_fits_wide_and_narrow_windows_in_light_and_dark() {
 fn the_page_refers_to_nothing_outside() {
     let folder = tempfile::tempdir().unwrap();
     fixture::write(folder.path());
-    render(folder.path()).unwrap();
+    render(folder.path(), &OutputFolder::reopen(folder.path()).unwrap()).unwrap();
     let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     for mark in ["src=", "url(", "@import", "<link", "<script", "href=\"http"] {
         assert!(!page.contains(mark), "{mark}");

@@ -8,9 +8,15 @@ use std::time::{Duration, Instant};
 
 use fisura_reports::compare::{compare, render_markdown};
 use fisura_reports::text::render_text;
-use fisura_reports::{ReportError, read_results, render};
+use fisura_reports::{Rendered, ReportError, read_results};
 use fisura_verification::foreign::steers;
+use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{Curve, Figure, FigureBody, ResultSet};
+
+/// Renders results beside themselves.
+fn render(folder: &Path) -> Result<Rendered, ReportError> {
+    fisura_reports::render(folder, &OutputFolder::reopen(folder).unwrap())
+}
 
 /// The fixture with changed results.
 fn folder(edit: impl FnOnce(&mut ResultSet)) -> tempfile::TempDir {

@@ -21,7 +21,7 @@ fn stems(ending: &str) -> BTreeSet<String> {
     names.filter_map(|name| name.strip_suffix(ending).map(String::from)).collect()
 }
 
-const REMEDY: &str = "draw it anew with `cargo xtask figures … --out reports/gallery`, see reports/gallery/README.md";
+const REMEDY: &str = "draw it anew with `cargo xtask figures` and copy it, see reports/gallery/README.md";
 
 #[test]
 fn every_figure_has_its_numbers_and_provenance() {

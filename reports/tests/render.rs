@@ -5,7 +5,8 @@ mod fixture;
 use std::fs;
 use std::path::Path;
 
-use fisura_reports::{ReportError, render};
+use fisura_reports::{Rendered, ReportError};
+use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{CurveStyle, Figure, FigureBody, ResultSet};
 use insta::assert_snapshot;
 
@@ -13,6 +14,11 @@ fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fixture::write(folder.path());
     folder
+}
+
+/// Renders results beside themselves.
+fn render(folder: &Path) -> Result<Rendered, ReportError> {
+    fisura_reports::render(folder, &OutputFolder::reopen(folder).unwrap())
 }
 
 fn read(folder: &Path, name: &str) -> String {

@@ -46,6 +46,8 @@ pub struct Simulation {
     energy_in: f64,
     warned_of_step: bool,
     warned_of_closure: bool,
+    /// Whether a step failed: what it left is half a step.
+    failed: bool,
     /// Error that phase-field solves are to reach.
     tolerance: f64,
 }
@@ -72,6 +74,7 @@ impl Simulation {
             energy_in,
             warned_of_step,
             warned_of_closure: false,
+            failed: false,
             tolerance,
         })
     }
@@ -115,7 +118,7 @@ impl Simulation {
         self.steps += 1;
         // within the pool of rayon: from outside, every parallel loop would wake it and wait for it
         let result = rayon::scope(|_| self.frame.step(self.plan.step));
-        self.judge(result)
+        self.judge(result).inspect_err(|_| self.failed = true)
     }
 
     /// Time, s.

@@ -157,3 +157,17 @@ fn a_state_of_another_scene_or_cut_short_is_refused_in_words() {
     updated.bodies[0].shape = scene.bodies[0].shape.clone();
     refused(&updated, &state);
 }
+
+#[test]
+fn what_a_failed_step_leaves_is_not_stored() {
+    let mut scene = pulled_and_driven();
+    let critical = Simulation::new(&scene).unwrap().plan().critical;
+    scene.analysis.time_step = TimeStep::Fixed(1.2 * critical);
+    scene.analysis.end_time = 1000.0 * critical;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    while simulation.step().is_ok() {
+        assert!(!simulation.finished(), "1.2 times the critical step is unstable");
+    }
+    let error = simulation.checkpoint().unwrap_err().to_string();
+    assert!(error.contains(&format!("step {} failed", simulation.steps())), "{error}");
+}

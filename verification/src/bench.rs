@@ -31,20 +31,22 @@ pub mod timing;
 pub mod wave;
 
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 
 use fisura::Simulation;
 use fisura::error::Breakdown;
 use thiserror::Error;
 
+use crate::output::{OutputError, OutputFolder};
 use crate::record::Environment;
 use crate::reference::{Library, ReferenceError, ReferenceValue};
 use crate::scene_file::SceneFileError;
 use crate::study::StudyError;
-use record::{BenchRecord, BenchSet, NamedPeer, SCHEMA};
+use record::{BenchRecord, BenchSet, CostPoint, NamedPeer, SCHEMA};
 
 /// What is to be measured, and where the files are.
 #[derive(Debug, Clone)]
-pub struct Settings {
+pub struct Settings<'a> {
     /// Few meshes and repetitions.
     pub quick: bool,
     /// Most threads.
@@ -52,14 +54,14 @@ pub struct Settings {
     /// Folder with `verification/cases` and `reference-data`.
     pub workspace: PathBuf,
     /// Folder for what a peer reads.
-    pub out: PathBuf,
+    pub out: &'a OutputFolder,
     /// Command of a peer, if there is one; it is then run whatever families are asked for.
     pub peer: Option<String>,
     /// Families to run; empty: all.
     pub families: Vec<String>,
 }
 
-impl Settings {
+impl Settings<'_> {
     /// Times a contestant is run.
     pub fn rounds(&self) -> usize {
         if self.quick { 3 } else { 7 }
@@ -99,6 +101,9 @@ pub enum BenchError {
     /// What is asked for, or a file it needs, is wrong.
     #[error("{0}")]
     Input(String),
+    /// A file cannot be written.
+    #[error(transparent)]
+    File(#[from] OutputError),
     /// The program of a peer did not do its part.
     #[error("peer {command}: {message}")]
     Peer {
@@ -128,7 +133,7 @@ impl From<Breakdown> for BenchError {
 }
 
 /// Measures one family.
-type Family = fn(&Settings) -> Result<Vec<BenchRecord>, BenchError>;
+type Family = fn(&Settings<'_>) -> Result<Vec<BenchRecord>, BenchError>;
 
 /// All families, in the order of the report.
 pub const FAMILIES: [(&str, Family); 8] = [
@@ -142,23 +147,66 @@ pub const FAMILIES: [(&str, Family); 8] = [
     ("peer", peer::family),
 ];
 
-/// Measures every family that is asked for; `tell` hears the name of each before it begins.
-///
-/// # Errors
-/// The first family that could not be measured; an answer that does not hold is no error but an unverified record.
-pub fn run(settings: &Settings, environment: Environment, tell: &dyn Fn(&str)) -> Result<BenchSet, BenchError> {
-    let peers = named_peers(&settings.library()?)?;
-    let fem = plate::finite_elements(&settings.library()?);
-    let mut records = Vec::new();
-    for (name, family) in FAMILIES {
-        let listed = settings.families.is_empty() || settings.families.iter().any(|f| f == name);
-        let wanted = if name == "peer" { settings.peer.is_some() } else { listed };
-        if wanted {
-            tell(name);
-            records.extend(family(settings)?);
-        }
+/// Benchmarks under way: which families are measured, and at any moment the set that they give.
+#[derive(Debug)]
+pub struct Session<'a> {
+    settings: &'a Settings<'a>,
+    environment: Environment,
+    peers: Vec<NamedPeer>,
+    fem: Vec<CostPoint>,
+    families: Vec<(&'static str, Family)>,
+    measured: Mutex<(usize, Vec<BenchRecord>)>,
+}
+
+impl<'a> Session<'a> {
+    /// Nothing is measured yet.
+    ///
+    /// # Errors
+    /// Wrong reference data.
+    pub fn new(settings: &'a Settings<'a>, environment: Environment) -> Result<Self, BenchError> {
+        let library = settings.library()?;
+        let wanted = |name: &str| match name {
+            "peer" => settings.peer.is_some(),
+            _ => settings.families.is_empty() || settings.families.iter().any(|f| f == name),
+        };
+        Ok(Self {
+            settings,
+            environment,
+            peers: named_peers(&library)?,
+            fem: plate::finite_elements(&library),
+            families: FAMILIES.into_iter().filter(|(name, _)| wanted(name)).collect(),
+            measured: Mutex::default(),
+        })
     }
-    Ok(BenchSet { schema: SCHEMA.into(), environment, quick: settings.quick, records, peers, fem })
+
+    /// Measures every family that is asked for; `tell` hears the name of each before it begins.
+    ///
+    /// # Errors
+    /// The first family that could not be measured; an answer that does not hold is no error but an unverified record.
+    pub fn run(&self, tell: &dyn Fn(&str)) -> Result<(), BenchError> {
+        for (name, family) in &self.families {
+            tell(name);
+            let records = family(self.settings)?;
+            let mut measured = self.measured.lock().unwrap_or_else(PoisonError::into_inner);
+            measured.0 += 1;
+            measured.1.extend(records);
+        }
+        Ok(())
+    }
+
+    /// What is measured so far. As long as families are to come, a record whose answer does not hold says so.
+    pub fn set(&self) -> BenchSet {
+        let (finished, mut records) = self.measured.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let all = self.families.len();
+        if finished < all {
+            let mut record = BenchRecord::new("unfinished/run", "families", all as f64, "family");
+            let answer = format!("{finished} of {all} families are measured: the run is under way, or was stopped");
+            record.verify(false, answer);
+            records.push(record);
+        }
+        let (environment, peers, fem) = (self.environment.clone(), self.peers.clone(), self.fem.clone());
+        BenchSet { schema: SCHEMA.into(), environment, quick: self.settings.quick, records, peers, fem }
+    }
 }
 
 /// Takes `steps` steps.

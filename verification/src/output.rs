@@ -1,70 +1,314 @@
-//! Files that are written: each appears in full or not at all.
+//! Folders that commands write to, and what in them belongs to the user.
+//!
+//! An [`OutputFolder`] belongs to one process at a time (`lock.rs`) and lists in its manifest (`manifest.rs`) every file that was written
+//! through it, with its hash. What is not listed, or was changed since, is the user's: it is neither removed nor replaced. A
+//! folder that holds files and no manifest is refused as a whole. No link is followed below the folder, nothing is removed
+//! recursively, and each file appears in full or not at all: it is written under a random name that did not exist before, and
+//! renamed.
 
-use std::error::Error;
-use std::ffi::OsString;
-use std::fs;
-use std::path::{Path, PathBuf};
+mod error;
+mod lock;
+mod manifest;
+mod temporary;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeSet;
+use std::fs::{self, File, Metadata};
+use std::io::{ErrorKind, Write};
+use std::path::{Component, Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
 
-/// A file that cannot be written.
-#[derive(Debug, thiserror::Error)]
-#[error("{} cannot be written: {message}", path.display())]
-pub struct OutputError {
-    /// File.
-    pub path: PathBuf,
-    /// Reason.
-    pub message: String,
+use crate::history::Table;
+pub use error::OutputError;
+pub use manifest::MANIFEST;
+use manifest::{Entry, Manifest};
+
+/// A folder that a command writes to: locked, and with a list of what was written.
+#[derive(Debug)]
+pub struct OutputFolder {
+    path: PathBuf,
+    manifest: Mutex<Manifest>,
+    /// Absent where the file system has no locks.
+    lock: Option<File>,
 }
 
-/// Lets `write` fill a temporary file beside `path`, then gives it that name.
-///
-/// # Errors
-/// What `write` says, or a name that cannot be given; the temporary file is removed.
-pub fn replace_file(path: &Path, write: impl FnOnce(&Path) -> Result<(), Box<dyn Error>>) -> Result<(), OutputError> {
-    let mut part: OsString = path.as_os_str().to_owned();
-    part.push(".part");
-    let part = PathBuf::from(part);
-    let kept = |()| Ok(fs::File::open(&part)?.sync_all()?); // or a power failure could leave the name of an empty file
-    let renamed = write(&part).and_then(kept).and_then(|()| Ok(fs::rename(&part, path)?));
-    renamed.map_err(|error| {
-        let _ = fs::remove_file(&part); // may not exist; the error to tell is the first one
-        OutputError { path: path.to_path_buf(), message: error.to_string() }
-    })
+/// Keeps everybody else from writing to a folder; see [`OutputFolder::hold`].
+#[derive(Debug)]
+pub struct Held<'a> {
+    _manifest: MutexGuard<'a, Manifest>,
 }
 
-/// Writes `content`.
-///
-/// # Errors
-/// See [`replace_file`].
-pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), OutputError> {
-    replace_file(path, |part| Ok(fs::write(part, content)?))
-}
-
-/// Writes `value` as indented JSON with a newline at its end.
-///
-/// # Errors
-/// See [`replace_file`].
-pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), OutputError> {
-    replace_file(path, |part| Ok(fs::write(part, serde_json::to_string_pretty(value)? + "\n")?))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_file_that_cannot_be_written_is_named_and_leaves_nothing_behind() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("absent/summary.json");
-        let error = write(&path, "{}").unwrap_err();
-        assert!(error.to_string().contains("absent/summary.json cannot be written"), "{error}");
-        let path = folder.path().join("half.csv");
-        let error = replace_file(&path, |part| {
-            fs::write(part, "a,b\n")?;
-            Err("no more rows".into())
-        });
-        assert_eq!(error.unwrap_err().message, "no more rows");
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+impl OutputFolder {
+    /// Locks a folder for `command`, made if it is not there. No file is touched yet.
+    ///
+    /// # Errors
+    /// A folder that cannot be made or written, that another process writes to, that holds files and no manifest, or the files of
+    /// another command.
+    pub fn open(path: &Path, command: &str) -> Result<Self, OutputError> {
+        let folder = Self::locked(path, true)?;
+        let mut manifest = folder.manifest();
+        if manifest.owner.is_empty() {
+            manifest.owner = command.to_string();
+        }
+        if manifest.owner != command {
+            return Err(OutputError::of_another_command(path, &manifest.owner));
+        }
+        drop(manifest);
+        Ok(folder)
     }
+
+    /// Locks a folder to write beside what is there, whichever command wrote it.
+    ///
+    /// # Errors
+    /// As [`Self::open`]; the folder must be there.
+    pub fn reopen(path: &Path) -> Result<Self, OutputError> {
+        Self::locked(path, false)
+    }
+
+    fn locked(path: &Path, make: bool) -> Result<Self, OutputError> {
+        if make {
+            fs::create_dir_all(path).map_err(|e| OutputError::folder(path, e))?;
+        }
+        if !path.join(lock::LOCK).exists() {
+            manifest::read(path)?; // a folder of the user stays as it is, without a lock
+        }
+        let lock = lock::take(path)?;
+        let manifest = manifest::read(path)?;
+        let folder = Self { path: path.to_path_buf(), manifest: Mutex::new(manifest), lock };
+        folder.remove_temporary_files()?;
+        Ok(folder)
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether it is certain that no other process writes here; some file systems have no locks.
+    pub fn is_locked(&self) -> bool {
+        self.lock.is_some()
+    }
+
+    /// Names of all files that the manifest lists.
+    pub fn files(&self) -> Vec<String> {
+        self.manifest().files.keys().cloned().collect()
+    }
+
+    /// Removes the files of earlier runs but those to `keep`, and marks the folder as unfinished until [`Self::finish`].
+    ///
+    /// # Errors
+    /// A file that was changed since it was written, before anything is removed; one that cannot be removed.
+    pub fn begin(&self, keep: impl Fn(&str) -> bool) -> Result<(), OutputError> {
+        let mut manifest = self.manifest();
+        let old: Vec<String> = manifest.files.keys().filter(|name| !keep(name)).cloned().collect();
+        let is_changed = |name: &&String| matches!(self.state(&manifest, name), State::Changed);
+        let changed: Vec<&String> = old.iter().filter(is_changed).collect();
+        if !changed.is_empty() {
+            return Err(OutputError::changed(&self.path, &changed));
+        }
+        manifest.finished = false;
+        old.iter().try_for_each(|name| self.remove_from(&mut manifest, name))?;
+        manifest.store(&self.path)
+    }
+
+    /// Writes a file below the folder; `name` has `/` between its parts.
+    ///
+    /// # Errors
+    /// A file there that is not ours or was changed, a link on the way, a name that leads out of the folder, a full disk.
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), OutputError> {
+        let content = content.as_ref();
+        let mut manifest = self.manifest();
+        let path = self.place(name, true)?;
+        if let State::Changed = self.state(&manifest, name) {
+            return Err(OutputError::foreign(&path));
+        }
+        let failed = |error: &dyn std::fmt::Display| OutputError::unwritable(&path, error);
+        let folder = path.parent().unwrap_or(&self.path);
+        let mut file = temporary::create(folder).map_err(|e| failed(&e))?;
+        let hash = manifest::hash(content);
+        let part = name.rsplit_once('/').map_or(String::new(), |(above, _)| format!("{above}/"))
+            + &file.path().file_name().unwrap_or_default().to_string_lossy();
+        // listed before it is there: a process that is killed leaves no file that the next one would not know
+        manifest.append(&self.path, &[(&part, &hash), (name, &hash)])?;
+        file.write_all(content).map_err(|e| failed(&e))?;
+        file.as_file().sync_all().map_err(|e| failed(&e))?; // or a power failure could leave the name of an empty file
+        let file = file.persist(&path).map_err(|e| failed(&e.error))?;
+        manifest.files.remove(&part);
+        manifest.files.insert(name.to_string(), Entry { hashes: vec![hash], seen: file.metadata().ok().map(seen) });
+        Ok(())
+    }
+
+    /// Writes `value` as indented JSON with a newline at its end.
+    ///
+    /// # Errors
+    /// As [`Self::write`], and a value that JSON cannot hold.
+    pub fn write_json(&self, name: &str, value: &impl Serialize) -> Result<(), OutputError> {
+        let text = serde_json::to_string_pretty(value);
+        self.write(name, text.map_err(|e| OutputError::unwritable(&self.path.join(name), e))? + "\n")
+    }
+
+    /// Writes a table as CSV.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub fn write_table(&self, name: &str, table: &Table) -> Result<(), OutputError> {
+        self.write(name, table.to_csv().map_err(|e| OutputError::unwritable(&self.path.join(name), e))?)
+    }
+
+    /// Whether a file of that name could be written: nothing is there, or what was written here and not changed since.
+    ///
+    /// # Errors
+    /// If it could not.
+    pub fn check(&self, name: &str) -> Result<(), OutputError> {
+        let path = self.place(name, false)?;
+        match self.state(&self.manifest(), name) {
+            State::Changed => Err(OutputError::foreign(&path)),
+            State::Absent | State::Ours => Ok(()),
+        }
+    }
+
+    /// Lists a file that a program wrote that this one started for that.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or is none.
+    pub fn adopt(&self, name: &str) -> Result<(), OutputError> {
+        let path = self.place(name, false)?;
+        let unreadable = |error: std::io::Error| OutputError::unwritable(&path, error);
+        if !fs::symlink_metadata(&path).map_err(unreadable)?.is_file() {
+            return Err(OutputError::foreign(&path));
+        }
+        let hash = manifest::hash(&fs::read(&path).map_err(unreadable)?);
+        let mut manifest = self.manifest();
+        manifest.append(&self.path, &[(name, &hash)])?;
+        manifest.files.insert(name.to_string(), Entry { hashes: vec![hash], seen: None });
+        Ok(())
+    }
+
+    /// Content of a file that was written here and not changed since.
+    pub fn read(&self, name: &str) -> Option<Vec<u8>> {
+        let manifest = self.manifest();
+        let content = fs::read(self.place(name, false).ok()?).ok()?;
+        manifest.files.get(name)?.hashes.contains(&manifest::hash(&content)).then_some(content)
+    }
+
+    /// Removes a file if it is there.
+    ///
+    /// # Errors
+    /// A file that is not ours or was changed, or that cannot be removed.
+    pub fn remove(&self, name: &str) -> Result<(), OutputError> {
+        self.remove_from(&mut self.manifest(), name)
+    }
+
+    /// The folder is complete: takes the mark of [`Self::begin`] away.
+    ///
+    /// # Errors
+    /// A manifest that cannot be written.
+    pub fn finish(&self) -> Result<(), OutputError> {
+        let mut manifest = self.manifest();
+        manifest.finished = true;
+        manifest.store(&self.path)
+    }
+
+    /// Keeps all other threads from writing, and so from being cut short when the process ends.
+    pub fn hold(&self) -> Held<'_> {
+        Held { _manifest: self.manifest() }
+    }
+
+    fn manifest(&self) -> MutexGuard<'_, Manifest> {
+        self.manifest.lock().unwrap_or_else(PoisonError::into_inner) // it is changed after a file, and stays true
+    }
+
+    /// What is there under a name.
+    fn state(&self, manifest: &Manifest, name: &str) -> State {
+        let Ok(path) = self.place(name, false) else { return State::Changed };
+        let metadata = match fs::symlink_metadata(&path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return State::Absent,
+            Ok(metadata) if metadata.is_file() => metadata,
+            _ => return State::Changed,
+        };
+        let Some(entry) = manifest.files.get(name) else { return State::Changed };
+        let ours = entry.seen.is_some_and(|last| last == seen(metadata))
+            || fs::read(&path).is_ok_and(|content| entry.hashes.contains(&manifest::hash(&content)));
+        if ours { State::Ours } else { State::Changed }
+    }
+
+    /// Path of a name, with the folders above it made if asked for; none of them may be a link.
+    fn place(&self, name: &str, make: bool) -> Result<PathBuf, OutputError> {
+        if [MANIFEST, lock::LOCK].contains(&name) {
+            return Err(OutputError::outside(&self.path, name));
+        }
+        let mut path = self.path.clone();
+        let mut parts = Path::new(name).components().peekable();
+        while let Some(part) = parts.next() {
+            let Component::Normal(part) = part else { return Err(OutputError::outside(&self.path, name)) };
+            path.push(part);
+            if parts.peek().is_none() {
+                return Ok(path);
+            }
+            match fs::symlink_metadata(&path) {
+                Ok(metadata) if metadata.is_dir() => {}
+                Ok(_) => return Err(OutputError::foreign(&path)),
+                Err(_) if make => fs::create_dir(&path).map_err(|e| OutputError::unwritable(&path, e))?,
+                Err(_) => {}
+            }
+        }
+        Err(OutputError::outside(&self.path, name))
+    }
+
+    fn remove_from(&self, manifest: &mut Manifest, name: &str) -> Result<(), OutputError> {
+        let path = self.path.join(name);
+        match self.state(manifest, name) {
+            State::Changed => return Err(OutputError::foreign(&path)),
+            State::Ours => fs::remove_file(&path).map_err(|e| OutputError::unwritable(&path, e))?,
+            State::Absent => {}
+        }
+        manifest.files.remove(name);
+        let above: BTreeSet<&Path> = Path::new(name).ancestors().skip(1).filter(|a| *a != Path::new("")).collect();
+        for folder in above.into_iter().rev() {
+            let _ = fs::remove_dir(self.path.join(folder)); // one that holds something stays
+        }
+        Ok(())
+    }
+
+    /// What a process left that was killed in the middle of writing.
+    fn remove_temporary_files(&self) -> Result<(), OutputError> {
+        let mut manifest = self.manifest();
+        let names: Vec<String> = manifest.files.keys().filter(|name| temporary::is_temporary(name)).cloned().collect();
+        for name in names {
+            let path = self.place(&name, false)?;
+            if fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
+                fs::remove_file(&path).map_err(|e| OutputError::unwritable(&path, e))?;
+            }
+            manifest.files.remove(&name);
+        }
+        Ok(())
+    }
+}
+
+impl Drop for OutputFolder {
+    fn drop(&mut self) {
+        let manifest = self.manifest.get_mut().unwrap_or_else(PoisonError::into_inner);
+        if manifest.has_journal() {
+            let _ = manifest.store(&self.path); // only shorter than what is there
+        }
+        if let Some(lock) = &self.lock {
+            let _ = lock.set_len(0); // nobody holds it any more
+        }
+    }
+}
+
+/// What is there under a name.
+enum State {
+    Absent,
+    Ours,
+    /// Not ours, or not as it was written, or behind a link.
+    Changed,
+}
+
+/// Tells a file that this process wrote from one that somebody changed, without reading it.
+fn seen(metadata: Metadata) -> (u64, Option<std::time::SystemTime>) {
+    (metadata.len(), metadata.modified().ok())
 }

@@ -4,6 +4,7 @@
 //! a report shows is a pure function of that folder.
 
 mod figure;
+mod unfinished;
 mod verdict;
 
 use std::collections::BTreeMap;

@@ -6,7 +6,7 @@
 //! timed from outside.
 
 mod breakdown;
-mod checkpoint;
+pub mod checkpoint;
 mod keep;
 mod summary;
 mod write;
@@ -26,7 +26,6 @@ use crate::history::Table;
 use crate::watch;
 
 pub use breakdown::{BreakdownReport, Extremes, WorstPoint};
-pub use checkpoint::{CHECKPOINT, CheckpointError};
 use keep::Keeper;
 pub use keep::{Keep, KeepError, Outcome, run_scene_kept};
 pub use summary::{BreakdownSummary, Stages, Summary};

@@ -7,10 +7,11 @@ pub mod partition;
 pub mod prepare;
 mod resume;
 mod selection;
+mod session;
 mod supervise;
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -18,29 +19,29 @@ use thiserror::Error;
 
 pub use crate::case::{Case, Tier};
 use crate::figures;
-use crate::foreign;
-use crate::output::{OutputError, replace_file, write_json};
+use crate::output::{OutputError, OutputFolder};
 use crate::record::{Environment, Figure, Record, ResultSet, SCHEMA, Status};
 use crate::reference::{Library, ReferenceError};
 use crate::scene_file::SceneFileError;
 use crate::study::scene::RunInfo;
 pub use selection::{Malformed, Selection, load_cases, read_cases, select};
 
-use part::{PART_SCHEMA, Part, Plan};
-use partition::Slice;
-use prepare::{Prepared, prepare};
+use prepare::Prepared;
+pub use session::Session;
 use supervise::{Ended, supervised};
 
 /// Where and how to run.
 #[derive(Debug, Clone)]
 pub struct Options<'a> {
     /// Results folder.
-    pub out: &'a Path,
+    pub out: Arc<OutputFolder>,
     /// Folder of reference data.
     pub reference_data: &'a Path,
     /// Recorded with the results.
     pub environment: Environment,
-    /// Takes up the cases that an interrupted run of the same commit finished.
+    /// Name and sources of the program: cases that another one finished are not taken up.
+    pub program: &'a str,
+    /// Takes up the cases that an interrupted run of the same program finished.
     pub resume: bool,
     /// Longest time of a case; absent: ten times its estimate, and no less than five minutes.
     pub case_timeout: Option<Duration>,
@@ -70,7 +71,15 @@ pub enum VerifyError {
     /// A file of the results cannot be written.
     #[error(transparent)]
     File(#[from] OutputError),
-    /// The results folder cannot be made or read.
+    /// An interrupted run could be gone on with, and this one would remove what it finished.
+    #[error("{} holds {cases} finished cases of an interrupted run in partial/", folder.display())]
+    Interrupted {
+        /// Results folder.
+        folder: PathBuf,
+        /// Number of finished cases.
+        cases: usize,
+    },
+    /// A file cannot be read.
     #[error("{path}: {message}")]
     Output {
         /// File or folder.
@@ -103,73 +112,9 @@ pub struct CaseOutcome {
 /// If a case or reference file is wrong, which is known before anything runs, or the folder cannot be written. A failed check
 /// is a record, not an error, and so is a case that breaks down, panics or exceeds its time.
 pub fn verify(cases: &[Case], options: &Options, progress: &dyn Progress) -> Result<ResultSet, VerifyError> {
-    let library = Arc::new(Library::load(options.reference_data)?);
-    let (outcomes, store) = run_cases(cases, options, &library, progress)?;
-    let results = assemble(options.out, outcomes, inputs(cases), options.environment.clone(), &library)?;
-    store.finish();
-    Ok(results)
-}
-
-/// The same for a slice of a plan, `cases` being those of the slice; leaves a part for [`merge::merge`] as well.
-///
-/// # Errors
-/// As [`verify`].
-pub fn verify_slice(
-    cases: &[Case],
-    (slice, plan): (Slice, Plan),
-    options: &Options,
-    progress: &dyn Progress,
-) -> Result<ResultSet, VerifyError> {
-    let library = Arc::new(Library::load(options.reference_data)?);
-    let (outcomes, store) = run_cases(cases, options, &library, progress)?;
-    let named = cases.iter().map(Case::id).zip(outcomes.iter().cloned()).collect();
-    let environment = options.environment.clone();
-    let inputs = inputs(cases);
-    let results = assemble(options.out, outcomes, inputs.clone(), environment.clone(), &library)?;
-    let files = part::series_fingerprints(options.out)?;
-    let (schema, digest) = (PART_SCHEMA.to_string(), String::new());
-    Part { schema, slice, plan, environment, inputs, outcomes: named, files, digest }.write(options.out)?;
-    store.finish();
-    Ok(results)
-}
-
-/// The outcome of every case, run or taken up, and the store that still holds them.
-fn run_cases(
-    cases: &[Case],
-    options: &Options,
-    library: &Arc<Library>,
-    progress: &dyn Progress,
-) -> Result<(Vec<CaseOutcome>, resume::Store), VerifyError> {
-    let prepared: Vec<Prepared> = cases.iter().map(|case| prepare(case, library)).collect::<Result<_, _>>()?;
-    let series = options.out.join("series");
-    let store = resume::Store::open(options)?;
-    if !store.has_finished_cases() {
-        remove_old_results(options.out);
-    }
-    std::fs::create_dir_all(&series).map_err(|e| VerifyError::output(&series, e))?;
-    let mut outcomes = Vec::new();
-    for (index, (case, prepared)) in cases.iter().zip(prepared).enumerate() {
-        progress.started(case, index, cases.len());
-        let outcome = match store.load(case) {
-            Some(outcome) => outcome,
-            None => {
-                let prepared = Arc::new(prepared);
-                match run_case(case, &prepared, options, library, progress) {
-                    Ended::InTime(outcome) => {
-                        let outcome = outcome?;
-                        store.save(case, &outcome)?;
-                        outcome
-                    }
-                    // to be tried again, and not taken up
-                    Ended::Stopped(outcome) => outcome?,
-                    Ended::Broken(message) => judge::broken(case, &prepared, &message),
-                }
-            }
-        };
-        progress.finished(case, &outcome.records);
-        outcomes.push(outcome);
-    }
-    Ok((outcomes, store))
+    let session = Session::begin(cases, None, options)?;
+    session.run(progress)?;
+    session.results()
 }
 
 /// Least limit for the time of a case.
@@ -187,7 +132,7 @@ fn run_case(
 ) -> Ended<Result<CaseOutcome, VerifyError>> {
     let estimated = Duration::from_secs_f64((PATIENCE * case.seconds).min(1e9));
     let limit = options.case_timeout.unwrap_or(estimated.max(LEAST_TIME));
-    let (judged, out) = (case.clone(), options.out.to_path_buf());
+    let (judged, out) = (case.clone(), Arc::clone(&options.out));
     let (plan, references) = (Arc::clone(prepared), Arc::clone(library));
     let work = move || judge::run_case(&judged, &plan, &out, &references);
     supervised(limit, &|part| progress.advanced(part), &|| progress.late(case, limit), work)
@@ -195,7 +140,7 @@ fn run_case(
 
 /// Writes what the outcomes of all cases give together: figures over several runs, their reference curves, the records.
 fn assemble(
-    out: &Path,
+    out: &OutputFolder,
     outcomes: Vec<CaseOutcome>,
     inputs: BTreeMap<String, String>,
     environment: Environment,
@@ -212,24 +157,13 @@ fn assemble(
     }
     let records = outcomes.into_iter().flat_map(|o| o.records).collect();
     let results = ResultSet { schema: SCHEMA.to_string(), environment, inputs, records, figures };
-    write_json(&out.join("results.json"), &results)?;
+    out.write_json("results.json", &results)?;
     Ok(results)
 }
 
 /// What each case simulates.
 fn inputs(cases: &[Case]) -> BTreeMap<String, String> {
     cases.iter().map(|case| (case.id(), case.inputs())).collect()
-}
-
-/// Series and figures of an earlier run, if the folder is one of results: they would pass for those of this one.
-fn remove_old_results(out: &Path) {
-    if out.join("results.json").exists() {
-        let _ = std::fs::remove_file(out.join(part::PART_FILE)); // as below
-        for folder in ["series", "figures"] {
-            // What cannot be removed is overwritten where it matters, and writing reports the reason.
-            let _ = std::fs::remove_dir_all(out.join(folder));
-        }
-    }
 }
 
 /// Worst status of a set of records.
@@ -243,39 +177,15 @@ pub fn worst(records: &[Record]) -> Option<Status> {
     records.iter().map(|r| r.status).max_by_key(|s| rank(*s))
 }
 
-/// Writes `series/<stem>.csv`, whole or not at all; a stem such as `timing/bar` has a folder of its own.
-fn write_series(out: &Path, stem: &str, table: &crate::history::Table) -> Result<(), VerifyError> {
-    let name = format!("series/{stem}.csv");
-    let path = out.join(&name);
-    if !foreign::is_plain(&name) {
-        return Err(VerifyError::output(&path, "a series is named by plain names joined by single slashes"));
-    }
-    if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(|e| VerifyError::output(folder, e))?;
-    }
-    Ok(replace_file(&path, |part| Ok(table.write(part)?))?)
+/// Writes `series/<stem>.csv`; a stem such as `timing/bar` has a folder of its own.
+fn write_series(out: &OutputFolder, stem: &str, table: &crate::history::Table) -> Result<(), VerifyError> {
+    Ok(out.write_table(&format!("series/{stem}.csv"), table)?)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::prepare::prepare;
     use super::*;
-    use crate::history::Table;
-
-    #[test]
-    fn measured_times_have_a_folder_that_goes_with_old_results() {
-        let folder = tempfile::tempdir().unwrap();
-        let out = folder.path();
-        let mut table = Table::new(&["seconds"]);
-        table.push(&[0.25]);
-        write_series(out, "timing/bar", &table).unwrap();
-        let written = out.join("series/timing/bar.csv");
-        assert_eq!(Table::read(&written).unwrap(), table);
-        remove_old_results(out);
-        assert!(written.exists(), "a folder without results.json is none of ours");
-        std::fs::write(out.join("results.json"), "{}").unwrap();
-        remove_old_results(out);
-        assert!(!out.join("series").exists());
-    }
 
     #[test]
     fn a_panic_is_an_error_for_every_record_of_the_case() {

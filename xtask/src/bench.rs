@@ -2,14 +2,15 @@
 
 use fisura_reports::bench::{self as report, Exhibit, Records, Section};
 use fisura_verification::bench::record::BenchSet;
-use fisura_verification::bench::{self, BenchError, FAMILIES, Settings};
+use fisura_verification::bench::{BenchError, FAMILIES, Session, Settings};
+use fisura_verification::output::OutputFolder;
 use fisura_verification::study::StudyError;
 
 use crate::cli::{Common, Format};
 use crate::environment::environment;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::{console, folders};
+use crate::{console, folders, interrupt};
 
 /// Arguments of `bench`.
 #[derive(Debug, clap::Args)]
@@ -45,20 +46,39 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
         quick: args.quick,
         threads: rayon::current_num_threads(),
         workspace: workspace.clone(),
-        out: folder.clone(),
+        out: &folder,
         peer: args.peer.clone(),
         families: args.family.clone(),
     };
-    let set = bench::run(&settings, environment(&workspace), &|family| console::note(common, family))?;
-    report::store(&folder, &set)?;
-    let rendered = report::render(&folder);
+    let session = Session::new(&settings, environment(&workspace))?;
+    folder.begin(|_| false)?;
+    write(&session, &folder)?; // says that it is unfinished, until the end
+    let stop = || {
+        if let Err(failure) = write(&session, &folder) {
+            failure.show();
+        }
+        let message = format!("interrupted: what is measured is in {}", folder.path().display());
+        Failure::new(Exit::Interrupted, message).show();
+        folder.hold()
+    };
+    interrupt::guard(|| session.run(&|family| console::note(common, family)), stop)??;
+    let set = session.set();
+    let rendered = write(&session, &folder);
+    folder.finish()?;
     match common.format {
         Format::Json => console::json(&set),
         Format::Text => console::result(&text(&set)),
     }
-    console::note(common, &format!("report: {}", folder.join("bench.html").display()));
+    console::note(common, &format!("report: {}", folder.path().join("bench.html").display()));
     rendered?;
     Ok(if set.records.iter().all(|record| record.verified) { Exit::Done } else { Exit::CheckFailed })
+}
+
+/// Writes what is measured so far, and its report.
+fn write(session: &Session, folder: &OutputFolder) -> Result<(), Failure> {
+    report::store(folder, &session.set())?;
+    report::render(folder.path(), folder)?;
+    Ok(())
 }
 
 /// The targets, the readings, and what does not hold.
@@ -93,6 +113,7 @@ impl From<BenchError> for Failure {
             BenchError::Study(StudyError::Breakdown(breakdown)) => Self::from(&breakdown),
             BenchError::Study(other) => Self::new(Exit::BrokeDown, other.to_string()),
             BenchError::Case(error) => error.into(),
+            BenchError::File(error) => error.into(),
             BenchError::Input(message) => Self::new(Exit::BadInput, message)
                 .help("verification/cases and reference-data of the workspace are read"),
             BenchError::Reference(error) => Self::new(Exit::BadInput, error.to_string()),

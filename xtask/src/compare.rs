@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use fisura_reports::compare::{compare as side_by_side, render_markdown, render_text};
 use fisura_reports::read_results;
-use fisura_verification::output::{write, write_json};
 
 use crate::cli::{Common, Format};
 use crate::exit::Exit;
@@ -36,8 +35,10 @@ pub fn compare(args: &Args, common: &Common) -> Result<Exit, Failure> {
         return Err(Failure::new(Exit::NothingSelected, message).help("compare results of the same suites"));
     }
     let folder = folders::output(common, "compare")?;
-    write(&folder.join("comparison.md"), render_markdown(&compared))?;
-    write_json(&folder.join("comparison.json"), &compared)?;
+    folder.begin(|_| false)?;
+    folder.write("comparison.md", render_markdown(&compared))?;
+    folder.write_json("comparison.json", &compared)?;
+    folder.finish()?;
     match common.format {
         Format::Json => console::json(&compared),
         Format::Text => console::result(&render_text(&compared)),

@@ -5,7 +5,6 @@ use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use fisura_verification::record::Environment;
-use fisura_verification::suite::part::fingerprint;
 
 /// The present environment; what cannot be found out is empty.
 pub fn environment(workspace: &Path) -> Environment {
@@ -22,12 +21,6 @@ pub fn environment(workspace: &Path) -> Environment {
         threads: rayon::current_num_threads(),
         started: utc(since),
     }
-}
-
-/// Fingerprint of the uncommitted changes of tracked files; empty if there are none, or no repository.
-pub fn changes(workspace: &Path) -> String {
-    let difference = output(Command::new("git").args(["diff", "HEAD", "--binary"]).current_dir(folder(workspace)));
-    difference.filter(|d| !d.is_empty()).map(|d| fingerprint([d])).unwrap_or_default()
 }
 
 /// The current folder, if the path is empty.

@@ -88,7 +88,7 @@ impl From<SceneFileError> for Failure {
 
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
-        Self::new(Exit::BadInput, error.to_string()).help("give a folder that can be written with --out")
+        Self::new(Exit::BadInput, error.message).help(error.remedy)
     }
 }
 

@@ -38,7 +38,8 @@ pub struct Args {
 pub fn faults(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let faults = chosen(args)?;
     let folder = folders::output(common, "faults")?;
-    let runner = Runner { program: build(common)?, folder: &folder, common };
+    folder.begin(|_| false)?;
+    let runner = Runner { program: build(common)?, folder: folder.path(), common };
     let cases: BTreeSet<&str> = faults.iter().flat_map(|fault| fault.cases).copied().collect();
     let runs = cases.len() + faults.iter().map(|fault| fault.cases.len()).sum::<usize>();
     let bar = progress::bar(common, "{msg} {wide_bar} {pos}/{len}, {elapsed}", runs as u64);
@@ -127,7 +128,6 @@ impl Runner<'_> {
     fn run(&self, fault: Option<&Fault>, case: &str) -> Result<CaseRun, Failure> {
         let name = fault.map_or("none", |fault| fault.id);
         let folder = self.folder.join("runs").join(name).join(case.replace('/', "-"));
-        let _ = std::fs::remove_dir_all(&folder); // what is left of an earlier run would pass for this one
         let mut command = Command::new(&self.program);
         command.args(["verify", "--case", case, "--quiet", "--out"]).arg(&folder).env_remove(PLANTED);
         if let Some(fault) = fault {

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use fisura_reports::number::duration;
 use fisura_reports::paper::{PaperFigure, cases_of};
 use fisura_reports::{bundle, read_results};
+use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{Figure, ResultSet};
-use fisura_verification::suite::{Case, Options, read_cases, verify};
+use fisura_verification::suite::{Case, Options, read_cases};
 use serde_json::json;
 
 use crate::cli::{Common, Format};
@@ -15,8 +17,8 @@ use crate::environment::environment;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::report::unreadable;
-use crate::verify::{Watch, cases_folder, verdict};
-use crate::{console, folders};
+use crate::verify::{carry_out, cases_folder, verdict};
+use crate::{built, console, folders};
 
 /// Arguments of `figures`.
 #[derive(Debug, clap::Args)]
@@ -43,7 +45,8 @@ pub fn figures(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let (source, results, exit) = match &args.from {
         Some(from) => (from.clone(), read_results(from).map_err(|error| unreadable(error, from))?, Exit::Done),
         None => {
-            let source = folder.join("results");
+            folder.begin(|_| false)?; // the list of what belongs here comes before results/
+            let source = folder.path().join("results");
             let results = run(&wanted.paper, &source, common)?;
             let exit = verdict(&results.records);
             if exit != Exit::Done {
@@ -54,12 +57,14 @@ pub fn figures(args: &Args, common: &Common) -> Result<Exit, Failure> {
     };
     let mut found = wanted.find(&results, &source, args.from.is_none())?;
     found.sort_by(|a, b| a.0.cmp(&b.0));
+    folder.begin(|_| false)?;
     let mut files = Vec::new();
     for (name, figure) in &found {
         let inputs = inputs(&results, figure);
         let written = bundle::write((&source, figure), (&folder, name), &results.environment, inputs)?;
-        files.extend(written.into_iter().map(|file| folder.join(file).display().to_string()));
+        files.extend(written.into_iter().map(|file| folder.path().join(file).display().to_string()));
     }
+    folder.finish()?;
     match common.format {
         Format::Json => console::json(&json!({ "paper": args.paper, "files": files })),
         Format::Text => console::result(&(files.join("\n") + "\n")),
@@ -134,17 +139,19 @@ fn run(wanted: &[PaperFigure], out: &Path, common: &Common) -> Result<ResultSet,
     console::note(common, &format!("{} cases to run, estimated {} on two cores", cases.len(), duration(seconds)));
     let workspace = folders::workspace();
     let reference_data = workspace.join("reference-data");
+    let out = Arc::new(OutputFolder::open(out, "verify")?);
     let options = Options {
-        out,
+        out: Arc::clone(&out),
         reference_data: &reference_data,
         environment: environment(&workspace),
+        program: &built::program(),
         resume: true,
         case_timeout: None,
     };
-    let watch = Watch::new(common);
-    let results = verify(&cases, &options, &watch);
-    watch.finish();
-    Ok(results?)
+    let results = carry_out(&cases, None, &options, common)?;
+    fisura_reports::render(out.path(), &out)?;
+    out.finish()?;
+    Ok(results)
 }
 
 /// Fingerprints of what the cases behind a figure simulated.

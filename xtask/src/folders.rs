@@ -1,11 +1,12 @@
 //! Where files are read and written.
 
 use std::env;
-use std::fs;
 use std::path::{Path, PathBuf};
 
+use fisura_verification::output::OutputFolder;
+
 use crate::cli::Common;
-use crate::exit::Exit;
+use crate::console;
 use crate::failure::Failure;
 
 /// Root of the workspace as cargo tells it, else the current folder.
@@ -15,21 +16,24 @@ pub fn workspace() -> PathBuf {
     root.filter(|root| root.join("Cargo.toml").is_file()).unwrap_or_default()
 }
 
-/// The folder of `--out`, or `target/fisura/<command>`; made if it is not there, and known to be writable.
+/// The folder of `--out`, or `target/fisura/<command>`: made if it is not there, writable, and locked for this process.
 ///
 /// # Errors
-/// If it cannot be made or written: better now than after an hour.
-pub fn output(common: &Common, command: &str) -> Result<PathBuf, Failure> {
+/// If it cannot be had, see [`OutputFolder::open`]: better now than after an hour.
+pub fn output(common: &Common, command: &str) -> Result<OutputFolder, Failure> {
     let default = || workspace().join("target/fisura").join(command);
-    let folder = common.out.clone().unwrap_or_else(default);
-    let probe = folder.join(".fisura-writable.part");
-    let written =
-        fs::create_dir_all(&folder).and_then(|()| fs::write(&probe, "")).and_then(|()| fs::remove_file(&probe));
-    match written {
-        Ok(()) => Ok(folder),
-        Err(error) => {
-            let message = format!("the output folder {} cannot be written: {error}", folder.display());
-            Err(Failure::new(Exit::BadInput, message).help("give a folder that can be written with --out"))
-        }
+    let folder = OutputFolder::open(&common.out.clone().unwrap_or_else(default), command)?;
+    note_without_lock(common, &folder);
+    Ok(folder)
+}
+
+/// Says so if nothing keeps another process from writing to the folder as well.
+pub fn note_without_lock(common: &Common, folder: &OutputFolder) {
+    if !folder.is_locked() {
+        let folder = folder.path().display();
+        console::note(
+            common,
+            &format!("warning: the file system of {folder} has no locks: start one command there at a time"),
+        );
     }
 }

@@ -34,7 +34,9 @@ pub fn merge(args: &Args, common: &Common) -> Result<Exit, Failure> {
 
 impl From<MergeError> for Failure {
     fn from(error: MergeError) -> Self {
-        let help = match &error {
+        let help = match error {
+            MergeError::File(error) => return error.into(),
+            MergeError::Reference(_) => return Self::new(Exit::BadInput, error.to_string()),
             MergeError::Unreadable { .. } => "give the folders that `cargo xtask verify --partition slice:K/N` wrote",
             MergeError::Differs { .. } => "run all slices of one commit with the same selection, tier and changes",
             MergeError::Doubled { .. } => "give every slice once",
@@ -45,8 +47,6 @@ impl From<MergeError> for Failure {
                 "check out the commit of the parts, with the same changes, and build it anew"
             }
             MergeError::OtherReferences => "check out the commit of the parts, with the same reference-data/",
-            MergeError::OverPart(_) => "give another folder with --out",
-            MergeError::Reference(_) | MergeError::File(_) => return Self::new(Exit::BadInput, error.to_string()),
         };
         Self::new(Exit::BadInput, error.to_string()).help(help)
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use fisura_reports::{ReportError, bench, read_results, render};
 use fisura_verification::foreign;
-use fisura_verification::output::write;
+use fisura_verification::output::OutputFolder;
 use serde_json::json;
 
 use crate::cli::{Common, Format};
@@ -38,12 +38,15 @@ pub fn report(args: &Args, common: &Common) -> Result<Exit, Failure> {
     } else {
         read_results(&args.folder).map_err(|error| unreadable(error, &args.folder))?;
     }
-    let folder = match &common.out {
+    let same = |out: &PathBuf| fs::canonicalize(out).is_ok_and(|out| Some(out) == fs::canonicalize(&args.folder).ok());
+    let folder = match common.out.as_ref().filter(|out| !same(out)) {
         Some(_) => copied(&args.folder, if of_bench { "bench.json" } else { "results.json" }, common)?,
-        None => args.folder.clone(),
+        None => OutputFolder::reopen(&args.folder)?,
     };
-    let rendered = if of_bench { bench::render(&folder)? } else { render(&folder)?.files };
-    let files: Vec<String> = rendered.iter().map(|f| folder.join(f).display().to_string()).collect();
+    folders::note_without_lock(common, &folder);
+    let path = folder.path();
+    let rendered = if of_bench { bench::render(path, &folder)? } else { render(path, &folder)?.files };
+    let files: Vec<String> = rendered.iter().map(|f| path.join(f).display().to_string()).collect();
     match common.format {
         Format::Json => console::json(&json!({ "files": files })),
         Format::Text => console::result(&(files.join("\n") + "\n")),
@@ -61,24 +64,24 @@ pub fn unreadable(error: ReportError, folder: &Path) -> Failure {
 
 /// The results and their series in the folder of `--out`. What is to be copied is known before the first file is written, so
 /// that a folder below that of the results is no part of it.
-fn copied(from: &Path, results: &str, common: &Common) -> Result<PathBuf, Failure> {
+fn copied(from: &Path, results: &str, common: &Common) -> Result<OutputFolder, Failure> {
     let fail = |name: &str, error: Error| {
         let message = format!("{} cannot be copied: {error}", from.join(name).display());
         Failure::new(Exit::BadInput, message).help("remove it, or render the report in its folder, without --out")
     };
     let series = foreign::series_files(from).map_err(|error| fail("series", error))?;
     let to = folders::output(common, "report")?;
-    if fs::canonicalize(from).ok() == fs::canonicalize(&to).ok() {
-        return Ok(to);
-    }
-    for name in std::iter::once(results).chain(series.iter().map(String::as_str)) {
+    let own = fs::canonicalize(to.path()).ok();
+    let copies = |name: &&String| {
+        fs::canonicalize(from.join(name)).ok().zip(own.as_ref()).is_none_or(|(f, own)| !f.starts_with(own))
+    };
+    let series: Vec<&str> = series.iter().filter(copies).map(String::as_str).collect();
+    to.begin(|_| false)?;
+    for name in std::iter::once(results).chain(series) {
         let most = if name == results { foreign::DOCUMENT_BYTES } else { foreign::SERIES_BYTES };
         let bytes = foreign::read(from, name, most).map_err(|error| fail(name, error))?;
-        let target = to.join(name);
-        if let Some(folder) = target.parent() {
-            fs::create_dir_all(folder).map_err(|error| fail(name, error))?;
-        }
-        write(&target, bytes)?;
+        to.write(name, bytes)?;
     }
+    to.finish()?;
     Ok(to)
 }

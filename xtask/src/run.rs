@@ -1,6 +1,5 @@
 //! `run SCENE.toml`: one scene to its end.
 
-use std::fs;
 use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
@@ -8,17 +7,17 @@ use std::time::Duration;
 use fisura::scene::Scene;
 use fisura::simulation::Simulation;
 use fisura_reports::number::{duration, plain};
-use fisura_verification::output;
+use fisura_verification::output::OutputFolder;
+use fisura_verification::scene_run::checkpoint::{self, CHECKPOINT, Place, Stored};
 use fisura_verification::scene_run::{
-    CHECKPOINT, Keep, KeepError, OnFrame, Outcome, Progress, SceneRun, Summary, run_scene, run_scene_kept,
+    Keep, KeepError, OnFrame, Outcome, Progress, SceneRun, Summary, run_scene, run_scene_kept,
 };
 use indicatif::ProgressBar;
 
 use crate::cli::{Common, Format, SceneArgs};
-use crate::environment::{changes, environment};
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::{console, folders, interrupt, pictures, progress, scene_input, vtk};
+use crate::{built, console, folders, interrupt, pictures, progress, scene_input, vtk};
 
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
@@ -60,10 +59,7 @@ pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
     refuse(args)?;
     let file = scene_input::load(&args.scene, common)?;
     let folder = folders::output(common, "run")?;
-    let goes_on = args.resume && folder.join(CHECKPOINT).exists();
-    if !goes_on {
-        vtk::remove(&folder);
-    }
+    let start = Start::new(args, &file.scene, &folder, common)?;
     let mut vtk = args.vtk.then(|| vtk::Files::new(&folder, &file.scene, common));
     let bar = progress::bar(common, progress::SPINNER, 0);
     bar.set_message("preparing");
@@ -72,10 +68,12 @@ pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
             vtk.write(number, simulation);
         }
     };
-    let outcome = simulate(args, common, &file.scene, &folder, &bar, &mut on_frame)?;
+    let goes_on = start.stored.is_some();
+    let checkpoint = start.place.name.clone();
+    let outcome = simulate(start, &file.scene, &folder, &bar, &mut on_frame)?;
     bar.finish_and_clear();
     let run = match outcome {
-        Outcome::Interrupted(at) => return Err(interrupted(at, &folder)),
+        Outcome::Interrupted(at) => return Err(interrupted(at, &folder.path().join(checkpoint))),
         Outcome::Ended(run) => *run,
     };
     if let Some(breakdown) = run.breakdown.as_ref().filter(|breakdown| breakdown.scene.is_some()) {
@@ -87,23 +85,27 @@ pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let (mut files, undrawn) = write(&run, &folder)?;
     match &vtk {
         Some(vtk) => files.extend(vtk.after(run.frames.len())),
-        None if goes_on => vtk::remove(&folder),
+        None if goes_on => vtk::remove(&folder)?,
         None => (),
     }
+    if run.breakdown.is_none() {
+        folder.remove(&checkpoint)?; // a run that reached its end needs none
+    }
+    folder.finish()?;
     match common.format {
         Format::Json => console::json(&run.summary),
-        Format::Text => console::result(&text(&run.summary, &folder, &files)),
+        Format::Text => console::result(&text(&run.summary, folder.path(), &files)),
     }
     match &run.breakdown {
         None => {
-            discard_checkpoint(&folder);
             if !undrawn.is_empty() {
                 return Err(Failure::new(Exit::BadInput, format!("not drawn: {}", undrawn.join("; "))));
             }
             vtk.and_then(|vtk| vtk.failed).map_or(Ok(Exit::Done), |error| Err(error.into()))
         }
         Some(breakdown) => {
-            let help = format!("history up to there, and the state there in breakdown.json: {}", folder.display());
+            let help =
+                format!("history up to there, and the state there in breakdown.json: {}", folder.path().display());
             Err(Failure::from(breakdown).help(help))
         }
     }
@@ -117,11 +119,57 @@ fn refuse(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
+/// From where a run starts, and where it keeps its checkpoints.
+struct Start {
+    /// Between checkpoints; none if there are to be none.
+    interval: Option<Duration>,
+    place: Place,
+    stored: Option<Stored>,
+}
+
+impl Start {
+    /// Takes up the checkpoint if that is asked for, and removes what is left of an earlier run; the checkpoint of another scene
+    /// stays.
+    fn new(args: &Args, scene: &Scene, folder: &OutputFolder, common: &Common) -> Result<Self, Failure> {
+        let place = checkpoint::find(folder.path(), scene);
+        let path = folder.path().join(&place.name);
+        let mut stored = None;
+        if args.resume {
+            // without one of its own, that of another scene is refused with the reason
+            let path = if path.exists() { path } else { folder.path().join(CHECKPOINT) };
+            stored = checkpoint::read(&path, &built::program(), scene)
+                .map_err(|error| Failure::new(Exit::BadInput, error.to_string()).help(error.remedy))?;
+            if stored.is_none() {
+                let folder = folder.path().display();
+                console::note(common, &format!("no checkpoint in {folder}: the run begins at the start"));
+            }
+        }
+        if let Some(title) = &place.other {
+            keep_other(title, &place.name, folder, common)?;
+        }
+        folder.check(&place.name)?;
+        let goes_on = stored.is_some();
+        folder.begin(|name| checkpoint::is_checkpoint(name) || goes_on && vtk::is_file_of_run(name))?;
+        Ok(Self { interval: args.checkpoint.0, place, stored })
+    }
+}
+
+/// Says that the checkpoint of another scene stays. Its files for ParaView could not stay beside those of this run.
+fn keep_other(title: &str, name: &str, folder: &OutputFolder, common: &Common) -> Result<(), Failure> {
+    let path = folder.path().join(CHECKPOINT);
+    let message = format!("{} is of an interrupted run of another scene, {title:?}", path.display());
+    if folder.files().iter().any(|name| vtk::is_file_of_run(name)) {
+        let failure = Failure::new(Exit::BadInput, format!("{message}, which has files for ParaView there"));
+        return Err(failure.help("go on with that run, or give another folder with --out"));
+    }
+    console::note(common, &format!("{message}: it is kept, and this run stores its own in {name}"));
+    Ok(())
+}
+
 fn simulate(
-    args: &Args,
-    common: &Common,
+    start: Start,
     scene: &Scene,
-    folder: &Path,
+    folder: &OutputFolder,
     bar: &ProgressBar,
     on_frame: &mut OnFrame<'_>,
 ) -> Result<Outcome, Failure> {
@@ -134,69 +182,37 @@ fn simulate(
         }
         bar.set_position(progress.step as u64);
     };
-    let Some(interval) = args.checkpoint.0 else {
+    let Start { interval, place, stored } = start;
+    let Some(interval) = interval else {
         return Ok(Outcome::Ended(Box::new(run_scene(scene, &mut advance, on_frame))));
     };
-    let keep = Keep { path: folder.join(CHECKPOINT), program: program(), interval, interrupted: interrupt::watch()? };
-    if args.resume && !keep.path.exists() {
-        let message = format!("no checkpoint in {}: the run begins at the start", folder.display());
-        console::note(common, &message);
-    }
-    run_scene_kept(scene, &keep, args.resume, &mut advance, on_frame).map_err(|error| match error {
+    let interrupted = interrupt::watch().map_err(|failure| failure.help("give --checkpoint none"))?;
+    let keep = Keep { out: folder, name: place.name, program: built::program(), interval, interrupted };
+    run_scene_kept(scene, &keep, stored, &mut advance, on_frame).map_err(|error| match error {
         KeepError::Output(error) => error.into(),
         KeepError::Checkpoint(error) => Failure::new(Exit::BadInput, error.to_string()).help(error.remedy),
     })
 }
 
-/// Name, version and commit of this program, as far as they are known.
-fn program() -> String {
-    let workspace = folders::workspace();
-    let found = if workspace.as_os_str().is_empty() { Default::default() } else { environment(&workspace) };
-    let changes = if found.dirty { format!(" with changes {}", changes(&workspace)) } else { String::new() };
-    let commit = if found.commit.is_empty() { String::new() } else { format!(" of commit {}{changes}", found.commit) };
-    format!("fisura {}{commit}", env!("CARGO_PKG_VERSION"))
-}
-
-fn interrupted(at: Progress, folder: &Path) -> Failure {
+fn interrupted(at: Progress, checkpoint: &Path) -> Failure {
     let Progress { step, steps, time } = at;
-    let message = format!("interrupted after step {step} of {steps}, t = {time:.6e} s; stored in {}", folder.display());
+    let checkpoint = checkpoint.display();
+    let message = format!("interrupted after step {step} of {steps}, t = {time:.6e} s; stored in {checkpoint}");
     Failure::new(Exit::Interrupted, message).help("go on with the same command and --resume")
 }
 
-/// A run that reached its end needs none; nor a part of one that was killed while it was written.
-fn discard_checkpoint(folder: &Path) {
-    for name in [CHECKPOINT.to_string(), format!("{CHECKPOINT}.part")] {
-        let _ = fs::remove_file(folder.join(name)); // often there is none
-    }
-}
-
-/// Writes all files of a run in place of those of the run before; names them, and what cannot be drawn, with the reason.
-fn write(run: &SceneRun, folder: &Path) -> Result<(Vec<String>, Vec<String>), Failure> {
-    remove_files_of_earlier_run(folder);
+/// Writes all files of a run; names them, and what cannot be drawn, with the reason.
+fn write(run: &SceneRun, folder: &OutputFolder) -> Result<(Vec<String>, Vec<String>), Failure> {
     let mut files: Vec<String> = run.write(folder)?.into_iter().map(String::from).collect();
     let mut undrawn = Vec::new();
     for (name, drawing) in pictures::draw(run) {
-        match drawing {
-            Ok(svg) => {
-                output::write(&folder.join(&name), svg)?;
-                files.push(name);
-            }
+        let drawn = drawing.map_err(|error| error.to_string());
+        match drawn.and_then(|svg| folder.write(&name, svg).map_err(|error| error.to_string())) {
+            Ok(()) => files.push(name),
             Err(error) => undrawn.push(format!("{name}: {error}")),
         }
     }
     Ok((files, undrawn))
-}
-
-/// Pictures of another run beside this one's history would mislead. Only a folder with a summary is one of ours.
-fn remove_files_of_earlier_run(folder: &Path) {
-    let entries = fs::read_dir(folder).ok().filter(|_| folder.join("summary.json").is_file());
-    for entry in entries.into_iter().flatten().flatten() {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        let picture = (name.starts_with("phase-") || name.starts_with("stress-")) && name.ends_with(".svg");
-        if picture || ["history.csv", "summary.json", "energies.svg", "breakdown.json"].contains(&name.as_str()) {
-            let _ = fs::remove_file(entry.path()); // what cannot be removed cannot be replaced, which is told then
-        }
-    }
 }
 
 fn text(summary: &Summary, folder: &Path, files: &[String]) -> String {

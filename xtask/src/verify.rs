@@ -1,21 +1,22 @@
 //! `verify`: runs the suites, writes the report, says whether every check holds.
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use fisura_reports::annotations::render_annotations;
 use fisura_reports::number::duration;
 use fisura_reports::text::render_text;
 use fisura_verification::foreign::line;
+use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{Record, ResultSet, Status};
 use fisura_verification::reference::Library;
 use fisura_verification::suite::part::{Invocation, Plan};
 use fisura_verification::suite::partition::Slice;
 use fisura_verification::suite::prepare::prepare;
 use fisura_verification::suite::{
-    self, Case, Malformed, Options, Selection, Tier, VerifyError, read_cases, select, worst,
+    self, Case, Malformed, Options, Selection, Session, Tier, VerifyError, read_cases, select, worst,
 };
 use indicatif::ProgressBar;
 
@@ -23,7 +24,7 @@ use crate::cli::{Common, Format};
 use crate::environment::environment;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::{built, console, folders, progress};
+use crate::{built, console, folders, interrupt, progress};
 
 /// Parts into which the bar of a case is divided.
 const PARTS: u64 = 1000;
@@ -85,30 +86,71 @@ pub fn verify(args: &Args, common: &Common) -> Result<Exit, Failure> {
         let seconds = cases.iter().map(|case| case.seconds).sum();
         console::note(common, &format!("{} cases, estimated {} on two cores", cases.len(), duration(seconds)));
     }
-    let folder = folders::output(common, "verify")?;
-    let resume = args.tier == Tier::Full;
-    let options =
-        Options { out: &folder, reference_data: &reference_data, environment, resume, case_timeout: args.case_timeout };
-    let watch = Watch::new(common);
-    let results = match part {
-        Some(part) => suite::verify_slice(&cases, part, &options, &watch),
-        None => suite::verify(&cases, &options, &watch),
+    let folder = Arc::new(folders::output(common, "verify")?);
+    let options = Options {
+        out: Arc::clone(&folder),
+        reference_data: &reference_data,
+        environment,
+        program: &built::program(),
+        resume: args.tier == Tier::Full,
+        case_timeout: args.case_timeout,
     };
+    let results = carry_out(&cases, part, &options, common)?;
+    conclude(&results, &folder, common)
+}
+
+/// Runs cases into a folder whose report says until [`conclude`] that they are unfinished. An interrupt ends the process; what is
+/// finished then is in the report.
+///
+/// # Errors
+/// A wrong case, files that cannot be read or written.
+pub fn carry_out(
+    cases: &[Case],
+    part: Option<(Slice, Plan)>,
+    options: &Options,
+    common: &Common,
+) -> Result<ResultSet, Failure> {
+    let out = &*options.out;
+    let session = Session::begin(cases, part, options)?;
+    fisura_reports::render(out.path(), out)?;
+    let watch = Watch::new(common);
+    let stop = || {
+        watch.finish();
+        interrupted(&session, options).show();
+        out.hold()
+    };
+    let run = interrupt::guard(|| session.run(&watch), stop)?;
     watch.finish();
-    conclude(&results?, &folder, common)
+    run?;
+    Ok(session.results()?)
+}
+
+/// Writes what is finished.
+fn interrupted(session: &Session, options: &Options) -> Failure {
+    let folder = options.out.path();
+    let written = session.results().map_err(Failure::from);
+    if let Err(failure) = written.and_then(|_| Ok(fisura_reports::render(folder, &options.out)?)) {
+        failure.show();
+    }
+    let (finished, all) = session.finished();
+    let message =
+        format!("interrupted: {finished} of {all} cases are finished; their report is in {}", folder.display());
+    let help = if options.resume { "the same command goes on with the others" } else { "run it again" };
+    Failure::new(Exit::Interrupted, message).help(help)
 }
 
 /// Renders the report of finished results, prints them, and gives the verdict.
 ///
 /// # Errors
 /// A report that cannot be written.
-pub fn conclude(results: &ResultSet, folder: &Path, common: &Common) -> Result<Exit, Failure> {
-    let rendered = fisura_reports::render(folder).map_err(Failure::from);
+pub fn conclude(results: &ResultSet, folder: &OutputFolder, common: &Common) -> Result<Exit, Failure> {
+    let rendered = fisura_reports::render(folder.path(), folder).map_err(Failure::from);
+    folder.finish()?;
     print(results, common);
     if std::env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {
         console::error_text(&render_annotations(results));
     }
-    console::note(common, &format!("report: {}", folder.join("report.html").display()));
+    console::note(common, &format!("report: {}", folder.path().join("report.html").display()));
     // what the checks say is more than that a figure cannot be drawn
     match (verdict(&results.records), rendered) {
         (Exit::Done, rendered) => rendered.map(|_| Exit::Done),
@@ -131,6 +173,9 @@ impl From<VerifyError> for Failure {
         match error {
             VerifyError::Case(error) => error.into(),
             VerifyError::File(error) => error.into(),
+            VerifyError::Interrupted { .. } => Self::new(Exit::BadInput, error.to_string()).help(
+                "go on with the command that was interrupted, remove partial/ if they may go, or give another folder with --out",
+            ),
             other => Self::new(Exit::BadInput, other.to_string()),
         }
     }

@@ -3,16 +3,13 @@
 //! Files are written as soon as their frame is reached and named by its number, so that a run that is taken up again goes on
 //! with those of before.
 
-use std::fs;
-use std::path::Path;
-
 use fisura::inspection::PointState;
 use fisura::scene::Scene;
 use fisura::simulation::Simulation;
 use fisura::span_grid::Corner;
 use fisura_reports::vtk::{Cells, Field, Piece, pvd, vtu};
-use fisura_verification::output::{self, OutputError};
-use fisura_verification::scene_run::{CHECKPOINT, frame_steps};
+use fisura_verification::output::{OutputError, OutputFolder};
+use fisura_verification::scene_run::frame_steps;
 
 use crate::cli::Common;
 use crate::console;
@@ -32,7 +29,7 @@ type Column = (&'static str, usize, Vec<f64>);
 /// The files of a run.
 #[derive(Debug)]
 pub struct Files<'a> {
-    folder: &'a Path,
+    folder: &'a OutputFolder,
     /// Times of the frames as the scene declares them, s.
     times: &'a [f64],
     common: &'a Common,
@@ -42,7 +39,7 @@ pub struct Files<'a> {
 
 impl<'a> Files<'a> {
     /// None yet.
-    pub fn new(folder: &'a Path, scene: &'a Scene, common: &'a Common) -> Self {
+    pub fn new(folder: &'a OutputFolder, scene: &'a Scene, common: &'a Common) -> Self {
         Self { folder, times: &scene.output.frames, common, failed: None }
     }
 
@@ -56,16 +53,16 @@ impl<'a> Files<'a> {
 
     fn write_kind(&self, kind: &str, number: usize, simulation: &Simulation) -> Result<(), OutputError> {
         let bytes = if kind == POINTS { points(simulation) } else { grid(simulation) };
-        output::write(&self.folder.join(file_name(kind, number)), bytes)?;
+        self.folder.write(&file_name(kind, number), bytes)?;
         let plan = simulation.plan();
         let (steps, _) = frame_steps(self.times, plan.step, plan.steps());
         let there = (0..=number).filter(|&n| self.has(kind, n));
         let frames: Vec<_> = there.map(|n| (steps[n] as f64 * plan.step, 0, file_name(kind, n))).collect();
-        output::write(&self.folder.join(collection_name(kind)), pvd(&frames))
+        self.folder.write(&collection_name(kind), pvd(&frames))
     }
 
     fn has(&self, kind: &str, number: usize) -> bool {
-        self.folder.join(file_name(kind, number)).is_file()
+        self.folder.path().join(file_name(kind, number)).is_file()
     }
 
     /// Names of the files that are there after `frames` frames; says so if some are not.
@@ -88,22 +85,18 @@ impl<'a> Files<'a> {
     }
 }
 
-/// Removes the files of an earlier run from a folder that a run wrote to.
-pub fn remove(folder: &Path) {
-    let ours = ["summary.json", CHECKPOINT, &collection_name(POINTS)].iter().any(|name| folder.join(name).is_file());
-    let entries = fs::read_dir(folder).ok().filter(|_| ours);
-    for entry in entries.into_iter().flatten().flatten() {
-        if is_file_of_run(&entry.file_name().to_string_lossy()) {
-            let _ = fs::remove_file(entry.path()); // what cannot be removed cannot be replaced, which is told then
-        }
-    }
-}
-
-/// Also the part of one that was killed while it was written.
-fn is_file_of_run(name: &str) -> bool {
-    let name = name.strip_suffix(".part").unwrap_or(name);
+/// Whether a file of an output folder is one of these.
+pub fn is_file_of_run(name: &str) -> bool {
     let number = |kind| name.strip_prefix(kind)?.strip_prefix('-')?.strip_suffix(".vtu")?.parse().ok();
     KINDS.iter().any(|kind| name == collection_name(kind) || number(kind).is_some_and(|n| name == file_name(kind, n)))
+}
+
+/// Removes those of the part of a run that was interrupted, and had them.
+///
+/// # Errors
+/// One that was changed, or cannot be removed.
+pub fn remove(folder: &OutputFolder) -> Result<(), OutputError> {
+    folder.files().iter().filter(|name| is_file_of_run(name)).try_for_each(|name| folder.remove(name))
 }
 
 fn file_name(kind: &str, number: usize) -> String {

@@ -17,8 +17,9 @@ use std::path::{Path, PathBuf};
 
 use fisura_reports::annotations::render_annotations;
 use fisura_reports::compare::{compare, render_markdown, render_text};
-use fisura_reports::{bundle, read_results, render};
+use fisura_reports::{ReportError, bundle, read_results};
 use fisura_verification::foreign::{series_files, steers};
+use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{Environment, FigureBody, ResultSet};
 use fisura_verification::study::scene::{PictureInfo, RunInfo};
 use fisura_verification::suite::CaseOutcome;
@@ -39,8 +40,14 @@ impl Place {
         let place = Self(tempfile::tempdir().expect("a folder"));
         fs::create_dir(place.path("outside")).expect("a folder");
         fs::write(place.path("outside/plate.csv"), "time_s,elastic_j\n0,1\n1,2\n").expect("a file");
-        fixture::write(&place.path("results"));
+        place.fill();
         place
+    }
+
+    /// Results as they were written, in place of what became of them.
+    fn fill(&self) {
+        let _ = fs::remove_dir_all(self.path("results")); // at first there are none
+        fixture::write(&self.path("results"));
     }
 
     fn path(&self, name: &str) -> PathBuf {
@@ -60,11 +67,17 @@ impl Place {
     }
 }
 
+/// Renders results beside themselves; names the files.
+fn render(folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
+    let out = OutputFolder::reopen(folder).expect("a folder of ours");
+    fisura_reports::render(folder, &out).map(|rendered| rendered.files)
+}
+
 /// A report of `results/` that is made or refused in words, twice the same.
 fn report(place: &Place, base: &ResultSet) {
     let folder = place.path("results");
     match render(&folder) {
-        Ok(rendered) => assert!(rendered.files.iter().all(|file| folder.join(file).is_file())),
+        Ok(files) => assert!(files.iter().all(|file| folder.join(file).is_file())),
         Err(error) => assert!(!error.to_string().is_empty()),
     }
     place.check(&[]);
@@ -93,7 +106,7 @@ fn corpus() -> Vec<Vec<u8>> {
 fn reports_survive_any_results() {
     let (place, base) = (Place::new(), fixture::results());
     fuzz(0.02, &corpus(), |bytes| {
-        fixture::write(&place.path("results"));
+        place.fill();
         if bytes.starts_with(b"{") {
             fs::write(place.path("results/results.json"), bytes).expect("a file");
         } else {
@@ -117,7 +130,7 @@ fn figures_survive_any_bundle() {
         }
         let again = bundle::write(
             (&place.path("results"), &bundle.figure),
-            (&place.path("results"), "again"),
+            (&OutputFolder::reopen(&place.path("results")).expect("a folder of ours"), "again"),
             &bundle.environment,
             bundle.inputs,
         );
@@ -184,6 +197,7 @@ fn merged(place: &Place, part: &[u8]) -> Result<ResultSet, String> {
     fs::write(place.path("results/part.json"), part).expect("a file");
     let out = place.path("merged");
     let _ = fs::remove_dir_all(&out); // of the input before; the first has none
+    let out = OutputFolder::open(&out, "merge").expect("a new folder");
     let result = merge(&[place.path("results")], &out, &references(), SOURCES);
     place.check(&["merged"]);
     result.map_err(|error| error.to_string())
@@ -261,7 +275,7 @@ fn reports_survive_what_is_made_to_hurt_them() {
     ];
     for (at, text) in texts.iter().enumerate() {
         let outcome = watched(text, &|bytes: &[u8]| {
-            fixture::write(&place.path("results"));
+            place.fill();
             fs::write(place.path("results/results.json"), bytes).expect("a file");
             report(&place, &base);
         });

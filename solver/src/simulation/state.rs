@@ -23,8 +23,14 @@ impl Simulation {
     /// nothing in the run.
     ///
     /// # Errors
-    /// If loads act that only the program knows, as in verification.
+    /// If the last step failed, or loads act that only the program knows, as in verification.
     pub fn checkpoint(&mut self) -> Result<Vec<u8>, StateError> {
+        if self.failed {
+            return Err(StateError(format!(
+                "step {} failed, and what it left is not a state to go on from",
+                self.steps
+            )));
+        }
         let mut archive = Archive::writer();
         self.exchange(&mut archive)?;
         archive.finish()
@@ -52,6 +58,7 @@ impl Simulation {
             energy_in,
             warned_of_step,
             warned_of_closure,
+            failed: _,
             tolerance: _,
         } = self;
         archive.value(steps)?;

@@ -8,7 +8,6 @@
 //! It runs the steps and may leave `result.csv` there, the same columns at the end; its kinetic energy is then held against
 //! ours. It is run with two numbers of steps, and the difference of its times counts: start and end of the program cancel.
 
-use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use fisura::Simulation;
@@ -21,6 +20,7 @@ use super::record::{BenchRecord, Sample};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
 use super::{BenchError, Settings};
 use crate::history::Table;
+use crate::output::OutputFolder;
 
 /// Degree of the splines, and points per span and direction.
 const DEGREE: usize = 2;
@@ -31,10 +31,13 @@ const SHORTEST: f64 = 0.1;
 /// transfers are allowed.
 const SAME: f64 = 0.02;
 
+/// Folders of the exchange: few steps, and many.
+const FOLDERS: [&str; 2] = ["peer/short", "peer/long"];
+
 /// The block as the peer finds it.
-struct Exchange {
+struct Exchange<'a> {
     command: String,
-    folders: [PathBuf; 2],
+    out: &'a OutputFolder,
     steps: [usize; 2],
     /// Our kinetic energy after the larger number of steps, J/m.
     kinetic: f64,
@@ -50,14 +53,9 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     pool(1)?.install(|| {
         let scene = moving_scene(DEGREE, POINTS, cells);
         let mut simulation = Simulation::new(&scene)?;
-        let mut exchange = Exchange {
-            command: command.clone(),
-            folders: ["short", "long"].map(|name| settings.out.join("peer").join(name)),
-            steps,
-            kinetic: 0.0,
-        };
-        for (folder, steps) in exchange.folders.iter().zip(steps) {
-            write(folder, &scene, &simulation, steps).map_err(BenchError::input)?;
+        let mut exchange = Exchange { command: command.clone(), out: settings.out, steps, kinetic: 0.0 };
+        for (folder, steps) in FOLDERS.into_iter().zip(steps) {
+            write((settings.out, folder), &scene, &simulation, steps)?;
         }
         (0..steps[1]).try_for_each(|_| simulation.step())?;
         exchange.kinetic = simulation.sample().kinetic;
@@ -86,19 +84,20 @@ fn ours(scene: &Scene, steps: usize) -> Result<Contestant<'static>, BenchError> 
 }
 
 /// What the peer reads.
-fn write(folder: &Path, scene: &Scene, simulation: &Simulation, steps: usize) -> Result<(), String> {
-    let plain = |e: std::io::Error| format!("{}: {e}", folder.display());
-    std::fs::create_dir_all(folder).map_err(plain)?;
-    let result = folder.join("result.csv");
-    if result.exists() {
-        std::fs::remove_file(&result).map_err(plain)?; // an old answer is none
-    }
-    let frame = simulation.updated_frame().ok_or("the block is not in the updated frame")?;
+fn write(
+    (out, folder): (&OutputFolder, &str),
+    scene: &Scene,
+    simulation: &Simulation,
+    steps: usize,
+) -> Result<(), BenchError> {
+    out.remove(&format!("{folder}/result.csv"))?; // an old answer is none
+    let frame = simulation.updated_frame();
+    let frame = frame.ok_or_else(|| BenchError::input("the block is not in the updated frame"))?;
     let mut table = Table::new(&["x", "y", "volume", "vx", "vy"]);
     for point in frame.fields()[0].points() {
         table.push(&[point.position[0], point.position[1], point.volume, point.velocity[0], point.velocity[1]]);
     }
-    table.write(&folder.join("particles.csv")).map_err(|e| e.to_string())?;
+    out.write_table(&format!("{folder}/particles.csv"), &table)?;
     let material = &scene.materials[&scene.bodies[0].material];
     let block = json!({
         "young_modulus": material.young_modulus,
@@ -114,15 +113,15 @@ fn write(folder: &Path, scene: &Scene, simulation: &Simulation, steps: usize) ->
         "steps": steps,
         "transfer": "flip",
     });
-    std::fs::write(folder.join("block.json"), format!("{block:#}\n")).map_err(plain)
+    Ok(out.write(&format!("{folder}/block.json"), format!("{block:#}\n"))?)
 }
 
-impl Exchange {
+impl<'a> Exchange<'a> {
     fn failed(&self, message: impl Into<String>) -> BenchError {
         BenchError::Peer { command: self.command.clone(), message: message.into() }
     }
 
-    fn contestant(self, particles: usize) -> Contestant<'static> {
+    fn contestant(self, particles: usize) -> Contestant<'a> {
         let work = (particles * (self.steps[1] - self.steps[0])) as f64;
         let record = BenchRecord::new("peer/command", self.command.clone(), work, "particle-step")
             .with("steps", vec![self.steps[0], self.steps[1]]);
@@ -150,11 +149,15 @@ impl Exchange {
         let mut words = self.command.split_whitespace();
         let program = words.next().ok_or_else(|| self.failed("the command is empty"))?;
         let mut command = Command::new(program);
-        command.args(words).arg(&self.folders[which]).stdout(Stdio::null()).stdin(Stdio::null());
+        command.args(words).arg(self.out.path().join(FOLDERS[which])).stdout(Stdio::null()).stdin(Stdio::null());
         let before = seconds_of_children();
         let watch = Stopwatch::start();
         let status = command.status().map_err(|e| self.failed(format!("it cannot be started: {e}")))?;
         let wall_s = watch.read().wall_s;
+        let result = format!("{}/result.csv", FOLDERS[which]);
+        if self.out.path().join(&result).exists() {
+            self.out.adopt(&result)?;
+        }
         if !status.success() {
             return Err(self.failed(format!("it ended with {status}")));
         }
@@ -164,7 +167,8 @@ impl Exchange {
 
     /// Kinetic energy of the result, J/m, or why there is none.
     fn kinetic_energy(&self) -> Result<f64, String> {
-        let table = Table::read(&self.folders[1].join("result.csv")).map_err(|error| error.to_string())?;
+        let table =
+            Table::read(&self.out.path().join(FOLDERS[1]).join("result.csv")).map_err(|error| error.to_string())?;
         let column = |name: &str| table.column(name).ok_or_else(|| format!("result.csv has no column {name}"));
         let (volume, vx, vy) = (column("volume")?, column("vx")?, column("vy")?);
         let energies = volume.iter().zip(vx.iter().zip(vy)).map(|(v, (x, y))| 0.5 * DENSITY * v * (x * x + y * y));

@@ -292,11 +292,13 @@ mod tests {
 
     #[test]
     fn the_half_plate_has_spans_of_the_size_asked_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = crate::output::OutputFolder::open(folder.path(), "bench").unwrap();
         let settings = Settings {
             quick: true,
             threads: 1,
             workspace: crate::bench::own_workspace(),
-            out: std::path::PathBuf::new(),
+            out: &out,
             peer: None,
             families: vec![],
         };

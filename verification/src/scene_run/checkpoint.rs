@@ -1,24 +1,33 @@
-//! Checkpoints of a run: one file from which the same program goes on with the same scene, bit by bit.
+//! The file of a run that can be taken up: four lines of text, what the run gathered with the state of its simulation, and a
+//! check sum of all that.
 //!
 //! ```text
-//! fisura checkpoint 1⏎   CRC-32 of the rest   program   scene   run: rows, pictures, times   state of the simulation
+//! fisura checkpoint 2
+//! <name, version, commit and sources of the program>
+//! <fingerprint of the scene>
+//! <its title>
 //! ```
-//!
-//! The file appears in full or not at all: see [`replace_file`].
 
-use std::fs;
+use std::fs::File;
+use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use fisura::scene::Scene;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::output::{OutputError, replace_file};
+use super::Record;
+use crate::output::{OutputError, OutputFolder};
+use crate::suite::part::fingerprint;
 
 /// First line of the file, with the version of its form.
-const FORM: &[u8] = b"fisura checkpoint 1\n";
+const FORM: &str = "fisura checkpoint 2";
 /// What every version begins with.
-const MAGIC: &[u8] = b"fisura checkpoint ";
+const MAGIC: &str = "fisura checkpoint ";
+/// Most bytes of a line of the head.
+const LINE: u64 = 4096;
+/// Most characters of the title.
+const TITLE: usize = 200;
 
 /// Name of the file in the output folder of a run.
 pub const CHECKPOINT: &str = "checkpoint.bin";
@@ -39,75 +48,123 @@ const BEGIN_ANEW: &str = "leave out --resume to begin anew, or give the folder o
 const SAME_SCENE: &str = "resume with the scene and the --set values of that run, or leave out --resume to begin anew";
 const SAME_PROGRAM: &str = "resume with the program of that run, or leave out --resume to begin anew";
 
-/// What a file holds behind its check sum. Who reads it knows scene and program.
+/// A run at a whole step.
 #[derive(Debug, Serialize, Deserialize)]
-struct Content<R> {
-    program: String,
-    scene: String,
-    run: R,
-    state: Vec<u8>,
+pub struct Stored {
+    pub(super) run: Record,
+    pub(super) state: Vec<u8>,
+}
+
+/// Where a run of a scene keeps its checkpoint.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// Name in the folder.
+    pub name: String,
+    /// Title of the scene whose checkpoint stands in [`CHECKPOINT`], if that is another scene; it stays.
+    pub other: Option<String>,
+}
+
+/// Where a run of `scene` keeps its checkpoint in a folder: [`CHECKPOINT`], unless the run of another scene has it.
+pub fn find(folder: &Path, scene: &Scene) -> Place {
+    let own = scene_print(scene);
+    let name = format!("checkpoint-{}.bin", &own[..8]);
+    let other = match Head::read(&folder.join(CHECKPOINT)) {
+        Ok(None) => None,
+        Ok(Some(head)) if head.scene == own => None,
+        Ok(Some(head)) => Some(head.title),
+        Err(_) => Some("unknown".to_string()),
+    };
+    let name = if other.is_some() || folder.join(&name).exists() { name } else { CHECKPOINT.to_string() };
+    Place { name, other }
+}
+
+/// Whether a file of an output folder is a checkpoint.
+pub fn is_checkpoint(name: &str) -> bool {
+    name.starts_with("checkpoint") && name.ends_with(".bin")
 }
 
 /// Writes a checkpoint of a run of `scene` by `program`.
 ///
 /// # Errors
 /// If the file cannot be written; the one before it then stays.
-pub(super) fn write<R: Serialize>(
-    path: &Path,
+pub(super) fn write(
+    (out, name): (&OutputFolder, &str),
     program: &str,
     scene: &Scene,
-    run: &R,
+    run: Record,
     state: Vec<u8>,
 ) -> Result<(), OutputError> {
-    let content = Content { program: program.to_string(), scene: canonical(scene), run, state };
-    replace_file(path, |part| {
-        let bytes = postcard::to_stdvec(&content)?;
-        let mut file = Vec::with_capacity(FORM.len() + 4 + bytes.len());
-        file.extend(FORM);
-        file.extend(crc32fast::hash(&bytes).to_le_bytes());
-        file.extend(bytes);
-        Ok(fs::write(part, file)?)
-    })
+    let failed = |error: postcard::Error| OutputError::unwritable(&out.path().join(name), error);
+    let title: String = scene.title.chars().take(TITLE).collect();
+    let head = format!("{FORM}\n{program}\n{}\n{}\n", scene_print(scene), title.escape_debug());
+    let mut bytes = postcard::to_extend(&Stored { run, state }, head.into_bytes()).map_err(failed)?;
+    bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+    out.write(name, bytes)
 }
 
-/// Reads what [`write`] wrote for the same program and scene; `None` if there is no such file.
+/// Reads what a run of the same scene by the same program stored; `None` if there is no such file.
 ///
 /// # Errors
 /// A file that cannot be read, is damaged, or belongs to another scene or program.
-pub(super) fn read<R: for<'de> Deserialize<'de>>(
-    path: &Path,
-    program: &str,
-    scene: &Scene,
-) -> Result<Option<(R, Vec<u8>)>, CheckpointError> {
+pub fn read(path: &Path, program: &str, scene: &Scene) -> Result<Option<Stored>, CheckpointError> {
     let fail = |message: String, remedy| CheckpointError { path: path.to_path_buf(), message, remedy };
-    let file = match fs::read(path) {
-        Ok(file) => file,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(fail(error.to_string(), BEGIN_ANEW)),
-    };
-    let Some((sum, bytes)) = file.strip_prefix(FORM).and_then(|rest| rest.split_first_chunk::<4>()) else {
-        let other = file.starts_with(MAGIC) && !file.starts_with(FORM);
-        let what = if other { "it has the form of another version" } else { "it is no checkpoint, or not all of one" };
-        return Err(fail(what.to_string(), BEGIN_ANEW));
-    };
-    if crc32fast::hash(bytes) != u32::from_le_bytes(*sum) {
+    let Some(head) = Head::read(path).map_err(|message| fail(message, BEGIN_ANEW))? else { return Ok(None) };
+    let bytes = std::fs::read(path).map_err(|error| fail(error.to_string(), BEGIN_ANEW))?;
+    let (content, sum) = bytes.split_last_chunk::<4>().unwrap_or((&[], &[0; 4]));
+    if crc32fast::hash(content) != u32::from_le_bytes(*sum) {
         return Err(fail("its check sum is wrong, so it is damaged".to_string(), BEGIN_ANEW));
     }
-    // The program comes first: another one may have another form of all that follows.
-    let (writer, _) = postcard::take_from_bytes::<String>(bytes).map_err(|e| fail(e.to_string(), BEGIN_ANEW))?;
-    if writer != program {
-        return Err(fail(format!("it is of {writer}, and this is {program}"), SAME_PROGRAM));
+    if head.program != program {
+        return Err(fail(format!("it is of {}, and this is {program}", head.program), SAME_PROGRAM));
     }
-    let content: Content<R> = postcard::from_bytes(bytes).map_err(|e| fail(e.to_string(), BEGIN_ANEW))?;
-    if content.scene != canonical(scene) {
-        return Err(fail("it is of another scene".to_string(), SAME_SCENE));
+    if head.scene != scene_print(scene) {
+        return Err(fail(format!("it is of another scene, {:?}", head.title), SAME_SCENE));
     }
-    Ok(Some((content.run, content.state)))
+    let stored = postcard::from_bytes(content.get(head.length..).unwrap_or_default());
+    stored.map(Some).map_err(|error| fail(error.to_string(), BEGIN_ANEW))
 }
 
-/// The scene in SI units with every value that was left out, digits that read back to the same number.
-fn canonical(scene: &Scene) -> String {
-    format!("{scene:?}")
+/// The lines before the binary part.
+struct Head {
+    program: String,
+    scene: String,
+    title: String,
+    /// In bytes.
+    length: usize,
+}
+
+impl Head {
+    /// `None` if there is no file; otherwise, if it is no checkpoint, why.
+    fn read(path: &Path) -> Result<Option<Self>, String> {
+        let file = match File::open(path) {
+            Ok(file) => file,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(error.to_string()),
+        };
+        let mut reader = BufReader::new(file);
+        let mut length = 0;
+        let mut line = || {
+            let mut line = Vec::new();
+            reader.by_ref().take(LINE).read_until(b'\n', &mut line).map_err(|e| e.to_string())?;
+            length += line.len();
+            match line.pop() {
+                Some(b'\n') => String::from_utf8(line).map_err(|e| e.to_string()),
+                _ => Err("it is no checkpoint, or not all of one".to_string()),
+            }
+        };
+        match line()? {
+            form if form == FORM => {}
+            form if form.starts_with(MAGIC) => return Err("it has the form of another version".to_string()),
+            _ => return Err("it is no checkpoint".to_string()),
+        }
+        let [program, scene, title] = [line()?, line()?, line()?];
+        Ok(Some(Self { program, scene, title, length }))
+    }
+}
+
+/// Fingerprint of the scene in SI units with every value that was left out, digits that read back to the same number.
+fn scene_print(scene: &Scene) -> String {
+    fingerprint([format!("{scene:?}")])
 }
 
 impl CheckpointError {

@@ -1,6 +1,5 @@
 //! Runs that survive: a checkpoint at intervals and on interrupt, and runs taken up from one.
 
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -8,15 +7,17 @@ use fisura::scene::Scene;
 use fisura::simulation::{ResumeError, Simulation};
 use thiserror::Error;
 
-use super::checkpoint::{self, CheckpointError};
+use super::checkpoint::{self, CheckpointError, Stored};
 use super::{OnFrame, Progress, Record, Run, SceneRun, timed};
-use crate::output::OutputError;
+use crate::output::{OutputError, OutputFolder};
 
 /// How a run is kept safe.
 #[derive(Debug)]
 pub struct Keep<'a> {
-    /// File of the checkpoint.
-    pub path: PathBuf,
+    /// Folder of the checkpoint.
+    pub out: &'a OutputFolder,
+    /// Its name there; see [`checkpoint::find`].
+    pub name: String,
     /// Name and version of the program: only the same one goes on with the same bits.
     pub program: String,
     /// Wall time between checkpoints.
@@ -45,8 +46,7 @@ pub enum KeepError {
     Output(#[from] OutputError),
 }
 
-/// Runs a valid scene as [`run_scene`](super::run_scene) does, storing checkpoints. With `resume` it goes on from the one that is
-/// there, if there is one: history and frames are then, bit by bit, those of a run that nobody disturbed.
+/// Runs a valid scene as [`run_scene`](super::run_scene) does, storing checkpoints. From a `stored` one it goes on: history and frames are then, bit by bit, those of a run that nobody disturbed.
 ///
 /// A checkpoint that cannot be written at an interval is a warning in the summary, and tried again at the next.
 ///
@@ -55,13 +55,12 @@ pub enum KeepError {
 pub fn run_scene_kept(
     scene: &Scene,
     keep: &Keep<'_>,
-    resume: bool,
+    stored: Option<Stored>,
     progress: &mut dyn FnMut(Progress),
     on_frame: &mut OnFrame<'_>,
 ) -> Result<Outcome, KeepError> {
-    let stored = if resume { checkpoint::read(&keep.path, &keep.program, scene)? } else { None };
     let (record, state): (Record, Option<Vec<u8>>) =
-        stored.map_or_else(Default::default, |(record, state)| (record, Some(state)));
+        stored.map_or_else(Default::default, |stored| (stored.run, Some(stored.state)));
     let mut run = Run::new(scene, record);
     let prepared = timed(&mut run.record.stages.preparation, || match &state {
         Some(state) => Simulation::resume(scene, state),
@@ -73,7 +72,9 @@ pub fn run_scene_kept(
         Err(ResumeError::Breakdown(breakdown)) => {
             return Ok(Outcome::Ended(Box::new(run.finish(None, Some(breakdown), None))));
         }
-        Err(ResumeError::State(error)) => return Err(CheckpointError::unfit(&keep.path, error.to_string()).into()),
+        Err(ResumeError::State(error)) => {
+            return Err(CheckpointError::unfit(&keep.out.path().join(&keep.name), error.to_string()).into());
+        }
     };
     keeper.stored_time = state.is_some().then(|| simulation.time());
     let mut stop = |run: &Run<'_>, simulation: &mut Simulation| keeper.after_step(run, simulation);
@@ -118,11 +119,10 @@ impl Keeper<'_> {
     }
 
     fn store(&mut self, run: &Run<'_>, simulation: &mut Simulation) -> Result<(), OutputError> {
-        let Keep { path, program, .. } = self.keep;
-        let state =
-            simulation.checkpoint().map_err(|error| OutputError { path: path.clone(), message: error.to_string() })?;
+        let Keep { out, name, program, .. } = self.keep;
+        let state = simulation.checkpoint().map_err(|error| OutputError::unwritable(&out.path().join(name), error))?;
         let record = Record { wall_s: run.wall_s(), ..run.record.clone() };
-        checkpoint::write(path, program, run.scene, &record, state)?;
+        checkpoint::write((out, name), program, run.scene, record, state)?;
         self.stored_time = Some(simulation.time());
         Ok(())
     }

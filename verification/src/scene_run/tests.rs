@@ -69,12 +69,13 @@ fn a_breakdown_keeps_what_was_computed_and_is_written() {
     assert_eq!(run.frames.len(), 1);
 
     let folder = tempfile::tempdir().unwrap();
-    assert_eq!(run.write(folder.path()).unwrap(), ["history.csv", "summary.json", "breakdown.json"]);
+    let out = crate::output::OutputFolder::open(folder.path(), "run").unwrap();
+    assert_eq!(run.write(&out).unwrap(), ["history.csv", "summary.json", "breakdown.json"]);
     assert_eq!(Table::read(&folder.path().join("history.csv")).unwrap(), run.history);
     let text = std::fs::read_to_string(folder.path().join("summary.json")).unwrap();
     let summary: Summary = serde_json::from_str(&text).unwrap();
     assert_eq!(summary.breakdown.unwrap().step, breakdown.step);
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3, "no temporary file is left");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3 + 2, "beside manifest and lock; no temporary file");
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! One case: run its study, hold what it found against its bounds.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::time::Instant;
 
 use super::prepare::{Planned, Prepared, bounds_around, find_band};
@@ -9,6 +8,7 @@ use super::{CaseOutcome, VerifyError, write_series};
 use crate::case::{Case, Check};
 use crate::expand::CaseScene;
 use crate::measure::{Measured, expected};
+use crate::output::OutputFolder;
 use crate::record::{Accept, BoundKind, Expectation, Record, Status, Timing};
 use crate::reference::{Library, ReferenceBand};
 use crate::study::scene::{FinishedScene, describe, evaluate, run_scenes};
@@ -19,7 +19,7 @@ use crate::watch::{self, Stopped};
 pub(super) fn run_case(
     case: &Case,
     prepared: &Prepared,
-    out: &Path,
+    out: &OutputFolder,
     library: &Library,
 ) -> Result<CaseOutcome, VerifyError> {
     match find(&case.study) {
@@ -43,7 +43,7 @@ fn judge_runs(
     Prepared { scenes, records }: &Prepared,
     finished: &[FinishedScene],
     stopped: Option<&Stopped>,
-    out: &Path,
+    out: &OutputFolder,
     library: &Library,
 ) -> Result<CaseOutcome, VerifyError> {
     let mut outcome = CaseOutcome { records: Vec::new(), figures: Vec::new(), runs: Vec::new() };
@@ -103,7 +103,7 @@ fn judge_study(
     case: &Case,
     prepared: &Prepared,
     study: &Study,
-    out: &Path,
+    out: &OutputFolder,
     library: &Library,
 ) -> Result<CaseOutcome, VerifyError> {
     let start = Instant::now();

@@ -1,15 +1,14 @@
 //! The parts of a plan joined: what one run of the whole plan writes, byte for byte but for times and environment.
 
 use std::collections::{BTreeMap, HashMap};
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
 use super::part::{PART_FILE, PART_SCHEMA, Part, fingerprint, folder_fingerprint};
-use super::{CaseOutcome, VerifyError, assemble, remove_old_results};
+use super::{CaseOutcome, VerifyError, assemble};
 use crate::foreign;
-use crate::output::write;
+use crate::output::OutputFolder;
 use crate::record::{Environment, ResultSet};
 use crate::reference::{Library, ReferenceError};
 
@@ -84,9 +83,6 @@ pub enum MergeError {
     /// The figures would be drawn beside other references than those the checks used.
     #[error("the reference data here are not those of the parts")]
     OtherReferences,
-    /// The results would be written over a part.
-    #[error("{} is one of the parts; the joined results need a folder of their own", .0.display())]
-    OverPart(PathBuf),
     /// Reference data are wrong.
     #[error(transparent)]
     Reference(#[from] ReferenceError),
@@ -105,7 +101,12 @@ fn list(slices: &[usize]) -> String {
 /// # Errors
 /// Parts of different plans or programs, emptied or edited ones, slices missing or doubled, files that cannot be read or
 /// written; nothing is written then but what the last one leaves.
-pub fn merge(folders: &[PathBuf], out: &Path, reference_data: &Path, sources: &str) -> Result<ResultSet, MergeError> {
+pub fn merge(
+    folders: &[PathBuf],
+    out: &OutputFolder,
+    reference_data: &Path,
+    sources: &str,
+) -> Result<ResultSet, MergeError> {
     let parts = folders.iter().map(|folder| read(folder)).collect::<Result<Vec<Part>, _>>()?;
     let Some(first) = parts.first() else { return Err(MergeError::Missing { count: 0, slices: Vec::new() }) };
     check(folders, &parts)?;
@@ -118,22 +119,14 @@ pub fn merge(folders: &[PathBuf], out: &Path, reference_data: &Path, sources: &s
     for (folder, name, print) in files(folders, &parts) {
         content(folder, name, print)?;
     }
-    let same = |folder: &&PathBuf| fs::canonicalize(folder).ok().is_some_and(|f| fs::canonicalize(out).ok() == Some(f));
-    if let Some(part) = folders.iter().find(same) {
-        return Err(MergeError::OverPart(part.clone()));
-    }
     let environment = environment(&parts);
     let plan = first.plan.clone();
     let inputs = parts.iter().flat_map(|part| part.inputs.clone()).collect();
     let outcomes = outcomes(plan.cases, &parts)?;
     let library = Library::load(reference_data)?;
-    remove_old_results(out);
+    out.begin(|_| false).map_err(VerifyError::from)?;
     for (folder, name, print) in files(folders, &parts) {
-        let path = out.join(name);
-        if let Some(above) = path.parent() {
-            fs::create_dir_all(above).map_err(|e| VerifyError::output(above, e))?;
-        }
-        write(&path, content(folder, name, print)?).map_err(VerifyError::from)?;
+        out.write(name, content(folder, name, print)?).map_err(VerifyError::from)?;
     }
     Ok(assemble(out, outcomes, inputs, environment, &library)?)
 }

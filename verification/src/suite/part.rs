@@ -9,8 +9,7 @@ use sha2::{Digest, Sha256};
 use super::partition::Slice;
 use super::{CaseOutcome, Selection, VerifyError};
 use crate::case::Case;
-use crate::foreign;
-use crate::output::write_json;
+use crate::output::OutputFolder;
 use crate::record::Environment;
 
 /// Name of the schema written and read.
@@ -143,19 +142,15 @@ impl Part {
         fingerprint([serde_json::to_vec(&content).unwrap_or_default()]) // plain data, which JSON can hold
     }
 
-    pub(super) fn write(self, out: &Path) -> Result<(), VerifyError> {
-        Ok(write_json(&out.join(PART_FILE), &self.sealed())?)
+    pub(super) fn write(self, out: &OutputFolder) -> Result<(), VerifyError> {
+        Ok(out.write_json(PART_FILE, &self.sealed())?)
     }
 }
 
-/// Fingerprints of the series files in a results folder, by their names.
-pub(super) fn series_fingerprints(out: &Path) -> Result<BTreeMap<String, String>, VerifyError> {
-    let names = foreign::series_files(out).map_err(|e| VerifyError::output(out, e))?;
-    let print = |name: String| {
-        let bytes = foreign::read(out, &name, foreign::SERIES_BYTES);
-        bytes.map(|bytes| (name.clone(), fingerprint([bytes]))).map_err(|e| VerifyError::output(&out.join(&name), e))
-    };
-    names.into_iter().map(print).collect()
+/// Fingerprints of the series files that were written into a results folder, by their names.
+pub(super) fn series_fingerprints(out: &OutputFolder) -> BTreeMap<String, String> {
+    let names = out.files().into_iter().filter(|name| name.starts_with("series/"));
+    names.filter_map(|name| Some((fingerprint([out.read(&name)?]), name))).map(|(print, name)| (name, print)).collect()
 }
 
 /// The first 16 hexadecimal digits of the SHA-256 of some texts, each ended by a zero byte.

@@ -1,54 +1,70 @@
 //! Finished cases of an interrupted run, kept in `partial/` of the results folder until the run is complete.
 //!
-//! An outcome is taken up only if commit, case file and overrides are the same and the work tree has no changes.
+//! An outcome is taken up only if program, case file, overrides and reference data are the same, and nobody changed the file.
 
-use std::hash::{DefaultHasher, Hash, Hasher};
-use std::path::PathBuf;
+use std::sync::Arc;
 
+use super::part::{fingerprint, folder_fingerprint};
 use super::{CaseOutcome, Options, VerifyError};
 use crate::case::Case;
-use crate::output::write_json;
+use crate::output::OutputFolder;
+
+const FOLDER: &str = "partial/";
 
 /// Outcomes on disk.
+#[derive(Debug)]
 pub(super) struct Store {
-    folder: PathBuf,
-    commit: String,
-    trusted: bool,
+    out: Arc<OutputFolder>,
+    /// What outcomes depend on beside their case; none if no outcome is stored or taken up.
+    basis: Option<String>,
+    /// Whether there are cases to take up.
+    goes_on: bool,
 }
 
 impl Store {
-    pub(super) fn open(options: &Options) -> Result<Self, VerifyError> {
-        let folder = options.out.join("partial");
-        std::fs::create_dir_all(&folder).map_err(|e| VerifyError::output(&folder, e))?;
-        let environment = &options.environment;
-        let trusted = options.resume && !environment.dirty && !environment.commit.is_empty();
-        Ok(Self { folder, commit: environment.commit.clone(), trusted })
+    /// # Errors
+    /// If outcomes are there that this run would not take up because it is not to, or reference data cannot be read.
+    pub(super) fn open(cases: &[Case], options: &Options) -> Result<Self, VerifyError> {
+        let out = Arc::clone(&options.out);
+        let stored = out.files().into_iter().filter(|name| name.starts_with(FOLDER)).count();
+        if !options.resume && stored > 0 {
+            return Err(VerifyError::Interrupted { folder: out.path().to_path_buf(), cases: stored });
+        }
+        let basis = if options.resume {
+            Some(fingerprint([options.program, &folder_fingerprint(options.reference_data)?]))
+        } else {
+            None
+        };
+        let mut store = Self { out, basis, goes_on: false };
+        store.goes_on = stored > 0 && cases.iter().any(|case| store.load(case).is_some());
+        Ok(store)
     }
 
-    fn path(&self, case: &Case) -> PathBuf {
-        let mut hasher = DefaultHasher::new();
-        (&self.commit, case.document.text(), format!("{:?}", case.document.root)).hash(&mut hasher);
-        self.folder.join(format!("{}-{}-{:016x}.json", case.suite, case.name, hasher.finish()))
+    fn name(&self, case: &Case) -> Option<String> {
+        let content = format!("{:?}", case.document.root); // with the overrides
+        let print = fingerprint([self.basis.as_ref()?.as_str(), case.document.text(), &content]);
+        Some(format!("{FOLDER}{}-{}-{print}.json", case.suite, case.name))
     }
 
-    /// Whether there may be cases to take up.
-    pub(super) fn has_finished_cases(&self) -> bool {
-        self.trusted && std::fs::read_dir(&self.folder).is_ok_and(|mut entries| entries.next().is_some())
+    /// Whether a file of the run before belongs to the cases that are taken up.
+    pub(super) fn keeps(&self, name: &str) -> bool {
+        self.goes_on && (name.starts_with(FOLDER) || name.starts_with("series/"))
     }
 
     pub(super) fn load(&self, case: &Case) -> Option<CaseOutcome> {
-        if !self.trusted {
-            return None;
-        }
-        serde_json::from_slice(&std::fs::read(self.path(case)).ok()?).ok()
+        serde_json::from_slice(&self.out.read(&self.name(case)?)?).ok()
     }
 
     pub(super) fn save(&self, case: &Case, outcome: &CaseOutcome) -> Result<(), VerifyError> {
-        Ok(write_json(&self.path(case), outcome)?)
+        match self.name(case) {
+            Some(name) => Ok(self.out.write_json(&name, outcome)?),
+            None => Ok(()),
+        }
     }
 
-    /// The run is complete: nothing is left to take up. A folder that cannot be removed does no harm.
-    pub(super) fn finish(self) {
-        let _ = std::fs::remove_dir_all(self.folder);
+    /// The run is complete: nothing is left to take up.
+    pub(super) fn finish(&self) -> Result<(), VerifyError> {
+        let stored = self.out.files().into_iter().filter(|name| name.starts_with(FOLDER));
+        Ok(stored.into_iter().try_for_each(|name| self.out.remove(&name))?)
     }
 }

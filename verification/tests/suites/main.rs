@@ -13,7 +13,7 @@ use fisura_verification::record::{Environment, FigureBody, ResultSet, Status, Ti
 use fisura_verification::reference::Library;
 use fisura_verification::study::scene::RunInfo;
 use fisura_verification::suite::prepare::prepare;
-use fisura_verification::suite::{Selection, Tier, load_cases, select};
+use fisura_verification::suite::{CaseOutcome, Selection, Tier, load_cases, select};
 use support::{CLOSURE, Killed, SCENE, repository, run, run_watched, write_case};
 
 #[test]
@@ -154,12 +154,18 @@ fn two_runs_agree_and_a_clean_commit_takes_up_finished_cases() {
     std::panic::catch_unwind(killed).unwrap_err();
     let kept = std::fs::read_dir(root.path().join("out/partial")).unwrap().count();
     assert_eq!(kept, 1, "case a was finished before case b started");
-    let marked = root.path().join("out/partial").read_dir().unwrap().next().unwrap().unwrap().path();
-    let text = std::fs::read_to_string(&marked).unwrap().replace("a trial", "a trial taken up");
-    std::fs::write(&marked, text).unwrap();
+    let unfinished = std::fs::read_to_string(root.path().join("out/results.json")).unwrap();
+    assert!(unfinished.contains("0 of 2 cases are finished"), "nothing of the complete run before is left");
+    let stored = root.path().join("out/partial").read_dir().unwrap().next().unwrap().unwrap().path();
+    let text = std::fs::read_to_string(&stored).unwrap();
+    std::fs::write(&stored, text.replace("a trial", "no trial")).unwrap();
+    let error = run(root.path(), clean()).unwrap_err().to_string();
+    assert!(error.contains("changed since they were written: partial/trial-a-"), "{error}");
+    std::fs::write(&stored, &text).unwrap();
     let resumed = run(root.path(), clean()).unwrap();
-    assert_eq!(resumed.records[0].claim, "a trial taken up");
-    assert_eq!(resumed.records[1].claim, "a trial");
+    let finished: CaseOutcome = serde_json::from_str(&text).unwrap();
+    assert_eq!(resumed.records[0].timing, finished.records[0].timing, "case a is taken up, not run again");
+    assert_eq!(resumed.records.len(), 2);
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! A small scene, and suites of cases with it.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
+use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{Environment, Record, ResultSet};
 use fisura_verification::suite::{Case, Options, Progress, VerifyError, load_cases, verify};
 
@@ -81,8 +83,9 @@ pub fn run_watched(
 ) -> Result<ResultSet, VerifyError> {
     let cases = load_cases(&root.join("cases"), &[])?;
     let reference_data = repository("reference-data");
-    let out = root.join("out");
-    let options = Options { out: &out, reference_data: &reference_data, environment, resume: true, case_timeout };
+    let out = Arc::new(OutputFolder::open(&root.join("out"), "verify")?);
+    let (program, reference_data) = (environment.commit.clone(), &*reference_data);
+    let options = Options { out, reference_data, environment, program: &program, resume: true, case_timeout };
     verify(&cases, &options, progress)
 }
 

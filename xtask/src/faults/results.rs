@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use fisura_verification::output::{OutputError, write, write_json};
+use fisura_verification::output::{OutputError, OutputFolder};
 use fisura_verification::record::{ResultSet, Status};
 use serde::Serialize;
 
@@ -48,6 +48,11 @@ impl CaseRun {
     pub fn read(case: &str, folder: &Path, output: &Output) -> Self {
         let results = fs::read_to_string(folder.join("results.json")).ok();
         let results = results.and_then(|text| serde_json::from_str::<ResultSet>(&text).ok());
+        // those of an earlier run that this one refused to replace, or of one that did not come to its end, are none
+        let ran = output.status.code().is_some_and(|code| {
+            [Exit::Done, Exit::CheckFailed, Exit::BrokeDown].iter().any(|exit| *exit as i32 == code)
+        });
+        let results = results.filter(|results| ran && !results.is_unfinished());
         let outcome = results
             .map(|results| results.records.into_iter().map(|record| (record.id, record.status)).collect())
             .ok_or_else(|| {
@@ -110,9 +115,10 @@ impl Results {
     ///
     /// # Errors
     /// If they cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<(), OutputError> {
-        write_json(&folder.join("faults.json"), self)?;
-        write(&folder.join("faults.md"), self.markdown())
+    pub fn write(&self, folder: &OutputFolder) -> Result<(), OutputError> {
+        folder.write_json("faults.json", self)?;
+        folder.write("faults.md", self.markdown())?;
+        folder.finish()
     }
 
     /// One line per fault.

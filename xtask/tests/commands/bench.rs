@@ -6,7 +6,7 @@ use super::support::Place;
 const SOURCE: &str = "citation = \"Nobody (1900)\"\nobtained = \"text\"\nkind = \"literature\"\nmodel = \"none\"\n\
                       resolution = \"none\"\n";
 
-fn workspace() -> Place {
+pub fn workspace() -> Place {
     let mut place = Place::with("Cargo.toml", "[workspace]\n");
     place.write("reference-data/nobody-1900/source.toml", SOURCE);
     place.manifest = Some(place.path("xtask"));

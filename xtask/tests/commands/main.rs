@@ -6,6 +6,7 @@ mod compare;
 mod figures;
 mod help;
 mod merge;
+mod output;
 mod report;
 mod resume;
 mod run;

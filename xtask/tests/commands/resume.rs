@@ -78,6 +78,55 @@ fn an_interrupted_run_stores_where_it_is_and_ends_with_130() {
     }
 }
 
+/// Starts a run in `killed` and interrupts it once its checkpoint of that name is there.
+#[cfg(unix)]
+fn interrupt(place: &Place, name: &str, more: &[&str]) -> String {
+    let scene = ["run", "plate.toml", "--threads", "2", "--out", "killed"];
+    let mut command = place.command(&[&scene[..], &OFTEN, more].concat());
+    let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the binary starts");
+    let clock = Instant::now();
+    while !place.path("killed").join(name).exists() && clock.elapsed() < Duration::from_secs(60) {
+        sleep(Duration::from_millis(5));
+    }
+    let id = child.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-INT", &id]).status().expect("kill").success());
+    let output = child.wait_with_output().expect("it ends");
+    let err = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(130), "{err}");
+    err
+}
+
+#[cfg(unix)]
+#[test]
+fn the_checkpoint_of_another_scene_is_kept_and_named() {
+    let place = plate();
+    let run = ["run", "plate.toml", "--threads", "2", "--out"];
+    place.xtask(&[&run[..], &["undisturbed"]].concat()).with_status(0);
+    interrupt(&place, "checkpoint.bin", &[]);
+    let first = std::fs::read(place.path("killed/checkpoint.bin")).expect("a checkpoint");
+    let head = String::from_utf8_lossy(&first[..200]).into_owned();
+    let head: Vec<&str> = head.lines().take(4).collect();
+    assert_eq!((head[0], head[3]), ("fisura checkpoint 2", "Block"));
+    assert!(head[1].starts_with("fisura 0.1.0 of commit ") && head[2].len() == 16, "{head:?}");
+
+    let other = ["--set", "output.samples=100"];
+    let names = place.files("killed");
+    let title = ["checkpoint.bin is of an interrupted run of another scene, \"Block\"", "kept"];
+    let done = place.xtask(&[&run[..], &["killed"], &other].concat()).with_status(0).complains_of(&title);
+    assert!(done.err.contains("stores its own in checkpoint-"), "{done:?}");
+    assert!(std::fs::read(place.path("killed/checkpoint.bin")).expect("a checkpoint") == first);
+    let own = done.err.split("its own in ").nth(1).expect("a name").trim().to_string();
+    interrupt(&place, &own, &other);
+    assert_eq!(place.files("killed"), [own.as_str(), names[0].as_str()]);
+    place.xtask(&[&run[..], &["killed", "--resume"]].concat()).with_status(0);
+    for name in place.files("undisturbed").iter().filter(|name| *name != "summary.json") {
+        assert!(place.read(&format!("killed/{name}")) == place.read(&format!("undisturbed/{name}")), "{name} differs");
+    }
+    assert!(place.files("killed").contains(&own) && !place.files("killed").contains(&names[0]));
+    let resumed = place.xtask(&[&run[..], &["killed", "--resume"], &other].concat()).with_status(0);
+    assert!(resumed.err.is_empty() && !place.files("killed").contains(&own), "{resumed:?}");
+}
+
 #[test]
 fn without_a_checkpoint_the_run_begins_at_the_start_and_says_so() {
     let place = Place::with("block.toml", super::support::BLOCK);

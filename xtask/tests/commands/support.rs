@@ -121,11 +121,12 @@ impl Place {
         fs::read_to_string(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
-    /// Names of the files in a folder, sorted.
+    /// Names of the files in a folder, sorted, without manifest and lock.
     pub fn files(&self, name: &str) -> Vec<String> {
         let entries = fs::read_dir(self.path(name)).expect("a folder");
         let mut names: Vec<String> =
             entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+        names.retain(|name| !["fisura.sha256", ".fisura.lock"].contains(&name.as_str()));
         names.sort();
         names
     }

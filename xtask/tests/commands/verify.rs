@@ -150,14 +150,3 @@ fn a_case_beyond_its_time_ends_with_3_and_the_others_are_there() {
         place.xtask(&["verify", &timeout]).with_status(2).complains_of(&["case-timeout"]);
     }
 }
-
-#[test]
-fn a_report_that_cannot_be_written_does_not_hide_what_the_checks_say() {
-    let place = workspace();
-    place.xtask(&["verify", "--out", "out"]).with_status(0);
-    std::fs::remove_file(place.path("out/junit.xml")).expect("a file");
-    std::fs::create_dir_all(place.path("out/junit.xml/in-the-way")).expect("a folder");
-    place.xtask(&["verify", "--out", "out"]).with_status(2).complains_of(&["junit.xml"]);
-    let changes = ["--set", "analysis.time_step=1 us", "--set", "analysis.end_time=500 us", "--out", "out"];
-    place.xtask(&[&["verify"][..], &changes].concat()).with_status(3).complains_of(&["junit.xml"]);
-}

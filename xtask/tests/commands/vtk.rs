@@ -77,6 +77,7 @@ fn without_vtk_there_are_no_files_for_paraview_and_those_of_the_run_before_go() 
 #[test]
 fn a_file_for_paraview_that_cannot_be_written_costs_nothing_else() {
     let place = Place::with("scene.toml", BLOCK);
+    place.xtask(&RUN).with_status(0);
     place.write("out/points-0.vtu/file", "in the way");
     let run = place.xtask(&[&RUN[..], &["--vtk"]].concat()).with_status(2);
     run.complains_of(&["points-0.vtu cannot be written", "the run goes on", "--out"]);

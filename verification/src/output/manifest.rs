@@ -1,0 +1,138 @@
+//! What was written into a folder: `fisura.sha256`, which `sha256sum -c` reads.
+//!
+//! While a command runs, lines are appended before the files they list are renamed to their names, so a name may be listed with
+//! several hashes; at the beginning and the end of a command the list is written anew.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs::{self, File};
+use std::io::{Seek, SeekFrom, Write};
+use std::path::Path;
+use std::time::SystemTime;
+
+use sha2::{Digest, Sha256};
+
+use super::error::OutputError;
+use super::lock::LOCK;
+use super::temporary;
+
+/// Name of the list.
+pub const MANIFEST: &str = "fisura.sha256";
+
+/// Begins the first line, which ends with the command that the folder belongs to.
+const SCHEMA: &str = "# fisura.manifest/1 ";
+const UNFINISHED: &str = "# unfinished: a command is writing here, or was interrupted";
+
+/// What is known of a file.
+#[derive(Debug, Default)]
+pub(super) struct Entry {
+    /// Hashes of what may have been written.
+    pub hashes: Vec<String>,
+    /// Length and time of change after this process wrote it.
+    pub seen: Option<(u64, Option<SystemTime>)>,
+}
+
+/// The list of a folder.
+#[derive(Debug)]
+pub(super) struct Manifest {
+    /// Command that the folder belongs to; empty if nothing was written yet.
+    pub owner: String,
+    pub finished: bool,
+    pub files: BTreeMap<String, Entry>,
+    /// Where lines are appended, once there is one.
+    journal: Option<File>,
+}
+
+/// Reads the list of a folder; an empty folder has an empty one.
+///
+/// # Errors
+/// A folder that holds something and has no list, or cannot be read.
+pub(super) fn read(folder: &Path) -> Result<Manifest, OutputError> {
+    let path = folder.join(MANIFEST);
+    // through a link it would be that of another folder
+    let text = if fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
+        fs::read(&path).map_err(|e| OutputError::folder(folder, e))?
+    } else {
+        Vec::new()
+    };
+    if let Some(manifest) = parse(&String::from_utf8_lossy(&text)) {
+        return Ok(manifest);
+    }
+    let entries = fs::read_dir(folder).map_err(|e| OutputError::folder(folder, e))?;
+    for entry in entries {
+        let name = entry.map_err(|e| OutputError::folder(folder, e))?.file_name();
+        if name != LOCK && !temporary::is_temporary(&name.to_string_lossy()) {
+            return Err(OutputError::without_manifest(folder));
+        }
+    }
+    Ok(Manifest { owner: String::new(), finished: false, files: BTreeMap::new(), journal: None })
+}
+
+/// Lines that are no entries, such as half of one that was being written, list nothing.
+fn parse(text: &str) -> Option<Manifest> {
+    let mut lines = text.split_inclusive('\n').filter_map(|line| line.strip_suffix('\n'));
+    let owner = lines.next()?.strip_prefix(SCHEMA)?.to_string();
+    let mut finished = true;
+    let mut files: BTreeMap<String, Entry> = BTreeMap::new();
+    for line in lines {
+        finished &= line != UNFINISHED;
+        let Some((hash, name)) = line.split_once("  ") else { continue };
+        if hash.len() == 64 && hash.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+            files.entry(name.to_string()).or_default().hashes.push(hash.to_string());
+        }
+    }
+    Some(Manifest { owner, finished, files, journal: None })
+}
+
+impl Manifest {
+    /// Whether lines were appended.
+    pub(super) fn has_journal(&self) -> bool {
+        self.journal.is_some()
+    }
+
+    /// Writes the whole list.
+    pub(super) fn store(&mut self, folder: &Path) -> Result<(), OutputError> {
+        let path = folder.join(MANIFEST);
+        let failed = |error: &dyn std::fmt::Display| OutputError::unwritable(&path, error);
+        let mut text = format!("{SCHEMA}{}\n", self.owner);
+        if !self.finished {
+            text.push_str(UNFINISHED);
+            text.push('\n');
+        }
+        for (name, entry) in &self.files {
+            for hash in &entry.hashes {
+                let _ = writeln!(text, "{hash}  {name}"); // a String takes anything
+            }
+        }
+        let mut file = temporary::create(folder).map_err(|e| failed(&e))?;
+        file.write_all(text.as_bytes()).map_err(|e| failed(&e))?;
+        file.as_file().sync_all().map_err(|e| failed(&e))?;
+        self.journal = Some(file.persist(&path).map_err(|e| failed(&e.error))?);
+        Ok(())
+    }
+
+    /// Adds names with hashes to the list.
+    pub(super) fn append(&mut self, folder: &Path, lines: &[(&str, &str)]) -> Result<(), OutputError> {
+        if self.journal.is_none() {
+            self.store(folder)?;
+        }
+        let Some(journal) = &mut self.journal else { return Ok(()) };
+        let text: String = lines.iter().map(|(name, hash)| format!("{hash}  {name}\n")).collect();
+        let written = journal.seek(SeekFrom::End(0)).and_then(|end| {
+            let written = journal.write_all(text.as_bytes()).and_then(|()| journal.sync_data());
+            written.inspect_err(|_| {
+                let _ = journal.set_len(end); // half a line would spoil the next one
+            })
+        });
+        written.map_err(|error| OutputError::unwritable(&folder.join(MANIFEST), error))?;
+        for (name, hash) in lines {
+            self.files.entry((*name).to_string()).or_default().hashes.push((*hash).to_string());
+        }
+        Ok(())
+    }
+}
+
+/// SHA-256 in hexadecimal digits.
+pub(super) fn hash(content: &[u8]) -> String {
+    Sha256::digest(content).iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,104 @@
+//! A verification under way: which cases are finished, and at any moment the results that they give.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::part::{PART_SCHEMA, Part, Plan, series_fingerprints};
+use super::partition::Slice;
+use super::prepare::{Prepared, prepare};
+use super::resume::Store;
+use super::supervise::Ended;
+use super::{Case, CaseOutcome, Options, Progress, VerifyError, assemble, inputs, judge, run_case};
+use crate::record::{Record, ResultSet};
+use crate::reference::Library;
+
+/// Cases that are being run into a folder.
+#[derive(Debug)]
+pub struct Session<'a> {
+    cases: &'a [Case],
+    slice: Option<(Slice, Plan)>,
+    options: &'a Options<'a>,
+    library: Arc<Library>,
+    prepared: Vec<Arc<Prepared>>,
+    store: Store,
+    outcomes: Mutex<Vec<CaseOutcome>>,
+}
+
+impl<'a> Session<'a> {
+    /// Removes the results of the run before from the folder and leaves there, until the cases are finished, results that say
+    /// so. `slice` is what the cases are of a plan, if they are not the whole.
+    ///
+    /// # Errors
+    /// Wrong cases or reference data, finished cases of an interrupted run that this one would not go on with, a folder that cannot be
+    /// written.
+    pub fn begin(
+        cases: &'a [Case],
+        slice: Option<(Slice, Plan)>,
+        options: &'a Options<'a>,
+    ) -> Result<Self, VerifyError> {
+        let library = Arc::new(Library::load(options.reference_data)?);
+        let prepared = cases.iter().map(|case| Ok(Arc::new(prepare(case, &library)?)));
+        let prepared = prepared.collect::<Result<_, VerifyError>>()?;
+        let store = Store::open(cases, options)?;
+        options.out.begin(|name| store.keeps(name))?;
+        let session = Self { cases, slice, options, library, prepared, store, outcomes: Mutex::default() };
+        session.results()?;
+        Ok(session)
+    }
+
+    /// Runs the cases that no interrupted run finished.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn run(&self, progress: &dyn Progress) -> Result<(), VerifyError> {
+        for (index, (case, prepared)) in self.cases.iter().zip(&self.prepared).enumerate() {
+            progress.started(case, index, self.cases.len());
+            let outcome = match self.store.load(case) {
+                Some(outcome) => outcome,
+                None => match run_case(case, prepared, self.options, &self.library, progress) {
+                    Ended::InTime(outcome) => {
+                        let outcome = outcome?;
+                        self.store.save(case, &outcome)?;
+                        outcome
+                    }
+                    // to be tried again, and not taken up
+                    Ended::Stopped(outcome) => outcome?,
+                    Ended::Broken(message) => judge::broken(case, prepared, &message),
+                },
+            };
+            progress.finished(case, &outcome.records);
+            self.outcomes.lock().unwrap_or_else(PoisonError::into_inner).push(outcome);
+        }
+        Ok(())
+    }
+
+    /// Number of finished cases, and of all.
+    pub fn finished(&self) -> (usize, usize) {
+        (self.outcomes.lock().unwrap_or_else(PoisonError::into_inner).len(), self.cases.len())
+    }
+
+    /// Writes the results of the finished cases. As long as others are to come, a record of status error says so; then a slice
+    /// leaves its part as well.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn results(&self) -> Result<ResultSet, VerifyError> {
+        let mut outcomes = self.outcomes.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let (finished, all) = (outcomes.len(), self.cases.len());
+        let Options { out, environment, .. } = self.options;
+        let inputs = inputs(self.cases);
+        if finished < all {
+            let records = vec![Record::unfinished(finished, all)];
+            outcomes.push(CaseOutcome { records, figures: Vec::new(), runs: Vec::new() });
+            return assemble(out, outcomes, inputs, environment.clone(), &self.library);
+        }
+        let named = self.cases.iter().map(Case::id).zip(outcomes.iter().cloned()).collect();
+        let results = assemble(out, outcomes, inputs.clone(), environment.clone(), &self.library)?;
+        if let Some((slice, plan)) = self.slice.clone() {
+            let (schema, digest) = (PART_SCHEMA.to_string(), String::new());
+            let (environment, files) = (environment.clone(), series_fingerprints(out));
+            Part { schema, slice, plan, environment, inputs, outcomes: named, files, digest }.write(out)?;
+        }
+        self.store.finish()?;
+        Ok(results)
+    }
+}
