@@ -78,7 +78,7 @@ fn what_would_not_happen_is_refused_before_anything_runs() {
             elastic(rectangle, "{ disk = { center = [1e-3, 1e-3], radius = 1e-4 } }"),
             &["body.0.shape: ", "no material point lies in body", "smaller cells"],
         ),
-        (cracked("half_width = \"0.1 mm\""), &["body.0.crack.0.half_width: ", "there is no crack", "at least 2.9"]),
+        (cracked("half_width = \"0.1 mm\""), &["body.0.crack.0.half_width: ", "there is no crack", "at least 3.0"]),
         (cracked("half_width = \"20 mm\""), &["body.0.crack.0.half_width: ", "covers all", "smaller half width"]),
         (
             elastic("particles_per_cell = [2, 2]", "angular_velocity = \"159.15 Hz\""),
