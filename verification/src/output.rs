@@ -1,10 +1,10 @@
 //! Folders that commands write to, and what in them belongs to the user.
 //!
-//! An [`OutputFolder`] belongs to one process at a time (`lock.rs`) and lists in its manifest (`manifest.rs`) every file that was written
-//! through it, with its hash. What is not listed, or was changed since, is the user's: it is neither removed nor replaced. A
-//! folder that holds files and no manifest is refused as a whole. No link is followed below the folder, nothing is removed
-//! recursively, and each file appears in full or not at all: it is written under a random name that did not exist before, and
-//! renamed.
+//! An [`OutputFolder`] belongs to one process at a time (`lock.rs`) and lists in its manifest (`manifest.rs`) every file that
+//! was written through it, with its hash. What is not listed, or was changed since, is the user's: it is neither removed nor
+//! replaced. A folder that holds files and no manifest is refused as a whole. No link is followed below the folder, nothing is
+//! removed recursively, and each file appears in full or not at all: it is written under a random name that did not exist
+//! before, and renamed.
 
 mod error;
 mod lock;
