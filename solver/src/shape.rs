@@ -1,5 +1,6 @@
 //! Regions of the plane: which positions lie in a shape, and how far it reaches.
 
+use crate::extremes::{larger, smaller};
 use crate::scene::{Shape, Side};
 
 impl Shape {
@@ -48,7 +49,7 @@ impl Shape {
             }
             Self::Polygon { points } => {
                 points.iter().fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), p| {
-                    ([low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])])
+                    ([0, 1].map(|d| smaller(low[d], p[d])), [0, 1].map(|d| larger(high[d], p[d])))
                 })
             }
             Self::Patch => ([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]),

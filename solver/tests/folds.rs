@@ -14,7 +14,9 @@ fn findings(source: TokenStream) -> Vec<usize> {
     let mut lines = Vec::new();
     for (i, token) in tokens.iter().enumerate() {
         let after = |n: usize| tokens.get(i + n);
-        if is_any(Some(token), &["f64", "f32"]) && is_any(after(3), &["max", "min"]) && arguments(after(4)).is_none() {
+        let is_path = [1, 2].into_iter().all(|n| after(n).is_some_and(|token| token.to_string() == ":"));
+        let is_handed_on = is_path && arguments(after(4)).is_none();
+        if is_handed_on && is_any(Some(token), &["f64", "f32"]) && is_any(after(3), &["max", "min"]) {
             lines.push(token.span().start().line);
         }
         let is_method = i > 0 && tokens[i - 1].to_string() == ".";
@@ -102,6 +104,7 @@ fn such_folds_are_found() {
         "counts.fold(0, |a, n| a.max(n));",
         "values.fold(0.0, larger) // not fold(0.0, f64::max)",
         "let limit = spans[0..2].len().max(1);",
+        "fn bounds(min: Option<f64>, max: Option<f64>) {}",
     ] {
         assert_eq!(lines(text), [], "{text}");
     }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::handle::{DEPTH, Handle};
-use crate::extremes::smaller;
+use crate::extremes::{larger, smaller};
 use crate::quadrature::MAX_POINTS;
 use crate::scene::{Body, Mesh, Shape};
 use crate::shape::polygon_edges;
@@ -134,7 +134,7 @@ impl Surface {
     /// Box around the boundary: lower left and upper right corner, m.
     pub fn bounding_box(&self) -> [[f64; 2]; 2] {
         self.vertices.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], vertex| {
-            [[0, 1].map(|d| low[d].min(vertex[d])), [0, 1].map(|d| high[d].max(vertex[d]))]
+            [[0, 1].map(|d| smaller(low[d], vertex[d])), [0, 1].map(|d| larger(high[d], vertex[d]))]
         })
     }
 

@@ -123,7 +123,7 @@ impl MovingBlock {
             .collect();
         motions.into_iter().fold(StripMotion::default(), |sum, part| StripMotion {
             left_span: sum.left_span || part.left_span,
-            fastest: sum.fastest.max(part.fastest),
+            fastest: larger(sum.fastest, part.fastest),
             elastic_energy: sum.elastic_energy + part.elastic_energy,
             stress_work: sum.stress_work + part.stress_work,
         })

@@ -1,4 +1,5 @@
 use super::*;
+use crate::extremes::spread;
 
 /// Values `3 + C h^p` on meshes of these spans.
 fn power(spans: &[f64], p: f64, c: f64) -> Vec<(f64, f64)> {
@@ -75,7 +76,7 @@ fn the_finest_mesh_has_an_uncertainty_whether_its_sequence_converges_or_not() {
     assert!((value - 3.01).abs() < 1e-12 && (uncertainty - 1.25 * 0.01).abs() < 1e-9, "{value} {uncertainty}");
     for values in [[1.0, 1.2, 1.1], [1.0, 1.1, 1.3], [1.2, 1.0, 1.0]] {
         let meshes = [0.4, 0.2, 0.1].into_iter().zip(values).collect();
-        let range = values.into_iter().fold(0.0, f64::max) - values.into_iter().fold(9.0, f64::min);
+        let range = spread(&values);
         assert_eq!(on_finest_mesh(meshes, Some(2.0)).unwrap(), (values[2], 3.0 * range), "{values:?}");
     }
     let broken = [0.4, 0.2, 0.1].into_iter().zip([1.0, f64::NAN, 1.0]).collect();
