@@ -1,5 +1,4 @@
 use super::*;
-use crate::extremes::spread;
 
 /// Values `3 + C h^p` on meshes of these spans.
 fn power(spans: &[f64], p: f64, c: f64) -> Vec<(f64, f64)> {
