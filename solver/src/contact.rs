@@ -23,6 +23,8 @@
 
 pub mod handle;
 pub mod impulse;
+pub mod motion;
+mod outline;
 pub mod rigid;
 mod state;
 pub mod surface;
@@ -37,13 +39,14 @@ use crate::scene::Scene;
 use crate::updated_frame::field::DiscreteField;
 use handle::{DEPTH, Handle};
 use impulse::Impulse;
+use motion::{AHEAD, MOST, TooFast};
 pub use rigid::RigidBody;
 pub use surface::Surface;
 use surface::{Center, dot, unit};
 
 /// Cosine of the angle between outward normals above which boundaries do not face each other.
 const FACING: f64 = -0.5;
-/// Gap up to which a touch is looked at, in spans.
+/// Gap up to which a touch is looked at, in spans, unless more could close in a step.
 const NEAR: f64 = 0.1;
 
 /// A place, as large as a span, where the boundaries of two bodies are near each other.
@@ -93,6 +96,8 @@ pub struct Contact {
     reach: f64,
     rigid: Vec<RigidBody>,
     touches: Vec<Touch>,
+    /// Length of a step, s.
+    step: f64,
     /// Forces of the last step (impulses per second), where to start from.
     last: BTreeMap<([usize; 2], [i32; 2]), Impulse>,
     ledger: ContactLedger,
@@ -108,30 +113,52 @@ impl Contact {
             reach: spans().map(|span| span.length()).fold(f64::INFINITY, smaller),
             rigid: scene.bodies.iter().filter(|b| b.rigid).map(|b| RigidBody::new(&scene.mesh, b)).collect(),
             touches: Vec::new(),
+            step: 0.0,
             last: BTreeMap::new(),
             ledger: ContactLedger::default(),
         })
     }
 
+    /// Takes the length of a step, s.
+    pub fn set_step(&mut self, dt: f64) {
+        self.step = dt;
+    }
+
     /// Moves the rigid bodies to where they are at a time, s.
     pub fn move_rigid(&mut self, time: f64) {
-        self.rigid.iter_mut().for_each(|body| body.move_to(time));
+        self.rigid.iter_mut().for_each(|body| body.move_to(time, self.step));
     }
 
     /// Finds where bodies are near each other now.
-    pub fn find(&mut self, fields: &[DiscreteField]) {
+    ///
+    /// # Errors
+    /// If bodies are about to meet that move too far past each other in a step.
+    pub fn find(&mut self, fields: &[DiscreteField]) -> Result<(), TooFast> {
         let surfaces: Vec<&Surface> =
             fields.iter().filter_map(|f| f.surface()).chain(self.rigid.iter().map(|r| r.surface())).collect();
         let boxes: Vec<_> = surfaces.iter().map(|surface| surface.bounding_box()).collect();
+        let everywhere = [[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]];
+        let ways: Vec<_> = surfaces.iter().map(|surface| surface.ways_in(everywhere)).collect();
         let mut touches = Vec::new();
         for b in 1..surfaces.len() {
             for a in 0..b.min(fields.len()) {
+                let mut way = ways[a].past(&ways[b]);
+                let reach = self.reach + AHEAD * way;
                 let common = [
-                    [0, 1].map(|d| boxes[a][0][d].max(boxes[b][0][d]) - self.reach),
-                    [0, 1].map(|d| boxes[a][1][d].min(boxes[b][1][d]) + self.reach),
+                    [0, 1].map(|d| boxes[a][0][d].max(boxes[b][0][d]) - reach),
+                    [0, 1].map(|d| boxes[a][1][d].min(boxes[b][1][d]) + reach),
                 ];
                 if (0..2).all(|d| common[0][d] <= common[1][d]) {
-                    let sums = self.compare([surfaces[a], surfaces[b]], common);
+                    let pair = [surfaces[a], surfaces[b]];
+                    if way > MOST * self.reach {
+                        let [of_a, of_b] = pair.map(|surface| surface.ways_in(common));
+                        way = of_a.past(&of_b);
+                    }
+                    if way > MOST * self.reach {
+                        let place = [0, 1].map(|d| 0.5 * (common[0][d] + common[1][d]));
+                        return Err(TooFast { place, spans: way / self.reach });
+                    }
+                    let sums = self.compare(pair, common, (NEAR * self.reach).max(AHEAD * way));
                     touches.extend(
                         sums.into_iter().filter_map(|(square, sums)| self.touch([a, b], square, &sums, fields)),
                     );
@@ -139,17 +166,18 @@ impl Contact {
             }
         }
         self.touches = touches;
+        Ok(())
     }
 
-    /// What the segments of two boundaries in a box see of each other, square by square.
-    fn compare(&self, surfaces: [&Surface; 2], common: [[f64; 2]; 2]) -> BTreeMap<[i32; 2], Sums> {
+    /// What the segments of two boundaries in a box see of each other across gaps of at most `near` (m), square by square.
+    fn compare(&self, surfaces: [&Surface; 2], common: [[f64; 2]; 2], near: f64) -> BTreeMap<[i32; 2], Sums> {
         let mut squares = BTreeMap::new();
         let segments = surfaces.map(|surface| surface.segments_in(common));
         for (own, other, sign) in [(0, 1, 1.0), (1, 0, -1.0)] {
             for &segment in &segments[own] {
                 let Center { position, normal } = surfaces[own].center(segment);
                 let Some(nearest) = surfaces[other].nearest(position, &segments[other], self.reach) else { continue };
-                if nearest.distance > NEAR * self.reach || dot(normal, nearest.normal) > FACING {
+                if nearest.distance > near || dot(normal, nearest.normal) > FACING {
                     continue;
                 }
                 let Some(normal) = unit([0, 1].map(|d| sign * (normal[d] - nearest.normal[d]))) else { continue };

@@ -3,6 +3,8 @@
 use thiserror::Error;
 
 use crate::conjugate_gradients::SolveFailure;
+use crate::contact::impulse::Unsettled;
+use crate::contact::motion::TooFast;
 use crate::loads::LostTraction;
 use crate::updated_frame::points::OutsidePatch;
 
@@ -47,11 +49,27 @@ pub enum Failure {
         /// What is lost, and where.
         lost: LostTraction,
     },
+    /// Impulses of contact did not settle.
+    Unsettled(Unsettled),
+    /// Bodies meet that move too far past each other in a step.
+    TooFast(TooFast),
 }
 
 impl From<SolveFailure> for Failure {
     fn from(failure: SolveFailure) -> Self {
         Self::PhaseField(failure)
+    }
+}
+
+impl From<Unsettled> for Failure {
+    fn from(failure: Unsettled) -> Self {
+        Self::Unsettled(failure)
+    }
+}
+
+impl From<TooFast> for Failure {
+    fn from(failure: TooFast) -> Self {
+        Self::TooFast(failure)
     }
 }
 

@@ -48,6 +48,7 @@ pub struct Simulation {
     warned_of_closure: bool,
     /// Whether a step failed: what it left is half a step.
     failed: bool,
+    warned_of_boundary: bool,
     /// Error that phase-field solves are to reach.
     tolerance: f64,
 }
@@ -59,9 +60,11 @@ impl Simulation {
     /// If the initial phase field does not converge, or the mass matrix is singular to round-off.
     pub fn new(scene: &Scene) -> Result<Self, Breakdown> {
         let tolerance = scene.solver.phase_field_tolerance;
-        let frame = Frame::new(scene).map_err(|failure| watch::not_started(scene.mesh.origin(), tolerance, failure))?;
+        let not_started = |failure| watch::not_started(scene.mesh.origin(), tolerance, failure);
+        let mut frame = Frame::new(scene).map_err(not_started)?;
         let critical = either!(&frame, body => body.critical_step());
-        let (plan, warnings) = TimePlan::new(&scene.analysis, &scene.output, critical);
+        let (plan, warnings) = TimePlan::new(scene, critical);
+        frame.prepare(plan.step).map_err(not_started)?;
         let start = either!(&frame, body => body.sample(plan.step));
         let (initial, energy_in) = (start.stored(), start.kinetic + start.elastic);
         let warned_of_step = plan.step > critical;
@@ -75,6 +78,7 @@ impl Simulation {
             warned_of_step,
             warned_of_closure: false,
             failed: false,
+            warned_of_boundary: false,
             tolerance,
         })
     }

@@ -1,6 +1,10 @@
 //! Time steps and samples: a sample interval is a whole number of equal steps.
 
-use crate::scene::{Analysis, Output, TimeStep};
+use crate::contact::motion::{MOST, longest_step};
+use crate::scene::{Analysis, Output, Scene, TimeStep};
+
+/// Fraction of the longest step of bodies that meet that is taken: speeds change.
+const SPARE: f64 = 0.8;
 
 /// Steps and samples of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,13 +21,25 @@ pub struct TimePlan {
 
 impl TimePlan {
     /// Plan for a scene whose operator has the critical step `critical` (s), with warnings for people.
-    pub fn new(analysis: &Analysis, output: &Output, critical: f64) -> (Self, Vec<String>) {
+    pub fn new(scene: &Scene, critical: f64) -> (Self, Vec<String>) {
+        Self::within(&scene.analysis, &scene.output, critical, longest_step(scene))
+    }
+
+    /// Plan for a critical step and the longest step (s) in which bodies that meet do not pass each other.
+    fn within(analysis: &Analysis, output: &Output, critical: f64, passing: f64) -> (Self, Vec<String>) {
         let mut warnings = Vec::new();
         let end = analysis.end_time;
+        let stable = analysis.safety * critical;
         let longest = match analysis.time_step {
-            TimeStep::Auto => (analysis.safety * critical).min(end),
+            TimeStep::Auto => stable.min(SPARE * passing).min(end),
             TimeStep::Fixed(step) => step.min(end),
         };
+        if analysis.time_step == TimeStep::Auto && longest < stable.min(end) {
+            warnings.push(format!(
+                "bodies move past each other so fast that the time step is {longest:.4e} s instead of {stable:.4e} s: contact \
+                 follows {MOST} spans in a step"
+            ));
+        }
         let mut samples = output.samples.max(1);
         if end / (samples as f64) < 0.5 * longest {
             let asked = samples;
@@ -42,6 +58,13 @@ impl TimePlan {
                 step / critical
             ));
         }
+        if step > passing {
+            warnings.push(format!(
+                "in the time step {step:.4e} s bodies move past each other by more than {MOST} spans: the run ends where they \
+                 meet; give {:.4e} s or less, or time_step = \"auto\"",
+                SPARE * passing
+            ));
+        }
         (Self { step, steps_per_sample, samples, critical }, warnings)
     }
 
@@ -57,6 +80,16 @@ mod tests {
     use crate::scene::{Frame, Kinematics, Mass, Plane, Transfer};
 
     fn plan(end_time: f64, time_step: TimeStep, samples: usize, critical: f64) -> (TimePlan, Vec<String>) {
+        plan_within(end_time, time_step, samples, critical, f64::INFINITY)
+    }
+
+    fn plan_within(
+        end_time: f64,
+        time_step: TimeStep,
+        samples: usize,
+        critical: f64,
+        passing: f64,
+    ) -> (TimePlan, Vec<String>) {
         let analysis = Analysis {
             plane: Plane::Strain,
             thickness: 1.0,
@@ -69,7 +102,7 @@ mod tests {
             mass: Mass::Lumped,
             gravity: [0.0; 2],
         };
-        TimePlan::new(&analysis, &Output { samples, frames: Vec::new() }, critical)
+        TimePlan::within(&analysis, &Output { samples, frames: Vec::new() }, critical, passing)
     }
 
     #[test]
@@ -85,6 +118,17 @@ mod tests {
         let (plan, warnings) = plan(1.0, TimeStep::Auto, 1000, 0.1);
         assert_eq!(warnings.len(), 1);
         assert!(plan.samples <= 12 && plan.step >= 0.04, "{plan:?}");
+    }
+
+    #[test]
+    fn bodies_that_would_pass_each_other_shorten_the_step_or_warn() {
+        let (plan, warnings) = plan_within(1.0, TimeStep::Auto, 7, 0.03, 0.01);
+        assert!(plan.step <= 0.8 * 0.01 && plan.step > 0.7 * 0.8 * 0.01, "{plan:?}");
+        assert!(warnings.len() == 1 && warnings[0].contains("contact follows 0.5 spans"), "{warnings:?}");
+        assert!(plan_within(1.0, TimeStep::Auto, 7, 0.03, 0.03).1.is_empty());
+        let (plan, warnings) = plan_within(1.0, TimeStep::Fixed(0.02), 5, 0.1, 0.01);
+        assert_eq!(plan.steps(), 50);
+        assert!(warnings.len() == 1 && warnings[0].contains("8.0000e-3 s or less"), "{warnings:?}");
     }
 
     #[test]

@@ -73,27 +73,42 @@ impl UpdatedFrame {
         let fields = deformable.map(|body| DiscreteField::new(scene, body, &patch)).collect::<Result<Vec<_>, _>>()?;
         let mut contact = Contact::new(scene, &patch);
         if let Some(contact) = &mut contact {
-            contact.find(&fields);
+            contact.find(&fields)?;
         }
         Ok(Self { patch, fields, contact, thickness: scene.analysis.thickness })
+    }
+
+    /// Looks as far ahead as steps of `dt` seconds need, before the first one.
+    ///
+    /// # Errors
+    /// If bodies are about to meet that move too far past each other in a step.
+    pub fn prepare(&mut self, dt: f64) -> Result<(), Failure> {
+        let Some(contact) = &mut self.contact else { return Ok(()) };
+        self.fields.iter_mut().for_each(|field| field.expect_motion(dt));
+        contact.set_step(dt);
+        contact.move_rigid(0.0);
+        contact.find(&self.fields)?;
+        Ok(())
     }
 
     /// One time step of `dt` seconds.
     ///
     /// # Errors
-    /// If a phase field does not converge, or a point leaves the patch.
+    /// If a phase field does not converge, a point leaves the patch, impulses of contact do not settle, or bodies meet that move
+    /// too far past each other in a step.
     pub fn step(&mut self, dt: f64) -> Result<(), Failure> {
         let kick = self.coming_kick(dt);
         let Self { fields, contact, .. } = self;
         if let Some(contact) = contact {
-            for push in contact.act(fields, kick) {
+            contact.set_step(dt);
+            for push in contact.act(fields, kick)? {
                 fields[push.body].push(push.at, push.acceleration);
             }
         }
         fields.iter_mut().try_for_each(|field| field.step(dt))?;
         if let Some(contact) = contact {
             contact.move_rigid(fields[0].time());
-            contact.find(fields);
+            contact.find(fields)?;
         }
         Ok(())
     }

@@ -136,7 +136,7 @@ impl Findings {
         };
         let fastest = materials(scene, 1.0).values().map(|m| m.wave_speed_m_per_s).fold(0.0, larger);
         let critical = CRITICAL * smallest_span(&scene.mesh) / fastest;
-        let (plan, warnings) = TimePlan::new(&scene.analysis, &scene.output, critical);
+        let (plan, warnings) = TimePlan::new(scene, critical);
         Self { estimate: UNPREPARED, ..Self::new(scene, &extent, &plan, &warnings) }
     }
 

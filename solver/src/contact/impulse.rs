@@ -1,5 +1,7 @@
 //! Impulses of contact, and their energy.
 
+mod direct;
+
 use std::collections::HashMap;
 
 use serde::{Deserialize, Serialize};
@@ -8,10 +10,16 @@ use super::surface::dot;
 use super::{Contact, ContactLedger, Touch};
 use crate::updated_frame::field::DiscreteField;
 
-/// Most rounds over the touches.
+/// Rounds over the touches until their equations are solved directly, and most of them: a few tens settle them but where
+/// touches are many for their control points.
 const ROUNDS: usize = 500;
+const MOST_ROUNDS: usize = 10 * ROUNDS;
 /// Change of an impulse, relative to the largest, below which the rounds end.
 const SETTLED: f64 = 1e-12;
+/// Round-off of the velocity at a touch, relative to those it is summed from; impulses that change it by less are settled.
+const ROUND_OFF: f64 = 1e-14;
+/// Change of an impulse, relative to the largest, above which impulses are not used: momentum is kept by any, so this is the error of gaps and friction.
+const ACCEPTED: f64 = 1e-9;
 
 /// Time of a kick and of the step it belongs to, s: the first kick is half a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,6 +39,17 @@ pub struct Push {
     pub at: usize,
     /// Acceleration, m/s².
     pub acceleration: [f64; 2],
+}
+
+/// Impulses that did not settle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unsettled {
+    /// Where the impulse changed most in the last round, m.
+    pub place: [f64; 2],
+    /// Rounds.
+    pub rounds: usize,
+    /// That change, relative to the largest impulse.
+    pub residual: f64,
 }
 
 /// A force of contact.
@@ -68,6 +87,17 @@ struct Node {
 struct Problem<'a> {
     nodes: Vec<Node>,
     touches: Vec<Acting<'a>>,
+    unsettled: Option<Unsettled>,
+}
+
+/// What a round over the touches changed.
+#[derive(Default)]
+struct Round {
+    /// Largest normal impulse, and largest change of an impulse, kg/s per unit thickness.
+    largest: f64,
+    change: f64,
+    /// Where that was, m.
+    place: [f64; 2],
 }
 
 /// A touch that acts.
@@ -77,6 +107,8 @@ struct Acting<'a> {
     weights: Vec<(usize, f64)>,
     /// Velocity of body b if it is rigid, else zero, m/s.
     rigid: [f64; 2],
+    /// Change of an impulse that is round-off of the velocities, kg/s.
+    round_off: f64,
     /// How the relative velocity answers an impulse along normal and tangent, m/kg.
     answers: [f64; 2],
     impulse: Impulse,
@@ -100,35 +132,35 @@ impl Contact {
         self.solve(fields, kick).touches.iter().filter_map(force).collect()
     }
 
+    /// Whether the impulses of the coming kick settle.
+    ///
+    /// # Errors
+    /// If they do not.
+    pub fn settles(&self, fields: &[DiscreteField], kick: Kick) -> Result<(), Unsettled> {
+        self.solve(fields, kick).unsettled.map_or(Ok(()), Err)
+    }
+
     /// The accelerations, and books the energies of the kick.
-    pub fn act(&mut self, fields: &[DiscreteField], kick: Kick) -> Vec<Push> {
+    ///
+    /// # Errors
+    /// If the impulses do not settle; nothing is booked.
+    pub fn act(&mut self, fields: &[DiscreteField], kick: Kick) -> Result<Vec<Push>, Unsettled> {
         let problem = self.solve(fields, kick);
+        if let Some(unsettled) = problem.unsettled {
+            return Err(unsettled);
+        }
         let ledger = self.ledger.plus(problem.arriving(kick)).plus(problem.energy(kick, |node| node.after));
         let pushing = problem.touches.iter().filter(|acting| acting.impulse.normal > 0.0);
         let last = pushing.map(|a| ((a.touch.bodies, a.touch.square), a.impulse.times(1.0 / kick.length))).collect();
         let pushes = problem.pushes(kick.length);
         (self.ledger, self.last) = (ledger, last);
-        pushes
+        Ok(pushes)
     }
 
     /// Impulses of the coming kick.
     fn solve(&self, fields: &[DiscreteField], kick: Kick) -> Problem<'_> {
         let mut problem = self.problem(fields, kick);
-        for _ in 0..ROUNDS {
-            let (mut largest, mut change) = (0.0_f64, 0.0_f64);
-            for acting in &mut problem.touches {
-                let old = acting.impulse;
-                let new = acting.settled(&problem.nodes, self.friction, kick.step);
-                let delta = Impulse { normal: new.normal - old.normal, tangent: new.tangent - old.tangent };
-                acting.give(&mut problem.nodes, delta);
-                acting.impulse = new;
-                largest = largest.max(new.normal);
-                change = change.max(delta.normal.abs()).max(delta.tangent.abs());
-            }
-            if change <= SETTLED * largest {
-                break;
-            }
-        }
+        problem.settle(self.friction, kick.step);
         problem
     }
 
@@ -162,17 +194,70 @@ impl Contact {
                 .last
                 .get(&(touch.bodies, touch.square))
                 .map_or_else(Impulse::default, |last| last.times(kick.length));
-            touches.push(Acting { touch, weights, rigid, answers: [0.0; 2], impulse });
+            touches.push(Acting { touch, weights, rigid, round_off: 0.0, answers: [0.0; 2], impulse });
         }
         for acting in &mut touches {
             acting.find_answers(&nodes);
             acting.give(&mut nodes, acting.impulse);
         }
-        Problem { nodes, touches }
+        Problem { nodes, touches, unsettled: None }
+    }
+}
+
+impl Round {
+    fn is_settled(&self, tolerance: f64) -> bool {
+        self.change <= tolerance * self.largest
     }
 }
 
 impl Problem<'_> {
+    /// Finds impulses with which every touch is settled, or says that it did not.
+    fn settle(&mut self, friction: f64, step: f64) {
+        let mut last = self.rounds(friction, step);
+        let mut rounds = ROUNDS;
+        while !last.is_settled(SETTLED) && rounds < MOST_ROUNDS {
+            self.solve_directly(friction, step);
+            last = self.rounds(friction, step);
+            rounds += ROUNDS;
+        }
+        if !last.is_settled(ACCEPTED) {
+            let residual = last.change / last.largest;
+            self.unsettled = Some(Unsettled { place: last.place, rounds, residual });
+        }
+    }
+
+    /// Rounds over the touches until they settle or are too many; the last one.
+    fn rounds(&mut self, friction: f64, step: f64) -> Round {
+        let mut last = self.round(friction, step);
+        let mut rounds = 1;
+        while rounds < ROUNDS && !last.is_settled(SETTLED) {
+            last = self.round(friction, step);
+            rounds += 1;
+        }
+        last
+    }
+
+    /// Settles one touch after the other, with all others as they are.
+    fn round(&mut self, friction: f64, step: f64) -> Round {
+        let Self { nodes, touches, .. } = self;
+        let mut round = Round::default();
+        for acting in touches {
+            let old = acting.impulse;
+            let new = acting.settled(nodes, friction, step);
+            let delta = Impulse { normal: new.normal - old.normal, tangent: new.tangent - old.tangent };
+            acting.give(nodes, delta);
+            acting.impulse = new;
+            round.largest = round.largest.max(new.normal);
+            for change in [delta.normal.abs(), delta.tangent.abs()] {
+                // what is no number stays: such rounds never settle
+                if (change > round.change && change > acting.round_off) || change.is_nan() {
+                    (round.change, round.place) = (change, acting.touch.position);
+                }
+            }
+        }
+        round
+    }
+
     fn pushes(&self, length: f64) -> Vec<Push> {
         let push = |node: &Node| {
             let acceleration = [0, 1].map(|c| (node.after[c] - node.free[c]) / length);
@@ -212,6 +297,10 @@ impl Acting<'_> {
         }
         let answer = |direction: [f64; 2]| (0..2).map(|c| direction[c] * direction[c] * mobility[c]).sum();
         self.answers = [answer(self.touch.normal), answer(self.tangent())];
+        let size = |v: [f64; 2]| v[0].hypot(v[1]);
+        let speed =
+            self.weights.iter().fold(size(self.rigid), |sum, &(node, n)| sum + n.abs() * size(nodes[node].free));
+        self.round_off = ROUND_OFF * speed / self.answers[0].max(self.answers[1]);
     }
 
     /// Velocity of b relative to a.
@@ -238,7 +327,11 @@ impl Acting<'_> {
         let [along_normal, along_tangent] = self.answers;
         if along_normal > 0.0 {
             let allowed = -self.touch.gap.max(0.0) / step;
-            normal = (normal + (allowed - dot(relative, self.touch.normal)) / along_normal).max(0.0);
+            let settled = normal + (allowed - dot(relative, self.touch.normal)) / along_normal;
+            normal = if settled < 0.0 { 0.0 } else { settled };
+        }
+        if normal.is_nan() {
+            return Impulse { normal, tangent: normal };
         }
         let most = fault!("friction-twice", friction * normal => 2.0 * friction * normal);
         if along_tangent > 0.0 {
@@ -274,3 +367,6 @@ impl ContactLedger {
         Self { loss: factor * self.loss, friction: factor * self.friction, work: factor * self.work }
     }
 }
+
+#[cfg(test)]
+mod tests;

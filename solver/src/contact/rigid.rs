@@ -23,8 +23,8 @@ impl RigidBody {
         Self { reference: surface.positions().to_vec(), surface, center, velocity, spin, time: 0.0 }
     }
 
-    /// Moves to the place it has at a time, s.
-    pub fn move_to(&mut self, time: f64) {
+    /// Moves to the place it has at a time, s, and expects a step of `dt` seconds.
+    pub fn move_to(&mut self, time: f64, dt: f64) {
         self.time = time;
         if self.velocity == [0.0; 2] && self.spin == 0.0 {
             return;
@@ -35,6 +35,9 @@ impl RigidBody {
             let arm = [0, 1].map(|d| reference[vertex][d] - center[d]);
             [now[0] + cos * arm[0] - sin * arm[1], now[1] + sin * arm[0] + cos * arm[1]]
         });
+        let mut surface = std::mem::take(&mut self.surface);
+        surface.expect_ways(|position| self.velocity_at(position).map(|v| dt * v));
+        self.surface = surface;
     }
 
     /// Velocity at a position, m/s.

@@ -9,7 +9,8 @@ impl Contact {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { friction: _, origin: _, reach: _, rigid: _, touches: _, last, ledger } = self;
+        let Self { friction: _, origin: _, reach: _, rigid: _, touches: _, step, last, ledger } = self;
+        archive.value(step)?;
         archive.value(last)?;
         archive.value(ledger)
     }

@@ -3,23 +3,32 @@
 use rayon::prelude::*;
 
 use super::handle::{DEPTH, Handle};
+use super::motion::Range;
+use super::outline::{is_on_boundary, perimeter, rings, spacing, without_patch};
+use crate::checkpoint::{Archive, StateError};
 use crate::extremes::{larger, smaller};
-use crate::quadrature::MAX_POINTS;
-use crate::scene::{Body, Mesh, Shape};
-use crate::shape::polygon_edges;
+use crate::scene::{Body, Mesh};
 use crate::updated_frame::field::DiscreteField;
+use crate::updated_frame::follower::Follower;
 use crate::updated_frame::grid::VectorField;
 
 /// Distance from the boundary within which the middle of a segment counts as lying on it, over that of the points.
 const ON_BOUNDARY: f64 = 0.1;
 
+/// Length of a segment above which it may span a gap, in spans.
+const MOST_STRETCH: f64 = 2.0;
+
 /// A boundary: segments with the body to their left.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Surface {
     vertices: Vec<[f64; 2]>,
+    /// Way of each vertex in the last step, before the first one in the coming step, m.
+    ways: Vec<[f64; 2]>,
     segments: Vec<[u32; 2]>,
     /// Segments that end and begin at each vertex.
     neighbours: Vec<[Option<u32>; 2]>,
+    /// Where it was without material first, m.
+    opened: Option<[f64; 2]>,
 }
 
 /// The point of a boundary that is nearest to a position.
@@ -45,7 +54,7 @@ impl Surface {
     pub fn new(mesh: &Mesh, body: &Body) -> Self {
         let spacing = spacing(mesh, body);
         let shape = without_patch(&body.shape, mesh);
-        let mut surface = Self { vertices: Vec::new(), segments: Vec::new(), neighbours: Vec::new() };
+        let mut surface = Self::default();
         for ring in rings(&shape, spacing) {
             surface.add(&ring, |middle| is_on_boundary(&shape, middle, ON_BOUNDARY * spacing));
         }
@@ -63,6 +72,7 @@ impl Surface {
         let first = self.vertices.len() as u32;
         let count = ring.len() as u32;
         self.vertices.extend(ring);
+        self.ways.resize(self.vertices.len(), [0.0; 2]);
         for i in 0..count {
             let ends = [i, (i + 1) % count];
             let [a, b] = ends.map(|v| ring[v as usize]);
@@ -77,12 +87,19 @@ impl Surface {
         let mut numbers = vec![None; self.vertices.len()];
         let mut kept = Vec::new();
         for vertex in self.segments.iter_mut().flatten() {
-            *vertex = *numbers[*vertex as usize].get_or_insert_with(|| {
-                kept.push(self.vertices[*vertex as usize]);
+            let old = *vertex as usize;
+            *vertex = *numbers[old].get_or_insert_with(|| {
+                kept.push(old);
                 kept.len() as u32 - 1
             });
         }
-        self.vertices = kept;
+        for places in [&mut self.vertices, &mut self.ways] {
+            *places = kept.iter().map(|&old| places[old]).collect();
+        }
+        self.find_neighbours();
+    }
+
+    fn find_neighbours(&mut self) {
         self.neighbours = vec![[None; 2]; self.vertices.len()];
         for (index, [from, to]) in self.segments.iter().enumerate() {
             self.neighbours[*to as usize][0] = Some(index as u32);
@@ -90,19 +107,55 @@ impl Surface {
         }
     }
 
-    /// Moves with a velocity field (m/s) of its body for `dt` seconds. A vertex that has lost its material stays behind.
+    /// Moves with a velocity field (m/s) of its body for `dt` seconds. Where there is no material any more the boundary ends: it
+    /// must neither stretch across a gap nor push with nothing behind it.
     pub fn follow(&mut self, field: &DiscreteField, velocity: &VectorField, dt: f64) {
+        let ways = self.ways_of(field, velocity, dt);
+        self.ways = ways.iter().map(|way| way.unwrap_or_default()).collect();
+        for (vertex, way) in self.vertices.iter_mut().zip(&self.ways) {
+            *vertex = [0, 1].map(|d| vertex[d] + way[d]);
+        }
+        let span = field.shortest_span();
+        let held = |vertex: u32| ways[vertex as usize].is_some();
+        let bare = |segment: &u32| {
+            let [from, to] = self.segments[*segment as usize];
+            !held(from) || !held(to) || self.spans_a_gap(field, *segment, span)
+        };
+        let bare: Vec<u32> = (0..self.segments.len() as u32).filter(bare).collect();
+        if let Some(&first) = bare.first() {
+            self.opened.get_or_insert(self.center(first).position);
+            let mut number = 0..;
+            self.segments.retain(|_| number.next().is_some_and(|n| bare.binary_search(&n).is_err()));
+            self.join();
+        }
+    }
+
+    /// Whether a segment has become so long that there is no material of its body under its middle.
+    fn spans_a_gap(&self, field: &DiscreteField, segment: u32, span: f64) -> bool {
+        let [a, b] = self.ends(segment);
+        if (b[0] - a[0]).hypot(b[1] - a[1]) <= MOST_STRETCH * span {
+            return false;
+        }
+        let Center { position, normal } = self.center(segment);
+        let inside = [0, 1].map(|d| position[d] - DEPTH * span * normal[d]);
+        Follower::nearest(inside, field.patch(), field.cells()).is_none()
+    }
+
+    /// Takes the ways of the coming step from a velocity field (m/s) of its body.
+    pub fn expect(&mut self, field: &DiscreteField, velocity: &VectorField, dt: f64) {
+        self.ways = self.ways_of(field, velocity, dt).into_iter().map(Option::unwrap_or_default).collect();
+    }
+
+    /// Ways of the vertices in `dt` seconds, m; `None` where the body has no material any more.
+    fn ways_of(&self, field: &DiscreteField, velocity: &VectorField, dt: f64) -> Vec<Option<[f64; 2]>> {
         let depth = DEPTH * field.shortest_span();
-        let moved = (0..self.vertices.len()).into_par_iter().map(|vertex| {
+        let way = |vertex: usize| {
             let position = self.vertices[vertex];
             let normal = self.vertex_normal(vertex);
             let inside = [0, 1].map(|d| position[d] - depth * normal[d]);
-            Handle::new(field, position, inside).map_or(position, |handle| {
-                let velocity = handle.value(velocity);
-                [0, 1].map(|d| position[d] + dt * velocity[d])
-            })
-        });
-        self.vertices = moved.collect();
+            Handle::new(field, position, inside).map(|handle| handle.value(velocity).map(|v| dt * v))
+        };
+        (0..self.vertices.len()).into_par_iter().map(way).collect()
     }
 
     /// Moves every vertex to the place of a map, m.
@@ -110,8 +163,38 @@ impl Surface {
         self.vertices.iter_mut().enumerate().for_each(|(index, vertex)| *vertex = place(index));
     }
 
-    pub(crate) fn vertices_mut(&mut self) -> &mut Vec<[f64; 2]> {
-        &mut self.vertices
+    /// Takes the ways of the vertices from a map of their positions, m.
+    pub fn expect_ways(&mut self, way: impl Fn([f64; 2]) -> [f64; 2]) {
+        self.ways = self.vertices.iter().map(|vertex| way(*vertex)).collect();
+    }
+
+    /// Ways of the vertices in a box, m.
+    pub fn ways_in(&self, [low, high]: [[f64; 2]; 2]) -> Range {
+        let inside = |vertex: &[f64; 2]| (0..2).all(|d| low[d] <= vertex[d] && vertex[d] <= high[d]);
+        Range::of(self.vertices.iter().zip(&self.ways).filter(|(vertex, _)| inside(vertex)).map(|(_, way)| *way))
+    }
+
+    /// Where the boundary was without material first, m, if it ever was.
+    pub fn opened(&self) -> Option<[f64; 2]> {
+        self.opened
+    }
+
+    /// Stores or takes up what steps change.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { vertices, ways, segments, neighbours: _, opened } = self;
+        archive.value(vertices)?;
+        archive.value(ways)?;
+        archive.value(segments)?;
+        archive.value(opened)?;
+        let ends = segments.iter().flatten().all(|&vertex| (vertex as usize) < vertices.len());
+        if !ends || ways.len() != vertices.len() {
+            return Err(StateError("the state is of another scene: the boundary of a body is none".to_string()));
+        }
+        self.find_neighbours();
+        Ok(())
     }
 
     /// Centroid of the region it bounds, m.
@@ -206,93 +289,9 @@ impl Surface {
 
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
-        let per_vertex = size_of::<[f64; 2]>() + size_of::<[Option<u32>; 2]>();
+        let per_vertex = 2 * size_of::<[f64; 2]>() + size_of::<[Option<u32>; 2]>();
         self.vertices.len() * per_vertex + self.segments.len() * size_of::<[u32; 2]>()
     }
-}
-
-/// Distance between the points of a body, m: that of the smallest span.
-fn spacing(mesh: &Mesh, body: &Body) -> f64 {
-    let smallest = |d: usize| {
-        let spans = mesh.knots[d].windows(2).map(|pair| pair[1] - pair[0]).filter(|length| *length > 0.0);
-        spans.fold(f64::INFINITY, smaller) / body.particles_per_cell[d].clamp(1, MAX_POINTS) as f64
-    };
-    smallest(0).min(smallest(1))
-}
-
-/// The same shape with a rectangle for the whole patch, which is one in the updated frame.
-fn without_patch(shape: &Shape, mesh: &Mesh) -> Shape {
-    match shape {
-        Shape::Patch => Shape::Rectangle { min: mesh.origin(), max: mesh.end() },
-        Shape::Difference { of, minus } => {
-            let minus = minus.iter().map(|hole| without_patch(hole, mesh)).collect();
-            Shape::Difference { of: Box::new(without_patch(of, mesh)), minus }
-        }
-        other => other.clone(),
-    }
-}
-
-/// Length of all lines that [`rings`] gives, m.
-fn perimeter(shape: &Shape) -> f64 {
-    let circle = |radius: f64| std::f64::consts::TAU * radius;
-    match shape {
-        Shape::Rectangle { min, max } => 2.0 * ((max[0] - min[0]) + (max[1] - min[1])),
-        Shape::Disk { radius, .. } => circle(*radius),
-        Shape::Annulus { inner_radius, outer_radius, .. } => circle(*inner_radius) + circle(*outer_radius),
-        Shape::Polygon { points } => polygon_edges(points).map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1])).sum(),
-        Shape::Patch => 0.0, // see without_patch
-        Shape::Difference { of, minus } => perimeter(of) + minus.iter().map(perimeter).sum::<f64>(),
-    }
-}
-
-/// Closed lines that bound a shape, the body to their left, in steps of about `spacing`.
-fn rings(shape: &Shape, spacing: f64) -> Vec<Vec<[f64; 2]>> {
-    let circle = |center: [f64; 2], radius: f64| -> Vec<[f64; 2]> {
-        // A multiple of four, so that the circle keeps the symmetries of the mesh.
-        let count = 4 * ((std::f64::consts::FRAC_PI_2 * radius / spacing).ceil() as usize).max(4);
-        let at = |i: usize| {
-            let (sin, cos) = (std::f64::consts::TAU * (i as f64 + 0.5) / count as f64).sin_cos();
-            [center[0] + radius * cos, center[1] + radius * sin]
-        };
-        (0..count).map(at).collect()
-    };
-    let polygon = |corners: &[[f64; 2]]| -> Vec<[f64; 2]> {
-        let edges = polygon_edges(corners);
-        let along = |[a, b]: [[f64; 2]; 2]| {
-            let count = (((b[0] - a[0]).hypot(b[1] - a[1]) / spacing).ceil() as usize).max(1);
-            (0..count).map(move |i| [0, 1].map(|d| a[d] + (b[d] - a[d]) * i as f64 / count as f64))
-        };
-        let mut line: Vec<_> = edges.flat_map(along).collect();
-        if polygon_edges(corners).map(|[a, b]| a[0] * b[1] - a[1] * b[0]).sum::<f64>() < 0.0 {
-            line.reverse();
-        }
-        line
-    };
-    match shape {
-        Shape::Rectangle { min, max } => vec![polygon(&[*min, [max[0], min[1]], *max, [min[0], max[1]]])],
-        Shape::Disk { center, radius } => vec![circle(*center, *radius)],
-        Shape::Annulus { center, inner_radius, outer_radius } => {
-            let mut lines = vec![circle(*center, *outer_radius)];
-            if *inner_radius > 0.0 {
-                lines.push(circle(*center, *inner_radius));
-                lines[1].reverse();
-            }
-            lines
-        }
-        Shape::Polygon { points } => vec![polygon(points)],
-        Shape::Patch => Vec::new(), // see without_patch
-        Shape::Difference { of, minus } => {
-            let holes = minus.iter().flat_map(|hole| rings(hole, spacing)).map(|mut line| {
-                line.reverse();
-                line
-            });
-            rings(of, spacing).into_iter().chain(holes).collect()
-        }
-    }
-}
-
-fn is_on_boundary(shape: &Shape, position: [f64; 2], tolerance: f64) -> bool {
-    shape.contains_within(position, tolerance) && !shape.contains_within(position, -tolerance)
 }
 
 /// Unit normal to the right of the way from `a` to `b`.

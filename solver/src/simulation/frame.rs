@@ -35,6 +35,14 @@ impl Frame {
         })
     }
 
+    /// Makes ready for steps of `dt` seconds.
+    pub(super) fn prepare(&mut self, dt: f64) -> Result<(), Failure> {
+        match self {
+            Self::Total(_) => Ok(()),
+            Self::Updated(body) => body.prepare(dt),
+        }
+    }
+
     pub(super) fn step(&mut self, dt: f64) -> Result<(), Failure> {
         match self {
             Self::Total(body) => Ok(body.step(dt)?),

@@ -59,12 +59,13 @@ impl Simulation {
             warned_of_step,
             warned_of_closure,
             failed: _,
+            warned_of_boundary,
             tolerance: _,
         } = self;
         archive.value(steps)?;
         frame.exchange(archive)?;
         archive.value(warnings)?;
         [initial, energy_in].into_iter().try_for_each(|energy| archive.value(energy))?;
-        [warned_of_step, warned_of_closure].into_iter().try_for_each(|warned| archive.value(warned))
+        [warned_of_step, warned_of_closure, warned_of_boundary].into_iter().try_for_each(|warned| archive.value(warned))
     }
 }

@@ -3,6 +3,8 @@
 use super::Simulation;
 use super::frame::{Frame, either};
 use crate::conjugate_gradients::SolveFailure;
+use crate::contact::impulse::Unsettled;
+use crate::contact::motion::{MOST, TooFast};
 use crate::energy::Sample;
 use crate::error::{Breakdown, Failure, SceneError};
 use crate::extremes::larger;
@@ -44,6 +46,11 @@ const INDEFINITE: &str = "the matrix of the phase field is not positive definite
 const TOO_FEW_POINTS: &str = "spans with fewer points than the phase field has unknowns there, or history energies many \
                               orders of magnitude apart; use more particles_per_cell or a lower degree";
 const EXTREME: &str = "material constants, lengths or seeds so extreme that their products overflow";
+const CONTACT_NOT_FINITE: &str = "the impulses of contact ran into numbers that are not finite";
+const UNSETTLED: &str = "bodies wedged between others, or friction too large for one solution; lower contact.friction or \
+                         analysis.safety, or use larger cells where they meet";
+const TOO_FAST: &str = "bodies faster than contact can follow at this time step: give analysis.time_step as much less, or \
+                        lower analysis.safety";
 const BARE: &str = "a traction acts where there is no material any more";
 const TORN: &str = "the load has torn off the points under it; lower or ramp the traction, or end earlier";
 
@@ -60,6 +67,7 @@ impl Simulation {
         match result {
             Ok(()) if healthy => {
                 self.watch_critical_step();
+                self.watch_boundary();
                 Ok(())
             }
             Err(failure) if healthy => Err(self.broken(failure)),
@@ -88,6 +96,20 @@ impl Simulation {
         ));
     }
 
+    /// Warns once if the boundary of a body has lost its material somewhere.
+    fn watch_boundary(&mut self) {
+        if self.warned_of_boundary {
+            return;
+        }
+        let Some([x, y]) = self.updated_frame().and_then(|frame| frame.opened_boundary()) else { return };
+        self.warned_of_boundary = true;
+        self.warnings.push(format!(
+            "from t = {:.4e} s on, the boundary of a body is open near ({x:.6e}, {y:.6e}) m: its material there is gone, and \
+             what comes to light inside has no boundary: other bodies can enter; end earlier, or refine the mesh",
+            self.time()
+        ));
+    }
+
     /// A point whose numbers are not finite makes the sum over all points so, which no fold or comparison on the way loses.
     fn is_healthy(&mut self) -> bool {
         let (elastic, work) = either!(&self.frame, body => (body.elastic_energy(), body.external_work().abs()));
@@ -98,10 +120,14 @@ impl Simulation {
     /// Holds a sample to its ledger: an open one is a warning, once, and a breakdown if the step is above the critical one.
     ///
     /// # Errors
-    /// If a number of the sample is not finite, or the ledger is open and the time step is too long to be stable.
+    /// If a number of the sample is not finite, or the ledger is open and the time step is too long to be stable, or the
+    /// impulses of contact in the sample did not settle.
     pub fn watch_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
         if let Some(name) = sample.not_finite() {
             return Err(self.at_worst_point(format!("{name} of the history is not a finite number"), None));
+        }
+        if let Some(frame) = self.updated_frame() {
+            frame.contact_settles(self.plan.step).map_err(|failure| self.broken(failure.into()))?;
         }
         let Sample { closure, time, .. } = *sample;
         let limit = CLOSURE_LIMIT * self.energy_in + CLOSURE_FLOOR * sample.stored().abs();
@@ -155,6 +181,11 @@ impl Simulation {
                 Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause, scene: None }
             }
             Failure::PhaseField(SolveFailure::NotFinite) => self.not_finite(NOT_FINITE),
+            Failure::Unsettled(found) if !found.residual.is_finite() => self.not_finite(CONTACT_NOT_FINITE),
+            Failure::Unsettled(Unsettled { place, .. }) | Failure::TooFast(TooFast { place, .. }) => {
+                let (what, cause) = what_and_cause(failure, self.tolerance);
+                Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause, scene: None }
+            }
             Failure::PhaseField(_) | Failure::SingularMass | Failure::NoPoints(_) | Failure::LostTraction { .. } => {
                 let (what, cause) = what_and_cause(failure, self.tolerance);
                 self.at_worst_point(what, Some(cause).filter(|_| !self.step_is_too_long()))
@@ -210,13 +241,13 @@ impl Simulation {
 pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> Breakdown {
     let (what, cause) = what_and_cause(failure, tolerance);
     let (place, key) = match failure {
-        Failure::Left(place) => (place, None),
+        Failure::Left(place) | Failure::TooFast(TooFast { place, .. }) => (place, None),
         Failure::NoPoints(body) => (place, Some(format!("body.{body}.shape"))),
         Failure::LostTraction { body, traction, lost: LostTraction::Bare(place) }
         | Failure::LostTraction { body, traction, lost: LostTraction::Unbalanced { place, .. } } => {
             (place, Some(format!("body.{body}.traction.{traction}")))
         }
-        Failure::PhaseField(_) | Failure::SingularMass => (place, None),
+        Failure::PhaseField(_) | Failure::SingularMass | Failure::Unsettled(_) => (place, None),
     };
     let scene = key.map(|key| Box::new(SceneError { key, message: what.clone(), remedy: cause.clone() }));
     Breakdown { step: 0, time: 0.0, place, point: None, what, cause, scene }
@@ -231,6 +262,17 @@ fn what_and_cause(failure: Failure, tolerance: f64) -> (String, String) {
         ),
         Failure::PhaseField(SolveFailure::NotPositiveDefinite) => (INDEFINITE.to_string(), TOO_FEW_POINTS),
         Failure::PhaseField(SolveFailure::NotFinite) => (NOT_FINITE.to_string(), EXTREME),
+        Failure::Unsettled(Unsettled { rounds, residual, .. }) => (
+            format!("the impulses of contact did not settle in {rounds} rounds: they still change by {residual:.3e}"),
+            UNSETTLED,
+        ),
+        Failure::TooFast(TooFast { spans, .. }) => (
+            format!(
+                "bodies that are about to meet move past each other by {spans:.3} spans in a step, and contact follows \
+                 {MOST}"
+            ),
+            TOO_FAST,
+        ),
         Failure::SingularMass => ("the consistent mass matrix is singular to round-off".to_string(), SINGULAR_MASS),
         Failure::NoPoints(_) => ("the body holds no material point".to_string(), ADD_POINTS),
         Failure::LostTraction { lost: LostTraction::Bare([x, y]), .. } => (

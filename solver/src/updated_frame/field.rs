@@ -107,6 +107,14 @@ impl DiscreteField {
         self.time += dt;
     }
 
+    /// Tells the boundary how far it moves in a step of `dt` seconds with the present velocity.
+    pub(super) fn expect_motion(&mut self, dt: f64) {
+        if let Some(mut surface) = self.surface.take() {
+            surface.expect(self, &self.nodes.velocity, dt);
+            self.surface = Some(surface);
+        }
+    }
+
     /// Adds an acceleration to a control point for the coming kick, m/s².
     pub fn push(&mut self, at: usize, acceleration: [f64; 2]) {
         for (field, a) in self.nodes.acceleration.iter_mut().zip(acceleration) {

@@ -7,7 +7,7 @@ use super::field::DiscreteField;
 use super::grid::{NodalFields, VectorField};
 use super::losses::TransferLosses;
 use super::points::{Cells, FracturePoint, Point};
-use crate::contact::impulse::{ContactForce, Push};
+use crate::contact::impulse::{ContactForce, Push, Unsettled};
 use crate::contact::{Contact, ContactLedger, Surface};
 use crate::energy::{ContactSample, FractureSample, Sample};
 use crate::fracture::BROKEN;
@@ -63,6 +63,19 @@ impl UpdatedFrame {
     /// Forces of contact now; `dt` is the step in use.
     pub fn contact_forces(&self, dt: f64) -> Vec<ContactForce> {
         self.contact.as_ref().map_or_else(Vec::new, |contact| contact.forces(&self.fields, self.coming_kick(dt)))
+    }
+
+    /// Whether the impulses of contact of the coming step settle; `dt` is the step in use.
+    ///
+    /// # Errors
+    /// If they do not.
+    pub fn contact_settles(&self, dt: f64) -> Result<(), Unsettled> {
+        self.contact.as_ref().map_or(Ok(()), |contact| contact.settles(&self.fields, self.coming_kick(dt)))
+    }
+
+    /// Where the boundary of a body was without material first, m, if one ever was.
+    pub fn opened_boundary(&self) -> Option<[f64; 2]> {
+        self.fields.iter().find_map(|field| field.surface()?.opened())
     }
 
     /// Thickness, m.

@@ -18,7 +18,9 @@ impl UpdatedFrame {
             contact.exchange(archive)?;
             if archive.is_reader() && fields[0].time() > 0.0 {
                 contact.move_rigid(fields[0].time());
-                contact.find(fields);
+                contact.find(fields).map_err(|fast| {
+                    StateError(format!("the state is of another scene: bodies move {:.3} spans in a step", fast.spans))
+                })?;
             }
         }
         Ok(())
@@ -92,7 +94,7 @@ impl DiscreteField {
         }
         loads.iter_mut().try_for_each(|load| load.exchange(archive))?;
         if let Some(surface) = surface {
-            archive.list(surface.vertices_mut())?;
+            surface.exchange(archive)?;
         }
         if let Some(fracture) = fracture {
             fracture.exchange(archive)?;

@@ -8,7 +8,7 @@ use crate::scene::{Body, Boundary, Frame, Mass, Scene, Shape, Side, TimeStep, Tr
 use crate::spline::SplineSpace;
 
 /// Most steps of a run.
-const MOST_STEPS: f64 = 1e9;
+pub(super) const MOST_STEPS: f64 = 1e9;
 /// Highest order of XPIC: each costs a transfer to the points and back per step.
 const HIGHEST_XPIC: usize = 100;
 /// Relative tolerance of "on the side", of the size of the mesh.

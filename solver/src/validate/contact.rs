@@ -1,11 +1,13 @@
 //! Checks of several bodies, rigid bodies and contact.
 
+use super::analysis::MOST_STEPS;
 use super::geometry::{complexity, defect};
 use super::{Findings, Ground};
 use crate::contact::Surface;
+use crate::contact::motion::longest_step;
 use crate::contact::surface::Center;
 use crate::extremes::larger;
-use crate::scene::{Body, Frame, Scene, Shape, Transfer};
+use crate::scene::{Body, Frame, Scene, Shape, TimeStep, Transfer};
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
 const TOLERANCE: f64 = 1e-3;
@@ -34,8 +36,28 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     }
     match scene.contact {
         Some(_) if scene.bodies.len() == 1 => findings.warn("contact", "there is only one body; remove the table"),
-        Some(_) if ground.is_sound => overlaps(scene, ground, findings),
+        Some(_) if ground.is_sound => {
+            overlaps(scene, ground, findings);
+            speeds(scene, findings);
+        }
+        None if scene.bodies.len() > 1 => findings.warn(
+            "contact",
+            format!(
+                "{} bodies and no [contact] table: they pass through each other; add [contact] with a friction, or keep them \
+                 apart",
+                scene.bodies.len()
+            ),
+        ),
         _ => (),
+    }
+}
+
+/// Whether bodies are so fast that steps in which contact can follow them would never end.
+fn speeds(scene: &Scene, findings: &mut Findings) {
+    let steps = scene.analysis.end_time / longest_step(scene);
+    if scene.analysis.time_step == TimeStep::Auto && steps > MOST_STEPS {
+        let message = format!("bodies so fast that {steps:.1e} steps are needed to follow them, above {MOST_STEPS:e}");
+        findings.error("contact", message, "give lower velocities, each with its unit, or a shorter end_time");
     }
 }
 

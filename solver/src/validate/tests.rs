@@ -321,6 +321,13 @@ fn several_bodies_need_the_updated_frame_and_room() {
     assert_eq!(changed(|s| s.bodies[1].name = "left".into()), ["body.1.name"]);
     assert!(changed(|s| s.bodies[1].rigid = true).is_empty());
     assert!(changed(|s| s.contact = None).is_empty(), "bodies that do not meet");
+    let silent = warnings(|s| {
+        two(0.0)(s);
+        s.contact = None;
+    });
+    assert_eq!(silent, ["contact"], "bodies that pass through each other");
+    assert!(warnings(two(0.0)).is_empty());
+    assert_eq!(changed(|s| s.bodies[1].velocity = [1e300, 0.0]), ["contact"]);
     assert_eq!(changed(|s| s.bodies.iter_mut().for_each(|b| b.rigid = true)), ["body"]);
     let alone = |s: &mut Scene| {
         s.bodies[1].rigid = true;

@@ -1,0 +1,73 @@
+//! Impulses at touches that share few control points.
+
+use super::*;
+use crate::contact::handle::Handle;
+
+/// A touch of body 0 on the left with a rigid body, which pushes it along the normal.
+fn touch(normal: [f64; 2], x: f64) -> Touch {
+    let (bodies, square, on_a) = ([0, 1], [0, 0], Handle::default());
+    Touch { gap: 0.0, bodies, square, position: [x, 0.5], normal, on_a, on_b: None }
+}
+
+/// A problem of nodes of unit mass at rest; touches with weights of nodes and the velocity of the rigid body.
+fn problem<'a>(nodes: usize, touches: &'a [(Touch, Vec<(usize, f64)>, [f64; 2])]) -> Problem<'a> {
+    let [before, free, after] = [[0.0; 2]; 3];
+    let node = |at| Node { body: 0, at, mobility: [1.0; 2], before, free, after };
+    let nodes: Vec<Node> = (0..nodes).map(node).collect();
+    let acting = |(touch, weights, rigid): &'a (Touch, Vec<(usize, f64)>, [f64; 2])| {
+        let weights = weights.iter().map(|&(node, weight)| (node, -weight)).collect();
+        let impulse = Impulse::default();
+        let mut acting = Acting { touch, weights, rigid: *rigid, round_off: 0.0, answers: [0.0; 2], impulse };
+        acting.find_answers(&nodes);
+        acting
+    };
+    let touches = touches.iter().map(acting).collect();
+    Problem { nodes, touches, unsettled: None }
+}
+
+/// Two walls that close on one control point: no impulses keep both out.
+#[test]
+fn impulses_that_cannot_settle_are_said_to_be_unsettled() {
+    for friction in [0.0, 0.3] {
+        let walls = [
+            (touch([1.0, 0.0], 0.25), vec![(0, 1.0)], [-1.0, 0.0]),
+            (touch([-1.0, 0.0], 0.75), vec![(0, 1.0)], [1.0, 0.0]),
+        ];
+        let mut problem = problem(1, &walls);
+        problem.settle(friction, 1.0);
+        let found = problem.unsettled.expect("no solution");
+        assert!(found.residual > ACCEPTED && found.rounds == MOST_ROUNDS && found.place[1] == 0.5, "{found:?}");
+    }
+    let broken = [(touch([1.0, 0.0], 0.25), vec![(0, 1.0)], [f64::NAN, 0.0])];
+    let mut problem = problem(1, &broken);
+    problem.settle(0.3, 1.0);
+    assert!(problem.unsettled.expect("no number").residual.is_nan());
+}
+
+/// A wall against a row of control points, at as many places between them: neighbours differ in how it falls on them, and rounds
+/// take as many as the square of the row to find out. The equations say at once.
+#[test]
+fn touches_as_many_as_control_points_settle() {
+    let count = 60;
+    for friction in [0.0, 0.3] {
+        let between = |i: usize| {
+            let push = [-1.0 - 0.01 * (i as f64).sin(), 0.2];
+            (touch([1.0, 0.0], i as f64), vec![(i, 0.5), ((i + 1) % (count + 1), 0.5)], push)
+        };
+        let touches: Vec<_> = (0..count).map(between).collect();
+        let mut slow = problem(count + 1, &touches);
+        assert!(!slow.rounds(friction, 1.0).is_settled(ACCEPTED), "the rounds alone settle: the test is empty");
+        let mut problem = problem(count + 1, &touches);
+        problem.settle(friction, 1.0);
+        assert_eq!(problem.unsettled, None);
+        for acting in &problem.touches {
+            let [approach, slide] = acting.relative(&problem.nodes, |node| node.after);
+            let Impulse { normal, tangent } = acting.impulse;
+            assert!(normal >= 0.0 && approach > -1e-9 && normal * approach.abs() < 1e-9, "{normal} and {approach}");
+            assert!(
+                tangent.abs() <= friction * normal * (1.0 + 1e-12) && tangent * slide <= 1e-9,
+                "{tangent} and {slide}"
+            );
+        }
+    }
+}
