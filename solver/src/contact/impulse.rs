@@ -19,7 +19,7 @@ const SETTLED: f64 = 1e-12;
 /// Round-off of the velocity at a touch, relative to those it is summed from; impulses that change it by less are settled.
 const ROUND_OFF: f64 = 1e-14;
 /// Change of an impulse, relative to the largest, above which impulses are not used: momentum is kept by any, so this is the error of gaps and friction.
-const ACCEPTED: f64 = 1e-9;
+const ACCEPTED: f64 = 1e-7;
 
 /// Time of a kick and of the step it belongs to, s: the first kick is half a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
