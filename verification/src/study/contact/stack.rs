@@ -28,7 +28,7 @@ pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::stu
     let held =
         &["largest way sideways over the width", "layer that gives way besides, per side of a contact, in spans"];
     let bare = &[
-        "largest kinetic energy of the last tenth over the largest",
+        "largest kinetic energy of the last tenth over that of the first",
         "deepest overlap of boundaries in spans",
         "energy lost in contact and transfers together over the largest energy",
         "energy lost in contact over the largest energy",
