@@ -20,8 +20,15 @@ impl Constraints {
         let mut constraints = Self::default();
         for component in 0..2 {
             let fixed = &mut constraints.fixed[component];
-            for boundary in boundaries.iter().filter(|b| b.fix[component]) {
-                fixed.extend(grid.side(boundary.side).into_iter().map(|at| (at, boundary.velocity[component])));
+            for boundary in boundaries
+                .iter()
+                .filter(|b| b.fix[fault!("side-holds-the-other-component", component => 1 - component)])
+            {
+                fixed.extend(
+                    grid.side(boundary.side)
+                        .into_iter()
+                        .map(|at| (at, fault!("driven-side-reversed", 1.0 => -1.0) * boundary.velocity[component])),
+                );
             }
             fixed.sort_by_key(|&(at, _)| at);
             fixed.dedup_by_key(|&mut (at, _)| at);

@@ -180,7 +180,11 @@ impl Contact {
                 if nearest.distance > near || dot(normal, nearest.normal) > FACING {
                     continue;
                 }
-                let Some(normal) = unit([0, 1].map(|d| sign * (normal[d] - nearest.normal[d]))) else { continue };
+                let Some(normal) =
+                    unit([0, 1].map(|d| sign * (normal[d] - fault!("normal-of-one-body", nearest.normal[d] => 0.0))))
+                else {
+                    continue;
+                };
                 let middle = [0, 1].map(|d| position[d] + 0.5 * sign * nearest.distance * normal[d]);
                 // Squares around the knots: a plane of symmetry along a knot line cuts none.
                 let square = [0, 1].map(|d| ((middle[d] - self.origin[d]) / self.reach).round() as i32);

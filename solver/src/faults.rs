@@ -1,11 +1,15 @@
 //! Planted errors: proof that the checks of the verification can fail.
 //!
 //! With the feature `faults`, which no release has, one of `FAULTS` can be planted in a process with `plant`, once and
-//! before anything is simulated; `cargo xtask faults` does so and looks for checks that turn red. Each has its site in the
-//! code, `fault!("gradient-sign", right => wrong)`. Without the feature that is `right` and nothing else.
+//! before anything is simulated; `cargo xtask faults` does so and looks for checks that turn red. Each has its sites in the
+//! code, here and where results are judged: `fault!("gradient-sign", right => wrong)`. Without the feature that is `right`
+//! and nothing else. With it, every site also notes that it was passed, so that a case which never comes by one need not be
+//! run with that error: `take_passed`.
 
 /// `right`, or `wrong` while the fault of that name is planted.
 #[cfg(feature = "faults")]
+#[macro_export]
+#[doc(hidden)]
 macro_rules! fault {
     ($name:literal, $right:expr => $wrong:expr) => {{
         const NUMBER: usize = $crate::faults::number($name);
@@ -15,6 +19,8 @@ macro_rules! fault {
 
 /// `right`: nothing can be planted without the feature `faults`.
 #[cfg(not(feature = "faults"))]
+#[macro_export]
+#[doc(hidden)]
 macro_rules! fault {
     ($name:literal, $right:expr => $wrong:expr) => {
         $right
@@ -22,52 +28,118 @@ macro_rules! fault {
 }
 
 #[cfg(feature = "faults")]
-pub use planted::{FAULTS, is_planted, number, plant};
+pub use planted::{FAULTS, is_planted, number, plant, take_passed};
 
 #[cfg(feature = "faults")]
 mod planted {
-    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
     /// Names of the errors that can be planted.
-    pub const FAULTS: [&str; 34] = [
+    pub const FAULTS: &[&str] = &[
+        "affine-left-behind",
         "affine-transposed",
+        "apic-spread-of-quadratics",
+        "band-in-other-units",
+        "boundary-lags-behind",
+        "bounds-both-above",
+        "checkpoint-without-accelerations",
+        "closure-at-the-start",
+        "compression-degraded",
+        "contact-loss-doubled",
+        "contact-pulls",
         "critical-step-too-long",
+        "curves-compared-by-their-mean",
+        "deformation-from-the-wrong-side",
+        "deformation-left-behind",
         "degradation-linear",
+        "difference-upwards-only",
+        "drift-upwards-only",
+        "driven-side-lags",
+        "driven-side-reversed",
         "driven-work-left-out",
+        "events-seen-late",
+        "extrapolation-backwards",
+        "fall-from-the-last-row",
+        "fictitious-material-heavy",
+        "friction-one-way",
         "friction-twice",
+        "gap-without-sign",
+        "gaps-are-overlooked",
         "gradient-sign",
         "gravity-upwards",
+        "gravity-without-mass",
+        "greville-a-knot-early",
+        "half-model-not-doubled",
         "half-step-velocity",
         "held-side-let-go",
         "hencky-without-half",
         "history-forgets",
         "history-left-behind",
         "history-work-halved",
+        "impulse-beside-its-place",
+        "impulse-not-mass-weighted",
         "impulse-one-sided",
+        "inserted-knot-halves",
+        "inverse-map-transposed",
         "jacobian-missing",
+        "judge-ignores-lower-bounds",
+        "judge-ignores-upper-bounds",
+        "judge-passes-infinity",
+        "judge-passes-what-is-missing",
+        "judge-takes-magnitudes",
         "knot-span-off-by-one",
+        "last-verdict-counts",
         "length-scale-doubled",
         "loss-forgotten",
         "mass-lumped",
+        "moving-gradient-halved",
+        "musl-not-smoothed",
+        "norm-without-root",
         "normal-not-normalised",
+        "normal-of-one-body",
         "one-minus-k-missing",
+        "open-gap-counts-as-closed",
+        "order-with-the-wrong-sign",
         "phase-gradient-halved",
         "phase-load-without-volumes",
+        "phase-motion-unbooked",
+        "phase-tolerance-ignored",
         "plane-stress-lambda",
+        "points-move-half-way",
+        "quotient-rule-forgotten",
+        "ramp-forgotten",
         "rational-weights-ignored",
+        "rigid-body-at-rest",
+        "safety-ignored",
+        "seed-twice-as-wide",
+        "shear-energy-once",
+        "shear-force-one-sided",
         "shear-halved",
+        "shear-strain-doubled",
+        "side-holds-the-other-component",
+        "small-growth-never-assembled",
+        "span-not-renewed",
         "split-swapped",
         "stable-fraction-of-musl",
+        "stagger-doubled",
         "surface-energy-doubled",
         "thickness-forgotten",
+        "tip-of-the-shortest-row",
+        "trace-not-split",
         "traction-on-wrong-edge",
         "transfer-keeps-less",
+        "value-of-another-variant",
         "volumes-off-by-a-layer",
         "whole-kick",
+        "work-of-the-last-force",
+        "xpic-a-power-short",
     ];
 
     /// Number of the planted fault; beyond the last if there is none.
     static PLANTED: AtomicUsize = AtomicUsize::new(FAULTS.len());
+
+    /// Whether a site of each fault was passed.
+    static PASSED: [AtomicBool; FAULTS.len()] = [const { AtomicBool::new(false) }; FAULTS.len()];
 
     /// Plants a fault in this process.
     ///
@@ -80,10 +152,24 @@ mod planted {
         Ok(())
     }
 
-    /// Whether the fault of that number is planted.
+    /// Whether the fault of that number is planted; notes that a site of it was passed.
     #[inline(always)]
     pub fn is_planted(number: usize) -> bool {
+        let passed = &PASSED[number];
+        if !passed.load(Ordering::Relaxed) {
+            passed.store(true, Ordering::Relaxed); // once: threads would fight over the line in memory
+        }
         PLANTED.load(Ordering::Relaxed) == number
+    }
+
+    /// Names of the faults whose sites were passed since the last call.
+    pub fn take_passed() -> Vec<&'static str> {
+        FAULTS
+            .iter()
+            .zip(&PASSED)
+            .filter(|(_, passed)| passed.swap(false, Ordering::Relaxed))
+            .map(|(name, _)| *name)
+            .collect()
     }
 
     /// Number of a fault; a name that is not listed does not compile.

@@ -139,7 +139,7 @@ impl Fracturing {
         for row in 0..lattice.rows.len() {
             for b in 0..lattice.points[1] {
                 let Some(broken) = self.rightmost_broken(lattice, row, b, lowest) else { continue };
-                if tip.is_none_or(|tip| broken[0] > tip[0]) {
+                if tip.is_none_or(|tip| fault!("tip-of-the-shortest-row", broken[0] > tip[0] => broken[0] < tip[0])) {
                     tip = Some(broken);
                 }
             }
@@ -208,7 +208,8 @@ pub fn seed_energy(model: &FractureModel, body: &Body, position: [f64; 2]) -> f6
     let strength = SEED_STRENGTH * model.toughness / (4.0 * model.length_scale);
     let of_crack = |crack: &Crack| {
         let half_width = half_width(crack, model.length_scale);
-        strength * (1.0 - distance_to_segment(position, crack.from, crack.to) / half_width)
+        let reach = fault!("seed-twice-as-wide", half_width => 2.0 * half_width);
+        strength * (1.0 - distance_to_segment(position, crack.from, crack.to) / reach)
     };
     body.cracks.iter().map(of_crack).fold(0.0, larger)
 }

@@ -28,7 +28,8 @@ const SERIES: f64 = 0.02;
 #[inline(always)]
 pub fn advance(displacement: &Gradient, step: &Gradient) -> Gradient {
     let (h, a) = (displacement, step);
-    [0, 1].map(|i| [0, 1].map(|j| h[i][j] + (a[i][j] + (a[i][0] * h[0][j] + a[i][1] * h[1][j]))))
+    let [left, right] = fault!("deformation-from-the-wrong-side", [a, h] => [h, a]);
+    [0, 1].map(|i| [0, 1].map(|j| h[i][j] + (a[i][j] + (left[i][0] * right[0][j] + left[i][1] * right[1][j]))))
 }
 
 /// Hencky strain `[xx, yy, xy]` of a displacement gradient; not finite if the deformation has turned inside out.
@@ -73,7 +74,7 @@ pub fn growth([[xx, xy], [yx, yy]]: &Gradient) -> f64 {
 /// Symmetric part `[xx, yy, xy]`.
 #[inline(always)]
 pub fn symmetric([[xx, xy], [yx, yy]]: Gradient) -> [f64; 3] {
-    [xx, yy, 0.5 * (xy + yx)]
+    [xx, yy, fault!("shear-strain-doubled", 0.5 => 1.0) * (xy + yx)]
 }
 
 /// `atanh(q)/q`.

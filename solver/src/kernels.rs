@@ -99,7 +99,7 @@ impl PointKernel for DegradedStress<'_> {
         let energy = state.energy_minus.add_product::<FMA>(g, state.energy_plus);
         self.energy = self.energy.add_product::<FMA>(weight, energy);
         // no array::map: it is compiled on its own, without FMA, where each product would be a call of the library
-        let mut stress = state.stress_minus;
+        let mut stress = fault!("compression-degraded", state.stress_minus => state.stress_minus.map(|s| s * g));
         for (stress, plus) in stress.iter_mut().zip(state.stress_plus) {
             *stress = stress.add_product::<FMA>(g, plus);
         }

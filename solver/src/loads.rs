@@ -180,7 +180,7 @@ impl NodalLoad {
 
     /// Factor at a time: rises linearly over the ramp.
     pub fn factor(&self, time: f64) -> f64 {
-        self.ramp.map_or(1.0, |ramp| (time / ramp).clamp(0.0, 1.0))
+        fault!("ramp-forgotten", self.ramp => None).map_or(1.0, |ramp: f64| (time / ramp).clamp(0.0, 1.0))
     }
 }
 

@@ -98,7 +98,7 @@ impl PhaseField {
         matrix.grid.indices().for_each(|at| phase[at] = 1.0);
         Self {
             model,
-            tolerance: settings.phase_field_tolerance,
+            tolerance: fault!("phase-tolerance-ignored", settings.phase_field_tolerance => 1e-2),
             load,
             previous: phase.clone(),
             phase,
@@ -216,7 +216,7 @@ impl PhaseField {
     /// Adds what the history energy grew by.
     fn assemble_increments(&mut self, lattice: &Lattice, history: &[Lane]) {
         let reaction = self.model.reaction_per_energy();
-        let threshold = 0.01 * self.tolerance / reaction;
+        let threshold = fault!("small-growth-never-assembled", 0.01 * self.tolerance => 0.1) / reaction;
         let increments = Increments { history, assembled: &self.assembled, reaction, threshold };
         add_form(&mut self.matrix, lattice, Form::Mass, &increments);
         let span = lattice.points_per_span();

@@ -148,8 +148,9 @@ impl SplineSpace {
 
     /// Greville abscissae, in the unit of the knots: the control values of the function x.
     pub fn greville(&self) -> Vec<f64> {
+        let first = fault!("greville-a-knot-early", 1 => 0);
         (0..self.dimension())
-            .map(|i| self.knots[i + 1..=i + self.degree].iter().sum::<f64>() / self.degree as f64)
+            .map(|i| self.knots[i + first..i + first + self.degree].iter().sum::<f64>() / self.degree as f64)
             .collect()
     }
 }

@@ -67,7 +67,8 @@ fn spectral(moduli: &ElasticModuli, strain: [Lane; 3]) -> SplitState {
     let ElasticModuli { lambda, mu } = *moduli;
     let (tensile, [e1, e2]) = tensile_strain(strain);
     let trace = strain[0] + strain[1];
-    let (trace_plus, trace_minus) = (trace.at_least(Lane::ZERO), trace.at_most(Lane::ZERO));
+    let (trace_plus, trace_minus) =
+        fault!("trace-not-split", (trace.at_least(Lane::ZERO), trace.at_most(Lane::ZERO)) => (trace, Lane::ZERO));
     let square = |a: Lane, b: Lane| a * a + b * b;
     let plus = square(e1.at_least(Lane::ZERO), e2.at_least(Lane::ZERO));
     let minus = square(e1.at_most(Lane::ZERO), e2.at_most(Lane::ZERO));

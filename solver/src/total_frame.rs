@@ -183,7 +183,8 @@ impl TotalFrame {
         let velocity = &self.velocity; // half a step before self.time: between the two ends of the step
         let mut power = 0.0;
         for load in &self.loads {
-            let factor = 0.5 * (load.factor(self.time - dt) + load.factor(self.time));
+            let before = fault!("work-of-the-last-force", load.factor(self.time - dt) => load.factor(self.time));
+            let factor = 0.5 * (before + load.factor(self.time));
             let forces = load.forces.iter();
             power += factor * forces.map(|&(at, f)| f[0] * velocity[0][at] + f[1] * velocity[1][at]).sum::<f64>();
         }

@@ -32,6 +32,7 @@ pub mod wave;
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use fisura::Simulation;
 use fisura::error::Breakdown;
@@ -57,6 +58,8 @@ pub struct Settings<'a> {
     pub out: &'a OutputFolder,
     /// Command of a peer, if there is one; it is then run whatever families are asked for.
     pub peer: Option<String>,
+    /// Time that one run of the peer may take.
+    pub peer_timeout: Duration,
     /// Families to run; empty: all.
     pub families: Vec<String>,
 }

@@ -19,6 +19,8 @@
 
 mod charts;
 
+use fisura::fault;
+
 use crate::history::Table;
 use crate::record::{Figure, Reference, ReferenceKind};
 use crate::study::{Findings, Measurement};
@@ -126,7 +128,7 @@ pub fn observed_order(levels: &[(f64, f64)], floor: f64) -> Option<f64> {
     let (h, e) = (mean(|l| l.0), mean(|l| l.1));
     let rise: f64 = logarithms.iter().map(|l| (l.0 - h) * (l.1 - e)).sum();
     let run: f64 = logarithms.iter().map(|l| (l.0 - h) * (l.0 - h)).sum();
-    (run > 0.0).then(|| rise / run)
+    (run > 0.0).then(|| fault!("order-with-the-wrong-sign", rise / run => -rise / run))
 }
 
 impl Curve {

@@ -7,6 +7,7 @@ mod series;
 mod table;
 mod tip;
 
+use fisura::fault;
 use fisura::picture::Picture;
 use fisura::scene::Scene;
 
@@ -69,7 +70,12 @@ impl Run<'_> {
                 "-" => sign = -1.0,
                 column => {
                     let values = self.history.column(column).ok_or_else(|| self.no_column(column))?;
-                    let factor = sign * if column.ends_with("_j") { self.energy_factor } else { 1.0 };
+                    let factor = sign
+                        * if column.ends_with("_j") {
+                            fault!("half-model-not-doubled", self.energy_factor => 1.0)
+                        } else {
+                            1.0
+                        };
                     let scaled = values.iter().map(|v| factor * v);
                     total = Some(match total {
                         None => scaled.collect(),

@@ -11,6 +11,7 @@ pub(crate) mod convergence;
 mod crack_profile;
 mod eigenfrequencies;
 mod homogeneous_state;
+mod judging;
 mod linear_field;
 mod nurbs;
 mod offers;
@@ -105,7 +106,7 @@ const NOTHING: &[&str] = &[];
 const SCENES: &[&str] = &["scene", "variant"];
 
 /// Studies other than `scene`.
-pub static STUDIES: [Study; 29] = [
+pub static STUDIES: [Study; 30] = [
     Study { name: "basis", reads: NOTHING, offers: basis::offers, run: basis::study },
     Study { name: "constant-stress", reads: SCENES, offers: constant_stress::offers, run: constant_stress::study },
     Study {
@@ -175,6 +176,7 @@ pub static STUDIES: [Study; 29] = [
         offers: stability::stick_slip::offers,
         run: stability::stick_slip::study,
     },
+    Study { name: "judging", reads: NOTHING, offers: judging::offers, run: judging::study },
 ];
 
 /// The study of that name.

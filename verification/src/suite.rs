@@ -1,6 +1,6 @@
 //! Suites: which cases there are, which are chosen, and running them into a folder of results.
 
-mod judge;
+pub(crate) mod judge;
 pub mod merge;
 pub mod part;
 pub mod partition;
@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use fisura::fault;
 use thiserror::Error;
 
 pub use crate::case::{Case, Tier};
@@ -166,15 +167,16 @@ fn inputs(cases: &[Case]) -> BTreeMap<String, String> {
     cases.iter().map(|case| (case.id(), case.inputs())).collect()
 }
 
-/// Worst status of a set of records.
-pub fn worst(records: &[Record]) -> Option<Status> {
-    let rank = |status: Status| match status {
+/// The worst of some verdicts.
+pub fn worst(verdicts: impl IntoIterator<Item = Status>) -> Option<Status> {
+    let rank = |status: &Status| match status {
         Status::Info => 0,
         Status::Pass => 1,
         Status::Fail => 2,
         Status::Error => 3,
     };
-    records.iter().map(|r| r.status).max_by_key(|s| rank(*s))
+    let verdicts = verdicts.into_iter();
+    fault!("last-verdict-counts", verdicts.max_by_key(rank) => verdicts.last())
 }
 
 /// Writes `series/<stem>.csv`; a stem such as `timing/bar` has a folder of its own.

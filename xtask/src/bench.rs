@@ -1,5 +1,7 @@
 //! `bench`: speed against error.
 
+use std::time::Duration;
+
 use fisura_reports::bench::{self as report, Exhibit, Records, Section};
 use fisura_verification::bench::record::BenchSet;
 use fisura_verification::bench::{BenchError, FAMILIES, Session, Settings};
@@ -24,6 +26,9 @@ pub struct Args {
     /// Time this program as well; its last argument is a folder with particles.csv and block.json
     #[arg(long, value_name = "CMD")]
     peer: Option<String>,
+    /// Seconds that one run of the program may take
+    #[arg(long, value_name = "SECONDS", default_value = "600", value_parser = clap::value_parser!(u64).range(1..))]
+    peer_timeout: u64,
 }
 
 /// Measures, writes the report, and says which targets are met.
@@ -48,6 +53,7 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
         workspace: workspace.clone(),
         out: &folder,
         peer: args.peer.clone(),
+        peer_timeout: Duration::from_secs(args.peer_timeout),
         families: args.family.clone(),
     };
     let session = Session::new(&settings, environment(&workspace))?;
@@ -117,8 +123,9 @@ impl From<BenchError> for Failure {
             BenchError::Input(message) => Self::new(Exit::BadInput, message)
                 .help("verification/cases and reference-data of the workspace are read"),
             BenchError::Reference(error) => Self::new(Exit::BadInput, error.to_string()),
-            peer @ BenchError::Peer { .. } => Self::new(Exit::BadInput, peer.to_string())
-                .help("it must run by itself with a folder as its last argument, and end with status 0"),
+            peer @ BenchError::Peer { .. } => Self::new(Exit::BadInput, peer.to_string()).help(
+                "it must run by itself with a folder as its last argument, end with status 0 and in the time it has",
+            ),
         }
     }
 }

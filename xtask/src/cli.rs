@@ -44,8 +44,12 @@ pub enum Command {
     Report(report::Args),
     /// Measure speed against error: diagrams, stages of the step, threads, ceilings, scenes
     Bench(bench::Args),
-    /// Plant known errors in the solver, one at a time, and show which checks catch each
+    /// Plant known errors, one at a time, and show which checks catch each
     Faults(faults::Args),
+    /// Run cases with the error that the environment names, for `faults`
+    #[cfg(feature = "faults")]
+    #[command(hide = true)]
+    Planted(faults::worker::Args),
 }
 
 /// Flags of every command.

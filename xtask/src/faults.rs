@@ -1,22 +1,37 @@
-//! `faults`: plants known errors in the solver, one at a time, and shows which checks catch each.
+//! `faults`: plants known errors, one at a time, and shows which checks catch each.
 //!
-//! Errors can be planted in a program built with the feature `faults` alone. It is built here, into a folder of its own, and
-//! started once per fault and case with the name of the fault in its environment. A fault is caught if a check fails or a run
-//! breaks down that did not without it.
+//! Errors can be planted in a program built with the feature `faults` alone: it is built here, into a folder of its own. A
+//! process of it ([`worker`]) runs cases one after the other with one fault, named in its environment. A fault is caught if a
+//! check fails or a run breaks down that did not without it. `--matrix` runs every fault on every case of the quick tier whose
+//! run without a fault passes a site of it; on the others the fault changes nothing, which needs no run. Each cell is stored as it
+//! is done ([`cells`]) and taken up by the next run of the same program, cases and reference data.
 
+mod campaign;
+mod cells;
+mod idle;
+mod matrix;
 mod results;
+mod runner;
 mod table;
+#[cfg(feature = "faults")]
+pub mod worker;
 
-use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::{Duration, Instant};
+
+use fisura_verification::suite::{Case, Selection, Tier, load_cases, select};
 
 use crate::cli::{Common, Format};
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::{console, folders, progress};
-use results::{CaseRun, Caught, Results};
+use crate::{console, folders, verify};
+use campaign::Campaign;
+use cells::Store;
+use matrix::Matrix;
+use results::Results;
+use runner::Runner;
 use table::{FAULTS, Fault};
 
 /// Variable that names the fault to plant.
@@ -28,47 +43,47 @@ pub struct Args {
     /// Only these faults, separated by commas
     #[arg(long, value_name = "FAULT,…", value_delimiter = ',')]
     fault: Vec<String>,
+    /// Every fault on every case of the quick tier, cheap cases first, not only on those named for it
+    #[arg(long)]
+    matrix: bool,
+    /// Start no more after this time; what is done is kept, and the next run goes on from there
+    #[arg(long, value_name = "SECONDS")]
+    budget: Option<u64>,
+    /// Use this program, built with `--features faults`, instead of building one
+    #[arg(long, value_name = "FILE")]
+    program: Option<PathBuf>,
 }
 
 /// Plants every fault and looks for checks that turn red.
 ///
 /// # Errors
-/// An unknown fault, a program that cannot be built or started, a case that fails without a fault, a folder that cannot be
-/// written.
+/// An unknown fault, a program that cannot be built or started, a case file that is wrong, a folder that cannot be written.
 pub fn faults(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let faults = chosen(args)?;
     let folder = folders::output(common, "faults")?;
-    folder.begin(|_| false)?;
-    let runner = Runner { program: build(common)?, folder: folder.path(), common };
-    let cases: BTreeSet<&str> = faults.iter().flat_map(|fault| fault.cases).copied().collect();
-    let runs = cases.len() + faults.iter().map(|fault| fault.cases.len()).sum::<usize>();
-    let bar = progress::bar(common, "{msg} {wide_bar} {pos}/{len}, {elapsed}", runs as u64);
-    let mut sound = Vec::new();
-    for case in cases {
-        bar.set_message(format!("no fault, {case}"));
-        sound.push(runner.run(None, case)?.sound()?);
-        bar.inc(1);
-    }
-    let mut results = Results { faults: Vec::new() };
-    for fault in faults {
-        let mut caught = Caught::new(fault);
-        for case in fault.cases {
-            bar.set_message(format!("{}, {case}", fault.id));
-            let run = runner.run(Some(fault), case)?;
-            if let Some(sound) = sound.iter().find(|sound| sound.case == *case) {
-                caught.compare(&run, sound);
-            }
-            bar.inc(1);
-        }
-        results.faults.push(caught);
-    }
-    bar.finish_and_clear();
-    results.write(&folder)?;
+    folder.begin(|name| name.starts_with(cells::FOLDER))?;
+    let program = match &args.program {
+        Some(program) => program.clone(),
+        None => build(common)?,
+    };
+    let cases = load_cases(&verify::cases_folder()?, &[])?;
+    let cases = select(cases, &Selection { suites: Vec::new(), case_glob: None, tier: Tier::Quick });
+    let store = Store::open(&folder, &cells::keys(&program, &folders::workspace(), &cases)?)?;
+    let deadline = args.budget.map(|seconds| Instant::now() + Duration::from_secs(seconds));
+    let threads = common.threads.map_or_else(rayon::current_num_threads, |n| usize::from(n.get()));
+    let runner = Runner::new(program, threads, deadline);
+    let campaign = Campaign { faults: &faults, cases: &cases, store: &store, runner: &runner, common };
+    campaign.run(args.matrix)?;
+    let ids: Vec<String> = cases.iter().map(Case::id).collect();
+    let results = Results::new(&faults, &ids, &store, args.matrix);
+    let matrix = args.matrix.then(|| Matrix::new(&faults, &ids, &store));
+    results.write(&folder, matrix.as_ref())?;
     match common.format {
         Format::Json => console::json(&results),
-        Format::Text => console::result(&results.text()),
+        Format::Text => console::result(&(results.text() + &matrix.as_ref().map_or(String::new(), Matrix::text))),
     }
-    Ok(if results.survivors().next().is_some() { Exit::CheckFailed } else { Exit::Done })
+    let lacking = results.lacking() || matrix.is_some_and(|matrix| matrix.lacking());
+    Ok(if lacking { Exit::CheckFailed } else { Exit::Done })
 }
 
 /// Plants the fault that the environment names, if it names one.
@@ -114,32 +129,5 @@ fn build(common: &Common) -> Result<PathBuf, Failure> {
         }
         Ok(status) => Err(bad(format!("the program in which errors can be planted cannot be built: cargo, {status}"))),
         Err(error) => Err(bad(format!("cargo cannot be started: {error}"))),
-    }
-}
-
-/// Runs cases in the program in which errors can be planted.
-struct Runner<'a> {
-    program: PathBuf,
-    folder: &'a Path,
-    common: &'a Common,
-}
-
-impl Runner<'_> {
-    fn run(&self, fault: Option<&Fault>, case: &str) -> Result<CaseRun, Failure> {
-        let name = fault.map_or("none", |fault| fault.id);
-        let folder = self.folder.join("runs").join(name).join(case.replace('/', "-"));
-        let mut command = Command::new(&self.program);
-        command.args(["verify", "--case", case, "--quiet", "--out"]).arg(&folder).env_remove(PLANTED);
-        if let Some(fault) = fault {
-            command.env(PLANTED, fault.id);
-        }
-        if let Some(threads) = self.common.threads {
-            command.args(["--threads", &threads.to_string()]);
-        }
-        let output = command.output();
-        let output = output.map_err(|error| {
-            Failure::new(Exit::BadInput, format!("{} cannot be started: {error}", self.program.display()))
-        })?;
-        Ok(CaseRun::read(case, &folder, &output))
     }
 }

@@ -56,6 +56,8 @@ fn main() -> ExitCode {
             Command::Report(args) => report::report(&args, &common),
             Command::Bench(args) => bench::bench(&args, &common),
             Command::Faults(args) => faults::faults(&args, &common),
+            #[cfg(feature = "faults")]
+            Command::Planted(args) => faults::worker::planted(&args, &common),
         })
     });
     outcome.unwrap_or_else(|failure| failure.show()).into()

@@ -278,7 +278,7 @@ fn print(results: &ResultSet, common: &Common) {
 
 /// Exit status that the records deserve.
 pub fn verdict(records: &[Record]) -> Exit {
-    match worst(records) {
+    match worst(records.iter().map(|record| record.status)) {
         Some(Status::Error) => Exit::BrokeDown,
         Some(Status::Fail) => Exit::CheckFailed,
         _ => Exit::Done,
@@ -335,7 +335,7 @@ impl suite::Progress for Watch<'_> {
 
     fn finished(&self, _case: &Case, records: &[Record]) {
         let Ok(present) = self.present.lock() else { return };
-        let word = match worst(records) {
+        let word = match worst(records.iter().map(|record| record.status)) {
             Some(Status::Error) => "error",
             Some(Status::Fail) => "fail",
             Some(Status::Pass) => "pass",

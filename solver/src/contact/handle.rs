@@ -76,7 +76,8 @@ impl Handle {
         for l in 0..ky {
             for k in 0..kx {
                 let at = nodes.grid.index(column + k, row + l);
-                let weight = nx.value[k] * ny.value[l] * nodes.mass[at];
+                let mass = fault!("impulse-not-mass-weighted", nodes.mass[at] => 1.0);
+                let weight = nx.value[k] * ny.value[l] * mass;
                 if nodes.inverse_mass[at] > 0.0 && weight > 0.0 {
                     parts[count] = Part { at, weight, inverse_mass: nodes.inverse_mass[at], arm: [x[k], y[l]] };
                     count += 1;
@@ -110,7 +111,8 @@ fn fit(parts: &[Part]) -> Option<[f64; MAX_FUNCTIONS]> {
     let weights = |slope: [f64; 2]| {
         let mut weights = [0.0; MAX_FUNCTIONS];
         for (weight, part) in weights.iter_mut().zip(parts) {
-            *weight = part.weight / spread.weight * (1.0 + dot(slope, spread.from_center(part)));
+            let lever = fault!("impulse-beside-its-place", dot(slope, spread.from_center(part)) => 0.0);
+            *weight = part.weight / spread.weight * (1.0 + lever);
         }
         weights
     };

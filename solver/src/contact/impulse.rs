@@ -273,7 +273,7 @@ impl Problem<'_> {
 
     /// Energies of half the force of the kick with given velocities.
     fn energy(&self, kick: Kick, velocity: impl Fn(&Node) -> [f64; 2] + Copy) -> ContactLedger {
-        let half = 0.5 * kick.step / kick.length;
+        let half = fault!("contact-loss-doubled", 0.5 => 1.0) * kick.step / kick.length;
         let parts = self.touches.iter().map(|acting| acting.energy(&self.nodes, velocity));
         parts.fold(ContactLedger::default(), |sum, part| sum.plus(part.times(half)))
     }
@@ -326,16 +326,17 @@ impl Acting<'_> {
         let relative = self.relative(nodes, |node| node.after);
         let [along_normal, along_tangent] = self.answers;
         if along_normal > 0.0 {
-            let allowed = -self.touch.gap.max(0.0) / step;
+            let allowed = -fault!("open-gap-counts-as-closed", self.touch.gap.max(0.0) => 0.0) / step;
             let settled = normal + (allowed - dot(relative, self.touch.normal)) / along_normal;
-            normal = if settled < 0.0 { 0.0 } else { settled };
+            normal = if settled < fault!("contact-pulls", 0.0 => f64::NEG_INFINITY) { 0.0 } else { settled };
         }
         if normal.is_nan() {
             return Impulse { normal, tangent: normal };
         }
         let most = fault!("friction-twice", friction * normal => 2.0 * friction * normal);
         if along_tangent > 0.0 {
-            tangent = (tangent - dot(relative, self.tangent()) / along_tangent).clamp(-most, most);
+            let least = fault!("friction-one-way", -most => 0.0);
+            tangent = (tangent - dot(relative, self.tangent()) / along_tangent).clamp(least, most);
         }
         Impulse { normal, tangent }
     }

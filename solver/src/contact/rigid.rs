@@ -44,7 +44,8 @@ impl RigidBody {
     pub fn velocity_at(&self, position: [f64; 2]) -> [f64; 2] {
         let center = self.present_center();
         let arm = [0, 1].map(|d| position[d] - center[d]);
-        [self.velocity[0] - self.spin * arm[1], self.velocity[1] + self.spin * arm[0]]
+        let moving = [self.velocity[0] - self.spin * arm[1], self.velocity[1] + self.spin * arm[0]];
+        fault!("rigid-body-at-rest", moving => [0.0; 2])
     }
 
     /// Its boundary now.

@@ -153,6 +153,7 @@ impl Surface {
             let position = self.vertices[vertex];
             let normal = self.vertex_normal(vertex);
             let inside = [0, 1].map(|d| position[d] - depth * normal[d]);
+            let dt = fault!("boundary-lags-behind", dt => 0.9 * dt);
             Handle::new(field, position, inside).map(|handle| handle.value(velocity).map(|v| dt * v))
         };
         (0..self.vertices.len()).into_par_iter().map(way).collect()
@@ -257,7 +258,8 @@ impl Surface {
         }
         let normal = self.normal_at(segment, t);
         let outside = dot(from, normal) >= 0.0;
-        Some(Nearest { distance: if outside { distance } else { -distance }, normal })
+        let sign = if outside { 1.0 } else { fault!("gap-without-sign", -1.0 => 1.0) };
+        Some(Nearest { distance: sign * distance, normal })
     }
 
     /// Outward normal of a segment at a fraction t of its length: at its ends that of the vertex.

@@ -90,6 +90,7 @@ impl Lattice {
                     point.weight_slope[d][lane] = weight.gradient[d] / weight.value;
                     point.position[d][lane] = image.position[d];
                 }
+                let [yu, xv] = fault!("inverse-map-transposed", [yu, xv] => [xv, yu]);
                 for (entry, value) in point.inverse_jacobian.iter_mut().zip([yv, -xv, -yu, xu]) {
                     entry[lane] = value / determinant;
                 }

@@ -29,6 +29,7 @@ impl RationalFunctions {
         let mut physical = [[0.0; 2]; MAX_FUNCTIONS];
         for n in 0..self.count {
             let [u, v] = self.gradient[n];
+            let [yu, xv] = fault!("inverse-map-transposed", [yu, xv] => [xv, yu]);
             physical[n] = [(yv * u - yu * v) * scale, (xu * v - xv * u) * scale];
         }
         physical
@@ -129,7 +130,8 @@ pub(super) fn weighted(products: RationalFunctions, weights: &[f64]) -> (Rationa
     for n in 0..functions.count {
         functions.value[n] *= scale;
         for d in 0..2 {
-            functions.gradient[n][d] = (functions.gradient[n][d] - functions.value[n] * slope[d]) * scale;
+            let of_weight = fault!("quotient-rule-forgotten", functions.value[n] * slope[d] => 0.0);
+            functions.gradient[n][d] = (functions.gradient[n][d] - of_weight) * scale;
         }
     }
     (functions, PointValue { value: sum, gradient: slope })

@@ -60,7 +60,7 @@ fn insert(degree: usize, knots: &[f64], points: &[[f64; 3]], u: f64) -> Vec<[f64
             } else if i > k {
                 points[i - 1]
             } else {
-                let a = (u - knots[i]) / (knots[i + degree] - knots[i]);
+                let a = fault!("inserted-knot-halves", (u - knots[i]) / (knots[i + degree] - knots[i]) => 0.5);
                 [0, 1, 2].map(|c| a * points[i][c] + (1.0 - a) * points[i - 1][c])
             }
         })

@@ -33,7 +33,7 @@ impl TotalFrame {
     pub fn sample(&self, dt: f64) -> Sample {
         let [x, y] = self.patch.control_positions();
         let kinetic = self.mass.half_square(&self.velocity);
-        let stagger = 0.25 * dt * dt * self.mass.half_square(&self.acceleration);
+        let stagger = fault!("stagger-doubled", 0.25 => 0.5) * dt * dt * self.mass.half_square(&self.acceleration);
         let mut momenta = [self.grid.zeros(), self.grid.zeros()];
         for component in 0..2 {
             self.mass.multiply(&self.velocity[component], &mut momenta[component]);

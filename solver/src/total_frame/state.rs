@@ -39,7 +39,8 @@ impl TotalFrame {
         if forced.is_some() {
             return Err(StateError("loads that only the program knows cannot be stored".to_string()));
         }
-        for field in [displacement, velocity, acceleration, internal] {
+        let stored = fault!("checkpoint-without-accelerations", 4 => 3);
+        for field in [displacement, velocity, internal, acceleration].into_iter().take(stored) {
             field.iter_mut().try_for_each(|component| archive.list(component))?;
         }
         if let Some(Fracturing { model: _, history, phase, remembered, field, iterations }) = fracture {

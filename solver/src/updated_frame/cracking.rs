@@ -262,7 +262,8 @@ impl UpdateStress<'_> {
         }
         let FractureModel { toughness, length_scale, residual_stiffness, .. } = self.model;
         let gradient_square = along_x * along_x + along_y * along_y;
-        let density = (1.0 - c) * (1.0 - c) / (4.0 * length_scale) + length_scale * gradient_square;
+        let of_gradient = fault!("moving-gradient-halved", length_scale => 0.5 * length_scale);
+        let density = (1.0 - c) * (1.0 - c) / (4.0 * length_scale) + of_gradient * gradient_square;
         sums.surface_energy += point.volume * toughness * density;
         sums.least_phase = smaller(sums.least_phase, c);
         let by_value = 2.0 * (1.0 - residual_stiffness) * c * history - toughness * (1.0 - c) / (2.0 * length_scale);

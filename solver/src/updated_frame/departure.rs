@@ -79,13 +79,13 @@ impl Departure {
             Transfer::Flip => add(taken, -1.0, &nodes.arrived),
             Transfer::Musl => {
                 add(taken, -1.0, &nodes.arrived);
-                smoothing.apply(taken, motion);
+                fault!("musl-not-smoothed", smoothing.apply(taken, motion) => copy(motion, taken));
                 add(motion, 1.0, &nodes.arrived);
                 nodes.constrain(motion);
             }
             Transfer::Xpic(order) => {
                 let (mut rest, mut smooth) = (nodes.arrived.clone(), nodes.arrived.clone());
-                for _ in 1..order {
+                for _ in fault!("xpic-a-power-short", 1 => 2)..order {
                     smoothing.apply(&rest, &mut smooth);
                     add(&mut rest, -1.0, &smooth);
                     add(taken, 1.0, &rest);

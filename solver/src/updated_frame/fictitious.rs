@@ -46,14 +46,15 @@ impl FictitiousMaterial {
     /// Sets a system to that of the fictitious material alone.
     pub fn begin(&self, matrix: &mut Stencil, load: &mut [f64]) {
         let (grid, row_length) = (matrix.grid, matrix.row_length());
+        let heaviness = fault!("fictitious-material-heavy", WEIGHT => 1.0);
         let offsets = matrix.offsets().to_vec();
         let rows = matrix.coefficients_mut().par_chunks_mut(row_length).zip(load.par_chunks_mut(grid.stride));
         rows.enumerate().for_each(|(row, (coefficients, load))| {
             let lead = grid.index(0, 0);
             let [x, y] = &self.directions;
             for (coefficients, &Offset { columns, rows }) in coefficients.chunks_mut(grid.stride).zip(&offsets) {
-                let value = WEIGHT * y.product[row][rows];
-                let (in_x, in_y) = (self.diffusion * value, self.diffusion * WEIGHT * y.slope_product[row][rows]);
+                let value = heaviness * y.product[row][rows];
+                let (in_x, in_y) = (self.diffusion * value, self.diffusion * heaviness * y.slope_product[row][rows]);
                 for column in 0..grid.columns {
                     let Some(first) = column.checked_add_signed(columns.min(0)) else { continue };
                     let (product, slope) =
@@ -62,7 +63,7 @@ impl FictitiousMaterial {
                 }
             }
             for column in 0..grid.columns {
-                load[lead + column] = WEIGHT * x.value[column] * y.value[row];
+                load[lead + column] = heaviness * x.value[column] * y.value[row];
             }
         });
     }

@@ -84,7 +84,7 @@ impl DiscreteField {
         self.depart(); // transfer: what the points take up, and the motion they follow
         let leaving = self.leaving();
         let left_span = self.grid_to_points(dt); // G2P: velocities, positions, strains
-        if left_span {
+        if fault!("span-not-renewed", left_span => false) {
             self.sort()?;
         }
         self.attach_loads()?;
@@ -205,10 +205,10 @@ impl DiscreteField {
             fault!("history-left-behind", cells.reorder(&mut fracture.points) => ());
         }
         if let Some(affine) = &mut self.affine {
-            cells.reorder(&mut affine.gradients);
+            fault!("affine-left-behind", cells.reorder(&mut affine.gradients) => ());
         }
         if let Some(deformation) = &mut self.deformation {
-            cells.reorder(deformation);
+            fault!("deformation-left-behind", cells.reorder(deformation) => ());
         }
         if let Some(forcing) = &mut self.forcing {
             forcing.reorder(cells);
@@ -231,7 +231,7 @@ impl DiscreteField {
         self.elastic_energy = sums.elastic_energy;
         self.stress_work = sums.stress_work;
         self.ledger.history_work += sums.history_work;
-        self.losses.phase_field -= sums.gained_in_motion;
+        self.losses.phase_field -= fault!("phase-motion-unbooked", sums.gained_in_motion => 0.0);
         Ok(())
     }
 

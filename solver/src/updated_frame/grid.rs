@@ -92,7 +92,7 @@ impl NodalFields {
     pub fn add_gravity(&mut self, gravity: [f64; 2]) {
         for component in (0..2).filter(|&c| gravity[c] != 0.0) {
             for (force, mass) in self.force[component].iter_mut().zip(&self.mass) {
-                *force += gravity[component] * mass;
+                *force += gravity[component] * fault!("gravity-without-mass", *mass => 1.0);
             }
         }
     }
@@ -102,7 +102,7 @@ impl NodalFields {
         let mut energy = ImposedEnergy::default();
         for (at, component, value) in self.constraints.iter() {
             let jump = value - self.velocity[component][at];
-            self.velocity[component][at] = value;
+            self.velocity[component][at] = fault!("driven-side-lags", value => 0.5 * value);
             energy.work += self.mass[at] * jump * value;
             energy.loss += 0.5 * self.mass[at] * jump * jump;
         }

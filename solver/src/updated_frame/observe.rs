@@ -144,7 +144,7 @@ impl DiscreteField {
             let a = [0, 1].map(|c| acceleration[c][at]);
             let v = [0, 1].map(|c| nodes.velocity[c][at] + half * a[c]);
             kinetic += 0.5 * m * (v[0] * v[0] + v[1] * v[1]);
-            stagger += 0.125 * dt * dt * m * (a[0] * a[0] + a[1] * a[1]);
+            stagger += fault!("stagger-doubled", 0.125 => 0.25) * dt * dt * m * (a[0] * a[0] + a[1] * a[1]);
             momentum = [momentum[0] + m * v[0], momentum[1] + m * v[1]];
             let [x, y] = nodes.position(at);
             angular += m * (x * v[1] - y * v[0]);

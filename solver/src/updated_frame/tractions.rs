@@ -35,7 +35,7 @@ impl SurfaceLoad {
 
     /// Factor at a time (s): rises linearly over the ramp.
     pub fn factor(&self, time: f64) -> f64 {
-        self.ramp.map_or(1.0, |ramp| (time / ramp).clamp(0.0, 1.0))
+        fault!("ramp-forgotten", self.ramp => None).map_or(1.0, |ramp: f64| (time / ramp).clamp(0.0, 1.0))
     }
 
     /// Power of the full traction on the points during the last motion, W/m.

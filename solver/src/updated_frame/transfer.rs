@@ -70,7 +70,7 @@ impl PointsToGrid<'_> {
                 for l in 0..ky {
                     let (n, d) = (sy.value[l], sy.derivative[l]);
                     let by_value = [px * n, py * n, xy * d, yy * d];
-                    let by_slope = [0.0, 0.0, xx * n, xy * n];
+                    let by_slope = [0.0, 0.0, xx * n, fault!("shear-force-one-sided", xy * n => 0.0)];
                     for k in 0..kx {
                         mass[l * kx + k] += m * n * sx.value[k];
                         let sums = &mut local[l * kx + k];
@@ -226,7 +226,7 @@ impl<K: Kinematics> GridToPoints<'_, K> {
         for d in 0..2 {
             point.velocity[d] = self.kept * point.velocity[d] + value[2 + d];
             point.displacement[d] += moved[d];
-            point.position[d] += moved[d];
+            point.position[d] += fault!("points-move-half-way", moved[d] => 0.5 * moved[d]);
             motion.fastest = larger(motion.fastest, value[d] * value[d]);
         }
         let spans = [&x.spans()[cell.span[0]], &y.spans()[cell.span[1]]];

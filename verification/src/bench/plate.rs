@@ -300,6 +300,7 @@ mod tests {
             workspace: crate::bench::own_workspace(),
             out: &out,
             peer: None,
+            peer_timeout: std::time::Duration::ZERO,
             families: vec![],
         };
         let case = half(&settings, 3, 2.0).unwrap();

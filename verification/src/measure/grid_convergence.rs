@@ -20,6 +20,7 @@
 //! **Numerical uncertainty** of the value on the finest mesh, for its comparison with a reference: U_num = GCI |f1|. A sequence
 //! that has no index still has an uncertainty, three times its range (Eça and Hoekstra, J. Mar. Sci. Technol. 14, 2009).
 
+use fisura::fault;
 use fisura::scene::Mesh;
 use fisura::spans::largest_spans;
 
@@ -134,7 +135,7 @@ fn combine(estimate: Estimate, mut meshes: Vec<(f64, f64)>, theory: Option<f64>)
     };
     let correction = (f1 - f2) / (ratio.powf(p) - 1.0);
     match estimate {
-        Estimate::Richardson => Ok(f1 + correction),
+        Estimate::Richardson => Ok(fault!("extrapolation-backwards", f1 + correction => f1 - correction)),
         Estimate::FinestMesh => Ok(*f1),
         _ if *f1 == 0.0 => Err("the value is zero, and a relative index has no meaning".into()),
         _ => Ok(safety * (correction / f1).abs()),

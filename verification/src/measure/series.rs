@@ -1,5 +1,6 @@
 //! Measures on columns of the history.
 
+use fisura::fault;
 use fisura::material::ElasticModuli;
 use nalgebra::{DMatrix, DVector};
 
@@ -67,14 +68,16 @@ pub(super) fn slope_over_plane_wave_power(check: &Check, run: &Run) -> Result<Me
 pub(super) fn closure(run: &Run) -> Result<f64, String> {
     let most = |name: &str| -> f64 { run.column(name).map_or(0.0, |c| extremes::largest(c.iter().map(|v| v.abs()))) };
     let scale = extremes::largest(["kinetic_j", "elastic_j", "fracture_j", "external_work_j"].map(most));
-    if scale > 0.0 { Ok(most("closure_j") / scale) } else { Err("the run has no energy".to_string()) }
+    let closure = fault!("closure-at-the-start", most("closure_j") => run.column("closure_j")?[0].abs());
+    if scale > 0.0 { Ok(closure / scale) } else { Err("the run has no energy".to_string()) }
 }
 
 /// Largest departure from the first value, over the first value.
 pub(super) fn drift(check: &Check, run: &Run) -> Result<f64, String> {
     let (window, values) = (run.window(check)?, run.column(column(check)?)?);
     let first = values[window.start];
-    Ok(extremes::largest(values[window].iter().map(|v| (v - first).abs())) / first.abs())
+    let off = |v: &f64| fault!("drift-upwards-only", (v - first).abs() => (v - first).max(0.0));
+    Ok(extremes::largest(values[window].iter().map(off)) / first.abs())
 }
 
 /// Largest magnitude in the window.
@@ -111,7 +114,7 @@ pub(super) fn largest_decrease(check: &Check, run: &Run) -> Result<f64, String> 
     let values = run.column(column(check)?)?;
     let (mut highest, mut fall) = (f64::NEG_INFINITY, 0.0_f64);
     for value in values {
-        highest = highest.max(value);
+        highest = fault!("fall-from-the-last-row", highest.max(value) => value);
         fall = larger(fall, highest - value);
     }
     Ok(fall / highest.abs())
@@ -128,7 +131,8 @@ pub(super) fn difference(check: &Check, run: &Run, runs: &[Run]) -> Result<f64, 
         return Err("the two variants have different sample times".to_string());
     }
     let scale = extremes::largest(others.iter().map(|v| v.abs()));
-    Ok(extremes::largest(values.iter().zip(&others).map(|(a, b)| (a - b).abs())) / scale)
+    let apart = |(a, b): (&f64, &f64)| fault!("difference-upwards-only", (a - b).abs() => (a - b).max(0.0));
+    Ok(extremes::largest(values.iter().zip(&others).map(apart)) / scale)
 }
 
 /// Largest principal stress in the middle of the mesh, Pa: mean over the frames, weighted with the square of a sine that

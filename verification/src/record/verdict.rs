@@ -9,6 +9,7 @@
 //! |E| > U_val    model, code or mesh (where U_num is unknown) are off by |E| − U_val at least
 //! ```
 
+use fisura::fault;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -86,7 +87,8 @@ impl Record {
         if accept.min.is_none() && accept.max.is_none() {
             return Status::Info;
         }
-        let holds = value.is_some_and(|v| within(v, accept.min, accept.max));
+        let inside = |v: f64| within(v, accept.min, accept.max);
+        let holds = fault!("judge-passes-what-is-missing", value.is_some_and(inside) => value.is_none_or(inside));
         if holds { Status::Pass } else { Status::Fail }
     }
 
@@ -130,7 +132,11 @@ impl Record {
 }
 
 fn within(value: f64, min: Option<f64>, max: Option<f64>) -> bool {
-    value.is_finite() && min.is_none_or(|min| value >= min) && max.is_none_or(|max| value <= max)
+    let value = fault!("judge-takes-magnitudes", value => value.abs());
+    let finite = fault!("judge-passes-infinity", value.is_finite() => true);
+    let above = fault!("judge-ignores-lower-bounds", min => None).is_none_or(|min| value >= min);
+    let below = fault!("judge-ignores-upper-bounds", max => None).is_none_or(|max| value <= max);
+    finite && above && below
 }
 
 #[cfg(test)]

@@ -9,6 +9,8 @@
 //! A result that does not reach all those abscissae, or is not a number there, has no distance (`None`), so that a run
 //! that ended early cannot pass.
 
+use fisura::fault;
+
 use super::ReferenceCurve;
 use super::curve::{blend, bracket};
 
@@ -22,7 +24,9 @@ use super::curve::{blend, bracket};
 pub fn relative_rms(reference: &ReferenceCurve, x: &[f64], y: &[f64], from: f64, to: f64) -> Option<f64> {
     let pairs = pairs(reference, x, y, from, to)?;
     let scale: f64 = pairs.iter().map(|(_, r)| r * r).sum();
-    (scale > 0.0).then(|| (squares(&pairs) / scale).sqrt())
+    let mean =
+        fault!("curves-compared-by-their-mean", squares(&pairs) => pairs.iter().map(|(y, r)| y - r).sum::<f64>().abs());
+    (scale > 0.0).then(|| (mean / scale).sqrt())
 }
 
 /// sqrt( Σ (y − r)² / n ) over the reference's abscissae in [from, to]; SI in, SI out.

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+use fisura::fault;
+
 use super::prepare::{Planned, Prepared, bounds_around, find_band};
 use super::{CaseOutcome, VerifyError, write_series};
 use crate::case::{Case, Check};
@@ -76,12 +78,14 @@ fn judge_runs(
 fn in_band(record: &mut Record, check: &Check, measured: Measured, library: &Library) -> Result<Measured, String> {
     let Some(path) = &check.band else { return Ok(measured) };
     let band = find_band(library, path).ok_or_else(|| format!("no reference band {path:?}"))?;
-    record.accept = bounds_of(band, check.scale);
+    record.accept = band_bounds(band, check.scale);
     Ok(Measured { reference: measured.reference.or(Some(band.reference())), ..measured })
 }
 
-fn bounds_of(band: &ReferenceBand, scale: f64) -> Accept {
+/// The bounds of a reference band, in the unit of a check.
+pub(crate) fn band_bounds(band: &ReferenceBand, scale: f64) -> Accept {
     let why = format!("what the sources say: {}", band.sources.join(", "));
+    let scale = fault!("band-in-other-units", scale => 1.0);
     Accept { min: Some(band.min * scale), max: Some(band.max * scale), why, kind: None }
 }
 
@@ -134,7 +138,8 @@ fn judge_study(
 
 fn judge_finding(mut record: Record, check: &Check, planned: &Planned, findings: &Findings) -> Record {
     let mut all = findings.measurements.iter();
-    let found = all.find(|m| m.quantity == check.quantity && m.variant == planned.variant);
+    let of_variant = |variant: &str| fault!("value-of-another-variant", variant == planned.variant => true);
+    let found = all.find(|m| m.quantity == check.quantity && of_variant(&m.variant));
     let Some(measurement) = found else { return failed(record, "the study did not measure this, as it should") };
     record.unit.clone_from(&measurement.unit);
     let reference = expected(check, 1.0).or_else(|| measurement.reference.clone());

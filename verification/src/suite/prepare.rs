@@ -6,6 +6,8 @@ mod scene_checks;
 
 use std::collections::BTreeMap;
 
+use fisura::fault;
+
 use crate::case::{Case, Check};
 use crate::expand::CaseScene;
 use crate::measure::grid_convergence;
@@ -274,9 +276,9 @@ pub(super) fn find_band<'a>(library: &'a Library, path: &str) -> Option<&'a Refe
 ///
 /// # Errors
 /// If there is no value to count from.
-pub(super) fn bounds_around(check: &Check, reference: Option<&Reference>) -> Result<Option<[f64; 2]>, String> {
+pub(crate) fn bounds_around(check: &Check, reference: Option<&Reference>) -> Result<Option<[f64; 2]>, String> {
     let Some([below, above]) = check.around_reference else { return Ok(None) };
     let value = reference.and_then(|reference| reference.value);
     let value = value.ok_or("there is no reference value from which below and above could count")?;
-    Ok(Some([value - below, value + above]))
+    Ok(Some([value - fault!("bounds-both-above", below => -below), value + above]))
 }

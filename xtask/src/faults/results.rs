@@ -1,31 +1,22 @@
-//! What the checks said with and without a fault, and the table of both.
+//! What catches each fault, and the files that say so.
 
 use std::fmt::Write;
-use std::fs;
-use std::path::Path;
-use std::process::Output;
 
 use fisura_verification::output::{OutputError, OutputFolder};
-use fisura_verification::record::{ResultSet, Status};
 use serde::Serialize;
 
+use super::cells::Store;
+use super::matrix::Matrix;
 use super::table::Fault;
-use crate::exit::Exit;
-use crate::failure::Failure;
-
-/// A case that was run.
-pub struct CaseRun {
-    /// Its id.
-    pub case: String,
-    /// Its checks, or how it ended without any.
-    outcome: Result<Vec<(String, Status)>, String>,
-}
 
 /// All that was found.
 #[derive(Debug, Serialize)]
 pub struct Results {
     /// One entry per fault.
     pub faults: Vec<Caught>,
+    /// Cases that do not hold without a fault: nothing can be learnt from them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unsound: Vec<String>,
 }
 
 /// What caught a fault.
@@ -36,88 +27,59 @@ pub struct Caught {
     cases: &'static [&'static str],
     /// Records that fail, or are errors, with the fault alone.
     caught_by: Vec<String>,
-    /// Checks that were made.
+    /// Checks that were made with it.
     checks: usize,
     /// How cases ended that have no records.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     ended: Vec<String>,
 }
 
-impl CaseRun {
-    /// Reads the results of a run.
-    pub fn read(case: &str, folder: &Path, output: &Output) -> Self {
-        let results = fs::read_to_string(folder.join("results.json")).ok();
-        let results = results.and_then(|text| serde_json::from_str::<ResultSet>(&text).ok());
-        // those of an earlier run that this one refused to replace, or of one that did not come to its end, are none
-        let ran = output.status.code().is_some_and(|code| {
-            [Exit::Done, Exit::CheckFailed, Exit::BrokeDown].iter().any(|exit| *exit as i32 == code)
-        });
-        let results = results.filter(|results| ran && !results.is_unfinished());
-        let outcome = results
-            .map(|results| results.records.into_iter().map(|record| (record.id, record.status)).collect())
-            .ok_or_else(|| {
-                let complaint = String::from_utf8_lossy(&output.stderr);
-                format!("{case}: {}: {}", output.status, complaint.lines().next().unwrap_or_default())
-            });
-        Self { case: case.to_string(), outcome }
-    }
-
-    /// The same if every check holds.
-    ///
-    /// # Errors
-    /// If one does not: nothing could be learnt from it.
-    pub fn sound(self) -> Result<Self, Failure> {
-        let fails = match &self.outcome {
-            Ok(records) => records.iter().find(|(_, status)| is_red(*status)).map(|(id, _)| id.clone()),
-            Err(ending) => Some(ending.clone()),
-        };
-        match fails {
-            None => Ok(self),
-            Some(what) => {
-                let message = format!("without a fault, {} does not hold: {what}", self.case);
-                Err(Failure::new(Exit::CheckFailed, message).help("see `cargo xtask verify --case` for why"))
-            }
-        }
-    }
-}
-
-fn is_red(status: Status) -> bool {
-    matches!(status, Status::Fail | Status::Error)
-}
-
 impl Caught {
-    /// By nothing yet.
-    pub fn new(fault: &Fault) -> Self {
-        let Fault { id, what, cases } = *fault;
-        Self { id, what, cases, caught_by: Vec::new(), checks: 0, ended: Vec::new() }
-    }
-
-    /// Adds the checks of a case that are red with the fault; without, none is.
-    pub fn compare(&mut self, run: &CaseRun, sound: &CaseRun) {
-        self.checks += sound.outcome.as_ref().map_or(0, Vec::len);
-        match &run.outcome {
-            Ok(records) => {
-                let red = records.iter().filter(|(_, status)| is_red(*status));
-                self.caught_by.extend(red.map(|(id, _)| id.clone()));
-            }
-            Err(ending) => self.ended.push(ending.clone()),
+    fn new(fault: &Fault, cases: &[String], store: &Store, all: bool) -> Self {
+        let Fault { id, what, cases: named } = *fault;
+        let mut caught = Self { id, what, cases: named, caught_by: Vec::new(), checks: 0, ended: Vec::new() };
+        let first = named.iter().map(|case| case.to_string());
+        let others = cases.iter().filter(|case| all && !named.contains(&case.as_str())).cloned();
+        for case in first.chain(others) {
+            let (Some(sound), Some(cell)) = (store.get(None, &case), store.get(Some(id), &case)) else { continue };
+            caught.checks += sound.green.len();
+            caught.caught_by.extend(cell.red);
+            caught.ended.extend(cell.ended.map(|why| format!("{case}: {why}")));
         }
+        caught
     }
 }
 
 impl Results {
+    /// From what is known: of the cases named for each fault, or of all.
+    pub fn new(faults: &[&'static Fault], cases: &[String], store: &Store, all: bool) -> Self {
+        let unsound = cases.iter().filter(|case| store.get(None, case).is_some_and(|cell| !cell.holds()));
+        Self {
+            faults: faults.iter().map(|fault| Caught::new(fault, cases, store, all)).collect(),
+            unsound: unsound.cloned().collect(),
+        }
+    }
+
     /// Faults that no check caught.
-    pub fn survivors(&self) -> impl Iterator<Item = &Caught> {
+    fn survivors(&self) -> impl Iterator<Item = &Caught> {
         self.faults.iter().filter(|fault| fault.caught_by.is_empty())
     }
 
-    /// Writes `faults.json` and `faults.md`.
+    /// Whether a fault survives, or a case does not hold without one.
+    pub fn lacking(&self) -> bool {
+        self.survivors().next().is_some() || !self.unsound.is_empty()
+    }
+
+    /// Writes `faults.json` and `faults.md`, and `matrix.json` if there is a matrix.
     ///
     /// # Errors
     /// If they cannot be written.
-    pub fn write(&self, folder: &OutputFolder) -> Result<(), OutputError> {
+    pub fn write(&self, folder: &OutputFolder, matrix: Option<&Matrix>) -> Result<(), OutputError> {
         folder.write_json("faults.json", self)?;
-        folder.write("faults.md", self.markdown())?;
+        if let Some(matrix) = matrix {
+            folder.write_json("matrix.json", matrix)?;
+        }
+        folder.write("faults.md", self.markdown() + &matrix.map_or(String::new(), Matrix::markdown))?;
         folder.finish()
     }
 
@@ -135,30 +97,33 @@ impl Results {
                 let _ = writeln!(out, "{:width$}  ended without records: {ending}", "");
             }
         }
-        let _ = writeln!(
-            out,
-            "{} of {} faults are caught",
-            self.faults.len() - self.survivors().count(),
-            self.faults.len()
-        );
+        for case in &self.unsound {
+            let _ = writeln!(out, "without a fault, {case} does not hold: see `cargo xtask verify --case {case}`");
+        }
+        let (all, survivors) = (self.faults.len(), self.survivors().count());
+        let _ = writeln!(out, "{} of {all} faults are caught", all - survivors);
         out
     }
 
     /// The table of faults and checks.
     fn markdown(&self) -> String {
         let mut out = String::from(
-            "# Planted errors and the checks that catch them\n\n| fault | what is wrong | cases | red checks |\n|---|---|---|---|\n",
+            "# Planted errors and the checks that catch them\n\n| | fault | what is wrong | named cases | red checks |\n|---|---|---|---|---|\n",
         );
-        for fault in &self.faults {
+        for (number, fault) in self.faults.iter().enumerate() {
             let red = match fault.caught_by.as_slice() {
                 [] => format!("**none** of {}", fault.checks),
                 all => {
-                    let shown: Vec<String> = all.iter().take(3).map(|id| format!("`{id}`")).collect();
-                    let more = if all.len() > 3 { ", …" } else { "" };
+                    let shown: Vec<String> = all.iter().take(2).map(|id| format!("`{id}`")).collect();
+                    let more = if all.len() > 2 { ", …" } else { "" };
                     format!("{} of {}: {}{more}", all.len(), fault.checks, shown.join(", "))
                 }
             };
-            let _ = writeln!(out, "| {} | {} | {} | {red} |", fault.id, fault.what, fault.cases.join(", "));
+            let cases = fault.cases.join(", ");
+            let _ = writeln!(out, "| {} | {} | {} | {cases} | {red} |", number + 1, fault.id, fault.what);
+        }
+        for case in &self.unsound {
+            let _ = writeln!(out, "\n**{case} does not hold without a fault.**");
         }
         out
     }
@@ -166,25 +131,37 @@ impl Results {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
+    use fisura_verification::record::Status;
+
+    use super::super::runner::Report;
     use super::*;
 
-    fn run(statuses: &[Status]) -> CaseRun {
-        let outcome = statuses.iter().enumerate().map(|(i, status)| (format!("a/b/{i}"), *status)).collect();
-        CaseRun { case: "a/b".into(), outcome: Ok(outcome) }
+    fn report(statuses: &[Status]) -> Report {
+        let records = statuses.iter().enumerate().map(|(i, status)| (format!("a/b/{i}"), *status)).collect();
+        Report { case: "a/b".into(), seconds: 1.0, records, passed: vec!["sign".into(), "root".into()] }
     }
 
     #[test]
     fn a_fault_is_caught_by_what_turns_red_and_survives_what_ends_without_records() {
-        let fault = Fault { id: "sign", what: "a sign", cases: &["a/b"] };
-        let sound = run(&[Status::Pass, Status::Info, Status::Pass]).sound().unwrap();
-        let mut caught = Caught::new(&fault);
-        caught.compare(&run(&[Status::Pass, Status::Info, Status::Error]), &sound);
-        assert_eq!((caught.caught_by.as_slice(), caught.checks), (&["a/b/2".to_string()][..], 3));
-        let mut ended = Caught::new(&fault);
-        ended.compare(&CaseRun { case: "a/b".into(), outcome: Err("a/b: exit status: 101".into()) }, &sound);
-        let results = Results { faults: vec![caught, ended] };
-        assert_eq!(results.survivors().count(), 1);
-        assert!(results.text().contains("1 of 2 faults are caught") && results.markdown().contains("**none** of 3"));
-        assert!(run(&[Status::Fail]).sound().is_err());
+        let folder = tempfile::tempdir().unwrap();
+        let folder = OutputFolder::open(&folder.path().join("out"), "faults").unwrap();
+        let store = Store::open(&folder, &BTreeMap::from([("a/b".into(), "key".into())])).unwrap();
+        let cases = ["a/b".to_string()];
+        let sign = &Fault { id: "sign", what: "a sign", cases: &["a/b"] };
+        let root = &Fault { id: "root", what: "a root", cases: &["a/b"] };
+        store.put(None, "a/b", Ok(report(&[Status::Pass, Status::Info, Status::Pass]))).unwrap();
+        store.put(Some("sign"), "a/b", Ok(report(&[Status::Pass, Status::Info, Status::Error]))).unwrap();
+        store.put(Some("root"), "a/b", Err("exit status: 101".into())).unwrap();
+        let results = Results::new(&[sign, root], &cases, &store, false);
+        assert_eq!((results.faults[0].caught_by.as_slice(), results.faults[0].checks), (&["a/b/2".to_string()][..], 2));
+        assert!(results.lacking() && results.text().contains("1 of 2 faults are caught"));
+        assert!(results.text().contains("ended without records: a/b: exit status: 101"));
+        assert!(results.markdown().contains("| 2 | root | a root | a/b | **none** of 2 |"));
+        assert!(!Results::new(&[sign], &cases, &store, true).lacking());
+        store.put(None, "a/b", Ok(report(&[Status::Fail]))).unwrap();
+        let unsound = Results::new(&[sign], &cases, &store, true);
+        assert!(unsound.lacking() && unsound.text().contains("without a fault, a/b does not hold"));
     }
 }

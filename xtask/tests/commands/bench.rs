@@ -1,5 +1,8 @@
 //! `bench`: what it refuses, and the exchange with a program of the user.
 
+use fisura_verification::bench::peer::block::PeerBlock;
+use fisura_verification::bench::peer::cells;
+
 use super::support::Place;
 
 /// The least that reference data can be.
@@ -32,23 +35,58 @@ fn the_answer_of_a_peer_is_verified_before_its_time_is_believed() {
     let unknown = "FAIL peer/command: its answer is unknown";
     assert!(outcome.out.contains(unknown) && outcome.out.contains("result.csv"), "{outcome:?}");
     assert!(place.read("silent/peer/long/particles.csv").starts_with("x,y,volume,vx,vy\n"));
-    assert!(place.read("silent/peer/short/block.json").contains("\"steps\": 20"));
+    assert!(place.read("silent/peer/short/block.json").contains("\"steps\""));
     assert!(place.read("silent/summary.md").contains("do not believe its time"));
 
-    // a body that spins freely keeps its kinetic energy: the start is nearly the answer
     let copy = "for last; do :; done\ncp \"$last/particles.csv\" \"$last/result.csv\"\n";
     place.write("copy.sh", copy);
-    let command = format!("sh {}", place.path("copy.sh").display());
-    let hasty = place.xtask(&["bench", "--quick", "--family", "peer", "--peer", &command, "--out", "hasty"]);
-    assert!(hasty.with_status(1).out.contains("too little to be told from start and end"));
+    let command = |name: &str| format!("sh '{}'", place.path(name).display());
+    let bench = |script: &str, more: &[&str]| {
+        let command = command(script);
+        place.xtask(&[&["bench", "--quick", "--family", "peer", "--peer", command.as_str()], more].concat())
+    };
+    let copied = bench("copy.sh", &["--out", "copied"]).with_status(1);
+    assert!(copied.out.contains("not that of the block: row 1 lies at"), "{copied:?}");
 
+    // our own answer in its place, from a program that takes no time, and from one that takes some
+    let answer = PeerBlock::new(cells(true)).unwrap().answer();
+    answer.write(&place.path("answer.csv")).unwrap();
+    let give = format!("for last; do :; done\ncp '{}' \"$last/result.csv\"\n", place.path("answer.csv").display());
+    place.write("hasty.sh", &give);
+    assert!(
+        bench("hasty.sh", &["--out", "hasty"]).with_status(1).out.contains("too little to be told from start and end")
+    );
     let steps = "case $last in */long) i=0; while [ $i -lt 1000000 ]; do i=$((i + 1)); done;; esac\n";
-    place.write("copy.sh", &format!("{copy}{steps}"));
-    let outcome = place.xtask(&["bench", "--quick", "--family", "peer", "--peer", &command, "--format", "json"]);
-    let set = outcome.with_status(0).json();
+    place.write("patient.sh", &format!("{give}{steps}"));
+    let set = bench("patient.sh", &["--format", "json"]).with_status(0).json();
     assert_eq!(set["schema"], "fisura.bench/1");
     let answers: Vec<&str> = set["records"].as_array().unwrap().iter().map(|r| r["id"].as_str().unwrap()).collect();
     assert_eq!(answers, ["peer/fisura", "peer/command"]);
     place.xtask(&["report", "target/fisura/bench", "--out", "again"]).with_status(0);
     assert_eq!(place.read("again/summary.md"), place.read("target/fisura/bench/summary.md"));
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_peer_has_a_limit_of_time_and_does_not_outlive_the_command() {
+    let place = workspace();
+    let slow = "sh -c 'echo $$ > pid; exec sleep 600'";
+    let bench = ["bench", "--quick", "--family", "peer", "--peer", slow, "--out", "slow"];
+    let ended = place.xtask(&[&bench[..], &["--peer-timeout", "1"]].concat()).with_status(2);
+    ended.complains_of(&["sleep 600", "ended after 1 s", "--peer-timeout"]);
+
+    std::fs::remove_file(place.path("pid")).unwrap();
+    let mut command = place.command(&bench).spawn().unwrap();
+    let wait_until = |holds: &dyn Fn() -> bool| {
+        (0..1200).any(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(50));
+            holds()
+        })
+    };
+    let pid = || std::fs::read_to_string(place.path("pid")).unwrap_or_default().trim().to_string();
+    assert!(wait_until(&|| !pid().is_empty()), "the peer did not start");
+    command.kill().unwrap(); // no handler can help
+    command.wait().unwrap();
+    let state = || std::fs::read_to_string(format!("/proc/{}/stat", pid())).unwrap_or_default();
+    assert!(wait_until(&|| state().is_empty() || state().contains(") Z")), "the peer lives on");
 }

@@ -1,4 +1,5 @@
-//! Runs that have to be the same: with any number of threads bit for bit, and mirror images in symmetric scenes.
+//! Runs that have to be the same: with any number of threads and after checkpoints bit for bit, and mirror images in symmetric
+//! scenes.
 //!
 //! Sums are cut by data and added in a fixed order. A mirror image adds the same numbers in another order, so symmetry
 //! holds to round-off, which a linear run does not amplify, and not bit for bit.
@@ -22,6 +23,7 @@ pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::st
             let variant = format!("{frame}, {threads} threads");
             offers.held(&variant, ["numbers that differ from those of one thread"]);
         }
+        offers.held(frame, ["numbers that differ after a checkpoint"]);
     }
     for degree in 1..=3 {
         let quantity = "mirror images, largest difference of displacements over the largest";
@@ -38,9 +40,12 @@ pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Fin
     for (name, frame) in [("total frame", Frame::Total), ("updated frame", Frame::Updated)] {
         let scene = notched(frame);
         let one = on_threads(1, &scene)?;
+        let differing =
+            |other: &[u64]| one.iter().zip(other).filter(|(a, b)| a != b).count() + one.len().abs_diff(other.len());
+        let differ = differing(&interrupted(&scene)?) as f64;
+        findings.add(name, "numbers that differ after a checkpoint", differ, exact(0.0, "the whole state is stored"));
         for threads in THREADS {
-            let other = on_threads(threads, &scene)?;
-            let differ = one.iter().zip(&other).filter(|(a, b)| a != b).count() + one.len().abs_diff(other.len());
+            let differ = differing(&on_threads(threads, &scene)?);
             let variant = format!("{name}, {threads} threads");
             findings.add(
                 &variant,
@@ -99,11 +104,28 @@ fn on_threads(threads: usize, scene: &Scene) -> Result<Vec<u64>, StudyError> {
         let mut simulation = Simulation::new(scene)?;
         let mut bits = Vec::new();
         while !simulation.finished() {
-            let sample = simulation.advance_to_next_sample()?;
-            bits.extend(sample.named_values().into_iter().map(|(_, value)| value.to_bits()));
+            bits.extend(next_sample(&mut simulation)?);
         }
         Ok(bits)
     })
+}
+
+fn next_sample(simulation: &mut Simulation) -> Result<Vec<u64>, StudyError> {
+    let sample = simulation.advance_to_next_sample()?;
+    Ok(sample.named_values().into_iter().map(|(_, value)| value.to_bits()).collect())
+}
+
+/// The same numbers, of a run that is stored at every sample and taken up again.
+fn interrupted(scene: &Scene) -> Result<Vec<u64>, StudyError> {
+    let mut simulation = Simulation::new(scene)?;
+    let mut bits = Vec::new();
+    while !simulation.finished() {
+        bits.extend(next_sample(&mut simulation)?);
+        let state = simulation.checkpoint().map_err(|error| StudyError::Other(error.to_string()))?;
+        let resumed = Simulation::resume(scene, &state);
+        simulation = resumed.map_err(|error| StudyError::Other(error.to_string()))?;
+    }
+    Ok(bits)
 }
 
 /// A plate pulled at both ends.

@@ -1,4 +1,5 @@
-//! A block that slides on a level plane until friction has stopped it, and then has to stay.
+//! A block that slides on a level plane until friction has stopped it, and then has to stay. The plane may move: the way of the
+//! block is the one it makes on it.
 //!
 //! Coulomb friction mu stops a block of speed V after `T = V/(mu g)` and the distance `V²/(2 mu g)`.
 
@@ -54,6 +55,8 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
 }
 
 struct Slide {
+    /// Velocity of the floor along it, m/s; what follows is relative to it.
+    floor: f64,
     speed: f64,
     /// mu g, m/s².
     deceleration: f64,
@@ -62,7 +65,12 @@ struct Slide {
 impl Slide {
     fn of(scene: &Scene) -> Result<Self, StudyError> {
         let friction = scene.contact.as_ref().ok_or_else(|| StudyError::Other("there is no contact".into()))?.friction;
-        Ok(Self { speed: scene.bodies[0].velocity[0], deceleration: -friction * scene.analysis.gravity[1] })
+        let floor = scene.bodies.iter().find(|body| body.rigid).map_or(0.0, |body| body.velocity[0]);
+        Ok(Self {
+            floor,
+            speed: scene.bodies[0].velocity[0] - floor,
+            deceleration: -friction * scene.analysis.gravity[1],
+        })
     }
 
     fn duration(&self) -> f64 {
@@ -79,8 +87,8 @@ impl Slide {
         let mut start = None;
         run(scene, &mut |simulation, frame| {
             let place = center(&frame.fields()[0])[0];
-            let way = place - *start.get_or_insert(place);
             let time = simulation.steps() as f64 * simulation.plan().step;
+            let way = place - *start.get_or_insert(place) - self.floor * time;
             let sliding = time.min(self.duration());
             let exact = self.speed * sliding - 0.5 * self.deceleration * sliding * sliding;
             table.push(&[time, way, exact]);

@@ -1,0 +1,191 @@
+//! The judging of results itself: verdicts on values whose verdict is known, and measures on histories whose measure is.
+//!
+//! A judge that ignores a bound passes every other case of the suites. Here wrong verdicts are held from above and right ones
+//! from below, so that a judge which ignores either bound still meets the other, and one that passes everything ends the
+//! study.
+
+use fisura::scene::{Material, Mesh, Scene};
+
+use super::{Findings, Offered, Offers, StudyError};
+use crate::case::{Case, Check};
+use crate::convergence::observed_order;
+use crate::expand::CaseScene;
+use crate::extremes::largest;
+use crate::history::Table;
+use crate::measure::{Run, measure};
+use crate::plain_scene::PlainScene;
+use crate::record::{Accept, Record, Reference, ReferenceKind, Status};
+use crate::reference::{Library, Obtained, ReferenceBand, ReferenceCurve, relative_rms};
+use crate::suite::judge::band_bounds;
+use crate::suite::prepare::bounds_around;
+use crate::suite::worst;
+
+/// Quantities, and the variants of the last.
+const WRONG: &str = "wrong verdicts on known values";
+const RIGHT: &str = "right verdicts on known values";
+const MEASURE: &str = "measure of a known history, error";
+const MEASURES: [&str; 8] = [
+    "drift downwards",
+    "fall over two rows",
+    "closure",
+    "difference from a higher run",
+    "half model",
+    "curve above and below",
+    "order of cubes",
+    "largest with a gap",
+];
+
+pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> Offered {
+    let mut offers = Offers::default();
+    offers.held("", [WRONG, RIGHT]);
+    MEASURES.iter().for_each(|name| offers.held(name, [MEASURE]));
+    Ok(offers)
+}
+
+pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    let right = verdicts(&case.checks[0]);
+    let wrong = right.iter().filter(|right| !**right).count();
+    if !right.iter().any(|right| *right)
+        || Record::judge(Some(1.0), &bounds(None, Some(0.0))) != Status::Fail && wrong > 0
+    {
+        return Err(StudyError::Other(format!("{wrong} verdicts are wrong, and the judge would pass that")));
+    }
+    findings.add("", WRONG, wrong as f64, exact(0.0));
+    findings.add("", RIGHT, (right.len() - wrong) as f64, exact(right.len() as f64));
+    for (name, (found, expected)) in MEASURES.into_iter().zip(known_measures(case)?) {
+        let error = if expected.is_nan() && found.is_nan() { 0.0 } else { (found - expected).abs() };
+        let counted = if error.is_nan() { 1.0 } else { error };
+        findings.add(name, MEASURE, counted, exact(0.0));
+    }
+    Ok(findings)
+}
+
+fn exact(value: f64) -> Option<Reference> {
+    Some(Reference::new(Some(value), ReferenceKind::Exact, "by hand"))
+}
+
+fn bounds(min: Option<f64>, max: Option<f64>) -> Accept {
+    Accept { min, max, ..Accept::default() }
+}
+
+/// Whether each of some verdicts is right.
+fn verdicts(base: &Check) -> Vec<bool> {
+    use Status::{Error, Fail, Info, Pass};
+    let (one, two) = (Some(1.0), Some(2.0));
+    let known = [
+        (Some(1.5), one, two, Pass),
+        (one, one, two, Pass),
+        (two, one, two, Pass),
+        (Some(0.9), one, two, Fail),
+        (Some(2.1), one, two, Fail),
+        (Some(-1.5), one, two, Fail),
+        (Some(-1.5), Some(-2.0), Some(-1.0), Pass),
+        (Some(0.9), one, None, Fail),
+        (Some(2.1), one, None, Pass),
+        (Some(2.1), None, two, Fail),
+        (Some(-2.1), None, two, Pass),
+        (None, one, two, Fail),
+        (None, one, None, Fail),
+        (None, None, two, Fail),
+        (Some(f64::NAN), one, two, Fail),
+        (Some(f64::INFINITY), one, None, Fail),
+        (Some(f64::NEG_INFINITY), None, two, Fail),
+        (Some(5.0), None, None, Info),
+        (None, None, None, Info),
+    ];
+    let mut right: Vec<bool> =
+        known.into_iter().map(|(value, min, max, status)| Record::judge(value, &bounds(min, max)) == status).collect();
+    for (statuses, expected) in [
+        (&[Fail, Pass, Info][..], Some(Fail)),
+        (&[Pass, Error, Fail, Pass], Some(Error)),
+        (&[Info, Pass, Info], Some(Pass)),
+        (&[], None),
+    ] {
+        right.push(worst(statuses.iter().copied()) == expected);
+    }
+    let around = Check { around_reference: Some([1.0, 2.0]), ..base.clone() };
+    right.push(bounds_around(&around, exact(10.0).as_ref()) == Ok(Some([9.0, 12.0])));
+    let band = ReferenceBand {
+        id: String::new(),
+        name: String::new(),
+        unit: "s",
+        min: 2e-6,
+        max: 5e-6,
+        sources: Vec::new(),
+        note: String::new(),
+        citation: String::new(),
+        kind: ReferenceKind::Literature,
+    };
+    let Accept { min, max, .. } = band_bounds(&band, 1e6);
+    right.push((min, max) == (Some(2.0), Some(5.0)));
+    right
+}
+
+/// What is measured of a known history, and what it should be, in the order of [`MEASURES`].
+fn known_measures(case: &Case) -> Result<[(f64, f64); 8], StudyError> {
+    let scene = scene();
+    let mut history = Table::new(&["time_s", "kinetic_j", "elastic_j", "closure_j"]);
+    for row in [[0.0, 2.0, 1.0, 0.0], [1.0, 1.75, 3.0, -0.5], [2.0, 1.0, 2.0, 0.25], [3.0, 2.0, 1.5, 0.0]] {
+        history.push(&row);
+    }
+    let mut higher = history.clone();
+    higher.columns[1].iter_mut().for_each(|kinetic| *kinetic += 2.0);
+    let whole = Run { name: "lower", scene: &scene, history: &history, frames: &[], energy_factor: 1.0 };
+    let half = Run { energy_factor: 2.0, ..whole };
+    let other = Run { name: "higher", history: &higher, ..whole };
+    let library = Library::default();
+    let base = &case.checks[0];
+    let of = |name: &str, column: &str, run: &Run, at: Option<f64>| {
+        let check = Check {
+            measure: Some(name.into()),
+            column: Some(column.into()),
+            window: [0.0, f64::INFINITY],
+            at,
+            against: Some("higher".into()),
+            ..base.clone()
+        };
+        let found = measure(&check, run, &[*run, other], &library).map_err(StudyError::Other)?;
+        Ok::<f64, StudyError>(found.value.unwrap_or(f64::NAN))
+    };
+    let curve = curve();
+    let zeros = vec![0.0; curve.x.len()];
+    let rms = relative_rms(&curve, &curve.x, &zeros, 0.0, 4.0).unwrap_or(f64::NAN);
+    let levels: Vec<(f64, f64)> = [1.0_f64, 0.5, 0.25].into_iter().map(|h| (h, 3.0 * h.powi(3))).collect();
+    Ok([
+        (of("drift", "kinetic_j", &whole, None)?, 0.5),
+        (of("largest-decrease", "elastic_j", &whole, None)?, 0.5),
+        (of("closure", "closure_j", &whole, None)?, 0.5 / 3.0),
+        (of("difference", "kinetic_j", &whole, None)?, 0.5),
+        (of("value-at", "kinetic_j", &half, Some(1.5))?, 2.75),
+        (rms, 1.0),
+        (observed_order(&levels, 0.0).unwrap_or(f64::NAN), 3.0),
+        (largest([1.0, f64::NAN, 0.5]), f64::NAN),
+    ])
+}
+
+/// A curve of mean zero.
+fn curve() -> ReferenceCurve {
+    ReferenceCurve {
+        id: String::new(),
+        quantity: String::new(),
+        label: String::new(),
+        citation: String::new(),
+        kind: ReferenceKind::Exact,
+        obtained: Obtained::Text,
+        x: vec![1.0, 2.0, 3.0, 4.0],
+        y: vec![1.0, -1.0, 1.0, -1.0],
+        x_unit: "s",
+        y_unit: "J",
+        max_gap: None,
+        uncertainty_absolute: 0.0,
+        uncertainty_relative: 0.0,
+        uncertainty_note: String::new(),
+    }
+}
+
+/// Any scene: the measures above do not look at it.
+fn scene() -> Scene {
+    let material = Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None };
+    PlainScene::free(Mesh::uniform([1; 2], [0.0; 2], [1.0; 2], [1; 2]), material, 1).scene()
+}

@@ -1,0 +1,150 @@
+//! What is known of each case with each fault: a file of `cells/` per cell, written as soon as it is done. A cell counts as long
+//! as program, case file and reference data are those it was made with.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use fisura_verification::output::{OutputError, OutputFolder};
+use fisura_verification::record::Status;
+use fisura_verification::suite::Case;
+use fisura_verification::suite::part::{fingerprint, folder_fingerprint};
+use serde::{Deserialize, Serialize};
+
+use super::runner::Ending;
+use crate::exit::Exit;
+use crate::failure::Failure;
+
+/// Below this folder of the output.
+pub const FOLDER: &str = "cells/";
+
+/// A case with a fault, or without any.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Cell {
+    /// The fault; none in a sound run.
+    pub fault: Option<String>,
+    /// Id of the case.
+    pub case: String,
+    key: String,
+    /// Wall time on one thread, s.
+    pub seconds: f64,
+    /// Records that fail or are errors.
+    pub red: Vec<String>,
+    /// Of a sound run: records that pass, which are those that could turn red.
+    pub green: Vec<String>,
+    /// Of a sound run: faults whose sites it passes.
+    pub passed: Vec<String>,
+    /// Why there are no records, if there are none.
+    pub ended: Option<String>,
+}
+
+/// All cells that count.
+#[derive(Debug)]
+pub struct Store<'a> {
+    folder: &'a OutputFolder,
+    keys: BTreeMap<String, String>,
+    cells: Mutex<BTreeMap<(Option<String>, String), Cell>>,
+}
+
+/// What the cells of every case depend on.
+///
+/// # Errors
+/// A program or reference data that cannot be read.
+pub fn keys(program: &Path, workspace: &Path, cases: &[Case]) -> Result<BTreeMap<String, String>, Failure> {
+    let bytes = fs::read(program)
+        .map_err(|e| Failure::new(Exit::BadInput, format!("{} cannot be read: {e}", program.display())))?;
+    let common = [fingerprint([bytes]), folder_fingerprint(&workspace.join("reference-data"))?];
+    let key = |case: &Case| fingerprint([common[0].as_str(), common[1].as_str(), case.document.text()]);
+    Ok(cases.iter().map(|case| (case.id(), key(case))).collect())
+}
+
+impl<'a> Store<'a> {
+    /// The cells in a folder that count; others are removed.
+    ///
+    /// # Errors
+    /// A file that cannot be removed.
+    pub fn open(folder: &'a OutputFolder, keys: &BTreeMap<String, String>) -> Result<Self, OutputError> {
+        let mut cells = BTreeMap::new();
+        for name in folder.files().into_iter().filter(|name| name.starts_with(FOLDER)) {
+            let cell = folder.read(&name).and_then(|bytes| serde_json::from_slice::<Cell>(&bytes).ok());
+            match cell.filter(|cell| keys.get(&cell.case) == Some(&cell.key)) {
+                Some(cell) => drop(cells.insert((cell.fault.clone(), cell.case.clone()), cell)),
+                None => folder.remove(&name)?,
+            }
+        }
+        Ok(Self { folder, keys: keys.clone(), cells: Mutex::new(cells) })
+    }
+
+    /// Adds a cell.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn put(&self, fault: Option<&str>, case: &str, ending: Ending) -> Result<(), OutputError> {
+        let cell = Cell::new(fault, case, self.keys.get(case).cloned().unwrap_or_default(), ending);
+        self.folder.write_json(&format!("{FOLDER}{}/{case}.json", fault.unwrap_or("none")), &cell)?;
+        self.cells().insert((cell.fault.clone(), cell.case.clone()), cell);
+        Ok(())
+    }
+
+    /// A cell, if it is known; that of the sound run for no fault.
+    pub fn get(&self, fault: Option<&str>, case: &str) -> Option<Cell> {
+        self.cells().get(&(fault.map(String::from), case.to_string())).cloned()
+    }
+
+    fn cells(&self) -> MutexGuard<'_, BTreeMap<(Option<String>, String), Cell>> {
+        self.cells.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Cell {
+    fn new(fault: Option<&str>, case: &str, key: String, ending: Ending) -> Self {
+        let (fault, case) = (fault.map(String::from), case.to_string());
+        let (ended, report) = match ending {
+            Ok(report) => (None, Some(report)),
+            Err(message) => (Some(message), None),
+        };
+        let seconds = report.as_ref().map_or(0.0, |report| report.seconds);
+        let (records, passed) = report.map(|report| (report.records, report.passed)).unwrap_or_default();
+        let those = |wanted: fn(Status) -> bool| {
+            let ids = records.iter().filter(|(_, status)| wanted(*status)).map(|(id, _)| id.clone());
+            ids.collect::<Vec<String>>()
+        };
+        let red = those(|status| matches!(status, Status::Fail | Status::Error));
+        let sound = fault.is_none();
+        let green = if sound { those(|status| status == Status::Pass) } else { Vec::new() };
+        Self { fault, case, key, seconds, red, green, passed: if sound { passed } else { Vec::new() }, ended }
+    }
+
+    /// Whether every check holds.
+    pub fn holds(&self) -> bool {
+        self.red.is_empty() && self.ended.is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::runner::Report;
+    use super::*;
+
+    fn report(status: Status) -> Ending {
+        let records = vec![("a/b/x".to_string(), Status::Pass), ("a/b/y".to_string(), status)];
+        Ok(Report { case: "a/b".into(), seconds: 0.5, records, passed: vec!["sign".into()] })
+    }
+
+    #[test]
+    fn cells_are_taken_up_until_program_case_or_data_change() {
+        let folder = tempfile::tempdir().unwrap();
+        let keys = |key: &str| BTreeMap::from([("a/b".to_string(), key.to_string())]);
+        let folder = OutputFolder::open(&folder.path().join("out"), "faults").unwrap();
+        let store = Store::open(&folder, &keys("one")).unwrap();
+        store.put(None, "a/b", report(Status::Info)).unwrap();
+        store.put(Some("sign"), "a/b", report(Status::Error)).unwrap();
+        let again = Store::open(&folder, &keys("one")).unwrap();
+        let sound = again.get(None, "a/b").unwrap();
+        assert!(sound.holds() && sound.green == ["a/b/x"] && sound.passed == ["sign"]);
+        let planted = again.get(Some("sign"), "a/b").unwrap();
+        assert!(planted.red == ["a/b/y"] && planted.green.is_empty());
+        assert_eq!(Store::open(&folder, &keys("two")).unwrap().get(None, "a/b"), None);
+    }
+}

@@ -1,0 +1,222 @@
+//! Every fault against every case, and the checks that no fault turns red.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::cells::Store;
+use super::idle;
+use super::table::{FAULTS, Fault};
+
+/// A cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum State {
+    /// So many records turn red.
+    Fail(usize),
+    /// All hold as without the fault.
+    Pass,
+    /// The process ended, or took too long, without records.
+    Ended,
+    /// The case passes no site of the fault, which changes nothing in it.
+    NotApplicable,
+    /// Nothing is known yet.
+    NotRun,
+}
+
+/// A check that no fault turns red, whatever its variant.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+pub struct Idle {
+    /// `suite/case/quantity`.
+    check: String,
+    /// Why it stays.
+    reason: Option<&'static str>,
+}
+
+/// The matrix.
+#[derive(Debug, Serialize)]
+pub struct Matrix {
+    faults: Vec<&'static str>,
+    /// States by case and, in the order of the faults, by fault.
+    cases: Vec<(String, Vec<State>)>,
+    /// Checks in all, those of finished cases, and those of them that stay green.
+    checks: usize,
+    decided: usize,
+    idle: Vec<Idle>,
+}
+
+impl Matrix {
+    /// From what is known.
+    pub fn new(faults: &[&'static Fault], cases: &[String], store: &Store) -> Self {
+        let rows: Vec<(String, Vec<State>)> = cases
+            .iter()
+            .map(|case| (case.clone(), faults.iter().map(|fault| state(store, fault.id, case)).collect()))
+            .collect();
+        let mut matrix = Self {
+            faults: faults.iter().map(|f| f.id).collect(),
+            cases: rows,
+            checks: 0,
+            decided: 0,
+            idle: Vec::new(),
+        };
+        let all_planted = faults.len() == FAULTS.len();
+        for (case, states) in &matrix.cases {
+            let Some(sound) = store.get(None, case) else { continue };
+            let green: BTreeSet<String> = sound.green.iter().map(|id| check_of(id)).collect();
+            matrix.checks += green.len();
+            if all_planted && !states.contains(&State::NotRun) {
+                let cells = faults.iter().filter_map(|fault| store.get(Some(fault.id), case));
+                let red: BTreeSet<String> = cells.flat_map(|cell| cell.red).map(|id| check_of(&id)).collect();
+                matrix.decided += green.len();
+                let idle = green.difference(&red);
+                matrix.idle.extend(idle.map(|check| Idle { check: check.clone(), reason: idle::reason(check) }));
+            }
+        }
+        matrix
+    }
+
+    /// Whether a check stays green with every fault, and nobody said why.
+    pub fn lacking(&self) -> bool {
+        self.idle.iter().any(|idle| idle.reason.is_none())
+    }
+
+    fn count(&self, wanted: impl Fn(State) -> bool) -> usize {
+        self.cases.iter().flat_map(|(_, states)| states).filter(|state| wanted(**state)).count()
+    }
+
+    /// What it says, in a few lines.
+    pub fn text(&self) -> String {
+        let mut out = self.summary();
+        for idle in self.idle.iter().filter(|idle| idle.reason.is_none()) {
+            let _ = writeln!(out, "no fault turns it red, and no reason is given: {}", idle.check);
+        }
+        out
+    }
+
+    fn summary(&self) -> String {
+        let of = |state: State| self.count(|other| other == state);
+        let unexplained = self.idle.iter().filter(|idle| idle.reason.is_none()).count();
+        format!(
+            "{} × {} cells: {} fail, {} pass, {} not applicable, {} ended without records, {} not run\n\
+             {} checks, {} of them in finished cases; no fault turns {} of these red ({} without a reason)\n",
+            self.faults.len(),
+            self.cases.len(),
+            self.count(|state| matches!(state, State::Fail(_))),
+            of(State::Pass),
+            of(State::NotApplicable),
+            of(State::Ended),
+            of(State::NotRun),
+            self.checks,
+            self.decided,
+            self.idle.len(),
+            unexplained,
+        )
+    }
+
+    /// Summary, suites, table of cases and faults, and list of the checks that stay green.
+    pub fn markdown(&self) -> String {
+        let mut out = format!("\n# Every fault on every case\n\n{}\n", self.summary());
+        out.push_str("| suite | cases | faults that turn a check of it red |\n|---|---|---|\n");
+        for (suite, (cases, faults)) in self.suites() {
+            let _ = writeln!(out, "| {suite} | {cases} | {faults} |");
+        }
+        out.push_str(
+            "\nA number counts the records that turn red, · is a run in which all hold, ! one that ended without records, ? one \
+             that was not made; where nothing stands, the case passes no site of the fault. Columns are the faults above.\n\n| case |",
+        );
+        out.extend((1..=self.faults.len()).map(|number| format!(" {number} |")));
+        let _ = writeln!(out, "\n|---|{}", "---|".repeat(self.faults.len()));
+        for (case, states) in &self.cases {
+            let _ = write!(out, "| {case} |");
+            for state in states {
+                let _ = match state {
+                    State::Fail(count) => write!(out, " {count} |"),
+                    State::Pass => write!(out, " · |"),
+                    State::Ended => write!(out, " ! |"),
+                    State::NotApplicable => write!(out, " |"),
+                    State::NotRun => write!(out, " ? |"),
+                };
+            }
+            out.push('\n');
+        }
+        out.push_str("\n# Checks that no fault turns red\n\n| check | why it stays |\n|---|---|\n");
+        for Idle { check, reason } in &self.idle {
+            let _ = writeln!(out, "| `{check}` | {} |", reason.unwrap_or("**no reason is given**"));
+        }
+        out
+    }
+
+    /// Cases of each suite, and faults that turn a check of it red.
+    fn suites(&self) -> BTreeMap<&str, (usize, usize)> {
+        let mut suites: BTreeMap<&str, (usize, BTreeSet<usize>)> = BTreeMap::new();
+        for (case, states) in &self.cases {
+            let entry = suites.entry(case.split('/').next().unwrap_or_default()).or_default();
+            entry.0 += 1;
+            entry.1.extend((0..states.len()).filter(|&fault| matches!(states[fault], State::Fail(_))));
+        }
+        suites.into_iter().map(|(suite, (cases, faults))| (suite, (cases, faults.len()))).collect()
+    }
+}
+
+fn state(store: &Store, fault: &str, case: &str) -> State {
+    let Some(sound) = store.get(None, case) else { return State::NotRun };
+    if sound.ended.is_none() && !sound.passed.iter().any(|passed| passed == fault) {
+        return State::NotApplicable;
+    }
+    match store.get(Some(fault), case) {
+        None => State::NotRun,
+        Some(cell) if !cell.red.is_empty() => State::Fail(cell.red.len()),
+        Some(cell) if cell.ended.is_some() => State::Ended,
+        Some(_) => State::Pass,
+    }
+}
+
+/// `suite/case/quantity` of a record `suite/case/variant/quantity`; variants may hold slashes, quantities do not.
+fn check_of(id: &str) -> String {
+    let mut parts = id.splitn(3, '/');
+    let (suite, case) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
+    let quantity = parts.next().and_then(|rest| rest.rsplit('/').next()).unwrap_or_default();
+    format!("{suite}/{case}/{quantity}")
+}
+
+#[cfg(test)]
+mod tests {
+    use fisura_verification::output::OutputFolder;
+    use fisura_verification::record::Status;
+
+    use super::super::runner::Report;
+    use super::*;
+
+    #[test]
+    fn every_cell_says_whether_it_was_run_and_idle_checks_are_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let cases = ["a/b".to_string(), "a/c".to_string(), "a/d".to_string()];
+        let keys = cases.iter().map(|case| (case.clone(), "key".to_string())).collect();
+        let folder = OutputFolder::open(&folder.path().join("out"), "faults").unwrap();
+        let store = Store::open(&folder, &keys).unwrap();
+        let faults: Vec<&'static Fault> = FAULTS.iter().collect();
+        let report = |case: &str, status| {
+            let records = vec![(format!("{case}/h=1/2/error"), status), (format!("{case}/drift"), Status::Pass)];
+            Ok(Report {
+                case: case.into(),
+                seconds: 1.0,
+                records,
+                passed: vec![FAULTS[0].id.into(), FAULTS[1].id.into()],
+            })
+        };
+        for case in ["a/b", "a/c"] {
+            store.put(None, case, report(case, Status::Pass)).unwrap();
+            store.put(Some(FAULTS[0].id), case, report(case, Status::Fail)).unwrap();
+        }
+        store.put(Some(FAULTS[1].id), "a/b", report("a/b", Status::Pass)).unwrap();
+        let matrix = Matrix::new(&faults, &cases, &store);
+        let row = |case: usize| &matrix.cases[case].1[..3];
+        assert_eq!(row(0), [State::Fail(1), State::Pass, State::NotApplicable]);
+        assert_eq!(row(1), [State::Fail(1), State::NotRun, State::NotApplicable]);
+        assert_eq!(row(2), [State::NotRun; 3]);
+        assert_eq!(matrix.idle, [Idle { check: "a/b/drift".into(), reason: None }], "a/c is not finished");
+        assert!(matrix.lacking() && matrix.text().contains("no reason is given: a/b/drift"));
+        assert!(matrix.markdown().contains("| a/b | 1 | · | |"));
+    }
+}
