@@ -180,6 +180,7 @@ fn curve() -> ReferenceCurve {
         max_gap: None,
         uncertainty_absolute: 0.0,
         uncertainty_relative: 0.0,
+        uncertainty_x: 0.0,
         uncertainty_note: String::new(),
     }
 }
