@@ -32,7 +32,7 @@ fn the_answer_of_a_peer_is_verified_before_its_time_is_believed() {
     let place = workspace();
     let silent = ["bench", "--quick", "--family", "peer", "--peer", "true", "--out", "silent"];
     let outcome = place.xtask(&silent).with_status(1);
-    let unknown = "FAIL peer/command: its answer is unknown";
+    let unknown = "FAIL peer/command: its answer is not that of the block";
     assert!(outcome.out.contains(unknown) && outcome.out.contains("result.csv"), "{outcome:?}");
     assert!(place.read("silent/peer/long/particles.csv").starts_with("x,y,volume,vx,vy\n"));
     assert!(place.read("silent/peer/short/block.json").contains("\"steps\""));
