@@ -153,8 +153,8 @@ impl Surface {
             let position = self.vertices[vertex];
             let normal = self.vertex_normal(vertex);
             let inside = [0, 1].map(|d| position[d] - depth * normal[d]);
-            let dt = fault!("boundary-lags-behind", dt => 0.9 * dt);
-            Handle::new(field, position, inside).map(|handle| handle.value(velocity).map(|v| dt * v))
+            let time = fault!("boundary-lags-behind", dt => 0.9 * dt);
+            Handle::new(field, position, inside).map(|handle| handle.value(velocity).map(|v| time * v))
         };
         (0..self.vertices.len()).into_par_iter().map(way).collect()
     }

@@ -105,8 +105,8 @@ impl Fit {
         if spread <= DEGENERATE * length * length {
             return shape.derivative;
         }
-        let spread = fault!("apic-spread-of-quadratics", spread => 0.25 * length * length);
-        std::array::from_fn(|k| shape.value[k] * lever[k] / spread)
+        let inertia = fault!("apic-spread-of-quadratics", spread => 0.25 * length * length);
+        std::array::from_fn(|k| shape.value[k] * lever[k] / inertia)
     }
 }
 

@@ -132,10 +132,10 @@ impl Record {
 }
 
 fn within(value: f64, min: Option<f64>, max: Option<f64>) -> bool {
-    let value = fault!("judge-takes-magnitudes", value => value.abs());
-    let finite = fault!("judge-passes-infinity", value.is_finite() => true);
-    let above = fault!("judge-ignores-lower-bounds", min => None).is_none_or(|min| value >= min);
-    let below = fault!("judge-ignores-upper-bounds", max => None).is_none_or(|max| value <= max);
+    let held = fault!("judge-takes-magnitudes", value => value.abs());
+    let finite = fault!("judge-passes-infinity", held.is_finite() => true);
+    let above = fault!("judge-ignores-lower-bounds", min => None).is_none_or(|min| held >= min);
+    let below = fault!("judge-ignores-upper-bounds", max => None).is_none_or(|max| held <= max);
     finite && above && below
 }
 

@@ -85,8 +85,8 @@ fn in_band(record: &mut Record, check: &Check, measured: Measured, library: &Lib
 /// The bounds of a reference band, in the unit of a check.
 pub(crate) fn band_bounds(band: &ReferenceBand, scale: f64) -> Accept {
     let why = format!("what the sources say: {}", band.sources.join(", "));
-    let scale = fault!("band-in-other-units", scale => 1.0);
-    Accept { min: Some(band.min * scale), max: Some(band.max * scale), why, kind: None }
+    let factor = fault!("band-in-other-units", scale => 1.0);
+    Accept { min: Some(band.min * factor), max: Some(band.max * factor), why, kind: None }
 }
 
 /// What a check expects beside its bounds, not yet held against anything.
