@@ -111,7 +111,7 @@ fn fit(parts: &[Part]) -> Option<[f64; MAX_FUNCTIONS]> {
     let weights = |slope: [f64; 2]| {
         let mut weights = [0.0; MAX_FUNCTIONS];
         for (weight, part) in weights.iter_mut().zip(parts) {
-            let lever = fault!("impulse-beside-its-place", dot(slope, spread.from_center(part)) => 0.0);
+            let lever = fault!("impulse-beside-its-place", dot(slope, spread.off_center(part)) => 0.0);
             *weight = part.weight / spread.weight * (1.0 + lever);
         }
         weights
@@ -131,14 +131,14 @@ impl Spread {
         let center = [0, 1].map(|d| parts.iter().map(|part| part.weight * part.arm[d]).sum::<f64>() / weight);
         let spread = Self { weight, center, xx: 0.0, xy: 0.0, yy: 0.0 };
         let products = parts.iter().fold([0.0; 3], |[xx, xy, yy], part| {
-            let ([x, y], share) = (spread.from_center(part), part.weight / weight);
+            let ([x, y], share) = (spread.off_center(part), part.weight / weight);
             [xx + share * x * x, xy + share * x * y, yy + share * y * y]
         });
         let [xx, xy, yy] = products;
         (weight > 0.0).then_some(Self { xx, xy, yy, ..spread })
     }
 
-    fn from_center(&self, part: &Part) -> [f64; 2] {
+    fn off_center(&self, part: &Part) -> [f64; 2] {
         [0, 1].map(|d| part.arm[d] - self.center[d])
     }
 

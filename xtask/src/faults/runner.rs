@@ -90,8 +90,8 @@ impl Runner {
         };
         std::thread::scope(|scope| {
             let slots: Vec<_> = (0..self.side_by_side.max(1)).map(|_| scope.spawn(work)).collect();
-            let ended = slots.into_iter().map(|slot| slot.join());
-            ended.map(|result| result.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+            let mut ended = slots.into_iter().map(|slot| slot.join());
+            ended.try_for_each(|result| result.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
         })
     }
 

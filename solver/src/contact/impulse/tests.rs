@@ -10,11 +10,14 @@ fn touch(normal: [f64; 2], x: f64) -> Touch {
 }
 
 /// A problem of nodes of unit mass at rest; touches with weights of nodes and the velocity of the rigid body.
-fn problem<'a>(nodes: usize, touches: &'a [(Touch, Vec<(usize, f64)>, [f64; 2])]) -> Problem<'a> {
+/// A touch, its nodes with their weights, and the velocity of a rigid body.
+type Described = (Touch, Vec<(usize, f64)>, [f64; 2]);
+
+fn problem<'a>(nodes: usize, touches: &'a [Described]) -> Problem<'a> {
     let [before, free, after] = [[0.0; 2]; 3];
     let node = |at| Node { body: 0, at, mobility: [1.0; 2], before, free, after };
     let nodes: Vec<Node> = (0..nodes).map(node).collect();
-    let acting = |(touch, weights, rigid): &'a (Touch, Vec<(usize, f64)>, [f64; 2])| {
+    let acting = |(touch, weights, rigid): &'a Described| {
         let weights = weights.iter().map(|&(node, weight)| (node, -weight)).collect();
         let impulse = Impulse::default();
         let mut acting = Acting { touch, weights, rigid: *rigid, round_off: 0.0, answers: [0.0; 2], impulse };
