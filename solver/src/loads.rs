@@ -13,8 +13,35 @@ use crate::scene::{Body, Edge, Shape, Side, Traction};
 
 /// Largest error of the force and moment of nodal loads, of those of their edge.
 const TOLERANCE: f64 = 1e-12;
-/// Round-off of a sum of positions, of their magnitude.
+/// Round-off of the terms of a force or a moment, of the sum of their magnitudes.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+
+/// A sum that keeps what rounding takes from it (Neumaier 1974): its error does not grow with the number of terms.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sum {
+    rounded: f64,
+    lost: f64,
+}
+
+impl Sum {
+    fn of(terms: impl Iterator<Item = f64>) -> f64 {
+        terms.fold(Self::default(), Self::plus).value()
+    }
+
+    fn plus(self, term: f64) -> Self {
+        let rounded = self.rounded + term;
+        let lost = if self.rounded.abs() >= term.abs() {
+            (self.rounded - rounded) + term
+        } else {
+            (term - rounded) + self.rounded
+        };
+        Self { rounded, lost: self.lost + lost }
+    }
+
+    fn value(self) -> f64 {
+        self.rounded + self.lost
+    }
+}
 
 /// Surface point of a loaded boundary.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,8 +129,8 @@ impl Balance {
 
     /// Of a side of a patch, as its points integrate it.
     fn of_points(points: &[BoundaryPoint]) -> Self {
-        let length: f64 = points.iter().map(|p| p.length).sum();
-        let middle = |d: usize| points.iter().map(|p| p.length * p.position[d]).sum::<f64>() / length;
+        let length = Sum::of(points.iter().map(|p| p.length));
+        let middle = |d: usize| Sum::of(points.iter().map(|p| p.length * p.position[d])) / length;
         Self { length, middle: [0, 1].map(middle) }
     }
 
@@ -113,17 +140,20 @@ impl Balance {
     /// If they are not, to 1e-12.
     pub fn check(self, shares: impl Iterator<Item = ([f64; 2], f64)>) -> Result<(), LostTraction> {
         let Self { length, middle } = self;
-        let (mut sum, mut moment, mut arms, mut magnitudes) = (-length, [0.0; 2], 0.0, 0.0);
+        let (mut sum, mut moments) = (Sum::default().plus(-length), [Sum::default(); 2]);
+        let (mut arms, mut magnitudes, mut lengths) = (0.0, 0.0, 0.0);
         for (position, share) in shares {
             let arm = [0, 1].map(|d| position[d] - middle[d]);
-            sum += share;
-            moment = [0, 1].map(|d| moment[d] + share * arm[d]);
+            sum = sum.plus(share);
+            moments = [0, 1].map(|d| moments[d].plus(share * arm[d]));
+            lengths += share.abs();
             arms += share.abs() * arm[0].hypot(arm[1]);
             magnitudes += share.abs() * position[0].hypot(position[1]);
         }
-        let moment = moment[0].hypot(moment[1]);
+        let [sum, x, y] = [sum, moments[0], moments[1]].map(Sum::value);
+        let moment = x.hypot(y);
         let balanced = length > 0.0
-            && sum.abs() <= TOLERANCE * length
+            && sum.abs() <= TOLERANCE * length + ROUND_OFF * lengths
             && moment <= TOLERANCE * arms.max(length * length) + ROUND_OFF * magnitudes;
         if balanced {
             return Ok(());
@@ -152,10 +182,11 @@ impl NodalLoad {
         traction: &Traction,
         moves: impl Fn(usize) -> bool,
     ) -> Result<Self, LostTraction> {
-        let mut sums = BTreeMap::<usize, f64>::new();
+        let mut sums = BTreeMap::<usize, Sum>::new();
         let mut add = |functions: &[(usize, f64)], length: f64| {
             for &(index, value) in functions {
-                *sums.entry(index).or_default() += value * length;
+                let sum = sums.entry(index).or_default();
+                *sum = sum.plus(value * length);
             }
         };
         let balance = match (&traction.edge, &body.shape) {
@@ -172,8 +203,9 @@ impl NodalLoad {
                 Balance::of_edge(body, &traction.edge)
             }
         };
+        let sums: Vec<_> = sums.into_iter().map(|(at, sum)| (at, sum.value())).collect();
         let [x, y] = patch.control_positions();
-        balance.check(sums.iter().filter(|(at, _)| moves(**at)).map(|(&at, &sum)| ([x[at], y[at]], sum)))?;
+        balance.check(sums.iter().filter(|(at, _)| moves(*at)).map(|&(at, sum)| ([x[at], y[at]], sum)))?;
         let forces = sums.into_iter().map(|(index, sum)| (index, traction.stress.map(|s| s * sum))).collect();
         Ok(Self { forces, ramp: traction.ramp })
     }
@@ -187,16 +219,6 @@ impl NodalLoad {
 /// Where to evaluate the shape functions of a position (m) on a straight edge, so that all of them belong to control points
 /// that can move.
 fn carrier(patch: &Patch, position: [f64; 2], moves: impl Fn(usize) -> bool) -> Option<Location> {
-    if patch.geometry.is_some() {
-        return patch.locate(position);
-    }
-    let grid = patch.control_grid();
-    let carries = |span: [usize; 2]| {
-        let [columns, rows] = [0, 1].map(|d| {
-            let first = patch.spaces[d].spans()[span[d]].first;
-            first..=first + patch.spaces[d].degree()
-        });
-        rows.into_iter().all(|row| columns.clone().all(|column| moves(grid.index(column, row))))
-    };
+    let carries = |span| patch.all_functions(span, &moves);
     nearest_span(&patch.spaces, position, carries).map(|span| Location { span, parameters: position })
 }

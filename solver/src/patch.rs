@@ -200,6 +200,16 @@ impl Patch {
         }
     }
 
+    /// Whether something `holds` for all control points whose functions do not vanish in a span.
+    pub fn all_functions(&self, span: [usize; 2], holds: impl Fn(usize) -> bool) -> bool {
+        let grid = self.control_grid();
+        let [columns, rows] = [0, 1].map(|d| {
+            let first = self.spaces[d].spans()[span[d]].first;
+            first..=first + self.spaces[d].degree()
+        });
+        rows.into_iter().all(|row| columns.clone().all(|column| holds(grid.index(column, row))))
+    }
+
     /// Shape functions at a place.
     pub fn functions(&self, Location { span, parameters }: Location) -> PointFunctions {
         let (functions, position, gradient) = match &self.geometry {

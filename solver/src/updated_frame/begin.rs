@@ -34,10 +34,11 @@ impl DiscreteField {
         field.points.iter_mut().for_each(|point| point.velocity = rigidly(point.position));
         field.take_affine_velocities(rigidly);
         let number = number_of(body, scene);
-        field.attach_first(number)?;
         field.crack_and_stress(true)?;
         (field.ledger, field.losses) = Default::default(); // there was no step yet
-        field.find_accelerations();
+        field.points_to_grid();
+        field.attach_first(number)?;
+        field.respond();
         for (traction, load) in field.loads.iter().enumerate() {
             let balance = Balance::of_edge(body, &body.tractions[traction].edge);
             let shares = load.shares(&field.patch, &field.nodes);
@@ -50,7 +51,7 @@ impl DiscreteField {
     fn attach_first(&mut self, body: usize) -> Result<(), Failure> {
         for (traction, load) in self.loads.iter_mut().enumerate() {
             let bare = |OutsidePatch(place)| Failure::LostTraction { body, traction, lost: LostTraction::Bare(place) };
-            load.attach(&self.patch, &self.cells).map_err(bare)?;
+            load.attach(&self.patch, &self.nodes).map_err(bare)?;
         }
         Ok(())
     }

@@ -87,9 +87,10 @@ impl DiscreteField {
         if fault!("span-not-renewed", left_span => false) {
             self.sort()?;
         }
-        self.attach_loads()?;
         self.crack_and_stress(left_span)?; // points: psi+, H, phase field, stress at n + 1
-        self.points_to_grid(); // P2G: mass, velocity, forces at x(n+1)
+        self.points_to_grid(); // P2G: mass, velocity, internal forces at x(n+1)
+        self.attach_loads()?;
+        self.add_external_forces();
         let imposed = self.apply_boundary();
         self.accelerate(); // a(n+1)
         self.book(dt, &leaving, imposed);
@@ -216,9 +217,9 @@ impl DiscreteField {
         Ok(())
     }
 
-    /// Finds spans for the surface points of loads.
+    /// Finds spans for the surface points of loads, by the masses of the grid.
     pub(super) fn attach_loads(&mut self) -> Result<(), OutsidePatch> {
-        self.loads.iter_mut().try_for_each(|load| load.attach(&self.patch, &self.cells))
+        self.loads.iter_mut().try_for_each(|load| load.attach(&self.patch, &self.nodes))
     }
 
     /// History, phase field and degraded stress; an elastic body has its stress from G2P.
@@ -235,8 +236,8 @@ impl DiscreteField {
         Ok(())
     }
 
-    /// Mass, arriving velocity, and internal and external forces.
-    fn points_to_grid(&mut self) {
+    /// Mass, arriving velocity, and internal forces.
+    pub(super) fn points_to_grid(&mut self) {
         let Self { patch, cells, points, nodes, density, .. } = self;
         nodes.clear();
         let (grid, density) = (nodes.grid, *density);
@@ -249,6 +250,12 @@ impl DiscreteField {
             affine.give(patch, cells, points, density, &mut nodes.arrived);
         }
         nodes.divide_by_mass();
+    }
+
+    /// Gravity, tractions and other loads.
+    fn add_external_forces(&mut self) {
+        let Self { patch, cells, points, nodes, .. } = self;
+        let grid = nodes.grid;
         nodes.add_gravity(self.gravity);
         for load in &self.loads {
             load.add_forces(patch, grid, self.time, &mut nodes.force);
@@ -266,9 +273,15 @@ impl DiscreteField {
         self.nodes.accelerate();
     }
 
-    /// Rebuilds the grid where no step leads to it.
+    /// Rebuilds the grid where no step leads to it, for points that stay where they are.
     pub(super) fn find_accelerations(&mut self) {
         self.points_to_grid();
+        self.respond();
+    }
+
+    /// Accelerations on a grid that has its masses and internal forces, where no step leads to them.
+    pub(super) fn respond(&mut self) {
+        self.add_external_forces();
         self.apply_boundary();
         self.accelerate();
         self.driven_power = self.nodes.power_of_driven_sides();

@@ -1,10 +1,10 @@
 //! Positions on the boundary of a body that move with it.
 //!
 //! Such a position may stand in a span that no material point has reached. It is evaluated with the polynomials of the
-//! nearest span that has points, continued beyond its end: they still sum to one and reproduce positions, so no force
-//! and no torque is lost, and every control point that counts has mass.
+//! nearest span with material, continued beyond its end: they still sum to one and reproduce positions. A load takes the
+//! nearest span whose control points all answer to a force, so no force and no torque is lost.
 
-use super::grid::VectorField;
+use super::grid::{NodalFields, VectorField};
 use super::points::{Cells, OutsidePatch};
 use crate::nearest_span::nearest_span;
 use crate::patch::{ControlGrid, Patch};
@@ -28,15 +28,17 @@ impl Follower {
     /// A position (m) with the polynomials of the span it is in or nearest to; `None` if there is no material within one span
     /// of it.
     pub fn nearest(position: [f64; 2], patch: &Patch, cells: &Cells) -> Option<Self> {
-        Some(Self { position, span: nearest_occupied_span(patch, cells, position)? })
+        let span = nearest_span(&patch.spaces, position, |span| cells.is_occupied(span))?;
+        Some(Self { position, span })
     }
 
-    /// Chooses the span anew.
+    /// Chooses the span anew: the nearest whose control points all answer to a force.
     ///
     /// # Errors
-    /// If there is no material within one span of it.
-    pub fn attach(&mut self, patch: &Patch, cells: &Cells) -> Result<(), OutsidePatch> {
-        self.span = nearest_occupied_span(patch, cells, self.position).ok_or(OutsidePatch(self.position))?;
+    /// If there is none within one span of it.
+    pub fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), OutsidePatch> {
+        let answers = |span| patch.all_functions(span, |at| nodes.inverse_mass[at] > 0.0);
+        self.span = nearest_span(&patch.spaces, self.position, answers).ok_or(OutsidePatch(self.position))?;
         Ok(())
     }
 
@@ -67,9 +69,4 @@ impl Follower {
         };
         [along(0), along(1)]
     }
-}
-
-/// The span with points that is nearest to a position.
-fn nearest_occupied_span(patch: &Patch, cells: &Cells, position: [f64; 2]) -> Option<[usize; 2]> {
-    nearest_span(&patch.spaces, position, |span| cells.is_occupied(span))
 }

@@ -105,8 +105,9 @@ impl DiscreteField {
     /// Order of the points, spans of the surface points, nodal fields.
     fn rebuild(&mut self) -> Result<(), OutsidePatch> {
         self.cells.sort(&self.patch, &mut self.points)?; // they are sorted already: the order of all else stays
+        self.points_to_grid();
         self.attach_loads()?;
-        self.find_accelerations();
+        self.respond();
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use super::follower::Follower;
 use super::grid::NodalFields;
-use super::points::{Cells, OutsidePatch};
+use super::points::OutsidePatch;
 use crate::checkpoint::{Archive, StateError};
 use crate::loads::surface_points;
 use crate::patch::{ControlGrid, Patch};
@@ -47,12 +47,12 @@ impl SurfaceLoad {
     ///
     /// # Errors
     /// A surface point with no material within one span of it.
-    pub fn attach(&mut self, patch: &Patch, cells: &Cells) -> Result<(), OutsidePatch> {
-        self.points.iter_mut().try_for_each(|point| point.place.attach(patch, cells))
+    pub fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), OutsidePatch> {
+        self.points.iter_mut().try_for_each(|point| point.place.attach(patch, nodes))
     }
 
-    /// Position (m) of every control point with mass on which the load acts, and its share of the length of the edge, m: once for
-    /// each surface point.
+    /// Position (m) of every control point that answers to the load, and its share of the length of the edge, m: once for each
+    /// surface point.
     pub fn shares<'a>(
         &'a self,
         patch: &'a Patch,
@@ -61,7 +61,7 @@ impl SurfaceLoad {
         self.points.iter().flat_map(move |point| {
             let mut shares = Vec::new();
             point.place.for_each_function(patch, nodes.grid, |at, n| {
-                if nodes.mass[at] > 0.0 {
+                if nodes.inverse_mass[at] > 0.0 {
                     shares.push((nodes.position(at), point.length * n));
                 }
             });

@@ -58,9 +58,10 @@ impl DiscreteField {
         if self.grid_to_points(dt) {
             self.sort()?;
         }
-        self.attach_loads()?;
         self.crack_and_stress(true)?;
-        self.find_accelerations();
+        self.points_to_grid();
+        self.attach_loads()?;
+        self.respond();
         Ok(())
     }
 }
