@@ -61,7 +61,8 @@ impl ConjugateGradients {
         Self { residual: zeros(), preconditioned: zeros(), direction: zeros(), image: zeros(), chunk }
     }
 
-    /// Improves `x` until its error in the energy norm is about `tolerance`; a start whose preconditioned residual says so is kept.
+    /// Improves `x` until its error in the energy norm is about `tolerance`; a start whose preconditioned residual says so is kept,
+    /// if the preconditioner can judge it.
     ///
     /// # Errors
     /// If `limit` iterations do not suffice, or numbers or matrix are not what they must be.
@@ -84,7 +85,7 @@ impl ConjugateGradients {
             let error = remaining.estimate.sqrt();
             if !error.is_finite() {
                 return Err(SolveFailure::NotFinite);
-            } else if error <= tolerance {
+            } else if error <= tolerance && (iterations > 0 || error == 0.0 || preconditioner.judges_starts()) {
                 return Ok(Convergence { iterations, error });
             } else if iterations == limit {
                 return Err(SolveFailure::NotConverged { iterations, error });

@@ -8,6 +8,8 @@
 
 use rayon::prelude::*;
 
+use crate::checkpoint::{Archive, StateError};
+use crate::extremes::larger;
 use crate::lane::{LANES, Lane, Vectorised, add_product, dispatch};
 use crate::patch::ControlGrid;
 use crate::stencil::{Offset, Stencil};
@@ -20,6 +22,8 @@ const LEAST_PIVOT: f64 = 1e-3;
 const FIRST_SHIFT: f64 = 1e-3;
 const SHIFT_GROWTH: f64 = 4.0;
 const LARGEST_SHIFT: f64 = 1e3;
+/// Shift up to which a factor still stands for its matrix.
+const MODERATE_SHIFT: f64 = 0.1;
 
 /// A product of two factor entries that falls into the stencil: `A[i + first, i + second] −= L L D`.
 #[derive(Debug, Clone, Copy)]
@@ -37,6 +41,8 @@ pub struct IncompleteCholesky {
     updates: Vec<Update>,
     /// Like the coefficients of the matrix: 1/D in place of the diagonal, L elsewhere.
     factor: Vec<f32>,
+    /// Largest shift of a block.
+    shift: f64,
 }
 
 impl IncompleteCholesky {
@@ -44,7 +50,8 @@ impl IncompleteCholesky {
     pub fn new(matrix: &Stencil) -> Self {
         let offsets = matrix.offsets().to_vec();
         let updates = updates(&offsets, matrix.degree());
-        let mut factor = Self { grid: matrix.grid, offsets, updates, factor: vec![0.0; matrix.coefficients().len()] };
+        let factor = vec![0.0; matrix.coefficients().len()];
+        let mut factor = Self { grid: matrix.grid, offsets, updates, factor, shift: 0.0 };
         factor.refactor(matrix);
         factor
     }
@@ -52,15 +59,17 @@ impl IncompleteCholesky {
     /// Factors `matrix` again in the same memory.
     pub fn refactor(&mut self, matrix: &Stencil) {
         let block = BLOCK_ROWS * matrix.row_length();
-        let Self { grid, offsets, updates, factor } = self;
+        let Self { grid, offsets, updates, factor, .. } = self;
         let blocks = factor.par_chunks_mut(block).zip(matrix.coefficients().par_chunks(block));
-        blocks.for_each(|(factor, matrix)| {
+        let shifts = blocks.map(|(factor, matrix)| {
             let (mut block, mut shift) = (vec![0.0; matrix.len()], 0.0);
             while !factor_block(*grid, offsets, updates, shift, matrix, &mut block) && shift < LARGEST_SHIFT {
                 shift = (SHIFT_GROWTH * shift).max(FIRST_SHIFT);
             }
             factor.iter_mut().zip(block).for_each(|(single, double)| *single = double as f32);
+            shift
         });
+        self.shift = shifts.reduce(|| 0.0, larger);
     }
 
     /// `out = (L D Lᵀ)⁻¹ r`; returns `rᵀ out`.
@@ -76,8 +85,19 @@ impl IncompleteCholesky {
         parts.iter().sum()
     }
 
-    pub(crate) fn values_mut(&mut self) -> &mut Vec<f32> {
-        &mut self.factor
+    /// Whether the diagonal of the matrix had to be raised so much that the factor is that of another one.
+    pub fn is_raised(&self) -> bool {
+        self.shift > MODERATE_SHIFT
+    }
+
+    /// Stores or takes up the factor.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { grid: _, offsets: _, updates: _, factor, shift } = self;
+        archive.list(factor)?;
+        archive.value(shift)
     }
 
     /// Heap memory, bytes.

@@ -88,10 +88,25 @@ pub struct BatchFunctions {
     pub gradient: [[Lane; 2]; MAX_FUNCTIONS],
 }
 
-/// Positions of the points of `body` along both directions of a patch with these spaces, m; parameters if they are `mapped`.
+/// A coordinate of material points along one direction, m or unit of the knots.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct AxisPoint {
+    /// The coordinate.
+    pub position: f64,
+    /// The length it stands for.
+    pub weight: f64,
+    /// Length of the span it lies in.
+    pub span: f64,
+}
+
+/// Coordinates of the points of `body` along both directions of a patch with these spaces; parameters if they are `mapped`.
 /// Unless [`fills_lattice`], the points are those of all pairs that lie in the shape.
-pub(crate) fn point_axes(body: &Body, spaces: &[SplineSpace; 2], mapped: bool) -> [Vec<f64>; 2] {
-    columns_of(body, spaces, mapped).map(|columns| columns.into_iter().flat_map(|c| c.position).collect())
+pub(crate) fn point_axes(body: &Body, spaces: &[SplineSpace; 2], mapped: bool) -> [Vec<AxisPoint>; 2] {
+    let along = |Columns { position, weight, length: span, .. }: Columns| {
+        let pairs = position.into_iter().zip(weight);
+        pairs.map(move |(position, weight)| AxisPoint { position, weight, span })
+    };
+    columns_of(body, spaces, mapped).map(|columns| columns.into_iter().flat_map(along).collect())
 }
 
 /// Whether no point of a lattice lies outside the shape.

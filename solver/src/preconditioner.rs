@@ -36,7 +36,7 @@ pub struct Preconditioner {
 #[derive(Debug, Clone)]
 enum Kind {
     Incomplete(IncompleteCholesky),
-    /// None until the next solve makes one.
+    /// None between a checkpoint and the solve that makes one.
     Complete(SparseCholesky, Option<Factor>),
 }
 
@@ -65,20 +65,22 @@ impl Preconditioner {
         match &self.factor {
             Kind::Incomplete(factor) => factor.apply(r, out),
             Kind::Complete(_, factor) => {
-                match factor {
-                    Some(factor) => factor.solve(r, out),
-                    None => out.copy_from_slice(r),
-                }
+                factor.as_ref().expect("it is made before the solve").solve(r, out);
                 r.iter().zip(out).map(|(r, out)| r * *out).sum()
             }
         }
     }
 
-    /// Makes the factor anew.
+    /// Makes the factor anew; one that cannot be complete becomes incomplete.
     pub fn renew(&mut self, matrix: &Stencil) {
         match &mut self.factor {
             Kind::Incomplete(factor) => factor.refactor(matrix),
-            Kind::Complete(cholesky, factor) => *factor = cholesky.factor(matrix, &[]),
+            Kind::Complete(cholesky, factor) => {
+                *factor = cholesky.factor(matrix, &[]);
+                if factor.is_none() {
+                    self.factor = Kind::Incomplete(IncompleteCholesky::new(matrix));
+                }
+            }
         }
         self.is_fresh = true;
     }
@@ -93,6 +95,14 @@ impl Preconditioner {
         } else {
             self.pause.left -= 1;
             self.renew(matrix);
+        }
+    }
+
+    /// Whether `rᵀ M⁻¹ r` says how large the error of a start is: a factor with a raised diagonal would make it out smaller.
+    pub fn judges_starts(&self) -> bool {
+        match &self.factor {
+            Kind::Incomplete(factor) => !factor.is_raised(),
+            Kind::Complete(..) => true,
         }
     }
 
@@ -164,7 +174,7 @@ impl Preconditioner {
             };
         }
         match factor {
-            Kind::Incomplete(factor) => archive.list(factor.values_mut()),
+            Kind::Incomplete(factor) => factor.exchange(archive),
             Kind::Complete(..) => Ok(()),
         }
     }

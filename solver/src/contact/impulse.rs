@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::surface::dot;
 use super::{Contact, ContactLedger, Touch};
+use crate::extremes::larger;
 use crate::updated_frame::field::DiscreteField;
 
 /// Rounds over the touches until their equations are solved directly, and most of them: a few tens settle them but where
@@ -19,7 +20,7 @@ const SETTLED: f64 = 1e-12;
 /// Round-off of the velocity at a touch, relative to those it is summed from; impulses that change it by less are settled.
 const ROUND_OFF: f64 = 1e-14;
 /// Change of an impulse, relative to the largest, above which impulses are not used: momentum is kept by any, so this is the error of gaps and friction.
-const ACCEPTED: f64 = 1e-7;
+const ACCEPTED: f64 = 1e-9;
 
 /// Time of a kick and of the step it belongs to, s: the first kick is half a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -214,11 +215,11 @@ impl Problem<'_> {
     /// Finds impulses with which every touch is settled, or says that it did not.
     fn settle(&mut self, friction: f64, step: f64) {
         let mut last = self.rounds(friction, step);
-        let mut rounds = ROUNDS;
-        while !last.is_settled(SETTLED) && rounds < MOST_ROUNDS {
-            self.solve_directly(friction, step);
+        let (mut rounds, mut enough, mut helps) = (ROUNDS, SETTLED, true);
+        while !last.is_settled(enough) && rounds < MOST_ROUNDS {
+            helps = helps && self.solve_directly(friction, step);
             last = self.rounds(friction, step);
-            rounds += ROUNDS;
+            (rounds, enough) = (rounds + ROUNDS, ACCEPTED);
         }
         if !last.is_settled(ACCEPTED) {
             let residual = last.change / last.largest;
@@ -247,7 +248,7 @@ impl Problem<'_> {
             let delta = Impulse { normal: new.normal - old.normal, tangent: new.tangent - old.tangent };
             acting.give(nodes, delta);
             acting.impulse = new;
-            round.largest = round.largest.max(new.normal);
+            round.largest = larger(round.largest, new.normal);
             for change in [delta.normal.abs(), delta.tangent.abs()] {
                 // what is no number stays: such rounds never settle
                 if (change > round.change && change > acting.round_off) || change.is_nan() {

@@ -12,6 +12,8 @@ pub(super) struct Columns {
     pub derivative: Vec<[f64; MAX_ORDER]>,
     pub weight: Vec<f64>,
     pub position: Vec<f64>,
+    /// Length of the whole span.
+    pub length: f64,
 }
 
 /// Tables of the spans that meet `[low, high]`.
@@ -32,6 +34,7 @@ pub(super) fn columns(space: &SplineSpace, rule: &Rule, low: f64, high: f64, cli
                 derivative: shapes.iter().map(|s| s.derivative).collect(),
                 weight: rule.weights.iter().map(|w| w * (right - left)).collect(),
                 position,
+                length: span.length(),
             }
         })
         .collect()

@@ -60,7 +60,10 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
 
 /// The body has material points, and the seeds of its cracks, if they are sound, reach them.
 fn material_points(key: &str, body: &Body, fracture: Option<&Fracture>, ground: &Ground<'_>, findings: &mut Findings) {
-    let Some(points) = Points::new(body, ground) else { return };
+    let Some(points) = Points::new(body, ground) else {
+        let seeds = (0..body.cracks.len()).filter(|_| fracture.is_some());
+        return seeds.for_each(|j| seed::unchecked(format!("{key}.crack.{j}"), findings));
+    };
     let [_, h] = ground.span_lengths(&body.shape);
     if !points.exist() {
         let message = format!("no material point lies in body {:?}: its cells are up to {h:.3e} m wide", body.name);

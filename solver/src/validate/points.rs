@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::Ground;
 use super::geometry::complexity;
-use crate::extremes::larger;
-use crate::lattice::{fills_lattice, point_axes};
-use crate::nurbs::NurbsPatch;
+use crate::extremes::largest;
+use crate::lattice::{AxisPoint, fills_lattice, point_axes};
+use crate::nurbs::{MapPoint, NurbsPatch};
 use crate::scene::Body;
 use crate::shape::distance_to_segment;
 
@@ -20,9 +20,9 @@ const MOST_MAPPED: usize = 2_000_000;
 /// The points of a body: pairs of its positions along both directions of the mesh that lie in its shape.
 pub(super) struct Points<'a> {
     body: &'a Body,
-    axes: [Vec<f64>; 2],
-    /// Positions of all pairs on a patch with a geometry, first direction fastest, m.
-    mapped: Option<Vec<Point>>,
+    axes: [Vec<AxisPoint>; 2],
+    /// Images of all pairs on a patch with a geometry, first direction fastest.
+    mapped: Option<Vec<MapPoint>>,
     fills: bool,
     /// Points that may be looked at.
     most: usize,
@@ -51,8 +51,9 @@ impl<'a> Points<'a> {
         if patch.is_some() && needed && axes[0].len().saturating_mul(axes[1].len()) > MOST_MAPPED {
             return None;
         }
-        let mapped = patch.filter(|_| needed).map(|patch| positions(patch, &axes));
-        let most = MOST_LOOKS / ((1 + body.cracks.len()) * complexity(&body.shape).max(1));
+        let mapped = patch.filter(|_| needed).map(|patch| images(patch, &axes));
+        let of_a_look = if fills { 1 } else { complexity(&body.shape).max(1) };
+        let most = MOST_LOOKS / ((1 + body.cracks.len()) * of_a_look);
         Some(Self { body, axes, mapped, fills, most })
     }
 
@@ -82,7 +83,7 @@ impl<'a> Points<'a> {
         let mut near = Vec::new();
         for pair in candidates.into_iter().flat_map(|(columns, j)| columns.map(move |i| [i, j])) {
             let position = self.position(pair);
-            let spans = [0, 1].map(|d| self.span(pair, d));
+            let spans = [0, 1].map(|d| self.along(pair, d, |axis| axis.span));
             let [[ax, ay], [bx, by]] = spans;
             let diagonal = (ax * ax + ay * ay + bx * bx + by * by).sqrt();
             let distance = distance_to_segment(position, from, to);
@@ -90,8 +91,8 @@ impl<'a> Points<'a> {
                 let project = |v: Point| (v[0] * along[0] + v[1] * along[1]) / length;
                 let foot = project([position[0] - from[0], position[1] - from[1]]);
                 let span = spans.into_iter().map(|span| project(span).abs()).sum();
-                let points: usize = self.body.particles_per_cell.into_iter().product();
-                let area = (ax * by - ay * bx).abs() / points as f64;
+                let [[ax, ay], [bx, by]] = [0, 1].map(|d| self.along(pair, d, |axis| axis.weight));
+                let area = (ax * by - ay * bx).abs();
                 near.push(Near { along: foot.clamp(0.0, length), distance, span, area });
             }
         }
@@ -105,22 +106,16 @@ impl<'a> Points<'a> {
         if self.mapped.is_some() {
             return (0..ys.len()).map(|j| (0..xs.len(), j)).collect();
         }
-        let longest = |d: usize| {
-            let ways = (0..self.axes[d].len()).map(|i| {
-                let mut pair = [0; 2];
-                pair[d] = i;
-                self.span(pair, d)[d].abs()
-            });
-            ways.fold(0.0, larger)
-        };
-        let reach = longest(0).hypot(longest(1)).max(reach);
-        let within = |axis: &[f64], low: f64, high: f64| {
-            axis.partition_point(|x| *x < low - reach)..axis.partition_point(|x| *x <= high + reach)
+        let [x, y] = self.axes.each_ref().map(|axis| largest(axis.iter().map(|point| point.span)));
+        let reach = x.hypot(y).max(reach);
+        let within = |axis: &[AxisPoint], low: f64, high: f64| {
+            let before = |end: f64| axis.partition_point(|point| point.position <= end);
+            axis.partition_point(|point| point.position < low - reach)..before(high + reach)
         };
         let in_row = |j: usize| {
             // the ends of the part of the segment that is no further up or down
             let at = |y: f64| if along[1] == 0.0 { 0.0 } else { ((y - from[1]) / along[1]).clamp(0.0, 1.0) };
-            let ends = if along[1] == 0.0 { [0.0, 1.0] } else { [at(ys[j] - reach), at(ys[j] + reach)] };
+            let ends = if along[1] == 0.0 { [0.0, 1.0] } else { [ys[j].position - reach, ys[j].position + reach].map(at) };
             let [a, b] = ends.map(|t| from[0] + t * along[0]);
             (within(xs, a.min(b), a.max(b)), j)
         };
@@ -134,31 +129,26 @@ impl<'a> Points<'a> {
 
     fn position(&self, [i, j]: [usize; 2]) -> Point {
         match &self.mapped {
-            None => [self.axes[0][i], self.axes[1][j]],
-            Some(positions) => positions[j * self.axes[0].len() + i],
+            None => [self.axes[0][i].position, self.axes[1][j].position],
+            Some(images) => images[j * self.axes[0].len() + i].position,
         }
     }
 
-    /// The longer of the ways (m) from a point to those at the same place in the spans before and after it.
-    fn span(&self, pair: [usize; 2], d: usize) -> Point {
-        let step = self.body.particles_per_cell[d];
-        let way = |to: usize| {
-            let mut other = pair;
-            other[d] = to;
-            let (here, there) = (self.position(pair), self.position(other));
-            [there[0] - here[0], there[1] - here[1]]
-        };
-        let before = way(pair[d].saturating_sub(step));
-        let after = way((pair[d] + step).min(self.axes[d].len() - 1));
-        if before[0].hypot(before[1]) > after[0].hypot(after[1]) { before } else { after }
+    /// A length along direction `d` at a point as a vector, m.
+    fn along(&self, pair: [usize; 2], d: usize, length: impl Fn(&AxisPoint) -> f64) -> Point {
+        let length = length(&self.axes[d][pair[d]]);
+        match &self.mapped {
+            None => [0, 1].map(|i| if i == d { length } else { 0.0 }),
+            Some(images) => images[pair[1] * self.axes[0].len() + pair[0]].jacobian.map(|row| length * row[d]),
+        }
     }
 }
 
-/// Images of all pairs of parameters, m.
-fn positions(patch: &NurbsPatch, [xs, ys]: &[Vec<f64>; 2]) -> Vec<Point> {
-    let position = |parameters: Point| {
+/// Images of all pairs of parameters.
+fn images(patch: &NurbsPatch, [xs, ys]: &[Vec<AxisPoint>; 2]) -> Vec<MapPoint> {
+    let image = |parameters: Point| {
         let span = patch.find_span(parameters).expect("points lie in spans");
-        patch.map(&patch.shape_functions(span, parameters)).position
+        patch.map(&patch.shape_functions(span, parameters))
     };
-    ys.iter().flat_map(|y| xs.iter().map(|x| position([*x, *y]))).collect()
+    ys.iter().flat_map(|y| xs.iter().map(|x| image([x.position, y.position]))).collect()
 }

@@ -24,7 +24,10 @@ pub(super) fn check(key: &str, body: &Body, fracture: &Fracture, points: &Points
     let width = |crack: &Crack| half_width(crack, l0);
     for (j, crack) in body.cracks.iter().enumerate() {
         let (ends, width) = ([crack.from, crack.to], width(crack));
-        let Some(near) = points.near(ends, width.min(COUNTED * l0)) else { continue };
+        let Some(near) = points.near(ends, width.min(COUNTED * l0)) else {
+            unchecked(format!("{key}.crack.{j}"), findings);
+            continue;
+        };
         let length = (crack.to[0] - crack.from[0]).hypot(crack.to[1] - crack.from[1]);
         if let Some(whole) = whole_stretch(&near, length, width, l0) {
             findings.error(
@@ -44,6 +47,13 @@ pub(super) fn check(key: &str, body: &Body, fracture: &Fracture, points: &Points
         let remedy = format!("give a smaller half width; the default is l0/2 = {} m", 0.5 * l0);
         findings.error(format!("{key}.crack.{widest}.half_width"), message, remedy);
     }
+}
+
+/// Says that nobody looked whether a seed breaks its body: there are too many points.
+pub(super) fn unchecked(key: String, findings: &mut Findings) {
+    let message = "too many material points to check that the seed reaches those along its crack: see that the fracture \
+                   energy begins at about the toughness times the length of the crack";
+    findings.warn(key, message);
 }
 
 /// Where a seed leaves a crack whole.

@@ -17,6 +17,8 @@ const MOST_CHANGES: usize = 100;
 const MOST_AT_ONCE: usize = 10;
 /// Least singular value relative to the largest: more touches than control points can tell apart share their impulses.
 const SINGULAR: f64 = 1e-13;
+/// Least pivot relative to the largest of equations that are far from that, and are solved without singular values.
+const REGULAR: f64 = 1e-8;
 /// Error of velocities and impulses that changes no state, relative to the largest.
 const ROUND_OFF: f64 = 1e-11;
 
@@ -38,15 +40,16 @@ struct Equations {
 }
 
 impl Problem<'_> {
-    /// Replaces the impulses by those that solve the equations, if states are found that agree with them.
-    pub(super) fn solve_directly(&mut self, friction: f64, step: f64) {
+    /// Replaces the impulses by those that solve the equations; false if no states are found that agree with them.
+    pub(super) fn solve_directly(&mut self, friction: f64, step: f64) -> bool {
         let equations = Equations::of(self, friction, step);
         let mut states: Vec<State> = self.touches.iter().map(|acting| equations.state_of(acting.impulse)).collect();
         for change in 0..MOST_CHANGES {
-            let Some(impulses) = equations.solve(&states) else { return };
+            let Some(impulses) = equations.solve(&states) else { return false };
             let next = equations.next(&states, &impulses);
             let Some(first) = (0..states.len()).find(|&i| next[i] != states[i]) else {
-                return self.replace(&impulses);
+                self.replace(&impulses);
+                return true;
             };
             if change < MOST_AT_ONCE {
                 states = next;
@@ -54,6 +57,7 @@ impl Problem<'_> {
                 states[first] = next[first];
             }
         }
+        false
     }
 
     fn replace(&mut self, impulses: &DVector<f64>) {
@@ -135,9 +139,15 @@ impl Equations {
         if !matrix.iter().chain(&right).all(|entry| entry.is_finite()) {
             return None;
         }
-        let decomposed = matrix.try_svd(true, true, f64::EPSILON, 0)?;
-        let least = SINGULAR * decomposed.singular_values.max();
-        let impulses = decomposed.solve(&right, least).ok()?;
+        let factors = matrix.clone().lu();
+        let pivots = factors.u().diagonal().abs();
+        let impulses = if pivots.min() > REGULAR * pivots.max() {
+            factors.solve(&right)?
+        } else {
+            let decomposed = matrix.try_svd(true, true, f64::EPSILON, 0)?;
+            let least = SINGULAR * decomposed.singular_values.max();
+            decomposed.solve(&right, least).ok()?
+        };
         impulses.iter().all(|impulse| impulse.is_finite()).then_some(impulses)
     }
 

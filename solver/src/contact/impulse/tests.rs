@@ -9,10 +9,10 @@ fn touch(normal: [f64; 2], x: f64) -> Touch {
     Touch { gap: 0.0, bodies, square, position: [x, 0.5], normal, on_a, on_b: None }
 }
 
-/// A problem of nodes of unit mass at rest; touches with weights of nodes and the velocity of the rigid body.
 /// A touch, its nodes with their weights, and the velocity of a rigid body.
 type Described = (Touch, Vec<(usize, f64)>, [f64; 2]);
 
+/// A problem of nodes of unit mass at rest.
 fn problem<'a>(nodes: usize, touches: &'a [Described]) -> Problem<'a> {
     let [before, free, after] = [[0.0; 2]; 3];
     let node = |at| Node { body: 0, at, mobility: [1.0; 2], before, free, after };
