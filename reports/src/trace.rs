@@ -1,5 +1,6 @@
 //! Curves on their way to the page: read, scaled, broken at gaps, clipped to the frame, dashed.
 
+use fisura_verification::extremes::{larger, smaller};
 use fisura_verification::record::{Curve, CurveStyle, Scale};
 
 use crate::axis::AxisScale;
@@ -162,9 +163,9 @@ fn clip(a: Point, b: Point, x: [f64; 2], y: [f64; 2]) -> Option<(Point, Point)> 
                 return None;
             }
         } else if step < 0.0 {
-            enter = enter.max(room / step);
+            enter = larger(enter, room / step);
         } else {
-            leave = leave.min(room / step);
+            leave = smaller(leave, room / step);
         }
     }
     let at = |t: f64| (a.0 + t * dx, a.1 + t * dy);

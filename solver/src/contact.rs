@@ -33,7 +33,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::extremes::smaller;
+use crate::extremes::{larger, smaller};
 use crate::patch::Patch;
 use crate::scene::Scene;
 use crate::updated_frame::field::DiscreteField;
@@ -132,33 +132,22 @@ impl Contact {
     /// Finds where bodies are near each other now.
     ///
     /// # Errors
-    /// If bodies are about to meet that move too far past each other in a step.
+    /// If bodies are about to meet that approach each other too far in a step.
     pub fn find(&mut self, fields: &[DiscreteField]) -> Result<(), TooFast> {
         let surfaces: Vec<&Surface> =
             fields.iter().filter_map(|f| f.surface()).chain(self.rigid.iter().map(|r| r.surface())).collect();
         let boxes: Vec<_> = surfaces.iter().map(|surface| surface.bounding_box()).collect();
-        let everywhere = [[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]];
-        let ways: Vec<_> = surfaces.iter().map(|surface| surface.ways_in(everywhere)).collect();
+        let ways: Vec<_> = surfaces.iter().map(|surface| surface.ways()).collect();
         let mut touches = Vec::new();
         for b in 1..surfaces.len() {
             for a in 0..b.min(fields.len()) {
-                let mut way = ways[a].past(&ways[b]);
-                let reach = self.reach + AHEAD * way;
+                let reach = self.reach + AHEAD * ways[a].past(&ways[b]);
                 let common = [
                     [0, 1].map(|d| boxes[a][0][d].max(boxes[b][0][d]) - reach),
                     [0, 1].map(|d| boxes[a][1][d].min(boxes[b][1][d]) + reach),
                 ];
                 if (0..2).all(|d| common[0][d] <= common[1][d]) {
-                    let pair = [surfaces[a], surfaces[b]];
-                    if way > MOST * self.reach {
-                        let [of_a, of_b] = pair.map(|surface| surface.ways_in(common));
-                        way = of_a.past(&of_b);
-                    }
-                    if way > MOST * self.reach {
-                        let place = [0, 1].map(|d| 0.5 * (common[0][d] + common[1][d]));
-                        return Err(TooFast { place, spans: way / self.reach });
-                    }
-                    let sums = self.compare(pair, common, (NEAR * self.reach).max(AHEAD * way));
+                    let sums = self.compare([surfaces[a], surfaces[b]], common, reach)?;
                     touches.extend(
                         sums.into_iter().filter_map(|(square, sums)| self.touch([a, b], square, &sums, fields)),
                     );
@@ -169,15 +158,21 @@ impl Contact {
         Ok(())
     }
 
-    /// What the segments of two boundaries in a box see of each other across gaps of at most `near` (m), square by square.
-    fn compare(&self, surfaces: [&Surface; 2], common: [[f64; 2]; 2], near: f64) -> BTreeMap<[i32; 2], Sums> {
+    /// What the segments of two boundaries in a box see of each other, no further than `reach` (m), square by square: across
+    /// gaps that are small, or could close in a step.
+    fn compare(
+        &self,
+        surfaces: [&Surface; 2],
+        common: [[f64; 2]; 2],
+        reach: f64,
+    ) -> Result<BTreeMap<[i32; 2], Sums>, TooFast> {
         let mut squares = BTreeMap::new();
         let segments = surfaces.map(|surface| surface.segments_in(common));
         for (own, other, sign) in [(0, 1, 1.0), (1, 0, -1.0)] {
             for &segment in &segments[own] {
-                let Center { position, normal } = surfaces[own].center(segment);
-                let Some(nearest) = surfaces[other].nearest(position, &segments[other], self.reach) else { continue };
-                if nearest.distance > near || dot(normal, nearest.normal) > FACING {
+                let Center { position, normal, way } = surfaces[own].center(segment);
+                let Some(nearest) = surfaces[other].nearest(position, &segments[other], reach) else { continue };
+                if dot(normal, nearest.normal) > FACING {
                     continue;
                 }
                 let Some(normal) =
@@ -185,6 +180,13 @@ impl Contact {
                 else {
                     continue;
                 };
+                let closing = sign * dot([0, 1].map(|d| way[d] - nearest.way[d]), normal);
+                if nearest.distance > larger(NEAR * self.reach, AHEAD * closing) {
+                    continue;
+                }
+                if closing > MOST * self.reach {
+                    return Err(TooFast { place: position, spans: closing / self.reach });
+                }
                 let middle = [0, 1].map(|d| position[d] + 0.5 * sign * nearest.distance * normal[d]);
                 // Squares around the knots: a plane of symmetry along a knot line cuts none.
                 let square = [0, 1].map(|d| ((middle[d] - self.origin[d]) / self.reach).round() as i32);
@@ -197,7 +199,7 @@ impl Contact {
                 }
             }
         }
-        squares
+        Ok(squares)
     }
 
     /// The touch of a square; none if a body has no material there.

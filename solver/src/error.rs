@@ -38,6 +38,8 @@ pub enum Failure {
     Left([f64; 2]),
     /// The consistent mass matrix is singular to round-off.
     SingularMass,
+    /// The critical time step is not a number.
+    NoStep,
     /// The body of that number in the scene holds no material point.
     NoPoints(usize),
     /// A part of a traction would not act.
@@ -51,7 +53,7 @@ pub enum Failure {
     },
     /// Impulses of contact did not settle.
     Unsettled(Unsettled),
-    /// Bodies meet that move too far past each other in a step.
+    /// Bodies meet that approach each other too far in a step.
     TooFast(TooFast),
 }
 

@@ -122,8 +122,10 @@ impl Inspection {
     fn look_at(&mut self, point: PointState) {
         self.points += 1;
         self.not_finite += usize::from(!point.is_finite());
-        self.largest_strain = self.largest_strain.max(largest(&point.strain));
-        self.largest_stress = self.largest_stress.max(largest(&point.stress));
+        if point.is_finite() {
+            self.largest_strain = larger(self.largest_strain, largest(&point.strain));
+            self.largest_stress = larger(self.largest_stress, largest(&point.stress));
+        }
         if let Some(PointFracture { history, phase }) = point.fracture {
             let none =
                 FractureExtremes { largest_history: 0.0, least_phase: f64::INFINITY, largest_phase: -f64::INFINITY };

@@ -1,9 +1,10 @@
 //! What happens at the material points in the total frame, one kernel per sweep.
 
 use crate::extremes::smaller;
+use crate::fracture::BROKEN;
 use crate::lane::Lane;
 use crate::material::{ElasticModuli, FractureModel};
-use crate::split::split;
+use crate::split::{SplitState, split};
 use crate::sweep::{PointKernel, PointValues, Stress};
 
 /// Linear strain `[exx, eyy, exy]` of a displacement gradient.
@@ -98,13 +99,19 @@ impl PointKernel for DegradedStress<'_> {
         let g = self.model.degradation(c);
         let energy = state.energy_minus.add_product::<FMA>(g, state.energy_plus);
         self.energy = self.energy.add_product::<FMA>(weight, energy);
-        // no array::map: it is compiled on its own, without FMA, where each product would be a call of the library
-        let mut stress = fault!("compression-degraded", state.stress_minus => state.stress_minus.map(|s| s * g));
-        for (stress, plus) in stress.iter_mut().zip(state.stress_plus) {
-            *stress = stress.add_product::<FMA>(g, plus);
-        }
-        Stress::symmetric(stress)
+        degraded::<FMA>(&state, g)
     }
+}
+
+/// Degraded stress (E 6) of a split strain energy.
+#[inline(always)]
+fn degraded<const FMA: bool>(state: &SplitState, g: Lane) -> Stress {
+    // no array::map: it is compiled on its own, without FMA, where each product would be a call of the library
+    let mut stress = fault!("compression-degraded", state.stress_minus => state.stress_minus.map(|s| s * g));
+    for (stress, plus) in stress.iter_mut().zip(state.stress_plus) {
+        *stress = stress.add_product::<FMA>(g, plus);
+    }
+    Stress::symmetric(stress)
 }
 
 /// Degraded stress (E 6) with the phase field held as it is at the points.
@@ -127,37 +134,35 @@ impl PointKernel for HeldPhaseStress<'_> {
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
         let state = split(&self.moduli, self.model.split, strain(values.gradient));
-        let g = self.model.degradation(self.phase[at]);
-        let mut stress = state.stress_minus;
-        for (stress, plus) in stress.iter_mut().zip(state.stress_plus) {
-            *stress = stress.add_product::<FMA>(g, plus);
-        }
-        Stress::symmetric(stress)
+        degraded::<FMA>(&state, self.model.degradation(self.phase[at]))
     }
 }
 
 /// Smallest principal stretch, squared: the smaller eigenvalue of `F Fᵀ` (see [`crate::hencky`]).
 #[derive(Debug)]
-pub struct LeastStretch {
+pub struct LeastStretch<'a> {
+    /// Phase field at the points of the strip, of which those that are broken do not count; empty if all count.
+    pub phase: &'a [Lane],
     /// Smallest of the strip; not a number if one is not.
     pub squared: Lane,
 }
 
-impl PointKernel for LeastStretch {
+impl PointKernel for LeastStretch<'_> {
     const DISPLACEMENT: bool = true;
     const PHASE: bool = false;
     const PHASE_GRADIENT: bool = false;
     const STRESS: bool = false;
 
     #[inline(always)]
-    fn points<const FMA: bool>(&mut self, _at: usize, weight: Lane, values: &PointValues) -> Stress {
+    fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
         let [xx, xy, yx, yy] = values.gradient;
         let mean = xx + yy + (xx * xx + xy * xy + yx * yx + yy * yy) * 0.5;
         let half_difference = xx - yy + (xx * xx + xy * xy - yx * yx - yy * yy) * 0.5;
         let shear = xy + yx + (xx * yx + xy * yy);
         let radius = (half_difference * half_difference + shear * shear).map(f64::sqrt);
+        let weight = self.phase.get(at).map_or(weight, |c| weight.zip(*c, |w, c| if c < BROKEN { 0.0 } else { w }));
         let squared = (mean - radius + Lane::splat(1.0)).zip(weight, |x, w| if w > 0.0 { x } else { f64::INFINITY });
-        self.squared = self.squared.zip(squared, |least, x| if x < least || x.is_nan() { x } else { least });
+        self.squared = self.squared.zip(squared, smaller);
         Stress::ZERO
     }
 }

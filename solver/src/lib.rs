@@ -45,7 +45,7 @@
 //! | – | material points: layouts, tiles of spans | [`quadrature`], [`lattice`], [`shape`] |
 //! | – | several bodies, frictional contact, rigid bodies | [`updated_frame::field`], [`contact`] |
 //! | – | what the points take from the grid, and its losses | [`updated_frame::departure`], [`updated_frame::losses`] |
-//! | – | tractions, conditions on sides | [`loads`], [`constraints`] |
+//! | – | tractions, the spans that carry them, conditions on sides | [`loads`], [`nearest_span`], [`constraints`] |
 //! | – | finite strain | [`hencky`], [`finite`] |
 //! | – | for verification: loads that vary in space, projection, elastostatics | [`forcing`], [`projection`], [`statics`] |
 //! | – | linear algebra of the phase field | [`stencil`], [`conjugate_gradients`], [`incomplete_cholesky`], [`preconditioner`], [`cholesky`] |

@@ -75,9 +75,9 @@ fn cut((mut low, mut high): ([f64; 2], [f64; 2]), shape: &Shape) -> ([f64; 2], [
     for d in 0..2 {
         let across = min[1 - d] <= low[1 - d] && max[1 - d] >= high[1 - d];
         if across && min[d] <= low[d] && max[d] < high[d] {
-            low[d] = low[d].max(max[d]);
+            low[d] = larger(low[d], max[d]);
         } else if across && max[d] >= high[d] && min[d] > low[d] {
-            high[d] = high[d].min(min[d]);
+            high[d] = smaller(high[d], min[d]);
         }
     }
     (low, high)

@@ -5,7 +5,7 @@ mod state;
 mod watch;
 
 use crate::energy::Sample;
-use crate::error::Breakdown;
+use crate::error::{Breakdown, Failure};
 use crate::inspection::PointState;
 use crate::lane::LANES;
 use crate::phase_field::PhaseFieldCounts;
@@ -57,12 +57,15 @@ impl Simulation {
     /// Prepares a valid scene (see [`crate::validate::validate`]).
     ///
     /// # Errors
-    /// If the initial phase field does not converge, or the mass matrix is singular to round-off.
+    /// If the initial phase field does not converge, the mass matrix is singular to round-off, or the critical step is no number.
     pub fn new(scene: &Scene) -> Result<Self, Breakdown> {
         let tolerance = scene.solver.phase_field_tolerance;
         let not_started = |failure| watch::not_started(scene.mesh.origin(), tolerance, failure);
         let mut frame = Frame::new(scene).map_err(not_started)?;
         let critical = either!(&frame, body => body.critical_step());
+        if critical.is_nan() {
+            return Err(not_started(Failure::NoStep));
+        }
         let (plan, warnings) = TimePlan::new(scene, critical);
         frame.prepare(plan.step).map_err(not_started)?;
         let start = either!(&frame, body => body.sample(plan.step));

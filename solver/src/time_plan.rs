@@ -1,6 +1,7 @@
 //! Time steps and samples: a sample interval is a whole number of equal steps.
 
 use crate::contact::motion::{MOST, longest_step};
+use crate::extremes::smaller;
 use crate::scene::{Analysis, Output, Scene, TimeStep};
 
 /// Fraction of the longest step of bodies that meet that is taken: speeds change.
@@ -25,19 +26,19 @@ impl TimePlan {
         Self::within(&scene.analysis, &scene.output, critical, longest_step(scene))
     }
 
-    /// Plan for a critical step and the longest step (s) in which bodies that meet do not pass each other.
+    /// Plan for a critical step and the longest step (s) in which contact can follow bodies that meet.
     fn within(analysis: &Analysis, output: &Output, critical: f64, passing: f64) -> (Self, Vec<String>) {
         let mut warnings = Vec::new();
         let end = analysis.end_time;
         let stable = fault!("safety-ignored", analysis.safety => 1.0) * critical;
         let longest = match analysis.time_step {
-            TimeStep::Auto => stable.min(SPARE * passing).min(end),
-            TimeStep::Fixed(step) => step.min(end),
+            TimeStep::Auto => smaller(smaller(stable, SPARE * passing), end),
+            TimeStep::Fixed(step) => smaller(step, end),
         };
         if analysis.time_step == TimeStep::Auto && longest < stable.min(end) {
             warnings.push(format!(
-                "bodies move past each other so fast that the time step is {longest:.4e} s instead of {stable:.4e} s: contact \
-                 follows {MOST} spans in a step"
+                "bodies approach each other so fast that the time step is {longest:.4e} s instead of {stable:.4e} s: \
+                 contact follows {MOST} spans in a step"
             ));
         }
         let mut samples = output.samples.max(1);
@@ -60,8 +61,8 @@ impl TimePlan {
         }
         if step > passing {
             warnings.push(format!(
-                "in the time step {step:.4e} s bodies move past each other by more than {MOST} spans: the run ends where they \
-                 meet; give {:.4e} s or less, or time_step = \"auto\"",
+                "in the time step {step:.4e} s bodies approach each other by more than {MOST} spans: the run ends where \
+                 they meet; give {:.4e} s or less, or time_step = \"auto\"",
                 SPARE * passing
             ));
         }

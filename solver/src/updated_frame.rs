@@ -81,7 +81,7 @@ impl UpdatedFrame {
     /// Looks as far ahead as steps of `dt` seconds need, before the first one.
     ///
     /// # Errors
-    /// If bodies are about to meet that move too far past each other in a step.
+    /// If bodies are about to meet that approach each other too far in a step.
     pub fn prepare(&mut self, dt: f64) -> Result<(), Failure> {
         let Some(contact) = &mut self.contact else { return Ok(()) };
         self.fields.iter_mut().for_each(|field| field.expect_motion(dt));
@@ -94,8 +94,8 @@ impl UpdatedFrame {
     /// One time step of `dt` seconds.
     ///
     /// # Errors
-    /// If a phase field does not converge, a point leaves the patch, impulses of contact do not settle, or bodies meet that move
-    /// too far past each other in a step.
+    /// If a phase field does not converge, a point leaves the patch, impulses of contact do not settle, or bodies meet that
+    /// approach each other too far in a step.
     pub fn step(&mut self, dt: f64) -> Result<(), Failure> {
         let kick = self.coming_kick(dt);
         let Self { fields, contact, .. } = self;

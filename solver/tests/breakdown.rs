@@ -138,7 +138,7 @@ fn first_breakdown(scene: &Scene, name: &str) -> (Simulation, Breakdown) {
 fn no_number_that_is_not_finite_outlives_its_step() {
     for kinematics in [Kinematics::Small, Kinematics::Finite] {
         for frame in [Frame::Total, Frame::Updated] {
-            for mut scene in [notched_plate(1e200), common::pulled_plate(1e200)] {
+            for mut scene in [notched_plate(1e308), common::pulled_plate(1e308)] {
                 scene.bodies[0].tractions.iter_mut().for_each(|traction| traction.ramp = None);
                 (scene.analysis.frame, scene.analysis.kinematics) = (frame, kinematics);
                 let fractures = scene.materials["glass"].fracture.is_some();
@@ -146,10 +146,22 @@ fn no_number_that_is_not_finite_outlives_its_step() {
                 let (simulation, found) = first_breakdown(&scene, &name);
                 assert!(found.step == simulation.steps() && found.step <= 3, "{name}: {found}");
                 assert!(found.place.iter().all(|x| x.is_finite()), "{name}: {found}");
-                let named = ["not finite", "is not a number", "inverted", "exceeds", "thrown"];
+                let named = ["not finite", "is not a number", "inverted"];
                 assert!(named.iter().any(|words| found.what.contains(words)), "{name}: {found}");
             }
         }
+    }
+}
+
+/// Constants whose products overflow have no critical step, which no minimum with other steps may hide.
+#[test]
+fn a_critical_step_that_is_no_number_is_refused() {
+    for frame in [Frame::Total, Frame::Updated] {
+        let mut scene = moving(2);
+        scene.analysis.frame = frame;
+        scene.materials.get_mut("glass").unwrap().young_modulus = f64::MAX;
+        let found = Simulation::new(&scene).unwrap_err();
+        assert!(found.what.contains("critical time step is not a number") && found.step == 0, "{frame:?}: {found}");
     }
 }
 

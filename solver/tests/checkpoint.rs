@@ -171,3 +171,16 @@ fn what_a_failed_step_leaves_is_not_stored() {
     let error = simulation.checkpoint().unwrap_err().to_string();
     assert!(error.contains(&format!("step {} failed", simulation.steps())), "{error}");
 }
+
+/// What a sample finds broken is no state to go on from.
+#[test]
+fn a_sample_that_breaks_is_not_stored() {
+    let mut simulation = Simulation::new(&pulled_and_driven()).unwrap();
+    simulation.step().unwrap();
+    assert!(simulation.checkpoint().is_ok());
+    let mut sample = simulation.sample();
+    sample.kinetic = f64::NAN;
+    let found = simulation.watch_ledger(&sample).unwrap_err();
+    assert!(found.what.contains("kinetic"), "{found}");
+    assert!(simulation.checkpoint().is_err());
+}

@@ -138,8 +138,32 @@ fn a_fixed_step_that_would_let_bodies_through_ends_the_run_where_they_meet() {
     );
     let found = found.unwrap();
     let text = found.to_string();
-    assert!(text.contains("move past each other by") && found.cause.contains("time_step"), "{text}");
+    assert!(text.contains("approach each other by") && found.cause.contains("time_step"), "{text}");
     assert!(found.step == simulation.steps() && found.time < 1.6 / speed && found.place[0] > 0.4, "{text}");
+}
+
+/// A block that slides along a wall far faster than waves, one that flies off from another, and a disc that turns in its bearing
+/// close no gap: nothing shortens their step or ends their run.
+#[test]
+fn bodies_that_do_not_approach_are_not_too_fast() {
+    let block = |velocity| Body { velocity, ..body(rectangle([0.5, 0.5], [1.0, 1.0]), [2; 2]) };
+    let floor = rigid("floor", rectangle([0.0, 0.25], [4.0, 0.5]), [0.0; 2]);
+    let bearing = Shape::Annulus { center: [2.0, 1.0], inner_radius: 0.4, outer_radius: 0.6 };
+    let disc = Body { angular_velocity: 70.0, ..body(Shape::Disk { center: [2.0, 1.0], radius: 0.4 }, [2; 2]) };
+    for (name, bodies) in [
+        ("slides", vec![block([100.0, 0.0]), floor]),
+        ("parts", vec![block([0.0; 2]), rigid("other", rectangle([1.0, 0.5], [1.5, 1.0]), [100.0, 0.0])]),
+        ("turns", vec![disc, rigid("bearing", bearing, [0.0; 2])]),
+    ] {
+        let mut scene = scene(2, [4.0, 2.0], [64, 32]);
+        scene.bodies = bodies;
+        scene.contact = Some(Contact { friction: 0.0 });
+        scene.analysis.time_step = TimeStep::Fixed(1e-3); // 1.6 spans, and 0.45 on the rim of the disc, to and fro
+        scene.analysis.end_time = 5e-3;
+        let (simulation, found) = ending(&scene);
+        assert!(found.is_none(), "{name}: {found:?}");
+        assert!(!simulation.warnings().iter().any(|w| w.contains("approach")), "{name}: {:?}", simulation.warnings());
+    }
 }
 
 /// No body is too fast at t = 0; gravity makes one so, and the step was chosen before.
@@ -158,7 +182,7 @@ fn a_body_that_becomes_too_fast_ends_the_run_before_it_is_through() {
     scene.analysis.end_time = 0.4;
     let (simulation, found) = ending(&scene);
     let found = found.expect("at 16 times the speed of waves");
-    assert!(found.what.contains("move past each other"), "{found}");
+    assert!(found.what.contains("approach each other"), "{found}");
     let lowest = simulation.updated_frame().unwrap().fields()[0].surface().unwrap().bounding_box()[0][1];
     assert!(lowest > 0.4, "the block is at {lowest} m: {found}");
 }

@@ -84,7 +84,7 @@ fn a_cracking_body_cracks_as_with_small_strains_and_its_ledger_is_as_open() {
         let (mut closure, mut largest) = (0.0_f64, 0.0_f64);
         while !simulation.finished() {
             let sample = simulation.advance_to_next_sample().unwrap();
-            (closure, largest) = (closure.max(sample.closure.abs()), largest.max(sample.largest_term()));
+            (closure, largest) = (larger(closure, sample.closure.abs()), larger(largest, sample.largest_term()));
         }
         [simulation.sample().fracture.unwrap().energy - start, closure / largest]
     };

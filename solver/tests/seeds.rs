@@ -128,3 +128,38 @@ fn seeds_on_a_patch_are_judged_in_metres() {
     assert!(least > 1e-6 && least < 0.5 * 0.4e-3, "{least}");
     assert!(validate(&with(Some(least))).is_ok() && validate(&with(Some(L0))).is_ok());
 }
+
+/// A bar one point thick: no neighbour across says how long a span is there.
+#[test]
+fn bodies_one_point_thick_can_be_cracked() {
+    for [along, across] in [[0, 1], [1, 0]] {
+        let place = |x: f64, y: f64| if along == 0 { [x, y] } else { [y, x] };
+        for (from, to) in [(place(0.0, 0.5 * L0), place(0.005, 0.5 * L0)), (place(0.005, 0.0), place(0.005, L0))] {
+            let mut scene = seeded(L0, [2, 2], Crack { from, to, half_width: None });
+            let mut cells = [1; 2];
+            cells[along] = 40;
+            (scene.bodies[0].particles_per_cell[along], scene.bodies[0].particles_per_cell[across]) = (2, 1);
+            scene.mesh = Mesh::uniform([2, 2], [0.0; 2], place(0.01, L0), cells);
+            scene.bodies[0].shape = rectangle([0.0; 2], place(0.01, L0));
+            assert!(validate(&scene).is_ok(), "{from:?} to {to:?}: {:?}", validate(&scene));
+            assert!(largest_phase(&scene) < 0.4, "{from:?} to {to:?}: c = {} on the crack", largest_phase(&scene));
+        }
+    }
+}
+
+#[test]
+fn a_seed_that_nobody_looked_at_is_told() {
+    let ring = NurbsPatch::quarter_annulus(0.01, 0.02).unwrap().elevate(0).unwrap().subdivide(40).unwrap();
+    let mut scene = seeded(L0, [2, 2], Crack { from: [0.0072, 0.0072], to: [0.0105, 0.0105], half_width: Some(1e-9) });
+    scene.mesh = Mesh::of(&ring);
+    scene.bodies[0].shape = Shape::Patch;
+    let told = |scene: &Scene| {
+        let warnings = validate(scene).unwrap();
+        warnings.iter().any(|w| w.key == "body.0.crack.0" && w.message.contains("too many material points"))
+    };
+    scene.bodies[0].particles_per_cell = [40, 40];
+    assert!(told(&scene), "a point for every 1e-5 m");
+    scene.bodies[0].particles_per_cell = [2, 2];
+    scene.bodies[0].cracks[0].half_width = None;
+    assert!(!told(&scene));
+}

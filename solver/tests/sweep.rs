@@ -72,12 +72,12 @@ fn naive(
         let gradient = [ux.gradient[0], ux.gradient[1], uy.gradient[0], uy.gradient[1]];
         let seen_gradient = seen.gradient.map(|g| g[lane]);
         for i in 0..4 {
-            result.gradient_error = result.gradient_error.max((gradient[i] - seen_gradient[i]).abs());
+            result.gradient_error = larger(result.gradient_error, (gradient[i] - seen_gradient[i]).abs());
         }
-        result.phase_error = result.phase_error.max((c.value - seen.phase[lane]).abs());
+        result.phase_error = larger(result.phase_error, (c.value - seen.phase[lane]).abs());
         for d in 0..2 {
             let error = (c.gradient[d] - seen.phase_gradient[d][lane]).abs();
-            result.gradient_error = result.gradient_error.max(error);
+            result.gradient_error = larger(result.gradient_error, error);
         }
         result.scale = gradient.iter().fold(result.scale, |m: f64, g| larger(m, g.abs()));
         result.points += 1;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use common::elastic_scene;
 use fisura::Simulation;
+use fisura::extremes::larger;
 use fisura::forcing::NoLoads;
 use fisura::scene::*;
 use fisura::total_frame::TotalFrame;
@@ -74,8 +75,8 @@ fn the_ledger_closes_with_the_square_of_the_step() {
         let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
         while !simulation.finished() {
             let sample = simulation.advance_to_next_sample().unwrap();
-            worst = worst.max(sample.closure.abs());
-            largest = largest.max(sample.largest_term());
+            worst = larger(worst, sample.closure.abs());
+            largest = larger(largest, sample.largest_term());
         }
         worst / largest
     };

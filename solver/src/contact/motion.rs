@@ -1,21 +1,24 @@
-//! How far bodies move past each other in a step. Contact looks at gaps once per step: what moves further than a span between
-//! two looks is through before it is seen.
+//! How far bodies approach each other in a step. Contact looks at gaps once per step: what closes more than a span between two
+//! looks is through before it is seen. Bodies that slide along each other, turn in each other or part are not.
 
+use super::surface::{Center, Surface};
 use crate::extremes::{larger, largest, smaller};
-use crate::scene::{Body, Scene};
+use crate::scene::{Body, Mesh, Scene};
 use crate::spans::smallest_span;
 
-/// Most spans that bodies which meet move relative to each other in a step.
+/// Most spans by which bodies that meet approach each other in a step.
 pub const MOST: f64 = 0.5;
 /// A gap that could close in the coming step is one within this many of the ways of the last step: speeds change.
 pub const AHEAD: f64 = 1.25;
+/// Relative round-off of places and speeds at the start.
+const ROUND_OFF: f64 = 1e-9;
 
-/// Bodies that are about to meet move too far in a step.
+/// Bodies that are about to meet approach each other too far in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TooFast {
     /// Between them, m.
     pub place: [f64; 2],
-    /// Relative way in a step, in spans.
+    /// By how much they approach in a step, in spans.
     pub spans: f64,
 }
 
@@ -38,22 +41,53 @@ impl Range {
     }
 }
 
-/// Longest step, s, in which no two bodies of a scene with contact move past each other by more than [`MOST`] spans, by the
+/// A body as it begins to move.
+struct Moving<'a> {
+    body: &'a Body,
+    bounds: [[f64; 2]; 2],
+    /// Largest speed with which its boundary moves outwards by its rotation, m/s; that of a disc does not.
+    turning: f64,
+}
+
+impl<'a> Moving<'a> {
+    fn new(mesh: &Mesh, body: &'a Body) -> Self {
+        let surface = Surface::new(mesh, body);
+        let center = surface.centroid();
+        let bounds = surface.bounding_box();
+        let outwards = surface.segments_in(bounds).into_iter().map(|segment| {
+            let Center { position, normal, .. } = surface.center(segment);
+            let arm = [0, 1].map(|d| position[d] - center[d]);
+            body.angular_velocity * (arm[0] * normal[1] - arm[1] * normal[0])
+        });
+        let turning = outwards.fold(0.0, larger);
+        Self { body, bounds, turning }
+    }
+
+    /// Bound of the speed, m/s, at which it comes nearer to another body; zero for bodies that lie beside each other, with boxes
+    /// that do not close on each other.
+    fn approach(&self, other: &Self) -> f64 {
+        let relative = [0, 1].map(|d| other.body.velocity[d] - self.body.velocity[d]);
+        let turning = self.turning + other.turning;
+        let most = relative[0].hypot(relative[1]) + turning;
+        let beside = |d: usize| {
+            let ([low, high], [other_low, other_high]) = (self.bounds, other.bounds);
+            let touching = ROUND_OFF * (high[d] - low[d] + other_high[d] - other_low[d]);
+            let is_ahead = other_low[d] >= high[d] - touching && turning - relative[d] <= ROUND_OFF * most;
+            let is_behind = low[d] >= other_high[d] - touching && turning + relative[d] <= ROUND_OFF * most;
+            is_ahead || is_behind
+        };
+        if beside(0) || beside(1) { 0.0 } else { most }
+    }
+}
+
+/// Longest step, s, in which no two bodies of a scene with contact approach each other by more than [`MOST`] spans, by the
 /// velocities they begin with; infinite without contact.
 pub fn longest_step(scene: &Scene) -> f64 {
     if scene.contact.is_none() {
         return f64::INFINITY;
     }
-    // about the middle of the box around a body
-    let spin = |body: &Body| {
-        let (low, high) = body.shape.bounding_box();
-        0.5 * body.angular_velocity.abs() * (high[0] - low[0]).hypot(high[1] - low[1])
-    };
-    let bodies = || scene.bodies.iter().enumerate();
-    let pairs = bodies().flat_map(|(i, a)| bodies().skip(i + 1).map(move |(_, b)| (a, b)));
-    let speeds = pairs.filter(|(a, b)| !(a.rigid && b.rigid)).map(|(a, b)| {
-        let [x, y] = [0, 1].map(|d| a.velocity[d] - b.velocity[d]);
-        x.hypot(y) + spin(a) + spin(b)
-    });
+    let bodies: Vec<Moving> = scene.bodies.iter().map(|body| Moving::new(&scene.mesh, body)).collect();
+    let pairs = bodies.iter().enumerate().flat_map(|(i, a)| bodies[i + 1..].iter().map(move |b| (a, b)));
+    let speeds = pairs.filter(|(a, b)| !(a.body.rigid && b.body.rigid)).map(|(a, b)| a.approach(b));
     MOST * smallest_span(&scene.mesh) / largest(speeds)
 }

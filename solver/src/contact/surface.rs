@@ -38,6 +38,8 @@ pub struct Nearest {
     pub distance: f64,
     /// Outward unit normal there.
     pub normal: [f64; 2],
+    /// Its way in the last step, m.
+    pub way: [f64; 2],
 }
 
 /// Centre of a segment.
@@ -47,6 +49,8 @@ pub struct Center {
     pub position: [f64; 2],
     /// Outward unit normal.
     pub normal: [f64; 2],
+    /// Its way in the last step, m.
+    pub way: [f64; 2],
 }
 
 impl Surface {
@@ -136,7 +140,7 @@ impl Surface {
         if (b[0] - a[0]).hypot(b[1] - a[1]) <= MOST_STRETCH * span {
             return false;
         }
-        let Center { position, normal } = self.center(segment);
+        let Center { position, normal, .. } = self.center(segment);
         let inside = [0, 1].map(|d| position[d] - DEPTH * span * normal[d]);
         Follower::nearest(inside, field.patch(), field.cells()).is_none()
     }
@@ -169,10 +173,9 @@ impl Surface {
         self.ways = self.vertices.iter().map(|vertex| way(*vertex)).collect();
     }
 
-    /// Ways of the vertices in a box, m.
-    pub fn ways_in(&self, [low, high]: [[f64; 2]; 2]) -> Range {
-        let inside = |vertex: &[f64; 2]| (0..2).all(|d| low[d] <= vertex[d] && vertex[d] <= high[d]);
-        Range::of(self.vertices.iter().zip(&self.ways).filter(|(vertex, _)| inside(vertex)).map(|(_, way)| *way))
+    /// Ways of all vertices, m.
+    pub fn ways(&self) -> Range {
+        Range::of(self.ways.iter().copied())
     }
 
     /// Where the boundary was without material first, m, if it ever was.
@@ -234,7 +237,7 @@ impl Surface {
     /// Centre of a segment.
     pub fn center(&self, segment: u32) -> Center {
         let [a, b] = self.ends(segment);
-        Center { position: [0, 1].map(|d| 0.5 * (a[d] + b[d])), normal: normal(a, b) }
+        Center { position: [0, 1].map(|d| 0.5 * (a[d] + b[d])), normal: normal(a, b), way: self.way_at(segment, 0.5) }
     }
 
     /// The point nearest to a position (m) on one of `segments`, if any lies within `reach` (m).
@@ -259,7 +262,13 @@ impl Surface {
         let normal = self.normal_at(segment, t);
         let outside = dot(from, normal) >= 0.0;
         let sign = if outside { 1.0 } else { fault!("gap-without-sign", -1.0 => 1.0) };
-        Some(Nearest { distance: sign * distance, normal })
+        Some(Nearest { distance: sign * distance, normal, way: self.way_at(segment, t) })
+    }
+
+    /// Way of a place on a segment, at a fraction t of its length, in the last step, m.
+    fn way_at(&self, segment: u32, t: f64) -> [f64; 2] {
+        let [a, b] = self.segments[segment as usize].map(|vertex| self.ways[vertex as usize]);
+        [0, 1].map(|d| (1.0 - t) * a[d] + t * b[d])
     }
 
     /// Outward normal of a segment at a fraction t of its length: at its ends that of the vertex.

@@ -114,7 +114,9 @@ impl Simulation {
     fn is_healthy(&mut self) -> bool {
         let (elastic, work) = either!(&self.frame, body => (body.elastic_energy(), body.external_work().abs()));
         self.energy_in = larger(self.energy_in, work);
-        elastic.is_finite() && elastic <= GROWTH_LIMIT * (self.energy_in + self.initial.abs())
+        elastic.is_finite()
+            && self.energy_in.is_finite()
+            && elastic <= GROWTH_LIMIT * (self.energy_in + self.initial.abs())
     }
 
     /// Holds a sample to its ledger: an open one is a warning, once, and a breakdown if the step is above the critical one.
@@ -123,6 +125,12 @@ impl Simulation {
     /// If a number of the sample is not finite, or the ledger is open and the time step is too long to be stable, or the
     /// impulses of contact in the sample did not settle.
     pub fn watch_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
+        let held = self.hold_to_ledger(sample);
+        self.failed |= held.is_err();
+        held
+    }
+
+    fn hold_to_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
         if let Some(name) = sample.not_finite() {
             return Err(self.at_worst_point(format!("{name} of the history is not a finite number"), None));
         }
@@ -150,11 +158,14 @@ impl Simulation {
 
     fn unstable(&self) -> Breakdown {
         let elastic = either!(&self.frame, body => body.elastic_energy());
-        if elastic.is_finite() {
-            let what = format!("elastic energy {elastic:.3e} J exceeds {GROWTH_LIMIT} times all energy put in");
-            return self.at_worst_point(what, None);
+        if !elastic.is_finite() {
+            return self.not_finite("numbers are not finite: the elastic energy is none");
         }
-        self.not_finite("numbers are not finite: the elastic energy is none")
+        if !self.energy_in.is_finite() {
+            return self.not_finite("numbers are not finite: the work of the loads is none");
+        }
+        let what = format!("elastic energy {elastic:.3e} J exceeds {GROWTH_LIMIT} times all energy put in");
+        self.at_worst_point(what, None)
     }
 
     /// Numbers that are not finite: because a point is inverted, which has no strain, or for another reason.
@@ -186,7 +197,11 @@ impl Simulation {
                 let (what, cause) = what_and_cause(failure, self.tolerance);
                 Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause, scene: None }
             }
-            Failure::PhaseField(_) | Failure::SingularMass | Failure::NoPoints(_) | Failure::LostTraction { .. } => {
+            Failure::PhaseField(_)
+            | Failure::SingularMass
+            | Failure::NoStep
+            | Failure::NoPoints(_)
+            | Failure::LostTraction { .. } => {
                 let (what, cause) = what_and_cause(failure, self.tolerance);
                 self.at_worst_point(what, Some(cause).filter(|_| !self.step_is_too_long()))
             }
@@ -247,7 +262,7 @@ pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> 
         | Failure::LostTraction { body, traction, lost: LostTraction::Unbalanced { place, .. } } => {
             (place, Some(format!("body.{body}.traction.{traction}")))
         }
-        Failure::PhaseField(_) | Failure::SingularMass | Failure::Unsettled(_) => (place, None),
+        Failure::PhaseField(_) | Failure::SingularMass | Failure::NoStep | Failure::Unsettled(_) => (place, None),
     };
     let scene = key.map(|key| Box::new(SceneError { key, message: what.clone(), remedy: cause.clone() }));
     Breakdown { step: 0, time: 0.0, place, point: None, what, cause, scene }
@@ -268,11 +283,12 @@ fn what_and_cause(failure: Failure, tolerance: f64) -> (String, String) {
         ),
         Failure::TooFast(TooFast { spans, .. }) => (
             format!(
-                "bodies that are about to meet move past each other by {spans:.3} spans in a step, and contact follows \
+                "bodies that are about to meet approach each other by {spans:.3} spans in a step, and contact follows \
                  {MOST}"
             ),
             TOO_FAST,
         ),
+        Failure::NoStep => ("the critical time step is not a number".to_string(), EXTREME),
         Failure::SingularMass => ("the consistent mass matrix is singular to round-off".to_string(), SINGULAR_MASS),
         Failure::NoPoints(_) => ("the body holds no material point".to_string(), ADD_POINTS),
         Failure::LostTraction { lost: LostTraction::Bare([x, y]), .. } => (

@@ -9,12 +9,13 @@ use crate::kernels::{HeldPhaseStress, LeastStretch};
 use crate::lane::Lane;
 use crate::scene::Kinematics;
 use crate::spans::lengths_of_chords;
+use crate::split::EnergySplit;
 use crate::sweep::{Fields, StripForces, sweep};
 
 /// Displacement gradients of the probes: small against strains that matter, large against round-off.
 const PROBE: f64 = 1e-6;
 /// Stiffening, over that at which the critical step was last taken, at which it is taken again.
-const NOTICEABLE: f64 = 1.1;
+const NOTICEABLE: f64 = 1.5;
 
 impl TotalFrame {
     /// Critical time step (s) of the body as it is now, if finite strains may have made it shorter than `dt` (s), and stiffer than
@@ -36,14 +37,18 @@ impl TotalFrame {
     /// By how much the squared frequency of a wave has grown at most, 1 or more; infinite or not a number for numbers that are.
     ///
     /// Along a principal direction of stretch s, Hencky's law has `dP/ds = E (1 − ln s)/s²`; the other direction adds as much
-    /// of the stress at most.
+    /// of the stress at most. Broken points that do not resist compression are left out: they may be crushed to nothing.
     fn stiffening(&self) -> f64 {
         let lattice = &self.lattice;
-        let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| LeastStretch { squared: Lane::splat(1.0) }).collect();
+        let degraded = self.fracture.as_ref().filter(|fracture| fracture.model.split == EnergySplit::Whole);
+        let phase = degraded.map_or(&[][..], |fracture| &fracture.phase);
+        let mut phases = phase.chunks(lattice.strip_batches());
+        let mut kernel = |_| LeastStretch { phase: phases.next().unwrap_or_default(), squared: Lane::splat(1.0) };
+        let mut kernels: Vec<_> = (0..lattice.strips()).map(&mut kernel).collect();
         let fields = Fields { displacement: [&self.displacement[0], &self.displacement[1]], phase: &[] };
         sweep(lattice, fields, &mut kernels, None);
         let all = kernels.iter().flat_map(|kernel| kernel.squared.0);
-        let squared = all.fold(1.0, |least, x| if x < least || x.is_nan() { x } else { least });
+        let squared = all.fold(1.0, smaller);
         (1.0 - squared.ln()) / squared
     }
 

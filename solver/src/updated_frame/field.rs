@@ -298,7 +298,7 @@ impl DiscreteField {
     /// Critical time step of the undamaged body at the present positions, s; infinite if nothing can move.
     pub fn critical_step(&self) -> f64 {
         let frequency = highest_frequency(&mut Stiffness::new(self));
-        if frequency > 0.0 { self.departure.stable_fraction() / frequency } else { f64::INFINITY }
+        self.departure.stable_fraction() / frequency
     }
 
     /// Length of the shortest span, m.

@@ -37,8 +37,9 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     match scene.contact {
         Some(_) if scene.bodies.len() == 1 => findings.warn("contact", "there is only one body; remove the table"),
         Some(_) if ground.is_sound => {
-            overlaps(scene, ground, findings);
-            speeds(scene, findings);
+            if overlaps(scene, ground, findings) {
+                speeds(scene, findings);
+            }
         }
         None if scene.bodies.len() > 1 => findings.warn(
             "contact",
@@ -74,11 +75,12 @@ fn rigid(key: &str, body: &Body, scene: &Scene, findings: &mut Findings) {
     }
 }
 
-/// Bodies that overlap at t = 0: contact would have to push them apart, and that energy comes from nowhere.
-fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
+/// Bodies that overlap at t = 0: contact would have to push them apart, and that energy comes from nowhere. False if there are
+/// no boundaries to look at.
+fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) -> bool {
     let errors = findings.errors.len();
     if scene.bodies.iter().any(|body| defect(&body.shape).is_some() || body.particles_per_cell.contains(&0)) {
-        return; // said elsewhere
+        return false; // said elsewhere
     }
     let mut work = 0.0;
     for (i, body) in scene.bodies.iter().enumerate() {
@@ -87,7 +89,8 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
         if work.is_nan() || work > MOST_WORK {
             let message = format!("a boundary of about {segments:.1e} segments, as long as its points stand apart");
             let remedy = "make the body no larger than it can be met, its outline simpler, or the cells larger";
-            return findings.error(format!("body.{i}.shape"), message, remedy);
+            findings.error(format!("body.{i}.shape"), message, remedy);
+            return false;
         }
     }
     let surfaces: Vec<Surface> = scene.bodies.iter().map(|body| Surface::new(&scene.mesh, body)).collect();
@@ -103,16 +106,17 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
             let least = TOLERANCE * spans[i];
             let [a_in_b, b_in_a] = [(i, j, &b.shape), (j, i, &a.shape)]
                 .map(|(one, other, inside)| depth(&surfaces[one], &surfaces[other], inside, 2.0 * least));
-            let deepest = a_in_b.max(b_in_a);
+            let deepest = larger(a_in_b, b_in_a);
             if deepest > least {
                 let message = format!("body {:?} overlaps body {:?} by {deepest:.3e} m at t = 0", b.name, a.name);
                 findings.error(format!("body.{j}.shape"), message, "move the bodies apart until they touch at most");
             }
             if findings.errors.len() >= errors + MOST_OVERLAPS {
-                return; // enough to begin with
+                return true; // enough to begin with
             }
         }
     }
+    true
 }
 
 /// How far what lies `beneath` (m) the boundary of one body reaches into the body inside another, m: the boundaries of bodies that
@@ -120,7 +124,7 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
 fn depth(one: &Surface, other: &Surface, inside: &Shape, beneath: f64) -> f64 {
     let [low, high] = other.bounding_box();
     let below = |segment: u32| {
-        let Center { position, normal } = one.center(segment);
+        let Center { position, normal, .. } = one.center(segment);
         [0, 1].map(|d| position[d] - beneath * normal[d])
     };
     let below = one.segments_in([low, high]).into_iter().map(below);

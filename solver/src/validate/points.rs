@@ -115,7 +115,8 @@ impl<'a> Points<'a> {
         let in_row = |j: usize| {
             // the ends of the part of the segment that is no further up or down
             let at = |y: f64| if along[1] == 0.0 { 0.0 } else { ((y - from[1]) / along[1]).clamp(0.0, 1.0) };
-            let ends = if along[1] == 0.0 { [0.0, 1.0] } else { [ys[j].position - reach, ys[j].position + reach].map(at) };
+            let ends =
+                if along[1] == 0.0 { [0.0, 1.0] } else { [ys[j].position - reach, ys[j].position + reach].map(at) };
             let [a, b] = ends.map(|t| from[0] + t * along[0]);
             (within(xs, a.min(b), a.max(b)), j)
         };

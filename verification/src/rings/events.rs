@@ -2,6 +2,7 @@
 
 use fisura::Simulation;
 use fisura::energy::Sample;
+use fisura::extremes::smaller;
 use fisura::fault;
 use fisura::fracture::BROKEN;
 use fisura::scene::{Scene, Shape};
@@ -139,7 +140,7 @@ impl Watch {
             let [x, y] = [0, 1].map(|d| point.reference()[d] - self.center[d]);
             let at = (side * x - inner) / self.interval;
             if y.abs() <= self.strip && at >= 0.0 && (at as usize) < count {
-                phases[at as usize] = phases[at as usize].min(cracked.phase);
+                phases[at as usize] = smaller(phases[at as usize], cracked.phase);
             }
         }
         Wall { phases }
