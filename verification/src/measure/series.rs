@@ -114,7 +114,7 @@ pub(super) fn largest_decrease(check: &Check, run: &Run) -> Result<f64, String> 
     let values = run.column(column(check)?)?;
     let (mut highest, mut fall) = (f64::NEG_INFINITY, 0.0_f64);
     for value in values {
-        highest = fault!("fall-from-the-last-row", highest.max(value) => value);
+        highest = fault!("fall-from-the-last-row", larger(highest, value) => value);
         fall = larger(fall, highest - value);
     }
     Ok(fall / highest.abs())
