@@ -36,11 +36,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     }
     match scene.contact {
         Some(_) if scene.bodies.len() == 1 => findings.warn("contact", "there is only one body; remove the table"),
-        Some(_) if ground.is_sound => {
-            if overlaps(scene, ground, findings) {
-                speeds(scene, findings);
-            }
-        }
+        Some(_) if ground.is_sound && overlaps(scene, ground, findings) => speeds(scene, findings),
         None if scene.bodies.len() > 1 => findings.warn(
             "contact",
             format!(
