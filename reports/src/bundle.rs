@@ -14,6 +14,7 @@ use fisura_verification::suite::part::fingerprint;
 use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
+use crate::field::Raster;
 use crate::figure::render_figure;
 use crate::read_json;
 use crate::series::{self, SeriesSet, names};
@@ -114,6 +115,7 @@ fn own_series(figure: &Figure, name: &str, set: &SeriesSet) -> Result<(Figure, V
     let mut tables = Vec::new();
     match &mut own.body {
         FigureBody::Field { series, pixels, range, .. } => {
+            Raster::read(&figure.id, series, *pixels, set).map_err(fail)?; // the pixels are those of the series
             let table = set.table(&figure.id, series).map_err(fail)?;
             let step = (range[1] - range[0]) / STEPS;
             *series = format!("{name}.csv");

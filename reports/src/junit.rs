@@ -6,7 +6,7 @@ use fisura_verification::record::{Record, ResultSet, Status};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use crate::number::plain;
-use crate::view::{bounds, by_suite, kind, own_times, reason, value, with_unit};
+use crate::view::{accepted, by_suite, expected, kind, own_times, reason, value, with_unit};
 
 /// The report as XML. A value outside its bounds is a failure, a run that broke down an error; a record without
 /// bounds is skipped, with its value in the message, since nothing was judged. The time of a run, or of a study, stands
@@ -60,11 +60,15 @@ fn case(record: &Record, time: Duration) -> TestCase {
 fn message(record: &Record) -> String {
     let mut text = format!("{}: {}", record.quantity, value(record, plain));
     if record.status != Status::Info {
-        text.push_str(&format!(", accepted {}", bounds(&record.accept, plain)));
+        text.push_str(&format!(", accepted {}", accepted(record, plain)));
     }
     let why = reason(record);
     if !why.is_empty() {
         text.push_str(&format!(" ({why})"));
+    }
+    if let Some((range, expectation)) = expected(record, plain).zip(record.expectation.as_ref()) {
+        let met = if expectation.met { "met" } else { "not met" };
+        text.push_str(&format!("; expected {range}: {met}"));
     }
     if let Some(reference) = &record.reference {
         let number = reference.value.map(|v| with_unit(&plain(v, crate::number::DIGITS), &record.unit) + ", ");

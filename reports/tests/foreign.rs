@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use fisura_reports::compare::{compare, render_markdown};
 use fisura_reports::text::render_text;
-use fisura_reports::{Rendered, ReportError, read_results};
+use fisura_reports::{Rendered, ReportError, bundle, read_results};
 use fisura_verification::foreign::steers;
 use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{Curve, Figure, FigureBody, ResultSet};
@@ -195,4 +195,34 @@ fn ranges_without_digits_are_drawn_or_refused() {
         }
     });
     assert!(render(folder.path()).unwrap_err().to_string().contains("pixels are declared"));
+}
+
+#[test]
+fn a_picture_whose_pixels_are_not_those_of_its_series_is_an_error_and_no_panic() {
+    type Edit = fn(&mut [usize; 2]);
+    let fields = |results: &ResultSet| {
+        let is_field = |figure: &&Figure| matches!(figure.body, FigureBody::Field { .. });
+        results.figures.iter().find(is_field).expect("a picture").clone()
+    };
+    let write = |folder: &Path, figure: &Figure| {
+        let out = tempfile::tempdir().unwrap();
+        let out = OutputFolder::open(&out.path().join("out"), "figures").unwrap();
+        let environment = fisura_verification::record::Environment::default();
+        bundle::write((folder, figure), (&out, "drawn"), &environment, std::collections::BTreeMap::new())
+    };
+    let folder = folder(|_| {});
+    let figure = fields(&fixture::results());
+    assert!(write(folder.path(), &figure).is_ok());
+    let edits: [Edit; 3] = [|pixels| pixels[0] = 0, |pixels| pixels[1] = 0, |pixels| *pixels = [usize::MAX; 2]];
+    for edit in edits {
+        let mut figure = figure.clone();
+        if let FigureBody::Field { pixels, .. } = &mut figure.body {
+            edit(pixels);
+        }
+        assert!(write(folder.path(), &figure).unwrap_err().to_string().contains("pixels are declared"));
+    }
+    let FigureBody::Field { series, .. } = &figure.body else { panic!("a picture") };
+    let path = folder.path().join(series);
+    fs::write(&path, read(folder.path(), series).replacen("x_m", "z_m", 1)).unwrap();
+    assert!(write(folder.path(), &figure).unwrap_err().to_string().contains("x_m"));
 }

@@ -6,32 +6,41 @@ use fisura::stencil::Stencil;
 use fisura::total_frame::TotalFrame;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
+use crate::watch::{self, Stopped};
+
 /// The matrix of a linear map on `n` numbers.
-pub fn matrix(n: usize, mut map: impl FnMut(&[f64], &mut [f64])) -> DMatrix<f64> {
+fn matrix(n: usize, mut map: impl FnMut(&[f64], &mut [f64])) -> Result<DMatrix<f64>, Stopped> {
     let mut matrix = DMatrix::zeros(n, n);
     let (mut unit, mut image) = (vec![0.0; n], vec![0.0; n]);
     for column in 0..n {
+        watch::check()?;
         unit[column] = 1.0;
         map(&unit, &mut image);
         matrix.set_column(column, &DVector::from_column_slice(&image));
         unit[column] = 0.0;
     }
-    matrix
+    Ok(matrix)
 }
 
 /// Squares of the angular frequencies of a body with the mass it has, increasing, and their number; `None` if its mass is not
 /// positive definite.
-pub fn eigenvalues(operator: &mut impl StiffnessOperator) -> Option<Vec<f64>> {
+///
+/// # Errors
+/// If the case is to stop.
+pub fn eigenvalues(operator: &mut impl StiffnessOperator) -> Result<Option<Vec<f64>>, Stopped> {
     let n = operator.size();
-    let stiffness = matrix(n, |x, out| operator.stiffness(x, out));
-    let inverse_mass = matrix(n, |x, out| operator.divide_by_mass(x, out));
-    let factor = inverse_mass.cholesky()?.l();
-    Some(sorted(factor.transpose() * stiffness * factor))
+    let stiffness = matrix(n, |x, out| operator.stiffness(x, out))?;
+    let inverse_mass = matrix(n, |x, out| operator.divide_by_mass(x, out))?;
+    let factor = inverse_mass.cholesky().map(|factor| factor.l());
+    Ok(factor.map(|factor| sorted(factor.transpose() * stiffness * factor)))
 }
 
 /// The same with the consistent mass of `density` (kg/m³), also where a body cuts spans: masses are scaled to a unit diagonal
 /// before they are factored, so that next to nothing in a span stays well conditioned.
-pub fn eigenvalues_of_consistent_mass(frame: &TotalFrame, density: f64) -> Option<Vec<f64>> {
+///
+/// # Errors
+/// If the case is to stop.
+pub fn eigenvalues_of_consistent_mass(frame: &TotalFrame, density: f64) -> Result<Option<Vec<f64>>, Stopped> {
     let mut operator = frame.stiffness_operator();
     let free = operator.degrees_of_freedom().to_vec();
     let n = free.len();
@@ -46,12 +55,16 @@ pub fn eigenvalues_of_consistent_mass(frame: &TotalFrame, density: f64) -> Optio
             let own = free.iter().zip(&mut *out).filter(|((_, c), _)| *c == component);
             own.for_each(|(&(at, _), out)| *out = image[at]);
         }
-    });
-    let stiffness = matrix(n, |x, out| operator.stiffness(x, out));
+    })?;
+    let stiffness = matrix(n, |x, out| operator.stiffness(x, out))?;
     let scale = DMatrix::from_diagonal(&mass.diagonal().map(|m| 1.0 / m.sqrt()));
-    let lower = (&scale * mass * &scale).cholesky()?.l();
-    let half = lower.solve_lower_triangular(&(&scale * stiffness * &scale))?;
-    Some(sorted(lower.solve_lower_triangular(&half.transpose())?))
+    let (mass, stiffness) = (&scale * mass * &scale, &scale * stiffness * &scale);
+    let reduced = mass.cholesky().and_then(|factor| {
+        let lower = factor.l();
+        let half = lower.solve_lower_triangular(&stiffness)?;
+        lower.solve_lower_triangular(&half.transpose())
+    });
+    Ok(reduced.map(sorted))
 }
 
 fn sorted(matrix: DMatrix<f64>) -> Vec<f64> {

@@ -18,6 +18,8 @@ pub const TEXT_LENGTH: usize = 4000;
 const NAME_LENGTH: usize = 1000;
 /// Deepest folder below `series/`.
 const DEPTH: usize = 8;
+/// Most files and folders below `series/`.
+const MOST_ENTRIES: usize = 100_000;
 
 /// Whether a name is a path that stays below its folder on every system: names joined by single slashes, without drives,
 /// schemes, parents or characters that cannot be seen.
@@ -59,27 +61,31 @@ pub fn read(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, Error> {
 /// Names, relative to `folder`, of all CSV files in its `series/`, sorted.
 ///
 /// # Errors
-/// A link or a file that is none in their place, a name that is not plain, or a folder that cannot be read.
+/// A link or a file that is none in their place, a name that is not plain, too many of them, or a folder that cannot be read.
 pub fn series_files(folder: &Path) -> Result<Vec<String>, Error> {
-    let mut names = Vec::new();
-    let mut folders = vec!["series".to_string()];
+    let refused = |name: &str, why: &str| Err(Error::new(ErrorKind::InvalidInput, format!("{}: {why}", line(name))));
+    let (mut names, mut seen) = (Vec::new(), 0);
+    let mut folders = match fs::symlink_metadata(folder.join("series")) {
+        Ok(metadata) if metadata.is_dir() => vec!["series".to_string()],
+        Ok(_) => return refused("series", "it is a link, or no folder"),
+        Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
+        Err(error) => return Err(error),
+    };
     while let Some(below) = folders.pop() {
-        let entries = match fs::read_dir(folder.join(&below)) {
-            Ok(entries) => entries,
-            Err(error) if error.kind() == ErrorKind::NotFound && below == "series" => break,
-            Err(error) => return Err(error),
-        };
-        for entry in entries {
+        for entry in fs::read_dir(folder.join(&below))? {
             let entry = entry?;
             let name = format!("{below}/{}", entry.file_name().to_string_lossy());
             let kind = entry.file_type()?;
-            let refused = |why: &str| Err(Error::new(ErrorKind::InvalidInput, format!("{}: {why}", line(&name))));
+            seen += 1;
+            if seen > MOST_ENTRIES {
+                return refused("series", &format!("it holds more than {MOST_ENTRIES} files"));
+            }
             if kind.is_dir() && below.matches('/').count() < DEPTH {
                 folders.push(name);
             } else if kind.is_file() && (!name.ends_with(".csv") || is_plain(&name)) {
                 names.extend(name.ends_with(".csv").then_some(name));
             } else {
-                return refused("only folders and regular files with plain names are taken over");
+                return refused(&name, "only folders and regular files with plain names are taken over");
             }
         }
     }
@@ -177,6 +183,8 @@ mod tests {
         fs::remove_file(root.join("series/zero.csv")).unwrap();
         assert_eq!(series_files(&root).unwrap(), ["series/a.csv"]);
         assert_eq!(series_files(folder.path()).unwrap(), [""; 0]);
+        symlink(root.join("series"), folder.path().join("series")).unwrap();
+        assert!(words(series_files(folder.path()).unwrap_err()).contains("series: it is a link"));
     }
 
     #[test]

@@ -72,9 +72,7 @@ impl OutputFolder {
         if make {
             fs::create_dir_all(path).map_err(|e| OutputError::folder(path, e))?;
         }
-        if !path.join(lock::LOCK).exists() {
-            manifest::read(path)?; // a folder of the user stays as it is, without a lock
-        }
+        manifest::read(path)?; // a folder of the user stays as it is, also a file that is called as the lock
         let lock = lock::take(path)?;
         let manifest = manifest::read(path)?;
         let folder = Self { path: path.to_path_buf(), manifest: Mutex::new(manifest), lock };
@@ -97,7 +95,8 @@ impl OutputFolder {
         self.manifest().files.keys().cloned().collect()
     }
 
-    /// Removes the files of earlier runs but those to `keep`, and marks the folder as unfinished until [`Self::finish`].
+    /// Marks the folder as unfinished until [`Self::finish`], and removes the files of earlier runs but those to `keep`, first
+    /// those that tell a verdict.
     ///
     /// # Errors
     /// A file that was changed since it was written, before anything is removed; one that cannot be removed.
@@ -110,7 +109,8 @@ impl OutputFolder {
             return Err(OutputError::changed(&self.path, &changed));
         }
         manifest.finished = false;
-        old.iter().try_for_each(|name| self.remove_from(&mut manifest, name))?;
+        manifest.store(&self.path)?;
+        in_order_of_removal(old).iter().try_for_each(|name| self.remove_from(&mut manifest, name))?;
         manifest.store(&self.path)
     }
 
@@ -127,16 +127,16 @@ impl OutputFolder {
         }
         let failed = |error: &dyn std::fmt::Display| OutputError::unwritable(&path, error);
         let folder = path.parent().unwrap_or(&self.path);
-        let mut file = temporary::create(folder).map_err(|e| failed(&e))?;
         let hash = manifest::hash(content);
-        let part = name.rsplit_once('/').map_or(String::new(), |(above, _)| format!("{above}/"))
-            + &file.path().file_name().unwrap_or_default().to_string_lossy();
-        // listed before it is there: a process that is killed leaves no file that the next one would not know
-        manifest.append(&self.path, &[(&part, &hash), (name, &hash)])?;
+        let above = name.rsplit_once('/').map_or(String::new(), |(above, _)| format!("{above}/"));
+        let file = temporary::create(folder, |part| {
+            manifest.append(&self.path, &[(&format!("{above}{part}"), &hash), (name, &hash)])
+        });
+        let mut file = file.map_err(|e| failed(&e))?;
+        manifest.files.entry(name.to_string()).or_default().hashes.push(hash.clone());
         file.write_all(content).map_err(|e| failed(&e))?;
         file.as_file().sync_all().map_err(|e| failed(&e))?; // or a power failure could leave the name of an empty file
         let file = file.persist(&path).map_err(|e| failed(&e.error))?;
-        manifest.files.remove(&part);
         manifest.files.insert(name.to_string(), Entry { hashes: vec![hash], seen: file.metadata().ok().map(seen) });
         Ok(())
     }
@@ -182,7 +182,8 @@ impl OutputFolder {
         }
         let hash = manifest::hash(&fs::read(&path).map_err(unreadable)?);
         let mut manifest = self.manifest();
-        manifest.append(&self.path, &[(name, &hash)])?;
+        let listed = manifest.append(&self.path, &[(name, &hash)]);
+        listed.map_err(|e| OutputError::unwritable(&self.path.join(MANIFEST), e))?;
         manifest.files.insert(name.to_string(), Entry { hashes: vec![hash], seen: None });
         Ok(())
     }
@@ -212,9 +213,14 @@ impl OutputFolder {
         manifest.store(&self.path)
     }
 
-    /// Keeps all other threads from writing, and so from being cut short when the process ends.
+    /// Keeps all other threads from writing, and so from being cut short when the process ends; the manifest then lists what is
+    /// there and nothing that was on its way.
     pub fn hold(&self) -> Held<'_> {
-        Held { _manifest: self.manifest() }
+        let mut manifest = self.manifest();
+        if manifest.has_journal() {
+            let _ = manifest.store(&self.path); // only shorter than what is there
+        }
+        Held { _manifest: manifest }
     }
 
     fn manifest(&self) -> MutexGuard<'_, Manifest> {
@@ -298,6 +304,15 @@ impl Drop for OutputFolder {
             let _ = lock.set_len(0); // nobody holds it any more
         }
     }
+}
+
+/// Files that tell what a command found, or begin so: none may outlive the others.
+const VERDICTS: [&str; 6] = ["results.json", "report.html", "summary.md", "junit.xml", "metrics.json", "bench."];
+
+/// Names with those that tell a verdict first.
+fn in_order_of_removal(mut names: Vec<String>) -> Vec<String> {
+    names.sort_by_key(|name| !VERDICTS.iter().any(|verdict| name.starts_with(verdict)));
+    names
 }
 
 /// What is there under a name.

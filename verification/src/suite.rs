@@ -73,11 +73,11 @@ pub enum VerifyError {
     #[error(transparent)]
     File(#[from] OutputError),
     /// An interrupted run could be gone on with, and this one would remove what it finished.
-    #[error("{} holds {cases} finished cases of an interrupted run in partial/", folder.display())]
+    #[error("{} holds {cases} finished cases of an interrupted run in partial/ that this one would not go on with", folder.display())]
     Interrupted {
         /// Results folder.
         folder: PathBuf,
-        /// Number of finished cases.
+        /// Number of finished cases that would be lost.
         cases: usize,
     },
     /// A file cannot be read.

@@ -6,8 +6,9 @@
 use std::cell::RefCell;
 use std::panic::PanicHookInfo;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Once, OnceLock};
+use std::sync::{Arc, Mutex, Once, OnceLock, PoisonError};
 
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use thiserror::Error;
 
 thread_local! {
@@ -26,6 +27,8 @@ pub struct Watch {
     fraction: AtomicU64,
     stop: OnceLock<Stopped>,
     panic: OnceLock<String>,
+    /// Whether nobody waits for the case any more.
+    left: Mutex<bool>,
 }
 
 impl Watch {
@@ -37,6 +40,21 @@ impl Watch {
     /// Asks the case to stop; the first reason counts.
     pub fn stop(&self, why: String) {
         self.stop.get_or_init(|| Stopped(why));
+    }
+
+    /// The case is left behind: what it finds from now on is not written.
+    pub fn leave(&self) {
+        *self.left.lock().unwrap_or_else(PoisonError::into_inner) = true;
+    }
+
+    /// A pool of threads that work under this watch.
+    ///
+    /// # Errors
+    /// If they cannot be started.
+    pub fn pool(self: &Arc<Self>, threads: usize) -> Result<ThreadPool, ThreadPoolBuildError> {
+        let entered = Arc::clone(self);
+        let builder = ThreadPoolBuilder::new().num_threads(threads);
+        builder.start_handler(move |_| Arc::clone(&entered).enter()).build()
     }
 
     /// The finished fraction.
@@ -65,6 +83,24 @@ fn with<T>(ask: impl FnOnce(&Watch) -> T) -> Option<T> {
 /// If it is to stop.
 pub fn check() -> Result<(), Stopped> {
     with(|watch| watch.stop.get().cloned()).flatten().map_or(Ok(()), Err)
+}
+
+/// A pool of threads of its own for a part of the case, under the same watch.
+///
+/// # Errors
+/// If they cannot be started.
+pub fn pool(threads: usize) -> Result<ThreadPool, ThreadPoolBuildError> {
+    match WATCH.with_borrow(Option::clone) {
+        Some(watch) => watch.pool(threads),
+        None => ThreadPoolBuilder::new().num_threads(threads).build(),
+    }
+}
+
+/// Writes what the case found, unless it was left behind: then what it is said to have found is written already.
+pub fn unless_left<E>(write: impl FnOnce() -> Result<(), E>) -> Result<(), E> {
+    let Some(watch) = WATCH.with_borrow(Option::clone) else { return write() };
+    let left = watch.left.lock().unwrap_or_else(PoisonError::into_inner); // and is not left before it is written
+    if *left { Ok(()) } else { write() }
 }
 
 /// Says how far the case has come, 0 to 1.

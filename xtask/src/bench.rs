@@ -67,17 +67,25 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
         Failure::new(Exit::Interrupted, message).show();
         folder.hold()
     };
-    interrupt::guard(|| session.run(&|family| console::note(common, family)), stop)??;
+    let run = interrupt::guard(|| session.run(&|family| console::note(common, family)), stop)?;
     let set = session.set();
-    let rendered = write(&session, &folder);
-    folder.finish()?;
+    let mut written = write(&session, &folder);
+    if run.is_ok() {
+        written = written.and(folder.finish().map_err(Failure::from)); // otherwise it stays marked as unfinished
+    }
     match common.format {
         Format::Json => console::json(&set),
         Format::Text => console::result(&text(&set)),
     }
     console::note(common, &format!("report: {}", folder.path().join("bench.html").display()));
-    rendered?;
-    Ok(if set.records.iter().all(|record| record.verified) { Exit::Done } else { Exit::CheckFailed })
+    if let Err(error) = run {
+        if let Err(failure) = written {
+            failure.show();
+        }
+        return Err(error.into());
+    }
+    let holds = set.records.iter().all(|record| record.verified);
+    Failure::beside(if holds { Exit::Done } else { Exit::CheckFailed }, written)
 }
 
 /// Writes what is measured so far, and its report.

@@ -6,16 +6,17 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use fisura_verification::record::Environment;
 
+use crate::built;
+
 /// The present environment; what cannot be found out is empty.
 pub fn environment(workspace: &Path) -> Environment {
     let git = |args: &[&str]| output(Command::new("git").args(args).current_dir(folder(workspace)));
-    let commit = git(&["rev-parse", "HEAD"]);
     let changes = git(&["status", "--porcelain"]);
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let since = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
     Environment {
-        dirty: commit.is_some() && changes.is_some_and(|c| !c.is_empty()),
-        commit: commit.unwrap_or_default(),
+        dirty: changes.is_some_and(|c| !c.is_empty()),
+        commit: built::COMMIT.to_string(),
         rustc: output(Command::new(rustc).arg("-V")).unwrap_or_default(),
         cpu: cpu().unwrap_or_default(),
         threads: rayon::current_num_threads(),
@@ -82,10 +83,10 @@ mod tests {
     }
 
     #[test]
-    fn outside_a_repository_commit_and_dirty_are_empty() {
+    fn the_commit_is_that_of_the_program_wherever_it_runs() {
         let folder = tempfile::tempdir().unwrap();
         let environment = environment(folder.path());
-        assert_eq!((environment.commit.as_str(), environment.dirty), ("", false));
+        assert_eq!((environment.commit.as_str(), environment.dirty), (built::COMMIT, false));
         assert!(environment.threads >= 1);
     }
 }

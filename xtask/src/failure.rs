@@ -62,6 +62,22 @@ impl Failure {
         }
     }
 
+    /// The exit status of a command with a verdict of its own: what the checks say is more than that something could not be
+    /// written or drawn, which is then shown.
+    ///
+    /// # Errors
+    /// The failure, if the checks hold.
+    pub fn beside(verdict: Exit, rest: Result<(), Self>) -> Result<Exit, Self> {
+        match (verdict, rest) {
+            (verdict, Ok(())) => Ok(verdict),
+            (Exit::Done, Err(failure)) => Err(failure),
+            (verdict, Err(failure)) => {
+                failure.show();
+                Ok(verdict)
+            }
+        }
+    }
+
     fn render(&self, graphical: bool) -> String {
         match self {
             Self::SceneFile(error) => error.diagnostics.iter().map(|d| render(d, graphical)).collect(),
@@ -194,6 +210,16 @@ mod tests {
                 assert!(!pictured.contains(sequence), "{sequence:?} in {pictured:?}");
             }
         }
+    }
+
+    #[test]
+    fn a_verdict_is_more_than_a_file_that_cannot_be_written() {
+        let full = || Err(Failure::new(Exit::BadInput, "the disk is full"));
+        for verdict in [Exit::CheckFailed, Exit::BrokeDown] {
+            assert_eq!(Failure::beside(verdict, full()).unwrap(), verdict);
+        }
+        assert!(Failure::beside(Exit::Done, full()).is_err());
+        assert_eq!(Failure::beside(Exit::Done, Ok(())).unwrap(), Exit::Done);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `figures`: the figures of the paper, run or drawn from stored results.
 
 use std::collections::BTreeMap;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -42,26 +43,47 @@ pub struct Args {
 pub fn figures(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let wanted = Wanted::of(args)?;
     let folder = folders::output(common, "figures")?;
-    let (source, results, exit) = match &args.from {
-        Some(from) => (from.clone(), read_results(from).map_err(|error| unreadable(error, from))?, Exit::Done),
-        None => {
-            folder.begin(|_| false)?; // the list of what belongs here comes before results/
-            let source = folder.path().join("results");
-            let results = run(&wanted.paper, &source, common)?;
-            let exit = verdict(&results.records);
-            if exit != Exit::Done {
-                console::note(common, &format!("warning: not every check holds: see {}", source.display()));
-            }
-            (source, results, exit)
+    let Some(from) = &args.from else {
+        let source = folder.path().join("results");
+        no_link(&source)?;
+        folder.begin(|_| false)?; // the list of what belongs here comes before results/
+        let (results, rendered) = run(&wanted.paper, &source, common)?;
+        let exit = verdict(&results.records);
+        if exit != Exit::Done {
+            console::note(common, &format!("warning: not every check holds: see {}", source.display()));
         }
+        let drawn = draw(args, &wanted, (&source, &results), &folder, common);
+        return Failure::beside(exit, rendered.and(drawn));
     };
-    let mut found = wanted.find(&results, &source, args.from.is_none())?;
+    let results = read_results(from).map_err(|error| unreadable(error, from))?;
+    draw(args, &wanted, (from, &results), &folder, common)?;
+    Ok(Exit::Done)
+}
+
+/// No link leads out of the output folder, also not to results.
+fn no_link(folder: &Path) -> Result<(), Failure> {
+    if fs::symlink_metadata(folder).is_ok_and(|metadata| !metadata.is_dir()) {
+        let message = format!("{} is a link, or no folder: nothing is written through it", folder.display());
+        return Err(Failure::new(Exit::BadInput, message).help("remove it, or give another folder with --out"));
+    }
+    Ok(())
+}
+
+/// Writes what is wanted from results and names the files.
+fn draw(
+    args: &Args,
+    wanted: &Wanted,
+    (source, results): (&Path, &ResultSet),
+    folder: &OutputFolder,
+    common: &Common,
+) -> Result<(), Failure> {
+    let mut found = wanted.find(results, source, args.from.is_none())?;
     found.sort_by(|a, b| a.0.cmp(&b.0));
     folder.begin(|_| false)?;
     let mut files = Vec::new();
     for (name, figure) in &found {
-        let inputs = inputs(&results, figure);
-        let written = bundle::write((&source, figure), (&folder, name), &results.environment, inputs)?;
+        let inputs = inputs(results, figure);
+        let written = bundle::write((source, figure), (folder, name), &results.environment, inputs)?;
         files.extend(written.into_iter().map(|file| folder.path().join(file).display().to_string()));
     }
     folder.finish()?;
@@ -69,7 +91,7 @@ pub fn figures(args: &Args, common: &Common) -> Result<Exit, Failure> {
         Format::Json => console::json(&json!({ "paper": args.paper, "files": files })),
         Format::Text => console::result(&(files.join("\n") + "\n")),
     }
-    Ok(exit)
+    Ok(())
 }
 
 /// What is asked for.
@@ -100,8 +122,8 @@ impl Wanted {
     /// Name and figure of all that is wanted.
     fn find(&self, set: &ResultSet, source: &Path, fresh: bool) -> Result<Vec<(String, Figure)>, Failure> {
         let missing = |what: String, help: String| {
-            let exit = if fresh { verdict(&set.records).max(Exit::BadInput) } else { Exit::BadInput };
-            Failure::new(exit, format!("the results in {} hold no figure {what}", source.display())).help(help)
+            let message = format!("the results in {} hold no figure {what}", source.display());
+            Failure::new(Exit::BadInput, message).help(help)
         };
         let mut found = Vec::new();
         for figure in &self.paper {
@@ -127,8 +149,9 @@ impl Wanted {
     }
 }
 
-/// Runs the cases that the figures need, which may take long: that is said first.
-fn run(wanted: &[PaperFigure], out: &Path, common: &Common) -> Result<ResultSet, Failure> {
+/// Runs the cases that the figures need, which may take long: that is said first. Beside the results: whether their report could
+/// be written.
+fn run(wanted: &[PaperFigure], out: &Path, common: &Common) -> Result<(ResultSet, Result<(), Failure>), Failure> {
     let needed = |id: &str| wanted.iter().any(|figure| figure.cases().contains(&id));
     let (cases, malformed) = read_cases(&cases_folder()?, &[]);
     if let Some(file) = malformed.into_iter().find(|file| needed(&file.id)) {
@@ -149,9 +172,8 @@ fn run(wanted: &[PaperFigure], out: &Path, common: &Common) -> Result<ResultSet,
         case_timeout: None,
     };
     let results = carry_out(&cases, None, &options, common)?;
-    fisura_reports::render(out.path(), &out)?;
-    out.finish()?;
-    Ok(results)
+    let rendered = fisura_reports::render(out.path(), &out).map(drop).map_err(Failure::from);
+    Ok((results, rendered.and(out.finish().map_err(Failure::from))))
 }
 
 /// Fingerprints of what the cases behind a figure simulated.

@@ -41,9 +41,10 @@ pub fn watch() -> Result<&'static AtomicBool, Failure> {
 /// # Errors
 /// As [`watch`].
 pub fn guard<'a, T>(work: impl FnOnce() -> T, stop: impl FnOnce() -> Held<'a> + Send) -> Result<T, Failure> {
-    watch()?;
     let (sender, receiver) = channel();
-    *listener() = Some(sender);
+    *listener() = Some(sender); // before the handler: an interrupt in between would be heard by nobody
+    let deaf = Deaf; // also if the work panics: the thread waits for an interrupt or this
+    watch()?;
     Ok(thread::scope(|scope| {
         scope.spawn(move || {
             if receiver.recv().is_ok() {
@@ -51,7 +52,7 @@ pub fn guard<'a, T>(work: impl FnOnce() -> T, stop: impl FnOnce() -> Held<'a> + 
                 process::exit(Exit::Interrupted as i32);
             }
         });
-        let _deaf = Deaf; // also if the work panics: the thread waits for an interrupt or this
+        let _deaf = deaf;
         work()
     }))
 }

@@ -42,7 +42,8 @@ impl From<MergeError> for Failure {
             MergeError::Doubled { .. } => "give every slice once",
             MergeError::Missing { .. } => "run the missing slices, and give all folders at once",
             MergeError::NoOutcome(_) | MergeError::Changed { .. } => "run its slice again",
-            MergeError::Unplanned(_) => "run all slices again, of one plan",
+            MergeError::Itself(_) => "give another folder with --out",
+            MergeError::Unplanned(_) | MergeError::Contradicts { .. } => "run all slices again, of one plan",
             MergeError::OtherProgram { .. } => {
                 "check out the commit of the parts, with the same changes, and build it anew"
             }

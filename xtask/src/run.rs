@@ -125,6 +125,8 @@ struct Start {
     interval: Option<Duration>,
     place: Place,
     stored: Option<Stored>,
+    /// Whether there are, or will be, files for ParaView of this run.
+    frame_files: bool,
 }
 
 impl Start {
@@ -148,9 +150,10 @@ impl Start {
             keep_other(title, &place.name, folder, common)?;
         }
         folder.check(&place.name)?;
-        let goes_on = stored.is_some();
-        folder.begin(|name| checkpoint::is_checkpoint(name) || goes_on && vtk::is_file_of_run(name))?;
-        Ok(Self { interval: args.checkpoint.0, place, stored })
+        // those of another scene may be there, if this run wrote none until it was interrupted
+        let has_files = stored.as_ref().is_some_and(|stored| stored.frame_files);
+        folder.begin(|name| checkpoint::is_checkpoint(name) || has_files && vtk::is_file_of_run(name))?;
+        Ok(Self { interval: args.checkpoint.0, place, stored, frame_files: args.vtk || has_files })
     }
 }
 
@@ -182,12 +185,12 @@ fn simulate(
         }
         bar.set_position(progress.step as u64);
     };
-    let Start { interval, place, stored } = start;
+    let Start { interval, place, stored, frame_files } = start;
     let Some(interval) = interval else {
         return Ok(Outcome::Ended(Box::new(run_scene(scene, &mut advance, on_frame))));
     };
     let interrupted = interrupt::watch().map_err(|failure| failure.help("give --checkpoint none"))?;
-    let keep = Keep { out: folder, name: place.name, program: built::program(), interval, interrupted };
+    let keep = Keep { out: folder, name: place.name, program: built::program(), interval, frame_files, interrupted };
     run_scene_kept(scene, &keep, stored, &mut advance, on_frame).map_err(|error| match error {
         KeepError::Output(error) => error.into(),
         KeepError::Checkpoint(error) => Failure::new(Exit::BadInput, error.to_string()).help(error.remedy),

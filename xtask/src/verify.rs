@@ -144,22 +144,14 @@ fn interrupted(session: &Session, options: &Options) -> Failure {
 /// # Errors
 /// A report that cannot be written.
 pub fn conclude(results: &ResultSet, folder: &OutputFolder, common: &Common) -> Result<Exit, Failure> {
-    let rendered = fisura_reports::render(folder.path(), folder).map_err(Failure::from);
-    folder.finish()?;
+    let rendered = fisura_reports::render(folder.path(), folder).map(drop).map_err(Failure::from);
+    let finished = folder.finish().map_err(Failure::from);
     print(results, common);
     if std::env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {
         console::error_text(&render_annotations(results));
     }
     console::note(common, &format!("report: {}", folder.path().join("report.html").display()));
-    // what the checks say is more than that a figure cannot be drawn
-    match (verdict(&results.records), rendered) {
-        (Exit::Done, rendered) => rendered.map(|_| Exit::Done),
-        (verdict, Ok(_)) => Ok(verdict),
-        (verdict, Err(failure)) => {
-            failure.show();
-            Ok(verdict)
-        }
-    }
+    Failure::beside(verdict(&results.records), rendered.and(finished))
 }
 
 impl Args {

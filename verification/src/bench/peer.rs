@@ -78,8 +78,9 @@ fn theirs<'a>(block: &'a PeerBlock, program: Program, out: &'a OutputFolder) -> 
     let record = BenchRecord::new("peer/command", program.command.clone(), work, "particle-step")
         .with("steps", block.steps.to_vec());
     let run_in = move |folder: &str| {
-        let ended = program.run(&out.path().join(folder));
         let result = format!("{folder}/result.csv");
+        out.remove(&result)?; // the answer of the round before is none
+        let ended = program.run(&out.path().join(folder));
         if out.path().join(&result).exists() {
             out.adopt(&result)?;
         }

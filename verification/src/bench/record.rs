@@ -10,6 +10,9 @@ use crate::record::Environment;
 /// Name of the schema written and read.
 pub const SCHEMA: &str = "fisura.bench/1";
 
+/// Answer of a record of which nothing is known.
+const NOTHING: &str = "nothing was verified";
+
 /// Everything one invocation measured; all of it is exempt from byte-for-byte comparison.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BenchSet {
@@ -145,7 +148,7 @@ impl BenchRecord {
             work: Work { amount, unit: unit.to_string() },
             memory_bytes: 0,
             verified: false,
-            answer: "nothing was verified".into(),
+            answer: NOTHING.into(),
             samples: Vec::new(),
             wall_s: Spread::default(),
             cpu_s: Spread::default(),
@@ -159,9 +162,12 @@ impl BenchRecord {
         self
     }
 
-    /// Notes whether the answer held, and what it was.
+    /// Notes whether the answer held, and what it was. Of several answers the last is kept, unless one did not hold: then the
+    /// first of those.
     pub fn verify(&mut self, holds: bool, answer: impl Into<String>) {
-        (self.verified, self.answer) = (holds, answer.into());
+        if self.verified || self.answer == NOTHING {
+            (self.verified, self.answer) = (holds, answer.into());
+        }
     }
 
     /// The same with a number that is to be at most `limit`; not-a-number fails.
@@ -252,5 +258,7 @@ mod tests {
         assert!(record.verified);
         record.verify_at_most("closure", f64::NAN, 1e-12);
         assert!(!record.verified && record.answer.contains("NaN"));
+        record.verify_at_most("closure", 1e-13, 1e-12);
+        assert!(!record.verified && record.answer.contains("NaN"), "a later one does not make it good");
     }
 }

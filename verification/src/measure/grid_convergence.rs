@@ -136,7 +136,6 @@ fn combine(estimate: Estimate, mut meshes: Vec<(f64, f64)>, theory: Option<f64>)
     let correction = (f1 - f2) / (ratio.powf(p) - 1.0);
     match estimate {
         Estimate::Richardson => Ok(fault!("extrapolation-backwards", f1 + correction => f1 - correction)),
-        Estimate::FinestMesh => Ok(*f1),
         _ if *f1 == 0.0 => Err("the value is zero, and a relative index has no meaning".into()),
         _ => Ok(safety * (correction / f1).abs()),
     }

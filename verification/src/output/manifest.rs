@@ -1,12 +1,12 @@
 //! What was written into a folder: `fisura.sha256`, which `sha256sum -c` reads.
 //!
-//! While a command runs, lines are appended before the files they list are renamed to their names, so a name may be listed with
-//! several hashes; at the beginning and the end of a command the list is written anew.
+//! While a command runs, lines are appended before the files they list are there, so a name may be listed with several hashes,
+//! and names of temporary files are listed; at the beginning and the end of a command the list is written anew, without these.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::fs::{self, File};
-use std::io::{Seek, SeekFrom, Write};
+use std::fs::{self, File, OpenOptions};
+use std::io::{ErrorKind, Read, Result as IoResult, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::time::SystemTime;
 
@@ -50,22 +50,26 @@ pub(super) struct Manifest {
 pub(super) fn read(folder: &Path) -> Result<Manifest, OutputError> {
     let path = folder.join(MANIFEST);
     // through a link it would be that of another folder
-    let text = if fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
-        fs::read(&path).map_err(|e| OutputError::folder(folder, e))?
-    } else {
-        Vec::new()
-    };
+    let is_there = fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file());
+    let text = if is_there { fs::read(&path).map_err(|e| OutputError::folder(folder, e))? } else { Vec::new() };
     if let Some(manifest) = parse(&String::from_utf8_lossy(&text)) {
         return Ok(manifest);
     }
+    let begun = is_there && is_begun(&text);
     let entries = fs::read_dir(folder).map_err(|e| OutputError::folder(folder, e))?;
     for entry in entries {
         let name = entry.map_err(|e| OutputError::folder(folder, e))?.file_name();
-        if name != LOCK && !temporary::is_temporary(&name.to_string_lossy()) {
+        let ours = name == LOCK || begun && name == MANIFEST || temporary::is_temporary(&name.to_string_lossy());
+        if !ours {
             return Err(OutputError::without_manifest(folder));
         }
     }
     Ok(Manifest { owner: String::new(), finished: false, files: BTreeMap::new(), journal: None })
+}
+
+/// Whether a list ends within its first line: the process that made it was killed, and wrote nothing else yet.
+fn is_begun(text: &[u8]) -> bool {
+    !text.contains(&b'\n') && (SCHEMA.as_bytes().starts_with(text) || text.starts_with(SCHEMA.as_bytes()))
 }
 
 /// Lines that are no entries, such as half of one that was being written, list nothing.
@@ -94,41 +98,59 @@ impl Manifest {
     pub(super) fn store(&mut self, folder: &Path) -> Result<(), OutputError> {
         let path = folder.join(MANIFEST);
         let failed = |error: &dyn std::fmt::Display| OutputError::unwritable(&path, error);
-        let mut text = format!("{SCHEMA}{}\n", self.owner);
-        if !self.finished {
-            text.push_str(UNFINISHED);
-            text.push('\n');
-        }
+        let mut text = self.head();
         for (name, entry) in &self.files {
             for hash in &entry.hashes {
                 let _ = writeln!(text, "{hash}  {name}"); // a String takes anything
             }
         }
-        let mut file = temporary::create(folder).map_err(|e| failed(&e))?;
+        let hash = hash(text.as_bytes());
+        let file = temporary::create(folder, |part| self.append(folder, &[(part, &hash)]));
+        let mut file = file.map_err(|e| failed(&e))?;
         file.write_all(text.as_bytes()).map_err(|e| failed(&e))?;
         file.as_file().sync_all().map_err(|e| failed(&e))?;
         self.journal = Some(file.persist(&path).map_err(|e| failed(&e.error))?);
         Ok(())
     }
 
-    /// Adds names with hashes to the list.
-    pub(super) fn append(&mut self, folder: &Path, lines: &[(&str, &str)]) -> Result<(), OutputError> {
-        if self.journal.is_none() {
-            self.store(folder)?;
-        }
-        let Some(journal) = &mut self.journal else { return Ok(()) };
+    /// The lines before those of files.
+    fn head(&self) -> String {
+        let unfinished = if self.finished { String::new() } else { format!("{UNFINISHED}\n") };
+        format!("{SCHEMA}{}\n{unfinished}", self.owner)
+    }
+
+    /// Adds lines of names and hashes to the list on disk.
+    pub(super) fn append(&mut self, folder: &Path, lines: &[(&str, &str)]) -> IoResult<()> {
+        let mut journal = match self.journal.take() {
+            Some(journal) => journal,
+            None => self.open_journal(&folder.join(MANIFEST))?,
+        };
         let text: String = lines.iter().map(|(name, hash)| format!("{hash}  {name}\n")).collect();
-        let written = journal.seek(SeekFrom::End(0)).and_then(|end| {
-            let written = journal.write_all(text.as_bytes()).and_then(|()| journal.sync_data());
-            written.inspect_err(|_| {
-                let _ = journal.set_len(end); // half a line would spoil the next one
-            })
-        });
-        written.map_err(|error| OutputError::unwritable(&folder.join(MANIFEST), error))?;
-        for (name, hash) in lines {
-            self.files.entry((*name).to_string()).or_default().hashes.push((*hash).to_string());
+        let end = journal.seek(SeekFrom::End(0))?;
+        let written = journal.write_all(text.as_bytes()).and_then(|()| journal.sync_data());
+        if written.is_err() {
+            let _ = journal.set_len(end); // half a line would spoil the next one
         }
-        Ok(())
+        self.journal = Some(journal);
+        written
+    }
+
+    /// The list on disk as it is, without half a line at its end; begun if there is none.
+    fn open_journal(&self, path: &Path) -> IoResult<File> {
+        let is_new = match fs::symlink_metadata(path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => true,
+            found => !found?.is_file(), // then it is refused to be made
+        };
+        let mut file = OpenOptions::new().read(true).write(true).create_new(is_new).open(path)?;
+        let mut text = Vec::new();
+        file.read_to_end(&mut text)?;
+        let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
+        file.set_len(whole as u64)?;
+        if whole == 0 {
+            file.rewind()?;
+            file.write_all(self.head().as_bytes())?;
+        }
+        Ok(file)
     }
 }
 

@@ -169,3 +169,76 @@ fn files_have_the_permissions_of_any_new_file() {
     let [a, b] = ["a", "b"].map(|name| fs::metadata(root.path().join(name)).unwrap().permissions().mode());
     assert_eq!(a, b);
 }
+
+#[test]
+fn no_temporary_file_is_there_that_is_not_listed() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = open(root.path());
+    folder.begin(|_| false).unwrap();
+    let is_over = std::sync::atomic::AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            (0..300).for_each(|number| folder.write(&format!("{}.csv", number % 7), number.to_string()).unwrap());
+            is_over.store(true, std::sync::atomic::Ordering::Relaxed);
+        });
+        while !is_over.load(std::sync::atomic::Ordering::Relaxed) {
+            let there: Vec<String> = names(root.path()).into_iter().filter(|n| temporary::is_temporary(n)).collect();
+            let listed = fs::read_to_string(root.path().join(MANIFEST)).unwrap();
+            there.iter().for_each(|name| assert!(listed.contains(name.as_str()), "nobody would know {name}"));
+        }
+    });
+    drop(folder.hold()); // as at an interruption
+    let listed = fs::read_to_string(root.path().join(MANIFEST)).unwrap();
+    assert!(listed.contains("6.csv") && !listed.contains(PART) && listed.contains("# unfinished"), "{listed}");
+}
+
+#[test]
+fn a_list_that_was_only_begun_is_begun_again() {
+    for begun in ["", "# fisura.mani", "# fisura.manifest/1 ver"] {
+        let root = tempfile::tempdir().unwrap();
+        fs::write(root.path().join(MANIFEST), begun).unwrap();
+        open(root.path()).write("a.csv", "1").unwrap();
+        assert_eq!(open(root.path()).files(), ["a.csv"], "{begun:?}");
+    }
+    for other in ["mine", "# mine\n"] {
+        let root = tempfile::tempdir().unwrap();
+        fs::write(root.path().join(MANIFEST), other).unwrap();
+        assert!(OutputFolder::open(root.path(), "verify").is_err(), "{other:?}");
+    }
+}
+
+#[test]
+fn the_mark_comes_before_and_verdicts_go_before_what_they_are_about() {
+    let sorted = ["a.csv", "bench.json", "junit.xml", "part.json", "report.html", "results.json", "summary.md"];
+    let order = in_order_of_removal(sorted.map(String::from).to_vec());
+    assert_eq!(order[5..], ["a.csv", "part.json"]);
+    let root = tempfile::tempdir().unwrap();
+    let folder = open(root.path());
+    ["deep/a.csv", "results.json"].iter().for_each(|name| folder.write(name, "1").unwrap());
+    folder.finish().unwrap();
+    let marked = || fs::read_to_string(root.path().join(MANIFEST)).unwrap().contains("# unfinished");
+    assert!(!marked());
+    folder.begin(|_| marked()).unwrap(); // asked for before anything happens
+    assert!(marked() && names(root.path()).is_empty());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_file_of_the_user_in_place_of_the_lock_keeps_its_content() {
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("mine"), "mine").unwrap();
+    let folder = root.path().join("out");
+    fs::create_dir(&folder).unwrap();
+    fs::hard_link(root.path().join("mine"), folder.join(lock::LOCK)).unwrap();
+    assert!(OutputFolder::open(&folder, "verify").is_err(), "it has a second name");
+    fs::remove_file(folder.join(lock::LOCK)).unwrap();
+    fs::create_dir(folder.join(lock::LOCK)).unwrap();
+    assert!(OutputFolder::open(&folder, "verify").is_err(), "it is a folder");
+    fs::remove_dir(folder.join(lock::LOCK)).unwrap();
+    fs::write(folder.join(lock::LOCK), "mine").unwrap();
+    fs::write(folder.join("notes.txt"), "mine").unwrap();
+    assert!(OutputFolder::open(&folder, "verify").is_err(), "the folder is not ours");
+    for name in ["mine", "out/.fisura.lock", "out/notes.txt"] {
+        assert_eq!(fs::read_to_string(root.path().join(name)).unwrap(), "mine", "{name}");
+    }
+}

@@ -2,7 +2,7 @@
 //! check sum of all that.
 //!
 //! ```text
-//! fisura checkpoint 2
+//! fisura checkpoint 3
 //! <name, version, commit and sources of the program>
 //! <fingerprint of the scene>
 //! <its title>
@@ -21,7 +21,7 @@ use crate::output::{OutputError, OutputFolder};
 use crate::suite::part::fingerprint;
 
 /// First line of the file, with the version of its form.
-const FORM: &str = "fisura checkpoint 2";
+const FORM: &str = "fisura checkpoint 3";
 /// What every version begins with.
 const MAGIC: &str = "fisura checkpoint ";
 /// Most bytes of a line of the head.
@@ -53,6 +53,8 @@ const SAME_PROGRAM: &str = "resume with the program of that run, or leave out --
 pub struct Stored {
     pub(super) run: Record,
     pub(super) state: Vec<u8>,
+    /// Whether the run wrote files of its own at its frames, which then stand in the folder.
+    pub frame_files: bool,
 }
 
 /// Where a run of a scene keeps its checkpoint.
@@ -91,13 +93,12 @@ pub(super) fn write(
     (out, name): (&OutputFolder, &str),
     program: &str,
     scene: &Scene,
-    run: Record,
-    state: Vec<u8>,
+    stored: &Stored,
 ) -> Result<(), OutputError> {
     let failed = |error: postcard::Error| OutputError::unwritable(&out.path().join(name), error);
     let title: String = scene.title.chars().take(TITLE).collect();
     let head = format!("{FORM}\n{program}\n{}\n{}\n", scene_print(scene), title.escape_debug());
-    let mut bytes = postcard::to_extend(&Stored { run, state }, head.into_bytes()).map_err(failed)?;
+    let mut bytes = postcard::to_extend(stored, head.into_bytes()).map_err(failed)?;
     bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
     out.write(name, bytes)
 }

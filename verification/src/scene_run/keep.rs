@@ -22,6 +22,8 @@ pub struct Keep<'a> {
     pub program: String,
     /// Wall time between checkpoints.
     pub interval: Duration,
+    /// Whether files are written at the frames; see [`Stored::frame_files`].
+    pub frame_files: bool,
     /// Once this is set the run stores a checkpoint after the present step, and stops.
     pub interrupted: &'a AtomicBool,
 }
@@ -120,10 +122,11 @@ impl Keeper<'_> {
     }
 
     fn store(&mut self, run: &Run<'_>, simulation: &mut Simulation) -> Result<(), OutputError> {
-        let Keep { out, name, program, .. } = self.keep;
+        let Keep { out, name, program, frame_files, .. } = self.keep;
         let state = simulation.checkpoint().map_err(|error| OutputError::unwritable(&out.path().join(name), error))?;
         let record = Record { wall_s: run.wall_s(), ..run.record.clone() };
-        checkpoint::write((out, name), program, run.scene, record, state)?;
+        let stored = Stored { run: record, state, frame_files: *frame_files };
+        checkpoint::write((out, name), program, run.scene, &stored)?;
         self.stored_time = Some(simulation.time());
         Ok(())
     }

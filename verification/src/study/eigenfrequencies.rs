@@ -90,7 +90,8 @@ fn relative_errors(mass: Mass, degree: usize, spans: usize) -> Result<(Vec<f64>,
     let frame = TotalFrame::new(&scene).map_err(|_| other("there is no phase field"))?;
     let mut operator = frame.stiffness_operator();
     let n = operator.size();
-    let eigenvalues = dense::eigenvalues(&mut operator).ok_or_else(|| other("the mass is not positive definite"))?;
+    let eigenvalues = dense::eigenvalues(&mut operator)?;
+    let eigenvalues = eigenvalues.ok_or_else(|| other("the mass is not positive definite"))?;
     let exact = |mode: usize| mode as f64 * std::f64::consts::PI; // unit modulus, density and length
     let error = |(i, eigenvalue): (usize, &f64)| eigenvalue.sqrt() / exact(i + 1) - 1.0;
     Ok((eigenvalues.iter().take(MODES).enumerate().map(error).collect(), n))

@@ -68,6 +68,7 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
             for points in [2, 3, 4] {
                 let mut levels = Vec::new();
                 for spans in cells {
+                    crate::watch::check()?;
                     let patch = on(spans)?;
                     let unknowns = 2 * patch.control_grid().columns * patch.control_grid().rows;
                     levels.push(Level {

@@ -69,6 +69,7 @@ fn random_patches(degree: usize, findings: &mut Findings) -> Result<(), StudyErr
     let mut worst = Worst::default();
     let mut tamed = 0;
     for seed in 0..PATCHES {
+        crate::watch::check()?;
         let mut random = Random::scrambled(seed + 1000 * degree as u64);
         let degrees = [degree, 1 + degree % 4];
         let knots = degrees.map(|p| random.knots(p, SPANS, true));

@@ -53,7 +53,7 @@ fn judge_runs(
         let (info, tables) = describe(case, run);
         outcome.runs.push(info);
         for (stem, table) in tables {
-            write_series(out, &stem, &table)?;
+            watch::unless_left(|| write_series(out, &stem, &table))?;
         }
     }
     for planned in records {
@@ -121,7 +121,7 @@ fn judge_study(
         Err(error) => return Ok(broken(case, prepared, &error.to_string())),
     };
     for (stem, table) in &findings.series {
-        write_series(out, stem, table)?;
+        watch::unless_left(|| write_series(out, stem, table))?;
     }
     let series = findings.series.first().map(|(stem, _)| format!("series/{stem}.csv"));
     let judged = prepared.records.iter().map(|planned| {

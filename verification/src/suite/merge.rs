@@ -1,6 +1,7 @@
 //! The parts of a plan joined: what one run of the whole plan writes, byte for byte but for times and environment.
 
 use std::collections::{BTreeMap, HashMap};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
@@ -50,6 +51,19 @@ pub enum MergeError {
         /// Other folder.
         other: PathBuf,
     },
+    /// Two parts hold a series of the same name.
+    #[error("{name} is another one in {} and {}", first.display(), other.display())]
+    Contradicts {
+        /// Of the series.
+        name: String,
+        /// First folder.
+        first: PathBuf,
+        /// Other folder.
+        other: PathBuf,
+    },
+    /// A part is where the results are to be written.
+    #[error("{} cannot be joined into itself", .0.display())]
+    Itself(PathBuf),
     /// Slices are not there.
     #[error("of {count} slices, these are missing: {}", list(slices))]
     Missing {
@@ -100,13 +114,18 @@ fn list(slices: &[usize]) -> String {
 ///
 /// # Errors
 /// Parts of different plans or programs, emptied or edited ones, slices missing or doubled, files that cannot be read or
-/// written; nothing is written then but what the last one leaves.
+/// written; `out` is then marked as unfinished, without the results of before.
 pub fn merge(
     folders: &[PathBuf],
     out: &OutputFolder,
     reference_data: &Path,
     sources: &str,
 ) -> Result<ResultSet, MergeError> {
+    let own = fs::canonicalize(out.path()).ok();
+    if let Some(part) = folders.iter().find(|folder| own.is_some() && fs::canonicalize(folder).ok() == own) {
+        return Err(MergeError::Itself(part.clone()));
+    }
+    out.begin(|_| false).map_err(VerifyError::from)?; // whatever follows, the verdict of before is not that of these parts
     let parts = folders.iter().map(|folder| read(folder)).collect::<Result<Vec<Part>, _>>()?;
     let Some(first) = parts.first() else { return Err(MergeError::Missing { count: 0, slices: Vec::new() }) };
     check(folders, &parts)?;
@@ -116,15 +135,20 @@ pub fn merge(
     if folder_fingerprint(reference_data)? != first.plan.reference_data {
         return Err(MergeError::OtherReferences);
     }
+    let mut prints: HashMap<&str, (&Path, &str)> = HashMap::new();
     for (folder, name, print) in files(folders, &parts) {
         content(folder, name, print)?;
+        let (first, known) = *prints.entry(name).or_insert((folder, print));
+        if known != print {
+            let name = foreign::line(name).into_owned();
+            return Err(MergeError::Contradicts { name, first: first.to_path_buf(), other: folder.to_path_buf() });
+        }
     }
     let environment = environment(&parts);
     let plan = first.plan.clone();
     let inputs = parts.iter().flat_map(|part| part.inputs.clone()).collect();
     let outcomes = outcomes(plan.cases, &parts)?;
     let library = Library::load(reference_data)?;
-    out.begin(|_| false).map_err(VerifyError::from)?;
     for (folder, name, print) in files(folders, &parts) {
         out.write(name, content(folder, name, print)?).map_err(VerifyError::from)?;
     }

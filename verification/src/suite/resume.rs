@@ -2,6 +2,7 @@
 //!
 //! An outcome is taken up only if program, case file, overrides and reference data are the same, and nobody changed the file.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::part::{fingerprint, folder_fingerprint};
@@ -17,26 +18,31 @@ pub(super) struct Store {
     out: Arc<OutputFolder>,
     /// What outcomes depend on beside their case; none if no outcome is stored or taken up.
     basis: Option<String>,
-    /// Whether there are cases to take up.
-    goes_on: bool,
+    /// Files of the selected cases.
+    names: BTreeSet<String>,
+    /// Those that are there, to be taken up.
+    stored: BTreeSet<String>,
 }
 
 impl Store {
     /// # Errors
-    /// If outcomes are there that this run would not take up because it is not to, or reference data cannot be read.
+    /// If outcomes are there that this run would not take up, or reference data cannot be read.
     pub(super) fn open(cases: &[Case], options: &Options) -> Result<Self, VerifyError> {
         let out = Arc::clone(&options.out);
-        let stored = out.files().into_iter().filter(|name| name.starts_with(FOLDER)).count();
-        if !options.resume && stored > 0 {
-            return Err(VerifyError::Interrupted { folder: out.path().to_path_buf(), cases: stored });
-        }
         let basis = if options.resume {
             Some(fingerprint([options.program, &folder_fingerprint(options.reference_data)?]))
         } else {
             None
         };
-        let mut store = Self { out, basis, goes_on: false };
-        store.goes_on = stored > 0 && cases.iter().any(|case| store.load(case).is_some());
+        let mut store = Self { out, basis, names: BTreeSet::new(), stored: BTreeSet::new() };
+        store.names = cases.iter().filter_map(|case| store.name(case)).collect();
+        // on disk, not only listed: who removed them did not want them any more
+        let stored = store.out.files().into_iter().filter(|name| name.starts_with(FOLDER));
+        store.stored = stored.filter(|name| store.out.read(name).is_some()).collect();
+        let lost = store.stored.difference(&store.names).count();
+        if lost > 0 {
+            return Err(VerifyError::Interrupted { folder: store.out.path().to_path_buf(), cases: lost });
+        }
         Ok(store)
     }
 
@@ -48,7 +54,7 @@ impl Store {
 
     /// Whether a file of the run before belongs to the cases that are taken up.
     pub(super) fn keeps(&self, name: &str) -> bool {
-        self.goes_on && (name.starts_with(FOLDER) || name.starts_with("series/"))
+        self.stored.contains(name) || !self.stored.is_empty() && name.starts_with("series/")
     }
 
     pub(super) fn load(&self, case: &Case) -> Option<CaseOutcome> {
@@ -62,9 +68,9 @@ impl Store {
         }
     }
 
-    /// The run is complete: nothing is left to take up.
+    /// The run is complete: nothing of it is left to take up.
     pub(super) fn finish(&self) -> Result<(), VerifyError> {
-        let stored = self.out.files().into_iter().filter(|name| name.starts_with(FOLDER));
+        let stored = self.out.files().into_iter().filter(|name| self.names.contains(name));
         Ok(stored.into_iter().try_for_each(|name| self.out.remove(&name))?)
     }
 }

@@ -37,12 +37,7 @@ pub(super) fn supervised<T: Send + 'static>(
 ) -> Ended<T> {
     watch::note_panics();
     let watch = Arc::new(Watch::default());
-    let entered = Arc::clone(&watch);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(rayon::current_num_threads())
-        .start_handler(move |_| Arc::clone(&entered).enter())
-        .build();
-    let pool = match pool {
+    let pool = match watch.pool(rayon::current_num_threads()) {
         Ok(pool) => pool,
         Err(error) => return Ended::Broken(format!("no threads could be started for it: {error}")),
     };
@@ -76,6 +71,7 @@ pub(super) fn supervised<T: Send + 'static>(
             late();
         }
         if elapsed > limit.saturating_add(limit.max(GRACE)) {
+            watch.leave();
             return Ended::Broken(format!("{}, and did not end when asked to: it runs on beside what follows", over()));
         }
     }
@@ -128,5 +124,23 @@ mod tests {
         assert!(why.contains("over the limit of 0.05 s"), "{why}");
         let message = told(run(0.05, || std::thread::sleep(Duration::from_secs(3600))));
         assert!(message.contains("runs on beside"), "{message}");
+    }
+
+    #[test]
+    fn what_is_left_behind_writes_nothing_and_threads_of_its_own_know_of_the_stop() {
+        let (sender, receiver) = channel();
+        let work = move || {
+            std::thread::sleep(Duration::from_secs(5));
+            let own = watch::pool(2).unwrap().install(|| watch::check().is_err());
+            let mut written = false;
+            watch::unless_left(|| -> Result<(), ()> {
+                written = true;
+                Ok(())
+            })
+            .unwrap();
+            sender.send((own, written)).unwrap();
+        };
+        assert!(told(run(0.05, work)).contains("runs on beside"));
+        assert_eq!(receiver.recv(), Ok((true, false)));
     }
 }

@@ -169,6 +169,30 @@ fn two_runs_agree_and_a_clean_commit_takes_up_finished_cases() {
 }
 
 #[test]
+fn finished_cases_are_not_lost_to_another_selection_and_may_be_removed_by_hand() {
+    let root = tempfile::tempdir().unwrap();
+    write_case(root.path(), "a", SCENE, CLOSURE);
+    write_case(root.path(), "b", SCENE, CLOSURE);
+    let environment = Environment::default;
+    std::panic::catch_unwind(|| run_watched(root.path(), environment(), None, &Killed("b"))).unwrap_err();
+    let kept = || std::fs::read_dir(root.path().join("out/partial")).map_or(0, Iterator::count);
+    assert_eq!(kept(), 1);
+    let own = std::fs::read_to_string(root.path().join("cases/trial/a.toml")).unwrap();
+    write_case(root.path(), "a", SCENE, &format!("{CLOSURE}\n# changed\n"));
+    let refused = run(root.path(), environment()).unwrap_err().to_string();
+    assert!(refused.contains("1 finished cases of an interrupted run in partial/"), "{refused}");
+    assert_eq!(kept(), 1, "what the other selection finished is there");
+    std::fs::write(root.path().join("cases/trial/a.toml"), own).unwrap();
+    let resumed = run(root.path(), environment()).unwrap();
+    assert_eq!((resumed.records.len(), kept()), (2, 0));
+
+    std::panic::catch_unwind(|| run_watched(root.path(), environment(), None, &Killed("b"))).unwrap_err();
+    std::fs::remove_dir_all(root.path().join("out/partial")).unwrap();
+    write_case(root.path(), "a", SCENE, &format!("{CLOSURE}\n# changed\n"));
+    assert_eq!(run(root.path(), environment()).unwrap().records.len(), 2, "the advice helps");
+}
+
+#[test]
 fn every_committed_case_is_sound_and_ids_are_unique() {
     let cases = load_cases(&repository("verification/cases"), &[]).unwrap();
     assert!(cases.len() >= 20);

@@ -60,7 +60,8 @@ pub fn keys(program: &Path, workspace: &Path, cases: &[Case]) -> Result<BTreeMap
 }
 
 impl<'a> Store<'a> {
-    /// The cells in a folder that count; others are removed.
+    /// The cells in a folder that count; others are removed, and so are those of runs that ended without records: the machine may
+    /// have been busy then.
     ///
     /// # Errors
     /// A file that cannot be removed.
@@ -68,7 +69,8 @@ impl<'a> Store<'a> {
         let mut cells = BTreeMap::new();
         for name in folder.files().into_iter().filter(|name| name.starts_with(FOLDER)) {
             let cell = folder.read(&name).and_then(|bytes| serde_json::from_slice::<Cell>(&bytes).ok());
-            match cell.filter(|cell| keys.get(&cell.case) == Some(&cell.key)) {
+            let counts = |cell: &Cell| keys.get(&cell.case) == Some(&cell.key) && cell.ended.is_none();
+            match cell.filter(counts) {
                 Some(cell) => drop(cells.insert((cell.fault.clone(), cell.case.clone()), cell)),
                 None => folder.remove(&name)?,
             }
@@ -145,6 +147,12 @@ mod tests {
         assert!(sound.holds() && sound.green == ["a/b/x"] && sound.passed == ["sign"]);
         let planted = again.get(Some("sign"), "a/b").unwrap();
         assert!(planted.red == ["a/b/y"] && planted.green.is_empty());
+        for fault in [None, Some("sign")] {
+            again.put(fault, "a/b", Err("it was not done after 30 s".into())).unwrap();
+            assert!(again.get(fault, "a/b").unwrap().ended.is_some());
+            assert_eq!(Store::open(&folder, &keys("one")).unwrap().get(fault, "a/b"), None, "it is tried again");
+        }
+        again.put(None, "a/b", report(Status::Info)).unwrap();
         assert_eq!(Store::open(&folder, &keys("two")).unwrap().get(None, "a/b"), None);
     }
 }

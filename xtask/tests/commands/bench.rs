@@ -22,8 +22,13 @@ fn unknown_families_and_a_peer_without_a_program_end_with_2() {
     let refused = place.xtask(&["bench", "--family", "stages,speed"]).with_status(2);
     refused.complains_of(&["unknown family: speed", "work-precision", "ceilings"]);
     place.xtask(&["bench", "--family", "peer"]).with_status(2).complains_of(&["--peer CMD"]);
-    let arguments = ["bench", "--quick", "--family", "peer", "--peer", "no-such-program --fast", "--out", "out"];
-    place.xtask(&arguments).with_status(2).complains_of(&["no-such-program", "cannot be started", "status 0"]);
+    let arguments =
+        ["bench", "--quick", "--family", "ceilings,peer", "--peer", "no-such-program --fast", "--out", "out"];
+    let words = ["no-such-program", "cannot be started", "status 0"];
+    let ended = place.xtask(&arguments).with_status(2).complains_of(&words);
+    assert!(ended.out.contains("FAIL unfinished/run: 1 of 2 families are measured"), "{ended:?}");
+    assert!(place.read("out/bench.json").contains("\"ceilings/"), "what is measured is kept");
+    assert!(place.read("out/fisura.sha256").contains("# unfinished"));
 }
 
 #[test]
@@ -62,6 +67,21 @@ fn the_answer_of_a_peer_is_verified_before_its_time_is_believed() {
     assert_eq!(set["schema"], "fisura.bench/1");
     let answers: Vec<&str> = set["records"].as_array().unwrap().iter().map(|r| r["id"].as_str().unwrap()).collect();
     assert_eq!(answers, ["peer/fisura", "peer/command"]);
+    // an answer in the first round alone, and one that is wrong in the first round alone
+    let count = format!("n=$(cat '{0}' 2>/dev/null || echo 0); echo $((n + 1)) > '{0}'\n", place.path("n").display());
+    place.write(
+        "once.sh",
+        &format!("{count}{steps}[ $n -gt 1 ] && exit 0\n{give}").replacen("case", "for last; do :; done\ncase", 1),
+    );
+    let once = bench("once.sh", &["--out", "once"]).with_status(1);
+    assert!(once.out.contains("its answer is not that of the block") && once.out.contains("result.csv"), "{once:?}");
+    std::fs::remove_file(place.path("n")).unwrap();
+    place.write(
+        "late.sh",
+        &format!("{count}{give}[ $n -lt 2 ] && cp \"$last/particles.csv\" \"$last/result.csv\"; true\n"),
+    );
+    let late = bench("late.sh", &["--out", "late"]).with_status(1);
+    assert!(late.out.contains("not that of the block: row 1 lies at"), "{late:?}");
     place.xtask(&["report", "target/fisura/bench", "--out", "again"]).with_status(0);
     assert_eq!(place.read("again/summary.md"), place.read("target/fisura/bench/summary.md"));
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use fisura_verification::suite::part::Part;
+use fisura_verification::suite::part::{Part, fingerprint};
 use serde_json::Value;
 
 use super::support::{Place, notched};
@@ -116,6 +116,12 @@ fn parts_that_do_not_belong_together_end_with_2() {
     refused(&["part-1", "part-3"], &["of 3 slices", "missing: 2", "help:"]);
     refused(&["part-1", "part-2", "part-2", "part-3"], &["slice 2 is there twice", "part-2"]);
     refused(&["part-1", "absent"], &["absent/part.json"]);
+    place.xtask(&["merge", "part-1", "part-2", "part-3", "--out", "joined"]).with_status(1);
+    place.xtask(&["merge", "part-1", "part-2", "--out", "joined"]).with_status(2);
+    assert_eq!(place.files("joined"), [""; 0], "the verdict of before is not that of these parts");
+    assert!(place.read("joined/fisura.sha256").contains("# unfinished"));
+    let itself = ["merge", "part-1", "joined/../joined", "--out", "joined"];
+    place.xtask(&itself).with_status(2).complains_of(&["joined/../joined cannot be joined into itself", "--out"]);
     place
         .xtask(&["merge", "part-1", "part-2", "part-3", "--out", "part-2"])
         .with_status(2)
@@ -151,7 +157,7 @@ fn parts_of_another_commit_or_program_or_other_references_end_with_2() {
     let text = place.read("part-2/part.json");
     let joined = |place: &Place| place.xtask(&["merge", "part-1", "part-2", "part-3"]).with_status(2);
     change(&place, "part-2/part.json", |part| part.plan.commit = "0123abcd".into());
-    joined(&place).complains_of(&["commit", "none and 0123abcd"]);
+    joined(&place).complains_of(&["commit", "and 0123abcd"]);
     place.write("part-2/part.json", &text);
     change(&place, "part-2/part.json", |part| part.plan.sources = "feed".into());
     joined(&place).complains_of(&["sources of the program", "feed", "help:"]);
@@ -195,6 +201,10 @@ fn emptied_and_edited_parts_end_with_2() {
     std::fs::remove_file(place.path("part-2/series/plate-b.csv")).unwrap();
     refused(&["part-2/series/plate-b.csv was changed"]);
     place.write("part-2/series/plate-b.csv", &series);
+    let (other, name) = ("time_s,elastic_j\n0,1\n", "series/plate-a.csv");
+    place.write(&format!("part-2/{name}"), other);
+    change(&place, "part-2/part.json", |part| drop(part.files.insert(name.into(), fingerprint([other]))));
+    refused(&["series/plate-a.csv is another one in part-1 and part-2"]);
     change(&place, "part-2/part.json", |part| drop(part.files.insert("../plate-b.csv".into(), "feed".into())));
     refused(&["below series/ only"]);
 }

@@ -106,7 +106,7 @@ fn the_checkpoint_of_another_scene_is_kept_and_named() {
     let first = std::fs::read(place.path("killed/checkpoint.bin")).expect("a checkpoint");
     let head = String::from_utf8_lossy(&first[..200]).into_owned();
     let head: Vec<&str> = head.lines().take(4).collect();
-    assert_eq!((head[0], head[3]), ("fisura checkpoint 2", "Block"));
+    assert_eq!((head[0], head[3]), ("fisura checkpoint 3", "Block"));
     assert!(head[1].starts_with("fisura 0.1.0 of commit ") && head[2].len() == 16, "{head:?}");
 
     let other = ["--set", "output.samples=100"];
@@ -125,6 +125,20 @@ fn the_checkpoint_of_another_scene_is_kept_and_named() {
     assert!(place.files("killed").contains(&own) && !place.files("killed").contains(&names[0]));
     let resumed = place.xtask(&[&run[..], &["killed", "--resume"], &other].concat()).with_status(0);
     assert!(resumed.err.is_empty() && !place.files("killed").contains(&own), "{resumed:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn files_for_paraview_of_another_scene_are_not_taken_for_those_of_the_run() {
+    let place = plate();
+    let run = ["run", "plate.toml", "--threads", "2", "--out", "killed"];
+    interrupt(&place, "checkpoint.bin", &[]);
+    place.xtask(&[&run[..], &["--vtk", "--set", "output.samples=100"]].concat()).with_status(0);
+    let first = place.read("killed/points-0.vtu");
+    assert!(!first.is_empty() && place.path("killed/checkpoint.bin").exists());
+    let resumed = place.xtask(&[&run[..], &["--vtk", "--resume"]].concat()).with_status(0);
+    assert!(resumed.err.contains("taken without --vtk"), "{resumed:?}");
+    assert!(!place.path("killed/points-0.vtu").exists() && !place.read("killed/points.pvd").contains("points-0.vtu"));
 }
 
 #[test]

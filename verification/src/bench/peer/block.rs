@@ -118,12 +118,11 @@ impl PeerBlock {
         table(&self.after)
     }
 
-    /// Writes what the peer reads into a folder below `out`, and removes what it left before.
+    /// Writes what the peer reads into a folder below `out`.
     ///
     /// # Errors
     /// If the files cannot be written.
     pub fn write(&self, out: &OutputFolder, folder: &str, steps: usize) -> Result<(), BenchError> {
-        out.remove(&format!("{folder}/result.csv"))?; // an old answer is none
         out.write_table(&format!("{folder}/particles.csv"), &table(&self.before))?;
         let material = &self.scene.materials[&self.scene.bodies[0].material];
         let block = json!({

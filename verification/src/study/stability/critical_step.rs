@@ -88,7 +88,7 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
         for (word, mass, cut) in SQUARES {
             let scene = patch(degree, mass, cut);
             let frame = total_frame(&scene)?;
-            let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator()).ok_or_else(indefinite)?;
+            let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator())?.ok_or_else(indefinite)?;
             let frequency = largest_frequency(&eigenvalues);
             let variant = format!("p={degree}, {word}");
             let source = exact(1.0, "2/ω of the dense eigenvalue");
@@ -179,8 +179,8 @@ fn bar_step(degree: usize, mass: Mass, cut: f64) -> Result<f64, StudyError> {
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [SPANS as f64 + cut, height] };
     let frame = total_frame(&scene)?;
     let eigenvalues = match mass {
-        Mass::Lumped => dense::eigenvalues(&mut frame.stiffness_operator()),
-        Mass::Consistent => dense::eigenvalues_of_consistent_mass(&frame, 1.0),
+        Mass::Lumped => dense::eigenvalues(&mut frame.stiffness_operator())?,
+        Mass::Consistent => dense::eigenvalues_of_consistent_mass(&frame, 1.0)?,
     };
     Ok(2.0 / largest_frequency(&eigenvalues.ok_or_else(indefinite)?))
 }

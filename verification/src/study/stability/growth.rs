@@ -63,7 +63,7 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
     for degree in 1..=3 {
         let scene = cut_block(degree);
         let frame = total_frame(&scene)?;
-        let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator());
+        let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator())?;
         let fastest = eigenvalues.and_then(|all| all.last().copied());
         let frequency = fastest.ok_or_else(|| StudyError::Other("the mass is not positive definite".into()))?.sqrt();
         for ratio in RATIOS {

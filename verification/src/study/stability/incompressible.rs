@@ -60,7 +60,7 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
     for degree in 1..=3 {
         let scene = square(degree, SPANS, RATIOS[3]);
         let frame = total_frame(&scene)?;
-        let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator()).unwrap_or_default();
+        let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator())?.unwrap_or_default();
         let largest = eigenvalues.last().copied().unwrap_or(f64::NAN).sqrt();
         let variant = format!("p={degree}, nu={}", RATIOS[3]);
         let ratio = frame.critical_step() * largest / 2.0;
@@ -97,7 +97,7 @@ fn square(degree: usize, spans: usize, nu: f64) -> Scene {
 
 fn lowest_frequency(scene: &Scene) -> Result<f64, StudyError> {
     let frame = total_frame(scene)?;
-    let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator());
+    let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator())?;
     let lowest = eigenvalues.and_then(|all| all.first().copied());
     lowest.map(f64::sqrt).ok_or_else(|| StudyError::Other("the mass is not positive definite".into()))
 }
@@ -112,6 +112,7 @@ fn closure(mut scene: Scene, dt: f64) -> Result<f64, StudyError> {
     let energy = simulation.sample().stored();
     let mut closure = 0.0_f64;
     while !simulation.finished() {
+        crate::watch::check()?;
         closure = larger(closure, simulation.advance_to_next_sample()?.closure.abs());
     }
     Ok(closure / energy)

@@ -15,6 +15,7 @@ use crate::expand::CaseScene;
 use crate::extremes::{larger, largest};
 use crate::plain_scene::PlainScene;
 use crate::study::{Findings, StudyError};
+use crate::watch;
 
 pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
     let mut offers = crate::study::Offers::default();
@@ -98,12 +99,13 @@ fn notched(frame: Frame) -> Scene {
 
 /// Every number of every sample of a run on some threads, as bits.
 fn on_threads(threads: usize, scene: &Scene) -> Result<Vec<u64>, StudyError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = watch::pool(threads);
     let pool = pool.map_err(|e| StudyError::Other(format!("{threads} threads cannot be started: {e}")))?;
     pool.install(|| {
         let mut simulation = Simulation::new(scene)?;
         let mut bits = Vec::new();
         while !simulation.finished() {
+            watch::check()?;
             bits.extend(next_sample(&mut simulation)?);
         }
         Ok(bits)
@@ -120,6 +122,7 @@ fn interrupted(scene: &Scene) -> Result<Vec<u64>, StudyError> {
     let mut simulation = Simulation::new(scene)?;
     let mut bits = Vec::new();
     while !simulation.finished() {
+        watch::check()?;
         bits.extend(next_sample(&mut simulation)?);
         let state = simulation.checkpoint().map_err(|error| StudyError::Other(error.to_string()))?;
         let resumed = Simulation::resume(scene, &state);
@@ -143,6 +146,7 @@ fn asymmetry(scene: &Scene) -> Result<f64, StudyError> {
     let mut simulation = Simulation::new(scene)?;
     let mut worst = 0.0_f64;
     while !simulation.finished() {
+        watch::check()?;
         simulation.advance_to_next_sample()?;
         let frame = simulation.total_frame().ok_or_else(|| StudyError::Other("not the total frame".into()))?;
         let ([x, y], grid) = (frame.displacement(), frame.lattice().grid);
