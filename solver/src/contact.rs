@@ -175,9 +175,9 @@ impl Contact {
                 if dot(normal, nearest.normal) > FACING {
                     continue;
                 }
-                let Some(normal) =
-                    unit([0, 1].map(|d| sign * (normal[d] - fault!("normal-of-one-body", nearest.normal[d] => 0.0))))
-                else {
+                let [plus, minus] =
+                    fault!("normal-of-one-body", [1.0; 2] => [f64::from(own == 0), f64::from(own == 1)]);
+                let Some(normal) = unit([0, 1].map(|d| sign * (plus * normal[d] - minus * nearest.normal[d]))) else {
                     continue;
                 };
                 let closing = sign * dot([0, 1].map(|d| way[d] - nearest.way[d]), normal);
