@@ -2,7 +2,6 @@
 
 use fisura::Simulation;
 use fisura::energy::Sample;
-use fisura::extremes::smaller;
 use fisura::fault;
 use fisura::fracture::BROKEN;
 use fisura::scene::{Scene, Shape};

@@ -167,6 +167,7 @@ fn broken(failure: Failure) -> StudyError {
     match failure {
         Failure::PhaseField(failure) => other(format!("the phase-field solve {failure}")),
         Failure::SingularMass => other("the mass matrix is singular to round-off"),
+        Failure::NoStep => other("the critical time step is not a number"),
         Failure::Left([x, y]) => other(format!("a point left the mesh at ({x}, {y})")),
         Failure::NoPoints(_) => other("the body holds no material point"),
         Failure::LostTraction { .. } => other("a part of a traction would not act"),
