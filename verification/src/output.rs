@@ -302,6 +302,7 @@ impl Drop for OutputFolder {
         }
         if let Some(lock) = &self.lock {
             let _ = lock.set_len(0); // nobody holds it any more
+            let _ = lock.unlock(); // closing is not enough while a process that is being started still has the file
         }
     }
 }
