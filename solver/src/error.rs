@@ -2,11 +2,11 @@
 
 use thiserror::Error;
 
-use crate::conjugate_gradients::SolveFailure;
+use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::contact::impulse::Unsettled;
 use crate::contact::motion::TooFast;
-use crate::loads::LostTraction;
-use crate::updated_frame::points::OutsidePatch;
+use crate::dynamics::loads::LostTraction;
+use crate::dynamics::updated_frame::points::OutsidePatch;
 
 /// One thing wrong with a scene, found before anything runs.
 #[derive(Debug, Clone, PartialEq, Error)]

@@ -3,9 +3,12 @@
 //! Plane strain uses Lamé's first parameter as it is, plane stress `lam* = 2 lam mu/(lam + 2 mu)` on the in-plane
 //! tensor, which makes `lam*/2 (tr e)² + mu e:e` the exact energy of the intact material in either state.
 
-use crate::lane::Lane;
+pub mod hencky;
+pub mod split;
+
+use crate::linear_algebra::lane::Lane;
 use crate::scene::{Fracture, Material, Plane, Split};
-use crate::split::EnergySplit;
+use crate::material::split::EnergySplit;
 
 /// Moduli of the in-plane tensor, Pa.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -20,21 +20,23 @@
 //! wherever it lies, however fine the mesh is there, and however large the body around it. The norm of the residual over that of
 //! the right-hand side, a sum of volumes, would allow more at the crack the larger the mesh is.
 
+pub mod assembly;
+pub mod fracture;
 mod method;
 mod state;
 
 use serde::{Deserialize, Serialize};
 
-use crate::assembly::{Constant, Form, PointCoefficients, add_form};
-use crate::conjugate_gradients::{Convergence, SolveFailure};
-use crate::extremes::larger;
-use crate::lane::{LANES, Lane};
-use crate::lattice::Lattice;
+use crate::phase_field::assembly::{Constant, Form, PointCoefficients, add_form};
+use crate::linear_algebra::conjugate_gradients::{Convergence, SolveFailure};
+use crate::linear_algebra::extremes::larger;
+use crate::linear_algebra::lane::{LANES, Lane};
+use crate::particles::lattice::Lattice;
 use crate::material::FractureModel;
-use crate::patch::ControlGrid;
-use crate::preconditioner::TOO_MANY;
+use crate::splines::patch::ControlGrid;
+use crate::linear_algebra::preconditioner::TOO_MANY;
 use crate::scene::SolverSettings;
-use crate::stencil::Stencil;
+use crate::linear_algebra::stencil::Stencil;
 use method::{ITERATION_LIMIT, Method};
 
 /// Diagonal and right-hand side of control points without material, as a fraction of the largest right-hand side.

@@ -4,17 +4,17 @@ mod frame;
 mod state;
 mod watch;
 
-use crate::energy::Sample;
+use crate::dynamics::energy::Sample;
 use crate::error::{Breakdown, Failure};
-use crate::inspection::PointState;
-use crate::lane::LANES;
+use crate::output::inspection::PointState;
+use crate::linear_algebra::lane::LANES;
 use crate::phase_field::PhaseFieldCounts;
-use crate::picture::Picture;
+use crate::output::picture::Picture;
 use crate::scene::Scene;
-use crate::span_grid::SpanGrid;
-use crate::time_plan::TimePlan;
-use crate::total_frame::TotalFrame;
-use crate::updated_frame::UpdatedFrame;
+use crate::output::span_grid::SpanGrid;
+use crate::dynamics::time_plan::TimePlan;
+use crate::dynamics::total_frame::TotalFrame;
+use crate::dynamics::updated_frame::UpdatedFrame;
 use frame::{Frame, either};
 pub use state::ResumeError;
 

@@ -14,10 +14,10 @@ mod seed;
 mod size;
 
 use crate::error::{SceneError, SceneWarning};
-use crate::nurbs::NurbsPatch;
+use crate::splines::nurbs::NurbsPatch;
 use crate::scene::{Frame, Mesh, Scene, Shape};
-use crate::spans::{lengths_of_chords, lengths_of_spans};
-use crate::spline::SplineSpace;
+use crate::particles::spans::{lengths_of_chords, lengths_of_spans};
+use crate::splines::spline::SplineSpace;
 
 pub use size::{ExpectedSize, expected_size};
 

@@ -3,10 +3,10 @@
 mod common;
 
 use common::{annulus, bent_patch, body, random_patch};
-use fisura::lattice::Lattice;
-use fisura::nurbs::NurbsPatch;
-use fisura::patch::Patch;
-use fisura::quadrature::Rule;
+use fisura::particles::lattice::Lattice;
+use fisura::splines::nurbs::NurbsPatch;
+use fisura::splines::patch::Patch;
+use fisura::splines::quadrature::Rule;
 use fisura::scene::*;
 
 /// Σ n L = 0 and Σ x·n L = 2 area around a patch; the area is that of the lattice. `tolerance` is relative.

@@ -4,8 +4,8 @@ mod common;
 
 use common::{annulus, bent_patch, body, elastic_scene, patch_scene, rectangle, run};
 use fisura::Simulation;
-use fisura::energy::Sample;
-use fisura::extremes::larger;
+use fisura::dynamics::energy::Sample;
+use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
 use fisura::validate::validate;
 

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{body, elastic_scene, rectangle, run};
-use fisura::extremes::larger;
+use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
 
 /// Two bars of unit wave speed in head-on impact, one span of gap between them.

@@ -8,7 +8,7 @@ use fisura::Simulation;
 use fisura::contact::handle::Handle;
 use fisura::error::Breakdown;
 use fisura::scene::*;
-use fisura::updated_frame::UpdatedFrame;
+use fisura::dynamics::updated_frame::UpdatedFrame;
 
 fn solid(density: f64) -> Material {
     Material { young_modulus: 1.0, poisson_ratio: 0.0, density, fracture: None }

@@ -4,7 +4,7 @@ mod common;
 
 use common::{body, elastic_scene, rectangle};
 use fisura::Simulation;
-use fisura::critical_step::{StiffnessOperator, highest_frequency};
+use fisura::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use fisura::scene::*;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 

@@ -1,4 +1,4 @@
-//! No fold in the workspace drops what is not a number: `f64::max` and `f64::min` do, `fisura::extremes` does not. Nor does a
+//! No fold in the workspace drops what is not a number: `f64::max` and `f64::min` do, `fisura::linear_algebra::extremes` does not. Nor does a
 //! loop that keeps an extreme in a variable.
 //!
 //! `f64::max(a, b)` as a call, where one side is a constant, is another matter and stays allowed.
@@ -159,7 +159,7 @@ fn folds_keep_what_is_not_a_number() {
         let lines = findings(tokens).into_iter().chain(kept(text.parse().unwrap()));
         found.extend(lines.map(|line| format!("{}:{line}", file.display())));
     }
-    assert!(found.is_empty(), "use larger, smaller, largest or smallest of fisura::extremes in\n{}", found.join("\n"));
+    assert!(found.is_empty(), "use larger, smaller, largest or smallest of fisura::linear_algebra::extremes in\n{}", found.join("\n"));
 }
 
 #[test]

@@ -4,7 +4,7 @@ mod common;
 
 use common::{elastic_scene, notched_plate, relative_closure, run};
 use fisura::Simulation;
-use fisura::energy::{FractureSample, Sample};
+use fisura::dynamics::energy::{FractureSample, Sample};
 use fisura::scene::*;
 
 /// The plate under 4 MPa, up to the time at which the crack has run half of its way: kinetic and fracture energy are then

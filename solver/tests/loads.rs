@@ -4,7 +4,7 @@ mod common;
 
 use common::{body, elastic_scene, rectangle};
 use fisura::Simulation;
-use fisura::nurbs::NurbsPatch;
+use fisura::splines::nurbs::NurbsPatch;
 use fisura::scene::*;
 use fisura::validate::validate;
 

@@ -4,9 +4,9 @@
 mod common;
 
 use common::{annulus, bent_patch, brittle, elastic_scene, notched_plate, patch_scene, run, with_threads};
-use fisura::energy::Sample;
-use fisura::extremes::larger;
-use fisura::nurbs::NurbsPatch;
+use fisura::dynamics::energy::Sample;
+use fisura::linear_algebra::extremes::larger;
+use fisura::splines::nurbs::NurbsPatch;
 use fisura::scene::*;
 
 /// The scene with its rectangular mesh written as a general patch, all weights `weight`.

@@ -1,11 +1,11 @@
 //! NURBS patches with random knots, weights and degrees: what must hold for each, and what refinement must not change.
 
 use approx::assert_abs_diff_eq;
-use fisura::extremes::larger;
-use fisura::nurbs::{Form, LocateError, NurbsError, NurbsPatch, RationalFunctions, rational_functions};
-use fisura::patch::Patch;
+use fisura::linear_algebra::extremes::larger;
+use fisura::splines::nurbs::{Form, LocateError, NurbsError, NurbsPatch, RationalFunctions, rational_functions};
+use fisura::splines::patch::Patch;
 use fisura::scene::Mesh;
-use fisura::spline::SplineSpace;
+use fisura::splines::spline::SplineSpace;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

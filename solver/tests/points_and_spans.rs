@@ -4,10 +4,10 @@ mod common;
 
 use common::{annulus, elastic_scene, notched_plate, patch_scene, rectangle, run};
 use fisura::Simulation;
-use fisura::extremes::smaller;
-use fisura::inspection::PointState;
+use fisura::linear_algebra::extremes::smaller;
+use fisura::output::inspection::PointState;
 use fisura::scene::*;
-use fisura::span_grid::SpanGrid;
+use fisura::output::span_grid::SpanGrid;
 
 fn points(simulation: &Simulation) -> Vec<PointState> {
     let mut points = Vec::new();

@@ -3,10 +3,10 @@
 mod common;
 
 use common::moduli;
-use fisura::extremes::larger;
-use fisura::lane::Lane;
+use fisura::linear_algebra::extremes::larger;
+use fisura::linear_algebra::lane::Lane;
 use fisura::material::ElasticModuli;
-use fisura::split::{EnergySplit, SplitState, split, tensile_strain};
+use fisura::material::split::{EnergySplit, SplitState, split, tensile_strain};
 use nalgebra::{Matrix2, SymmetricEigen};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

@@ -3,12 +3,12 @@
 mod common;
 
 use common::{Random, body, graded_knots, rectangle};
-use fisura::extremes::larger;
-use fisura::lane::{LANES, Lane};
-use fisura::lattice::Lattice;
-use fisura::patch::Patch;
+use fisura::linear_algebra::extremes::larger;
+use fisura::linear_algebra::lane::{LANES, Lane};
+use fisura::particles::lattice::Lattice;
+use fisura::splines::patch::Patch;
 use fisura::scene::*;
-use fisura::sweep::{Fields, PointKernel, PointValues, Stress, StripForces, sweep};
+use fisura::transfer::sweep::{Fields, PointKernel, PointValues, Stress, StripForces, sweep};
 
 /// Records what it is given and answers with a stress of its own making.
 struct Recorder {

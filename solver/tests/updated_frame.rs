@@ -3,11 +3,11 @@
 mod common;
 
 use common::{brittle, glass, rectangle, relative_closure, run, updated_scene, with_threads};
-use fisura::energy::Sample;
-use fisura::extremes::larger;
+use fisura::dynamics::energy::Sample;
+use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
 use fisura::simulation::Simulation;
-use fisura::updated_frame::UpdatedFrame;
+use fisura::dynamics::updated_frame::UpdatedFrame;
 
 const DENSITY: f64 = 2450.0;
 

@@ -9,11 +9,11 @@ use std::time::{Duration, Instant};
 
 use criterion::{BatchSize, Bencher, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use fisura::Simulation;
-use fisura::critical_step::highest_frequency;
-use fisura::incomplete_cholesky::IncompleteCholesky;
+use fisura::dynamics::critical_step::highest_frequency;
+use fisura::linear_algebra::incomplete_cholesky::IncompleteCholesky;
 use fisura::scene::Contact;
-use fisura::split::EnergySplit;
-use fisura::sweep::StripForces;
+use fisura::material::split::EnergySplit;
+use fisura::transfer::sweep::StripForces;
 use fisura_verification::bench::block::{Block, DENSITY, SPAN, elastic_scene};
 use fisura_verification::bench::minimal::Minimal;
 use fisura_verification::bench::moving_block::{MovingBlock, minimal, minimal_deviation, moving_scene};

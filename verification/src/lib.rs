@@ -23,4 +23,4 @@ pub mod study;
 pub mod suite;
 pub mod watch;
 
-pub use fisura::extremes;
+pub use fisura::linear_algebra::extremes;

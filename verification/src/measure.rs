@@ -8,7 +8,7 @@ mod table;
 mod tip;
 
 use fisura::fault;
-use fisura::picture::Picture;
+use fisura::output::picture::Picture;
 use fisura::scene::Scene;
 
 use crate::case::Check;

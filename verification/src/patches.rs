@@ -1,6 +1,6 @@
 //! Families of meshes: one geometry for all refinements, drawn once and carried by knot insertion.
 
-use fisura::nurbs::{NurbsError, NurbsPatch};
+use fisura::splines::nurbs::{NurbsError, NurbsPatch};
 use fisura::scene::Mesh;
 
 use crate::case::convergence::PatchFamily;

@@ -13,9 +13,9 @@ mod write;
 
 use std::time::Instant;
 
-use fisura::energy::Sample;
+use fisura::dynamics::energy::Sample;
 use fisura::error::Breakdown;
-use fisura::picture::Picture;
+use fisura::output::picture::Picture;
 use fisura::scene::Scene;
 use fisura::simulation::{Simulation, square_pixels};
 use fisura::validate::validate;

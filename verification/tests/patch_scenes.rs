@@ -1,6 +1,6 @@
 //! Scene files with general patches: good ones give the patch they describe, bad ones say where and what would help.
 
-use fisura::nurbs::NurbsPatch;
+use fisura::splines::nurbs::NurbsPatch;
 use fisura::scene::*;
 use fisura_verification::scene_file::SceneFile;
 

@@ -1,6 +1,6 @@
 //! Figures of one run: energies, and phase field and stress at the frames.
 
-use fisura::picture::Picture;
+use fisura::output::picture::Picture;
 use fisura_reports::FigureError;
 use fisura_reports::field::{Raster, render_field};
 use fisura_reports::number::pretty;

@@ -3,10 +3,10 @@
 //! Files are written as soon as their frame is reached and named by its number, so that a run that is taken up again goes on
 //! with those of before.
 
-use fisura::inspection::PointState;
+use fisura::output::inspection::PointState;
 use fisura::scene::Scene;
 use fisura::simulation::Simulation;
-use fisura::span_grid::Corner;
+use fisura::output::span_grid::Corner;
 use fisura_reports::vtk::{Cells, Field, Piece, pvd, vtu};
 use fisura_verification::output::{OutputError, OutputFolder};
 use fisura_verification::scene_run::frame_steps;

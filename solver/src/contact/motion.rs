@@ -2,9 +2,9 @@
 //! looks is through before it is seen. Bodies that slide along each other, turn in each other or part are not.
 
 use super::surface::{Center, Surface};
-use crate::extremes::{larger, largest, smaller};
+use crate::linear_algebra::extremes::{larger, largest, smaller};
 use crate::scene::{Body, Mesh, Scene};
-use crate::spans::smallest_span;
+use crate::particles::spans::smallest_span;
 
 /// Most spans by which bodies that meet approach each other in a step.
 pub const MOST: f64 = 0.5;

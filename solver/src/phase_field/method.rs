@@ -1,10 +1,10 @@
 //! How the system of the phase field is solved: conjugate gradients, or sparse Cholesky for reference.
 
-use crate::cholesky::SparseCholesky;
-use crate::conjugate_gradients::{ConjugateGradients, Convergence, SolveFailure};
-use crate::preconditioner::Preconditioner;
+use crate::linear_algebra::cholesky::SparseCholesky;
+use crate::linear_algebra::conjugate_gradients::{ConjugateGradients, Convergence, SolveFailure};
+use crate::linear_algebra::preconditioner::Preconditioner;
 use crate::scene::PhaseFieldSolver;
-use crate::stencil::Stencil;
+use crate::linear_algebra::stencil::Stencil;
 
 /// Iterations after which a solve counts as failed.
 pub const ITERATION_LIMIT: usize = 2000;

@@ -2,12 +2,12 @@
 
 use crate::checkpoint::{Archive, StateError};
 use crate::error::Failure;
-use crate::inspection::PointState;
+use crate::output::inspection::PointState;
 use crate::phase_field::PhaseFieldCounts;
 use crate::scene::{self, Scene};
-use crate::span_grid::SpanGrid;
-use crate::total_frame::TotalFrame;
-use crate::updated_frame::UpdatedFrame;
+use crate::output::span_grid::SpanGrid;
+use crate::dynamics::total_frame::TotalFrame;
+use crate::dynamics::updated_frame::UpdatedFrame;
 
 /// The bodies in the frame of their scene.
 #[derive(Debug)]

@@ -2,14 +2,14 @@
 
 use super::Simulation;
 use super::frame::{Frame, either};
-use crate::conjugate_gradients::SolveFailure;
+use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::contact::impulse::Unsettled;
 use crate::contact::motion::{MOST, TooFast};
-use crate::energy::Sample;
+use crate::dynamics::energy::Sample;
 use crate::error::{Breakdown, Failure, SceneError};
-use crate::extremes::larger;
-use crate::inspection::{Inspection, InvertedPoint, PointState};
-use crate::loads::LostTraction;
+use crate::linear_algebra::extremes::larger;
+use crate::output::inspection::{Inspection, InvertedPoint, PointState};
+use crate::dynamics::loads::LostTraction;
 
 /// Elastic energy beyond this many times all energy that ever came in counts as numerical growth.
 const GROWTH_LIMIT: f64 = 10.0;

@@ -2,17 +2,17 @@
 
 use super::material::plausible_speed;
 use super::{Findings, Ground};
-use crate::extremes::larger;
-use crate::quadrature::Rule;
+use crate::linear_algebra::extremes::larger;
+use crate::splines::quadrature::Rule;
 use crate::scene::{Body, Boundary, Frame, Mass, Scene, Shape, Side, TimeStep, Transfer};
-use crate::spline::SplineSpace;
+use crate::splines::spline::SplineSpace;
 
 /// Most steps of a run.
 pub(super) const MOST_STEPS: f64 = 1e9;
 /// Highest order of XPIC: each costs a transfer to the points and back per step.
 const HIGHEST_XPIC: usize = 100;
 /// Relative tolerance of "on the side", of the size of the mesh.
-const TOLERANCE: f64 = crate::spline::ROUND_OFF;
+const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
 
 pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     let analysis = &scene.analysis;

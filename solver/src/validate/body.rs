@@ -6,12 +6,12 @@ use super::analysis::side_name;
 use super::geometry::{complexity, covered_side, defect, outline};
 use super::points::Points;
 use super::{Findings, Ground, seed};
-use crate::nurbs::{LocateError, NurbsPatch};
-use crate::quadrature::MAX_POINTS;
+use crate::splines::nurbs::{LocateError, NurbsPatch};
+use crate::splines::quadrature::MAX_POINTS;
 use crate::scene::{Body, Crack, Edge, Fracture, Layout, Scene, Shape, Traction};
 
 /// Relative tolerance of "inside", of the size of the mesh or body.
-const TOLERANCE: f64 = crate::spline::ROUND_OFF;
+const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
 /// Intervals between the positions at which the segment of a traction is looked at.
 const SEGMENT_INTERVALS: usize = 32;
 /// Most positions at which a crack is looked at.

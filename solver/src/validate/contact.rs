@@ -6,7 +6,7 @@ use super::{Findings, Ground};
 use crate::contact::Surface;
 use crate::contact::motion::longest_step;
 use crate::contact::surface::Center;
-use crate::extremes::larger;
+use crate::linear_algebra::extremes::larger;
 use crate::scene::{Body, Frame, Scene, Shape, TimeStep, Transfer};
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.

@@ -1,8 +1,8 @@
 //! Checks of the background mesh: degrees, open knot vectors, geometry.
 
 use super::Findings;
-use crate::extremes::smaller;
-use crate::nurbs::{NurbsError, NurbsPatch};
+use crate::linear_algebra::extremes::smaller;
+use crate::splines::nurbs::{NurbsError, NurbsPatch};
 use crate::scene::Mesh;
 
 /// Weights of control points: beyond, sums of them lose the smallest ones, and control points are left without mass.
@@ -10,7 +10,7 @@ const WEIGHTS: (f64, f64) = (1e-3, 1e3);
 /// Extent of a mesh in a direction, m or unit of the knots: beyond, areas and stiffnesses over- or underflow.
 const EXTENT: (f64, f64) = (1e-12, 1e12);
 /// Shortest span of a direction, of the extent: below, it is within round-off of its neighbours.
-const SHORTEST: f64 = crate::spline::ROUND_OFF;
+const SHORTEST: f64 = crate::splines::spline::ROUND_OFF;
 /// Largest number of spans of a mesh.
 const MOST_SPANS: usize = 50_000_000;
 

@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use super::Ground;
 use super::geometry::complexity;
-use crate::extremes::largest;
-use crate::lattice::{AxisPoint, fills_lattice, point_axes};
-use crate::nurbs::{MapPoint, NurbsPatch};
+use crate::linear_algebra::extremes::largest;
+use crate::particles::lattice::{AxisPoint, fills_lattice, point_axes};
+use crate::splines::nurbs::{MapPoint, NurbsPatch};
 use crate::scene::Body;
-use crate::shape::distance_to_segment;
+use crate::scene::shape::distance_to_segment;
 
 type Point = [f64; 2];
 

@@ -6,10 +6,10 @@
 
 use super::Findings;
 use super::points::{Near, Points};
-use crate::extremes::larger;
-use crate::fracture::{BROKEN, SEED_STRENGTH, half_width};
+use crate::linear_algebra::extremes::larger;
+use crate::phase_field::fracture::{BROKEN, SEED_STRENGTH, half_width};
 use crate::scene::{Body, Crack, Fracture};
-use crate::shape::distance_to_segment;
+use crate::scene::shape::distance_to_segment;
 
 /// Relative tolerance of lengths along a crack.
 const TOLERANCE: f64 = 1e-6;

@@ -1,7 +1,7 @@
 //! Checks that a reader of files never lets through, and the exact bounds of the others.
 
 use super::validate;
-use crate::nurbs::NurbsPatch;
+use crate::splines::nurbs::NurbsPatch;
 use crate::scene::*;
 
 /// A fracturing square, 10 mm by 10 mm.

@@ -5,12 +5,12 @@ pub mod plain_points;
 pub mod standing_wave;
 
 use fisura::Simulation;
-use fisura::energy::Sample;
+use fisura::dynamics::energy::Sample;
 use fisura::material::{ElasticModuli, FractureModel};
-use fisura::nurbs::NurbsPatch;
-use fisura::patch::ControlGrid;
+use fisura::splines::nurbs::NurbsPatch;
+use fisura::splines::patch::ControlGrid;
 use fisura::scene::*;
-use fisura::spline::SplineSpace;
+use fisura::splines::spline::SplineSpace;
 
 pub fn glass() -> Material {
     Material { young_modulus: 32e9, poisson_ratio: 0.2, density: 2450.0, fracture: None }

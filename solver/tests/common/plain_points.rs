@@ -1,9 +1,9 @@
 //! Points of a NURBS patch by plain sums over its basis, without the lattice.
 
-use fisura::lattice::Lattice;
-use fisura::nurbs::{NurbsPatch, RationalFunctions};
-use fisura::patch::ControlGrid;
-use fisura::quadrature::Rule;
+use fisura::particles::lattice::Lattice;
+use fisura::splines::nurbs::{NurbsPatch, RationalFunctions};
+use fisura::splines::patch::ControlGrid;
+use fisura::splines::quadrature::Rule;
 use fisura::scene::Body;
 
 /// A point as the NURBS patch sees it, without the lattice.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fisura::forcing::{Forcing, VolumeLoad};
+use fisura::dynamics::forcing::{Forcing, VolumeLoad};
 
 /// Keeps a bar of Hencky material in the standing wave `u = A sin πX sin πt` of any amplitude.
 #[derive(Debug)]

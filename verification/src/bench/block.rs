@@ -1,18 +1,18 @@
 //! A square block of points in the total frame, and the phases of its step one by one: for stage timings and for the
 //! criterion benchmarks.
 
-use fisura::assembly::{Constant, Form, PointCoefficients, add_form};
-use fisura::fracture::Fracturing;
-use fisura::kernels::{DegradedStress, ElasticStress, HistoryUpdate};
-use fisura::lane::Lane;
-use fisura::lattice::Lattice;
+use fisura::phase_field::assembly::{Constant, Form, PointCoefficients, add_form};
+use fisura::phase_field::fracture::Fracturing;
+use fisura::transfer::kernels::{DegradedStress, ElasticStress, HistoryUpdate};
+use fisura::linear_algebra::lane::Lane;
+use fisura::particles::lattice::Lattice;
 use fisura::material::{ElasticModuli, FractureModel};
-use fisura::patch::Patch;
+use fisura::splines::patch::Patch;
 use fisura::phase_field::PhaseField;
 use fisura::scene::{Crack, Fracture, Material, Mesh, PhaseFieldSolver, Plane, Scene, Shape, SolverSettings, Split};
-use fisura::split::EnergySplit;
-use fisura::stencil::Stencil;
-use fisura::sweep::{Fields, StripForces, sweep};
+use fisura::material::split::EnergySplit;
+use fisura::linear_algebra::stencil::Stencil;
+use fisura::transfer::sweep::{Fields, StripForces, sweep};
 
 use super::BenchError;
 use crate::extremes::largest;

@@ -7,7 +7,7 @@
 
 use fisura::material::ElasticModuli;
 use fisura::scene::Mesh;
-use fisura::updated_frame::points::Point;
+use fisura::dynamics::updated_frame::points::Point;
 
 /// Most functions per direction.
 const MOST: usize = 4;

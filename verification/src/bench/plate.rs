@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use fisura::Simulation;
 use fisura::scene::Scene;
-use fisura::total_frame::TotalFrame;
+use fisura::dynamics::total_frame::TotalFrame;
 
 use super::record::{AnswerError, BenchRecord, CostPoint};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};

@@ -4,11 +4,11 @@
 //! `solves/p<degree>/l<spans>/<solver>`. One matrix, one start (c = 1 everywhere), one tolerance, one thread. The incomplete factors count as part of their
 //! solve, and so does the numeric factorisation of the direct one; its symbolic part is done once and left out.
 
-use fisura::cholesky::SparseCholesky;
-use fisura::conjugate_gradients::{ConjugateGradients, Remaining};
+use fisura::linear_algebra::cholesky::SparseCholesky;
+use fisura::linear_algebra::conjugate_gradients::{ConjugateGradients, Remaining};
 use fisura::phase_field::integrate_shape_functions;
-use fisura::preconditioner::Preconditioner;
-use fisura::stencil::Stencil;
+use fisura::linear_algebra::preconditioner::Preconditioner;
+use fisura::linear_algebra::stencil::Stencil;
 
 use super::block::{Block, SPAN, cracked_scene};
 use super::record::BenchRecord;

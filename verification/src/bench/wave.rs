@@ -6,11 +6,11 @@
 //! proportion to h^((p + 1)/2), so that time and space are of the same order. The error is that of the displacement at the
 //! end, relative, in L2 (in the updated frame: at the points, weighted with their volumes).
 
-use fisura::energy;
-use fisura::projection::Projection;
+use fisura::dynamics::energy;
+use fisura::dynamics::projection::Projection;
 use fisura::scene::{Frame, Layout, Mass, Mesh, Plane, Scene, Transfer};
-use fisura::total_frame::TotalFrame;
-use fisura::updated_frame::UpdatedFrame;
+use fisura::dynamics::total_frame::TotalFrame;
+use fisura::dynamics::updated_frame::UpdatedFrame;
 use rayon::prelude::*;
 
 use super::record::{AnswerError, BenchRecord, Sample};

@@ -22,7 +22,7 @@
 
 use fisura::fault;
 use fisura::scene::Mesh;
-use fisura::spans::largest_spans;
+use fisura::particles::spans::largest_spans;
 
 use super::{Measured, Run, expected, held_against, measure};
 use crate::case::Check;

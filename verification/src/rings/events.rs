@@ -1,11 +1,11 @@
 //! Events of a collision, watched sample by sample on the line of centres.
 
 use fisura::Simulation;
-use fisura::energy::Sample;
+use fisura::dynamics::energy::Sample;
 use fisura::fault;
-use fisura::fracture::BROKEN;
+use fisura::phase_field::fracture::BROKEN;
 use fisura::scene::{Scene, Shape};
-use fisura::updated_frame::field::DiscreteField;
+use fisura::dynamics::updated_frame::field::DiscreteField;
 
 use crate::extremes::smaller;
 use crate::history::Table;

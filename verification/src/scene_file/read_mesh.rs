@@ -1,6 +1,6 @@
 //! From the tree of a document to the background mesh: a rectangle, a general NURBS patch, or an annular sector.
 
-use fisura::nurbs::{NurbsError, NurbsPatch};
+use fisura::splines::nurbs::{NurbsError, NurbsPatch};
 use fisura::scene::{Geometry, Mesh};
 
 use super::fields::{Fields, Item};

@@ -1,8 +1,8 @@
 //! The state at which a run broke down: `breakdown.json`. Numbers that are not finite are null.
 
-use fisura::energy::Sample;
+use fisura::dynamics::energy::Sample;
 use fisura::error::Breakdown;
-use fisura::inspection::{Inspection, PointState};
+use fisura::output::inspection::{Inspection, PointState};
 use fisura::simulation::Simulation;
 use serde::{Deserialize, Serialize};
 

@@ -3,7 +3,7 @@
 //! Knots come from a fixed linear congruential sequence, with span ratios up to 100. Continuity C^(p−1) at the inner knots
 //! is measured on the values and first derivatives from both sides, relative to their size.
 
-use fisura::spline::SplineSpace;
+use fisura::splines::spline::SplineSpace;
 
 use super::{Findings, StudyError};
 use crate::case::Case;

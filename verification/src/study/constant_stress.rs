@@ -5,10 +5,10 @@
 //! held, and the stress is evaluated at the material points. With points that integrate the products of gradients of
 //! shape functions exactly the error is round-off; equally spaced cubics miss it at the open ends of the knot vector.
 
-use fisura::critical_step::StiffnessOperator;
-use fisura::loads::{NodalLoad, boundary_points};
+use fisura::dynamics::critical_step::StiffnessOperator;
+use fisura::dynamics::loads::{NodalLoad, boundary_points};
 use fisura::scene::{Edge, Shape, Side, Traction};
-use fisura::total_frame::TotalFrame;
+use fisura::dynamics::total_frame::TotalFrame;
 use nalgebra::{DMatrix, DVector};
 
 use super::{Findings, StudyError};

@@ -10,10 +10,10 @@ pub(super) mod stack;
 
 use fisura::Simulation;
 use fisura::contact::impulse::ContactForce;
-use fisura::energy::{ContactSample, Sample};
+use fisura::dynamics::energy::{ContactSample, Sample};
 use fisura::scene::Scene;
-use fisura::updated_frame::UpdatedFrame;
-use fisura::updated_frame::field::DiscreteField;
+use fisura::dynamics::updated_frame::UpdatedFrame;
+use fisura::dynamics::updated_frame::field::DiscreteField;
 
 use super::StudyError;
 use super::scene::series_stem;

@@ -4,9 +4,9 @@
 //! does not vary over its height is one-dimensional, and shear modes lie far above. The generalised eigenproblem is solved
 //! densely. With the consistent mass frequencies are too high, by order 2 p; with the lumped one too low, by order 2.
 
-use fisura::critical_step::StiffnessOperator;
+use fisura::dynamics::critical_step::StiffnessOperator;
 use fisura::scene::{Mass, Mesh, Scene};
-use fisura::total_frame::TotalFrame;
+use fisura::dynamics::total_frame::TotalFrame;
 
 use super::{Findings, StudyError};
 use crate::case::Case;

@@ -7,14 +7,14 @@
 //! split, history and degraded stress are those of the solver's own sweeps, and the stress is the reaction on the right
 //! side over its height. The closed form takes its numbers from the scene, not from the solver. (The reaction of equally spaced points is exact for p up to 2 only; see the patch test.)
 
-use fisura::fracture::Fracturing;
-use fisura::lane::Lane;
-use fisura::lattice::Lattice;
+use fisura::phase_field::fracture::Fracturing;
+use fisura::linear_algebra::lane::Lane;
+use fisura::particles::lattice::Lattice;
 use fisura::material::{ElasticModuli, FractureModel};
-use fisura::patch::Patch;
+use fisura::splines::patch::Patch;
 use fisura::phase_field::PhaseField;
 use fisura::scene::{Fracture, Kinematics, Material, Plane, Side};
-use fisura::sweep::StripForces;
+use fisura::transfer::sweep::StripForces;
 
 use super::{Findings, StudyError};
 use crate::case::Case;

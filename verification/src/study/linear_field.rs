@@ -7,9 +7,9 @@
 //! falls with order 2 n − p only: the functions of a single control point change over a span. The tractions are integrated
 //! with 16 points per span. Weights are drawn once on the coarsest mesh and carried by knot insertion.
 
-use fisura::lattice::Lattice;
-use fisura::patch::Patch;
-use fisura::quadrature::{MAX_POINTS, Rule};
+use fisura::particles::lattice::Lattice;
+use fisura::splines::patch::Patch;
+use fisura::splines::quadrature::{MAX_POINTS, Rule};
 use fisura::scene::{Body, Layout, Side};
 
 use super::{Findings, StudyError};

@@ -4,8 +4,8 @@
 //! weights from 0.1 to 10. Basis and gradients are looked at with the full range of weights. Where a geometry is needed, a
 //! bent unit square, bend and weights are tamed (powers of the weights) until it is not folded; how far is reported.
 
-use fisura::nurbs::{LocateError, NurbsError, NurbsPatch, RationalFunctions, rational_functions};
-use fisura::spline::SplineSpace;
+use fisura::splines::nurbs::{LocateError, NurbsError, NurbsPatch, RationalFunctions, rational_functions};
+use fisura::splines::spline::SplineSpace;
 
 use super::{Findings, StudyError};
 use crate::case::Case;

@@ -12,12 +12,12 @@
 
 use std::sync::Arc;
 
-use fisura::forcing::NoLoads;
+use fisura::dynamics::forcing::NoLoads;
 use fisura::material::ElasticModuli;
-use fisura::projection::Projection;
-use fisura::quadrature::Rule;
+use fisura::dynamics::projection::Projection;
+use fisura::splines::quadrature::Rule;
 use fisura::scene::{Layout, Mass, Material, Mesh, Plane, Side};
-use fisura::total_frame::TotalFrame;
+use fisura::dynamics::total_frame::TotalFrame;
 
 use super::{Findings, StudyError};
 use crate::case::Case;

@@ -4,7 +4,7 @@ mod figures;
 mod sweep;
 
 use fisura::Simulation;
-use fisura::picture::Picture;
+use fisura::output::picture::Picture;
 use fisura::scene::Scene;
 use fisura::simulation::square_pixels;
 

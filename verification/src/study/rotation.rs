@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use fisura::scene::Kinematics;
-use fisura::updated_frame::UpdatedFrame;
+use fisura::dynamics::updated_frame::UpdatedFrame;
 
 use super::{Findings, StudyError};
 use crate::case::Case;

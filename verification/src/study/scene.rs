@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use fisura::picture::Picture;
+use fisura::output::picture::Picture;
 use fisura::scene::Scene;
-use fisura::spans::largest_spans;
+use fisura::particles::spans::largest_spans;
 
 use crate::case::{Case, Check};
 use crate::expand::CaseScene;

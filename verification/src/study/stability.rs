@@ -12,7 +12,7 @@ pub(super) mod units;
 pub(super) mod unloading;
 
 use fisura::scene::Scene;
-use fisura::total_frame::TotalFrame;
+use fisura::dynamics::total_frame::TotalFrame;
 
 use super::StudyError;
 use super::scene::series_stem;

@@ -7,10 +7,10 @@
 
 use std::sync::Arc;
 
-use fisura::forcing::NoLoads;
-use fisura::projection::Projection;
+use fisura::dynamics::forcing::NoLoads;
+use fisura::dynamics::projection::Projection;
 use fisura::scene::{Mass, Mesh};
-use fisura::total_frame::TotalFrame;
+use fisura::dynamics::total_frame::TotalFrame;
 
 use super::{Findings, StudyError};
 use crate::case::Case;

@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use fisura::lane::Lane;
+use fisura::linear_algebra::lane::Lane;
 use fisura::material::ElasticModuli;
 use fisura::scene::Plane;
-use fisura::split::{EnergySplit, split, tensile_strain};
+use fisura::material::split::{EnergySplit, split, tensile_strain};
 
 use super::both_planes;
 use crate::exact::{ExactSolution, find, kirsch, phase_field, standing_wave, vortex};

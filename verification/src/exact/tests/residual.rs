@@ -1,7 +1,7 @@
 //! Independent of symbolic algebra: what must be a derivative of what, by finite differences; stresses from the solver's
 //! own moduli; the residuals of the equations.
 
-use fisura::lane::Lane;
+use fisura::linear_algebra::lane::Lane;
 use fisura::material::{ElasticModuli, FractureModel};
 use nalgebra::{Matrix2, SymmetricEigen};
 

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use fisura::material::ElasticModuli;
 use fisura::scene::{Scene, Transfer};
-use fisura::spans::largest_spans;
+use fisura::particles::spans::largest_spans;
 
 use super::{Books, chart, curve, exact, run, sample_is_due, sum};
 use crate::case::Case;

@@ -13,8 +13,8 @@
 //! to the spin of the points, `Σ m r × v/Σ m r²`, at all steps.
 
 use fisura::scene::{Scene, Shape};
-use fisura::updated_frame::UpdatedFrame;
-use fisura::updated_frame::field::DiscreteField;
+use fisura::dynamics::updated_frame::UpdatedFrame;
+use fisura::dynamics::updated_frame::field::DiscreteField;
 
 use super::{Books, center, chart, cross, curve, dot, exact, run, sample_is_due};
 use crate::case::Case;

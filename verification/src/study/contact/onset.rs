@@ -4,8 +4,8 @@
 use std::collections::HashSet;
 
 use fisura::scene::Scene;
-use fisura::spans::largest_spans;
-use fisura::updated_frame::UpdatedFrame;
+use fisura::particles::spans::largest_spans;
+use fisura::dynamics::updated_frame::UpdatedFrame;
 
 use super::{dot, exact, larger, run};
 use crate::case::Case;

@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use fisura::material::ElasticModuli;
 use fisura::scene::Scene;
-use fisura::spans::largest_spans;
+use fisura::particles::spans::largest_spans;
 
 use super::{Books, center, chart, curve, exact, label, largest, run, sample_is_due, sum};
 use crate::case::Case;

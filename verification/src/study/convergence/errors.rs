@@ -1,9 +1,9 @@
 //! Errors against an exact field, integrated over another, finer set of points than those of the body.
 
 use fisura::fault;
-use fisura::lane::Lane;
-use fisura::lattice::Lattice;
-use fisura::patch::Patch;
+use fisura::linear_algebra::lane::Lane;
+use fisura::particles::lattice::Lattice;
+use fisura::splines::patch::Patch;
 use fisura::scene::{Body, Layout};
 
 /// Points per span and direction beyond those of the body.
@@ -49,7 +49,7 @@ impl ErrorPoints {
         let degree = patch.spaces.iter().map(|s| s.degree()).max().unwrap_or(1);
         let finer = Body {
             layout: Layout::Gauss,
-            particles_per_cell: [(most.max(degree + 1) + FINER).min(fisura::quadrature::MAX_POINTS); 2],
+            particles_per_cell: [(most.max(degree + 1) + FINER).min(fisura::splines::quadrature::MAX_POINTS); 2],
             ..body.clone()
         };
         Self { lattice: Lattice::new(patch, &finer) }

@@ -8,12 +8,12 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use fisura::error::Failure;
-use fisura::lattice::Lattice;
-use fisura::projection::Projection;
+use fisura::particles::lattice::Lattice;
+use fisura::dynamics::projection::Projection;
 use fisura::scene::{Body, Layout, Scene, Shape, Transfer};
-use fisura::spline::SplineSpace;
-use fisura::updated_frame::UpdatedFrame;
-use fisura::updated_frame::points::Point;
+use fisura::splines::spline::SplineSpace;
+use fisura::dynamics::updated_frame::UpdatedFrame;
+use fisura::dynamics::updated_frame::points::Point;
 
 use super::problem::{Manufactured, Problem};
 use super::scene::scene;

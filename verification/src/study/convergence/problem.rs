@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use fisura::forcing::{Forcing, VolumeLoad};
+use fisura::dynamics::forcing::{Forcing, VolumeLoad};
 use fisura::scene::{Frame, Kinematics, Side};
 
 use crate::case::convergence::{ConvergenceSetup, Loading, PatchFamily};

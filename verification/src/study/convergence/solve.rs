@@ -3,15 +3,15 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use fisura::lane::Lane;
+use fisura::linear_algebra::lane::Lane;
 use fisura::material::{ElasticModuli, FractureModel};
-use fisura::patch::ControlGrid;
+use fisura::splines::patch::ControlGrid;
 use fisura::phase_field::PhaseField;
-use fisura::projection::Projection;
-use fisura::quadrature::Rule;
+use fisura::dynamics::projection::Projection;
+use fisura::splines::quadrature::Rule;
 use fisura::scene::{Layout, Mass, Scene, Transfer};
-use fisura::statics::StaticSolver;
-use fisura::total_frame::TotalFrame;
+use fisura::dynamics::statics::StaticSolver;
+use fisura::dynamics::total_frame::TotalFrame;
 use nalgebra::DMatrix;
 
 use super::errors::{ErrorPoints, Squares};

@@ -60,7 +60,7 @@ fn caption(CaseScene { scene, .. }: &CaseScene, watched: &Watched) -> String {
         "Geometry assumed: {radii}l0 = {:.1} mm. p = {}, h = {:.3} mm, {} points, {} steps of {:.3e} s.",
         1e3 * l0,
         scene.mesh.degree[0],
-        1e3 * fisura::spans::largest_spans(&scene.mesh)[0],
+        1e3 * fisura::particles::spans::largest_spans(&scene.mesh)[0],
         watched.particles,
         watched.steps,
         watched.step

@@ -6,7 +6,7 @@
 //! `η^(2p−1)/η^(2p+1)`, so that it falls as η.
 
 use fisura::scene::{Analysis, Frame, Mass, Material, Mesh, Scene, Shape, Side};
-use fisura::updated_frame::UpdatedFrame;
+use fisura::dynamics::updated_frame::UpdatedFrame;
 
 use super::super::contact::curve;
 use super::{exact, logarithmic, theory, total_frame};

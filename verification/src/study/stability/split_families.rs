@@ -8,10 +8,10 @@
 
 use std::f64::consts::TAU;
 
-use fisura::hencky::hencky_strain;
-use fisura::lane::Lane;
+use fisura::material::hencky::hencky_strain;
+use fisura::linear_algebra::lane::Lane;
 use fisura::scene::{Boundary, Fracture, Material, Mesh, Scene, Side, Split};
-use fisura::split::tensile_strain;
+use fisura::material::split::tensile_strain;
 
 use super::super::contact::curve;
 use super::{exact, logarithmic, total_frame};

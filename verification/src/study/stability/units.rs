@@ -5,7 +5,7 @@
 //! work of a traction on a wave as well, which an error common to both would not pass.
 
 use fisura::Simulation;
-use fisura::energy::Sample;
+use fisura::dynamics::energy::Sample;
 use fisura::scene::{Boundary, Crack, Edge, Fracture, Material, Mesh, Scene, Shape, Side, Split, Traction};
 
 use super::super::contact::{chart, curve};

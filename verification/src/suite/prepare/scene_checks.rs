@@ -1,6 +1,6 @@
 //! Checks of a scene study before it runs: measures, columns, windows, references, variants.
 
-use fisura::energy::{ContactSample, FractureSample, Sample};
+use fisura::dynamics::energy::{ContactSample, FractureSample, Sample};
 use fisura::scene::{Frame, Scene};
 
 use super::{EVERYWHERE, Wrong, distinct, find_band, grid_convergence};

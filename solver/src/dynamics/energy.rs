@@ -1,0 +1,186 @@
+//! The energy ledger: every joule has a name.
+//!
+//! ```text
+//! kinetic − stagger + elastic + fracture
+//!   = initial + external work + history work − contact loss − transfer loss + closure
+//! ```
+//!
+//! Each term is summed from its own definition; closure alone is what is left. Stagger, `dt²/8 aᵀ M a`, is the part of
+//! the kinetic energy at whole steps that velocity Verlet does not conserve. History work,
+//! `∬ 2 (1 − k) c (H − psi+)(−dc/dt)`, is what the model adds where the crack widens on remembered energy.
+
+use crate::linear_algebra::extremes::{larger, smaller};
+use serde::{Deserialize, Serialize};
+
+/// Work and losses accumulated over a run, J per metre of thickness.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ledger {
+    /// Work of tractions, gravity and driven sides.
+    pub external_work: f64,
+    /// Work of the history field.
+    pub history_work: f64,
+    /// Energy lost by the transfers of the updated frame between grid and points, and what conditions take
+    /// (see [`losses`](crate::dynamics::updated_frame::losses)).
+    pub transfer_loss: f64,
+}
+
+/// State of a run at a whole step. Energies in J for the thickness of the scene.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Sample {
+    /// Time, s.
+    pub time: f64,
+    /// Kinetic energy of the control points, J.
+    pub kinetic: f64,
+    /// Part of it that velocity Verlet does not conserve, J.
+    pub stagger: f64,
+    /// Elastic energy, J.
+    pub elastic: f64,
+    /// What only a fracturing body has.
+    pub fracture: Option<FractureSample>,
+    /// Work of external forces, J.
+    pub external_work: f64,
+    /// Losses of contact, if the scene declares it.
+    pub contact: Option<ContactSample>,
+    /// Loss of the transfers in the updated frame, J.
+    pub transfer_loss: Option<f64>,
+    /// What is left when every named term is added up, J.
+    pub closure: f64,
+    /// Momentum, kg m/s.
+    pub momentum: [f64; 2],
+    /// Angular momentum about the origin, kg m²/s.
+    pub angular_momentum: f64,
+    /// Time step, s.
+    pub time_step: f64,
+}
+
+/// What only a fracturing body has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FractureSample {
+    /// Surface energy of the crack, J.
+    pub energy: f64,
+    /// Work of the history field, J.
+    pub history_work: f64,
+    /// Crack tip, m, if there is a crack.
+    pub crack_tip: Option<[f64; 2]>,
+    /// Smallest phase field at a point.
+    pub min_phase: f64,
+    /// Iterations of the last phase-field solve.
+    pub iterations: usize,
+}
+
+/// Losses of contact so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactSample {
+    /// Energy lost in contact, J.
+    pub loss: f64,
+    /// The part of it that friction took, J.
+    pub friction: f64,
+}
+
+impl FractureSample {
+    fn with(self, other: Self) -> Self {
+        let tips = self.crack_tip.into_iter().chain(other.crack_tip);
+        Self {
+            energy: self.energy + other.energy,
+            history_work: self.history_work + other.history_work,
+            crack_tip: tips.max_by(|a, b| a[0].total_cmp(&b[0])),
+            min_phase: smaller(self.min_phase, other.min_phase),
+            iterations: self.iterations + other.iterations,
+        }
+    }
+}
+
+impl Sample {
+    /// Columns of `history.csv`, in order; a column is there only with its model.
+    pub fn named_values(&self) -> Vec<(&'static str, f64)> {
+        let mut row = vec![
+            ("time_s", self.time),
+            ("kinetic_j", self.kinetic),
+            ("stagger_j", self.stagger),
+            ("elastic_j", self.elastic),
+        ];
+        let fracture = self.fracture.as_ref();
+        row.extend(fracture.map(|f| ("fracture_j", f.energy)));
+        row.push(("external_work_j", self.external_work));
+        row.extend(fracture.map(|f| ("history_work_j", f.history_work)));
+        row.extend(self.contact.into_iter().flat_map(|c| [("contact_loss_j", c.loss), ("friction_j", c.friction)]));
+        row.extend(self.transfer_loss.map(|loss| ("transfer_loss_j", loss)));
+        row.push(("closure_j", self.closure));
+        if let Some(fracture) = fracture {
+            let [x, y] = fracture.crack_tip.unwrap_or([f64::NAN; 2]);
+            row.extend([("crack_tip_x_m", x), ("crack_tip_y_m", y), ("min_phase_field", fracture.min_phase)]);
+        }
+        row.push(("momentum_x", self.momentum[0]));
+        row.push(("momentum_y", self.momentum[1]));
+        row.push(("angular_momentum", self.angular_momentum));
+        row.push(("time_step_s", self.time_step));
+        row.extend(fracture.map(|f| ("phase_field_iterations", f.iterations as f64)));
+        row
+    }
+
+    /// The first column that is not finite, if one is not. A body without a crack has no tip.
+    pub fn not_finite(&self) -> Option<&'static str> {
+        let mut columns = self.named_values().into_iter();
+        columns.find(|(name, value)| !value.is_finite() && !name.starts_with("crack_tip")).map(|(name, _)| name)
+    }
+
+    /// This sample with another body's: energies and momenta are added, the tip is that of the crack that is further.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        let fracture = match (self.fracture, other.fracture) {
+            (Some(a), Some(b)) => Some(a.with(b)),
+            (a, b) => a.or(b),
+        };
+        Self {
+            kinetic: self.kinetic + other.kinetic,
+            stagger: self.stagger + other.stagger,
+            elastic: self.elastic + other.elastic,
+            fracture,
+            external_work: self.external_work + other.external_work,
+            transfer_loss: self.transfer_loss.zip(other.transfer_loss).map(|(a, b)| a + b),
+            momentum: [0, 1].map(|d| self.momentum[d] + other.momentum[d]),
+            angular_momentum: self.angular_momentum + other.angular_momentum,
+            ..self
+        }
+    }
+
+    /// A sample of a body a metre thick for another thickness, m.
+    #[must_use]
+    pub fn for_thickness(self, thickness: f64) -> Self {
+        Self {
+            kinetic: self.kinetic * thickness,
+            stagger: self.stagger * thickness,
+            elastic: self.elastic * thickness,
+            fracture: self.fracture.map(|f| FractureSample {
+                energy: f.energy * thickness,
+                history_work: f.history_work * thickness,
+                ..f
+            }),
+            external_work: self.external_work * thickness,
+            contact: self.contact.map(|c| ContactSample { loss: c.loss * thickness, friction: c.friction * thickness }),
+            transfer_loss: self.transfer_loss.map(|loss| loss * thickness),
+            closure: self.closure * thickness,
+            momentum: self.momentum.map(|p| p * thickness),
+            angular_momentum: self.angular_momentum * thickness,
+            ..self
+        }
+    }
+
+    /// Energy a ledger closes on: kinetic without stagger, elastic, fracture, J.
+    pub fn stored(&self) -> f64 {
+        self.kinetic - self.stagger + self.elastic + self.fracture.as_ref().map_or(0.0, |f| f.energy)
+    }
+
+    /// Sets closure from the stored energy at t = 0, J.
+    pub fn close(&mut self, initial: f64) {
+        let history_work = self.fracture.as_ref().map_or(0.0, |f| f.history_work);
+        let loss = self.transfer_loss.unwrap_or(0.0) + self.contact.map_or(0.0, |c| c.loss);
+        self.closure = self.stored() - initial - self.external_work - history_work + loss;
+    }
+
+    /// Largest single energy of the row, J: the scale of closure.
+    pub fn largest_term(&self) -> f64 {
+        let fracture = self.fracture.as_ref().map_or(0.0, |f| f.energy);
+        [self.kinetic, self.elastic, fracture, self.external_work].into_iter().map(f64::abs).fold(0.0, larger)
+    }
+}

@@ -1,0 +1,224 @@
+//! External loads: tractions carried by surface points.
+//!
+//! Nothing of a traction may be lost on the way to the control points: [`Balance`] holds every load to the force and moment of
+//! its edge when it is made.
+
+use std::collections::BTreeMap;
+
+use crate::splines::nearest_span::nearest_span;
+use crate::splines::nurbs::Location;
+use crate::splines::patch::{BoundaryPoint, Patch};
+use crate::splines::quadrature::Rule;
+use crate::scene::{Body, Edge, Shape, Side, Traction};
+
+/// Largest error of the force and moment of nodal loads, of those of their edge.
+const TOLERANCE: f64 = 1e-12;
+/// Round-off of the terms of a force or a moment, of the sum of their magnitudes.
+const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+
+/// A sum that keeps what rounding takes from it (Neumaier 1974): its error does not grow with the number of terms.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sum {
+    rounded: f64,
+    lost: f64,
+}
+
+impl Sum {
+    fn of(terms: impl Iterator<Item = f64>) -> f64 {
+        terms.fold(Self::default(), Self::plus).value()
+    }
+
+    fn plus(self, term: f64) -> Self {
+        let rounded = self.rounded + term;
+        let lost = if self.rounded.abs() >= term.abs() {
+            (self.rounded - rounded) + term
+        } else {
+            (term - rounded) + self.rounded
+        };
+        Self { rounded, lost: self.lost + lost }
+    }
+
+    fn value(self) -> f64 {
+        self.rounded + self.lost
+    }
+}
+
+/// Surface point of a loaded boundary.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfacePoint {
+    /// Position, m.
+    pub position: [f64; 2],
+    /// Length it stands for, m.
+    pub length: f64,
+}
+
+/// Surface points along the edge of a traction, with the layout of the body in every span the edge crosses: the point
+/// sums over the edge then fit those over the body, which the patch test needs for equally spaced points.
+pub fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<SurfacePoint> {
+    let [from, to] = edge_ends(body, edge);
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = along[0].hypot(along[1]);
+    let mut cuts = vec![0.0, 1.0];
+    for d in 0..2 {
+        if along[d].abs() > 1e-12 * length {
+            let crossings = patch.spaces[d].spans().iter().map(|s| (s.left - from[d]) / along[d]);
+            cuts.extend(crossings.filter(|t| (1e-12..1.0 - 1e-12).contains(t)));
+        }
+    }
+    cuts.sort_by(f64::total_cmp);
+    let direction = usize::from(along[1].abs() > along[0].abs());
+    let rule = Rule::new(body.layout, body.particles_per_cell[direction]);
+    let mut points = Vec::new();
+    for pair in cuts.windows(2) {
+        for (t, weight) in rule.points.iter().zip(&rule.weights) {
+            let s = pair[0] + t * (pair[1] - pair[0]);
+            points.push(SurfacePoint {
+                position: [from[0] + s * along[0], from[1] + s * along[1]],
+                length: weight * (pair[1] - pair[0]) * length,
+            });
+        }
+    }
+    points
+}
+
+/// Ends of a straight edge, m; they coincide if the body has no such side.
+fn edge_ends(body: &Body, edge: &Edge) -> [[f64; 2]; 2] {
+    match edge {
+        Edge::Side(side) => {
+            body.shape.side(fault!("traction-on-wrong-edge", *side => Side::Bottom)).unwrap_or_default()
+        }
+        Edge::Segment(ends) => *ends,
+    }
+}
+
+/// Points on a side of the patch, with the layout of the body in every span.
+pub fn boundary_points(patch: &Patch, body: &Body, side: Side) -> Vec<BoundaryPoint> {
+    let along = if matches!(side, Side::Left | Side::Right) { 1 } else { 0 };
+    patch.boundary(side, &Rule::new(body.layout, body.particles_per_cell[along]))
+}
+
+/// A traction of which a part would not act on the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LostTraction {
+    /// No material carries the edge at a place (m): there is none within one span of it.
+    Bare([f64; 2]),
+    /// The nodal forces are not those of the edge.
+    Unbalanced {
+        /// Middle of the edge, m.
+        place: [f64; 2],
+        /// Error of the force, of the force.
+        force: f64,
+        /// Error of the moment about the middle, of the force times the length.
+        moment: f64,
+    },
+}
+
+/// What the nodal forces of a uniform traction have to add up to: the length of its edge (m) and the middle of it (m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Balance {
+    length: f64,
+    middle: [f64; 2],
+}
+
+impl Balance {
+    /// Of the straight edge of a body.
+    pub fn of_edge(body: &Body, edge: &Edge) -> Self {
+        let [from, to] = edge_ends(body, edge);
+        Self { length: (to[0] - from[0]).hypot(to[1] - from[1]), middle: [0, 1].map(|d| 0.5 * from[d] + 0.5 * to[d]) }
+    }
+
+    /// Of a side of a patch, as its points integrate it.
+    fn of_points(points: &[BoundaryPoint]) -> Self {
+        let length = Sum::of(points.iter().map(|p| p.length));
+        let middle = |d: usize| Sum::of(points.iter().map(|p| p.length * p.position[d])) / length;
+        Self { length, middle: [0, 1].map(middle) }
+    }
+
+    /// Holds `shares` of the length (m) at positions (m) to the edge. Force and moment of any uniform traction are then its own.
+    ///
+    /// # Errors
+    /// If they are not, to 1e-12.
+    pub fn check(self, shares: impl Iterator<Item = ([f64; 2], f64)>) -> Result<(), LostTraction> {
+        let Self { length, middle } = self;
+        let (mut sum, mut moments) = (Sum::default().plus(-length), [Sum::default(); 2]);
+        let (mut arms, mut magnitudes, mut lengths) = (0.0, 0.0, 0.0);
+        for (position, share) in shares {
+            let arm = [0, 1].map(|d| position[d] - middle[d]);
+            sum = sum.plus(share);
+            moments = [0, 1].map(|d| moments[d].plus(share * arm[d]));
+            lengths += share.abs();
+            arms += share.abs() * arm[0].hypot(arm[1]);
+            magnitudes += share.abs() * position[0].hypot(position[1]);
+        }
+        let [sum, x, y] = [sum, moments[0], moments[1]].map(Sum::value);
+        let moment = x.hypot(y);
+        let balanced = length > 0.0
+            && sum.abs() <= TOLERANCE * length + ROUND_OFF * lengths
+            && moment <= TOLERANCE * arms.max(length * length) + ROUND_OFF * magnitudes;
+        if balanced {
+            return Ok(());
+        }
+        Err(LostTraction::Unbalanced { place: middle, force: sum / length, moment: moment / (length * length) })
+    }
+}
+
+/// A traction as nodal forces that share one factor in time.
+#[derive(Debug, Clone)]
+pub struct NodalLoad {
+    /// Control point and force at full strength per unit thickness, N/m.
+    pub forces: Vec<(usize, [f64; 2])>,
+    ramp: Option<f64>,
+}
+
+impl NodalLoad {
+    /// Nodal forces of `traction` with the shape functions at the reference positions, on control points that can move: `moves` says
+    /// which have mass. Where an edge crosses a span with others, the polynomials of the nearest span without carry it.
+    ///
+    /// # Errors
+    /// If a part of the traction would be lost.
+    pub fn new(
+        patch: &Patch,
+        body: &Body,
+        traction: &Traction,
+        moves: impl Fn(usize) -> bool,
+    ) -> Result<Self, LostTraction> {
+        let mut sums = BTreeMap::<usize, Sum>::new();
+        let mut add = |functions: &[(usize, f64)], length: f64| {
+            for &(index, value) in functions {
+                let sum = sums.entry(index).or_default();
+                *sum = sum.plus(value * length);
+            }
+        };
+        let balance = match (&traction.edge, &body.shape) {
+            (Edge::Side(side), Shape::Patch) => {
+                let points = boundary_points(patch, body, *side);
+                points.iter().for_each(|point| add(&point.functions, point.length));
+                Balance::of_points(&points)
+            }
+            _ => {
+                for SurfacePoint { position, length } in surface_points(patch, body, &traction.edge) {
+                    let location = carrier(patch, position, &moves).ok_or(LostTraction::Bare(position))?;
+                    add(&patch.functions(location).values, length);
+                }
+                Balance::of_edge(body, &traction.edge)
+            }
+        };
+        let sums: Vec<_> = sums.into_iter().map(|(at, sum)| (at, sum.value())).collect();
+        let [x, y] = patch.control_positions();
+        balance.check(sums.iter().filter(|(at, _)| moves(*at)).map(|&(at, sum)| ([x[at], y[at]], sum)))?;
+        let forces = sums.into_iter().map(|(index, sum)| (index, traction.stress.map(|s| s * sum))).collect();
+        Ok(Self { forces, ramp: traction.ramp })
+    }
+
+    /// Factor at a time: rises linearly over the ramp.
+    pub fn factor(&self, time: f64) -> f64 {
+        fault!("ramp-forgotten", self.ramp => None).map_or(1.0, |ramp: f64| (time / ramp).clamp(0.0, 1.0))
+    }
+}
+
+/// Where to evaluate the shape functions of a position (m) on a straight edge, so that all of them belong to control points
+/// that can move.
+fn carrier(patch: &Patch, position: [f64; 2], moves: impl Fn(usize) -> bool) -> Option<Location> {
+    let carries = |span| patch.all_functions(span, &moves);
+    nearest_span(&patch.spaces, position, carries).map(|span| Location { span, parameters: position })
+}

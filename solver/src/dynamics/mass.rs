@@ -1,0 +1,151 @@
+//! The mass matrix of the control points, `M_IJ = Σ_p m_p N_I(x_p) N_J(x_p)` (E 14), or its row sums.
+//!
+//! The lumped mass converges with order 2 whatever the degree, the consistent one with p + 1. The consistent matrix is
+//! factored once; prescribed components and control points without mass leave the system, and their acceleration is zero.
+
+use rayon::prelude::*;
+
+use crate::phase_field::assembly::{Constant, Form, add_form};
+use crate::linear_algebra::cholesky::{Factor, SparseCholesky};
+use crate::error::Failure;
+use crate::linear_algebra::extremes::larger;
+use crate::particles::lattice::Lattice;
+use crate::scene;
+use crate::linear_algebra::stencil::Stencil;
+
+/// Row sums below this fraction of the largest give no acceleration; their control points keep their velocity.
+const NEGLIGIBLE: f64 = 1e-12;
+
+/// Control points that a thread takes at least.
+const CHUNK: usize = 4096;
+
+/// A field of vectors on the control points, by component.
+type VectorField = [Vec<f64>; 2];
+
+/// Mass per unit thickness, kg/m.
+#[derive(Debug, Clone)]
+pub struct MassMatrix {
+    row_sums: Vec<f64>,
+    /// Row sums up to this, kg/m, are taken for none.
+    negligible: f64,
+    kind: Kind,
+}
+
+#[derive(Debug, Clone)]
+enum Kind {
+    /// Inverse row sums, zero where negligible.
+    Lumped {
+        inverse: Vec<f64>,
+    },
+    Consistent(Box<Consistent>),
+}
+
+#[derive(Debug, Clone)]
+struct Consistent {
+    matrix: Stencil,
+    /// One for both components, or one for each.
+    factors: Vec<Factor>,
+}
+
+impl MassMatrix {
+    /// Mass of a body of `density` (kg/m³) whose components of velocity are prescribed at the `held` control points.
+    ///
+    /// # Errors
+    /// If the consistent matrix is singular to round-off. Validation refuses too few points per span, which make it so exactly.
+    pub fn new(lattice: &Lattice, density: f64, mass: scene::Mass, held: [Vec<usize>; 2]) -> Result<Self, Failure> {
+        let mut row_sums = lattice.integrate(|_, _, _| 1.0);
+        row_sums.iter_mut().for_each(|m| *m *= density);
+        let negligible = NEGLIGIBLE * row_sums.iter().copied().fold(0.0, larger);
+        let kind = match fault!("mass-lumped", mass => scene::Mass::Lumped) {
+            scene::Mass::Lumped => {
+                let inverse = row_sums.iter().map(|&m| if m > negligible { 1.0 / m } else { 0.0 }).collect();
+                Kind::Lumped { inverse }
+            }
+            scene::Mass::Consistent => {
+                let empty: Vec<usize> = lattice.grid.indices().filter(|&at| row_sums[at] <= negligible).collect();
+                let consistent = Consistent::new(lattice, density, held, &empty).ok_or(Failure::SingularMass)?;
+                Kind::Consistent(Box::new(consistent))
+            }
+        };
+        Ok(Self { row_sums, negligible, kind })
+    }
+
+    /// Row sums, kg/m: the mass of each control point.
+    pub fn row_sums(&self) -> &[f64] {
+        &self.row_sums
+    }
+
+    /// Forces become accelerations: `M⁻¹ f`, zero where held (consistent mass) or without mass.
+    pub fn divide(&self, forces: &mut VectorField) {
+        for component in 0..2 {
+            self.divide_component(component, &mut forces[component]);
+        }
+    }
+
+    /// [`Self::divide`] for one component.
+    pub fn divide_component(&self, component: usize, force: &mut [f64]) {
+        match &self.kind {
+            Kind::Lumped { inverse } => {
+                force.par_iter_mut().zip(inverse).with_min_len(CHUNK).for_each(|(f, inverse)| *f *= inverse);
+            }
+            Kind::Consistent(consistent) => {
+                let right = force.to_vec();
+                consistent.factors[component % consistent.factors.len()].solve(&right, force);
+            }
+        }
+    }
+
+    /// `out = M x` for one component.
+    pub fn multiply(&self, x: &[f64], out: &mut [f64]) {
+        match &self.kind {
+            Kind::Lumped { .. } => out.iter_mut().zip(x).zip(&self.row_sums).for_each(|((o, x), m)| *o = m * x),
+            Kind::Consistent(consistent) => drop(consistent.matrix.apply(x, out)),
+        }
+    }
+
+    /// `½ vᵀ M v`.
+    pub fn half_square(&self, v: &VectorField) -> f64 {
+        match &self.kind {
+            Kind::Lumped { .. } => {
+                let squares = self.row_sums.iter().zip(v[0].iter().zip(&v[1]));
+                squares.map(|(m, (x, y))| 0.5 * m * (x * x + y * y)).sum()
+            }
+            Kind::Consistent(consistent) => {
+                let mut image = consistent.matrix.grid.zeros();
+                v.iter().map(|v| 0.5 * consistent.matrix.apply(v, &mut image)).sum()
+            }
+        }
+    }
+
+    /// Whether a control point can be accelerated.
+    pub fn moves(&self, at: usize) -> bool {
+        self.row_sums[at] > self.negligible
+    }
+
+    /// Heap memory, bytes.
+    pub fn bytes(&self) -> usize {
+        let kind = match &self.kind {
+            Kind::Lumped { inverse } => 8 * inverse.len(),
+            Kind::Consistent(consistent) => {
+                consistent.matrix.bytes() + consistent.factors.iter().map(Factor::bytes).sum::<usize>()
+            }
+        };
+        8 * self.row_sums.len() + kind
+    }
+}
+
+impl Consistent {
+    /// None if the matrix is not positive definite.
+    fn new(lattice: &Lattice, density: f64, held: [Vec<usize>; 2], empty: &[usize]) -> Option<Self> {
+        let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
+        add_form(&mut matrix, lattice, Form::Mass, &Constant(density));
+        let mut cholesky = SparseCholesky::default(); // one symbolic factorisation for all
+        let mut factor = |held: &[usize]| {
+            let out: Vec<usize> = held.iter().chain(empty).copied().collect();
+            cholesky.factor(&matrix, &out)
+        };
+        let factors =
+            if held[0] == held[1] { vec![factor(&held[0])?] } else { vec![factor(&held[0])?, factor(&held[1])?] };
+        Some(Self { matrix, factors })
+    }
+}

@@ -1,0 +1,33 @@
+//! Least-squares projection of a function onto the spline space, with the consistent mass of the material points.
+//!
+//! `Σ_J M_IJ u_J = Σ_p V_p N_I(x_p) f(x_p)`: the discrete least-squares fit at the points, of order p + 1 for every layout.
+
+use crate::phase_field::assembly::{Constant, Form, add_form};
+use crate::linear_algebra::cholesky::{Factor, SparseCholesky};
+use crate::particles::lattice::Lattice;
+use crate::linear_algebra::stencil::Stencil;
+
+/// Projector on the points of one lattice.
+#[derive(Debug)]
+pub struct Projection<'a> {
+    lattice: &'a Lattice,
+    factor: Factor,
+}
+
+impl<'a> Projection<'a> {
+    /// Factors the mass matrix; fields are zero at the `held` control points. `None` if the points do not determine a
+    /// field: fewer than p + 1 of them in some span, or spans without any.
+    pub fn new(lattice: &'a Lattice, held: &[usize]) -> Option<Self> {
+        let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
+        add_form(&mut matrix, lattice, Form::Mass, &Constant(1.0));
+        Some(Self { lattice, factor: SparseCholesky::default().factor(&matrix, held)? })
+    }
+
+    /// Control values of the projection of a function of position (m).
+    pub fn project(&self, function: impl Fn([f64; 2]) -> f64 + Sync) -> Vec<f64> {
+        let right = self.lattice.integrate(|_, _, position| function(position));
+        let mut field = self.lattice.grid.zeros();
+        self.factor.solve(&right, &mut field);
+        field
+    }
+}

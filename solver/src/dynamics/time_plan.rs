@@ -1,0 +1,141 @@
+//! Time steps and samples: a sample interval is a whole number of equal steps.
+
+use crate::contact::motion::{MOST, longest_step};
+use crate::linear_algebra::extremes::smaller;
+use crate::scene::{Analysis, Output, Scene, TimeStep};
+
+/// Fraction of the longest step of bodies that meet that is taken: speeds change.
+const SPARE: f64 = 0.8;
+
+/// Steps and samples of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimePlan {
+    /// Time step, s.
+    pub step: f64,
+    /// Steps between samples.
+    pub steps_per_sample: usize,
+    /// Samples after the first.
+    pub samples: usize,
+    /// Critical step of the operator, s.
+    pub critical: f64,
+}
+
+impl TimePlan {
+    /// Plan for a scene whose operator has the critical step `critical` (s), with warnings for people.
+    pub fn new(scene: &Scene, critical: f64) -> (Self, Vec<String>) {
+        Self::within(&scene.analysis, &scene.output, critical, longest_step(scene))
+    }
+
+    /// Plan for a critical step and the longest step (s) in which contact can follow bodies that meet.
+    fn within(analysis: &Analysis, output: &Output, critical: f64, passing: f64) -> (Self, Vec<String>) {
+        let mut warnings = Vec::new();
+        let end = analysis.end_time;
+        let stable = fault!("safety-ignored", analysis.safety => 1.0) * critical;
+        let longest = match analysis.time_step {
+            TimeStep::Auto => smaller(smaller(stable, SPARE * passing), end),
+            TimeStep::Fixed(step) => smaller(step, end),
+        };
+        if analysis.time_step == TimeStep::Auto && longest < stable.min(end) {
+            warnings.push(format!(
+                "bodies approach each other so fast that the time step is {longest:.4e} s instead of {stable:.4e} s: \
+                 contact follows {MOST} spans in a step"
+            ));
+        }
+        let mut samples = output.samples.max(1);
+        if end / (samples as f64) < 0.5 * longest {
+            let asked = samples;
+            samples = ((end / longest).floor() as usize).max(1);
+            warnings.push(format!(
+                "{asked} samples would shorten the time step of {longest:.4e} s more than twofold; {samples} are taken"
+            ));
+        }
+        let interval = end / samples as f64;
+        let steps_per_sample = ((interval / longest) * (1.0 - 1e-12)).ceil().max(1.0) as usize;
+        let step = interval / steps_per_sample as f64;
+        if step > critical {
+            warnings.push(format!(
+                "the time step {step:.4e} s is {:.3} times the critical step {critical:.4e} s of the undamaged body: \
+                 expect the run to break down, or set time_step = \"auto\"",
+                step / critical
+            ));
+        }
+        if step > passing {
+            warnings.push(format!(
+                "in the time step {step:.4e} s bodies approach each other by more than {MOST} spans: the run ends where \
+                 they meet; give {:.4e} s or less, or time_step = \"auto\"",
+                SPARE * passing
+            ));
+        }
+        (Self { step, steps_per_sample, samples, critical }, warnings)
+    }
+
+    /// Steps in all.
+    pub fn steps(&self) -> usize {
+        self.samples.saturating_mul(self.steps_per_sample)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Frame, Kinematics, Mass, Plane, Transfer};
+
+    fn plan(end_time: f64, time_step: TimeStep, samples: usize, critical: f64) -> (TimePlan, Vec<String>) {
+        plan_within(end_time, time_step, samples, critical, f64::INFINITY)
+    }
+
+    fn plan_within(
+        end_time: f64,
+        time_step: TimeStep,
+        samples: usize,
+        critical: f64,
+        passing: f64,
+    ) -> (TimePlan, Vec<String>) {
+        let analysis = Analysis {
+            plane: Plane::Strain,
+            thickness: 1.0,
+            frame: Frame::Total,
+            kinematics: Kinematics::Small,
+            end_time,
+            time_step,
+            safety: 0.8,
+            transfer: Transfer::Flip,
+            mass: Mass::Lumped,
+            gravity: [0.0; 2],
+        };
+        TimePlan::within(&analysis, &Output { samples, frames: Vec::new() }, critical, passing)
+    }
+
+    #[test]
+    fn samples_fall_on_whole_steps_and_the_step_is_never_longer_than_allowed() {
+        let (plan, warnings) = plan(1.0, TimeStep::Auto, 7, 0.03);
+        assert!(warnings.is_empty());
+        assert!(plan.step <= 0.8 * 0.03 && plan.step > 0.5 * 0.8 * 0.03);
+        approx::assert_relative_eq!(plan.step * plan.steps() as f64, 1.0, epsilon = 1e-14);
+    }
+
+    #[test]
+    fn more_samples_than_steps_give_fewer_rows_and_a_warning() {
+        let (plan, warnings) = plan(1.0, TimeStep::Auto, 1000, 0.1);
+        assert_eq!(warnings.len(), 1);
+        assert!(plan.samples <= 12 && plan.step >= 0.04, "{plan:?}");
+    }
+
+    #[test]
+    fn bodies_that_would_pass_each_other_shorten_the_step_or_warn() {
+        let (plan, warnings) = plan_within(1.0, TimeStep::Auto, 7, 0.03, 0.01);
+        assert!(plan.step <= 0.8 * 0.01 && plan.step > 0.7 * 0.8 * 0.01, "{plan:?}");
+        assert!(warnings.len() == 1 && warnings[0].contains("contact follows 0.5 spans"), "{warnings:?}");
+        assert!(plan_within(1.0, TimeStep::Auto, 7, 0.03, 0.03).1.is_empty());
+        let (plan, warnings) = plan_within(1.0, TimeStep::Fixed(0.02), 5, 0.1, 0.01);
+        assert_eq!(plan.steps(), 50);
+        assert!(warnings.len() == 1 && warnings[0].contains("8.0000e-3 s or less"), "{warnings:?}");
+    }
+
+    #[test]
+    fn a_step_beyond_the_critical_one_warns() {
+        let (plan, warnings) = plan(1.0, TimeStep::Fixed(0.2), 5, 0.1);
+        assert_eq!(plan.steps(), 5);
+        assert!(warnings[0].contains("2.000 times the critical step"), "{warnings:?}");
+    }
+}

@@ -1,0 +1,128 @@
+//! How a body in the total frame begins: from a scene, or from given fields under loads that vary in space.
+
+use std::sync::Arc;
+
+use super::forced::Forced;
+use super::{TotalFrame, VectorField};
+use crate::linear_algebra::conjugate_gradients::SolveFailure;
+use crate::dynamics::constraints::Constraints;
+use crate::dynamics::energy::Ledger;
+use crate::error::Failure;
+use crate::dynamics::forcing::Forcing;
+use crate::phase_field::fracture::{Fracturing, lowest_tip};
+use crate::particles::lattice::Lattice;
+use crate::dynamics::loads::NodalLoad;
+use crate::dynamics::mass::MassMatrix;
+use crate::material::{ElasticModuli, FractureModel};
+use crate::splines::patch::Patch;
+use crate::scene::Scene;
+use crate::transfer::sweep::StripForces;
+
+impl TotalFrame {
+    /// The body of `scene` at t = 0 with its initial accelerations.
+    ///
+    /// # Errors
+    /// If the body holds no material point, a part of a traction would be lost, the initial phase field does not converge, or a
+    /// consistent mass matrix is singular to round-off.
+    pub fn new(scene: &Scene) -> Result<Self, Failure> {
+        let patch = Patch::new(&scene.mesh);
+        let body = &scene.bodies[0];
+        let material = &scene.materials[&body.material];
+        let lattice = Lattice::new(&patch, body);
+        if lattice.count() == 0 {
+            return Err(Failure::NoPoints(0));
+        }
+        let grid = lattice.grid;
+        let constraints = Constraints::new(grid, &scene.boundaries);
+        let held = [0, 1].map(|component| constraints.held(component));
+        let fracture = material
+            .fracture
+            .as_ref()
+            .map(|f| Fracturing::new(&lattice, body, FractureModel::new(f), &scene.solver))
+            .transpose()?;
+        let mass = MassMatrix::new(&lattice, material.density, scene.analysis.mass, held)?;
+        let load = |(number, traction)| {
+            let load = NodalLoad::new(&patch, body, traction, |at| mass.moves(at));
+            load.map_err(|lost| Failure::LostTraction { body: 0, traction: number, lost })
+        };
+        let zeros = || [grid.zeros(), grid.zeros()];
+        let mut frame = Self {
+            loads: body.tractions.iter().enumerate().map(load).collect::<Result<_, _>>()?,
+            forced: None,
+            mass,
+            constraints,
+            moduli: ElasticModuli::new(material, scene.analysis.plane),
+            kinematics: scene.analysis.kinematics,
+            shape: body.shape.clone(),
+            thickness: scene.analysis.thickness,
+            gravity: scene.analysis.gravity,
+            strip_forces: StripForces::new(&lattice),
+            lowest_tip: lowest_tip(scene, body),
+            displacement: zeros(),
+            velocity: zeros(),
+            acceleration: zeros(),
+            internal: zeros(),
+            elastic_energy: 0.0,
+            ledger: Ledger::default(),
+            time: 0.0,
+            driven_power: 0.0,
+            judged_stiffening: 1.0,
+            patch,
+            grid,
+            lattice,
+            fracture,
+        };
+        frame.set_initial_velocity(body.velocity, body.angular_velocity);
+        frame.begin();
+        Ok(frame)
+    }
+
+    /// Begins anew at t = 0 from given control values of displacement (m) and velocity (m/s), under loads that vary in space.
+    ///
+    /// # Errors
+    /// If the initial phase field does not converge.
+    pub fn start_from(
+        &mut self,
+        displacement: VectorField,
+        velocity: VectorField,
+        forcing: Arc<dyn Forcing>,
+    ) -> Result<(), SolveFailure> {
+        let mut forced = Forced::new(forcing, &self.patch, &self.lattice);
+        forced.update_forces(&self.lattice, 0.0);
+        if let Some(fracture) = &mut self.fracture {
+            fracture.field.set_load(forced.phase_load(&self.lattice, 0.0));
+        }
+        self.forced = Some(Box::new(forced));
+        self.start_with(displacement, velocity)
+    }
+
+    /// Begins anew at t = 0 from given control values of displacement (m) and velocity (m/s), under the loads it has.
+    ///
+    /// # Errors
+    /// If the initial phase field does not converge.
+    pub fn start_with(&mut self, displacement: VectorField, velocity: VectorField) -> Result<(), SolveFailure> {
+        (self.displacement, self.velocity) = (displacement, velocity);
+        self.constraints.apply_velocity(&mut self.velocity);
+        self.ledger = Ledger::default();
+        self.time = 0.0;
+        if let Some(fracture) = &mut self.fracture {
+            fracture.update_history(&self.lattice, self.moduli, self.kinematics, &self.displacement);
+            fracture.field.initialise(&self.lattice, &fracture.history)?;
+        }
+        self.begin();
+        Ok(())
+    }
+
+    /// Rigid motion about the centre of mass: linear in the position, so its control values are exact.
+    fn set_initial_velocity(&mut self, velocity: [f64; 2], angular_velocity: f64) {
+        let [x, y] = self.patch.control_positions();
+        let mass = self.mass.row_sums();
+        let total: f64 = mass.iter().sum();
+        let center = [&x, &y].map(|x| mass.iter().zip(x).map(|(m, x)| m * x).sum::<f64>() / total);
+        for at in self.grid.indices() {
+            self.velocity[0][at] = velocity[0] - angular_velocity * (y[at] - center[1]);
+            self.velocity[1][at] = velocity[1] + angular_velocity * (x[at] - center[0]);
+        }
+        self.constraints.apply_velocity(&mut self.velocity);
+    }
+}

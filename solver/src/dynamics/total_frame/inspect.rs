@@ -1,0 +1,63 @@
+//! The points of a body in the total frame, one by one, and the spans they are in: for looking at a run.
+
+use std::collections::BTreeSet;
+
+use super::TotalFrame;
+use crate::output::inspection::{PointFracture, PointState};
+use crate::linear_algebra::lane::Lane;
+use crate::output::span_grid::{Corner, SpanGrid};
+use crate::material::split::split;
+
+impl TotalFrame {
+    /// Calls `f` with the state of every point.
+    pub(crate) fn for_each_point_state(&self, f: &mut dyn FnMut(PointState)) {
+        let mut point = 0;
+        self.lattice.for_each_point(|batch, lane, position, _| {
+            let functions = self.patch.functions(self.lattice.location(&self.patch, batch, lane));
+            let value = |field: &Vec<f64>| functions.interpolate(field);
+            let [x, y] = self.displacement.each_ref().map(value);
+            let displacement = [x.value, y.value];
+            let velocity = self.velocity.each_ref().map(|v| value(v).value);
+            let present = [0, 1].map(|d| position[d] + displacement[d]);
+            let (strain, _) = self.strain([x.gradient, y.gradient]);
+            let lanes = strain.map(Lane::splat);
+            let fracture = self.fracture.as_ref();
+            let stress = match fracture {
+                None => self.moduli.stress(lanes).map(|s| s[0]),
+                Some(fracture) => {
+                    let state = split(&self.moduli, fracture.model.split, lanes);
+                    let g = fracture.model.degradation(Lane::splat(fracture.phase[batch][lane]))[0];
+                    [0, 1, 2].map(|i| state.stress_minus[i][0] + g * state.stress_plus[i][0])
+                }
+            };
+            let fracture =
+                fracture.map(|f| PointFracture { history: f.history[batch][lane], phase: f.phase[batch][lane] });
+            f(PointState { body: 0, point, position, present, displacement, velocity, strain, stress, fracture });
+            point += 1;
+        });
+    }
+
+    /// The spans with points; their corners move with the body.
+    pub(crate) fn span_grid(&self) -> SpanGrid {
+        let mut grid = SpanGrid::default();
+        grid.add(&self.patch, self.spans_with_points(), |functions| {
+            let value = |field: &Vec<f64>| functions.interpolate(field).value;
+            let displacement = self.displacement.each_ref().map(value);
+            Corner {
+                body: 0,
+                position: [0, 1].map(|d| functions.position[d] + displacement[d]),
+                velocity: self.velocity.each_ref().map(value),
+                phase: self.fracture.as_ref().map(|f| functions.interpolate(f.field.control_values()).value),
+            }
+        });
+        grid
+    }
+
+    fn spans_with_points(&self) -> BTreeSet<[usize; 2]> {
+        let mut spans = BTreeSet::new();
+        self.lattice.for_each_point(|batch, lane, _, _| {
+            spans.insert(self.lattice.location(&self.patch, batch, lane).span);
+        });
+        spans
+    }
+}

@@ -1,0 +1,176 @@
+//! What can be seen of a body in the total frame at a whole step.
+
+use std::sync::Arc;
+
+use super::forced::Forced;
+use super::{TotalFrame, VectorField};
+use crate::dynamics::constraints::Constraints;
+use crate::dynamics::energy::{FractureSample, Sample};
+use crate::dynamics::forcing::Forcing;
+use crate::phase_field::fracture::Fracturing;
+use crate::material::hencky::{growth, hencky_strain, symmetric};
+use crate::output::inspection::InvertedPoint;
+use crate::linear_algebra::lane::Lane;
+use crate::particles::lattice::Lattice;
+use crate::dynamics::mass::MassMatrix;
+use crate::material::ElasticModuli;
+use crate::splines::patch::Patch;
+use crate::scene::{Kinematics, Shape};
+
+impl TotalFrame {
+    /// Position (m) of the fastest control point, and its speed (m/s), infinite if it is no number.
+    pub fn fastest_control_point(&self) -> ([f64; 2], f64) {
+        let [vx, vy] = &self.velocity;
+        let speed = |at: &usize| {
+            let speed = vx[*at].hypot(vy[*at]);
+            if speed.is_nan() { f64::INFINITY } else { speed }
+        };
+        let fastest = self.grid.indices().max_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or(0);
+        (self.patch.control_positions().map(|x| x[fastest]), speed(&fastest))
+    }
+
+    /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at zero.
+    pub fn sample(&self, dt: f64) -> Sample {
+        let [x, y] = self.patch.control_positions();
+        let kinetic = self.mass.half_square(&self.velocity);
+        let stagger = fault!("stagger-doubled", 0.25 => 0.5) * dt * dt * self.mass.half_square(&self.acceleration);
+        let mut momenta = [self.grid.zeros(), self.grid.zeros()];
+        for component in 0..2 {
+            self.mass.multiply(&self.velocity[component], &mut momenta[component]);
+        }
+        let momentum = momenta.each_ref().map(|p| p.iter().sum::<f64>());
+        let angular: f64 = self.grid.indices().map(|at| x[at] * momenta[1][at] - y[at] * momenta[0][at]).sum();
+        let fracture = self.fracture.as_ref().map(|f| {
+            let (energy, min_phase) = f.surface_energy(&self.lattice);
+            FractureSample {
+                energy,
+                history_work: self.ledger.history_work,
+                crack_tip: f.crack_tip(&self.lattice, self.lowest_tip),
+                min_phase,
+                iterations: f.iterations,
+            }
+        });
+        let sample = Sample {
+            time: self.time,
+            kinetic,
+            stagger,
+            elastic: self.elastic_energy,
+            fracture,
+            external_work: self.ledger.external_work,
+            momentum,
+            angular_momentum: angular,
+            time_step: dt,
+            ..Sample::default()
+        };
+        sample.for_thickness(fault!("thickness-forgotten", self.thickness => 1.0))
+    }
+
+    /// The point that is turned inside out furthest, if one is; small strains know none.
+    pub fn inverted_point(&self) -> Option<InvertedPoint> {
+        let (mut worst, mut point) = (None, 0);
+        self.lattice.for_each_point(|batch, lane, position, _| {
+            let functions = self.patch.functions(self.lattice.location(&self.patch, batch, lane));
+            let [x, y] = self.displacement.each_ref().map(|u| functions.interpolate(u));
+            let (_, determinant) = self.strain([x.gradient, y.gradient]);
+            if determinant <= 0.0 {
+                let inverted = InvertedPoint { point, position, determinant };
+                worst = Some(worst.map_or(inverted, |worst: InvertedPoint| worst.worse(inverted)));
+            }
+            point += 1;
+        });
+        worst
+    }
+
+    /// Strain `[xx, yy, xy]` of a displacement gradient, and by how much the volume grew.
+    pub fn strain(&self, gradient: [[f64; 2]; 2]) -> ([f64; 3], f64) {
+        match self.kinematics {
+            Kinematics::Small => (symmetric(gradient), 1.0),
+            Kinematics::Finite => (hencky_strain(&gradient), growth(&gradient)),
+        }
+    }
+
+    /// Stress `[xx, yy, xy]` (Pa) of the undamaged body under a displacement field at a position; NaN outside the patch. With
+    /// finite kinematics it is Kirchhoff's.
+    pub fn elastic_stress_at(&self, displacement: &[Vec<f64>; 2], position: [f64; 2]) -> [f64; 3] {
+        let [x, y] = [0, 1].map(|c| self.patch.evaluate(&displacement[c], position));
+        let (Some(x), Some(y)) = (x, y) else { return [f64::NAN; 3] };
+        let (strain, _) = self.strain([x.gradient, y.gradient]);
+        self.moduli.stress(strain.map(Lane::splat)).map(|s| s[0])
+    }
+
+    /// Elastic energy, J.
+    pub fn elastic_energy(&self) -> f64 {
+        self.elastic_energy * self.thickness
+    }
+
+    /// External work so far, J.
+    pub fn external_work(&self) -> f64 {
+        self.ledger.external_work * self.thickness
+    }
+
+    /// Time, s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Material points.
+    pub fn lattice(&self) -> &Lattice {
+        &self.lattice
+    }
+
+    /// Region of the body.
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// Background patch.
+    pub fn patch(&self) -> &Patch {
+        &self.patch
+    }
+
+    /// Moduli.
+    pub fn moduli(&self) -> ElasticModuli {
+        self.moduli
+    }
+
+    /// Control values of the displacement, m.
+    pub fn displacement(&self) -> &VectorField {
+        &self.displacement
+    }
+
+    /// Control values of the velocity, m/s.
+    pub fn velocity(&self) -> &VectorField {
+        &self.velocity
+    }
+
+    /// Mass per unit thickness.
+    pub fn mass(&self) -> &MassMatrix {
+        &self.mass
+    }
+
+    /// Sides with prescribed velocity.
+    pub fn constraints(&self) -> &Constraints {
+        &self.constraints
+    }
+
+    /// Nodal forces (N/m) of the loads that vary in space, at the present time.
+    pub fn forced_loads(&self) -> VectorField {
+        let mut forces = [self.grid.zeros(), self.grid.zeros()];
+        if let Some(forced) = &self.forced {
+            forced.add_to(&mut forces);
+        }
+        forces
+    }
+
+    /// Right-hand side (m²) of the phase-field equation with the source and flux of a forcing at t = 0.
+    pub fn phase_load(&self, forcing: Arc<dyn Forcing>) -> Vec<f64> {
+        Forced::new(forcing, &self.patch, &self.lattice).phase_load(&self.lattice, 0.0)
+    }
+
+    /// Heap memory of mechanics and of the phase field, bytes.
+    pub fn bytes(&self) -> [usize; 2] {
+        let fields = 8 * 8 * self.grid.len(); // displacement, velocity, acceleration, internal forces
+        let mechanics = fields + self.lattice.bytes() + self.mass.bytes() + self.strip_forces.bytes();
+        [mechanics, self.fracture.as_ref().map_or(0, Fracturing::bytes)]
+    }
+}

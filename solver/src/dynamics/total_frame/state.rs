@@ -1,0 +1,56 @@
+//! The state of a body in the total frame.
+
+use super::TotalFrame;
+use crate::checkpoint::{Archive, StateError};
+use crate::phase_field::fracture::Fracturing;
+
+impl TotalFrame {
+    /// Stores or takes up what steps change.
+    ///
+    /// # Errors
+    /// Bytes of another scene, and loads that only the program knows.
+    pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self {
+            patch: _,
+            grid: _,
+            lattice: _,
+            moduli: _,
+            kinematics: _,
+            shape: _,
+            thickness: _,
+            gravity: _,
+            loads: _,
+            forced,
+            constraints: _,
+            mass: _,
+            displacement,
+            velocity,
+            acceleration,
+            internal,
+            strip_forces: _,
+            fracture,
+            lowest_tip: _,
+            elastic_energy,
+            ledger,
+            time,
+            driven_power,
+            judged_stiffening,
+        } = self;
+        if forced.is_some() {
+            return Err(StateError("loads that only the program knows cannot be stored".to_string()));
+        }
+        let stored = fault!("checkpoint-without-accelerations", 4 => 3);
+        for field in [displacement, velocity, internal, acceleration].into_iter().take(stored) {
+            field.iter_mut().try_for_each(|component| archive.list(component))?;
+        }
+        if let Some(Fracturing { model: _, history, phase, remembered, field, iterations }) = fracture {
+            [history, phase, remembered].into_iter().try_for_each(|values| archive.list(values))?;
+            field.exchange(archive)?;
+            archive.value(iterations)?;
+        }
+        [elastic_energy, time, driven_power, judged_stiffening]
+            .into_iter()
+            .try_for_each(|value| archive.value(value))?;
+        archive.value(ledger)
+    }
+}

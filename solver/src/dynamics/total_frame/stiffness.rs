@@ -1,0 +1,114 @@
+//! Stiffness of the undamaged body in the total frame, and the critical step it implies.
+
+use std::collections::BTreeSet;
+
+use super::{TotalFrame, VectorField};
+use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
+use crate::transfer::finite::sweep_with;
+use crate::transfer::kernels::ElasticStress;
+use crate::linear_algebra::lane::Lane;
+use crate::particles::lattice::Lattice;
+use crate::material::ElasticModuli;
+use crate::scene::Kinematics;
+use crate::transfer::sweep::{Fields, StripForces};
+
+impl TotalFrame {
+    /// Critical time step of the undamaged body, s; infinite if nothing can move.
+    pub fn critical_step(&self) -> f64 {
+        let frequency = highest_frequency(&mut self.stiffness_operator());
+        fault!("critical-step-too-long", 2.0 => 2.2) / frequency
+    }
+
+    /// Control point and component of every degree of freedom that can move.
+    pub fn free_components(&self) -> Vec<(usize, usize)> {
+        let held: BTreeSet<_> = self.constraints.iter().map(|(at, c, _)| (at, c)).collect();
+        let moving = |&(at, c): &(usize, usize)| self.mass.moves(at) && !held.contains(&(at, c));
+        self.grid.indices().flat_map(|at| [(at, 0), (at, 1)]).filter(moving).collect()
+    }
+
+    /// Room for [`Self::elastic_forces`].
+    pub fn strip_forces(&self) -> StripForces {
+        self.strip_forces.clone()
+    }
+
+    /// Internal forces (N/m) of the undamaged body under a displacement (m), linear in it.
+    pub fn elastic_forces(&self, displacement: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
+        elastic_forces(&self.lattice, self.moduli, Kinematics::Small, displacement, strips, out);
+    }
+
+    /// Stiffness of the undamaged body on its free degrees of freedom.
+    pub fn stiffness_operator(&self) -> Stiffness<'_> {
+        let zeros = || [self.grid.zeros(), self.grid.zeros()];
+        Stiffness {
+            frame: self,
+            free: self.free_components(),
+            field: zeros(),
+            image: zeros(),
+            strips: self.strip_forces.clone(),
+        }
+    }
+}
+
+/// Nodal forces (N/m) of the elastic stress under a displacement (m); returns the elastic energy, J/m.
+pub(super) fn elastic_forces(
+    lattice: &Lattice,
+    moduli: ElasticModuli,
+    kinematics: Kinematics,
+    displacement: &VectorField,
+    strips: &mut StripForces,
+    out: &mut VectorField,
+) -> f64 {
+    let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| ElasticStress { moduli, energy: Lane::ZERO }).collect();
+    let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
+    sweep_with(kinematics, lattice, fields, &mut kernels, Some(strips));
+    strips.assemble(lattice.grid.stride, out);
+    kernels.iter().map(|k| k.energy.sum()).sum()
+}
+
+/// Stiffness of the undamaged body on its free degrees of freedom, per unit thickness.
+#[derive(Debug)]
+pub struct Stiffness<'a> {
+    frame: &'a TotalFrame,
+    free: Vec<(usize, usize)>,
+    field: VectorField,
+    image: VectorField,
+    strips: StripForces,
+}
+
+impl Stiffness<'_> {
+    /// Control point and component of each degree of freedom.
+    pub fn degrees_of_freedom(&self) -> &[(usize, usize)] {
+        &self.free
+    }
+
+    fn unpack(&mut self, x: &[f64]) {
+        for (&(at, component), x) in self.free.iter().zip(x) {
+            self.field[component][at] = *x;
+        }
+    }
+
+    fn pack(&self, field: &VectorField, out: &mut [f64]) {
+        for (&(at, component), out) in self.free.iter().zip(out) {
+            *out = field[component][at];
+        }
+    }
+}
+
+impl StiffnessOperator for Stiffness<'_> {
+    fn size(&self) -> usize {
+        self.free.len()
+    }
+
+    fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
+        self.unpack(x);
+        self.frame.elastic_forces(&self.field, &mut self.strips, &mut self.image);
+        self.pack(&self.image, out);
+    }
+
+    fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]) {
+        self.unpack(x);
+        let mut quotient = self.field.clone();
+        self.frame.mass.divide(&mut quotient);
+        self.pack(&quotient, out);
+    }
+}

@@ -1,0 +1,131 @@
+//! Explicit dynamics in the updated frame: points carry everything, the grid is rebuilt at every step (lumped mass).
+//!
+//! Between two whole steps n and n + 1 the shape functions are those at the positions x(n). The scheme is velocity Verlet
+//! written as one full kick on the rebuilt grid; no acceleration outlives its grid. What the points take from the grid is
+//! the transfer's choice: see [`departure`]. Strains are small, the sum of `dt sym(grad v(n + 1/2))`, or finite: Hencky
+//! strains of the deformation gradient of each point with Kirchhoff stresses, so that the internal force is
+//! `Σ V tau grad N` with the reference volume V ([`crate::material::hencky`]). Every loss of a transfer is measured: see [`losses`].
+//!
+//! Every body is a discrete field of its own ([`field`]), with its own mass, momentum, force and phase field on the shared patch.
+//! Bodies meet through [`crate::contact`], if the scene declares it: its impulses are part of the kick.
+//!
+//! # The critical step
+//!
+//! It is shorter than the `2/ω_max` of a grid that keeps its velocity. For points at rest a mode of the grid obeys
+//! `u ← u + dt (v − dt ω² u)`, `v ← v − dt s ω² u` with FLIP, where 0 ≤ s ≤ 1 is what the way to the points and back
+//! (`M⁻¹` times the consistent mass) leaves of an increment. The mode is stable up to `ω dt = 2/√(2 − s)`: 1.46 for the
+//! shortest waves of quadratic splines, and √2 for what the points do not see. [`UpdatedFrame::critical_step`] is √2/ω_max
+//! for every transfer but MUSL, whose limit is 2/ω_max ([`departure`]). With finite strains ω_max is that of the stiffness
+//! without the geometric part.
+
+pub mod affine;
+pub mod assembly;
+mod begin;
+pub mod cracking;
+pub mod departure;
+pub mod fictitious;
+pub mod field;
+pub mod follower;
+pub mod grid;
+mod inspect;
+pub mod losses;
+pub mod observe;
+pub mod paint;
+pub mod part;
+pub mod points;
+pub mod smoothing;
+mod state;
+pub mod stiffness;
+pub mod strain;
+pub mod tractions;
+pub mod transfer;
+pub mod verify;
+pub mod volume_forcing;
+pub mod windows;
+
+use std::sync::Arc;
+
+use crate::contact::Contact;
+use crate::contact::impulse::Kick;
+use crate::error::Failure;
+use crate::linear_algebra::extremes::smaller;
+use crate::splines::patch::Patch;
+use crate::scene::Scene;
+use field::DiscreteField;
+
+/// The bodies of a scene in the updated frame.
+#[derive(Debug, Clone)]
+pub struct UpdatedFrame {
+    patch: Arc<Patch>,
+    fields: Vec<DiscreteField>,
+    contact: Option<Contact>,
+    thickness: f64,
+}
+
+impl UpdatedFrame {
+    /// The bodies of `scene` at t = 0 with their initial accelerations.
+    ///
+    /// # Errors
+    /// If an initial phase field does not converge, or a point is not on the patch.
+    pub fn new(scene: &Scene) -> Result<Self, Failure> {
+        let patch = Arc::new(Patch::new(&scene.mesh));
+        let deformable = scene.bodies.iter().filter(|body| !body.rigid);
+        let fields = deformable.map(|body| DiscreteField::new(scene, body, &patch)).collect::<Result<Vec<_>, _>>()?;
+        let mut contact = Contact::new(scene, &patch);
+        if let Some(contact) = &mut contact {
+            contact.find(&fields)?;
+        }
+        Ok(Self { patch, fields, contact, thickness: scene.analysis.thickness })
+    }
+
+    /// Looks as far ahead as steps of `dt` seconds need, before the first one.
+    ///
+    /// # Errors
+    /// If bodies are about to meet that approach each other too far in a step.
+    pub fn prepare(&mut self, dt: f64) -> Result<(), Failure> {
+        let Some(contact) = &mut self.contact else { return Ok(()) };
+        self.fields.iter_mut().for_each(|field| field.expect_motion(dt));
+        contact.set_step(dt);
+        contact.move_rigid(0.0);
+        contact.find(&self.fields)?;
+        Ok(())
+    }
+
+    /// One time step of `dt` seconds.
+    ///
+    /// # Errors
+    /// If a phase field does not converge, a point leaves the patch, impulses of contact do not settle, or bodies meet that
+    /// approach each other too far in a step.
+    pub fn step(&mut self, dt: f64) -> Result<(), Failure> {
+        let kick = self.coming_kick(dt);
+        let Self { fields, contact, .. } = self;
+        if let Some(contact) = contact {
+            contact.set_step(dt);
+            for push in contact.act(fields, kick)? {
+                fields[push.body].push(push.at, push.acceleration);
+            }
+        }
+        fields.iter_mut().try_for_each(|field| field.step(dt))?;
+        if let Some(contact) = contact {
+            contact.move_rigid(fields[0].time());
+            contact.find(fields)?;
+        }
+        Ok(())
+    }
+
+    /// The kick of the coming step: the same for all bodies.
+    fn coming_kick(&self, dt: f64) -> Kick {
+        Kick { length: self.fields[0].kick_length(dt), step: dt }
+    }
+
+    /// Critical time step of the undamaged bodies at the present positions, s; infinite if nothing can move.
+    pub fn critical_step(&self) -> f64 {
+        self.fields.iter().map(|field| field.critical_step()).fold(f64::INFINITY, smaller)
+    }
+
+    /// Whether a point may have moved a quarter of the smallest span since the last call that said so: the time to take
+    /// the critical step again.
+    pub fn critical_step_is_due(&mut self) -> bool {
+        self.fields.iter_mut().any(|field| field.critical_step_is_due())
+    }
+}

@@ -1,0 +1,222 @@
+//! Affine velocities of the points: APIC and TPIC.
+//!
+//! A point carries a velocity gradient C beside its velocity, and gives the control point I at x_I (its Greville point)
+//! `v_p + C (x_I − x_p)`. Both transfers take `C = Σ v_I g_Iᵀ` from the grid and differ in g alone:
+//!
+//! ```text
+//! APIC   g_I = D⁻¹ N_I (x_I − x_p),    D = Σ N_I (x_I − x_p)(x_I − x_p)ᵀ         Jiang et al. (2015)
+//! TPIC   g_I = grad N_I
+//! ```
+//!
+//! Greville points reproduce positions, so D is diagonal, and g a product of one-dimensional factors. D is computed at every
+//! point: h²/4 for quadratics and h²/3 for cubics on uniform knots, but it goes to zero at the ends of an open knot
+//! vector, where the derivative of N is the limit, and at every knot for p = 1, where both transfers are the same.
+//! C is kept rather than C D: an affine field is then carried exactly wherever the point goes, and angular momentum to
+//! round-off as long as D does not change, which is on uniform knots for p ≥ 2 away from the sides of the patch.
+
+use rayon::prelude::*;
+
+use super::grid::VectorField;
+use super::points::{Cell, Cells, Point};
+use super::transfer::{MAX_FUNCTIONS, walk};
+use super::windows::{Window, control_values, cut, scatter};
+use crate::material::hencky::Gradient;
+use crate::linear_algebra::lane::{Vectorised, dispatch};
+use crate::splines::patch::{ControlGrid, Patch};
+use crate::splines::spline::{MAX_ORDER, ShapeFunctions, SplineSpace};
+
+/// `D/h²` below which the derivatives stand for the affine fit.
+const DEGENERATE: f64 = 1e-14;
+
+/// Where the velocity gradient of a point comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fit {
+    /// Fit with the shape functions as weights: APIC.
+    Weighted,
+    /// Gradient at the point: TPIC.
+    Taylor,
+}
+
+/// Velocity gradients of the points.
+#[derive(Debug, Clone)]
+pub struct AffineVelocities {
+    fit: Fit,
+    /// Velocity gradient of each point, 1/s, in the order of the points.
+    pub gradients: Vec<Gradient>,
+    greville: [Vec<f64>; 2],
+}
+
+impl AffineVelocities {
+    /// Points without velocity gradients.
+    pub fn new(fit: Fit, patch: &Patch, points: usize) -> Self {
+        let greville = [0, 1].map(|d| patch.spaces[d].greville());
+        Self { fit, gradients: vec![[[0.0; 2]; 2]; points], greville }
+    }
+
+    /// Goes over to another part of the patch.
+    pub fn follow(&mut self, patch: &Patch) {
+        self.greville = [0, 1].map(|d| patch.spaces[d].greville());
+    }
+
+    /// Velocity gradients from a velocity on the control points, m/s.
+    pub fn take(&mut self, patch: &Patch, cells: &Cells, points: &[Point], velocity: &VectorField) {
+        let Self { fit, gradients, greville } = self;
+        let (fit, grid) = (*fit, patch.control_grid());
+        let velocity = velocity.each_ref().map(|component| &component[..]);
+        let gradients = cut(gradients, cells.strips.iter().map(|s| s.points.clone())).into_par_iter();
+        gradients.zip(&cells.strips).for_each(|(gradients, strip)| {
+            let points = &points[strip.points.clone()];
+            let cells = &cells.cells[strip.cells.clone()];
+            dispatch(Take { patch, grid, fit, greville, velocity, cells, points, gradients });
+        });
+    }
+
+    /// Adds `Σ m N_I C (x_I − x_p)` to the momentum of the control points, kg/s.
+    pub fn give(&self, patch: &Patch, cells: &Cells, points: &[Point], density: f64, momentum: &mut VectorField) {
+        let Self { gradients, greville, .. } = self;
+        let grid = patch.control_grid();
+        scatter(&cells.strips, momentum.each_mut().map(|f| &mut f[..]), [grid.stride; 2], |strip, window| {
+            let cells = &cells.cells[strip.cells.clone()];
+            dispatch(Give { patch, grid, density, greville, cells, points, gradients, window });
+        });
+    }
+
+    /// Heap memory, bytes.
+    pub fn bytes(&self) -> usize {
+        self.gradients.len() * size_of::<Gradient>() + 8 * (self.greville[0].len() + self.greville[1].len())
+    }
+}
+
+impl Fit {
+    /// Factors `Σ f(x_k) slope_k` that take the slope of a function from its control values.
+    #[inline(always)]
+    fn slopes(
+        self,
+        space: &SplineSpace,
+        span: usize,
+        shape: &ShapeFunctions,
+        lever: &[f64; MAX_ORDER],
+    ) -> [f64; MAX_ORDER] {
+        if self == Self::Taylor {
+            return shape.derivative;
+        }
+        let spread: f64 = (0..=space.degree()).map(|k| shape.value[k] * lever[k] * lever[k]).sum();
+        let length = space.spans()[span].length();
+        if spread <= DEGENERATE * length * length {
+            return shape.derivative;
+        }
+        let inertia = fault!("apic-spread-of-quadratics", spread => 0.25 * length * length);
+        std::array::from_fn(|k| shape.value[k] * lever[k] / inertia)
+    }
+}
+
+/// `x_k − x` of the control points of a span.
+#[inline(always)]
+fn levers(greville: &[f64], first: usize, order: usize, x: f64) -> [f64; MAX_ORDER] {
+    std::array::from_fn(|k| if k < order { greville[first + k] - x } else { 0.0 })
+}
+
+struct Take<'a> {
+    patch: &'a Patch,
+    grid: ControlGrid,
+    fit: Fit,
+    greville: &'a [Vec<f64>; 2],
+    velocity: [&'a [f64]; 2],
+    cells: &'a [Cell],
+    points: &'a [Point],
+    gradients: &'a mut [Gradient],
+}
+
+impl Vectorised for Take<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        walk!(self)
+    }
+}
+
+impl Take<'_> {
+    #[inline(always)]
+    fn walk(self, kx: usize, ky: usize) {
+        let [x, y] = &self.patch.spaces;
+        let offset = self.cells.first().map_or(0, |cell| cell.points.start);
+        for cell in self.cells {
+            let local = control_values(self.velocity, self.grid, cell, kx, ky);
+            for at in cell.points.start - offset..cell.points.end - offset {
+                let position = self.points[at].position;
+                let sx = x.shape_functions(cell.span[0], position[0]);
+                let sy = y.shape_functions(cell.span[1], position[1]);
+                let gx =
+                    self.fit.slopes(x, cell.span[0], &sx, &levers(&self.greville[0], cell.first[0], kx, position[0]));
+                let gy =
+                    self.fit.slopes(y, cell.span[1], &sy, &levers(&self.greville[1], cell.first[1], ky, position[1]));
+                let mut value = [0.0; 2];
+                for l in 0..ky {
+                    for k in 0..kx {
+                        value = [0, 1].map(|c| value[c] + sx.value[k] * sy.value[l] * local[l * kx + k][c]);
+                    }
+                }
+                // Against the velocity at the point: a constant has no gradient, whatever rounding does to the factors.
+                let mut gradient = [[0.0; 2]; 2];
+                for l in 0..ky {
+                    for k in 0..kx {
+                        let factors = [gx[k] * sy.value[l], sx.value[k] * gy[l]];
+                        let against = [0, 1].map(|c| local[l * kx + k][c] - value[c]);
+                        gradient = [0, 1].map(|c| [0, 1].map(|d| gradient[c][d] + against[c] * factors[d]));
+                    }
+                }
+                self.gradients[at] = gradient;
+            }
+        }
+    }
+}
+
+struct Give<'a> {
+    patch: &'a Patch,
+    grid: ControlGrid,
+    density: f64,
+    greville: &'a [Vec<f64>; 2],
+    cells: &'a [Cell],
+    points: &'a [Point],
+    gradients: &'a [Gradient],
+    window: Window<'a, 2>,
+}
+
+impl Vectorised for Give<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        walk!(self)
+    }
+}
+
+impl Give<'_> {
+    #[inline(always)]
+    fn walk(mut self, kx: usize, ky: usize) {
+        let [x, y] = &self.patch.spaces;
+        for cell in self.cells {
+            let mut sums = [[0.0; 2]; MAX_FUNCTIONS];
+            for at in cell.points.clone() {
+                let point = &self.points[at];
+                let sx = x.shape_functions(cell.span[0], point.position[0]);
+                let sy = y.shape_functions(cell.span[1], point.position[1]);
+                let lx = levers(&self.greville[0], cell.first[0], kx, point.position[0]);
+                let ly = levers(&self.greville[1], cell.first[1], ky, point.position[1]);
+                let mass = self.density * point.volume;
+                let [[xx, xy], [yx, yy]] = self.gradients[at].map(|row| row.map(|c| mass * c));
+                let [cx, cy] = fault!("affine-transposed", [[xx, xy], [yx, yy]] => [[xx, yx], [xy, yy]]);
+                for l in 0..ky {
+                    for k in 0..kx {
+                        let n = sx.value[k] * sy.value[l];
+                        let sum = &mut sums[l * kx + k];
+                        sum[0] += n * (cx[0] * lx[k] + cx[1] * ly[l]);
+                        sum[1] += n * (cy[0] * lx[k] + cy[1] * ly[l]);
+                    }
+                }
+            }
+            self.window.add(self.grid, cell, &sums, kx, ky);
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! A body of the updated frame as a scene begins.
+
+use std::sync::Arc;
+
+use super::affine::{AffineVelocities, Fit};
+use super::cracking::Cracking;
+use super::departure::Departure;
+use super::field::DiscreteField;
+use super::grid::NodalFields;
+use super::losses::TransferLosses;
+use super::part;
+use super::points::{Cells, OutsidePatch, Point};
+use super::tractions::SurfaceLoad;
+use crate::contact::Surface;
+use crate::dynamics::energy::Ledger;
+use crate::error::Failure;
+use crate::phase_field::fracture::lowest_tip;
+use crate::particles::lattice::Lattice;
+use crate::dynamics::loads::{Balance, LostTraction};
+use crate::material::{ElasticModuli, FractureModel};
+use crate::splines::patch::Patch;
+use crate::scene::{Body, Kinematics, Material, Plane, Scene, Transfer};
+
+impl DiscreteField {
+    /// The body of `scene` at t = 0 with its initial velocities and accelerations.
+    ///
+    /// # Errors
+    /// If the body holds no material point, a part of a traction would be lost, the initial phase field does not converge, or a
+    /// point is not on the patch.
+    pub fn new(scene: &Scene, body: &Body, whole: &Arc<Patch>) -> Result<Self, Failure> {
+        let mut field = Self::at_rest(scene, body, whole)?;
+        let (center, velocity, spin) = (center_of_mass(&field.points), body.velocity, body.angular_velocity);
+        let rigidly = |x: [f64; 2]| [velocity[0] - spin * (x[1] - center[1]), velocity[1] + spin * (x[0] - center[0])];
+        field.points.iter_mut().for_each(|point| point.velocity = rigidly(point.position));
+        field.take_affine_velocities(rigidly);
+        let number = number_of(body, scene);
+        field.crack_and_stress(true)?;
+        (field.ledger, field.losses) = Default::default(); // there was no step yet
+        field.points_to_grid();
+        field.attach_first(number)?;
+        field.respond();
+        for (traction, load) in field.loads.iter().enumerate() {
+            let balance = Balance::of_edge(body, &body.tractions[traction].edge);
+            let shares = load.shares(&field.patch, &field.nodes);
+            balance.check(shares).map_err(|lost| Failure::LostTraction { body: number, traction, lost })?;
+        }
+        Ok(field)
+    }
+
+    /// Finds the first spans for the surface points of loads.
+    fn attach_first(&mut self, body: usize) -> Result<(), Failure> {
+        for (traction, load) in self.loads.iter_mut().enumerate() {
+            let bare = |OutsidePatch(place)| Failure::LostTraction { body, traction, lost: LostTraction::Bare(place) };
+            load.attach(&self.patch, &self.nodes).map_err(bare)?;
+        }
+        Ok(())
+    }
+
+    /// Sorted points at rest, on nodal fields of zeros.
+    fn at_rest(scene: &Scene, body: &Body, whole: &Arc<Patch>) -> Result<Self, Failure> {
+        let (material, analysis) = (&scene.materials[&body.material], &scene.analysis);
+        let mut points = Point::of_lattice(&Lattice::new(whole, body));
+        if points.is_empty() {
+            return Err(Failure::NoPoints(number_of(body, scene)));
+        }
+        let spans = part::spans_around(whole, &points)?;
+        let (patch, origin) = (whole.part(&spans), part::origin(whole, &spans));
+        let mut cells = Cells::default();
+        cells.sort(&patch, &mut points)?;
+        let crack = |f| Cracking::new(&patch, body, FractureModel::new(f), &scene.solver, &points);
+        let constraints = part::constraints(whole, &patch, origin, &scene.boundaries);
+        Ok(Self {
+            fracture: material.fracture.as_ref().map(crack),
+            nodes: NodalFields::new(&patch, constraints),
+            departure: Departure::new(patch.control_grid(), analysis.transfer),
+            affine: fit(analysis.transfer).map(|fit| AffineVelocities::new(fit, &patch, points.len())),
+            deformation: (analysis.kinematics == Kinematics::Finite).then(|| vec![[[0.0; 2]; 2]; points.len()]),
+            loads: body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t)).collect(),
+            forcing: None,
+            surface: scene.contact.is_some().then(|| Surface::new(&scene.mesh, body)),
+            moduli: ElasticModuli::new(material, analysis.plane),
+            thickening: thickening(material, analysis.plane),
+            density: material.density,
+            thickness: analysis.thickness,
+            gravity: analysis.gravity,
+            lowest_tip: lowest_tip(scene, body),
+            elastic_energy: 0.0,
+            stress_work: 0.0,
+            driven_power: 0.0,
+            ledger: Ledger::default(),
+            losses: TransferLosses::default(),
+            time: 0.0,
+            at_start: true,
+            travelled: 0.0,
+            whole: Arc::clone(whole),
+            boundaries: scene.boundaries.clone(),
+            patch,
+            origin,
+            points,
+            cells,
+        })
+    }
+}
+
+/// Number of a body in its scene.
+fn number_of(body: &Body, scene: &Scene) -> usize {
+    scene.bodies.iter().position(|other| std::ptr::eq(other, body)).unwrap_or_default()
+}
+
+/// Where the points take their velocity gradients from, if the transfer carries them.
+fn fit(transfer: Transfer) -> Option<Fit> {
+    match transfer {
+        Transfer::Apic => Some(Fit::Weighted),
+        Transfer::Tpic => Some(Fit::Taylor),
+        Transfer::Flip | Transfer::Pic | Transfer::Musl | Transfer::Xpic(_) => None,
+    }
+}
+
+/// Logarithmic change of volume over that of area.
+fn thickening(material: &Material, plane: Plane) -> f64 {
+    match plane {
+        Plane::Strain => 1.0,
+        Plane::Stress => (1.0 - 2.0 * material.poisson_ratio) / (1.0 - material.poisson_ratio),
+    }
+}
+
+/// Centre of mass, m.
+fn center_of_mass(points: &[Point]) -> [f64; 2] {
+    let volume: f64 = points.iter().map(|p| p.volume).sum();
+    [0, 1].map(|d| points.iter().map(|p| p.volume * p.position[d]).sum::<f64>() / volume)
+}

@@ -1,0 +1,121 @@
+//! What the points take from the grid when they leave it: the transfers PIC, FLIP, MUSL, APIC, TPIC and XPIC.
+//!
+//! Let w be the velocity that arrived on the grid, `v = w + dt a` the one that leaves it (conditions on the sides imposed),
+//! S the interpolation to the points and `S⁺ S` the way there and back ([`Smoothing`]). A point takes
+//! `v_p ← kept v_p + S taken` and moves and strains with `motion`:
+//!
+//! ```text
+//!         kept   taken                                   motion
+//! PIC      0     v                                       v
+//! FLIP     1     v − w                                   v
+//! MUSL     1     v − w                                   w + S⁺ S (v − w), conditions imposed again
+//! APIC     0     v, and C from v (see `affine`)          v
+//! TPIC     0     v, and C from v                         v
+//! XPIC(m)  0     Σ_{k<m} (I − S⁺ S)^k w + (v − w)        v
+//! ```
+//!
+//! MUSL's motion is what a second P2G of the new point velocities would give. Points move with it as well as strain (Sulsky et
+//! al. move them with v), so that the strain is that of the motion. XPIC(1) is PIC, and XPIC(m) tends to a FLIP without
+//! velocities the grid cannot see (Hammerquist and Nairn 2017).
+//!
+//! # The critical step
+//!
+//! For points at rest, a mode of the grid with frequency ω that `S⁺ S` (with the affine part, for APIC and TPIC) multiplies
+//! by s obeys, with Ω = ω dt,
+//!
+//! ```text
+//! FLIP      u ← u + dt (w − dt ω² u),   w ← w − s dt ω² u               stable up to Ω² = 4/(2 − s)
+//! others    u ← u + dt (w − dt ω² u),   w ← q w − s dt ω² u             stable up to Ω² = 2 (1 + q)/(1 + q − s)
+//! MUSL      w ← w − s dt ω² u,          u ← u + dt w                    stable up to Ω² = 4/s
+//! ```
+//!
+//! with q = s for PIC, APIC and TPIC and q = 1 − (1 − s)^m ≥ s for XPIC(m). For 0 ≤ s ≤ 1, which is a theorem but for TPIC
+//! (dense eigenvalues of bodies at random offsets: 0 to 1, all real), none is below √2, and MUSL's is at least 2.
+
+use super::grid::{NodalFields, VectorField};
+use super::smoothing::Smoothing;
+use crate::splines::patch::ControlGrid;
+use crate::scene::Transfer;
+
+/// What leaves the grid for the points.
+#[derive(Debug, Clone)]
+pub struct Departure {
+    /// Velocity with which the points move and strain, m/s.
+    pub motion: VectorField,
+    /// What the points take up, m/s.
+    pub taken: VectorField,
+    /// Part of its own velocity that a point keeps.
+    pub kept: f64,
+    transfer: Transfer,
+}
+
+impl Departure {
+    /// Nothing yet.
+    pub fn new(grid: ControlGrid, transfer: Transfer) -> Self {
+        let zeros = || [grid.zeros(), grid.zeros()];
+        Self { motion: zeros(), taken: zeros(), kept: 1.0, transfer }
+    }
+
+    /// Fraction of `1/ω_max` up to which the step is stable (see the module).
+    pub fn stable_fraction(&self) -> f64 {
+        let others = fault!("stable-fraction-of-musl", std::f64::consts::SQRT_2 => 2.0);
+        if self.transfer == Transfer::Musl { 2.0 } else { others }
+    }
+
+    /// The transfer.
+    pub fn transfer(&self) -> Transfer {
+        self.transfer
+    }
+
+    /// From the velocities that arrived on and leave the grid.
+    pub fn leave(&mut self, nodes: &NodalFields, smoothing: &Smoothing) {
+        let Self { motion, taken, kept, transfer } = self;
+        let of_flip = fault!("transfer-keeps-less", 1.0 => 0.999);
+        *kept = if matches!(transfer, Transfer::Flip | Transfer::Musl) { of_flip } else { 0.0 };
+        copy(motion, &nodes.velocity);
+        copy(taken, &nodes.velocity);
+        match *transfer {
+            Transfer::Pic | Transfer::Apic | Transfer::Tpic => (),
+            Transfer::Flip => add(taken, -1.0, &nodes.arrived),
+            Transfer::Musl => {
+                add(taken, -1.0, &nodes.arrived);
+                fault!("musl-not-smoothed", smoothing.apply(taken, motion) => copy(motion, taken));
+                add(motion, 1.0, &nodes.arrived);
+                nodes.constrain(motion);
+            }
+            Transfer::Xpic(order) => {
+                let (mut rest, mut smooth) = (nodes.arrived.clone(), nodes.arrived.clone());
+                for _ in fault!("xpic-a-power-short", 1 => 2)..order {
+                    smoothing.apply(&rest, &mut smooth);
+                    add(&mut rest, -1.0, &smooth);
+                    add(taken, 1.0, &rest);
+                }
+            }
+        }
+    }
+
+    /// The points follow `motion` and keep their velocities.
+    pub fn prescribe(&mut self, motion: &VectorField) {
+        copy(&mut self.motion, motion);
+        self.taken.iter_mut().for_each(|component| component.fill(0.0));
+        self.kept = 1.0;
+    }
+
+    /// Heap memory, bytes.
+    pub fn bytes(&self) -> usize {
+        8 * 4 * self.motion[0].len()
+    }
+}
+
+fn copy(to: &mut VectorField, from: &VectorField) {
+    for (to, from) in to.iter_mut().zip(from) {
+        to.copy_from_slice(from);
+    }
+}
+
+/// `to += factor from`.
+fn add(to: &mut VectorField, factor: f64, from: &VectorField) {
+    for (to, from) in to.iter_mut().flatten().zip(from.iter().flatten()) {
+        *to += factor * from;
+    }
+}

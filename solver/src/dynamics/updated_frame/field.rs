@@ -1,0 +1,319 @@
+//! One body of the updated frame: its points and its own nodal fields, a discrete field on the shared patch.
+//!
+//! The nodal fields cover the part of the patch the body is in and a few spans around it; the part follows the body
+//! ([`part`](super::part)). Bodies know nothing of each other: see [`crate::contact`].
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::affine::AffineVelocities;
+use super::cracking::Cracking;
+use super::departure::Departure;
+use super::grid::{ImposedEnergy, NodalFields};
+use super::losses::TransferLosses;
+use super::points::{Cells, OutsidePatch, Point};
+use super::smoothing::Smoothing;
+use super::stiffness::Stiffness;
+use super::strain::{self, Finite, Small};
+use super::tractions::SurfaceLoad;
+use super::transfer::{GridToPoints, PointsToGrid, StripMotion};
+use super::volume_forcing::VolumeForcing;
+use super::windows::{cut, scatter};
+use crate::linear_algebra::conjugate_gradients::SolveFailure;
+use crate::contact::Surface;
+use crate::dynamics::critical_step::highest_frequency;
+use crate::dynamics::energy::Ledger;
+use crate::error::Failure;
+use crate::linear_algebra::extremes::{larger, smaller};
+use crate::material::hencky::Gradient;
+use crate::linear_algebra::lane::dispatch;
+use crate::material::ElasticModuli;
+use crate::splines::patch::Patch;
+use crate::scene::Boundary;
+
+/// One body in the updated frame.
+#[derive(Debug, Clone)]
+pub struct DiscreteField {
+    pub(super) whole: Arc<Patch>,
+    /// The part of the patch the nodal fields cover, and its first control column and row.
+    pub(super) patch: Patch,
+    pub(super) origin: [usize; 2],
+    pub(super) boundaries: Vec<Boundary>,
+    pub(super) moduli: ElasticModuli,
+    /// Logarithmic change of volume over that of area: less than 1 in plane stress, where the thickness follows.
+    pub(super) thickening: f64,
+    pub(super) density: f64,
+    pub(super) thickness: f64,
+    pub(super) gravity: [f64; 2],
+    pub(super) points: Vec<Point>,
+    pub(super) cells: Cells,
+    pub(super) nodes: NodalFields,
+    pub(super) departure: Departure,
+    /// Velocity gradients of the points, for the transfers that need them.
+    pub(super) affine: Option<AffineVelocities>,
+    /// Displacement gradients `F − I` of the points, if the kinematics are finite.
+    pub(super) deformation: Option<Vec<Gradient>>,
+    pub(super) loads: Vec<SurfaceLoad>,
+    pub(super) forcing: Option<VolumeForcing>,
+    /// The boundary, if the body may meet others.
+    pub(super) surface: Option<Surface>,
+    /// The phase field, if the material fractures.
+    pub fracture: Option<Cracking>,
+    pub(super) lowest_tip: f64,
+    pub(super) elastic_energy: f64,
+    /// `Σ V sigma(n+1) : de` of the last step.
+    pub(super) stress_work: f64,
+    pub(super) driven_power: f64,
+    pub(super) ledger: Ledger,
+    pub(super) losses: TransferLosses,
+    pub(super) time: f64,
+    /// No step was taken yet: the points carry v(0).
+    pub(super) at_start: bool,
+    /// Bound of the distance any point moved since the critical step was taken, m.
+    pub(super) travelled: f64,
+}
+
+impl DiscreteField {
+    /// One time step of `dt` seconds (E 14–24).
+    ///
+    /// # Errors
+    /// If the phase field does not converge, or a point leaves the patch.
+    pub fn step(&mut self, dt: f64) -> Result<(), Failure> {
+        self.kick(dt); // grid: v(n+1/2) = v(n−1/2) + dt a(n)
+        self.depart(); // transfer: what the points take up, and the motion they follow
+        let leaving = self.leaving();
+        let left_span = self.grid_to_points(dt); // G2P: velocities, positions, strains
+        if fault!("span-not-renewed", left_span => false) {
+            self.sort()?;
+        }
+        self.crack_and_stress(left_span)?; // points: psi+, H, phase field, stress at n + 1
+        self.points_to_grid(); // P2G: mass, velocity, internal forces at x(n+1)
+        self.attach_loads()?;
+        self.add_external_forces();
+        let imposed = self.apply_boundary();
+        self.accelerate(); // a(n+1)
+        self.book(dt, &leaving, imposed);
+        Ok(())
+    }
+
+    /// Length of the coming kick, s: half a step at the start, where the points carry v(0).
+    pub fn kick_length(&self, dt: f64) -> f64 {
+        if self.at_start { 0.5 * dt } else { dt }
+    }
+
+    fn kick(&mut self, dt: f64) {
+        self.nodes.kick(self.kick_length(dt));
+        self.at_start = false;
+        self.time += dt;
+    }
+
+    /// Tells the boundary how far it moves in a step of `dt` seconds with the present velocity.
+    pub(super) fn expect_motion(&mut self, dt: f64) {
+        if let Some(mut surface) = self.surface.take() {
+            surface.expect(self, &self.nodes.velocity, dt);
+            self.surface = Some(surface);
+        }
+    }
+
+    /// Adds an acceleration to a control point for the coming kick, m/s².
+    pub fn push(&mut self, at: usize, acceleration: [f64; 2]) {
+        for (field, a) in self.nodes.acceleration.iter_mut().zip(acceleration) {
+            field[at] += a;
+        }
+    }
+
+    fn depart(&mut self) {
+        let Self { patch, cells, points, nodes, departure, affine, density, .. } = self;
+        departure.leave(nodes, &Smoothing { patch, cells, points, density: *density, mass: &nodes.mass });
+        if let Some(affine) = affine {
+            affine.take(patch, cells, points, &nodes.velocity);
+        }
+    }
+
+    /// `v_p ← kept v_p + Σ N taken`, `x_p += dt Σ N motion`, and the strain of the motion; whether a point left its span.
+    pub(super) fn grid_to_points(&mut self, dt: f64) -> bool {
+        let Self { patch, cells, points, departure, forcing, .. } = self;
+        if let Some(forcing) = forcing {
+            forcing.before_motion(patch, cells, points, &departure.motion);
+        }
+        let motions = match self.deformation.take() {
+            None => self.move_points(dt, self.cells.strips.iter().map(|_| Small).collect()),
+            Some(mut deformation) => {
+                let strips = cut(&mut deformation, self.cells.strips.iter().map(|s| s.points.clone()));
+                let motions = self.move_points(dt, strips.into_iter().map(Finite).collect());
+                self.deformation = Some(deformation);
+                motions
+            }
+        };
+        if let Some(mut surface) = self.surface.take() {
+            surface.follow(self, &self.departure.motion, dt);
+            self.surface = Some(surface);
+        }
+        let Self { patch, nodes, points, departure, forcing, loads, .. } = self;
+        for load in loads {
+            load.move_points(patch, nodes.grid, &departure.motion, dt);
+        }
+        if let Some(forcing) = forcing {
+            forcing.after_motion(points, self.time, dt);
+        }
+        let fastest = motions.iter().map(|m| m.fastest).fold(0.0, larger);
+        self.travelled += dt * (2.0 * fastest).sqrt();
+        self.elastic_energy = motions.iter().map(|m| m.elastic_energy).sum();
+        self.stress_work = motions.iter().map(|m| m.stress_work).sum();
+        motions.iter().any(|m| m.left_span)
+    }
+
+    /// Velocity, position and strain of the points; `kinematics` for each strip.
+    fn move_points<K: strain::Kinematics + Send>(&mut self, dt: f64, kinematics: Vec<K>) -> Vec<StripMotion> {
+        let Self { patch, cells, nodes, points, departure, fracture, .. } = self;
+        let elastic = fracture.is_none().then_some(self.moduli);
+        let ranges = || cells.strips.iter().map(|s| s.points.clone());
+        let cracked = match fracture {
+            Some(fracture) => cut(&mut fracture.points, ranges()),
+            None => cells.strips.iter().map(|_| &mut [][..]).collect(),
+        };
+        let (kept, grid) = (departure.kept, nodes.grid);
+        let motion = departure.motion.each_ref().map(|f| &f[..]);
+        let taken = departure.taken.each_ref().map(|f| &f[..]);
+        let strips = cut(points, ranges()).into_par_iter().zip(cracked).zip(kinematics).zip(&cells.strips);
+        strips
+            .map(|(((points, fracture), kinematics), strip)| {
+                let cells = &cells.cells[strip.cells.clone()];
+                dispatch(GridToPoints {
+                    patch,
+                    grid,
+                    dt,
+                    motion,
+                    taken,
+                    kept,
+                    kinematics,
+                    elastic,
+                    cells,
+                    points,
+                    fracture,
+                })
+            })
+            .collect()
+    }
+
+    pub(super) fn sort(&mut self) -> Result<(), OutsidePatch> {
+        if self.cells.sort(&self.patch, &mut self.points).is_err() {
+            self.follow()?;
+        }
+        let cells = &self.cells;
+        if let Some(fracture) = &mut self.fracture {
+            fault!("history-left-behind", cells.reorder(&mut fracture.points) => ());
+        }
+        if let Some(affine) = &mut self.affine {
+            fault!("affine-left-behind", cells.reorder(&mut affine.gradients) => ());
+        }
+        if let Some(deformation) = &mut self.deformation {
+            fault!("deformation-left-behind", cells.reorder(deformation) => ());
+        }
+        if let Some(forcing) = &mut self.forcing {
+            forcing.reorder(cells);
+        }
+        Ok(())
+    }
+
+    /// Finds spans for the surface points of loads, by the masses of the grid.
+    pub(super) fn attach_loads(&mut self) -> Result<(), OutsidePatch> {
+        self.loads.iter_mut().try_for_each(|load| load.attach(&self.patch, &self.nodes))
+    }
+
+    /// History, phase field and degraded stress; an elastic body has its stress from G2P.
+    pub(super) fn crack_and_stress(&mut self, moved: bool) -> Result<(), SolveFailure> {
+        let Self { patch, cells, points, moduli, .. } = self;
+        let Some(fracture) = &mut self.fracture else { return Ok(()) };
+        fracture.update_history(moduli, cells, points);
+        fracture.solve(patch, cells, points, moved)?;
+        let sums = fracture.update_stress(patch, moduli, cells, points);
+        self.elastic_energy = sums.elastic_energy;
+        self.stress_work = sums.stress_work;
+        self.ledger.history_work += sums.history_work;
+        self.losses.phase_field -= fault!("phase-motion-unbooked", sums.gained_in_motion => 0.0);
+        Ok(())
+    }
+
+    /// Mass, arriving velocity, and internal forces.
+    pub(super) fn points_to_grid(&mut self) {
+        let Self { patch, cells, points, nodes, density, .. } = self;
+        nodes.clear();
+        let (grid, density) = (nodes.grid, *density);
+        let NodalFields { mass, arrived: [px, py], force: [fx, fy], .. } = nodes;
+        scatter(&cells.strips, [mass, px, py, fx, fy], [grid.stride; 5], |strip, window| {
+            let cells = &cells.cells[strip.cells.clone()];
+            dispatch(PointsToGrid { patch, grid, density, cells, points, window });
+        });
+        if let Some(affine) = &self.affine {
+            affine.give(patch, cells, points, density, &mut nodes.arrived);
+        }
+        nodes.divide_by_mass();
+    }
+
+    /// Gravity, tractions and other loads.
+    fn add_external_forces(&mut self) {
+        let Self { patch, cells, points, nodes, .. } = self;
+        let grid = nodes.grid;
+        nodes.add_gravity(self.gravity);
+        for load in &self.loads {
+            load.add_forces(patch, grid, self.time, &mut nodes.force);
+        }
+        if let Some(forcing) = &self.forcing {
+            forcing.add_forces(patch, cells, points, &mut nodes.force);
+        }
+    }
+
+    fn apply_boundary(&mut self) -> ImposedEnergy {
+        self.nodes.impose_velocities()
+    }
+
+    fn accelerate(&mut self) {
+        self.nodes.accelerate();
+    }
+
+    /// Rebuilds the grid where no step leads to it, for points that stay where they are.
+    pub(super) fn find_accelerations(&mut self) {
+        self.points_to_grid();
+        self.respond();
+    }
+
+    /// Accelerations on a grid that has its masses and internal forces, where no step leads to them.
+    pub(super) fn respond(&mut self) {
+        self.add_external_forces();
+        self.apply_boundary();
+        self.accelerate();
+        self.driven_power = self.nodes.power_of_driven_sides();
+    }
+
+    /// Velocity gradients of a velocity field (m/s), where the transfer carries them.
+    pub(super) fn take_affine_velocities(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2]) {
+        let Self { patch, cells, points, affine, nodes, .. } = self;
+        if let Some(affine) = affine {
+            affine.take(patch, cells, points, &nodes.at_greville_points(velocity));
+        }
+    }
+
+    /// Critical time step of the undamaged body at the present positions, s; infinite if nothing can move.
+    pub fn critical_step(&self) -> f64 {
+        let frequency = highest_frequency(&mut Stiffness::new(self));
+        self.departure.stable_fraction() / frequency
+    }
+
+    /// Length of the shortest span, m.
+    pub fn shortest_span(&self) -> f64 {
+        let spans = self.patch.spaces.iter().flat_map(|space| space.spans());
+        spans.map(|span| span.length()).fold(f64::INFINITY, smaller)
+    }
+
+    /// Whether a point may have moved a quarter of the smallest span since the last call that said so: the time to take
+    /// the critical step again.
+    pub fn critical_step_is_due(&mut self) -> bool {
+        let due = self.travelled >= 0.25 * self.shortest_span();
+        if due {
+            self.travelled = 0.0;
+        }
+        due
+    }
+}

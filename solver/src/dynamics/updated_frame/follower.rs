@@ -1,0 +1,72 @@
+//! Positions on the boundary of a body that move with it.
+//!
+//! Such a position may stand in a span that no material point has reached. It is evaluated with the polynomials of the
+//! nearest span with material, continued beyond its end: they still sum to one and reproduce positions. A load takes the
+//! nearest span whose control points all answer to a force, so no force and no torque is lost.
+
+use super::grid::{NodalFields, VectorField};
+use super::points::{Cells, OutsidePatch};
+use crate::splines::nearest_span::nearest_span;
+use crate::splines::patch::{ControlGrid, Patch};
+use crate::splines::spline::ShapeFunctions;
+
+/// A position that moves with a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Follower {
+    /// Position, m.
+    pub position: [f64; 2],
+    /// Span whose polynomials are used.
+    span: [usize; 2],
+}
+
+impl Follower {
+    /// A position at t = 0, m, to be attached.
+    pub fn new(position: [f64; 2]) -> Self {
+        Self { position, span: [0, 0] }
+    }
+
+    /// A position (m) with the polynomials of the span it is in or nearest to; `None` if there is no material within one span
+    /// of it.
+    pub fn nearest(position: [f64; 2], patch: &Patch, cells: &Cells) -> Option<Self> {
+        let span = nearest_span(&patch.spaces, position, |span| cells.is_occupied(span))?;
+        Some(Self { position, span })
+    }
+
+    /// Chooses the span anew: the nearest whose control points all answer to a force.
+    ///
+    /// # Errors
+    /// If there is none within one span of it.
+    pub fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), OutsidePatch> {
+        let answers = |span| patch.all_functions(span, |at| nodes.inverse_mass[at] > 0.0);
+        self.span = nearest_span(&patch.spaces, self.position, answers).ok_or(OutsidePatch(self.position))?;
+        Ok(())
+    }
+
+    /// Moves with a velocity field (m/s) for `dt` seconds; the velocity.
+    pub fn follow(&mut self, patch: &Patch, grid: ControlGrid, velocity: &VectorField, dt: f64) -> [f64; 2] {
+        let mut v = [0.0; 2];
+        self.for_each_function(patch, grid, |at, n| v = [0, 1].map(|c| v[c] + n * velocity[c][at]));
+        self.position = [0, 1].map(|c| self.position[c] + dt * v[c]);
+        v
+    }
+
+    /// Calls `f` with control point and value of every shape function at the position.
+    pub fn for_each_function(&self, patch: &Patch, grid: ControlGrid, mut f: impl FnMut(usize, f64)) {
+        let [(column, x), (row, y)] = self.shape_functions(patch);
+        for l in 0..=patch.spaces[1].degree() {
+            for k in 0..=patch.spaces[0].degree() {
+                f(grid.index(column + k, row + l), x.value[k] * y.value[l]);
+            }
+        }
+    }
+
+    /// Shape functions in x at the position with the control column of the first, and those in y with the control row.
+    #[inline]
+    pub fn shape_functions(&self, patch: &Patch) -> [(usize, ShapeFunctions); 2] {
+        let along = |d: usize| {
+            let (space, span) = (&patch.spaces[d], self.span[d]);
+            (space.spans()[span].first, space.shape_functions(span, self.position[d]))
+        };
+        [along(0), along(1)]
+    }
+}

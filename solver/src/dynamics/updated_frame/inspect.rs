@@ -1,0 +1,36 @@
+//! The points of the bodies in the updated frame, one by one, and the spans they are in: for looking at a run.
+
+use super::UpdatedFrame;
+use super::points::Point;
+use crate::output::inspection::{PointFracture, PointState};
+use crate::output::span_grid::{Corner, SpanGrid};
+
+impl UpdatedFrame {
+    /// Calls `f` with the state of every point.
+    pub(crate) fn for_each_point_state(&self, f: &mut dyn FnMut(PointState)) {
+        for (body, field) in self.fields().iter().enumerate() {
+            for (point, carried) in field.points().iter().enumerate() {
+                let cracked = field.fracture.as_ref().map(|fracture| fracture.points[point]);
+                let fracture = cracked.map(|c| PointFracture { history: c.history, phase: c.phase });
+                let Point { position, velocity, displacement, strain, stress, volume: _ } = *carried;
+                let present = position;
+                f(PointState { body, point, position, present, displacement, velocity, strain, stress, fracture });
+            }
+        }
+    }
+
+    /// The spans with points of each body, with the nodal fields of that body.
+    pub(crate) fn span_grid(&self) -> SpanGrid {
+        let mut grid = SpanGrid::default();
+        for (body, field) in self.fields().iter().enumerate() {
+            let spans = field.cells().cells.iter().map(|cell| cell.span);
+            grid.add(field.patch(), spans, |functions| Corner {
+                body,
+                position: functions.position,
+                velocity: field.nodes().velocity.each_ref().map(|v| functions.interpolate(v).value),
+                phase: field.fracture.as_ref().map(|f| functions.interpolate(f.field.control_values()).value),
+            });
+        }
+        grid
+    }
+}

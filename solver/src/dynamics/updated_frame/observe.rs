@@ -1,0 +1,293 @@
+//! What is read from the bodies of the updated frame: energies, momenta, crack tip.
+
+use std::borrow::Cow;
+
+use super::UpdatedFrame;
+use super::field::DiscreteField;
+use super::grid::{NodalFields, VectorField};
+use super::losses::TransferLosses;
+use super::points::{Cells, FracturePoint, Point};
+use crate::contact::impulse::{ContactForce, Push, Unsettled};
+use crate::contact::{Contact, ContactLedger, Surface};
+use crate::dynamics::energy::{ContactSample, FractureSample, Sample};
+use crate::phase_field::fracture::BROKEN;
+use crate::material::hencky::{Gradient, growth};
+use crate::output::inspection::InvertedPoint;
+use crate::material::ElasticModuli;
+use crate::splines::patch::Patch;
+use crate::phase_field::PhaseFieldCounts;
+
+impl UpdatedFrame {
+    /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at zero.
+    pub fn sample(&self, dt: f64) -> Sample {
+        let mut accelerations: Vec<_> =
+            self.fields.iter().map(|field| Cow::Borrowed(&field.nodes.acceleration)).collect();
+        let contact = self.contact.as_ref().map(|contact| {
+            let (pushes, ledger) = contact.coming(&self.fields, self.coming_kick(dt));
+            for Push { body, at, acceleration } in pushes {
+                let pushed = accelerations[body].to_mut();
+                (0..2).for_each(|c| pushed[c][at] += acceleration[c]);
+            }
+            ledger
+        });
+        let mut bodies = self.fields.iter().zip(&accelerations).map(|(field, a)| field.sample(dt, a));
+        let first = bodies.next().expect("a scene has a body");
+        let mut sample = bodies.fold(first, Sample::with);
+        if let Some(ContactLedger { loss, friction, work }) = contact {
+            sample.external_work += work;
+            sample.contact = Some(ContactSample { loss, friction });
+        }
+        sample.for_thickness(self.thickness)
+    }
+
+    /// The bodies that deform, in the order of the scene.
+    pub fn fields(&self) -> &[DiscreteField] {
+        &self.fields
+    }
+
+    /// Contact of the bodies, if the scene declares it.
+    pub fn contact(&self) -> Option<&Contact> {
+        self.contact.as_ref()
+    }
+
+    /// Time, s.
+    pub fn time(&self) -> f64 {
+        self.fields.first().map_or(0.0, |field| field.time)
+    }
+
+    /// Background patch.
+    pub fn patch(&self) -> &Patch {
+        &self.patch
+    }
+
+    /// Forces of contact now; `dt` is the step in use.
+    pub fn contact_forces(&self, dt: f64) -> Vec<ContactForce> {
+        self.contact.as_ref().map_or_else(Vec::new, |contact| contact.forces(&self.fields, self.coming_kick(dt)))
+    }
+
+    /// Whether the impulses of contact of the coming step settle; `dt` is the step in use.
+    ///
+    /// # Errors
+    /// If they do not.
+    pub fn contact_settles(&self, dt: f64) -> Result<(), Unsettled> {
+        self.contact.as_ref().map_or(Ok(()), |contact| contact.settles(&self.fields, self.coming_kick(dt)))
+    }
+
+    /// Where the boundary of a body was without material first, m, if one ever was.
+    pub fn opened_boundary(&self) -> Option<[f64; 2]> {
+        self.fields.iter().find_map(|field| field.surface()?.opened())
+    }
+
+    /// Thickness, m.
+    pub fn thickness(&self) -> f64 {
+        self.thickness
+    }
+
+    /// Elastic energy, J.
+    pub fn elastic_energy(&self) -> f64 {
+        self.fields.iter().map(|field| field.elastic_energy()).sum()
+    }
+
+    /// External work so far, J.
+    pub fn external_work(&self) -> f64 {
+        let rigid = self.contact.as_ref().map_or(0.0, |contact| contact.ledger().work) * self.thickness;
+        self.fields.iter().map(|field| field.external_work()).sum::<f64>() + rigid
+    }
+
+    /// Parts of the transfer loss so far, J.
+    pub fn transfer_losses(&self) -> TransferLosses {
+        let sum = |sum: TransferLosses, field: &DiscreteField| sum.plus(field.losses.times(self.thickness));
+        self.fields.iter().fold(TransferLosses::default(), sum)
+    }
+
+    /// Kinetic energy of the points of all bodies, J: see [`DiscreteField::point_kinetic_energy`].
+    pub fn point_kinetic_energy(&self, dt: f64) -> f64 {
+        self.fields.iter().map(|field| field.point_kinetic_energy(dt)).sum()
+    }
+
+    /// Counters of the phase fields, if there are any.
+    pub fn phase_field_counts(&self) -> Option<PhaseFieldCounts> {
+        let counts = self.fields.iter().filter_map(|field| field.fracture.as_ref()).map(|f| f.field.counts());
+        counts.reduce(|a, b| PhaseFieldCounts { solves: a.solves + b.solves, iterations: a.iterations + b.iterations })
+    }
+
+    /// Position (m) of the fastest control point with mass, and its speed (m/s), infinite if it is no number.
+    pub fn fastest_control_point(&self) -> ([f64; 2], f64) {
+        let fastest = self.fields.iter().map(|field| field.fastest_place());
+        fastest.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(([0.0; 2], 0.0), |(square, place)| (place, square.sqrt()))
+    }
+
+    /// The point of a body that is turned inside out furthest, if one is; small strains know none.
+    pub fn inverted_point(&self) -> Option<InvertedPoint> {
+        self.fields.iter().filter_map(DiscreteField::inverted_point).reduce(InvertedPoint::worse)
+    }
+
+    /// Heap memory of mechanics and of the phase fields, bytes.
+    pub fn bytes(&self) -> [usize; 2] {
+        let contact = self.contact.as_ref().map_or(0, |contact| contact.bytes());
+        self.fields
+            .iter()
+            .map(|field| field.bytes())
+            .fold([contact, 0], |sum, bytes| [sum[0] + bytes[0], sum[1] + bytes[1]])
+    }
+}
+
+impl DiscreteField {
+    /// Energies, momenta and crack tip of a body a metre thick at the present whole step with the given accelerations (m/s²);
+    /// `dt` is the step in use. Closure is left at zero.
+    fn sample(&self, dt: f64, acceleration: &VectorField) -> Sample {
+        let nodes = &self.nodes;
+        let half = if self.at_start { 0.0 } else { fault!("half-step-velocity", 0.5 * dt => 0.0) };
+        let (mut kinetic, mut stagger, mut momentum, mut angular) = (0.0, 0.0, [0.0; 2], 0.0);
+        for at in nodes.grid.indices() {
+            let m = nodes.mass[at];
+            let a = [0, 1].map(|c| acceleration[c][at]);
+            let v = [0, 1].map(|c| nodes.velocity[c][at] + half * a[c]);
+            kinetic += 0.5 * m * (v[0] * v[0] + v[1] * v[1]);
+            stagger += fault!("stagger-doubled", 0.125 => 0.25) * dt * dt * m * (a[0] * a[0] + a[1] * a[1]);
+            momentum = [momentum[0] + m * v[0], momentum[1] + m * v[1]];
+            let [x, y] = nodes.position(at);
+            angular += m * (x * v[1] - y * v[0]);
+        }
+        let fracture = self.fracture.as_ref().map(|f| FractureSample {
+            energy: f.surface_energy,
+            history_work: self.ledger.history_work,
+            crack_tip: self.crack_tip(),
+            min_phase: f.least_phase,
+            iterations: f.iterations,
+        });
+        Sample {
+            time: self.time,
+            kinetic,
+            stagger,
+            elastic: self.elastic_energy,
+            fracture,
+            external_work: self.ledger.external_work,
+            transfer_loss: Some(self.ledger.transfer_loss),
+            momentum,
+            angular_momentum: angular,
+            time_step: dt,
+            ..Sample::default()
+        }
+    }
+
+    /// Point of largest x with c below [`BROKEN`] in the upper half of the body, moved along x to where c is [`BROKEN`]
+    /// by the gradient of c, at most by the distance between points.
+    pub fn crack_tip(&self) -> Option<[f64; 2]> {
+        let fracture = self.fracture.as_ref()?;
+        let broken = |(p, f): &(&Point, &FracturePoint)| f.phase < BROKEN && p.position[1] >= self.lowest_tip;
+        let pairs = || self.points.iter().zip(&fracture.points).filter(broken);
+        let (foremost, _) = pairs().max_by(|a, b| a.0.position[0].total_cmp(&b.0.position[0]))?;
+        let spacing = foremost.volume.sqrt();
+        let candidates = pairs().filter(|(p, _)| p.position[0] > foremost.position[0] - spacing);
+        let tips = candidates.map(|(p, f)| {
+            let c = self.patch.evaluate(fracture.field.control_values(), p.position).unwrap_or_default();
+            let ahead = (BROKEN - f.phase) / c.gradient[0];
+            let ahead = if ahead >= 0.0 { ahead.min(spacing) } else { 0.0 };
+            [p.position[0] + ahead, p.position[1]]
+        });
+        tips.max_by(|a, b| a[0].total_cmp(&b[0]))
+    }
+
+    /// Kinetic energy of the points as the scheme keeps it, `1/2 Σ m v_p(n − 1/2) · v_p(n + 1/2)` with FLIP or MUSL, J; at
+    /// t = 0 that of the initial velocities. `dt` is the step in use.
+    pub fn point_kinetic_energy(&self, dt: f64) -> f64 {
+        let square = |p: &Point| p.volume * (p.velocity[0] * p.velocity[0] + p.velocity[1] * p.velocity[1]);
+        let points = 0.5 * self.density * self.points.iter().map(square).sum::<f64>();
+        let nodes = &self.nodes;
+        // Σ m v_p · (S a)_p = w · M a with the velocity w that arrived.
+        let kick = |c: usize| -> f64 {
+            let product = |((m, w), a): ((&f64, &f64), &f64)| m * w * a;
+            nodes.mass.iter().zip(&nodes.arrived[c]).zip(&nodes.acceleration[c]).map(product).sum()
+        };
+        let half = if self.at_start { 0.0 } else { 0.5 * dt };
+        (points + half * (kick(0) + kick(1))) * self.thickness
+    }
+
+    fn inverted_point(&self) -> Option<InvertedPoint> {
+        let gradients = self.deformation.as_ref()?.iter().map(growth).zip(&self.points).enumerate();
+        let inverted = gradients.filter(|(_, (determinant, _))| *determinant <= 0.0);
+        let named =
+            inverted.map(|(point, (determinant, at))| InvertedPoint { point, position: at.position, determinant });
+        named.reduce(InvertedPoint::worse)
+    }
+
+    /// Elastic energy, J.
+    pub fn elastic_energy(&self) -> f64 {
+        self.elastic_energy * self.thickness
+    }
+
+    /// External work so far, J.
+    pub fn external_work(&self) -> f64 {
+        self.ledger.external_work * self.thickness
+    }
+
+    /// Momentum of the points with their velocities half a step back, kg m/s.
+    pub fn momentum(&self) -> [f64; 2] {
+        let sum = |d: usize| self.points.iter().map(|p| p.volume * p.velocity[d]).sum::<f64>();
+        [0, 1].map(|d| self.density * self.thickness * sum(d))
+    }
+
+    /// Mass, kg.
+    pub fn mass(&self) -> f64 {
+        self.density * self.thickness * self.points.iter().map(|p| p.volume).sum::<f64>()
+    }
+
+    /// Square of the speed (infinite if it is no number) and position (m) of the fastest control point.
+    fn fastest_place(&self) -> (f64, [f64; 2]) {
+        let [vx, vy] = &self.nodes.velocity;
+        let speed = |at: usize| {
+            let speed = vx[at] * vx[at] + vy[at] * vy[at];
+            (if speed.is_nan() { f64::INFINITY } else { speed }, at)
+        };
+        let (speed, at) = self.nodes.grid.indices().map(speed).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+        (speed, self.nodes.position(at))
+    }
+
+    /// Boundary, if the body may meet others.
+    pub fn surface(&self) -> Option<&Surface> {
+        self.surface.as_ref()
+    }
+
+    /// Time, s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Material points, sorted by span.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// Order of the points.
+    pub fn cells(&self) -> &Cells {
+        &self.cells
+    }
+
+    /// Nodal fields at the present whole step.
+    pub fn nodes(&self) -> &NodalFields {
+        &self.nodes
+    }
+
+    /// The part of the background patch the nodal fields cover.
+    pub fn patch(&self) -> &Patch {
+        &self.patch
+    }
+
+    /// Moduli.
+    pub fn moduli(&self) -> ElasticModuli {
+        self.moduli
+    }
+
+    /// Heap memory of mechanics and of the phase field, bytes.
+    pub fn bytes(&self) -> [usize; 2] {
+        let points = self.points.len() * size_of::<Point>() + self.cells.bytes();
+        let loads: usize = self.loads.iter().map(|load| load.bytes()).sum();
+        let affine = self.affine.as_ref().map_or(0, |affine| affine.bytes());
+        let deformation = self.deformation.as_ref().map_or(0, |gradients| gradients.len() * size_of::<Gradient>());
+        let forcing = self.forcing.as_ref().map_or(0, |forcing| forcing.bytes());
+        let surface = self.surface.as_ref().map_or(0, |surface| surface.bytes());
+        let points = points + affine + deformation + forcing + surface;
+        [points + self.nodes.bytes() + self.departure.bytes() + loads, self.fracture.as_ref().map_or(0, |f| f.bytes())]
+    }
+}

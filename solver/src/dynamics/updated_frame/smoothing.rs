@@ -1,0 +1,94 @@
+//! The way to the points and back: `S⁺ S` on a nodal field, with `S` the interpolation to the points and
+//! `S⁺ = M⁻¹ Sᵀ m` the mass-weighted mean that P2G takes.
+//!
+//! Its eigenvalues lie between 0 and 1: it keeps what the points see and filters the rest. The lumped mass makes it a
+//! filter for all fields but the constant; that is the loss of PIC, and what XPIC corrects and MUSL balances.
+
+use super::grid::VectorField;
+use super::points::{Cell, Cells, Point};
+use super::transfer::{MAX_FUNCTIONS, walk};
+use super::windows::{Window, control_values, scatter};
+use crate::linear_algebra::lane::{Vectorised, dispatch};
+use crate::splines::patch::{ControlGrid, Patch};
+
+/// Points on a grid, and the lumped mass they give it.
+#[derive(Debug, Clone, Copy)]
+pub struct Smoothing<'a> {
+    /// Background patch.
+    pub patch: &'a Patch,
+    /// Order of the points.
+    pub cells: &'a Cells,
+    /// The points.
+    pub points: &'a [Point],
+    /// Density, kg/m³.
+    pub density: f64,
+    /// Lumped mass of the control points, kg/m.
+    pub mass: &'a [f64],
+}
+
+impl Smoothing<'_> {
+    /// `out = S⁺ S field`; zero where there is no mass.
+    pub fn apply(&self, field: &VectorField, out: &mut VectorField) {
+        let Self { patch, cells, points, density, mass } = *self;
+        let grid = patch.control_grid();
+        out.iter_mut().for_each(|component| component.fill(0.0));
+        let field = field.each_ref().map(|component| &component[..]);
+        scatter(&cells.strips, out.each_mut().map(|f| &mut f[..]), [grid.stride; 2], |strip, window| {
+            let cells = &cells.cells[strip.cells.clone()];
+            dispatch(ThereAndBack { patch, grid, density, cells, points, field, window });
+        });
+        for (value, mass) in out.iter_mut().flat_map(|component| component.iter_mut().zip(mass)) {
+            *value /= if *mass == 0.0 { f64::INFINITY } else { *mass };
+        }
+    }
+}
+
+struct ThereAndBack<'a> {
+    patch: &'a Patch,
+    grid: ControlGrid,
+    density: f64,
+    cells: &'a [Cell],
+    points: &'a [Point],
+    field: [&'a [f64]; 2],
+    window: Window<'a, 2>,
+}
+
+impl Vectorised for ThereAndBack<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        walk!(self)
+    }
+}
+
+impl ThereAndBack<'_> {
+    #[inline(always)]
+    fn walk(mut self, kx: usize, ky: usize) {
+        let [x, y] = &self.patch.spaces;
+        for cell in self.cells {
+            let local = control_values(self.field, self.grid, cell, kx, ky);
+            let mut sums = [[0.0; 2]; MAX_FUNCTIONS];
+            for point in &self.points[cell.points.clone()] {
+                let sx = x.shape_functions(cell.span[0], point.position[0]);
+                let sy = y.shape_functions(cell.span[1], point.position[1]);
+                let mut value = [0.0; 2];
+                for l in 0..ky {
+                    for k in 0..kx {
+                        let n = sx.value[k] * sy.value[l];
+                        value = [0, 1].map(|c| value[c] + n * local[l * kx + k][c]);
+                    }
+                }
+                let momentum = value.map(|v| self.density * point.volume * v);
+                for l in 0..ky {
+                    for k in 0..kx {
+                        let n = sx.value[k] * sy.value[l];
+                        let sum = &mut sums[l * kx + k];
+                        *sum = [0, 1].map(|c| sum[c] + n * momentum[c]);
+                    }
+                }
+            }
+            self.window.add(self.grid, cell, &sums, kx, ky);
+        }
+    }
+}

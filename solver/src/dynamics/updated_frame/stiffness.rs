@@ -1,0 +1,121 @@
+//! Stiffness of the undamaged body at the present positions, for the critical step.
+
+use super::field::DiscreteField;
+use super::points::{Cell, Point};
+use super::transfer::{MAX_FUNCTIONS, walk};
+use super::windows::{Window, control_values, scatter};
+use crate::dynamics::critical_step::StiffnessOperator;
+use crate::linear_algebra::lane::{Vectorised, dispatch};
+use crate::material::ElasticModuli;
+use crate::splines::patch::{ControlGrid, Patch};
+
+/// `K x` on the components that accelerate, per unit thickness.
+#[derive(Debug)]
+pub struct Stiffness<'a> {
+    frame: &'a DiscreteField,
+    free: Vec<(usize, usize)>,
+    masses: Vec<f64>,
+    field: [Vec<f64>; 2],
+    image: [Vec<f64>; 2],
+}
+
+impl<'a> Stiffness<'a> {
+    /// Operator of the present grid of `frame`.
+    pub fn new(frame: &'a DiscreteField) -> Self {
+        let nodes = frame.nodes();
+        let free = nodes.free();
+        let masses = free.iter().map(|&(at, _)| nodes.mass[at]).collect();
+        let zeros = || [nodes.grid.zeros(), nodes.grid.zeros()];
+        Self { frame, masses, free, field: zeros(), image: zeros() }
+    }
+}
+
+impl StiffnessOperator for Stiffness<'_> {
+    fn size(&self) -> usize {
+        self.masses.len()
+    }
+
+    fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]) {
+        for ((out, x), mass) in out.iter_mut().zip(x).zip(&self.masses) {
+            *out = x / mass;
+        }
+    }
+
+    fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
+        for (&(at, component), x) in self.free.iter().zip(x) {
+            self.field[component][at] = *x;
+        }
+        self.image.iter_mut().for_each(|field| field.fill(0.0));
+        let (frame, field) = (self.frame, self.field.each_ref().map(|f| &f[..]));
+        let grid = frame.nodes().grid;
+        let [x, y] = &mut self.image;
+        scatter(&frame.cells().strips, [x, y], [grid.stride; 2], |strip, window| {
+            dispatch(ElasticForces {
+                patch: frame.patch(),
+                grid,
+                moduli: frame.moduli(),
+                cells: &frame.cells().cells[strip.cells.clone()],
+                points: frame.points(),
+                field,
+                window,
+            });
+        });
+        for (&(at, component), out) in self.free.iter().zip(out) {
+            *out = self.image[component][at];
+        }
+    }
+}
+
+struct ElasticForces<'a> {
+    patch: &'a Patch,
+    grid: ControlGrid,
+    moduli: ElasticModuli,
+    cells: &'a [Cell],
+    points: &'a [Point],
+    field: [&'a [f64]; 2],
+    window: Window<'a, 2>,
+}
+
+impl Vectorised for ElasticForces<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        walk!(self)
+    }
+}
+
+impl ElasticForces<'_> {
+    #[inline(always)]
+    fn walk(mut self, kx: usize, ky: usize) {
+        let [x, y] = &self.patch.spaces;
+        let ElasticModuli { lambda, mu } = self.moduli;
+        for cell in self.cells {
+            let local = control_values(self.field, self.grid, cell, kx, ky);
+            let mut forces = [[0.0; 2]; MAX_FUNCTIONS];
+            for point in &self.points[cell.points.clone()] {
+                let sx = x.shape_functions(cell.span[0], point.position[0]);
+                let sy = y.shape_functions(cell.span[1], point.position[1]);
+                let slope = |k: usize, l: usize| [sx.derivative[k] * sy.value[l], sx.value[k] * sy.derivative[l]];
+                let mut gradient = [[0.0; 2]; 2];
+                for l in 0..ky {
+                    for k in 0..kx {
+                        let (u, d) = (local[l * kx + k], slope(k, l));
+                        gradient = [0, 1].map(|c| [0, 1].map(|i| gradient[c][i] + u[c] * d[i]));
+                    }
+                }
+                let [[uxx, uxy], [uyx, uyy]] = gradient;
+                let spherical = lambda * (uxx + uyy);
+                let stress = [spherical + 2.0 * mu * uxx, spherical + 2.0 * mu * uyy, mu * (uxy + uyx)];
+                let [xx, yy, xy] = stress.map(|s| s * point.volume);
+                for l in 0..ky {
+                    for k in 0..kx {
+                        let (f, d) = (&mut forces[l * kx + k], slope(k, l));
+                        *f = [f[0] + xx * d[0] + xy * d[1], f[1] + xy * d[0] + yy * d[1]];
+                    }
+                }
+            }
+            self.window.add(self.grid, cell, &forces, kx, ky);
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Tractions on surface points that move with the body.
+
+use super::follower::Follower;
+use super::grid::NodalFields;
+use super::points::OutsidePatch;
+use crate::checkpoint::{Archive, StateError};
+use crate::dynamics::loads::surface_points;
+use crate::splines::patch::{ControlGrid, Patch};
+use crate::scene::{Body, Traction};
+
+/// A traction and the surface points that carry it.
+#[derive(Debug, Clone)]
+pub struct SurfaceLoad {
+    points: Vec<MovingSurfacePoint>,
+    stress: [f64; 2],
+    ramp: Option<f64>,
+    /// Power of the full traction on the points during the last motion, W/m.
+    power: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct MovingSurfacePoint {
+    place: Follower,
+    length: f64,
+}
+
+impl SurfaceLoad {
+    /// The surface points of a traction at t = 0.
+    pub fn new(patch: &Patch, body: &Body, traction: &Traction) -> Self {
+        let points = surface_points(patch, body, &traction.edge).into_iter();
+        let points =
+            points.map(|p| MovingSurfacePoint { place: Follower::new(p.position), length: p.length }).collect();
+        Self { points, stress: traction.stress, ramp: traction.ramp, power: 0.0 }
+    }
+
+    /// Factor at a time (s): rises linearly over the ramp.
+    pub fn factor(&self, time: f64) -> f64 {
+        fault!("ramp-forgotten", self.ramp => None).map_or(1.0, |ramp: f64| (time / ramp).clamp(0.0, 1.0))
+    }
+
+    /// Power of the full traction on the points during the last motion, W/m.
+    pub fn power(&self) -> f64 {
+        self.power
+    }
+
+    /// Chooses the span of every surface point anew.
+    ///
+    /// # Errors
+    /// A surface point with no material within one span of it.
+    pub fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), OutsidePatch> {
+        self.points.iter_mut().try_for_each(|point| point.place.attach(patch, nodes))
+    }
+
+    /// Position (m) of every control point that answers to the load, and its share of the length of the edge, m: once for each
+    /// surface point.
+    pub fn shares<'a>(
+        &'a self,
+        patch: &'a Patch,
+        nodes: &'a NodalFields,
+    ) -> impl Iterator<Item = ([f64; 2], f64)> + 'a {
+        self.points.iter().flat_map(move |point| {
+            let mut shares = Vec::new();
+            point.place.for_each_function(patch, nodes.grid, |at, n| {
+                if nodes.inverse_mass[at] > 0.0 {
+                    shares.push((nodes.position(at), point.length * n));
+                }
+            });
+            shares
+        })
+    }
+
+    /// Adds the nodal forces at a time, N/m.
+    pub fn add_forces(&self, patch: &Patch, grid: ControlGrid, time: f64, force: &mut [Vec<f64>; 2]) {
+        let factor = self.factor(time);
+        for point in &self.points {
+            point.place.for_each_function(patch, grid, |at, n| {
+                for component in 0..2 {
+                    force[component][at] += factor * point.length * self.stress[component] * n;
+                }
+            });
+        }
+    }
+
+    /// Moves the points with the grid over `dt` seconds and records the power.
+    pub fn move_points(&mut self, patch: &Patch, grid: ControlGrid, velocity: &[Vec<f64>; 2], dt: f64) {
+        self.power = 0.0;
+        for point in &mut self.points {
+            let v = point.place.follow(patch, grid, velocity, dt);
+            self.power += point.length * (self.stress[0] * v[0] + self.stress[1] * v[1]);
+        }
+    }
+
+    /// Stores or takes up the positions of the points and their power.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { points, stress: _, ramp: _, power } = self;
+        points.iter_mut().try_for_each(|point| archive.value(&mut point.place.position))?;
+        archive.value(power)
+    }
+
+    /// Heap memory, bytes.
+    pub fn bytes(&self) -> usize {
+        self.points.len() * size_of::<MovingSurfacePoint>()
+    }
+}

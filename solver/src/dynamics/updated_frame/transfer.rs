@@ -1,0 +1,270 @@
+//! The passes between points and grid of the updated frame (E 15–18).
+//!
+//! Both go cell by cell: the control values of a span are gathered once for all its points. Shape functions are products
+//! of two one-dimensional Horner schemes at the present position. Four numbers travel together through the inner loops,
+//! which is what the vector instructions of every processor in question hold.
+
+use super::points::{Cell, FracturePoint, Point};
+use super::strain::Kinematics;
+use super::windows::{Window, control_values};
+use crate::linear_algebra::extremes::larger;
+use crate::linear_algebra::lane::{LANES, Lane, Vectorised};
+use crate::material::ElasticModuli;
+use crate::splines::patch::{ControlGrid, Patch};
+use crate::splines::spline::MAX_ORDER;
+
+/// Most shape functions at a point.
+pub const MAX_FUNCTIONS: usize = MAX_ORDER * MAX_ORDER;
+
+/// Instantiates a walk over the usual degrees with loops of constant length; any other runs the same code.
+macro_rules! walk {
+    ($self:ident) => {
+        match $self.patch.spaces.each_ref().map(|space| space.degree()) {
+            [1, 1] => $self.walk(2, 2),
+            [2, 2] => $self.walk(3, 3),
+            [3, 3] => $self.walk(4, 4),
+            [p, q] => $self.walk(p + 1, q + 1),
+        }
+    };
+}
+pub(super) use walk;
+
+/// P2G: mass, momentum and internal force of the points of a strip.
+pub struct PointsToGrid<'a> {
+    /// Background patch.
+    pub patch: &'a Patch,
+    /// Layout of the control points.
+    pub grid: ControlGrid,
+    /// Density, kg/m³.
+    pub density: f64,
+    /// Cells of the strip.
+    pub cells: &'a [Cell],
+    /// All points.
+    pub points: &'a [Point],
+    /// Mass, momentum x and y, force x and y (minus the internal force), per unit thickness.
+    pub window: Window<'a, 5>,
+}
+
+impl Vectorised for PointsToGrid<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        walk!(self)
+    }
+}
+
+impl PointsToGrid<'_> {
+    #[inline(always)]
+    fn walk(mut self, kx: usize, ky: usize) {
+        let [x, y] = &self.patch.spaces;
+        for cell in self.cells {
+            let mut mass = [0.0; MAX_FUNCTIONS];
+            let mut local = [[0.0; 4]; MAX_FUNCTIONS];
+            for point in &self.points[cell.points.clone()] {
+                let sx = x.shape_functions(cell.span[0], point.position[0]);
+                let sy = y.shape_functions(cell.span[1], point.position[1]);
+                let m = self.density * point.volume;
+                let [px, py] = point.velocity.map(|v| m * v);
+                let [xx, yy, xy] = point.stress.map(|s| -s * point.volume);
+                for l in 0..ky {
+                    let (n, d) = (sy.value[l], sy.derivative[l]);
+                    let by_value = [px * n, py * n, xy * d, yy * d];
+                    let by_slope = [0.0, 0.0, xx * n, fault!("shear-force-one-sided", xy * n => 0.0)];
+                    for k in 0..kx {
+                        mass[l * kx + k] += m * n * sx.value[k];
+                        let sums = &mut local[l * kx + k];
+                        for c in 0..4 {
+                            sums[c] += sx.value[k] * by_value[c] + sx.derivative[k] * by_slope[c];
+                        }
+                    }
+                }
+            }
+            self.add(cell, &mass, &local, kx, ky);
+        }
+    }
+
+    #[inline(always)]
+    fn add(
+        &mut self,
+        cell: &Cell,
+        mass: &[f64; MAX_FUNCTIONS],
+        local: &[[f64; 4]; MAX_FUNCTIONS],
+        kx: usize,
+        ky: usize,
+    ) {
+        for l in 0..ky {
+            let base = self.grid.index(cell.first[0], cell.first[1] + l - self.window.first_row);
+            for k in 0..kx {
+                self.window.fields[0][base + k] += mass[l * kx + k];
+                for c in 0..4 {
+                    self.window.fields[c + 1][base + k] += local[l * kx + k][c];
+                }
+            }
+        }
+    }
+}
+
+/// G2P: velocity, position and strain of the points of a strip, and stress and energy where nothing fractures.
+pub struct GridToPoints<'a, K> {
+    /// Background patch.
+    pub patch: &'a Patch,
+    /// Layout of the control points.
+    pub grid: ControlGrid,
+    /// Time step, s.
+    pub dt: f64,
+    /// Velocity of the control points with which the points move and strain, m/s.
+    pub motion: [&'a [f64]; 2],
+    /// What the points take up into their velocity, m/s.
+    pub taken: [&'a [f64]; 2],
+    /// Part of its own velocity that a point keeps.
+    pub kept: f64,
+    /// Strains the points of the strip.
+    pub kinematics: K,
+    /// Moduli if the body is elastic: its stress follows at once.
+    pub elastic: Option<ElasticModuli>,
+    /// Cells of the strip.
+    pub cells: &'a [Cell],
+    /// Points of the strip.
+    pub points: &'a mut [Point],
+    /// What they carry besides if the body fractures, else empty.
+    pub fracture: &'a mut [FracturePoint],
+}
+
+/// Sums and findings of a strip.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct StripMotion {
+    /// Whether a point left its span.
+    pub left_span: bool,
+    /// Largest square of a velocity component, m²/s².
+    pub fastest: f64,
+    /// Elastic energy, J/m; only of an elastic body.
+    pub elastic_energy: f64,
+    /// Work `Σ V sigma(n+1) : de`, J/m; only of an elastic body.
+    pub stress_work: f64,
+}
+
+/// What a step does to a point.
+struct PointMotion {
+    /// Strain of the step that the new stress works on.
+    strain_increment: [f64; 3],
+    /// Displacement of the step, m.
+    moved: [f64; 2],
+}
+
+impl<K: Kinematics> Vectorised for GridToPoints<'_, K> {
+    type Output = StripMotion;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> StripMotion {
+        walk!(self)
+    }
+}
+
+impl<K: Kinematics> GridToPoints<'_, K> {
+    #[inline(always)]
+    fn walk(mut self, kx: usize, ky: usize) -> StripMotion {
+        let mut motion = StripMotion::default();
+        let offset = self.cells.first().map_or(0, |cell| cell.points.start);
+        let ([ux, uy], [tx, ty]) = (self.motion, self.taken);
+        let fields = [ux, uy, tx, ty];
+        let mut increments = [[0.0; 3]; LANES];
+        for cell in self.cells {
+            let local = control_values(fields, self.grid, cell, kx, ky);
+            let all = cell.points.start - offset..cell.points.end - offset;
+            for first in all.clone().step_by(LANES) {
+                let some = first..(first + LANES).min(all.end);
+                for at in some.clone() {
+                    let PointMotion { strain_increment, moved } =
+                        self.move_point(cell, at, &local, kx, ky, &mut motion);
+                    increments[at - first] = strain_increment;
+                    if let Some(fracture) = self.fracture.get_mut(at) {
+                        (fracture.strain_increment, fracture.moved) = (strain_increment, moved);
+                    }
+                }
+                if let Some(moduli) = self.elastic {
+                    elastic_stress(&moduli, &mut self.points[some], &increments, &mut motion);
+                }
+            }
+        }
+        motion
+    }
+
+    /// Moves and strains one point.
+    #[inline(always)]
+    fn move_point(
+        &mut self,
+        cell: &Cell,
+        at: usize,
+        local: &[[f64; 4]; MAX_FUNCTIONS],
+        kx: usize,
+        ky: usize,
+        motion: &mut StripMotion,
+    ) -> PointMotion {
+        let [x, y] = &self.patch.spaces;
+        let point = &mut self.points[at];
+        let sx = x.shape_functions(cell.span[0], point.position[0]);
+        let sy = y.shape_functions(cell.span[1], point.position[1]);
+        let (mut value, mut along_x, mut along_y) = ([0.0; 4], [0.0; 4], [0.0; 4]);
+        for l in 0..ky {
+            let (mut row_value, mut row_slope) = ([0.0; 4], [0.0; 4]);
+            for k in 0..kx {
+                for c in 0..4 {
+                    row_value[c] += sx.value[k] * local[l * kx + k][c];
+                    row_slope[c] += sx.derivative[k] * local[l * kx + k][c];
+                }
+            }
+            for c in 0..4 {
+                value[c] += sy.value[l] * row_value[c];
+                along_x[c] += sy.value[l] * row_slope[c];
+                along_y[c] += sy.derivative[l] * row_value[c];
+            }
+        }
+        let step = [0, 1].map(|c| [self.dt * along_x[c], self.dt * along_y[c]]);
+        let strain_increment = self.kinematics.strain(at, &mut point.strain, &step);
+        let moved = [0, 1].map(|d| self.dt * value[d]);
+        for d in 0..2 {
+            point.velocity[d] = self.kept * point.velocity[d] + value[2 + d];
+            point.displacement[d] += moved[d];
+            point.position[d] += fault!("points-move-half-way", moved[d] => 0.5 * moved[d]);
+            motion.fastest = larger(motion.fastest, value[d] * value[d]);
+        }
+        let spans = [&x.spans()[cell.span[0]], &y.spans()[cell.span[1]]];
+        motion.left_span |= (0..2).any(|d| !(spans[d].left <= point.position[d] && point.position[d] < spans[d].right));
+        PointMotion { strain_increment, moved }
+    }
+}
+
+/// Stress of at most eight intact points, their energy and the work of the new stress over the step.
+#[inline(always)]
+fn elastic_stress(
+    moduli: &ElasticModuli,
+    points: &mut [Point],
+    increments: &[[f64; 3]; LANES],
+    motion: &mut StripMotion,
+) {
+    let strain = [0, 1, 2].map(|i| gather(points, |p| p.strain[i]));
+    let stress = moduli.stress(strain);
+    let energy = moduli.energy(strain);
+    for (lane, point) in points.iter_mut().enumerate() {
+        point.stress = [0, 1, 2].map(|i| stress[i][lane]);
+        motion.elastic_energy += point.volume * energy[lane];
+        motion.stress_work += point.volume * contract(point.stress, increments[lane]);
+    }
+}
+
+/// `a : b` of two symmetric tensors `[xx, yy, xy]`.
+#[inline(always)]
+pub fn contract(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + 2.0 * a[2] * b[2]
+}
+
+/// One number of each of at most eight points; zero in the lanes beyond.
+#[inline(always)]
+pub fn gather<T>(items: &[T], value: impl Fn(&T) -> f64) -> Lane {
+    let mut lanes = Lane::ZERO;
+    for (lane, item) in items.iter().enumerate() {
+        lanes[lane] = value(item);
+    }
+    lanes
+}

@@ -1,0 +1,138 @@
+//! Volume loads of a [`Forcing`] on the moving points, for verification.
+//!
+//! A load is given per reference volume as a function of reference position and time, and integrated at the moved point:
+//! its force with the shape functions there, its stress with their gradients there. Work is the mean of the powers of old and
+//! new load on the motion of the step. With finite kinematics the gradient of that motion is taken at either end.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::grid::VectorField;
+use super::points::{Cells, Point};
+use super::windows::{cut, scatter};
+use crate::dynamics::forcing::{Forcing, VolumeLoad};
+use crate::material::hencky::{Gradient, gradient_at_end};
+use crate::splines::patch::{ControlGrid, Patch};
+
+/// A forcing, and what it needs per point.
+#[derive(Debug, Clone)]
+pub struct VolumeForcing {
+    forcing: Arc<dyn Forcing>,
+    finite: bool,
+    /// Load on each point now, in the order of the points.
+    loads: Vec<VolumeLoad>,
+    /// Velocity and its gradient in the motion of the step.
+    motion: Vec<([f64; 2], Gradient)>,
+    /// Powers of the old and of the new load on that motion, W/m.
+    powers: [f64; 2],
+}
+
+impl VolumeForcing {
+    /// Loads at a time, s.
+    pub fn new(forcing: Arc<dyn Forcing>, finite: bool, points: &[Point], time: f64) -> Self {
+        let loads = points.iter().map(|p| forcing.volume(p.reference(), time)).collect();
+        Self { forcing, finite, loads, motion: vec![Default::default(); points.len()], powers: [0.0; 2] }
+    }
+
+    /// Records the motion the points are about to make, and the power of the present loads on it.
+    pub fn before_motion(&mut self, patch: &Patch, cells: &Cells, points: &[Point], velocity: &VectorField) {
+        let (loads, grid) = (&self.loads, patch.control_grid());
+        let motion = cut(&mut self.motion, cells.strips.iter().map(|s| s.points.clone())).into_par_iter();
+        let powers: Vec<f64> = motion
+            .zip(&cells.strips)
+            .map(|(motion, strip)| {
+                let mut power = 0.0;
+                for (span, at) in in_cells(cells, strip.cells.clone()) {
+                    let point = &points[at];
+                    let moved = &mut motion[at - strip.points.start];
+                    *moved = Default::default();
+                    let (v, gradient) = moved;
+                    for_each_function(patch, grid, span, point.position, |node, n, slope| {
+                        for i in 0..2 {
+                            v[i] += n * velocity[i][node];
+                            gradient[i] = [0, 1].map(|j| gradient[i][j] + slope[j] * velocity[i][node]);
+                        }
+                    });
+                    power += point.volume * power_density(&loads[at], moved);
+                }
+                power
+            })
+            .collect();
+        self.powers[0] = powers.iter().sum();
+    }
+
+    /// Loads at the new time (s), and their power on the motion of `dt` seconds that was made.
+    pub fn after_motion(&mut self, points: &[Point], time: f64, dt: f64) {
+        self.powers[1] = 0.0;
+        for ((load, (v, gradient)), point) in self.loads.iter_mut().zip(&self.motion).zip(points) {
+            *load = self.forcing.volume(point.reference(), time);
+            let at_end = if self.finite {
+                gradient_at_end(&gradient.map(|row| row.map(|g| dt * g))).map(|row| row.map(|g| g / dt))
+            } else {
+                *gradient
+            };
+            self.powers[1] += point.volume * power_density(load, &(*v, at_end));
+        }
+    }
+
+    /// Follows a new order of the points.
+    pub fn reorder(&mut self, cells: &Cells) {
+        cells.reorder(&mut self.loads);
+    }
+
+    /// Adds the nodal forces, N/m.
+    pub fn add_forces(&self, patch: &Patch, cells: &Cells, points: &[Point], force: &mut VectorField) {
+        let grid = patch.control_grid();
+        scatter(&cells.strips, force.each_mut().map(|f| &mut f[..]), [grid.stride; 2], |strip, window| {
+            let above = window.first_row * grid.stride;
+            for (span, at) in in_cells(cells, strip.cells.clone()) {
+                let (point, load) = (&points[at], &self.loads[at]);
+                for_each_function(patch, grid, span, point.position, |node, n, slope| {
+                    for i in 0..2 {
+                        let stress = load.stress[i][0] * slope[0] + load.stress[i][1] * slope[1];
+                        window.fields[i][node - above] += point.volume * (n * load.force[i] + stress);
+                    }
+                });
+            }
+        });
+    }
+
+    /// Powers of the old and of the new loads on the motion of the last step, W/m.
+    pub fn powers(&self) -> [f64; 2] {
+        self.powers
+    }
+
+    /// Heap memory, bytes.
+    pub fn bytes(&self) -> usize {
+        self.loads.len() * size_of::<VolumeLoad>() + self.motion.len() * size_of::<([f64; 2], Gradient)>()
+    }
+}
+
+/// Power per unit volume on a velocity and its gradient.
+fn power_density(load: &VolumeLoad, (v, gradient): &([f64; 2], Gradient)) -> f64 {
+    (0..2).map(|i| load.force[i] * v[i] + (0..2).map(|j| load.stress[i][j] * gradient[i][j]).sum::<f64>()).sum()
+}
+
+/// Span and index of the points of some cells.
+fn in_cells(cells: &Cells, some: std::ops::Range<usize>) -> impl Iterator<Item = ([usize; 2], usize)> {
+    cells.cells[some].iter().flat_map(|cell| cell.points.clone().map(|at| (cell.span, at)))
+}
+
+/// Calls `f` with control point, value and gradient of every shape function at a position.
+fn for_each_function(
+    patch: &Patch,
+    grid: ControlGrid,
+    span: [usize; 2],
+    position: [f64; 2],
+    mut f: impl FnMut(usize, f64, [f64; 2]),
+) {
+    let [sx, sy] = [0, 1].map(|d| patch.spaces[d].shape_functions(span[d], position[d]));
+    let first = [0, 1].map(|d| patch.spaces[d].spans()[span[d]].first);
+    for l in 0..=patch.spaces[1].degree() {
+        for k in 0..=patch.spaces[0].degree() {
+            let slope = [sx.derivative[k] * sy.value[l], sx.value[k] * sy.derivative[l]];
+            f(grid.index(first[0] + k, first[1] + l), sx.value[k] * sy.value[l], slope);
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! Linear algebra: values of several points side by side, matrices whose rows couple neighbouring control points, conjugate
+//! gradients with incomplete and complete factors.
+//!
+//! Symbols: A a symmetric matrix, M its preconditioner, r a residual. Calls no other room but [`checkpoint`](crate::checkpoint).
+
+pub mod cholesky;
+pub mod conjugate_gradients;
+pub mod extremes;
+pub mod incomplete_cholesky;
+pub mod lane;
+pub mod preconditioner;
+pub mod stencil;

@@ -1,0 +1,181 @@
+//! What preconditions the phase-field solve: an incomplete factorisation, made anew when it has grown stale, or a complete one
+//! where the incomplete one is too poor.
+//!
+//! Couplings that an incomplete factor drops matter little as long as every span is full of points. In material that is broken and
+//! drawn out, spans hold a point or two with a reaction 1e5 times that of intact material, and conjugate gradients would
+//! need hundreds of iterations. A complete factor then costs less, although it is made anew for every solve: combinations of control
+//! values that vanish at the points of one step do not at those of the next, and an older factor takes them for soft.
+
+use serde::{Deserialize, Serialize};
+
+use crate::checkpoint::{Archive, StateError};
+use crate::linear_algebra::cholesky::{Factor, SparseCholesky};
+use crate::linear_algebra::incomplete_cholesky::IncompleteCholesky;
+use crate::linear_algebra::stencil::Stencil;
+
+/// A factor is renewed once a solve needs this many more iterations than the one after its renewal.
+const EXTRA_ITERATIONS: usize = 3;
+/// More iterations than this with a fresh incomplete factor call for a complete one: five times what a cracked plate needs.
+pub const TOO_MANY: usize = 80;
+/// Solves with complete factors before the incomplete one is tried again; twice as many each time it is still too poor, up to the
+/// last. Looking for it so costs at most five iterations a solve, and in the end a sixth of one.
+const FIRST_PAUSE: usize = 16;
+const LONGEST_PAUSE: usize = 512;
+
+/// Factor of a matrix as it was some solves ago.
+#[derive(Debug, Clone)]
+pub struct Preconditioner {
+    factor: Kind,
+    /// Whether the matrix is still the one that was factored.
+    is_fresh: bool,
+    /// Iterations of the first solve with the present factor.
+    fresh_iterations: Option<usize>,
+    pause: Pause,
+}
+
+#[derive(Debug, Clone)]
+enum Kind {
+    Incomplete(IncompleteCholesky),
+    /// None between a checkpoint and the solve that makes one.
+    Complete(SparseCholesky, Option<Factor>),
+}
+
+/// How long complete factors serve.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Pause {
+    /// Solves until the incomplete factor is tried again.
+    left: usize,
+    /// Solves of the next pause.
+    next: usize,
+}
+
+impl Preconditioner {
+    /// Incomplete factor of `matrix`.
+    pub fn new(matrix: &Stencil) -> Self {
+        Self {
+            factor: Kind::Incomplete(IncompleteCholesky::new(matrix)),
+            is_fresh: true,
+            fresh_iterations: None,
+            pause: Pause { left: 0, next: FIRST_PAUSE },
+        }
+    }
+
+    /// `out = M⁻¹ r`; returns `rᵀ out`.
+    pub fn apply(&self, r: &[f64], out: &mut [f64]) -> f64 {
+        match &self.factor {
+            Kind::Incomplete(factor) => factor.apply(r, out),
+            Kind::Complete(_, factor) => {
+                factor.as_ref().expect("it is made before the solve").solve(r, out);
+                r.iter().zip(out).map(|(r, out)| r * *out).sum()
+            }
+        }
+    }
+
+    /// Makes the factor anew; one that cannot be complete becomes incomplete.
+    pub fn renew(&mut self, matrix: &Stencil) {
+        match &mut self.factor {
+            Kind::Incomplete(factor) => factor.refactor(matrix),
+            Kind::Complete(cholesky, factor) => {
+                *factor = cholesky.factor(matrix, &[]);
+                if factor.is_none() {
+                    self.factor = Kind::Incomplete(IncompleteCholesky::new(matrix));
+                }
+            }
+        }
+        self.is_fresh = true;
+    }
+
+    /// Makes ready for a solve: a complete factor is made anew, unless its time is over and the incomplete one is tried again.
+    pub fn prepare(&mut self, matrix: &Stencil) {
+        if !self.is_complete() {
+            return;
+        }
+        if self.pause.left == 0 {
+            *self = Self { pause: self.pause, ..Self::new(matrix) };
+        } else {
+            self.pause.left -= 1;
+            self.renew(matrix);
+        }
+    }
+
+    /// Whether `rᵀ M⁻¹ r` says how large the error of a start is: a factor with a raised diagonal would make it out smaller.
+    pub fn judges_starts(&self) -> bool {
+        match &self.factor {
+            Kind::Incomplete(factor) => !factor.is_raised(),
+            Kind::Complete(..) => true,
+        }
+    }
+
+    /// Whether the factor serves one solve alone.
+    pub fn is_complete(&self) -> bool {
+        matches!(self.factor, Kind::Complete(..))
+    }
+
+    /// The next solve counts as the first with the present factor.
+    pub fn forget(&mut self) {
+        self.fresh_iterations = None;
+    }
+
+    /// Learns what a solve needed that came to its end, and renews a stale factor.
+    pub fn learn(&mut self, matrix: &Stencil, iterations: usize) {
+        self.is_fresh = false;
+        if self.is_complete() {
+            return;
+        }
+        self.pause.next = FIRST_PAUSE;
+        let fresh = *self.fresh_iterations.get_or_insert(iterations);
+        if iterations > fresh + EXTRA_ITERATIONS {
+            self.renew(matrix);
+            self.forget();
+        }
+    }
+
+    /// A better factor for the solve under way: a fresh one, or else a complete one for this solve and some to come; false if
+    /// there is none to be had.
+    pub fn improve(&mut self, matrix: &Stencil) -> bool {
+        self.forget();
+        if !self.is_fresh {
+            self.renew(matrix);
+            return true;
+        }
+        if self.is_complete() {
+            return false;
+        }
+        let mut cholesky = SparseCholesky::default();
+        let Some(factor) = cholesky.factor(matrix, &[]) else { return false };
+        self.factor = Kind::Complete(cholesky, Some(factor));
+        self.pause = Pause { left: self.pause.next, next: (2 * self.pause.next).min(LONGEST_PAUSE) };
+        true
+    }
+
+    /// Heap memory, bytes.
+    pub fn bytes(&self) -> usize {
+        match &self.factor {
+            Kind::Incomplete(factor) => factor.bytes(),
+            Kind::Complete(_, factor) => factor.as_ref().map_or(0, |factor| factor.bytes()),
+        }
+    }
+
+    /// Stores or takes up what steps change. A complete factor is made anew for every solve, so that there is one is all that counts.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(crate) fn exchange(&mut self, archive: &mut Archive, matrix: &Stencil) -> Result<(), StateError> {
+        let Self { factor, is_fresh, fresh_iterations, pause } = self;
+        archive.value(is_fresh)?;
+        archive.value(fresh_iterations)?;
+        archive.value(pause)?;
+        let mut complete = matches!(factor, Kind::Complete(..));
+        archive.value(&mut complete)?;
+        if archive.is_reader() {
+            *factor = match complete {
+                true => Kind::Complete(SparseCholesky::default(), None),
+                false => Kind::Incomplete(IncompleteCholesky::new(matrix)),
+            };
+        }
+        match factor {
+            Kind::Incomplete(factor) => factor.exchange(archive),
+            Kind::Complete(..) => Ok(()),
+        }
+    }
+}

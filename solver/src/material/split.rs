@@ -1,0 +1,95 @@
+//! Spectral split of the elastic energy (E 4–7), without eigenvectors.
+//!
+//! With `m = (exx + eyy)/2` and `r = hypot((exx − eyy)/2, exy)` the principal strains are `m ± r`, and the tensile part
+//! is `e+ = a (e − b I)` with (a, b) = (1, 0) where both are tensile, (0, ·) where both are compressive and
+//! `(e1/(2 r), e2)` between, where `2 r ≥ max(|e1|, |e2|)`: nothing is ever divided by a small number, so equal and nearly
+//! equal principal strains need no special care. The hypotenuse is scaled, so squares do not underflow. A strain that is not a
+//! number has energies and stresses that are none: the energy of a body tells that one of its points has lost its numbers.
+
+use crate::linear_algebra::lane::Lane;
+use crate::material::ElasticModuli;
+
+/// Which part of the energy the phase field degrades.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EnergySplit {
+    /// The tensile part in principal strains.
+    Spectral,
+    /// All of it.
+    Whole,
+}
+
+/// Energies and stresses of a batch of points: intact values of both parts.
+#[derive(Debug, Clone, Copy)]
+pub struct SplitState {
+    /// Energy density that drives fracture, psi+, J/m³.
+    pub energy_plus: Lane,
+    /// The rest, psi−, J/m³.
+    pub energy_minus: Lane,
+    /// Stress of the driving part `[xx, yy, xy]`, Pa.
+    pub stress_plus: [Lane; 3],
+    /// Stress of the rest `[xx, yy, xy]`, Pa.
+    pub stress_minus: [Lane; 3],
+}
+
+/// Splits the strain `[exx, eyy, exy]` (tensor shear).
+#[inline(always)]
+pub fn split(moduli: &ElasticModuli, split: EnergySplit, strain: [Lane; 3]) -> SplitState {
+    match split {
+        EnergySplit::Spectral => spectral(moduli, strain),
+        EnergySplit::Whole => whole(moduli, strain),
+    }
+}
+
+/// The tensile part `e+` of a strain and both principal strains, largest first.
+#[inline(always)]
+pub fn tensile_strain([xx, yy, xy]: [Lane; 3]) -> ([Lane; 3], [Lane; 2]) {
+    let mean = (xx + yy) * 0.5;
+    let half_difference = (xx - yy) * 0.5;
+    let radius = half_difference.zip(xy, scaled_hypot);
+    let (e1, e2) = fault!("split-swapped", (mean + radius, mean - radius) => (mean - radius, mean + radius));
+    let factor = e1.zip(radius, |e1, r| if e1 <= 0.0 { 0.0 } else { e1 / (2.0 * r) });
+    let factor = factor.zip(e2, |f, e2| if e2 >= 0.0 { 1.0 } else { f });
+    let shift = e2.at_most(Lane::ZERO);
+    ([(xx - shift) * factor, (yy - shift) * factor, xy * factor], [e1, e2])
+}
+
+/// `hypot(a, b)` by scaling with the larger one: exact to an ulp or two down to the smallest normal numbers.
+#[inline(always)]
+fn scaled_hypot(a: f64, b: f64) -> f64 {
+    let (a, b) = (a.abs(), b.abs());
+    let (large, small) = if a > b { (a, b) } else { (b, a) };
+    let ratio = small / if large > 0.0 { large } else { 1.0 };
+    large * (1.0 + ratio * ratio).sqrt()
+}
+
+#[inline(always)]
+fn spectral(moduli: &ElasticModuli, strain: [Lane; 3]) -> SplitState {
+    let ElasticModuli { lambda, mu } = *moduli;
+    let (tensile, [e1, e2]) = tensile_strain(strain);
+    let trace = strain[0] + strain[1];
+    let (trace_plus, trace_minus) =
+        fault!("trace-not-split", (trace.at_least(Lane::ZERO), trace.at_most(Lane::ZERO)) => (trace, Lane::ZERO));
+    let square = |a: Lane, b: Lane| a * a + b * b;
+    let plus = square(e1.at_least(Lane::ZERO), e2.at_least(Lane::ZERO));
+    let minus = square(e1.at_most(Lane::ZERO), e2.at_most(Lane::ZERO));
+    let stress = |trace: Lane, [xx, yy, xy]: [Lane; 3]| {
+        [trace * lambda + xx * (2.0 * mu), trace * lambda + yy * (2.0 * mu), xy * (2.0 * mu)]
+    };
+    let compressive = [strain[0] - tensile[0], strain[1] - tensile[1], strain[2] - tensile[2]];
+    SplitState {
+        energy_plus: trace_plus * trace_plus * (0.5 * lambda) + plus * mu,
+        energy_minus: trace_minus * trace_minus * (0.5 * lambda) + minus * mu,
+        stress_plus: stress(trace_plus, tensile),
+        stress_minus: stress(trace_minus, compressive),
+    }
+}
+
+#[inline(always)]
+fn whole(moduli: &ElasticModuli, strain: [Lane; 3]) -> SplitState {
+    SplitState {
+        energy_plus: moduli.energy(strain),
+        energy_minus: Lane::ZERO,
+        stress_plus: moduli.stress(strain),
+        stress_minus: [Lane::ZERO; 3],
+    }
+}

@@ -1,0 +1,306 @@
+//! Material points of a body as a lattice of span tiles.
+//!
+//! Every span of the body holds the same pattern of points, so positions, shape functions and weights factor into one
+//! table per column of spans and one per row: nothing is stored per point but what the physics changes. Spans are
+//! handled eight at a time, one per lane of a [`Lane`] (a *tile*), and rows of spans in *strips* of fixed height. Sums
+//! are formed strip by strip, so they do not depend on the number of threads.
+//!
+//! A rectangle cuts the spans at its edges exactly; of other shapes the points of a span that lie inside are kept. On a
+//! patch with a geometry the lattice is one of parameters, in the unit of the knots, and has a [`Mapping`].
+
+mod integrate;
+mod mapped;
+mod tables;
+
+pub use mapped::{MappedPoint, Mapping};
+
+use crate::linear_algebra::lane::{LANES, Lane};
+use crate::splines::nurbs::{Location, MAX_FUNCTIONS};
+use crate::splines::patch::{ControlGrid, Patch};
+use crate::splines::quadrature::Rule;
+use crate::scene::{Body, Layout, Shape};
+use crate::splines::spline::{MAX_ORDER, SplineSpace};
+use tables::{Columns, columns, tiles};
+
+/// Rows of spans in a strip; at least the highest degree, so that only neighbouring strips share control points.
+const STRIP_ROWS: usize = 8;
+
+/// Eight neighbouring columns of spans.
+#[derive(Debug, Clone)]
+pub struct Tile {
+    /// First control column of lane 0; lane l begins at `first + l`.
+    pub first: usize,
+    /// Spans in use; the lanes beyond have zero weight.
+    pub count: usize,
+    /// Values of the basis functions: point a, function k at `a * order + k`.
+    pub value: Vec<Lane>,
+    /// Their derivatives, 1/m or 1/unit of the knots.
+    pub derivative: Vec<Lane>,
+    /// Weights of the points, m or unit of the knots.
+    pub weight: Vec<Lane>,
+    /// Positions of the points, m or unit of the knots.
+    pub position: Vec<Lane>,
+}
+
+/// One row of spans.
+#[derive(Debug, Clone)]
+pub struct Row {
+    /// First control row.
+    pub first: usize,
+    /// Values of the basis functions: point b, function k at `[b][k]`.
+    pub value: Vec<[f64; MAX_ORDER]>,
+    /// Their derivatives, 1/m or 1/unit of the knots.
+    pub derivative: Vec<[f64; MAX_ORDER]>,
+    /// Weights of the points, m or unit of the knots.
+    pub weight: Vec<f64>,
+    /// Positions of the points, m or unit of the knots.
+    pub position: Vec<f64>,
+}
+
+/// Material points of one body, in reference positions.
+#[derive(Debug, Clone)]
+pub struct Lattice {
+    /// Layout of the control points.
+    pub grid: ControlGrid,
+    /// Degree in x and y.
+    pub degree: [usize; 2],
+    /// Points per span in x and y.
+    pub points: [usize; 2],
+    /// Their layout.
+    pub layout: Layout,
+    /// Tiles of columns.
+    pub tiles: Vec<Tile>,
+    /// Rows of spans.
+    pub rows: Vec<Row>,
+    /// What the geometry of the patch adds; absent over a rectangle.
+    pub mapping: Option<Box<Mapping>>,
+    /// What the product of the weights of both directions is multiplied by, per batch: 0 where there is no point, and the
+    /// determinant of the Jacobian where there is a geometry; absent if it is 1 everywhere.
+    factor: Option<Vec<Lane>>,
+}
+
+/// Shape functions and physical gradients (1/m) of a batch of points, function n = l (p + 1) + k.
+#[derive(Debug, Clone, Copy)]
+pub struct BatchFunctions {
+    /// Values.
+    pub value: [Lane; MAX_FUNCTIONS],
+    /// Gradients.
+    pub gradient: [[Lane; 2]; MAX_FUNCTIONS],
+}
+
+/// A coordinate of material points along one direction, m or unit of the knots.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct AxisPoint {
+    /// The coordinate.
+    pub position: f64,
+    /// The length it stands for.
+    pub weight: f64,
+    /// Length of the span it lies in.
+    pub span: f64,
+}
+
+/// Coordinates of the points of `body` along both directions of a patch with these spaces; parameters if they are `mapped`.
+/// Unless [`fills_lattice`], the points are those of all pairs that lie in the shape.
+pub(crate) fn point_axes(body: &Body, spaces: &[SplineSpace; 2], mapped: bool) -> [Vec<AxisPoint>; 2] {
+    let along = |Columns { position, weight, length: span, .. }: Columns| {
+        let pairs = position.into_iter().zip(weight);
+        pairs.map(move |(position, weight)| AxisPoint { position, weight, span })
+    };
+    columns_of(body, spaces, mapped).map(|columns| columns.into_iter().flat_map(along).collect())
+}
+
+/// Whether no point of a lattice lies outside the shape.
+pub(crate) fn fills_lattice(mapped: bool, shape: &Shape) -> bool {
+    *shape == Shape::Patch || (!mapped && matches!(shape, Shape::Rectangle { .. }))
+}
+
+/// Tables of the spans that meet the box around a body. A rectangle cuts them, unless the lattice is one of parameters.
+fn columns_of(body: &Body, spaces: &[SplineSpace; 2], mapped: bool) -> [Vec<Columns>; 2] {
+    let shape = if mapped { &Shape::Patch } else { &body.shape };
+    let (low, high) = shape.bounding_box();
+    let clip = matches!(shape, Shape::Rectangle { .. });
+    [0, 1].map(|d| {
+        let rule = Rule::new(body.layout, body.particles_per_cell[d]);
+        columns(&spaces[d], &rule, low[d], high[d], clip)
+    })
+}
+
+impl Lattice {
+    /// The points of `body` on `patch`.
+    pub fn new(patch: &Patch, body: &Body) -> Self {
+        let mapped = patch.geometry.is_some();
+        let [x, y] = columns_of(body, &patch.spaces, mapped);
+        let degree = [0, 1].map(|d| patch.spaces[d].degree());
+        let rows = y
+            .into_iter()
+            .map(|c| Row {
+                first: c.first,
+                value: c.value,
+                derivative: c.derivative,
+                weight: c.weight,
+                position: c.position,
+            })
+            .collect();
+        let mut lattice = Self {
+            grid: patch.control_grid(),
+            degree,
+            points: body.particles_per_cell,
+            layout: body.layout,
+            tiles: tiles(&x, degree[0] + 1),
+            rows,
+            mapping: None,
+            factor: None,
+        };
+        if let Some(geometry) = &patch.geometry {
+            lattice.map_by(geometry);
+        }
+        if !fills_lattice(mapped, &body.shape) {
+            lattice.keep_inside(&body.shape);
+        }
+        lattice
+    }
+
+    /// Takes away the points outside a shape.
+    fn keep_inside(&mut self, shape: &Shape) {
+        let mut factor = self.factor.take().unwrap_or_else(|| vec![Lane::splat(1.0); self.batches()]);
+        for (batch, factor) in factor.iter_mut().enumerate() {
+            for lane in 0..LANES {
+                if !shape.contains(self.position(batch, lane)) {
+                    factor[lane] = 0.0;
+                }
+            }
+        }
+        self.factor = Some(factor);
+    }
+
+    /// Points in a span.
+    pub fn points_per_span(&self) -> usize {
+        self.points[0] * self.points[1]
+    }
+
+    /// Batches (one point in each of eight spans) in the lattice; point state has this many [`Lane`]s.
+    pub fn batches(&self) -> usize {
+        self.rows.len() * self.tiles.len() * self.points_per_span()
+    }
+
+    /// Batches in a full strip: point state is cut into chunks of this length.
+    pub fn strip_batches(&self) -> usize {
+        STRIP_ROWS * self.tiles.len() * self.points_per_span()
+    }
+
+    /// Number of strips.
+    pub fn strips(&self) -> usize {
+        self.rows.len().div_ceil(STRIP_ROWS)
+    }
+
+    /// Rows of spans in a strip.
+    pub fn strip_rows(&self, strip: usize) -> std::ops::Range<usize> {
+        strip * STRIP_ROWS..((strip + 1) * STRIP_ROWS).min(self.rows.len())
+    }
+
+    /// Control rows a strip contributes to.
+    pub fn strip_control_rows(&self, strip: usize) -> std::ops::Range<usize> {
+        let rows = self.strip_rows(strip);
+        self.rows[rows.start].first..self.rows[rows.end - 1].first + self.degree[1] + 1
+    }
+
+    /// Batch index of row of spans, tile, and point (a, b) in the span.
+    #[inline(always)]
+    pub fn batch(&self, row: usize, tile: usize, b: usize, a: usize) -> usize {
+        ((row * self.tiles.len() + tile) * self.points[1] + b) * self.points[0] + a
+    }
+
+    /// Row of spans, tile, and point (b, a) of a batch.
+    pub fn unbatch(&self, batch: usize) -> (usize, usize, usize, usize) {
+        let (rest, a) = (batch / self.points[0], batch % self.points[0]);
+        let (rest, b) = (rest / self.points[1], rest % self.points[1]);
+        (rest / self.tiles.len(), rest % self.tiles.len(), b, a)
+    }
+
+    /// Weights (m²) of a batch; zero where there is no point.
+    #[inline(always)]
+    pub fn weight(&self, row: usize, tile: usize, b: usize, a: usize) -> Lane {
+        let weight = self.tiles[tile].weight[a] * self.rows[row].weight[b];
+        match &self.factor {
+            None => weight,
+            Some(factor) => weight * factor[self.batch(row, tile, b, a)],
+        }
+    }
+
+    /// Weights of eight control points from index `at` of a field on; 1 over a rectangle.
+    #[inline(always)]
+    pub fn weights(&self, at: usize) -> Lane {
+        self.mapping.as_ref().map_or(Lane::splat(1.0), |mapping| Lane::load(&mapping.weights, at))
+    }
+
+    /// Shape functions of a batch; those of lane l belong to control points l columns further than those of lane 0.
+    pub fn shape_functions(&self, batch: usize) -> BatchFunctions {
+        let (row_index, tile_index, b, a) = self.unbatch(batch);
+        let (row, tile) = (&self.rows[row_index], &self.tiles[tile_index]);
+        let [kx, ky] = self.degree.map(|p| p + 1);
+        let mut functions =
+            BatchFunctions { value: [Lane::ZERO; MAX_FUNCTIONS], gradient: [[Lane::ZERO; 2]; MAX_FUNCTIONS] };
+        for l in 0..ky {
+            for k in 0..kx {
+                let (n, x, dx) = (l * kx + k, tile.value[a * kx + k], tile.derivative[a * kx + k]);
+                functions.value[n] = x * row.value[b][l];
+                functions.gradient[n] = [dx * row.value[b][l], x * row.derivative[b][l]];
+                if let Some(mapping) = &self.mapping {
+                    let weight = Lane::load(&mapping.weights, self.grid.index(tile.first + k, row.first + l));
+                    let [u, v] = functions.gradient[n].map(|g| g * weight);
+                    let rational = mapping.points[batch].field(functions.value[n] * weight, [u, v]);
+                    (functions.value[n], functions.gradient[n]) = rational;
+                }
+            }
+        }
+        functions
+    }
+
+    /// Position of the point of a batch in a lane, m.
+    pub fn position(&self, batch: usize, lane: usize) -> [f64; 2] {
+        if let Some(mapping) = &self.mapping {
+            return mapping.points[batch].position.map(|x| x[lane]);
+        }
+        self.parameters(batch, lane)
+    }
+
+    /// Parameters of the point of a batch in a lane; its position (m) over a rectangle.
+    fn parameters(&self, batch: usize, lane: usize) -> [f64; 2] {
+        let (row, tile, b, a) = self.unbatch(batch);
+        [self.tiles[tile].position[a][lane], self.rows[row].position[b]]
+    }
+
+    /// Span and parameters on `patch` of the point of a batch in a lane.
+    pub fn location(&self, patch: &Patch, batch: usize, lane: usize) -> Location {
+        let (row, tile, _, _) = self.unbatch(batch);
+        let first = [self.tiles[tile].first + lane, self.rows[row].first];
+        let span = [0, 1].map(|d| patch.spaces[d].spans().partition_point(|span| span.first < first[d]));
+        Location { span, parameters: self.parameters(batch, lane) }
+    }
+
+    /// Every point: batch, lane, position (m) and weight (m²).
+    pub fn for_each_point(&self, mut f: impl FnMut(usize, usize, [f64; 2], f64)) {
+        for batch in 0..self.batches() {
+            let (row, tile, b, a) = self.unbatch(batch);
+            let weight = self.weight(row, tile, b, a);
+            for lane in 0..LANES {
+                if weight[lane] > 0.0 {
+                    f(batch, lane, self.position(batch, lane), weight[lane]);
+                }
+            }
+        }
+    }
+
+    /// Heap memory of what is kept per point, bytes.
+    pub fn bytes(&self) -> usize {
+        let mapping = self.mapping.as_ref().map_or(0, |mapping| mapping.bytes());
+        mapping + self.factor.as_ref().map_or(0, |factor| size_of::<Lane>() * factor.len())
+    }
+
+    /// Number of material points.
+    pub fn count(&self) -> usize {
+        let mut count = 0;
+        self.for_each_point(|_, _, _, _| count += 1);
+        count
+    }
+}

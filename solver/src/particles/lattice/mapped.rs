@@ -1,0 +1,102 @@
+//! Points of a patch with a geometry.
+//!
+//! The lattice is one of parameters, and each point has a [`MappedPoint`]. A rational field is a quotient of two spline
+//! fields, `u = A/W` with `A = Σ N_a w_a u_a` and `W = Σ N_b w_b`, so that sums still factor:
+//!
+//! ```text
+//! ∂u/∂ξ_d = (∂A/∂ξ_d − A ∂W/∂ξ_d / W)/W,   ∂u/∂x_j = Σ_d ∂u/∂ξ_d ∂ξ_d/∂x_j
+//! ```
+
+use super::Lattice;
+use crate::linear_algebra::lane::Lane;
+use crate::splines::nurbs::NurbsPatch;
+
+/// Points of a patch with a geometry.
+#[derive(Debug, Clone)]
+pub struct Mapping {
+    /// Weights of the control points, as a field.
+    pub weights: Vec<f64>,
+    /// One entry per batch.
+    pub points: Vec<MappedPoint>,
+}
+
+impl Mapping {
+    /// Heap memory, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        8 * self.weights.len() + size_of::<MappedPoint>() * self.points.len()
+    }
+}
+
+/// The weight function W and the geometry map at a batch of points.
+#[derive(Debug, Clone, Copy)]
+pub struct MappedPoint {
+    /// 1/W.
+    pub inverse_weight: Lane,
+    /// `∂W/∂ξ_d / W`.
+    pub weight_slope: [Lane; 2],
+    /// `[∂ξ/∂x, ∂ξ/∂y, ∂η/∂x, ∂η/∂y]`, 1/m.
+    pub inverse_jacobian: [Lane; 4],
+    /// Position, m.
+    pub position: [Lane; 2],
+}
+
+impl MappedPoint {
+    const ZERO: Self = Self {
+        inverse_weight: Lane::ZERO,
+        weight_slope: [Lane::ZERO; 2],
+        inverse_jacobian: [Lane::ZERO; 4],
+        position: [Lane::ZERO; 2],
+    };
+
+    /// Value and physical gradient of a rational field from the sum `A` and its parametric slopes.
+    #[inline(always)]
+    pub fn field(&self, sum: Lane, slopes: [Lane; 2]) -> (Lane, [Lane; 2]) {
+        let value = sum * self.inverse_weight;
+        let [u, v] = [0, 1].map(|d| slopes[d] * self.inverse_weight - value * self.weight_slope[d]);
+        let [ux, uy, vx, vy] = self.inverse_jacobian;
+        (value, [u * ux + v * vx, u * uy + v * vy])
+    }
+
+    /// The adjoint of [`Self::field`] for a force and a stress: factors of the spline and of its two parametric slopes.
+    #[inline(always)]
+    pub fn adjoint(&self, force: Lane, [x, y]: [Lane; 2]) -> (Lane, [Lane; 2]) {
+        let [ux, uy, vx, vy] = self.inverse_jacobian;
+        let [u, v] = [(x * ux + y * uy) * self.inverse_weight, (x * vx + y * vy) * self.inverse_weight];
+        (force * self.inverse_weight - u * self.weight_slope[0] - v * self.weight_slope[1], [u, v])
+    }
+}
+
+impl Lattice {
+    /// Evaluates weight function and geometry map at every point.
+    pub(super) fn map_by(&mut self, patch: &NurbsPatch) {
+        let mut weights = self.grid.zeros();
+        for (at, weight) in self.grid.indices().zip(patch.weights()) {
+            weights[at] = fault!("rational-weights-ignored", *weight => 1.0);
+        }
+        let mut points = vec![MappedPoint::ZERO; self.batches()];
+        let mut determinants = vec![Lane::ZERO; self.batches()];
+        for batch in 0..self.batches() {
+            let (_, tile, _, _) = self.unbatch(batch);
+            for lane in 0..self.tiles[tile].count {
+                let parameters = self.parameters(batch, lane);
+                let Some(span) = patch.find_span(parameters) else { continue };
+                let (image, weight) = patch.image(span, parameters);
+                let [[xu, xv], [yu, yv]] = image.jacobian;
+                let determinant = image.determinant();
+                determinants[batch][lane] = fault!("jacobian-missing", determinant => 1.0);
+                let point = &mut points[batch];
+                point.inverse_weight[lane] = 1.0 / weight.value;
+                for d in 0..2 {
+                    point.weight_slope[d][lane] = weight.gradient[d] / weight.value;
+                    point.position[d][lane] = image.position[d];
+                }
+                let [yu, xv] = fault!("inverse-map-transposed", [yu, xv] => [xv, yu]);
+                for (entry, value) in point.inverse_jacobian.iter_mut().zip([yv, -xv, -yu, xu]) {
+                    entry[lane] = value / determinant;
+                }
+            }
+        }
+        self.mapping = Some(Box::new(Mapping { weights, points }));
+        self.factor = Some(determinants);
+    }
+}

@@ -1,0 +1,84 @@
+//! Assembly on a patch with a geometry: rational functions do not factor over the directions, so the sum over the points of
+//! a span is done for every pair of functions.
+
+use super::{Form, PointCoefficients};
+use crate::linear_algebra::lane::Lane;
+use crate::particles::lattice::{BatchFunctions, Lattice};
+use crate::splines::nurbs::MAX_FUNCTIONS;
+use crate::splines::quadrature::MAX_POINTS;
+use crate::linear_algebra::stencil::Stencil;
+
+/// Adds the form of a strip to its `window` of the matrix, which begins at control row `first_row`.
+pub(super) fn assemble<C: PointCoefficients>(
+    lattice: &Lattice,
+    form: Form,
+    coefficients: &C,
+    strip: usize,
+    first_row: usize,
+    window: &mut [f64],
+) {
+    let [nx, ny] = lattice.points;
+    let span = nx * ny;
+    let mut weights = [Lane::ZERO; MAX_POINTS * MAX_POINTS];
+    let mut scaled = [Lane::ZERO; MAX_POINTS * MAX_POINTS];
+    let count = (lattice.degree[0] + 1) * (lattice.degree[1] + 1);
+    let mut pairs = vec![Lane::ZERO; count * (count + 1) / 2];
+    for row in lattice.strip_rows(strip) {
+        for tile in 0..lattice.tiles.len() {
+            for b in 0..ny {
+                for a in 0..nx {
+                    weights[b * nx + a] = lattice.weight(row, tile, b, a);
+                }
+            }
+            let first = lattice.batch(row, tile, 0, 0);
+            if !coefficients.span(first, &weights[..span], &mut scaled[..span]) {
+                continue;
+            }
+            pairs.fill(Lane::ZERO);
+            for point in 0..span {
+                add_point(&lattice.shape_functions(first + point), form, scaled[point], count, &mut pairs);
+            }
+            scatter(lattice, [row, tile], &pairs, first_row, window);
+        }
+    }
+}
+
+/// Products of every pair of functions `m <= n` at a batch of points.
+fn add_point(functions: &BatchFunctions, form: Form, coefficient: Lane, count: usize, pairs: &mut [Lane]) {
+    let mut scaled = [[Lane::ZERO; 2]; MAX_FUNCTIONS];
+    for n in 0..count {
+        scaled[n] = match form {
+            Form::Mass => [functions.value[n] * coefficient, Lane::ZERO],
+            Form::Diffusion => functions.gradient[n].map(|g| g * coefficient),
+        };
+    }
+    let mut pair = 0;
+    for m in 0..count {
+        for n in m..count {
+            pairs[pair] += match form {
+                Form::Mass => functions.value[m] * scaled[n][0],
+                Form::Diffusion => functions.gradient[m][0] * scaled[n][0] + functions.gradient[m][1] * scaled[n][1],
+            };
+            pair += 1;
+        }
+    }
+}
+
+/// Adds the pairs of a span row of a tile to the couplings of the half stencil.
+fn scatter(lattice: &Lattice, [row, tile]: [usize; 2], pairs: &[Lane], first_row: usize, window: &mut [f64]) {
+    let [p, q] = lattice.degree;
+    let stride = lattice.grid.stride;
+    let couplings = p + 1 + q * (2 * p + 1);
+    let count = (p + 1) * (q + 1);
+    let mut pair = 0;
+    for m in 0..count {
+        let control_row = lattice.rows[row].first + m / (p + 1) - first_row;
+        let base = control_row * couplings * stride + lattice.grid.index(lattice.tiles[tile].first, 0);
+        for n in m..count {
+            let (columns, rows) = ((n % (p + 1)) as isize - (m % (p + 1)) as isize, n / (p + 1) - m / (p + 1));
+            let ahead = Stencil::offset_index([p, q], columns, rows);
+            pairs[pair].add_to(window, base + ahead * stride + m % (p + 1));
+            pair += 1;
+        }
+    }
+}

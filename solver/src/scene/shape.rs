@@ -1,0 +1,153 @@
+//! Regions of the plane: which positions lie in a shape, and how far it reaches.
+
+use crate::linear_algebra::extremes::{larger, smaller};
+use crate::scene::{Shape, Side};
+
+impl Shape {
+    /// Whether `position` (m) lies in the shape; what bounds it belongs to it, except for the edges of a polygon, which
+    /// belong to one side by the even–odd rule, and for what a difference takes away.
+    pub fn contains(&self, position: [f64; 2]) -> bool {
+        self.contains_within(position, 0.0)
+    }
+
+    /// Whether `position` (m) lies in the shape grown by `margin` (m); a negative margin shrinks it. A small positive
+    /// margin makes it the closure of the shape, up to rounding.
+    pub fn contains_within(&self, position: [f64; 2], margin: f64) -> bool {
+        let distance = |center: &[f64; 2]| (position[0] - center[0]).hypot(position[1] - center[1]);
+        match self {
+            Self::Rectangle { min, max } => {
+                (0..2).all(|d| position[d] >= min[d] - margin && position[d] <= max[d] + margin)
+            }
+            Self::Disk { center, radius } => distance(center) <= radius + margin,
+            Self::Annulus { center, inner_radius, outer_radius } => {
+                (inner_radius - margin..=outer_radius + margin).contains(&distance(center))
+            }
+            Self::Polygon { points } => {
+                let inside = polygon_contains(points, position);
+                let near =
+                    |reach: f64| polygon_edges(points).any(|[a, b]| distance_to_segment(position, a, b) <= reach);
+                match margin {
+                    m if m > 0.0 => inside || near(m),
+                    m if m < 0.0 => inside && !near(-m),
+                    _ => inside,
+                }
+            }
+            Self::Patch => true,
+            Self::Difference { of, minus } => {
+                of.contains_within(position, margin) && !minus.iter().any(|s| s.contains_within(position, -margin))
+            }
+        }
+    }
+
+    /// Smallest axis-aligned rectangle around the shape: lower left and upper right corner, m. That of the patch, which the
+    /// shape does not know, is the whole plane; [`crate::scene::Mesh::extent`] clips it.
+    pub fn bounding_box(&self) -> ([f64; 2], [f64; 2]) {
+        match self {
+            Self::Rectangle { min, max } => (*min, *max),
+            Self::Disk { center, radius } | Self::Annulus { center, outer_radius: radius, .. } => {
+                (center.map(|c| c - radius), center.map(|c| c + radius))
+            }
+            Self::Polygon { points } => {
+                points.iter().fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), p| {
+                    ([0, 1].map(|d| smaller(low[d], p[d])), [0, 1].map(|d| larger(high[d], p[d])))
+                })
+            }
+            Self::Patch => ([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]),
+            Self::Difference { of, minus } => minus.iter().fold(of.bounding_box(), cut),
+        }
+    }
+
+    /// End points of a side of a rectangle, m; `None` for other shapes.
+    pub fn side(&self, side: Side) -> Option<[[f64; 2]; 2]> {
+        let Self::Rectangle { min, max } = self else { return None };
+        Some(match side {
+            Side::Left => [*min, [min[0], max[1]]],
+            Side::Right => [[max[0], min[1]], *max],
+            Side::Bottom => [*min, [max[0], min[1]]],
+            Side::Top => [[min[0], max[1]], *max],
+        })
+    }
+}
+
+/// A box without what a rectangle that reaches across it cuts off at a side.
+fn cut((mut low, mut high): ([f64; 2], [f64; 2]), shape: &Shape) -> ([f64; 2], [f64; 2]) {
+    let Shape::Rectangle { min, max } = shape else { return (low, high) };
+    for d in 0..2 {
+        let across = min[1 - d] <= low[1 - d] && max[1 - d] >= high[1 - d];
+        if across && min[d] <= low[d] && max[d] < high[d] {
+            low[d] = larger(low[d], max[d]);
+        } else if across && max[d] >= high[d] && min[d] > low[d] {
+            high[d] = smaller(high[d], min[d]);
+        }
+    }
+    (low, high)
+}
+
+/// Edges of a polygon from the one that closes it on.
+pub(crate) fn polygon_edges(points: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
+    (0..points.len()).map(|i| [points[(i + points.len() - 1) % points.len()], points[i]])
+}
+
+/// Even–odd rule.
+fn polygon_contains(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let crosses =
+        |[[x0, y0], [x1, y1]]: &[[f64; 2]; 2]| (y0 > &y) != (y1 > &y) && x < x0 + (y - y0) / (y1 - y0) * (x1 - x0);
+    polygon_edges(points).filter(crosses).count() % 2 == 1
+}
+
+/// Distance (m) of `position` from the segment between `from` and `to`.
+pub fn distance_to_segment(position: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let offset = [position[0] - from[0], position[1] - from[1]];
+    let length_squared = along[0] * along[0] + along[1] * along[1];
+    let projected = offset[0] * along[0] + offset[1] * along[1];
+    let t = if length_squared > 0.0 { (projected / length_squared).clamp(0.0, 1.0) } else { 0.0 };
+    (offset[0] - t * along[0]).hypot(offset[1] - t * along[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_hold_their_points_and_no_others() {
+        let square = Shape::Polygon { points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]] };
+        let ring = Shape::Annulus { center: [0.0, 0.0], inner_radius: 1.0, outer_radius: 2.0 };
+        let holed = Shape::Difference {
+            of: Box::new(Shape::Rectangle { min: [0.0, 0.0], max: [2.0, 2.0] }),
+            minus: vec![Shape::Disk { center: [1.0, 1.0], radius: 0.5 }],
+        };
+        assert!(square.contains([1.0, 0.5]) && !square.contains([2.1, 0.5]));
+        assert!(ring.contains([1.5, 0.0]) && !ring.contains([0.5, 0.0]) && !ring.contains([2.0, 2.0]));
+        assert!(holed.contains([0.2, 0.2]) && !holed.contains([1.2, 1.0]));
+        assert_eq!(ring.bounding_box(), ([-2.0, -2.0], [2.0, 2.0]));
+        let half = Shape::Difference {
+            of: Box::new(ring),
+            minus: vec![Shape::Rectangle { min: [-3.0, -3.0], max: [3.0, 0.0] }],
+        };
+        assert_eq!(half.bounding_box(), ([-2.0, 0.0], [2.0, 2.0]));
+    }
+
+    #[test]
+    fn a_margin_moves_every_boundary_outwards_or_inwards() {
+        let disk = |radius| Shape::Disk { center: [0.0; 2], radius };
+        let shapes = [
+            (Shape::Rectangle { min: [-1.0; 2], max: [1.0; 2] }, [1.0, 0.5]),
+            (disk(1.0), [0.0, 1.0]),
+            (Shape::Annulus { center: [0.0; 2], inner_radius: 0.5, outer_radius: 1.0 }, [0.5, 0.0]),
+            (Shape::Polygon { points: vec![[0.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0]] }, [0.5, 0.5]),
+            (Shape::Difference { of: Box::new(disk(2.0)), minus: vec![disk(1.0)] }, [1.0, 0.0]),
+        ];
+        for (shape, on_the_boundary) in shapes {
+            assert!(shape.contains_within(on_the_boundary, 1e-9), "{shape:?}");
+            assert!(!shape.contains_within(on_the_boundary, -1e-9), "{shape:?}");
+        }
+    }
+
+    #[test]
+    fn distance_beyond_the_end_is_to_the_end() {
+        assert_eq!(distance_to_segment([3.0, 4.0], [-1.0, 0.0], [0.0, 0.0]), 5.0);
+        assert_eq!(distance_to_segment([-0.5, 0.25], [-1.0, 0.0], [0.0, 0.0]), 0.25);
+        assert_eq!(distance_to_segment([3.0, 4.0], [0.0, 0.0], [0.0, 0.0]), 5.0, "a segment without length");
+    }
+}

@@ -1,0 +1,313 @@
+//! The background patch (E 13): a tensor product of two spline spaces, and the layout of control-point fields.
+//!
+//! Over a rectangle the knots are coordinates in metres. Any other patch has a [`NurbsPatch`] as its geometry, and its knots
+//! are parameters.
+//!
+//! Fields on the control points are rows of `stride` numbers, x fastest. Each row begins and ends with room for reading
+//! [`LANES`] neighbours past the control points; the room stays zero.
+
+use std::ops::Range;
+
+use crate::linear_algebra::extremes::{larger, smaller};
+use crate::linear_algebra::lane::LANES;
+use crate::splines::nurbs::{Location, NurbsError, NurbsPatch, RationalFunctions};
+use crate::splines::quadrature::Rule;
+use crate::scene::{Geometry, Mesh, Side};
+use crate::splines::spline::{MAX_DEGREE, SplineSpace};
+
+/// Room before the first control point of a row.
+const LEAD: usize = LANES;
+
+/// Tensor-product patch.
+#[derive(Debug, Clone)]
+pub struct Patch {
+    /// Spline spaces of the two parametric directions: x and y, on knots in metres, over a rectangle.
+    pub spaces: [SplineSpace; 2],
+    /// Geometry of a patch that is not a rectangle.
+    pub geometry: Option<Box<NurbsPatch>>,
+}
+
+impl Patch {
+    /// The patch of a mesh.
+    ///
+    /// # Panics
+    /// If the mesh is not valid (see [`crate::validate::validate`]).
+    pub fn new(mesh: &Mesh) -> Self {
+        Self {
+            spaces: [0, 1].map(|d| SplineSpace::new(mesh.degree[d], &mesh.knots[d])),
+            geometry: mesh.nurbs().map(|patch| Box::new(patch.expect("the geometry of a valid mesh"))),
+        }
+    }
+
+    /// The part of a patch over a rectangle that some neighbouring spans in x and y cover.
+    pub fn part(&self, spans: &[Range<usize>; 2]) -> Self {
+        debug_assert!(self.geometry.is_none(), "parts are taken of rectangles");
+        Self { spaces: [0, 1].map(|d| self.spaces[d].part(spans[d].clone())), geometry: None }
+    }
+
+    /// Layout of fields on its control points.
+    pub fn control_grid(&self) -> ControlGrid {
+        let [columns, rows] = [0, 1].map(|d| self.spaces[d].dimension());
+        ControlGrid { columns, rows, stride: (LEAD + columns + MAX_DEGREE + LANES).next_multiple_of(LANES) }
+    }
+
+    /// Coordinates (m) of the control points, as fields: the control values of x and of y.
+    pub fn control_positions(&self) -> [Vec<f64>; 2] {
+        let grid = self.control_grid();
+        let mut positions = [grid.zeros(), grid.zeros()];
+        let greville = [0, 1].map(|d| self.spaces[d].greville());
+        for (n, at) in grid.indices().enumerate() {
+            let point = match &self.geometry {
+                None => [greville[0][grid.column_of(at)], greville[1][grid.row_of(at)]],
+                Some(geometry) => geometry.control_points()[n],
+            };
+            for d in 0..2 {
+                positions[d][at] = point[d];
+            }
+        }
+        positions
+    }
+
+    /// Lower left and upper right corner of the box around the control points, m.
+    pub fn bounding_box(&self) -> ([f64; 2], [f64; 2]) {
+        let positions = self.control_positions();
+        let ends = |d: usize| {
+            let values = self.control_grid().indices().map(|at| positions[d][at]).collect::<Vec<_>>();
+            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (smaller(l, x), larger(h, x)))
+        };
+        let [x, y] = [0, 1].map(ends);
+        ([x.0, y.0], [x.1, y.1])
+    }
+
+    /// Points along a side with a rule in every span of it.
+    pub fn boundary(&self, side: Side, rule: &Rule) -> Vec<BoundaryPoint> {
+        let grid = self.control_grid();
+        let (across, upper) = match side {
+            Side::Left => (0, false),
+            Side::Right => (0, true),
+            Side::Bottom => (1, false),
+            Side::Top => (1, true),
+        };
+        let along = 1 - across;
+        let ends = self.spaces[across].spans();
+        let (fixed_span, fixed) = if upper { (ends.len() - 1, ends[ends.len() - 1].right) } else { (0, ends[0].left) };
+        let sign = if upper { 1.0 } else { -1.0 };
+        let mut points = Vec::new();
+        for (index, span) in self.spaces[along].spans().iter().enumerate() {
+            for (t, weight) in rule.points.iter().zip(&rule.weights) {
+                let (mut at, mut parameters) = ([fixed_span; 2], [fixed; 2]);
+                at[along] = index;
+                parameters[along] = span.left + t * span.length();
+                let (functions, image) = match &self.geometry {
+                    None => (self.products(at, parameters), None),
+                    Some(patch) => {
+                        let functions = patch.shape_functions(at, parameters);
+                        let image = patch.map(&functions);
+                        (functions, Some(image))
+                    }
+                };
+                let tangent = image.map_or_else(
+                    || [0, 1].map(|i| f64::from(u8::from(i == along))),
+                    |image| [image.jacobian[0][along], image.jacobian[1][along]],
+                );
+                let speed = tangent[0].hypot(tangent[1]);
+                // The tangent of the first direction has the patch to its left, that of the second to its right.
+                let turn = if along == 0 { -sign } else { sign };
+                points.push(BoundaryPoint {
+                    position: image.map_or(parameters, |image| image.position),
+                    normal: [turn * tangent[1] / speed, -turn * tangent[0] / speed],
+                    length: weight * span.length() * speed,
+                    functions: on_grid(grid, &functions),
+                });
+            }
+        }
+        points
+    }
+
+    /// Products of the B-splines of both directions.
+    fn products(&self, span: [usize; 2], parameters: [f64; 2]) -> RationalFunctions {
+        crate::splines::nurbs::products(&self.spaces, span, parameters)
+    }
+}
+
+/// Values of shape functions with their control points as indices of fields.
+fn on_grid(grid: ControlGrid, functions: &RationalFunctions) -> Vec<(usize, f64)> {
+    let index = |control: usize| grid.index(control % grid.columns, control / grid.columns);
+    (0..functions.count).map(|n| (index(functions.control[n]), functions.value[n])).collect()
+}
+
+impl Mesh {
+    /// The mesh of a patch, as a general one.
+    pub fn of(patch: &NurbsPatch) -> Self {
+        let [x, y] = patch.spaces();
+        let (control_points, weights) = (patch.control_points().to_vec(), patch.weights().to_vec());
+        Self {
+            degree: [x.degree(), y.degree()],
+            knots: [x.knot_vector().to_vec(), y.knot_vector().to_vec()],
+            geometry: Some(Geometry { control_points, weights }),
+        }
+    }
+
+    /// The patch of the geometry, if there is one.
+    pub fn nurbs(&self) -> Option<Result<NurbsPatch, NurbsError>> {
+        let geometry = self.geometry.as_ref()?;
+        let knots = [&self.knots[0][..], &self.knots[1][..]];
+        Some(NurbsPatch::new(self.degree, knots, geometry.control_points.clone(), geometry.weights.clone()))
+    }
+}
+
+/// A point on a side of a patch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BoundaryPoint {
+    /// Position, m.
+    pub position: [f64; 2],
+    /// Outward unit normal.
+    pub normal: [f64; 2],
+    /// Length it stands for, m.
+    pub length: f64,
+    /// Shape functions that do not vanish: index in a field, and value.
+    pub functions: Vec<(usize, f64)>,
+}
+
+/// A scalar field and its gradient at a position.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PointValue {
+    /// Value.
+    pub value: f64,
+    /// Gradient, 1/m; of a function of parameters, 1/unit of the knots.
+    pub gradient: [f64; 2],
+}
+
+impl Patch {
+    /// A field of control values at a position (m); `None` outside the patch.
+    pub fn evaluate(&self, field: &[f64], position: [f64; 2]) -> Option<PointValue> {
+        Some(self.functions_at(position)?.interpolate(field))
+    }
+
+    /// Shape functions at a position (m); `None` outside the patch.
+    pub fn functions_at(&self, position: [f64; 2]) -> Option<PointFunctions> {
+        Some(self.functions(self.locate(position)?))
+    }
+
+    /// Span and parameters of a position (m); `None` outside the patch.
+    pub fn locate(&self, position: [f64; 2]) -> Option<Location> {
+        match &self.geometry {
+            None => {
+                let span = [self.spaces[0].find_span(position[0])?, self.spaces[1].find_span(position[1])?];
+                Some(Location { span, parameters: position })
+            }
+            Some(patch) => patch.locate(position, None).ok(),
+        }
+    }
+
+    /// Whether something `holds` for all control points whose functions do not vanish in a span.
+    pub fn all_functions(&self, span: [usize; 2], holds: impl Fn(usize) -> bool) -> bool {
+        let grid = self.control_grid();
+        let [columns, rows] = [0, 1].map(|d| {
+            let first = self.spaces[d].spans()[span[d]].first;
+            first..=first + self.spaces[d].degree()
+        });
+        rows.into_iter().all(|row| columns.clone().all(|column| holds(grid.index(column, row))))
+    }
+
+    /// Shape functions at a place.
+    pub fn functions(&self, Location { span, parameters }: Location) -> PointFunctions {
+        let (functions, position, gradient) = match &self.geometry {
+            None => {
+                let functions = self.products(span, parameters);
+                (functions, parameters, functions.gradient)
+            }
+            Some(patch) => {
+                let functions = patch.shape_functions(span, parameters);
+                let image = patch.map(&functions);
+                (functions, image.position, functions.physical_gradients(&image))
+            }
+        };
+        let values = on_grid(self.control_grid(), &functions);
+        PointFunctions { position, values, gradients: gradient[..functions.count].to_vec() }
+    }
+}
+
+/// Shape functions at a position.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointFunctions {
+    /// The position, m.
+    pub position: [f64; 2],
+    /// Index in a field and value of those that do not vanish.
+    pub values: Vec<(usize, f64)>,
+    /// Their gradients, 1/m.
+    pub gradients: Vec<[f64; 2]>,
+}
+
+impl PointFunctions {
+    /// A field of control values.
+    pub fn interpolate(&self, field: &[f64]) -> PointValue {
+        let mut result = PointValue::default();
+        for (&(at, value), gradient) in self.values.iter().zip(&self.gradients) {
+            result.value += value * field[at];
+            for d in 0..2 {
+                result.gradient[d] += gradient[d] * field[at];
+            }
+        }
+        result
+    }
+}
+
+/// Layout of the control points of a patch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ControlGrid {
+    /// Control points in x.
+    pub columns: usize,
+    /// Control points in y.
+    pub rows: usize,
+    /// Distance between rows in a field.
+    pub stride: usize,
+}
+
+impl ControlGrid {
+    /// Length of a field.
+    pub fn len(&self) -> usize {
+        self.rows * self.stride
+    }
+
+    /// Whether there are no control points.
+    pub fn is_empty(&self) -> bool {
+        self.rows == 0 || self.columns == 0
+    }
+
+    /// A field of zeros.
+    pub fn zeros(&self) -> Vec<f64> {
+        vec![0.0; self.len()]
+    }
+
+    /// Index of a control point.
+    pub fn index(&self, column: usize, row: usize) -> usize {
+        row * self.stride + LEAD + column
+    }
+
+    /// Indices of all control points, row by row.
+    pub fn indices(&self) -> impl Iterator<Item = usize> + use<> {
+        let grid = *self;
+        (0..grid.rows).flat_map(move |row| (0..grid.columns).map(move |column| grid.index(column, row)))
+    }
+
+    /// Row of an index.
+    pub fn row_of(&self, index: usize) -> usize {
+        index / self.stride
+    }
+
+    /// Column of the index of a control point.
+    pub fn column_of(&self, index: usize) -> usize {
+        index % self.stride - LEAD
+    }
+
+    /// Indices of the control points on a side, in increasing order.
+    pub fn side(&self, side: Side) -> Vec<usize> {
+        match side {
+            Side::Left => (0..self.rows).map(|row| self.index(0, row)).collect(),
+            Side::Right => (0..self.rows).map(|row| self.index(self.columns - 1, row)).collect(),
+            Side::Bottom => (0..self.columns).map(|column| self.index(column, 0)).collect(),
+            Side::Top => (0..self.columns).map(|column| self.index(column, self.rows - 1)).collect(),
+        }
+    }
+}

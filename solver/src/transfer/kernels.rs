@@ -1,0 +1,199 @@
+//! What happens at the material points in the total frame, one kernel per sweep.
+
+use crate::linear_algebra::extremes::smaller;
+use crate::phase_field::fracture::BROKEN;
+use crate::linear_algebra::lane::Lane;
+use crate::material::{ElasticModuli, FractureModel};
+use crate::material::split::{SplitState, split};
+use crate::transfer::sweep::{PointKernel, PointValues, Stress};
+
+/// Linear strain `[exx, eyy, exy]` of a displacement gradient.
+#[inline(always)]
+fn strain([xx, xy, yx, yy]: [Lane; 4]) -> [Lane; 3] {
+    [xx, yy, (xy + yx) * 0.5]
+}
+
+/// Stress and energy of an intact body.
+#[derive(Debug)]
+pub struct ElasticStress {
+    /// Moduli.
+    pub moduli: ElasticModuli,
+    /// Elastic energy of the strip per unit thickness, J/m.
+    pub energy: Lane,
+}
+
+impl PointKernel for ElasticStress {
+    const DISPLACEMENT: bool = true;
+    const PHASE: bool = false;
+    const PHASE_GRADIENT: bool = false;
+    const STRESS: bool = true;
+
+    #[inline(always)]
+    fn points<const FMA: bool>(&mut self, _at: usize, weight: Lane, values: &PointValues) -> Stress {
+        let strain = strain(values.gradient);
+        self.energy = self.energy.add_product::<FMA>(weight, self.moduli.energy(strain));
+        Stress::symmetric(self.moduli.stress(strain))
+    }
+}
+
+/// History energy `H ← max(H, psi+)` (E 10).
+#[derive(Debug)]
+pub struct HistoryUpdate<'a> {
+    /// Moduli.
+    pub moduli: ElasticModuli,
+    /// Fracture constants.
+    pub model: FractureModel,
+    /// History energy of the strip, J/m³.
+    pub history: &'a mut [Lane],
+}
+
+impl PointKernel for HistoryUpdate<'_> {
+    const DISPLACEMENT: bool = true;
+    const PHASE: bool = false;
+    const PHASE_GRADIENT: bool = false;
+    const STRESS: bool = false;
+
+    #[inline(always)]
+    fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
+        let state = split(&self.moduli, self.model.split, strain(values.gradient));
+        let old = self.history[at];
+        self.history[at] = fault!("history-forgets", state.energy_plus.at_least(old) => state.energy_plus);
+        Stress::ZERO
+    }
+}
+
+/// Degraded stress (E 6), elastic energy, and the work of the history field over the step.
+#[derive(Debug)]
+pub struct DegradedStress<'a> {
+    /// Moduli.
+    pub moduli: ElasticModuli,
+    /// Fracture constants.
+    pub model: FractureModel,
+    /// History energy of the strip, J/m³.
+    pub history: &'a [Lane],
+    /// Phase field at the points: at the last step, then at this one.
+    pub phase: &'a mut [Lane],
+    /// `c (H − psi+)` at the points: at the last step, then at this one, J/m³.
+    pub remembered: &'a mut [Lane],
+    /// Elastic energy per unit thickness, J/m.
+    pub energy: Lane,
+    /// Work of the history field over the step, without the factor 1 − k, J/m.
+    pub history_work: Lane,
+}
+
+impl PointKernel for DegradedStress<'_> {
+    const DISPLACEMENT: bool = true;
+    const PHASE: bool = true;
+    const PHASE_GRADIENT: bool = false;
+    const STRESS: bool = true;
+
+    #[inline(always)]
+    fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
+        let state = split(&self.moduli, self.model.split, strain(values.gradient));
+        let c = values.phase;
+        let remembered = c * (self.history[at] - state.energy_plus);
+        let change = (remembered + self.remembered[at]) * (self.phase[at] - c);
+        self.history_work = self.history_work.add_product::<FMA>(weight, change);
+        self.remembered[at] = remembered;
+        self.phase[at] = c;
+        let g = self.model.degradation(c);
+        let energy = state.energy_minus.add_product::<FMA>(g, state.energy_plus);
+        self.energy = self.energy.add_product::<FMA>(weight, energy);
+        degraded::<FMA>(&state, g)
+    }
+}
+
+/// Degraded stress (E 6) of a split strain energy.
+#[inline(always)]
+fn degraded<const FMA: bool>(state: &SplitState, g: Lane) -> Stress {
+    // no array::map: it is compiled on its own, without FMA, where each product would be a call of the library
+    let mut stress = fault!("compression-degraded", state.stress_minus => state.stress_minus.map(|s| s * g));
+    for (stress, plus) in stress.iter_mut().zip(state.stress_plus) {
+        *stress = stress.add_product::<FMA>(g, plus);
+    }
+    Stress::symmetric(stress)
+}
+
+/// Degraded stress (E 6) with the phase field held as it is at the points.
+#[derive(Debug)]
+pub struct HeldPhaseStress<'a> {
+    /// Moduli.
+    pub moduli: ElasticModuli,
+    /// Fracture constants.
+    pub model: FractureModel,
+    /// Phase field at the points of the strip.
+    pub phase: &'a [Lane],
+}
+
+impl PointKernel for HeldPhaseStress<'_> {
+    const DISPLACEMENT: bool = true;
+    const PHASE: bool = false;
+    const PHASE_GRADIENT: bool = false;
+    const STRESS: bool = true;
+
+    #[inline(always)]
+    fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
+        let state = split(&self.moduli, self.model.split, strain(values.gradient));
+        degraded::<FMA>(&state, self.model.degradation(self.phase[at]))
+    }
+}
+
+/// Smallest principal stretch, squared: the smaller eigenvalue of `F Fᵀ` (see [`crate::material::hencky`]).
+#[derive(Debug)]
+pub struct LeastStretch<'a> {
+    /// Phase field at the points of the strip, of which those that are broken do not count; empty if all count.
+    pub phase: &'a [Lane],
+    /// Smallest of the strip; not a number if one is not.
+    pub squared: Lane,
+}
+
+impl PointKernel for LeastStretch<'_> {
+    const DISPLACEMENT: bool = true;
+    const PHASE: bool = false;
+    const PHASE_GRADIENT: bool = false;
+    const STRESS: bool = false;
+
+    #[inline(always)]
+    fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
+        let [xx, xy, yx, yy] = values.gradient;
+        let mean = xx + yy + (xx * xx + xy * xy + yx * yx + yy * yy) * 0.5;
+        let half_difference = xx - yy + (xx * xx + xy * xy - yx * yx - yy * yy) * 0.5;
+        let shear = xy + yx + (xx * yx + xy * yy);
+        let radius = (half_difference * half_difference + shear * shear).map(f64::sqrt);
+        let weight = self.phase.get(at).map_or(weight, |c| weight.zip(*c, |w, c| if c < BROKEN { 0.0 } else { w }));
+        let squared = (mean - radius + Lane::splat(1.0)).zip(weight, |x, w| if w > 0.0 { x } else { f64::INFINITY });
+        self.squared = self.squared.zip(squared, smaller);
+        Stress::ZERO
+    }
+}
+
+/// Surface energy `Gc [(1 − c)²/(4 l0) + l0 |grad c|²]` (E 3) and the smallest c.
+#[derive(Debug)]
+pub struct SurfaceEnergy {
+    /// Fracture constants.
+    pub model: FractureModel,
+    /// Surface energy per unit thickness, J/m.
+    pub energy: Lane,
+    /// Smallest c at a point.
+    pub least: Lane,
+}
+
+impl PointKernel for SurfaceEnergy {
+    const DISPLACEMENT: bool = false;
+    const PHASE: bool = true;
+    const PHASE_GRADIENT: bool = true;
+    const STRESS: bool = false;
+
+    #[inline(always)]
+    fn points<const FMA: bool>(&mut self, _at: usize, weight: Lane, values: &PointValues) -> Stress {
+        let FractureModel { toughness, length_scale, .. } = self.model;
+        let broken = Lane::splat(1.0) - values.phase;
+        let [gx, gy] = values.phase_gradient;
+        let density = broken * broken * (toughness / (fault!("surface-energy-doubled", 4.0 => 2.0) * length_scale))
+            + (gx * gx + gy * gy) * (toughness * length_scale);
+        self.energy = self.energy.add_product::<FMA>(weight, density);
+        let exists = values.phase.zip(weight, |c, w| if w > 0.0 { c } else { f64::INFINITY });
+        self.least = self.least.zip(exists, smaller);
+        Stress::ZERO
+    }
+}
