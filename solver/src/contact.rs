@@ -33,10 +33,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::linear_algebra::extremes::{larger, smaller};
-use crate::splines::patch::Patch;
-use crate::scene::Scene;
 use crate::dynamics::updated_frame::field::DiscreteField;
+use crate::linear_algebra::extremes::{larger, smaller};
+use crate::scene::Scene;
+use crate::splines::patch::Patch;
 use handle::{DEPTH, Handle};
 use impulse::Impulse;
 use motion::{AHEAD, MOST, TooFast};

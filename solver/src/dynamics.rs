@@ -7,6 +7,7 @@
 pub mod constraints;
 pub mod critical_step;
 pub mod energy;
+pub mod failure;
 pub mod forcing;
 pub mod loads;
 pub mod mass;

@@ -126,7 +126,7 @@
 //!     assert!(sample.elastic > 0.0 && sample.kinetic > 0.0);
 //!     assert!(sample.closure.abs() <= 1e-12 * sample.largest_term());
 //! }
-//! # Ok::<(), fisura::error::Breakdown>(())
+//! # Ok::<(), fisura::simulation::breakdown::Breakdown>(())
 //! ```
 
 #![deny(unsafe_code)]
@@ -137,7 +137,6 @@ pub mod faults;
 pub mod checkpoint;
 pub mod contact;
 pub mod dynamics;
-pub mod error;
 pub mod linear_algebra;
 pub mod material;
 pub mod output;

@@ -5,6 +5,7 @@
 
 pub mod cholesky;
 pub mod conjugate_gradients;
+pub mod control_grid;
 pub mod extremes;
 pub mod incomplete_cholesky;
 pub mod lane;

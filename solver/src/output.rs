@@ -2,4 +2,5 @@
 
 pub mod inspection;
 pub mod picture;
+pub mod raster;
 pub mod span_grid;

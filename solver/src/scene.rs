@@ -4,6 +4,7 @@
 //! phase field in memory or in the step, without [`Contact`] no contact search. [`crate::Simulation::new`] turns a
 //! scene into a running model; [`crate::validate::validate`] says what is wrong with one, by key.
 
+pub mod error;
 pub mod shape;
 
 use crate::linear_algebra::extremes::{larger, smaller};

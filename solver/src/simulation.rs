@@ -1,20 +1,23 @@
 //! A scene made ready to run: steps, samples, pictures, and the watch over its numbers.
 
+pub mod breakdown;
 mod frame;
 mod state;
 mod watch;
 
 use crate::dynamics::energy::Sample;
-use crate::error::{Breakdown, Failure};
-use crate::output::inspection::PointState;
-use crate::linear_algebra::lane::LANES;
-use crate::phase_field::PhaseFieldCounts;
-use crate::output::picture::Picture;
-use crate::scene::Scene;
-use crate::output::span_grid::SpanGrid;
+use crate::dynamics::failure::Failure;
 use crate::dynamics::time_plan::TimePlan;
 use crate::dynamics::total_frame::TotalFrame;
 use crate::dynamics::updated_frame::UpdatedFrame;
+use crate::linear_algebra::lane::LANES;
+use crate::output::inspection::PointState;
+use crate::output::picture::Picture;
+use crate::output::raster::Raster;
+use crate::output::span_grid::SpanGrid;
+use crate::phase_field::PhaseFieldCounts;
+use crate::scene::Scene;
+use crate::simulation::breakdown::Breakdown;
 use frame::{Frame, either};
 pub use state::ResumeError;
 
@@ -190,11 +193,10 @@ impl Simulation {
 
     /// Fields on a raster of `pixels` over the patch.
     pub fn picture(&self, pixels: [usize; 2]) -> Picture {
-        let time = self.time();
-        match &self.frame {
-            Frame::Total(frame) => Picture::of(frame, time, pixels),
-            Frame::Updated(frame) => Picture::of_updated(frame, time, pixels),
-        }
+        either!(&self.frame, body => {
+            let raster = Raster::new(body.patch(), pixels);
+            Picture::new(raster, self.time(), body.paint(&raster))
+        })
     }
 }
 

@@ -13,10 +13,10 @@ mod points;
 mod seed;
 mod size;
 
-use crate::error::{SceneError, SceneWarning};
-use crate::splines::nurbs::NurbsPatch;
-use crate::scene::{Frame, Mesh, Scene, Shape};
 use crate::particles::spans::{lengths_of_chords, lengths_of_spans};
+use crate::scene::error::{SceneError, SceneWarning};
+use crate::scene::{Frame, Mesh, Scene, Shape};
+use crate::splines::nurbs::NurbsPatch;
 use crate::splines::spline::SplineSpace;
 
 pub use size::{ExpectedSize, expected_size};

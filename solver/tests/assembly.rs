@@ -3,14 +3,14 @@
 mod common;
 
 use common::{Random, body, graded_knots, rectangle, with_threads};
-use fisura::phase_field::assembly::{Constant, Form, PointCoefficients, add_form};
 use fisura::linear_algebra::extremes::larger;
 use fisura::linear_algebra::lane::Lane;
+use fisura::linear_algebra::stencil::Stencil;
 use fisura::particles::lattice::Lattice;
-use fisura::splines::patch::Patch;
+use fisura::phase_field::assembly::{Constant, Form, PointCoefficients, add_form};
 use fisura::phase_field::integrate_shape_functions;
 use fisura::scene::*;
-use fisura::linear_algebra::stencil::Stencil;
+use fisura::splines::patch::Patch;
 
 /// A coefficient per point; spans whose first batch divides by `skip` have none.
 struct PerPoint {

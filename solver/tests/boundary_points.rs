@@ -4,10 +4,10 @@ mod common;
 
 use common::{annulus, bent_patch, body, random_patch};
 use fisura::particles::lattice::Lattice;
+use fisura::scene::*;
 use fisura::splines::nurbs::NurbsPatch;
 use fisura::splines::patch::Patch;
 use fisura::splines::quadrature::Rule;
-use fisura::scene::*;
 
 /// Σ n L = 0 and Σ x·n L = 2 area around a patch; the area is that of the lattice. `tolerance` is relative.
 fn check_surface(name: &str, nurbs: &NurbsPatch, points: usize, tolerance: f64) -> f64 {

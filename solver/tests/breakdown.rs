@@ -4,8 +4,8 @@ mod common;
 
 use common::{elastic_scene, notched_plate};
 use fisura::Simulation;
-use fisura::error::Breakdown;
 use fisura::scene::*;
+use fisura::simulation::breakdown::Breakdown;
 
 /// The scene with a fixed step of `ratio` times its critical step, for `steps` steps.
 fn with_step(mut scene: Scene, ratio: f64, steps: usize) -> Scene {

@@ -6,9 +6,9 @@ mod common;
 use common::{body, elastic_scene, rectangle, run};
 use fisura::Simulation;
 use fisura::contact::handle::Handle;
-use fisura::error::Breakdown;
-use fisura::scene::*;
 use fisura::dynamics::updated_frame::UpdatedFrame;
+use fisura::scene::*;
+use fisura::simulation::breakdown::Breakdown;
 
 fn solid(density: f64) -> Material {
     Material { young_modulus: 1.0, poisson_ratio: 0.0, density, fracture: None }

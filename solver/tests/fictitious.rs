@@ -3,13 +3,13 @@
 mod common;
 
 use common::body;
-use fisura::phase_field::assembly::{Constant, Form, add_form};
-use fisura::linear_algebra::extremes::larger;
-use fisura::particles::lattice::Lattice;
-use fisura::splines::patch::Patch;
-use fisura::scene::{Mesh, Shape};
-use fisura::linear_algebra::stencil::Stencil;
 use fisura::dynamics::updated_frame::fictitious::{FictitiousMaterial, WEIGHT};
+use fisura::linear_algebra::extremes::larger;
+use fisura::linear_algebra::stencil::Stencil;
+use fisura::particles::lattice::Lattice;
+use fisura::phase_field::assembly::{Constant, Form, add_form};
+use fisura::scene::{Mesh, Shape};
+use fisura::splines::patch::Patch;
 
 /// Points that fill the patch, with weights that integrate its functions exactly, make the same system times α.
 #[test]

@@ -5,10 +5,10 @@ mod common;
 use std::f64::consts::TAU;
 
 use common::{unit_solid, updated_scene};
+use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
 use fisura::simulation::Simulation;
-use fisura::dynamics::updated_frame::UpdatedFrame;
 
 /// A body of modulus and density 1 on a square mesh of equal spans.
 fn scene(degree: usize, side: f64, cells: usize, shape: Shape, kinematics: Kinematics) -> Scene {

@@ -159,7 +159,11 @@ fn folds_keep_what_is_not_a_number() {
         let lines = findings(tokens).into_iter().chain(kept(text.parse().unwrap()));
         found.extend(lines.map(|line| format!("{}:{line}", file.display())));
     }
-    assert!(found.is_empty(), "use larger, smaller, largest or smallest of fisura::linear_algebra::extremes in\n{}", found.join("\n"));
+    assert!(
+        found.is_empty(),
+        "use larger, smaller, largest or smallest of fisura::linear_algebra::extremes in\n{}",
+        found.join("\n")
+    );
 }
 
 #[test]

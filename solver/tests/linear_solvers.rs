@@ -3,17 +3,18 @@
 mod common;
 
 use common::{Random, body, fracture_model, rectangle, with_threads};
-use fisura::phase_field::assembly::{Constant, Form, PointCoefficients, add_form};
 use fisura::linear_algebra::cholesky::SparseCholesky;
 use fisura::linear_algebra::conjugate_gradients::{ConjugateGradients, SolveFailure};
+use fisura::linear_algebra::control_grid::ControlGrid;
 use fisura::linear_algebra::extremes::larger;
 use fisura::linear_algebra::incomplete_cholesky::IncompleteCholesky;
 use fisura::linear_algebra::lane::Lane;
-use fisura::particles::lattice::Lattice;
-use fisura::splines::patch::{ControlGrid, Patch};
 use fisura::linear_algebra::preconditioner::Preconditioner;
-use fisura::scene::*;
 use fisura::linear_algebra::stencil::Stencil;
+use fisura::particles::lattice::Lattice;
+use fisura::phase_field::assembly::{Constant, Form, PointCoefficients, add_form};
+use fisura::scene::*;
+use fisura::splines::patch::Patch;
 use nalgebra::{DMatrix, DVector};
 
 /// Round-off of a factor that is kept in single precision (6e-8), with room for the condition of the matrices here.

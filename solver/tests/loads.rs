@@ -4,8 +4,8 @@ mod common;
 
 use common::{body, elastic_scene, rectangle};
 use fisura::Simulation;
-use fisura::splines::nurbs::NurbsPatch;
 use fisura::scene::*;
+use fisura::splines::nurbs::NurbsPatch;
 use fisura::validate::validate;
 
 const SIDES: [Side; 4] = [Side::Left, Side::Right, Side::Bottom, Side::Top];

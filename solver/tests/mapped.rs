@@ -5,13 +5,13 @@ mod common;
 
 use common::plain_points::{PlainPoint, assert_close, largest, plain_points};
 use common::{Random, annulus, bent_patch, body, random_patch};
-use fisura::phase_field::assembly::{Form, PointCoefficients, add_form};
 use fisura::linear_algebra::lane::Lane;
+use fisura::linear_algebra::stencil::Stencil;
 use fisura::particles::lattice::Lattice;
+use fisura::phase_field::assembly::{Form, PointCoefficients, add_form};
+use fisura::scene::*;
 use fisura::splines::nurbs::NurbsPatch;
 use fisura::splines::patch::Patch;
-use fisura::scene::*;
-use fisura::linear_algebra::stencil::Stencil;
 use fisura::transfer::sweep::{Fields, PointKernel, PointValues, Stress, StripForces, sweep};
 
 /// Records what it is given and answers with a stress of its own making, per strip.

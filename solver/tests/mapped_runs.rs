@@ -6,8 +6,8 @@ mod common;
 use common::{annulus, bent_patch, brittle, elastic_scene, notched_plate, patch_scene, run, with_threads};
 use fisura::dynamics::energy::Sample;
 use fisura::linear_algebra::extremes::larger;
-use fisura::splines::nurbs::NurbsPatch;
 use fisura::scene::*;
+use fisura::splines::nurbs::NurbsPatch;
 
 /// The scene with its rectangular mesh written as a general patch, all weights `weight`.
 fn as_patch(scene: &Scene, weight: f64) -> Scene {

@@ -2,9 +2,9 @@
 
 use approx::assert_abs_diff_eq;
 use fisura::linear_algebra::extremes::larger;
+use fisura::scene::Mesh;
 use fisura::splines::nurbs::{Form, LocateError, NurbsError, NurbsPatch, RationalFunctions, rational_functions};
 use fisura::splines::patch::Patch;
-use fisura::scene::Mesh;
 use fisura::splines::spline::SplineSpace;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

@@ -6,8 +6,8 @@ use common::{annulus, elastic_scene, notched_plate, patch_scene, rectangle, run}
 use fisura::Simulation;
 use fisura::linear_algebra::extremes::smaller;
 use fisura::output::inspection::PointState;
-use fisura::scene::*;
 use fisura::output::span_grid::SpanGrid;
+use fisura::scene::*;
 
 fn points(simulation: &Simulation) -> Vec<PointState> {
     let mut points = Vec::new();

@@ -4,10 +4,10 @@
 mod common;
 
 use common::{notched_plate, rectangle};
-use fisura::linear_algebra::extremes::larger;
-use fisura::splines::nurbs::NurbsPatch;
-use fisura::scene::*;
 use fisura::dynamics::total_frame::TotalFrame;
+use fisura::linear_algebra::extremes::larger;
+use fisura::scene::*;
+use fisura::splines::nurbs::NurbsPatch;
 use fisura::validate::validate;
 
 const L0: f64 = 0.25e-3;

@@ -5,7 +5,7 @@ mod common;
 use common::moduli;
 use fisura::linear_algebra::extremes::larger;
 use fisura::linear_algebra::lane::Lane;
-use fisura::material::ElasticModuli;
+use fisura::material::elasticity::ElasticModuli;
 use fisura::material::split::{EnergySplit, SplitState, split, tensile_strain};
 use nalgebra::{Matrix2, SymmetricEigen};
 use proptest::prelude::*;

@@ -6,8 +6,8 @@ use common::{Random, body, graded_knots, rectangle};
 use fisura::linear_algebra::extremes::larger;
 use fisura::linear_algebra::lane::{LANES, Lane};
 use fisura::particles::lattice::Lattice;
-use fisura::splines::patch::Patch;
 use fisura::scene::*;
+use fisura::splines::patch::Patch;
 use fisura::transfer::sweep::{Fields, PointKernel, PointValues, Stress, StripForces, sweep};
 
 /// Records what it is given and answers with a stress of its own making.

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use common::elastic_scene;
 use fisura::Simulation;
-use fisura::linear_algebra::extremes::larger;
 use fisura::dynamics::forcing::NoLoads;
-use fisura::scene::*;
 use fisura::dynamics::total_frame::TotalFrame;
+use fisura::linear_algebra::extremes::larger;
+use fisura::scene::*;
 
 /// Elastic energy (J) under the displacement `(A − I) X`.
 fn energy(degree: usize, kinematics: Kinematics, a: [[f64; 2]; 2]) -> f64 {

@@ -9,10 +9,10 @@ use std::sync::Arc;
 use common::standing_wave::StandingWave;
 use common::{rectangle, relative_closure, run, unit_solid, updated_scene, with_threads};
 use fisura::dynamics::energy::Sample;
+use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
 use fisura::simulation::Simulation;
-use fisura::dynamics::updated_frame::UpdatedFrame;
 
 const ALL: [Transfer; 7] = [
     Transfer::Flip,

@@ -4,10 +4,10 @@ mod common;
 
 use common::{brittle, glass, rectangle, relative_closure, run, updated_scene, with_threads};
 use fisura::dynamics::energy::Sample;
+use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
 use fisura::simulation::Simulation;
-use fisura::dynamics::updated_frame::UpdatedFrame;
 
 const DENSITY: f64 = 2450.0;
 

@@ -11,8 +11,8 @@ use criterion::{BatchSize, Bencher, BenchmarkId, Criterion, Throughput, criterio
 use fisura::Simulation;
 use fisura::dynamics::critical_step::highest_frequency;
 use fisura::linear_algebra::incomplete_cholesky::IncompleteCholesky;
-use fisura::scene::Contact;
 use fisura::material::split::EnergySplit;
+use fisura::scene::Contact;
 use fisura::transfer::sweep::StripForces;
 use fisura_verification::bench::block::{Block, DENSITY, SPAN, elastic_scene};
 use fisura_verification::bench::minimal::Minimal;

@@ -35,7 +35,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use fisura::Simulation;
-use fisura::error::Breakdown;
+use fisura::simulation::breakdown::Breakdown;
 use thiserror::Error;
 
 use crate::output::{OutputError, OutputFolder};

@@ -1,9 +1,9 @@
 //! Dense matrices of the solver's operators, for eigenvalues that do not come from its own iteration.
 
-use fisura::phase_field::assembly::{Constant, Form, add_form};
 use fisura::dynamics::critical_step::StiffnessOperator;
-use fisura::linear_algebra::stencil::Stencil;
 use fisura::dynamics::total_frame::TotalFrame;
+use fisura::linear_algebra::stencil::Stencil;
+use fisura::phase_field::assembly::{Constant, Form, add_form};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::watch::{self, Stopped};

@@ -1,7 +1,7 @@
 //! Families of meshes: one geometry for all refinements, drawn once and carried by knot insertion.
 
-use fisura::splines::nurbs::{NurbsError, NurbsPatch};
 use fisura::scene::Mesh;
+use fisura::splines::nurbs::{NurbsError, NurbsPatch};
 
 use crate::case::convergence::PatchFamily;
 use crate::random::Random;

@@ -16,8 +16,8 @@ pub mod units;
 
 use std::path::Path;
 
-use fisura::error::SceneError;
 use fisura::scene::Scene;
+use fisura::scene::error::SceneError;
 use fisura::validate::validate;
 
 pub use diagnostic::{Location, Problem, SceneDiagnostic, SceneFileError};

@@ -14,9 +14,9 @@ mod write;
 use std::time::Instant;
 
 use fisura::dynamics::energy::Sample;
-use fisura::error::Breakdown;
 use fisura::output::picture::Picture;
 use fisura::scene::Scene;
+use fisura::simulation::breakdown::Breakdown;
 use fisura::simulation::{Simulation, square_pixels};
 use fisura::validate::validate;
 use serde::{Deserialize, Serialize};

@@ -74,7 +74,7 @@ impl Findings {
 pub enum StudyError {
     /// A run broke down.
     #[error(transparent)]
-    Breakdown(#[from] fisura::error::Breakdown),
+    Breakdown(#[from] fisura::simulation::breakdown::Breakdown),
     /// The case is over its time.
     #[error(transparent)]
     Stopped(#[from] crate::watch::Stopped),

@@ -1,7 +1,7 @@
 //! Scene files with general patches: good ones give the patch they describe, bad ones say where and what would help.
 
-use fisura::splines::nurbs::NurbsPatch;
 use fisura::scene::*;
+use fisura::splines::nurbs::NurbsPatch;
 use fisura_verification::scene_file::SceneFile;
 
 const PATCH: &str = include_str!("scenes/patch.toml");

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use fisura::dynamics::time_plan::TimePlan;
 use fisura::linear_algebra::extremes::larger;
-use fisura::material::ElasticModuli;
+use fisura::material::elasticity::ElasticModuli;
+use fisura::particles::spans::{largest_spans, smallest_span};
 use fisura::scene::{Frame, Plane, Scene};
 use fisura::simulation::{Extent, Simulation};
-use fisura::particles::spans::{largest_spans, smallest_span};
-use fisura::dynamics::time_plan::TimePlan;
 use fisura::validate::expected_size;
 use fisura_reports::number::{duration, plain};
 use fisura_verification::scene_file::SceneFile;

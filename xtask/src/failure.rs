@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fisura::error::Breakdown;
+use fisura::simulation::breakdown::Breakdown;
 use fisura_reports::ReportError;
 use fisura_verification::foreign::text;
 use fisura_verification::output::OutputError;

@@ -4,9 +4,9 @@
 //! with those of before.
 
 use fisura::output::inspection::PointState;
+use fisura::output::span_grid::Corner;
 use fisura::scene::Scene;
 use fisura::simulation::Simulation;
-use fisura::output::span_grid::Corner;
 use fisura_reports::vtk::{Cells, Field, Piece, pvd, vtu};
 use fisura_verification::output::{OutputError, OutputFolder};
 use fisura_verification::scene_run::frame_steps;

@@ -16,11 +16,11 @@
 //! stand for the place on the line nearest to x, and the torque of the distance between both is lost.
 
 use super::surface::dot;
-use crate::splines::spline::MAX_ORDER;
 use crate::dynamics::updated_frame::field::DiscreteField;
 use crate::dynamics::updated_frame::follower::Follower;
 use crate::dynamics::updated_frame::grid::VectorField;
 use crate::dynamics::updated_frame::transfer::MAX_FUNCTIONS;
+use crate::splines::spline::MAX_ORDER;
 
 /// Depth of y under the boundary, in spans: that of the outermost points where there are two in a span.
 pub const DEPTH: f64 = 0.5;

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::surface::dot;
 use super::{Contact, ContactLedger, Touch};
-use crate::linear_algebra::extremes::larger;
 use crate::dynamics::updated_frame::field::DiscreteField;
+use crate::linear_algebra::extremes::larger;
 
 /// Rounds over the touches until their equations are solved directly, and most of them: a few tens settle them but where
 /// touches are many for their control points.

@@ -3,8 +3,8 @@
 
 use super::surface::{Center, Surface};
 use crate::linear_algebra::extremes::{larger, largest, smaller};
-use crate::scene::{Body, Mesh, Scene};
 use crate::particles::spans::smallest_span;
+use crate::scene::{Body, Mesh, Scene};
 
 /// Most spans by which bodies that meet approach each other in a step.
 pub const MOST: f64 = 0.5;

@@ -1,9 +1,9 @@
 //! Outlines of shapes: closed lines of short steps, the body to their left.
 
 use crate::linear_algebra::extremes::smaller;
-use crate::splines::quadrature::MAX_POINTS;
-use crate::scene::{Body, Mesh, Shape};
 use crate::scene::shape::polygon_edges;
+use crate::scene::{Body, Mesh, Shape};
+use crate::splines::quadrature::MAX_POINTS;
 
 /// Distance between the points of a body, m: that of the smallest span.
 pub(super) fn spacing(mesh: &Mesh, body: &Body) -> f64 {

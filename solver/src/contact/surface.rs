@@ -6,11 +6,11 @@ use super::handle::{DEPTH, Handle};
 use super::motion::Range;
 use super::outline::{is_on_boundary, perimeter, rings, spacing, without_patch};
 use crate::checkpoint::{Archive, StateError};
-use crate::linear_algebra::extremes::{larger, smaller};
-use crate::scene::{Body, Mesh};
 use crate::dynamics::updated_frame::field::DiscreteField;
 use crate::dynamics::updated_frame::follower::Follower;
 use crate::dynamics::updated_frame::grid::VectorField;
+use crate::linear_algebra::extremes::{larger, smaller};
+use crate::scene::{Body, Mesh};
 
 /// Distance from the boundary within which the middle of a segment counts as lying on it, over that of the points.
 const ON_BOUNDARY: f64 = 0.1;

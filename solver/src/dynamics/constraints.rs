@@ -4,8 +4,9 @@
 //! to both sides: it has what either prescribes. Where both prescribe a component they have to agree, which
 //! [`crate::validate::validate`] demands, so the order of the sides does not count.
 
-use crate::splines::patch::ControlGrid;
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::scene::Boundary;
+use crate::splines::patch::control_points_on;
 
 /// Control points with a prescribed velocity component.
 #[derive(Debug, Clone, Default)]
@@ -25,7 +26,7 @@ impl Constraints {
                 .filter(|b| b.fix[fault!("side-holds-the-other-component", component => 1 - component)])
             {
                 fixed.extend(
-                    grid.side(boundary.side)
+                    control_points_on(boundary.side, grid)
                         .into_iter()
                         .map(|at| (at, fault!("driven-side-reversed", 1.0 => -1.0) * boundary.velocity[component])),
                 );

@@ -5,11 +5,11 @@
 
 use std::collections::BTreeMap;
 
+use crate::scene::{Body, Edge, Shape, Side, Traction};
 use crate::splines::nearest_span::nearest_span;
 use crate::splines::nurbs::Location;
 use crate::splines::patch::{BoundaryPoint, Patch};
 use crate::splines::quadrature::Rule;
-use crate::scene::{Body, Edge, Shape, Side, Traction};
 
 /// Largest error of the force and moment of nodal loads, of those of their edge.
 const TOLERANCE: f64 = 1e-12;

@@ -5,13 +5,13 @@
 
 use rayon::prelude::*;
 
-use crate::phase_field::assembly::{Constant, Form, add_form};
+use crate::dynamics::failure::Failure;
 use crate::linear_algebra::cholesky::{Factor, SparseCholesky};
-use crate::error::Failure;
 use crate::linear_algebra::extremes::larger;
-use crate::particles::lattice::Lattice;
-use crate::scene;
 use crate::linear_algebra::stencil::Stencil;
+use crate::particles::lattice::Lattice;
+use crate::phase_field::assembly::{Constant, Form, add_form};
+use crate::scene;
 
 /// Row sums below this fraction of the largest give no acceleration; their control points keep their velocity.
 const NEGLIGIBLE: f64 = 1e-12;

@@ -2,10 +2,10 @@
 //!
 //! `Σ_J M_IJ u_J = Σ_p V_p N_I(x_p) f(x_p)`: the discrete least-squares fit at the points, of order p + 1 for every layout.
 
-use crate::phase_field::assembly::{Constant, Form, add_form};
 use crate::linear_algebra::cholesky::{Factor, SparseCholesky};
-use crate::particles::lattice::Lattice;
 use crate::linear_algebra::stencil::Stencil;
+use crate::particles::lattice::Lattice;
+use crate::phase_field::assembly::{Constant, Form, add_form};
 
 /// Projector on the points of one lattice.
 #[derive(Debug)]

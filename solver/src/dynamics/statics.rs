@@ -8,8 +8,8 @@ use faer::sparse::linalg::solvers::Llt;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 
-use crate::transfer::sweep::StripForces;
 use crate::dynamics::total_frame::TotalFrame;
+use crate::transfer::sweep::StripForces;
 
 /// A field of vectors on the control points, by component.
 type VectorField = [Vec<f64>; 2];

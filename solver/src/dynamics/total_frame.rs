@@ -8,23 +8,25 @@ mod begin;
 mod forced;
 mod inspect;
 mod observe;
+mod paint;
 mod state;
 mod stiffness;
 mod tangent;
 
 use rayon::prelude::*;
 
-use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::Ledger;
-use crate::phase_field::fracture::Fracturing;
-use crate::particles::lattice::Lattice;
 use crate::dynamics::loads::NodalLoad;
 use crate::dynamics::mass::MassMatrix;
-use crate::material::ElasticModuli;
-use crate::splines::patch::{ControlGrid, Patch};
-use crate::scene::{Kinematics, Shape};
+use crate::linear_algebra::conjugate_gradients::SolveFailure;
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::stencil::CHUNK_ROWS;
+use crate::material::elasticity::ElasticModuli;
+use crate::particles::lattice::Lattice;
+use crate::phase_field::fracture::Fracturing;
+use crate::scene::{Kinematics, Shape};
+use crate::splines::patch::Patch;
 use crate::transfer::sweep::StripForces;
 
 use forced::Forced;

@@ -47,10 +47,10 @@ use std::sync::Arc;
 
 use crate::contact::Contact;
 use crate::contact::impulse::Kick;
-use crate::error::Failure;
+use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::smaller;
-use crate::splines::patch::Patch;
 use crate::scene::Scene;
+use crate::splines::patch::Patch;
 use field::DiscreteField;
 
 /// The bodies of a scene in the updated frame.

@@ -9,9 +9,9 @@
 use rayon::prelude::*;
 
 use crate::checkpoint::{Archive, StateError};
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised, add_product, dispatch};
-use crate::splines::patch::ControlGrid;
 use crate::linear_algebra::stencil::{Offset, Stencil};
 
 /// Rows of control points in a block.

@@ -6,8 +6,8 @@
 
 use rayon::prelude::*;
 
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised, dispatch};
-use crate::splines::patch::ControlGrid;
 
 /// Rows of control points whose partial sums are formed together.
 pub const CHUNK_ROWS: usize = 8;
@@ -161,8 +161,8 @@ impl Vectorised for ApplyRows<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::splines::patch::Patch;
     use crate::scene::Mesh;
+    use crate::splines::patch::Patch;
 
     #[test]
     fn applying_the_half_stencil_equals_the_full_matrix() {

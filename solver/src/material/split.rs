@@ -7,7 +7,7 @@
 //! number has energies and stresses that are none: the energy of a body tells that one of its points has lost its numbers.
 
 use crate::linear_algebra::lane::Lane;
-use crate::material::ElasticModuli;
+use crate::material::elasticity::ElasticModuli;
 
 /// Which part of the energy the phase field degrades.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -14,11 +14,12 @@ mod tables;
 
 pub use mapped::{MappedPoint, Mapping};
 
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{LANES, Lane};
-use crate::splines::nurbs::{Location, MAX_FUNCTIONS};
-use crate::splines::patch::{ControlGrid, Patch};
-use crate::splines::quadrature::Rule;
 use crate::scene::{Body, Layout, Shape};
+use crate::splines::nurbs::{Location, MAX_FUNCTIONS};
+use crate::splines::patch::Patch;
+use crate::splines::quadrature::Rule;
 use crate::splines::spline::{MAX_ORDER, SplineSpace};
 use tables::{Columns, columns, tiles};
 

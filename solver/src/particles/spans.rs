@@ -2,8 +2,8 @@
 //! parameters, the chords between neighbouring knots through the middles of the spans.
 
 use crate::linear_algebra::extremes::{larger, smaller};
-use crate::splines::nurbs::NurbsPatch;
 use crate::scene::{Mesh, Shape};
+use crate::splines::nurbs::NurbsPatch;
 
 /// Largest span in either direction, m.
 pub fn largest_spans(mesh: &Mesh) -> [f64; 2] {

@@ -11,10 +11,10 @@ mod mapped;
 use rayon::prelude::*;
 
 use crate::linear_algebra::lane::{Lane, Vectorised, dispatch};
+use crate::linear_algebra::stencil::Stencil;
 use crate::particles::lattice::{Lattice, Row, Tile};
 use crate::splines::quadrature::MAX_POINTS;
 use crate::splines::spline::MAX_ORDER;
-use crate::linear_algebra::stencil::Stencil;
 
 /// What is integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,21 +2,19 @@
 
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::extremes::{larger, smaller};
+use crate::linear_algebra::lane::Lane;
+use crate::material::degradation::{BROKEN, FractureModel};
+use crate::material::elasticity::ElasticModuli;
+use crate::particles::lattice::Lattice;
+use crate::phase_field::PhaseField;
+use crate::scene::shape::distance_to_segment;
+use crate::scene::{Body, Boundary, Crack, Kinematics, Scene, Side, SolverSettings};
 use crate::transfer::finite::sweep_with;
 use crate::transfer::kernels::{DegradedStress, HistoryUpdate, SurfaceEnergy};
-use crate::linear_algebra::lane::Lane;
-use crate::particles::lattice::Lattice;
-use crate::material::{ElasticModuli, FractureModel};
-use crate::phase_field::PhaseField;
-use crate::scene::{Body, Boundary, Crack, Kinematics, Scene, Side, SolverSettings};
-use crate::scene::shape::distance_to_segment;
 use crate::transfer::sweep::{Fields, StripForces, sweep};
 
 /// Ratio of the largest initial history energy to Gc/(4 l0) on a seeded crack (Borden et al. 2012).
 pub const SEED_STRENGTH: f64 = 1000.0;
-/// Phase field below which a point counts as broken.
-pub const BROKEN: f64 = 0.05;
-
 /// History and phase field of a body.
 #[derive(Debug, Clone)]
 pub struct Fracturing {

@@ -3,8 +3,8 @@
 use crate::linear_algebra::cholesky::SparseCholesky;
 use crate::linear_algebra::conjugate_gradients::{ConjugateGradients, Convergence, SolveFailure};
 use crate::linear_algebra::preconditioner::Preconditioner;
-use crate::scene::PhaseFieldSolver;
 use crate::linear_algebra::stencil::Stencil;
+use crate::scene::PhaseFieldSolver;
 
 /// Iterations after which a solve counts as failed.
 pub const ITERATION_LIMIT: usize = 2000;

@@ -1,13 +1,13 @@
 //! The bodies in the frame of their scene.
 
 use crate::checkpoint::{Archive, StateError};
-use crate::error::Failure;
-use crate::output::inspection::PointState;
-use crate::phase_field::PhaseFieldCounts;
-use crate::scene::{self, Scene};
-use crate::output::span_grid::SpanGrid;
+use crate::dynamics::failure::Failure;
 use crate::dynamics::total_frame::TotalFrame;
 use crate::dynamics::updated_frame::UpdatedFrame;
+use crate::output::inspection::PointState;
+use crate::output::span_grid::SpanGrid;
+use crate::phase_field::PhaseFieldCounts;
+use crate::scene::{self, Scene};
 
 /// The bodies in the frame of their scene.
 #[derive(Debug)]

@@ -4,8 +4,8 @@ use thiserror::Error;
 
 use super::Simulation;
 use crate::checkpoint::{Archive, StateError};
-use crate::error::Breakdown;
 use crate::scene::Scene;
+use crate::simulation::breakdown::Breakdown;
 
 /// Why a run cannot be taken up.
 #[derive(Debug, Clone, PartialEq, Error)]

@@ -2,14 +2,16 @@
 
 use super::Simulation;
 use super::frame::{Frame, either};
-use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::contact::impulse::Unsettled;
 use crate::contact::motion::{MOST, TooFast};
 use crate::dynamics::energy::Sample;
-use crate::error::{Breakdown, Failure, SceneError};
+use crate::dynamics::failure::Failure;
+use crate::dynamics::loads::LostTraction;
+use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::extremes::larger;
 use crate::output::inspection::{Inspection, InvertedPoint, PointState};
-use crate::dynamics::loads::LostTraction;
+use crate::scene::error::SceneError;
+use crate::simulation::breakdown::Breakdown;
 
 /// Elastic energy beyond this many times all energy that ever came in counts as numerical growth.
 const GROWTH_LIMIT: f64 = 10.0;

@@ -1,22 +1,16 @@
-//! The background patch (E 13): a tensor product of two spline spaces, and the layout of control-point fields.
+//! The background patch (E 13): a tensor product of two spline spaces.
 //!
 //! Over a rectangle the knots are coordinates in metres. Any other patch has a [`NurbsPatch`] as its geometry, and its knots
 //! are parameters.
-//!
-//! Fields on the control points are rows of `stride` numbers, x fastest. Each row begins and ends with room for reading
-//! [`LANES`] neighbours past the control points; the room stays zero.
 
 use std::ops::Range;
 
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::{larger, smaller};
-use crate::linear_algebra::lane::LANES;
+use crate::scene::{Geometry, Mesh, Side};
 use crate::splines::nurbs::{Location, NurbsError, NurbsPatch, RationalFunctions};
 use crate::splines::quadrature::Rule;
-use crate::scene::{Geometry, Mesh, Side};
-use crate::splines::spline::{MAX_DEGREE, SplineSpace};
-
-/// Room before the first control point of a row.
-const LEAD: usize = LANES;
+use crate::splines::spline::SplineSpace;
 
 /// Tensor-product patch.
 #[derive(Debug, Clone)]
@@ -48,7 +42,7 @@ impl Patch {
     /// Layout of fields on its control points.
     pub fn control_grid(&self) -> ControlGrid {
         let [columns, rows] = [0, 1].map(|d| self.spaces[d].dimension());
-        ControlGrid { columns, rows, stride: (LEAD + columns + MAX_DEGREE + LANES).next_multiple_of(LANES) }
+        ControlGrid::new(columns, rows)
     }
 
     /// Coordinates (m) of the control points, as fields: the control values of x and of y.
@@ -134,6 +128,16 @@ impl Patch {
 fn on_grid(grid: ControlGrid, functions: &RationalFunctions) -> Vec<(usize, f64)> {
     let index = |control: usize| grid.index(control % grid.columns, control / grid.columns);
     (0..functions.count).map(|n| (index(functions.control[n]), functions.value[n])).collect()
+}
+
+/// Indices of the control points on a side, in increasing order.
+pub fn control_points_on(side: Side, grid: ControlGrid) -> Vec<usize> {
+    match side {
+        Side::Left => (0..grid.rows).map(|row| grid.index(0, row)).collect(),
+        Side::Right => (0..grid.rows).map(|row| grid.index(grid.columns - 1, row)).collect(),
+        Side::Bottom => (0..grid.columns).map(|column| grid.index(column, 0)).collect(),
+        Side::Top => (0..grid.columns).map(|column| grid.index(column, grid.rows - 1)).collect(),
+    }
 }
 
 impl Mesh {
@@ -250,64 +254,5 @@ impl PointFunctions {
             }
         }
         result
-    }
-}
-
-/// Layout of the control points of a patch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ControlGrid {
-    /// Control points in x.
-    pub columns: usize,
-    /// Control points in y.
-    pub rows: usize,
-    /// Distance between rows in a field.
-    pub stride: usize,
-}
-
-impl ControlGrid {
-    /// Length of a field.
-    pub fn len(&self) -> usize {
-        self.rows * self.stride
-    }
-
-    /// Whether there are no control points.
-    pub fn is_empty(&self) -> bool {
-        self.rows == 0 || self.columns == 0
-    }
-
-    /// A field of zeros.
-    pub fn zeros(&self) -> Vec<f64> {
-        vec![0.0; self.len()]
-    }
-
-    /// Index of a control point.
-    pub fn index(&self, column: usize, row: usize) -> usize {
-        row * self.stride + LEAD + column
-    }
-
-    /// Indices of all control points, row by row.
-    pub fn indices(&self) -> impl Iterator<Item = usize> + use<> {
-        let grid = *self;
-        (0..grid.rows).flat_map(move |row| (0..grid.columns).map(move |column| grid.index(column, row)))
-    }
-
-    /// Row of an index.
-    pub fn row_of(&self, index: usize) -> usize {
-        index / self.stride
-    }
-
-    /// Column of the index of a control point.
-    pub fn column_of(&self, index: usize) -> usize {
-        index % self.stride - LEAD
-    }
-
-    /// Indices of the control points on a side, in increasing order.
-    pub fn side(&self, side: Side) -> Vec<usize> {
-        match side {
-            Side::Left => (0..self.rows).map(|row| self.index(0, row)).collect(),
-            Side::Right => (0..self.rows).map(|row| self.index(self.columns - 1, row)).collect(),
-            Side::Bottom => (0..self.columns).map(|column| self.index(column, 0)).collect(),
-            Side::Top => (0..self.columns).map(|column| self.index(column, self.rows - 1)).collect(),
-        }
     }
 }

@@ -3,8 +3,8 @@
 //! The kernel sees the Hencky strain of `F = I + grad u` in place of the linear one and gives Kirchhoff's stress tau; the
 //! nodal forces take the first Piola–Kirchhoff stress `P = tau F⁻ᵀ`, which works on the gradient in reference positions.
 
-use crate::material::hencky::hencky_strain;
 use crate::linear_algebra::lane::{LANES, Lane};
+use crate::material::hencky::hencky_strain;
 use crate::particles::lattice::Lattice;
 use crate::scene::Kinematics;
 use crate::transfer::sweep::{Fields, PointKernel, PointValues, Stress, StripForces, sweep};

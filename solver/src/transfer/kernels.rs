@@ -1,9 +1,10 @@
 //! What happens at the material points in the total frame, one kernel per sweep.
 
 use crate::linear_algebra::extremes::smaller;
-use crate::phase_field::fracture::BROKEN;
 use crate::linear_algebra::lane::Lane;
-use crate::material::{ElasticModuli, FractureModel};
+use crate::material::degradation::BROKEN;
+use crate::material::degradation::FractureModel;
+use crate::material::elasticity::ElasticModuli;
 use crate::material::split::{SplitState, split};
 use crate::transfer::sweep::{PointKernel, PointValues, Stress};
 

@@ -3,8 +3,8 @@
 use super::material::plausible_speed;
 use super::{Findings, Ground};
 use crate::linear_algebra::extremes::larger;
-use crate::splines::quadrature::Rule;
 use crate::scene::{Body, Boundary, Frame, Mass, Scene, Shape, Side, TimeStep, Transfer};
+use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
 
 /// Most steps of a run.

@@ -6,9 +6,9 @@ use super::analysis::side_name;
 use super::geometry::{complexity, covered_side, defect, outline};
 use super::points::Points;
 use super::{Findings, Ground, seed};
+use crate::scene::{Body, Crack, Edge, Fracture, Layout, Scene, Shape, Traction};
 use crate::splines::nurbs::{LocateError, NurbsPatch};
 use crate::splines::quadrature::MAX_POINTS;
-use crate::scene::{Body, Crack, Edge, Fracture, Layout, Scene, Shape, Traction};
 
 /// Relative tolerance of "inside", of the size of the mesh or body.
 const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;

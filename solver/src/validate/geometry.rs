@@ -1,8 +1,8 @@
 //! Shapes that are empty or malformed, and their outlines.
 
-use crate::splines::nurbs::NurbsPatch;
 use crate::scene::Shape;
 use crate::scene::shape::polygon_edges;
+use crate::splines::nurbs::NurbsPatch;
 
 type Point = [f64; 2];
 

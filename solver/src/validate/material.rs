@@ -1,7 +1,7 @@
 //! Checks of materials: ranges of the constants, and whether the wave speed they imply is possible.
 
 use super::Findings;
-use crate::material::ElasticModuli;
+use crate::material::elasticity::ElasticModuli;
 use crate::scene::{Fracture, Material, Plane, Scene};
 
 /// No solid carries waves faster than this, m/s (diamond: 18 km/s).

@@ -2,8 +2,8 @@
 
 use super::Findings;
 use crate::linear_algebra::extremes::smaller;
-use crate::splines::nurbs::{NurbsError, NurbsPatch};
 use crate::scene::Mesh;
+use crate::splines::nurbs::{NurbsError, NurbsPatch};
 
 /// Weights of control points: beyond, sums of them lose the smallest ones, and control points are left without mass.
 const WEIGHTS: (f64, f64) = (1e-3, 1e3);

@@ -6,9 +6,9 @@ use super::Ground;
 use super::geometry::complexity;
 use crate::linear_algebra::extremes::largest;
 use crate::particles::lattice::{AxisPoint, fills_lattice, point_axes};
-use crate::splines::nurbs::{MapPoint, NurbsPatch};
 use crate::scene::Body;
 use crate::scene::shape::distance_to_segment;
+use crate::splines::nurbs::{MapPoint, NurbsPatch};
 
 type Point = [f64; 2];
 

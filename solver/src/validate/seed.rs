@@ -7,9 +7,10 @@
 use super::Findings;
 use super::points::{Near, Points};
 use crate::linear_algebra::extremes::larger;
-use crate::phase_field::fracture::{BROKEN, SEED_STRENGTH, half_width};
-use crate::scene::{Body, Crack, Fracture};
+use crate::material::degradation::BROKEN;
+use crate::phase_field::fracture::{SEED_STRENGTH, half_width};
 use crate::scene::shape::distance_to_segment;
+use crate::scene::{Body, Crack, Fracture};
 
 /// Relative tolerance of lengths along a crack.
 const TOLERANCE: f64 = 1e-6;

@@ -1,8 +1,8 @@
 //! Checks that a reader of files never lets through, and the exact bounds of the others.
 
 use super::validate;
-use crate::splines::nurbs::NurbsPatch;
 use crate::scene::*;
+use crate::splines::nurbs::NurbsPatch;
 
 /// A fracturing square, 10 mm by 10 mm.
 fn square() -> Scene {

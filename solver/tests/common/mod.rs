@@ -6,10 +6,11 @@ pub mod standing_wave;
 
 use fisura::Simulation;
 use fisura::dynamics::energy::Sample;
-use fisura::material::{ElasticModuli, FractureModel};
-use fisura::splines::nurbs::NurbsPatch;
-use fisura::splines::patch::ControlGrid;
+use fisura::linear_algebra::control_grid::ControlGrid;
+use fisura::material::degradation::FractureModel;
+use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::*;
+use fisura::splines::nurbs::NurbsPatch;
 use fisura::splines::spline::SplineSpace;
 
 pub fn glass() -> Material {

@@ -1,10 +1,10 @@
 //! Points of a NURBS patch by plain sums over its basis, without the lattice.
 
+use fisura::linear_algebra::control_grid::ControlGrid;
 use fisura::particles::lattice::Lattice;
-use fisura::splines::nurbs::{NurbsPatch, RationalFunctions};
-use fisura::splines::patch::ControlGrid;
-use fisura::splines::quadrature::Rule;
 use fisura::scene::Body;
+use fisura::splines::nurbs::{NurbsPatch, RationalFunctions};
+use fisura::splines::quadrature::Rule;
 
 /// A point as the NURBS patch sees it, without the lattice.
 pub struct PlainPoint {

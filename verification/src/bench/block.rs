@@ -1,17 +1,18 @@
 //! A square block of points in the total frame, and the phases of its step one by one: for stage timings and for the
 //! criterion benchmarks.
 
+use fisura::linear_algebra::lane::Lane;
+use fisura::linear_algebra::stencil::Stencil;
+use fisura::material::degradation::FractureModel;
+use fisura::material::elasticity::ElasticModuli;
+use fisura::material::split::EnergySplit;
+use fisura::particles::lattice::Lattice;
+use fisura::phase_field::PhaseField;
 use fisura::phase_field::assembly::{Constant, Form, PointCoefficients, add_form};
 use fisura::phase_field::fracture::Fracturing;
-use fisura::transfer::kernels::{DegradedStress, ElasticStress, HistoryUpdate};
-use fisura::linear_algebra::lane::Lane;
-use fisura::particles::lattice::Lattice;
-use fisura::material::{ElasticModuli, FractureModel};
-use fisura::splines::patch::Patch;
-use fisura::phase_field::PhaseField;
 use fisura::scene::{Crack, Fracture, Material, Mesh, PhaseFieldSolver, Plane, Scene, Shape, SolverSettings, Split};
-use fisura::material::split::EnergySplit;
-use fisura::linear_algebra::stencil::Stencil;
+use fisura::splines::patch::Patch;
+use fisura::transfer::kernels::{DegradedStress, ElasticStress, HistoryUpdate};
 use fisura::transfer::sweep::{Fields, StripForces, sweep};
 
 use super::BenchError;

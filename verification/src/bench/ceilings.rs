@@ -7,9 +7,9 @@
 
 use std::hint::black_box;
 
+use fisura::dynamics::updated_frame::points::Point;
 use fisura::linear_algebra::lane::{Vectorised, add_product, dispatch};
 use fisura::transfer::sweep::StripForces;
-use fisura::dynamics::updated_frame::points::Point;
 
 use super::block::Block;
 use super::record::BenchRecord;

@@ -1,16 +1,16 @@
 //! The block in the updated frame, and the phases of its step one by one: P2G, grid, G2P.
 
 use fisura::Simulation;
-use fisura::linear_algebra::lane::dispatch;
-use fisura::material::ElasticModuli;
-use fisura::splines::patch::Patch;
-use fisura::scene::{Frame, Scene};
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::dynamics::updated_frame::grid::NodalFields;
 use fisura::dynamics::updated_frame::points::{Cells, Point};
 use fisura::dynamics::updated_frame::strain::Small;
 use fisura::dynamics::updated_frame::transfer::{GridToPoints, PointsToGrid, StripMotion};
 use fisura::dynamics::updated_frame::windows::{cut, scatter};
+use fisura::linear_algebra::lane::dispatch;
+use fisura::material::elasticity::ElasticModuli;
+use fisura::scene::{Frame, Scene};
+use fisura::splines::patch::Patch;
 use rayon::prelude::*;
 
 use super::block::{DENSITY, elastic_scene};

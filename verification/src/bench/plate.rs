@@ -9,8 +9,8 @@
 use std::sync::Arc;
 
 use fisura::Simulation;
-use fisura::scene::Scene;
 use fisura::dynamics::total_frame::TotalFrame;
+use fisura::scene::Scene;
 
 use super::record::{AnswerError, BenchRecord, CostPoint};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};

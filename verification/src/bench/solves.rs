@@ -6,9 +6,9 @@
 
 use fisura::linear_algebra::cholesky::SparseCholesky;
 use fisura::linear_algebra::conjugate_gradients::{ConjugateGradients, Remaining};
-use fisura::phase_field::integrate_shape_functions;
 use fisura::linear_algebra::preconditioner::Preconditioner;
 use fisura::linear_algebra::stencil::Stencil;
+use fisura::phase_field::integrate_shape_functions;
 
 use super::block::{Block, SPAN, cracked_scene};
 use super::record::BenchRecord;

@@ -6,10 +6,10 @@
 use std::hint::black_box;
 
 use fisura::Simulation;
+use fisura::dynamics::total_frame::TotalFrame;
 use fisura::linear_algebra::incomplete_cholesky::IncompleteCholesky;
 use fisura::material::split::EnergySplit;
 use fisura::transfer::sweep::StripForces;
-use fisura::dynamics::total_frame::TotalFrame;
 
 use super::block::{Block, elastic_scene};
 use super::moving_block::{MovingBlock, minimal, minimal_deviation, moving_scene};

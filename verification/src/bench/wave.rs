@@ -8,9 +8,9 @@
 
 use fisura::dynamics::energy;
 use fisura::dynamics::projection::Projection;
-use fisura::scene::{Frame, Layout, Mass, Mesh, Plane, Scene, Transfer};
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::dynamics::updated_frame::UpdatedFrame;
+use fisura::scene::{Frame, Layout, Mass, Mesh, Plane, Scene, Transfer};
 use rayon::prelude::*;
 
 use super::record::{AnswerError, BenchRecord, Sample};

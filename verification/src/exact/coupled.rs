@@ -15,7 +15,7 @@
 //! It needs the body force `rho a − Div sigma`, the source of the phase field, the flux `4 l0² grad c · n` and the displacement or
 //! the traction on the boundary, and non-zero displacement, velocity and history at t = 0. c lies in (0.45, 0.95).
 
-use fisura::material::ElasticModuli;
+use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Fracture, Material, Plane, Split};
 
 use super::dual::{Field, Jet, Scalar};

@@ -9,7 +9,7 @@
 //!
 //! Boundary conditions: the displacement, or the traction sigma n, neither of which vanishes anywhere in particular.
 
-use fisura::material::ElasticModuli;
+use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Material, Plane};
 
 use super::dual::{Jet, Scalar};

@@ -14,7 +14,7 @@
 //! Valid for r ≥ a. Boundary conditions: none on the hole, which is free of traction; on an outer boundary the traction
 //! sigma n or the displacement; on the axes y = 0 and x = 0 symmetry (normal displacement and shear vanish).
 
-use fisura::material::ElasticModuli;
+use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Material, Plane};
 
 use super::dual::{Jet, Scalar};

@@ -12,7 +12,7 @@
 //!
 //! which is smooth where the principal values meet (z = 0). Moduli per plane state: [`ElasticModuli`].
 
-use fisura::material::ElasticModuli;
+use fisura::material::elasticity::ElasticModuli;
 
 use super::dual::{Field, Scalar};
 

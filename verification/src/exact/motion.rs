@@ -7,7 +7,7 @@
 //! s  = [4 l0 (1 − k) H/Gc + 1] c − 4 l0² Δc
 //! ```
 
-use fisura::material::FractureModel;
+use fisura::material::degradation::FractureModel;
 use fisura::scene::{Material, Plane};
 
 use super::dual::{Dual, Field, Jet, Scalar};

@@ -13,7 +13,8 @@
 
 use std::f64::consts::PI;
 
-use fisura::material::{ElasticModuli, FractureModel};
+use fisura::material::degradation::FractureModel;
+use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Fracture, Material, Plane, Split};
 
 use super::dual::{Jet, Scalar};

@@ -15,7 +15,7 @@
 
 use std::f64::consts::PI;
 
-use fisura::material::ElasticModuli;
+use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Material, Plane};
 
 use super::dual::{Jet, Scalar};

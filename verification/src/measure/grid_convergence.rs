@@ -21,8 +21,8 @@
 //! that has no index still has an uncertainty, three times its range (Eça and Hoekstra, J. Mar. Sci. Technol. 14, 2009).
 
 use fisura::fault;
-use fisura::scene::Mesh;
 use fisura::particles::spans::largest_spans;
+use fisura::scene::Mesh;
 
 use super::{Measured, Run, expected, held_against, measure};
 use crate::case::Check;

@@ -1,7 +1,7 @@
 //! Measures on columns of the history.
 
 use fisura::fault;
-use fisura::material::ElasticModuli;
+use fisura::material::elasticity::ElasticModuli;
 use nalgebra::{DMatrix, DVector};
 
 use super::tip::fitted_slope;

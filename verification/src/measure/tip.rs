@@ -2,7 +2,7 @@
 //!
 //! The axis is the height of the initial crack. The tip *branches* when it first leaves the axis by [`OFF_AXIS`].
 
-use fisura::phase_field::fracture::BROKEN;
+use fisura::material::degradation::BROKEN;
 
 use super::{Run, position};
 use crate::case::Check;

@@ -2,10 +2,10 @@
 
 use fisura::Simulation;
 use fisura::dynamics::energy::Sample;
-use fisura::fault;
-use fisura::phase_field::fracture::BROKEN;
-use fisura::scene::{Scene, Shape};
 use fisura::dynamics::updated_frame::field::DiscreteField;
+use fisura::fault;
+use fisura::material::degradation::BROKEN;
+use fisura::scene::{Scene, Shape};
 
 use crate::extremes::smaller;
 use crate::history::Table;

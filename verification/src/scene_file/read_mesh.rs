@@ -1,7 +1,7 @@
 //! From the tree of a document to the background mesh: a rectangle, a general NURBS patch, or an annular sector.
 
-use fisura::splines::nurbs::{NurbsError, NurbsPatch};
 use fisura::scene::{Geometry, Mesh};
+use fisura::splines::nurbs::{NurbsError, NurbsPatch};
 
 use super::fields::{Fields, Item};
 use super::read::{length, number, point};

@@ -1,9 +1,9 @@
 //! The state at which a run broke down: `breakdown.json`. Numbers that are not finite are null.
 
 use fisura::dynamics::energy::Sample;
-use fisura::error::Breakdown;
 use fisura::output::inspection::{Inspection, PointState};
 use fisura::simulation::Simulation;
+use fisura::simulation::breakdown::Breakdown;
 use serde::{Deserialize, Serialize};
 
 /// Content of `breakdown.json`.

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use fisura::error::Breakdown;
 use fisura::simulation::Simulation;
+use fisura::simulation::breakdown::Breakdown;
 use serde::{Deserialize, Serialize};
 
 use crate::history::Table;

@@ -7,8 +7,8 @@
 
 use fisura::dynamics::critical_step::StiffnessOperator;
 use fisura::dynamics::loads::{NodalLoad, boundary_points};
-use fisura::scene::{Edge, Shape, Side, Traction};
 use fisura::dynamics::total_frame::TotalFrame;
+use fisura::scene::{Edge, Shape, Side, Traction};
 use nalgebra::{DMatrix, DVector};
 
 use super::{Findings, StudyError};

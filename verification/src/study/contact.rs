@@ -11,9 +11,9 @@ pub(super) mod stack;
 use fisura::Simulation;
 use fisura::contact::impulse::ContactForce;
 use fisura::dynamics::energy::{ContactSample, Sample};
-use fisura::scene::Scene;
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::dynamics::updated_frame::field::DiscreteField;
+use fisura::scene::Scene;
 
 use super::StudyError;
 use super::scene::series_stem;

@@ -3,12 +3,12 @@
 //! The line lies on knots repeated p times, where splines are continuous and no more, as the profile is. With
 //! `e = 1 − c` the surface energy is `Gc/(4 l0) eᵀ (M + 4 l0² D) e` on the matrices of the phase field.
 
-use fisura::phase_field::assembly::{Constant, Form, add_form};
 use fisura::linear_algebra::cholesky::SparseCholesky;
-use fisura::particles::lattice::Lattice;
-use fisura::splines::patch::Patch;
-use fisura::scene::{Mass, Mesh};
 use fisura::linear_algebra::stencil::Stencil;
+use fisura::particles::lattice::Lattice;
+use fisura::phase_field::assembly::{Constant, Form, add_form};
+use fisura::scene::{Mass, Mesh};
+use fisura::splines::patch::Patch;
 
 use super::{Findings, StudyError};
 use crate::case::Case;

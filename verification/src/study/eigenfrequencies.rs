@@ -5,8 +5,8 @@
 //! densely. With the consistent mass frequencies are too high, by order 2 p; with the lumped one too low, by order 2.
 
 use fisura::dynamics::critical_step::StiffnessOperator;
-use fisura::scene::{Mass, Mesh, Scene};
 use fisura::dynamics::total_frame::TotalFrame;
+use fisura::scene::{Mass, Mesh, Scene};
 
 use super::{Findings, StudyError};
 use crate::case::Case;

@@ -7,13 +7,15 @@
 //! split, history and degraded stress are those of the solver's own sweeps, and the stress is the reaction on the right
 //! side over its height. The closed form takes its numbers from the scene, not from the solver. (The reaction of equally spaced points is exact for p up to 2 only; see the patch test.)
 
-use fisura::phase_field::fracture::Fracturing;
 use fisura::linear_algebra::lane::Lane;
+use fisura::material::degradation::FractureModel;
+use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::lattice::Lattice;
-use fisura::material::{ElasticModuli, FractureModel};
-use fisura::splines::patch::Patch;
 use fisura::phase_field::PhaseField;
+use fisura::phase_field::fracture::Fracturing;
 use fisura::scene::{Fracture, Kinematics, Material, Plane, Side};
+use fisura::splines::patch::Patch;
+use fisura::splines::patch::control_points_on;
 use fisura::transfer::sweep::StripForces;
 
 use super::{Findings, StudyError};
@@ -137,7 +139,7 @@ impl Points<'_> {
         fracture.degraded_forces(lattice, *moduli, Kinematics::Small, [&displacement[0], &displacement[1]], forces);
         let mut nodal = [grid.zeros(), grid.zeros()];
         forces.assemble(grid.stride, &mut nodal);
-        let force: f64 = grid.side(Side::Right).into_iter().map(|at| nodal[0][at]).sum();
+        let force: f64 = control_points_on(Side::Right, grid).into_iter().map(|at| nodal[0][at]).sum();
         let phase = grid.indices().map(|at| fracture.field.control_values()[at]).collect();
         Ok((phase, force / self.height))
     }

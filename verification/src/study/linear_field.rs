@@ -8,9 +8,9 @@
 //! with 16 points per span. Weights are drawn once on the coarsest mesh and carried by knot insertion.
 
 use fisura::particles::lattice::Lattice;
+use fisura::scene::{Body, Layout, Side};
 use fisura::splines::patch::Patch;
 use fisura::splines::quadrature::{MAX_POINTS, Rule};
-use fisura::scene::{Body, Layout, Side};
 
 use super::{Findings, StudyError};
 use crate::case::Case;

@@ -13,11 +13,11 @@
 use std::sync::Arc;
 
 use fisura::dynamics::forcing::NoLoads;
-use fisura::material::ElasticModuli;
 use fisura::dynamics::projection::Projection;
-use fisura::splines::quadrature::Rule;
-use fisura::scene::{Layout, Mass, Material, Mesh, Plane, Side};
 use fisura::dynamics::total_frame::TotalFrame;
+use fisura::material::elasticity::ElasticModuli;
+use fisura::scene::{Layout, Mass, Material, Mesh, Plane, Side};
+use fisura::splines::quadrature::Rule;
 
 use super::{Findings, StudyError};
 use crate::case::Case;

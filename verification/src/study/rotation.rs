@@ -5,8 +5,8 @@
 
 use std::f64::consts::TAU;
 
-use fisura::scene::Kinematics;
 use fisura::dynamics::updated_frame::UpdatedFrame;
+use fisura::scene::Kinematics;
 
 use super::{Findings, StudyError};
 use crate::case::Case;

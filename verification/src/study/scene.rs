@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use fisura::output::picture::Picture;
-use fisura::scene::Scene;
 use fisura::particles::spans::largest_spans;
+use fisura::scene::Scene;
 
 use crate::case::{Case, Check};
 use crate::expand::CaseScene;

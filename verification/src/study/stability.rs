@@ -11,8 +11,8 @@ pub(super) mod stick_slip;
 pub(super) mod units;
 pub(super) mod unloading;
 
-use fisura::scene::Scene;
 use fisura::dynamics::total_frame::TotalFrame;
+use fisura::scene::Scene;
 
 use super::StudyError;
 use super::scene::series_stem;

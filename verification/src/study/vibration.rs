@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 use fisura::dynamics::forcing::NoLoads;
 use fisura::dynamics::projection::Projection;
-use fisura::scene::{Mass, Mesh};
 use fisura::dynamics::total_frame::TotalFrame;
+use fisura::scene::{Mass, Mesh};
 
 use super::{Findings, StudyError};
 use crate::case::Case;

@@ -4,18 +4,19 @@ use std::sync::Arc;
 
 use super::forced::Forced;
 use super::{TotalFrame, VectorField};
-use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::Ledger;
-use crate::error::Failure;
+use crate::dynamics::failure::Failure;
 use crate::dynamics::forcing::Forcing;
-use crate::phase_field::fracture::{Fracturing, lowest_tip};
-use crate::particles::lattice::Lattice;
 use crate::dynamics::loads::NodalLoad;
 use crate::dynamics::mass::MassMatrix;
-use crate::material::{ElasticModuli, FractureModel};
-use crate::splines::patch::Patch;
+use crate::linear_algebra::conjugate_gradients::SolveFailure;
+use crate::material::degradation::FractureModel;
+use crate::material::elasticity::ElasticModuli;
+use crate::particles::lattice::Lattice;
+use crate::phase_field::fracture::{Fracturing, lowest_tip};
 use crate::scene::Scene;
+use crate::splines::patch::Patch;
 use crate::transfer::sweep::StripForces;
 
 impl TotalFrame {

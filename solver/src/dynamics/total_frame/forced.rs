@@ -5,9 +5,9 @@ use std::sync::Arc;
 use super::VectorField;
 use crate::dynamics::forcing::Forcing;
 use crate::particles::lattice::Lattice;
+use crate::scene::Side;
 use crate::splines::patch::{BoundaryPoint, Patch};
 use crate::splines::quadrature::Rule;
-use crate::scene::Side;
 
 /// Nodal forces of a [`Forcing`] on a body that fills the patch.
 #[derive(Debug, Clone)]

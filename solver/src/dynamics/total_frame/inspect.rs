@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 
 use super::TotalFrame;
-use crate::output::inspection::{PointFracture, PointState};
 use crate::linear_algebra::lane::Lane;
-use crate::output::span_grid::{Corner, SpanGrid};
 use crate::material::split::split;
+use crate::output::inspection::{PointFracture, PointState};
+use crate::output::span_grid::{Corner, SpanGrid};
 
 impl TotalFrame {
     /// Calls `f` with the state of every point.

@@ -7,15 +7,15 @@ use super::{TotalFrame, VectorField};
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::{FractureSample, Sample};
 use crate::dynamics::forcing::Forcing;
-use crate::phase_field::fracture::Fracturing;
+use crate::dynamics::mass::MassMatrix;
+use crate::linear_algebra::lane::Lane;
+use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::{growth, hencky_strain, symmetric};
 use crate::output::inspection::InvertedPoint;
-use crate::linear_algebra::lane::Lane;
 use crate::particles::lattice::Lattice;
-use crate::dynamics::mass::MassMatrix;
-use crate::material::ElasticModuli;
-use crate::splines::patch::Patch;
+use crate::phase_field::fracture::Fracturing;
 use crate::scene::{Kinematics, Shape};
+use crate::splines::patch::Patch;
 
 impl TotalFrame {
     /// Position (m) of the fastest control point, and its speed (m/s), infinite if it is no number.

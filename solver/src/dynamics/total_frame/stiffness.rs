@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use super::{TotalFrame, VectorField};
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
+use crate::linear_algebra::lane::Lane;
+use crate::material::elasticity::ElasticModuli;
+use crate::particles::lattice::Lattice;
+use crate::scene::Kinematics;
 use crate::transfer::finite::sweep_with;
 use crate::transfer::kernels::ElasticStress;
-use crate::linear_algebra::lane::Lane;
-use crate::particles::lattice::Lattice;
-use crate::material::ElasticModuli;
-use crate::scene::Kinematics;
 use crate::transfer::sweep::{Fields, StripForces};
 
 impl TotalFrame {

@@ -4,12 +4,12 @@ use super::stiffness::{Stiffness, elastic_forces};
 use super::{TotalFrame, VectorField};
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::extremes::{largest, smaller};
+use crate::linear_algebra::lane::Lane;
+use crate::material::split::EnergySplit;
+use crate::particles::spans::lengths_of_chords;
+use crate::scene::Kinematics;
 use crate::transfer::finite::sweep_with;
 use crate::transfer::kernels::{HeldPhaseStress, LeastStretch};
-use crate::linear_algebra::lane::Lane;
-use crate::scene::Kinematics;
-use crate::particles::spans::lengths_of_chords;
-use crate::material::split::EnergySplit;
 use crate::transfer::sweep::{Fields, StripForces, sweep};
 
 /// Displacement gradients of the probes: small against strains that matter, large against round-off.

@@ -20,9 +20,10 @@ use super::grid::VectorField;
 use super::points::{Cell, Cells, Point};
 use super::transfer::{MAX_FUNCTIONS, walk};
 use super::windows::{Window, control_values, cut, scatter};
-use crate::material::hencky::Gradient;
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{Vectorised, dispatch};
-use crate::splines::patch::{ControlGrid, Patch};
+use crate::material::hencky::Gradient;
+use crate::splines::patch::Patch;
 use crate::splines::spline::{MAX_ORDER, ShapeFunctions, SplineSpace};
 
 /// `D/h²` below which the derivatives stand for the affine fit.

@@ -9,9 +9,9 @@ use super::points::{Cell, Cells, FracturePoint, Point};
 use super::transfer::{MAX_FUNCTIONS, walk};
 use super::windows::{Window, scatter};
 use crate::linear_algebra::lane::{Vectorised, dispatch};
-use crate::material::FractureModel;
-use crate::splines::patch::Patch;
 use crate::linear_algebra::stencil::Stencil;
+use crate::material::degradation::FractureModel;
+use crate::splines::patch::Patch;
 
 /// Assembles matrix and right-hand side anew.
 pub fn assemble(

@@ -13,13 +13,14 @@ use super::points::{Cells, OutsidePatch, Point};
 use super::tractions::SurfaceLoad;
 use crate::contact::Surface;
 use crate::dynamics::energy::Ledger;
-use crate::error::Failure;
-use crate::phase_field::fracture::lowest_tip;
-use crate::particles::lattice::Lattice;
+use crate::dynamics::failure::Failure;
 use crate::dynamics::loads::{Balance, LostTraction};
-use crate::material::{ElasticModuli, FractureModel};
-use crate::splines::patch::Patch;
+use crate::material::degradation::FractureModel;
+use crate::material::elasticity::ElasticModuli;
+use crate::particles::lattice::Lattice;
+use crate::phase_field::fracture::lowest_tip;
 use crate::scene::{Body, Kinematics, Material, Plane, Scene, Transfer};
+use crate::splines::patch::Patch;
 
 impl DiscreteField {
     /// The body of `scene` at t = 0 with its initial velocities and accelerations.

@@ -9,14 +9,16 @@ use super::transfer::{MAX_FUNCTIONS, contract, gather, walk};
 use super::windows::cut;
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::smaller;
-use crate::phase_field::fracture::seed_energy;
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised, dispatch};
-use crate::material::{ElasticModuli, FractureModel};
-use crate::splines::patch::{ControlGrid, Patch};
-use crate::phase_field::PhaseField;
-use crate::scene::{Body, SolverSettings};
+use crate::material::degradation::FractureModel;
+use crate::material::elasticity::ElasticModuli;
 use crate::material::split;
+use crate::phase_field::PhaseField;
+use crate::phase_field::fracture::seed_energy;
+use crate::scene::{Body, SolverSettings};
+use crate::splines::patch::Patch;
 
 /// History and phase field of a body.
 #[derive(Debug, Clone)]

@@ -34,7 +34,7 @@
 
 use super::grid::{NodalFields, VectorField};
 use super::smoothing::Smoothing;
-use crate::splines::patch::ControlGrid;
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::scene::Transfer;
 
 /// What leaves the grid for the points.

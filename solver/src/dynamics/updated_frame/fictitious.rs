@@ -13,11 +13,11 @@
 
 use rayon::prelude::*;
 
+use crate::linear_algebra::stencil::{Offset, Stencil};
+use crate::scene::Layout;
 use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
-use crate::scene::Layout;
 use crate::splines::spline::{MAX_ORDER, SplineSpace};
-use crate::linear_algebra::stencil::{Offset, Stencil};
 
 /// Its weight α, against that of the body.
 pub const WEIGHT: f64 = 1e-6;

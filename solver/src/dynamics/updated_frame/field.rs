@@ -20,17 +20,17 @@ use super::tractions::SurfaceLoad;
 use super::transfer::{GridToPoints, PointsToGrid, StripMotion};
 use super::volume_forcing::VolumeForcing;
 use super::windows::{cut, scatter};
-use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::contact::Surface;
 use crate::dynamics::critical_step::highest_frequency;
 use crate::dynamics::energy::Ledger;
-use crate::error::Failure;
+use crate::dynamics::failure::Failure;
+use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::extremes::{larger, smaller};
-use crate::material::hencky::Gradient;
 use crate::linear_algebra::lane::dispatch;
-use crate::material::ElasticModuli;
-use crate::splines::patch::Patch;
+use crate::material::elasticity::ElasticModuli;
+use crate::material::hencky::Gradient;
 use crate::scene::Boundary;
+use crate::splines::patch::Patch;
 
 /// One body in the updated frame.
 #[derive(Debug, Clone)]

@@ -6,8 +6,9 @@
 
 use super::grid::{NodalFields, VectorField};
 use super::points::{Cells, OutsidePatch};
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::splines::nearest_span::nearest_span;
-use crate::splines::patch::{ControlGrid, Patch};
+use crate::splines::patch::Patch;
 use crate::splines::spline::ShapeFunctions;
 
 /// A position that moves with a body.

@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 
 use crate::dynamics::constraints::Constraints;
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
-use crate::splines::patch::{ControlGrid, Patch};
+use crate::splines::patch::Patch;
 
 /// Masses below this fraction of the largest give no acceleration; their control points keep their velocity.
 ///

@@ -10,12 +10,12 @@ use super::points::{Cells, FracturePoint, Point};
 use crate::contact::impulse::{ContactForce, Push, Unsettled};
 use crate::contact::{Contact, ContactLedger, Surface};
 use crate::dynamics::energy::{ContactSample, FractureSample, Sample};
-use crate::phase_field::fracture::BROKEN;
+use crate::material::degradation::BROKEN;
+use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::{Gradient, growth};
 use crate::output::inspection::InvertedPoint;
-use crate::material::ElasticModuli;
-use crate::splines::patch::Patch;
 use crate::phase_field::PhaseFieldCounts;
+use crate::splines::patch::Patch;
 
 impl UpdatedFrame {
     /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at zero.

@@ -7,8 +7,8 @@ use super::field::DiscreteField;
 use super::grid::NodalFields;
 use super::points::{Cells, OutsidePatch, Point};
 use crate::dynamics::constraints::Constraints;
-use crate::splines::patch::Patch;
 use crate::scene::{Boundary, Side};
+use crate::splines::patch::Patch;
 
 /// Spans around those with points, so that the part need not follow every step.
 const MARGIN: usize = 4;

@@ -8,8 +8,9 @@ use super::grid::VectorField;
 use super::points::{Cell, Cells, Point};
 use super::transfer::{MAX_FUNCTIONS, walk};
 use super::windows::{Window, control_values, scatter};
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{Vectorised, dispatch};
-use crate::splines::patch::{ControlGrid, Patch};
+use crate::splines::patch::Patch;
 
 /// Points on a grid, and the lumped mass they give it.
 #[derive(Debug, Clone, Copy)]

@@ -5,9 +5,10 @@ use super::points::{Cell, Point};
 use super::transfer::{MAX_FUNCTIONS, walk};
 use super::windows::{Window, control_values, scatter};
 use crate::dynamics::critical_step::StiffnessOperator;
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{Vectorised, dispatch};
-use crate::material::ElasticModuli;
-use crate::splines::patch::{ControlGrid, Patch};
+use crate::material::elasticity::ElasticModuli;
+use crate::splines::patch::Patch;
 
 /// `K x` on the components that accelerate, per unit thickness.
 #[derive(Debug)]

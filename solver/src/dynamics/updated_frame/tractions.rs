@@ -5,8 +5,9 @@ use super::grid::NodalFields;
 use super::points::OutsidePatch;
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::loads::surface_points;
-use crate::splines::patch::{ControlGrid, Patch};
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::scene::{Body, Traction};
+use crate::splines::patch::Patch;
 
 /// A traction and the surface points that carry it.
 #[derive(Debug, Clone)]

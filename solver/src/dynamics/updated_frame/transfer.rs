@@ -7,10 +7,11 @@
 use super::points::{Cell, FracturePoint, Point};
 use super::strain::Kinematics;
 use super::windows::{Window, control_values};
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised};
-use crate::material::ElasticModuli;
-use crate::splines::patch::{ControlGrid, Patch};
+use crate::material::elasticity::ElasticModuli;
+use crate::splines::patch::Patch;
 use crate::splines::spline::MAX_ORDER;
 
 /// Most shape functions at a point.

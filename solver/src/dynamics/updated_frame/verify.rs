@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::UpdatedFrame;
 use super::field::DiscreteField;
 use super::volume_forcing::VolumeForcing;
-use crate::error::Failure;
+use crate::dynamics::failure::Failure;
 use crate::dynamics::forcing::Forcing;
 
 impl UpdatedFrame {

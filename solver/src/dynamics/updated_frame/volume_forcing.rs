@@ -12,8 +12,9 @@ use super::grid::VectorField;
 use super::points::{Cells, Point};
 use super::windows::{cut, scatter};
 use crate::dynamics::forcing::{Forcing, VolumeLoad};
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::material::hencky::{Gradient, gradient_at_end};
-use crate::splines::patch::{ControlGrid, Patch};
+use crate::splines::patch::Patch;
 
 /// A forcing, and what it needs per point.
 #[derive(Debug, Clone)]

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::points::{Cell, Strip};
 use super::transfer::MAX_FUNCTIONS;
-use crate::splines::patch::ControlGrid;
+use crate::linear_algebra::control_grid::ControlGrid;
 
 /// The control rows a strip may write, in `N` fields.
 #[derive(Debug)]

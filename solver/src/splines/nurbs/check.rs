@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use super::{NurbsError, NurbsPatch};
-use crate::splines::quadrature::Rule;
 use crate::scene::Layout;
+use crate::splines::quadrature::Rule;
 use crate::splines::spline::MAX_DEGREE;
 
 /// Degree and open knot vector of one direction.

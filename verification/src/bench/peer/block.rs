@@ -14,10 +14,10 @@
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 use fisura::Simulation;
-use fisura::material::ElasticModuli;
-use fisura::scene::{Frame, Plane, Scene};
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::dynamics::updated_frame::points::Point;
+use fisura::material::elasticity::ElasticModuli;
+use fisura::scene::{Frame, Plane, Scene};
 use serde_json::json;
 
 use super::super::BenchError;

@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use fisura::linear_algebra::lane::Lane;
-use fisura::material::ElasticModuli;
-use fisura::scene::Plane;
+use fisura::material::elasticity::ElasticModuli;
 use fisura::material::split::{EnergySplit, split, tensile_strain};
+use fisura::scene::Plane;
 
 use super::both_planes;
 use crate::exact::{ExactSolution, find, kirsch, phase_field, standing_wave, vortex};

@@ -2,7 +2,8 @@
 //! own moduli; the residuals of the equations.
 
 use fisura::linear_algebra::lane::Lane;
-use fisura::material::{ElasticModuli, FractureModel};
+use fisura::material::degradation::FractureModel;
+use fisura::material::elasticity::ElasticModuli;
 use nalgebra::{Matrix2, SymmetricEigen};
 
 use super::difference::{first, laplacian, partial, second};

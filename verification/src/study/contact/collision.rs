@@ -1,7 +1,7 @@
 //! Two elastic bodies that collide in flight: what the scheme conserves, what symmetry demands, and what the impact costs.
 
-use fisura::scene::Scene;
 use fisura::dynamics::updated_frame::field::DiscreteField;
+use fisura::scene::Scene;
 
 use super::{Books, center, chart, curve, dot, exact, label, largest, run, sample_is_due};
 use crate::case::Case;

@@ -15,8 +15,8 @@
 use std::f64::consts::PI;
 
 use fisura::contact::impulse::ContactForce;
-use fisura::scene::{Body, Plane, Scene, Shape};
 use fisura::dynamics::updated_frame::field::DiscreteField;
+use fisura::scene::{Body, Plane, Scene, Shape};
 
 use super::{Books, chart, curve, dot, exact, larger, run, sample_is_due, sum};
 use crate::case::Case;

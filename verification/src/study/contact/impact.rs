@@ -6,9 +6,9 @@
 
 use std::collections::BTreeMap;
 
-use fisura::material::ElasticModuli;
-use fisura::scene::{Scene, Transfer};
+use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::spans::largest_spans;
+use fisura::scene::{Scene, Transfer};
 
 use super::{Books, chart, curve, exact, run, sample_is_due, sum};
 use crate::case::Case;

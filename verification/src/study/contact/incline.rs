@@ -12,9 +12,9 @@
 //! then. Accelerations are therefore slopes of straight lines through the origin, fitted to the velocity of the centre of mass and
 //! to the spin of the points, `Σ m r × v/Σ m r²`, at all steps.
 
-use fisura::scene::{Scene, Shape};
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::dynamics::updated_frame::field::DiscreteField;
+use fisura::scene::{Scene, Shape};
 
 use super::{Books, center, chart, cross, curve, dot, exact, run, sample_is_due};
 use crate::case::Case;

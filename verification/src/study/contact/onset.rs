@@ -3,9 +3,9 @@
 
 use std::collections::HashSet;
 
-use fisura::scene::Scene;
-use fisura::particles::spans::largest_spans;
 use fisura::dynamics::updated_frame::UpdatedFrame;
+use fisura::particles::spans::largest_spans;
+use fisura::scene::Scene;
 
 use super::{dot, exact, larger, run};
 use crate::case::Case;

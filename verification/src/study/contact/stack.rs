@@ -12,9 +12,9 @@
 
 use std::f64::consts::PI;
 
-use fisura::material::ElasticModuli;
-use fisura::scene::Scene;
+use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::spans::largest_spans;
+use fisura::scene::Scene;
 
 use super::{Books, center, chart, curve, exact, label, largest, run, sample_is_due, sum};
 use crate::case::Case;

@@ -3,8 +3,8 @@
 use fisura::fault;
 use fisura::linear_algebra::lane::Lane;
 use fisura::particles::lattice::Lattice;
-use fisura::splines::patch::Patch;
 use fisura::scene::{Body, Layout};
+use fisura::splines::patch::Patch;
 
 /// Points per span and direction beyond those of the body.
 const FINER: usize = 3;

@@ -7,13 +7,13 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use fisura::error::Failure;
-use fisura::particles::lattice::Lattice;
+use fisura::dynamics::failure::Failure;
 use fisura::dynamics::projection::Projection;
-use fisura::scene::{Body, Layout, Scene, Shape, Transfer};
-use fisura::splines::spline::SplineSpace;
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::dynamics::updated_frame::points::Point;
+use fisura::particles::lattice::Lattice;
+use fisura::scene::{Body, Layout, Scene, Shape, Transfer};
+use fisura::splines::spline::SplineSpace;
 
 use super::problem::{Manufactured, Problem};
 use super::scene::scene;

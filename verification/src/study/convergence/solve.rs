@@ -3,15 +3,17 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use fisura::linear_algebra::lane::Lane;
-use fisura::material::{ElasticModuli, FractureModel};
-use fisura::splines::patch::ControlGrid;
-use fisura::phase_field::PhaseField;
 use fisura::dynamics::projection::Projection;
-use fisura::splines::quadrature::Rule;
-use fisura::scene::{Layout, Mass, Scene, Transfer};
 use fisura::dynamics::statics::StaticSolver;
 use fisura::dynamics::total_frame::TotalFrame;
+use fisura::linear_algebra::control_grid::ControlGrid;
+use fisura::linear_algebra::lane::Lane;
+use fisura::material::degradation::FractureModel;
+use fisura::material::elasticity::ElasticModuli;
+use fisura::phase_field::PhaseField;
+use fisura::scene::{Layout, Mass, Scene, Transfer};
+use fisura::splines::patch::control_points_on;
+use fisura::splines::quadrature::Rule;
 use nalgebra::DMatrix;
 
 use super::errors::{ErrorPoints, Squares};
@@ -186,7 +188,7 @@ impl<'a> Discrete<'a> {
         let degree = self.frame.patch().spaces.each_ref().map(|space| space.degree());
         let rule = Rule::new(Layout::Gauss, degree[0].max(degree[1]) + 3);
         for &(side, fixed) in &self.problem.held {
-            let at = self.grid().side(side);
+            let at = control_points_on(side, self.grid());
             let number = |index: usize| at.iter().position(|&other| other == index);
             let mut matrix = DMatrix::zeros(at.len(), at.len());
             let mut right = DMatrix::zeros(at.len(), 2);

@@ -1,7 +1,7 @@
 //! Sweep over the geometries of a case's `[rings]` table: half a ring against a frictionless wall, scored by the events.
 
-use fisura::error::Breakdown;
 use fisura::scene::Scene;
+use fisura::simulation::breakdown::Breakdown;
 use rayon::prelude::*;
 
 use super::{PAPER, Watched, in_microseconds};

@@ -6,8 +6,8 @@
 //! no mass but a whole gradient, and no step is short enough. Bodies that overlap at t = 0 have to be refused.
 
 use fisura::Simulation;
-use fisura::error::Breakdown;
 use fisura::scene::{Body, Contact, Frame, Layout, Material, Mesh, Scene, Shape, TimeStep, Transfer};
+use fisura::simulation::breakdown::Breakdown;
 use fisura::validate::validate;
 
 use super::exact;

@@ -5,8 +5,8 @@
 //! `K/M ~ η^(2p−1)/η^(p+1)` with the lumped mass: the step falls as η^((2−p)/2) for p = 1 and not for p ≥ 2; with the consistent mass
 //! `η^(2p−1)/η^(2p+1)`, so that it falls as η.
 
-use fisura::scene::{Analysis, Frame, Mass, Material, Mesh, Scene, Shape, Side};
 use fisura::dynamics::updated_frame::UpdatedFrame;
+use fisura::scene::{Analysis, Frame, Mass, Material, Mesh, Scene, Shape, Side};
 
 use super::super::contact::curve;
 use super::{exact, logarithmic, theory, total_frame};

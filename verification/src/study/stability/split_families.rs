@@ -8,10 +8,10 @@
 
 use std::f64::consts::TAU;
 
-use fisura::material::hencky::hencky_strain;
 use fisura::linear_algebra::lane::Lane;
-use fisura::scene::{Boundary, Fracture, Material, Mesh, Scene, Side, Split};
+use fisura::material::hencky::hencky_strain;
 use fisura::material::split::tensile_strain;
+use fisura::scene::{Boundary, Fracture, Material, Mesh, Scene, Side, Split};
 
 use super::super::contact::curve;
 use super::{exact, logarithmic, total_frame};

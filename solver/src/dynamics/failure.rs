@@ -1,0 +1,59 @@
+//! Why a body cannot begin, or take a step.
+
+use super::loads::LostTraction;
+use super::updated_frame::points::OutsidePatch;
+use crate::contact::impulse::Unsettled;
+use crate::contact::motion::TooFast;
+use crate::linear_algebra::conjugate_gradients::SolveFailure;
+
+/// Why a body cannot begin, or take a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Failure {
+    /// The phase field could not be solved for.
+    PhaseField(SolveFailure),
+    /// A point left the patch, m.
+    Left([f64; 2]),
+    /// The consistent mass matrix is singular to round-off.
+    SingularMass,
+    /// The critical time step is not a number.
+    NoStep,
+    /// The body of that number in the scene holds no material point.
+    NoPoints(usize),
+    /// A part of a traction would not act.
+    LostTraction {
+        /// Number of the body in the scene.
+        body: usize,
+        /// Number of its traction.
+        traction: usize,
+        /// What is lost, and where.
+        lost: LostTraction,
+    },
+    /// Impulses of contact did not settle.
+    Unsettled(Unsettled),
+    /// Bodies meet that approach each other too far in a step.
+    TooFast(TooFast),
+}
+
+impl From<SolveFailure> for Failure {
+    fn from(failure: SolveFailure) -> Self {
+        Self::PhaseField(failure)
+    }
+}
+
+impl From<Unsettled> for Failure {
+    fn from(failure: Unsettled) -> Self {
+        Self::Unsettled(failure)
+    }
+}
+
+impl From<TooFast> for Failure {
+    fn from(failure: TooFast) -> Self {
+        Self::TooFast(failure)
+    }
+}
+
+impl From<OutsidePatch> for Failure {
+    fn from(OutsidePatch(position): OutsidePatch) -> Self {
+        Self::Left(position)
+    }
+}

@@ -1,0 +1,54 @@
+//! Isotropic elasticity in the plane, and wave speeds.
+//!
+//! Plane strain uses Lamé's first parameter as it is, plane stress `lam* = 2 lam mu/(lam + 2 mu)` on the in-plane
+//! tensor, which makes `lam*/2 (tr e)² + mu e:e` the exact energy of the intact material in either state.
+
+use crate::linear_algebra::lane::Lane;
+use crate::scene::{Material, Plane};
+
+/// Moduli of the in-plane tensor, Pa.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ElasticModuli {
+    /// lam*.
+    pub lambda: f64,
+    /// Shear modulus.
+    pub mu: f64,
+}
+
+impl ElasticModuli {
+    /// Moduli of `material` in a plane state.
+    pub fn new(material: &Material, plane: Plane) -> Self {
+        let (young, nu) = (material.young_modulus, material.poisson_ratio);
+        let mu = young / (2.0 * (1.0 + nu));
+        let lambda = match plane {
+            Plane::Strain => young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+            Plane::Stress => {
+                fault!("plane-stress-lambda", young * nu / (1.0 - nu * nu) => young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)))
+            }
+        };
+        Self { lambda, mu }
+    }
+
+    /// Speed of dilatational plane waves at density (kg/m³), m/s.
+    pub fn dilatational_speed(&self, density: f64) -> f64 {
+        ((self.lambda + 2.0 * self.mu) / density).sqrt()
+    }
+
+    /// Stress `[xx, yy, xy]` of an intact batch, Pa.
+    #[inline(always)]
+    pub fn stress(&self, strain: [Lane; 3]) -> [Lane; 3] {
+        let spherical = (strain[0] + strain[1]) * self.lambda;
+        let twice = 2.0 * self.mu;
+        let shear = fault!("shear-halved", strain[2] * twice => strain[2] * self.mu);
+        [spherical + strain[0] * twice, spherical + strain[1] * twice, shear]
+    }
+
+    /// Energy density of an intact batch, J/m³.
+    #[inline(always)]
+    pub fn energy(&self, strain: [Lane; 3]) -> Lane {
+        let trace = strain[0] + strain[1];
+        let twice = fault!("shear-energy-once", 2.0 => 1.0);
+        let square = strain[0] * strain[0] + strain[1] * strain[1] + strain[2] * strain[2] * twice;
+        trace * trace * (0.5 * self.lambda) + square * self.mu
+    }
+}
