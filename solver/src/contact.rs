@@ -28,12 +28,12 @@ mod outline;
 pub mod rigid;
 mod state;
 pub mod surface;
+pub mod view;
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::updated_frame::field::DiscreteField;
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::scene::Scene;
 use crate::splines::patch::Patch;
@@ -43,6 +43,7 @@ use motion::{AHEAD, MOST, TooFast};
 pub use rigid::RigidBody;
 pub use surface::Surface;
 use surface::{Center, dot, unit};
+pub use view::BodyView;
 
 /// Cosine of the angle between outward normals above which boundaries do not face each other.
 const FACING: f64 = -0.5;
@@ -133,14 +134,14 @@ impl Contact {
     ///
     /// # Errors
     /// If bodies are about to meet that approach each other too far in a step.
-    pub fn find(&mut self, fields: &[DiscreteField]) -> Result<(), TooFast> {
+    pub fn find(&mut self, bodies: &[BodyView]) -> Result<(), TooFast> {
         let surfaces: Vec<&Surface> =
-            fields.iter().filter_map(|f| f.surface()).chain(self.rigid.iter().map(|r| r.surface())).collect();
+            bodies.iter().filter_map(|body| body.surface).chain(self.rigid.iter().map(|r| r.surface())).collect();
         let boxes: Vec<_> = surfaces.iter().map(|surface| surface.bounding_box()).collect();
         let ways: Vec<_> = surfaces.iter().map(|surface| surface.ways()).collect();
         let mut touches = Vec::new();
         for b in 1..surfaces.len() {
-            for a in 0..b.min(fields.len()) {
+            for a in 0..b.min(bodies.len()) {
                 let reach = self.reach + AHEAD * ways[a].past(&ways[b]);
                 let common = [
                     [0, 1].map(|d| boxes[a][0][d].max(boxes[b][0][d]) - reach),
@@ -149,7 +150,7 @@ impl Contact {
                 if (0..2).all(|d| common[0][d] <= common[1][d]) {
                     let sums = self.compare([surfaces[a], surfaces[b]], common, reach)?;
                     touches.extend(
-                        sums.into_iter().filter_map(|(square, sums)| self.touch([a, b], square, &sums, fields)),
+                        sums.into_iter().filter_map(|(square, sums)| self.touch([a, b], square, &sums, bodies)),
                     );
                 }
             }
@@ -203,17 +204,17 @@ impl Contact {
     }
 
     /// The touch of a square; none if a body has no material there.
-    fn touch(&self, bodies: [usize; 2], square: [i32; 2], sums: &Sums, fields: &[DiscreteField]) -> Option<Touch> {
+    fn touch(&self, pair: [usize; 2], square: [i32; 2], sums: &Sums, bodies: &[BodyView]) -> Option<Touch> {
         let position = sums.position.map(|sum| sum / sums.count);
         let normal = unit(sums.normal)?;
         let inside = |depth: f64| [0, 1].map(|d| position[d] + depth * self.reach * normal[d]);
-        let [a, b] = bodies;
-        let on_a = Handle::new(&fields[a], position, inside(-DEPTH))?;
-        let on_b = match fields.get(b) {
-            Some(field) => Some(Handle::new(field, position, inside(DEPTH))?),
+        let [a, b] = pair;
+        let on_a = Handle::new(&bodies[a], position, inside(-DEPTH))?;
+        let on_b = match bodies.get(b) {
+            Some(body) => Some(Handle::new(body, position, inside(DEPTH))?),
             None => None,
         };
-        Some(Touch { gap: sums.gap / sums.count, bodies, square, position, normal, on_a, on_b })
+        Some(Touch { gap: sums.gap / sums.count, bodies: pair, square, position, normal, on_a, on_b })
     }
 
     /// Where bodies are near each other.

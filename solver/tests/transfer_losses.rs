@@ -8,8 +8,8 @@ use std::sync::Arc;
 use common::standing_wave::StandingWave;
 use common::{rectangle, unit_solid, updated_scene};
 use fisura::dynamics::updated_frame::UpdatedFrame;
-use fisura::dynamics::updated_frame::points::Point;
 use fisura::linear_algebra::extremes::larger;
+use fisura::particles::points::Point;
 use fisura::scene::*;
 
 /// A bar of two rows of spans without lateral contraction, held in x at both ends or free.

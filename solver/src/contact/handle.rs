@@ -16,10 +16,10 @@
 //! stand for the place on the line nearest to x, and the torque of the distance between both is lost.
 
 use super::surface::dot;
-use crate::dynamics::updated_frame::field::DiscreteField;
-use crate::dynamics::updated_frame::follower::Follower;
-use crate::dynamics::updated_frame::grid::VectorField;
-use crate::dynamics::updated_frame::transfer::MAX_FUNCTIONS;
+use super::view::BodyView;
+use crate::linear_algebra::control_grid::VectorField;
+use crate::particles::follower::Follower;
+use crate::splines::spline::MAX_FUNCTIONS;
 use crate::splines::spline::MAX_ORDER;
 
 /// Depth of y under the boundary, in spans: that of the outermost points where there are two in a span.
@@ -59,14 +59,14 @@ struct Spread {
 
 impl Handle {
     /// Stands for `position` (m), near the point `inside` (m) of the body; `None` if it has no material there.
-    pub fn new(field: &DiscreteField, position: [f64; 2], inside: [f64; 2]) -> Option<Self> {
-        let (patch, nodes) = (field.patch(), field.nodes());
-        let [(column, nx), (row, ny)] = Follower::nearest(inside, patch, field.cells())?.shape_functions(patch);
+    pub fn new(body: &BodyView, position: [f64; 2], inside: [f64; 2]) -> Option<Self> {
+        let patch = body.patch;
+        let [(column, nx), (row, ny)] = Follower::nearest(inside, patch, body.cells)?.shape_functions(patch);
         let [kx, ky] = [0, 1].map(|d| patch.spaces[d].degree() + 1);
         let arms = |d: usize, first: usize, count: usize| {
             let per_span = 1.0 / patch.spaces[d].spans()[0].length();
             let mut arms = [0.0; MAX_ORDER];
-            for (arm, x) in arms.iter_mut().zip(&nodes.greville[d][first..first + count]) {
+            for (arm, x) in arms.iter_mut().zip(&body.greville[d][first..first + count]) {
                 *arm = (x - position[d]) * per_span;
             }
             arms
@@ -75,11 +75,11 @@ impl Handle {
         let (mut parts, mut count) = ([Part::default(); MAX_FUNCTIONS], 0);
         for l in 0..ky {
             for k in 0..kx {
-                let at = nodes.grid.index(column + k, row + l);
-                let mass = fault!("impulse-not-mass-weighted", nodes.mass[at] => 1.0);
+                let at = body.grid.index(column + k, row + l);
+                let mass = fault!("impulse-not-mass-weighted", body.mass[at] => 1.0);
                 let weight = nx.value[k] * ny.value[l] * mass;
-                if nodes.inverse_mass[at] > 0.0 && weight > 0.0 {
-                    parts[count] = Part { at, weight, inverse_mass: nodes.inverse_mass[at], arm: [x[k], y[l]] };
+                if body.inverse_mass[at] > 0.0 && weight > 0.0 {
+                    parts[count] = Part { at, weight, inverse_mass: body.inverse_mass[at], arm: [x[k], y[l]] };
                     count += 1;
                 }
             }

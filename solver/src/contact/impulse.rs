@@ -7,8 +7,8 @@ use std::collections::HashMap;
 use serde::{Deserialize, Serialize};
 
 use super::surface::dot;
+use super::view::BodyView;
 use super::{Contact, ContactLedger, Touch};
-use crate::dynamics::updated_frame::field::DiscreteField;
 use crate::linear_algebra::extremes::larger;
 
 /// Rounds over the touches until their equations are solved directly, and most of them: a few tens settle them but where
@@ -118,35 +118,35 @@ struct Acting<'a> {
 impl Contact {
     /// Accelerations that contact adds in the coming kick, and the ledger at the present whole step: with the half of that kick
     /// that belongs to the step before.
-    pub fn coming(&self, fields: &[DiscreteField], kick: Kick) -> (Vec<Push>, ContactLedger) {
-        let problem = self.solve(fields, kick);
+    pub fn coming(&self, bodies: &[BodyView], kick: Kick) -> (Vec<Push>, ContactLedger) {
+        let problem = self.solve(bodies, kick);
         (problem.pushes(kick.length), self.ledger.plus(problem.arriving(kick)))
     }
 
     /// Forces in the coming kick.
-    pub fn forces(&self, fields: &[DiscreteField], kick: Kick) -> Vec<ContactForce> {
+    pub fn forces(&self, bodies: &[BodyView], kick: Kick) -> Vec<ContactForce> {
         let force = |acting: &Acting| {
             let Touch { bodies, position, .. } = *acting.touch;
             let force = acting.vector_of(acting.impulse).map(|impulse| impulse / kick.length);
             (acting.impulse.normal > 0.0).then_some(ContactForce { bodies, position, force })
         };
-        self.solve(fields, kick).touches.iter().filter_map(force).collect()
+        self.solve(bodies, kick).touches.iter().filter_map(force).collect()
     }
 
     /// Whether the impulses of the coming kick settle.
     ///
     /// # Errors
     /// If they do not.
-    pub fn settles(&self, fields: &[DiscreteField], kick: Kick) -> Result<(), Unsettled> {
-        self.solve(fields, kick).unsettled.map_or(Ok(()), Err)
+    pub fn settles(&self, bodies: &[BodyView], kick: Kick) -> Result<(), Unsettled> {
+        self.solve(bodies, kick).unsettled.map_or(Ok(()), Err)
     }
 
     /// The accelerations, and books the energies of the kick.
     ///
     /// # Errors
     /// If the impulses do not settle; nothing is booked.
-    pub fn act(&mut self, fields: &[DiscreteField], kick: Kick) -> Result<Vec<Push>, Unsettled> {
-        let problem = self.solve(fields, kick);
+    pub fn act(&mut self, bodies: &[BodyView], kick: Kick) -> Result<Vec<Push>, Unsettled> {
+        let problem = self.solve(bodies, kick);
         if let Some(unsettled) = problem.unsettled {
             return Err(unsettled);
         }
@@ -159,22 +159,22 @@ impl Contact {
     }
 
     /// Impulses of the coming kick.
-    fn solve(&self, fields: &[DiscreteField], kick: Kick) -> Problem<'_> {
-        let mut problem = self.problem(fields, kick);
+    fn solve(&self, bodies: &[BodyView], kick: Kick) -> Problem<'_> {
+        let mut problem = self.problem(bodies, kick);
         problem.settle(self.friction, kick.step);
         problem
     }
 
     /// The touches with the impulses of the step before.
-    fn problem(&self, fields: &[DiscreteField], kick: Kick) -> Problem<'_> {
+    fn problem(&self, bodies: &[BodyView], kick: Kick) -> Problem<'_> {
         let mut nodes = Vec::new();
         let mut numbers = HashMap::new();
         let mut number = |body: usize, at: usize| {
             *numbers.entry((body, at)).or_insert_with(|| {
-                let fields = fields[body].nodes();
-                let before = [0, 1].map(|c| fields.velocity[c][at]);
-                let free = [0, 1].map(|c| before[c] + kick.length * fields.acceleration[c][at]);
-                nodes.push(Node { body, at, mobility: fields.mobility(at), before, free, after: free });
+                let view = &bodies[body];
+                let before = [0, 1].map(|c| view.velocity[c][at]);
+                let free = [0, 1].map(|c| before[c] + kick.length * view.acceleration[c][at]);
+                nodes.push(Node { body, at, mobility: view.mobility(at), before, free, after: free });
                 nodes.len() - 1
             })
         };
@@ -189,7 +189,7 @@ impl Contact {
                     weights.extend(on_b.weights().iter().map(|&(at, w)| (number(b, at), w)));
                     [0.0; 2]
                 }
-                None => self.rigid[b - fields.len()].velocity_at(touch.position),
+                None => self.rigid[b - bodies.len()].velocity_at(touch.position),
             };
             let impulse = self
                 .last

@@ -1,10 +1,10 @@
 //! Why a body cannot begin, or take a step.
 
 use super::loads::LostTraction;
-use super::updated_frame::points::OutsidePatch;
 use crate::contact::impulse::Unsettled;
 use crate::contact::motion::TooFast;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
+use crate::particles::points::OutsidePatch;
 
 /// Why a body cannot begin, or take a step.
 #[derive(Debug, Clone, Copy, PartialEq)]

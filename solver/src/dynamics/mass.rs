@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::cholesky::{Factor, SparseCholesky};
+use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::stencil::Stencil;
 use crate::particles::lattice::Lattice;
@@ -18,9 +19,6 @@ const NEGLIGIBLE: f64 = 1e-12;
 
 /// Control points that a thread takes at least.
 const CHUNK: usize = 4096;
-
-/// A field of vectors on the control points, by component.
-type VectorField = [Vec<f64>; 2];
 
 /// Mass per unit thickness, kg/m.
 #[derive(Debug, Clone)]

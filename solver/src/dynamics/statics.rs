@@ -9,10 +9,8 @@ use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 
 use crate::dynamics::total_frame::TotalFrame;
+use crate::linear_algebra::control_grid::VectorField;
 use crate::transfer::sweep::StripForces;
-
-/// A field of vectors on the control points, by component.
-type VectorField = [Vec<f64>; 2];
 
 /// The stiffness of an undamaged body in the total frame, factored.
 #[derive(Debug)]

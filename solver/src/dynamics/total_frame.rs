@@ -21,6 +21,7 @@ use crate::dynamics::loads::NodalLoad;
 use crate::dynamics::mass::MassMatrix;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::stencil::CHUNK_ROWS;
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
@@ -32,9 +33,6 @@ use crate::transfer::sweep::StripForces;
 use forced::Forced;
 pub use stiffness::Stiffness;
 use stiffness::elastic_forces;
-
-/// A field of vectors on the control points, by component.
-type VectorField = [Vec<f64>; 2];
 
 /// One body in the total frame.
 #[derive(Debug, Clone)]

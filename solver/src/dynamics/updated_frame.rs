@@ -25,14 +25,12 @@ pub mod cracking;
 pub mod departure;
 pub mod fictitious;
 pub mod field;
-pub mod follower;
 pub mod grid;
 mod inspect;
 pub mod losses;
 pub mod observe;
 pub mod paint;
 pub mod part;
-pub mod points;
 pub mod smoothing;
 mod state;
 pub mod stiffness;
@@ -45,8 +43,8 @@ pub mod windows;
 
 use std::sync::Arc;
 
-use crate::contact::Contact;
 use crate::contact::impulse::Kick;
+use crate::contact::{BodyView, Contact};
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::smaller;
 use crate::scene::Scene;
@@ -73,7 +71,7 @@ impl UpdatedFrame {
         let fields = deformable.map(|body| DiscreteField::new(scene, body, &patch)).collect::<Result<Vec<_>, _>>()?;
         let mut contact = Contact::new(scene, &patch);
         if let Some(contact) = &mut contact {
-            contact.find(&fields)?;
+            contact.find(&views(&fields))?;
         }
         Ok(Self { patch, fields, contact, thickness: scene.analysis.thickness })
     }
@@ -87,7 +85,7 @@ impl UpdatedFrame {
         self.fields.iter_mut().for_each(|field| field.expect_motion(dt));
         contact.set_step(dt);
         contact.move_rigid(0.0);
-        contact.find(&self.fields)?;
+        contact.find(&views(&self.fields))?;
         Ok(())
     }
 
@@ -101,14 +99,14 @@ impl UpdatedFrame {
         let Self { fields, contact, .. } = self;
         if let Some(contact) = contact {
             contact.set_step(dt);
-            for push in contact.act(fields, kick)? {
+            for push in contact.act(&views(fields), kick)? {
                 fields[push.body].push(push.at, push.acceleration);
             }
         }
         fields.iter_mut().try_for_each(|field| field.step(dt))?;
         if let Some(contact) = contact {
             contact.move_rigid(fields[0].time());
-            contact.find(fields)?;
+            contact.find(&views(fields))?;
         }
         Ok(())
     }
@@ -128,4 +126,9 @@ impl UpdatedFrame {
     pub fn critical_step_is_due(&mut self) -> bool {
         self.fields.iter_mut().any(|field| field.critical_step_is_due())
     }
+}
+
+/// The bodies as contact sees them.
+fn views(fields: &[DiscreteField]) -> Vec<BodyView<'_>> {
+    fields.iter().map(DiscreteField::view).collect()
 }

@@ -9,6 +9,9 @@ const LEAD: usize = LANES;
 /// Least room behind the last one: the neighbours that functions of the highest degree reach, and those read with them.
 const MARGIN: usize = 4 + LANES;
 
+/// A field of vectors on the control points, by component.
+pub type VectorField = [Vec<f64>; 2];
+
 /// Layout of the control points of a patch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ControlGrid {

@@ -17,9 +17,10 @@ pub use mapped::{MappedPoint, Mapping};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::scene::{Body, Layout, Shape};
-use crate::splines::nurbs::{Location, MAX_FUNCTIONS};
+use crate::splines::nurbs::Location;
 use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
+use crate::splines::spline::MAX_FUNCTIONS;
 use crate::splines::spline::{MAX_ORDER, SplineSpace};
 use tables::{Columns, columns, tiles};
 

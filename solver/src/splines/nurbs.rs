@@ -34,7 +34,7 @@ mod locate;
 
 pub use error::{LocateError, NurbsError};
 pub(crate) use functions::products;
-pub use functions::{MAX_FUNCTIONS, MapPoint, RationalFunctions, rational_functions};
+pub use functions::{MapPoint, RationalFunctions, rational_functions};
 pub use locate::{INVERSION_TOLERANCE, Location};
 
 use crate::linear_algebra::extremes::larger;

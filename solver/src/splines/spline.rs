@@ -12,6 +12,8 @@ pub const MAX_DEGREE: usize = 4;
 pub const ROUND_OFF: f64 = 1e-9;
 /// Most basis functions on a span, `MAX_DEGREE + 1`.
 pub const MAX_ORDER: usize = MAX_DEGREE + 1;
+/// Most shape functions at a point of a patch.
+pub const MAX_FUNCTIONS: usize = MAX_ORDER * MAX_ORDER;
 
 /// A non-empty knot span.
 #[derive(Debug, Clone)]

@@ -7,8 +7,8 @@
 
 use std::hint::black_box;
 
-use fisura::dynamics::updated_frame::points::Point;
 use fisura::linear_algebra::lane::{Vectorised, add_product, dispatch};
+use fisura::particles::points::Point;
 use fisura::transfer::sweep::StripForces;
 
 use super::block::Block;

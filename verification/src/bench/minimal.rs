@@ -5,8 +5,8 @@
 //! fracture, no ledger: what a step of the solver costs beyond this is the price of its features. It moves as the solver
 //! does: see the test in [`super::moving_block`].
 
-use fisura::dynamics::updated_frame::points::Point;
 use fisura::material::elasticity::ElasticModuli;
+use fisura::particles::points::Point;
 use fisura::scene::Mesh;
 
 /// Most functions per direction.

@@ -3,12 +3,12 @@
 use fisura::Simulation;
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::dynamics::updated_frame::grid::NodalFields;
-use fisura::dynamics::updated_frame::points::{Cells, Point};
 use fisura::dynamics::updated_frame::strain::Small;
 use fisura::dynamics::updated_frame::transfer::{GridToPoints, PointsToGrid, StripMotion};
 use fisura::dynamics::updated_frame::windows::{cut, scatter};
 use fisura::linear_algebra::lane::dispatch;
 use fisura::material::elasticity::ElasticModuli;
+use fisura::particles::points::{Cells, Point};
 use fisura::scene::{Frame, Scene};
 use fisura::splines::patch::Patch;
 use rayon::prelude::*;

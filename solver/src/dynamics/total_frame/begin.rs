@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use super::TotalFrame;
 use super::forced::Forced;
-use super::{TotalFrame, VectorField};
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::Ledger;
 use crate::dynamics::failure::Failure;
@@ -11,6 +11,7 @@ use crate::dynamics::forcing::Forcing;
 use crate::dynamics::loads::NodalLoad;
 use crate::dynamics::mass::MassMatrix;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
+use crate::linear_algebra::control_grid::VectorField;
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;

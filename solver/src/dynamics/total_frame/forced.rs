@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::VectorField;
 use crate::dynamics::forcing::Forcing;
+use crate::linear_algebra::control_grid::VectorField;
 use crate::particles::lattice::Lattice;
 use crate::scene::Side;
 use crate::splines::patch::{BoundaryPoint, Patch};

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use super::TotalFrame;
 use super::forced::Forced;
-use super::{TotalFrame, VectorField};
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::{FractureSample, Sample};
 use crate::dynamics::forcing::Forcing;
 use crate::dynamics::mass::MassMatrix;
+use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::lane::Lane;
 use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::{growth, hencky_strain, symmetric};

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use super::{TotalFrame, VectorField};
+use super::TotalFrame;
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
+use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::lane::Lane;
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;

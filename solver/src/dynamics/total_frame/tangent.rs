@@ -1,8 +1,9 @@
 //! The critical step of a body with finite strains as it is deformed and broken now: compression raises the stiffness.
 
+use super::TotalFrame;
 use super::stiffness::{Stiffness, elastic_forces};
-use super::{TotalFrame, VectorField};
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
+use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::{largest, smaller};
 use crate::linear_algebra::lane::Lane;
 use crate::material::split::EnergySplit;

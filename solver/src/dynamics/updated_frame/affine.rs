@@ -16,14 +16,15 @@
 
 use rayon::prelude::*;
 
-use super::grid::VectorField;
-use super::points::{Cell, Cells, Point};
-use super::transfer::{MAX_FUNCTIONS, walk};
+use super::transfer::walk;
 use super::windows::{Window, control_values, cut, scatter};
 use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::lane::{Vectorised, dispatch};
 use crate::material::hencky::Gradient;
+use crate::particles::points::{Cell, Cells, Point};
 use crate::splines::patch::Patch;
+use crate::splines::spline::MAX_FUNCTIONS;
 use crate::splines::spline::{MAX_ORDER, ShapeFunctions, SplineSpace};
 
 /// `D/h²` below which the derivatives stand for the affine fit.

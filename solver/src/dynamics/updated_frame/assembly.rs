@@ -5,13 +5,14 @@
 //! ```
 
 use super::fictitious::FictitiousMaterial;
-use super::points::{Cell, Cells, FracturePoint, Point};
-use super::transfer::{MAX_FUNCTIONS, walk};
+use super::transfer::walk;
 use super::windows::{Window, scatter};
 use crate::linear_algebra::lane::{Vectorised, dispatch};
 use crate::linear_algebra::stencil::Stencil;
 use crate::material::degradation::FractureModel;
+use crate::particles::points::{Cell, Cells, FracturePoint, Point};
 use crate::splines::patch::Patch;
+use crate::splines::spline::MAX_FUNCTIONS;
 
 /// Assembles matrix and right-hand side anew.
 pub fn assemble(

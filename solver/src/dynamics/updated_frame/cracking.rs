@@ -4,8 +4,7 @@ use rayon::prelude::*;
 
 use super::assembly::assemble;
 use super::fictitious::FictitiousMaterial;
-use super::points::{Cell, Cells, FracturePoint, Point};
-use super::transfer::{MAX_FUNCTIONS, contract, gather, walk};
+use super::transfer::{contract, gather, walk};
 use super::windows::cut;
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
@@ -15,10 +14,12 @@ use crate::linear_algebra::lane::{LANES, Lane, Vectorised, dispatch};
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
 use crate::material::split;
+use crate::particles::points::{Cell, Cells, FracturePoint, Point};
 use crate::phase_field::PhaseField;
 use crate::phase_field::fracture::seed_energy;
 use crate::scene::{Body, SolverSettings};
 use crate::splines::patch::Patch;
+use crate::splines::spline::MAX_FUNCTIONS;
 
 /// History and phase field of a body.
 #[derive(Debug, Clone)]

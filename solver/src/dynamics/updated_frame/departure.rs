@@ -32,9 +32,10 @@
 //! with q = s for PIC, APIC and TPIC and q = 1 − (1 − s)^m ≥ s for XPIC(m). For 0 ≤ s ≤ 1, which is a theorem but for TPIC
 //! (dense eigenvalues of bodies at random offsets: 0 to 1, all real), none is below √2, and MUSL's is at least 2.
 
-use super::grid::{NodalFields, VectorField};
+use super::grid::NodalFields;
 use super::smoothing::Smoothing;
 use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::control_grid::VectorField;
 use crate::scene::Transfer;
 
 /// What leaves the grid for the points.

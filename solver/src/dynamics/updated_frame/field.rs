@@ -12,7 +12,6 @@ use super::cracking::Cracking;
 use super::departure::Departure;
 use super::grid::{ImposedEnergy, NodalFields};
 use super::losses::TransferLosses;
-use super::points::{Cells, OutsidePatch, Point};
 use super::smoothing::Smoothing;
 use super::stiffness::Stiffness;
 use super::strain::{self, Finite, Small};
@@ -20,7 +19,7 @@ use super::tractions::SurfaceLoad;
 use super::transfer::{GridToPoints, PointsToGrid, StripMotion};
 use super::volume_forcing::VolumeForcing;
 use super::windows::{cut, scatter};
-use crate::contact::Surface;
+use crate::contact::{BodyView, Surface};
 use crate::dynamics::critical_step::highest_frequency;
 use crate::dynamics::energy::Ledger;
 use crate::dynamics::failure::Failure;
@@ -29,6 +28,7 @@ use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::lane::dispatch;
 use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::Gradient;
+use crate::particles::points::{Cells, OutsidePatch, Point};
 use crate::scene::Boundary;
 use crate::splines::patch::Patch;
 
@@ -111,9 +111,17 @@ impl DiscreteField {
     /// Tells the boundary how far it moves in a step of `dt` seconds with the present velocity.
     pub(super) fn expect_motion(&mut self, dt: f64) {
         if let Some(mut surface) = self.surface.take() {
-            surface.expect(self, &self.nodes.velocity, dt);
+            surface.expect(&self.view(), &self.nodes.velocity, dt);
             self.surface = Some(surface);
         }
+    }
+
+    /// What contact sees of it.
+    pub fn view(&self) -> BodyView<'_> {
+        let Self { patch, cells, surface, nodes, .. } = self;
+        let NodalFields { grid, greville, mass, inverse_mass, velocity, acceleration, .. } = nodes;
+        let (surface, fixed) = (surface.as_ref(), nodes.fixed());
+        BodyView { patch, cells, surface, grid: *grid, greville, mass, inverse_mass, fixed, velocity, acceleration }
     }
 
     /// Adds an acceleration to a control point for the coming kick, m/s².
@@ -147,7 +155,7 @@ impl DiscreteField {
             }
         };
         if let Some(mut surface) = self.surface.take() {
-            surface.follow(self, &self.departure.motion, dt);
+            surface.follow(&self.view(), &self.departure.motion, dt);
             self.surface = Some(surface);
         }
         let Self { patch, nodes, points, departure, forcing, loads, .. } = self;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::dynamics::constraints::Constraints;
-use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::extremes::larger;
 use crate::splines::patch::Patch;
 
@@ -11,9 +11,6 @@ use crate::splines::patch::Patch;
 ///
 /// Removing such a control point (zero velocity) would break the partition of unity and brake every moving boundary.
 const NEGLIGIBLE_MASS: f64 = 1e-16;
-
-/// A field of vectors on the control points, by component.
-pub type VectorField = [Vec<f64>; 2];
 
 /// Mass, velocities and forces of the control points at the present whole step, per unit thickness.
 #[derive(Debug, Clone)]
@@ -191,10 +188,9 @@ impl NodalFields {
         -self.constraints.iter().map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
     }
 
-    /// Inverse masses with which the components of a control point answer to a force, m/kg: zero where the velocity is
-    /// prescribed or the mass negligible.
-    pub fn mobility(&self, at: usize) -> [f64; 2] {
-        [0, 1].map(|c| if self.fixed.contains(&(at, c)) { 0.0 } else { self.inverse_mass[at] })
+    /// Control points and components whose velocity is prescribed.
+    pub fn fixed(&self) -> &BTreeSet<(usize, usize)> {
+        &self.fixed
     }
 
     /// Components that accelerate: control point and component.

@@ -1,9 +1,9 @@
 //! The points of the bodies in the updated frame, one by one, and the spans they are in: for looking at a run.
 
 use super::UpdatedFrame;
-use super::points::Point;
 use crate::output::inspection::{PointFracture, PointState};
 use crate::output::span_grid::{Corner, SpanGrid};
+use crate::particles::points::Point;
 
 impl UpdatedFrame {
     /// Calls `f` with the state of every point.

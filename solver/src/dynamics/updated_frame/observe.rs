@@ -2,18 +2,19 @@
 
 use std::borrow::Cow;
 
-use super::UpdatedFrame;
 use super::field::DiscreteField;
-use super::grid::{NodalFields, VectorField};
+use super::grid::NodalFields;
 use super::losses::TransferLosses;
-use super::points::{Cells, FracturePoint, Point};
+use super::{UpdatedFrame, views};
 use crate::contact::impulse::{ContactForce, Push, Unsettled};
 use crate::contact::{Contact, ContactLedger, Surface};
 use crate::dynamics::energy::{ContactSample, FractureSample, Sample};
+use crate::linear_algebra::control_grid::VectorField;
 use crate::material::degradation::BROKEN;
 use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::{Gradient, growth};
 use crate::output::inspection::InvertedPoint;
+use crate::particles::points::{Cells, FracturePoint, Point};
 use crate::phase_field::PhaseFieldCounts;
 use crate::splines::patch::Patch;
 
@@ -23,7 +24,7 @@ impl UpdatedFrame {
         let mut accelerations: Vec<_> =
             self.fields.iter().map(|field| Cow::Borrowed(&field.nodes.acceleration)).collect();
         let contact = self.contact.as_ref().map(|contact| {
-            let (pushes, ledger) = contact.coming(&self.fields, self.coming_kick(dt));
+            let (pushes, ledger) = contact.coming(&views(&self.fields), self.coming_kick(dt));
             for Push { body, at, acceleration } in pushes {
                 let pushed = accelerations[body].to_mut();
                 (0..2).for_each(|c| pushed[c][at] += acceleration[c]);
@@ -62,7 +63,9 @@ impl UpdatedFrame {
 
     /// Forces of contact now; `dt` is the step in use.
     pub fn contact_forces(&self, dt: f64) -> Vec<ContactForce> {
-        self.contact.as_ref().map_or_else(Vec::new, |contact| contact.forces(&self.fields, self.coming_kick(dt)))
+        self.contact
+            .as_ref()
+            .map_or_else(Vec::new, |contact| contact.forces(&views(&self.fields), self.coming_kick(dt)))
     }
 
     /// Whether the impulses of contact of the coming step settle; `dt` is the step in use.
@@ -70,7 +73,7 @@ impl UpdatedFrame {
     /// # Errors
     /// If they do not.
     pub fn contact_settles(&self, dt: f64) -> Result<(), Unsettled> {
-        self.contact.as_ref().map_or(Ok(()), |contact| contact.settles(&self.fields, self.coming_kick(dt)))
+        self.contact.as_ref().map_or(Ok(()), |contact| contact.settles(&views(&self.fields), self.coming_kick(dt)))
     }
 
     /// Where the boundary of a body was without material first, m, if one ever was.

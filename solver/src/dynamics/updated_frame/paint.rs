@@ -2,8 +2,8 @@
 
 use super::UpdatedFrame;
 use super::field::DiscreteField;
-use super::points::Point;
 use crate::output::raster::Raster;
+use crate::particles::points::Point;
 
 /// Side of the square a point fills in a picture, over the root of its volume. The points of a Gauss rule stand up to
 /// 1.16 of that apart.

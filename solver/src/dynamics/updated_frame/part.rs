@@ -5,8 +5,8 @@ use std::ops::Range;
 use super::departure::Departure;
 use super::field::DiscreteField;
 use super::grid::NodalFields;
-use super::points::{Cells, OutsidePatch, Point};
 use crate::dynamics::constraints::Constraints;
+use crate::particles::points::{Cells, OutsidePatch, Point};
 use crate::scene::{Boundary, Side};
 use crate::splines::patch::Patch;
 

@@ -4,13 +4,14 @@
 //! Its eigenvalues lie between 0 and 1: it keeps what the points see and filters the rest. The lumped mass makes it a
 //! filter for all fields but the constant; that is the loss of PIC, and what XPIC corrects and MUSL balances.
 
-use super::grid::VectorField;
-use super::points::{Cell, Cells, Point};
-use super::transfer::{MAX_FUNCTIONS, walk};
+use super::transfer::walk;
 use super::windows::{Window, control_values, scatter};
 use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::lane::{Vectorised, dispatch};
+use crate::particles::points::{Cell, Cells, Point};
 use crate::splines::patch::Patch;
+use crate::splines::spline::MAX_FUNCTIONS;
 
 /// Points on a grid, and the lumped mass they give it.
 #[derive(Debug, Clone, Copy)]

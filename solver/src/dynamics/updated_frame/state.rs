@@ -1,10 +1,10 @@
 //! The state of the bodies in the updated frame: what the points and surfaces carry. Order and nodal fields follow from it.
 
-use super::UpdatedFrame;
 use super::affine::AffineVelocities;
 use super::field::DiscreteField;
-use super::points::OutsidePatch;
+use super::{UpdatedFrame, views};
 use crate::checkpoint::{Archive, StateError};
+use crate::particles::points::OutsidePatch;
 
 impl UpdatedFrame {
     /// Stores or takes up what steps change.
@@ -18,7 +18,7 @@ impl UpdatedFrame {
             contact.exchange(archive)?;
             if archive.is_reader() && fields[0].time() > 0.0 {
                 contact.move_rigid(fields[0].time());
-                contact.find(fields).map_err(|fast| {
+                contact.find(&views(fields)).map_err(|fast| {
                     StateError(format!("the state is of another scene: bodies move {:.3} spans in a step", fast.spans))
                 })?;
             }

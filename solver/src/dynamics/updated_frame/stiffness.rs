@@ -1,14 +1,15 @@
 //! Stiffness of the undamaged body at the present positions, for the critical step.
 
 use super::field::DiscreteField;
-use super::points::{Cell, Point};
-use super::transfer::{MAX_FUNCTIONS, walk};
+use super::transfer::walk;
 use super::windows::{Window, control_values, scatter};
 use crate::dynamics::critical_step::StiffnessOperator;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{Vectorised, dispatch};
 use crate::material::elasticity::ElasticModuli;
+use crate::particles::points::{Cell, Point};
 use crate::splines::patch::Patch;
+use crate::splines::spline::MAX_FUNCTIONS;
 
 /// `K x` on the components that accelerate, per unit thickness.
 #[derive(Debug)]

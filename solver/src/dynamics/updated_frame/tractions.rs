@@ -1,11 +1,11 @@
 //! Tractions on surface points that move with the body.
 
-use super::follower::Follower;
 use super::grid::NodalFields;
-use super::points::OutsidePatch;
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::loads::surface_points;
 use crate::linear_algebra::control_grid::ControlGrid;
+use crate::particles::follower::Follower;
+use crate::particles::points::OutsidePatch;
 use crate::scene::{Body, Traction};
 use crate::splines::patch::Patch;
 
@@ -49,7 +49,7 @@ impl SurfaceLoad {
     /// # Errors
     /// A surface point with no material within one span of it.
     pub fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), OutsidePatch> {
-        self.points.iter_mut().try_for_each(|point| point.place.attach(patch, nodes))
+        self.points.iter_mut().try_for_each(|point| point.place.attach(patch, &nodes.inverse_mass))
     }
 
     /// Position (m) of every control point that answers to the load, and its share of the length of the edge, m: once for each

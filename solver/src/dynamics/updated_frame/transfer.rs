@@ -4,18 +4,15 @@
 //! of two one-dimensional Horner schemes at the present position. Four numbers travel together through the inner loops,
 //! which is what the vector instructions of every processor in question hold.
 
-use super::points::{Cell, FracturePoint, Point};
 use super::strain::Kinematics;
 use super::windows::{Window, control_values};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised};
 use crate::material::elasticity::ElasticModuli;
+use crate::particles::points::{Cell, FracturePoint, Point};
 use crate::splines::patch::Patch;
-use crate::splines::spline::MAX_ORDER;
-
-/// Most shape functions at a point.
-pub const MAX_FUNCTIONS: usize = MAX_ORDER * MAX_ORDER;
+use crate::splines::spline::MAX_FUNCTIONS;
 
 /// Instantiates a walk over the usual degrees with loops of constant length; any other runs the same code.
 macro_rules! walk {

@@ -8,12 +8,12 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::grid::VectorField;
-use super::points::{Cells, Point};
 use super::windows::{cut, scatter};
 use crate::dynamics::forcing::{Forcing, VolumeLoad};
 use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::control_grid::VectorField;
 use crate::material::hencky::{Gradient, gradient_at_end};
+use crate::particles::points::{Cells, Point};
 use crate::splines::patch::Patch;
 
 /// A forcing, and what it needs per point.

@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::points::{Cell, Strip};
-use super::transfer::MAX_FUNCTIONS;
 use crate::linear_algebra::control_grid::ControlGrid;
+use crate::particles::points::{Cell, Strip};
+use crate::splines::spline::MAX_FUNCTIONS;
 
 /// The control rows a strip may write, in `N` fields.
 #[derive(Debug)]

@@ -5,8 +5,8 @@ use super::{Form, PointCoefficients};
 use crate::linear_algebra::lane::Lane;
 use crate::linear_algebra::stencil::Stencil;
 use crate::particles::lattice::{BatchFunctions, Lattice};
-use crate::splines::nurbs::MAX_FUNCTIONS;
 use crate::splines::quadrature::MAX_POINTS;
+use crate::splines::spline::MAX_FUNCTIONS;
 
 /// Adds the form of a strip to its `window` of the matrix, which begins at control row `first_row`.
 pub(super) fn assemble<C: PointCoefficients>(

@@ -1,10 +1,7 @@
 //! Rational basis functions, their gradients, and what the geometry map makes of them.
 
 use crate::splines::patch::PointValue;
-use crate::splines::spline::{MAX_ORDER, SplineSpace};
-
-/// Most basis functions on a span of a patch.
-pub const MAX_FUNCTIONS: usize = MAX_ORDER * MAX_ORDER;
+use crate::splines::spline::{MAX_FUNCTIONS, SplineSpace};
 
 /// The basis functions that live at a pair of parameters; entries past `count` are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -15,8 +15,8 @@ use std::f64::consts::{PI, SQRT_2, TAU};
 
 use fisura::Simulation;
 use fisura::dynamics::updated_frame::UpdatedFrame;
-use fisura::dynamics::updated_frame::points::Point;
 use fisura::material::elasticity::ElasticModuli;
+use fisura::particles::points::Point;
 use fisura::scene::{Frame, Plane, Scene};
 use serde_json::json;
 

@@ -10,8 +10,8 @@ use std::time::Instant;
 use fisura::dynamics::failure::Failure;
 use fisura::dynamics::projection::Projection;
 use fisura::dynamics::updated_frame::UpdatedFrame;
-use fisura::dynamics::updated_frame::points::Point;
 use fisura::particles::lattice::Lattice;
+use fisura::particles::points::Point;
 use fisura::scene::{Body, Layout, Scene, Shape, Transfer};
 use fisura::splines::spline::SplineSpace;
 

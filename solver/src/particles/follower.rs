@@ -4,9 +4,9 @@
 //! nearest span with material, continued beyond its end: they still sum to one and reproduce positions. A load takes the
 //! nearest span whose control points all answer to a force, so no force and no torque is lost.
 
-use super::grid::{NodalFields, VectorField};
 use super::points::{Cells, OutsidePatch};
 use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::control_grid::VectorField;
 use crate::splines::nearest_span::nearest_span;
 use crate::splines::patch::Patch;
 use crate::splines::spline::ShapeFunctions;
@@ -37,8 +37,8 @@ impl Follower {
     ///
     /// # Errors
     /// If there is none within one span of it.
-    pub fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), OutsidePatch> {
-        let answers = |span| patch.all_functions(span, |at| nodes.inverse_mass[at] > 0.0);
+    pub fn attach(&mut self, patch: &Patch, inverse_mass: &[f64]) -> Result<(), OutsidePatch> {
+        let answers = |span| patch.all_functions(span, |at| inverse_mass[at] > 0.0);
         self.span = nearest_span(&patch.spaces, self.position, answers).ok_or(OutsidePatch(self.position))?;
         Ok(())
     }

@@ -1,0 +1,48 @@
+//! What contact sees of a body: its boundary, where it has material, and how its control points answer.
+
+use std::collections::BTreeSet;
+
+use super::surface::Surface;
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
+use crate::linear_algebra::extremes::smaller;
+use crate::particles::points::Cells;
+use crate::splines::patch::Patch;
+
+/// A body as contact sees it, at the present whole step.
+#[derive(Debug, Clone, Copy)]
+pub struct BodyView<'a> {
+    /// The part of the patch its nodal fields cover.
+    pub patch: &'a Patch,
+    /// Spans with material points.
+    pub cells: &'a Cells,
+    /// Its boundary, if it may meet others.
+    pub surface: Option<&'a Surface>,
+    /// Layout of the control points.
+    pub grid: ControlGrid,
+    /// Greville abscissae in x and y, m.
+    pub greville: &'a [Vec<f64>; 2],
+    /// Lumped mass, kg/m, and its inverse (zero where negligible).
+    pub mass: &'a [f64],
+    /// See [`Self::mass`].
+    pub inverse_mass: &'a [f64],
+    /// Control points and components whose velocity is prescribed.
+    pub fixed: &'a BTreeSet<(usize, usize)>,
+    /// Velocity half a step ago, m/s.
+    pub velocity: &'a VectorField,
+    /// Acceleration without contact, m/s².
+    pub acceleration: &'a VectorField,
+}
+
+impl BodyView<'_> {
+    /// Inverse masses with which the components of a control point answer to a force, m/kg: zero where the velocity is
+    /// prescribed or the mass negligible.
+    pub fn mobility(&self, at: usize) -> [f64; 2] {
+        [0, 1].map(|c| if self.fixed.contains(&(at, c)) { 0.0 } else { self.inverse_mass[at] })
+    }
+
+    /// Length of the shortest span, m.
+    pub fn shortest_span(&self) -> f64 {
+        let spans = self.patch.spaces.iter().flat_map(|space| space.spans());
+        spans.map(|span| span.length()).fold(f64::INFINITY, smaller)
+    }
+}
