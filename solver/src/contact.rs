@@ -21,6 +21,7 @@
 //! contact loss of the ledger, half of it booked with the velocity the step begins with, half with the one it ends with. A rigid
 //! body does external work with its own velocity.
 
+mod follow;
 pub mod handle;
 pub mod impulse;
 pub mod motion;
@@ -28,45 +29,31 @@ mod outline;
 pub mod rigid;
 mod state;
 pub mod surface;
+mod touch;
 pub mod view;
+mod ways;
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
 use crate::linear_algebra::extremes::{larger, smaller};
+use crate::linear_algebra::vectors::{dot, unit};
 use crate::scene::Scene;
 use crate::splines::patch::Patch;
 use handle::{DEPTH, Handle};
-use impulse::Impulse;
 use motion::{AHEAD, MOST, TooFast};
 pub use rigid::RigidBody;
+use surface::Center;
 pub use surface::Surface;
-use surface::{Center, dot, unit};
+use touch::Impulse;
+pub use touch::Touch;
 pub use view::BodyView;
 
 /// Cosine of the angle between outward normals above which boundaries do not face each other.
 const FACING: f64 = -0.5;
 /// Gap up to which a touch is looked at, in spans, unless more could close in a step.
 const NEAR: f64 = 0.1;
-
-/// A place, as large as a span, where the boundaries of two bodies are near each other.
-#[derive(Debug, Clone)]
-pub struct Touch {
-    /// Gap, m; negative where the boundaries overlap.
-    pub gap: f64,
-    /// Numbers of the bodies a and b; rigid ones are counted after the others, so only b may be rigid.
-    bodies: [usize; 2],
-    /// Column and row of the square it stands for.
-    square: [i32; 2],
-    /// Position, m.
-    position: [f64; 2],
-    /// Unit normal from a to b.
-    normal: [f64; 2],
-    /// Where the bodies are taken hold of; a rigid b is not.
-    on_a: Handle,
-    on_b: Option<Handle>,
-}
 
 /// Sums over the segments of both bodies whose middle of the gap lies in a square.
 #[derive(Default)]

@@ -1,8 +1,9 @@
 //! A scene made ready to run: steps, samples, pictures, and the watch over its numbers.
 
 pub mod breakdown;
+mod causes;
 mod frame;
-mod state;
+pub mod state;
 mod watch;
 
 use crate::dynamics::energy::Sample;
@@ -19,7 +20,6 @@ use crate::phase_field::PhaseFieldCounts;
 use crate::scene::Scene;
 use crate::simulation::breakdown::Breakdown;
 use frame::{Frame, either};
-pub use state::ResumeError;
 
 /// What a run models and how large it is.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +63,7 @@ impl Simulation {
     /// If the initial phase field does not converge, the mass matrix is singular to round-off, or the critical step is no number.
     pub fn new(scene: &Scene) -> Result<Self, Breakdown> {
         let tolerance = scene.solver.phase_field_tolerance;
-        let not_started = |failure| watch::not_started(scene.mesh.origin(), tolerance, failure);
+        let not_started = |failure| causes::not_started(scene.mesh.origin(), tolerance, failure);
         let mut frame = Frame::new(scene).map_err(not_started)?;
         let critical = either!(&frame, body => body.critical_step());
         if critical.is_nan() {

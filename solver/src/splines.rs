@@ -6,5 +6,6 @@
 pub mod nearest_span;
 pub mod nurbs;
 pub mod patch;
+pub mod point_value;
 pub mod quadrature;
 pub mod spline;

@@ -5,7 +5,7 @@ mod common;
 use common::{body, brittle, elastic_scene, glass, notched_plate, patch_scene, rectangle};
 use fisura::Simulation;
 use fisura::scene::*;
-use fisura::simulation::ResumeError;
+use fisura::simulation::state::ResumeError;
 
 /// Runs `scene`; from checkpoints after some of its steps the rest is run again. The last states are compared byte by byte,
 /// and so are all samples on the way.

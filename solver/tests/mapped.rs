@@ -12,7 +12,8 @@ use fisura::phase_field::assembly::{Form, PointCoefficients, add_form};
 use fisura::scene::*;
 use fisura::splines::nurbs::NurbsPatch;
 use fisura::splines::patch::Patch;
-use fisura::transfer::sweep::{Fields, PointKernel, PointValues, Stress, StripForces, sweep};
+use fisura::transfer::point_kernel::{Fields, PointKernel, PointValues, Stress};
+use fisura::transfer::sweep::{StripForces, sweep};
 
 /// Records what it is given and answers with a stress of its own making, per strip.
 struct Recorder {

@@ -8,7 +8,8 @@ use fisura::linear_algebra::lane::{LANES, Lane};
 use fisura::particles::lattice::Lattice;
 use fisura::scene::*;
 use fisura::splines::patch::Patch;
-use fisura::transfer::sweep::{Fields, PointKernel, PointValues, Stress, StripForces, sweep};
+use fisura::transfer::point_kernel::{Fields, PointKernel, PointValues, Stress};
+use fisura::transfer::sweep::{StripForces, sweep};
 
 /// Records what it is given and answers with a stress of its own making.
 struct Recorder {

@@ -15,9 +15,9 @@
 //! leaves out the direction across the line (b along it), or both (b = 0). The weights still sum to one, so momentum is kept; they
 //! stand for the place on the line nearest to x, and the torque of the distance between both is lost.
 
-use super::surface::dot;
 use super::view::BodyView;
 use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::vectors::dot;
 use crate::particles::follower::Follower;
 use crate::splines::spline::MAX_FUNCTIONS;
 use crate::splines::spline::MAX_ORDER;

@@ -4,12 +4,11 @@ mod direct;
 
 use std::collections::HashMap;
 
-use serde::{Deserialize, Serialize};
-
-use super::surface::dot;
+use super::touch::{Impulse, Touch};
 use super::view::BodyView;
-use super::{Contact, ContactLedger, Touch};
+use super::{Contact, ContactLedger};
 use crate::linear_algebra::extremes::larger;
+use crate::linear_algebra::vectors::dot;
 
 /// Rounds over the touches until their equations are solved directly, and most of them: a few tens settle them but where
 /// touches are many for their control points.
@@ -62,13 +61,6 @@ pub struct ContactForce {
     pub position: [f64; 2],
     /// Force on b, per unit thickness, N/m.
     pub force: [f64; 2],
-}
-
-/// Impulse at a touch along normal and tangent, kg/s per unit thickness.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Impulse {
-    normal: f64,
-    tangent: f64,
 }
 
 /// A control point of a body that touches another.
@@ -351,12 +343,6 @@ impl Acting<'_> {
         let all = self.vector_of(self.impulse);
         let friction = self.vector_of(Impulse { normal: 0.0, ..self.impulse });
         ContactLedger { loss: -dot(all, relative), friction: -dot(friction, relative), work: -dot(all, self.rigid) }
-    }
-}
-
-impl Impulse {
-    fn times(self, factor: f64) -> Self {
-        Self { normal: factor * self.normal, tangent: factor * self.tangent }
     }
 }
 

@@ -2,7 +2,7 @@
 //! looks is through before it is seen. Bodies that slide along each other, turn in each other or part are not.
 
 use super::surface::{Center, Surface};
-use crate::linear_algebra::extremes::{larger, largest, smaller};
+use crate::linear_algebra::extremes::{larger, largest};
 use crate::particles::spans::smallest_span;
 use crate::scene::{Body, Mesh, Scene};
 
@@ -20,25 +20,6 @@ pub struct TooFast {
     pub place: [f64; 2],
     /// By how much they approach in a step, in spans.
     pub spans: f64,
-}
-
-/// Least and largest way of vertices in each direction, m.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range([[f64; 2]; 2]);
-
-impl Range {
-    /// Of some ways, m.
-    pub fn of(ways: impl Iterator<Item = [f64; 2]>) -> Self {
-        Self(ways.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], way| {
-            [[0, 1].map(|d| smaller(low[d], way[d])), [0, 1].map(|d| larger(high[d], way[d]))]
-        }))
-    }
-
-    /// Bound of the relative way of two vertices, m; zero if there are none.
-    pub fn past(&self, other: &Self) -> f64 {
-        let along = |d: usize| (self.0[1][d] - other.0[0][d]).max(other.0[1][d] - self.0[0][d]).max(0.0);
-        along(0).hypot(along(1))
-    }
 }
 
 /// A body as it begins to move.

@@ -1,34 +1,26 @@
 //! The boundary of a body as segments between vertices that move with it, and distances from it.
 
-use rayon::prelude::*;
-
-use super::handle::{DEPTH, Handle};
-use super::motion::Range;
 use super::outline::{is_on_boundary, perimeter, rings, spacing, without_patch};
-use super::view::BodyView;
+use super::ways::Range;
 use crate::checkpoint::{Archive, StateError};
-use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::{larger, smaller};
-use crate::particles::follower::Follower;
+use crate::linear_algebra::vectors::{dot, unit};
 use crate::scene::{Body, Mesh};
 
 /// Distance from the boundary within which the middle of a segment counts as lying on it, over that of the points.
 const ON_BOUNDARY: f64 = 0.1;
 
-/// Length of a segment above which it may span a gap, in spans.
-const MOST_STRETCH: f64 = 2.0;
-
 /// A boundary: segments with the body to their left.
 #[derive(Debug, Clone, Default)]
 pub struct Surface {
-    vertices: Vec<[f64; 2]>,
+    pub(super) vertices: Vec<[f64; 2]>,
     /// Way of each vertex in the last step, before the first one in the coming step, m.
-    ways: Vec<[f64; 2]>,
-    segments: Vec<[u32; 2]>,
+    pub(super) ways: Vec<[f64; 2]>,
+    pub(super) segments: Vec<[u32; 2]>,
     /// Segments that end and begin at each vertex.
-    neighbours: Vec<[Option<u32>; 2]>,
+    pub(super) neighbours: Vec<[Option<u32>; 2]>,
     /// Where it was without material first, m.
-    opened: Option<[f64; 2]>,
+    pub(super) opened: Option<[f64; 2]>,
 }
 
 /// The point of a boundary that is nearest to a position.
@@ -87,7 +79,7 @@ impl Surface {
     }
 
     /// Forgets vertices without segments, and finds the neighbours of the others.
-    fn join(&mut self) {
+    pub(super) fn join(&mut self) {
         let mut numbers = vec![None; self.vertices.len()];
         let mut kept = Vec::new();
         for vertex in self.segments.iter_mut().flatten() {
@@ -109,58 +101,6 @@ impl Surface {
             self.neighbours[*to as usize][0] = Some(index as u32);
             self.neighbours[*from as usize][1] = Some(index as u32);
         }
-    }
-
-    /// Moves with a velocity field (m/s) of its body for `dt` seconds. Where there is no material any more the boundary ends: it
-    /// must neither stretch across a gap nor push with nothing behind it.
-    pub fn follow(&mut self, body: &BodyView, velocity: &VectorField, dt: f64) {
-        let ways = self.ways_of(body, velocity, dt);
-        self.ways = ways.iter().map(|way| way.unwrap_or_default()).collect();
-        for (vertex, way) in self.vertices.iter_mut().zip(&self.ways) {
-            *vertex = [0, 1].map(|d| vertex[d] + way[d]);
-        }
-        let span = body.shortest_span();
-        let held = |vertex: u32| ways[vertex as usize].is_some();
-        let bare = |segment: &u32| {
-            let [from, to] = self.segments[*segment as usize];
-            !held(from) || !held(to) || self.spans_a_gap(body, *segment, span)
-        };
-        let bare: Vec<u32> = (0..self.segments.len() as u32).filter(bare).collect();
-        if let Some(&first) = bare.first() {
-            self.opened.get_or_insert(self.center(first).position);
-            let mut number = 0..;
-            self.segments.retain(|_| number.next().is_some_and(|n| bare.binary_search(&n).is_err()));
-            self.join();
-        }
-    }
-
-    /// Whether a segment has become so long that there is no material of its body under its middle.
-    fn spans_a_gap(&self, body: &BodyView, segment: u32, span: f64) -> bool {
-        let [a, b] = self.ends(segment);
-        if (b[0] - a[0]).hypot(b[1] - a[1]) <= MOST_STRETCH * span {
-            return false;
-        }
-        let Center { position, normal, .. } = self.center(segment);
-        let inside = [0, 1].map(|d| position[d] - DEPTH * span * normal[d]);
-        Follower::nearest(inside, body.patch, body.cells).is_none()
-    }
-
-    /// Takes the ways of the coming step from a velocity field (m/s) of its body.
-    pub fn expect(&mut self, body: &BodyView, velocity: &VectorField, dt: f64) {
-        self.ways = self.ways_of(body, velocity, dt).into_iter().map(Option::unwrap_or_default).collect();
-    }
-
-    /// Ways of the vertices in `dt` seconds, m; `None` where the body has no material any more.
-    fn ways_of(&self, body: &BodyView, velocity: &VectorField, dt: f64) -> Vec<Option<[f64; 2]>> {
-        let depth = DEPTH * body.shortest_span();
-        let way = |vertex: usize| {
-            let position = self.vertices[vertex];
-            let normal = self.vertex_normal(vertex);
-            let inside = [0, 1].map(|d| position[d] - depth * normal[d]);
-            let time = fault!("boundary-lags-behind", dt => 0.9 * dt);
-            Handle::new(body, position, inside).map(|handle| handle.value(velocity).map(|v| time * v))
-        };
-        (0..self.vertices.len()).into_par_iter().map(way).collect()
     }
 
     /// Moves every vertex to the place of a map, m.
@@ -284,7 +224,7 @@ impl Surface {
     }
 
     /// Mean of the outward normals of the segments that meet at a vertex; zero if there are none.
-    fn vertex_normal(&self, vertex: usize) -> [f64; 2] {
+    pub(super) fn vertex_normal(&self, vertex: usize) -> [f64; 2] {
         let normals = self.neighbours[vertex].iter().flatten().map(|&segment| self.segment_normal(segment));
         unit(normals.fold([0.0; 2], |sum, n| [0, 1].map(|d| sum[d] + n[d]))).unwrap_or_default()
     }
@@ -294,7 +234,7 @@ impl Surface {
         normal(a, b)
     }
 
-    fn ends(&self, segment: u32) -> [[f64; 2]; 2] {
+    pub(super) fn ends(&self, segment: u32) -> [[f64; 2]; 2] {
         self.segments[segment as usize].map(|vertex| self.vertices[vertex as usize])
     }
 
@@ -310,15 +250,4 @@ fn normal(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     let along = [b[0] - a[0], b[1] - a[1]];
     let length = fault!("normal-not-normalised", along[0].hypot(along[1]) => 1.0);
     [along[1] / length, -along[0] / length]
-}
-
-/// The direction of a vector, unless it is next to nothing beside a unit vector.
-pub fn unit(vector: [f64; 2]) -> Option<[f64; 2]> {
-    let length = vector[0].hypot(vector[1]);
-    (length > 1e-6).then(|| vector.map(|x| x / length))
-}
-
-/// Scalar product.
-pub fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
 }

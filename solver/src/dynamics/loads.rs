@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use crate::scene::{Body, Edge, Shape, Side, Traction};
 use crate::splines::nearest_span::nearest_span;
-use crate::splines::nurbs::Location;
+use crate::splines::nurbs::locate::Location;
 use crate::splines::patch::{BoundaryPoint, Patch};
 use crate::splines::quadrature::Rule;
 

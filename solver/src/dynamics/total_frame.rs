@@ -10,7 +10,7 @@ mod inspect;
 mod observe;
 mod paint;
 mod state;
-mod stiffness;
+pub mod stiffness;
 mod tangent;
 
 use rayon::prelude::*;
@@ -30,9 +30,8 @@ use crate::scene::{Kinematics, Shape};
 use crate::splines::patch::Patch;
 use crate::transfer::sweep::StripForces;
 
+use crate::transfer::elastic_forces::elastic_forces;
 use forced::Forced;
-pub use stiffness::Stiffness;
-use stiffness::elastic_forces;
 
 /// One body in the total frame.
 #[derive(Debug, Clone)]

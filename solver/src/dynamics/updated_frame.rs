@@ -21,6 +21,7 @@
 pub mod affine;
 pub mod assembly;
 mod begin;
+mod booking;
 pub mod cracking;
 pub mod departure;
 pub mod fictitious;

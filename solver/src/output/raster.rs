@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::splines::nurbs::Location;
+use crate::splines::nurbs::locate::Location;
 use crate::splines::patch::Patch;
 
 /// Pixels over a patch.

@@ -9,6 +9,7 @@
 //! patch with a geometry the lattice is one of parameters, in the unit of the knots, and has a [`Mapping`].
 
 mod integrate;
+mod map;
 mod mapped;
 mod tables;
 
@@ -17,47 +18,16 @@ pub use mapped::{MappedPoint, Mapping};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::scene::{Body, Layout, Shape};
-use crate::splines::nurbs::Location;
+use crate::splines::nurbs::locate::Location;
 use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::MAX_FUNCTIONS;
-use crate::splines::spline::{MAX_ORDER, SplineSpace};
+use crate::splines::spline::SplineSpace;
 use tables::{Columns, columns, tiles};
+pub use tables::{Row, Tile};
 
 /// Rows of spans in a strip; at least the highest degree, so that only neighbouring strips share control points.
 const STRIP_ROWS: usize = 8;
-
-/// Eight neighbouring columns of spans.
-#[derive(Debug, Clone)]
-pub struct Tile {
-    /// First control column of lane 0; lane l begins at `first + l`.
-    pub first: usize,
-    /// Spans in use; the lanes beyond have zero weight.
-    pub count: usize,
-    /// Values of the basis functions: point a, function k at `a * order + k`.
-    pub value: Vec<Lane>,
-    /// Their derivatives, 1/m or 1/unit of the knots.
-    pub derivative: Vec<Lane>,
-    /// Weights of the points, m or unit of the knots.
-    pub weight: Vec<Lane>,
-    /// Positions of the points, m or unit of the knots.
-    pub position: Vec<Lane>,
-}
-
-/// One row of spans.
-#[derive(Debug, Clone)]
-pub struct Row {
-    /// First control row.
-    pub first: usize,
-    /// Values of the basis functions: point b, function k at `[b][k]`.
-    pub value: Vec<[f64; MAX_ORDER]>,
-    /// Their derivatives, 1/m or 1/unit of the knots.
-    pub derivative: Vec<[f64; MAX_ORDER]>,
-    /// Weights of the points, m or unit of the knots.
-    pub weight: Vec<f64>,
-    /// Positions of the points, m or unit of the knots.
-    pub position: Vec<f64>,
-}
 
 /// Material points of one body, in reference positions.
 #[derive(Debug, Clone)]

@@ -6,9 +6,12 @@
 //! Strips are assembled in two colours: strips of one colour share no control row, and the order in which contributions
 //! meet does not depend on the number of threads.
 
+mod form;
 mod mapped;
 
 use rayon::prelude::*;
+
+pub use form::{Constant, Form, PointCoefficients};
 
 use crate::linear_algebra::lane::{Lane, Vectorised, dispatch};
 use crate::linear_algebra::stencil::Stencil;
@@ -16,41 +19,11 @@ use crate::particles::lattice::{Lattice, Row, Tile};
 use crate::splines::quadrature::MAX_POINTS;
 use crate::splines::spline::MAX_ORDER;
 
-/// What is integrated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
-    /// `N_I N_J`.
-    Mass,
-    /// `grad N_I · grad N_J`.
-    Diffusion,
-}
-
 /// Which function of a direction enters a product.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Factor {
     Value,
     Derivative,
-}
-
-/// Coefficients of the points of a strip, batch by batch from the start of the strip.
-pub trait PointCoefficients: Sync {
-    /// Coefficient times weight of the `batches` of one span row of a tile, beginning at batch `first` of the whole
-    /// lattice; `None` if they are all zero.
-    fn span(&self, first: usize, weights: &[Lane], out: &mut [Lane]) -> bool;
-}
-
-/// The same coefficient everywhere.
-#[derive(Debug, Clone, Copy)]
-pub struct Constant(pub f64);
-
-impl PointCoefficients for Constant {
-    #[inline(always)]
-    fn span(&self, _first: usize, weights: &[Lane], out: &mut [Lane]) -> bool {
-        for (out, weight) in out.iter_mut().zip(weights) {
-            *out = *weight * self.0;
-        }
-        true
-    }
 }
 
 /// Adds `Σ_p f_p N_I N_J` or `Σ_p f_p grad N_I · grad N_J` to `matrix`.

@@ -11,7 +11,8 @@ use crate::scene::shape::distance_to_segment;
 use crate::scene::{Body, Boundary, Crack, Kinematics, Scene, Side, SolverSettings};
 use crate::transfer::finite::sweep_with;
 use crate::transfer::kernels::{DegradedStress, HistoryUpdate, SurfaceEnergy};
-use crate::transfer::sweep::{Fields, StripForces, sweep};
+use crate::transfer::point_kernel::Fields;
+use crate::transfer::sweep::{StripForces, sweep};
 
 /// Ratio of the largest initial history energy to Gc/(4 l0) on a seeded crack (Borden et al. 2012).
 pub const SEED_STRENGTH: f64 = 1000.0;

@@ -30,15 +30,18 @@ mod elevate;
 mod error;
 mod functions;
 mod insert;
-mod locate;
+pub mod locate;
 
 pub use error::{LocateError, NurbsError};
 pub(crate) use functions::products;
 pub use functions::{MapPoint, RationalFunctions, rational_functions};
-pub use locate::{INVERSION_TOLERANCE, Location};
+
+use rayon::prelude::*;
 
 use crate::linear_algebra::extremes::larger;
-use crate::splines::patch::PointValue;
+use crate::scene::Layout;
+use crate::splines::point_value::PointValue;
+use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
 
 /// What a patch may skip.
@@ -106,8 +109,33 @@ impl NurbsPatch {
         let size = control_points.iter().map(|p| (p[0] - from[0]).abs().max((p[1] - from[1]).abs())).fold(0.0, larger);
         let reach = control_points.as_flattened().iter().fold(0.0, |m: f64, x| larger(m, x.abs()));
         let patch = Self { spaces, control_points, weights, form, size, reach };
-        check::geometry(&patch)?;
+        patch.check_geometry()?;
         Ok(patch)
+    }
+
+    /// Positive Jacobian determinant at the Gauss points, p + 1 per direction, of every span.
+    fn check_geometry(&self) -> Result<(), NurbsError> {
+        let rules = [0, 1].map(|d| Rule::new(Layout::Gauss, self.spaces[d].degree() + 1));
+        let folded = |span: [usize; 2]| {
+            let positions = rules[1].points.iter().flat_map(|&eta| rules[0].points.iter().map(move |&xi| [xi, eta]));
+            positions.map(|position| self.parameters_at(span, position)).find_map(|parameters| {
+                let determinant = self.map(&self.shape_functions(span, parameters)).determinant();
+                let holds = determinant > 0.0 && determinant.is_finite();
+                (!holds).then_some(NurbsError::Folded { span, parameters, determinant })
+            })
+        };
+        let columns = self.spaces[0].spans().len();
+        let rows = (0..self.spaces[1].spans().len()).into_par_iter();
+        let first = rows.find_map_first(|j| (0..columns).find_map(|i| folded([i, j])));
+        first.map_or(Ok(()), Err)
+    }
+
+    /// Parameters at a fraction of a span.
+    fn parameters_at(&self, span: [usize; 2], fraction: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|d| {
+            let span = &self.spaces[d].spans()[span[d]];
+            (span.left + span.length() * fraction[d]).clamp(span.left, span.right)
+        })
     }
 
     /// Spline spaces of the two parametric directions.

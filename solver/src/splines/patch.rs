@@ -8,7 +8,9 @@ use std::ops::Range;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::scene::{Geometry, Mesh, Side};
-use crate::splines::nurbs::{Location, NurbsError, NurbsPatch, RationalFunctions};
+use crate::splines::nurbs::locate::Location;
+use crate::splines::nurbs::{NurbsError, NurbsPatch, RationalFunctions};
+use crate::splines::point_value::PointValue;
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
 
@@ -171,15 +173,6 @@ pub struct BoundaryPoint {
     pub length: f64,
     /// Shape functions that do not vanish: index in a field, and value.
     pub functions: Vec<(usize, f64)>,
-}
-
-/// A scalar field and its gradient at a position.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct PointValue {
-    /// Value.
-    pub value: f64,
-    /// Gradient, 1/m; of a function of parameters, 1/unit of the knots.
-    pub gradient: [f64; 2],
 }
 
 impl Patch {

@@ -7,7 +7,8 @@ use crate::linear_algebra::lane::{LANES, Lane};
 use crate::material::hencky::hencky_strain;
 use crate::particles::lattice::Lattice;
 use crate::scene::Kinematics;
-use crate::transfer::sweep::{Fields, PointKernel, PointValues, Stress, StripForces, sweep};
+use crate::transfer::point_kernel::{Fields, PointKernel, PointValues, Stress};
+use crate::transfer::sweep::{StripForces, sweep};
 
 /// A kernel on Hencky strains.
 struct Finite<'a, K>(&'a mut K);

@@ -6,7 +6,7 @@ use crate::material::degradation::BROKEN;
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
 use crate::material::split::{SplitState, split};
-use crate::transfer::sweep::{PointKernel, PointValues, Stress};
+use crate::transfer::point_kernel::{PointKernel, PointValues, Stress};
 
 /// Linear strain `[exx, eyy, exy]` of a displacement gradient.
 #[inline(always)]

@@ -1,7 +1,8 @@
 //! Checks of times, step, solver, boundaries and output.
 
+use super::findings::{Findings, side_name};
+use super::ground::Ground;
 use super::material::plausible_speed;
-use super::{Findings, Ground};
 use crate::linear_algebra::extremes::larger;
 use crate::scene::{Body, Boundary, Frame, Mass, Scene, Shape, Side, TimeStep, Transfer};
 use crate::splines::quadrature::Rule;
@@ -226,15 +227,6 @@ fn corners(scene: &Scene, findings: &mut Findings) {
             let remedy = format!("give both sides the same velocity in {name}, or leave {name} free on one of them");
             findings.error(format!("boundary.{i}.velocity"), message, remedy);
         }
-    }
-}
-
-pub(super) fn side_name(side: Side) -> &'static str {
-    match side {
-        Side::Left => "left",
-        Side::Right => "right",
-        Side::Bottom => "bottom",
-        Side::Top => "top",
     }
 }
 

@@ -2,10 +2,11 @@
 
 use std::cell::Cell;
 
-use super::analysis::side_name;
+use super::findings::{Findings, side_name};
 use super::geometry::{complexity, covered_side, defect, outline};
+use super::ground::Ground;
 use super::points::Points;
-use super::{Findings, Ground, seed};
+use super::seed;
 use crate::scene::{Body, Crack, Edge, Fracture, Layout, Scene, Shape, Traction};
 use crate::splines::nurbs::{LocateError, NurbsPatch};
 use crate::splines::quadrature::MAX_POINTS;

@@ -1,8 +1,9 @@
 //! Checks of several bodies, rigid bodies and contact.
 
 use super::analysis::MOST_STEPS;
+use super::findings::Findings;
 use super::geometry::{complexity, defect};
-use super::{Findings, Ground};
+use super::ground::Ground;
 use crate::contact::Surface;
 use crate::contact::motion::longest_step;
 use crate::contact::surface::Center;

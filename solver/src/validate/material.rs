@@ -1,6 +1,6 @@
 //! Checks of materials: ranges of the constants, and whether the wave speed they imply is possible.
 
-use super::Findings;
+use super::findings::Findings;
 use crate::material::elasticity::ElasticModuli;
 use crate::scene::{Fracture, Material, Plane, Scene};
 

@@ -1,6 +1,6 @@
 //! Checks of the background mesh: degrees, open knot vectors, geometry.
 
-use super::Findings;
+use super::findings::Findings;
 use crate::linear_algebra::extremes::smaller;
 use crate::scene::Mesh;
 use crate::splines::nurbs::{NurbsError, NurbsPatch};

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::Ground;
 use super::geometry::complexity;
+use super::ground::Ground;
 use crate::linear_algebra::extremes::largest;
 use crate::particles::lattice::{AxisPoint, fills_lattice, point_axes};
 use crate::scene::Body;

@@ -4,7 +4,7 @@
 //! strength `S = ∫ 4 l0 H/Gc dn` across the band: the solution of (E 8) on a line. On a mesh of spans h the field varies no faster
 //! than over h, which is like a longer l0. The strength is summed over the points, in every stretch of the length of a span.
 
-use super::Findings;
+use super::findings::Findings;
 use super::points::{Near, Points};
 use crate::linear_algebra::extremes::larger;
 use crate::material::degradation::BROKEN;

@@ -1,6 +1,6 @@
 //! How large a scene will be, before anything is made of it.
 
-use super::Findings;
+use super::findings::Findings;
 use crate::scene::{Body, Scene};
 
 /// Most material points of a scene; each takes 100 to 300 bytes.

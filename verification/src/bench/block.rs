@@ -13,7 +13,8 @@ use fisura::phase_field::fracture::Fracturing;
 use fisura::scene::{Crack, Fracture, Material, Mesh, PhaseFieldSolver, Plane, Scene, Shape, SolverSettings, Split};
 use fisura::splines::patch::Patch;
 use fisura::transfer::kernels::{DegradedStress, ElasticStress, HistoryUpdate};
-use fisura::transfer::sweep::{Fields, StripForces, sweep};
+use fisura::transfer::point_kernel::Fields;
+use fisura::transfer::sweep::{StripForces, sweep};
 
 use super::BenchError;
 use crate::extremes::largest;

@@ -4,7 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use fisura::scene::Scene;
-use fisura::simulation::{ResumeError, Simulation};
+use fisura::simulation::Simulation;
+use fisura::simulation::state::ResumeError;
 use thiserror::Error;
 
 use super::checkpoint::{self, CheckpointError, Stored};

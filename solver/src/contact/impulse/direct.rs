@@ -9,7 +9,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{Acting, Impulse, Problem};
-use crate::contact::surface::dot;
+use crate::linear_algebra::vectors::dot;
 
 /// Most times the states are changed: all that do not agree at once, which may go round in circles, then the first of them, which
 /// does not where there is no friction (Murty 1974).

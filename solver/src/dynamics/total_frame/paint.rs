@@ -8,7 +8,7 @@ use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
 use crate::material::split::split;
 use crate::output::raster::{Raster, places_of_pixels};
-use crate::splines::nurbs::Location;
+use crate::splines::nurbs::locate::Location;
 
 impl TotalFrame {
     /// Phase field, if there is one, and largest principal stress (Pa) on a raster; NaN outside the body.

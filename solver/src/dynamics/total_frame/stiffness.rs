@@ -5,13 +5,9 @@ use std::collections::BTreeSet;
 use super::TotalFrame;
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::VectorField;
-use crate::linear_algebra::lane::Lane;
-use crate::material::elasticity::ElasticModuli;
-use crate::particles::lattice::Lattice;
 use crate::scene::Kinematics;
-use crate::transfer::finite::sweep_with;
-use crate::transfer::kernels::ElasticStress;
-use crate::transfer::sweep::{Fields, StripForces};
+use crate::transfer::elastic_forces::elastic_forces;
+use crate::transfer::sweep::StripForces;
 
 impl TotalFrame {
     /// Critical time step of the undamaged body, s; infinite if nothing can move.
@@ -48,22 +44,6 @@ impl TotalFrame {
             strips: self.strip_forces.clone(),
         }
     }
-}
-
-/// Nodal forces (N/m) of the elastic stress under a displacement (m); returns the elastic energy, J/m.
-pub(super) fn elastic_forces(
-    lattice: &Lattice,
-    moduli: ElasticModuli,
-    kinematics: Kinematics,
-    displacement: &VectorField,
-    strips: &mut StripForces,
-    out: &mut VectorField,
-) -> f64 {
-    let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| ElasticStress { moduli, energy: Lane::ZERO }).collect();
-    let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
-    sweep_with(kinematics, lattice, fields, &mut kernels, Some(strips));
-    strips.assemble(lattice.grid.stride, out);
-    kernels.iter().map(|k| k.energy.sum()).sum()
 }
 
 /// Stiffness of the undamaged body on its free degrees of freedom, per unit thickness.

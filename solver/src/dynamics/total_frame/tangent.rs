@@ -1,7 +1,7 @@
 //! The critical step of a body with finite strains as it is deformed and broken now: compression raises the stiffness.
 
 use super::TotalFrame;
-use super::stiffness::{Stiffness, elastic_forces};
+use super::stiffness::Stiffness;
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::{largest, smaller};
@@ -9,9 +9,11 @@ use crate::linear_algebra::lane::Lane;
 use crate::material::split::EnergySplit;
 use crate::particles::spans::lengths_of_chords;
 use crate::scene::Kinematics;
+use crate::transfer::elastic_forces::elastic_forces;
 use crate::transfer::finite::sweep_with;
 use crate::transfer::kernels::{HeldPhaseStress, LeastStretch};
-use crate::transfer::sweep::{Fields, StripForces, sweep};
+use crate::transfer::point_kernel::Fields;
+use crate::transfer::sweep::{StripForces, sweep};
 
 /// Displacement gradients of the probes: small against strains that matter, large against round-off.
 const PROBE: f64 = 1e-6;

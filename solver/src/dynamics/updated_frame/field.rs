@@ -13,14 +13,12 @@ use super::departure::Departure;
 use super::grid::{ImposedEnergy, NodalFields};
 use super::losses::TransferLosses;
 use super::smoothing::Smoothing;
-use super::stiffness::Stiffness;
 use super::strain::{self, Finite, Small};
 use super::tractions::SurfaceLoad;
 use super::transfer::{GridToPoints, PointsToGrid, StripMotion};
 use super::volume_forcing::VolumeForcing;
 use super::windows::{cut, scatter};
 use crate::contact::{BodyView, Surface};
-use crate::dynamics::critical_step::highest_frequency;
 use crate::dynamics::energy::Ledger;
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
@@ -301,12 +299,6 @@ impl DiscreteField {
         if let Some(affine) = affine {
             affine.take(patch, cells, points, &nodes.at_greville_points(velocity));
         }
-    }
-
-    /// Critical time step of the undamaged body at the present positions, s; infinite if nothing can move.
-    pub fn critical_step(&self) -> f64 {
-        let frequency = highest_frequency(&mut Stiffness::new(self));
-        self.departure.stable_fraction() / frequency
     }
 
     /// Length of the shortest span, m.

@@ -36,9 +36,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::field::DiscreteField;
-use super::grid::ImposedEnergy;
-
 /// Parts of the transfer loss so far, J per metre of thickness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct TransferLosses {
@@ -50,44 +47,6 @@ pub struct TransferLosses {
     pub imposed: f64,
     /// Loss of the phase field as points move through it.
     pub phase_field: f64,
-}
-
-/// What the grid holds when the points leave it, per unit thickness.
-pub(super) struct Leaving {
-    kinetic: f64,
-    /// Momentum of the motion of the points.
-    momentum: [f64; 2],
-    /// Power of the forces on that motion, less what the grid follows.
-    not_followed: f64,
-}
-
-impl DiscreteField {
-    /// To be asked once the departure of the points is known.
-    pub(super) fn leaving(&self) -> Leaving {
-        let Self { nodes, departure, .. } = self;
-        Leaving {
-            kinetic: nodes.kinetic_energy(&nodes.velocity),
-            momentum: nodes.momentum(&departure.motion),
-            not_followed: nodes.power_not_followed(&departure.motion),
-        }
-    }
-
-    /// Books the works and losses of the step that ends now.
-    pub(super) fn book(&mut self, dt: f64, leaving: &Leaving, imposed: ImposedEnergy) {
-        let weight = self.gravity[0] * leaving.momentum[0] + self.gravity[1] * leaving.momentum[1];
-        let traction_at = |time: f64| self.loads.iter().map(|load| load.factor(time) * load.power()).sum::<f64>();
-        let [before, now] = [self.time - dt, self.time].map(traction_at);
-        let [forced_before, forced_now] = self.forcing.as_ref().map_or([0.0; 2], |forcing| forcing.powers());
-        let driven = self.nodes.power_of_driven_sides();
-        let on_points = now + forced_now + weight - self.stress_work / dt;
-        self.losses.kinetic += leaving.kinetic - self.nodes.kinetic_energy(&self.nodes.arrived);
-        self.losses.power += 0.5 * dt * (leaving.not_followed + on_points - self.nodes.power_followed());
-        self.losses.imposed += fault!("loss-forgotten", imposed.loss => 0.0);
-        self.ledger.external_work += imposed.work + dt * weight + 0.5 * dt * (before + now);
-        self.ledger.external_work += 0.5 * dt * (forced_before + forced_now + self.driven_power + driven);
-        self.ledger.transfer_loss = self.losses.sum();
-        self.driven_power = driven;
-    }
 }
 
 impl TransferLosses {

@@ -3,13 +3,21 @@
 use super::field::DiscreteField;
 use super::transfer::walk;
 use super::windows::{Window, control_values, scatter};
-use crate::dynamics::critical_step::StiffnessOperator;
+use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{Vectorised, dispatch};
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::points::{Cell, Point};
 use crate::splines::patch::Patch;
 use crate::splines::spline::MAX_FUNCTIONS;
+
+impl DiscreteField {
+    /// Critical time step of the undamaged body at the present positions, s; infinite if nothing can move.
+    pub fn critical_step(&self) -> f64 {
+        let frequency = highest_frequency(&mut Stiffness::new(self));
+        self.departure.stable_fraction() / frequency
+    }
+}
 
 /// `K x` on the components that accelerate, per unit thickness.
 #[derive(Debug)]

@@ -1,9 +1,40 @@
 //! Tables of shape functions, weights and positions along one direction.
 
-use super::Tile;
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::{MAX_ORDER, SplineSpace};
+
+/// Eight neighbouring columns of spans.
+#[derive(Debug, Clone)]
+pub struct Tile {
+    /// First control column of lane 0; lane l begins at `first + l`.
+    pub first: usize,
+    /// Spans in use; the lanes beyond have zero weight.
+    pub count: usize,
+    /// Values of the basis functions: point a, function k at `a * order + k`.
+    pub value: Vec<Lane>,
+    /// Their derivatives, 1/m or 1/unit of the knots.
+    pub derivative: Vec<Lane>,
+    /// Weights of the points, m or unit of the knots.
+    pub weight: Vec<Lane>,
+    /// Positions of the points, m or unit of the knots.
+    pub position: Vec<Lane>,
+}
+
+/// One row of spans.
+#[derive(Debug, Clone)]
+pub struct Row {
+    /// First control row.
+    pub first: usize,
+    /// Values of the basis functions: point b, function k at `[b][k]`.
+    pub value: Vec<[f64; MAX_ORDER]>,
+    /// Their derivatives, 1/m or 1/unit of the knots.
+    pub derivative: Vec<[f64; MAX_ORDER]>,
+    /// Weights of the points, m or unit of the knots.
+    pub weight: Vec<f64>,
+    /// Positions of the points, m or unit of the knots.
+    pub position: Vec<f64>,
+}
 
 /// Span indices and the part of each span that belongs to the body, along one direction.
 pub(super) struct Columns {

@@ -1,7 +1,7 @@
 //! Assembly on a patch with a geometry: rational functions do not factor over the directions, so the sum over the points of
 //! a span is done for every pair of functions.
 
-use super::{Form, PointCoefficients};
+use super::form::{Form, PointCoefficients};
 use crate::linear_algebra::lane::Lane;
 use crate::linear_algebra::stencil::Stencil;
 use crate::particles::lattice::{BatchFunctions, Lattice};

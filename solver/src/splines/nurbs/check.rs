@@ -1,10 +1,6 @@
 //! What a patch must satisfy before it is one.
 
-use rayon::prelude::*;
-
-use super::{NurbsError, NurbsPatch};
-use crate::scene::Layout;
-use crate::splines::quadrature::Rule;
+use super::error::NurbsError;
 use crate::splines::spline::MAX_DEGREE;
 
 /// Degree and open knot vector of one direction.
@@ -59,31 +55,6 @@ pub(super) fn control_net(
         }
     }
     Ok(())
-}
-
-/// Positive Jacobian determinant at the Gauss points, p + 1 per direction, of every span.
-pub(super) fn geometry(patch: &NurbsPatch) -> Result<(), NurbsError> {
-    let rules = [0, 1].map(|d| Rule::new(Layout::Gauss, patch.spaces[d].degree() + 1));
-    let folded = |span: [usize; 2]| {
-        let positions = rules[1].points.iter().flat_map(|&eta| rules[0].points.iter().map(move |&xi| [xi, eta]));
-        positions.map(|position| at(patch, span, position)).find_map(|parameters| {
-            let determinant = patch.map(&patch.shape_functions(span, parameters)).determinant();
-            let holds = determinant > 0.0 && determinant.is_finite();
-            (!holds).then_some(NurbsError::Folded { span, parameters, determinant })
-        })
-    };
-    let columns = patch.spaces[0].spans().len();
-    let rows = (0..patch.spaces[1].spans().len()).into_par_iter();
-    let first = rows.find_map_first(|j| (0..columns).find_map(|i| folded([i, j])));
-    first.map_or(Ok(()), Err)
-}
-
-/// Parameters at a fraction of a span.
-pub(super) fn at(patch: &NurbsPatch, span: [usize; 2], fraction: [f64; 2]) -> [f64; 2] {
-    [0, 1].map(|d| {
-        let span = &patch.spaces[d].spans()[span[d]];
-        (span.left + span.length() * fraction[d]).clamp(span.left, span.right)
-    })
 }
 
 #[cfg(test)]

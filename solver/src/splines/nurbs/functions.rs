@@ -1,6 +1,6 @@
 //! Rational basis functions, their gradients, and what the geometry map makes of them.
 
-use crate::splines::patch::PointValue;
+use crate::splines::point_value::PointValue;
 use crate::splines::spline::{MAX_FUNCTIONS, SplineSpace};
 
 /// The basis functions that live at a pair of parameters; entries past `count` are zero.

@@ -5,7 +5,6 @@
 //! whose control points could reach the point (a span lies within the box of its control points, the weights being positive)
 //! are searched one by one, each with iterates kept inside, where the map is smooth.
 
-use super::check::at;
 use super::{Form, LocateError, MapPoint, NurbsPatch};
 
 /// A point counts as on the patch if it is within this times [`NurbsPatch::size`] (and the round-off of its coordinates) of it.
@@ -80,7 +79,7 @@ impl NurbsPatch {
     fn nearest_centre(&self, point: [f64; 2]) -> [f64; 2] {
         let mut best = (f64::INFINITY, [0.0; 2]);
         for span in self.all_spans() {
-            let centre = at(self, span, [0.5, 0.5]);
+            let centre = self.parameters_at(span, [0.5, 0.5]);
             let distance = self.visit(point, Some(span), centre).distance;
             if distance < best.0 {
                 best = (distance, centre);
@@ -99,7 +98,7 @@ impl NurbsPatch {
         for span in self.all_spans().filter(|&span| self.could_hold(span, point)) {
             for eta in STARTS {
                 for xi in STARTS {
-                    let found = self.newton(point, Some(span), at(self, span, [xi, eta]));
+                    let found = self.newton(point, Some(span), self.parameters_at(span, [xi, eta]));
                     if found.distance < best.distance {
                         best = found;
                     }

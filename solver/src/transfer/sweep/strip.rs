@@ -1,10 +1,17 @@
 //! The sweep over one strip: control fields to points and stresses back to control points, by sum factorisation.
 
-use super::{Fields, PointKernel, PointValues, Stress, StripForce};
 use crate::linear_algebra::lane::{Lane, Vectorised};
 use crate::particles::lattice::{Lattice, MappedPoint, Row, Tile};
 use crate::splines::quadrature::MAX_POINTS;
 use crate::splines::spline::MAX_ORDER;
+use crate::transfer::point_kernel::{Fields, PointKernel, PointValues, Stress};
+
+/// Nodal forces of a strip, from its first control row on.
+#[derive(Debug, Clone)]
+pub(super) struct StripForce {
+    pub first_row: usize,
+    pub components: [Vec<f64>; 2],
+}
 
 /// One kernel on its way over the points of a strip.
 pub(super) struct StripSweep<'a, K> {

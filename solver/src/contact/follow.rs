@@ -1,0 +1,66 @@
+//! How a boundary moves with its body.
+
+use rayon::prelude::*;
+
+use super::handle::{DEPTH, Handle};
+use super::surface::{Center, Surface};
+use super::view::BodyView;
+use crate::linear_algebra::control_grid::VectorField;
+use crate::particles::follower::Follower;
+
+/// Length of a segment above which it may span a gap, in spans.
+const MOST_STRETCH: f64 = 2.0;
+
+impl Surface {
+    /// Moves with a velocity field (m/s) of its body for `dt` seconds. Where there is no material any more the boundary ends: it
+    /// must neither stretch across a gap nor push with nothing behind it.
+    pub fn follow(&mut self, body: &BodyView, velocity: &VectorField, dt: f64) {
+        let ways = self.ways_of(body, velocity, dt);
+        self.ways = ways.iter().map(|way| way.unwrap_or_default()).collect();
+        for (vertex, way) in self.vertices.iter_mut().zip(&self.ways) {
+            *vertex = [0, 1].map(|d| vertex[d] + way[d]);
+        }
+        let span = body.shortest_span();
+        let held = |vertex: u32| ways[vertex as usize].is_some();
+        let bare = |segment: &u32| {
+            let [from, to] = self.segments[*segment as usize];
+            !held(from) || !held(to) || self.spans_a_gap(body, *segment, span)
+        };
+        let bare: Vec<u32> = (0..self.segments.len() as u32).filter(bare).collect();
+        if let Some(&first) = bare.first() {
+            self.opened.get_or_insert(self.center(first).position);
+            let mut number = 0..;
+            self.segments.retain(|_| number.next().is_some_and(|n| bare.binary_search(&n).is_err()));
+            self.join();
+        }
+    }
+
+    /// Whether a segment has become so long that there is no material of its body under its middle.
+    fn spans_a_gap(&self, body: &BodyView, segment: u32, span: f64) -> bool {
+        let [a, b] = self.ends(segment);
+        if (b[0] - a[0]).hypot(b[1] - a[1]) <= MOST_STRETCH * span {
+            return false;
+        }
+        let Center { position, normal, .. } = self.center(segment);
+        let inside = [0, 1].map(|d| position[d] - DEPTH * span * normal[d]);
+        Follower::nearest(inside, body.patch, body.cells).is_none()
+    }
+
+    /// Takes the ways of the coming step from a velocity field (m/s) of its body.
+    pub fn expect(&mut self, body: &BodyView, velocity: &VectorField, dt: f64) {
+        self.ways = self.ways_of(body, velocity, dt).into_iter().map(Option::unwrap_or_default).collect();
+    }
+
+    /// Ways of the vertices in `dt` seconds, m; `None` where the body has no material any more.
+    fn ways_of(&self, body: &BodyView, velocity: &VectorField, dt: f64) -> Vec<Option<[f64; 2]>> {
+        let depth = DEPTH * body.shortest_span();
+        let way = |vertex: usize| {
+            let position = self.vertices[vertex];
+            let normal = self.vertex_normal(vertex);
+            let inside = [0, 1].map(|d| position[d] - depth * normal[d]);
+            let time = fault!("boundary-lags-behind", dt => 0.9 * dt);
+            Handle::new(body, position, inside).map(|handle| handle.value(velocity).map(|v| time * v))
+        };
+        (0..self.vertices.len()).into_par_iter().map(way).collect()
+    }
+}

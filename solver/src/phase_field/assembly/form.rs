@@ -1,0 +1,33 @@
+//! What a matrix of the phase field integrates, with which coefficients.
+
+use crate::linear_algebra::lane::Lane;
+
+/// What is integrated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// `N_I N_J`.
+    Mass,
+    /// `grad N_I · grad N_J`.
+    Diffusion,
+}
+
+/// Coefficients of the points of a strip, batch by batch from the start of the strip.
+pub trait PointCoefficients: Sync {
+    /// Coefficient times weight of the `batches` of one span row of a tile, beginning at batch `first` of the whole
+    /// lattice; `None` if they are all zero.
+    fn span(&self, first: usize, weights: &[Lane], out: &mut [Lane]) -> bool;
+}
+
+/// The same coefficient everywhere.
+#[derive(Debug, Clone, Copy)]
+pub struct Constant(pub f64);
+
+impl PointCoefficients for Constant {
+    #[inline(always)]
+    fn span(&self, _first: usize, weights: &[Lane], out: &mut [Lane]) -> bool {
+        for (out, weight) in out.iter_mut().zip(weights) {
+            *out = *weight * self.0;
+        }
+        true
+    }
+}

@@ -1,0 +1,27 @@
+//! Nodal forces of an elastic body.
+
+use super::finite::sweep_with;
+use super::kernels::ElasticStress;
+use super::point_kernel::Fields;
+use super::sweep::StripForces;
+use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::lane::Lane;
+use crate::material::elasticity::ElasticModuli;
+use crate::particles::lattice::Lattice;
+use crate::scene::Kinematics;
+
+/// Nodal forces (N/m) of the elastic stress under a displacement (m); returns the elastic energy, J/m.
+pub fn elastic_forces(
+    lattice: &Lattice,
+    moduli: ElasticModuli,
+    kinematics: Kinematics,
+    displacement: &VectorField,
+    strips: &mut StripForces,
+    out: &mut VectorField,
+) -> f64 {
+    let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| ElasticStress { moduli, energy: Lane::ZERO }).collect();
+    let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
+    sweep_with(kinematics, lattice, fields, &mut kernels, Some(strips));
+    strips.assemble(lattice.grid.stride, out);
+    kernels.iter().map(|k| k.energy.sum()).sum()
+}

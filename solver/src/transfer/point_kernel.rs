@@ -1,0 +1,63 @@
+//! What is computed at the material points of a strip, from which fields.
+
+use crate::linear_algebra::lane::Lane;
+
+/// What the fields are at a batch of points.
+#[derive(Debug, Clone, Copy)]
+pub struct PointValues {
+    /// Displacement gradient: `[du_x/dx, du_x/dy, du_y/dx, du_y/dy]`.
+    pub gradient: [Lane; 4],
+    /// Phase field.
+    pub phase: Lane,
+    /// Its gradient, 1/m.
+    pub phase_gradient: [Lane; 2],
+}
+
+/// In-plane stress of a batch of points, Pa: work-conjugate to the displacement gradient, so `xy` is the force in x on a
+/// face with normal y. Only a first Piola–Kirchhoff stress has `xy` and `yx` that differ.
+#[derive(Debug, Clone, Copy)]
+pub struct Stress {
+    /// Normal stress in x.
+    pub xx: Lane,
+    /// Shear stress, force in x.
+    pub xy: Lane,
+    /// Shear stress, force in y.
+    pub yx: Lane,
+    /// Normal stress in y.
+    pub yy: Lane,
+}
+
+impl Stress {
+    /// No stress.
+    pub const ZERO: Self = Self::symmetric([Lane::ZERO; 3]);
+
+    /// A symmetric stress `[xx, yy, xy]`.
+    #[inline(always)]
+    pub const fn symmetric([xx, yy, xy]: [Lane; 3]) -> Self {
+        Self { xx, xy, yx: xy, yy }
+    }
+}
+
+/// Physics at the points of a strip.
+pub trait PointKernel: Send {
+    /// Whether the displacement gradient is needed.
+    const DISPLACEMENT: bool;
+    /// Whether the phase field is needed.
+    const PHASE: bool;
+    /// Whether its gradient is needed.
+    const PHASE_GRADIENT: bool;
+    /// Whether the returned stress is to be integrated into nodal forces.
+    const STRESS: bool;
+
+    /// One batch: `at` counts batches from the start of the strip, `weight` is in m² and zero where there is no point.
+    fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress;
+}
+
+/// Control fields a sweep reads; a field that its kernel does not need may be empty.
+#[derive(Debug, Clone, Copy)]
+pub struct Fields<'a> {
+    /// Displacement components, m.
+    pub displacement: [&'a [f64]; 2],
+    /// Phase field.
+    pub phase: &'a [f64],
+}
