@@ -12,7 +12,7 @@
 //!
 //! # The time step
 //!
-//! In the total frame, where shape functions are evaluated at the reference positions once ([`total_frame::TotalFrame::step`]):
+//! In the total frame, where shape functions are evaluated at the reference positions once ([`dynamics::total_frame::TotalFrame::step`]):
 //!
 //! ```text
 //! ┌─ given u, v, a on the control points, H at the points, c on the control points, all at n ──────────────────┐
@@ -28,38 +28,34 @@
 //!
 //! History and phase field are there only with a [`scene::Fracture`]. With beta = 0 the strain at n + 1 does not depend
 //! on the acceleration at n + 1, so the staggered iteration of the paper is converged after one pass. In the updated
-//! frame the points carry the velocity and the grid is rebuilt at every step: see [`updated_frame`]. The step is a
-//! fraction of the critical one of the operator itself ([`critical_step`]).
+//! frame the points carry the velocity and the grid is rebuilt at every step: see [`dynamics::updated_frame`]. The step is a
+//! fraction of the critical one of the operator itself ([`dynamics::critical_step`]).
 //!
 //! # From the paper to the code
 //!
-//! | equations | what | module |
+//! Rooms, lowest first: each calls those above it in this table, and none below.
+//!
+//! | room | equations | what |
 //! |---|---|---|
-//! | E 3 | surface energy of the crack | [`kernels`] |
-//! | E 4–7 | elastic energy, its split, degraded stress | [`split`], [`material`], [`kernels`] |
-//! | E 10 | history energy | [`kernels`], [`fracture`] |
-//! | E 11–12, 19–24 | phase-field equation and its matrix | [`phase_field`], [`assembly`] |
-//! | E 13 | splines, the patch they span, its geometry | [`spline`], [`patch`], [`nurbs`] |
-//! | E 14–18 | the step, the mass matrix | [`total_frame`], [`updated_frame`], [`mass`] |
-//! | E 15–18 | transfers between points and control points | [`sweep`], [`updated_frame`] |
-//! | – | material points: layouts, tiles of spans | [`quadrature`], [`lattice`], [`shape`] |
-//! | – | several bodies, frictional contact, rigid bodies | [`updated_frame::field`], [`contact`] |
-//! | – | what the points take from the grid, and its losses | [`updated_frame::departure`], [`updated_frame::losses`] |
-//! | – | tractions, the spans that carry them, conditions on sides | [`loads`], [`nearest_span`], [`constraints`] |
-//! | – | finite strain | [`hencky`], [`finite`] |
-//! | – | for verification: loads that vary in space, projection, elastostatics | [`forcing`], [`projection`], [`statics`] |
-//! | – | linear algebra of the phase field | [`stencil`], [`conjugate_gradients`], [`incomplete_cholesky`], [`preconditioner`], [`cholesky`] |
-//! | – | critical step, plan of steps and samples | [`critical_step`], [`time_plan`] |
-//! | – | breakdowns and their causes, checkpoints | [`error`], [`checkpoint`] |
-//! | – | eight spans side by side, and the instructions of the processor | [`lane`], [`spans`] |
-//! | – | energy ledger, pictures, points and spans for a look | [`energy`], [`picture`], [`inspection`], [`span_grid`] |
+//! | [`linear_algebra`] | – | values side by side, matrices on control points, conjugate gradients and factors |
+//! | [`scene`] | – | what a scene declares, shapes |
+//! | [`splines`] | E 13 | spline spaces, NURBS, the patch they span, quadrature |
+//! | [`material`] | E 4–7 | elastic energy, its split, degradation, finite strain |
+//! | [`particles`] | – | material points: layouts, tiles of spans, points that move |
+//! | [`transfer`] | E 3, 6, 10, 15–18 | sweeps over points, and what they compute at each |
+//! | [`phase_field`] | E 9–12, 19–24 | history energy, the equation, its matrix, seeded cracks |
+//! | [`contact`] | – | boundaries, frictional impulses, rigid bodies |
+//! | [`output`] | – | pictures, states of points, spans that hold material |
+//! | [`dynamics`] | E 14–18 | the step in both frames, mass, loads, critical step, energy ledger |
+//! | [`validate`] | – | what is wrong with a scene |
+//! | [`simulation`] | – | the run: steps, samples, checkpoints, breakdowns |
 //!
 //! Where the paper prints a slip, the module that uses the equation says so.
 //!
 //! # Units
 //!
 //! SI throughout: m, s, kg, N, J, Pa. Inside, masses, forces and energies are per metre of thickness; a
-//! [`Sample`](energy::Sample) is for the thickness of the scene. The phase field c is 1 where intact and 0 where broken,
+//! [`Sample`](dynamics::energy::Sample) is for the thickness of the scene. The phase field c is 1 where intact and 0 where broken,
 //! and the length scale l0 is Borden's, half the l of the form `(Gc/2)(d²/l + l |grad d|²)`.
 //!
 //! # The same bits

@@ -75,7 +75,7 @@ fn weights_stand_for_their_position_beside_knot_lines() {
         for off in [0.0, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-8, 1e-6] {
             let inside = [column, 0.5 + off * h];
             let position = [column, inside[1] - 0.5 * h];
-            let handle = Handle::new(field, position, inside).expect("there is material");
+            let handle = Handle::new(&field.view(), position, inside).expect("there is material");
             let sum = |value: &dyn Fn([f64; 2]) -> f64| -> f64 {
                 handle.weights().iter().map(|&(at, weight)| weight * value(field.nodes().position(at))).sum()
             };

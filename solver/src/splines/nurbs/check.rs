@@ -60,6 +60,7 @@ pub(super) fn control_net(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::splines::nurbs::NurbsPatch;
 
     type Patched = Result<NurbsPatch, NurbsError>;
 
