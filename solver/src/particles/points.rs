@@ -45,7 +45,7 @@ pub struct FracturePoint {
     pub strain_increment: [f64; 3],
     /// Displacement of the last step, m.
     pub moved: [f64; 2],
-    /// What the energy of the phase field there changes by as the point moves through it, J/m⁴ (see [`super::losses`]).
+    /// Slope of the energy of the phase field where the point is, as it moves through that, J/m⁴.
     pub slope: [f64; 2],
 }
 
