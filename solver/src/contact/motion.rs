@@ -1,6 +1,7 @@
 //! How far bodies approach each other in a step. Contact looks at gaps once per step: what closes more than a span between two
 //! looks is through before it is seen. Bodies that slide along each other, turn in each other or part are not.
 
+use super::outline::without_patch;
 use super::surface::{Center, Surface};
 use crate::linear_algebra::extremes::{larger, largest};
 use crate::particles::spans::smallest_span;
@@ -10,6 +11,8 @@ use crate::scene::{Body, Mesh, Scene};
 pub const MOST: f64 = 0.5;
 /// A gap that could close in the coming step is one within this many of the ways of the last step: speeds change.
 pub const AHEAD: f64 = 1.25;
+/// Segments of a boundary whose outward speed is looked for: the ends of straight ones have it, and circles 1 % of their speed.
+const SEGMENTS: f64 = 256.0;
 /// Relative round-off of places and speeds at the start.
 const ROUND_OFF: f64 = 1e-9;
 
@@ -26,22 +29,15 @@ pub struct TooFast {
 struct Moving<'a> {
     body: &'a Body,
     bounds: [[f64; 2]; 2],
-    /// Largest speed with which its boundary moves outwards by its rotation, m/s; that of a disc does not.
+    /// Largest speed with which its boundary moves outwards by its rotation, m/s; that of a disc hardly does.
     turning: f64,
 }
 
 impl<'a> Moving<'a> {
     fn new(mesh: &Mesh, body: &'a Body) -> Self {
-        let surface = Surface::new(mesh, body);
-        let center = surface.centroid();
-        let bounds = surface.bounding_box();
-        let outwards = surface.segments_in(bounds).into_iter().map(|segment| {
-            let Center { position, normal, .. } = surface.center(segment);
-            let arm = [0, 1].map(|d| position[d] - center[d]);
-            body.angular_velocity * (arm[0] * normal[1] - arm[1] * normal[0])
-        });
-        let turning = outwards.fold(0.0, larger);
-        Self { body, bounds, turning }
+        let (low, high) = without_patch(&body.shape, mesh).bounding_box();
+        let turning = if body.angular_velocity == 0.0 { 0.0 } else { outward_speed(mesh, body) };
+        Self { body, bounds: [low, high], turning }
     }
 
     /// Bound of the speed, m/s, at which it comes nearer to another body; zero for bodies that lie beside each other, with boxes
@@ -59,6 +55,20 @@ impl<'a> Moving<'a> {
         };
         if beside(0) || beside(1) { 0.0 } else { most }
     }
+}
+
+/// Largest speed, m/s, with which the boundary of a body moves outwards as that turns about its centroid.
+fn outward_speed(mesh: &Mesh, body: &Body) -> f64 {
+    let surface = Surface::of_segments(mesh, body, SEGMENTS);
+    let center = surface.centroid();
+    let speeds = (0..surface.segments.len() as u32).flat_map(|segment| {
+        let Center { normal, .. } = surface.center(segment);
+        surface.ends(segment).map(|end| {
+            let arm = [0, 1].map(|d| end[d] - center[d]);
+            body.angular_velocity * (arm[0] * normal[1] - arm[1] * normal[0])
+        })
+    });
+    speeds.fold(0.0, larger)
 }
 
 /// Longest step, s, in which no two bodies of a scene with contact approach each other by more than [`MOST`] spans, by the

@@ -48,7 +48,15 @@ pub struct Center {
 impl Surface {
     /// The boundary of `body` at t = 0, in segments as long as its points stand apart.
     pub fn new(mesh: &Mesh, body: &Body) -> Self {
-        let spacing = spacing(mesh, body);
+        Self::with_spacing(mesh, body, spacing(mesh, body))
+    }
+
+    /// The boundary of `body` at t = 0, in about so many segments.
+    pub(super) fn of_segments(mesh: &Mesh, body: &Body, count: f64) -> Self {
+        Self::with_spacing(mesh, body, perimeter(&without_patch(&body.shape, mesh)) / count)
+    }
+
+    fn with_spacing(mesh: &Mesh, body: &Body, spacing: f64) -> Self {
         let shape = without_patch(&body.shape, mesh);
         let mut surface = Self::default();
         for ring in rings(&shape, spacing) {
