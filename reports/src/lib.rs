@@ -186,5 +186,5 @@ fn write(out: &OutputFolder, name: &str, content: &str) -> Result<PathBuf, Repor
 }
 
 #[cfg(test)]
-#[path = "../tests/fixture/mod.rs"]
+#[path = "../tests/integration/fixture/mod.rs"]
 mod example;

@@ -19,7 +19,7 @@ pub struct StateError(pub String);
 
 /// Bytes of a state, on their way out or in.
 #[derive(Debug)]
-pub struct Archive<'a>(Way<'a>);
+pub(crate) struct Archive<'a>(Way<'a>);
 
 #[derive(Debug)]
 enum Way<'a> {
@@ -29,17 +29,17 @@ enum Way<'a> {
 
 impl<'a> Archive<'a> {
     /// To be filled.
-    pub fn writer() -> Self {
+    pub(crate) fn writer() -> Self {
         Self(Way::Out(Vec::new()))
     }
 
     /// To be read.
-    pub fn reader(bytes: &'a [u8]) -> Self {
+    pub(crate) fn reader(bytes: &'a [u8]) -> Self {
         Self(Way::In(bytes))
     }
 
     /// Whether values are taken from the bytes.
-    pub fn is_reader(&self) -> bool {
+    pub(crate) fn is_reader(&self) -> bool {
         matches!(self.0, Way::In(_))
     }
 
@@ -47,7 +47,7 @@ impl<'a> Archive<'a> {
     ///
     /// # Errors
     /// Bytes that are no such value.
-    pub fn value<T: Serialize + DeserializeOwned>(&mut self, value: &mut T) -> Result<(), StateError> {
+    pub(crate) fn value<T: Serialize + DeserializeOwned>(&mut self, value: &mut T) -> Result<(), StateError> {
         let failed = |error: postcard::Error| StateError(format!("the state is damaged: {error}"));
         match &mut self.0 {
             Way::Out(bytes) => *bytes = postcard::to_extend(value, std::mem::take(bytes)).map_err(failed)?,
@@ -60,7 +60,7 @@ impl<'a> Archive<'a> {
     ///
     /// # Errors
     /// As [`Self::value`], and another length.
-    pub fn list<T: Serialize + DeserializeOwned>(&mut self, values: &mut Vec<T>) -> Result<(), StateError> {
+    pub(crate) fn list<T: Serialize + DeserializeOwned>(&mut self, values: &mut Vec<T>) -> Result<(), StateError> {
         let expected = values.len();
         self.value(values)?;
         if values.len() == expected {
@@ -73,7 +73,7 @@ impl<'a> Archive<'a> {
     ///
     /// # Errors
     /// If bytes are left that nobody read.
-    pub fn finish(self) -> Result<Vec<u8>, StateError> {
+    pub(crate) fn finish(self) -> Result<Vec<u8>, StateError> {
         match self.0 {
             Way::Out(bytes) => Ok(bytes),
             Way::In([]) => Ok(Vec::new()),

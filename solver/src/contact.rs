@@ -24,26 +24,26 @@
 mod follow;
 pub mod handle;
 pub mod impulse;
-pub mod motion;
+pub(crate) mod motion;
 mod outline;
-pub mod rigid;
+pub(crate) mod rigid;
 mod state;
-pub mod surface;
+pub(crate) mod surface;
 mod touch;
-pub mod view;
+pub(crate) mod view;
 mod ways;
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::linear_algebra::extremes::{larger, smaller};
+use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::vectors::{dot, unit};
 use crate::scene::Scene;
 use crate::splines::patch::Patch;
 use handle::{DEPTH, Handle};
 use motion::{AHEAD, MOST, TooFast};
-pub use rigid::RigidBody;
+pub(crate) use rigid::RigidBody;
 use surface::Center;
 pub use surface::Surface;
 use touch::Impulse;
@@ -94,11 +94,10 @@ pub struct Contact {
 impl Contact {
     /// Contact of a scene, if it declares any.
     pub fn new(scene: &Scene, whole: &Patch) -> Option<Self> {
-        let spans = || whole.spaces.iter().flat_map(|space| space.spans());
         Some(Self {
             friction: scene.contact.as_ref()?.friction,
             origin: [0, 1].map(|d| whole.spaces[d].spans()[0].left),
-            reach: spans().map(|span| span.length()).fold(f64::INFINITY, smaller),
+            reach: whole.shortest_span(),
             rigid: scene.bodies.iter().filter(|b| b.rigid).map(|b| RigidBody::new(&scene.mesh, b)).collect(),
             touches: Vec::new(),
             step: 0.0,
@@ -108,12 +107,12 @@ impl Contact {
     }
 
     /// Takes the length of a step, s.
-    pub fn set_step(&mut self, dt: f64) {
+    pub(crate) fn set_step(&mut self, dt: f64) {
         self.step = dt;
     }
 
     /// Moves the rigid bodies to where they are at a time, s.
-    pub fn move_rigid(&mut self, time: f64) {
+    pub(crate) fn move_rigid(&mut self, time: f64) {
         self.rigid.iter_mut().for_each(|body| body.move_to(time, self.step));
     }
 
@@ -163,11 +162,9 @@ impl Contact {
                 if dot(normal, nearest.normal) > FACING {
                     continue;
                 }
-                let [plus, minus] =
-                    fault!("normal-of-one-body", [1.0; 2] => [f64::from(own == 0), f64::from(own == 1)]);
-                let Some(normal) = unit([0, 1].map(|d| sign * (plus * normal[d] - minus * nearest.normal[d]))) else {
-                    continue;
-                };
+                let between = [0, 1].map(|d| sign * (normal[d] - nearest.normal[d]));
+                let between = fault!("normal-of-one-body", between => if own == 0 { normal } else { nearest.normal });
+                let Some(normal) = unit(between) else { continue };
                 let closing = sign * dot([0, 1].map(|d| way[d] - nearest.way[d]), normal);
                 if nearest.distance > larger(NEAR * self.reach, AHEAD * closing) {
                     continue;

@@ -4,13 +4,13 @@
 //! Symbols: u, v, a on the control points (m, m/s, m/s²), m lumped or consistent mass (kg/m), dt the time step (s).
 //! Calls every room but [`simulation`](crate::simulation) and [`validate`](crate::validate).
 
-pub mod constraints;
+pub(crate) mod constraints;
 pub mod critical_step;
 pub mod energy;
 pub mod failure;
 pub mod forcing;
 pub mod loads;
-pub mod mass;
+pub(crate) mod mass;
 pub mod projection;
 pub mod statics;
 pub mod time_plan;

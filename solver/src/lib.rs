@@ -126,11 +126,13 @@
 //! ```
 
 #![deny(unsafe_code)]
+#![warn(unreachable_pub)]
+#![allow(rustdoc::private_intra_doc_links)] // headers of rooms also lead to what is not public
 
 #[macro_use]
 pub mod faults;
 
-pub mod checkpoint;
+pub(crate) mod checkpoint;
 pub mod contact;
 pub mod dynamics;
 pub mod linear_algebra;

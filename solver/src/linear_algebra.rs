@@ -11,4 +11,4 @@ pub mod incomplete_cholesky;
 pub mod lane;
 pub mod preconditioner;
 pub mod stencil;
-pub mod vectors;
+pub(crate) mod vectors;

@@ -2,5 +2,5 @@
 
 pub mod inspection;
 pub mod picture;
-pub mod raster;
+pub(crate) mod raster;
 pub mod span_grid;

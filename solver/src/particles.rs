@@ -2,7 +2,7 @@
 //!
 //! Symbols: V_p volume (m²), x_p position (m). Calls [`splines`](crate::splines) and [`scene`](crate::scene).
 
-pub mod follower;
+pub(crate) mod follower;
 pub mod lattice;
 pub mod points;
 pub mod spans;

@@ -80,7 +80,7 @@ impl PhaseField {
     }
 
     /// Phase field whose system is assembled anew at every step (see [`Self::system_mut`]), intact until the first solve.
-    pub fn without_lattice(
+    pub(crate) fn without_lattice(
         grid: ControlGrid,
         degree: [usize; 2],
         model: FractureModel,
@@ -113,7 +113,7 @@ impl PhaseField {
 
     /// Goes over to another grid, whose first control column and row lie `shift` columns and rows further; control points
     /// that were not there begin intact.
-    pub fn relocate(&mut self, grid: ControlGrid, shift: [isize; 2]) {
+    pub(crate) fn relocate(&mut self, grid: ControlGrid, shift: [isize; 2]) {
         let old = self.matrix.grid;
         let moved = |values: &[f64]| {
             let mut moved = grid.zeros();
@@ -131,7 +131,7 @@ impl PhaseField {
     }
 
     /// Matrix and right-hand side, to be assembled by the caller.
-    pub fn system_mut(&mut self) -> (&mut Stencil, &mut Vec<f64>) {
+    pub(crate) fn system_mut(&mut self) -> (&mut Stencil, &mut Vec<f64>) {
         (&mut self.matrix, &mut self.load)
     }
 
@@ -146,7 +146,7 @@ impl PhaseField {
     }
 
     /// Counters so far.
-    pub fn counts(&self) -> PhaseFieldCounts {
+    pub(crate) fn counts(&self) -> PhaseFieldCounts {
         self.counts
     }
 
@@ -163,7 +163,7 @@ impl PhaseField {
     ///
     /// # Errors
     /// As [`Self::solve`].
-    pub fn solve_system(&mut self) -> Result<Convergence, SolveFailure> {
+    pub(crate) fn solve_system(&mut self) -> Result<Convergence, SolveFailure> {
         self.solve_with(TOO_MANY)
     }
 
@@ -198,7 +198,7 @@ impl PhaseField {
     ///
     /// # Errors
     /// As [`Self::solve`].
-    pub fn initialise_system(&mut self) -> Result<Convergence, SolveFailure> {
+    pub(crate) fn initialise_system(&mut self) -> Result<Convergence, SolveFailure> {
         self.renew_preconditioner();
         let convergence = self.solve_with(ITERATION_LIMIT)?; // from afar: says nothing of the solves to come
         self.previous.copy_from_slice(&self.phase);
@@ -209,7 +209,7 @@ impl PhaseField {
     }
 
     /// Makes the preconditioner anew from the matrix as it stands: control points may have gained or lost material.
-    pub fn renew_preconditioner(&mut self) {
+    pub(crate) fn renew_preconditioner(&mut self) {
         if let Some(preconditioner) = self.method.preconditioner().filter(|p| !p.is_complete()) {
             preconditioner.renew(&self.matrix); // a complete factor is made anew for every solve as it is
         }

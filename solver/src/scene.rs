@@ -5,10 +5,11 @@
 //! scene into a running model; [`crate::validate::validate`] says what is wrong with one, by key.
 
 pub mod error;
-pub mod shape;
+pub(crate) mod shape;
+
+use std::collections::BTreeMap;
 
 use crate::linear_algebra::extremes::{larger, smaller};
-use std::collections::BTreeMap;
 
 /// One simulation.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,9 +3,9 @@
 //! Symbols: N_a shape functions of control point a, xi parameters, w_a weights, P_a control points (m).
 //! Calls [`linear_algebra`](crate::linear_algebra) and [`scene`](crate::scene).
 
-pub mod nearest_span;
+pub(crate) mod nearest_span;
 pub mod nurbs;
 pub mod patch;
-pub mod point_value;
+pub(crate) mod point_value;
 pub mod quadrature;
 pub mod spline;

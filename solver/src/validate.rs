@@ -20,7 +20,7 @@ use crate::scene::{Frame, Scene};
 
 use findings::Findings;
 use ground::Ground;
-pub use size::{ExpectedSize, expected_size};
+pub use size::expected_size;
 
 /// Checks a scene; the warnings, if it can be modelled.
 ///

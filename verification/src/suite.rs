@@ -6,6 +6,8 @@ pub mod part;
 pub mod partition;
 pub mod prepare;
 mod resume;
+mod schedule;
+mod seconds;
 mod selection;
 mod session;
 mod supervise;
@@ -25,11 +27,12 @@ use crate::record::{Environment, Figure, Record, ResultSet, SCHEMA, Status};
 use crate::reference::{Library, ReferenceError};
 use crate::scene_file::SceneFileError;
 use crate::study::scene::RunInfo;
+pub use seconds::Seconds;
 pub use selection::{Malformed, Selection, load_cases, read_cases, select};
 
 use prepare::Prepared;
 pub use session::Session;
-use supervise::{Ended, supervised};
+use supervise::{Ended, Supervisor};
 
 /// Where and how to run.
 #[derive(Debug, Clone)]
@@ -46,14 +49,18 @@ pub struct Options<'a> {
     pub resume: bool,
     /// Longest time of a case; absent: ten times its estimate, and no less than five minutes.
     pub case_timeout: Option<Duration>,
+    /// How long cases take on this machine.
+    pub seconds: &'a Seconds,
 }
 
-/// Told what is going on.
+/// Told what is going on, by several threads at once.
 pub trait Progress: Sync {
-    /// A case starts; `index` counts from 0.
-    fn started(&self, case: &Case, index: usize, count: usize);
+    /// A case starts.
+    fn started(&self, case: &Case);
     /// The finished fraction of the case.
-    fn advanced(&self, fraction: f64);
+    fn advanced(&self, case: &Case, fraction: f64);
+    /// A case has been running for ten times as long as it should.
+    fn slow(&self, case: &Case, limit: Duration);
     /// A case is over its time and was asked to stop.
     fn late(&self, case: &Case, limit: Duration);
     /// A case is finished.
@@ -120,23 +127,35 @@ pub fn verify(cases: &[Case], options: &Options, progress: &dyn Progress) -> Res
 
 /// Least limit for the time of a case.
 const LEAST_TIME: Duration = Duration::from_secs(300);
-/// Limit for the time of a case over its estimate.
+/// Least time after which a case is called slow.
+const LEAST_SLOW: Duration = Duration::from_secs(30);
+/// A case is slow, and over its time, beyond this multiple of its estimate.
 const PATIENCE: f64 = 10.0;
 
-/// Runs a case under supervision.
+/// Runs a case under supervision, on a number of threads.
 fn run_case(
     case: &Case,
     prepared: &Arc<Prepared>,
+    threads: usize,
     options: &Options,
     library: &Arc<Library>,
     progress: &dyn Progress,
 ) -> Ended<Result<CaseOutcome, VerifyError>> {
-    let estimated = Duration::from_secs_f64((PATIENCE * case.seconds).min(1e9));
-    let limit = options.case_timeout.unwrap_or(estimated.max(LEAST_TIME));
+    let patience = |seconds: f64| Duration::from_secs_f64((PATIENCE * seconds).min(1e9));
+    let limit = options.case_timeout.unwrap_or(patience(case.seconds).max(LEAST_TIME));
+    let slow = patience(options.seconds.of(case)).max(LEAST_SLOW);
     let (judged, out) = (case.clone(), Arc::clone(&options.out));
     let (plan, references) = (Arc::clone(prepared), Arc::clone(library));
     let work = move || judge::run_case(&judged, &plan, &out, &references);
-    supervised(limit, &|part| progress.advanced(part), &|| progress.late(case, limit), work)
+    let supervisor = Supervisor {
+        threads,
+        slow,
+        limit,
+        advanced: &|fraction| progress.advanced(case, fraction),
+        is_slow: &|| progress.slow(case, slow),
+        is_late: &|| progress.late(case, limit),
+    };
+    supervisor.run(work)
 }
 
 /// Writes what the outcomes of all cases give together: figures over several runs, their reference curves, the records.
@@ -195,7 +214,15 @@ mod tests {
                     quantity = \"partition of unity, largest error\"\n";
         let case = Case::parse(Path::new("trial/case.toml"), text, &[]).unwrap();
         let prepared = prepare(&case, &Library::default()).unwrap();
-        let ended = supervised(LEAST_TIME, &|_| (), &|| (), || -> () { panic!("planted") });
+        let supervisor = Supervisor {
+            threads: 1,
+            slow: LEAST_TIME,
+            limit: LEAST_TIME,
+            advanced: &|_| (),
+            is_slow: &|| (),
+            is_late: &|| (),
+        };
+        let ended = supervisor.run(|| -> () { panic!("planted") });
         let Ended::Broken(message) = ended else { panic!("it ended well") };
         let records = judge::broken(&case, &prepared, &message).records;
         let ids: Vec<&str> = records.iter().map(|record| record.id.as_str()).collect();

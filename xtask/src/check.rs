@@ -25,11 +25,8 @@ const PHASE_FIELD: f64 = 150e-9;
 
 /// Points or control points up to which a scene is made ready to be checked: seconds, and less than 1 GiB.
 const MOST_PREPARED: usize = 1_000_000;
-/// Critical step over the time a dilatational wave takes to cross the smallest span, roughly; memory of a point, bytes, without and
-/// with a phase field; and of a control point, bytes, of the mechanics and what a phase field adds.
+/// Critical step over the time a dilatational wave takes to cross the smallest span, roughly.
 const CRITICAL: f64 = 0.5;
-const BYTES_OF_POINT: [usize; 2] = [60, 250];
-const BYTES_OF_CONTROL_POINT: [usize; 2] = [150, 500];
 const ROUGH: &str = "rough: 15 ns per particle and step, with fracture 150 ns per control point and step, two cores";
 const UNPREPARED: &str =
     "too large to be made ready for a look: counts, memory and steps are estimated from cells and wave speed";
@@ -121,9 +118,7 @@ impl Findings {
     /// Of a scene too large to be made ready.
     fn unprepared(scene: &Scene) -> Self {
         let size = expected_size(scene);
-        let fractures = scene.materials.values().any(|material| material.fracture.is_some());
-        let kind = usize::from(fractures);
-        let phase_field_bytes = if fractures { size.control_points * BYTES_OF_CONTROL_POINT[1] } else { 0 };
+        let fractures = size.phase_field_bytes > 0;
         let mut models = vec!["momentum".to_string()];
         models.extend(fractures.then(|| "phase field".to_string()));
         models.extend(scene.contact.is_some().then(|| "contact".to_string()));
@@ -131,8 +126,8 @@ impl Findings {
             models,
             particles: size.points,
             control_points: size.control_points,
-            mechanics_bytes: size.points * BYTES_OF_POINT[kind] + size.control_points * BYTES_OF_CONTROL_POINT[0],
-            phase_field_bytes,
+            mechanics_bytes: size.mechanics_bytes,
+            phase_field_bytes: size.phase_field_bytes,
         };
         let fastest = materials(scene, 1.0).values().map(|m| m.wave_speed_m_per_s).fold(0.0, larger);
         let critical = CRITICAL * smallest_span(&scene.mesh) / fastest;

@@ -18,7 +18,7 @@ use crate::environment::environment;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::report::unreadable;
-use crate::verify::{carry_out, cases_folder, verdict};
+use crate::verify::{carry_out, cases_folder, remembered, verdict};
 use crate::{built, console, folders};
 
 /// Arguments of `figures`.
@@ -170,6 +170,7 @@ fn run(wanted: &[PaperFigure], out: &Path, common: &Common) -> Result<(ResultSet
         program: &built::program(),
         resume: true,
         case_timeout: None,
+        seconds: &remembered(),
     };
     let results = carry_out(&cases, None, &options, common)?;
     let rendered = fisura_reports::render(out.path(), &out).map(drop).map_err(Failure::from);

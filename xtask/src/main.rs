@@ -4,7 +4,7 @@
 //! One file per command; beside them [`cli`] (what can be said on the command line), [`exit`] (statuses), [`failure`]
 //! (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go), [`scene_input`] (scene
 //! files with their overrides), [`interrupt`] (Ctrl-C), [`progress`] (bars), [`pictures`] (figures of a run), [`vtk`] (its
-//! files for ParaView), [`environment`] (where and when), [`built`] (from which sources).
+//! files for ParaView), [`watch`] (what is shown of a verification), [`environment`] (where and when), [`built`] (from which sources).
 
 mod bench;
 mod built;
@@ -28,6 +28,7 @@ mod run;
 mod scene_input;
 mod verify;
 mod vtk;
+mod watch;
 
 use std::process::ExitCode;
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::cli::Common;
 use crate::console;
@@ -24,4 +24,10 @@ pub fn bar(common: &Common, template: &str, length: u64) -> ProgressBar {
 /// A style; the plain one if indicatif cannot read the template.
 pub fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+/// Room for several bars, one below the other; invisible where nobody would see them.
+pub fn bars(common: &Common) -> MultiProgress {
+    let visible = console::interactive(common);
+    MultiProgress::with_draw_target(if visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() })
 }

@@ -2,13 +2,12 @@
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::sync::Arc;
+use std::time::Duration;
 
 use fisura_reports::annotations::render_annotations;
 use fisura_reports::number::duration;
 use fisura_reports::text::render_text;
-use fisura_verification::foreign::line;
 use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{Record, ResultSet, Status};
 use fisura_verification::reference::Library;
@@ -16,18 +15,15 @@ use fisura_verification::suite::part::{Invocation, Plan};
 use fisura_verification::suite::partition::Slice;
 use fisura_verification::suite::prepare::prepare;
 use fisura_verification::suite::{
-    self, Case, Malformed, Options, Selection, Session, Tier, VerifyError, read_cases, select, worst,
+    Case, Malformed, Options, Seconds, Selection, Session, Tier, VerifyError, read_cases, select, worst,
 };
-use indicatif::ProgressBar;
 
 use crate::cli::{Common, Format};
 use crate::environment::environment;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::{built, console, folders, interrupt, progress};
-
-/// Parts into which the bar of a case is divided.
-const PARTS: u64 = 1000;
+use crate::watch::Watch;
+use crate::{built, console, folders, interrupt};
 
 /// Arguments of `verify`.
 #[derive(Debug, clap::Args)]
@@ -51,6 +47,11 @@ pub struct Args {
     /// Change a value in the scene of every case; entries count from 0
     #[arg(long, value_name = "key.path=value")]
     set: Vec<String>,
+}
+
+/// How long the cases took when they ran last on this machine.
+pub fn remembered() -> Seconds {
+    Seconds::remembered(folders::workspace().join("target/fisura/seconds.json"))
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {
@@ -94,6 +95,7 @@ pub fn verify(args: &Args, common: &Common) -> Result<Exit, Failure> {
         program: &built::program(),
         resume: args.tier == Tier::Full,
         case_timeout: args.case_timeout,
+        seconds: &remembered(),
     };
     let results = carry_out(&cases, part, &options, common)?;
     conclude(&results, &folder, common)
@@ -113,7 +115,7 @@ pub fn carry_out(
     let out = &*options.out;
     let session = Session::begin(cases, part, options)?;
     fisura_reports::render(out.path(), out)?;
-    let watch = Watch::new(common);
+    let watch = Watch::new(cases, options.seconds, common);
     let stop = || {
         watch.finish();
         interrupted(&session, options).show();
@@ -274,65 +276,5 @@ pub fn verdict(records: &[Record]) -> Exit {
         Some(Status::Error) => Exit::BrokeDown,
         Some(Status::Fail) => Exit::CheckFailed,
         _ => Exit::Done,
-    }
-}
-
-/// A bar on a terminal; elsewhere a line per finished case.
-pub struct Watch<'a> {
-    common: &'a Common,
-    bar: ProgressBar,
-    present: Mutex<(String, Instant)>,
-}
-
-impl<'a> Watch<'a> {
-    /// Watches cases that are about to be run.
-    pub fn new(common: &'a Common) -> Self {
-        let bar = progress::bar(common, "{msg} {wide_bar} {percent} %, {elapsed}", PARTS);
-        Self { common, bar, present: Mutex::new((String::new(), Instant::now())) }
-    }
-
-    /// Takes the bar away.
-    pub fn finish(&self) {
-        self.bar.finish_and_clear();
-    }
-
-    /// One line, above the bar where there is one.
-    fn say(&self, text: &str) {
-        if console::interactive(self.common) {
-            self.bar.println(line(text));
-        } else {
-            console::note(self.common, &line(text));
-        }
-    }
-}
-
-impl suite::Progress for Watch<'_> {
-    fn started(&self, case: &Case, index: usize, count: usize) {
-        let place = line(&format!("[{}/{count}] {}", index + 1, case.id())).into_owned();
-        self.bar.set_message(place.clone());
-        self.bar.set_position(0);
-        if let Ok(mut present) = self.present.lock() {
-            *present = (place, Instant::now());
-        }
-    }
-
-    fn advanced(&self, fraction: f64) {
-        self.bar.set_position((fraction.clamp(0.0, 1.0) * PARTS as f64) as u64);
-    }
-
-    fn late(&self, case: &Case, limit: Duration) {
-        let seconds = limit.as_secs_f64();
-        self.say(&format!("warning: {} is over its time of {seconds} s and is asked to stop", case.id()));
-    }
-
-    fn finished(&self, _case: &Case, records: &[Record]) {
-        let Ok(present) = self.present.lock() else { return };
-        let word = match worst(records.iter().map(|record| record.status)) {
-            Some(Status::Error) => "error",
-            Some(Status::Fail) => "fail",
-            Some(Status::Pass) => "pass",
-            Some(Status::Info) | None => "info",
-        };
-        self.say(&format!("{} {word}, {}", present.0, duration(present.1.elapsed().as_secs_f64())));
     }
 }

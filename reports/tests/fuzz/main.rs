@@ -4,7 +4,7 @@
 //! `FISURA_FUZZ=1000000 cargo test -p fisura-reports --test fuzz` takes a million inputs, new ones every time; otherwise a few
 //! hundred, always the same.
 
-#[path = "../fixture/mod.rs"]
+#[path = "../integration/fixture/mod.rs"]
 mod fixture;
 #[path = "../../../verification/tests/fuzz/harness.rs"]
 mod harness;

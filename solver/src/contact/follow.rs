@@ -14,13 +14,13 @@ const MOST_STRETCH: f64 = 2.0;
 impl Surface {
     /// Moves with a velocity field (m/s) of its body for `dt` seconds. Where there is no material any more the boundary ends: it
     /// must neither stretch across a gap nor push with nothing behind it.
-    pub fn follow(&mut self, body: &BodyView, velocity: &VectorField, dt: f64) {
+    pub(crate) fn follow(&mut self, body: &BodyView, velocity: &VectorField, dt: f64) {
         let ways = self.ways_of(body, velocity, dt);
         self.ways = ways.iter().map(|way| way.unwrap_or_default()).collect();
         for (vertex, way) in self.vertices.iter_mut().zip(&self.ways) {
             *vertex = [0, 1].map(|d| vertex[d] + way[d]);
         }
-        let span = body.shortest_span();
+        let span = body.patch.shortest_span();
         let held = |vertex: u32| ways[vertex as usize].is_some();
         let bare = |segment: &u32| {
             let [from, to] = self.segments[*segment as usize];
@@ -47,13 +47,13 @@ impl Surface {
     }
 
     /// Takes the ways of the coming step from a velocity field (m/s) of its body.
-    pub fn expect(&mut self, body: &BodyView, velocity: &VectorField, dt: f64) {
+    pub(crate) fn expect(&mut self, body: &BodyView, velocity: &VectorField, dt: f64) {
         self.ways = self.ways_of(body, velocity, dt).into_iter().map(Option::unwrap_or_default).collect();
     }
 
     /// Ways of the vertices in `dt` seconds, m; `None` where the body has no material any more.
     fn ways_of(&self, body: &BodyView, velocity: &VectorField, dt: f64) -> Vec<Option<[f64; 2]>> {
-        let depth = DEPTH * body.shortest_span();
+        let depth = DEPTH * body.patch.shortest_span();
         let way = |vertex: usize| {
             let position = self.vertices[vertex];
             let normal = self.vertex_normal(vertex);

@@ -23,7 +23,7 @@ const ACCEPTED: f64 = 1e-9;
 
 /// Time of a kick and of the step it belongs to, s: the first kick is half a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Kick {
+pub(crate) struct Kick {
     /// Length of the kick.
     pub length: f64,
     /// Length of the step.
@@ -32,7 +32,7 @@ pub struct Kick {
 
 /// Acceleration of a control point by contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Push {
+pub(crate) struct Push {
     /// Number of the body.
     pub body: usize,
     /// Index in its nodal fields.
@@ -110,13 +110,13 @@ struct Acting<'a> {
 impl Contact {
     /// Accelerations that contact adds in the coming kick, and the ledger at the present whole step: with the half of that kick
     /// that belongs to the step before.
-    pub fn coming(&self, bodies: &[BodyView], kick: Kick) -> (Vec<Push>, ContactLedger) {
+    pub(crate) fn coming(&self, bodies: &[BodyView], kick: Kick) -> (Vec<Push>, ContactLedger) {
         let problem = self.solve(bodies, kick);
         (problem.pushes(kick.length), self.ledger.plus(problem.arriving(kick)))
     }
 
     /// Forces in the coming kick.
-    pub fn forces(&self, bodies: &[BodyView], kick: Kick) -> Vec<ContactForce> {
+    pub(crate) fn forces(&self, bodies: &[BodyView], kick: Kick) -> Vec<ContactForce> {
         let force = |acting: &Acting| {
             let Touch { bodies, position, .. } = *acting.touch;
             let force = acting.vector_of(acting.impulse).map(|impulse| impulse / kick.length);
@@ -129,7 +129,7 @@ impl Contact {
     ///
     /// # Errors
     /// If they do not.
-    pub fn settles(&self, bodies: &[BodyView], kick: Kick) -> Result<(), Unsettled> {
+    pub(crate) fn settles(&self, bodies: &[BodyView], kick: Kick) -> Result<(), Unsettled> {
         self.solve(bodies, kick).unsettled.map_or(Ok(()), Err)
     }
 
@@ -137,7 +137,7 @@ impl Contact {
     ///
     /// # Errors
     /// If the impulses do not settle; nothing is booked.
-    pub fn act(&mut self, bodies: &[BodyView], kick: Kick) -> Result<Vec<Push>, Unsettled> {
+    pub(crate) fn act(&mut self, bodies: &[BodyView], kick: Kick) -> Result<Vec<Push>, Unsettled> {
         let problem = self.solve(bodies, kick);
         if let Some(unsettled) = problem.unsettled {
             return Err(unsettled);

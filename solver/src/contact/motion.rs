@@ -8,10 +8,11 @@ use crate::particles::spans::smallest_span;
 use crate::scene::{Body, Mesh, Scene};
 
 /// Most spans by which bodies that meet approach each other in a step.
-pub const MOST: f64 = 0.5;
+pub(crate) const MOST: f64 = 0.5;
 /// A gap that could close in the coming step is one within this many of the ways of the last step: speeds change.
-pub const AHEAD: f64 = 1.25;
-/// Segments of a boundary whose outward speed is looked for: the ends of straight ones have it, and circles 1 % of their speed.
+pub(crate) const AHEAD: f64 = 1.25;
+/// Segments into which a boundary is cut to find its outward speed. That of a polygon is largest at a corner, where a segment
+/// ends; of a circle cut in so many, whose own is zero, 1 % of the speed at the rim is found.
 const SEGMENTS: f64 = 256.0;
 /// Relative round-off of places and speeds at the start.
 const ROUND_OFF: f64 = 1e-9;
@@ -73,7 +74,7 @@ fn outward_speed(mesh: &Mesh, body: &Body) -> f64 {
 
 /// Longest step, s, in which no two bodies of a scene with contact approach each other by more than [`MOST`] spans, by the
 /// velocities they begin with; infinite without contact.
-pub fn longest_step(scene: &Scene) -> f64 {
+pub(crate) fn longest_step(scene: &Scene) -> f64 {
     if scene.contact.is_none() {
         return f64::INFINITY;
     }

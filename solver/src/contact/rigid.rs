@@ -5,7 +5,7 @@ use crate::scene::{Body, Mesh};
 
 /// A rigid body.
 #[derive(Debug, Clone)]
-pub struct RigidBody {
+pub(crate) struct RigidBody {
     surface: Surface,
     /// Vertices of the surface and centre at t = 0, m.
     reference: Vec<[f64; 2]>,
@@ -17,14 +17,14 @@ pub struct RigidBody {
 
 impl RigidBody {
     /// `body` at t = 0.
-    pub fn new(mesh: &Mesh, body: &Body) -> Self {
+    pub(crate) fn new(mesh: &Mesh, body: &Body) -> Self {
         let surface = Surface::new(mesh, body);
         let (center, velocity, spin) = (surface.centroid(), body.velocity, body.angular_velocity);
         Self { reference: surface.positions().to_vec(), surface, center, velocity, spin, time: 0.0 }
     }
 
     /// Moves to the place it has at a time, s, and expects a step of `dt` seconds.
-    pub fn move_to(&mut self, time: f64, dt: f64) {
+    pub(crate) fn move_to(&mut self, time: f64, dt: f64) {
         self.time = time;
         if self.velocity == [0.0; 2] && self.spin == 0.0 {
             return;
@@ -41,7 +41,7 @@ impl RigidBody {
     }
 
     /// Velocity at a position, m/s.
-    pub fn velocity_at(&self, position: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn velocity_at(&self, position: [f64; 2]) -> [f64; 2] {
         let center = self.present_center();
         let arm = [0, 1].map(|d| position[d] - center[d]);
         let moving = [self.velocity[0] - self.spin * arm[1], self.velocity[1] + self.spin * arm[0]];
@@ -49,7 +49,7 @@ impl RigidBody {
     }
 
     /// Its boundary now.
-    pub fn surface(&self) -> &Surface {
+    pub(crate) fn surface(&self) -> &Surface {
         &self.surface
     }
 
@@ -58,7 +58,7 @@ impl RigidBody {
     }
 
     /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         self.surface.bytes() + self.reference.len() * size_of::<[f64; 2]>()
     }
 }

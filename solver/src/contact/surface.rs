@@ -25,7 +25,7 @@ pub struct Surface {
 
 /// The point of a boundary that is nearest to a position.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Nearest {
+pub(crate) struct Nearest {
     /// Distance, m; negative inside the body.
     pub distance: f64,
     /// Outward unit normal there.
@@ -117,7 +117,7 @@ impl Surface {
     }
 
     /// Takes the ways of the vertices from a map of their positions, m.
-    pub fn expect_ways(&mut self, way: impl Fn([f64; 2]) -> [f64; 2]) {
+    pub(crate) fn expect_ways(&mut self, way: impl Fn([f64; 2]) -> [f64; 2]) {
         self.ways = self.vertices.iter().map(|vertex| way(*vertex)).collect();
     }
 
@@ -189,7 +189,7 @@ impl Surface {
     }
 
     /// The point nearest to a position (m) on one of `segments`, if any lies within `reach` (m).
-    pub fn nearest(&self, position: [f64; 2], segments: &[u32], reach: f64) -> Option<Nearest> {
+    pub(crate) fn nearest(&self, position: [f64; 2], segments: &[u32], reach: f64) -> Option<Nearest> {
         let mut best: Option<(f64, u32, f64, [f64; 2])> = None;
         for &segment in segments {
             let [a, b] = self.ends(segment);

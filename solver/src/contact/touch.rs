@@ -24,7 +24,7 @@ pub struct Touch {
 
 /// Impulse at a touch along normal and tangent, kg/s per unit thickness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Impulse {
+pub(crate) struct Impulse {
     pub(super) normal: f64,
     pub(super) tangent: f64,
 }

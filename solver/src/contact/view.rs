@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 
 use super::surface::Surface;
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
-use crate::linear_algebra::extremes::smaller;
 use crate::particles::points::Cells;
 use crate::splines::patch::Patch;
 
@@ -36,13 +35,7 @@ pub struct BodyView<'a> {
 impl BodyView<'_> {
     /// Inverse masses with which the components of a control point answer to a force, m/kg: zero where the velocity is
     /// prescribed or the mass negligible.
-    pub fn mobility(&self, at: usize) -> [f64; 2] {
+    pub(crate) fn mobility(&self, at: usize) -> [f64; 2] {
         [0, 1].map(|c| if self.fixed.contains(&(at, c)) { 0.0 } else { self.inverse_mass[at] })
-    }
-
-    /// Length of the shortest span, m.
-    pub fn shortest_span(&self) -> f64 {
-        let spans = self.patch.spaces.iter().flat_map(|space| space.spans());
-        spans.map(|span| span.length()).fold(f64::INFINITY, smaller)
     }
 }

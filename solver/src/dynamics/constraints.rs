@@ -49,7 +49,7 @@ impl Constraints {
     }
 
     /// Sets prescribed velocities.
-    pub fn apply_velocity(&self, velocity: &mut [Vec<f64>; 2]) {
+    pub(crate) fn apply_velocity(&self, velocity: &mut [Vec<f64>; 2]) {
         for (at, component, value) in self.iter() {
             velocity[component][at] = value;
         }

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 /// Work and losses accumulated over a run, J per metre of thickness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Ledger {
+pub(crate) struct Ledger {
     /// Work of tractions, gravity and driven sides.
     pub external_work: f64,
     /// Work of the history field.
@@ -146,7 +146,7 @@ impl Sample {
 
     /// A sample of a body a metre thick for another thickness, m.
     #[must_use]
-    pub fn for_thickness(self, thickness: f64) -> Self {
+    pub(crate) fn for_thickness(self, thickness: f64) -> Self {
         Self {
             kinetic: self.kinetic * thickness,
             stagger: self.stagger * thickness,

@@ -45,7 +45,7 @@ impl Sum {
 
 /// Surface point of a loaded boundary.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SurfacePoint {
+pub(crate) struct SurfacePoint {
     /// Position, m.
     pub position: [f64; 2],
     /// Length it stands for, m.
@@ -54,7 +54,7 @@ pub struct SurfacePoint {
 
 /// Surface points along the edge of a traction, with the layout of the body in every span the edge crosses: the point
 /// sums over the edge then fit those over the body, which the patch test needs for equally spaced points.
-pub fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<SurfacePoint> {
+pub(crate) fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<SurfacePoint> {
     let [from, to] = edge_ends(body, edge);
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = along[0].hypot(along[1]);
@@ -115,14 +115,14 @@ pub enum LostTraction {
 
 /// What the nodal forces of a uniform traction have to add up to: the length of its edge (m) and the middle of it (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Balance {
+pub(crate) struct Balance {
     length: f64,
     middle: [f64; 2],
 }
 
 impl Balance {
     /// Of the straight edge of a body.
-    pub fn of_edge(body: &Body, edge: &Edge) -> Self {
+    pub(crate) fn of_edge(body: &Body, edge: &Edge) -> Self {
         let [from, to] = edge_ends(body, edge);
         Self { length: (to[0] - from[0]).hypot(to[1] - from[1]), middle: [0, 1].map(|d| 0.5 * from[d] + 0.5 * to[d]) }
     }
@@ -138,7 +138,7 @@ impl Balance {
     ///
     /// # Errors
     /// If they are not, to 1e-12.
-    pub fn check(self, shares: impl Iterator<Item = ([f64; 2], f64)>) -> Result<(), LostTraction> {
+    pub(crate) fn check(self, shares: impl Iterator<Item = ([f64; 2], f64)>) -> Result<(), LostTraction> {
         let Self { length, middle } = self;
         let (mut sum, mut moments) = (Sum::default().plus(-length), [Sum::default(); 2]);
         let (mut arms, mut magnitudes, mut lengths) = (0.0, 0.0, 0.0);

@@ -74,14 +74,14 @@ impl MassMatrix {
     }
 
     /// Forces become accelerations: `M⁻¹ f`, zero where held (consistent mass) or without mass.
-    pub fn divide(&self, forces: &mut VectorField) {
+    pub(crate) fn divide(&self, forces: &mut VectorField) {
         for component in 0..2 {
             self.divide_component(component, &mut forces[component]);
         }
     }
 
     /// [`Self::divide`] for one component.
-    pub fn divide_component(&self, component: usize, force: &mut [f64]) {
+    pub(crate) fn divide_component(&self, component: usize, force: &mut [f64]) {
         match &self.kind {
             Kind::Lumped { inverse } => {
                 force.par_iter_mut().zip(inverse).with_min_len(CHUNK).for_each(|(f, inverse)| *f *= inverse);
@@ -102,7 +102,7 @@ impl MassMatrix {
     }
 
     /// `½ vᵀ M v`.
-    pub fn half_square(&self, v: &VectorField) -> f64 {
+    pub(crate) fn half_square(&self, v: &VectorField) -> f64 {
         match &self.kind {
             Kind::Lumped { .. } => {
                 let squares = self.row_sums.iter().zip(v[0].iter().zip(&v[1]));

@@ -10,7 +10,7 @@ mod inspect;
 mod observe;
 mod paint;
 mod state;
-pub mod stiffness;
+pub(crate) mod stiffness;
 mod tangent;
 
 use rayon::prelude::*;

@@ -18,28 +18,28 @@
 //! for every transfer but MUSL, whose limit is 2/ω_max ([`departure`]). With finite strains ω_max is that of the stiffness
 //! without the geometric part.
 
-pub mod affine;
+pub(crate) mod affine;
 pub mod assembly;
 mod begin;
 mod booking;
-pub mod cracking;
-pub mod departure;
+pub(crate) mod cracking;
+pub(crate) mod departure;
 pub mod fictitious;
 pub mod field;
 pub mod grid;
 mod inspect;
-pub mod losses;
-pub mod observe;
-pub mod paint;
-pub mod part;
-pub mod smoothing;
+pub(crate) mod losses;
+pub(crate) mod observe;
+pub(crate) mod paint;
+pub(crate) mod part;
+pub(crate) mod smoothing;
 mod state;
-pub mod stiffness;
+pub(crate) mod stiffness;
 pub mod strain;
-pub mod tractions;
+pub(crate) mod tractions;
 pub mod transfer;
-pub mod verify;
-pub mod volume_forcing;
+pub(crate) mod verify;
+pub(crate) mod volume_forcing;
 pub mod windows;
 
 use std::sync::Arc;
@@ -122,10 +122,13 @@ impl UpdatedFrame {
         self.fields.iter().map(|field| field.critical_step()).fold(f64::INFINITY, smaller)
     }
 
-    /// Whether a point may have moved a quarter of the smallest span since the last call that said so: the time to take
-    /// the critical step again.
-    pub fn critical_step_is_due(&mut self) -> bool {
-        self.fields.iter_mut().any(|field| field.critical_step_is_due())
+    /// Takes the critical time step (s) again if a point may have moved a quarter of the shortest span since it was last taken.
+    pub fn retake_critical_step(&mut self) -> Option<f64> {
+        if !self.fields.iter().any(DiscreteField::has_moved) {
+            return None;
+        }
+        self.fields.iter_mut().for_each(|field| field.travelled = 0.0);
+        Some(self.critical_step())
     }
 }
 

@@ -1,7 +1,7 @@
 //! Extremes that do not lose what is not a number, as `f64::max` and `f64::min` do: a gap must not pass for agreement.
 //!
 //! They are what sums over points and checks fold with; a test of the workspace finds folds that lose it
-//! (`solver/tests/folds.rs`).
+//! (`solver/tests/integration/folds.rs`).
 
 /// The larger of two numbers; not a number if either is not.
 #[inline(always)]

@@ -86,7 +86,7 @@ impl IncompleteCholesky {
     }
 
     /// Whether the diagonal of the matrix had to be raised so much that the factor is that of another one.
-    pub fn is_raised(&self) -> bool {
+    pub(crate) fn is_raised(&self) -> bool {
         self.shift > MODERATE_SHIFT
     }
 

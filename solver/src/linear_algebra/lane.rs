@@ -36,7 +36,7 @@ impl Lane {
 
     /// Reads eight neighbours in single precision.
     #[inline(always)]
-    pub fn load_single(values: &[f32], at: usize) -> Self {
+    pub(crate) fn load_single(values: &[f32], at: usize) -> Self {
         let mut lane = Self::ZERO;
         for (lane, value) in lane.0.iter_mut().zip(&values[at..at + LANES]) {
             *lane = f64::from(*value);
@@ -84,7 +84,7 @@ impl Lane {
 
     /// `self + a b` with the same `b` in every lane.
     #[inline(always)]
-    pub fn add_scaled<const FMA: bool>(self, a: Self, b: f64) -> Self {
+    pub(crate) fn add_scaled<const FMA: bool>(self, a: Self, b: f64) -> Self {
         self.add_product::<FMA>(a, Self::splat(b))
     }
 

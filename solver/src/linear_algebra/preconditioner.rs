@@ -16,7 +16,7 @@ use crate::linear_algebra::stencil::Stencil;
 /// A factor is renewed once a solve needs this many more iterations than the one after its renewal.
 const EXTRA_ITERATIONS: usize = 3;
 /// More iterations than this with a fresh incomplete factor call for a complete one: five times what a cracked plate needs.
-pub const TOO_MANY: usize = 80;
+pub(crate) const TOO_MANY: usize = 80;
 /// Solves with complete factors before the incomplete one is tried again; twice as many each time it is still too poor, up to the
 /// last. Looking for it so costs at most five iterations a solve, and in the end a sixth of one.
 const FIRST_PAUSE: usize = 16;
@@ -112,7 +112,7 @@ impl Preconditioner {
     }
 
     /// The next solve counts as the first with the present factor.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.fresh_iterations = None;
     }
 

@@ -10,7 +10,7 @@ use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised, dispatch};
 
 /// Rows of control points whose partial sums are formed together.
-pub const CHUNK_ROWS: usize = 8;
+pub(crate) const CHUNK_ROWS: usize = 8;
 
 /// A coupling within the half stencil.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,7 @@
 //! Constants of the phase field (E 7, E 11), and how it degrades the material.
 
-use super::split::EnergySplit;
+use super::elasticity::ElasticModuli;
+use super::split::{EnergySplit, split};
 use crate::linear_algebra::lane::Lane;
 use crate::scene::{Fracture, Split};
 
@@ -52,4 +53,21 @@ impl FractureModel {
     pub fn diffusion(&self) -> f64 {
         fault!("phase-gradient-halved", 4.0 => 2.0) * self.length_scale * self.length_scale
     }
+}
+
+/// Stress `[xx, yy, xy]` (Pa) at a strain `[xx, yy, xy]`, degraded (E 6) where there is a phase field.
+pub(crate) fn stress_at(moduli: &ElasticModuli, strain: [f64; 3], fracture: Option<(&FractureModel, f64)>) -> [f64; 3] {
+    let strain = strain.map(Lane::splat);
+    let stress = match fracture {
+        None => moduli.stress(strain),
+        Some((model, phase)) => {
+            split(moduli, model.split, strain).degraded::<false>(model.degradation(Lane::splat(phase))).1
+        }
+    };
+    stress.map(|s| s[0])
+}
+
+/// Largest principal value of a plane symmetric tensor `[xx, yy, xy]`.
+pub(crate) fn largest_principal([xx, yy, xy]: [f64; 3]) -> f64 {
+    0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)
 }

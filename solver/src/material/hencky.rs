@@ -19,7 +19,7 @@
 const STRETCHED: f64 = 0.9;
 
 /// Tensor of the plane, `[i][j]` with i the component and j the direction of the derivative.
-pub type Gradient = [[f64; 2]; 2];
+pub(crate) type Gradient = [[f64; 2]; 2];
 
 /// Below this ratio `atanh(q)/q` is its series, whose first missing term is then 1e-18.
 const SERIES: f64 = 0.02;
@@ -58,7 +58,7 @@ pub fn hencky_strain(displacement: &Gradient) -> [f64; 3] {
 /// Along the step, `F(s) = (I + s A) F`, the velocity gradient is A/dt at its start and this over dt at its end. With both,
 /// the trapezoidal sum of the stress work is of second order in dt.
 #[inline(always)]
-pub fn gradient_at_end(step: &Gradient) -> Gradient {
+pub(crate) fn gradient_at_end(step: &Gradient) -> Gradient {
     let [[xx, xy], [yx, yy]] = *step;
     let determinant = xx * yy - xy * yx;
     let scale = 1.0 / (1.0 + xx + yy + determinant);

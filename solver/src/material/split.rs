@@ -31,6 +31,19 @@ pub struct SplitState {
     pub stress_minus: [Lane; 3],
 }
 
+impl SplitState {
+    /// Energy density (J/m³) and stress `[xx, yy, xy]` (Pa) of a material degraded by g (E 6).
+    #[inline(always)]
+    pub fn degraded<const FMA: bool>(&self, g: Lane) -> (Lane, [Lane; 3]) {
+        // no array::map: it is compiled on its own, without FMA, where each product would be a call of the library
+        let mut stress = fault!("compression-degraded", self.stress_minus => self.stress_minus.map(|s| s * g));
+        for (stress, plus) in stress.iter_mut().zip(self.stress_plus) {
+            *stress = stress.add_product::<FMA>(g, plus);
+        }
+        (self.energy_minus.add_product::<FMA>(g, self.energy_plus), stress)
+    }
+}
+
 /// Splits the strain `[exx, eyy, exy]` (tensor shear).
 #[inline(always)]
 pub fn split(moduli: &ElasticModuli, split: EnergySplit, strain: [Lane; 3]) -> SplitState {

@@ -33,7 +33,7 @@ pub struct PointState {
 
 /// A point whose deformation is turned inside out.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct InvertedPoint {
+pub(crate) struct InvertedPoint {
     /// Number of the point in its body.
     pub point: usize,
     /// Position, m; that at t = 0 in the total frame.

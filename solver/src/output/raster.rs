@@ -47,7 +47,7 @@ impl Raster {
     }
 
     /// Calls `f` with index and overlap (m²) of every pixel that meets a rectangle, given by its ends in x and y.
-    pub fn for_each_overlap(&self, ends: [[f64; 2]; 2], mut f: impl FnMut(usize, f64)) {
+    pub(crate) fn for_each_overlap(&self, ends: [[f64; 2]; 2], mut f: impl FnMut(usize, f64)) {
         let near = |d: usize| {
             let at = |x: f64| (((x - self.origin[d]) / self.pixel[d]).max(0.0) as usize).min(self.pixels[d] - 1);
             at(ends[d][0])..=at(ends[d][1])
@@ -65,7 +65,7 @@ impl Raster {
 }
 
 /// Span and parameters of the centre of every pixel; `None` outside the patch.
-pub fn places_of_pixels(patch: &Patch, raster: &Raster) -> Vec<Option<Location>> {
+pub(crate) fn places_of_pixels(patch: &Patch, raster: &Raster) -> Vec<Option<Location>> {
     let count = raster.pixels[0] * raster.pixels[1];
     let Some(geometry) = &patch.geometry else {
         return (0..count).map(|index| patch.locate(raster.center(index))).collect();

@@ -13,7 +13,7 @@ use crate::splines::spline::ShapeFunctions;
 
 /// A position that moves with a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Follower {
+pub(crate) struct Follower {
     /// Position, m.
     pub position: [f64; 2],
     /// Span whose polynomials are used.
@@ -22,13 +22,13 @@ pub struct Follower {
 
 impl Follower {
     /// A position at t = 0, m, to be attached.
-    pub fn new(position: [f64; 2]) -> Self {
+    pub(crate) fn new(position: [f64; 2]) -> Self {
         Self { position, span: [0, 0] }
     }
 
     /// A position (m) with the polynomials of the span it is in or nearest to; `None` if there is no material within one span
     /// of it.
-    pub fn nearest(position: [f64; 2], patch: &Patch, cells: &Cells) -> Option<Self> {
+    pub(crate) fn nearest(position: [f64; 2], patch: &Patch, cells: &Cells) -> Option<Self> {
         let span = nearest_span(&patch.spaces, position, |span| cells.is_occupied(span))?;
         Some(Self { position, span })
     }
@@ -37,14 +37,14 @@ impl Follower {
     ///
     /// # Errors
     /// If there is none within one span of it.
-    pub fn attach(&mut self, patch: &Patch, inverse_mass: &[f64]) -> Result<(), OutsidePatch> {
+    pub(crate) fn attach(&mut self, patch: &Patch, inverse_mass: &[f64]) -> Result<(), OutsidePatch> {
         let answers = |span| patch.all_functions(span, |at| inverse_mass[at] > 0.0);
         self.span = nearest_span(&patch.spaces, self.position, answers).ok_or(OutsidePatch(self.position))?;
         Ok(())
     }
 
     /// Moves with a velocity field (m/s) for `dt` seconds; the velocity.
-    pub fn follow(&mut self, patch: &Patch, grid: ControlGrid, velocity: &VectorField, dt: f64) -> [f64; 2] {
+    pub(crate) fn follow(&mut self, patch: &Patch, grid: ControlGrid, velocity: &VectorField, dt: f64) -> [f64; 2] {
         let mut v = [0.0; 2];
         self.for_each_function(patch, grid, |at, n| v = [0, 1].map(|c| v[c] + n * velocity[c][at]));
         self.position = [0, 1].map(|c| self.position[c] + dt * v[c]);
@@ -52,7 +52,7 @@ impl Follower {
     }
 
     /// Calls `f` with control point and value of every shape function at the position.
-    pub fn for_each_function(&self, patch: &Patch, grid: ControlGrid, mut f: impl FnMut(usize, f64)) {
+    pub(crate) fn for_each_function(&self, patch: &Patch, grid: ControlGrid, mut f: impl FnMut(usize, f64)) {
         let [(column, x), (row, y)] = self.shape_functions(patch);
         for l in 0..=patch.spaces[1].degree() {
             for k in 0..=patch.spaces[0].degree() {
@@ -63,7 +63,7 @@ impl Follower {
 
     /// Shape functions in x at the position with the control column of the first, and those in y with the control row.
     #[inline]
-    pub fn shape_functions(&self, patch: &Patch) -> [(usize, ShapeFunctions); 2] {
+    pub(crate) fn shape_functions(&self, patch: &Patch) -> [(usize, ShapeFunctions); 2] {
         let along = |d: usize| {
             let (space, span) = (&patch.spaces[d], self.span[d]);
             (space.spans()[span].first, space.shape_functions(span, self.position[d]))

@@ -13,7 +13,7 @@ mod map;
 mod mapped;
 mod tables;
 
-pub use mapped::{MappedPoint, Mapping};
+pub(crate) use mapped::{MappedPoint, Mapping};
 
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{LANES, Lane};
@@ -24,7 +24,7 @@ use crate::splines::quadrature::Rule;
 use crate::splines::spline::MAX_FUNCTIONS;
 use crate::splines::spline::SplineSpace;
 use tables::{Columns, columns, tiles};
-pub use tables::{Row, Tile};
+pub(crate) use tables::{Row, Tile};
 
 /// Rows of spans in a strip; at least the highest degree, so that only neighbouring strips share control points.
 const STRIP_ROWS: usize = 8;
@@ -45,7 +45,7 @@ pub struct Lattice {
     /// Rows of spans.
     pub rows: Vec<Row>,
     /// What the geometry of the patch adds; absent over a rectangle.
-    pub mapping: Option<Box<Mapping>>,
+    pub(crate) mapping: Option<Box<Mapping>>,
     /// What the product of the weights of both directions is multiplied by, per batch: 0 where there is no point, and the
     /// determinant of the Jacobian where there is a geometry; absent if it is 1 everywhere.
     factor: Option<Vec<Lane>>,
@@ -166,12 +166,12 @@ impl Lattice {
     }
 
     /// Rows of spans in a strip.
-    pub fn strip_rows(&self, strip: usize) -> std::ops::Range<usize> {
+    pub(crate) fn strip_rows(&self, strip: usize) -> std::ops::Range<usize> {
         strip * STRIP_ROWS..((strip + 1) * STRIP_ROWS).min(self.rows.len())
     }
 
     /// Control rows a strip contributes to.
-    pub fn strip_control_rows(&self, strip: usize) -> std::ops::Range<usize> {
+    pub(crate) fn strip_control_rows(&self, strip: usize) -> std::ops::Range<usize> {
         let rows = self.strip_rows(strip);
         self.rows[rows.start].first..self.rows[rows.end - 1].first + self.degree[1] + 1
     }

@@ -88,7 +88,7 @@ pub struct Cells {
 
 /// A point that is no longer on the patch, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OutsidePatch(pub [f64; 2]);
+pub(crate) struct OutsidePatch(pub [f64; 2]);
 
 impl Point {
     /// Position at t = 0, m, to the round-off of the position now.
@@ -97,7 +97,7 @@ impl Point {
     }
 
     /// The points of a lattice at rest.
-    pub fn of_lattice(lattice: &Lattice) -> Vec<Self> {
+    pub(crate) fn of_lattice(lattice: &Lattice) -> Vec<Self> {
         let mut points = Vec::new();
         lattice.for_each_point(|_, _, position, volume| {
             let [velocity, displacement] = [[0.0; 2]; 2];
@@ -112,7 +112,7 @@ impl Cells {
     ///
     /// # Errors
     /// A point outside the patch; the order is then undefined.
-    pub fn sort(&mut self, patch: &Patch, points: &mut [Point]) -> Result<(), OutsidePatch> {
+    pub(crate) fn sort(&mut self, patch: &Patch, points: &mut [Point]) -> Result<(), OutsidePatch> {
         self.spans = [0, 1].map(|d| patch.spaces[d].spans().len());
         self.find_keys(patch, points)?;
         self.count();
@@ -122,7 +122,7 @@ impl Cells {
     }
 
     /// Brings what belongs to the points, one item each, from their order before the last [`Self::sort`] into that after it.
-    pub fn reorder<T: Copy>(&self, items: &mut [T]) {
+    pub(crate) fn reorder<T: Copy>(&self, items: &mut [T]) {
         let unsorted = items.to_vec();
         let mut next = self.starts.clone();
         for (item, key) in unsorted.iter().zip(&self.keys) {
@@ -133,7 +133,7 @@ impl Cells {
     }
 
     /// Whether a span has points.
-    pub fn is_occupied(&self, [i, j]: [usize; 2]) -> bool {
+    pub(crate) fn is_occupied(&self, [i, j]: [usize; 2]) -> bool {
         let key = j * self.spans[0] + i;
         self.starts[key + 1] > self.starts[key]
     }

@@ -15,7 +15,7 @@ use crate::transfer::point_kernel::Fields;
 use crate::transfer::sweep::{StripForces, sweep};
 
 /// Ratio of the largest initial history energy to Gc/(4 l0) on a seeded crack (Borden et al. 2012).
-pub const SEED_STRENGTH: f64 = 1000.0;
+pub(crate) const SEED_STRENGTH: f64 = 1000.0;
 /// History and phase field of a body.
 #[derive(Debug, Clone)]
 pub struct Fracturing {
@@ -203,7 +203,7 @@ pub(crate) fn lowest_tip(scene: &Scene, body: &Body) -> f64 {
 }
 
 /// Initial history energy `H0(d) = B Gc/(4 l0) (1 − d/w)` within the half width w of a crack, else zero.
-pub fn seed_energy(model: &FractureModel, body: &Body, position: [f64; 2]) -> f64 {
+pub(crate) fn seed_energy(model: &FractureModel, body: &Body, position: [f64; 2]) -> f64 {
     let strength = SEED_STRENGTH * model.toughness / (4.0 * model.length_scale);
     let of_crack = |crack: &Crack| {
         let half_width = half_width(crack, model.length_scale);

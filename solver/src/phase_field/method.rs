@@ -7,7 +7,7 @@ use crate::linear_algebra::stencil::Stencil;
 use crate::scene::PhaseFieldSolver;
 
 /// Iterations after which a solve counts as failed.
-pub const ITERATION_LIMIT: usize = 2000;
+pub(crate) const ITERATION_LIMIT: usize = 2000;
 
 #[derive(Debug, Clone)]
 pub(super) enum Method {
@@ -16,7 +16,7 @@ pub(super) enum Method {
 }
 
 impl Method {
-    pub fn new(matrix: &Stencil, solver: PhaseFieldSolver) -> Self {
+    pub(crate) fn new(matrix: &Stencil, solver: PhaseFieldSolver) -> Self {
         match solver {
             PhaseFieldSolver::Cholesky => Self::Direct(Box::default()),
             PhaseFieldSolver::ConjugateGradients => Self::iterative(matrix),
@@ -31,7 +31,7 @@ impl Method {
     }
 
     /// The same method for another matrix.
-    pub fn anew(&self, matrix: &Stencil) -> Self {
+    pub(crate) fn anew(&self, matrix: &Stencil) -> Self {
         match self {
             Self::Direct(_) => Self::Direct(Box::default()),
             Self::Iterative { .. } => Self::iterative(matrix),
@@ -40,7 +40,7 @@ impl Method {
 
     /// Improves `x` until its error in the energy norm is about `tolerance`. An incomplete factor is granted `patience`
     /// iterations before a better one takes over where it left off.
-    pub fn solve(
+    pub(crate) fn solve(
         &mut self,
         matrix: &Stencil,
         load: &[f64],
@@ -76,7 +76,7 @@ impl Method {
     }
 
     /// What preconditions an iterative method.
-    pub fn preconditioner(&mut self) -> Option<&mut Preconditioner> {
+    pub(crate) fn preconditioner(&mut self) -> Option<&mut Preconditioner> {
         match self {
             Self::Iterative { preconditioner, .. } => Some(preconditioner),
             Self::Direct(_) => None,
@@ -84,7 +84,7 @@ impl Method {
     }
 
     /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         match self {
             Self::Iterative { workspace, preconditioner } => workspace.bytes() + preconditioner.bytes(),
             Self::Direct(_) => 0,

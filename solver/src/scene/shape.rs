@@ -96,7 +96,7 @@ fn polygon_contains(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
 }
 
 /// Distance (m) of `position` from the segment between `from` and `to`.
-pub fn distance_to_segment(position: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
+pub(crate) fn distance_to_segment(position: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
     let along = [to[0] - from[0], to[1] - from[1]];
     let offset = [position[0] - from[0], position[1] - from[1]];
     let length_squared = along[0] * along[0] + along[1] * along[1];

@@ -52,8 +52,8 @@ impl Simulation {
         }
         let (step, look) = (self.plan.step, self.steps.is_multiple_of(STEPS_BETWEEN_LOOKS));
         let critical = match &mut self.frame {
-            Frame::Updated(frame) => frame.critical_step_is_due().then(|| frame.critical_step()),
-            Frame::Total(frame) if look => frame.shortened_critical_step(step, self.plan.critical),
+            Frame::Updated(frame) => frame.retake_critical_step(),
+            Frame::Total(frame) if look => frame.retake_critical_step(step, self.plan.critical),
             Frame::Total(_) => None,
         };
         let Some(critical) = critical.filter(|critical| step > *critical) else { return };

@@ -8,7 +8,7 @@ use crate::splines::spline::SplineSpace;
 
 /// The span that is nearest to a position (m) among its own and its eight neighbours, of those that `carries` says can
 /// stand for it; its own if it can.
-pub fn nearest_span(
+pub(crate) fn nearest_span(
     spaces: &[SplineSpace; 2],
     position: [f64; 2],
     carries: impl Fn([usize; 2]) -> bool,

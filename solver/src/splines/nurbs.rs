@@ -30,10 +30,11 @@ mod elevate;
 mod error;
 mod functions;
 mod insert;
-pub mod locate;
+pub(crate) mod locate;
 
 pub use error::{LocateError, NurbsError};
 pub(crate) use functions::products;
+
 pub use functions::{MapPoint, RationalFunctions, rational_functions};
 
 use rayon::prelude::*;
@@ -182,7 +183,7 @@ impl NurbsPatch {
     }
 
     /// The image of a pair of parameters, and the weight function `W = Σ N_b w_b` with its parametric gradient.
-    pub fn image(&self, span: [usize; 2], parameters: [f64; 2]) -> (MapPoint, PointValue) {
+    pub(crate) fn image(&self, span: [usize; 2], parameters: [f64; 2]) -> (MapPoint, PointValue) {
         let products = functions::products(&self.spaces, span, parameters);
         let (rational, weight) = functions::weighted(products, &self.weights);
         let functions = if self.form == Form::Rational { rational } else { products };

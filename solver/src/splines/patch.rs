@@ -75,6 +75,12 @@ impl Patch {
         ([x.0, y.0], [x.1, y.1])
     }
 
+    /// Length of the shortest span in the parameters, m where the patch has no geometry.
+    pub(crate) fn shortest_span(&self) -> f64 {
+        let spans = self.spaces.iter().flat_map(|space| space.spans());
+        spans.map(|span| span.length()).fold(f64::INFINITY, smaller)
+    }
+
     /// Points along a side with a rule in every span of it.
     pub fn boundary(&self, side: Side, rule: &Rule) -> Vec<BoundaryPoint> {
         let grid = self.control_grid();
@@ -182,7 +188,7 @@ impl Patch {
     }
 
     /// Shape functions at a position (m); `None` outside the patch.
-    pub fn functions_at(&self, position: [f64; 2]) -> Option<PointFunctions> {
+    pub(crate) fn functions_at(&self, position: [f64; 2]) -> Option<PointFunctions> {
         Some(self.functions(self.locate(position)?))
     }
 
@@ -198,7 +204,7 @@ impl Patch {
     }
 
     /// Whether something `holds` for all control points whose functions do not vanish in a span.
-    pub fn all_functions(&self, span: [usize; 2], holds: impl Fn(usize) -> bool) -> bool {
+    pub(crate) fn all_functions(&self, span: [usize; 2], holds: impl Fn(usize) -> bool) -> bool {
         let grid = self.control_grid();
         let [columns, rows] = [0, 1].map(|d| {
             let first = self.spaces[d].spans()[span[d]].first;
@@ -208,7 +214,7 @@ impl Patch {
     }
 
     /// Shape functions at a place.
-    pub fn functions(&self, Location { span, parameters }: Location) -> PointFunctions {
+    pub(crate) fn functions(&self, Location { span, parameters }: Location) -> PointFunctions {
         let (functions, position, gradient) = match &self.geometry {
             None => {
                 let functions = self.products(span, parameters);
@@ -227,7 +233,7 @@ impl Patch {
 
 /// Shape functions at a position.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PointFunctions {
+pub(crate) struct PointFunctions {
     /// The position, m.
     pub position: [f64; 2],
     /// Index in a field and value of those that do not vanish.
@@ -238,7 +244,7 @@ pub struct PointFunctions {
 
 impl PointFunctions {
     /// A field of control values.
-    pub fn interpolate(&self, field: &[f64]) -> PointValue {
+    pub(crate) fn interpolate(&self, field: &[f64]) -> PointValue {
         let mut result = PointValue::default();
         for (&(at, value), gradient) in self.values.iter().zip(&self.gradients) {
             result.value += value * field[at];

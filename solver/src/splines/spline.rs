@@ -7,13 +7,13 @@
 use std::ops::Range;
 
 /// Highest polynomial degree.
-pub const MAX_DEGREE: usize = 4;
+pub(crate) const MAX_DEGREE: usize = 4;
 /// Positions beyond an end of a patch by up to this fraction of its length are on it: an end at `0.1 + 0.7` lies short of 0.8.
 pub const ROUND_OFF: f64 = 1e-9;
 /// Most basis functions on a span, `MAX_DEGREE + 1`.
-pub const MAX_ORDER: usize = MAX_DEGREE + 1;
+pub(crate) const MAX_ORDER: usize = MAX_DEGREE + 1;
 /// Most shape functions at a point of a patch.
-pub const MAX_FUNCTIONS: usize = MAX_ORDER * MAX_ORDER;
+pub(crate) const MAX_FUNCTIONS: usize = MAX_ORDER * MAX_ORDER;
 
 /// A non-empty knot span.
 #[derive(Debug, Clone)]
@@ -134,7 +134,7 @@ impl SplineSpace {
 
     /// Second derivatives (1/m²) of the shape functions at `x` (m), which should lie in `span`.
     #[inline]
-    pub fn second_derivatives(&self, span: usize, x: f64) -> [f64; MAX_ORDER] {
+    pub(crate) fn second_derivatives(&self, span: usize, x: f64) -> [f64; MAX_ORDER] {
         let span = &self.spans[span];
         let scale = 1.0 / span.length();
         let t = (x - span.left) * scale;

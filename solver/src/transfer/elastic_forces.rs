@@ -11,7 +11,7 @@ use crate::particles::lattice::Lattice;
 use crate::scene::Kinematics;
 
 /// Nodal forces (N/m) of the elastic stress under a displacement (m); returns the elastic energy, J/m.
-pub fn elastic_forces(
+pub(crate) fn elastic_forces(
     lattice: &Lattice,
     moduli: ElasticModuli,
     kinematics: Kinematics,

@@ -42,7 +42,7 @@ impl<K: PointKernel> PointKernel for Finite<'_, K> {
 }
 
 /// [`sweep`] with the strain measure of a scene.
-pub fn sweep_with<K: PointKernel>(
+pub(crate) fn sweep_with<K: PointKernel>(
     kinematics: Kinematics,
     lattice: &Lattice,
     fields: Fields,

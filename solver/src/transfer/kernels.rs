@@ -5,7 +5,7 @@ use crate::linear_algebra::lane::Lane;
 use crate::material::degradation::BROKEN;
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
-use crate::material::split::{SplitState, split};
+use crate::material::split::split;
 use crate::transfer::point_kernel::{PointKernel, PointValues, Stress};
 
 /// Linear strain `[exx, eyy, exy]` of a displacement gradient.
@@ -97,27 +97,15 @@ impl PointKernel for DegradedStress<'_> {
         self.history_work = self.history_work.add_product::<FMA>(weight, change);
         self.remembered[at] = remembered;
         self.phase[at] = c;
-        let g = self.model.degradation(c);
-        let energy = state.energy_minus.add_product::<FMA>(g, state.energy_plus);
+        let (energy, stress) = state.degraded::<FMA>(self.model.degradation(c));
         self.energy = self.energy.add_product::<FMA>(weight, energy);
-        degraded::<FMA>(&state, g)
+        Stress::symmetric(stress)
     }
-}
-
-/// Degraded stress (E 6) of a split strain energy.
-#[inline(always)]
-fn degraded<const FMA: bool>(state: &SplitState, g: Lane) -> Stress {
-    // no array::map: it is compiled on its own, without FMA, where each product would be a call of the library
-    let mut stress = fault!("compression-degraded", state.stress_minus => state.stress_minus.map(|s| s * g));
-    for (stress, plus) in stress.iter_mut().zip(state.stress_plus) {
-        *stress = stress.add_product::<FMA>(g, plus);
-    }
-    Stress::symmetric(stress)
 }
 
 /// Degraded stress (E 6) with the phase field held as it is at the points.
 #[derive(Debug)]
-pub struct HeldPhaseStress<'a> {
+pub(crate) struct HeldPhaseStress<'a> {
     /// Moduli.
     pub moduli: ElasticModuli,
     /// Fracture constants.
@@ -135,13 +123,13 @@ impl PointKernel for HeldPhaseStress<'_> {
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
         let state = split(&self.moduli, self.model.split, strain(values.gradient));
-        degraded::<FMA>(&state, self.model.degradation(self.phase[at]))
+        Stress::symmetric(state.degraded::<FMA>(self.model.degradation(self.phase[at])).1)
     }
 }
 
 /// Smallest principal stretch, squared: the smaller eigenvalue of `F Fᵀ` (see [`crate::material::hencky`]).
 #[derive(Debug)]
-pub struct LeastStretch<'a> {
+pub(crate) struct LeastStretch<'a> {
     /// Phase field at the points of the strip, of which those that are broken do not count; empty if all count.
     pub phase: &'a [Lane],
     /// Smallest of the strip; not a number if one is not.
@@ -170,7 +158,7 @@ impl PointKernel for LeastStretch<'_> {
 
 /// Surface energy `Gc [(1 − c)²/(4 l0) + l0 |grad c|²]` (E 3) and the smallest c.
 #[derive(Debug)]
-pub struct SurfaceEnergy {
+pub(crate) struct SurfaceEnergy {
     /// Fracture constants.
     pub model: FractureModel,
     /// Surface energy per unit thickness, J/m.

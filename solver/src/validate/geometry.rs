@@ -13,7 +13,7 @@ const MOST_OUTLINE: usize = 4096;
 const OUTLINE_INTERVALS: usize = 64;
 
 /// Why a shape is empty or malformed, with a remedy.
-pub fn defect(shape: &Shape) -> Option<(String, &'static str)> {
+pub(crate) fn defect(shape: &Shape) -> Option<(String, &'static str)> {
     let finite = |p: &Point| p.iter().all(|x| x.is_finite());
     match shape {
         Shape::Rectangle { min, max } => {
@@ -45,7 +45,7 @@ pub fn defect(shape: &Shape) -> Option<(String, &'static str)> {
 }
 
 /// Corners and circles of a shape: what a test of a position against it costs.
-pub fn complexity(shape: &Shape) -> usize {
+pub(crate) fn complexity(shape: &Shape) -> usize {
     match shape {
         Shape::Rectangle { .. } | Shape::Disk { .. } | Shape::Annulus { .. } | Shape::Patch => 1,
         Shape::Polygon { points } => points.len(),
@@ -59,7 +59,7 @@ fn area(points: &[Point]) -> f64 {
 }
 
 /// Points on the boundary of a shape, m.
-pub fn outline(shape: &Shape) -> Vec<[f64; 2]> {
+pub(crate) fn outline(shape: &Shape) -> Vec<[f64; 2]> {
     let n = OUTLINE_INTERVALS;
     let circle = |[x, y]: [f64; 2], radius: f64| {
         (0..n).map(move |i| {
@@ -87,7 +87,7 @@ pub fn outline(shape: &Shape) -> Vec<[f64; 2]> {
 }
 
 /// A point (m) of the sides of a patch that lies inside a shape, not on its boundary.
-pub fn covered_side(shape: &Shape, patch: &NurbsPatch) -> Option<[f64; 2]> {
+pub(crate) fn covered_side(shape: &Shape, patch: &NurbsPatch) -> Option<[f64; 2]> {
     if is_patch(shape) {
         return None;
     }

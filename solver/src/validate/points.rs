@@ -43,7 +43,7 @@ pub(super) struct Near {
 
 impl<'a> Points<'a> {
     /// The points of a body with a sound shape and layout on a sound mesh; `None` if there are too many to be mapped.
-    pub fn new(body: &'a Body, ground: &Ground<'_>) -> Option<Self> {
+    pub(crate) fn new(body: &'a Body, ground: &Ground<'_>) -> Option<Self> {
         let (spaces, patch) = (ground.spaces.as_ref()?, ground.patch.as_ref());
         let axes = point_axes(body, spaces, patch.is_some());
         let fills = fills_lattice(patch.is_some(), &body.shape);
@@ -58,13 +58,13 @@ impl<'a> Points<'a> {
     }
 
     /// Whether there are points at all.
-    pub fn exist(&self) -> bool {
+    pub(crate) fn exist(&self) -> bool {
         let pairs = self.axes.iter().all(|axis| !axis.is_empty());
         pairs && (self.fills || self.any(|_| true))
     }
 
     /// Whether some point is `wanted`, or none was found among as many as may be looked at.
-    pub fn any(&self, wanted: impl Fn(Point) -> bool) -> bool {
+    pub(crate) fn any(&self, wanted: impl Fn(Point) -> bool) -> bool {
         let [columns, rows] = self.axes.each_ref().map(Vec::len);
         let mut pairs = (0..rows).flat_map(|j| (0..columns).map(move |i| [i, j])).map(|pair| self.position(pair));
         let found = pairs.by_ref().take(self.most).any(|x| wanted(x) && self.is_inside(x));
@@ -73,7 +73,7 @@ impl<'a> Points<'a> {
 
     /// The points within a span of a segment, and within `reach` (m), in their order along it; `None` if there are too many to be
     /// looked at.
-    pub fn near(&self, [from, to]: [Point; 2], reach: f64) -> Option<Vec<Near>> {
+    pub(crate) fn near(&self, [from, to]: [Point; 2], reach: f64) -> Option<Vec<Near>> {
         let along = [to[0] - from[0], to[1] - from[1]];
         let length = along[0].hypot(along[1]);
         let candidates = self.candidates(from, along, reach);

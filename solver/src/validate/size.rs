@@ -6,6 +6,11 @@ use crate::scene::{Body, Scene};
 /// Most material points of a scene; each takes 100 to 300 bytes.
 const MOST_POINTS: usize = 500_000_000;
 
+/// Memory of a material point, bytes, without and with a phase field.
+const BYTES_OF_POINT: [usize; 2] = [60, 250];
+/// Memory of a control point, bytes: of the mechanics, and what a phase field adds.
+const BYTES_OF_CONTROL_POINT: [usize; 2] = [150, 500];
+
 /// About how large the model of a scene will be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ExpectedSize {
@@ -13,6 +18,10 @@ pub struct ExpectedSize {
     pub points: usize,
     /// Control points of the mesh.
     pub control_points: usize,
+    /// Memory of points and control points without what the phase field of the control points takes, bytes.
+    pub mechanics_bytes: usize,
+    /// Memory of the phase field of the control points, bytes.
+    pub phase_field_bytes: usize,
 }
 
 /// Size of the model of a valid scene, to the points that lie outside a body in spans it cuts.
@@ -20,7 +29,13 @@ pub fn expected_size(scene: &Scene) -> ExpectedSize {
     let bodies = scene.bodies.iter().filter(|body| !body.rigid);
     let points = bodies.map(|body| points(body, scene)).fold(0, usize::saturating_add);
     let functions = |d: usize| scene.mesh.knots[d].len().saturating_sub(scene.mesh.degree[d] + 1);
-    ExpectedSize { points, control_points: functions(0).saturating_mul(functions(1)) }
+    let control_points = functions(0).saturating_mul(functions(1));
+    let fractures = scene.materials.values().any(|material| material.fracture.is_some());
+    let mechanics_bytes = points
+        .saturating_mul(BYTES_OF_POINT[usize::from(fractures)])
+        .saturating_add(control_points.saturating_mul(BYTES_OF_CONTROL_POINT[0]));
+    let phase_field_bytes = if fractures { control_points.saturating_mul(BYTES_OF_CONTROL_POINT[1]) } else { 0 };
+    ExpectedSize { points, control_points, mechanics_bytes, phase_field_bytes }
 }
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {

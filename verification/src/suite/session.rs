@@ -1,11 +1,17 @@
 //! A verification under way: which cases are finished, and at any moment the results that they give.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::collections::BTreeMap;
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::Instant;
 
 use super::part::{PART_SCHEMA, Part, Plan, series_fingerprints};
 use super::partition::Slice;
 use super::prepare::{Prepared, prepare};
 use super::resume::Store;
+use super::schedule::Schedule;
 use super::supervise::Ended;
 use super::{Case, CaseOutcome, Options, Progress, VerifyError, assemble, inputs, judge, run_case};
 use crate::record::{Record, ResultSet};
@@ -20,7 +26,7 @@ pub struct Session<'a> {
     library: Arc<Library>,
     prepared: Vec<Arc<Prepared>>,
     store: Store,
-    outcomes: Mutex<Vec<CaseOutcome>>,
+    outcomes: Mutex<BTreeMap<usize, CaseOutcome>>,
 }
 
 impl<'a> Session<'a> {
@@ -45,35 +51,70 @@ impl<'a> Session<'a> {
         Ok(session)
     }
 
-    /// Runs the cases that no interrupted run finished.
+    /// Runs the cases that no interrupted run finished, side by side where that is faster.
     ///
     /// # Errors
     /// A file that cannot be written.
     pub fn run(&self, progress: &dyn Progress) -> Result<(), VerifyError> {
-        for (index, (case, prepared)) in self.cases.iter().zip(&self.prepared).enumerate() {
-            progress.started(case, index, self.cases.len());
-            let outcome = match self.store.load(case) {
-                Some(outcome) => outcome,
-                None => match run_case(case, prepared, self.options, &self.library, progress) {
-                    Ended::InTime(outcome) => {
-                        let outcome = outcome?;
-                        self.store.save(case, &outcome)?;
-                        outcome
-                    }
-                    // to be tried again, and not taken up
-                    Ended::Stopped(outcome) => outcome?,
-                    Ended::Broken(message) => judge::broken(case, prepared, &message),
-                },
-            };
-            progress.finished(case, &outcome.records);
-            self.outcomes.lock().unwrap_or_else(PoisonError::into_inner).push(outcome);
-        }
+        let threads = rayon::current_num_threads();
+        let cases = self.cases.iter().zip(self.prepared.iter().map(Arc::as_ref));
+        let Schedule { alone, side_by_side } = Schedule::new(cases, self.options.seconds, threads);
+        let run = alone.into_iter().try_for_each(|index| self.run_one(index, threads, progress));
+        let run = run.and_then(|()| self.run_side_by_side(&side_by_side, threads, progress));
+        self.options.seconds.remember();
+        run
+    }
+
+    /// Runs cases on one thread each.
+    fn run_side_by_side(&self, order: &[usize], threads: usize, progress: &dyn Progress) -> Result<(), VerifyError> {
+        let next = AtomicUsize::new(0);
+        let turns = || {
+            while let Some(&index) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if let Err(error) = self.run_one(index, 1, progress) {
+                    next.store(order.len(), Ordering::Relaxed); // the others finish what they have begun
+                    return Err(error);
+                }
+            }
+            Ok(())
+        };
+        thread::scope(|scope| {
+            let workers: Vec<_> = (0..threads.min(order.len())).map(|_| scope.spawn(turns)).collect();
+            let ends = workers.into_iter().map(|worker| worker.join().unwrap_or_else(|panic| resume_unwind(panic)));
+            ends.fold(Ok(()), Result::and)
+        })
+    }
+
+    fn run_one(&self, index: usize, threads: usize, progress: &dyn Progress) -> Result<(), VerifyError> {
+        let (case, prepared) = (&self.cases[index], &self.prepared[index]);
+        progress.started(case);
+        let start = Instant::now();
+        let outcome = match self.store.load(case) {
+            Some(outcome) => outcome,
+            None => match run_case(case, prepared, threads, self.options, &self.library, progress) {
+                Ended::InTime(outcome) => {
+                    let outcome = outcome?;
+                    self.store.save(case, &outcome)?;
+                    self.options.seconds.took(case, start.elapsed().as_secs_f64());
+                    outcome
+                }
+                // to be tried again, and not taken up
+                Ended::Stopped(outcome) => outcome?,
+                Ended::Broken(message) => judge::broken(case, prepared, &message),
+            },
+        };
+        progress.finished(case, &outcome.records);
+        self.outcomes().insert(index, outcome);
         Ok(())
+    }
+
+    /// Of the finished cases, by their number.
+    fn outcomes(&self) -> MutexGuard<'_, BTreeMap<usize, CaseOutcome>> {
+        self.outcomes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Number of finished cases, and of all.
     pub fn finished(&self) -> (usize, usize) {
-        (self.outcomes.lock().unwrap_or_else(PoisonError::into_inner).len(), self.cases.len())
+        (self.outcomes().len(), self.cases.len())
     }
 
     /// Writes the results of the finished cases. As long as others are to come, a record of status error says so; then a slice
@@ -82,7 +123,7 @@ impl<'a> Session<'a> {
     /// # Errors
     /// A file that cannot be written.
     pub fn results(&self) -> Result<ResultSet, VerifyError> {
-        let mut outcomes = self.outcomes.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let mut outcomes: Vec<CaseOutcome> = self.outcomes().values().cloned().collect();
         let (finished, all) = (outcomes.len(), self.cases.len());
         let Options { out, environment, .. } = self.options;
         let inputs = inputs(self.cases);

@@ -27,53 +27,71 @@ pub(super) enum Ended<T> {
     Broken(String),
 }
 
-/// Runs `work`, and asks it to stop after `limit`. `advanced` is told the finished fraction now and then, and `late` once the
-/// time is over.
-pub(super) fn supervised<T: Send + 'static>(
-    limit: Duration,
-    advanced: &dyn Fn(f64),
-    late: &dyn Fn(),
-    work: impl FnOnce() -> T + Send + 'static,
-) -> Ended<T> {
-    watch::note_panics();
-    let watch = Arc::new(Watch::default());
-    let pool = match watch.pool(rayon::current_num_threads()) {
-        Ok(pool) => pool,
-        Err(error) => return Ended::Broken(format!("no threads could be started for it: {error}")),
-    };
-    let (sender, receiver) = channel();
-    pool.spawn(move || {
-        // nobody listens any more to a case that was left behind
-        let _ = sender.send(catch_unwind(AssertUnwindSafe(work)));
-    });
-    let start = Instant::now();
-    let over = || {
-        let (took, limit) = (start.elapsed().as_secs_f64(), limit.as_secs_f64());
+/// Watches over work.
+pub(super) struct Supervisor<'a> {
+    /// Of the pool in which it runs.
+    pub threads: usize,
+    /// Time after which `is_slow` is told.
+    pub slow: Duration,
+    /// Time after which `is_late` is told and the work is asked to stop.
+    pub limit: Duration,
+    /// Told the finished fraction now and then.
+    pub advanced: &'a dyn Fn(f64),
+    /// Told once.
+    pub is_slow: &'a dyn Fn(),
+    /// Told once.
+    pub is_late: &'a dyn Fn(),
+}
+
+impl Supervisor<'_> {
+    /// Runs `work`.
+    pub(super) fn run<T: Send + 'static>(&self, work: impl FnOnce() -> T + Send + 'static) -> Ended<T> {
+        watch::note_panics();
+        let watch = Arc::new(Watch::default());
+        let pool = match watch.pool(self.threads) {
+            Ok(pool) => pool,
+            Err(error) => return Ended::Broken(format!("no threads could be started for it: {error}")),
+        };
+        let (sender, receiver) = channel();
+        pool.spawn(move || {
+            // nobody listens any more to a case that was left behind
+            let _ = sender.send(catch_unwind(AssertUnwindSafe(work)));
+        });
+        let start = Instant::now();
+        let (mut asked, mut told) = (false, false);
+        loop {
+            match receiver.recv_timeout(LOOK) {
+                Ok(Ok(value)) if asked => return Ended::Stopped(value),
+                Ok(Ok(value)) => return Ended::InTime(value),
+                Ok(Err(payload)) => {
+                    return Ended::Broken(watch.panic().map_or_else(|| words(payload.as_ref()), String::from));
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Ended::Broken("its thread ended without a result".to_string());
+                }
+                Err(RecvTimeoutError::Timeout) => (self.advanced)(watch.fraction()),
+            }
+            let elapsed = start.elapsed();
+            if elapsed > self.slow && !told {
+                told = true;
+                (self.is_slow)();
+            }
+            if elapsed > self.limit && !asked {
+                asked = true;
+                watch.stop(self.over(elapsed));
+                (self.is_late)();
+            }
+            if elapsed > self.limit.saturating_add(self.limit.max(GRACE)) {
+                watch.leave();
+                let over = self.over(elapsed);
+                return Ended::Broken(format!("{over}, and did not end when asked to: it runs on beside what follows"));
+            }
+        }
+    }
+
+    fn over(&self, elapsed: Duration) -> String {
+        let (took, limit) = (elapsed.as_secs_f64(), self.limit.as_secs_f64());
         format!("stopped after {took:.1} s, over the limit of {limit} s for a case; --case-timeout sets another")
-    };
-    let mut asked = false;
-    loop {
-        match receiver.recv_timeout(LOOK) {
-            Ok(Ok(value)) if asked => return Ended::Stopped(value),
-            Ok(Ok(value)) => return Ended::InTime(value),
-            Ok(Err(payload)) => {
-                return Ended::Broken(watch.panic().map_or_else(|| words(payload.as_ref()), String::from));
-            }
-            Err(RecvTimeoutError::Disconnected) => {
-                return Ended::Broken("its thread ended without a result".to_string());
-            }
-            Err(RecvTimeoutError::Timeout) => advanced(watch.fraction()),
-        }
-        let elapsed = start.elapsed();
-        if elapsed > limit && !asked {
-            asked = true;
-            watch.stop(over());
-            late();
-        }
-        if elapsed > limit.saturating_add(limit.max(GRACE)) {
-            watch.leave();
-            return Ended::Broken(format!("{}, and did not end when asked to: it runs on beside what follows", over()));
-        }
     }
 }
 
@@ -89,7 +107,10 @@ mod tests {
     use super::*;
 
     fn run<T: Send + 'static>(seconds: f64, work: impl FnOnce() -> T + Send + 'static) -> Ended<T> {
-        supervised(Duration::from_secs_f64(seconds), &|_| (), &|| (), work)
+        let limit = Duration::from_secs_f64(seconds);
+        let supervisor =
+            Supervisor { threads: 2, slow: limit, limit, advanced: &|_| (), is_slow: &|| (), is_late: &|| () };
+        supervisor.run(work)
     }
 
     /// What is told of work that broke.
@@ -103,7 +124,7 @@ mod tests {
 
     #[test]
     fn what_ends_in_time_gives_its_value() {
-        assert_eq!(run(60.0, rayon::current_num_threads), Ended::InTime(rayon::current_num_threads()));
+        assert_eq!(run(60.0, rayon::current_num_threads), Ended::InTime(2));
     }
 
     #[test]

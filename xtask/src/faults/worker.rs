@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use fisura_verification::record::{Environment, Record};
-use fisura_verification::suite::{self, Case, Options, Progress, load_cases};
+use fisura_verification::suite::{self, Case, Options, Progress, Seconds, load_cases};
 
 use super::runner::Report;
 use crate::cli::Common;
@@ -41,6 +41,7 @@ pub fn planted(args: &Args, common: &Common) -> Result<Exit, Failure> {
         program: "planted",
         resume: false,
         case_timeout: Some(Duration::MAX), // the one who started this process ends it: a case without records
+        seconds: &Seconds::default(),
     };
     fisura::faults::take_passed(); // what was passed on the way here
     suite::verify(&cases, &options, &Teller(Mutex::new(Instant::now())))?;
@@ -51,13 +52,15 @@ pub fn planted(args: &Args, common: &Common) -> Result<Exit, Failure> {
 struct Teller(Mutex<Instant>);
 
 impl Progress for Teller {
-    fn started(&self, _case: &Case, _index: usize, _count: usize) {
+    fn started(&self, _case: &Case) {
         if let Ok(mut started) = self.0.lock() {
             *started = Instant::now();
         }
     }
 
-    fn advanced(&self, _fraction: f64) {}
+    fn advanced(&self, _case: &Case, _fraction: f64) {}
+
+    fn slow(&self, _case: &Case, _limit: Duration) {}
 
     fn late(&self, _case: &Case, _limit: Duration) {}
 

@@ -21,7 +21,7 @@ pub(super) struct Forced {
 
 impl Forced {
     /// Tractions are integrated with the points' own rule in every span of the sides.
-    pub fn new(forcing: Arc<dyn Forcing>, patch: &Patch, lattice: &Lattice) -> Self {
+    pub(crate) fn new(forcing: Arc<dyn Forcing>, patch: &Patch, lattice: &Lattice) -> Self {
         let [left, bottom] = [1, 0].map(|along| Rule::new(lattice.layout, lattice.points[along]));
         let sides = [(Side::Left, &left), (Side::Right, &left), (Side::Bottom, &bottom), (Side::Top, &bottom)];
         let boundary = sides.into_iter().flat_map(|(side, rule)| patch.boundary(side, rule)).collect();
@@ -30,7 +30,7 @@ impl Forced {
     }
 
     /// Forces at `time` (s); those in force before are kept for the work of the step.
-    pub fn update_forces(&mut self, lattice: &Lattice, time: f64) {
+    pub(crate) fn update_forces(&mut self, lattice: &Lattice, time: f64) {
         std::mem::swap(&mut self.now, &mut self.before);
         self.now.iter_mut().for_each(|f| f.fill(0.0));
         let [x, y] = &mut self.now;
@@ -49,7 +49,7 @@ impl Forced {
     }
 
     /// Right-hand side of the phase-field equation at `time` (s), m².
-    pub fn phase_load(&self, lattice: &Lattice, time: f64) -> Vec<f64> {
+    pub(crate) fn phase_load(&self, lattice: &Lattice, time: f64) -> Vec<f64> {
         let mut load = lattice.integrate(|_, _, position| self.forcing.phase_source(position, time));
         for point in &self.boundary {
             let flux = self.forcing.phase_flux(point.position, point.normal, time);
@@ -60,7 +60,7 @@ impl Forced {
         load
     }
 
-    pub fn add_to(&self, forces: &mut VectorField) {
+    pub(crate) fn add_to(&self, forces: &mut VectorField) {
         for component in 0..2 {
             for (sum, force) in forces[component].iter_mut().zip(&self.now[component]) {
                 *sum += force;
@@ -69,7 +69,7 @@ impl Forced {
     }
 
     /// Mean of the forces at both ends of the step times the velocity between them.
-    pub fn mean_power(&self, velocity: &VectorField) -> f64 {
+    pub(crate) fn mean_power(&self, velocity: &VectorField) -> f64 {
         let component = |c: usize| {
             let forces = self.now[c].iter().zip(&self.before[c]).zip(&velocity[c]);
             forces.map(|((now, before), v)| 0.5 * (now + before) * v).sum::<f64>()

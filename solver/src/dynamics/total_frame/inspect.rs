@@ -3,8 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::TotalFrame;
-use crate::linear_algebra::lane::Lane;
-use crate::material::split::split;
+use crate::material::degradation::stress_at;
 use crate::output::inspection::{PointFracture, PointState};
 use crate::output::span_grid::{Corner, SpanGrid};
 
@@ -20,16 +19,9 @@ impl TotalFrame {
             let velocity = self.velocity.each_ref().map(|v| value(v).value);
             let present = [0, 1].map(|d| position[d] + displacement[d]);
             let (strain, _) = self.strain([x.gradient, y.gradient]);
-            let lanes = strain.map(Lane::splat);
             let fracture = self.fracture.as_ref();
-            let stress = match fracture {
-                None => self.moduli.stress(lanes).map(|s| s[0]),
-                Some(fracture) => {
-                    let state = split(&self.moduli, fracture.model.split, lanes);
-                    let g = fracture.model.degradation(Lane::splat(fracture.phase[batch][lane]))[0];
-                    [0, 1, 2].map(|i| state.stress_minus[i][0] + g * state.stress_plus[i][0])
-                }
-            };
+            let degraded = fracture.map(|f| (&f.model, f.phase[batch][lane]));
+            let stress = stress_at(&self.moduli, strain, degraded);
             let fracture =
                 fracture.map(|f| PointFracture { history: f.history[batch][lane], phase: f.phase[batch][lane] });
             f(PointState { body: 0, point, position, present, displacement, velocity, strain, stress, fracture });

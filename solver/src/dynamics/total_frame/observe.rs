@@ -67,7 +67,7 @@ impl TotalFrame {
     }
 
     /// The point that is turned inside out furthest, if one is; small strains know none.
-    pub fn inverted_point(&self) -> Option<InvertedPoint> {
+    pub(crate) fn inverted_point(&self) -> Option<InvertedPoint> {
         let (mut worst, mut point) = (None, 0);
         self.lattice.for_each_point(|batch, lane, position, _| {
             let functions = self.patch.functions(self.lattice.location(&self.patch, batch, lane));

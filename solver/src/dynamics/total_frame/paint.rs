@@ -3,16 +3,13 @@
 use rayon::prelude::*;
 
 use super::TotalFrame;
-use crate::linear_algebra::lane::Lane;
-use crate::material::degradation::FractureModel;
-use crate::material::elasticity::ElasticModuli;
-use crate::material::split::split;
+use crate::material::degradation::{largest_principal, stress_at};
 use crate::output::raster::{Raster, places_of_pixels};
 use crate::splines::nurbs::locate::Location;
 
 impl TotalFrame {
     /// Phase field, if there is one, and largest principal stress (Pa) on a raster; NaN outside the body.
-    pub fn paint(&self, raster: &Raster) -> (Option<Vec<f64>>, Vec<f64>) {
+    pub(crate) fn paint(&self, raster: &Raster) -> (Option<Vec<f64>>, Vec<f64>) {
         let places = places_of_pixels(self.patch(), raster);
         let outside = [f64::NAN; 2];
         let values: Vec<[f64; 2]> =
@@ -30,7 +27,7 @@ fn values_at(frame: &TotalFrame, place: Location) -> [f64; 2] {
     }
     let [ux, uy] = frame.displacement().each_ref().map(|u| functions.interpolate(u).gradient);
     let (strain, growth) = frame.strain([ux, uy]);
-    let cauchy = |fracture| largest_principal_stress(frame.moduli(), strain, fracture) / growth;
+    let cauchy = |fracture| largest_principal(stress_at(&frame.moduli, strain, fracture)) / growth;
     match &frame.fracture {
         None => [1.0, cauchy(None)],
         Some(fracture) => {
@@ -38,18 +35,4 @@ fn values_at(frame: &TotalFrame, place: Location) -> [f64; 2] {
             [phase, cauchy(Some((&fracture.model, phase)))]
         }
     }
-}
-
-fn largest_principal_stress(moduli: ElasticModuli, strain: [f64; 3], fracture: Option<(&FractureModel, f64)>) -> f64 {
-    let strain = strain.map(Lane::splat);
-    let stress = match fracture {
-        None => moduli.stress(strain),
-        Some((model, phase)) => {
-            let state = split(&moduli, model.split, strain);
-            let g = model.degradation(Lane::splat(phase));
-            [0, 1, 2].map(|i| state.stress_minus[i] + g * state.stress_plus[i])
-        }
-    };
-    let [xx, yy, xy] = stress.map(|s| s[0]);
-    0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)
 }

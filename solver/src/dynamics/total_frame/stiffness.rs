@@ -17,19 +17,19 @@ impl TotalFrame {
     }
 
     /// Control point and component of every degree of freedom that can move.
-    pub fn free_components(&self) -> Vec<(usize, usize)> {
+    pub(crate) fn free_components(&self) -> Vec<(usize, usize)> {
         let held: BTreeSet<_> = self.constraints.iter().map(|(at, c, _)| (at, c)).collect();
         let moving = |&(at, c): &(usize, usize)| self.mass.moves(at) && !held.contains(&(at, c));
         self.grid.indices().flat_map(|at| [(at, 0), (at, 1)]).filter(moving).collect()
     }
 
     /// Room for [`Self::elastic_forces`].
-    pub fn strip_forces(&self) -> StripForces {
+    pub(crate) fn strip_forces(&self) -> StripForces {
         self.strip_forces.clone()
     }
 
     /// Internal forces (N/m) of the undamaged body under a displacement (m), linear in it.
-    pub fn elastic_forces(&self, displacement: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
+    pub(crate) fn elastic_forces(&self, displacement: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
         elastic_forces(&self.lattice, self.moduli, Kinematics::Small, displacement, strips, out);
     }
 

@@ -21,9 +21,9 @@ const PROBE: f64 = 1e-6;
 const NOTICEABLE: f64 = 1.5;
 
 impl TotalFrame {
-    /// Critical time step (s) of the body as it is now, if finite strains may have made it shorter than `dt` (s), and stiffer than
-    /// when this last gave one; `undeformed` is the critical step of the undeformed body, s.
-    pub fn shortened_critical_step(&mut self, dt: f64, undeformed: f64) -> Option<f64> {
+    /// Takes the critical time step (s) of the body as it is now if finite strains may have made it shorter than `dt` (s), and the
+    /// body is stiffer than when it was last taken; `undeformed` is the critical step of the undeformed body, s.
+    pub fn retake_critical_step(&mut self, dt: f64, undeformed: f64) -> Option<f64> {
         if self.kinematics == Kinematics::Small {
             return None;
         }

@@ -32,7 +32,7 @@ const DEGENERATE: f64 = 1e-14;
 
 /// Where the velocity gradient of a point comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Fit {
+pub(crate) enum Fit {
     /// Fit with the shape functions as weights: APIC.
     Weighted,
     /// Gradient at the point: TPIC.
@@ -41,7 +41,7 @@ pub enum Fit {
 
 /// Velocity gradients of the points.
 #[derive(Debug, Clone)]
-pub struct AffineVelocities {
+pub(crate) struct AffineVelocities {
     fit: Fit,
     /// Velocity gradient of each point, 1/s, in the order of the points.
     pub gradients: Vec<Gradient>,
@@ -50,18 +50,18 @@ pub struct AffineVelocities {
 
 impl AffineVelocities {
     /// Points without velocity gradients.
-    pub fn new(fit: Fit, patch: &Patch, points: usize) -> Self {
+    pub(crate) fn new(fit: Fit, patch: &Patch, points: usize) -> Self {
         let greville = [0, 1].map(|d| patch.spaces[d].greville());
         Self { fit, gradients: vec![[[0.0; 2]; 2]; points], greville }
     }
 
     /// Goes over to another part of the patch.
-    pub fn follow(&mut self, patch: &Patch) {
+    pub(crate) fn follow(&mut self, patch: &Patch) {
         self.greville = [0, 1].map(|d| patch.spaces[d].greville());
     }
 
     /// Velocity gradients from a velocity on the control points, m/s.
-    pub fn take(&mut self, patch: &Patch, cells: &Cells, points: &[Point], velocity: &VectorField) {
+    pub(crate) fn take(&mut self, patch: &Patch, cells: &Cells, points: &[Point], velocity: &VectorField) {
         let Self { fit, gradients, greville } = self;
         let (fit, grid) = (*fit, patch.control_grid());
         let velocity = velocity.each_ref().map(|component| &component[..]);
@@ -74,7 +74,14 @@ impl AffineVelocities {
     }
 
     /// Adds `Σ m N_I C (x_I − x_p)` to the momentum of the control points, kg/s.
-    pub fn give(&self, patch: &Patch, cells: &Cells, points: &[Point], density: f64, momentum: &mut VectorField) {
+    pub(crate) fn give(
+        &self,
+        patch: &Patch,
+        cells: &Cells,
+        points: &[Point],
+        density: f64,
+        momentum: &mut VectorField,
+    ) {
         let Self { gradients, greville, .. } = self;
         let grid = patch.control_grid();
         scatter(&cells.strips, momentum.each_mut().map(|f| &mut f[..]), [grid.stride; 2], |strip, window| {
@@ -84,7 +91,7 @@ impl AffineVelocities {
     }
 
     /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         self.gradients.len() * size_of::<Gradient>() + 8 * (self.greville[0].len() + self.greville[1].len())
     }
 }

@@ -15,7 +15,7 @@ use crate::splines::patch::Patch;
 use crate::splines::spline::MAX_FUNCTIONS;
 
 /// Assembles matrix and right-hand side anew.
-pub fn assemble(
+pub(crate) fn assemble(
     (matrix, load): (&mut Stencil, &mut Vec<f64>),
     patch: &Patch,
     cells: &Cells,

@@ -41,7 +41,7 @@ pub struct Cracking {
 
 /// Sums over the points at the new whole step, per unit thickness.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct PointSums {
+pub(crate) struct PointSums {
     /// Elastic energy, J/m.
     pub elastic_energy: f64,
     /// Work of the new stress over the step, `Σ V sigma(n+1) : de`, J/m.
@@ -56,7 +56,13 @@ pub struct PointSums {
 
 impl Cracking {
     /// Seeds the cracks of `body` at its points; the phase field is not solved for yet.
-    pub fn new(patch: &Patch, body: &Body, model: FractureModel, settings: &SolverSettings, points: &[Point]) -> Self {
+    pub(crate) fn new(
+        patch: &Patch,
+        body: &Body,
+        model: FractureModel,
+        settings: &SolverSettings,
+        points: &[Point],
+    ) -> Self {
         let history = |p: &Point| seed_energy(&model, body, p.position);
         let points = points.iter().map(|p| FracturePoint { history: history(p), phase: 1.0, ..Default::default() });
         let degree = [0, 1].map(|d| patch.spaces[d].degree());
@@ -72,13 +78,13 @@ impl Cracking {
     }
 
     /// Goes over to another part of the patch, whose first control column and row lie `shift` columns and rows further.
-    pub fn relocate(&mut self, patch: &Patch, shift: [isize; 2]) {
+    pub(crate) fn relocate(&mut self, patch: &Patch, shift: [isize; 2]) {
         self.field.relocate(patch.control_grid(), shift);
         self.fictitious = FictitiousMaterial::new(patch, self.model.diffusion());
     }
 
     /// `H ← max(H, psi+)` (E 10).
-    pub fn update_history(&mut self, moduli: &ElasticModuli, cells: &Cells, points: &[Point]) {
+    pub(crate) fn update_history(&mut self, moduli: &ElasticModuli, cells: &Cells, points: &[Point]) {
         let model = self.model;
         let strips = cut(&mut self.points, cells.strips.iter().map(|s| s.points.clone()));
         strips.into_par_iter().zip(&cells.strips).for_each(|(fracture, strip)| {
@@ -90,7 +96,13 @@ impl Cracking {
     ///
     /// # Errors
     /// If there is no solution to the tolerance.
-    pub fn solve(&mut self, patch: &Patch, cells: &Cells, points: &[Point], moved: bool) -> Result<(), SolveFailure> {
+    pub(crate) fn solve(
+        &mut self,
+        patch: &Patch,
+        cells: &Cells,
+        points: &[Point],
+        moved: bool,
+    ) -> Result<(), SolveFailure> {
         assemble(self.field.system_mut(), patch, cells, points, &self.points, &self.model, &self.fictitious);
         let first = self.field.counts().solves == 0;
         if moved && !first {
@@ -102,7 +114,7 @@ impl Cracking {
     }
 
     /// Phase field and degraded stress at the points (E 6), and what is summed over them.
-    pub fn update_stress(
+    pub(crate) fn update_stress(
         &mut self,
         patch: &Patch,
         moduli: &ElasticModuli,
@@ -139,7 +151,7 @@ impl Cracking {
     }
 
     /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         self.points.len() * size_of::<FracturePoint>() + self.field.bytes() + self.fictitious.bytes()
     }
 }
@@ -283,9 +295,7 @@ impl UpdateStress<'_> {
     fn degrade(&mut self, some: std::ops::Range<usize>, phase: Lane, sums: &mut PointSums) {
         let (points, fracture) = (&mut self.points[some.clone()], &mut self.fracture[some]);
         let state = split::split(self.moduli, self.model.split, [0, 1, 2].map(|i| gather(points, |p| p.strain[i])));
-        let g = self.model.degradation(phase);
-        let energy = state.energy_minus + g * state.energy_plus;
-        let stress = [0, 1, 2].map(|i| state.stress_minus[i] + g * state.stress_plus[i]);
+        let (energy, stress) = state.degraded::<false>(self.model.degradation(phase));
         for (lane, (point, cracked)) in points.iter_mut().zip(fracture).enumerate() {
             point.stress = [0, 1, 2].map(|i| stress[i][lane]);
             sums.elastic_energy += point.volume * energy[lane];

@@ -40,7 +40,7 @@ use crate::scene::Transfer;
 
 /// What leaves the grid for the points.
 #[derive(Debug, Clone)]
-pub struct Departure {
+pub(crate) struct Departure {
     /// Velocity with which the points move and strain, m/s.
     pub motion: VectorField,
     /// What the points take up, m/s.
@@ -52,24 +52,24 @@ pub struct Departure {
 
 impl Departure {
     /// Nothing yet.
-    pub fn new(grid: ControlGrid, transfer: Transfer) -> Self {
+    pub(crate) fn new(grid: ControlGrid, transfer: Transfer) -> Self {
         let zeros = || [grid.zeros(), grid.zeros()];
         Self { motion: zeros(), taken: zeros(), kept: 1.0, transfer }
     }
 
     /// Fraction of `1/ω_max` up to which the step is stable (see the module).
-    pub fn stable_fraction(&self) -> f64 {
+    pub(crate) fn stable_fraction(&self) -> f64 {
         let others = fault!("stable-fraction-of-musl", std::f64::consts::SQRT_2 => 2.0);
         if self.transfer == Transfer::Musl { 2.0 } else { others }
     }
 
     /// The transfer.
-    pub fn transfer(&self) -> Transfer {
+    pub(crate) fn transfer(&self) -> Transfer {
         self.transfer
     }
 
     /// From the velocities that arrived on and leave the grid.
-    pub fn leave(&mut self, nodes: &NodalFields, smoothing: &Smoothing) {
+    pub(crate) fn leave(&mut self, nodes: &NodalFields, smoothing: &Smoothing) {
         let Self { motion, taken, kept, transfer } = self;
         let of_flip = fault!("transfer-keeps-less", 1.0 => 0.999);
         *kept = if matches!(transfer, Transfer::Flip | Transfer::Musl) { of_flip } else { 0.0 };
@@ -96,14 +96,14 @@ impl Departure {
     }
 
     /// The points follow `motion` and keep their velocities.
-    pub fn prescribe(&mut self, motion: &VectorField) {
+    pub(crate) fn prescribe(&mut self, motion: &VectorField) {
         copy(&mut self.motion, motion);
         self.taken.iter_mut().for_each(|component| component.fill(0.0));
         self.kept = 1.0;
     }
 
     /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         8 * 4 * self.motion[0].len()
     }
 }

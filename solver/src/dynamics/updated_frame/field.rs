@@ -22,7 +22,7 @@ use crate::contact::{BodyView, Surface};
 use crate::dynamics::energy::Ledger;
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
-use crate::linear_algebra::extremes::{larger, smaller};
+use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::dispatch;
 use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::Gradient;
@@ -96,7 +96,7 @@ impl DiscreteField {
     }
 
     /// Length of the coming kick, s: half a step at the start, where the points carry v(0).
-    pub fn kick_length(&self, dt: f64) -> f64 {
+    pub(crate) fn kick_length(&self, dt: f64) -> f64 {
         if self.at_start { 0.5 * dt } else { dt }
     }
 
@@ -301,19 +301,8 @@ impl DiscreteField {
         }
     }
 
-    /// Length of the shortest span, m.
-    pub fn shortest_span(&self) -> f64 {
-        let spans = self.patch.spaces.iter().flat_map(|space| space.spans());
-        spans.map(|span| span.length()).fold(f64::INFINITY, smaller)
-    }
-
-    /// Whether a point may have moved a quarter of the smallest span since the last call that said so: the time to take
-    /// the critical step again.
-    pub fn critical_step_is_due(&mut self) -> bool {
-        let due = self.travelled >= 0.25 * self.shortest_span();
-        if due {
-            self.travelled = 0.0;
-        }
-        due
+    /// Whether a point may have moved a quarter of the shortest span since the critical step was taken.
+    pub(crate) fn has_moved(&self) -> bool {
+        self.travelled >= 0.25 * self.patch.shortest_span()
     }
 }

@@ -47,7 +47,7 @@ pub struct ImposedEnergy {
 
 impl NodalFields {
     /// Fields of zeros.
-    pub fn new(patch: &Patch, constraints: Constraints) -> Self {
+    pub(crate) fn new(patch: &Patch, constraints: Constraints) -> Self {
         let grid = patch.control_grid();
         let vectors = || [grid.zeros(), grid.zeros()];
         Self {
@@ -87,7 +87,7 @@ impl NodalFields {
     }
 
     /// Adds the weight of the control points.
-    pub fn add_gravity(&mut self, gravity: [f64; 2]) {
+    pub(crate) fn add_gravity(&mut self, gravity: [f64; 2]) {
         for component in (0..2).filter(|&c| gravity[c] != 0.0) {
             for (force, mass) in self.force[component].iter_mut().zip(&self.mass) {
                 *force += gravity[component] * fault!("gravity-without-mass", *mass => 1.0);
@@ -127,7 +127,7 @@ impl NodalFields {
     }
 
     /// `1/2 vᵀ M v` of a velocity field, J/m.
-    pub fn kinetic_energy(&self, velocity: &VectorField) -> f64 {
+    pub(crate) fn kinetic_energy(&self, velocity: &VectorField) -> f64 {
         let [x, y] = velocity;
         0.5 * self.mass.iter().zip(x.iter().zip(y)).map(|(m, (x, y))| m * (x * x + y * y)).sum::<f64>()
     }
@@ -139,7 +139,7 @@ impl NodalFields {
 
     /// Power of the present forces on the present velocities at control points that follow them: those that accelerate,
     /// and those that are held or driven, W/m.
-    pub fn power_followed(&self) -> f64 {
+    pub(crate) fn power_followed(&self) -> f64 {
         let mut power = 0.0;
         for component in 0..2 {
             let nodes = self.force[component].iter().zip(&self.velocity[component]).zip(&self.inverse_mass);
@@ -152,7 +152,7 @@ impl NodalFields {
     }
 
     /// Power of the present forces on a `motion`, less [`Self::power_followed`], W/m.
-    pub fn power_not_followed(&self, motion: &VectorField) -> f64 {
+    pub(crate) fn power_not_followed(&self, motion: &VectorField) -> f64 {
         let mut power = 0.0;
         for component in 0..2 {
             let nodes = self.force[component].iter().zip(&self.velocity[component]).zip(&self.inverse_mass);
@@ -170,7 +170,7 @@ impl NodalFields {
     }
 
     /// Values of a velocity field at the Greville points: exact control values of an affine field, of second order for others.
-    pub fn at_greville_points(&self, velocity: impl Fn([f64; 2]) -> [f64; 2]) -> VectorField {
+    pub(crate) fn at_greville_points(&self, velocity: impl Fn([f64; 2]) -> [f64; 2]) -> VectorField {
         let mut field = [self.grid.zeros(), self.grid.zeros()];
         for at in self.grid.indices() {
             [field[0][at], field[1][at]] = velocity(self.position(at));
@@ -179,12 +179,12 @@ impl NodalFields {
     }
 
     /// Imposes the prescribed velocities on a motion of the points.
-    pub fn constrain(&self, motion: &mut VectorField) {
+    pub(crate) fn constrain(&self, motion: &mut VectorField) {
         self.constraints.apply_velocity(motion);
     }
 
     /// Reaction times velocity of the driven control points, W/m.
-    pub fn power_of_driven_sides(&self) -> f64 {
+    pub(crate) fn power_of_driven_sides(&self) -> f64 {
         -self.constraints.iter().map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
     }
 

@@ -72,7 +72,7 @@ impl UpdatedFrame {
     ///
     /// # Errors
     /// If they do not.
-    pub fn contact_settles(&self, dt: f64) -> Result<(), Unsettled> {
+    pub(crate) fn contact_settles(&self, dt: f64) -> Result<(), Unsettled> {
         self.contact.as_ref().map_or(Ok(()), |contact| contact.settles(&views(&self.fields), self.coming_kick(dt)))
     }
 
@@ -109,7 +109,7 @@ impl UpdatedFrame {
     }
 
     /// Counters of the phase fields, if there are any.
-    pub fn phase_field_counts(&self) -> Option<PhaseFieldCounts> {
+    pub(crate) fn phase_field_counts(&self) -> Option<PhaseFieldCounts> {
         let counts = self.fields.iter().filter_map(|field| field.fracture.as_ref()).map(|f| f.field.counts());
         counts.reduce(|a, b| PhaseFieldCounts { solves: a.solves + b.solves, iterations: a.iterations + b.iterations })
     }
@@ -121,7 +121,7 @@ impl UpdatedFrame {
     }
 
     /// The point of a body that is turned inside out furthest, if one is; small strains know none.
-    pub fn inverted_point(&self) -> Option<InvertedPoint> {
+    pub(crate) fn inverted_point(&self) -> Option<InvertedPoint> {
         self.fields.iter().filter_map(DiscreteField::inverted_point).reduce(InvertedPoint::worse)
     }
 

@@ -2,6 +2,7 @@
 
 use super::UpdatedFrame;
 use super::field::DiscreteField;
+use crate::material::degradation::largest_principal;
 use crate::output::raster::Raster;
 use crate::particles::points::Point;
 
@@ -14,7 +15,7 @@ impl UpdatedFrame {
     ///
     /// Each point fills a square, a quarter larger than its volume so that no gaps are left between them. The stress is a mean
     /// over the points weighted with volume, and the phase field that of the body with the most of a pixel.
-    pub fn paint(&self, raster: &Raster) -> (Option<Vec<f64>>, Vec<f64>) {
+    pub(crate) fn paint(&self, raster: &Raster) -> (Option<Vec<f64>>, Vec<f64>) {
         let count = raster.pixels[0] * raster.pixels[1];
         let (mut covered, mut stress, mut most) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
         let mut phase = vec![f64::NAN; count];
@@ -47,8 +48,7 @@ impl DiscreteField {
         let mut stress = covered.clone();
         for point in &self.points {
             let half = 0.5 * FILL * point.volume.sqrt();
-            let [xx, yy, xy] = point.stress;
-            let principal = (0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)) / self.volume_ratio(point);
+            let principal = largest_principal(point.stress) / self.volume_ratio(point);
             raster.for_each_overlap(point.position.map(|x| [x - half, x + half]), |pixel, area| {
                 covered[pixel] += area;
                 stress[pixel] += area * principal;

@@ -17,7 +17,7 @@ const MARGIN: usize = 4;
 ///
 /// # Errors
 /// A point outside the patch.
-pub fn spans_around(whole: &Patch, points: &[Point]) -> Result<[Range<usize>; 2], OutsidePatch> {
+pub(crate) fn spans_around(whole: &Patch, points: &[Point]) -> Result<[Range<usize>; 2], OutsidePatch> {
     let mut ends = [[usize::MAX, 0]; 2];
     for point in points {
         for d in 0..2 {
@@ -32,12 +32,12 @@ pub fn spans_around(whole: &Patch, points: &[Point]) -> Result<[Range<usize>; 2]
 }
 
 /// First control column and row of a part.
-pub fn origin(whole: &Patch, spans: &[Range<usize>; 2]) -> [usize; 2] {
+pub(crate) fn origin(whole: &Patch, spans: &[Range<usize>; 2]) -> [usize; 2] {
     [0, 1].map(|d| whole.spaces[d].spans()[spans[d].start].first)
 }
 
 /// Conditions on those sides of the patch that a part reaches.
-pub fn constraints(whole: &Patch, part: &Patch, origin: [usize; 2], boundaries: &[Boundary]) -> Constraints {
+pub(crate) fn constraints(whole: &Patch, part: &Patch, origin: [usize; 2], boundaries: &[Boundary]) -> Constraints {
     let (whole, part) = (whole.control_grid(), part.control_grid());
     let reached = |side: Side| match side {
         Side::Left => origin[0] == 0,

@@ -15,7 +15,7 @@ use crate::splines::spline::MAX_FUNCTIONS;
 
 /// Points on a grid, and the lumped mass they give it.
 #[derive(Debug, Clone, Copy)]
-pub struct Smoothing<'a> {
+pub(crate) struct Smoothing<'a> {
     /// Background patch.
     pub patch: &'a Patch,
     /// Order of the points.
@@ -30,7 +30,7 @@ pub struct Smoothing<'a> {
 
 impl Smoothing<'_> {
     /// `out = S⁺ S field`; zero where there is no mass.
-    pub fn apply(&self, field: &VectorField, out: &mut VectorField) {
+    pub(crate) fn apply(&self, field: &VectorField, out: &mut VectorField) {
         let Self { patch, cells, points, density, mass } = *self;
         let grid = patch.control_grid();
         out.iter_mut().for_each(|component| component.fill(0.0));

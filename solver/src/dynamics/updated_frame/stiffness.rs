@@ -21,7 +21,7 @@ impl DiscreteField {
 
 /// `K x` on the components that accelerate, per unit thickness.
 #[derive(Debug)]
-pub struct Stiffness<'a> {
+pub(crate) struct Stiffness<'a> {
     frame: &'a DiscreteField,
     free: Vec<(usize, usize)>,
     masses: Vec<f64>,
@@ -31,7 +31,7 @@ pub struct Stiffness<'a> {
 
 impl<'a> Stiffness<'a> {
     /// Operator of the present grid of `frame`.
-    pub fn new(frame: &'a DiscreteField) -> Self {
+    pub(crate) fn new(frame: &'a DiscreteField) -> Self {
         let nodes = frame.nodes();
         let free = nodes.free();
         let masses = free.iter().map(|&(at, _)| nodes.mass[at]).collect();

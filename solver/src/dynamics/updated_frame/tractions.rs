@@ -11,7 +11,7 @@ use crate::splines::patch::Patch;
 
 /// A traction and the surface points that carry it.
 #[derive(Debug, Clone)]
-pub struct SurfaceLoad {
+pub(crate) struct SurfaceLoad {
     points: Vec<MovingSurfacePoint>,
     stress: [f64; 2],
     ramp: Option<f64>,
@@ -27,7 +27,7 @@ struct MovingSurfacePoint {
 
 impl SurfaceLoad {
     /// The surface points of a traction at t = 0.
-    pub fn new(patch: &Patch, body: &Body, traction: &Traction) -> Self {
+    pub(crate) fn new(patch: &Patch, body: &Body, traction: &Traction) -> Self {
         let points = surface_points(patch, body, &traction.edge).into_iter();
         let points =
             points.map(|p| MovingSurfacePoint { place: Follower::new(p.position), length: p.length }).collect();
@@ -35,12 +35,12 @@ impl SurfaceLoad {
     }
 
     /// Factor at a time (s): rises linearly over the ramp.
-    pub fn factor(&self, time: f64) -> f64 {
+    pub(crate) fn factor(&self, time: f64) -> f64 {
         fault!("ramp-forgotten", self.ramp => None).map_or(1.0, |ramp: f64| (time / ramp).clamp(0.0, 1.0))
     }
 
     /// Power of the full traction on the points during the last motion, W/m.
-    pub fn power(&self) -> f64 {
+    pub(crate) fn power(&self) -> f64 {
         self.power
     }
 
@@ -48,13 +48,13 @@ impl SurfaceLoad {
     ///
     /// # Errors
     /// A surface point with no material within one span of it.
-    pub fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), OutsidePatch> {
+    pub(crate) fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), OutsidePatch> {
         self.points.iter_mut().try_for_each(|point| point.place.attach(patch, &nodes.inverse_mass))
     }
 
     /// Position (m) of every control point that answers to the load, and its share of the length of the edge, m: once for each
     /// surface point.
-    pub fn shares<'a>(
+    pub(crate) fn shares<'a>(
         &'a self,
         patch: &'a Patch,
         nodes: &'a NodalFields,
@@ -71,7 +71,7 @@ impl SurfaceLoad {
     }
 
     /// Adds the nodal forces at a time, N/m.
-    pub fn add_forces(&self, patch: &Patch, grid: ControlGrid, time: f64, force: &mut [Vec<f64>; 2]) {
+    pub(crate) fn add_forces(&self, patch: &Patch, grid: ControlGrid, time: f64, force: &mut [Vec<f64>; 2]) {
         let factor = self.factor(time);
         for point in &self.points {
             point.place.for_each_function(patch, grid, |at, n| {
@@ -83,7 +83,7 @@ impl SurfaceLoad {
     }
 
     /// Moves the points with the grid over `dt` seconds and records the power.
-    pub fn move_points(&mut self, patch: &Patch, grid: ControlGrid, velocity: &[Vec<f64>; 2], dt: f64) {
+    pub(crate) fn move_points(&mut self, patch: &Patch, grid: ControlGrid, velocity: &[Vec<f64>; 2], dt: f64) {
         self.power = 0.0;
         for point in &mut self.points {
             let v = point.place.follow(patch, grid, velocity, dt);
@@ -102,7 +102,7 @@ impl SurfaceLoad {
     }
 
     /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         self.points.len() * size_of::<MovingSurfacePoint>()
     }
 }

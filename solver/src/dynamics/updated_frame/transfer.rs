@@ -259,7 +259,7 @@ pub fn contract(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 /// One number of each of at most eight points; zero in the lanes beyond.
 #[inline(always)]
-pub fn gather<T>(items: &[T], value: impl Fn(&T) -> f64) -> Lane {
+pub(crate) fn gather<T>(items: &[T], value: impl Fn(&T) -> f64) -> Lane {
     let mut lanes = Lane::ZERO;
     for (lane, item) in items.iter().enumerate() {
         lanes[lane] = value(item);

@@ -18,7 +18,7 @@ use crate::splines::patch::Patch;
 
 /// A forcing, and what it needs per point.
 #[derive(Debug, Clone)]
-pub struct VolumeForcing {
+pub(crate) struct VolumeForcing {
     forcing: Arc<dyn Forcing>,
     finite: bool,
     /// Load on each point now, in the order of the points.
@@ -31,13 +31,13 @@ pub struct VolumeForcing {
 
 impl VolumeForcing {
     /// Loads at a time, s.
-    pub fn new(forcing: Arc<dyn Forcing>, finite: bool, points: &[Point], time: f64) -> Self {
+    pub(crate) fn new(forcing: Arc<dyn Forcing>, finite: bool, points: &[Point], time: f64) -> Self {
         let loads = points.iter().map(|p| forcing.volume(p.reference(), time)).collect();
         Self { forcing, finite, loads, motion: vec![Default::default(); points.len()], powers: [0.0; 2] }
     }
 
     /// Records the motion the points are about to make, and the power of the present loads on it.
-    pub fn before_motion(&mut self, patch: &Patch, cells: &Cells, points: &[Point], velocity: &VectorField) {
+    pub(crate) fn before_motion(&mut self, patch: &Patch, cells: &Cells, points: &[Point], velocity: &VectorField) {
         let (loads, grid) = (&self.loads, patch.control_grid());
         let motion = cut(&mut self.motion, cells.strips.iter().map(|s| s.points.clone())).into_par_iter();
         let powers: Vec<f64> = motion
@@ -64,7 +64,7 @@ impl VolumeForcing {
     }
 
     /// Loads at the new time (s), and their power on the motion of `dt` seconds that was made.
-    pub fn after_motion(&mut self, points: &[Point], time: f64, dt: f64) {
+    pub(crate) fn after_motion(&mut self, points: &[Point], time: f64, dt: f64) {
         self.powers[1] = 0.0;
         for ((load, (v, gradient)), point) in self.loads.iter_mut().zip(&self.motion).zip(points) {
             *load = self.forcing.volume(point.reference(), time);
@@ -78,12 +78,12 @@ impl VolumeForcing {
     }
 
     /// Follows a new order of the points.
-    pub fn reorder(&mut self, cells: &Cells) {
+    pub(crate) fn reorder(&mut self, cells: &Cells) {
         cells.reorder(&mut self.loads);
     }
 
     /// Adds the nodal forces, N/m.
-    pub fn add_forces(&self, patch: &Patch, cells: &Cells, points: &[Point], force: &mut VectorField) {
+    pub(crate) fn add_forces(&self, patch: &Patch, cells: &Cells, points: &[Point], force: &mut VectorField) {
         let grid = patch.control_grid();
         scatter(&cells.strips, force.each_mut().map(|f| &mut f[..]), [grid.stride; 2], |strip, window| {
             let above = window.first_row * grid.stride;
@@ -100,12 +100,12 @@ impl VolumeForcing {
     }
 
     /// Powers of the old and of the new loads on the motion of the last step, W/m.
-    pub fn powers(&self) -> [f64; 2] {
+    pub(crate) fn powers(&self) -> [f64; 2] {
         self.powers
     }
 
     /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         self.loads.len() * size_of::<VolumeLoad>() + self.motion.len() * size_of::<([f64; 2], Gradient)>()
     }
 }

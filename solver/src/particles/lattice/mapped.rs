@@ -11,7 +11,7 @@ use crate::linear_algebra::lane::Lane;
 
 /// Points of a patch with a geometry.
 #[derive(Debug, Clone)]
-pub struct Mapping {
+pub(crate) struct Mapping {
     /// Weights of the control points, as a field.
     pub weights: Vec<f64>,
     /// One entry per batch.
@@ -27,7 +27,7 @@ impl Mapping {
 
 /// The weight function W and the geometry map at a batch of points.
 #[derive(Debug, Clone, Copy)]
-pub struct MappedPoint {
+pub(crate) struct MappedPoint {
     /// 1/W.
     pub inverse_weight: Lane,
     /// `∂W/∂ξ_d / W`.
@@ -48,7 +48,7 @@ impl MappedPoint {
 
     /// Value and physical gradient of a rational field from the sum `A` and its parametric slopes.
     #[inline(always)]
-    pub fn field(&self, sum: Lane, slopes: [Lane; 2]) -> (Lane, [Lane; 2]) {
+    pub(crate) fn field(&self, sum: Lane, slopes: [Lane; 2]) -> (Lane, [Lane; 2]) {
         let value = sum * self.inverse_weight;
         let [u, v] = [0, 1].map(|d| slopes[d] * self.inverse_weight - value * self.weight_slope[d]);
         let [ux, uy, vx, vy] = self.inverse_jacobian;
@@ -57,7 +57,7 @@ impl MappedPoint {
 
     /// The adjoint of [`Self::field`] for a force and a stress: factors of the spline and of its two parametric slopes.
     #[inline(always)]
-    pub fn adjoint(&self, force: Lane, [x, y]: [Lane; 2]) -> (Lane, [Lane; 2]) {
+    pub(crate) fn adjoint(&self, force: Lane, [x, y]: [Lane; 2]) -> (Lane, [Lane; 2]) {
         let [ux, uy, vx, vy] = self.inverse_jacobian;
         let [u, v] = [(x * ux + y * uy) * self.inverse_weight, (x * vx + y * vy) * self.inverse_weight];
         (force * self.inverse_weight - u * self.weight_slope[0] - v * self.weight_slope[1], [u, v])

@@ -39,6 +39,8 @@ impl NurbsPatch {
     ///
     /// The first direction is radial, linear on knots from 0 to 1; the second is angular, rational quadratic on knots from 0
     /// to 1, with one piece per quarter turn begun: arcs are exact circles. A full turn is a patch whose ends touch.
+    /// With inner radius zero it is a sector of a disc, whose edge `ξ = 0` is collapsed to the centre; points at the centre itself
+    /// cannot be located, since the Jacobian vanishes there.
     ///
     /// # Errors
     /// If not 0 ≤ inner < outer, or the angles do not grow or differ by more than a turn.
@@ -67,15 +69,6 @@ impl NurbsPatch {
             }
         }
         Self::new([1, 2], [&[0.0, 0.0, 1.0, 1.0], &knots], control_points, weights)
-    }
-
-    /// The sector of a disc: an annular sector of inner radius zero, whose edge `ξ = 0` is collapsed to the centre. Points
-    /// at the centre itself cannot be located, since the Jacobian vanishes there.
-    ///
-    /// # Errors
-    /// As [`Self::annular_sector`].
-    pub fn circle_sector(radius: f64, angles: [f64; 2]) -> Result<Self, NurbsError> {
-        Self::annular_sector(0.0, radius, angles)
     }
 
     /// The quarter of an annulus in the first quadrant, one exact rational quadratic piece.
@@ -133,9 +126,9 @@ mod tests {
         use NurbsError::{Angles, Radii, Rectangle};
         assert!(matches!(NurbsPatch::quarter_annulus(2.0, 1.0), Err(Radii { .. })));
         assert!(matches!(NurbsPatch::quarter_annulus(-1.0, 1.0), Err(Radii { .. })));
-        assert!(matches!(NurbsPatch::circle_sector(f64::NAN, [0.0, 1.0]), Err(Radii { .. })));
-        assert!(matches!(NurbsPatch::circle_sector(1.0, [1.0, 1.0]), Err(Angles { .. })));
-        assert!(matches!(NurbsPatch::circle_sector(1.0, [0.0, 7.0]), Err(Angles { .. })));
+        assert!(matches!(NurbsPatch::annular_sector(0.0, f64::NAN, [0.0, 1.0]), Err(Radii { .. })));
+        assert!(matches!(NurbsPatch::annular_sector(0.0, 1.0, [1.0, 1.0]), Err(Angles { .. })));
+        assert!(matches!(NurbsPatch::annular_sector(0.0, 1.0, [0.0, 7.0]), Err(Angles { .. })));
         let knots: &[f64] = &[0.0, 0.0, 1.0, 1.0];
         let flat = NurbsPatch::rectangle([1, 1], [knots, knots], [0.0, 1.0], [1.0, 1.0]);
         assert!(matches!(flat, Err(Rectangle { .. })));

@@ -8,7 +8,7 @@
 use super::{Form, LocateError, MapPoint, NurbsPatch};
 
 /// A point counts as on the patch if it is within this times [`NurbsPatch::size`] (and the round-off of its coordinates) of it.
-pub const INVERSION_TOLERANCE: f64 = 1e-12;
+pub(crate) const INVERSION_TOLERANCE: f64 = 1e-12;
 
 /// A determinant below this times the mean one is taken for a collapsed geometry.
 const COLLAPSED: f64 = 1e-13;
@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn the_collapsed_centre_of_a_sector_is_refused() {
-        let sector = NurbsPatch::circle_sector(1.0, [0.0, 1.0]).unwrap();
+        let sector = NurbsPatch::annular_sector(0.0, 1.0, [0.0, 1.0]).unwrap();
         assert!(matches!(sector.locate([0.0, 0.0], None), Err(LocateError::Folded { .. })));
         assert!(sector.locate([1e-3, 5e-4], None).is_ok());
     }

@@ -1,0 +1,192 @@
+//! The forms that other programs read: the schema of `results.json`, JUnit, benchmark dashboards, step summaries.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use fisura_reports::junit::render_junit;
+use fisura_reports::markdown::render_markdown;
+use fisura_reports::metrics::render_metrics;
+use fisura_verification::record::json_schema;
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+use serde_json::{Value, json};
+
+/// Size above which GitHub drops a step summary.
+const STEP_SUMMARY: usize = 1 << 20;
+
+fn results() -> Value {
+    serde_json::to_value(crate::fixture::results()).unwrap()
+}
+
+/// With `FISURA_BLESS=1` the file is written instead of compared.
+#[test]
+fn the_committed_schema_is_that_of_the_types() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../verification/schema/results.schema.json");
+    let text = serde_json::to_string_pretty(&json_schema()).unwrap() + "\n";
+    if std::env::var_os("FISURA_BLESS").is_some() {
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, &text).unwrap();
+    }
+    let committed = std::fs::read_to_string(&path).unwrap();
+    assert!(committed == text, "write it anew: FISURA_BLESS=1 cargo test -p fisura-reports --test forms");
+}
+
+#[test]
+fn results_follow_the_schema_and_others_do_not() {
+    let schema = jsonschema::validator_for(&json_schema()).unwrap();
+    let found: Vec<String> = schema.iter_errors(&results()).map(|e| e.to_string()).collect();
+    assert_eq!(found, Vec::<String>::new());
+    type Change = fn(&mut Value);
+    let wrong: [(&str, Change); 5] = [
+        ("another schema", |r| r["schema"] = json!("fisura.results/2")),
+        ("an unknown status", |r| r["records"][0]["status"] = json!("skipped")),
+        ("a value in words", |r| r["records"][0]["value"] = json!("4.02")),
+        ("a reference of no kind", |r| r["records"][0]["reference"]["kind"] = json!("rumour")),
+        ("no bounds table", |r| drop(r["records"][0].as_object_mut().unwrap().remove("accept"))),
+    ];
+    for (what, change) in wrong {
+        let mut value = results();
+        change(&mut value);
+        assert!(!schema.is_valid(&value), "{what}");
+    }
+}
+
+/// What the JUnit schema of Jenkins (`junit-10.xsd`) says of the elements in use: required attributes, further
+/// attributes, children.
+fn rules(element: &str) -> Option<(&'static [&'static str], &'static [&'static str], &'static [&'static str])> {
+    const COUNTS: &[&str] = &["name", "time", "tests", "failures", "errors", "skipped", "disabled"];
+    Some(match element {
+        "testsuites" => (&[], COUNTS, &["testsuite"]),
+        "testsuite" => (&["name"], COUNTS, &["properties", "testcase", "system-out", "system-err"]),
+        "testcase" => (
+            &["name"],
+            &["classname", "time", "assertions", "status"],
+            &["skipped", "error", "failure", "system-out", "system-err"],
+        ),
+        "failure" | "error" | "skipped" => (&[], &["type", "message"], &[]),
+        "system-out" => (&[], &[], &[]),
+        _ => return None,
+    })
+}
+
+/// Fails unless an element may stand where it does and has the attributes it must and may have; gives its counts.
+fn check_element(element: &BytesStart, parents: &[String]) -> String {
+    let name = String::from_utf8(element.name().as_ref().to_vec()).unwrap();
+    let (required, optional, _) = rules(&name).unwrap_or_else(|| panic!("unknown element {name}"));
+    match parents.last().and_then(|parent| rules(parent)) {
+        Some((_, _, children)) => assert!(children.contains(&name.as_str()), "{name} below {parents:?}"),
+        None => assert_eq!(name, "testsuites", "the root"),
+    }
+    let mut given = BTreeSet::new();
+    for attribute in element.attributes() {
+        let attribute = attribute.unwrap();
+        let key = String::from_utf8(attribute.key.as_ref().to_vec()).unwrap();
+        let value = String::from_utf8(attribute.value.to_vec()).unwrap();
+        assert!(required.contains(&key.as_str()) || optional.contains(&key.as_str()), "{key} of {name}");
+        match key.as_str() {
+            "time" => assert!(value.parse::<f64>().is_ok_and(|t| t >= 0.0), "{key}={value}"),
+            "tests" | "failures" | "errors" | "skipped" => assert!(value.parse::<u64>().is_ok(), "{key}={value}"),
+            _ => {}
+        }
+        given.insert(key);
+    }
+    assert!(required.iter().all(|key| given.contains(*key)), "{name} has {given:?}");
+    name
+}
+
+fn number(element: &BytesStart, key: &str) -> usize {
+    let attribute = element.try_get_attribute(key).unwrap().unwrap();
+    String::from_utf8(attribute.value.to_vec()).unwrap().parse().unwrap()
+}
+
+fn count(name: &str, found: &mut [usize; 4]) {
+    for (at, element) in [(1, "failure"), (2, "error"), (3, "skipped")] {
+        found[at] += usize::from(name == element);
+    }
+}
+
+/// Wall times that a JUnit file declares for its suites and for its cases.
+fn times(text: &str) -> [f64; 2] {
+    let of = |element: &str| -> f64 {
+        let start = format!("<{element} ");
+        let starts = text.split(&start).skip(1);
+        starts
+            .map(|rest| rest.split("time=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>().unwrap())
+            .sum()
+    };
+    ["testsuite", "testcase"].map(of)
+}
+
+#[test]
+fn the_time_of_a_study_is_counted_once() {
+    let mut set = crate::fixture::results();
+    let template = set.records[2].clone();
+    let record = |case: &str, variant: &str, wall_s: f64| {
+        let mut record = template.clone();
+        record.id = format!("energy/{case}/{variant}/closure");
+        record.case = case.to_string();
+        record.timing.wall_s = wall_s;
+        record
+    };
+    // a study of three variants timed as a whole, and a case of two runs timed one by one, with two checks each
+    set.records = ["p=1", "p=2", "p=3"].iter().map(|p| record("study", p, 30.5)).collect();
+    set.records.extend([("a", 2.0), ("a", 2.0), ("b", 4.0), ("b", 4.0)].map(|(run, wall)| record("scene", run, wall)));
+    assert_eq!(times(&render_junit(&set).unwrap()), [36.5, 36.5]);
+    set.records[0].timing.wall_s = 1e300;
+    assert!(render_junit(&set).is_ok());
+}
+
+#[test]
+fn junit_keeps_to_its_schema_and_counts_right() {
+    let text = render_junit(&crate::fixture::results()).unwrap();
+    let mut reader = Reader::from_str(&text);
+    let mut parents: Vec<String> = Vec::new();
+    let (mut declared, mut found) = ([0; 4], [0; 4]);
+    loop {
+        match reader.read_event().unwrap() {
+            Event::Start(element) => {
+                let name = check_element(&element, &parents);
+                if name == "testsuites" {
+                    declared[..3].copy_from_slice(&["tests", "failures", "errors"].map(|key| number(&element, key)));
+                }
+                if name == "testsuite" {
+                    declared[3] += number(&element, "skipped");
+                }
+                found[0] += usize::from(name == "testcase");
+                count(&name, &mut found);
+                parents.push(name);
+            }
+            Event::Empty(element) => {
+                let name = check_element(&element, &parents);
+                count(&name, &mut found);
+            }
+            Event::End(_) => drop(parents.pop()),
+            Event::Eof => break,
+            _ => {}
+        }
+    }
+    assert_eq!(declared, found);
+    assert_eq!(found, [13, 2, 1, 3], "records, failures, errors of the fixture, and what was not judged");
+}
+
+/// `customSmallerIsBetter` of github-action-benchmark.
+#[test]
+fn metrics_have_the_form_of_benchmark_dashboards() {
+    let metrics: Value = serde_json::from_str(&render_metrics(&crate::fixture::results()).unwrap()).unwrap();
+    let mut names = BTreeSet::new();
+    for metric in metrics.as_array().unwrap() {
+        assert!(metric["value"].as_f64().is_some_and(|v| v >= 0.0), "{metric}");
+        assert!(metric["unit"].is_string() && metric["range"].is_string(), "{metric}");
+        assert!(names.insert(metric["name"].as_str().unwrap().to_string()), "{metric} is there twice");
+    }
+    assert!(names.iter().any(|n| n.ends_with("wall time")) && names.iter().any(|n| n.ends_with("relative error")));
+}
+
+#[test]
+fn a_summary_fits_a_step_whatever_the_number_of_records() {
+    let mut set = crate::fixture::results();
+    set.records = std::iter::repeat_n(set.records, 2000).flatten().collect();
+    let text = render_markdown(&set);
+    assert!(text.len() <= STEP_SUMMARY && text.len() > STEP_SUMMARY / 2, "{} bytes", text.len());
+    assert!(text.contains("## Does not hold") && text.contains("more rows are left out"));
+}

@@ -1,0 +1,11 @@
+//! The tests of the reports from outside: one program, which is linked once.
+
+mod bench;
+mod browser;
+mod convergence;
+mod fixture;
+mod foreign;
+mod forms;
+mod gallery;
+mod render;
+mod vtk;

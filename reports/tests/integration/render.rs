@@ -1,0 +1,198 @@
+//! A folder of results is rendered as a whole: structure, bytes, and what happens when something is missing.
+
+use std::fs;
+use std::path::Path;
+
+use fisura_reports::{Rendered, ReportError};
+use fisura_verification::output::OutputFolder;
+use fisura_verification::record::{CurveStyle, Figure, FigureBody, ResultSet};
+use insta::assert_snapshot;
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    crate::fixture::write(folder.path());
+    folder
+}
+
+/// Renders results beside themselves.
+fn render(folder: &Path) -> Result<Rendered, ReportError> {
+    fisura_reports::render(folder, &OutputFolder::reopen(folder).unwrap())
+}
+
+fn read(folder: &Path, name: &str) -> String {
+    fs::read_to_string(folder.join(name)).unwrap()
+}
+
+/// Writes changed results into a folder.
+fn change(folder: &Path, edit: impl FnOnce(&mut ResultSet)) {
+    let mut results = crate::fixture::results();
+    edit(&mut results);
+    fs::write(folder.join("results.json"), serde_json::to_string(&results).unwrap()).unwrap();
+}
+
+fn curves(figure: &mut Figure) -> &mut Vec<fisura_verification::record::Curve> {
+    match &mut figure.body {
+        FigureBody::Chart { curves, .. } => curves,
+        FigureBody::Field { .. } => panic!("a field has no curves"),
+    }
+}
+
+/// Tags of a page that carry its structure, one per line.
+fn skeleton(html: &str) -> String {
+    let keep = |tag: &&str| {
+        let name = tag.split([' ', '>']).next().unwrap_or_default();
+        matches!(name, "title" | "h1" | "h2" | "h3" | "nav" | "section" | "figure" | "thead" | "svg" | "details")
+            || tag.contains(" id=\"check-")
+            || tag.starts_with("a ")
+    };
+    let short = |tag: &str| match tag.split_once("viewBox") {
+        Some((_, rest)) => format!("svg viewBox{}", rest.split(" font").next().unwrap_or_default()),
+        None => tag.split('\n').next().unwrap_or_default().to_string(),
+    };
+    html.split('<').filter(keep).map(short).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn machine_and_markdown_reports_keep_their_form() {
+    let folder = folder();
+    render(folder.path()).unwrap();
+    assert_snapshot!("summary", read(folder.path(), "summary.md"));
+    assert_snapshot!("junit", read(folder.path(), "junit.xml"));
+    assert_snapshot!("metrics", read(folder.path(), "metrics.json"));
+    assert_snapshot!("text", fisura_reports::text::render_text(&crate::fixture::results()));
+}
+
+#[test]
+fn the_page_keeps_its_structure() {
+    let folder = folder();
+    render(folder.path()).unwrap();
+    let page = read(folder.path(), "report.html");
+    assert_snapshot!("report", skeleton(&page));
+    assert!(!page.contains("<script") && !page.contains("src="), "the page needs nothing else");
+    assert!(page.contains("prefers-color-scheme: dark"));
+    assert!(page.contains("h → 0 &lt;extrapolated&gt;"), "text of records is escaped");
+    let rates = page.split("<table class=\"rates\">").nth(1).and_then(|t| t.split("</table>").next()).unwrap();
+    assert_eq!(rates.matches("<td><a href=\"#check-manufactured-bar-").count(), 4, "one row per order: {rates}");
+    assert_eq!(rates.matches("A manufactured bar").count(), 1, "the claim stands once per case");
+    for target in page.split("href=\"#").skip(1).map(|t| t.split('"').next().unwrap_or_default()) {
+        assert!(page.contains(&format!("id=\"{target}\"")), "#{target} leads nowhere");
+    }
+}
+
+#[test]
+fn two_renderings_are_the_same_bytes() {
+    let (first, second) = (folder(), folder());
+    let files = render(first.path()).unwrap().files;
+    assert_eq!(render(second.path()).unwrap().files, files);
+    render(second.path()).unwrap();
+    for file in &files {
+        assert_eq!(fs::read(first.path().join(file)).unwrap(), fs::read(second.path().join(file)).unwrap(), "{file:?}");
+    }
+    assert!(files.iter().any(|f| f.ends_with("timing/order.svg")));
+    let left =
+        fs::read_dir(first.path()).unwrap().filter(|e| e.as_ref().unwrap().path().extension() == Some("part".as_ref()));
+    assert_eq!(left.count(), 0, "no temporary file stays behind");
+}
+
+#[test]
+fn logarithmic_axes_have_clean_labels() {
+    let folder = folder();
+    render(folder.path()).unwrap();
+    let svg = read(folder.path(), "figures/timing/order.svg");
+    for label in ["10⁻⁶", "10⁻⁷", "0.05", "0.1"] {
+        assert!(svg.contains(&format!(">{label}</text>")), "{label} is missing in {svg}");
+    }
+    assert!(!svg.contains("99999"), "{svg}");
+}
+
+#[test]
+fn slopes_of_theory_and_floors_stand_in_the_chart() {
+    let folder = folder();
+    render(folder.path()).unwrap();
+    let svg = read(folder.path(), "figures/timing/order.svg");
+    assert!(svg.contains(">round-off</text>") && svg.contains(">3</text>"), "both are labelled: {svg}");
+    assert!(svg.contains("Slopes of theory: 3."), "and told to those who cannot see it");
+    let hollow = |svg: &str| svg.lines().filter(|l| l.starts_with("<circle")).count();
+    assert_eq!(hollow(&svg), 2 * 5 + 1, "four markers and the sample have a rim, the one below the floor a hole");
+}
+
+#[test]
+fn a_gap_in_the_numbers_is_a_gap_in_the_line() {
+    let folder = folder();
+    render(folder.path()).unwrap();
+    let svg = read(folder.path(), "figures/plate-elastic-energy.svg");
+    assert!(!svg.contains("NaN") && !svg.contains("nan"));
+    let solid = svg.split("stroke=\"#0072B2\"").skip(1).map(|rest| rest.split("/>").next().unwrap());
+    let pieces: usize = solid.map(|path| path.matches('m').count()).sum();
+    assert_eq!(pieces, 3, "two pieces and the sample in the legend");
+    let field = read(folder.path(), "figures/plate-phase-80us.svg");
+    assert!(field.contains("M1 7h9v1h-9z"), "the lower left pixel is outside the body: {field}");
+}
+
+#[test]
+fn an_added_reference_is_drawn_without_further_ado() {
+    let folder = folder();
+    change(folder.path(), |results| {
+        let curves = curves(&mut results.figures[0]);
+        let mut points = curves[1].clone();
+        points.label = "digitized points".to_string();
+        points.style = CurveStyle::Points;
+        curves.push(points);
+    });
+    render(folder.path()).unwrap();
+    assert!(read(folder.path(), "figures/plate-elastic-energy.svg").contains("digitized points"));
+}
+
+#[test]
+fn all_broken_figures_are_named_and_the_rest_is_written() {
+    let folder = folder();
+    change(folder.path(), |results| {
+        curves(&mut results.figures[0])[0].y = "plastic_j".to_string();
+        results.figures[1].id = "../outside".to_string();
+        curves(&mut results.figures[2])[0].series = "series/none.csv".to_string();
+    });
+    let error = render(folder.path()).unwrap_err().to_string();
+    for part in ["plastic_j", "time_s, elastic_j", "../outside", "series/none.csv", "3 figure(s)"] {
+        assert!(error.contains(part), "{part} is missing in {error}");
+    }
+    assert!(read(folder.path(), "report.html").contains("could not be drawn"));
+    assert!(folder.path().join("junit.xml").exists());
+}
+
+#[test]
+fn curves_without_a_drawable_row_and_ragged_rasters_are_errors() {
+    let folder = folder();
+    fs::write(folder.path().join("series/order.csv"), "h_m,error\n0.1,-1\n0.2,nan\n").unwrap();
+    fs::write(folder.path().join("series/phase.csv"), "x_m,y_m,value\n0,0,1\n").unwrap();
+    let error = render(folder.path()).unwrap_err();
+    let ReportError::Figures(broken) = &error else { panic!("{error}") };
+    assert_eq!(broken.len(), 2, "{error}");
+    assert!(error.to_string().contains("20 x 8") && error.to_string().contains("no drawable row"), "{error}");
+}
+
+#[test]
+fn another_schema_is_refused() {
+    let folder = folder();
+    change(folder.path(), |results| results.schema = "fisura.results/7".to_string());
+    let error = render(folder.path()).unwrap_err();
+    assert!(matches!(&error, ReportError::Schema { found, .. } if found == "fisura.results/7"), "{error}");
+    fs::write(folder.path().join("results.json"), "{\"schema\": ").unwrap();
+    assert!(matches!(render(folder.path()).unwrap_err(), ReportError::Results { .. }));
+    fs::remove_file(folder.path().join("results.json")).unwrap();
+    assert!(matches!(render(folder.path()).unwrap_err(), ReportError::File { .. }));
+}
+
+#[test]
+fn an_empty_result_set_is_no_success() {
+    let folder = folder();
+    change(folder.path(), |results| {
+        results.records.clear();
+        results.figures.clear();
+    });
+    let rendered = render(folder.path()).unwrap();
+    assert_eq!(
+        fisura_reports::text::render_text(&rendered.results).trim(),
+        "INFO: nothing was judged (0 pass, 0 fail, 0 errors, 0 info)"
+    );
+    assert!(read(folder.path(), "report.html").contains("Nothing was judged"));
+}

@@ -1,0 +1,192 @@
+//! A time step beyond the critical one breaks down in words; one below it lasts.
+
+use crate::common::{elastic_scene, notched_plate};
+use fisura::Simulation;
+use fisura::scene::*;
+use fisura::simulation::breakdown::Breakdown;
+
+/// The scene with a fixed step of `ratio` times its critical step, for `steps` steps.
+fn with_step(mut scene: Scene, ratio: f64, steps: usize) -> Scene {
+    let critical = Simulation::new(&scene).unwrap().plan().critical;
+    scene.analysis.time_step = TimeStep::Fixed(ratio * critical);
+    scene.analysis.end_time = ratio * critical * steps as f64;
+    scene
+}
+
+fn breakdown(scene: &Scene) -> Breakdown {
+    let mut simulation = Simulation::new(scene).unwrap();
+    assert!(simulation.warnings().iter().any(|w| w.contains("times the critical step")));
+    while !simulation.finished() {
+        match simulation.advance_to_next_sample() {
+            Err(breakdown) => return breakdown,
+            Ok(sample) => sample.named_values().into_iter().for_each(|(name, value)| {
+                assert!(value.is_finite() || name.starts_with("crack_tip"), "{name} is {value}");
+            }),
+        }
+    }
+    panic!("{} steps passed without a breakdown", simulation.steps());
+}
+
+fn moving(degree: usize) -> Scene {
+    let mut scene = elastic_scene(degree, [0.01, 0.005], [20, 10]);
+    scene.bodies[0].tractions = vec![Traction { edge: Edge::Side(Side::Right), stress: [1e6, 0.0], ramp: None }];
+    scene
+}
+
+fn check(name: &str, scene: &Scene) {
+    let found = breakdown(scene);
+    assert!(found.step > 0 && found.time.is_finite() && found.time > 0.0, "{name}: {found:?}");
+    assert!(scene.bodies[0].shape.contains(found.place), "{name}: {:?}", found.place);
+    assert!(found.cause.contains("times the critical step"), "{name}: {}", found.cause);
+    let text = found.to_string();
+    assert!(!text.contains("NaN") && text.contains(&format!("step {}", found.step)), "{text}");
+}
+
+#[test]
+fn beyond_the_critical_step_the_run_says_so() {
+    for degree in 1..=3 {
+        check(&format!("elastic, degree {degree}"), &with_step(moving(degree), 1.3, 2000));
+    }
+    check("far beyond", &with_step(moving(2), 10.0, 2000));
+    let mut spinning = elastic_scene(2, [0.01, 0.005], [20, 10]);
+    spinning.bodies[0].angular_velocity = 1e3;
+    check("spinning, without loads", &with_step(spinning, 1.3, 4000));
+    let mut driven = elastic_scene(2, [0.01, 0.005], [20, 10]);
+    driven.boundaries = vec![
+        Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] },
+        Boundary { side: Side::Right, fix: [true, false], velocity: [1.0, 0.0] },
+    ];
+    check("driven", &with_step(driven, 1.3, 2000));
+}
+
+#[test]
+fn below_the_critical_step_it_lasts() {
+    for degree in 1..=3 {
+        let mut simulation = Simulation::new(&with_step(moving(degree), 0.95, 2000)).unwrap();
+        assert!(simulation.warnings().is_empty(), "{:?}", simulation.warnings());
+        assert_eq!(simulation.plan().steps(), 2000);
+        while !simulation.finished() {
+            simulation.step().unwrap();
+        }
+        let sample = simulation.sample();
+        assert!(sample.closure.abs() <= 1e-11 * sample.largest_term(), "degree {degree}: {:e}", sample.closure);
+    }
+}
+
+/// The unstable mode of a fracturing body is torn apart by the phase field before its elastic energy has grown: at 1.3
+/// times the critical step this plate shatters (fracture energy 0.019 J to 0.071 J on 0.014 J of work); the ledger tells.
+#[test]
+fn beyond_the_critical_step_a_fracturing_body_says_so() {
+    check("fracture", &with_step(notched_plate(1e5), 1.3, 100));
+}
+
+/// The quadrature of a coarse step leaves the ledger open in the first steps under a hard pull: a warning, not the end.
+#[test]
+fn below_the_critical_step_an_open_ledger_is_a_warning() {
+    for samples in [1, 20, 100] {
+        let mut scene = with_step(notched_plate(2e7), 0.8, 100);
+        scene.output.samples = samples;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        while !simulation.finished() {
+            simulation.advance_to_next_sample().unwrap_or_else(|b| panic!("{samples} samples: {b}"));
+        }
+    }
+}
+
+/// A load no solid bears turns the body inside out, elastic or fracturing: the run ends at that step and says so instead of blaming
+/// the time step.
+#[test]
+fn a_body_turned_inside_out_is_named() {
+    let brittle_with = |split| Some(Fracture { split, ..crate::common::brittle() });
+    for fracture in [None, brittle_with(Split::Spectral), brittle_with(Split::None)] {
+        for frame in [Frame::Total, Frame::Updated] {
+            let mut scene = elastic_scene(2, [0.01, 0.005], [40, 20]);
+            scene.analysis.frame = frame;
+            scene.analysis.kinematics = Kinematics::Finite;
+            scene.materials.get_mut("glass").unwrap().fracture = fracture.clone();
+            scene.bodies[0].shape = crate::common::rectangle([0.003, 0.001], [0.007, 0.004]);
+            scene.bodies[0].tractions = vec![
+                Traction { edge: Edge::Side(Side::Right), stress: [-2e12, 0.0], ramp: None },
+                Traction { edge: Edge::Side(Side::Left), stress: [2e12, 0.0], ramp: None },
+            ];
+            let name = format!("{frame:?}, {fracture:?}");
+            let (simulation, found) = first_breakdown(&scene, &name);
+            assert!(found.what.contains("a material point is inverted, det F = -"), "{name}: {found}");
+            assert!(found.cause.contains("inside out"), "{name}: {found}");
+            assert!(found.step == simulation.steps() && found.point.is_some(), "{name}: {found:?}");
+            let inside = |d: usize| (0.0..=[0.01, 0.005][d]).contains(&found.place[d]);
+            assert!(inside(0) && inside(1), "{name}: {found}");
+        }
+    }
+}
+
+/// Steps up to the breakdown.
+fn first_breakdown(scene: &Scene, name: &str) -> (Simulation, Breakdown) {
+    let mut simulation = Simulation::new(scene).unwrap();
+    loop {
+        match simulation.step() {
+            Err(found) => return (simulation, found),
+            Ok(()) => assert!(!simulation.finished(), "{name}: the load was borne"),
+        }
+    }
+}
+
+/// Energies that overflow in a body of either kinematics and material: the run ends where the first number is none.
+#[test]
+fn no_number_that_is_not_finite_outlives_its_step() {
+    for kinematics in [Kinematics::Small, Kinematics::Finite] {
+        for frame in [Frame::Total, Frame::Updated] {
+            for mut scene in [notched_plate(1e308), crate::common::pulled_plate(1e308)] {
+                scene.bodies[0].tractions.iter_mut().for_each(|traction| traction.ramp = None);
+                (scene.analysis.frame, scene.analysis.kinematics) = (frame, kinematics);
+                let fractures = scene.materials["glass"].fracture.is_some();
+                let name = format!("{frame:?}, {kinematics:?}, fracture: {fractures}");
+                let (simulation, found) = first_breakdown(&scene, &name);
+                assert!(found.step == simulation.steps() && found.step <= 3, "{name}: {found}");
+                assert!(found.place.iter().all(|x| x.is_finite()), "{name}: {found}");
+                let named = ["not finite", "is not a number", "inverted"];
+                assert!(named.iter().any(|words| found.what.contains(words)), "{name}: {found}");
+            }
+        }
+    }
+}
+
+/// Constants whose products overflow have no critical step, which no minimum with other steps may hide.
+#[test]
+fn a_critical_step_that_is_no_number_is_refused() {
+    for frame in [Frame::Total, Frame::Updated] {
+        let mut scene = moving(2);
+        scene.analysis.frame = frame;
+        scene.materials.get_mut("glass").unwrap().young_modulus = f64::MAX;
+        let found = Simulation::new(&scene).unwrap_err();
+        assert!(found.what.contains("critical time step is not a number") && found.step == 0, "{frame:?}: {found}");
+    }
+}
+
+/// Loads so large that energies overflow: the step in which that begins says so at the point where it does, and does not blame the
+/// tolerance of the phase field, which is what met the numbers first.
+#[test]
+fn numbers_that_are_not_finite_are_named_where_they_begin() {
+    for frame in [Frame::Total, Frame::Updated] {
+        let mut scene = notched_plate(1e200);
+        scene.bodies[0].tractions[1].ramp = None;
+        scene.analysis.frame = frame;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let found = loop {
+            match simulation.step() {
+                Err(found) => break found,
+                Ok(()) => assert!(simulation.steps() < 5, "{frame:?}: the load was borne"),
+            }
+        };
+        let text = format!("{frame:?}: {found}");
+        assert!(found.step == simulation.steps() && found.step <= 3, "{text}");
+        assert!(found.place.iter().all(|x| x.is_finite()), "{text}");
+        assert!(!text.contains("tolerance") && !text.contains("enlarge mesh.size"), "{text}");
+        assert!(found.cause.contains("extreme loads"), "{text}");
+        let inspection = simulation.inspect();
+        assert!(inspection.not_finite > 0 || inspection.largest_strain > 1e3, "{text}: {inspection:?}");
+        assert_eq!(inspection.points, 3200);
+        let worst = &inspection.worst[0];
+        assert!(found.point.is_none_or(|point| point == worst.point && found.place == worst.position), "{text}");
+    }
+}

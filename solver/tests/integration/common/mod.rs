@@ -1,0 +1,256 @@
+//! Scenes and small helpers that several tests share.
+
+pub mod plain_points;
+pub mod standing_wave;
+
+use fisura::Simulation;
+use fisura::dynamics::energy::Sample;
+use fisura::linear_algebra::control_grid::ControlGrid;
+use fisura::material::degradation::FractureModel;
+use fisura::material::elasticity::ElasticModuli;
+use fisura::scene::*;
+use fisura::splines::nurbs::NurbsPatch;
+use fisura::splines::spline::SplineSpace;
+
+pub fn glass() -> Material {
+    Material { young_modulus: 32e9, poisson_ratio: 0.2, density: 2450.0, fracture: None }
+}
+
+pub fn brittle() -> Fracture {
+    Fracture {
+        critical_energy_release_rate: 3.0,
+        length_scale: 0.25e-3,
+        residual_stiffness: 0.0,
+        split: Split::Spectral,
+    }
+}
+
+pub fn moduli() -> ElasticModuli {
+    ElasticModuli::new(&glass(), Plane::Strain)
+}
+
+pub fn fracture_model() -> FractureModel {
+    FractureModel::new(&brittle())
+}
+
+pub fn rectangle(min: [f64; 2], max: [f64; 2]) -> Shape {
+    Shape::Rectangle { min, max }
+}
+
+/// A body at rest of Gauss points.
+pub fn body(shape: Shape, points: [usize; 2]) -> Body {
+    Body {
+        name: "body".into(),
+        material: "glass".into(),
+        shape,
+        particles_per_cell: points,
+        layout: Layout::Gauss,
+        velocity: [0.0; 2],
+        angular_velocity: 0.0,
+        rigid: false,
+        tractions: vec![],
+        cracks: vec![],
+    }
+}
+
+/// A glass rectangle that fills its mesh from the origin to `size`, free on all sides.
+pub fn elastic_scene(degree: usize, size: [f64; 2], cells: [usize; 2]) -> Scene {
+    Scene {
+        title: String::new(),
+        mesh: Mesh::uniform([degree; 2], [0.0; 2], size, cells),
+        analysis: Analysis {
+            plane: Plane::Strain,
+            thickness: 1.0,
+            frame: Frame::Total,
+            kinematics: Kinematics::Small,
+            end_time: 5e-6,
+            time_step: TimeStep::Auto,
+            safety: 0.8,
+            transfer: Transfer::Flip,
+            mass: Mass::Lumped,
+            gravity: [0.0; 2],
+        },
+        solver: SolverSettings {
+            phase_field_tolerance: 1e-10,
+            phase_field_solver: PhaseFieldSolver::ConjugateGradients,
+        },
+        materials: [("glass".to_string(), glass())].into(),
+        bodies: vec![body(rectangle([0.0; 2], size), [degree.max(2); 2])],
+        contact: None,
+        boundaries: vec![],
+        output: Output { samples: 10, frames: vec![] },
+    }
+}
+
+/// A solid of unit modulus and density.
+pub fn unit_solid() -> Material {
+    Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None }
+}
+
+/// A free body of a material called `solid` in the updated frame, with FLIP, at half the critical step, for 1 s.
+pub fn updated_scene(material: Material, mesh: Mesh, shape: Shape) -> Scene {
+    let mut scene = elastic_scene(mesh.degree[0], [1.0; 2], [1; 2]);
+    scene.materials = [("solid".to_string(), material)].into();
+    scene.bodies[0].material = "solid".into();
+    scene.bodies[0].shape = shape;
+    scene.mesh = mesh;
+    scene.analysis.frame = Frame::Updated;
+    scene.analysis.end_time = 1.0;
+    scene.analysis.safety = 0.5;
+    scene
+}
+
+/// A plate of 10 mm by 5 mm with spans of l0, pulled open by `stress` (Pa); an elastic one.
+pub fn pulled_plate(stress: f64) -> Scene {
+    let mut scene = elastic_scene(2, [0.01, 0.005], [40, 20]);
+    let pull = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: Some(1e-6) };
+    scene.bodies[0].tractions = vec![pull(Side::Top, stress), pull(Side::Bottom, -stress)];
+    scene
+}
+
+/// The plate, brittle and with a crack of 4 mm from its left side.
+pub fn notched_plate(stress: f64) -> Scene {
+    let mut scene = pulled_plate(stress);
+    scene.materials.get_mut("glass").unwrap().fracture = Some(brittle());
+    scene.bodies[0].cracks = vec![Crack { from: [0.0, 0.0025], to: [0.004, 0.0025], half_width: Some(0.25e-3) }];
+    scene
+}
+
+/// Runs a scene; its samples from t = 0 on.
+pub fn run(scene: &Scene) -> (Simulation, Vec<Sample>) {
+    let mut simulation = Simulation::new(scene).expect("the scene starts");
+    let mut samples = vec![simulation.sample()];
+    while !simulation.finished() {
+        samples.push(simulation.advance_to_next_sample().expect("the scene runs"));
+    }
+    (simulation, samples)
+}
+
+/// Largest closure over the largest energy of a run; not a number if one closure is not.
+pub fn relative_closure(samples: &[Sample]) -> f64 {
+    let largest = |of: fn(&Sample) -> f64| samples.iter().map(of).max_by(f64::total_cmp).expect("samples");
+    largest(|s| s.closure.abs()) / largest(Sample::largest_term)
+}
+
+/// Runs `f` in a pool of its own.
+pub fn with_threads<T: Send>(threads: usize, f: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool").install(f)
+}
+
+/// Numbers in [−1, 1), the same for the same seed.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed ^ 0x9e37_79b9_7f4a_7c15)
+    }
+
+    pub fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// A field on the control points.
+    pub fn field(&mut self, grid: ControlGrid, scale: f64) -> Vec<f64> {
+        let mut field = grid.zeros();
+        for at in grid.indices() {
+            field[at] = scale * self.next();
+        }
+        field
+    }
+}
+
+/// An open knot vector with spans of ratio 1.3 and the knots of `repeated` doubled.
+pub fn graded_knots(degree: usize, spans: usize, repeated: &[usize]) -> Vec<f64> {
+    let mut knots = vec![0.0; degree + 1];
+    let (mut x, mut length) = (0.0, 0.1);
+    for span in 1..=spans {
+        x += length;
+        length *= if span.is_multiple_of(7) { 0.4 } else { 1.3 };
+        let times = if span == spans {
+            degree + 1
+        } else if repeated.contains(&span) {
+            degree.min(2)
+        } else {
+            1
+        };
+        knots.extend(std::iter::repeat_n(x, times));
+    }
+    knots
+}
+
+/// An open knot vector from 0 to 1 whose spans differ by up to a factor of 100; every third inner knot is repeated.
+pub fn random_knots(random: &mut Random, degree: usize, spans: usize) -> Vec<f64> {
+    let lengths: Vec<f64> = (0..spans).map(|_| 10f64.powf(1.0 + random.next())).collect();
+    let total: f64 = lengths.iter().sum();
+    let mut knots = vec![0.0; degree + 1];
+    let mut sum = 0.0;
+    for (n, length) in lengths[..spans - 1].iter().enumerate() {
+        sum += length / total;
+        knots.extend(vec![sum; if n % 3 == 2 { degree.min(2) } else { 1 }]);
+    }
+    knots.extend(vec![1.0; degree + 1]);
+    knots
+}
+
+/// A bent square of about 1 m on random knots with weights from 0.1 to 10; bend and weights are tamed until neither it nor
+/// its halves are folded.
+pub fn random_patch(degree: [usize; 2], spans: [usize; 2], seed: u64) -> NurbsPatch {
+    let mut random = Random::new(seed);
+    let knots = [0, 1].map(|d| random_knots(&mut random, degree[d], spans[d]));
+    let [gx, gy] = [0, 1].map(|d| SplineSpace::new(degree[d], &knots[d]).greville());
+    let logarithms: Vec<f64> = (0..gx.len() * gy.len()).map(|_| random.next()).collect();
+    for tame in [1.0, 0.5, 0.25, 0.1] {
+        let bend = |u: f64, v: f64| [u + 0.3 * tame * v * v, v + 0.4 * tame * u * (1.0 - u) + 0.2 * tame * u * v];
+        let control = gy.iter().flat_map(|&v| gx.iter().map(move |&u| bend(u, v))).collect();
+        let weights = logarithms.iter().map(|log| 10f64.powf(tame * log)).collect();
+        if let Ok(patch) = NurbsPatch::new(degree, [&knots[0], &knots[1]], control, weights)
+            && patch.subdivide(2).is_ok()
+        {
+            return patch;
+        }
+    }
+    panic!("seed {seed} folds")
+}
+
+/// A biquadratic square with curved sides, raised to `degree` and cut into `parts` per direction; polynomial.
+pub fn bent_patch(degree: usize, parts: usize) -> NurbsPatch {
+    let piece: &[f64] = &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+    let points = [
+        [0.0, 0.0],
+        [0.5, 0.15],
+        [1.0, 0.0],
+        [-0.1, 0.4],
+        [0.55, 0.45],
+        [1.15, 0.35],
+        [0.1, 0.8],
+        [0.5, 0.7],
+        [1.0, 0.9],
+    ];
+    let mut patch = NurbsPatch::new([2, 2], [piece, piece], points.to_vec(), vec![1.0; 9]).expect("not folded");
+    for direction in 0..2 {
+        while patch.spaces()[direction].degree() < degree {
+            patch = patch.elevate(direction).expect("degree up to 4");
+        }
+    }
+    patch.subdivide(parts).expect("not folded")
+}
+
+/// The quarter annulus with radii 1 and 2, of `degree` in both directions and `parts` spans per direction.
+pub fn annulus(degree: usize, parts: usize) -> NurbsPatch {
+    let mut patch = NurbsPatch::quarter_annulus(1.0, 2.0).expect("growing radii");
+    for direction in 0..2 {
+        while patch.spaces()[direction].degree() < degree {
+            patch = patch.elevate(direction).expect("degree up to 4");
+        }
+    }
+    patch.subdivide(parts).expect("not folded")
+}
+
+/// A general patch as a scene: a glass body that is all of it, `points` per span and direction.
+pub fn patch_scene(patch: &NurbsPatch, points: usize) -> Scene {
+    let mut scene = elastic_scene(1, [1.0; 2], [1; 2]);
+    scene.mesh = Mesh::of(patch);
+    scene.bodies[0] = body(Shape::Patch, [points; 2]);
+    scene
+}

@@ -1,0 +1,87 @@
+//! The same bits for any number of threads, and for every repetition.
+
+use crate::common::{notched_plate, pulled_plate, run, with_threads};
+use fisura::scene::*;
+
+/// Every value of every sample, and the final displacements, as bits.
+fn bits(scene: &Scene) -> Vec<u64> {
+    let (simulation, samples) = run(scene);
+    let rows = samples.iter().flat_map(|s| s.named_values()).map(|(_, value)| value.to_bits());
+    let fields: Vec<u64> = match simulation.updated_frame() {
+        Some(frame) => frame.fields()[0].points().iter().flat_map(|p| p.position).map(f64::to_bits).collect(),
+        None => simulation.total_frame().unwrap().displacement().iter().flatten().map(|u| u.to_bits()).collect(),
+    };
+    rows.chain(fields).collect()
+}
+
+fn check(scene: &Scene) {
+    let one = with_threads(1, || bits(scene));
+    for threads in [1, 2, 2, 3] {
+        let other = with_threads(threads, || bits(scene));
+        let differ = one.iter().zip(&other).filter(|(a, b)| a != b).count();
+        assert!(one == other, "{threads} threads: {differ} of {} values differ", one.len());
+    }
+}
+
+/// A mesh with several strips, chunks and blocks of rows.
+fn tall(mut scene: Scene) -> Scene {
+    scene.mesh = Mesh::uniform([2; 2], [0.0; 2], [0.01, 0.005], [30, 90]);
+    scene.analysis.end_time = 1.5e-6;
+    scene
+}
+
+#[test]
+fn elastic() {
+    check(&tall(pulled_plate(1e6)));
+}
+
+#[test]
+fn fracture() {
+    check(&tall(notched_plate(6e6)));
+}
+
+#[test]
+fn fracture_with_the_direct_solver() {
+    let mut scene = tall(notched_plate(6e6));
+    scene.solver.phase_field_solver = PhaseFieldSolver::Cholesky;
+    scene.analysis.end_time = 0.3e-6;
+    check(&scene);
+}
+
+#[test]
+fn updated_frame() {
+    let mut scene = tall(notched_plate(6e6));
+    scene.mesh = Mesh::uniform([2; 2], [-0.001; 2], [0.012, 0.007], [36, 84]);
+    scene.analysis.frame = Frame::Updated;
+    scene.analysis.safety = 0.5;
+    scene.analysis.end_time = 0.5e-6;
+    check(&scene);
+}
+
+#[test]
+fn bodies_in_contact() {
+    let mut scene = updated_scene_of_two();
+    scene.analysis.transfer = Transfer::Apic;
+    check(&scene);
+}
+
+/// Two brittle discs in collision.
+fn updated_scene_of_two() -> Scene {
+    let mut scene = notched_plate(1e6);
+    scene.mesh = Mesh::uniform([2; 2], [0.0; 2], [0.02, 0.01], [80, 40]);
+    let disc = |name: &str, x: f64, speed: f64| Body {
+        name: name.into(),
+        shape: Shape::Disk { center: [x, 0.005], radius: 0.004 },
+        velocity: [speed, 0.0],
+        cracks: vec![],
+        tractions: vec![],
+        ..scene.bodies[0].clone()
+    };
+    scene.bodies = vec![disc("left", 0.006, 20.0), disc("right", 0.014, -20.0)];
+    scene.boundaries.clear();
+    scene.contact = Some(Contact { friction: 0.2 });
+    scene.analysis.frame = Frame::Updated;
+    scene.analysis.kinematics = Kinematics::Finite;
+    scene.analysis.end_time = 3e-6;
+    scene
+}

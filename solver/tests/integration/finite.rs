@@ -1,0 +1,153 @@
+//! Finite kinematics in the updated frame: rotations, the small-strain limit, the spinning disc.
+
+use std::f64::consts::TAU;
+
+use crate::common::{unit_solid, updated_scene};
+use fisura::dynamics::updated_frame::UpdatedFrame;
+use fisura::linear_algebra::extremes::larger;
+use fisura::scene::*;
+use fisura::simulation::Simulation;
+
+/// A body of modulus and density 1 on a square mesh of equal spans.
+fn scene(degree: usize, side: f64, cells: usize, shape: Shape, kinematics: Kinematics) -> Scene {
+    let mesh = Mesh::uniform([degree; 2], [-0.5 * side; 2], [side; 2], [cells; 2]);
+    let mut scene = updated_scene(unit_solid(), mesh, shape);
+    scene.bodies[0].particles_per_cell = [degree + 1; 2];
+    scene.analysis.plane = Plane::Stress;
+    scene.analysis.kinematics = kinematics;
+    scene.analysis.transfer = Transfer::Apic;
+    scene.output.samples = 200;
+    scene
+}
+
+fn block() -> Shape {
+    Shape::Rectangle { min: [-0.21, 0.05], max: [0.34, 0.33] }
+}
+
+/// Largest strain after a revolution in `steps` increments, each applied exactly.
+fn strain_of_a_revolution(degree: usize, steps: usize, kinematics: Kinematics) -> f64 {
+    let mut frame = UpdatedFrame::new(&scene(degree, 1.2, 12, block(), kinematics)).unwrap();
+    let (s, c) = (TAU / steps as f64).sin_cos();
+    for _ in 0..steps {
+        frame.prescribe_motion(|[x, y]| [(c - 1.0) * x - s * y, s * x + (c - 1.0) * y], 1.0).unwrap();
+    }
+    for point in frame.fields()[0].points() {
+        let u = point.displacement;
+        assert!(u[0].hypot(u[1]) <= 1e-12, "not back by {u:?}");
+    }
+    frame.fields()[0].points().iter().flat_map(|p| p.strain).fold(0.0, |a, e| larger(a, e.abs()))
+}
+
+#[test]
+fn rotations_leave_no_hencky_strain_and_a_known_linear_one() {
+    for degree in [2, 3] {
+        let finite = strain_of_a_revolution(degree, 1000, Kinematics::Finite);
+        let small = strain_of_a_revolution(degree, 1000, Kinematics::Small);
+        // Each increment adds cos θ − 1 to both normal strains.
+        let expected = 1000.0 * (1.0 - (TAU / 1000.0).cos());
+        println!("p = {degree}: finite {finite:.1e}, small {small:.6} of {expected:.6}");
+        assert!(finite <= 1e-10, "p = {degree}: {finite:e}");
+        assert!((small - expected).abs() <= 1e-12, "p = {degree}: {small} instead of {expected}");
+    }
+}
+
+#[test]
+fn the_deformation_gradient_takes_memory_only_where_it_is_used() {
+    let bytes = |kinematics| {
+        let simulation = Simulation::new(&scene(2, 1.2, 12, block(), kinematics)).unwrap();
+        (simulation.extent().mechanics_bytes, simulation.extent().particles)
+    };
+    let ((small, points), (finite, _)) = (bytes(Kinematics::Small), bytes(Kinematics::Finite));
+    assert_eq!(finite - small, 32 * points);
+}
+
+#[test]
+fn a_cracking_body_cracks_as_with_small_strains_and_its_ledger_is_as_open() {
+    let run = |kinematics| {
+        let shape = Shape::Rectangle { min: [-0.5, -0.4], max: [0.5, 0.4] };
+        let mut scene = scene(2, 1.2, 24, shape, kinematics);
+        scene.materials.get_mut("solid").unwrap().fracture = Some(Fracture {
+            critical_energy_release_rate: 1e-4,
+            length_scale: 0.05,
+            residual_stiffness: 0.0,
+            split: Split::Spectral,
+        });
+        let pull = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: Some(0.2) };
+        scene.bodies[0].tractions = vec![pull(Side::Top, 5e-3), pull(Side::Bottom, -5e-3)];
+        scene.bodies[0].cracks = vec![Crack { from: [-0.5, 0.0], to: [0.0, 0.0], half_width: None }];
+        scene.analysis.end_time = 0.8;
+        scene.output.samples = 8;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let start = simulation.sample().fracture.unwrap().energy;
+        let (mut closure, mut largest) = (0.0_f64, 0.0_f64);
+        while !simulation.finished() {
+            let sample = simulation.advance_to_next_sample().unwrap();
+            (closure, largest) = (larger(closure, sample.closure.abs()), larger(largest, sample.largest_term()));
+        }
+        [simulation.sample().fracture.unwrap().energy - start, closure / largest]
+    };
+    let ([small, least], [finite, closure]) = (run(Kinematics::Small), run(Kinematics::Finite));
+    println!("fracture energy {small:.4e} (small), {finite:.4e} (finite), closure {closure:.1e}");
+    // At h = l0 with a body that moves by a tenth of a span the ledger is open by 2 % of the seeded energy with either
+    // kinematics, so the cause is not theirs; energy of the phase field at moving points is not booked.
+    assert!((closure - least).abs() <= 1e-3, "closure {closure:e}, with small strains {least:e}");
+    assert!(small > 1e-7 && (finite / small - 1.0).abs() <= 0.05, "{finite:e} against {small:e}");
+}
+
+#[test]
+fn small_motions_are_those_of_small_strains() {
+    let end = |kinematics| {
+        let mut scene = scene(2, 1.2, 12, block(), kinematics);
+        let pull = Traction { edge: Edge::Side(Side::Right), stress: [1e-9, 2e-9], ramp: Some(0.5) };
+        scene.bodies[0].tractions = vec![pull];
+        let mut frame = UpdatedFrame::new(&scene).unwrap();
+        (0..100).for_each(|_| frame.step(0.02).unwrap());
+        frame.fields()[0].points().to_vec()
+    };
+    let (small, finite) = (end(Kinematics::Small), end(Kinematics::Finite));
+    let largest = small.iter().flat_map(|p| p.strain).fold(0.0_f64, |a, e| larger(a, e.abs()));
+    let apart = small.iter().zip(&finite).flat_map(|(a, b)| [0, 1, 2].map(|i| (a.strain[i] - b.strain[i]).abs()));
+    let apart = apart.fold(0.0, larger);
+    assert!(largest > 1e-10 && apart <= 10.0 * largest * largest + 1e-13 * largest, "{apart:e} of {largest:e}");
+}
+
+/// Mean stress near the centre of a free disc set spinning, over the closed form, and the relative change of the angular
+/// momentum. The disc breathes undamped about the steady state; the smooth window takes the mean over many breaths.
+fn spinning_disc(degree: usize, cells: usize, transfer: Transfer) -> [f64; 2] {
+    let (omega, end) = (0.05, 40.0);
+    let mut scene = scene(degree, 2.5, cells, Shape::Disk { center: [0.0; 2], radius: 1.0 }, Kinematics::Finite);
+    scene.bodies[0].angular_velocity = omega;
+    scene.analysis.transfer = transfer;
+    scene.analysis.safety = 0.8;
+    scene.analysis.end_time = end;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let first = simulation.sample();
+    let (mut sum, mut weights) = (0.0, 0.0);
+    while !simulation.finished() {
+        let sample = simulation.advance_to_next_sample().unwrap();
+        assert!(sample.closure.abs() <= 1e-4 * sample.largest_term(), "closure {:e}", sample.closure);
+        let weight = (TAU / 2.0 * sample.time / end).sin().powi(2);
+        for point in simulation.updated_frame().unwrap().fields()[0].points() {
+            let [x, y] = point.position;
+            if x.hypot(y) < 0.15 {
+                // Mean of radial and hoop stress at radius r, whose first term is the stress at the centre.
+                let exact = omega * omega / 8.0 * (3.0 + 0.3 - (2.0 + 2.0 * 0.3) * (x * x + y * y));
+                sum += weight * point.volume * 0.5 * (point.stress[0] + point.stress[1]) / exact;
+                weights += weight * point.volume;
+            }
+        }
+    }
+    [sum / weights, simulation.sample().angular_momentum / first.angular_momentum - 1.0]
+}
+
+#[test]
+fn a_free_spinning_disc_has_the_stress_of_the_closed_form_at_its_centre() {
+    for (degree, cells) in [(2, 16), (2, 24), (3, 16), (3, 24)] {
+        for transfer in [Transfer::Apic, Transfer::Tpic] {
+            let [stress, spin] = spinning_disc(degree, cells, transfer);
+            println!("{transfer:?}, p = {degree}, {cells}² spans: stress {stress:.4}, angular momentum {spin:.1e}");
+            assert!((stress - 1.0).abs() <= 0.01, "{transfer:?}, p = {degree}, {cells}: {stress} of the closed form");
+            assert!(spin.abs() <= 2e-6, "{transfer:?}, p = {degree}, {cells}: angular momentum changed by {spin:e}");
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! The tests of the solver from outside: one program, which is linked once.
+
+mod absent_physics;
+mod assembly;
+mod boundary_points;
+mod breakdown;
+mod checkpoint;
+mod common;
+mod consistent_mass;
+mod contact;
+mod contact_limits;
+mod critical_step;
+mod determinism;
+mod fictitious;
+mod finite;
+mod folds;
+mod ledger;
+mod linear_solvers;
+mod loads;
+mod mapped;
+mod mapped_runs;
+mod nurbs;
+mod points_and_spans;
+mod rooms;
+mod seeds;
+mod split;
+mod sweep;
+mod total_finite;
+mod transfer_losses;
+mod transfers;
+mod updated_frame;
