@@ -20,7 +20,7 @@ use fisura::scene::Scene;
 use fisura::scene::error::SceneError;
 use fisura::validate::validate;
 
-pub use diagnostic::{Location, Problem, SceneDiagnostic, SceneFileError};
+pub use diagnostic::{Location, Problem, SceneDiagnostic, SceneFileError, Severity};
 pub use document::{Document, Node, Value};
 pub use read::{SCENE_KEYS, read_scene};
 

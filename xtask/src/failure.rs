@@ -1,13 +1,11 @@
 //! Errors and warnings as they are shown: with source excerpts on a terminal, one line each elsewhere.
 
-use std::fmt;
-
+use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
 use fisura::simulation::breakdown::Breakdown;
 use fisura_reports::ReportError;
 use fisura_verification::foreign::text;
 use fisura_verification::output::OutputError;
-use fisura_verification::scene_file::{SceneDiagnostic, SceneFile, SceneFileError};
-use miette::{Diagnostic, LabeledSpan, MietteDiagnostic, MietteHandler, MietteHandlerOpts, ReportHandler, Severity};
+use fisura_verification::scene_file::{SceneDiagnostic, SceneFile, SceneFileError, Severity};
 
 use crate::console;
 use crate::exit::Exit;
@@ -82,11 +80,8 @@ impl Failure {
         match self {
             Self::SceneFile(error) => error.diagnostics.iter().map(|d| render(d, graphical)).collect(),
             Self::Other { message, help, .. } if graphical => {
-                let diagnostic = MietteDiagnostic::new(text(message));
-                picture(&match help {
-                    Some(help) => diagnostic.with_help(text(help)),
-                    None => diagnostic,
-                })
+                let help = help.as_ref().map(|help| text(help).into_owned());
+                picture(Level::ERROR, &text(message), help.as_ref(), None)
             }
             Self::Other { message, help, .. } => {
                 let help = help.as_ref().map(|h| format!("  help: {h}\n")).unwrap_or_default();
@@ -129,54 +124,29 @@ impl From<ReportError> for Failure {
 /// One finding in a file: `error: file:line:column: key: message; remedy`, or with the excerpt around it.
 pub fn render(diagnostic: &SceneDiagnostic, graphical: bool) -> String {
     if graphical {
-        return picture(&Excerpt(diagnostic.for_terminal()));
+        return excerpt(&diagnostic.for_terminal());
     }
     let word = if diagnostic.severity == Severity::Error { "error" } else { "warning" };
     format!("{word}: {diagnostic}\n")
 }
 
-/// A finding whose place is told by its excerpt and whose remedy by its help, and not once more in its title.
-#[derive(Debug)]
-struct Excerpt(SceneDiagnostic);
-
-impl fmt::Display for Excerpt {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let SceneDiagnostic { file, line, column, key, message, .. } = &self.0;
-        write!(f, "{file}:{line}:{column}: ")?;
-        if key.is_empty() { f.write_str(message) } else { write!(f, "{key}: {message}") }
-    }
+/// A finding with the excerpt around its place, which is not told once more in the title.
+fn excerpt(diagnostic: &SceneDiagnostic) -> String {
+    let SceneDiagnostic { file, line, column, key, message, remedy, span, severity, .. } = diagnostic;
+    let level = if *severity == Severity::Error { Level::ERROR } else { Level::WARNING };
+    let key = if key.is_empty() { String::new() } else { format!("{key}: ") };
+    let place = AnnotationKind::Primary.span(span.clone());
+    let snippet = Snippet::source(diagnostic.text()).path(file.as_str()).annotation(place);
+    let title = format!("{file}:{line}:{column}: {key}{message}");
+    picture(level, &title, Some(remedy).filter(|remedy| !remedy.is_empty()), Some(snippet))
 }
 
-impl std::error::Error for Excerpt {}
-
-impl Diagnostic for Excerpt {
-    fn severity(&self) -> Option<Severity> {
-        self.0.severity()
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.0.help()
-    }
-
-    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
-        self.0.source_code()
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        self.0.labels()
-    }
-}
-
-/// With colours and excerpts, for a terminal.
-fn picture(diagnostic: &dyn Diagnostic) -> String {
-    struct Rendered<'a>(MietteHandler, &'a dyn Diagnostic);
-    impl fmt::Display for Rendered<'_> {
-        fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            self.0.debug(self.1, f)
-        }
-    }
-    let options = MietteHandlerOpts::new().force_graphical(true).break_words(false).terminal_links(false);
-    Rendered(options.build(), diagnostic).to_string() + "\n"
+/// With colours, for a terminal.
+fn picture(level: Level, title: &str, help: Option<&String>, snippet: Option<Snippet<Annotation>>) -> String {
+    let mut group = Group::with_title(level.primary_title(title));
+    group = snippet.into_iter().fold(group, Group::element);
+    group = help.into_iter().fold(group, |group, help| group.element(Level::HELP.message(help.as_str())));
+    Renderer::styled().render(&[group]) + "\n\n"
 }
 
 #[cfg(test)]

@@ -4,8 +4,6 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use miette::{Diagnostic, LabeledSpan, NamedSource, Severity, SourceCode};
-
 use crate::foreign::{line, steers};
 
 /// Most problems that are told one by one.
@@ -42,37 +40,59 @@ pub struct Problem {
     pub remedy: String,
 }
 
+/// Whether a finding keeps a file from being used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Severity {
+    /// It does.
+    Error,
+    /// It does not.
+    Warning,
+}
+
+/// A text and what it is called.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Source {
+    name: String,
+    text: String,
+}
+
+impl Source {
+    fn new(name: &str, text: &str) -> Arc<Self> {
+        Arc::new(Self { name: name.to_string(), text: text.to_string() })
+    }
+}
+
 /// The texts that locations point into: the file first, then one per override.
 #[derive(Debug, Clone)]
-pub struct Sources(Vec<Arc<NamedSource<String>>>);
+pub struct Sources(Vec<Arc<Source>>);
 
 impl Sources {
     /// The file alone.
     pub fn new(name: &str, text: &str) -> Self {
-        Self(vec![Arc::new(NamedSource::new(name, text.to_string()))])
+        Self(vec![Source::new(name, text)])
     }
 
     /// Adds a text; returns its number for [`Location::source`].
     pub fn push(&mut self, name: &str, text: &str) -> usize {
-        self.0.push(Arc::new(NamedSource::new(name, text.to_string())));
+        self.0.push(Source::new(name, text));
         self.0.len() - 1
     }
 
     /// Text of the file.
     pub fn text(&self) -> &str {
-        self.0[0].inner()
+        &self.0[0].text
     }
 
     /// Attaches a problem to its text.
     pub fn diagnose(&self, problem: &Problem, severity: Severity) -> SceneDiagnostic {
         let location = problem.location.clone().unwrap_or(Location::new(0, 0..0));
         let source = self.0[location.source.min(self.0.len() - 1)].clone();
-        let text = source.inner();
+        let text = &source.text;
         let start = floor_boundary(text, location.start);
         let end = floor_boundary(text, location.end).max(start);
         let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
         SceneDiagnostic {
-            file: source.name().to_string(),
+            file: source.name.clone(),
             line: text[..start].matches('\n').count() + 1,
             column: text[line_start..start].chars().count() + 1,
             key: problem.key.clone(),
@@ -106,8 +126,7 @@ fn floor_boundary(text: &str, index: usize) -> usize {
 
 /// One error or warning with its place.
 ///
-/// `Display` is one plain line, `file:line:column: key: message; remedy`. As a [`miette::Diagnostic`] it has the remedy
-/// as help and the place as a label.
+/// `Display` is one plain line, `file:line:column: key: message; remedy`.
 #[derive(Debug, Clone)]
 pub struct SceneDiagnostic {
     /// File name, or `--set` for an override.
@@ -126,18 +145,23 @@ pub struct SceneDiagnostic {
     pub span: Range<usize>,
     /// Error or warning.
     pub severity: Severity,
-    source: Arc<NamedSource<String>>,
+    source: Arc<Source>,
 }
 
 impl SceneDiagnostic {
+    /// The text that `span` is in.
+    pub fn text(&self) -> &str {
+        &self.source.text
+    }
+
     /// The same without characters that steer a terminal; in the text of the file as many bytes stand in their place.
     pub fn for_terminal(&self) -> Self {
         let steers = |c: char| steers(c) && !matches!(c, '\n' | '\t');
         let seen = |c: char| if steers(c) { "?".repeat(c.len_utf8()) } else { c.to_string() };
-        let text: String = self.source.inner().replace("\r\n", " \n").chars().map(seen).collect();
+        let text: String = self.source.text.replace("\r\n", " \n").chars().map(seen).collect();
         let [file, key, message, remedy] =
             [&self.file, &self.key, &self.message, &self.remedy].map(|text| line(text).into_owned());
-        let source = Arc::new(NamedSource::new(line(self.source.name()), text));
+        let source = Source::new(&file, &text);
         Self { file, key, message, remedy, source, span: self.span.clone(), ..*self }
     }
 }
@@ -155,33 +179,13 @@ impl fmt::Display for SceneDiagnostic {
 
 impl std::error::Error for SceneDiagnostic {}
 
-impl Diagnostic for SceneDiagnostic {
-    fn severity(&self) -> Option<Severity> {
-        Some(self.severity)
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        (!self.remedy.is_empty()).then(|| Box::new(&self.remedy) as Box<dyn fmt::Display>)
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(&self.source)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let label = if self.key.is_empty() { "here" } else { &self.key };
-        Some(Box::new(std::iter::once(LabeledSpan::at(self.span.clone(), label))))
-    }
-}
-
 /// A file that is no valid scene: everything found wrong with it.
 ///
 /// `Display` is one plain line per problem. For a rendering with source excerpts, render each of `diagnostics`.
-#[derive(Debug, Clone, thiserror::Error, Diagnostic)]
+#[derive(Debug, Clone, thiserror::Error)]
 #[error("{}", lines(diagnostics))]
 pub struct SceneFileError {
     /// At least one, in the order of their places.
-    #[related]
     pub diagnostics: Vec<SceneDiagnostic>,
 }
 

@@ -3,11 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use miette::Severity;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::diagnostic::{Location, Problem, SceneDiagnostic, SceneFileError, Sources};
+use super::diagnostic::{Location, Problem, SceneDiagnostic, SceneFileError, Severity, Sources};
 
 /// Largest number of syntax errors reported for one file.
 const MOST_SYNTAX_ERRORS: usize = 10;
