@@ -4,8 +4,8 @@
 # --set "mesh.cells=[100, 40]"; the plate as it stands takes some minutes twice.
 set -eu
 cd "$(dirname "$0")/../.."
-test -n "${XTASK:-}" || cargo build --quiet --release --package xtask
-xtask=${XTASK:-${CARGO_TARGET_DIR:-target}/release/xtask} # XTASK names a binary that is built already
+test -n "${XTASK:-}" || cargo build --quiet --package xtask
+xtask=${XTASK:-${CARGO_TARGET_DIR:-target}/debug/xtask} # XTASK names a binary that is built already
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 run() { "$xtask" run verification/scenes/plate.toml --quiet "$@"; }

@@ -109,23 +109,22 @@ fn chosen(args: &Args) -> Result<Vec<&'static Fault>, Failure> {
     args.fault.iter().map(find).collect()
 }
 
-/// Builds the program in which errors can be planted; it need not be fast, but soon there.
+/// Builds the program in which errors can be planted.
 fn build(common: &Common) -> Result<PathBuf, Failure> {
     let workspace = folders::workspace();
     let target = workspace.join("target/faults");
     console::note(common, "building the program in which errors can be planted");
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
     let mut command = Command::new(cargo);
-    command.args(["build", "--quiet", "--release", "--package", "xtask", "--features", "faults", "--target-dir"]);
+    command.args(["build", "--package", "xtask", "--features", "faults", "--target-dir"]);
     command.arg(&target).current_dir(if workspace.as_os_str().is_empty() { Path::new(".") } else { &workspace });
-    command.env("CARGO_PROFILE_RELEASE_LTO", "off").env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16");
     let status = command.status();
     let bad = |message: String| {
         Failure::new(Exit::BadInput, message).help("start it with `cargo xtask` in the workspace, with its source")
     };
     match status {
         Ok(status) if status.success() => {
-            Ok(target.join("release").join(format!("xtask{}", std::env::consts::EXE_SUFFIX)))
+            Ok(target.join("debug").join(format!("xtask{}", std::env::consts::EXE_SUFFIX)))
         }
         Ok(status) => Err(bad(format!("the program in which errors can be planted cannot be built: cargo, {status}"))),
         Err(error) => Err(bad(format!("cargo cannot be started: {error}"))),

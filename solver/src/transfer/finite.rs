@@ -18,6 +18,7 @@ impl<K: PointKernel> PointKernel for Finite<'_, K> {
     const PHASE: bool = K::PHASE;
     const PHASE_GRADIENT: bool = K::PHASE_GRADIENT;
     const STRESS: bool = K::STRESS;
+    const EVERY_STEP: bool = false; // logarithms take longer than loops
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {

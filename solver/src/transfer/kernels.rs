@@ -28,6 +28,7 @@ impl PointKernel for ElasticStress {
     const PHASE: bool = false;
     const PHASE_GRADIENT: bool = false;
     const STRESS: bool = true;
+    const EVERY_STEP: bool = true;
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, _at: usize, weight: Lane, values: &PointValues) -> Stress {
@@ -53,6 +54,7 @@ impl PointKernel for HistoryUpdate<'_> {
     const PHASE: bool = false;
     const PHASE_GRADIENT: bool = false;
     const STRESS: bool = false;
+    const EVERY_STEP: bool = true;
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
@@ -87,6 +89,7 @@ impl PointKernel for DegradedStress<'_> {
     const PHASE: bool = true;
     const PHASE_GRADIENT: bool = false;
     const STRESS: bool = true;
+    const EVERY_STEP: bool = true;
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
@@ -119,6 +122,7 @@ impl PointKernel for HeldPhaseStress<'_> {
     const PHASE: bool = false;
     const PHASE_GRADIENT: bool = false;
     const STRESS: bool = true;
+    const EVERY_STEP: bool = false;
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
@@ -141,6 +145,7 @@ impl PointKernel for LeastStretch<'_> {
     const PHASE: bool = false;
     const PHASE_GRADIENT: bool = false;
     const STRESS: bool = false;
+    const EVERY_STEP: bool = false;
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
@@ -172,6 +177,7 @@ impl PointKernel for SurfaceEnergy {
     const PHASE: bool = true;
     const PHASE_GRADIENT: bool = true;
     const STRESS: bool = false;
+    const EVERY_STEP: bool = false;
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, _at: usize, weight: Lane, values: &PointValues) -> Stress {

@@ -141,7 +141,7 @@ impl Vectorised for Take<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        walk!(self)
+        walk!(self, FMA)
     }
 }
 
@@ -197,7 +197,7 @@ impl Vectorised for Give<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        walk!(self)
+        walk!(self, FMA)
     }
 }
 

@@ -53,7 +53,7 @@ impl Vectorised for AssembleStrip<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        walk!(self)
+        walk!(self, FMA)
     }
 }
 

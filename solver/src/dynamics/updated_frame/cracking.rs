@@ -208,7 +208,7 @@ impl Vectorised for UpdateStress<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> PointSums {
-        walk!(self)
+        walk!(self, FMA)
     }
 }
 

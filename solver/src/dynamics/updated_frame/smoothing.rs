@@ -60,7 +60,7 @@ impl Vectorised for ThereAndBack<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        walk!(self)
+        walk!(self, FMA)
     }
 }
 

@@ -91,7 +91,7 @@ impl Vectorised for ElasticForces<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        walk!(self)
+        walk!(self, FMA)
     }
 }
 

@@ -14,10 +14,11 @@ use crate::particles::points::{Cell, FracturePoint, Point};
 use crate::splines::patch::Patch;
 use crate::splines::spline::MAX_FUNCTIONS;
 
-/// Instantiates a walk over the usual degrees with loops of constant length; any other runs the same code.
+/// Instantiates a walk over the usual degrees with loops of constant length on wide processors; any other runs the same code.
 macro_rules! walk {
-    ($self:ident) => {
+    ($self:ident, $wide:ident) => {
         match $self.patch.spaces.each_ref().map(|space| space.degree()) {
+            [p, q] if !$wide => $self.walk(p + 1, q + 1),
             [1, 1] => $self.walk(2, 2),
             [2, 2] => $self.walk(3, 3),
             [3, 3] => $self.walk(4, 4),
@@ -48,7 +49,7 @@ impl Vectorised for PointsToGrid<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        walk!(self)
+        walk!(self, FMA)
     }
 }
 
@@ -155,7 +156,7 @@ impl<K: Kinematics> Vectorised for GridToPoints<'_, K> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> StripMotion {
-        walk!(self)
+        walk!(self, FMA)
     }
 }
 

@@ -25,12 +25,16 @@ pub(super) struct StripSweep<'a, K> {
 impl<K: PointKernel> Vectorised for StripSweep<'_, K> {
     type Output = ();
 
-    /// The usual degrees and numbers of points over a rectangle get loops of constant length; any other runs the same code.
+    /// On wide processors, kernels of every step get loops of constant length for the usual degrees and numbers of points over a
+    /// rectangle; any other runs the same code.
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let Lattice { degree: [p, q], points: [nx, ny], .. } = *self.lattice;
         if self.lattice.mapping.is_some() {
             return self.walk::<FMA, true>(p + 1, q + 1, nx, ny);
+        }
+        if !(FMA && K::EVERY_STEP) {
+            return self.walk::<FMA, false>(p + 1, q + 1, nx, ny);
         }
         match (p, q, nx, ny) {
             (1, 1, 2, 2) => self.walk::<FMA, false>(2, 2, 2, 2),
