@@ -159,6 +159,15 @@ impl AddAssign for Lane {
     }
 }
 
+/// An array of values by index, as part of its caller: `array::map` may stay a function of its own, which is compiled without the
+/// vector instructions of a caller within [`dispatch`].
+macro_rules! each {
+    ($index:ident in [$($number:literal),+] => $value:expr) => {
+        [$({ let $index: usize = $number; $value }),+]
+    };
+}
+pub(crate) use each;
+
 /// Work to be compiled once for wide vector instructions and once without.
 pub trait Vectorised {
     /// Result.

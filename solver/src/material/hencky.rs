@@ -14,6 +14,8 @@
 //! `tau = dpsi/de`: for an isotropic energy it has the principal directions of e, and `tau : d` is the power per unit of
 //! reference volume for the rate of deformation d.
 
+use crate::linear_algebra::lane::each;
+
 /// Ratio q above which β comes from the larger eigenvalue and the determinant: q itself rounds to 1 and its atanh to infinity
 /// where one principal stretch is a hundred million times the other, as in broken material that is drawn out.
 const STRETCHED: f64 = 0.9;
@@ -29,7 +31,8 @@ const SERIES: f64 = 0.02;
 pub fn advance(displacement: &Gradient, step: &Gradient) -> Gradient {
     let (h, a) = (displacement, step);
     let [left, right] = fault!("deformation-from-the-wrong-side", [a, h] => [h, a]);
-    [0, 1].map(|i| [0, 1].map(|j| h[i][j] + (a[i][j] + (left[i][0] * right[0][j] + left[i][1] * right[1][j]))))
+    each!(i in [0, 1] =>
+        each!(j in [0, 1] => h[i][j] + (a[i][j] + (left[i][0] * right[0][j] + left[i][1] * right[1][j]))))
 }
 
 /// Hencky strain `[xx, yy, xy]` of a displacement gradient; not finite if the deformation has turned inside out.

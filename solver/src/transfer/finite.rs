@@ -3,7 +3,7 @@
 //! The kernel sees the Hencky strain of `F = I + grad u` in place of the linear one and gives Kirchhoff's stress tau; the
 //! nodal forces take the first Piola–Kirchhoff stress `P = tau F⁻ᵀ`, which works on the gradient in reference positions.
 
-use crate::linear_algebra::lane::{LANES, Lane};
+use crate::linear_algebra::lane::{LANES, Lane, each};
 use crate::material::hencky::hencky_strain;
 use crate::particles::lattice::Lattice;
 use crate::scene::Kinematics;
@@ -23,7 +23,8 @@ impl<K: PointKernel> PointKernel for Finite<'_, K> {
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
         // Where there is no point, control points without mass may fly anywhere: no strain there.
-        let [xx, xy, yx, yy] = values.gradient.map(|g| g.zip(weight, |g, w| if w > 0.0 { g } else { 0.0 }));
+        let [xx, xy, yx, yy] =
+            each!(i in [0, 1, 2, 3] => values.gradient[i].zip(weight, |g, w| if w > 0.0 { g } else { 0.0 }));
         let (mut exx, mut eyy, mut exy) = (Lane::ZERO, Lane::ZERO, Lane::ZERO);
         for lane in 0..LANES {
             [exx[lane], eyy[lane], exy[lane]] = hencky_strain(&[[xx[lane], xy[lane]], [yx[lane], yy[lane]]]);

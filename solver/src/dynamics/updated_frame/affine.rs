@@ -20,7 +20,7 @@ use super::transfer::walk;
 use super::windows::{Window, control_values, cut, scatter};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::control_grid::VectorField;
-use crate::linear_algebra::lane::{Vectorised, dispatch};
+use crate::linear_algebra::lane::{Vectorised, dispatch, each};
 use crate::material::hencky::Gradient;
 use crate::particles::points::{Cell, Cells, Point};
 use crate::splines::patch::Patch;
@@ -115,14 +115,22 @@ impl Fit {
             return shape.derivative;
         }
         let inertia = fault!("apic-spread-of-quadratics", spread => 0.25 * length * length);
-        std::array::from_fn(|k| shape.value[k] * lever[k] / inertia)
+        let mut slopes = [0.0; MAX_ORDER];
+        for k in 0..MAX_ORDER {
+            slopes[k] = shape.value[k] * lever[k] / inertia;
+        }
+        slopes
     }
 }
 
 /// `x_k − x` of the control points of a span.
 #[inline(always)]
 fn levers(greville: &[f64], first: usize, order: usize, x: f64) -> [f64; MAX_ORDER] {
-    std::array::from_fn(|k| if k < order { greville[first + k] - x } else { 0.0 })
+    let mut levers = [0.0; MAX_ORDER];
+    for k in 0..order {
+        levers[k] = greville[first + k] - x;
+    }
+    levers
 }
 
 struct Take<'a> {
@@ -163,7 +171,7 @@ impl Take<'_> {
                 let mut value = [0.0; 2];
                 for l in 0..ky {
                     for k in 0..kx {
-                        value = [0, 1].map(|c| value[c] + sx.value[k] * sy.value[l] * local[l * kx + k][c]);
+                        value = each!(c in [0, 1] => value[c] + sx.value[k] * sy.value[l] * local[l * kx + k][c]);
                     }
                 }
                 // Against the velocity at the point: a constant has no gradient, whatever rounding does to the factors.
@@ -171,8 +179,8 @@ impl Take<'_> {
                 for l in 0..ky {
                     for k in 0..kx {
                         let factors = [gx[k] * sy.value[l], sx.value[k] * gy[l]];
-                        let against = [0, 1].map(|c| local[l * kx + k][c] - value[c]);
-                        gradient = [0, 1].map(|c| [0, 1].map(|d| gradient[c][d] + against[c] * factors[d]));
+                        let against = each!(c in [0, 1] => local[l * kx + k][c] - value[c]);
+                        gradient = each!(c in [0, 1] => each!(d in [0, 1] => gradient[c][d] + against[c] * factors[d]));
                     }
                 }
                 self.gradients[at] = gradient;
@@ -214,7 +222,7 @@ impl Give<'_> {
                 let lx = levers(&self.greville[0], cell.first[0], kx, point.position[0]);
                 let ly = levers(&self.greville[1], cell.first[1], ky, point.position[1]);
                 let mass = self.density * point.volume;
-                let [[xx, xy], [yx, yy]] = self.gradients[at].map(|row| row.map(|c| mass * c));
+                let [[xx, xy], [yx, yy]] = each!(c in [0, 1] => each!(d in [0, 1] => mass * self.gradients[at][c][d]));
                 let [cx, cy] = fault!("affine-transposed", [[xx, xy], [yx, yy]] => [[xx, yx], [xy, yy]]);
                 for l in 0..ky {
                     for k in 0..kx {

@@ -10,7 +10,7 @@ use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::smaller;
-use crate::linear_algebra::lane::{LANES, Lane, Vectorised, dispatch};
+use crate::linear_algebra::lane::{LANES, Lane, Vectorised, dispatch, each};
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
 use crate::material::split;
@@ -182,7 +182,7 @@ impl Vectorised for UpdateHistory<'_> {
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         for (points, fracture) in self.points.chunks(LANES).zip(self.fracture.chunks_mut(LANES)) {
-            let strain = [0, 1, 2].map(|i| gather(points, |p| p.strain[i]));
+            let strain = each!(i in [0, 1, 2] => gather(points, |p| p.strain[i]));
             let energy = split::split(self.moduli, self.model.split, strain).energy_plus;
             for (lane, point) in fracture.iter_mut().enumerate() {
                 let grows = fault!("history-forgets", energy[lane] > point.history => true);
@@ -230,7 +230,7 @@ impl UpdateStress<'_> {
                 for at in some.clone() {
                     let (phase, slope) = self.interpolate(cell, at, &local, kx, ky, &mut sums);
                     let (point, cracked) = (&self.points[at], &mut self.fracture[at]);
-                    let gained = [0, 1].map(|d| 0.5 * (cracked.slope[d] + slope[d]) * cracked.moved[d]);
+                    let gained = each!(d in [0, 1] => 0.5 * (cracked.slope[d] + slope[d]) * cracked.moved[d]);
                     sums.gained_in_motion += point.volume * (gained[0] + gained[1]);
                     (phases[at - first], cracked.slope) = (phase, slope);
                 }
@@ -294,10 +294,11 @@ impl UpdateStress<'_> {
     #[inline(always)]
     fn degrade(&mut self, some: std::ops::Range<usize>, phase: Lane, sums: &mut PointSums) {
         let (points, fracture) = (&mut self.points[some.clone()], &mut self.fracture[some]);
-        let state = split::split(self.moduli, self.model.split, [0, 1, 2].map(|i| gather(points, |p| p.strain[i])));
+        let strain = each!(i in [0, 1, 2] => gather(points, |p| p.strain[i]));
+        let state = split::split(self.moduli, self.model.split, strain);
         let (energy, stress) = state.degraded::<false>(self.model.degradation(phase));
         for (lane, (point, cracked)) in points.iter_mut().zip(fracture).enumerate() {
-            point.stress = [0, 1, 2].map(|i| stress[i][lane]);
+            point.stress = each!(i in [0, 1, 2] => stress[i][lane]);
             sums.elastic_energy += point.volume * energy[lane];
             sums.stress_work += point.volume * contract(point.stress, cracked.strain_increment);
             let remembered = phase[lane] * (cracked.history - state.energy_plus[lane]);

@@ -8,7 +8,7 @@ use super::transfer::walk;
 use super::windows::{Window, control_values, scatter};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::control_grid::VectorField;
-use crate::linear_algebra::lane::{Vectorised, dispatch};
+use crate::linear_algebra::lane::{Vectorised, dispatch, each};
 use crate::particles::points::{Cell, Cells, Point};
 use crate::splines::patch::Patch;
 use crate::splines::spline::MAX_FUNCTIONS;
@@ -78,7 +78,7 @@ impl ThereAndBack<'_> {
                 for l in 0..ky {
                     for k in 0..kx {
                         let n = sx.value[k] * sy.value[l];
-                        value = [0, 1].map(|c| value[c] + n * local[l * kx + k][c]);
+                        value = each!(c in [0, 1] => value[c] + n * local[l * kx + k][c]);
                     }
                 }
                 let momentum = value.map(|v| self.density * point.volume * v);
@@ -86,7 +86,7 @@ impl ThereAndBack<'_> {
                     for k in 0..kx {
                         let n = sx.value[k] * sy.value[l];
                         let sum = &mut sums[l * kx + k];
-                        *sum = [0, 1].map(|c| sum[c] + n * momentum[c]);
+                        *sum = each!(c in [0, 1] => sum[c] + n * momentum[c]);
                     }
                 }
             }

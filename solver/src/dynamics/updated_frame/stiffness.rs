@@ -5,7 +5,7 @@ use super::transfer::walk;
 use super::windows::{Window, control_values, scatter};
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::ControlGrid;
-use crate::linear_algebra::lane::{Vectorised, dispatch};
+use crate::linear_algebra::lane::{Vectorised, dispatch, each};
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::points::{Cell, Point};
 use crate::splines::patch::Patch;
@@ -111,7 +111,7 @@ impl ElasticForces<'_> {
                 for l in 0..ky {
                     for k in 0..kx {
                         let (u, d) = (local[l * kx + k], slope(k, l));
-                        gradient = [0, 1].map(|c| [0, 1].map(|i| gradient[c][i] + u[c] * d[i]));
+                        gradient = each!(c in [0, 1] => each!(i in [0, 1] => gradient[c][i] + u[c] * d[i]));
                     }
                 }
                 let [[uxx, uxy], [uyx, uyy]] = gradient;

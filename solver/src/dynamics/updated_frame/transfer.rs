@@ -8,7 +8,7 @@ use super::strain::Kinematics;
 use super::windows::{Window, control_values};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
-use crate::linear_algebra::lane::{LANES, Lane, Vectorised};
+use crate::linear_algebra::lane::{LANES, Lane, Vectorised, each};
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::points::{Cell, FracturePoint, Point};
 use crate::splines::patch::Patch;
@@ -64,8 +64,8 @@ impl PointsToGrid<'_> {
                 let sx = x.shape_functions(cell.span[0], point.position[0]);
                 let sy = y.shape_functions(cell.span[1], point.position[1]);
                 let m = self.density * point.volume;
-                let [px, py] = point.velocity.map(|v| m * v);
-                let [xx, yy, xy] = point.stress.map(|s| -s * point.volume);
+                let [px, py] = each!(c in [0, 1] => m * point.velocity[c]);
+                let [xx, yy, xy] = each!(i in [0, 1, 2] => -point.stress[i] * point.volume);
                 for l in 0..ky {
                     let (n, d) = (sy.value[l], sy.derivative[l]);
                     let by_value = [px * n, py * n, xy * d, yy * d];
@@ -219,9 +219,9 @@ impl<K: Kinematics> GridToPoints<'_, K> {
                 along_y[c] += sy.derivative[l] * row_value[c];
             }
         }
-        let step = [0, 1].map(|c| [self.dt * along_x[c], self.dt * along_y[c]]);
+        let step = each!(c in [0, 1] => [self.dt * along_x[c], self.dt * along_y[c]]);
         let strain_increment = self.kinematics.strain(at, &mut point.strain, &step);
-        let moved = [0, 1].map(|d| self.dt * value[d]);
+        let moved = each!(d in [0, 1] => self.dt * value[d]);
         for d in 0..2 {
             point.velocity[d] = self.kept * point.velocity[d] + value[2 + d];
             point.displacement[d] += moved[d];
@@ -242,11 +242,11 @@ fn elastic_stress(
     increments: &[[f64; 3]; LANES],
     motion: &mut StripMotion,
 ) {
-    let strain = [0, 1, 2].map(|i| gather(points, |p| p.strain[i]));
+    let strain = each!(i in [0, 1, 2] => gather(points, |p| p.strain[i]));
     let stress = moduli.stress(strain);
     let energy = moduli.energy(strain);
     for (lane, point) in points.iter_mut().enumerate() {
-        point.stress = [0, 1, 2].map(|i| stress[i][lane]);
+        point.stress = each!(i in [0, 1, 2] => stress[i][lane]);
         motion.elastic_energy += point.volume * energy[lane];
         motion.stress_work += point.volume * contract(point.stress, increments[lane]);
     }
