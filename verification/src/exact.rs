@@ -87,6 +87,8 @@ pub trait ExactSolution: Send + Sync {
     /// Stress `stress[i][j]`, Pa: first Piola–Kirchhoff (component i, reference normal j); that is the Cauchy stress for
     /// small strains. It is the degraded one where a phase field is modelled.
     fn stress(&self, position: [f64; 2], time: f64) -> [[f64; 2]; 2];
+    /// Whether there is no body force.
+    fn is_force_free(&self) -> bool;
     /// Body force per reference volume, N/m³: `rho a − Div stress`.
     fn body_force(&self, position: [f64; 2], time: f64) -> [f64; 2];
     /// The phase field, where one is modelled.

@@ -17,6 +17,11 @@ pub struct VolumeLoad {
 
 /// External loads as functions of place and time. Positions are those of the reference configuration, m.
 pub trait Forcing: Debug + Send + Sync {
+    /// Whether there are loads on the material points at all.
+    fn acts_inside(&self) -> bool {
+        true
+    }
+
     /// Load on the material points at `time` (s).
     fn volume(&self, position: [f64; 2], time: f64) -> VolumeLoad;
 
@@ -41,6 +46,10 @@ pub trait Forcing: Debug + Send + Sync {
 pub struct NoLoads;
 
 impl Forcing for NoLoads {
+    fn acts_inside(&self) -> bool {
+        false
+    }
+
     fn volume(&self, _position: [f64; 2], _time: f64) -> VolumeLoad {
         VolumeLoad::default()
     }

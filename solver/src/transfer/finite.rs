@@ -10,7 +10,7 @@ use crate::scene::Kinematics;
 use crate::transfer::point_kernel::{Fields, PointKernel, PointValues, Stress};
 use crate::transfer::sweep::{StripForces, sweep};
 
-/// A kernel on Hencky strains.
+/// A kernel on Hencky strains; its logarithms take longer than loops whose length is not known.
 struct Finite<'a, K>(&'a mut K);
 
 impl<K: PointKernel> PointKernel for Finite<'_, K> {
@@ -18,7 +18,6 @@ impl<K: PointKernel> PointKernel for Finite<'_, K> {
     const PHASE: bool = K::PHASE;
     const PHASE_GRADIENT: bool = K::PHASE_GRADIENT;
     const STRESS: bool = K::STRESS;
-    const EVERY_STEP: bool = false; // logarithms take longer than loops
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {

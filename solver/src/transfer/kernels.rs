@@ -122,7 +122,6 @@ impl PointKernel for HeldPhaseStress<'_> {
     const PHASE: bool = false;
     const PHASE_GRADIENT: bool = false;
     const STRESS: bool = true;
-    const EVERY_STEP: bool = false;
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
@@ -145,7 +144,6 @@ impl PointKernel for LeastStretch<'_> {
     const PHASE: bool = false;
     const PHASE_GRADIENT: bool = false;
     const STRESS: bool = false;
-    const EVERY_STEP: bool = false;
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
@@ -177,7 +175,6 @@ impl PointKernel for SurfaceEnergy {
     const PHASE: bool = true;
     const PHASE_GRADIENT: bool = true;
     const STRESS: bool = false;
-    const EVERY_STEP: bool = false;
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, _at: usize, weight: Lane, values: &PointValues) -> Stress {

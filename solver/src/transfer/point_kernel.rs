@@ -49,7 +49,7 @@ pub trait PointKernel: Send {
     /// Whether the returned stress is to be integrated into nodal forces.
     const STRESS: bool;
     /// Whether it runs in every step, and is compiled for each of the usual degrees.
-    const EVERY_STEP: bool;
+    const EVERY_STEP: bool = false;
 
     /// One batch: `at` counts batches from the start of the strip, `weight` is in m² and zero where there is no point.
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress;

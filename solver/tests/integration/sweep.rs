@@ -21,6 +21,7 @@ impl PointKernel for Recorder {
     const PHASE: bool = true;
     const PHASE_GRADIENT: bool = true;
     const STRESS: bool = true;
+    const EVERY_STEP: bool = true;
 
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
         self.values.push(*values);

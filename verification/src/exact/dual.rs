@@ -33,10 +33,16 @@ pub trait Scalar:
 {
     /// A number that does not vary.
     fn constant(value: f64) -> Self;
+    /// Sine and cosine.
+    fn sin_cos(self) -> (Self, Self);
     /// Sine.
-    fn sin(self) -> Self;
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
     /// Cosine.
-    fn cos(self) -> Self;
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
     /// Exponential.
     fn exp(self) -> Self;
     /// Natural logarithm.
@@ -49,11 +55,8 @@ impl Scalar for f64 {
     fn constant(value: f64) -> Self {
         value
     }
-    fn sin(self) -> Self {
-        f64::sin(self)
-    }
-    fn cos(self) -> Self {
-        f64::cos(self)
+    fn sin_cos(self) -> (Self, Self) {
+        f64::sin_cos(self)
     }
     fn exp(self) -> Self {
         f64::exp(self)
@@ -97,13 +100,15 @@ impl<T: Scalar> Dual<T> {
     /// The chain rule: a function of this number, given its value and its slope here.
     #[inline]
     pub fn chain(self, value: T, slope: T) -> Self {
-        Self { value, gradient: self.gradient.map(|g| slope * g) }
+        let [x, y, t] = self.gradient;
+        Self { value, gradient: [slope * x, slope * y, slope * t] }
     }
 
     /// The chain rule for a function of two numbers, given its value and both slopes.
+    #[inline]
     fn chain_two(self, other: Self, value: T, slopes: [T; 2]) -> Self {
-        let gradient = std::array::from_fn(|d| slopes[0] * self.gradient[d] + slopes[1] * other.gradient[d]);
-        Self { value, gradient }
+        let along = |d: usize| slopes[0] * self.gradient[d] + slopes[1] * other.gradient[d];
+        Self { value, gradient: [along(0), along(1), along(2)] }
     }
 }
 
@@ -111,11 +116,9 @@ impl<T: Scalar> Scalar for Dual<T> {
     fn constant(value: f64) -> Self {
         Self { value: T::constant(value), gradient: [T::constant(0.0); DIRECTIONS] }
     }
-    fn sin(self) -> Self {
-        self.chain(self.value.sin(), self.value.cos())
-    }
-    fn cos(self) -> Self {
-        self.chain(self.value.cos(), -self.value.sin())
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.value.sin_cos();
+        (self.chain(sin, cos), self.chain(cos, -sin))
     }
     fn exp(self) -> Self {
         let value = self.value.exp();
@@ -132,29 +135,34 @@ impl<T: Scalar> Scalar for Dual<T> {
 
 impl<T: Scalar> Neg for Dual<T> {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
-        Self { value: -self.value, gradient: self.gradient.map(|g| -g) }
+        let [x, y, t] = self.gradient;
+        Self { value: -self.value, gradient: [-x, -y, -t] }
     }
 }
 
 impl<T: Scalar> Add for Dual<T> {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
-        let gradient = std::array::from_fn(|d| self.gradient[d] + other.gradient[d]);
-        Self { value: self.value + other.value, gradient }
+        let ([x, y, t], [ox, oy, ot]) = (self.gradient, other.gradient);
+        Self { value: self.value + other.value, gradient: [x + ox, y + oy, t + ot] }
     }
 }
 
 impl<T: Scalar> Sub for Dual<T> {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
-        let gradient = std::array::from_fn(|d| self.gradient[d] - other.gradient[d]);
-        Self { value: self.value - other.value, gradient }
+        let ([x, y, t], [ox, oy, ot]) = (self.gradient, other.gradient);
+        Self { value: self.value - other.value, gradient: [x - ox, y - oy, t - ot] }
     }
 }
 
 impl<T: Scalar> Mul for Dual<T> {
     type Output = Self;
+    #[inline]
     fn mul(self, other: Self) -> Self {
         self.chain_two(other, self.value * other.value, [other.value, self.value])
     }
@@ -170,6 +178,7 @@ impl<T: Scalar> Div for Dual<T> {
 
 impl<T: Scalar> Add<f64> for Dual<T> {
     type Output = Self;
+    #[inline]
     fn add(self, other: f64) -> Self {
         Self { value: self.value + other, ..self }
     }
@@ -177,6 +186,7 @@ impl<T: Scalar> Add<f64> for Dual<T> {
 
 impl<T: Scalar> Sub<f64> for Dual<T> {
     type Output = Self;
+    #[inline]
     fn sub(self, other: f64) -> Self {
         Self { value: self.value - other, ..self }
     }
@@ -184,7 +194,9 @@ impl<T: Scalar> Sub<f64> for Dual<T> {
 
 impl<T: Scalar> Mul<f64> for Dual<T> {
     type Output = Self;
+    #[inline]
     fn mul(self, factor: f64) -> Self {
-        Self { value: self.value * factor, gradient: self.gradient.map(|g| g * factor) }
+        let [x, y, t] = self.gradient;
+        Self { value: self.value * factor, gradient: [x * factor, y * factor, t * factor] }
     }
 }

@@ -52,7 +52,11 @@ pub fn displacement_gradient<M: Motion>(motion: &M, variables: [Jet; 3]) -> Tens
 impl<M: Motion> Derived<M> {
     fn stress_field(&self, position: [f64; 2], time: f64) -> Tensor {
         let variables = Jet::variables(position, time);
-        let stress = self.0.stress(displacement_gradient(&self.0, variables));
+        self.degraded_stress(self.0.displacement(variables), variables)
+    }
+
+    fn degraded_stress(&self, displacement: [Jet; 2], variables: [Jet; 3]) -> Tensor {
+        let stress = self.0.stress(displacement.map(|u| [u.gradient[0], u.gradient[1]]));
         let Some(fracture) = self.0.material().fracture else { return stress };
         let phase = self.0.phase(variables).value;
         let k = fracture.residual_stiffness;
@@ -90,13 +94,19 @@ impl<M: Motion> ExactSolution for Derived<M> {
         values(self.stress_field(position, time))
     }
 
+    fn is_force_free(&self) -> bool {
+        M::FORCE_FREE
+    }
+
     fn body_force(&self, position: [f64; 2], time: f64) -> [f64; 2] {
         if M::FORCE_FREE {
             return [0.0; 2];
         }
         let density = self.0.material().density;
-        let acceleration = self.acceleration(position, time);
-        let stress = self.stress_field(position, time);
+        let variables = Jet::variables(position, time);
+        let displacement = self.0.displacement(variables);
+        let acceleration = displacement.map(|u| u.gradient[TIME].gradient[TIME]);
+        let stress = self.degraded_stress(displacement, variables);
         [0, 1].map(|i| density * acceleration[i] - stress[i][0].gradient[0] - stress[i][1].gradient[1])
     }
 

@@ -33,11 +33,13 @@ impl Forced {
     pub(crate) fn update_forces(&mut self, lattice: &Lattice, time: f64) {
         std::mem::swap(&mut self.now, &mut self.before);
         self.now.iter_mut().for_each(|f| f.fill(0.0));
-        let [x, y] = &mut self.now;
-        lattice.add_integral(&mut [x, y], |_, _, position| {
-            let load = self.forcing.volume(position, time);
-            (load.force, load.stress)
-        });
+        if self.forcing.acts_inside() {
+            let [x, y] = &mut self.now;
+            lattice.add_integral(&mut [x, y], |_, _, position| {
+                let load = self.forcing.volume(position, time);
+                (load.force, load.stress)
+            });
+        }
         for point in &self.boundary {
             let traction = self.forcing.traction(point.position, point.normal, time);
             for &(at, value) in &point.functions {

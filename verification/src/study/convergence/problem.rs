@@ -90,6 +90,10 @@ impl fmt::Debug for Manufactured {
 }
 
 impl Forcing for Manufactured {
+    fn acts_inside(&self) -> bool {
+        self.loading == Loading::Weak || !self.solution.is_force_free()
+    }
+
     fn volume(&self, position: [f64; 2], time: f64) -> VolumeLoad {
         match self.loading {
             Loading::Strong => VolumeLoad { force: self.solution.body_force(position, time), ..VolumeLoad::default() },
