@@ -162,9 +162,9 @@ impl Contact {
                 if dot(normal, nearest.normal) > FACING {
                     continue;
                 }
-                let between = [0, 1].map(|d| sign * (normal[d] - nearest.normal[d]));
-                let between = fault!("normal-of-one-body", between => if own == 0 { normal } else { nearest.normal });
-                let Some(normal) = unit(between) else { continue };
+                let halfway = [0, 1].map(|d| sign * (normal[d] - nearest.normal[d]));
+                let along = fault!("normal-of-one-body", halfway => if own == 0 { normal } else { nearest.normal });
+                let Some(normal) = unit(along) else { continue };
                 let closing = sign * dot([0, 1].map(|d| way[d] - nearest.way[d]), normal);
                 if nearest.distance > larger(NEAR * self.reach, AHEAD * closing) {
                     continue;

@@ -1,9 +1,10 @@
 //! Exact solutions, one file each. Their derivations stand under `reference-data/derivations/`.
 //!
 //! A solution states its displacement (and phase field) and its stress law; velocity, stress, body force and source
-//! follow by differentiation ([`motion`], [`dual`]). [`find`] gives a solution by name.
+//! follow by differentiation ([`motion`], [`dual`]). The problem it solves stands beside it in its file, as a [`Solution`]; a new
+//! file is known to studies and tests by its line in the list below.
 
-use fisura::scene::{Material, Plane};
+use fisura::scene::{Frame, Kinematics, Material, Plane, Side};
 
 pub mod axis_aligned;
 pub mod bar_wave;
@@ -19,45 +20,68 @@ pub mod standing_wave;
 mod tests;
 pub mod vortex;
 
-use axis_aligned::AxisAligned;
-use bar_wave::{FiniteWave, HenckyWave};
-use coupled::Coupled;
-use elastostatics::Elastostatics;
-use kirsch::Kirsch;
-use motion::Derived;
-use phase_field::PhaseField;
-use standing_wave::StandingWave;
-use vortex::Vortex;
-
-/// Names that [`find`] knows.
-pub const NAMES: &[&str] = &[
-    "elastostatics",
-    "kirsch",
-    "standing-wave",
-    "phase-field",
-    "phase-field-zero-flux",
-    "coupled",
-    "finite-wave",
-    "hencky-wave",
-    "axis-aligned",
-    "vortex",
+/// What every file registers.
+const REGISTERED: [&[Solution]; 8] = [
+    axis_aligned::SOLUTIONS,
+    bar_wave::SOLUTIONS,
+    coupled::SOLUTIONS,
+    elastostatics::SOLUTIONS,
+    kirsch::SOLUTIONS,
+    phase_field::SOLUTIONS,
+    standing_wave::SOLUTIONS,
+    vortex::SOLUTIONS,
 ];
 
-/// The exact solution of a name in a plane state.
-pub fn find(name: &str, plane: Plane) -> Option<Box<dyn ExactSolution>> {
-    Some(match name {
-        "elastostatics" => Box::new(Derived(Elastostatics { plane })),
-        "kirsch" => Box::new(Derived(Kirsch { plane })),
-        "standing-wave" => Box::new(Derived(StandingWave { plane })),
-        "phase-field" => Box::new(Derived(PhaseField { plane, zero_flux: false })),
-        "phase-field-zero-flux" => Box::new(Derived(PhaseField { plane, zero_flux: true })),
-        "coupled" => Box::new(Derived(Coupled { plane })),
-        "finite-wave" => Box::new(Derived(FiniteWave { plane })),
-        "hencky-wave" => Box::new(Derived(HenckyWave { plane })),
-        "axis-aligned" => Box::new(Derived(AxisAligned { plane, amplitude: axis_aligned::AMPLITUDE })),
-        "vortex" => Box::new(Derived(Vortex { plane })),
-        _ => return None,
-    })
+/// An exact solution and the problem it solves: all that a study of convergence has to know of it.
+pub struct Solution {
+    /// Name in case files.
+    pub name: &'static str,
+    /// The fields in a plane state.
+    pub fields: fn(Plane) -> Box<dyn ExactSolution>,
+    /// Equation that is solved.
+    pub equation: Equation,
+    /// Where components are prescribed; the exact traction acts on the other sides.
+    pub held: Held,
+    /// End of the simulated time, s.
+    pub end_time: f64,
+    /// Small strains, or the Hencky law.
+    pub kinematics: Kinematics,
+    /// Frames in which it can be solved for.
+    pub frames: &'static [Frame],
+    /// Radii of a ring about the origin, m, at which tests look at it; none for the unit square.
+    pub radii: &'static [f64],
+}
+
+/// Which equation is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Equation {
+    /// Least-squares projection of the displacement.
+    Projection,
+    /// Equilibrium.
+    Static,
+    /// The phase-field equation with a given history energy.
+    PhaseField,
+    /// Equations of motion, and the phase field where the solution has one.
+    Dynamic,
+}
+
+/// Sides on which components of the displacement are prescribed.
+#[derive(Debug, Clone, Copy)]
+pub enum Held {
+    /// These.
+    Sides(&'static [(Side, [bool; 2])]),
+    /// Rollers on all sides of a rectangle, and no side of a curved patch.
+    Rollers,
+}
+
+/// All solutions.
+pub fn all() -> impl Iterator<Item = &'static Solution> {
+    REGISTERED.into_iter().flatten()
+}
+
+/// The solution of a name.
+pub fn find(name: &str) -> Option<&'static Solution> {
+    all().find(|solution| solution.name == name)
 }
 
 /// Elastic material with E = 1 Pa and a density of 1 kg/m³.

@@ -16,8 +16,9 @@ use rayon::prelude::*;
 use super::record::{AnswerError, BenchRecord, Sample};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
 use super::{BenchError, Settings};
-use crate::exact::standing_wave::SIZE;
-use crate::exact::{self, ExactSolution};
+use crate::exact::ExactSolution;
+use crate::exact::motion::Derived;
+use crate::exact::standing_wave::{SIZE, StandingWave};
 use crate::plain_scene::{PlainScene, ROLLERS};
 use crate::study::convergence::errors::{ErrorPoints, Squares};
 use crate::study::convergence::moving::displace;
@@ -99,7 +100,7 @@ impl Way {
     fn scene(self, cells: usize) -> Result<Scene, BenchError> {
         let plain = PlainScene {
             mesh: Mesh::uniform([self.degree; 2], [0.0; 2], SIZE, [cells; 2]),
-            material: solution()?.material(),
+            material: solution().material(),
             plane: Plane::Strain,
             mass: self.mass,
             layout: self.layout,
@@ -112,8 +113,8 @@ impl Way {
     }
 }
 
-fn solution() -> Result<Box<dyn ExactSolution>, BenchError> {
-    exact::find("standing-wave", Plane::Strain).ok_or_else(|| BenchError::other("no exact solution \"standing-wave\""))
+fn solution() -> Derived<StandingWave> {
+    Derived(StandingWave { plane: Plane::Strain })
 }
 
 /// A body at t = 0.
@@ -126,7 +127,7 @@ enum Body {
 struct Wave {
     way: Way,
     cells: usize,
-    solution: Box<dyn ExactSolution>,
+    solution: Derived<StandingWave>,
     body: Body,
     steps: usize,
     particles: usize,
@@ -135,7 +136,7 @@ struct Wave {
 
 impl Wave {
     fn new(way: Way, cells: usize, coarsest: usize) -> Result<Self, BenchError> {
-        let solution = solution()?;
+        let solution = solution();
         let scene = way.scene(cells)?;
         let start = |x: [f64; 2]| solution.displacement(x, 0.0).map(|u| AMPLITUDE * u);
         let velocity = |x: [f64; 2]| solution.velocity(x, 0.0).map(|v| AMPLITUDE * v);

@@ -17,15 +17,27 @@
 use std::f64::consts::PI;
 
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Material, Plane};
+use fisura::scene::{Frame, Kinematics, Material, Plane};
 
 use super::dual::{Jet, Scalar};
 use super::law::{self, Tensor};
-use super::motion::Motion;
-use super::unit_material;
+use super::motion::{Derived, Motion};
+use super::{Equation, Held, Solution, unit_material};
 
 /// Amplitude of the registered solution, m.
 pub const AMPLITUDE: f64 = 0.05;
+
+/// What this file registers.
+pub const SOLUTIONS: &[Solution] = &[Solution {
+    name: "axis-aligned",
+    fields: |plane| Box::new(Derived(AxisAligned { plane, amplitude: AMPLITUDE })),
+    equation: Equation::Dynamic,
+    held: Held::Rollers,
+    end_time: 0.6,
+    kinematics: Kinematics::Finite,
+    frames: &[Frame::Total, Frame::Updated],
+    radii: &[],
+}];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]

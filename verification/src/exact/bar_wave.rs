@@ -20,12 +20,12 @@
 use std::f64::consts::PI;
 
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Material, Plane};
+use fisura::scene::{Frame, Kinematics, Material, Plane};
 
 use super::dual::{Jet, Scalar};
 use super::law::{self, Tensor};
-use super::motion::Motion;
-use super::unit_material;
+use super::motion::{Derived, Motion};
+use super::{Equation, Held, Solution, unit_material};
 
 /// Amplitudes of the first and the second mode, m.
 pub const AMPLITUDES: [f64; 2] = [0.04, 0.02];
@@ -39,6 +39,30 @@ fn displacement([x, _, t]: [Jet; 3]) -> [Jet; 2] {
     let mode = |n: f64| (x * (n * PI)).sin() * (t * (n * PI * speed)).sin();
     [mode(1.0) * AMPLITUDES[0] + mode(2.0) * AMPLITUDES[1], Jet::constant(0.0)]
 }
+
+/// What this file registers.
+pub const SOLUTIONS: &[Solution] = &[
+    Solution {
+        name: "finite-wave",
+        fields: |plane| Box::new(Derived(FiniteWave { plane })),
+        equation: Equation::Dynamic,
+        held: Held::Rollers,
+        end_time: 0.6,
+        kinematics: Kinematics::Small,
+        frames: &[Frame::Total],
+        radii: &[],
+    },
+    Solution {
+        name: "hencky-wave",
+        fields: |plane| Box::new(Derived(HenckyWave { plane })),
+        equation: Equation::Dynamic,
+        held: Held::Rollers,
+        end_time: 0.6,
+        kinematics: Kinematics::Finite,
+        frames: &[Frame::Total, Frame::Updated],
+        radii: &[],
+    },
+];
 
 /// The wave with the logarithmic law and a body force, or with the linear one and none.
 #[derive(Debug, Clone, Copy)]

@@ -16,12 +16,24 @@
 //! the traction on the boundary, and non-zero displacement, velocity and history at t = 0. c lies in (0.45, 0.95).
 
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Fracture, Material, Plane, Split};
+use fisura::scene::{Fracture, Frame, Kinematics, Material, Plane, Split};
 
 use super::dual::{Field, Jet, Scalar};
 use super::law::{self, Tensor};
-use super::motion::{Motion, displacement_gradient};
-use super::unit_material;
+use super::motion::{Derived, Motion, displacement_gradient};
+use super::{Equation, Held, Solution, unit_material};
+
+/// What this file registers.
+pub const SOLUTIONS: &[Solution] = &[Solution {
+    name: "coupled",
+    fields: |plane| Box::new(Derived(Coupled { plane })),
+    equation: Equation::Dynamic,
+    held: Held::Sides(&[]),
+    end_time: 0.5,
+    kinematics: Kinematics::Small,
+    frames: &[Frame::Total],
+    radii: &[],
+}];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]

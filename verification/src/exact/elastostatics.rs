@@ -10,12 +10,24 @@
 //! Boundary conditions: the displacement, or the traction sigma n, neither of which vanishes anywhere in particular.
 
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Material, Plane};
+use fisura::scene::{Frame, Kinematics, Material, Plane, Side};
 
 use super::dual::{Jet, Scalar};
 use super::law::{self, Tensor};
-use super::motion::Motion;
-use super::unit_material;
+use super::motion::{Derived, Motion};
+use super::{Equation, Held, Solution, unit_material};
+
+/// What this file registers.
+pub const SOLUTIONS: &[Solution] = &[Solution {
+    name: "elastostatics",
+    fields: |plane| Box::new(Derived(Elastostatics { plane })),
+    equation: Equation::Static,
+    held: Held::Sides(&[(Side::Left, [true; 2])]),
+    end_time: 0.0,
+    kinematics: Kinematics::Small,
+    frames: &[Frame::Total],
+    radii: &[],
+}];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]

@@ -15,18 +15,30 @@
 //! sigma n or the displacement; on the axes y = 0 and x = 0 symmetry (normal displacement and shear vanish).
 
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Material, Plane};
+use fisura::scene::{Frame, Kinematics, Material, Plane, Side};
 
 use super::dual::{Jet, Scalar};
 use super::law::{self, Tensor};
-use super::motion::Motion;
-use super::unit_material;
+use super::motion::{Derived, Motion};
+use super::{Equation, Held, Solution, unit_material};
 
 /// Radius of the hole, m.
 pub const RADIUS: f64 = 1.0;
 
 /// Remote tension along x, Pa.
 pub const TENSION: f64 = 1.0;
+
+/// What this file registers.
+pub const SOLUTIONS: &[Solution] = &[Solution {
+    name: "kirsch",
+    fields: |plane| Box::new(Derived(Kirsch { plane })),
+    equation: Equation::Static,
+    held: Held::Sides(&[(Side::Bottom, [false, true]), (Side::Top, [true, false])]),
+    end_time: 0.0,
+    kinematics: Kinematics::Small,
+    frames: &[Frame::Total],
+    radii: &[1.0, 1.7, 3.1],
+}];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]

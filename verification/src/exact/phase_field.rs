@@ -15,18 +15,42 @@ use std::f64::consts::PI;
 
 use fisura::material::degradation::FractureModel;
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Fracture, Material, Plane, Split};
+use fisura::scene::{Fracture, Frame, Kinematics, Material, Plane, Split};
 
 use super::dual::{Jet, Scalar};
 use super::law::{self, Tensor};
-use super::motion::Motion;
-use super::unit_material;
+use super::motion::{Derived, Motion};
+use super::{Equation, Held, Solution, unit_material};
 
 /// Size of the rectangle, m.
 pub const SIZE: [f64; 2] = [1.0, 0.8];
 
 const FRACTURE: Fracture =
     Fracture { critical_energy_release_rate: 1.0, length_scale: 0.1, residual_stiffness: 0.01, split: Split::Spectral };
+
+/// What this file registers.
+pub const SOLUTIONS: &[Solution] = &[
+    Solution {
+        name: "phase-field",
+        fields: |plane| Box::new(Derived(PhaseField { plane, zero_flux: false })),
+        equation: Equation::PhaseField,
+        held: Held::Sides(&[]),
+        end_time: 0.0,
+        kinematics: Kinematics::Small,
+        frames: &[Frame::Total],
+        radii: &[],
+    },
+    Solution {
+        name: "phase-field-zero-flux",
+        fields: |plane| Box::new(Derived(PhaseField { plane, zero_flux: true })),
+        equation: Equation::PhaseField,
+        held: Held::Sides(&[]),
+        end_time: 0.0,
+        kinematics: Kinematics::Small,
+        frames: &[Frame::Total],
+        radii: &[],
+    },
+];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]

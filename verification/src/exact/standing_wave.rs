@@ -16,15 +16,27 @@
 use std::f64::consts::PI;
 
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Material, Plane};
+use fisura::scene::{Frame, Kinematics, Material, Plane};
 
 use super::dual::{Jet, Scalar};
 use super::law::{self, Tensor};
-use super::motion::Motion;
-use super::unit_material;
+use super::motion::{Derived, Motion};
+use super::{Equation, Held, Solution, unit_material};
 
 /// Size of the rectangle, m.
 pub const SIZE: [f64; 2] = [1.0, 0.8];
+
+/// What this file registers.
+pub const SOLUTIONS: &[Solution] = &[Solution {
+    name: "standing-wave",
+    fields: |plane| Box::new(Derived(StandingWave { plane })),
+    equation: Equation::Dynamic,
+    held: Held::Rollers,
+    end_time: 0.6,
+    kinematics: Kinematics::Small,
+    frames: &[Frame::Total],
+    radii: &[],
+}];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]

@@ -21,18 +21,30 @@
 use std::f64::consts::PI;
 
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Material, Plane};
+use fisura::scene::{Frame, Kinematics, Material, Plane};
 
 use super::dual::{Jet, Scalar};
 use super::law::{self, Tensor};
-use super::motion::Motion;
-use super::unit_material;
+use super::motion::{Derived, Motion};
+use super::{Equation, Held, Solution, unit_material};
 
 /// Inner and outer radius of the ring, m.
 pub const RADII: [f64; 2] = [0.75, 1.25];
 
 /// Largest angle A, rad.
 pub const AMPLITUDE: f64 = 0.1;
+
+/// What this file registers.
+pub const SOLUTIONS: &[Solution] = &[Solution {
+    name: "vortex",
+    fields: |plane| Box::new(Derived(Vortex { plane })),
+    equation: Equation::Dynamic,
+    held: Held::Sides(&[]),
+    end_time: 0.6,
+    kinematics: Kinematics::Finite,
+    frames: &[Frame::Updated],
+    radii: &[0.75, 0.93, 1.25],
+}];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]

@@ -1,34 +1,12 @@
 //! The nearest known word to a mistyped one.
 
-/// The candidate with the smallest edit distance to `word`, if it is close enough to be meant.
-///
-/// Letters of the wrong case count half, two neighbours swapped count one.
+/// The candidate with the smallest edit distance to `word`, if it is close enough to be meant; letters of the wrong case count
+/// nothing, two neighbours swapped count one.
 pub fn nearest<'a>(word: &str, candidates: &[&'a str]) -> Option<&'a str> {
-    let limit = 2 * (word.chars().count().max(3) / 3);
-    candidates.iter().map(|c| (distance(word, c), *c)).filter(|(d, _)| *d <= limit).min_by_key(|(d, _)| *d).map(|c| c.1)
-}
-
-/// Twice the edit distance (optimal string alignment).
-fn distance(a: &str, b: &str) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) = (a.chars().take(64).collect(), b.chars().take(64).collect());
-    let mut rows = vec![(0..=b.len()).map(|j| 2 * j).collect::<Vec<_>>()];
-    for i in 1..=a.len() {
-        let mut row = vec![2 * i];
-        for j in 1..=b.len() {
-            let replace = match (a[i - 1], b[j - 1]) {
-                (x, y) if x == y => 0,
-                (x, y) if x.eq_ignore_ascii_case(&y) => 1,
-                _ => 2,
-            };
-            let mut best = (rows[i - 1][j - 1] + replace).min(rows[i - 1][j] + 2).min(row[j - 1] + 2);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                best = best.min(rows[i - 2][j - 2] + 2);
-            }
-            row.push(best);
-        }
-        rows.push(row);
-    }
-    rows[a.len()][b.len()]
+    let word: String = word.chars().take(64).flat_map(char::to_lowercase).collect();
+    let limit = word.chars().count().max(3) / 3;
+    let near = candidates.iter().map(|known| (strsim::osa_distance(&word, &known.to_lowercase()), *known));
+    near.filter(|(distance, _)| *distance <= limit).min_by_key(|(distance, _)| *distance).map(|(_, known)| known)
 }
 
 #[cfg(test)]

@@ -16,9 +16,10 @@ use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::case::convergence::{ConvergenceSetup, Loading, PatchFamily, Refine};
 use crate::convergence::{Convergence, Curve, Level, Norm, Refined};
+use crate::exact::Equation;
 use crate::expand::CaseScene;
 use moving::Moving;
-use problem::{Kind, Problem};
+use problem::Problem;
 use solve::Discrete;
 
 /// Relative errors at or below this are round-off.
@@ -146,7 +147,7 @@ fn levels(
         Refine::Mesh(power) => {
             let power = power.unwrap_or(0.5 * (setup.degrees[n] + 1) as f64);
             let coarsest = mesh(setup.cells[0])?;
-            let critical = if problem.kind == Kind::Dynamic { coarsest.critical_step() } else { 0.0 };
+            let critical = if problem.equation == Equation::Dynamic { coarsest.critical_step() } else { 0.0 };
             let level = |&cells: &usize| {
                 let mesh = mesh(cells)?;
                 let step = setup.safety[0] * critical * (mesh.span_length() / coarsest.span_length()).powf(power);
@@ -170,10 +171,10 @@ fn levels(
 /// error of their quadrature does not fall with h.
 fn theory(setup: &ConvergenceSetup, problem: &Problem, degree: usize, below: usize) -> Option<f64> {
     let space = (degree + 1 - below) as f64;
-    match (problem.kind, setup.refine) {
+    match (problem.equation, setup.refine) {
         _ if setup.frame == Frame::Updated => None,
-        (Kind::Dynamic, Refine::TimeStep) => Some(2.0),
-        (Kind::Dynamic, Refine::Mesh(power)) => {
+        (Equation::Dynamic, Refine::TimeStep) => Some(2.0),
+        (Equation::Dynamic, Refine::Mesh(power)) => {
             let space = if setup.mass == Mass::Lumped { space.min(2.0) } else { space };
             Some(power.map_or(space, |power| space.min(2.0 * power)))
         }
@@ -186,9 +187,9 @@ fn other(message: impl Into<String>) -> StudyError {
 }
 
 fn words_of_theory(setup: &ConvergenceSetup, problem: &Problem) -> String {
-    match (problem.kind, setup.refine) {
-        (Kind::Dynamic, Refine::TimeStep) => "velocity Verlet is of order 2",
-        (Kind::Dynamic, _) if setup.mass == Mass::Lumped => "a lumped mass is of order 2 for every degree",
+    match (problem.equation, setup.refine) {
+        (Equation::Dynamic, Refine::TimeStep) => "velocity Verlet is of order 2",
+        (Equation::Dynamic, _) if setup.mass == Mass::Lumped => "a lumped mass is of order 2 for every degree",
         _ => "best approximation by splines: p + 1 in L2, p in H1",
     }
     .into()
@@ -229,7 +230,7 @@ fn caption(setup: &ConvergenceSetup, problem: &Problem) -> String {
         Loading::Weak => "loads through the code's own sums",
     };
     let mut words = format!("On {}; {layout} points, {}; {loading}", words_of_patch(setup.patch), points.join(", "));
-    if problem.kind == Kind::Dynamic {
+    if problem.equation == Equation::Dynamic {
         let mass = if setup.mass == Mass::Lumped { "lumped" } else { "consistent" };
         words.push_str(&format!("; {mass} mass"));
     }

@@ -62,7 +62,8 @@ mod tests {
     fn they_are_remembered_and_a_spoiled_file_is_as_good_as_none() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("seconds.json");
-        let text = "claim = \"c\"\nseconds = 7\nstudy = \"basis\"\n";
+        let text = "claim = \"c\"\nseconds = 7\nstudy = \"basis\"\n[[check]]\nid = \"unity\"\n\
+                    quantity = \"partition of unity, largest error\"\n";
         let case = Case::parse(Path::new("trial/case.toml"), text, &[]).unwrap();
         let seconds = Seconds::remembered(path.clone());
         assert_eq!(seconds.of(&case), 7.0);

@@ -8,7 +8,7 @@ use nalgebra::{Matrix2, SymmetricEigen};
 
 use super::difference::{first, laplacian, partial, second};
 use super::{both_planes, samples};
-use crate::exact::{ExactSolution, NAMES};
+use crate::exact::{ExactSolution, all};
 
 /// Largest difference allowed, relative to the larger of 1 and the value.
 const TOLERANCE: f64 = 1e-8;
@@ -20,10 +20,10 @@ fn assert_close(name: &str, what: &str, value: f64, expected: f64, tolerance: f6
 
 /// Runs a check on every solution, plane state and sample.
 fn everywhere(check: impl Fn(&str, &dyn ExactSolution, [f64; 2], f64)) {
-    for name in NAMES {
-        for solution in both_planes(name) {
-            for (place, time) in samples(name) {
-                check(name, solution.as_ref(), place, time);
+    for solution in all() {
+        for fields in both_planes(solution) {
+            for (place, time) in samples(solution) {
+                check(solution.name, fields.as_ref(), place, time);
             }
         }
     }

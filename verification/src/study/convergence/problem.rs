@@ -7,26 +7,16 @@ use fisura::dynamics::forcing::{Forcing, VolumeLoad};
 use fisura::scene::{Frame, Kinematics, Side};
 
 use crate::case::convergence::{ConvergenceSetup, Loading, PatchFamily};
-use crate::exact::{self, ExactSolution};
+use crate::exact::{self, Equation, ExactSolution, Held};
 use crate::plain_scene::ROLLERS;
 
-/// Which equation is solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// Least-squares projection of the displacement.
-    Projection,
-    /// Equilibrium.
-    Static,
-    /// The phase-field equation with a given history energy.
-    PhaseField,
-    /// Equations of motion, and the phase field where the solution has one.
-    Dynamic,
-}
+/// Name of the problem that projects the displacement of elastostatics.
+const PROJECTION: &str = "projection";
 
 /// A problem of a convergence study.
 #[derive(Clone)]
 pub(super) struct Problem {
-    pub kind: Kind,
+    pub equation: Equation,
     pub solution: Arc<dyn ExactSolution>,
     /// Sides on which components are prescribed.
     pub held: Vec<(Side, [bool; 2])>,
@@ -41,36 +31,29 @@ pub(super) struct Problem {
 /// Small kinematics in the total frame are `P = E (F − 1)` in a bar, at any amplitude. A wave stands
 /// between rollers on a rectangle; on a curved patch its exact traction acts on all sides.
 pub(super) fn find(setup: &ConvergenceSetup) -> Result<Problem, String> {
-    use Side::{Bottom, Left, Top};
-    let curved = matches!(setup.patch, PatchFamily::Bent | PatchFamily::Annulus | PatchFamily::Weighted);
-    let rollers = if curved { vec![] } else { ROLLERS.to_vec() };
     let name = setup.problem.as_str();
-    let (kind, held, end_time) = match (setup.frame, name) {
-        (Frame::Total, "projection") => (Kind::Projection, vec![], 0.0),
-        (Frame::Total, "elastostatics") => (Kind::Static, vec![(Left, [true; 2])], 0.0),
-        (Frame::Total, "kirsch") => (Kind::Static, vec![(Bottom, [false, true]), (Top, [true, false])], 0.0),
-        (Frame::Total, "phase-field" | "phase-field-zero-flux") => (Kind::PhaseField, vec![], 0.0),
-        (Frame::Total, "standing-wave" | "finite-wave") => (Kind::Dynamic, rollers, 0.6),
-        (Frame::Total, "hencky-wave" | "axis-aligned") => (Kind::Dynamic, rollers, 0.6),
-        (Frame::Total, "coupled") => (Kind::Dynamic, vec![], 0.5),
-        (Frame::Updated, "hencky-wave" | "axis-aligned") => (Kind::Dynamic, rollers, 0.6),
-        (Frame::Updated, "vortex") => (Kind::Dynamic, vec![], 0.6),
-        (frame, _) => {
-            let known = match frame {
-                Frame::Total => {
-                    "projection, elastostatics, kirsch, phase-field, phase-field-zero-flux, standing-wave, finite-wave, \
-                     hencky-wave, axis-aligned, coupled"
-                }
-                Frame::Updated => "hencky-wave, axis-aligned, vortex",
-            };
-            return Err(format!("no convergence study solves for {name:?} in this frame; known: {known}"));
-        }
+    let projected = (name == PROJECTION && setup.frame == Frame::Total).then_some("elastostatics");
+    let found = exact::find(projected.unwrap_or(name)).filter(|solution| solution.frames.contains(&setup.frame));
+    let Some(solution) = found else {
+        let solved =
+            exact::all().filter(|solution| solution.frames.contains(&setup.frame)).map(|solution| solution.name);
+        let known: Vec<&str> = solved.chain((setup.frame == Frame::Total).then_some(PROJECTION)).collect();
+        return Err(format!("no convergence study solves for {name:?} in this frame; known: {}", known.join(", ")));
     };
-    let source = if name == "projection" { "elastostatics" } else { name };
-    let solution = exact::find(source, setup.plane).ok_or_else(|| format!("no exact solution {source:?}"))?;
-    let finite = matches!(name, "hencky-wave" | "axis-aligned" | "vortex");
-    let kinematics = if finite { Kinematics::Finite } else { Kinematics::Small };
-    Ok(Problem { kind, solution: solution.into(), held, end_time, kinematics })
+    let curved = matches!(setup.patch, PatchFamily::Bent | PatchFamily::Annulus | PatchFamily::Weighted);
+    let held = match solution.held {
+        _ if projected.is_some() => &[],
+        Held::Sides(sides) => sides,
+        Held::Rollers if curved => &[],
+        Held::Rollers => &ROLLERS[..],
+    };
+    Ok(Problem {
+        equation: if projected.is_some() { Equation::Projection } else { solution.equation },
+        solution: (solution.fields)(setup.plane).into(),
+        held: held.to_vec(),
+        end_time: solution.end_time,
+        kinematics: solution.kinematics,
+    })
 }
 
 /// The loads that make an exact solution one of the discrete problem.
@@ -143,7 +126,7 @@ mod tests {
     fn kirchhoff_stress_is_symmetric_and_piola_without_strain() {
         let stress = [[2.0, 0.5], [0.5, -1.0]];
         assert_eq!(kirchhoff(stress, [[0.0; 2]; 2]), stress);
-        let vortex = exact::find("vortex", fisura::scene::Plane::Strain).unwrap();
+        let vortex = (exact::find("vortex").unwrap().fields)(fisura::scene::Plane::Strain);
         let (x, t) = ([0.7, 0.6], 0.4);
         let tau = kirchhoff(vortex.stress(x, t), vortex.displacement_gradient(x, t));
         assert!(tau[0][1].abs() > 1e-3 && (tau[0][1] - tau[1][0]).abs() < 1e-14);

@@ -4,8 +4,9 @@ use fisura::scene::{Frame, Scene, Shape, Transfer};
 use fisura::validate::validate;
 
 use super::other;
-use super::problem::{Kind, Problem};
+use super::problem::Problem;
 use crate::case::convergence::{ConvergenceSetup, PatchFamily};
+use crate::exact::Equation;
 use crate::exact::vortex::RADII;
 use crate::patches;
 use crate::plain_scene::PlainScene;
@@ -20,7 +21,7 @@ pub(super) fn scene(
     transfer: Transfer,
 ) -> Result<Scene, StudyError> {
     let mut material = problem.solution.material();
-    if problem.kind == Kind::PhaseField {
+    if problem.equation == Equation::PhaseField {
         material.fracture = None; // the study builds its own phase field, on the points of this scene
     }
     let plain = PlainScene {

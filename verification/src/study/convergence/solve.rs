@@ -17,11 +17,12 @@ use fisura::splines::quadrature::Rule;
 use nalgebra::DMatrix;
 
 use super::errors::{ErrorPoints, Squares};
-use super::problem::{Kind, Manufactured, Problem};
+use super::problem::{Manufactured, Problem};
 use super::scene::scene;
 use super::{OnMesh, other};
 use crate::case::convergence::{ConvergenceSetup, Loading};
 use crate::convergence::Level;
+use crate::exact::Equation;
 use crate::study::StudyError;
 
 /// Control values of a vector field, by component.
@@ -42,8 +43,8 @@ pub(super) struct Discrete<'a> {
 impl OnMesh for Discrete<'_> {
     fn level(mut self: Box<Self>, step: f64) -> Result<Level, StudyError> {
         let start = Instant::now();
-        let errors: Vec<f64> = match self.problem.kind {
-            Kind::Projection => {
+        let errors: Vec<f64> = match self.problem.equation {
+            Equation::Projection => {
                 let displacement = |x| self.problem.solution.displacement(x, 0.0);
                 let field = match self.setup.mass {
                     Mass::Consistent => self.project(displacement)?,
@@ -51,15 +52,15 @@ impl OnMesh for Discrete<'_> {
                 };
                 self.displacement_errors(&field, 0.0)
             }
-            Kind::Static => {
+            Equation::Static => {
                 let field = self.solve_static()?;
                 self.displacement_errors(&field, 0.0)
             }
-            Kind::PhaseField => {
+            Equation::PhaseField => {
                 let field = self.solve_phase_field()?;
                 self.phase_errors(&field, 0.0)
             }
-            Kind::Dynamic => {
+            Equation::Dynamic => {
                 let end = self.run(step)?;
                 let mut errors = self.displacement_errors(self.frame.displacement(), end);
                 errors.push(self.velocity_error(self.frame.velocity(), end));
@@ -71,15 +72,15 @@ impl OnMesh for Discrete<'_> {
         };
         let seconds = start.elapsed().as_secs_f64();
         let grid = self.grid();
-        let fields = if self.problem.kind == Kind::PhaseField { 1 } else { 2 };
+        let fields = if self.problem.equation == Equation::PhaseField { 1 } else { 2 };
         Ok(Level { h: self.span_length(), unknowns: fields * grid.columns * grid.rows, seconds, errors })
     }
 
     fn best_errors(&self) -> Result<Vec<f64>, StudyError> {
-        let (solution, dynamic) = (&self.problem.solution, self.problem.kind == Kind::Dynamic);
+        let (solution, dynamic) = (&self.problem.solution, self.problem.equation == Equation::Dynamic);
         let end = if dynamic { self.end_time() } else { 0.0 };
         let mut errors = Vec::new();
-        if self.problem.kind != Kind::PhaseField {
+        if self.problem.equation != Equation::PhaseField {
             errors.extend(self.displacement_errors(&self.project(|x| solution.displacement(x, end))?, end));
         }
         if dynamic {
@@ -115,10 +116,10 @@ impl<'a> Discrete<'a> {
     pub fn norms(problem: &Problem) -> Vec<(&'static str, usize)> {
         let displacement = [("displacement error in L2", 0), ("displacement error in H1", 1)];
         let phase = [("phase-field error in L2", 0), ("phase-field error in H1", 1)];
-        match problem.kind {
-            Kind::Projection | Kind::Static => displacement.to_vec(),
-            Kind::PhaseField => phase.to_vec(),
-            Kind::Dynamic => {
+        match problem.equation {
+            Equation::Projection | Equation::Static => displacement.to_vec(),
+            Equation::PhaseField => phase.to_vec(),
+            Equation::Dynamic => {
                 let mut norms = displacement.to_vec();
                 norms.push(("velocity error in L2", 0));
                 if problem.solution.phase().is_some() {
@@ -150,8 +151,8 @@ impl<'a> Discrete<'a> {
     /// Projection of a vector field; components that boundaries hold are zero where they are so in the exact solution.
     fn project(&self, function: impl Fn([f64; 2]) -> [f64; 2] + Sync) -> Result<VectorField, StudyError> {
         let component = |i: usize| -> Result<Vec<f64>, StudyError> {
-            let held = match self.problem.kind {
-                Kind::Dynamic => self.frame.constraints().held(i),
+            let held = match self.problem.equation {
+                Equation::Dynamic => self.frame.constraints().held(i),
                 _ => Vec::new(),
             };
             let projection = Projection::new(self.frame.lattice(), &held)
