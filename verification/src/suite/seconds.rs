@@ -41,7 +41,7 @@ impl Seconds {
     pub(super) fn remember(&self) {
         let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(path) = &self.path {
-            let _ = replace(path, &*known);
+            let _ = replace(path, &known);
         }
     }
 }
