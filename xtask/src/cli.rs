@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::{bench, check, compare, faults, figures, list, merge, report, run, verify};
+use crate::{bench, check, compare, demo, faults, figures, list, merge, report, run, verify};
 
 const EXIT_STATUS: &str = "\
 Exit status: 0 all checks hold, 1 a check fails, 2 bad arguments or bad input, 3 a run broke down, \
@@ -34,6 +34,8 @@ pub enum Command {
     Compare(compare::Args),
     /// List the cases: what each claims and models, its tier and estimated time
     List(list::Args),
+    /// Run a cracking plate in less than a minute and show its energies
+    Demo(demo::Args),
     /// Run a scene to its end and write its history, summary and pictures
     Run(run::Args),
     /// Validate a scene and say what will be modelled and what it will cost, without running it

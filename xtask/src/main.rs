@@ -1,4 +1,4 @@
-//! The commands of the fisura workspace: `cargo xtask verify`, `merge`, `compare`, `list`, `run`, `check`, `figures`,
+//! The commands of the fisura workspace: `cargo xtask verify`, `merge`, `compare`, `list`, `demo`, `run`, `check`, `figures`,
 //! `report`, `bench`, `faults`.
 //!
 //! One file per command; beside them [`cli`] (what can be said on the command line), [`exit`] (statuses), [`failure`]
@@ -12,6 +12,7 @@ mod check;
 mod cli;
 mod compare;
 mod console;
+mod demo;
 mod environment;
 mod exit;
 mod failure;
@@ -51,6 +52,7 @@ fn main() -> ExitCode {
             Command::Merge(args) => merge::merge(&args, &common),
             Command::Compare(args) => compare::compare(&args, &common),
             Command::List(args) => list::list(&args, &common),
+            Command::Demo(_) => demo::demo(&common),
             Command::Run(args) => run::run(&args, &common),
             Command::Check(args) => check::check(&args, &common),
             Command::Figures(args) => figures::figures(&args, &common),

@@ -23,21 +23,26 @@ use crate::{built, console, folders, interrupt, pictures, progress, scene_input,
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    scene: SceneArgs,
+    pub scene: SceneArgs,
     /// Files for ParaView at every frame: points.pvd (material points) and grid.pvd (mesh) open them
     #[arg(long)]
-    vtk: bool,
+    pub vtk: bool,
     /// Go on from the checkpoint in the output folder, to the same bytes; from the start if there is none
     #[arg(long)]
-    resume: bool,
+    pub resume: bool,
     /// Wall time between checkpoints, or none; an interrupted run stores one too, and ends with status 130
     #[arg(long, value_name = "SECONDS|none", default_value = "60")]
-    checkpoint: Interval,
+    pub checkpoint: Interval,
 }
 
 /// Wall time between checkpoints; none if there are to be none.
 #[derive(Debug, Clone, Copy)]
-struct Interval(Option<Duration>);
+pub struct Interval(Option<Duration>);
+
+impl Interval {
+    /// No checkpoints.
+    pub const NONE: Self = Self(None);
+}
 
 impl FromStr for Interval {
     type Err = String;
@@ -56,9 +61,21 @@ impl FromStr for Interval {
 /// # Errors
 /// A bad scene, a checkpoint that cannot be taken up, an output folder that cannot be written, a breakdown.
 pub fn run(args: &Args, common: &Common) -> Result<Exit, Failure> {
+    run_into(args, || folders::output(common, "run"), common)
+}
+
+/// The same, into the folder that `open` gives once the scene is known to be sound.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_into(
+    args: &Args,
+    open: impl FnOnce() -> Result<OutputFolder, Failure>,
+    common: &Common,
+) -> Result<Exit, Failure> {
     refuse(args)?;
     let file = scene_input::load(&args.scene, common)?;
-    let folder = folders::output(common, "run")?;
+    let folder = open()?;
     let start = Start::new(args, &file.scene, &folder, common)?;
     let mut vtk = args.vtk.then(|| vtk::Files::new(&folder, &file.scene, common));
     let bar = progress::bar(common, progress::SPINNER, 0);

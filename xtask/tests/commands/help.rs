@@ -6,7 +6,9 @@ use super::support::Place;
 fn help_says_what_there_is() {
     let place = Place::new();
     insta::assert_snapshot!("help", place.xtask(&["--help"]).with_status(0).out);
-    for command in ["verify", "merge", "compare", "list", "run", "check", "figures", "report", "bench", "faults"] {
+    for command in
+        ["verify", "merge", "compare", "list", "demo", "run", "check", "figures", "report", "bench", "faults"]
+    {
         insta::assert_snapshot!(format!("help-{command}"), place.xtask(&[command, "--help"]).with_status(0).out);
     }
 }
@@ -25,4 +27,5 @@ fn misuse_ends_with_2_and_says_why() {
 #[test]
 fn outside_the_workspace_the_cases_are_missed() {
     Place::new().xtask(&["list"]).with_status(2).complains_of(&["verification/cases", "help:"]);
+    Place::new().xtask(&["demo"]).with_status(2).complains_of(&["verification/scenes/plate.toml", "help:"]);
 }

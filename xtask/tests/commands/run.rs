@@ -170,3 +170,13 @@ fn a_full_disk_ends_with_2_and_leaves_nothing_that_looks_finished() {
     assert!(place.files("out").iter().all(|name| !name.ends_with(".part")), "{:?}", place.files("out"));
     assert!(!place.path("out/energies.svg").exists());
 }
+
+#[test]
+fn the_demonstration_draws_energies_and_says_what_comes_next() {
+    let place = Place::with("verification/scenes/plate.toml", &notched());
+    let demo = place.xtask(&["demo", "--out", "out"]).with_status(0);
+    for part in ["k kinetic", "│", "k", "f", "Coarse", "cargo xtask verify --suite plate", "phase-80us.svg"] {
+        assert!(demo.out.contains(part), "{part} is missing: {demo:?}");
+    }
+    assert!(place.files("out").contains(&"history.csv".to_string()));
+}
