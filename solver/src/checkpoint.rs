@@ -1,7 +1,7 @@
 //! The state of a run as bytes, from which the same scene goes on bit by bit.
 //!
 //! What the scene fixes is built again: patch, lattice, shape functions, masses, loads. What steps change is stored, and what
-//! follows from that in the updated frame (order of the points, nodal fields, touches) is found again. The preconditioner of
+//! follows from that in the updated frame (order of the points, nodal fields, constraints) is found again. The preconditioner of
 //! the phase field is stored, because a lagged one decides the last bits.
 //!
 //! Every struct lists its fields once, in `exchange`, for both ways through an [`Archive`]. The list takes the struct apart

@@ -1,11 +1,11 @@
 //! Frictional contact between the discrete fields of bodies, and with rigid bodies.
 //!
-//! The boundary of a body is a line of segments that moves with it ([`Surface`]): bodies touch where their boundaries do, though
+//! The boundary of a body is a line of segments that moves with it ([`Surface`]): bodies meet where their boundaries do, though
 //! supports of quadratic and cubic splines overlap up to three spans earlier. The centre of every segment that faces another
 //! boundary measures the signed gap to it. What the segments of both bodies measure within a square as large as a span is one
-//! [`Touch`]: its position x and gap g are their means, so that touches are as many as control points can tell apart, and
+//! [`ContactConstraint`]: its position x and gap g are their means, so that constraints are as many as control points can tell apart, and
 //! neither body is the master of the other. An impulse P acts there on one body, −P on the other. Both spread it over control
-//! points with weights W that stand for the same position x ([`mod@handle`]),
+//! points with weights W that stand for the same position x ([`mod@boundary_fit`]),
 //!
 //! ```text
 //! f_I = ± W_I P,        v_rel = Σ W_I^b v_I^b − Σ W_I^a v_I^a,        Σ W_I = 1,   Σ W_I x_I = x,
@@ -14,22 +14,22 @@
 //! which keeps momentum and angular momentum to round-off. The normal
 //! is that between both boundaries, the same for both bodies but for its sign. Impulses are the smallest that keep every gap from
 //! closing further than it is open, `v_rel · n ≥ −max(g, 0)/dt`, with Coulomb friction: they stop sliding or are the coefficient
-//! times their normal part. They never pull, and never push apart. They are found touch by touch until they settle
+//! times their normal part. They never pull, and never push apart. They are found constraint by constraint until they settle
 //! (projected Gauss–Seidel), starting from those of the step before.
 //!
 //! The force P/dt acts over a kick from w to v, so `−P · (w + v)/2`, with w and v relative velocities, is lost: that is the
 //! contact loss of the ledger, half of it booked with the velocity the step begins with, half with the one it ends with. A rigid
 //! body does external work with its own velocity.
 
+pub mod boundary_fit;
+mod constraint;
 mod follow;
-pub mod handle;
 pub mod impulse;
 pub(crate) mod motion;
 mod outline;
 pub(crate) mod rigid;
 mod state;
 pub(crate) mod surface;
-mod touch;
 pub(crate) mod view;
 mod ways;
 
@@ -41,18 +41,18 @@ use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::vectors::{dot, unit};
 use crate::scene::Scene;
 use crate::splines::patch::Patch;
-use handle::{DEPTH, Handle};
+use boundary_fit::{BoundaryFit, DEPTH};
+pub use constraint::ContactConstraint;
+use constraint::Impulse;
 use motion::{AHEAD, MOST, TooFast};
 pub(crate) use rigid::RigidBody;
 use surface::Center;
 pub use surface::Surface;
-use touch::Impulse;
-pub use touch::Touch;
 pub use view::BodyView;
 
 /// Cosine of the angle between outward normals above which boundaries do not face each other.
 const FACING: f64 = -0.5;
-/// Gap up to which a touch is looked at, in spans, unless more could close in a step.
+/// Gap up to which a constraint is looked at, in spans, unless more could close in a step.
 const NEAR: f64 = 0.1;
 
 /// Sums over the segments of both bodies whose middle of the gap lies in a square.
@@ -77,13 +77,13 @@ pub struct ContactLedger {
 
 /// Contact of the bodies of a scene.
 #[derive(Debug, Clone)]
-pub struct Contact {
+pub struct ContactSolver {
     friction: f64,
     /// Corner of the patch, m, and its shortest span: the side of a square.
     origin: [f64; 2],
     reach: f64,
     rigid: Vec<RigidBody>,
-    touches: Vec<Touch>,
+    constraints: Vec<ContactConstraint>,
     /// Length of a step, s.
     step: f64,
     /// Forces of the last step (impulses per second), where to start from.
@@ -91,7 +91,7 @@ pub struct Contact {
     ledger: ContactLedger,
 }
 
-impl Contact {
+impl ContactSolver {
     /// Contact of a scene, if it declares any.
     pub fn new(scene: &Scene, whole: &Patch) -> Option<Self> {
         Some(Self {
@@ -99,7 +99,7 @@ impl Contact {
             origin: [0, 1].map(|d| whole.spaces[d].spans()[0].left),
             reach: whole.shortest_span(),
             rigid: scene.bodies.iter().filter(|b| b.rigid).map(|b| RigidBody::new(&scene.mesh, b)).collect(),
-            touches: Vec::new(),
+            constraints: Vec::new(),
             step: 0.0,
             last: BTreeMap::new(),
             ledger: ContactLedger::default(),
@@ -125,7 +125,7 @@ impl Contact {
             bodies.iter().filter_map(|body| body.surface).chain(self.rigid.iter().map(|r| r.surface())).collect();
         let boxes: Vec<_> = surfaces.iter().map(|surface| surface.bounding_box()).collect();
         let ways: Vec<_> = surfaces.iter().map(|surface| surface.ways()).collect();
-        let mut touches = Vec::new();
+        let mut constraints = Vec::new();
         for b in 1..surfaces.len() {
             for a in 0..b.min(bodies.len()) {
                 let reach = self.reach + AHEAD * ways[a].past(&ways[b]);
@@ -135,13 +135,13 @@ impl Contact {
                 ];
                 if (0..2).all(|d| common[0][d] <= common[1][d]) {
                     let sums = self.compare([surfaces[a], surfaces[b]], common, reach)?;
-                    touches.extend(
-                        sums.into_iter().filter_map(|(square, sums)| self.touch([a, b], square, &sums, bodies)),
+                    constraints.extend(
+                        sums.into_iter().filter_map(|(square, sums)| self.constraint([a, b], square, &sums, bodies)),
                     );
                 }
             }
         }
-        self.touches = touches;
+        self.constraints = constraints;
         Ok(())
     }
 
@@ -187,23 +187,29 @@ impl Contact {
         Ok(squares)
     }
 
-    /// The touch of a square; none if a body has no material there.
-    fn touch(&self, pair: [usize; 2], square: [i32; 2], sums: &Sums, bodies: &[BodyView]) -> Option<Touch> {
+    /// The constraint of a square; none if a body has no material there.
+    fn constraint(
+        &self,
+        pair: [usize; 2],
+        square: [i32; 2],
+        sums: &Sums,
+        bodies: &[BodyView],
+    ) -> Option<ContactConstraint> {
         let position = sums.position.map(|sum| sum / sums.count);
         let normal = unit(sums.normal)?;
         let inside = |depth: f64| [0, 1].map(|d| position[d] + depth * self.reach * normal[d]);
         let [a, b] = pair;
-        let on_a = Handle::new(&bodies[a], position, inside(-DEPTH))?;
+        let on_a = BoundaryFit::new(&bodies[a], position, inside(-DEPTH))?;
         let on_b = match bodies.get(b) {
-            Some(body) => Some(Handle::new(body, position, inside(DEPTH))?),
+            Some(body) => Some(BoundaryFit::new(body, position, inside(DEPTH))?),
             None => None,
         };
-        Some(Touch { gap: sums.gap / sums.count, bodies: pair, square, position, normal, on_a, on_b })
+        Some(ContactConstraint { gap: sums.gap / sums.count, bodies: pair, square, position, normal, on_a, on_b })
     }
 
     /// Where bodies are near each other.
-    pub fn touches(&self) -> &[Touch] {
-        &self.touches
+    pub fn constraints(&self) -> &[ContactConstraint] {
+        &self.constraints
     }
 
     /// What contact took and gave so far.
@@ -214,6 +220,6 @@ impl Contact {
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
         let rigid: usize = self.rigid.iter().map(|body| body.bytes()).sum();
-        self.touches.len() * size_of::<Touch>() + rigid
+        self.constraints.len() * size_of::<ContactConstraint>() + rigid
     }
 }

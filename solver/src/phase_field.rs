@@ -35,7 +35,7 @@ use crate::linear_algebra::preconditioner::TOO_MANY;
 use crate::linear_algebra::stencil::Stencil;
 use crate::material::degradation::FractureModel;
 use crate::particles::lattice::Lattice;
-use crate::phase_field::assembly::{Constant, Form, PointCoefficients, add_form};
+use crate::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_form};
 use crate::scene::SolverSettings;
 use method::{ITERATION_LIMIT, Method};
 
@@ -71,8 +71,8 @@ impl PhaseField {
     /// Phase field on the points of `lattice`, intact until the first solve.
     pub fn new(lattice: &Lattice, model: FractureModel, settings: &SolverSettings) -> Self {
         let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
-        add_form(&mut matrix, lattice, Form::Mass, &Constant(1.0));
-        add_form(&mut matrix, lattice, Form::Diffusion, &Constant(model.diffusion()));
+        add_form(&mut matrix, lattice, Integrand::Mass, &Constant(1.0));
+        add_form(&mut matrix, lattice, Integrand::Diffusion, &Constant(model.diffusion()));
         let mut load = integrate_shape_functions(lattice);
         isolate_empty(&mut matrix, &mut load);
         let assembled = vec![Lane::ZERO; lattice.batches()];
@@ -220,7 +220,7 @@ impl PhaseField {
         let reaction = self.model.reaction_per_energy();
         let threshold = fault!("small-growth-never-assembled", 0.01 * self.tolerance => 0.1) / reaction;
         let increments = Increments { history, assembled: &self.assembled, reaction, threshold };
-        add_form(&mut self.matrix, lattice, Form::Mass, &increments);
+        add_form(&mut self.matrix, lattice, Integrand::Mass, &increments);
         let span = lattice.points_per_span();
         for (assembled, history) in self.assembled.chunks_mut(span).zip(history.chunks(span)) {
             if grew(assembled, history, threshold) {

@@ -19,7 +19,7 @@ use crate::output::span_grid::SpanGrid;
 use crate::phase_field::PhaseFieldCounts;
 use crate::scene::Scene;
 use crate::simulation::breakdown::Breakdown;
-use frame::{Frame, either};
+use frame::{Bodies, either};
 
 /// What a run models and how large it is.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +39,7 @@ pub struct Extent {
 /// A running scene.
 #[derive(Debug)]
 pub struct Simulation {
-    frame: Frame,
+    frame: Bodies,
     plan: TimePlan,
     warnings: Vec<String>,
     steps: usize,
@@ -64,7 +64,7 @@ impl Simulation {
     pub fn new(scene: &Scene) -> Result<Self, Breakdown> {
         let tolerance = scene.solver.phase_field_tolerance;
         let not_started = |failure| causes::not_started(scene.mesh.origin(), tolerance, failure);
-        let mut frame = Frame::new(scene).map_err(not_started)?;
+        let mut frame = Bodies::new(scene).map_err(not_started)?;
         let critical = either!(&frame, body => body.critical_step());
         if critical.is_nan() {
             return Err(not_started(Failure::NoStep));
@@ -111,12 +111,12 @@ impl Simulation {
 
     /// The body of a scene in the total frame, for verification.
     pub fn total_frame(&self) -> Option<&TotalFrame> {
-        if let Frame::Total(frame) = &self.frame { Some(frame) } else { None }
+        if let Bodies::Total(frame) = &self.frame { Some(frame) } else { None }
     }
 
     /// The body of a scene in the updated frame, for verification.
     pub fn updated_frame(&self) -> Option<&UpdatedFrame> {
-        if let Frame::Updated(frame) = &self.frame { Some(frame) } else { None }
+        if let Bodies::Updated(frame) = &self.frame { Some(frame) } else { None }
     }
 
     /// Takes one step.

@@ -182,7 +182,7 @@ fn contact(criterion: &mut Criterion, cells: usize) {
     let frame = meeting.updated_frame().expect("the frame of contact");
     let mut found = frame.contact().expect("it is declared").clone();
     let forces = frame.contact_forces(meeting.plan().step);
-    assert!(!found.touches().is_empty() && !forces.is_empty(), "the bodies meet");
+    assert!(!found.constraints().is_empty() && !forces.is_empty(), "the bodies meet");
     let (name, points) = (format!("p2_2x2_{cells}_spans"), meeting.extent().particles);
     let mut timed = |name_of_phase: &str, routine: &mut dyn FnMut()| {
         measure(criterion, name_of_phase, &name, points, |bencher| bencher.iter(&mut *routine));

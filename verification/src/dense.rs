@@ -3,7 +3,7 @@
 use fisura::dynamics::critical_step::StiffnessOperator;
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::linear_algebra::stencil::Stencil;
-use fisura::phase_field::assembly::{Constant, Form, add_form};
+use fisura::phase_field::assembly::{Constant, Integrand, add_form};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::watch::{self, Stopped};
@@ -46,7 +46,7 @@ pub fn eigenvalues_of_consistent_mass(frame: &TotalFrame, density: f64) -> Resul
     let n = free.len();
     let lattice = frame.lattice();
     let mut stencil = Stencil::zeros(lattice.grid, lattice.degree);
-    add_form(&mut stencil, lattice, Form::Mass, &Constant(density));
+    add_form(&mut stencil, lattice, Integrand::Mass, &Constant(density));
     let mass = matrix(n, |x, out| {
         let (mut field, mut image) = ([lattice.grid.zeros(), lattice.grid.zeros()], lattice.grid.zeros());
         free.iter().zip(x).for_each(|(&(at, component), x)| field[component][at] = *x);

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::handle::{DEPTH, Handle};
+use super::boundary_fit::{BoundaryFit, DEPTH};
 use super::surface::{Center, Surface};
 use super::view::BodyView;
 use crate::linear_algebra::control_grid::VectorField;
@@ -59,7 +59,7 @@ impl Surface {
             let normal = self.vertex_normal(vertex);
             let inside = [0, 1].map(|d| position[d] - depth * normal[d]);
             let time = fault!("boundary-lags-behind", dt => 0.9 * dt);
-            Handle::new(body, position, inside).map(|handle| handle.value(velocity).map(|v| time * v))
+            BoundaryFit::new(body, position, inside).map(|boundary_fit| boundary_fit.value(velocity).map(|v| time * v))
         };
         (0..self.vertices.len()).into_par_iter().map(way).collect()
     }

@@ -4,19 +4,19 @@ mod direct;
 
 use std::collections::HashMap;
 
-use super::touch::{Impulse, Touch};
+use super::constraint::{ContactConstraint, Impulse};
 use super::view::BodyView;
-use super::{Contact, ContactLedger};
+use super::{ContactLedger, ContactSolver};
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::vectors::dot;
 
-/// Rounds over the touches until their equations are solved directly, and most of them: a few tens settle them but where
-/// touches are many for their control points.
+/// Rounds over the constraints until their equations are solved directly, and most of them: a few tens settle them but where
+/// constraints are many for their control points.
 const ROUNDS: usize = 500;
 const MOST_ROUNDS: usize = 10 * ROUNDS;
 /// Change of an impulse, relative to the largest, below which the rounds end.
 const SETTLED: f64 = 1e-12;
-/// Round-off of the velocity at a touch, relative to those it is summed from; impulses that change it by less are settled.
+/// Round-off of the velocity at a constraint, relative to those it is summed from; impulses that change it by less are settled.
 const ROUND_OFF: f64 = 1e-14;
 /// Change of an impulse, relative to the largest, above which impulses are not used: momentum is kept by any, so this is the error of gaps and friction.
 const ACCEPTED: f64 = 1e-9;
@@ -63,7 +63,7 @@ pub struct ContactForce {
     pub force: [f64; 2],
 }
 
-/// A control point of a body that touches another.
+/// A control point of a body in contact.
 #[derive(Debug, Clone, Copy)]
 struct Node {
     body: usize,
@@ -76,14 +76,14 @@ struct Node {
     after: [f64; 2],
 }
 
-/// The touches of a kick, with the control points they act on.
+/// The constraints of a kick, with the control points they act on.
 struct Problem<'a> {
     nodes: Vec<Node>,
-    touches: Vec<Acting<'a>>,
+    constraints: Vec<Acting<'a>>,
     unsettled: Option<Unsettled>,
 }
 
-/// What a round over the touches changed.
+/// What a round over the constraints changed.
 #[derive(Default)]
 struct Round {
     /// Largest normal impulse, and largest change of an impulse, kg/s per unit thickness.
@@ -93,9 +93,9 @@ struct Round {
     place: [f64; 2],
 }
 
-/// A touch that acts.
+/// A constraint that acts.
 struct Acting<'a> {
-    touch: &'a Touch,
+    constraint: &'a ContactConstraint,
     /// Node and weight, negative for body a.
     weights: Vec<(usize, f64)>,
     /// Velocity of body b if it is rigid, else zero, m/s.
@@ -107,7 +107,7 @@ struct Acting<'a> {
     impulse: Impulse,
 }
 
-impl Contact {
+impl ContactSolver {
     /// Accelerations that contact adds in the coming kick, and the ledger at the present whole step: with the half of that kick
     /// that belongs to the step before.
     pub(crate) fn coming(&self, bodies: &[BodyView], kick: Kick) -> (Vec<Push>, ContactLedger) {
@@ -118,11 +118,11 @@ impl Contact {
     /// Forces in the coming kick.
     pub(crate) fn forces(&self, bodies: &[BodyView], kick: Kick) -> Vec<ContactForce> {
         let force = |acting: &Acting| {
-            let Touch { bodies, position, .. } = *acting.touch;
+            let ContactConstraint { bodies, position, .. } = *acting.constraint;
             let force = acting.vector_of(acting.impulse).map(|impulse| impulse / kick.length);
             (acting.impulse.normal > 0.0).then_some(ContactForce { bodies, position, force })
         };
-        self.solve(bodies, kick).touches.iter().filter_map(force).collect()
+        self.solve(bodies, kick).constraints.iter().filter_map(force).collect()
     }
 
     /// Whether the impulses of the coming kick settle.
@@ -143,8 +143,9 @@ impl Contact {
             return Err(unsettled);
         }
         let ledger = self.ledger.plus(problem.arriving(kick)).plus(problem.energy(kick, |node| node.after));
-        let pushing = problem.touches.iter().filter(|acting| acting.impulse.normal > 0.0);
-        let last = pushing.map(|a| ((a.touch.bodies, a.touch.square), a.impulse.times(1.0 / kick.length))).collect();
+        let pushing = problem.constraints.iter().filter(|acting| acting.impulse.normal > 0.0);
+        let last =
+            pushing.map(|a| ((a.constraint.bodies, a.constraint.square), a.impulse.times(1.0 / kick.length))).collect();
         let pushes = problem.pushes(kick.length);
         (self.ledger, self.last) = (ledger, last);
         Ok(pushes)
@@ -157,7 +158,7 @@ impl Contact {
         problem
     }
 
-    /// The touches with the impulses of the step before.
+    /// The constraints with the impulses of the step before.
     fn problem(&self, bodies: &[BodyView], kick: Kick) -> Problem<'_> {
         let mut nodes = Vec::new();
         let mut numbers = HashMap::new();
@@ -170,30 +171,30 @@ impl Contact {
                 nodes.len() - 1
             })
         };
-        let mut touches = Vec::with_capacity(self.touches.len());
-        for touch in &self.touches {
-            let [a, b] = touch.bodies;
-            let on_a = touch.on_a.weights().iter();
+        let mut constraints = Vec::with_capacity(self.constraints.len());
+        for constraint in &self.constraints {
+            let [a, b] = constraint.bodies;
+            let on_a = constraint.on_a.weights().iter();
             let mut weights: Vec<_> =
                 on_a.map(|&(at, w)| (number(a, at), fault!("impulse-one-sided", -w => -0.9 * w))).collect();
-            let rigid = match &touch.on_b {
+            let rigid = match &constraint.on_b {
                 Some(on_b) => {
                     weights.extend(on_b.weights().iter().map(|&(at, w)| (number(b, at), w)));
                     [0.0; 2]
                 }
-                None => self.rigid[b - bodies.len()].velocity_at(touch.position),
+                None => self.rigid[b - bodies.len()].velocity_at(constraint.position),
             };
             let impulse = self
                 .last
-                .get(&(touch.bodies, touch.square))
+                .get(&(constraint.bodies, constraint.square))
                 .map_or_else(Impulse::default, |last| last.times(kick.length));
-            touches.push(Acting { touch, weights, rigid, round_off: 0.0, answers: [0.0; 2], impulse });
+            constraints.push(Acting { constraint, weights, rigid, round_off: 0.0, answers: [0.0; 2], impulse });
         }
-        for acting in &mut touches {
+        for acting in &mut constraints {
             acting.find_answers(&nodes);
             acting.give(&mut nodes, acting.impulse);
         }
-        Problem { nodes, touches, unsettled: None }
+        Problem { nodes, constraints, unsettled: None }
     }
 }
 
@@ -204,7 +205,7 @@ impl Round {
 }
 
 impl Problem<'_> {
-    /// Finds impulses with which every touch is settled, or says that it did not.
+    /// Finds impulses with which every constraint is settled, or says that it did not.
     fn settle(&mut self, friction: f64, step: f64) {
         let mut last = self.rounds(friction, step);
         let (mut rounds, mut enough, mut helps) = (ROUNDS, SETTLED, true);
@@ -219,7 +220,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Rounds over the touches until they settle or are too many; the last one.
+    /// Rounds over the constraints until they settle or are too many; the last one.
     fn rounds(&mut self, friction: f64, step: f64) -> Round {
         let mut last = self.round(friction, step);
         let mut rounds = 1;
@@ -230,11 +231,11 @@ impl Problem<'_> {
         last
     }
 
-    /// Settles one touch after the other, with all others as they are.
+    /// Settles one constraint after the other, with all others as they are.
     fn round(&mut self, friction: f64, step: f64) -> Round {
-        let Self { nodes, touches, .. } = self;
+        let Self { nodes, constraints, .. } = self;
         let mut round = Round::default();
-        for acting in touches {
+        for acting in constraints {
             let old = acting.impulse;
             let new = acting.settled(nodes, friction, step);
             let delta = Impulse { normal: new.normal - old.normal, tangent: new.tangent - old.tangent };
@@ -244,7 +245,7 @@ impl Problem<'_> {
             for change in [delta.normal.abs(), delta.tangent.abs()] {
                 // what is no number stays: such rounds never settle
                 if (change > round.change && change > acting.round_off) || change.is_nan() {
-                    (round.change, round.place) = (change, acting.touch.position);
+                    (round.change, round.place) = (change, acting.constraint.position);
                 }
             }
         }
@@ -267,19 +268,19 @@ impl Problem<'_> {
     /// Energies of half the force of the kick with given velocities.
     fn energy(&self, kick: Kick, velocity: impl Fn(&Node) -> [f64; 2] + Copy) -> ContactLedger {
         let half = fault!("contact-loss-doubled", 0.5 => 1.0) * kick.step / kick.length;
-        let parts = self.touches.iter().map(|acting| acting.energy(&self.nodes, velocity));
+        let parts = self.constraints.iter().map(|acting| acting.energy(&self.nodes, velocity));
         parts.fold(ContactLedger::default(), |sum, part| sum.plus(part.times(half)))
     }
 }
 
 impl Acting<'_> {
     fn tangent(&self) -> [f64; 2] {
-        let [x, y] = self.touch.normal;
+        let [x, y] = self.constraint.normal;
         [-y, x]
     }
 
     fn vector_of(&self, impulse: Impulse) -> [f64; 2] {
-        let (n, t) = (self.touch.normal, self.tangent());
+        let (n, t) = (self.constraint.normal, self.tangent());
         [0, 1].map(|c| impulse.normal * n[c] + impulse.tangent * t[c])
     }
 
@@ -289,7 +290,7 @@ impl Acting<'_> {
             mobility = [0, 1].map(|c| mobility[c] + n * n * nodes[node].mobility[c]);
         }
         let answer = |direction: [f64; 2]| (0..2).map(|c| direction[c] * direction[c] * mobility[c]).sum();
-        self.answers = [answer(self.touch.normal), answer(self.tangent())];
+        self.answers = [answer(self.constraint.normal), answer(self.tangent())];
         let size = |v: [f64; 2]| v[0].hypot(v[1]);
         let speed =
             self.weights.iter().fold(size(self.rigid), |sum, &(node, n)| sum + n.abs() * size(nodes[node].free));
@@ -319,8 +320,8 @@ impl Acting<'_> {
         let relative = self.relative(nodes, |node| node.after);
         let [along_normal, along_tangent] = self.answers;
         if along_normal > 0.0 {
-            let allowed = -fault!("open-gap-counts-as-closed", self.touch.gap.max(0.0) => 0.0) / step;
-            let settled = normal + (allowed - dot(relative, self.touch.normal)) / along_normal;
+            let allowed = -fault!("open-gap-counts-as-closed", self.constraint.gap.max(0.0) => 0.0) / step;
+            let settled = normal + (allowed - dot(relative, self.constraint.normal)) / along_normal;
             normal = if settled < fault!("contact-pulls", 0.0 => f64::NEG_INFINITY) { 0.0 } else { settled };
         }
         if normal.is_nan() {

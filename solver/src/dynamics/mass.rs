@@ -11,7 +11,7 @@ use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::stencil::Stencil;
 use crate::particles::lattice::Lattice;
-use crate::phase_field::assembly::{Constant, Form, add_form};
+use crate::phase_field::assembly::{Constant, Integrand, add_form};
 use crate::scene;
 
 /// Row sums below this fraction of the largest give no acceleration; their control points keep their velocity.
@@ -26,11 +26,11 @@ pub struct MassMatrix {
     row_sums: Vec<f64>,
     /// Row sums up to this, kg/m, are taken for none.
     negligible: f64,
-    kind: Kind,
+    kind: MassKind,
 }
 
 #[derive(Debug, Clone)]
-enum Kind {
+enum MassKind {
     /// Inverse row sums, zero where negligible.
     Lumped {
         inverse: Vec<f64>,
@@ -57,12 +57,12 @@ impl MassMatrix {
         let kind = match fault!("mass-lumped", mass => scene::Mass::Lumped) {
             scene::Mass::Lumped => {
                 let inverse = row_sums.iter().map(|&m| if m > negligible { 1.0 / m } else { 0.0 }).collect();
-                Kind::Lumped { inverse }
+                MassKind::Lumped { inverse }
             }
             scene::Mass::Consistent => {
                 let empty: Vec<usize> = lattice.grid.indices().filter(|&at| row_sums[at] <= negligible).collect();
                 let consistent = Consistent::new(lattice, density, held, &empty).ok_or(Failure::SingularMass)?;
-                Kind::Consistent(Box::new(consistent))
+                MassKind::Consistent(Box::new(consistent))
             }
         };
         Ok(Self { row_sums, negligible, kind })
@@ -83,10 +83,10 @@ impl MassMatrix {
     /// [`Self::divide`] for one component.
     pub(crate) fn divide_component(&self, component: usize, force: &mut [f64]) {
         match &self.kind {
-            Kind::Lumped { inverse } => {
+            MassKind::Lumped { inverse } => {
                 force.par_iter_mut().zip(inverse).with_min_len(CHUNK).for_each(|(f, inverse)| *f *= inverse);
             }
-            Kind::Consistent(consistent) => {
+            MassKind::Consistent(consistent) => {
                 let right = force.to_vec();
                 consistent.factors[component % consistent.factors.len()].solve(&right, force);
             }
@@ -96,19 +96,19 @@ impl MassMatrix {
     /// `out = M x` for one component.
     pub fn multiply(&self, x: &[f64], out: &mut [f64]) {
         match &self.kind {
-            Kind::Lumped { .. } => out.iter_mut().zip(x).zip(&self.row_sums).for_each(|((o, x), m)| *o = m * x),
-            Kind::Consistent(consistent) => drop(consistent.matrix.apply(x, out)),
+            MassKind::Lumped { .. } => out.iter_mut().zip(x).zip(&self.row_sums).for_each(|((o, x), m)| *o = m * x),
+            MassKind::Consistent(consistent) => drop(consistent.matrix.apply(x, out)),
         }
     }
 
     /// `½ vᵀ M v`.
     pub(crate) fn half_square(&self, v: &VectorField) -> f64 {
         match &self.kind {
-            Kind::Lumped { .. } => {
+            MassKind::Lumped { .. } => {
                 let squares = self.row_sums.iter().zip(v[0].iter().zip(&v[1]));
                 squares.map(|(m, (x, y))| 0.5 * m * (x * x + y * y)).sum()
             }
-            Kind::Consistent(consistent) => {
+            MassKind::Consistent(consistent) => {
                 let mut image = consistent.matrix.grid.zeros();
                 v.iter().map(|v| 0.5 * consistent.matrix.apply(v, &mut image)).sum()
             }
@@ -123,8 +123,8 @@ impl MassMatrix {
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
         let kind = match &self.kind {
-            Kind::Lumped { inverse } => 8 * inverse.len(),
-            Kind::Consistent(consistent) => {
+            MassKind::Lumped { inverse } => 8 * inverse.len(),
+            MassKind::Consistent(consistent) => {
                 consistent.matrix.bytes() + consistent.factors.iter().map(Factor::bytes).sum::<usize>()
             }
         };
@@ -136,7 +136,7 @@ impl Consistent {
     /// None if the matrix is not positive definite.
     fn new(lattice: &Lattice, density: f64, held: [Vec<usize>; 2], empty: &[usize]) -> Option<Self> {
         let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
-        add_form(&mut matrix, lattice, Form::Mass, &Constant(density));
+        add_form(&mut matrix, lattice, Integrand::Mass, &Constant(density));
         let mut cholesky = SparseCholesky::default(); // one symbolic factorisation for all
         let mut factor = |held: &[usize]| {
             let out: Vec<usize> = held.iter().chain(empty).copied().collect();

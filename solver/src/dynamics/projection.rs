@@ -5,7 +5,7 @@
 use crate::linear_algebra::cholesky::{Factor, SparseCholesky};
 use crate::linear_algebra::stencil::Stencil;
 use crate::particles::lattice::Lattice;
-use crate::phase_field::assembly::{Constant, Form, add_form};
+use crate::phase_field::assembly::{Constant, Integrand, add_form};
 
 /// Projector on the points of one lattice.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ impl<'a> Projection<'a> {
     /// field: fewer than p + 1 of them in some span, or spans without any.
     pub fn new(lattice: &'a Lattice, held: &[usize]) -> Option<Self> {
         let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
-        add_form(&mut matrix, lattice, Form::Mass, &Constant(1.0));
+        add_form(&mut matrix, lattice, Integrand::Mass, &Constant(1.0));
         Some(Self { lattice, factor: SparseCholesky::default().factor(&matrix, held)? })
     }
 

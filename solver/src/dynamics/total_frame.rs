@@ -25,13 +25,13 @@ use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::stencil::CHUNK_ROWS;
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
-use crate::phase_field::fracture::Fracturing;
+use crate::phase_field::fracture::LatticeFracture;
 use crate::scene::{Kinematics, Shape};
 use crate::splines::patch::Patch;
 use crate::transfer::sweep::StripForces;
 
 use crate::transfer::elastic_forces::elastic_forces;
-use forced::Forced;
+use forced::LatticeForcing;
 
 /// One body in the total frame.
 #[derive(Debug, Clone)]
@@ -46,7 +46,7 @@ pub struct TotalFrame {
     gravity: [f64; 2],
     loads: Vec<NodalLoad>,
     /// Loads that vary in space, if there are any.
-    forced: Option<Box<Forced>>,
+    forced: Option<Box<LatticeForcing>>,
     constraints: Constraints,
     mass: MassMatrix,
     displacement: VectorField,
@@ -55,7 +55,7 @@ pub struct TotalFrame {
     internal: VectorField,
     strip_forces: StripForces,
     /// The phase field, if the material fractures.
-    pub fracture: Option<Fracturing>,
+    pub fracture: Option<LatticeFracture>,
     lowest_tip: f64,
     elastic_energy: f64,
     ledger: Ledger,

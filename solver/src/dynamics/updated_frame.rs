@@ -2,7 +2,7 @@
 //!
 //! Between two whole steps n and n + 1 the shape functions are those at the positions x(n). The scheme is velocity Verlet
 //! written as one full kick on the rebuilt grid; no acceleration outlives its grid. What the points take from the grid is
-//! the transfer's choice: see [`departure`]. Strains are small, the sum of `dt sym(grad v(n + 1/2))`, or finite: Hencky
+//! the transfer's choice: see [`velocity_transfer`]. Strains are small, the sum of `dt sym(grad v(n + 1/2))`, or finite: Hencky
 //! strains of the deformation gradient of each point with Kirchhoff stresses, so that the internal force is
 //! `Σ V tau grad N` with the reference volume V ([`crate::material::hencky`]). Every loss of a transfer is measured: see [`losses`].
 //!
@@ -15,7 +15,7 @@
 //! `u ← u + dt (v − dt ω² u)`, `v ← v − dt s ω² u` with FLIP, where 0 ≤ s ≤ 1 is what the way to the points and back
 //! (`M⁻¹` times the consistent mass) leaves of an increment. The mode is stable up to `ω dt = 2/√(2 − s)`: 1.46 for the
 //! shortest waves of quadratic splines, and √2 for what the points do not see. [`UpdatedFrame::critical_step`] is √2/ω_max
-//! for every transfer but MUSL, whose limit is 2/ω_max ([`departure`]). With finite strains ω_max is that of the stiffness
+//! for every transfer but MUSL, whose limit is 2/ω_max ([`velocity_transfer`]). With finite strains ω_max is that of the stiffness
 //! without the geometric part.
 
 pub(crate) mod affine;
@@ -23,7 +23,6 @@ pub mod assembly;
 mod begin;
 mod booking;
 pub(crate) mod cracking;
-pub(crate) mod departure;
 pub mod fictitious;
 pub mod field;
 pub mod grid;
@@ -38,6 +37,7 @@ pub(crate) mod stiffness;
 pub mod strain;
 pub(crate) mod tractions;
 pub mod transfer;
+pub(crate) mod velocity_transfer;
 pub(crate) mod verify;
 pub(crate) mod volume_forcing;
 pub mod windows;
@@ -45,7 +45,7 @@ pub mod windows;
 use std::sync::Arc;
 
 use crate::contact::impulse::Kick;
-use crate::contact::{BodyView, Contact};
+use crate::contact::{BodyView, ContactSolver};
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::smaller;
 use crate::scene::Scene;
@@ -57,7 +57,7 @@ use field::DiscreteField;
 pub struct UpdatedFrame {
     patch: Arc<Patch>,
     fields: Vec<DiscreteField>,
-    contact: Option<Contact>,
+    contact: Option<ContactSolver>,
     thickness: f64,
 }
 
@@ -70,7 +70,7 @@ impl UpdatedFrame {
         let patch = Arc::new(Patch::new(&scene.mesh));
         let deformable = scene.bodies.iter().filter(|body| !body.rigid);
         let fields = deformable.map(|body| DiscreteField::new(scene, body, &patch)).collect::<Result<Vec<_>, _>>()?;
-        let mut contact = Contact::new(scene, &patch);
+        let mut contact = ContactSolver::new(scene, &patch);
         if let Some(contact) = &mut contact {
             contact.find(&views(&fields))?;
         }

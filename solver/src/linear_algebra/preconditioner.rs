@@ -25,7 +25,7 @@ const LONGEST_PAUSE: usize = 512;
 /// Factor of a matrix as it was some solves ago.
 #[derive(Debug, Clone)]
 pub struct Preconditioner {
-    factor: Kind,
+    factor: PreconditionerKind,
     /// Whether the matrix is still the one that was factored.
     is_fresh: bool,
     /// Iterations of the first solve with the present factor.
@@ -34,7 +34,7 @@ pub struct Preconditioner {
 }
 
 #[derive(Debug, Clone)]
-enum Kind {
+enum PreconditionerKind {
     Incomplete(IncompleteCholesky),
     /// None between a checkpoint and the solve that makes one.
     Complete(SparseCholesky, Option<Factor>),
@@ -53,7 +53,7 @@ impl Preconditioner {
     /// Incomplete factor of `matrix`.
     pub fn new(matrix: &Stencil) -> Self {
         Self {
-            factor: Kind::Incomplete(IncompleteCholesky::new(matrix)),
+            factor: PreconditionerKind::Incomplete(IncompleteCholesky::new(matrix)),
             is_fresh: true,
             fresh_iterations: None,
             pause: Pause { left: 0, next: FIRST_PAUSE },
@@ -63,8 +63,8 @@ impl Preconditioner {
     /// `out = M⁻¹ r`; returns `rᵀ out`.
     pub fn apply(&self, r: &[f64], out: &mut [f64]) -> f64 {
         match &self.factor {
-            Kind::Incomplete(factor) => factor.apply(r, out),
-            Kind::Complete(_, factor) => {
+            PreconditionerKind::Incomplete(factor) => factor.apply(r, out),
+            PreconditionerKind::Complete(_, factor) => {
                 factor.as_ref().expect("it is made before the solve").solve(r, out);
                 r.iter().zip(out).map(|(r, out)| r * *out).sum()
             }
@@ -74,11 +74,11 @@ impl Preconditioner {
     /// Makes the factor anew; one that cannot be complete becomes incomplete.
     pub fn renew(&mut self, matrix: &Stencil) {
         match &mut self.factor {
-            Kind::Incomplete(factor) => factor.refactor(matrix),
-            Kind::Complete(cholesky, factor) => {
+            PreconditionerKind::Incomplete(factor) => factor.refactor(matrix),
+            PreconditionerKind::Complete(cholesky, factor) => {
                 *factor = cholesky.factor(matrix, &[]);
                 if factor.is_none() {
-                    self.factor = Kind::Incomplete(IncompleteCholesky::new(matrix));
+                    self.factor = PreconditionerKind::Incomplete(IncompleteCholesky::new(matrix));
                 }
             }
         }
@@ -101,14 +101,14 @@ impl Preconditioner {
     /// Whether `rᵀ M⁻¹ r` says how large the error of a start is: a factor with a raised diagonal would make it out smaller.
     pub fn judges_starts(&self) -> bool {
         match &self.factor {
-            Kind::Incomplete(factor) => !factor.is_raised(),
-            Kind::Complete(..) => true,
+            PreconditionerKind::Incomplete(factor) => !factor.is_raised(),
+            PreconditionerKind::Complete(..) => true,
         }
     }
 
     /// Whether the factor serves one solve alone.
     pub fn is_complete(&self) -> bool {
-        matches!(self.factor, Kind::Complete(..))
+        matches!(self.factor, PreconditionerKind::Complete(..))
     }
 
     /// The next solve counts as the first with the present factor.
@@ -143,7 +143,7 @@ impl Preconditioner {
         }
         let mut cholesky = SparseCholesky::default();
         let Some(factor) = cholesky.factor(matrix, &[]) else { return false };
-        self.factor = Kind::Complete(cholesky, Some(factor));
+        self.factor = PreconditionerKind::Complete(cholesky, Some(factor));
         self.pause = Pause { left: self.pause.next, next: (2 * self.pause.next).min(LONGEST_PAUSE) };
         true
     }
@@ -151,8 +151,8 @@ impl Preconditioner {
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
         match &self.factor {
-            Kind::Incomplete(factor) => factor.bytes(),
-            Kind::Complete(_, factor) => factor.as_ref().map_or(0, |factor| factor.bytes()),
+            PreconditionerKind::Incomplete(factor) => factor.bytes(),
+            PreconditionerKind::Complete(_, factor) => factor.as_ref().map_or(0, |factor| factor.bytes()),
         }
     }
 
@@ -165,17 +165,17 @@ impl Preconditioner {
         archive.value(is_fresh)?;
         archive.value(fresh_iterations)?;
         archive.value(pause)?;
-        let mut complete = matches!(factor, Kind::Complete(..));
+        let mut complete = matches!(factor, PreconditionerKind::Complete(..));
         archive.value(&mut complete)?;
         if archive.is_reader() {
             *factor = match complete {
-                true => Kind::Complete(SparseCholesky::default(), None),
-                false => Kind::Incomplete(IncompleteCholesky::new(matrix)),
+                true => PreconditionerKind::Complete(SparseCholesky::default(), None),
+                false => PreconditionerKind::Incomplete(IncompleteCholesky::new(matrix)),
             };
         }
         match factor {
-            Kind::Incomplete(factor) => factor.exchange(archive),
-            Kind::Complete(..) => Ok(()),
+            PreconditionerKind::Incomplete(factor) => factor.exchange(archive),
+            PreconditionerKind::Complete(..) => Ok(()),
         }
     }
 }

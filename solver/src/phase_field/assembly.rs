@@ -11,7 +11,7 @@ mod mapped;
 
 use rayon::prelude::*;
 
-pub use form::{Constant, Form, PointCoefficients};
+pub use form::{Constant, Integrand, PointCoefficients};
 
 use crate::linear_algebra::lane::{Lane, Vectorised, dispatch};
 use crate::linear_algebra::stencil::Stencil;
@@ -21,26 +21,26 @@ use crate::splines::spline::MAX_ORDER;
 
 /// Which function of a direction enters a product.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Factor {
+enum ShapeFactor {
     Value,
     Derivative,
 }
 
 /// Adds `Σ_p f_p N_I N_J` or `Σ_p f_p grad N_I · grad N_J` to `matrix`.
-pub fn add_form<C: PointCoefficients>(matrix: &mut Stencil, lattice: &Lattice, form: Form, coefficients: &C) {
-    use Factor::{Derivative, Value};
+pub fn add_form<C: PointCoefficients>(matrix: &mut Stencil, lattice: &Lattice, form: Integrand, coefficients: &C) {
+    use ShapeFactor::{Derivative, Value};
     if lattice.mapping.is_some() {
         return for_each_strip(matrix, lattice, |strip, first_row, window| {
             mapped::assemble(lattice, form, coefficients, strip, first_row, window);
         });
     }
-    let products: &[[Factor; 2]] = match form {
-        Form::Mass => &[[Value, Value]],
-        Form::Diffusion => &[[Derivative, Value], [Value, Derivative]],
+    let products: &[[ShapeFactor; 2]] = match form {
+        Integrand::Mass => &[[Value, Value]],
+        Integrand::Diffusion => &[[Derivative, Value], [Value, Derivative]],
     };
     for &factors in products {
         for_each_strip(matrix, lattice, |strip, first_row, window| {
-            dispatch(AssembleStrip { lattice, factors, coefficients, strip, first_row, window });
+            dispatch(AssembleLattice { lattice, factors, coefficients, strip, first_row, window });
         });
     }
 }
@@ -63,16 +63,16 @@ fn for_each_strip(matrix: &mut Stencil, lattice: &Lattice, assemble: impl Fn(usi
     }
 }
 
-struct AssembleStrip<'a, C> {
+struct AssembleLattice<'a, C> {
     lattice: &'a Lattice,
-    factors: [Factor; 2],
+    factors: [ShapeFactor; 2],
     coefficients: &'a C,
     strip: usize,
     first_row: usize,
     window: &'a mut [f64],
 }
 
-impl<C: PointCoefficients> Vectorised for AssembleStrip<'_, C> {
+impl<C: PointCoefficients> Vectorised for AssembleLattice<'_, C> {
     type Output = ();
 
     #[inline(always)]
@@ -90,7 +90,7 @@ impl<C: PointCoefficients> Vectorised for AssembleStrip<'_, C> {
 /// Pairs of functions `k <= l` of one direction.
 const PAIRS: usize = MAX_ORDER * (MAX_ORDER + 1) / 2;
 
-impl<C: PointCoefficients> AssembleStrip<'_, C> {
+impl<C: PointCoefficients> AssembleLattice<'_, C> {
     #[inline(always)]
     fn walk<const FMA: bool>(mut self, kx: usize, ky: usize, nx: usize, ny: usize) {
         let lattice = self.lattice;
@@ -126,8 +126,8 @@ impl<C: PointCoefficients> AssembleStrip<'_, C> {
         ny: usize,
     ) {
         let table = match self.factors[0] {
-            Factor::Value => &tile.value,
-            Factor::Derivative => &tile.derivative,
+            ShapeFactor::Value => &tile.value,
+            ShapeFactor::Derivative => &tile.derivative,
         };
         let mut pair = 0;
         for k in 0..kx {
@@ -149,8 +149,8 @@ impl<C: PointCoefficients> AssembleStrip<'_, C> {
     #[inline(always)]
     fn sum_in_y<const FMA: bool>(&mut self, row: &Row, tile: &Tile, sums: &[Lane], kx: usize, ky: usize, ny: usize) {
         let table = match self.factors[1] {
-            Factor::Value => &row.value,
-            Factor::Derivative => &row.derivative,
+            ShapeFactor::Value => &row.value,
+            ShapeFactor::Derivative => &row.derivative,
         };
         let stride = self.lattice.grid.stride;
         let (p, half) =

@@ -18,7 +18,7 @@ use crate::transfer::sweep::{StripForces, sweep};
 pub(crate) const SEED_STRENGTH: f64 = 1000.0;
 /// History and phase field of a body.
 #[derive(Debug, Clone)]
-pub struct Fracturing {
+pub struct LatticeFracture {
     /// Constants.
     pub model: FractureModel,
     /// History energy H at the points, J/m³.
@@ -42,7 +42,7 @@ pub struct StressSums {
     pub history_work: f64,
 }
 
-impl Fracturing {
+impl LatticeFracture {
     /// Seeds the cracks of `body` and solves for the initial phase field.
     ///
     /// # Errors

@@ -11,7 +11,7 @@ use crate::scene::{self, Scene};
 
 /// The bodies in the frame of their scene.
 #[derive(Debug)]
-pub(super) enum Frame {
+pub(super) enum Bodies {
     Total(Box<TotalFrame>),
     Updated(Box<UpdatedFrame>),
 }
@@ -20,14 +20,14 @@ pub(super) enum Frame {
 macro_rules! either {
     ($frame:expr, $body:ident => $value:expr) => {
         match $frame {
-            Frame::Total($body) => $value,
-            Frame::Updated($body) => $value,
+            Bodies::Total($body) => $value,
+            Bodies::Updated($body) => $value,
         }
     };
 }
 pub(super) use either;
 
-impl Frame {
+impl Bodies {
     pub(super) fn new(scene: &Scene) -> Result<Self, Failure> {
         Ok(match scene.analysis.frame {
             scene::Frame::Total => Self::Total(Box::new(TotalFrame::new(scene)?)),

@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use super::causes::{BARE, CONTACT_NOT_FINITE, INSIDE_OUT, LOST, NOT_FINITE, THROWN, TORN, numbers, what_and_cause};
-use super::frame::{Frame, either};
+use super::frame::{Bodies, either};
 use crate::contact::impulse::Unsettled;
 use crate::contact::motion::TooFast;
 use crate::dynamics::energy::Sample;
@@ -52,9 +52,9 @@ impl Simulation {
         }
         let (step, look) = (self.plan.step, self.steps.is_multiple_of(STEPS_BETWEEN_LOOKS));
         let critical = match &mut self.frame {
-            Frame::Updated(frame) => frame.retake_critical_step(),
-            Frame::Total(frame) if look => frame.retake_critical_step(step, self.plan.critical),
-            Frame::Total(_) => None,
+            Bodies::Updated(frame) => frame.retake_critical_step(),
+            Bodies::Total(frame) if look => frame.retake_critical_step(step, self.plan.critical),
+            Bodies::Total(_) => None,
         };
         let Some(critical) = critical.filter(|critical| step > *critical) else { return };
         self.warned_of_step = true;

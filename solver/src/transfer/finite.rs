@@ -1,4 +1,4 @@
-//! Finite kinematics in the total frame: any kernel of small strains on Hencky strains.
+//! OnHenckyStrain kinematics in the total frame: any kernel of small strains on Hencky strains.
 //!
 //! The kernel sees the Hencky strain of `F = I + grad u` in place of the linear one and gives Kirchhoff's stress tau; the
 //! nodal forces take the first Piola–Kirchhoff stress `P = tau F⁻ᵀ`, which works on the gradient in reference positions.
@@ -11,9 +11,9 @@ use crate::transfer::point_kernel::{Fields, PointKernel, PointValues, Stress};
 use crate::transfer::sweep::{StripForces, sweep};
 
 /// A kernel on Hencky strains; its logarithms take longer than loops whose length is not known.
-struct Finite<'a, K>(&'a mut K);
+struct OnHenckyStrain<'a, K>(&'a mut K);
 
-impl<K: PointKernel> PointKernel for Finite<'_, K> {
+impl<K: PointKernel> PointKernel for OnHenckyStrain<'_, K> {
     const DISPLACEMENT: bool = K::DISPLACEMENT;
     const PHASE: bool = K::PHASE;
     const PHASE_GRADIENT: bool = K::PHASE_GRADIENT;
@@ -53,7 +53,7 @@ pub(crate) fn sweep_with<K: PointKernel>(
     match kinematics {
         Kinematics::Small => sweep(lattice, fields, kernels, forces),
         Kinematics::Finite => {
-            let mut kernels: Vec<_> = kernels.iter_mut().map(Finite).collect();
+            let mut kernels: Vec<_> = kernels.iter_mut().map(OnHenckyStrain).collect();
             sweep(lattice, fields, &mut kernels, forces);
         }
     }

@@ -4,7 +4,7 @@ use crate::scene::Shape;
 use crate::scene::shape::polygon_edges;
 use crate::splines::nurbs::NurbsPatch;
 
-type Point = [f64; 2];
+type Position = [f64; 2];
 
 /// Most points looked at along a polygon, unless it has more corners.
 const MOST_OUTLINE: usize = 4096;
@@ -14,7 +14,7 @@ const OUTLINE_INTERVALS: usize = 64;
 
 /// Why a shape is empty or malformed, with a remedy.
 pub(crate) fn defect(shape: &Shape) -> Option<(String, &'static str)> {
-    let finite = |p: &Point| p.iter().all(|x| x.is_finite());
+    let finite = |p: &Position| p.iter().all(|x| x.is_finite());
     match shape {
         Shape::Rectangle { min, max } => {
             let sound = finite(min) && finite(max) && (0..2).all(|d| min[d] < max[d]);
@@ -54,7 +54,7 @@ pub(crate) fn complexity(shape: &Shape) -> usize {
 }
 
 /// Signed area of a polygon, m².
-fn area(points: &[Point]) -> f64 {
+fn area(points: &[Position]) -> f64 {
     polygon_edges(points).map(|[a, b]| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()
 }
 

@@ -10,7 +10,7 @@ use crate::scene::Body;
 use crate::scene::shape::distance_to_segment;
 use crate::splines::nurbs::{MapPoint, NurbsPatch};
 
-type Point = [f64; 2];
+type Position = [f64; 2];
 
 /// Most tests of a point against a corner or circle, over all looks at a body: a tenth of a second.
 const MOST_LOOKS: usize = 10_000_000;
@@ -64,7 +64,7 @@ impl<'a> Points<'a> {
     }
 
     /// Whether some point is `wanted`, or none was found among as many as may be looked at.
-    pub(crate) fn any(&self, wanted: impl Fn(Point) -> bool) -> bool {
+    pub(crate) fn any(&self, wanted: impl Fn(Position) -> bool) -> bool {
         let [columns, rows] = self.axes.each_ref().map(Vec::len);
         let mut pairs = (0..rows).flat_map(|j| (0..columns).map(move |i| [i, j])).map(|pair| self.position(pair));
         let found = pairs.by_ref().take(self.most).any(|x| wanted(x) && self.is_inside(x));
@@ -73,7 +73,7 @@ impl<'a> Points<'a> {
 
     /// The points within a span of a segment, and within `reach` (m), in their order along it; `None` if there are too many to be
     /// looked at.
-    pub(crate) fn near(&self, [from, to]: [Point; 2], reach: f64) -> Option<Vec<Near>> {
+    pub(crate) fn near(&self, [from, to]: [Position; 2], reach: f64) -> Option<Vec<Near>> {
         let along = [to[0] - from[0], to[1] - from[1]];
         let length = along[0].hypot(along[1]);
         let candidates = self.candidates(from, along, reach);
@@ -88,7 +88,7 @@ impl<'a> Points<'a> {
             let diagonal = (ax * ax + ay * ay + bx * bx + by * by).sqrt();
             let distance = distance_to_segment(position, from, to);
             if distance <= diagonal.max(reach) && self.is_inside(position) {
-                let project = |v: Point| (v[0] * along[0] + v[1] * along[1]) / length;
+                let project = |v: Position| (v[0] * along[0] + v[1] * along[1]) / length;
                 let foot = project([position[0] - from[0], position[1] - from[1]]);
                 let span = spans.into_iter().map(|span| project(span).abs()).sum();
                 let [[ax, ay], [bx, by]] = [0, 1].map(|d| self.along(pair, d, |axis| axis.weight));
@@ -101,7 +101,7 @@ impl<'a> Points<'a> {
     }
 
     /// Columns and row of the pairs that may lie within a span, or `reach` (m), of a segment: over a rectangle those under it, row by row.
-    fn candidates(&self, from: Point, along: Point, reach: f64) -> Vec<(Range<usize>, usize)> {
+    fn candidates(&self, from: Position, along: Position, reach: f64) -> Vec<(Range<usize>, usize)> {
         let [xs, ys] = &self.axes;
         if self.mapped.is_some() {
             return (0..ys.len()).map(|j| (0..xs.len(), j)).collect();
@@ -124,11 +124,11 @@ impl<'a> Points<'a> {
         within(ys, from[1].min(to), from[1].max(to)).map(in_row).collect()
     }
 
-    fn is_inside(&self, position: Point) -> bool {
+    fn is_inside(&self, position: Position) -> bool {
         self.fills || self.body.shape.contains(position)
     }
 
-    fn position(&self, [i, j]: [usize; 2]) -> Point {
+    fn position(&self, [i, j]: [usize; 2]) -> Position {
         match &self.mapped {
             None => [self.axes[0][i].position, self.axes[1][j].position],
             Some(images) => images[j * self.axes[0].len() + i].position,
@@ -136,7 +136,7 @@ impl<'a> Points<'a> {
     }
 
     /// A length along direction `d` at a point as a vector, m.
-    fn along(&self, pair: [usize; 2], d: usize, length: impl Fn(&AxisPoint) -> f64) -> Point {
+    fn along(&self, pair: [usize; 2], d: usize, length: impl Fn(&AxisPoint) -> f64) -> Position {
         let length = length(&self.axes[d][pair[d]]);
         match &self.mapped {
             None => [0, 1].map(|i| if i == d { length } else { 0.0 }),
@@ -147,7 +147,7 @@ impl<'a> Points<'a> {
 
 /// Images of all pairs of parameters.
 fn images(patch: &NurbsPatch, [xs, ys]: &[Vec<AxisPoint>; 2]) -> Vec<MapPoint> {
-    let image = |parameters: Point| {
+    let image = |parameters: Position| {
         let span = patch.find_span(parameters).expect("points lie in spans");
         patch.map(&patch.shape_functions(span, parameters))
     };

@@ -5,7 +5,7 @@ use fisura::linear_algebra::extremes::larger;
 use fisura::linear_algebra::lane::Lane;
 use fisura::linear_algebra::stencil::Stencil;
 use fisura::particles::lattice::Lattice;
-use fisura::phase_field::assembly::{Constant, Form, PointCoefficients, add_form};
+use fisura::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_form};
 use fisura::phase_field::integrate_shape_functions;
 use fisura::scene::*;
 use fisura::splines::patch::Patch;
@@ -43,7 +43,7 @@ fn compare(mesh: &Mesh, body: &Body, skip: usize) {
     let lattice = Lattice::new(&patch, body);
     let grid = lattice.grid;
     let coefficients = PerPoint::new(&lattice, skip);
-    for form in [Form::Mass, Form::Diffusion] {
+    for form in [Integrand::Mass, Integrand::Diffusion] {
         let mut matrix = Stencil::zeros(grid, lattice.degree);
         add_form(&mut matrix, &lattice, form, &coefficients);
         let mut expected = vec![0.0; matrix.coefficients().len()];
@@ -68,8 +68,8 @@ fn compare(mesh: &Mesh, body: &Body, skip: usize) {
                     }
                     let m = j + offset_rows;
                     let product = match form {
-                        Form::Mass => x.value[i] * y.value[j] * x.value[l] * y.value[m],
-                        Form::Diffusion => {
+                        Integrand::Mass => x.value[i] * y.value[j] * x.value[l] * y.value[m],
+                        Integrand::Diffusion => {
                             x.derivative[i] * y.value[j] * x.derivative[l] * y.value[m]
                                 + x.value[i] * y.derivative[j] * x.value[l] * y.derivative[m]
                         }
@@ -128,7 +128,7 @@ fn two_threads_give_the_bits_of_one() {
         let coefficients = PerPoint::new(&lattice, 0);
         let assemble = || {
             let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
-            add_form(&mut matrix, &lattice, Form::Diffusion, &coefficients);
+            add_form(&mut matrix, &lattice, Integrand::Diffusion, &coefficients);
             let bits: Vec<u64> = matrix.coefficients().iter().map(|c| c.to_bits()).collect();
             bits
         };
@@ -146,7 +146,7 @@ fn row_sums_are_integrals_of_the_shape_functions() {
         let patch = Patch::new(&Mesh::uniform([degree; 2], [0.0; 2], [1.9, 1.8], [19, 18]));
         let lattice = Lattice::new(&patch, &body(rectangle([0.013, 0.27], [1.55, 1.71]), [3; 2]));
         let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
-        add_form(&mut matrix, &lattice, Form::Mass, &Constant(1.0));
+        add_form(&mut matrix, &lattice, Integrand::Mass, &Constant(1.0));
         let (mut ones, mut sums) = (lattice.grid.zeros(), lattice.grid.zeros());
         lattice.grid.indices().for_each(|at| ones[at] = 1.0);
         let area = matrix.apply(&ones, &mut sums);

@@ -5,7 +5,7 @@ use fisura::dynamics::updated_frame::fictitious::{FictitiousMaterial, WEIGHT};
 use fisura::linear_algebra::extremes::larger;
 use fisura::linear_algebra::stencil::Stencil;
 use fisura::particles::lattice::Lattice;
-use fisura::phase_field::assembly::{Constant, Form, add_form};
+use fisura::phase_field::assembly::{Constant, Integrand, add_form};
 use fisura::scene::{Mesh, Shape};
 use fisura::splines::patch::Patch;
 
@@ -17,8 +17,8 @@ fn it_is_a_body_that_fills_the_patch() {
         let (lattice, diffusion) = (Lattice::new(&patch, &body(Shape::Patch, [degree + 1; 2])), 0.37);
         let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
         let mut expected = matrix.clone();
-        add_form(&mut expected, &lattice, Form::Mass, &Constant(WEIGHT));
-        add_form(&mut expected, &lattice, Form::Diffusion, &Constant(WEIGHT * diffusion));
+        add_form(&mut expected, &lattice, Integrand::Mass, &Constant(WEIGHT));
+        add_form(&mut expected, &lattice, Integrand::Diffusion, &Constant(WEIGHT * diffusion));
         let mut load = vec![f64::NAN; lattice.grid.len()];
         FictitiousMaterial::new(&patch, diffusion).begin(&mut matrix, &mut load);
         let expected_load = lattice.integrate(|_, _, _| WEIGHT);

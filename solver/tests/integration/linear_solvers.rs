@@ -10,7 +10,7 @@ use fisura::linear_algebra::lane::Lane;
 use fisura::linear_algebra::preconditioner::Preconditioner;
 use fisura::linear_algebra::stencil::Stencil;
 use fisura::particles::lattice::Lattice;
-use fisura::phase_field::assembly::{Constant, Form, PointCoefficients, add_form};
+use fisura::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_form};
 use fisura::scene::*;
 use fisura::splines::patch::Patch;
 use nalgebra::{DMatrix, DVector};
@@ -48,8 +48,8 @@ fn phase_field_matrix(degree: usize, cells: [usize; 2], contrast: f64) -> Stenci
     let patch = Patch::new(&Mesh::uniform([degree; 2], [0.0; 2], size, cells));
     let lattice = Lattice::new(&patch, &body(rectangle([0.0; 2], size), [degree.max(2); 2]));
     let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
-    add_form(&mut matrix, &lattice, Form::Mass, &Crack { lattice: &lattice, contrast });
-    add_form(&mut matrix, &lattice, Form::Diffusion, &Constant(fracture_model().diffusion()));
+    add_form(&mut matrix, &lattice, Integrand::Mass, &Crack { lattice: &lattice, contrast });
+    add_form(&mut matrix, &lattice, Integrand::Diffusion, &Constant(fracture_model().diffusion()));
     matrix
 }
 

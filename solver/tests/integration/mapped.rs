@@ -6,7 +6,7 @@ use crate::common::{Random, annulus, bent_patch, body, random_patch};
 use fisura::linear_algebra::lane::Lane;
 use fisura::linear_algebra::stencil::Stencil;
 use fisura::particles::lattice::Lattice;
-use fisura::phase_field::assembly::{Form, PointCoefficients, add_form};
+use fisura::phase_field::assembly::{Integrand, PointCoefficients, add_form};
 use fisura::scene::*;
 use fisura::splines::nurbs::NurbsPatch;
 use fisura::splines::patch::Patch;
@@ -178,7 +178,7 @@ fn check_assembly(name: &str, lattice: &Lattice, points: &[PlainPoint]) {
         values: (0..lattice.batches()).map(|_| Lane([0.0; 8].map(|_| 1.5 + random.next()))).collect(),
         per_span: lattice.points_per_span(),
     };
-    for form in [Form::Mass, Form::Diffusion] {
+    for form in [Integrand::Mass, Integrand::Diffusion] {
         let mut matrix = Stencil::zeros(grid, lattice.degree);
         add_form(&mut matrix, lattice, form, &coefficients);
         let field = random.field(grid, 1.0);
@@ -193,8 +193,8 @@ fn check_assembly(name: &str, lattice: &Lattice, points: &[PlainPoint]) {
             for (n, at, function) in p.terms(grid) {
                 expected[at] += scale
                     * match form {
-                        Form::Mass => function * value,
-                        Form::Diffusion => p.gradients[n][0] * gradient[0] + p.gradients[n][1] * gradient[1],
+                        Integrand::Mass => function * value,
+                        Integrand::Diffusion => p.gradients[n][0] * gradient[0] + p.gradients[n][1] * gradient[1],
                     };
             }
         }

@@ -204,3 +204,23 @@ fn an_upward_import_and_circles_are_found() {
     assert_eq!(ring.circles()[1], "scene -> splines -> material -> scene");
     assert_eq!(ring.upward().len(), 2, "what tests import does not count");
 }
+
+#[test]
+fn no_two_types_share_a_name() {
+    let mut places: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for (module, source) in files() {
+        for item in syn::parse_file(&source).unwrap().items {
+            let name = match item {
+                syn::Item::Struct(item) => item.ident,
+                syn::Item::Enum(item) => item.ident,
+                syn::Item::Trait(item) => item.ident,
+                syn::Item::Type(item) => item.ident,
+                _ => continue,
+            };
+            places.entry(name.to_string()).or_default().push(module.join("/"));
+        }
+    }
+    assert!(places.len() > 150, "types are found");
+    places.retain(|_, modules| modules.len() > 1);
+    assert_eq!(places, BTreeMap::new());
+}

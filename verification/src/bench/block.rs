@@ -8,8 +8,8 @@ use fisura::material::elasticity::ElasticModuli;
 use fisura::material::split::EnergySplit;
 use fisura::particles::lattice::Lattice;
 use fisura::phase_field::PhaseField;
-use fisura::phase_field::assembly::{Constant, Form, PointCoefficients, add_form};
-use fisura::phase_field::fracture::Fracturing;
+use fisura::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_form};
+use fisura::phase_field::fracture::LatticeFracture;
 use fisura::scene::{Crack, Fracture, Material, Mesh, PhaseFieldSolver, Plane, Scene, Shape, SolverSettings, Split};
 use fisura::splines::patch::Patch;
 use fisura::transfer::kernels::{DegradedStress, ElasticStress, HistoryUpdate};
@@ -109,7 +109,7 @@ impl Block {
             displacement[0][at] = 1e-7 * (0.37 * n as f64).sin();
             displacement[1][at] = 1e-7 * (0.23 * n as f64).cos();
         }
-        let fracturing = Fracturing::new(&lattice, &scene.bodies[0], model, &scene.solver);
+        let fracturing = LatticeFracture::new(&lattice, &scene.bodies[0], model, &scene.solver);
         let history = fracturing.map_err(|_| BenchError::other("the first phase field does not converge"))?.history;
         let (degree, points) = (lattice.degree[0], lattice.points[0]);
         let (name, count) = (format!("p{degree}_{points}x{points}"), lattice.count());
@@ -183,8 +183,8 @@ impl Block {
     pub fn assemble(&self, matrix: &mut Stencil) {
         matrix.coefficients_mut().fill(0.0);
         let reaction = Reaction { history: &self.history, per_energy: self.model.reaction_per_energy() };
-        add_form(matrix, &self.lattice, Form::Mass, &reaction);
-        add_form(matrix, &self.lattice, Form::Diffusion, &Constant(self.model.diffusion()));
+        add_form(matrix, &self.lattice, Integrand::Mass, &reaction);
+        add_form(matrix, &self.lattice, Integrand::Diffusion, &Constant(self.model.diffusion()));
     }
 
     /// The phase-field matrix, and how far `1·K·1` is from the integral of the reaction, relative to it: gradients of a

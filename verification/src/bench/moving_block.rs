@@ -3,7 +3,7 @@
 use fisura::Simulation;
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::dynamics::updated_frame::grid::NodalFields;
-use fisura::dynamics::updated_frame::strain::Small;
+use fisura::dynamics::updated_frame::strain::SmallStrain;
 use fisura::dynamics::updated_frame::transfer::{GridToPoints, PointsToGrid, StripMotion};
 use fisura::dynamics::updated_frame::windows::{cut, scatter};
 use fisura::linear_algebra::lane::dispatch;
@@ -42,7 +42,7 @@ impl MovingBlock {
     /// The block after `steps` steps.
     ///
     /// # Errors
-    /// If a step cannot be taken.
+    /// If a step cannot be increment.
     pub fn new(degree: usize, points: usize, cells: usize, steps: usize) -> Result<Self, BenchError> {
         let (frame, _) = moved(&moving_scene(degree, points, cells), steps)?;
         let field = &frame.fields()[0];
@@ -101,8 +101,8 @@ impl MovingBlock {
         let Self { patch, points, cells, nodes, moduli } = self;
         let patch = &*patch;
         let motion = nodes.velocity.each_ref().map(|f| &f[..]);
-        let taken = nodes.acceleration.each_ref().map(|f| &f[..]);
-        let kept = 1.0;
+        let increment = nodes.acceleration.each_ref().map(|f| &f[..]);
+        let kept_fraction = 1.0;
         let strips = cut(points, cells.strips.iter().map(|s| s.points.clone())).into_par_iter().zip(&cells.strips);
         let motions: Vec<StripMotion> = strips
             .map(|(points, strip)| {
@@ -111,9 +111,9 @@ impl MovingBlock {
                     grid: nodes.grid,
                     dt,
                     motion,
-                    taken,
-                    kept,
-                    kinematics: Small,
+                    increment,
+                    kept_fraction,
+                    kinematics: SmallStrain,
                     elastic: Some(*moduli),
                     cells: &cells.cells[strip.cells.clone()],
                     points,
@@ -155,7 +155,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 /// The scene after some steps from [`velocity`], and the length of its steps, s.
 fn moved(scene: &Scene, steps: usize) -> Result<(UpdatedFrame, f64), BenchError> {
     let dt = Simulation::new(scene)?.plan().step;
-    let broken = |_| BenchError::other("a step of the block cannot be taken");
+    let broken = |_| BenchError::other("a step of the block cannot be increment");
     let mut frame = UpdatedFrame::new(scene).map_err(broken)?;
     frame.set_initial_velocity(velocity);
     (0..steps).try_for_each(|_| frame.step(dt)).map_err(broken)?;
@@ -177,7 +177,7 @@ pub fn minimal<const P: usize>(points: usize, cells: usize) -> Result<(Minimal<P
 /// of their nodal accelerations over the largest acceleration.
 ///
 /// # Errors
-/// If a step cannot be taken.
+/// If a step cannot be increment.
 pub fn minimal_deviation<const P: usize>(points: usize, cells: usize, steps: usize) -> Result<f64, BenchError> {
     let (frame, _) = moved(&moving_scene(P, points, cells), steps)?;
     let (mut minimal, dt) = self::minimal::<P>(points, cells)?;

@@ -6,7 +6,7 @@
 use fisura::linear_algebra::cholesky::SparseCholesky;
 use fisura::linear_algebra::stencil::Stencil;
 use fisura::particles::lattice::Lattice;
-use fisura::phase_field::assembly::{Constant, Form, add_form};
+use fisura::phase_field::assembly::{Constant, Integrand, add_form};
 use fisura::scene::{Mass, Mesh};
 use fisura::splines::patch::Patch;
 
@@ -65,8 +65,8 @@ fn crack(degree: usize, per_length: usize) -> Result<(f64, f64), StudyError> {
     let lattice = Lattice::new(&patch, &scene.bodies[0]);
     let grid = lattice.grid;
     let mut matrix = Stencil::zeros(grid, lattice.degree);
-    add_form(&mut matrix, &lattice, Form::Mass, &Constant(1.0));
-    add_form(&mut matrix, &lattice, Form::Diffusion, &Constant(4.0 * LENGTH * LENGTH));
+    add_form(&mut matrix, &lattice, Integrand::Mass, &Constant(1.0));
+    add_form(&mut matrix, &lattice, Integrand::Diffusion, &Constant(4.0 * LENGTH * LENGTH));
     // The one column of control points that decides the field on x = 0.
     let middle = (grid.columns - 1) / 2;
     let held: Vec<usize> = (0..grid.rows).map(|row| grid.index(middle, row)).collect();

@@ -12,7 +12,7 @@ use fisura::material::degradation::FractureModel;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::lattice::Lattice;
 use fisura::phase_field::PhaseField;
-use fisura::phase_field::fracture::Fracturing;
+use fisura::phase_field::fracture::LatticeFracture;
 use fisura::scene::{Fracture, Kinematics, Material, Plane, Side};
 use fisura::splines::patch::Patch;
 use fisura::splines::patch::control_points_on;
@@ -77,7 +77,7 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
     let mut points = Points {
         lattice: &lattice,
         moduli,
-        fracture: Fracturing { model, history, phase: zeros.clone(), remembered: zeros, field, iterations: 0 },
+        fracture: LatticeFracture { model, history, phase: zeros.clone(), remembered: zeros, field, iterations: 0 },
         forces: StripForces::new(&lattice),
         greville: patch.spaces[0].greville(),
         height: high[1] - low[1],
@@ -116,7 +116,7 @@ fn uniaxial_modulus(material: &Material, plane: Plane) -> f64 {
 struct Points<'a> {
     lattice: &'a Lattice,
     moduli: ElasticModuli,
-    fracture: Fracturing,
+    fracture: LatticeFracture,
     forces: StripForces,
     /// Control values of x, m.
     greville: Vec<f64>,

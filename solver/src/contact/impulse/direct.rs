@@ -1,6 +1,6 @@
-//! Impulses from the equations of the touches, where rounds over the touches settle too slowly.
+//! Impulses from the equations of the constraints, where rounds over the constraints settle too slowly.
 //!
-//! Impulses P change the relative velocities at the touches to `r + A P`. If it is known which touches are open, stick or slide,
+//! Impulses P change the relative velocities at the constraints to `r + A P`. If it is known which constraints are open, stick or slide,
 //! P solves linear equations: no impulse where it is open, no approach where it is not, no sliding where it sticks, and `± mu`
 //! times the normal impulse along where it slides. The states are those the rounds ended with, changed until they agree with the
 //! impulses (a Newton method for the complementarity problem). Nothing is taken on trust: rounds that follow have to find the
@@ -15,7 +15,7 @@ use crate::linear_algebra::vectors::dot;
 /// does not where there is no friction (Murty 1974).
 const MOST_CHANGES: usize = 100;
 const MOST_AT_ONCE: usize = 10;
-/// Least singular value relative to the largest: more touches than control points can tell apart share their impulses.
+/// Least singular value relative to the largest: more constraints than control points can tell apart share their impulses.
 const SINGULAR: f64 = 1e-13;
 /// Least pivot relative to the largest of equations that are far from that, and are solved without singular values.
 const REGULAR: f64 = 1e-8;
@@ -30,7 +30,7 @@ enum State {
     Slides(f64),
 }
 
-/// Normal and tangential velocities in the order of the touches.
+/// Normal and tangential velocities in the order of the constraints.
 struct Equations {
     /// A, m/kg.
     responses: DMatrix<f64>,
@@ -43,7 +43,7 @@ impl Problem<'_> {
     /// Replaces the impulses by those that solve the equations; false if no states are found that agree with them.
     pub(super) fn solve_directly(&mut self, friction: f64, step: f64) -> bool {
         let equations = Equations::of(self, friction, step);
-        let mut states: Vec<State> = self.touches.iter().map(|acting| equations.state_of(acting.impulse)).collect();
+        let mut states: Vec<State> = self.constraints.iter().map(|acting| equations.state_of(acting.impulse)).collect();
         for change in 0..MOST_CHANGES {
             let Some(impulses) = equations.solve(&states) else { return false };
             let next = equations.next(&states, &impulses);
@@ -61,9 +61,9 @@ impl Problem<'_> {
     }
 
     fn replace(&mut self, impulses: &DVector<f64>) {
-        let Self { nodes, touches, .. } = self;
+        let Self { nodes, constraints, .. } = self;
         nodes.iter_mut().for_each(|node| node.after = node.free);
-        for (i, acting) in touches.iter_mut().enumerate() {
+        for (i, acting) in constraints.iter_mut().enumerate() {
             acting.impulse = Impulse { normal: impulses[2 * i], tangent: impulses[2 * i + 1] };
             acting.give(nodes, acting.impulse);
         }
@@ -72,15 +72,15 @@ impl Problem<'_> {
 
 impl Equations {
     fn of(problem: &Problem, friction: f64, step: f64) -> Self {
-        let Problem { nodes, touches, .. } = problem;
-        let size = 2 * touches.len();
-        let directions = |acting: &Acting| [acting.touch.normal, acting.tangent()];
+        let Problem { nodes, constraints, .. } = problem;
+        let size = 2 * constraints.len();
+        let directions = |acting: &Acting| [acting.constraint.normal, acting.tangent()];
         let mut free = DVector::zeros(size);
         let mut at_nodes = vec![Vec::new(); nodes.len()];
-        for (i, acting) in touches.iter().enumerate() {
+        for (i, acting) in constraints.iter().enumerate() {
             let relative = acting.relative(nodes, |node| node.free);
             let [normal, tangent] = directions(acting).map(|direction| dot(relative, direction));
-            free[2 * i] = normal + acting.touch.gap.max(0.0) / step;
+            free[2 * i] = normal + acting.constraint.gap.max(0.0) / step;
             free[2 * i + 1] = tangent;
             for &(node, weight) in &acting.weights {
                 at_nodes[node].push((i, weight));
@@ -90,8 +90,8 @@ impl Equations {
         for (node, sharing) in nodes.iter().zip(&at_nodes) {
             for &(i, own) in sharing {
                 for &(j, other) in sharing {
-                    for (a, d) in directions(&touches[i]).into_iter().enumerate() {
-                        for (b, e) in directions(&touches[j]).into_iter().enumerate() {
+                    for (a, d) in directions(&constraints[i]).into_iter().enumerate() {
+                        for (b, e) in directions(&constraints[j]).into_iter().enumerate() {
                             let along = d[0] * node.mobility[0] * e[0] + d[1] * node.mobility[1] * e[1];
                             responses[(2 * i + a, 2 * j + b)] += own * other * along;
                         }

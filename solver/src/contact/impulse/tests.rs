@@ -1,31 +1,31 @@
-//! Impulses at touches that share few control points.
+//! Impulses at constraints that share few control points.
 
 use super::*;
-use crate::contact::handle::Handle;
+use crate::contact::boundary_fit::BoundaryFit;
 
-/// A touch of body 0 on the left with a rigid body, which pushes it along the normal.
-fn touch(normal: [f64; 2], x: f64) -> Touch {
-    let (bodies, square, on_a) = ([0, 1], [0, 0], Handle::default());
-    Touch { gap: 0.0, bodies, square, position: [x, 0.5], normal, on_a, on_b: None }
+/// A constraint of body 0 on the left with a rigid body, which pushes it along the normal.
+fn constraint(normal: [f64; 2], x: f64) -> ContactConstraint {
+    let (bodies, square, on_a) = ([0, 1], [0, 0], BoundaryFit::default());
+    ContactConstraint { gap: 0.0, bodies, square, position: [x, 0.5], normal, on_a, on_b: None }
 }
 
-/// A touch, its nodes with their weights, and the velocity of a rigid body.
-type Described = (Touch, Vec<(usize, f64)>, [f64; 2]);
+/// A constraint, its nodes with their weights, and the velocity of a rigid body.
+type Described = (ContactConstraint, Vec<(usize, f64)>, [f64; 2]);
 
 /// A problem of nodes of unit mass at rest.
-fn problem<'a>(nodes: usize, touches: &'a [Described]) -> Problem<'a> {
+fn problem<'a>(nodes: usize, constraints: &'a [Described]) -> Problem<'a> {
     let [before, free, after] = [[0.0; 2]; 3];
     let node = |at| Node { body: 0, at, mobility: [1.0; 2], before, free, after };
     let nodes: Vec<Node> = (0..nodes).map(node).collect();
-    let acting = |(touch, weights, rigid): &'a Described| {
+    let acting = |(constraint, weights, rigid): &'a Described| {
         let weights = weights.iter().map(|&(node, weight)| (node, -weight)).collect();
         let impulse = Impulse::default();
-        let mut acting = Acting { touch, weights, rigid: *rigid, round_off: 0.0, answers: [0.0; 2], impulse };
+        let mut acting = Acting { constraint, weights, rigid: *rigid, round_off: 0.0, answers: [0.0; 2], impulse };
         acting.find_answers(&nodes);
         acting
     };
-    let touches = touches.iter().map(acting).collect();
-    Problem { nodes, touches, unsettled: None }
+    let constraints = constraints.iter().map(acting).collect();
+    Problem { nodes, constraints, unsettled: None }
 }
 
 /// Two walls that close on one control point: no impulses keep both out.
@@ -33,15 +33,15 @@ fn problem<'a>(nodes: usize, touches: &'a [Described]) -> Problem<'a> {
 fn impulses_that_cannot_settle_are_said_to_be_unsettled() {
     for friction in [0.0, 0.3] {
         let walls = [
-            (touch([1.0, 0.0], 0.25), vec![(0, 1.0)], [-1.0, 0.0]),
-            (touch([-1.0, 0.0], 0.75), vec![(0, 1.0)], [1.0, 0.0]),
+            (constraint([1.0, 0.0], 0.25), vec![(0, 1.0)], [-1.0, 0.0]),
+            (constraint([-1.0, 0.0], 0.75), vec![(0, 1.0)], [1.0, 0.0]),
         ];
         let mut problem = problem(1, &walls);
         problem.settle(friction, 1.0);
         let found = problem.unsettled.expect("no solution");
         assert!(found.residual > ACCEPTED && found.rounds == MOST_ROUNDS && found.place[1] == 0.5, "{found:?}");
     }
-    let broken = [(touch([1.0, 0.0], 0.25), vec![(0, 1.0)], [f64::NAN, 0.0])];
+    let broken = [(constraint([1.0, 0.0], 0.25), vec![(0, 1.0)], [f64::NAN, 0.0])];
     let mut problem = problem(1, &broken);
     problem.settle(0.3, 1.0);
     assert!(problem.unsettled.expect("no number").residual.is_nan());
@@ -55,15 +55,15 @@ fn touches_as_many_as_control_points_settle() {
     for friction in [0.0, 0.3] {
         let between = |i: usize| {
             let push = [-1.0 - 0.01 * (i as f64).sin(), 0.2];
-            (touch([1.0, 0.0], i as f64), vec![(i, 0.5), ((i + 1) % (count + 1), 0.5)], push)
+            (constraint([1.0, 0.0], i as f64), vec![(i, 0.5), ((i + 1) % (count + 1), 0.5)], push)
         };
-        let touches: Vec<_> = (0..count).map(between).collect();
-        let mut slow = problem(count + 1, &touches);
+        let constraints: Vec<_> = (0..count).map(between).collect();
+        let mut slow = problem(count + 1, &constraints);
         assert!(!slow.rounds(friction, 1.0).is_settled(SETTLED), "the rounds alone settle: the test is empty");
-        let mut problem = problem(count + 1, &touches);
+        let mut problem = problem(count + 1, &constraints);
         problem.settle(friction, 1.0);
         assert_eq!(problem.unsettled, None);
-        for acting in &problem.touches {
+        for acting in &problem.constraints {
             let [approach, slide] = acting.relative(&problem.nodes, |node| node.after);
             let Impulse { normal, tangent } = acting.impulse;
             assert!(normal >= 0.0 && approach > -1e-9 && normal * approach.abs() < 1e-9, "{normal} and {approach}");

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::TotalFrame;
-use super::forced::Forced;
+use super::forced::LatticeForcing;
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::Ledger;
 use crate::dynamics::failure::Failure;
@@ -15,7 +15,7 @@ use crate::linear_algebra::control_grid::VectorField;
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
-use crate::phase_field::fracture::{Fracturing, lowest_tip};
+use crate::phase_field::fracture::{LatticeFracture, lowest_tip};
 use crate::scene::Scene;
 use crate::splines::patch::Patch;
 use crate::transfer::sweep::StripForces;
@@ -40,7 +40,7 @@ impl TotalFrame {
         let fracture = material
             .fracture
             .as_ref()
-            .map(|f| Fracturing::new(&lattice, body, FractureModel::new(f), &scene.solver))
+            .map(|f| LatticeFracture::new(&lattice, body, FractureModel::new(f), &scene.solver))
             .transpose()?;
         let mass = MassMatrix::new(&lattice, material.density, scene.analysis.mass, held)?;
         let load = |(number, traction)| {
@@ -89,7 +89,7 @@ impl TotalFrame {
         velocity: VectorField,
         forcing: Arc<dyn Forcing>,
     ) -> Result<(), SolveFailure> {
-        let mut forced = Forced::new(forcing, &self.patch, &self.lattice);
+        let mut forced = LatticeForcing::new(forcing, &self.patch, &self.lattice);
         forced.update_forces(&self.lattice, 0.0);
         if let Some(fracture) = &mut self.fracture {
             fracture.field.set_load(forced.phase_load(&self.lattice, 0.0));

@@ -11,7 +11,7 @@ use crate::splines::quadrature::Rule;
 
 /// Nodal forces of a [`Forcing`] on a body that fills the patch.
 #[derive(Debug, Clone)]
-pub(super) struct Forced {
+pub(super) struct LatticeForcing {
     forcing: Arc<dyn Forcing>,
     boundary: Vec<BoundaryPoint>,
     /// At the present step and at the one before, N/m.
@@ -19,7 +19,7 @@ pub(super) struct Forced {
     before: VectorField,
 }
 
-impl Forced {
+impl LatticeForcing {
     /// Tractions are integrated with the points' own rule in every span of the sides.
     pub(crate) fn new(forcing: Arc<dyn Forcing>, patch: &Patch, lattice: &Lattice) -> Self {
         let [left, bottom] = [1, 0].map(|along| Rule::new(lattice.layout, lattice.points[along]));

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::TotalFrame;
-use super::forced::Forced;
+use super::forced::LatticeForcing;
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::{FractureSample, Sample};
 use crate::dynamics::forcing::Forcing;
@@ -14,7 +14,7 @@ use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::{growth, hencky_strain, symmetric};
 use crate::output::inspection::InvertedPoint;
 use crate::particles::lattice::Lattice;
-use crate::phase_field::fracture::Fracturing;
+use crate::phase_field::fracture::LatticeFracture;
 use crate::scene::{Kinematics, Shape};
 use crate::splines::patch::Patch;
 
@@ -165,13 +165,13 @@ impl TotalFrame {
 
     /// Right-hand side (m²) of the phase-field equation with the source and flux of a forcing at t = 0.
     pub fn phase_load(&self, forcing: Arc<dyn Forcing>) -> Vec<f64> {
-        Forced::new(forcing, &self.patch, &self.lattice).phase_load(&self.lattice, 0.0)
+        LatticeForcing::new(forcing, &self.patch, &self.lattice).phase_load(&self.lattice, 0.0)
     }
 
     /// Heap memory of mechanics and of the phase field, bytes.
     pub fn bytes(&self) -> [usize; 2] {
         let fields = 8 * 8 * self.grid.len(); // displacement, velocity, acceleration, internal forces
         let mechanics = fields + self.lattice.bytes() + self.mass.bytes() + self.strip_forces.bytes();
-        [mechanics, self.fracture.as_ref().map_or(0, Fracturing::bytes)]
+        [mechanics, self.fracture.as_ref().map_or(0, LatticeFracture::bytes)]
     }
 }

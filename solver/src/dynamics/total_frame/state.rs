@@ -2,7 +2,7 @@
 
 use super::TotalFrame;
 use crate::checkpoint::{Archive, StateError};
-use crate::phase_field::fracture::Fracturing;
+use crate::phase_field::fracture::LatticeFracture;
 
 impl TotalFrame {
     /// Stores or takes up what steps change.
@@ -43,7 +43,7 @@ impl TotalFrame {
         for field in [displacement, velocity, internal, acceleration].into_iter().take(stored) {
             field.iter_mut().try_for_each(|component| archive.list(component))?;
         }
-        if let Some(Fracturing { model: _, history, phase, remembered, field, iterations }) = fracture {
+        if let Some(LatticeFracture { model: _, history, phase, remembered, field, iterations }) = fracture {
             [history, phase, remembered].into_iter().try_for_each(|values| archive.list(values))?;
             field.exchange(archive)?;
             archive.value(iterations)?;

@@ -1,4 +1,4 @@
-//! Stiffness of the undamaged body in the total frame, and the critical step it implies.
+//! LatticeStiffness of the undamaged body in the total frame, and the critical step it implies.
 
 use std::collections::BTreeSet;
 
@@ -33,10 +33,10 @@ impl TotalFrame {
         elastic_forces(&self.lattice, self.moduli, Kinematics::Small, displacement, strips, out);
     }
 
-    /// Stiffness of the undamaged body on its free degrees of freedom.
-    pub fn stiffness_operator(&self) -> Stiffness<'_> {
+    /// LatticeStiffness of the undamaged body on its free degrees of freedom.
+    pub fn stiffness_operator(&self) -> LatticeStiffness<'_> {
         let zeros = || [self.grid.zeros(), self.grid.zeros()];
-        Stiffness {
+        LatticeStiffness {
             frame: self,
             free: self.free_components(),
             field: zeros(),
@@ -46,9 +46,9 @@ impl TotalFrame {
     }
 }
 
-/// Stiffness of the undamaged body on its free degrees of freedom, per unit thickness.
+/// LatticeStiffness of the undamaged body on its free degrees of freedom, per unit thickness.
 #[derive(Debug)]
-pub struct Stiffness<'a> {
+pub struct LatticeStiffness<'a> {
     frame: &'a TotalFrame,
     free: Vec<(usize, usize)>,
     field: VectorField,
@@ -56,7 +56,7 @@ pub struct Stiffness<'a> {
     strips: StripForces,
 }
 
-impl Stiffness<'_> {
+impl LatticeStiffness<'_> {
     /// Control point and component of each degree of freedom.
     pub fn degrees_of_freedom(&self) -> &[(usize, usize)] {
         &self.free
@@ -75,7 +75,7 @@ impl Stiffness<'_> {
     }
 }
 
-impl StiffnessOperator for Stiffness<'_> {
+impl StiffnessOperator for LatticeStiffness<'_> {
     fn size(&self) -> usize {
         self.free.len()
     }

@@ -1,7 +1,7 @@
 //! The critical step of a body with finite strains as it is deformed and broken now: compression raises the stiffness.
 
 use super::TotalFrame;
-use super::stiffness::Stiffness;
+use super::stiffness::LatticeStiffness;
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::{largest, smaller};
@@ -74,7 +74,7 @@ impl TotalFrame {
 /// Tangent stiffness on the free degrees of freedom, by central differences of the internal forces: the geometric part is in it.
 struct Tangent<'a> {
     frame: &'a TotalFrame,
-    undeformed: Stiffness<'a>,
+    undeformed: LatticeStiffness<'a>,
     shortest_span: f64,
     strips: StripForces,
     displacement: VectorField,

@@ -31,11 +31,11 @@ pub(crate) fn assemble(
         let cells = &cells.cells[strip.cells.clone()];
         let stride = grid.stride;
         let lead = grid.index(0, 0);
-        dispatch(AssembleStrip { patch, row_length, stride, lead, cells, points, fracture, model, window });
+        dispatch(AssemblePoints { patch, row_length, stride, lead, cells, points, fracture, model, window });
     });
 }
 
-struct AssembleStrip<'a> {
+struct AssemblePoints<'a> {
     patch: &'a Patch,
     row_length: usize,
     stride: usize,
@@ -48,7 +48,7 @@ struct AssembleStrip<'a> {
     window: Window<'a, 2>,
 }
 
-impl Vectorised for AssembleStrip<'_> {
+impl Vectorised for AssemblePoints<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -60,7 +60,7 @@ impl Vectorised for AssembleStrip<'_> {
 /// Matrix of one cell.
 type CellMatrix = [[f64; MAX_FUNCTIONS]; MAX_FUNCTIONS];
 
-impl AssembleStrip<'_> {
+impl AssemblePoints<'_> {
     #[inline(always)]
     fn walk(mut self, kx: usize, ky: usize) {
         for cell in self.cells {

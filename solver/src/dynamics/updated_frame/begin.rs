@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use super::affine::{AffineVelocities, Fit};
-use super::cracking::Cracking;
-use super::departure::Departure;
+use super::cracking::PointwiseFracture;
 use super::field::DiscreteField;
 use super::grid::NodalFields;
 use super::losses::TransferLosses;
 use super::part;
 use super::tractions::SurfaceLoad;
+use super::velocity_transfer::VelocityTransfer;
 use crate::contact::Surface;
 use crate::dynamics::energy::Ledger;
 use crate::dynamics::failure::Failure;
@@ -68,12 +68,12 @@ impl DiscreteField {
         let (patch, origin) = (whole.part(&spans), part::origin(whole, &spans));
         let mut cells = Cells::default();
         cells.sort(&patch, &mut points)?;
-        let crack = |f| Cracking::new(&patch, body, FractureModel::new(f), &scene.solver, &points);
+        let crack = |f| PointwiseFracture::new(&patch, body, FractureModel::new(f), &scene.solver, &points);
         let constraints = part::constraints(whole, &patch, origin, &scene.boundaries);
         Ok(Self {
             fracture: material.fracture.as_ref().map(crack),
             nodes: NodalFields::new(&patch, constraints),
-            departure: Departure::new(patch.control_grid(), analysis.transfer),
+            velocity_transfer: VelocityTransfer::new(patch.control_grid(), analysis.transfer),
             affine: fit(analysis.transfer).map(|fit| AffineVelocities::new(fit, &patch, points.len())),
             deformation: (analysis.kinematics == Kinematics::Finite).then(|| vec![[[0.0; 2]; 2]; points.len()]),
             loads: body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t)).collect(),

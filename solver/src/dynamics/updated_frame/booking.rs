@@ -3,8 +3,8 @@
 use super::field::DiscreteField;
 use super::grid::ImposedEnergy;
 
-/// What the grid holds when the points leave it, per unit thickness.
-pub(super) struct Leaving {
+/// What the grid holds at the end of a step, per unit thickness.
+pub(super) struct EndOfStep {
     kinetic: f64,
     /// Momentum of the motion of the points.
     momentum: [f64; 2],
@@ -13,26 +13,26 @@ pub(super) struct Leaving {
 }
 
 impl DiscreteField {
-    /// To be asked once the departure of the points is known.
-    pub(super) fn leaving(&self) -> Leaving {
-        let Self { nodes, departure, .. } = self;
-        Leaving {
+    /// To be asked once the velocities for the points are known.
+    pub(super) fn end_of_step(&self) -> EndOfStep {
+        let Self { nodes, velocity_transfer, .. } = self;
+        EndOfStep {
             kinetic: nodes.kinetic_energy(&nodes.velocity),
-            momentum: nodes.momentum(&departure.motion),
-            not_followed: nodes.power_not_followed(&departure.motion),
+            momentum: nodes.momentum(&velocity_transfer.motion),
+            not_followed: nodes.power_not_followed(&velocity_transfer.motion),
         }
     }
 
     /// Books the works and losses of the step that ends now.
-    pub(super) fn book(&mut self, dt: f64, leaving: &Leaving, imposed: ImposedEnergy) {
-        let weight = self.gravity[0] * leaving.momentum[0] + self.gravity[1] * leaving.momentum[1];
+    pub(super) fn book(&mut self, dt: f64, end_of_step: &EndOfStep, imposed: ImposedEnergy) {
+        let weight = self.gravity[0] * end_of_step.momentum[0] + self.gravity[1] * end_of_step.momentum[1];
         let traction_at = |time: f64| self.loads.iter().map(|load| load.factor(time) * load.power()).sum::<f64>();
         let [before, now] = [self.time - dt, self.time].map(traction_at);
         let [forced_before, forced_now] = self.forcing.as_ref().map_or([0.0; 2], |forcing| forcing.powers());
         let driven = self.nodes.power_of_driven_sides();
         let on_points = now + forced_now + weight - self.stress_work / dt;
-        self.losses.kinetic += leaving.kinetic - self.nodes.kinetic_energy(&self.nodes.arrived);
-        self.losses.power += 0.5 * dt * (leaving.not_followed + on_points - self.nodes.power_followed());
+        self.losses.kinetic += end_of_step.kinetic - self.nodes.kinetic_energy(&self.nodes.arrived);
+        self.losses.power += 0.5 * dt * (end_of_step.not_followed + on_points - self.nodes.power_followed());
         self.losses.imposed += fault!("loss-forgotten", imposed.loss => 0.0);
         self.ledger.external_work += imposed.work + dt * weight + 0.5 * dt * (before + now);
         self.ledger.external_work += 0.5 * dt * (forced_before + forced_now + self.driven_power + driven);

@@ -23,7 +23,7 @@ use crate::splines::spline::MAX_FUNCTIONS;
 
 /// History and phase field of a body.
 #[derive(Debug, Clone)]
-pub struct Cracking {
+pub struct PointwiseFracture {
     /// Constants.
     pub model: FractureModel,
     /// History energy, phase field, … of each point, in the order of the points.
@@ -54,7 +54,7 @@ pub(crate) struct PointSums {
     least_phase: f64,
 }
 
-impl Cracking {
+impl PointwiseFracture {
     /// Seeds the cracks of `body` at its points; the phase field is not solved for yet.
     pub(crate) fn new(
         patch: &Patch,

@@ -8,15 +8,15 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::affine::AffineVelocities;
-use super::cracking::Cracking;
-use super::departure::Departure;
+use super::cracking::PointwiseFracture;
 use super::grid::{ImposedEnergy, NodalFields};
 use super::losses::TransferLosses;
 use super::smoothing::Smoothing;
-use super::strain::{self, Finite, Small};
+use super::strain::{FiniteStrain, SmallStrain, StrainUpdate};
 use super::tractions::SurfaceLoad;
 use super::transfer::{GridToPoints, PointsToGrid, StripMotion};
-use super::volume_forcing::VolumeForcing;
+use super::velocity_transfer::VelocityTransfer;
+use super::volume_forcing::PointForcing;
 use super::windows::{cut, scatter};
 use crate::contact::{BodyView, Surface};
 use crate::dynamics::energy::Ledger;
@@ -47,17 +47,17 @@ pub struct DiscreteField {
     pub(super) points: Vec<Point>,
     pub(super) cells: Cells,
     pub(super) nodes: NodalFields,
-    pub(super) departure: Departure,
+    pub(super) velocity_transfer: VelocityTransfer,
     /// Velocity gradients of the points, for the transfers that need them.
     pub(super) affine: Option<AffineVelocities>,
     /// Displacement gradients `F − I` of the points, if the kinematics are finite.
     pub(super) deformation: Option<Vec<Gradient>>,
     pub(super) loads: Vec<SurfaceLoad>,
-    pub(super) forcing: Option<VolumeForcing>,
+    pub(super) forcing: Option<PointForcing>,
     /// The boundary, if the body may meet others.
     pub(super) surface: Option<Surface>,
     /// The phase field, if the material fractures.
-    pub fracture: Option<Cracking>,
+    pub fracture: Option<PointwiseFracture>,
     pub(super) lowest_tip: f64,
     pub(super) elastic_energy: f64,
     /// `Σ V sigma(n+1) : de` of the last step.
@@ -79,8 +79,8 @@ impl DiscreteField {
     /// If the phase field does not converge, or a point leaves the patch.
     pub fn step(&mut self, dt: f64) -> Result<(), Failure> {
         self.kick(dt); // grid: v(n+1/2) = v(n−1/2) + dt a(n)
-        self.depart(); // transfer: what the points take up, and the motion they follow
-        let leaving = self.leaving();
+        self.choose_velocities(); // transfer: the increment for the points, and the motion they follow
+        let end_of_step = self.end_of_step();
         let left_span = self.grid_to_points(dt); // G2P: velocities, positions, strains
         if fault!("span-not-renewed", left_span => false) {
             self.sort()?;
@@ -91,7 +91,7 @@ impl DiscreteField {
         self.add_external_forces();
         let imposed = self.apply_boundary();
         self.accelerate(); // a(n+1)
-        self.book(dt, &leaving, imposed);
+        self.book(dt, &end_of_step, imposed);
         Ok(())
     }
 
@@ -129,36 +129,36 @@ impl DiscreteField {
         }
     }
 
-    fn depart(&mut self) {
-        let Self { patch, cells, points, nodes, departure, affine, density, .. } = self;
-        departure.leave(nodes, &Smoothing { patch, cells, points, density: *density, mass: &nodes.mass });
+    fn choose_velocities(&mut self) {
+        let Self { patch, cells, points, nodes, velocity_transfer, affine, density, .. } = self;
+        velocity_transfer.update(nodes, &Smoothing { patch, cells, points, density: *density, mass: &nodes.mass });
         if let Some(affine) = affine {
             affine.take(patch, cells, points, &nodes.velocity);
         }
     }
 
-    /// `v_p ← kept v_p + Σ N taken`, `x_p += dt Σ N motion`, and the strain of the motion; whether a point left its span.
+    /// `v_p ← k v_p + Σ N Δv` (k the kept fraction, Δv the increment), `x_p += dt Σ N motion`, and the strain of the motion; whether a point left its span.
     pub(super) fn grid_to_points(&mut self, dt: f64) -> bool {
-        let Self { patch, cells, points, departure, forcing, .. } = self;
+        let Self { patch, cells, points, velocity_transfer, forcing, .. } = self;
         if let Some(forcing) = forcing {
-            forcing.before_motion(patch, cells, points, &departure.motion);
+            forcing.before_motion(patch, cells, points, &velocity_transfer.motion);
         }
         let motions = match self.deformation.take() {
-            None => self.move_points(dt, self.cells.strips.iter().map(|_| Small).collect()),
+            None => self.move_points(dt, self.cells.strips.iter().map(|_| SmallStrain).collect()),
             Some(mut deformation) => {
                 let strips = cut(&mut deformation, self.cells.strips.iter().map(|s| s.points.clone()));
-                let motions = self.move_points(dt, strips.into_iter().map(Finite).collect());
+                let motions = self.move_points(dt, strips.into_iter().map(FiniteStrain).collect());
                 self.deformation = Some(deformation);
                 motions
             }
         };
         if let Some(mut surface) = self.surface.take() {
-            surface.follow(&self.view(), &self.departure.motion, dt);
+            surface.follow(&self.view(), &self.velocity_transfer.motion, dt);
             self.surface = Some(surface);
         }
-        let Self { patch, nodes, points, departure, forcing, loads, .. } = self;
+        let Self { patch, nodes, points, velocity_transfer, forcing, loads, .. } = self;
         for load in loads {
-            load.move_points(patch, nodes.grid, &departure.motion, dt);
+            load.move_points(patch, nodes.grid, &velocity_transfer.motion, dt);
         }
         if let Some(forcing) = forcing {
             forcing.after_motion(points, self.time, dt);
@@ -171,17 +171,17 @@ impl DiscreteField {
     }
 
     /// Velocity, position and strain of the points; `kinematics` for each strip.
-    fn move_points<K: strain::Kinematics + Send>(&mut self, dt: f64, kinematics: Vec<K>) -> Vec<StripMotion> {
-        let Self { patch, cells, nodes, points, departure, fracture, .. } = self;
+    fn move_points<K: StrainUpdate + Send>(&mut self, dt: f64, kinematics: Vec<K>) -> Vec<StripMotion> {
+        let Self { patch, cells, nodes, points, velocity_transfer, fracture, .. } = self;
         let elastic = fracture.is_none().then_some(self.moduli);
         let ranges = || cells.strips.iter().map(|s| s.points.clone());
         let cracked = match fracture {
             Some(fracture) => cut(&mut fracture.points, ranges()),
             None => cells.strips.iter().map(|_| &mut [][..]).collect(),
         };
-        let (kept, grid) = (departure.kept, nodes.grid);
-        let motion = departure.motion.each_ref().map(|f| &f[..]);
-        let taken = departure.taken.each_ref().map(|f| &f[..]);
+        let (kept_fraction, grid) = (velocity_transfer.kept_fraction, nodes.grid);
+        let motion = velocity_transfer.motion.each_ref().map(|f| &f[..]);
+        let increment = velocity_transfer.increment.each_ref().map(|f| &f[..]);
         let strips = cut(points, ranges()).into_par_iter().zip(cracked).zip(kinematics).zip(&cells.strips);
         strips
             .map(|(((points, fracture), kinematics), strip)| {
@@ -191,8 +191,8 @@ impl DiscreteField {
                     grid,
                     dt,
                     motion,
-                    taken,
-                    kept,
+                    increment,
+                    kept_fraction,
                     kinematics,
                     elastic,
                     cells,

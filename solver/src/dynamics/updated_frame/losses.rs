@@ -12,7 +12,7 @@
 //! with the reactions r. The forces of n and n + 1 work on the points' motion `u` but on the grid's `v` and `w*`. So the
 //! transfer loss has three parts, each measured where it happens:
 //!
-//! - `kinetic`: `1/2 vᵀ M(n) v − 1/2 wᵀ M(n+1) w`, the fall between leaving and arriving. `w` holds what the transfer gives
+//! - `kinetic`: `1/2 vᵀ M(n) v − 1/2 wᵀ M(n+1) w`, the fall from the end of one step to the grid of the next. `w` holds what the transfer gives
 //!   back, affine parts included;
 //! - `power`: `dt/2 [ P(n+1) − f(n+1) · w* ]`, where `P(n+1) = t(n+1) · v_s + Σ m g · u_p − Σ V sigma(n+1) : d` is the power
 //!   of the new forces on the motion the points just made; and `dt/2 [ f(n) · u − f(n) · v ]` of the old ones, where v counts at
@@ -39,7 +39,7 @@ use serde::{Deserialize, Serialize};
 /// Parts of the transfer loss so far, J per metre of thickness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct TransferLosses {
-    /// Fall of the kinetic energy between leaving one grid and arriving on the next.
+    /// Fall of the kinetic energy from the grid at the end of a step to the next one.
     pub kinetic: f64,
     /// Work of the forces on the difference between the motion of the points and that of the grid.
     pub power: f64,

@@ -7,7 +7,7 @@ use super::grid::NodalFields;
 use super::losses::TransferLosses;
 use super::{UpdatedFrame, views};
 use crate::contact::impulse::{ContactForce, Push, Unsettled};
-use crate::contact::{Contact, ContactLedger, Surface};
+use crate::contact::{ContactLedger, ContactSolver, Surface};
 use crate::dynamics::energy::{ContactSample, FractureSample, Sample};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::material::degradation::BROKEN;
@@ -47,7 +47,7 @@ impl UpdatedFrame {
     }
 
     /// Contact of the bodies, if the scene declares it.
-    pub fn contact(&self) -> Option<&Contact> {
+    pub fn contact(&self) -> Option<&ContactSolver> {
         self.contact.as_ref()
     }
 
@@ -291,6 +291,9 @@ impl DiscreteField {
         let forcing = self.forcing.as_ref().map_or(0, |forcing| forcing.bytes());
         let surface = self.surface.as_ref().map_or(0, |surface| surface.bytes());
         let points = points + affine + deformation + forcing + surface;
-        [points + self.nodes.bytes() + self.departure.bytes() + loads, self.fracture.as_ref().map_or(0, |f| f.bytes())]
+        [
+            points + self.nodes.bytes() + self.velocity_transfer.bytes() + loads,
+            self.fracture.as_ref().map_or(0, |f| f.bytes()),
+        ]
     }
 }

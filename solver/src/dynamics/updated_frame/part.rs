@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::departure::Departure;
 use super::field::DiscreteField;
 use super::grid::NodalFields;
+use super::velocity_transfer::VelocityTransfer;
 use crate::dynamics::constraints::Constraints;
 use crate::particles::points::{Cells, OutsidePatch, Point};
 use crate::scene::{Boundary, Side};
@@ -75,7 +75,7 @@ impl DiscreteField {
         let (patch, origin) = (self.whole.part(spans), origin(&self.whole, spans));
         let constraints = constraints(&self.whole, &patch, origin, &self.boundaries);
         self.nodes = NodalFields::new(&patch, constraints);
-        self.departure = Departure::new(patch.control_grid(), self.departure.transfer());
+        self.velocity_transfer = VelocityTransfer::new(patch.control_grid(), self.velocity_transfer.transfer());
         if let Some(affine) = &mut self.affine {
             affine.follow(&patch);
         }

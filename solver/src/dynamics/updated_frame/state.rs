@@ -63,7 +63,7 @@ impl DiscreteField {
             points,
             cells: _,
             nodes: _,
-            departure: _,
+            velocity_transfer: _,
             affine,
             deformation,
             loads,

@@ -1,4 +1,4 @@
-//! Stiffness of the undamaged body at the present positions, for the critical step.
+//! PointStiffness of the undamaged body at the present positions, for the critical step.
 
 use super::field::DiscreteField;
 use super::transfer::walk;
@@ -14,14 +14,14 @@ use crate::splines::spline::MAX_FUNCTIONS;
 impl DiscreteField {
     /// Critical time step of the undamaged body at the present positions, s; infinite if nothing can move.
     pub fn critical_step(&self) -> f64 {
-        let frequency = highest_frequency(&mut Stiffness::new(self));
-        self.departure.stable_fraction() / frequency
+        let frequency = highest_frequency(&mut PointStiffness::new(self));
+        self.velocity_transfer.stable_fraction() / frequency
     }
 }
 
 /// `K x` on the components that accelerate, per unit thickness.
 #[derive(Debug)]
-pub(crate) struct Stiffness<'a> {
+pub(crate) struct PointStiffness<'a> {
     frame: &'a DiscreteField,
     free: Vec<(usize, usize)>,
     masses: Vec<f64>,
@@ -29,7 +29,7 @@ pub(crate) struct Stiffness<'a> {
     image: [Vec<f64>; 2],
 }
 
-impl<'a> Stiffness<'a> {
+impl<'a> PointStiffness<'a> {
     /// Operator of the present grid of `frame`.
     pub(crate) fn new(frame: &'a DiscreteField) -> Self {
         let nodes = frame.nodes();
@@ -40,7 +40,7 @@ impl<'a> Stiffness<'a> {
     }
 }
 
-impl StiffnessOperator for Stiffness<'_> {
+impl StiffnessOperator for PointStiffness<'_> {
     fn size(&self) -> usize {
         self.masses.len()
     }

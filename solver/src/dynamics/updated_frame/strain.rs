@@ -3,7 +3,7 @@
 use crate::material::hencky::{Gradient, advance, gradient_at_end, hencky_strain, symmetric};
 
 /// Strains the points of a strip.
-pub trait Kinematics {
+pub trait StrainUpdate {
     /// Brings the strain `[xx, yy, xy]` of point `at` of the strip up to date with the displacement of a step, whose
     /// gradient at the positions before it is `step`. Returns the strain of the step that the new stress works on.
     fn strain(&mut self, at: usize, strain: &mut [f64; 3], step: &Gradient) -> [f64; 3];
@@ -11,9 +11,9 @@ pub trait Kinematics {
 
 /// Linear strain, the sum of `dt sym(grad v)`.
 #[derive(Debug, Clone, Copy)]
-pub struct Small;
+pub struct SmallStrain;
 
-impl Kinematics for Small {
+impl StrainUpdate for SmallStrain {
     #[inline(always)]
     fn strain(&mut self, _at: usize, strain: &mut [f64; 3], step: &Gradient) -> [f64; 3] {
         let increment = symmetric(*step);
@@ -26,9 +26,9 @@ impl Kinematics for Small {
 
 /// Hencky strain, from the displacement gradients `F − I` of the points of the strip.
 #[derive(Debug)]
-pub struct Finite<'a>(pub &'a mut [Gradient]);
+pub struct FiniteStrain<'a>(pub &'a mut [Gradient]);
 
-impl Kinematics for Finite<'_> {
+impl StrainUpdate for FiniteStrain<'_> {
     #[inline(always)]
     fn strain(&mut self, at: usize, strain: &mut [f64; 3], step: &Gradient) -> [f64; 3] {
         self.0[at] = advance(&self.0[at], step);

@@ -4,7 +4,7 @@
 //! of two one-dimensional Horner schemes at the present position. Four numbers travel together through the inner loops,
 //! which is what the vector instructions of every processor in question hold.
 
-use super::strain::Kinematics;
+use super::strain::StrainUpdate;
 use super::windows::{Window, control_values};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
@@ -115,9 +115,9 @@ pub struct GridToPoints<'a, K> {
     /// Velocity of the control points with which the points move and strain, m/s.
     pub motion: [&'a [f64]; 2],
     /// What the points take up into their velocity, m/s.
-    pub taken: [&'a [f64]; 2],
+    pub increment: [&'a [f64]; 2],
     /// Part of its own velocity that a point keeps.
-    pub kept: f64,
+    pub kept_fraction: f64,
     /// Strains the points of the strip.
     pub kinematics: K,
     /// Moduli if the body is elastic: its stress follows at once.
@@ -151,7 +151,7 @@ struct PointMotion {
     moved: [f64; 2],
 }
 
-impl<K: Kinematics> Vectorised for GridToPoints<'_, K> {
+impl<K: StrainUpdate> Vectorised for GridToPoints<'_, K> {
     type Output = StripMotion;
 
     #[inline(always)]
@@ -160,12 +160,12 @@ impl<K: Kinematics> Vectorised for GridToPoints<'_, K> {
     }
 }
 
-impl<K: Kinematics> GridToPoints<'_, K> {
+impl<K: StrainUpdate> GridToPoints<'_, K> {
     #[inline(always)]
     fn walk(mut self, kx: usize, ky: usize) -> StripMotion {
         let mut motion = StripMotion::default();
         let offset = self.cells.first().map_or(0, |cell| cell.points.start);
-        let ([ux, uy], [tx, ty]) = (self.motion, self.taken);
+        let ([ux, uy], [tx, ty]) = (self.motion, self.increment);
         let fields = [ux, uy, tx, ty];
         let mut increments = [[0.0; 3]; LANES];
         for cell in self.cells {
@@ -223,7 +223,7 @@ impl<K: Kinematics> GridToPoints<'_, K> {
         let strain_increment = self.kinematics.strain(at, &mut point.strain, &step);
         let moved = each!(d in [0, 1] => self.dt * value[d]);
         for d in 0..2 {
-            point.velocity[d] = self.kept * point.velocity[d] + value[2 + d];
+            point.velocity[d] = self.kept_fraction * point.velocity[d] + value[2 + d];
             point.displacement[d] += moved[d];
             point.position[d] += fault!("points-move-half-way", moved[d] => 0.5 * moved[d]);
             motion.fastest = larger(motion.fastest, value[d] * value[d]);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::UpdatedFrame;
 use super::field::DiscreteField;
-use super::volume_forcing::VolumeForcing;
+use super::volume_forcing::PointForcing;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::forcing::Forcing;
 
@@ -14,7 +14,7 @@ impl UpdatedFrame {
     /// # Panics
     /// After a step.
     pub fn set_initial_velocity(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2]) {
-        assert!(self.fields.iter().all(|field| field.at_start), "a step has been taken");
+        assert!(self.fields.iter().all(|field| field.at_start), "a step has been increment");
         self.fields.iter_mut().for_each(|field| field.set_velocity(&velocity));
     }
 
@@ -23,7 +23,7 @@ impl UpdatedFrame {
     /// # Panics
     /// After a step.
     pub fn apply_forcing(&mut self, forcing: Arc<dyn Forcing>) {
-        assert!(self.fields.iter().all(|field| field.at_start), "a step has been taken");
+        assert!(self.fields.iter().all(|field| field.at_start), "a step has been increment");
         self.fields.iter_mut().for_each(|field| field.apply_forcing(Arc::clone(&forcing)));
     }
 
@@ -47,14 +47,14 @@ impl DiscreteField {
     }
 
     fn apply_forcing(&mut self, forcing: Arc<dyn Forcing>) {
-        self.forcing = Some(VolumeForcing::new(forcing, self.deformation.is_some(), &self.points, self.time));
+        self.forcing = Some(PointForcing::new(forcing, self.deformation.is_some(), &self.points, self.time));
         self.find_accelerations();
     }
 
     fn prescribe_motion(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2], dt: f64) -> Result<(), Failure> {
         self.time += dt;
         let field = self.nodes.at_greville_points(velocity);
-        self.departure.prescribe(&field);
+        self.velocity_transfer.prescribe(&field);
         if self.grid_to_points(dt) {
             self.sort()?;
         }

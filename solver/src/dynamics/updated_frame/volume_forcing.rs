@@ -18,7 +18,7 @@ use crate::splines::patch::Patch;
 
 /// A forcing, and what it needs per point.
 #[derive(Debug, Clone)]
-pub(crate) struct VolumeForcing {
+pub(crate) struct PointForcing {
     forcing: Arc<dyn Forcing>,
     finite: bool,
     /// Load on each point now, in the order of the points.
@@ -29,7 +29,7 @@ pub(crate) struct VolumeForcing {
     powers: [f64; 2],
 }
 
-impl VolumeForcing {
+impl PointForcing {
     /// Loads at a time, s.
     pub(crate) fn new(forcing: Arc<dyn Forcing>, finite: bool, points: &[Point], time: f64) -> Self {
         let loads = points.iter().map(|p| forcing.volume(p.reference(), time)).collect();

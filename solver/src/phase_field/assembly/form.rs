@@ -4,7 +4,7 @@ use crate::linear_algebra::lane::Lane;
 
 /// What is integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
+pub enum Integrand {
     /// `N_I N_J`.
     Mass,
     /// `grad N_I · grad N_J`.

@@ -1,7 +1,7 @@
 //! Assembly on a patch with a geometry: rational functions do not factor over the directions, so the sum over the points of
 //! a span is done for every pair of functions.
 
-use super::form::{Form, PointCoefficients};
+use super::form::{Integrand, PointCoefficients};
 use crate::linear_algebra::lane::Lane;
 use crate::linear_algebra::stencil::Stencil;
 use crate::particles::lattice::{BatchFunctions, Lattice};
@@ -11,7 +11,7 @@ use crate::splines::spline::MAX_FUNCTIONS;
 /// Adds the form of a strip to its `window` of the matrix, which begins at control row `first_row`.
 pub(super) fn assemble<C: PointCoefficients>(
     lattice: &Lattice,
-    form: Form,
+    form: Integrand,
     coefficients: &C,
     strip: usize,
     first_row: usize,
@@ -44,20 +44,22 @@ pub(super) fn assemble<C: PointCoefficients>(
 }
 
 /// Products of every pair of functions `m <= n` at a batch of points.
-fn add_point(functions: &BatchFunctions, form: Form, coefficient: Lane, count: usize, pairs: &mut [Lane]) {
+fn add_point(functions: &BatchFunctions, form: Integrand, coefficient: Lane, count: usize, pairs: &mut [Lane]) {
     let mut scaled = [[Lane::ZERO; 2]; MAX_FUNCTIONS];
     for n in 0..count {
         scaled[n] = match form {
-            Form::Mass => [functions.value[n] * coefficient, Lane::ZERO],
-            Form::Diffusion => functions.gradient[n].map(|g| g * coefficient),
+            Integrand::Mass => [functions.value[n] * coefficient, Lane::ZERO],
+            Integrand::Diffusion => functions.gradient[n].map(|g| g * coefficient),
         };
     }
     let mut pair = 0;
     for m in 0..count {
         for n in m..count {
             pairs[pair] += match form {
-                Form::Mass => functions.value[m] * scaled[n][0],
-                Form::Diffusion => functions.gradient[m][0] * scaled[n][0] + functions.gradient[m][1] * scaled[n][1],
+                Integrand::Mass => functions.value[m] * scaled[n][0],
+                Integrand::Diffusion => {
+                    functions.gradient[m][0] * scaled[n][0] + functions.gradient[m][1] * scaled[n][1]
+                }
             };
             pair += 1;
         }

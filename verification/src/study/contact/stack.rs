@@ -189,8 +189,9 @@ impl Column {
                 let along = 2.0 * simulation.steps() as f64 / plan.steps() as f64 - 1.0;
                 let weight = (PI * along).sin().powi(2);
                 weights += weight;
-                let touches = frame.contact().map_or(&[][..], |contact| contact.touches());
-                found.overlap = super::larger(found.overlap, largest(touches.iter().map(|touch| touch.gap.min(0.0))));
+                let constraints = frame.contact().map_or(&[][..], |contact| contact.constraints());
+                found.overlap =
+                    super::larger(found.overlap, largest(constraints.iter().map(|touch| touch.gap.min(0.0))));
                 for i in 0..count {
                     found.means[i] += weight * force(i);
                     found.settlement[i] += weight * (first[i][1] - centers[i][1]);

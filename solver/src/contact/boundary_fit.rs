@@ -1,4 +1,4 @@
-//! Where a body is taken hold of on its boundary: weights of control points that stand for a position.
+//! The fit of control points to a position on the boundary of a body: weights that stand for it.
 //!
 //! The shape functions at the boundary would do, but for control points of next to no mass: a span that the outermost points
 //! have only just entered has some, and they would take up an impulse and keep it from the body. The weights
@@ -27,7 +27,7 @@ pub const DEPTH: f64 = 0.5;
 
 /// Weights of control points that stand for a position of a body.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Handle {
+pub struct BoundaryFit {
     weights: [(usize, f64); MAX_FUNCTIONS],
     count: usize,
 }
@@ -57,7 +57,7 @@ struct Spread {
     yy: f64,
 }
 
-impl Handle {
+impl BoundaryFit {
     /// Stands for `position` (m), near the point `inside` (m) of the body; `None` if it has no material there.
     pub fn new(body: &BodyView, position: [f64; 2], inside: [f64; 2]) -> Option<Self> {
         let patch = body.patch;
@@ -85,13 +85,13 @@ impl Handle {
             }
         }
         let weights = fit(&parts[..count])?;
-        let mut handle = Self { weights: [(0, 0.0); MAX_FUNCTIONS], count };
-        for ((entry, part), weight) in handle.weights.iter_mut().zip(&parts[..count]).zip(weights) {
+        let mut boundary_fit = Self { weights: [(0, 0.0); MAX_FUNCTIONS], count };
+        for ((entry, part), weight) in boundary_fit.weights.iter_mut().zip(&parts[..count]).zip(weights) {
             *entry = (part.at, weight);
         }
-        let rounded: f64 = handle.weights().iter().map(|(_, weight)| weight).sum();
-        handle.weights[..count].iter_mut().for_each(|(_, weight)| *weight /= rounded);
-        Some(handle)
+        let rounded: f64 = boundary_fit.weights().iter().map(|(_, weight)| weight).sum();
+        boundary_fit.weights[..count].iter_mut().for_each(|(_, weight)| *weight /= rounded);
+        Some(boundary_fit)
     }
 
     /// Index in the nodal fields and weight of every control point.

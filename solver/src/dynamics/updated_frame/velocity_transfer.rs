@@ -1,11 +1,11 @@
-//! What the points take from the grid when they leave it: the transfers PIC, FLIP, MUSL, APIC, TPIC and XPIC.
+//! The velocities that the grid gives the points: the transfers PIC, FLIP, MUSL, APIC, TPIC and XPIC.
 //!
-//! Let w be the velocity that arrived on the grid, `v = w + dt a` the one that leaves it (conditions on the sides imposed),
-//! S the interpolation to the points and `S⁺ S` the way there and back ([`Smoothing`]). A point takes
-//! `v_p ← kept v_p + S taken` and moves and strains with `motion`:
+//! Let w be the velocity that arrived on the grid, `v = w + dt a` the one after the step (conditions on the sides imposed),
+//! S the interpolation to the points and `S⁺ S` the way there and back ([`Smoothing`]). A point gets
+//! `v_p ← k v_p + S Δv`, k being the kept fraction and Δv the increment, and moves and strains with `motion`:
 //!
 //! ```text
-//!         kept   taken                                   motion
+//!          k     Δv                                      motion
 //! PIC      0     v                                       v
 //! FLIP     1     v − w                                   v
 //! MUSL     1     v − w                                   w + S⁺ S (v − w), conditions imposed again
@@ -38,23 +38,23 @@ use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::scene::Transfer;
 
-/// What leaves the grid for the points.
+/// Velocities from the grid to the points.
 #[derive(Debug, Clone)]
-pub(crate) struct Departure {
+pub(crate) struct VelocityTransfer {
     /// Velocity with which the points move and strain, m/s.
     pub motion: VectorField,
-    /// What the points take up, m/s.
-    pub taken: VectorField,
+    /// What the points add to the kept part of their velocity, m/s.
+    pub increment: VectorField,
     /// Part of its own velocity that a point keeps.
-    pub kept: f64,
+    pub kept_fraction: f64,
     transfer: Transfer,
 }
 
-impl Departure {
+impl VelocityTransfer {
     /// Nothing yet.
     pub(crate) fn new(grid: ControlGrid, transfer: Transfer) -> Self {
         let zeros = || [grid.zeros(), grid.zeros()];
-        Self { motion: zeros(), taken: zeros(), kept: 1.0, transfer }
+        Self { motion: zeros(), increment: zeros(), kept_fraction: 1.0, transfer }
     }
 
     /// Fraction of `1/ω_max` up to which the step is stable (see the module).
@@ -68,19 +68,19 @@ impl Departure {
         self.transfer
     }
 
-    /// From the velocities that arrived on and leave the grid.
-    pub(crate) fn leave(&mut self, nodes: &NodalFields, smoothing: &Smoothing) {
-        let Self { motion, taken, kept, transfer } = self;
+    /// From the velocities on the grid before and after the step.
+    pub(crate) fn update(&mut self, nodes: &NodalFields, smoothing: &Smoothing) {
+        let Self { motion, increment, kept_fraction, transfer } = self;
         let of_flip = fault!("transfer-keeps-less", 1.0 => 0.999);
-        *kept = if matches!(transfer, Transfer::Flip | Transfer::Musl) { of_flip } else { 0.0 };
+        *kept_fraction = if matches!(transfer, Transfer::Flip | Transfer::Musl) { of_flip } else { 0.0 };
         copy(motion, &nodes.velocity);
-        copy(taken, &nodes.velocity);
+        copy(increment, &nodes.velocity);
         match *transfer {
             Transfer::Pic | Transfer::Apic | Transfer::Tpic => (),
-            Transfer::Flip => add(taken, -1.0, &nodes.arrived),
+            Transfer::Flip => add(increment, -1.0, &nodes.arrived),
             Transfer::Musl => {
-                add(taken, -1.0, &nodes.arrived);
-                fault!("musl-not-smoothed", smoothing.apply(taken, motion) => copy(motion, taken));
+                add(increment, -1.0, &nodes.arrived);
+                fault!("musl-not-smoothed", smoothing.apply(increment, motion) => copy(motion, increment));
                 add(motion, 1.0, &nodes.arrived);
                 nodes.constrain(motion);
             }
@@ -89,7 +89,7 @@ impl Departure {
                 for _ in fault!("xpic-a-power-short", 1 => 2)..order {
                     smoothing.apply(&rest, &mut smooth);
                     add(&mut rest, -1.0, &smooth);
-                    add(taken, 1.0, &rest);
+                    add(increment, 1.0, &rest);
                 }
             }
         }
@@ -98,8 +98,8 @@ impl Departure {
     /// The points follow `motion` and keep their velocities.
     pub(crate) fn prescribe(&mut self, motion: &VectorField) {
         copy(&mut self.motion, motion);
-        self.taken.iter_mut().for_each(|component| component.fill(0.0));
-        self.kept = 1.0;
+        self.increment.iter_mut().for_each(|component| component.fill(0.0));
+        self.kept_fraction = 1.0;
     }
 
     /// Heap memory, bytes.

@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::handle::Handle;
+use super::boundary_fit::BoundaryFit;
 
 /// A place, as large as a span, where the boundaries of two bodies are near each other.
 #[derive(Debug, Clone)]
-pub struct Touch {
+pub struct ContactConstraint {
     /// Gap, m; negative where the boundaries overlap.
     pub gap: f64,
     /// Numbers of the bodies a and b; rigid ones are counted after the others, so only b may be rigid.
@@ -17,12 +17,12 @@ pub struct Touch {
     pub(super) position: [f64; 2],
     /// Unit normal from a to b.
     pub(super) normal: [f64; 2],
-    /// Where the bodies are taken hold of; a rigid b is not.
-    pub(super) on_a: Handle,
-    pub(super) on_b: Option<Handle>,
+    /// The control points that stand for the position in a and b; a rigid b has none.
+    pub(super) on_a: BoundaryFit,
+    pub(super) on_b: Option<BoundaryFit>,
 }
 
-/// Impulse at a touch along normal and tangent, kg/s per unit thickness.
+/// Impulse at a constraint along normal and tangent, kg/s per unit thickness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Impulse {
     pub(super) normal: f64,
