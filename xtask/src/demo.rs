@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use fisura::linear_algebra::extremes::larger;
 use fisura_verification::history::Table;
 
 use crate::cli::{Common, Format, SceneArgs};
@@ -71,8 +72,8 @@ fn shown(folder: &Path) -> Result<String, Failure> {
 /// Series as letters in a frame; where two meet, the later one is seen.
 fn plot(times: &[f64], series: &[(char, &[f64])]) -> String {
     let [columns, rows] = SIZE;
-    let largest = |values: &[f64]| values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max);
-    let (end, top) = (largest(times), series.iter().map(|(_, values)| largest(values)).fold(0.0, f64::max));
+    let most = |values: &[f64]| values.iter().copied().filter(|value| value.is_finite()).fold(0.0, larger);
+    let (end, top) = (most(times), series.iter().map(|(_, values)| most(values)).fold(0.0, larger));
     let cell =
         |value: f64, most: f64, cells: usize| ((value / most).clamp(0.0, 1.0) * (cells - 1) as f64).round() as usize;
     let mut page = vec![vec![' '; columns]; rows];

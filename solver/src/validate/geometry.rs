@@ -4,7 +4,7 @@ use crate::scene::Shape;
 use crate::scene::shape::polygon_edges;
 use crate::splines::nurbs::NurbsPatch;
 
-type Position = [f64; 2];
+pub(super) type Position = [f64; 2];
 
 /// Most points looked at along a polygon, unless it has more corners.
 const MOST_OUTLINE: usize = 4096;

@@ -2,15 +2,13 @@
 
 use std::ops::Range;
 
-use super::geometry::complexity;
+use super::geometry::{Position, complexity};
 use super::ground::Ground;
 use crate::linear_algebra::extremes::largest;
 use crate::particles::lattice::{AxisPoint, fills_lattice, point_axes};
 use crate::scene::Body;
 use crate::scene::shape::distance_to_segment;
 use crate::splines::nurbs::{MapPoint, NurbsPatch};
-
-type Position = [f64; 2];
 
 /// Most tests of a point against a corner or circle, over all looks at a body: a tenth of a second.
 const MOST_LOOKS: usize = 10_000_000;
