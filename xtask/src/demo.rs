@@ -14,7 +14,7 @@ use crate::{console, folders};
 const SCENE: &str = "verification/scenes/plate.toml";
 
 /// Letters and columns of the energies that are shown.
-const ENERGIES: [(char, &str); 3] = [('k', "kinetic_j"), ('e', "elastic_j"), ('f', "fracture_j")];
+const ENERGIES: [(char, &str); 2] = [('e', "elastic_j"), ('f', "fracture_j")];
 /// Columns and rows of the plot.
 const SIZE: [usize; 2] = [72, 16];
 
@@ -56,7 +56,7 @@ fn shown(folder: &Path) -> Result<String, Failure> {
     let series = ENERGIES.map(|(letter, name)| (letter, column(name)));
     let picture = folder.join("phase-80us.svg");
     Ok(format!(
-        "\nk kinetic, e elastic, f fracture energy (J) over 80 µs\n\n{}\n\
+        "\ne elastic, f fracture energy (J) over 80 µs: the crack starts at 13 µs and branches at 32 µs\n\n{}\n\
          the crack: {}\n\n\
          Coarse: the spans are as long as the length scale of the phase field. Against a converged solution the\n\
          kinetic energy is 4 % off and the elastic energy 9 %; spans a quarter as long bring both to 1 % in half an hour.\n\n\
