@@ -23,7 +23,7 @@ use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::MAX_FUNCTIONS;
 use crate::splines::spline::SplineSpace;
-use tables::{Columns, columns, tiles};
+use tables::{Along, tiles};
 pub(crate) use tables::{Row, Tile};
 
 /// Rows of spans in a strip; at least the highest degree, so that only neighbouring strips share control points.
@@ -74,11 +74,15 @@ pub(crate) struct AxisPoint {
 /// Coordinates of the points of `body` along both directions of a patch with these spaces; parameters if they are `mapped`.
 /// Unless [`fills_lattice`], the points are those of all pairs that lie in the shape.
 pub(crate) fn point_axes(body: &Body, spaces: &[SplineSpace; 2], mapped: bool) -> [Vec<AxisPoint>; 2] {
-    let along = |Columns { position, weight, length: span, .. }: Columns| {
-        let pairs = position.into_iter().zip(weight);
-        pairs.map(move |(position, weight)| AxisPoint { position, weight, span })
+    let axis = |along: Along<'_>| {
+        let mut points = Vec::new();
+        for (index, ends) in along.spans() {
+            let span = along.space.spans()[index].length();
+            points.extend(along.points(ends).map(|(position, weight)| AxisPoint { position, weight, span }));
+        }
+        points
     };
-    columns_of(body, spaces, mapped).map(|columns| columns.into_iter().flat_map(along).collect())
+    directions(body, spaces, mapped).map(axis)
 }
 
 /// Whether no point of a lattice lies outside the shape.
@@ -86,14 +90,14 @@ pub(crate) fn fills_lattice(mapped: bool, shape: &Shape) -> bool {
     *shape == Shape::Patch || (!mapped && matches!(shape, Shape::Rectangle { .. }))
 }
 
-/// Tables of the spans that meet the box around a body. A rectangle cuts them, unless the lattice is one of parameters.
-fn columns_of(body: &Body, spaces: &[SplineSpace; 2], mapped: bool) -> [Vec<Columns>; 2] {
+/// The box around a body, with its rule, along both directions. A rectangle cuts spans, unless the lattice is one of parameters.
+fn directions<'a>(body: &Body, spaces: &'a [SplineSpace; 2], mapped: bool) -> [Along<'a>; 2] {
     let shape = if mapped { &Shape::Patch } else { &body.shape };
     let (low, high) = shape.bounding_box();
     let clip = matches!(shape, Shape::Rectangle { .. });
     [0, 1].map(|d| {
         let rule = Rule::new(body.layout, body.particles_per_cell[d]);
-        columns(&spaces[d], &rule, low[d], high[d], clip)
+        Along { space: &spaces[d], rule, low: low[d], high: high[d], clip }
     })
 }
 
@@ -101,7 +105,7 @@ impl Lattice {
     /// The points of `body` on `patch`.
     pub fn new(patch: &Patch, body: &Body) -> Self {
         let mapped = patch.geometry.is_some();
-        let [x, y] = columns_of(body, &patch.spaces, mapped);
+        let [x, y] = directions(body, &patch.spaces, mapped).map(|along| along.columns());
         let degree = [0, 1].map(|d| patch.spaces[d].degree());
         let rows = y
             .into_iter()

@@ -43,32 +43,52 @@ pub(super) struct Columns {
     pub derivative: Vec<[f64; MAX_ORDER]>,
     pub weight: Vec<f64>,
     pub position: Vec<f64>,
-    /// Length of the whole span.
-    pub length: f64,
 }
 
-/// Tables of the spans that meet `[low, high]`.
-pub(super) fn columns(space: &SplineSpace, rule: &Rule, low: f64, high: f64, clip: bool) -> Vec<Columns> {
-    let meets = |left: f64, right: f64| {
-        let sliver = 1e-12 * (right - left);
-        right.min(high) - left.max(low) > sliver
-    };
-    let spans = space.spans().iter().enumerate().filter(|(_, s)| meets(s.left, s.right));
-    spans
-        .map(|(index, span)| {
-            let (left, right) = if clip { (span.left.max(low), span.right.min(high)) } else { (span.left, span.right) };
-            let position: Vec<f64> = rule.points.iter().map(|t| left + t * (right - left)).collect();
-            let shapes: Vec<_> = position.iter().map(|&x| space.shape_functions(index, x)).collect();
+/// Part `[left, right]` of a body along one direction, and the points of a rule there.
+pub(super) struct Along<'a> {
+    pub space: &'a SplineSpace,
+    pub rule: Rule,
+    pub low: f64,
+    pub high: f64,
+    /// Whether spans are cut at both ends.
+    pub clip: bool,
+}
+
+impl Along<'_> {
+    /// Index and ends of what belongs to the body of every span that meets it.
+    pub(super) fn spans(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let meets = |left: f64, right: f64| {
+            let sliver = 1e-12 * (right - left);
+            right.min(self.high) - left.max(self.low) > sliver
+        };
+        let spans = self.space.spans().iter().enumerate().filter(move |(_, s)| meets(s.left, s.right));
+        spans.map(|(index, s)| {
+            (index, if self.clip { [s.left.max(self.low), s.right.min(self.high)] } else { [s.left, s.right] })
+        })
+    }
+
+    /// Position and weight of the points between two ends.
+    pub(super) fn points(&self, [left, right]: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
+        let Rule { points, weights, .. } = &self.rule;
+        points.iter().zip(weights).map(move |(t, w)| (left + t * (right - left), w * (right - left)))
+    }
+
+    /// Tables of the spans.
+    pub(super) fn columns(&self) -> Vec<Columns> {
+        let column = |(index, ends): (usize, [f64; 2])| {
+            let (position, weight): (Vec<f64>, Vec<f64>) = self.points(ends).unzip();
+            let shapes: Vec<_> = position.iter().map(|&x| self.space.shape_functions(index, x)).collect();
             Columns {
-                first: span.first,
+                first: self.space.spans()[index].first,
                 value: shapes.iter().map(|s| s.value).collect(),
                 derivative: shapes.iter().map(|s| s.derivative).collect(),
-                weight: rule.weights.iter().map(|w| w * (right - left)).collect(),
+                weight,
                 position,
-                length: span.length(),
             }
-        })
-        .collect()
+        };
+        self.spans().map(column).collect()
+    }
 }
 
 /// Groups columns whose first control columns follow each other into tiles of at most [`LANES`].
