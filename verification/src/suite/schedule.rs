@@ -10,8 +10,8 @@ use super::seconds::Seconds;
 use crate::case::Case;
 use crate::expand::CaseScene;
 
-/// Memory, bytes, that cases side by side may need together.
-const SIDE_BY_SIDE: usize = 2 << 30;
+/// Memory, bytes, that a case beside others may need.
+const SIDE_BY_SIDE: usize = 1 << 30;
 
 /// What is known of a case before it runs.
 #[derive(Debug, Clone, Copy)]
@@ -53,7 +53,7 @@ impl Schedule {
         let mut schedule = Self::default();
         for case in order {
             let Cost { seconds, bytes } = costs[case];
-            if seconds * threads as f64 > left || bytes > SIDE_BY_SIDE / threads {
+            if seconds * threads as f64 > left || bytes > SIDE_BY_SIDE {
                 schedule.alone.push(case);
                 left -= seconds;
             } else {
