@@ -1,4 +1,5 @@
-//! Fracture of one body in the total frame: history energy, phase field, and what is measured of them.
+//! Fracture of one body in the total frame: history energy, phase field, and what is measured of them; the seed of a crack in
+//! either frame.
 
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::extremes::{larger, smaller};

@@ -1,4 +1,4 @@
-//! OnHenckyStrain kinematics in the total frame: any kernel of small strains on Hencky strains.
+//! Finite kinematics in the total frame: any kernel of small strains on Hencky strains.
 //!
 //! The kernel sees the Hencky strain of `F = I + grad u` in place of the linear one and gives Kirchhoff's stress tau; the
 //! nodal forces take the first Piola–Kirchhoff stress `P = tau F⁻ᵀ`, which works on the gradient in reference positions.

@@ -1,4 +1,4 @@
-//! LatticeStiffness of the undamaged body in the total frame, and the critical step it implies.
+//! Stiffness of the undamaged body in the total frame, and the critical step it implies.
 
 use std::collections::BTreeSet;
 
@@ -33,7 +33,7 @@ impl TotalFrame {
         elastic_forces(&self.lattice, self.moduli, Kinematics::Small, displacement, strips, out);
     }
 
-    /// LatticeStiffness of the undamaged body on its free degrees of freedom.
+    /// Stiffness of the undamaged body on its free degrees of freedom.
     pub fn stiffness_operator(&self) -> LatticeStiffness<'_> {
         let zeros = || [self.grid.zeros(), self.grid.zeros()];
         LatticeStiffness {
@@ -46,7 +46,7 @@ impl TotalFrame {
     }
 }
 
-/// LatticeStiffness of the undamaged body on its free degrees of freedom, per unit thickness.
+/// Stiffness of the undamaged body on its free degrees of freedom, per unit thickness.
 #[derive(Debug)]
 pub struct LatticeStiffness<'a> {
     frame: &'a TotalFrame,

@@ -37,7 +37,7 @@ impl Smoothing<'_> {
         let field = field.each_ref().map(|component| &component[..]);
         scatter(&cells.strips, out.each_mut().map(|f| &mut f[..]), [grid.stride; 2], |strip, window| {
             let cells = &cells.cells[strip.cells.clone()];
-            dispatch(ThereAndBack { patch, grid, density, cells, points, field, window });
+            dispatch(GridToGrid { patch, grid, density, cells, points, field, window });
         });
         for (value, mass) in out.iter_mut().flat_map(|component| component.iter_mut().zip(mass)) {
             *value /= if *mass == 0.0 { f64::INFINITY } else { *mass };
@@ -45,7 +45,7 @@ impl Smoothing<'_> {
     }
 }
 
-struct ThereAndBack<'a> {
+struct GridToGrid<'a> {
     patch: &'a Patch,
     grid: ControlGrid,
     density: f64,
@@ -55,7 +55,7 @@ struct ThereAndBack<'a> {
     window: Window<'a, 2>,
 }
 
-impl Vectorised for ThereAndBack<'_> {
+impl Vectorised for GridToGrid<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -64,7 +64,7 @@ impl Vectorised for ThereAndBack<'_> {
     }
 }
 
-impl ThereAndBack<'_> {
+impl GridToGrid<'_> {
     #[inline(always)]
     fn walk(mut self, kx: usize, ky: usize) {
         let [x, y] = &self.patch.spaces;

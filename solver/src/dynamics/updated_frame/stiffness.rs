@@ -1,4 +1,4 @@
-//! PointStiffness of the undamaged body at the present positions, for the critical step.
+//! Stiffness of the undamaged body at the present positions, for the critical step.
 
 use super::field::DiscreteField;
 use super::transfer::walk;
