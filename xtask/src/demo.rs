@@ -56,10 +56,10 @@ fn shown(folder: &Path) -> Result<String, Failure> {
     let series = ENERGIES.map(|(letter, name)| (letter, column(name)));
     let picture = folder.join("phase-80us.svg");
     Ok(format!(
-        "\ne elastic, f fracture energy (J) over 80 µs: the crack starts at 13 µs and branches at 32 µs\n\n{}\n\
+        "\ne elastic, f fracture energy (J) over 80 µs\n\n{}\n\
          the crack: {}\n\n\
          Coarse: the spans are as long as the length scale of the phase field. Against a converged solution the\n\
-         kinetic energy is 4 % off and the elastic energy 9 %; spans a quarter as long bring both to 1 % in half an hour.\n\n\
+         kinetic energy is 4 % off and the elastic energy 9 %; spans a quarter as long bring both to about 1 %.\n\n\
          next:\n  \
          cargo xtask verify --suite plate      hold this plate against independent finite elements\n  \
          cargo xtask check {SCENE}     what a scene models and costs\n  \

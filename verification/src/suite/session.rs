@@ -102,8 +102,9 @@ impl<'a> Session<'a> {
                 Ended::Broken(message) => judge::broken(case, prepared, &message),
             },
         };
-        progress.finished(case, &outcome.records);
-        self.outcomes().insert(index, outcome);
+        let records = outcome.records.clone();
+        self.outcomes().insert(index, outcome); // before it is said: an interrupt now would leave it out of the report
+        progress.finished(case, &records);
         Ok(())
     }
 
