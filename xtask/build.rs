@@ -1,5 +1,6 @@
-//! Bakes into the program what it was built from: the commit, and a fingerprint of the sources, which tells uncommitted changes
-//! apart. Results and checkpoints name both; the work tree may be another one by the time the program runs.
+//! Bakes into the program what it was built from: the commit, and a fingerprint of the sources, which tells
+//! uncommitted changes apart. Results and checkpoints name both; the work tree may be another one by the time
+//! the program runs.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! Axes: ranges fitted to data, ticks at round numbers, labels without floating-point dust.
 //!
-//! An [`AxisScale`] works in *axis coordinates*: the value itself on a linear axis, its decimal logarithm on a
-//! logarithmic one. Both run linearly along the page.
+//! An [`AxisScale`] works in *axis coordinates*: the value itself on a linear axis, its decimal logarithm on
+//! a logarithmic one. Both run linearly along the page.
 
 use fisura_verification::extremes::{larger, smaller};
 use std::ops::Range;
@@ -13,7 +13,8 @@ use crate::number::{power_of_ten, pretty};
 
 /// Values beyond are not drawn, and ranges do not go beyond: spans would not be numbers.
 const LARGEST: [f64; 2] = [1e290, 1e300];
-/// Least span of a range, absolute and relative to its larger end: below, ticks and pixels have no digits left.
+/// Least span of a range, absolute and relative to its larger end: below, ticks and pixels have no digits
+/// left.
 const LEAST_SPAN: [f64; 2] = [1e-300, 1e-12];
 /// Decades up to which minor ticks have grid lines; beyond, they would be a grey wash.
 const FINE_GRID: f64 = 3.0;
@@ -35,8 +36,8 @@ pub struct AxisScale {
 }
 
 impl AxisScale {
-    /// An axis for `values` (drawn units). `padding` is the fraction of the range left free at both ends; about
-    /// `target` ticks are labelled. The axis' own range wins where it is given and usable.
+    /// An axis for `values` (drawn units). `padding` is the fraction of the range left free at both ends;
+    /// about `target` ticks are labelled. The axis' own range wins where it is given and usable.
     pub fn fit(axis: &Axis, values: impl IntoIterator<Item = f64>, padding: f64, target: usize) -> Self {
         let coordinates = values.into_iter().map(|v| coordinate(axis.scale, v)).filter(|u| u.is_finite());
         let fitted = coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), u| (smaller(a, u), larger(b, u)));

@@ -1,8 +1,9 @@
 //! The report of `cargo xtask bench`: figures, tables and readings of a folder with `bench.json`.
 //!
-//! [`render`] writes `samples.csv` (every sample), `figures/timing/*.svg`, `summary.md` (with links to the figures) and
-//! `bench.html` (figures inline). Everything is a pure function of `bench.json`: [`work_precision`], [`stages`] and
-//! [`conditions`] make the exhibits, [`ratios`] holds the targets, [`bars`] draws bars, [`page`] puts it together.
+//! [`render`] writes `samples.csv` (every sample), `figures/timing/*.svg`, `summary.md` (with links to the
+//! figures) and `bench.html` (figures inline). Everything is a pure function of `bench.json`:
+//! [`work_precision`], [`stages`] and [`conditions`] make the exhibits, [`ratios`] holds the targets,
+//! [`bars`] draws bars, [`page`] puts it together.
 
 pub mod bars;
 pub mod conditions;
@@ -70,8 +71,8 @@ pub struct Section {
     pub exhibits: Vec<Exhibit>,
 }
 
-/// The records of a set, found by id or family. What is drawn, read off or compared goes by [`Self::get`] and [`Self::below`],
-/// which leave out records whose answers do not hold; [`page::all_records`] lists those.
+/// The records of a set, found by id or family. What is drawn, read off or compared goes by [`Self::get`] and
+/// [`Self::below`], which leave out records whose answers do not hold; [`page::all_records`] lists those.
 #[derive(Debug, Clone, Copy)]
 pub struct Records<'a>(pub &'a [BenchRecord]);
 
@@ -138,11 +139,12 @@ pub fn store(out: &OutputFolder, set: &BenchSet) -> Result<PathBuf, ReportError>
     Ok("bench.json".into())
 }
 
-/// Renders the benchmarks in `folder` to `out`, which may be the same; names the files written, relative to that.
+/// Renders the benchmarks in `folder` to `out`, which may be the same; names the files written, relative to
+/// that.
 ///
 /// # Errors
-/// `bench.json` cannot be read, or a file cannot be written. Figures that cannot be drawn give [`ReportError::Figures`], after
-/// everything else was written.
+/// `bench.json` cannot be read, or a file cannot be written. Figures that cannot be drawn give
+/// [`ReportError::Figures`], after everything else was written.
 pub fn render(folder: &Path, out: &OutputFolder) -> Result<Vec<PathBuf>, ReportError> {
     let set = read(folder)?;
     let sections = sections(&set);

@@ -1,8 +1,9 @@
-//! A figure that stands on its own: `NAME.svg`, the numbers in `NAME-*.csv`, `NAME.caption.txt` and `NAME.json` with its
-//! definition and provenance. [`redraw`] makes the same bytes from the last and the numbers.
+//! A figure that stands on its own: `NAME.svg`, the numbers in `NAME-*.csv`, `NAME.caption.txt` and
+//! `NAME.json` with its definition and provenance. [`redraw`] makes the same bytes from the last and the
+//! numbers.
 //!
-//! Charts keep the columns that they draw. A picture is a matrix: the header has the abscissae of the pixels, the first
-//! column their ordinates, and values are rounded to a thousandth of the colour bar.
+//! Charts keep the columns that they draw. A picture is a matrix: the header has the abscissae of the pixels,
+//! the first column their ordinates, and values are rounded to a thousandth of the colour bar.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -67,7 +68,8 @@ pub fn write(
     store(format!("{name}.svg"), svg.as_bytes())?;
     store(format!("{name}.caption.txt"), caption(&figure).as_bytes())?;
     let bundle = Bundle { schema: BUNDLE_SCHEMA.to_string(), environment: environment.clone(), inputs, data, figure };
-    let json = serde_json::to_string_pretty(&bundle).unwrap_or_default() + "\n"; // plain data, which JSON can hold
+    // Plain data, which JSON can hold.
+    let json = serde_json::to_string_pretty(&bundle).unwrap_or_default() + "\n";
     store(format!("{name}.json"), json.as_bytes())?;
     Ok(files)
 }
@@ -115,7 +117,8 @@ fn own_series(figure: &Figure, name: &str, set: &SeriesSet) -> Result<(Figure, V
     let mut tables = Vec::new();
     match &mut own.body {
         FigureBody::Field { series, pixels, range, .. } => {
-            Raster::read(&figure.id, series, *pixels, set).map_err(fail)?; // the pixels are those of the series
+            // The pixels are those of the series.
+            Raster::read(&figure.id, series, *pixels, set).map_err(fail)?;
             let table = set.table(&figure.id, series).map_err(fail)?;
             let step = (range[1] - range[0]) / STEPS;
             *series = format!("{name}.csv");

@@ -1,7 +1,8 @@
 //! The colour map of fields: from dark blue to near white, with lightness linear in the value.
 //!
-//! It is built in Oklab (Ottosson 2020), where equal steps look equally large, so no step stands out that is not in
-//! the data; in a phase field the crack (c = 0) is dark and the intact body light, on paper as on a screen.
+//! It is built in Oklab (Ottosson 2020), where equal steps look equally large, so no step stands out that is
+//! not in the data; in a phase field the crack (c = 0) is dark and the intact body light, on paper as on a
+//! screen.
 
 /// Colours that a picture is quantised to.
 pub const LEVELS: usize = 64;

@@ -1,6 +1,6 @@
-//! Shapes of one look that plotters draws one after the other, as one path with relative coordinates: every dash and
-//! every grid line is an element of its own otherwise, and a report has many. Points of a curve that nobody could see go
-//! (Ramer 1972; Douglas and Peucker 1973).
+//! Shapes of one look that plotters draws one after the other, as one path with relative coordinates: every
+//! dash and every grid line is an element of its own otherwise, and a report has many. Points of a curve that
+//! nobody could see go (Ramer 1972; Douglas and Peucker 1973).
 
 use std::fmt::Write;
 
@@ -79,8 +79,8 @@ impl<'a> Shape<'a> {
     }
 }
 
-/// The points of a curve that it needs to stay within the tolerance of itself. Of long curves pieces are looked at one by
-/// one, since the time grows with the square of the points where every one of them counts.
+/// The points of a curve that it needs to stay within the tolerance of itself. Of long curves pieces are
+/// looked at one by one, since the time grows with the square of the points where every one of them counts.
 fn simplified(points: &[Point]) -> Vec<Point> {
     let mut kept = vec![false; points.len()];
     let mut open: Vec<[usize; 2]> = Vec::new();

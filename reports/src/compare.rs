@@ -1,8 +1,9 @@
-//! Two result sets side by side: what is unchanged, a minor or a major change, missing or new, in accuracy and speed.
+//! Two result sets side by side: what is unchanged, a minor or a major change, missing or new, in accuracy
+//! and speed.
 //!
-//! Accuracy is measured in units of what the bounds allow, as METHODOLOGY defines it: values of different kinds are
-//! comparable then, and round-off of a value far inside its bounds is no change. `speed` holds times against their
-//! spread; `partners` finds what is to be compared; `words` writes text and Markdown.
+//! Accuracy is measured in units of what the bounds allow, as METHODOLOGY defines it: values of different
+//! kinds are comparable then, and round-off of a value far inside its bounds is no change. `speed` holds
+//! times against their spread; `partners` finds what is to be compared; `words` writes text and Markdown.
 
 mod partners;
 mod speed;
@@ -162,8 +163,9 @@ fn side(record: &Record) -> Option<Side> {
     Some(Side { value: record.value, status: record.status })
 }
 
-/// A record that only one side has. A check that is gone is a loss: nothing shows any more that its claim holds. A new one
-/// that does not hold is a loss, too: a study that breaks down has fewer records, with ids of their own.
+/// A record that only one side has. A check that is gone is a loss: nothing shows any more that its claim
+/// holds. A new one that does not hold is a loss, too: a study that breaks down has fewer records, with ids
+/// of their own.
 fn one_sided(record: &Record, accuracy: Change) -> Comparison {
     let holds = rank(record.status) == 0;
     let (base, new) = if accuracy == Change::New { (None, side(record)) } else { (side(record), None) };
@@ -285,7 +287,8 @@ fn bounded(from: f64, to: f64, bounds: [Option<f64>; 2], reference: Option<&Refe
     (Change::Minor, effect, format!("{} % of the tolerance, {towards} the bound", percent(part)))
 }
 
-/// What the bounds allow: half the width of a band, or the distance of a single bound from the reference, or from zero.
+/// What the bounds allow: half the width of a band, or the distance of a single bound from the reference, or
+/// from zero.
 fn tolerance(bounds: [Option<f64>; 2], reference: Option<&Reference>) -> f64 {
     let width = match bounds {
         [Some(min), Some(max)] => 0.5 * (max - min),

@@ -94,8 +94,8 @@ impl Raster {
         Ok(Self { pixels, low, high, values: rows.concat() })
     }
 
-    /// One path per colour, in units of pixels from the upper left corner. Runs of one colour in a row are one
-    /// rectangle, and so are equal runs in rows on top of each other.
+    /// One path per colour, in units of pixels from the upper left corner. Runs of one colour in a row are
+    /// one rectangle, and so are equal runs in rows on top of each other.
     fn paths(&self, range: [f64; 2]) -> String {
         let [nx, ny] = self.pixels;
         let mut paths = vec![String::new(); LEVELS];

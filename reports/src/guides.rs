@@ -1,4 +1,5 @@
-//! Guides of convergence charts: triangles with the slope of theory, and floors below which values mean nothing.
+//! Guides of convergence charts: triangles with the slope of theory, and floors below which values mean
+//! nothing.
 
 use fisura_verification::record::{Axis, Floor, Scale, SlopeTriangle};
 use plotters::prelude::*;
@@ -44,7 +45,8 @@ pub fn draw_slopes(page: &Page, frame: &mut Frame, slopes: &[SlopeTriangle], axe
     Ok(())
 }
 
-/// Draws the floors: a dashed line, what lies below shaded, and a label where none of `lines` (axis coordinates) runs.
+/// Draws the floors: a dashed line, what lies below shaded, and a label where none of `lines` (axis
+/// coordinates) runs.
 pub fn draw_floors(
     page: &Page,
     frame: &mut Frame,
@@ -73,8 +75,8 @@ pub fn draw_floors(
     Ok(())
 }
 
-/// Whether the label of a floor at `u` stands at the right side, and whether below the line: the first place in the frame
-/// that no line runs through.
+/// Whether the label of a floor at `u` stands at the right side, and whether below the line: the first place
+/// in the frame that no line runs through.
 fn label_place(label: &str, u: f64, place: Place, [x, y]: &[AxisScale; 2], lines: &[Vec<Point>]) -> (bool, bool) {
     let width = (text_width(label, TICK_SIZE) + 12.0) / place.width * (x.high - x.low);
     let height = LINE / place.height * (y.high - y.low);

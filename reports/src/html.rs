@@ -1,4 +1,5 @@
-//! `report.html`: one page with everything, that needs no script and no other file. Figures beyond 5 MB are links to their files.
+//! `report.html`: one page with everything, that needs no script and no other file. Figures beyond 5 MB are
+//! links to their files.
 
 mod page;
 mod size;
@@ -33,8 +34,8 @@ pub type Drawings = BTreeMap<String, Result<String, String>>;
 /// The page stays below this many bytes, so that it opens anywhere and can be sent.
 const MOST_BYTES: usize = 5_000_000;
 
-/// Renders the page; figures that would make it too large are named instead of drawn, and where that is not enough records
-/// and figures are left out, those that hold first.
+/// Renders the page; figures that would make it too large are named instead of drawn, and where that is not
+/// enough records and figures are left out, those that hold first.
 ///
 /// # Errors
 /// Only if the template cannot be filled, which has no cause in the results.
@@ -229,7 +230,8 @@ fn picture(figure: &Figure, drawings: &Drawings, left_out: &BTreeSet<&str>) -> P
     }
 }
 
-/// A file of the folder as a link; without an address if its name is not plain, since that could lead anywhere.
+/// A file of the folder as a link; without an address if its name is not plain, since that could lead
+/// anywhere.
 fn link(name: &str) -> Link {
     let encoded = |c: char| match c {
         '%' => "%25".into(),

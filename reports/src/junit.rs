@@ -8,9 +8,9 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use crate::number::plain;
 use crate::view::{accepted, by_suite, expected, kind, own_times, reason, value, with_unit};
 
-/// The report as XML. A value outside its bounds is a failure, a run that broke down an error; a record without
-/// bounds is skipped, with its value in the message, since nothing was judged. The time of a run, or of a study, stands
-/// in its first record only, so that times add up.
+/// The report as XML. A value outside its bounds is a failure, a run that broke down an error; a record
+/// without bounds is skipped, with its value in the message, since nothing was judged. The time of a run, or
+/// of a study, stands in its first record only, so that times add up.
 ///
 /// # Errors
 /// Only if the XML cannot be written, which has no cause in the results.

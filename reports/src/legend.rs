@@ -104,7 +104,8 @@ impl Entry {
     }
 }
 
-/// Draws a marker of nominal `radius` at a place on the page, with a thin white rim that sets it off from lines.
+/// Draws a marker of nominal `radius` at a place on the page, with a thin white rim that sets it off from
+/// lines.
 pub fn draw_marker(page: &Page, at: (i32, i32), marker: Marker, radius: f64, colour: RGBColor, hollow: bool) -> Drawn {
     let layers = [(radius + 0.9, WHITE), (radius, colour), (radius - 1.4, WHITE)];
     for (radius, colour) in layers.into_iter().take(if hollow { 3 } else { 2 }) {

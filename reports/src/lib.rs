@@ -1,9 +1,9 @@
 //! Figures and reports of the fisura verification harness, as pure functions of its records.
 //!
-//! [`render`] takes a results folder (`results.json`, `series/*.csv`) and writes beside it what people and machines
-//! read. Nothing here runs a simulation, reads a clock or judges a value: the same results give the same bytes.
-//! Results may come from anywhere: what is opened, linked, printed and drawn of them is bounded, see
-//! [`fisura_verification::foreign`].
+//! [`render`] takes a results folder (`results.json`, `series/*.csv`) and writes beside it what people and
+//! machines read. Nothing here runs a simulation, reads a clock or judges a value: the same results give the
+//! same bytes. Results may come from anywhere: what is opened, linked, printed and drawn of them is bounded,
+//! see [`fisura_verification::foreign`].
 //!
 //! | file | for | module |
 //! |---|---|---|
@@ -13,16 +13,19 @@
 //! | `junit.xml` | the test view of a CI service | [`junit`] |
 //! | `metrics.json` | trend charts over commits | [`metrics`] |
 //!
-//! [`compare`] holds two such sets side by side, [`annotations`] marks failed checks in the view of a CI service.
+//! [`compare`] holds two such sets side by side, [`annotations`] marks failed checks in the view of a CI
+//! service.
 //!
-//! [`paper`] finds the figures of the source paper, [`bundle`] writes a figure with its numbers, caption and provenance.
+//! [`paper`] finds the figures of the source paper, [`bundle`] writes a figure with its numbers, caption and
+//! provenance.
 //!
 //! [`vtk`] writes the files that ParaView opens.
 //!
-//! [`text`] prints the verdict on a terminal, [`run_report`] draws the pictures of a single run, [`mod@bench`] the benchmarks. Below them lie
-//! [`series`] (the numbers behind figures and what can be wrong with them), [`axis`] (ranges and ticks), [`colour`]
-//! (the map of fields), [`number`] (digits as they are printed), [`rates`] (orders of convergence among records) and
-//! [`view`] (verdicts in words, records in groups).
+//! [`text`] prints the verdict on a terminal, [`run_report`] draws the pictures of a single run,
+//! [`mod@bench`] the benchmarks. Below them lie [`series`] (the numbers behind figures and what can be wrong
+//! with them), [`axis`] (ranges and ticks), [`colour`] (the map of fields), [`number`] (digits as they are
+//! printed), [`rates`] (orders of convergence among records) and [`view`] (verdicts in words, records in
+//! groups).
 
 pub mod annotations;
 pub mod axis;
@@ -84,12 +87,13 @@ pub struct Rendered {
     pub files: Vec<PathBuf>,
 }
 
-/// Renders the results in `folder` to `out`, which may be the same: figures, `report.html`, `summary.md`, `junit.xml`,
-/// `metrics.json`.
+/// Renders the results in `folder` to `out`, which may be the same: figures, `report.html`, `summary.md`,
+/// `junit.xml`, `metrics.json`.
 ///
 /// # Errors
-/// `results.json` is missing, malformed or of another schema, or a file cannot be written. Figures that cannot be drawn
-/// give [`ReportError::Figures`] with all of them, after everything else was written; the page says so in their place.
+/// `results.json` is missing, malformed or of another schema, or a file cannot be written. Figures that
+/// cannot be drawn give [`ReportError::Figures`] with all of them, after everything else was written; the
+/// page says so in their place.
 pub fn render(folder: &Path, out: &OutputFolder) -> Result<Rendered, ReportError> {
     let results = read_results(folder)?;
     let series = SeriesSet::load(folder, &results.figures);
@@ -132,8 +136,8 @@ fn draw(figure: &Figure, series: &SeriesSet, rows: &mut usize) -> Result<(String
     Ok((name, figure::render_figure(figure, series)?))
 }
 
-/// Reads `results.json` of a folder. Its texts are those of the file without characters that steer a terminal, on one
-/// line and of bounded length.
+/// Reads `results.json` of a folder. Its texts are those of the file without characters that steer a
+/// terminal, on one line and of bounded length.
 ///
 /// # Errors
 /// The file is missing, no regular file, malformed, of another schema, or too large.

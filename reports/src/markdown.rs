@@ -13,7 +13,8 @@ use crate::view::{
 /// Largest size in bytes; a step summary over 1 MiB is dropped whole by GitHub.
 pub const LIMIT: usize = 900_000;
 
-/// The summary: verdict, environment, what does not hold, then a table per suite; cut at [`LIMIT`] with a note.
+/// The summary: verdict, environment, what does not hold, then a table per suite; cut at [`LIMIT`] with a
+/// note.
 pub fn render_markdown(set: &ResultSet) -> String {
     render_limited(set, LIMIT)
 }

@@ -1,4 +1,5 @@
-//! The figures of Estrada (2024) among the figures of a result set: which is which, and which cases they need.
+//! The figures of Estrada (2024) among the figures of a result set: which is which, and which cases they
+//! need.
 
 use std::fmt;
 use std::str::FromStr;
@@ -95,7 +96,8 @@ fn pictures(set: &ResultSet, number: &str, prefixes: &[&str], cut: &str) -> Vec<
     wanted.map(|f| (format!("figure-{number}-{}", f.id.trim_start_matches(cut)), f.clone())).collect()
 }
 
-/// A chart of the plate with the references and the runs at the point counts of the paper; `None` without any.
+/// A chart of the plate with the references and the runs at the point counts of the paper; `None` without
+/// any.
 fn paper_runs(set: &ResultSet, figure: &Figure) -> Option<Figure> {
     let mut figure = figure.clone();
     let FigureBody::Chart { curves, .. } = &mut figure.body else { return None };

@@ -1,8 +1,8 @@
 //! Orders of convergence as a table: theory, what was observed, the band, and the error on the finest mesh.
 //!
-//! A record is a rate when its quantity begins with `order of`; what follows names the error. Its theory is the value of
-//! its reference. The error itself is the record of the same run whose quantity is that name with `on the finest mesh` or
-//! `with the smallest step`.
+//! A record is a rate when its quantity begins with `order of`; what follows names the error. Its theory is
+//! the value of its reference. The error itself is the record of the same run whose quantity is that name
+//! with `on the finest mesh` or `with the smallest step`.
 
 use std::collections::HashMap;
 
@@ -67,7 +67,8 @@ fn variant(record: &Record) -> &str {
 }
 
 impl Rate<'_> {
-    /// Degree, and what else sets the run apart: `p = 2, lumped`; the degree of its parameters where the variant has none.
+    /// Degree, and what else sets the run apart: `p = 2, lumped`; the degree of its parameters where the
+    /// variant has none.
     fn degree(&self) -> String {
         if !self.variant.is_empty() {
             return self.variant.replace('=', " = ").replace(',', ", ");

@@ -23,8 +23,8 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Places the labels above a frame of nominal `width`: centred on their bands, pushed apart where two would touch,
-    /// in a further row where that does not help.
+    /// Places the labels above a frame of nominal `width`: centred on their bands, pushed apart where two
+    /// would touch, in a further row where that does not help.
     pub fn place(regions: &[Region], x: &AxisScale, width: f64) -> Self {
         let mut labels = Self::default();
         let mut upright: Vec<(usize, [f64; 2])> = Vec::new();

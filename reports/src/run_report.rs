@@ -12,8 +12,8 @@ use crate::series::{FigureError, SeriesSet};
 /// Name under which the history is passed to the chart.
 const HISTORY: &str = "history.csv";
 
-/// Draws all energies of a `history.csv` (columns `time_s` and `*_j`) against time, in units that suit their size.
-/// A column without any number is left out.
+/// Draws all energies of a `history.csv` (columns `time_s` and `*_j`) against time, in units that suit their
+/// size. A column without any number is left out.
 ///
 /// # Errors
 /// There is no `time_s` column, or no energy column with a number in it.
@@ -62,7 +62,8 @@ pub fn energies_svg(history: &Table, title: &str) -> Result<String, FigureError>
     render_figure(&figure("energies", title.to_string(), body), &set)
 }
 
-/// Draws the phase field of a frame (columns `x_m`, `y_m`, `value`, x fastest) between 0, broken, and 1, intact.
+/// Draws the phase field of a frame (columns `x_m`, `y_m`, `value`, x fastest) between 0, broken, and 1,
+/// intact.
 ///
 /// # Errors
 /// The table is no raster.
@@ -77,8 +78,8 @@ pub fn phase_svg(frame: &Table, time_s: f64, title: &str) -> Result<String, Figu
     render_field(&figure(&id, title, body), &raster, &label, range)
 }
 
-/// File name, without ending, of the picture of a frame: `phase-45us`. Times that differ have names that differ, to
-/// nine digits.
+/// File name, without ending, of the picture of a frame: `phase-45us`. Times that differ have names that
+/// differ, to nine digits.
 pub fn phase_name(time_s: f64) -> String {
     let units = [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
     let (scale, word) = unit(time_s.abs(), &units);

@@ -90,8 +90,8 @@ impl SeriesSet {
         self.tables.insert(name.into(), Ok(table));
     }
 
-    /// Reads every series that the figures name. A file that cannot be read is remembered with its error, which
-    /// comes up when a figure asks for it.
+    /// Reads every series that the figures name. A file that cannot be read is remembered with its error,
+    /// which comes up when a figure asks for it.
     pub fn load<'a>(folder: &Path, figures: impl IntoIterator<Item = &'a Figure>) -> Self {
         let mut set = Self::default();
         let mut left = MOST_BYTES;

@@ -1,7 +1,7 @@
 //! The look of every figure: sizes, colours, dashes, markers, and how wide a text will be.
 //!
-//! Plotters draws in whole pixels, so a figure is drawn [`SCALE`] times too large and shown at its nominal size by
-//! the view box of the SVG. All sizes below are nominal pixels; [`px`] converts them.
+//! Plotters draws in whole pixels, so a figure is drawn [`SCALE`] times too large and shown at its nominal
+//! size by the view box of the SVG. All sizes below are nominal pixels; [`px`] converts them.
 
 use fisura_verification::record::CurveStyle;
 use plotters::prelude::{FontDesc, RGBColor, TextStyle};
@@ -139,7 +139,8 @@ const REFERENCES: [RGBColor; 6] = [
 const DASHES: [&[f64]; 5] =
     [&[7.0, 4.0], &[2.0, 3.0], &[11.0, 3.5, 2.0, 3.5], &[13.0, 5.0], &[6.0, 2.5, 1.5, 2.5, 1.5, 2.5]];
 
-/// The look of each curve of a chart: colour differs together with dash or marker, so that neither is needed alone.
+/// The look of each curve of a chart: colour differs together with dash or marker, so that neither is needed
+/// alone.
 pub fn looks(styles: &[CurveStyle]) -> Vec<Look> {
     let (mut results, mut references) = (0, 0);
     let solid = |n: usize, marker| Look { colour: RESULTS[n % RESULTS.len()], dashes: &[], marker };

@@ -11,8 +11,8 @@ pub type Page<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 /// What a drawing function returns.
 pub type Drawn<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
-/// Draws on a white page of nominal size and returns the finished SVG, with `title` and `description` for readers who
-/// cannot see it. `draw` may return markup that is laid on the page before everything else.
+/// Draws on a white page of nominal size and returns the finished SVG, with `title` and `description` for
+/// readers who cannot see it. `draw` may return markup that is laid on the page before everything else.
 pub fn page(
     figure: &str,
     (title, description): (&str, &str),
@@ -31,8 +31,8 @@ pub fn page(
     Ok(finish(&buffer, figure, title, description, (width, height), below.as_deref().unwrap_or("")))
 }
 
-/// Gives the document its nominal size, a title and a description, and drops attributes that say nothing and the round-off
-/// of sizes of fonts, which plotters divides by a factor that `style` multiplies them with.
+/// Gives the document its nominal size, a title and a description, and drops attributes that say nothing and
+/// the round-off of sizes of fonts, which plotters divides by a factor that `style` multiplies them with.
 fn finish(raw: &str, id: &str, title: &str, description: &str, size: (f64, f64), below: &str) -> String {
     let body = raw.split_once(">\n").map_or(raw, |(_, body)| body);
     let body = body

@@ -7,8 +7,8 @@ use crate::number::plain;
 use crate::style::wrap_columns;
 use crate::view::{Counts, accepted, broken, by_suite, expected, reason, unmet, value, word};
 
-/// A plain-text table: what does not hold with value, bounds and reason, counts per suite, the verdict on the whole in
-/// the last line.
+/// A plain-text table: what does not hold with value, bounds and reason, counts per suite, the verdict on the
+/// whole in the last line.
 pub fn render_text(set: &ResultSet) -> String {
     let mut out = String::new();
     for record in broken(set) {

@@ -7,14 +7,15 @@ use crate::trace::Point;
 const MOST_OF_A_LINE: usize = 4000;
 /// Most points of the lines of one curve.
 const MOST_POINTS: usize = 50_000;
-/// Longest way of one curve, nominal pixels: a line three times up and down every column of a page is half of it.
+/// Longest way of one curve, nominal pixels: a line three times up and down every column of a page is half of
+/// it.
 const LONGEST: f64 = 1e6;
 /// Most rows that have a marker or a bar each.
 const MOST_MARKED: usize = 5000;
 
-/// Drops points that lie within a third of a nominal pixel of the one before, so that a long history stays a small
-/// file; the ends are kept. What is still long keeps the first, lowest, highest and last point of every column of pixels,
-/// which shows the same (Jugel et al. 2014).
+/// Drops points that lie within a third of a nominal pixel of the one before, so that a long history stays a
+/// small file; the ends are kept. What is still long keeps the first, lowest, highest and last point of every
+/// column of pixels, which shows the same (Jugel et al. 2014).
 pub fn thin(line: Vec<Point>, x: &AxisScale, y: &AxisScale, size: (f64, f64)) -> Vec<Point> {
     let (unit_x, unit_y) = units(x, y, size);
     let last = line.len().saturating_sub(1);

@@ -60,7 +60,8 @@ impl Trace {
         Ok(Self { label: curve.label.clone(), style: curve.style, look, points, half_widths, spread })
     }
 
-    /// All ordinates that should be seen, uncertainty included, except where it would make a positive value negative.
+    /// All ordinates that should be seen, uncertainty included, except where it would make a positive value
+    /// negative.
     pub fn ordinates(&self) -> impl Iterator<Item = f64> + '_ {
         let lowest = |y: f64, h: f64| if y < 0.0 { y - h } else { (y - h).max(0.0) };
         let band = self.points.iter().zip(&self.half_widths).flat_map(move |(p, h)| [lowest(p.1, *h), p.1 + h]);
@@ -72,8 +73,8 @@ impl Trace {
         self.points.iter().map(|p| (x.coordinate(p.0), y.coordinate(p.1))).collect()
     }
 
-    /// The outline of the uncertainty band in axis coordinates, one closed polygon per unbroken stretch, within the
-    /// frame of nominal `width`.
+    /// The outline of the uncertainty band in axis coordinates, one closed polygon per unbroken stretch,
+    /// within the frame of nominal `width`.
     pub fn band(&self, x: &AxisScale, y: &AxisScale, width: f64) -> Vec<Vec<Point>> {
         let edge = |sign: f64| -> Vec<Point> {
             let rows = self.points.iter().zip(&self.half_widths);
@@ -124,7 +125,8 @@ fn within(points: &[Point], x: &AxisScale, y: &AxisScale) -> Vec<Point> {
     inside.into_iter().map(|p| (p.0, p.1.clamp(y.low, y.high))).collect()
 }
 
-/// The visible pieces of a curve in axis coordinates: broken where a point is not finite, clipped to the frame.
+/// The visible pieces of a curve in axis coordinates: broken where a point is not finite, clipped to the
+/// frame.
 pub fn pieces(points: &[Point], x: &AxisScale, y: &AxisScale) -> Vec<Vec<Point>> {
     let mut pieces: Vec<Vec<Point>> = Vec::new();
     for pair in points.windows(2) {

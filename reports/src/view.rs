@@ -1,4 +1,5 @@
-//! What all written reports say in common: verdicts in words, bounds, references, records grouped by suite and run.
+//! What all written reports say in common: verdicts in words, bounds, references, records grouped by suite
+//! and run.
 
 use std::collections::{HashMap, HashSet};
 
@@ -87,7 +88,8 @@ impl Counts {
         format!("{} pass, {} fail, {} {errors}, {} info", self.pass, self.fail, self.error, self.info)
     }
 
-    /// What pass and fail leave out: `2 checks by bounds of regression; 1 expectation not met; …`; empty if there is nothing.
+    /// What pass and fail leave out: `2 checks by bounds of regression; 1 expectation not met; …`; empty if
+    /// there is nothing.
     pub fn remarks(&self) -> String {
         let many = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
         let compared = many(self.compared, "value");
@@ -166,8 +168,8 @@ pub fn runs<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<(&'a str, 
     runs
 }
 
-/// The time of each record, where it is the first of its case with that measurement: records of one run, and runs of one
-/// study, repeat the time of the whole.
+/// The time of each record, where it is the first of its case with that measurement: records of one run, and
+/// runs of one study, repeat the time of the whole.
 pub fn own_times<'a>(records: &[&'a Record]) -> Vec<Timing> {
     let mut seen = HashSet::new();
     let mut first = |record: &&'a Record| {

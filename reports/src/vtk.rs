@@ -1,8 +1,9 @@
-//! Files for ParaView: material points and the mesh of a run as VTK unstructured grids, and a collection over the frames.
+//! Files for ParaView: material points and the mesh of a run as VTK unstructured grids, and a collection over
+//! the frames.
 //!
-//! A `.vtu` file is XML with its numbers appended as raw little-endian binary, which keeps every bit and is read without
-//! parsing: [`vtu`]. Material points are cells of one point each, spans are quadrilaterals. A `.pvd` file names the files
-//! of each frame with its time: [`pvd`]. Both are pure functions of numbers.
+//! A `.vtu` file is XML with its numbers appended as raw little-endian binary, which keeps every bit and is
+//! read without parsing: [`vtu`]. Material points are cells of one point each, spans are quadrilaterals. A
+//! `.pvd` file names the files of each frame with its time: [`pvd`]. Both are pure functions of numbers.
 
 mod appended;
 

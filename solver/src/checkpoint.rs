@@ -1,12 +1,13 @@
 //! The state of a run as bytes, from which the same scene goes on bit by bit.
 //!
-//! What the scene fixes is built again: patch, lattice, shape functions, masses, loads. What steps change is stored, and what
-//! follows from that in the updated frame (order of the points, nodal fields, constraints) is found again. The preconditioner of
-//! the phase field is stored, because a lagged one decides the last bits.
+//! What the scene fixes is built again: patch, lattice, shape functions, masses, loads. What steps change is
+//! stored, and what follows from that in the updated frame (order of the points, nodal fields, constraints)
+//! is found again. The preconditioner of the phase field is stored, because a lagged one decides the last
+//! bits.
 //!
-//! Every struct lists its fields once, in `exchange`, for both ways through an [`Archive`]. The list takes the struct apart
-//! without `..`: a new field does not compile until it is said whether it belongs to the state. The bytes are those of
-//! [`postcard`]; who keeps them says which scene they belong to.
+//! Every struct lists its fields once, in `exchange`, for both ways through an [`Archive`]. The list takes
+//! the struct apart without `..`: a new field does not compile until it is said whether it belongs to the
+//! state. The bytes are those of [`postcard`]; who keeps them says which scene they belong to.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -1,25 +1,26 @@
 //! Frictional contact between the discrete fields of bodies, and with rigid bodies.
 //!
-//! The boundary of a body is a line of segments that moves with it ([`Surface`]): bodies meet where their boundaries do, though
-//! supports of quadratic and cubic splines overlap up to three spans earlier. The centre of every segment that faces another
-//! boundary measures the signed gap to it. What the segments of both bodies measure within a square as large as a span is one
-//! [`ContactConstraint`]: its position x and gap g are their means, so that constraints are as many as control points can tell apart, and
-//! neither body is the master of the other. An impulse P acts there on one body, −P on the other. Both spread it over control
-//! points with weights W that stand for the same position x ([`mod@boundary_fit`]),
+//! The boundary of a body is a line of segments that moves with it ([`Surface`]): bodies meet where their
+//! boundaries do, though supports of quadratic and cubic splines overlap up to three spans earlier. The
+//! centre of every segment that faces another boundary measures the signed gap to it. What the segments of
+//! both bodies measure within a square as large as a span is one [`ContactConstraint`]: its position x and
+//! gap g are their means, so that constraints are as many as control points can tell apart, and neither body
+//! is the master of the other. An impulse P acts there on one body, −P on the other. Both spread it over
+//! control points with weights W that stand for the same position x ([`mod@boundary_fit`]),
 //!
 //! ```text
 //! f_I = ± W_I P,        v_rel = Σ W_I^b v_I^b − Σ W_I^a v_I^a,        Σ W_I = 1,   Σ W_I x_I = x,
 //! ```
 //!
-//! which keeps momentum and angular momentum to round-off. The normal
-//! is that between both boundaries, the same for both bodies but for its sign. Impulses are the smallest that keep every gap from
-//! closing further than it is open, `v_rel · n ≥ −max(g, 0)/dt`, with Coulomb friction: they stop sliding or are the coefficient
-//! times their normal part. They never pull, and never push apart. They are found constraint by constraint until they settle
-//! (projected Gauss–Seidel), starting from those of the step before.
+//! which keeps momentum and angular momentum to round-off. The normal is that between both boundaries, the
+//! same for both bodies but for its sign. Impulses are the smallest that keep every gap from closing further
+//! than it is open, `v_rel · n ≥ −max(g, 0)/dt`, with Coulomb friction: they stop sliding or are the
+//! coefficient times their normal part. They never pull, and never push apart. They are found constraint by
+//! constraint until they settle (projected Gauss–Seidel), starting from those of the step before.
 //!
-//! The force P/dt acts over a kick from w to v, so `−P · (w + v)/2`, with w and v relative velocities, is lost: that is the
-//! contact loss of the ledger, half of it booked with the velocity the step begins with, half with the one it ends with. A rigid
-//! body does external work with its own velocity.
+//! The force P/dt acts over a kick from w to v, so `−P · (w + v)/2`, with w and v relative velocities, is
+//! lost: that is the contact loss of the ledger, half of it booked with the velocity the step begins with,
+//! half with the one it ends with. A rigid body does external work with its own velocity.
 
 pub mod boundary_fit;
 mod constraint;
@@ -145,8 +146,8 @@ impl ContactSolver {
         Ok(())
     }
 
-    /// What the segments of two boundaries in a box see of each other, no further than `reach` (m), square by square: across
-    /// gaps that are small, or could close in a step.
+    /// What the segments of two boundaries in a box see of each other, no further than `reach` (m), square by
+    /// square: across gaps that are small, or could close in a step.
     fn compare(
         &self,
         surfaces: [&Surface; 2],

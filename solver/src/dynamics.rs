@@ -1,8 +1,8 @@
-//! Explicit dynamics (E 14–18): the step in the total and in the updated frame, mass, loads, prescribed sides, the critical step
-//! and the energy ledger.
+//! Explicit dynamics (E 14–18): the step in the total and in the updated frame, mass, loads, prescribed
+//! sides, the critical step and the energy ledger.
 //!
-//! Symbols: u, v, a on the control points (m, m/s, m/s²), m lumped or consistent mass (kg/m), dt the time step (s).
-//! Calls every room but [`simulation`](crate::simulation) and [`validate`](crate::validate).
+//! Symbols: u, v, a on the control points (m, m/s, m/s²), m lumped or consistent mass (kg/m), dt the time
+//! step (s). Calls every room but [`simulation`](crate::simulation) and [`validate`](crate::validate).
 
 pub(crate) mod constraints;
 pub mod critical_step;

@@ -1,35 +1,37 @@
 //! Dynamic brittle fracture in the plane by the material point method on a NURBS background mesh.
 //!
-//! `fisura` moves bodies made of material points through time with an explicit scheme, lets them crack by a phase field
-//! driven by the tensile part of their elastic energy, and accounts for every joule on the way. It follows Estrada
-//! (2024), *Material point method applied to dynamic brittle fracture analysis using phase-field*, Mecánica Computacional
-//! XLI, 537–546; (E n) is equation n of that paper. This crate is the physics alone: it reads no files, draws nothing
-//! and looks at no clock.
+//! `fisura` moves bodies made of material points through time with an explicit scheme, lets them crack by a
+//! phase field driven by the tensile part of their elastic energy, and accounts for every joule on the way.
+//! It follows Estrada (2024), *Material point method applied to dynamic brittle fracture analysis using
+//! phase-field*, Mecánica Computacional XLI, 537–546; (E n) is equation n of that paper. This crate is the
+//! physics alone: it reads no files, draws nothing and looks at no clock.
 //!
-//! A [`Scene`] is plain data. [`validate::validate`] says what is wrong with one, by key; [`Simulation::new`] makes one
-//! ready to run; [`Simulation::step`] takes a step and [`Simulation::sample`] reads the energies. What a scene does not
-//! declare is not modelled: an elastic body holds no phase field and solves for none.
+//! A [`Scene`] is plain data. [`validate::validate`] says what is wrong with one, by key; [`Simulation::new`]
+//! makes one ready to run; [`Simulation::step`] takes a step and [`Simulation::sample`] reads the energies.
+//! What a scene does not declare is not modelled: an elastic body holds no phase field and solves for none.
 //!
 //! # The time step
 //!
-//! In the total frame, where shape functions are evaluated at the reference positions once ([`dynamics::total_frame::TotalFrame::step`]):
+//! In the total frame, where shape functions are evaluated at the reference positions once
+//! ([`dynamics::total_frame::TotalFrame::step`]):
 //!
 //! ```text
-//! ┌─ given u, v, a on the control points, H at the points, c on the control points, all at n ──────────────────┐
-//! │ predict      v ← v + dt/2 a,   u ← u + dt v                       velocity Verlet: beta = 0, gamma = 1/2   │
-//! │ history      e = sym grad u at the points,   H ← max(H, psi+(e))                     E 4–5, 10, 15–16      │
-//! │ phase field  K(H) c = Σ V N                                                          E 11–12, 19–24        │
-//! │ stress       sigma = g(c) dpsi+/de + dpsi−/de at the points                          E 6–7                 │
-//! │ forces       f_int = Σ V sigma grad N,   f_ext = Σ l t N + m g                       E 17–18               │
-//! │ accelerate   a = (f_ext − f_int) / m, zero where the velocity is prescribed          E 14                  │
-//! │ correct      v ← v + dt/2 a                                                                                │
-//! └─ u, v, a, H, c at n + 1 ───────────────────────────────────────────────────────────────────────────────────┘
+//! ┌─ given u, v, a on the control points, H at the points, c on the control points, all at n ────────┐
+//! │ predict      v ← v + dt/2 a,   u ← u + dt v             velocity Verlet: beta = 0, gamma = 1/2   │
+//! │ history      e = sym grad u at the points,   H ← max(H, psi+(e))           E 4–5, 10, 15–16      │
+//! │ phase field  K(H) c = Σ V N                                                E 11–12, 19–24        │
+//! │ stress       sigma = g(c) dpsi+/de + dpsi−/de at the points                E 6–7                 │
+//! │ forces       f_int = Σ V sigma grad N,   f_ext = Σ l t N + m g             E 17–18               │
+//! │ accelerate   a = (f_ext − f_int) / m, zero where velocity is prescribed    E 14                  │
+//! │ correct      v ← v + dt/2 a                                                                      │
+//! └─ u, v, a, H, c at n + 1 ─────────────────────────────────────────────────────────────────────────┘
 //! ```
 //!
-//! History and phase field are there only with a [`scene::Fracture`]. With beta = 0 the strain at n + 1 does not depend
-//! on the acceleration at n + 1, so the staggered iteration of the paper is converged after one pass. In the updated
-//! frame the points carry the velocity and the grid is rebuilt at every step: see [`dynamics::updated_frame`]. The step is a
-//! fraction of the critical one of the operator itself ([`dynamics::critical_step`]).
+//! History and phase field are there only with a [`scene::Fracture`]. With beta = 0 the strain at n + 1 does
+//! not depend on the acceleration at n + 1, so the staggered iteration of the paper is converged after one
+//! pass. In the updated frame the points carry the velocity and the grid is rebuilt at every step: see
+//! [`dynamics::updated_frame`]. The step is a fraction of the critical one of the operator itself
+//! ([`dynamics::critical_step`]).
 //!
 //! # From the paper to the code
 //!
@@ -37,7 +39,7 @@
 //!
 //! | room | equations | what |
 //! |---|---|---|
-//! | [`linear_algebra`] | – | values side by side, matrices on control points, conjugate gradients and factors |
+//! | [`linear_algebra`] | – | values side by side, matrices, conjugate gradients, factors |
 //! | [`scene`] | – | what a scene declares, shapes |
 //! | [`splines`] | E 13 | spline spaces, NURBS, the patch they span, quadrature |
 //! | [`material`] | E 4–7 | elastic energy, its split, degradation, finite strain |
@@ -55,18 +57,19 @@
 //! # Units
 //!
 //! SI throughout: m, s, kg, N, J, Pa. Inside, masses, forces and energies are per metre of thickness; a
-//! [`Sample`](dynamics::energy::Sample) is for the thickness of the scene. The phase field c is 1 where intact and 0 where broken,
-//! and the length scale l0 is Borden's, half the l of the form `(Gc/2)(d²/l + l |grad d|²)`.
+//! [`Sample`](dynamics::energy::Sample) is for the thickness of the scene. The phase field c is 1 where
+//! intact and 0 where broken, and the length scale l0 is Borden's, half the l of the form
+//! `(Gc/2)(d²/l + l |grad d|²)`.
 //!
 //! # The same bits
 //!
-//! Sums are cut by data, strip by strip and chunk by chunk, and added in a fixed order: a run gives the same bits for any
-//! number of threads.
+//! Sums are cut by data, strip by strip and chunk by chunk, and added in a fixed order: a run gives the same
+//! bits for any number of threads.
 //!
 //! # Not modelled yet
 //!
-//! Contact of a body with itself, which no scene can ask for; general patches in the updated frame and the consistent mass
-//! matrix there or where a body cuts spans, which [`validate::validate`] refuses.
+//! Contact of a body with itself, which no scene can ask for; general patches in the updated frame and the
+//! consistent mass matrix there or where a body cuts spans, which [`validate::validate`] refuses.
 //!
 //! # Example
 //!

@@ -1,7 +1,8 @@
-//! The material at a point: elasticity, its energy split into what drives cracks and the rest, finite strain, degradation.
+//! The material at a point: elasticity, its energy split into what drives cracks and the rest, finite strain,
+//! degradation.
 //!
-//! Symbols: e strain, sigma stress (Pa), psi+ and psi− energy densities (J/m³), F deformation gradient, g(c) degradation.
-//! Calls [`linear_algebra`](crate::linear_algebra) and [`scene`](crate::scene).
+//! Symbols: e strain, sigma stress (Pa), psi+ and psi− energy densities (J/m³), F deformation gradient, g(c)
+//! degradation. Calls [`linear_algebra`](crate::linear_algebra) and [`scene`](crate::scene).
 
 pub mod degradation;
 pub mod elasticity;

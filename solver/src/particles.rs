@@ -1,4 +1,5 @@
-//! Material points: their layouts in the spans of the mesh, tiles of spans that are computed together, lengths of spans.
+//! Material points: their layouts in the spans of the mesh, tiles of spans that are computed together,
+//! lengths of spans.
 //!
 //! Symbols: V_p volume (m²), x_p position (m). Calls [`splines`](crate::splines) and [`scene`](crate::scene).
 

@@ -1,24 +1,27 @@
 //! The phase-field equation of a body (E 10–12, 19–24), AT2 in Borden's convention, c = 1 intact.
 //!
 //! ```text
-//! Σ_J K_IJ c_J = Σ_p V_p N_I(x_p),   K_IJ = Σ_p V_p [ (4 l0 (1 − k) H_p/Gc + 1) N_I N_J + 4 l0² grad N_I · grad N_J ]
+//! Σ_J K_IJ c_J = Σ_p V_p N_I(x_p)
+//! K_IJ = Σ_p V_p [ (4 l0 (1 − k) H_p/Gc + 1) N_I N_J + 4 l0² grad N_I · grad N_J ]
 //! ```
 //!
-//! The points' volumes enter once (the source prints them twice in E 24) and the `+ 1` stands (E 9 and 11 drop it).
-//! The history energy H only grows, and so does K: only spans whose H grew since the last solve are added
-//! (delta assembly). An increment too small to move c by a hundredth of the tolerance anywhere waits.
+//! The points' volumes enter once (the source prints them twice in E 24) and the `+ 1` stands (E 9 and 11
+//! drop it). The history energy H only grows, and so does K: only spans whose H grew since the last solve are
+//! added (delta assembly). An increment too small to move c by a hundredth of the tolerance anywhere waits.
 //!
 //! # The tolerance
 //!
-//! A solve ends when its error e in c is, in the energy norm of the equation over the diffusion `4 l0²`, about the tolerance:
+//! A solve ends when its error e in c is, in the energy norm of the equation over the diffusion `4 l0²`,
+//! about the tolerance:
 //!
 //! ```text
 //! ∫ [ (4 l0 (1 − k) H/Gc + 1) e²/(4 l0²) + |grad e|² ] dx ≤ tolerance²
 //! ```
 //!
-//! Every part of the body obeys it alone: in any square of side 2 l0 the root mean square of e is at most the tolerance,
-//! wherever it lies, however fine the mesh is there, and however large the body around it. The norm of the residual over that of
-//! the right-hand side, a sum of volumes, would allow more at the crack the larger the mesh is.
+//! Every part of the body obeys it alone: in any square of side 2 l0 the root mean square of e is at most the
+//! tolerance, wherever it lies, however fine the mesh is there, and however large the body around it. The
+//! norm of the residual over that of the right-hand side, a sum of volumes, would allow more at the crack the
+//! larger the mesh is.
 
 pub mod assembly;
 pub mod fracture;
@@ -39,7 +42,8 @@ use crate::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_f
 use crate::scene::SolverSettings;
 use method::{ITERATION_LIMIT, Method};
 
-/// Diagonal and right-hand side of control points without material, as a fraction of the largest right-hand side.
+/// Diagonal and right-hand side of control points without material, as a fraction of the largest right-hand
+/// side.
 const EMPTY: f64 = 1e-6;
 
 /// Counters of the phase-field solver.
@@ -79,7 +83,8 @@ impl PhaseField {
         Self::intact(matrix, load, assembled, model, settings)
     }
 
-    /// Phase field whose system is assembled anew at every step (see [`Self::system_mut`]), intact until the first solve.
+    /// Phase field whose system is assembled anew at every step (see [`Self::system_mut`]), intact until the
+    /// first solve.
     pub(crate) fn without_lattice(
         grid: ControlGrid,
         degree: [usize; 2],
@@ -111,8 +116,8 @@ impl PhaseField {
         }
     }
 
-    /// Goes over to another grid, whose first control column and row lie `shift` columns and rows further; control points
-    /// that were not there begin intact.
+    /// Goes over to another grid, whose first control column and row lie `shift` columns and rows further;
+    /// control points that were not there begin intact.
     pub(crate) fn relocate(&mut self, grid: ControlGrid, shift: [isize; 2]) {
         let old = self.matrix.grid;
         let moved = |values: &[f64]| {
@@ -135,7 +140,8 @@ impl PhaseField {
         (&mut self.matrix, &mut self.load)
     }
 
-    /// Replaces the right-hand side of a body that fills the patch: `Σ_p V_p s_p N_I(x_p)` with a manufactured source s.
+    /// Replaces the right-hand side of a body that fills the patch: `Σ_p V_p s_p N_I(x_p)` with a
+    /// manufactured source s.
     pub fn set_load(&mut self, load: Vec<f64>) {
         self.load = load;
     }
@@ -153,7 +159,8 @@ impl PhaseField {
     /// Solves for c with the history energy (J/m³) of every batch of points.
     ///
     /// # Errors
-    /// If the tolerance is not reached, or the system has no solution; errors are in the norm of the tolerance.
+    /// If the tolerance is not reached, or the system has no solution; errors are in the norm of the
+    /// tolerance.
     pub fn solve(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Convergence, SolveFailure> {
         self.assemble_increments(lattice, history);
         self.solve_system()
@@ -167,7 +174,8 @@ impl PhaseField {
         self.solve_with(TOO_MANY)
     }
 
-    /// Solves the system as it stands; `patience` is the number of iterations that an incomplete factor is granted.
+    /// Solves the system as it stands; `patience` is the number of iterations that an incomplete factor is
+    /// granted.
     fn solve_with(&mut self, patience: usize) -> Result<Convergence, SolveFailure> {
         self.extrapolate();
         self.counts.solves += 1;
@@ -208,7 +216,8 @@ impl PhaseField {
         Ok(convergence)
     }
 
-    /// Makes the preconditioner anew from the matrix as it stands: control points may have gained or lost material.
+    /// Makes the preconditioner anew from the matrix as it stands: control points may have gained or lost
+    /// material.
     pub(crate) fn renew_preconditioner(&mut self) {
         if let Some(preconditioner) = self.method.preconditioner().filter(|p| !p.is_complete()) {
             preconditioner.renew(&self.matrix); // a complete factor is made anew for every solve as it is

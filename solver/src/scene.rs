@@ -1,8 +1,9 @@
 //! The scene: everything one simulation models, in SI units.
 //!
-//! A scene is plain data. What it does not declare is not modelled: without [`Fracture`] in a material there is no
-//! phase field in memory or in the step, without [`Contact`] no contact search. [`crate::Simulation::new`] turns a
-//! scene into a running model; [`crate::validate::validate`] says what is wrong with one, by key.
+//! A scene is plain data. What it does not declare is not modelled: without [`Fracture`] in a material there
+//! is no phase field in memory or in the step, without [`Contact`] no contact search.
+//! [`crate::Simulation::new`] turns a scene into a running model; [`crate::validate::validate`] says what is
+//! wrong with one, by key.
 
 pub mod error;
 pub(crate) mod shape;
@@ -39,8 +40,8 @@ pub struct Scene {
 pub struct Mesh {
     /// Polynomial degree per direction, 1 to 4.
     pub degree: [usize; 2],
-    /// Open knot vector per direction: first and last knot repeated `degree + 1` times. In metres over a rectangle, in any
-    /// unit with a geometry.
+    /// Open knot vector per direction: first and last knot repeated `degree + 1` times. In metres over a
+    /// rectangle, in any unit with a geometry.
     pub knots: [Vec<f64>; 2],
     /// Control points and weights; absent over a rectangle, whose knots are its coordinates.
     pub geometry: Option<Geometry>,
@@ -56,7 +57,8 @@ pub struct Geometry {
 }
 
 impl Mesh {
-    /// Open uniform knots: `cells[d]` equal spans of a rectangle with lower left corner `origin` (m) and `size` (m).
+    /// Open uniform knots: `cells[d]` equal spans of a rectangle with lower left corner `origin` (m) and
+    /// `size` (m).
     pub fn uniform(degree: [usize; 2], origin: [f64; 2], size: [f64; 2], cells: [usize; 2]) -> Self {
         let knots = [0, 1].map(|d| {
             let interior = (0..=cells[d]).map(|i| origin[d] + size[d] * (i as f64 / cells[d] as f64));
@@ -84,7 +86,8 @@ impl Mesh {
         })
     }
 
-    /// The box around the part of a shape that lies in the box around the patch: lower left and upper right corner, m.
+    /// The box around the part of a shape that lies in the box around the patch: lower left and upper right
+    /// corner, m.
     pub fn extent(&self, shape: &Shape) -> ([f64; 2], [f64; 2]) {
         let (low, high) = shape.bounding_box();
         let (origin, end) = (self.origin(), self.end());
@@ -285,7 +288,8 @@ pub enum Layout {
     Maclaurin,
 }
 
-/// Side of a rectangle, or of a patch: left and right bound its first parametric direction, bottom and top its second.
+/// Side of a rectangle, or of a patch: left and right bound its first parametric direction, bottom and top
+/// its second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Side {
     /// Smallest x.

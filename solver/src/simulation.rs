@@ -60,7 +60,8 @@ impl Simulation {
     /// Prepares a valid scene (see [`crate::validate::validate`]).
     ///
     /// # Errors
-    /// If the initial phase field does not converge, the mass matrix is singular to round-off, or the critical step is no number.
+    /// If the initial phase field does not converge, the mass matrix is singular to round-off, or the
+    /// critical step is no number.
     pub fn new(scene: &Scene) -> Result<Self, Breakdown> {
         let tolerance = scene.solver.phase_field_tolerance;
         let not_started = |failure| causes::not_started(scene.mesh.origin(), tolerance, failure);
@@ -122,8 +123,8 @@ impl Simulation {
     /// Takes one step.
     ///
     /// # Errors
-    /// If the numbers break: not finite, growing without a source, a solve that does not converge, or a point that leaves
-    /// the patch.
+    /// If the numbers break: not finite, growing without a source, a solve that does not converge, or a point
+    /// that leaves the patch.
     pub fn step(&mut self) -> Result<(), Breakdown> {
         self.steps += 1;
         // within the pool of rayon: from outside, every parallel loop would wake it and wait for it
@@ -186,7 +187,8 @@ impl Simulation {
         self.frame.for_each_point(f);
     }
 
-    /// The spans of the mesh with material points, and position, velocity and phase field at their corners now.
+    /// The spans of the mesh with material points, and position, velocity and phase field at their corners
+    /// now.
     pub fn span_grid(&self) -> SpanGrid {
         self.frame.span_grid()
     }

@@ -1,7 +1,7 @@
 //! What is wrong with a scene, by key, before anything runs.
 //!
-//! Errors are what cannot be modelled or cannot be meant; warnings are legal but suspicious. Each names the key path of
-//! the scene file (`body.0.crack.0.from`) and says what would be right. Units are SI throughout.
+//! Errors are what cannot be modelled or cannot be meant; warnings are legal but suspicious. Each names the
+//! key path of the scene file (`body.0.crack.0.from`) and says what would be right. Units are SI throughout.
 
 mod analysis;
 mod body;

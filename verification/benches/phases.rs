@@ -1,8 +1,8 @@
 //! One benchmark per phase of the step, with throughput in material points.
 //!
-//! A square of 65 536 points (p = 2, 128 × 128 spans of 2 × 2) or about as many (p = 3, 85 × 85 spans of 3 × 3) with a
-//! seeded crack; in the updated frame an elastic one, beside the minimal kernel as the yardstick. Every answer is checked
-//! before it is timed. One thread: what a second one adds is another question.
+//! A square of 65 536 points (p = 2, 128 × 128 spans of 2 × 2) or about as many (p = 3, 85 × 85 spans of 3 ×
+//! 3) with a seeded crack; in the updated frame an elastic one, beside the minimal kernel as the yardstick.
+//! Every answer is checked before it is timed. One thread: what a second one adds is another question.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -101,8 +101,8 @@ fn matrices(criterion: &mut Criterion, square: &Block) {
     });
 }
 
-/// Solves as a step does them: where no H grew, which looks for increments and takes one residual; and where H grew by
-/// a hundredth of `Gc/l0` about the crack tip, the same growth from the same state every time.
+/// Solves as a step does them: where no H grew, which looks for increments and takes one residual; and where
+/// H grew by a hundredth of `Gc/l0` about the crack tip, the same growth from the same state every time.
 fn solves(criterion: &mut Criterion, square: &Block) {
     let mut field = square.phase_field().expect("the first solve converges");
     phase(criterion, "solve_unchanged", square, || {
@@ -171,7 +171,8 @@ fn updated_frame<const P: usize>(criterion: &mut Criterion, points: usize, cells
     timed("minimal_step", &name, &mut || kernel.step(dt));
 }
 
-/// Two bodies that meet: finding where they touch, and a whole step beside one of the same bodies without contact.
+/// Two bodies that meet: finding where they touch, and a whole step beside one of the same bodies without
+/// contact.
 fn contact(criterion: &mut Criterion, cells: usize) {
     let begun = |declared: Option<Contact>| {
         let mut simulation = Simulation::new(&pair(cells, 0.0, declared)).expect("the scene starts");

@@ -1,15 +1,16 @@
 //! Speed against error: the benchmarks of `cargo xtask bench`.
 //!
-//! A benchmark is data: a [`BenchRecord`] with what was run, the error of its answer, and samples of time. An answer is
-//! verified before its time is believed: a record says how, and whether it held. Each family is one file; what it measures
-//! is timed in round robin ([`timing`]), so that a disturbance meets all of its contestants. Nothing here draws or judges:
-//! ratios, fronts and readings are made from the records in `fisura-reports`.
+//! A benchmark is data: a [`BenchRecord`] with what was run, the error of its answer, and samples of time. An
+//! answer is verified before its time is believed: a record says how, and whether it held. Each family is one
+//! file; what it measures is timed in round robin ([`timing`]), so that a disturbance meets all of its
+//! contestants. Nothing here draws or judges: ratios, fronts and readings are made from the records in
+//! `fisura-reports`.
 //!
 //! | family | question |
 //! |---|---|
-//! | `work-precision` | what an error costs: degrees, mass, layouts and frames on one manufactured problem ([`wave`]) |
+//! | `work-precision` | what an error costs: degrees, mass, layouts and frames, one problem ([`wave`]) |
 //! | `plate` | what an error of the plate costs, against the independent finite elements ([`plate`]) |
-//! | `stages` | where the time of a step goes, and what a straightforward kernel takes ([`stages`], [`minimal`]) |
+//! | `stages` | where the time of a step goes, beside a plain kernel ([`stages`], [`minimal`]) |
 //! | `solves` | the phase-field solver against plain ones ([`solves`]) |
 //! | `threads` | what another thread brings ([`threads`]) |
 //! | `ceilings` | bandwidth and arithmetic of this machine, and the distance to them ([`ceilings`]) |
@@ -185,7 +186,8 @@ impl<'a> Session<'a> {
     /// Measures every family that is asked for; `tell` hears the name of each before it begins.
     ///
     /// # Errors
-    /// The first family that could not be measured; an answer that does not hold is no error but an unverified record.
+    /// The first family that could not be measured; an answer that does not hold is no error but an
+    /// unverified record.
     pub fn run(&self, tell: &dyn Fn(&str)) -> Result<(), BenchError> {
         for (name, family) in &self.families {
             tell(name);

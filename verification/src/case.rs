@@ -1,11 +1,14 @@
 //! Case files: a claim, a scene, what is measured, and the bounds within which the claim holds.
 //!
-//! A case is one TOML file `cases/<suite>/<case>.toml`. Its `[scene]` table has the form of a scene file, and may have a
-//! list where a scene has one value: a study axis. `[[variant]]` tables change several keys together.
+//! A case is one TOML file `cases/<suite>/<case>.toml`. Its `[scene]` table has the form of a scene file, and
+//! may have a list where a scene has one value: a study axis. `[[variant]]` tables change several keys
+//! together. What several checks have in common stands once: a `[[check]]` may name a `set` of checks, and
+//! list in `variants` what differs between runs.
 
 mod check;
 pub mod convergence;
 mod read;
+mod repeat;
 mod rings;
 
 use std::path::{Path, PathBuf};
@@ -99,7 +102,8 @@ pub struct Check {
 }
 
 impl Check {
-    /// Whether it is about a variant: it names none, this one, or a pattern such as `p=[234]` that matches it.
+    /// Whether it is about a variant: it names none, this one, or a pattern such as `p=[234]` that matches
+    /// it.
     pub fn is_about(&self, variant: &str) -> bool {
         let matches = |wanted: &str| glob::Pattern::new(wanted).is_ok_and(|pattern| pattern.matches(variant));
         self.variant.as_deref().is_none_or(|wanted| wanted == variant || matches(wanted))
@@ -161,7 +165,7 @@ pub struct Case {
     pub rings: Option<Vec<Geometry>>,
     /// Checks.
     pub checks: Vec<Check>,
-    /// The file, for places of errors.
+    /// The file with every check written out, for places of errors.
     pub document: Document,
 }
 
@@ -195,6 +199,7 @@ impl Case {
     fn from_document(path: &Path, mut document: Document, overrides: &[String]) -> Result<Self, SceneFileError> {
         let in_scene: Vec<String> = overrides.iter().map(|o| format!("scene.{o}")).collect();
         document.apply(&in_scene)?;
+        repeat::expand(&mut document, path)?;
         let problems = Problems::default();
         let case = read::case(&Item::new(&document.root, "", &problems), path, &document);
         let found = problems.into_inner();
@@ -202,6 +207,11 @@ impl Case {
             Some(case) if found.is_empty() => Ok(case),
             _ => Err(document.error(&found)),
         }
+    }
+
+    /// Fingerprint of all it says: its file, the sets of checks that it names, and overrides.
+    pub fn fingerprint(&self) -> String {
+        fingerprint([self.document.text(), &self.document.root.canonical()])
     }
 
     /// Fingerprint of what the case simulates: everything but its claim, checks, label and estimated time.

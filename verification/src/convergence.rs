@@ -1,21 +1,23 @@
 //! Convergence studies: from errors on a sequence of meshes to observed orders, tables, figures and findings.
 //!
-//! A study fills a [`Convergence`]: the norms it measures, and one [`Curve`] per degree (or other variant) with its
-//! [`Level`]s. From it follow
+//! A study fills a [`Convergence`]: the norms it measures, and one [`Curve`] per degree (or other variant)
+//! with its [`Level`]s. From it follow
 //!
 //! - [`Convergence::measurements`]: per curve and norm `order of the <quantity>`, held against theory, and
 //!   `<quantity> on the finest mesh`;
-//! - [`Convergence::series`]: per curve a table `h_m, unknowns, <error>, <error>_pairwise_order, …`, and one below
-//!   `timing/` with the measured seconds;
-//! - [`Convergence::figures`]: per norm the error against h, against unknowns and, if times were measured, against cost.
+//! - [`Convergence::series`]: per curve a table `h_m, unknowns, <error>, <error>_pairwise_order, …`, and one
+//!   below `timing/` with the measured seconds;
+//! - [`Convergence::figures`]: per norm the error against h, against unknowns and, if times were measured,
+//!   against cost.
 //!
 //! [`Convergence::add_to`] hands all three over. Nothing here runs a solver.
 //!
-//! **Observed order.** The slope of log e against log h, fitted by least squares to the finest [`FITTED`] levels whose
-//! errors stand above the round-off floor. Levels count from the coarsest on and end with the first one at or below the
-//! floor, since round-off grows again on finer meshes. Fewer than three levels give no order, and so does an error that
-//! is not a number: a diverged mesh must not hide behind coarser ones. For a constant ratio of meshes the slope is the
-//! mean of the last two pairwise orders `log(e_coarse/e_fine)/log(h_coarse/h_fine)`.
+//! **Observed order.** The slope of log e against log h, fitted by least squares to the finest [`FITTED`]
+//! levels whose errors stand above the round-off floor. Levels count from the coarsest on and end with the
+//! first one at or below the floor, since round-off grows again on finer meshes. Fewer than three levels give
+//! no order, and so does an error that is not a number: a diverged mesh must not hide behind coarser ones.
+//! For a constant ratio of meshes the slope is the mean of the last two pairwise orders
+//! `log(e_coarse/e_fine)/log(h_coarse/h_fine)`.
 
 mod charts;
 
@@ -99,8 +101,8 @@ pub struct Convergence {
     pub curves: Vec<Curve>,
 }
 
-/// Orders between successive meshes `(h, error)` from coarse to fine; not-a-number for the first, and where an error is
-/// not positive.
+/// Orders between successive meshes `(h, error)` from coarse to fine; not-a-number for the first, and where
+/// an error is not positive.
 pub fn pairwise_orders(levels: &[(f64, f64)]) -> Vec<f64> {
     let order = |a: (f64, f64), b: (f64, f64)| {
         let order = (a.1 / b.1).ln() / (a.0 / b.0).ln();
@@ -152,8 +154,8 @@ impl Convergence {
         findings.figures.extend(self.figures());
     }
 
-    /// Per curve and norm: `order of the <quantity>`, with theory as its reference, and `<quantity> on the finest mesh`
-    /// (`with the smallest step` where that is refined).
+    /// Per curve and norm: `order of the <quantity>`, with theory as its reference, and
+    /// `<quantity> on the finest mesh` (`with the smallest step` where that is refined).
     pub fn measurements(&self) -> Vec<Measurement> {
         let mut measurements = Vec::new();
         for curve in &self.curves {
@@ -179,16 +181,16 @@ impl Convergence {
         measurements
     }
 
-    /// One table per curve, and one with measured times per curve that has them: file names without ending, the latter
-    /// below `timing/`.
+    /// One table per curve, and one with measured times per curve that has them: file names without ending,
+    /// the latter below `timing/`.
     pub fn series(&self) -> Vec<(String, Table)> {
         let plain = self.curves.iter().map(|curve| (self.series_stem(curve), self.table(curve)));
         let timed = self.curves.iter().filter(|c| has_times(c)).map(|c| (self.timing_stem(c), self.timing_table(c)));
         plain.chain(timed).collect()
     }
 
-    /// Per norm: error against h with the orders of theory, against unknowns, and against measured cost (id below
-    /// `timing/`). A norm in which no error is positive has none.
+    /// Per norm: error against h with the orders of theory, against unknowns, and against measured cost (id
+    /// below `timing/`). A norm in which no error is positive has none.
     pub fn figures(&self) -> Vec<Figure> {
         charts::figures(self)
     }

@@ -22,8 +22,8 @@ fn matrix(n: usize, mut map: impl FnMut(&[f64], &mut [f64])) -> Result<DMatrix<f
     Ok(matrix)
 }
 
-/// Squares of the angular frequencies of a body with the mass it has, increasing, and their number; `None` if its mass is not
-/// positive definite.
+/// Squares of the angular frequencies of a body with the mass it has, increasing, and their number; `None` if
+/// its mass is not positive definite.
 ///
 /// # Errors
 /// If the case is to stop.
@@ -35,8 +35,8 @@ pub fn eigenvalues(operator: &mut impl StiffnessOperator) -> Result<Option<Vec<f
     Ok(factor.map(|factor| sorted(factor.transpose() * stiffness * factor)))
 }
 
-/// The same with the consistent mass of `density` (kg/m³), also where a body cuts spans: masses are scaled to a unit diagonal
-/// before they are factored, so that next to nothing in a span stays well conditioned.
+/// The same with the consistent mass of `density` (kg/m³), also where a body cuts spans: masses are scaled to
+/// a unit diagonal before they are factored, so that next to nothing in a span stays well conditioned.
 ///
 /// # Errors
 /// If the case is to stop.

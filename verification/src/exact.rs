@@ -1,8 +1,8 @@
 //! Exact solutions, one file each. Their derivations stand under `reference-data/derivations/`.
 //!
-//! A solution states its displacement (and phase field) and its stress law; velocity, stress, body force and source
-//! follow by differentiation ([`motion`], [`dual`]). The problem it solves stands beside it in its file, as a [`Solution`]; a new
-//! file is known to studies and tests by its line in the list below.
+//! A solution states its displacement (and phase field) and its stress law; velocity, stress, body force and
+//! source follow by differentiation ([`motion`], [`dual`]). The problem it solves stands beside it in its
+//! file, as a [`Solution`]; a new file is known to studies and tests by its line in the list below.
 
 use fisura::scene::{Frame, Kinematics, Material, Plane, Side};
 
@@ -89,8 +89,8 @@ fn unit_material(poisson_ratio: f64) -> Material {
     Material { young_modulus: 1.0, poisson_ratio, density: 1.0, fracture: None }
 }
 
-/// Fields that solve the equations of motion exactly, with the loads they need. Positions are in the reference
-/// configuration, in m; times in s.
+/// Fields that solve the equations of motion exactly, with the loads they need. Positions are in the
+/// reference configuration, in m; times in s.
 pub trait ExactSolution: Send + Sync {
     /// Material.
     fn material(&self) -> Material;
@@ -108,8 +108,8 @@ pub trait ExactSolution: Send + Sync {
     fn acceleration(&self, _position: [f64; 2], _time: f64) -> [f64; 2] {
         [0.0; 2]
     }
-    /// Stress `stress[i][j]`, Pa: first Piola–Kirchhoff (component i, reference normal j); that is the Cauchy stress for
-    /// small strains. It is the degraded one where a phase field is modelled.
+    /// Stress `stress[i][j]`, Pa: first Piola–Kirchhoff (component i, reference normal j); that is the Cauchy
+    /// stress for small strains. It is the degraded one where a phase field is modelled.
     fn stress(&self, position: [f64; 2], time: f64) -> [[f64; 2]; 2];
     /// Whether there is no body force.
     fn is_force_free(&self) -> bool;

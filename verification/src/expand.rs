@@ -1,6 +1,7 @@
 //! From a case to the scenes it runs: study axes and variants.
 //!
-//! A list where a scene has one value is an axis; several axes span their product. Each variant changes its keys on top.
+//! A list where a scene has one value is an axis; several axes span their product. Each variant changes its
+//! keys on top.
 
 use fisura::scene::Scene;
 

@@ -1,7 +1,7 @@
 //! Figures of runs of scenes, each with every reference curve of its quantity.
 //!
-//! Reference curves are looked up by quantity at the time of drawing, so a curve added to the reference data appears
-//! without a change of code.
+//! Reference curves are looked up by quantity at the time of drawing, so a curve added to the reference data
+//! appears without a change of code.
 
 use crate::history::Table;
 use crate::measure::fitted_speed;
@@ -99,8 +99,8 @@ const PLATE: [Quantity; 7] = [
     },
 ];
 
-/// Charts and pictures of all runs, and the tables they need beyond those of the runs. Variants of one case, such as the
-/// meshes of a study, have charts of their own.
+/// Charts and pictures of all runs, and the tables they need beyond those of the runs. Variants of one case,
+/// such as the meshes of a study, have charts of their own.
 pub fn of_runs(runs: &[RunInfo], library: &Library) -> (Vec<Figure>, Vec<(String, Table)>) {
     let (mut figures, mut tables) = (Vec::new(), Vec::new());
     let of_plate = runs.iter().filter(|r| r.suite == "plate");

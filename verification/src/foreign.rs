@@ -1,5 +1,5 @@
-//! Files that may come from anywhere: which names are followed, what is opened, how much is read, and which characters
-//! reach a terminal or a page.
+//! Files that may come from anywhere: which names are followed, what is opened, how much is read, and which
+//! characters reach a terminal or a page.
 
 use std::borrow::Cow;
 use std::fs::{self, File};
@@ -21,17 +21,19 @@ const DEPTH: usize = 8;
 /// Most files and folders below `series/`.
 const MOST_ENTRIES: usize = 100_000;
 
-/// Whether a name is a path that stays below its folder on every system: names joined by single slashes, without drives,
-/// schemes, parents or characters that cannot be seen.
+/// Whether a name is a path that stays below its folder on every system: names joined by single slashes,
+/// without drives, schemes, parents or characters that cannot be seen.
 pub fn is_plain(name: &str) -> bool {
     let plain = |part: &str| !matches!(part, "" | "." | "..");
     name.len() <= NAME_LENGTH && name.split('/').all(plain) && !name.contains(['\\', ':']) && !name.contains(steers)
 }
 
-/// Reads a regular file below `folder`, of at most `most` bytes. Symbolic links below the folder are not followed.
+/// Reads a regular file below `folder`, of at most `most` bytes. Symbolic links below the folder are not
+/// followed.
 ///
 /// # Errors
-/// A name that is not plain, a link, a device, a pipe or a folder in its place, more bytes, or what the system says.
+/// A name that is not plain, a link, a device, a pipe or a folder in its place, more bytes, or what the
+/// system says.
 pub fn read(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, Error> {
     let refused = |why: &str| Err(Error::new(ErrorKind::InvalidInput, why.to_string()));
     if !is_plain(name) {
@@ -61,7 +63,8 @@ pub fn read(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, Error> {
 /// Names, relative to `folder`, of all CSV files in its `series/`, sorted.
 ///
 /// # Errors
-/// A link or a file that is none in their place, a name that is not plain, too many of them, or a folder that cannot be read.
+/// A link or a file that is none in their place, a name that is not plain, too many of them, or a folder that
+/// cannot be read.
 pub fn series_files(folder: &Path) -> Result<Vec<String>, Error> {
     let refused = |name: &str, why: &str| Err(Error::new(ErrorKind::InvalidInput, format!("{}: {why}", line(name))));
     let (mut names, mut seen) = (Vec::new(), 0);
@@ -99,13 +102,15 @@ pub fn steers(c: char) -> bool {
     c.is_control() || turns || matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}')
 }
 
-/// A text of several lines for a terminal: characters that steer it are replaced, but for ends of lines and tabs.
+/// A text of several lines for a terminal: characters that steer it are replaced, but for ends of lines and
+/// tabs.
 pub fn text(text: &str) -> Cow<'_, str> {
     let bad = |c: char| steers(c) && !matches!(c, '\n' | '\t');
     if text.contains(bad) { text.replace("\r\n", "\n").replace(bad, "\u{fffd}").into() } else { text.into() }
 }
 
-/// A text for one line: ends of lines and tabs become spaces, other characters that steer a terminal are replaced.
+/// A text for one line: ends of lines and tabs become spaces, other characters that steer a terminal are
+/// replaced.
 pub fn line(text: &str) -> Cow<'_, str> {
     if !text.contains(steers) {
         return text.into();

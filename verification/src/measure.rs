@@ -123,7 +123,8 @@ pub fn measure(check: &Check, run: &Run, runs: &[Run], library: &Library) -> Res
     Ok(Measured { value, reference, ..measured })
 }
 
-/// What the value of a check is held against, times `factor`: its expected value, or what the library has under `reference`.
+/// What the value of a check is held against, times `factor`: its expected value, or what the library has
+/// under `reference`.
 fn held_against(check: &Check, factor: f64, library: &Library) -> Result<Option<Reference>, String> {
     let Some(path) = check.reference.as_deref().filter(|_| check.expect.is_none()) else {
         return Ok(expected(check, factor));

@@ -1,10 +1,10 @@
 //! Folders that commands write to, and what in them belongs to the user.
 //!
-//! An [`OutputFolder`] belongs to one process at a time (`lock.rs`) and lists in its manifest (`manifest.rs`) every file that
-//! was written through it, with its hash. What is not listed, or was changed since, is the user's: it is neither removed nor
-//! replaced. A folder that holds files and no manifest is refused as a whole. No link is followed below the folder, nothing is
-//! removed recursively, and each file appears in full or not at all: it is written under a random name that did not exist
-//! before, and renamed.
+//! An [`OutputFolder`] belongs to one process at a time (`lock.rs`) and lists in its manifest (`manifest.rs`)
+//! every file that was written through it, with its hash. What is not listed, or was changed since, is the
+//! user's: it is neither removed nor replaced. A folder that holds files and no manifest is refused as a
+//! whole. No link is followed below the folder, nothing is removed recursively, and each file appears in full
+//! or not at all: it is written under a random name that did not exist before, and renamed.
 
 mod error;
 mod lock;
@@ -45,8 +45,8 @@ impl OutputFolder {
     /// Locks a folder for `command`, made if it is not there. No file is touched yet.
     ///
     /// # Errors
-    /// A folder that cannot be made or written, that another process writes to, that holds files and no manifest, or the files of
-    /// another command.
+    /// A folder that cannot be made or written, that another process writes to, that holds files and no
+    /// manifest, or the files of another command.
     pub fn open(path: &Path, command: &str) -> Result<Self, OutputError> {
         let folder = Self::locked(path, true)?;
         let mut manifest = folder.manifest();
@@ -95,8 +95,8 @@ impl OutputFolder {
         self.manifest().files.keys().cloned().collect()
     }
 
-    /// Marks the folder as unfinished until [`Self::finish`], and removes the files of earlier runs but those to `keep`, first
-    /// those that tell a verdict.
+    /// Marks the folder as unfinished until [`Self::finish`], and removes the files of earlier runs but those
+    /// to `keep`, first those that tell a verdict.
     ///
     /// # Errors
     /// A file that was changed since it was written, before anything is removed; one that cannot be removed.
@@ -117,7 +117,8 @@ impl OutputFolder {
     /// Writes a file below the folder; `name` has `/` between its parts.
     ///
     /// # Errors
-    /// A file there that is not ours or was changed, a link on the way, a name that leads out of the folder, a full disk.
+    /// A file there that is not ours or was changed, a link on the way, a name that leads out of the folder,
+    /// a full disk.
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), OutputError> {
         let content = content.as_ref();
         let mut manifest = self.manifest();
@@ -135,7 +136,8 @@ impl OutputFolder {
         let mut file = file.map_err(|e| failed(&e))?;
         manifest.files.entry(name.to_string()).or_default().hashes.push(hash.clone());
         file.write_all(content).map_err(|e| failed(&e))?;
-        file.as_file().sync_all().map_err(|e| failed(&e))?; // or a power failure could leave the name of an empty file
+        // Or a power failure could leave the name of an empty file.
+        file.as_file().sync_all().map_err(|e| failed(&e))?;
         let file = file.persist(&path).map_err(|e| failed(&e.error))?;
         manifest.files.insert(name.to_string(), Entry { hashes: vec![hash], seen: file.metadata().ok().map(seen) });
         Ok(())
@@ -158,7 +160,8 @@ impl OutputFolder {
         self.write(name, table.to_csv().map_err(|e| OutputError::unwritable(&self.path.join(name), e))?)
     }
 
-    /// Whether a file of that name could be written: nothing is there, or what was written here and not changed since.
+    /// Whether a file of that name could be written: nothing is there, or what was written here and not
+    /// changed since.
     ///
     /// # Errors
     /// If it could not.
@@ -213,8 +216,8 @@ impl OutputFolder {
         manifest.store(&self.path)
     }
 
-    /// Keeps all other threads from writing, and so from being cut short when the process ends; the manifest then lists what is
-    /// there and nothing that was on its way.
+    /// Keeps all other threads from writing, and so from being cut short when the process ends; the manifest
+    /// then lists what is there and nothing that was on its way.
     pub fn hold(&self) -> Held<'_> {
         let mut manifest = self.manifest();
         if manifest.has_journal() {
@@ -224,7 +227,8 @@ impl OutputFolder {
     }
 
     fn manifest(&self) -> MutexGuard<'_, Manifest> {
-        self.manifest.lock().unwrap_or_else(PoisonError::into_inner) // it is changed after a file, and stays true
+        // It is changed after a file, and stays true.
+        self.manifest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// What is there under a name.
@@ -302,7 +306,8 @@ impl Drop for OutputFolder {
         }
         if let Some(lock) = &self.lock {
             let _ = lock.set_len(0); // nobody holds it any more
-            let _ = lock.unlock(); // closing is not enough while a process that is being started still has the file
+            // Closing is not enough while a process that is being started still has the file.
+            let _ = lock.unlock();
         }
     }
 }

@@ -12,7 +12,8 @@ const COARSE: usize = 3;
 /// The rectangle of the square, graded and random families, m.
 const SIZE: [f64; 2] = [1.0, 0.8];
 
-/// Half the side of the square about the ring, m: its points move by less than 0.1 m and stay within 1.25 m of the centre.
+/// Half the side of the square about the ring, m: its points move by less than 0.1 m and stay within 1.25 m
+/// of the centre.
 const AROUND_RING: f64 = 1.4;
 
 /// Mesh of a family with `cells` spans per direction. Random families have a multiple of three spans.
@@ -77,8 +78,9 @@ fn weighted(degree: usize) -> Result<NurbsPatch, NurbsError> {
 
 /// The rectangle on random knots, with random weights, its inner control points moved at random.
 ///
-/// The draw is one whose quartics are in their asymptotic range above round-off. With the seed 5 they reach order 4.6 at
-/// 96 spans and 4.8 at 192, as an independent program confirms: a layer at one edge is resolved late.
+/// The draw is one whose quartics are in their asymptotic range above round-off. With the seed 5 they reach
+/// order 4.6 at 96 spans and 4.8 at 192, as an independent program confirms: a layer at one edge is resolved
+/// late.
 fn random(degree: usize) -> Result<NurbsPatch, NurbsError> {
     let mut random = Random::new(7);
     let knots = [(); 2].map(|()| open(degree, &breaks(&mut random, 1.0)));

@@ -1,4 +1,5 @@
-//! Scenes that studies build by themselves: one body that fills its mesh, loaded by nothing that a scene can say.
+//! Scenes that studies build by themselves: one body that fills its mesh, loaded by nothing that a scene can
+//! say.
 
 use fisura::scene::{
     Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldSolver, Plane, Scene,
@@ -38,7 +39,8 @@ impl PlainScene {
         Self { mesh, material, plane: Plane::Strain, mass: Mass::Lumped, layout: Layout::Gauss, points, held: vec![] }
     }
 
-    /// A bar of unit modulus and density that does not contract sideways, between rollers, with p + 1 Gauss points per span.
+    /// A bar of unit modulus and density that does not contract sideways, between rollers, with p + 1 Gauss
+    /// points per span.
     pub fn unit_bar(mesh: Mesh, mass: Mass) -> Self {
         let material = Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0, fracture: None };
         let points = mesh.degree[0] + 1;

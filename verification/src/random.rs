@@ -26,8 +26,8 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// Open knots on [0, 1] with spans between 1 and 100 in arbitrary units; if `repeated`, every third inner knot up to p
-    /// times.
+    /// Open knots on [0, 1] with spans between 1 and 100 in arbitrary units; if `repeated`, every third inner
+    /// knot up to p times.
     pub fn knots(&mut self, degree: usize, spans: usize, repeated: bool) -> Vec<f64> {
         let lengths: Vec<f64> = (0..spans).map(|_| 100f64.powf(self.unit())).collect();
         let total: f64 = lengths.iter().sum();

@@ -1,7 +1,7 @@
 //! The data model of results: schema `fisura.results/1`.
 //!
-//! `results.json` holds one [`ResultSet`]; the numbers behind its figures stand beside it in `series/*.csv`. Everything
-//! a report shows is a pure function of that folder.
+//! `results.json` holds one [`ResultSet`]; the numbers behind its figures stand beside it in `series/*.csv`.
+//! Everything a report shows is a pure function of that folder.
 
 mod figure;
 mod unfinished;
@@ -18,7 +18,8 @@ pub use verdict::{Agreement, BoundKind, Expectation, Validation};
 /// Name of the schema written and read.
 pub const SCHEMA: &str = "fisura.results/1";
 
-/// JSON Schema of `results.json`, made from the types below; committed as `verification/schema/results.schema.json`.
+/// JSON Schema of `results.json`, made from the types below; committed as
+/// `verification/schema/results.schema.json`.
 pub fn json_schema() -> serde_json::Value {
     schemars::schema_for!(ResultSet).to_value()
 }
@@ -100,8 +101,8 @@ pub struct Reference {
     pub kind: ReferenceKind,
     /// Where it comes from.
     pub source: String,
-    /// Half width of its uncertainty, in the unit of the record: of the value, or of the curve in the norm of the record;
-    /// absent where none is known.
+    /// Half width of its uncertainty, in the unit of the record: of the value, or of the curve in the norm of
+    /// the record; absent where none is known.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub uncertainty: Option<f64>,
 }

@@ -1,9 +1,10 @@
 //! Reference data: curves, numbers and bands from elsewhere, with their provenance.
 //!
-//! A library is a folder whose subfolders each hold a `source.toml` (citation, how obtained, model, resolution,
-//! uncertainty) and CSV files. [`Library::load`] reads and checks all of it; what it hands out is in SI units. A curve
-//! that exists only as a picture (`obtained = "picture-only"`) is absent until somebody puts its CSV file there, and
-//! from then on it is drawn like any other. Nothing is extrapolated, and gaps stay gaps.
+//! A library is a folder whose subfolders each hold a `source.toml` (citation, how obtained, model,
+//! resolution, uncertainty) and CSV files. [`Library::load`] reads and checks all of it; what it hands out is
+//! in SI units. A curve that exists only as a picture (`obtained = "picture-only"`) is absent until somebody
+//! puts its CSV file there, and from then on it is drawn like any other. Nothing is extrapolated, and gaps
+//! stay gaps.
 
 mod compare;
 mod curve;
@@ -117,12 +118,12 @@ pub struct Library {
 }
 
 impl Library {
-    /// Reads every `source.toml` below `folder`, at any depth, and the CSV files it names. Order and content depend on
-    /// nothing but the files.
+    /// Reads every `source.toml` below `folder`, at any depth, and the CSV files it names. Order and content
+    /// depend on nothing but the files.
     ///
     /// # Errors
-    /// A folder that cannot be read or holds no `source.toml`; a CSV file without a `source.toml` beside it; a file
-    /// that is not as described; a curve whose file or column is missing, unless it is `picture-only`.
+    /// A folder that cannot be read or holds no `source.toml`; a CSV file without a `source.toml` beside it;
+    /// a file that is not as described; a curve whose file or column is missing, unless it is `picture-only`.
     pub fn load(folder: &Path) -> Result<Self, ReferenceError> {
         load::library(folder)
     }
@@ -157,7 +158,8 @@ impl Library {
         self.values.iter().find(|v| v.id == id && v.name == name)
     }
 
-    /// What is at the path `folder/name`, times `factor`: a number, or a curve (`folder/quantity`) at the time `at`, s.
+    /// What is at the path `folder/name`, times `factor`: a number, or a curve (`folder/quantity`) at the
+    /// time `at`, s.
     ///
     /// # Errors
     /// If there is neither, or the curve has no ordinate at that time.

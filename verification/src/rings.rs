@@ -1,7 +1,7 @@
 //! Two rings in head-on collision: events, and geometries for a sweep.
 //!
-//! The paper gives the number of points of a ring but neither its radii nor the length scale. A geometry is an assumption
-//! until the sequence of events it leads to is held against the one in the paper's words.
+//! The paper gives the number of points of a ring but neither its radii nor the length scale. A geometry is
+//! an assumption until the sequence of events it leads to is held against the one in the paper's words.
 
 pub mod events;
 
@@ -28,8 +28,8 @@ pub const PARTICLES: usize = 12888;
 const MARGIN: usize = 6;
 
 impl Geometry {
-    /// Number of points of a ring that touches x = 0 from the left, its centre on y = 0, on a lattice with points half a
-    /// spacing (m) beside both axes.
+    /// Number of points of a ring that touches x = 0 from the left, its centre on y = 0, on a lattice with
+    /// points half a spacing (m) beside both axes.
     pub fn count(&self, spacing: f64) -> usize {
         let ring = Shape::Annulus { center: [-self.outer, 0.0], inner_radius: self.inner, outer_radius: self.outer };
         let steps = (2.0 * self.outer / spacing).ceil() as usize + 1;
@@ -38,7 +38,8 @@ impl Geometry {
         2 * (0..steps).map(column).sum::<usize>()
     }
 
-    /// The spacing (m) next to that of the ring's area with exactly `particles` points; else the one that comes closest.
+    /// The spacing (m) next to that of the ring's area with exactly `particles` points; else the one that
+    /// comes closest.
     pub fn spacing(&self, particles: usize) -> f64 {
         let nominal = (PI * (self.outer * self.outer - self.inner * self.inner) / particles as f64).sqrt();
         let tries =
@@ -47,8 +48,8 @@ impl Geometry {
         tries.map(|spacing| (off(spacing), spacing)).min_by_key(|(off, _)| *off).map_or(nominal, |(_, spacing)| spacing)
     }
 
-    /// `template` with this geometry: its first body becomes a ring that touches x = 0 from the left, and its mesh reaches
-    /// around the upper half of it, with a few spans beyond x = 0.
+    /// `template` with this geometry: its first body becomes a ring that touches x = 0 from the left, and its
+    /// mesh reaches around the upper half of it, with a few spans beyond x = 0.
     pub fn quarter(&self, template: &Scene) -> Scene {
         let mut scene = template.clone();
         let h = self.points as f64 * self.spacing(PARTICLES);

@@ -1,8 +1,9 @@
 //! Scene files: TOML text to a checked [`Scene`] in SI units.
 //!
-//! `units` reads quantities, `document` keeps the tree with the place of every value, `overrides` changes it by key,
-//! `fields` walks it and collects problems, `read` and `read_body` make the typed scene, and
-//! [`fisura::validate::validate`] says whether it makes sense. Every problem names file, line, column and full key path.
+//! `units` reads quantities, `document` keeps the tree with the place of every value, `overrides` changes it
+//! by key, `fields` walks it and collects problems, `read` and `read_body` make the typed scene, and
+//! [`fisura::validate::validate`] says whether it makes sense. Every problem names file, line, column and
+//! full key path.
 
 pub mod diagnostic;
 pub mod document;
@@ -48,8 +49,8 @@ impl SceneFile {
     /// Reads and checks the scene in `text`; `name` stands for it in messages.
     ///
     /// # Errors
-    /// All that is wrong with the syntax; if nothing, with the overrides; if nothing, with keys, types and units; if
-    /// nothing, with the scene itself.
+    /// All that is wrong with the syntax; if nothing, with the overrides; if nothing, with keys, types and
+    /// units; if nothing, with the scene itself.
     pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Self, SceneFileError> {
         Self::from_document(Document::parse(name, text)?, overrides)
     }
@@ -78,7 +79,8 @@ fn place(node: &Node, prefix: &str, key: &str, message: &str, remedy: &str) -> P
     }
 }
 
-/// Validates a scene read from `node` at key path `prefix`, and gives every finding its place; returns the warnings.
+/// Validates a scene read from `node` at key path `prefix`, and gives every finding its place; returns the
+/// warnings.
 ///
 /// # Errors
 /// Everything that makes the scene impossible to model.

@@ -1,9 +1,9 @@
 //! A scene run to its end: history, pictures, and a summary of what it modelled and cost.
 //!
-//! [`run_scene`] steps a [`Simulation`], samples it at every multiple of the plan's interval, and takes each frame at
-//! the nearest step. A run that breaks down keeps what was computed until then. [`run_scene_kept`] stores checkpoints on the way
-//! and goes on from one. The clock is read here and in no solver module: preparation, steps, samples and pictures are
-//! timed from outside.
+//! [`run_scene`] steps a [`Simulation`], samples it at every multiple of the plan's interval, and takes each
+//! frame at the nearest step. A run that breaks down keeps what was computed until then. [`run_scene_kept`]
+//! stores checkpoints on the way and goes on from one. The clock is read here and in no solver module:
+//! preparation, steps, samples and pictures are timed from outside.
 
 mod breakdown;
 pub mod checkpoint;
@@ -66,12 +66,12 @@ pub struct SceneRun {
     pub breakdown_report: Option<BreakdownReport>,
 }
 
-/// Called at a frame with its number, counted from 0, and the state then. A run that is taken up again may come to a frame
-/// a second time, with the same state.
+/// Called at a frame with its number, counted from 0, and the state then. A run that is taken up again may
+/// come to a frame a second time, with the same state.
 pub type OnFrame<'a> = dyn FnMut(usize, &Simulation) + 'a;
 
-/// Runs a valid scene (see [`validate`]) to its end, or until its [`watch`] stops it; `progress` is called after
-/// every step, and `on_frame` at every frame with its number.
+/// Runs a valid scene (see [`validate`]) to its end, or until its [`watch`] stops it; `progress` is called
+/// after every step, and `on_frame` at every frame with its number.
 pub fn run_scene(scene: &Scene, progress: &mut dyn FnMut(Progress), on_frame: &mut OnFrame<'_>) -> SceneRun {
     let mut run = Run::new(scene, Record::default());
     match timed(&mut run.record.stages.preparation, || Simulation::new(scene)) {

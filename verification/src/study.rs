@@ -1,7 +1,7 @@
 //! Studies: how a case is run.
 //!
-//! A `scene` study runs the case's scenes and measures their histories. The others compute something of their own; each
-//! is one file and yields measurements that the checks of the case file refer to by quantity.
+//! A `scene` study runs the case's scenes and measures their histories. The others compute something of their
+//! own; each is one file and yields measurements that the checks of the case file refer to by quantity.
 
 mod basis;
 mod compressive_step;

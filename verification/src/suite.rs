@@ -117,8 +117,9 @@ pub struct CaseOutcome {
 /// Runs the cases and writes `results.json` and `series/*.csv` into the results folder.
 ///
 /// # Errors
-/// If a case or reference file is wrong, which is known before anything runs, or the folder cannot be written. A failed check
-/// is a record, not an error, and so is a case that breaks down, panics or exceeds its time.
+/// If a case or reference file is wrong, which is known before anything runs, or the folder cannot be
+/// written. A failed check is a record, not an error, and so is a case that breaks down, panics or exceeds
+/// its time.
 pub fn verify(cases: &[Case], options: &Options, progress: &dyn Progress) -> Result<ResultSet, VerifyError> {
     let session = Session::begin(cases, None, options)?;
     session.run(progress)?;
@@ -158,7 +159,8 @@ fn run_case(
     supervisor.run(work)
 }
 
-/// Writes what the outcomes of all cases give together: figures over several runs, their reference curves, the records.
+/// Writes what the outcomes of all cases give together: figures over several runs, their reference curves,
+/// the records.
 fn assemble(
     out: &OutputFolder,
     outcomes: Vec<CaseOutcome>,

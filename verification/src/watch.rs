@@ -1,7 +1,7 @@
 //! The watch over a case: how far it has come, whether it should stop, and what it panicked of.
 //!
-//! A case runs in a pool of threads of its own, and every thread of that pool knows the watch. A loop over time steps calls
-//! [`check`] in every round; without a watch, as in `run`, that never stops anything.
+//! A case runs in a pool of threads of its own, and every thread of that pool knows the watch. A loop over
+//! time steps calls [`check`] in every round; without a watch, as in `run`, that never stops anything.
 
 use std::cell::RefCell;
 use std::panic::PanicHookInfo;
@@ -96,10 +96,12 @@ pub fn pool(threads: usize) -> Result<ThreadPool, ThreadPoolBuildError> {
     }
 }
 
-/// Writes what the case found, unless it was left behind: then what it is said to have found is written already.
+/// Writes what the case found, unless it was left behind: then what it is said to have found is written
+/// already.
 pub fn unless_left<E>(write: impl FnOnce() -> Result<(), E>) -> Result<(), E> {
     let Some(watch) = WATCH.with_borrow(Option::clone) else { return write() };
-    let left = watch.left.lock().unwrap_or_else(PoisonError::into_inner); // and is not left before it is written
+    // And is not left before it is written.
+    let left = watch.left.lock().unwrap_or_else(PoisonError::into_inner);
     if *left { Ok(()) } else { write() }
 }
 

@@ -20,7 +20,8 @@ pub struct Args {
     /// Few meshes and repetitions: under five minutes on a quiet machine
     #[arg(long)]
     quick: bool,
-    /// Only these families, separated by commas: work-precision, plate, stages, solves, threads, ceilings, scenes
+    /// Only these families, separated by commas: work-precision, plate, stages, solves, threads, ceilings,
+    /// scenes
     #[arg(long, value_name = "FAMILY,…", value_delimiter = ',')]
     family: Vec<String>,
     /// Time this program as well; its last argument is a folder with particles.csv and block.json
@@ -34,8 +35,8 @@ pub struct Args {
 /// Measures, writes the report, and says which targets are met.
 ///
 /// # Errors
-/// An unknown family, a case or reference file that is wrong, a run that breaks down, a peer that fails, a folder that cannot
-/// be written.
+/// An unknown family, a case or reference file that is wrong, a run that breaks down, a peer that fails, a
+/// folder that cannot be written.
 pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let known: Vec<&str> = FAMILIES.iter().map(|(name, _)| *name).collect();
     if let Some(unknown) = args.family.iter().find(|name| !known.contains(&name.as_str())) {
@@ -71,7 +72,8 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let set = session.set();
     let mut written = write(&session, &folder);
     if run.is_ok() {
-        written = written.and(folder.finish().map_err(Failure::from)); // otherwise it stays marked as unfinished
+        // Otherwise it stays marked as unfinished.
+        written = written.and(folder.finish().map_err(Failure::from));
     }
     match common.format {
         Format::Json => console::json(&set),

@@ -86,7 +86,8 @@ pub struct SceneArgs {
     /// Scene file
     #[arg(value_name = "SCENE.toml")]
     pub scene: PathBuf,
-    /// Change a value of the scene, such as mesh.degree=3 or body.0.crack.0.half_width="0.25 mm"; entries count from 0
+    /// Change a value of the scene, such as mesh.degree=3 or body.0.crack.0.half_width="0.25 mm"; entries
+    /// count from 0
     #[arg(long, value_name = "key.path=value")]
     pub set: Vec<String>,
 }

@@ -1,7 +1,8 @@
 //! What goes to which stream: results to standard output, everything else to standard error.
 //!
-//! Names, titles and messages may come from files of others. Characters that steer a terminal are replaced here, on the way
-//! out; only the pictures of diagnostics, which have colours of their own, are cleaned where they are made.
+//! Names, titles and messages may come from files of others. Characters that steer a terminal are replaced
+//! here, on the way out; only the pictures of diagnostics, which have colours of their own, are cleaned where
+//! they are made.
 
 use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
 use std::process::exit;

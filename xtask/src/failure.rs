@@ -60,8 +60,8 @@ impl Failure {
         }
     }
 
-    /// The exit status of a command with a verdict of its own: what the checks say is more than that something could not be
-    /// written or drawn, which is then shown.
+    /// The exit status of a command with a verdict of its own: what the checks say is more than that
+    /// something could not be written or drawn, which is then shown.
     ///
     /// # Errors
     /// The failure, if the checks hold.

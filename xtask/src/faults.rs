@@ -1,10 +1,11 @@
 //! `faults`: plants known errors, one at a time, and shows which checks catch each.
 //!
-//! Errors can be planted in a program built with the feature `faults` alone: it is built here, into a folder of its own. A
-//! process of it (`worker.rs`) runs cases one after the other with one fault, named in its environment. A fault is caught if a
-//! check fails or a run breaks down that did not without it. `--matrix` runs every fault on every case of the quick tier whose
-//! run without a fault passes a site of it; on the others the fault changes nothing, which needs no run. Each cell is stored as it
-//! is done ([`cells`]) and taken up by the next run of the same program, cases and reference data.
+//! Errors can be planted in a program built with the feature `faults` alone: it is built here, into a folder
+//! of its own. A process of it (`worker.rs`) runs cases one after the other with one fault, named in its
+//! environment. A fault is caught if a check fails or a run breaks down that did not without it. `--matrix`
+//! runs every fault on every case of the quick tier whose run without a fault passes a site of it; on the
+//! others the fault changes nothing, which needs no run. Each cell is stored as it is done ([`cells`]) and
+//! taken up by the next run of the same program, cases and reference data.
 
 mod campaign;
 mod cells;
@@ -57,7 +58,8 @@ pub struct Args {
 /// Plants every fault and looks for checks that turn red.
 ///
 /// # Errors
-/// An unknown fault, a program that cannot be built or started, a case file that is wrong, a folder that cannot be written.
+/// An unknown fault, a program that cannot be built or started, a case file that is wrong, a folder that
+/// cannot be written.
 pub fn faults(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let faults = chosen(args)?;
     let folder = folders::output(common, "faults")?;

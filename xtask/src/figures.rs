@@ -35,8 +35,8 @@ pub struct Args {
     from: Option<PathBuf>,
 }
 
-/// Writes each figure as SVG with its numbers, caption and provenance. Where the cases were run for it, a check that does not hold
-/// or a run that broke down decides the exit status as in `verify`.
+/// Writes each figure as SVG with its numbers, caption and provenance. Where the cases were run for it, a
+/// check that does not hold or a run that broke down decides the exit status as in `verify`.
 ///
 /// # Errors
 /// Unknown figures, results that do not hold them, files that cannot be read or written.
@@ -149,8 +149,8 @@ impl Wanted {
     }
 }
 
-/// Runs the cases that the figures need, which may take long: that is said first. Beside the results: whether their report could
-/// be written.
+/// Runs the cases that the figures need, which may take long: that is said first. Beside the results: whether
+/// their report could be written.
 fn run(wanted: &[PaperFigure], out: &Path, common: &Common) -> Result<(ResultSet, Result<(), Failure>), Failure> {
     let needed = |id: &str| wanted.iter().any(|figure| figure.cases().contains(&id));
     let (cases, malformed) = read_cases(&cases_folder()?, &[]);

@@ -16,7 +16,8 @@ pub fn workspace() -> PathBuf {
     root.filter(|root| root.join("Cargo.toml").is_file()).unwrap_or_default()
 }
 
-/// The folder of `--out`, or `target/fisura/<command>`: made if it is not there, writable, and locked for this process.
+/// The folder of `--out`, or `target/fisura/<command>`: made if it is not there, writable, and locked for
+/// this process.
 ///
 /// # Errors
 /// If it cannot be had, see [`OutputFolder::open`]: better now than after an hour.

@@ -1,5 +1,5 @@
-//! Interrupts (Ctrl-C, SIGINT, SIGTERM, SIGHUP): a run stores where it is and stops, a verification keeps what is finished; the
-//! second one ends the process at once.
+//! Interrupts (Ctrl-C, SIGINT, SIGTERM, SIGHUP): a run stores where it is and stops, a verification keeps
+//! what is finished; the second one ends the process at once.
 
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -35,8 +35,8 @@ pub fn watch() -> Result<&'static AtomicBool, Failure> {
     Ok(&INTERRUPTED)
 }
 
-/// Does `work`. If it is interrupted, `stop` is called beside it, on a thread of its own, to keep what is finished; then the
-/// process ends, wherever the work is, but not in the middle of a file.
+/// Does `work`. If it is interrupted, `stop` is called beside it, on a thread of its own, to keep what is
+/// finished; then the process ends, wherever the work is, but not in the middle of a file.
 ///
 /// # Errors
 /// As [`watch`].

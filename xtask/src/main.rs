@@ -1,10 +1,11 @@
-//! The commands of the fisura workspace: `cargo xtask verify`, `merge`, `compare`, `list`, `demo`, `run`, `check`, `figures`,
-//! `report`, `bench`, `faults`.
+//! The commands of the fisura workspace: `cargo xtask verify`, `merge`, `compare`, `list`, `demo`, `run`,
+//! `check`, `figures`, `report`, `bench`, `faults`.
 //!
-//! One file per command; beside them [`cli`] (what can be said on the command line), [`exit`] (statuses), [`failure`]
-//! (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go), [`scene_input`] (scene
-//! files with their overrides), [`interrupt`] (Ctrl-C), [`progress`] (bars), [`pictures`] (figures of a run), [`vtk`] (its
-//! files for ParaView), [`watch`] (what is shown of a verification), [`environment`] (where and when), [`built`] (from which sources).
+//! One file per command; beside them [`cli`] (what can be said on the command line), [`exit`] (statuses),
+//! [`failure`] (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go),
+//! [`scene_input`] (scene files with their overrides), [`interrupt`] (Ctrl-C), [`progress`] (bars),
+//! [`pictures`] (figures of a run), [`vtk`] (its files for ParaView), [`watch`] (what is shown of a
+//! verification), [`environment`] (where and when), [`built`] (from which sources).
 
 mod bench;
 mod built;

@@ -21,8 +21,8 @@ pub struct Args {
 /// Joins parts, renders the report, and says whether every check holds.
 ///
 /// # Errors
-/// Parts of different plans or programs, emptied or edited parts, slices missing or doubled, folders that cannot be read or
-/// written.
+/// Parts of different plans or programs, emptied or edited parts, slices missing or doubled, folders that
+/// cannot be read or written.
 pub fn merge(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let folder = folders::output(common, "merge")?;
     let results = join(&args.folders, &folder, &folders::workspace().join("reference-data"), built::SOURCES)?;

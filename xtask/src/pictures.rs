@@ -9,7 +9,8 @@ use fisura_verification::history::Table;
 use fisura_verification::record::{Figure, FigureBody};
 use fisura_verification::scene_run::SceneRun;
 
-/// Part of the pixels beyond either end of the colour bar of stress: a crack tip would leave no colour for the rest.
+/// Part of the pixels beyond either end of the colour bar of stress: a crack tip would leave no colour for
+/// the rest.
 const CLIPPED: f64 = 0.005;
 
 /// File name and SVG of every figure of a run.

@@ -25,7 +25,8 @@ pub struct Args {
 /// Renders a results folder and names the files written.
 ///
 /// # Errors
-/// `results.json` is missing or foreign, or there beside `bench.json`, a file cannot be written, or a figure cannot be drawn.
+/// `results.json` is missing or foreign, or there beside `bench.json`, a file cannot be written, or a figure
+/// cannot be drawn.
 pub fn report(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let of_bench = bench::is_bench(&args.folder);
     if of_bench && args.folder.join("results.json").is_file() {
@@ -62,8 +63,8 @@ pub fn unreadable(error: ReportError, folder: &Path) -> Failure {
     Failure::from(error).help(help)
 }
 
-/// The results and their series in the folder of `--out`. What is to be copied is known before the first file is written, so
-/// that a folder below that of the results is no part of it.
+/// The results and their series in the folder of `--out`. What is to be copied is known before the first file
+/// is written, so that a folder below that of the results is no part of it.
 fn copied(from: &Path, results: &str, common: &Common) -> Result<OutputFolder, Failure> {
     let fail = |name: &str, error: Error| {
         let message = format!("{} cannot be copied: {error}", from.join(name).display());

@@ -147,8 +147,8 @@ struct Start {
 }
 
 impl Start {
-    /// Takes up the checkpoint if that is asked for, and removes what is left of an earlier run; the checkpoint of another scene
-    /// stays.
+    /// Takes up the checkpoint if that is asked for, and removes what is left of an earlier run; the
+    /// checkpoint of another scene stays.
     fn new(args: &Args, scene: &Scene, folder: &OutputFolder, common: &Common) -> Result<Self, Failure> {
         let place = checkpoint::find(folder.path(), scene);
         let path = folder.path().join(&place.name);
@@ -174,7 +174,8 @@ impl Start {
     }
 }
 
-/// Says that the checkpoint of another scene stays. Its files for ParaView could not stay beside those of this run.
+/// Says that the checkpoint of another scene stays. Its files for ParaView could not stay beside those of
+/// this run.
 fn keep_other(title: &str, name: &str, folder: &OutputFolder, common: &Common) -> Result<(), Failure> {
     let path = folder.path().join(CHECKPOINT);
     let message = format!("{} is of an interrupted run of another scene, {title:?}", path.display());

@@ -37,11 +37,12 @@ pub struct Args {
     /// quick (minutes in all), or full (the same and paper resolution)
     #[arg(long, value_name = "TIER", default_value = "quick", value_parser = str::parse::<Tier>)]
     tier: Tier,
-    /// Only the K-th of N slices of what is selected, balanced by the estimated time of the cases; see `merge`
+    /// Only the K-th of N slices of what is selected, balanced by the estimated time of the cases; see
+    /// `merge`
     #[arg(long, value_name = "slice:K/N", value_parser = str::parse::<Slice>)]
     partition: Option<Slice>,
-    /// Stop a case after that many seconds: its records are errors, the others run [default: ten times its estimate, at least
-    /// 300]
+    /// Stop a case after that many seconds: its records are errors, the others run
+    /// [default: ten times its estimate, at least 300]
     #[arg(long, value_name = "S", value_parser = seconds)]
     case_timeout: Option<Duration>,
     /// Change a value in the scene of every case; entries count from 0
@@ -63,8 +64,8 @@ fn seconds(text: &str) -> Result<Duration, String> {
 /// Runs what is selected.
 ///
 /// # Errors
-/// Unknown suites, a bad pattern, nothing selected, a case or reference file that is wrong, a folder that cannot be
-/// written.
+/// Unknown suites, a bad pattern, nothing selected, a case or reference file that is wrong, a folder that
+/// cannot be written.
 pub fn verify(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let workspace = folders::workspace();
     let reference_data = workspace.join("reference-data");
@@ -101,8 +102,8 @@ pub fn verify(args: &Args, common: &Common) -> Result<Exit, Failure> {
     conclude(&results, &folder, common)
 }
 
-/// Runs cases into a folder whose report says until [`conclude`] that they are unfinished. An interrupt ends the process; what is
-/// finished then is in the report.
+/// Runs cases into a folder whose report says until [`conclude`] that they are unfinished. An interrupt ends
+/// the process; what is finished then is in the report.
 ///
 /// # Errors
 /// A wrong case, files that cannot be read or written.
@@ -242,8 +243,8 @@ fn selected(args: &Args, common: &Common) -> Result<Vec<Case>, Failure> {
     changed(args, cases, common)
 }
 
-/// The cases with the changes of `--set`, everything about them known to be valid before anything runs. A case without a
-/// scene has nothing that could be changed: it is said, and the case stays as it is.
+/// The cases with the changes of `--set`, everything about them known to be valid before anything runs. A
+/// case without a scene has nothing that could be changed: it is said, and the case stays as it is.
 fn changed(args: &Args, cases: Vec<Case>, common: &Common) -> Result<Vec<Case>, Failure> {
     let library = library()?;
     let mut ready = Vec::new();

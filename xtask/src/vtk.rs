@@ -1,7 +1,8 @@
-//! Files for ParaView (`run --vtk`): points and spans of every frame, and collections of them with their times.
+//! Files for ParaView (`run --vtk`): points and spans of every frame, and collections of them with their
+//! times.
 //!
-//! Files are written as soon as their frame is reached and named by its number, so that a run that is taken up again goes on
-//! with those of before.
+//! Files are written as soon as their frame is reached and named by its number, so that a run that is taken
+//! up again goes on with those of before.
 
 use fisura::output::inspection::PointState;
 use fisura::output::span_grid::Corner;

@@ -1,5 +1,5 @@
-//! Shows a verification under way: on a terminal a bar for the whole and one for each case that runs, elsewhere a line per finished
-//! case.
+//! Shows a verification under way: on a terminal a bar for the whole and one for each case that runs,
+//! elsewhere a line per finished case.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -19,7 +19,8 @@ pub fn interpolate([ll, lr, ul, ur]: Corners) -> Gauss<f64> {
     [HIGH * l_low + LOW * r_low, LOW * l_low + HIGH * r_low, HIGH * l_high + LOW * r_high, LOW * l_high + HIGH * r_high]
 }
 
-/// Derivatives of corner values: along x at y low and high, along y at x low and high; per unit of the inverse sides.
+/// Derivatives of corner values: along x at y low and high, along y at x low and high; per unit of the
+/// inverse sides.
 #[inline(always)]
 pub fn slopes([ll, lr, ul, ur]: Corners, inverse_width: f64, inverse_height: f64) -> ([f64; 2], [f64; 2]) {
     let (below, above) = ((lr - ll) * inverse_width, (ur - ul) * inverse_width);
@@ -51,7 +52,8 @@ pub fn forces(stress: Gauss<[f64; 3]>, width: f64, height: f64) -> (Corners, Cor
     (spread(xx, yx, over_x, over_y), spread(xy, yy, over_x, over_y))
 }
 
-/// Corner forces of a stress component along x (`along`, at y low and high) and one along y (`across`, at x low and high).
+/// Corner forces of a stress component along x (`along`, at y low and high) and one along y (`across`, at x
+/// low and high).
 #[inline(always)]
 fn spread(along: [f64; 2], across: [f64; 2], over_x: f64, over_y: f64) -> Corners {
     let (x_low, x_high) = (over_x * (HIGH * along[0] + LOW * along[1]), over_x * (LOW * along[0] + HIGH * along[1]));

@@ -103,7 +103,8 @@ impl ConjugateGradients {
         squares.collect()
     }
 
-    /// Tiles whose squared residual exceeds `negligible`, with a margin, are iterated on; gives the square left in them.
+    /// Tiles whose squared residual exceeds `negligible`, with a margin, are iterated on; gives the square
+    /// left in them.
     fn choose(&mut self, tiles: &[Vec<f64>], negligible: f64) -> f64 {
         let (rows, columns) = (tiles.len(), tiles[0].len());
         let counts = |row: usize, column: usize| tiles[row][column] > negligible;
@@ -173,7 +174,8 @@ impl ConjugateGradients {
             }
             sums
         });
-        sums.collect::<Vec<_>>().iter().flatten().sum() // tile by tile: the same bits for any number of threads
+        // Tile by tile: the same bits for any number of threads.
+        sums.collect::<Vec<_>>().iter().flatten().sum()
     }
 
     /// Moves `x` along the direction; gives the square of the new residual.

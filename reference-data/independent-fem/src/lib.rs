@@ -1,10 +1,11 @@
-//! Bilinear finite elements with an AT2 phase field for the impact-loaded plate: a reference that shares no line with
-//! the solver it judges.
+//! Bilinear finite elements with an AT2 phase field for the impact-loaded plate: a reference that shares no
+//! line with the solver it judges.
 //!
-//! Rectangles with 2 × 2 Gauss points, lumped mass, central differences; spectral split and history field (Miehe et al. 2010,
-//! Borden et al. 2012); the phase field is solved for in every step by conjugate gradients with Jacobi scaling. Rooms, each calling
-//! only those before it: [`mesh`], [`material`], [`element`]; [`stencil`] and [`gradients`] (linear algebra); [`phase_field`],
-//! [`dynamics`], [`crack`]; [`plate`] (the run). SI units, per metre of thickness.
+//! Rectangles with 2 × 2 Gauss points, lumped mass, central differences; spectral split and history field
+//! (Miehe et al. 2010, Borden et al. 2012); the phase field is solved for in every step by conjugate
+//! gradients with Jacobi scaling. Rooms, each calling only those before it: [`mesh`], [`material`],
+//! [`element`]; [`stencil`] and [`gradients`] (linear algebra); [`phase_field`], [`dynamics`], [`crack`];
+//! [`plate`] (the run). SI units, per metre of thickness.
 
 pub mod crack;
 pub mod dynamics;

@@ -1,4 +1,5 @@
-//! Linear elasticity with the spectral split of Miehe et al., degraded by an AT2 phase field in Borden's convention.
+//! Linear elasticity with the spectral split of Miehe et al., degraded by an AT2 phase field in Borden's
+//! convention.
 
 /// What the plate is made of, SI units.
 #[derive(Debug, Clone, Copy)]

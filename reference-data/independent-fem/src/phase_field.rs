@@ -1,4 +1,5 @@
-//! The phase-field equation `[4 l0 (1 − k) H / Gc + 1] c − 4 l0² div grad c = 1`, its history field and its solution.
+//! The phase-field equation `[4 l0 (1 − k) H / Gc + 1] c − 4 l0² div grad c = 1`, its history field and its
+//! solution.
 
 use rayon::prelude::*;
 

@@ -9,7 +9,8 @@ pub const TILE_ROWS: usize = 8;
 /// Node columns of a tile.
 pub const TILE_COLUMNS: usize = 32;
 
-/// Couplings of each node with its neighbours ahead, in arrays of nodal values with a zero guard on either side.
+/// Couplings of each node with its neighbours ahead, in arrays of nodal values with a zero guard on either
+/// side.
 #[derive(Debug)]
 pub struct Stencil {
     /// With itself, before scaling.

@@ -56,7 +56,8 @@ fn a_crack_costs_its_toughness_at_second_order() {
     assert!(errors[3] < 2e-4, "{errors:?}"); // leading term (h/l0)²/96
 }
 
-/// Relative L2 error of the displacement behind the front of a wave in a bar, 4 us after a traction was applied.
+/// Relative L2 error of the displacement behind the front of a wave in a bar, 4 us after a traction was
+/// applied.
 fn bar_error(h: f64) -> f64 {
     let material = glass();
     let mesh = Mesh::strip(0.03, 4.0 * h, h);

@@ -1,7 +1,7 @@
 //! Which of many ways is worth its cost.
 
-/// Indices of the points `(cost, error)` that no other point beats in both, from the cheapest to the most accurate. Points
-/// that are no numbers take no part.
+/// Indices of the points `(cost, error)` that no other point beats in both, from the cheapest to the most
+/// accurate. Points that are no numbers take no part.
 pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let usable = |i: &usize| points[*i].0.is_finite() && points[*i].1.is_finite();
     let mut order: Vec<usize> = (0..points.len()).filter(usable).collect();
@@ -16,8 +16,8 @@ pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     front
 }
 
-/// Cost of an error on a curve of points `(cost, error)`, between two neighbours on logarithmic axes; `None` where the curve
-/// does not reach.
+/// Cost of an error on a curve of points `(cost, error)`, between two neighbours on logarithmic axes; `None`
+/// where the curve does not reach.
 pub fn cost_of(curve: &[(f64, f64)], error: f64) -> Option<f64> {
     let mut sorted = curve.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));

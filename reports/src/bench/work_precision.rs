@@ -230,7 +230,8 @@ impl Chart<'_> {
 /// Decades of error that are read off.
 const DECADES: std::ops::RangeInclusive<i32> = 1..=12;
 
-/// Which curve is the cheapest at each decade of error, and what the next one takes; and which touch the front.
+/// Which curve is the cheapest at each decade of error, and what the next one takes; and which touch the
+/// front.
 fn reading(lines: &[Line], front: &Line, cost: Cost) -> String {
     let mut sentences: Vec<String> = DECADES.filter_map(|k| cheapest(lines, 10f64.powi(-k), cost)).collect();
     if sentences.is_empty() {

@@ -4,8 +4,8 @@ use std::collections::{HashMap, VecDeque};
 
 use fisura_verification::record::Record;
 
-/// For each record of the base the place of the new one with its id, else of one that names this id among its former ones.
-/// An id that is there twice is found twice, in the same order.
+/// For each record of the base the place of the new one with its id, else of one that names this id among its
+/// former ones. An id that is there twice is found twice, in the same order.
 pub(super) fn partners(base: &[Record], new: &[Record]) -> Vec<Option<usize>> {
     let mut present: HashMap<&str, VecDeque<usize>> = HashMap::new();
     let mut former: HashMap<&str, VecDeque<usize>> = HashMap::new();

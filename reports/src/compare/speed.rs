@@ -1,7 +1,7 @@
 //! Times of two result sets, held against their spread.
 //!
-//! A single time says little on a shared machine. The spread comes from the comparison itself: how far the ratios of all
-//! runs scatter about their median. A change of all runs together shows in the median.
+//! A single time says little on a shared machine. The spread comes from the comparison itself: how far the
+//! ratios of all runs scatter about their median. A change of all runs together shows in the median.
 
 use std::collections::{HashMap, HashSet};
 

@@ -25,8 +25,9 @@ pub(super) fn reduced(set: &ResultSet, part: f64) -> ResultSet {
     }
 }
 
-/// Figures to leave out so that the page becomes `excess` bytes shorter: those that show the curves of another one once more
-/// over the unknowns, then those of the suites with the most figures, in both the largest first.
+/// Figures to leave out so that the page becomes `excess` bytes shorter: those that show the curves of
+/// another one once more over the unknowns, then those of the suites with the most figures, in both the
+/// largest first.
 pub(super) fn left_out<'a>(set: &'a ResultSet, drawings: &Drawings, excess: usize) -> BTreeSet<&'a str> {
     let drawn = |figure: &'a Figure| Some((figure, drawings.get(&figure.id)?.as_ref().ok()?.len()));
     let of_suite = |suite: &str| set.figures.iter().filter(|figure| figure.suite == suite).count();

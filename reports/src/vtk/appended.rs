@@ -7,7 +7,8 @@ pub(super) struct Appended {
 }
 
 impl Appended {
-    /// Adds numbers, vectors of two filled up to three as VTK wants them; gives the element that refers to them.
+    /// Adds numbers, vectors of two filled up to three as VTK wants them; gives the element that refers to
+    /// them.
     pub(super) fn floats(&mut self, name: &str, components: usize, values: &[f64]) -> String {
         let written = if components == 2 { 3 } else { components };
         let filled = values.chunks(components).flat_map(|v| v.iter().copied().chain((v.len()..written).map(|_| 0.0)));

@@ -1,8 +1,8 @@
-//! Reports, comparisons and merges of mutated results and parts: no panic, no hang, no flood of memory, nothing written
-//! elsewhere.
+//! Reports, comparisons and merges of mutated results and parts: no panic, no hang, no flood of memory,
+//! nothing written elsewhere.
 //!
-//! `FISURA_FUZZ=1000000 cargo test -p fisura-reports --test fuzz` takes a million inputs, new ones every time; otherwise a few
-//! hundred, always the same.
+//! `FISURA_FUZZ=1000000 cargo test -p fisura-reports --test fuzz` takes a million inputs, new ones every
+//! time; otherwise a few hundred, always the same.
 
 #[path = "../integration/fixture/mod.rs"]
 mod fixture;

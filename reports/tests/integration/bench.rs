@@ -1,4 +1,5 @@
-//! A small set of benchmarks is rendered as a whole: files, readings computed from the numbers, the same bytes twice.
+//! A small set of benchmarks is rendered as a whole: files, readings computed from the numbers, the same
+//! bytes twice.
 
 use std::fs;
 use std::path::Path;

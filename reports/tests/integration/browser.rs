@@ -1,4 +1,5 @@
-//! The page in a headless browser, where one is installed: nothing is wider than the window, everything is on the page.
+//! The page in a headless browser, where one is installed: nothing is wider than the window, everything is on
+//! the page.
 
 use std::path::Path;
 use std::process::Command;

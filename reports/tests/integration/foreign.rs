@@ -1,4 +1,5 @@
-//! Results that may come from anywhere: what is opened, linked, written and drawn of them, and with how much work.
+//! Results that may come from anywhere: what is opened, linked, written and drawn of them, and with how much
+//! work.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! The forms that other programs read: the schema of `results.json`, JUnit, benchmark dashboards, step summaries.
+//! The forms that other programs read: the schema of `results.json`, JUnit, benchmark dashboards, step
+//! summaries.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -51,8 +52,8 @@ fn results_follow_the_schema_and_others_do_not() {
     }
 }
 
-/// What the JUnit schema of Jenkins (`junit-10.xsd`) says of the elements in use: required attributes, further
-/// attributes, children.
+/// What the JUnit schema of Jenkins (`junit-10.xsd`) says of the elements in use: required attributes,
+/// further attributes, children.
 fn rules(element: &str) -> Option<(&'static [&'static str], &'static [&'static str], &'static [&'static str])> {
     const COUNTS: &[&str] = &["name", "time", "tests", "failures", "errors", "skipped", "disabled"];
     Some(match element {
@@ -69,7 +70,8 @@ fn rules(element: &str) -> Option<(&'static [&'static str], &'static [&'static s
     })
 }
 
-/// Fails unless an element may stand where it does and has the attributes it must and may have; gives its counts.
+/// Fails unless an element may stand where it does and has the attributes it must and may have; gives its
+/// counts.
 fn check_element(element: &BytesStart, parents: &[String]) -> String {
     let name = String::from_utf8(element.name().as_ref().to_vec()).unwrap();
     let (required, optional, _) = rules(&name).unwrap_or_else(|| panic!("unknown element {name}"));
@@ -128,7 +130,8 @@ fn the_time_of_a_study_is_counted_once() {
         record.timing.wall_s = wall_s;
         record
     };
-    // a study of three variants timed as a whole, and a case of two runs timed one by one, with two checks each
+    // a study of three variants timed as a whole, and a case of two runs timed one by one, with two checks
+    // each
     set.records = ["p=1", "p=2", "p=3"].iter().map(|p| record("study", p, 30.5)).collect();
     set.records.extend([("a", 2.0), ("a", 2.0), ("b", 4.0), ("b", 4.0)].map(|(run, wall)| record("scene", run, wall)));
     assert_eq!(times(&render_junit(&set).unwrap()), [36.5, 36.5]);

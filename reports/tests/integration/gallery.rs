@@ -1,4 +1,5 @@
-//! The committed gallery: every figure is drawn from the numbers beside it, and these from the cases as they are.
+//! The committed gallery: every figure is drawn from the numbers beside it, and these from the cases as they
+//! are.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

@@ -1,19 +1,22 @@
 //! The fit of control points to a position on the boundary of a body: weights that stand for it.
 //!
-//! The shape functions at the boundary would do, but for control points of next to no mass: a span that the outermost points
-//! have only just entered has some, and they would take up an impulse and keep it from the body. The weights
+//! The shape functions at the boundary would do, but for control points of next to no mass: a span that the
+//! outermost points have only just entered has some, and they would take up an impulse and keep it from the
+//! body. The weights
 //!
 //! ```text
 //! W_I = N_I(y) m_I [a + b · (x_I − x)],        Σ W_I = 1,   Σ W_I x_I = x
 //! ```
 //!
-//! with y half a span below x and the masses m are a linear fit weighted with mass: they give affine velocity fields at x
-//! exactly, spread an impulse with neither momentum nor torque lost, and let a control point take part as far as it has mass.
+//! with y half a span below x and the masses m are a linear fit weighted with mass: they give affine velocity
+//! fields at x exactly, spread an impulse with neither momentum nor torque lost, and let a control point take
+//! part as far as it has mass.
 //!
-//! Where the control points that have mass lie on a line or at one place, or nearly so, there is no such fit, or one that hangs on
-//! control points of next to no mass: its answer to an impulse, `Σ W²/m`, is then many times that of the mean motion. There the fit
-//! leaves out the direction across the line (b along it), or both (b = 0). The weights still sum to one, so momentum is kept; they
-//! stand for the place on the line nearest to x, and the torque of the distance between both is lost.
+//! Where the control points that have mass lie on a line or at one place, or nearly so, there is no such fit,
+//! or one that hangs on control points of next to no mass: its answer to an impulse, `Σ W²/m`, is then many
+//! times that of the mean motion. There the fit leaves out the direction across the line (b along it), or
+//! both (b = 0). The weights still sum to one, so momentum is kept; they stand for the place on the line
+//! nearest to x, and the torque of the distance between both is lost.
 
 use super::view::BodyView;
 use crate::linear_algebra::control_grid::VectorField;
@@ -58,7 +61,8 @@ struct Spread {
 }
 
 impl BoundaryFit {
-    /// Stands for `position` (m), near the point `inside` (m) of the body; `None` if it has no material there.
+    /// Stands for `position` (m), near the point `inside` (m) of the body; `None` if it has no material
+    /// there.
     pub fn new(body: &BodyView, position: [f64; 2], inside: [f64; 2]) -> Option<Self> {
         let patch = body.patch;
         let [(column, nx), (row, ny)] = Follower::nearest(inside, patch, body.cells)?.shape_functions(patch);
@@ -184,7 +188,8 @@ mod tests {
         assert!(fit(&[]).is_none());
     }
 
-    /// On the line x + y = 1 no fit knows anything of the way across: the nearest place on it to the origin is (0.5, 0.5).
+    /// On the line x + y = 1 no fit knows anything of the way across: the nearest place on it to the origin
+    /// is (0.5, 0.5).
     #[test]
     fn parts_on_a_line_are_held_along_it() {
         for off in [0.0, 1e-17, 1e-12, 1e-7] {

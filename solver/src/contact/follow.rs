@@ -12,8 +12,8 @@ use crate::particles::follower::Follower;
 const MOST_STRETCH: f64 = 2.0;
 
 impl Surface {
-    /// Moves with a velocity field (m/s) of its body for `dt` seconds. Where there is no material any more the boundary ends: it
-    /// must neither stretch across a gap nor push with nothing behind it.
+    /// Moves with a velocity field (m/s) of its body for `dt` seconds. Where there is no material any more
+    /// the boundary ends: it must neither stretch across a gap nor push with nothing behind it.
     pub(crate) fn follow(&mut self, body: &BodyView, velocity: &VectorField, dt: f64) {
         let ways = self.ways_of(body, velocity, dt);
         self.ways = ways.iter().map(|way| way.unwrap_or_default()).collect();

@@ -10,15 +10,17 @@ use super::{ContactLedger, ContactSolver};
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::vectors::dot;
 
-/// Rounds over the constraints until their equations are solved directly, and most of them: a few tens settle them but where
-/// constraints are many for their control points.
+/// Rounds over the constraints until their equations are solved directly, and most of them: a few tens settle
+/// them but where constraints are many for their control points.
 const ROUNDS: usize = 500;
 const MOST_ROUNDS: usize = 10 * ROUNDS;
 /// Change of an impulse, relative to the largest, below which the rounds end.
 const SETTLED: f64 = 1e-12;
-/// Round-off of the velocity at a constraint, relative to those it is summed from; impulses that change it by less are settled.
+/// Round-off of the velocity at a constraint, relative to those it is summed from; impulses that change it by
+/// less are settled.
 const ROUND_OFF: f64 = 1e-14;
-/// Change of an impulse, relative to the largest, above which impulses are not used: momentum is kept by any, so this is the error of gaps and friction.
+/// Change of an impulse, relative to the largest, above which impulses are not used: momentum is kept by any,
+/// so this is the error of gaps and friction.
 const ACCEPTED: f64 = 1e-9;
 
 /// Time of a kick and of the step it belongs to, s: the first kick is half a step.
@@ -108,8 +110,8 @@ struct Acting<'a> {
 }
 
 impl ContactSolver {
-    /// Accelerations that contact adds in the coming kick, and the ledger at the present whole step: with the half of that kick
-    /// that belongs to the step before.
+    /// Accelerations that contact adds in the coming kick, and the ledger at the present whole step: with the
+    /// half of that kick that belongs to the step before.
     pub(crate) fn coming(&self, bodies: &[BodyView], kick: Kick) -> (Vec<Push>, ContactLedger) {
         let problem = self.solve(bodies, kick);
         (problem.pushes(kick.length), self.ledger.plus(problem.arriving(kick)))
@@ -314,7 +316,8 @@ impl Acting<'_> {
         }
     }
 
-    /// The impulse that, with all others as they are, keeps the gap from closing and sliding below the friction.
+    /// The impulse that, with all others as they are, keeps the gap from closing and sliding below the
+    /// friction.
     fn settled(&self, nodes: &[Node], friction: f64, step: f64) -> Impulse {
         let Impulse { mut normal, mut tangent } = self.impulse;
         let relative = self.relative(nodes, |node| node.after);

@@ -1,5 +1,6 @@
-//! How far bodies approach each other in a step. Contact looks at gaps once per step: what closes more than a span between two
-//! looks is through before it is seen. Bodies that slide along each other, turn in each other or part are not.
+//! How far bodies approach each other in a step. Contact looks at gaps once per step: what closes more than a
+//! span between two looks is through before it is seen. Bodies that slide along each other, turn in each
+//! other or part are not.
 
 use super::outline::without_patch;
 use super::surface::{Center, Surface};
@@ -9,10 +10,11 @@ use crate::scene::{Body, Mesh, Scene};
 
 /// Most spans by which bodies that meet approach each other in a step.
 pub(crate) const MOST: f64 = 0.5;
-/// A gap that could close in the coming step is one within this many of the ways of the last step: speeds change.
+/// A gap that could close in the coming step is one within this many of the ways of the last step: speeds
+/// change.
 pub(crate) const AHEAD: f64 = 1.25;
-/// Segments into which a boundary is cut to find its outward speed. That of a polygon is largest at a corner, where a segment
-/// ends; of a circle cut in so many, whose own is zero, 1 % of the speed at the rim is found.
+/// Segments into which a boundary is cut to find its outward speed. That of a polygon is largest at a corner,
+/// where a segment ends; of a circle cut in so many, whose own is zero, 1 % of the speed at the rim is found.
 const SEGMENTS: f64 = 256.0;
 /// Relative round-off of places and speeds at the start.
 const ROUND_OFF: f64 = 1e-9;
@@ -41,8 +43,8 @@ impl<'a> Moving<'a> {
         Self { body, bounds: [low, high], turning }
     }
 
-    /// Bound of the speed, m/s, at which it comes nearer to another body; zero for bodies that lie beside each other, with boxes
-    /// that do not close on each other.
+    /// Bound of the speed, m/s, at which it comes nearer to another body; zero for bodies that lie beside
+    /// each other, with boxes that do not close on each other.
     fn approach(&self, other: &Self) -> f64 {
         let relative = [0, 1].map(|d| other.body.velocity[d] - self.body.velocity[d]);
         let turning = self.turning + other.turning;
@@ -72,8 +74,8 @@ fn outward_speed(mesh: &Mesh, body: &Body) -> f64 {
     speeds.fold(0.0, larger)
 }
 
-/// Longest step, s, in which no two bodies of a scene with contact approach each other by more than [`MOST`] spans, by the
-/// velocities they begin with; infinite without contact.
+/// Longest step, s, in which no two bodies of a scene with contact approach each other by more than [`MOST`]
+/// spans, by the velocities they begin with; infinite without contact.
 pub(crate) fn longest_step(scene: &Scene) -> f64 {
     if scene.contact.is_none() {
         return f64::INFINITY;

@@ -7,7 +7,8 @@ use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::vectors::{dot, unit};
 use crate::scene::{Body, Mesh};
 
-/// Distance from the boundary within which the middle of a segment counts as lying on it, over that of the points.
+/// Distance from the boundary within which the middle of a segment counts as lying on it, over that of the
+/// points.
 const ON_BOUNDARY: f64 = 0.1;
 
 /// A boundary: segments with the body to their left.

@@ -33,8 +33,8 @@ pub struct BodyView<'a> {
 }
 
 impl BodyView<'_> {
-    /// Inverse masses with which the components of a control point answer to a force, m/kg: zero where the velocity is
-    /// prescribed or the mass negligible.
+    /// Inverse masses with which the components of a control point answer to a force, m/kg: zero where the
+    /// velocity is prescribed or the mass negligible.
     pub(crate) fn mobility(&self, at: usize) -> [f64; 2] {
         [0, 1].map(|c| if self.fixed.contains(&(at, c)) { 0.0 } else { self.inverse_mass[at] })
     }

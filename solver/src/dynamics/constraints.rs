@@ -1,8 +1,8 @@
 //! Conditions on the sides of the mesh: prescribed velocity components of the control points of a side.
 //!
-//! End knots are repeated, so the control points of a side alone decide the field on it. The control point of a corner belongs
-//! to both sides: it has what either prescribes. Where both prescribe a component they have to agree, which
-//! [`crate::validate::validate`] demands, so the order of the sides does not count.
+//! End knots are repeated, so the control points of a side alone decide the field on it. The control point of
+//! a corner belongs to both sides: it has what either prescribes. Where both prescribe a component they have
+//! to agree, which [`crate::validate::validate`] demands, so the order of the sides does not count.
 
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::scene::Boundary;

@@ -1,10 +1,12 @@
 //! The critical time step of explicit dynamics, from the operator itself.
 //!
-//! Velocity Verlet is stable up to `2/ω_max` of `M⁻¹ K`. The largest eigenvalue of `M^(−1/2) K M^(−1/2)` of the undamaged
-//! body comes from a Lanczos iteration, which approaches it from below; the residual norm of the Ritz vector is added.
-//! That puts the value on the safe side but for clusters of eigenvalues, where it was seen 4e-7 too low.
+//! Velocity Verlet is stable up to `2/ω_max` of `M⁻¹ K`. The largest eigenvalue of `M^(−1/2) K M^(−1/2)` of
+//! the undamaged body comes from a Lanczos iteration, which approaches it from below; the residual norm of
+//! the Ritz vector is added. That puts the value on the safe side but for clusters of eigenvalues, where it
+//! was seen 4e-7 too low.
 //!
-//! A formula in the span length alone is not safe: free edges, Poisson's ratio and cut spans all lower the step.
+//! A formula in the span length alone is not safe: free edges, Poisson's ratio and cut spans all lower the
+//! step.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -24,10 +26,11 @@ pub trait StiffnessOperator {
     fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]);
 }
 
-/// Bound of the largest angular frequency, rad per unit time (see the module); zero if there is no stiffness, not a number
-/// if that is none.
+/// Bound of the largest angular frequency, rad per unit time (see the module); zero if there is no stiffness,
+/// not a number if that is none.
 ///
-/// Lanczos iteration on `M⁻¹ K` in the inner product of M: of every vector q its image `M q` is kept, so M is never applied.
+/// Lanczos iteration on `M⁻¹ K` in the inner product of M: of every vector q its image `M q` is kept, so M is
+/// never applied.
 pub fn highest_frequency(operator: &mut impl StiffnessOperator) -> f64 {
     let n = operator.size();
     let mut image = pseudo_random(n); // M times the vector

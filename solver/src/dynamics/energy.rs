@@ -5,8 +5,8 @@
 //!   = initial + external work + history work − contact loss − transfer loss + closure
 //! ```
 //!
-//! Each term is summed from its own definition; closure alone is what is left. Stagger, `dt²/8 aᵀ M a`, is the part of
-//! the kinetic energy at whole steps that velocity Verlet does not conserve. History work,
+//! Each term is summed from its own definition; closure alone is what is left. Stagger, `dt²/8 aᵀ M a`, is
+//! the part of the kinetic energy at whole steps that velocity Verlet does not conserve. History work,
 //! `∬ 2 (1 − k) c (H − psi+)(−dc/dt)`, is what the model adds where the crack widens on remembered energy.
 
 use crate::linear_algebra::extremes::{larger, smaller};
@@ -124,7 +124,8 @@ impl Sample {
         columns.find(|(name, value)| !value.is_finite() && !name.starts_with("crack_tip")).map(|(name, _)| name)
     }
 
-    /// This sample with another body's: energies and momenta are added, the tip is that of the crack that is further.
+    /// This sample with another body's: energies and momenta are added, the tip is that of the crack that is
+    /// further.
     #[must_use]
     pub fn with(self, other: Self) -> Self {
         let fracture = match (self.fracture, other.fracture) {

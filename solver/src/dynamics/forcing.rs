@@ -1,8 +1,9 @@
 //! Loads that a scene cannot say: forces, tractions and phase-field sources that vary in space and time.
 //!
-//! They serve manufactured solutions. A *strong* load is the body force and the traction that the exact solution needs. A
-//! *weak* load is the exact stress and the exact inertia, integrated by the same point sums as the code's own: it verifies
-//! the code and is blind to the quadrature, where a strong load measures the method.
+//! They serve manufactured solutions. A *strong* load is the body force and the traction that the exact
+//! solution needs. A *weak* load is the exact stress and the exact inertia, integrated by the same point sums
+//! as the code's own: it verifies the code and is blind to the quadrature, where a strong load measures the
+//! method.
 
 use std::fmt::Debug;
 

@@ -1,7 +1,7 @@
 //! External loads: tractions carried by surface points.
 //!
-//! Nothing of a traction may be lost on the way to the control points: [`Balance`] holds every load to the force and moment of
-//! its edge when it is made.
+//! Nothing of a traction may be lost on the way to the control points: [`Balance`] holds every load to the
+//! force and moment of its edge when it is made.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,8 @@ const TOLERANCE: f64 = 1e-12;
 /// Round-off of the terms of a force or a moment, of the sum of their magnitudes.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
-/// A sum that keeps what rounding takes from it (Neumaier 1974): its error does not grow with the number of terms.
+/// A sum that keeps what rounding takes from it (Neumaier 1974): its error does not grow with the number of
+/// terms.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sum {
     rounded: f64,
@@ -52,8 +53,9 @@ pub(crate) struct SurfacePoint {
     pub length: f64,
 }
 
-/// Surface points along the edge of a traction, with the layout of the body in every span the edge crosses: the point
-/// sums over the edge then fit those over the body, which the patch test needs for equally spaced points.
+/// Surface points along the edge of a traction, with the layout of the body in every span the edge crosses:
+/// the point sums over the edge then fit those over the body, which the patch test needs for equally spaced
+/// points.
 pub(crate) fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<SurfacePoint> {
     let [from, to] = edge_ends(body, edge);
     let along = [to[0] - from[0], to[1] - from[1]];
@@ -113,7 +115,8 @@ pub enum LostTraction {
     },
 }
 
-/// What the nodal forces of a uniform traction have to add up to: the length of its edge (m) and the middle of it (m).
+/// What the nodal forces of a uniform traction have to add up to: the length of its edge (m) and the middle
+/// of it (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Balance {
     length: f64,
@@ -134,7 +137,8 @@ impl Balance {
         Self { length, middle: [0, 1].map(middle) }
     }
 
-    /// Holds `shares` of the length (m) at positions (m) to the edge. Force and moment of any uniform traction are then its own.
+    /// Holds `shares` of the length (m) at positions (m) to the edge. Force and moment of any uniform
+    /// traction are then its own.
     ///
     /// # Errors
     /// If they are not, to 1e-12.
@@ -171,8 +175,9 @@ pub struct NodalLoad {
 }
 
 impl NodalLoad {
-    /// Nodal forces of `traction` with the shape functions at the reference positions, on control points that can move: `moves` says
-    /// which have mass. Where an edge crosses a span with others, the polynomials of the nearest span without carry it.
+    /// Nodal forces of `traction` with the shape functions at the reference positions, on control points that
+    /// can move: `moves` says which have mass. Where an edge crosses a span with others, the polynomials of
+    /// the nearest span without carry it.
     ///
     /// # Errors
     /// If a part of the traction would be lost.
@@ -216,8 +221,8 @@ impl NodalLoad {
     }
 }
 
-/// Where to evaluate the shape functions of a position (m) on a straight edge, so that all of them belong to control points
-/// that can move.
+/// Where to evaluate the shape functions of a position (m) on a straight edge, so that all of them belong to
+/// control points that can move.
 fn carrier(patch: &Patch, position: [f64; 2], moves: impl Fn(usize) -> bool) -> Option<Location> {
     let carries = |span| patch.all_functions(span, &moves);
     nearest_span(&patch.spaces, position, carries).map(|span| Location { span, parameters: position })

@@ -1,7 +1,8 @@
 //! The mass matrix of the control points, `M_IJ = Σ_p m_p N_I(x_p) N_J(x_p)` (E 14), or its row sums.
 //!
-//! The lumped mass converges with order 2 whatever the degree, the consistent one with p + 1. The consistent matrix is
-//! factored once; prescribed components and control points without mass leave the system, and their acceleration is zero.
+//! The lumped mass converges with order 2 whatever the degree, the consistent one with p + 1. The consistent
+//! matrix is factored once; prescribed components and control points without mass leave the system, and their
+//! acceleration is zero.
 
 use rayon::prelude::*;
 
@@ -14,7 +15,8 @@ use crate::particles::lattice::Lattice;
 use crate::phase_field::assembly::{Constant, Integrand, add_form};
 use crate::scene;
 
-/// Row sums below this fraction of the largest give no acceleration; their control points keep their velocity.
+/// Row sums below this fraction of the largest give no acceleration; their control points keep their
+/// velocity.
 const NEGLIGIBLE: f64 = 1e-12;
 
 /// Control points that a thread takes at least.
@@ -46,10 +48,12 @@ struct Consistent {
 }
 
 impl MassMatrix {
-    /// Mass of a body of `density` (kg/m³) whose components of velocity are prescribed at the `held` control points.
+    /// Mass of a body of `density` (kg/m³) whose components of velocity are prescribed at the `held` control
+    /// points.
     ///
     /// # Errors
-    /// If the consistent matrix is singular to round-off. Validation refuses too few points per span, which make it so exactly.
+    /// If the consistent matrix is singular to round-off. Validation refuses too few points per span, which
+    /// make it so exactly.
     pub fn new(lattice: &Lattice, density: f64, mass: scene::Mass, held: [Vec<usize>; 2]) -> Result<Self, Failure> {
         let mut row_sums = lattice.integrate(|_, _, _| 1.0);
         row_sums.iter_mut().for_each(|m| *m *= density);

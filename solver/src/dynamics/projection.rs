@@ -1,6 +1,8 @@
-//! Least-squares projection of a function onto the spline space, with the consistent mass of the material points.
+//! Least-squares projection of a function onto the spline space, with the consistent mass of the material
+//! points.
 //!
-//! `Σ_J M_IJ u_J = Σ_p V_p N_I(x_p) f(x_p)`: the discrete least-squares fit at the points, of order p + 1 for every layout.
+//! `Σ_J M_IJ u_J = Σ_p V_p N_I(x_p) f(x_p)`: the discrete least-squares fit at the points, of order p + 1 for
+//! every layout.
 
 use crate::linear_algebra::cholesky::{Factor, SparseCholesky};
 use crate::linear_algebra::stencil::Stencil;
@@ -15,8 +17,8 @@ pub struct Projection<'a> {
 }
 
 impl<'a> Projection<'a> {
-    /// Factors the mass matrix; fields are zero at the `held` control points. `None` if the points do not determine a
-    /// field: fewer than p + 1 of them in some span, or spans without any.
+    /// Factors the mass matrix; fields are zero at the `held` control points. `None` if the points do not
+    /// determine a field: fewer than p + 1 of them in some span, or spans without any.
     pub fn new(lattice: &'a Lattice, held: &[usize]) -> Option<Self> {
         let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
         add_form(&mut matrix, lattice, Integrand::Mass, &Constant(1.0));

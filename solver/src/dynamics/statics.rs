@@ -1,4 +1,5 @@
-//! Elastostatics on the operators of the time step: `(K + s M) u = f` with displacements prescribed where velocities are.
+//! Elastostatics on the operators of the time step: `(K + s M) u = f` with displacements prescribed where
+//! velocities are.
 //!
 //! The stiffness is read off the body's own internal forces: columns far enough apart do not overlap, so
 //! `2 (2 p + 1)(2 q + 1)` sweeps give all of them. It serves verification; scenes are dynamic.
@@ -23,8 +24,9 @@ pub struct StaticSolver<'a> {
 }
 
 impl<'a> StaticSolver<'a> {
-    /// Factors the stiffness, plus `shift` (1/s²) times the mass, on the components that no boundary holds; `None` if it is
-    /// not positive definite: the body is not held against rigid motions by boundaries or a shift, or has too few points.
+    /// Factors the stiffness, plus `shift` (1/s²) times the mass, on the components that no boundary holds;
+    /// `None` if it is not positive definite: the body is not held against rigid motions by boundaries or a
+    /// shift, or has too few points.
     pub fn new(frame: &'a TotalFrame, shift: f64) -> Option<Self> {
         let free = frame.free_components();
         let grid = frame.lattice().grid;
@@ -67,8 +69,8 @@ impl<'a> StaticSolver<'a> {
         Some(Self { frame, shift, free, factor })
     }
 
-    /// Displacement (m) under nodal forces per unit thickness (N/m); at the components that boundaries hold it is that of
-    /// `prescribed`.
+    /// Displacement (m) under nodal forces per unit thickness (N/m); at the components that boundaries hold
+    /// it is that of `prescribed`.
     pub fn solve(&self, forces: &VectorField, prescribed: &VectorField) -> VectorField {
         let grid = self.frame.lattice().grid;
         let mut displacement = prescribed.clone();

@@ -1,8 +1,9 @@
 //! Explicit dynamics in the total frame: velocity Verlet on control points that keep their velocity.
 //!
-//! Shape functions are evaluated at the reference positions only, so displacement and velocity live on the control
-//! points for the whole run, strains follow from the displacement, and nothing is lost in transfers. With beta = 0 the
-//! strain at n + 1 does not depend on the acceleration at n + 1: one pass of the staggered scheme is converged.
+//! Shape functions are evaluated at the reference positions only, so displacement and velocity live on the
+//! control points for the whole run, strains follow from the displacement, and nothing is lost in transfers.
+//! With beta = 0 the strain at n + 1 does not depend on the acceleration at n + 1: one pass of the staggered
+//! scheme is converged.
 
 mod begin;
 mod forced;

@@ -1,22 +1,25 @@
-//! Explicit dynamics in the updated frame: points carry everything, the grid is rebuilt at every step (lumped mass).
+//! Explicit dynamics in the updated frame: points carry everything, the grid is rebuilt at every step (lumped
+//! mass).
 //!
-//! Between two whole steps n and n + 1 the shape functions are those at the positions x(n). The scheme is velocity Verlet
-//! written as one full kick on the rebuilt grid; no acceleration outlives its grid. What the points take from the grid is
-//! the transfer's choice: see [`velocity_transfer`]. Strains are small, the sum of `dt sym(grad v(n + 1/2))`, or finite: Hencky
-//! strains of the deformation gradient of each point with Kirchhoff stresses, so that the internal force is
-//! `Σ V tau grad N` with the reference volume V ([`crate::material::hencky`]). Every loss of a transfer is measured: see [`losses`].
+//! Between two whole steps n and n + 1 the shape functions are those at the positions x(n). The scheme is
+//! velocity Verlet written as one full kick on the rebuilt grid; no acceleration outlives its grid. What the
+//! points take from the grid is the transfer's choice: see [`velocity_transfer`]. Strains are small, the sum
+//! of `dt sym(grad v(n + 1/2))`, or finite: Hencky strains of the deformation gradient of each point with
+//! Kirchhoff stresses, so that the internal force is `Σ V tau grad N` with the reference volume V
+//! ([`crate::material::hencky`]). Every loss of a transfer is measured: see [`losses`].
 //!
-//! Every body is a discrete field of its own ([`field`]), with its own mass, momentum, force and phase field on the shared patch.
-//! Bodies meet through [`crate::contact`], if the scene declares it: its impulses are part of the kick.
+//! Every body is a discrete field of its own ([`field`]), with its own mass, momentum, force and phase field
+//! on the shared patch. Bodies meet through [`crate::contact`], if the scene declares it: its impulses are
+//! part of the kick.
 //!
 //! # The critical step
 //!
-//! It is shorter than the `2/ω_max` of a grid that keeps its velocity. For points at rest a mode of the grid obeys
-//! `u ← u + dt (v − dt ω² u)`, `v ← v − dt s ω² u` with FLIP, where 0 ≤ s ≤ 1 is what the way to the points and back
-//! (`M⁻¹` times the consistent mass) leaves of an increment. The mode is stable up to `ω dt = 2/√(2 − s)`: 1.46 for the
-//! shortest waves of quadratic splines, and √2 for what the points do not see. [`UpdatedFrame::critical_step`] is √2/ω_max
-//! for every transfer but MUSL, whose limit is 2/ω_max ([`velocity_transfer`]). With finite strains ω_max is that of the stiffness
-//! without the geometric part.
+//! It is shorter than the `2/ω_max` of a grid that keeps its velocity. For points at rest a mode of the grid
+//! obeys `u ← u + dt (v − dt ω² u)`, `v ← v − dt s ω² u` with FLIP, where 0 ≤ s ≤ 1 is what the way to the
+//! points and back (`M⁻¹` times the consistent mass) leaves of an increment. The mode is stable up to
+//! `ω dt = 2/√(2 − s)`: 1.46 for the shortest waves of quadratic splines, and √2 for what the points do not
+//! see. [`UpdatedFrame::critical_step`] is √2/ω_max for every transfer but MUSL, whose limit is 2/ω_max
+//! ([`velocity_transfer`]). With finite strains ω_max is that of the stiffness without the geometric part.
 
 pub(crate) mod affine;
 pub mod assembly;
@@ -93,8 +96,8 @@ impl UpdatedFrame {
     /// One time step of `dt` seconds.
     ///
     /// # Errors
-    /// If a phase field does not converge, a point leaves the patch, impulses of contact do not settle, or bodies meet that
-    /// approach each other too far in a step.
+    /// If a phase field does not converge, a point leaves the patch, impulses of contact do not settle, or
+    /// bodies meet that approach each other too far in a step.
     pub fn step(&mut self, dt: f64) -> Result<(), Failure> {
         let kick = self.coming_kick(dt);
         let Self { fields, contact, .. } = self;
@@ -122,7 +125,8 @@ impl UpdatedFrame {
         self.fields.iter().map(|field| field.critical_step()).fold(f64::INFINITY, smaller)
     }
 
-    /// Takes the critical time step (s) again if a point may have moved a quarter of the shortest span since it was last taken.
+    /// Takes the critical time step (s) again if a point may have moved a quarter of the shortest span since
+    /// it was last taken.
     pub fn retake_critical_step(&mut self) -> Option<f64> {
         if !self.fields.iter().any(DiscreteField::has_moved) {
             return None;

@@ -1,8 +1,8 @@
-//! Sparse Cholesky factorisation of a stencil matrix by faer: for the consistent mass, and the reference of the iterative
-//! solver.
+//! Sparse Cholesky factorisation of a stencil matrix by faer: for the consistent mass, and the reference of
+//! the iterative solver.
 //!
-//! The symbolic factorisation is done once and reused as long as the pattern stays. All of it on one thread: the order of sums, and
-//! with it the bits, must not depend on their number.
+//! The symbolic factorisation is done once and reused as long as the pattern stays. All of it on one thread:
+//! the order of sums, and with it the bits, must not depend on their number.
 
 use std::sync::Arc;
 
@@ -30,8 +30,8 @@ pub struct Factor {
 }
 
 impl SparseCholesky {
-    /// Factors a matrix; the unknowns at the `held` indices of a field (all of them distinct) are zero and leave the system.
-    /// `None` if it is not positive definite.
+    /// Factors a matrix; the unknowns at the `held` indices of a field (all of them distinct) are zero and
+    /// leave the system. `None` if it is not positive definite.
     pub fn factor(&mut self, matrix: &Stencil, held: &[usize]) -> Option<Factor> {
         let mut is_held = vec![false; matrix.grid.len()];
         held.iter().for_each(|&at| is_held[at] = true);
@@ -86,8 +86,8 @@ impl Factor {
     }
 }
 
-/// All structural entries on and below the diagonal, control points numbered row by row; those of held unknowns are zero
-/// but for a one on the diagonal.
+/// All structural entries on and below the diagonal, control points numbered row by row; those of held
+/// unknowns are zero but for a one on the diagonal.
 fn lower_triangle(matrix: &Stencil, held: &[bool]) -> SparseColMat<usize, f64> {
     let grid = matrix.grid;
     let n = grid.rows * grid.columns;

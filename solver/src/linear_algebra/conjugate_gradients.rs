@@ -1,10 +1,11 @@
 //! Preconditioned conjugate gradients on a stencil matrix, stopped by the energy norm of the error.
 //!
-//! Conjugate gradients lower the error `e = A⁻¹ b − x` in its energy norm, `‖e‖² = eᵀ A e`, at every iteration, by exactly
-//! `α r·z` with the step length α, the residual r and the preconditioned residual z (Hestenes and Stiefel 1952; Strakoš
-//! and Tichý 2002). The decreases that are still to come are the square of the error; they are estimated from the last
-//! two, as a geometric series, and never taken for less than the last. This costs nothing, and unlike the norm of the
-//! residual it does not depend on how finely or how widely a mesh is cut.
+//! Conjugate gradients lower the error `e = A⁻¹ b − x` in its energy norm, `‖e‖² = eᵀ A e`, at every
+//! iteration, by exactly `α r·z` with the step length α, the residual r and the preconditioned residual z
+//! (Hestenes and Stiefel 1952; Strakoš and Tichý 2002). The decreases that are still to come are the square
+//! of the error; they are estimated from the last two, as a geometric series, and never taken for less than
+//! the last. This costs nothing, and unlike the norm of the residual it does not depend on how finely or how
+//! widely a mesh is cut.
 
 use rayon::prelude::*;
 use thiserror::Error;
@@ -61,8 +62,8 @@ impl ConjugateGradients {
         Self { residual: zeros(), preconditioned: zeros(), direction: zeros(), image: zeros(), chunk }
     }
 
-    /// Improves `x` until its error in the energy norm is about `tolerance`; a start whose preconditioned residual says so is kept,
-    /// if the preconditioner can judge it.
+    /// Improves `x` until its error in the energy norm is about `tolerance`; a start whose preconditioned
+    /// residual says so is kept, if the preconditioner can judge it.
     ///
     /// # Errors
     /// If `limit` iterations do not suffice, or numbers or matrix are not what they must be.

@@ -1,12 +1,14 @@
 //! Layout of fields on the control points: rows of `stride` numbers, x fastest.
 //!
-//! Each row begins and ends with room for reading [`LANES`] neighbours past the control points; the room stays zero.
+//! Each row begins and ends with room for reading [`LANES`] neighbours past the control points; the room
+//! stays zero.
 
 use super::lane::LANES;
 
 /// Room before the first control point of a row.
 const LEAD: usize = LANES;
-/// Least room behind the last one: the neighbours that functions of the highest degree reach, and those read with them.
+/// Least room behind the last one: the neighbours that functions of the highest degree reach, and those read
+/// with them.
 const MARGIN: usize = 4 + LANES;
 
 /// A field of vectors on the control points, by component.

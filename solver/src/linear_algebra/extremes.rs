@@ -1,4 +1,5 @@
-//! Extremes that do not lose what is not a number, as `f64::max` and `f64::min` do: a gap must not pass for agreement.
+//! Extremes that do not lose what is not a number, as `f64::max` and `f64::min` do: a gap must not pass for
+//! agreement.
 //!
 //! They are what sums over points and checks fold with; a test of the workspace finds folds that lose it
 //! (`solver/tests/integration/folds.rs`).

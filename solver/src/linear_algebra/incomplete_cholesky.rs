@@ -1,10 +1,10 @@
 //! Incomplete Cholesky factorisation `A ≈ L D Lᵀ` without fill, in the stencil of the matrix.
 //!
-//! The factor keeps couplings within blocks of rows only, so blocks are factored and solved independently (block Jacobi
-//! between them). Blocks come from the number of rows, never from the number of threads.
+//! The factor keeps couplings within blocks of rows only, so blocks are factored and solved independently
+//! (block Jacobi between them). Blocks come from the number of rows, never from the number of threads.
 //!
-//! It is kept in single precision: what it is applied with takes as long as reading it, it stays symmetric and positive definite,
-//! and conjugate gradients work in double precision around it.
+//! It is kept in single precision: what it is applied with takes as long as reading it, it stays symmetric
+//! and positive definite, and conjugate gradients work in double precision around it.
 
 use rayon::prelude::*;
 
@@ -122,8 +122,8 @@ fn updates(offsets: &[Offset], degree: [usize; 2]) -> Vec<Update> {
     updates
 }
 
-/// Factors the rows of `matrix`, their diagonal times `1 + shift`, into `block`; false as soon as a pivot falls to nothing beside
-/// the diagonal: dropped couplings can leave nothing of it (Manteuffel 1980).
+/// Factors the rows of `matrix`, their diagonal times `1 + shift`, into `block`; false as soon as a pivot
+/// falls to nothing beside the diagonal: dropped couplings can leave nothing of it (Manteuffel 1980).
 fn factor_block(
     grid: ControlGrid,
     offsets: &[Offset],

@@ -1,9 +1,9 @@
 //! Eight neighbouring spans side by side: the vector type of the hot loops, and the one place where wider
 //! instructions are switched on.
 //!
-//! Every loop over [`Lane`] is plain arithmetic on eight numbers, which the compiler turns into vector instructions of
-//! whatever width the surrounding function may use. [`dispatch`] enters a function compiled for AVX2 and FMA where the
-//! processor has them, so a default build needs no compiler flags.
+//! Every loop over [`Lane`] is plain arithmetic on eight numbers, which the compiler turns into vector
+//! instructions of whatever width the surrounding function may use. [`dispatch`] enters a function compiled
+//! for AVX2 and FMA where the processor has them, so a default build needs no compiler flags.
 
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Sub};
@@ -88,8 +88,9 @@ impl Lane {
         self.add_product::<FMA>(a, Self::splat(b))
     }
 
-    /// The larger one of each lane and its floor. A lane that is not a number stays one, which costs nothing: the vector
-    /// instruction takes its second operand unless the first is larger. A floor that is not a number is lost.
+    /// The larger one of each lane and its floor. A lane that is not a number stays one, which costs nothing:
+    /// the vector instruction takes its second operand unless the first is larger. A floor that is not a
+    /// number is lost.
     #[inline(always)]
     pub fn at_least(self, floor: Self) -> Self {
         floor.zip(self, |floor, value| if floor > value { floor } else { value })
@@ -159,8 +160,8 @@ impl AddAssign for Lane {
     }
 }
 
-/// An array of values by index, as part of its caller: `array::map` may stay a function of its own, which is compiled without the
-/// vector instructions of a caller within [`dispatch`].
+/// An array of values by index, as part of its caller: `array::map` may stay a function of its own, which is
+/// compiled without the vector instructions of a caller within [`dispatch`].
 macro_rules! each {
     ($index:ident in [$($number:literal),+] => $value:expr) => {
         [$({ let $index: usize = $number; $value }),+]
@@ -172,7 +173,8 @@ pub(crate) use each;
 pub trait Vectorised {
     /// Result.
     type Output;
-    /// The work; implementations are `#[inline(always)]` so that they take on the instructions of their caller.
+    /// The work; implementations are `#[inline(always)]` so that they take on the instructions of their
+    /// caller.
     fn run<const FMA: bool>(self) -> Self::Output;
 }
 

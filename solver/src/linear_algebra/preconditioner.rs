@@ -1,10 +1,11 @@
-//! What preconditions the phase-field solve: an incomplete factorisation, made anew when it has grown stale, or a complete one
-//! where the incomplete one is too poor.
+//! What preconditions the phase-field solve: an incomplete factorisation, made anew when it has grown stale,
+//! or a complete one where the incomplete one is too poor.
 //!
-//! Couplings that an incomplete factor drops matter little as long as every span is full of points. In material that is broken and
-//! drawn out, spans hold a point or two with a reaction 1e5 times that of intact material, and conjugate gradients would
-//! need hundreds of iterations. A complete factor then costs less, although it is made anew for every solve: combinations of control
-//! values that vanish at the points of one step do not at those of the next, and an older factor takes them for soft.
+//! Couplings that an incomplete factor drops matter little as long as every span is full of points. In
+//! material that is broken and drawn out, spans hold a point or two with a reaction 1e5 times that of intact
+//! material, and conjugate gradients would need hundreds of iterations. A complete factor then costs less,
+//! although it is made anew for every solve: combinations of control values that vanish at the points of one
+//! step do not at those of the next, and an older factor takes them for soft.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,10 +16,12 @@ use crate::linear_algebra::stencil::Stencil;
 
 /// A factor is renewed once a solve needs this many more iterations than the one after its renewal.
 const EXTRA_ITERATIONS: usize = 3;
-/// More iterations than this with a fresh incomplete factor call for a complete one: five times what a cracked plate needs.
+/// More iterations than this with a fresh incomplete factor call for a complete one: five times what a
+/// cracked plate needs.
 pub(crate) const TOO_MANY: usize = 80;
-/// Solves with complete factors before the incomplete one is tried again; twice as many each time it is still too poor, up to the
-/// last. Looking for it so costs at most five iterations a solve, and in the end a sixth of one.
+/// Solves with complete factors before the incomplete one is tried again; twice as many each time it is still
+/// too poor, up to the last. Looking for it so costs at most five iterations a solve, and in the end a sixth
+/// of one.
 const FIRST_PAUSE: usize = 16;
 const LONGEST_PAUSE: usize = 512;
 
@@ -85,7 +88,8 @@ impl Preconditioner {
         self.is_fresh = true;
     }
 
-    /// Makes ready for a solve: a complete factor is made anew, unless its time is over and the incomplete one is tried again.
+    /// Makes ready for a solve: a complete factor is made anew, unless its time is over and the incomplete
+    /// one is tried again.
     pub fn prepare(&mut self, matrix: &Stencil) {
         if !self.is_complete() {
             return;
@@ -98,7 +102,8 @@ impl Preconditioner {
         }
     }
 
-    /// Whether `rᵀ M⁻¹ r` says how large the error of a start is: a factor with a raised diagonal would make it out smaller.
+    /// Whether `rᵀ M⁻¹ r` says how large the error of a start is: a factor with a raised diagonal would make
+    /// it out smaller.
     pub fn judges_starts(&self) -> bool {
         match &self.factor {
             PreconditionerKind::Incomplete(factor) => !factor.is_raised(),
@@ -130,8 +135,8 @@ impl Preconditioner {
         }
     }
 
-    /// A better factor for the solve under way: a fresh one, or else a complete one for this solve and some to come; false if
-    /// there is none to be had.
+    /// A better factor for the solve under way: a fresh one, or else a complete one for this solve and some
+    /// to come; false if there is none to be had.
     pub fn improve(&mut self, matrix: &Stencil) -> bool {
         self.forget();
         if !self.is_fresh {
@@ -156,7 +161,8 @@ impl Preconditioner {
         }
     }
 
-    /// Stores or takes up what steps change. A complete factor is made anew for every solve, so that there is one is all that counts.
+    /// Stores or takes up what steps change. A complete factor is made anew for every solve, so that there is
+    /// one is all that counts.
     ///
     /// # Errors
     /// Bytes of another scene.

@@ -1,8 +1,9 @@
 //! Symmetric matrices on the control points of a patch, as half a stencil per control point.
 //!
-//! Basis functions of a tensor-product patch overlap only within `p` columns and `q` rows, so a symmetric matrix has the
-//! couplings of each control point with itself and the ones after it: `(2 p + 1) q + p + 1` numbers, kept row of
-//! control points by row of control points. Applying it reads every coefficient once from memory.
+//! Basis functions of a tensor-product patch overlap only within `p` columns and `q` rows, so a symmetric
+//! matrix has the couplings of each control point with itself and the ones after it: `(2 p + 1) q + p + 1`
+//! numbers, kept row of control points by row of control points. Applying it reads every coefficient once
+//! from memory.
 
 use rayon::prelude::*;
 
@@ -61,7 +62,8 @@ impl Stencil {
         self.offsets.len() * self.grid.stride
     }
 
-    /// Coefficients of coupling `offset` along a row of control points, with the room of a field row around them.
+    /// Coefficients of coupling `offset` along a row of control points, with the room of a field row around
+    /// them.
     #[inline(always)]
     pub fn row(&self, row: usize, offset: usize) -> &[f64] {
         let start = row * self.row_length() + offset * self.grid.stride;

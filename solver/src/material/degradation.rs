@@ -35,8 +35,8 @@ impl FractureModel {
         }
     }
 
-    /// Degradation `g(c) = (1 − k) c² + k` (E 7). It is taken as it stands for the small negative c that splines
-    /// produce beside a jump of the history field: clipping would break the energy balance.
+    /// Degradation `g(c) = (1 − k) c² + k` (E 7). It is taken as it stands for the small negative c that
+    /// splines produce beside a jump of the history field: clipping would break the energy balance.
     #[inline(always)]
     pub fn degradation(&self, phase: Lane) -> Lane {
         let k = self.residual_stiffness;

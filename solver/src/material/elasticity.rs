@@ -1,7 +1,8 @@
 //! Isotropic elasticity in the plane, and wave speeds.
 //!
-//! Plane strain uses Lamé's first parameter as it is, plane stress `lam* = 2 lam mu/(lam + 2 mu)` on the in-plane
-//! tensor, which makes `lam*/2 (tr e)² + mu e:e` the exact energy of the intact material in either state.
+//! Plane strain uses Lamé's first parameter as it is, plane stress `lam* = 2 lam mu/(lam + 2 mu)` on the
+//! in-plane tensor, which makes `lam*/2 (tr e)² + mu e:e` the exact energy of the intact material in either
+//! state.
 
 use crate::linear_algebra::lane::Lane;
 use crate::scene::{Material, Plane};

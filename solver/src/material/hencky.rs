@@ -1,23 +1,24 @@
 //! Hencky strain `e = ½ ln(F Fᵀ)` of plane deformations, in closed form.
 //!
-//! The deformation gradient is kept as the displacement gradient `H = F − I`, so that small strains keep their digits.
-//! With `c = F Fᵀ − I = H + Hᵀ + H Hᵀ`, its mean m and the root r of the squared half difference and the shear, the
-//! eigenvalues of `F Fᵀ` are `1 + m ± r`, and
+//! The deformation gradient is kept as the displacement gradient `H = F − I`, so that small strains keep
+//! their digits. With `c = F Fᵀ − I = H + Hᵀ + H Hᵀ`, its mean m and the root r of the squared half
+//! difference and the shear, the eigenvalues of `F Fᵀ` are `1 + m ± r`, and
 //!
 //! ```text
 //! e = ½ ln(det F) I + β (c − m I),    β = atanh(q)/q / (2 (1 + m)),    q = r/(1 + m)
 //! ln(det F) = log1p(tr H + det H)
 //! ```
 //!
-//! Nothing is divided by the difference of the eigenvalues, so equal ones need no special care, and no logarithm is taken
-//! of a number that lost its digits to the 1 it stands beside. The stress that goes with it is Kirchhoff's,
-//! `tau = dpsi/de`: for an isotropic energy it has the principal directions of e, and `tau : d` is the power per unit of
-//! reference volume for the rate of deformation d.
+//! Nothing is divided by the difference of the eigenvalues, so equal ones need no special care, and no
+//! logarithm is taken of a number that lost its digits to the 1 it stands beside. The stress that goes with
+//! it is Kirchhoff's, `tau = dpsi/de`: for an isotropic energy it has the principal directions of e, and
+//! `tau : d` is the power per unit of reference volume for the rate of deformation d.
 
 use crate::linear_algebra::lane::each;
 
-/// Ratio q above which β comes from the larger eigenvalue and the determinant: q itself rounds to 1 and its atanh to infinity
-/// where one principal stretch is a hundred million times the other, as in broken material that is drawn out.
+/// Ratio q above which β comes from the larger eigenvalue and the determinant: q itself rounds to 1 and its
+/// atanh to infinity where one principal stretch is a hundred million times the other, as in broken material
+/// that is drawn out.
 const STRETCHED: f64 = 0.9;
 
 /// Tensor of the plane, `[i][j]` with i the component and j the direction of the derivative.
@@ -26,7 +27,8 @@ pub(crate) type Gradient = [[f64; 2]; 2];
 /// Below this ratio `atanh(q)/q` is its series, whose first missing term is then 1e-18.
 const SERIES: f64 = 0.02;
 
-/// Displacement gradient after one more step: `F ← (I + A) F` with the gradient `A = dt grad v` at the present positions.
+/// Displacement gradient after one more step: `F ← (I + A) F` with the gradient `A = dt grad v` at the
+/// present positions.
 #[inline(always)]
 pub fn advance(displacement: &Gradient, step: &Gradient) -> Gradient {
     let (h, a) = (displacement, step);
@@ -35,7 +37,8 @@ pub fn advance(displacement: &Gradient, step: &Gradient) -> Gradient {
         each!(j in [0, 1] => h[i][j] + (a[i][j] + (left[i][0] * right[0][j] + left[i][1] * right[1][j]))))
 }
 
-/// Hencky strain `[xx, yy, xy]` of a displacement gradient; not finite if the deformation has turned inside out.
+/// Hencky strain `[xx, yy, xy]` of a displacement gradient; not finite if the deformation has turned inside
+/// out.
 #[inline(always)]
 pub fn hencky_strain(displacement: &Gradient) -> [f64; 3] {
     let [[xx, xy], [yx, yy]] = *displacement;
@@ -56,10 +59,11 @@ pub fn hencky_strain(displacement: &Gradient) -> [f64; 3] {
     fault!("hencky-without-half", strain => strain.map(|e| 2.0 * e))
 }
 
-/// `A (I + A)⁻¹`: the same motion as `A = dt grad v`, differentiated with respect to the positions it ends at.
+/// `A (I + A)⁻¹`: the same motion as `A = dt grad v`, differentiated with respect to the positions it ends
+/// at.
 ///
-/// Along the step, `F(s) = (I + s A) F`, the velocity gradient is A/dt at its start and this over dt at its end. With both,
-/// the trapezoidal sum of the stress work is of second order in dt.
+/// Along the step, `F(s) = (I + s A) F`, the velocity gradient is A/dt at its start and this over dt at its
+/// end. With both, the trapezoidal sum of the stress work is of second order in dt.
 #[inline(always)]
 pub(crate) fn gradient_at_end(step: &Gradient) -> Gradient {
     let [[xx, xy], [yx, yy]] = *step;

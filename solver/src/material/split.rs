@@ -1,10 +1,11 @@
 //! Spectral split of the elastic energy (E 4–7), without eigenvectors.
 //!
-//! With `m = (exx + eyy)/2` and `r = hypot((exx − eyy)/2, exy)` the principal strains are `m ± r`, and the tensile part
-//! is `e+ = a (e − b I)` with (a, b) = (1, 0) where both are tensile, (0, ·) where both are compressive and
-//! `(e1/(2 r), e2)` between, where `2 r ≥ max(|e1|, |e2|)`: nothing is ever divided by a small number, so equal and nearly
-//! equal principal strains need no special care. The hypotenuse is scaled, so squares do not underflow. A strain that is not a
-//! number has energies and stresses that are none: the energy of a body tells that one of its points has lost its numbers.
+//! With `m = (exx + eyy)/2` and `r = hypot((exx − eyy)/2, exy)` the principal strains are `m ± r`, and the
+//! tensile part is `e+ = a (e − b I)` with (a, b) = (1, 0) where both are tensile, (0, ·) where both are
+//! compressive and `(e1/(2 r), e2)` between, where `2 r ≥ max(|e1|, |e2|)`: nothing is ever divided by a
+//! small number, so equal and nearly equal principal strains need no special care. The hypotenuse is scaled,
+//! so squares do not underflow. A strain that is not a number has energies and stresses that are none: the
+//! energy of a body tells that one of its points has lost its numbers.
 
 use crate::linear_algebra::lane::Lane;
 use crate::material::elasticity::ElasticModuli;
@@ -35,7 +36,8 @@ impl SplitState {
     /// Energy density (J/m³) and stress `[xx, yy, xy]` (Pa) of a material degraded by g (E 6).
     #[inline(always)]
     pub fn degraded<const FMA: bool>(&self, g: Lane) -> (Lane, [Lane; 3]) {
-        // no array::map: it is compiled on its own, without FMA, where each product would be a call of the library
+        // no array::map: it is compiled on its own, without FMA, where each product would be a call of the
+        // library
         let mut stress = fault!("compression-degraded", self.stress_minus => self.stress_minus.map(|s| s * g));
         for (stress, plus) in stress.iter_mut().zip(self.stress_plus) {
             *stress = stress.add_product::<FMA>(g, plus);

@@ -1,5 +1,5 @@
-//! What a point carries, and what a run looks like where it broke down: the points whose numbers are worst, and the
-//! extremes.
+//! What a point carries, and what a run looks like where it broke down: the points whose numbers are worst,
+//! and the extremes.
 //!
 //! Nothing of this is computed while a run is well, unless someone asks for the points.
 
@@ -8,12 +8,14 @@ use crate::linear_algebra::extremes::larger;
 /// Points that are kept as the worst ones.
 const WORST: usize = 8;
 
-/// What a point carries. After a step that failed, strain and history energy may be those of the new step already.
+/// What a point carries. After a step that failed, strain and history energy may be those of the new step
+/// already.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointState {
     /// Number of the body among those that deform, in the order of the scene.
     pub body: usize,
-    /// Number of the point in its body; in the updated frame points are numbered anew whenever one changes spans.
+    /// Number of the point in its body; in the updated frame points are numbered anew whenever one changes
+    /// spans.
     pub point: usize,
     /// Position, m; that at t = 0 in the total frame.
     pub position: [f64; 2],
@@ -65,7 +67,8 @@ pub struct Inspection {
     pub points: usize,
     /// Points with a number that is not finite.
     pub not_finite: usize,
-    /// The worst points, the worst first: those with numbers that are not finite, then those of largest strain.
+    /// The worst points, the worst first: those with numbers that are not finite, then those of largest
+    /// strain.
     pub worst: Vec<PointState>,
     /// Largest magnitude of a strain component.
     pub largest_strain: f64,

@@ -22,7 +22,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Picture at `time` (s) of a phase field, if there is one, and of the largest principal stress (Pa), both on a raster.
+    /// Picture at `time` (s) of a phase field, if there is one, and of the largest principal stress (Pa),
+    /// both on a raster.
     pub fn new(raster: Raster, time: f64, (phase, stress): (Option<Vec<f64>>, Vec<f64>)) -> Self {
         let Raster { pixels, origin, pixel } = raster;
         Self { time, pixels, origin, pixel, phase, stress }

@@ -46,7 +46,8 @@ impl Raster {
         })
     }
 
-    /// Calls `f` with index and overlap (m²) of every pixel that meets a rectangle, given by its ends in x and y.
+    /// Calls `f` with index and overlap (m²) of every pixel that meets a rectangle, given by its ends in x
+    /// and y.
     pub(crate) fn for_each_overlap(&self, ends: [[f64; 2]; 2], mut f: impl FnMut(usize, f64)) {
         let near = |d: usize| {
             let at = |x: f64| (((x - self.origin[d]) / self.pixel[d]).max(0.0) as usize).min(self.pixels[d] - 1);
@@ -70,7 +71,8 @@ pub(crate) fn places_of_pixels(patch: &Patch, raster: &Raster) -> Vec<Option<Loc
     let Some(geometry) = &patch.geometry else {
         return (0..count).map(|index| patch.locate(raster.center(index))).collect();
     };
-    // Samples of the patch tell which pixels it meets and where to search: a search from nowhere would be slow.
+    // Samples of the patch tell which pixels it meets and where to search: a search from nowhere would be
+    // slow.
     let mut nearest = vec![(f64::INFINITY, [0.0; 2]); count];
     for (j, t) in patch.spaces[1].spans().iter().enumerate() {
         for (i, s) in patch.spaces[0].spans().iter().enumerate() {

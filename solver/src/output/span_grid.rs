@@ -1,4 +1,5 @@
-//! The spans of the mesh that hold material, with the fields of the control points at their corners: for looking at a run.
+//! The spans of the mesh that hold material, with the fields of the control points at their corners: for
+//! looking at a run.
 
 use crate::splines::nurbs::locate::Location;
 use crate::splines::patch::{Patch, PointFunctions};

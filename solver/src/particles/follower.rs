@@ -1,8 +1,9 @@
 //! Positions on the boundary of a body that move with it.
 //!
-//! Such a position may stand in a span that no material point has reached. It is evaluated with the polynomials of the
-//! nearest span with material, continued beyond its end: they still sum to one and reproduce positions. A load takes the
-//! nearest span whose control points all answer to a force, so no force and no torque is lost.
+//! Such a position may stand in a span that no material point has reached. It is evaluated with the
+//! polynomials of the nearest span with material, continued beyond its end: they still sum to one and
+//! reproduce positions. A load takes the nearest span whose control points all answer to a force, so no force
+//! and no torque is lost.
 
 use super::points::{Cells, OutsidePatch};
 use crate::linear_algebra::control_grid::ControlGrid;
@@ -26,8 +27,8 @@ impl Follower {
         Self { position, span: [0, 0] }
     }
 
-    /// A position (m) with the polynomials of the span it is in or nearest to; `None` if there is no material within one span
-    /// of it.
+    /// A position (m) with the polynomials of the span it is in or nearest to; `None` if there is no material
+    /// within one span of it.
     pub(crate) fn nearest(position: [f64; 2], patch: &Patch, cells: &Cells) -> Option<Self> {
         let span = nearest_span(&patch.spaces, position, |span| cells.is_occupied(span))?;
         Some(Self { position, span })
@@ -61,7 +62,8 @@ impl Follower {
         }
     }
 
-    /// Shape functions in x at the position with the control column of the first, and those in y with the control row.
+    /// Shape functions in x at the position with the control column of the first, and those in y with the
+    /// control row.
     #[inline]
     pub(crate) fn shape_functions(&self, patch: &Patch) -> [(usize, ShapeFunctions); 2] {
         let along = |d: usize| {

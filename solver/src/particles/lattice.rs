@@ -1,12 +1,13 @@
 //! Material points of a body as a lattice of span tiles.
 //!
-//! Every span of the body holds the same pattern of points, so positions, shape functions and weights factor into one
-//! table per column of spans and one per row: nothing is stored per point but what the physics changes. Spans are
-//! handled eight at a time, one per lane of a [`Lane`] (a *tile*), and rows of spans in *strips* of fixed height. Sums
-//! are formed strip by strip, so they do not depend on the number of threads.
+//! Every span of the body holds the same pattern of points, so positions, shape functions and weights factor
+//! into one table per column of spans and one per row: nothing is stored per point but what the physics
+//! changes. Spans are handled eight at a time, one per lane of a [`Lane`] (a *tile*), and rows of spans in
+//! *strips* of fixed height. Sums are formed strip by strip, so they do not depend on the number of threads.
 //!
-//! A rectangle cuts the spans at its edges exactly; of other shapes the points of a span that lie inside are kept. On a
-//! patch with a geometry the lattice is one of parameters, in the unit of the knots, and has a [`Mapping`].
+//! A rectangle cuts the spans at its edges exactly; of other shapes the points of a span that lie inside are
+//! kept. On a patch with a geometry the lattice is one of parameters, in the unit of the knots, and has a
+//! [`Mapping`].
 
 mod integrate;
 mod map;
@@ -26,7 +27,8 @@ use crate::splines::spline::SplineSpace;
 use tables::{Along, tiles};
 pub(crate) use tables::{Row, Tile};
 
-/// Rows of spans in a strip; at least the highest degree, so that only neighbouring strips share control points.
+/// Rows of spans in a strip; at least the highest degree, so that only neighbouring strips share control
+/// points.
 const STRIP_ROWS: usize = 8;
 
 /// Material points of one body, in reference positions.
@@ -46,8 +48,8 @@ pub struct Lattice {
     pub rows: Vec<Row>,
     /// What the geometry of the patch adds; absent over a rectangle.
     pub(crate) mapping: Option<Box<Mapping>>,
-    /// What the product of the weights of both directions is multiplied by, per batch: 0 where there is no point, and the
-    /// determinant of the Jacobian where there is a geometry; absent if it is 1 everywhere.
+    /// What the product of the weights of both directions is multiplied by, per batch: 0 where there is no
+    /// point, and the determinant of the Jacobian where there is a geometry; absent if it is 1 everywhere.
     factor: Option<Vec<Lane>>,
 }
 
@@ -71,8 +73,8 @@ pub(crate) struct AxisPoint {
     pub span: f64,
 }
 
-/// Coordinates of the points of `body` along both directions of a patch with these spaces; parameters if they are `mapped`.
-/// Unless [`fills_lattice`], the points are those of all pairs that lie in the shape.
+/// Coordinates of the points of `body` along both directions of a patch with these spaces; parameters if they
+/// are `mapped`. Unless [`fills_lattice`], the points are those of all pairs that lie in the shape.
 pub(crate) fn point_axes(body: &Body, spaces: &[SplineSpace; 2], mapped: bool) -> [Vec<AxisPoint>; 2] {
     let axis = |along: Along<'_>| {
         let mut points = Vec::new();
@@ -90,7 +92,8 @@ pub(crate) fn fills_lattice(mapped: bool, shape: &Shape) -> bool {
     *shape == Shape::Patch || (!mapped && matches!(shape, Shape::Rectangle { .. }))
 }
 
-/// The box around a body, with its rule, along both directions. A rectangle cuts spans, unless the lattice is one of parameters.
+/// The box around a body, with its rule, along both directions. A rectangle cuts spans, unless the lattice is
+/// one of parameters.
 fn directions<'a>(body: &Body, spaces: &'a [SplineSpace; 2], mapped: bool) -> [Along<'a>; 2] {
     let shape = if mapped { &Shape::Patch } else { &body.shape };
     let (low, high) = shape.bounding_box();
@@ -209,7 +212,8 @@ impl Lattice {
         self.mapping.as_ref().map_or(Lane::splat(1.0), |mapping| Lane::load(&mapping.weights, at))
     }
 
-    /// Shape functions of a batch; those of lane l belong to control points l columns further than those of lane 0.
+    /// Shape functions of a batch; those of lane l belong to control points l columns further than those of
+    /// lane 0.
     pub fn shape_functions(&self, batch: usize) -> BatchFunctions {
         let (row_index, tile_index, b, a) = self.unbatch(batch);
         let (row, tile) = (&self.rows[row_index], &self.tiles[tile_index]);

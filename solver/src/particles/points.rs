@@ -1,8 +1,8 @@
 //! Material points that move, and their order: sorted by the span they are in.
 //!
-//! Points of one span follow each other in memory (a [`Cell`]), and so do the cells of four neighbouring rows of spans
-//! (a [`Strip`]). Sums run over strips in a fixed order, whatever the number of threads. Sorting is stable and only
-//! needed once some point has left its span.
+//! Points of one span follow each other in memory (a [`Cell`]), and so do the cells of four neighbouring rows
+//! of spans (a [`Strip`]). Sums run over strips in a fixed order, whatever the number of threads. Sorting is
+//! stable and only needed once some point has left its span.
 
 use std::ops::Range;
 
@@ -121,7 +121,8 @@ impl Cells {
         Ok(())
     }
 
-    /// Brings what belongs to the points, one item each, from their order before the last [`Self::sort`] into that after it.
+    /// Brings what belongs to the points, one item each, from their order before the last [`Self::sort`] into
+    /// that after it.
     pub(crate) fn reorder<T: Copy>(&self, items: &mut [T]) {
         let unsorted = items.to_vec();
         let mut next = self.starts.clone();

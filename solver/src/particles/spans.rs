@@ -1,5 +1,5 @@
-//! Lengths of the spans of a mesh, m: differences of knots over a rectangle; on a patch with a geometry, whose knots are
-//! parameters, the chords between neighbouring knots through the middles of the spans.
+//! Lengths of the spans of a mesh, m: differences of knots over a rectangle; on a patch with a geometry,
+//! whose knots are parameters, the chords between neighbouring knots through the middles of the spans.
 
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::scene::{Mesh, Shape};
@@ -64,7 +64,8 @@ fn chords(patch: &NurbsPatch) -> impl Iterator<Item = [f64; 2]> {
 mod tests {
     use super::*;
 
-    /// A ring of 4 by 4 spans between the radii 1 and 2 m: chords of a sixteenth of a turn at the largest middle radius.
+    /// A ring of 4 by 4 spans between the radii 1 and 2 m: chords of a sixteenth of a turn at the largest
+    /// middle radius.
     #[test]
     fn spans_of_a_patch_are_measured_in_metres() {
         let ring = NurbsPatch::quarter_annulus(1.0, 2.0).unwrap().elevate(0).unwrap().subdivide(4).unwrap();

@@ -1,10 +1,12 @@
-//! Matrices `Σ_p f_p N_I N_J` and `Σ_p f_p grad N_I · grad N_J` from the material points of a lattice (E 19–24).
+//! Matrices `Σ_p f_p N_I N_J` and `Σ_p f_p grad N_I · grad N_J` from the material points of a lattice (E
+//! 19–24).
 //!
-//! Over a rectangle by sum factorisation: points of a span form a grid, so the sum over them is done first along x, for
-//! every pair of functions in x, then along y. On a patch with a geometry pair by pair (`assembly/mapped.rs`).
+//! Over a rectangle by sum factorisation: points of a span form a grid, so the sum over them is done first
+//! along x, for every pair of functions in x, then along y. On a patch with a geometry pair by pair
+//! (`assembly/mapped.rs`).
 //!
-//! Strips are assembled in two colours: strips of one colour share no control row, and the order in which contributions
-//! meet does not depend on the number of threads.
+//! Strips are assembled in two colours: strips of one colour share no control row, and the order in which
+//! contributions meet does not depend on the number of threads.
 
 mod form;
 mod mapped;
@@ -45,8 +47,8 @@ pub fn add_form<C: PointCoefficients>(matrix: &mut Stencil, lattice: &Lattice, f
     }
 }
 
-/// Calls `assemble` with every strip, its first control row, and the part of the matrix it contributes to; strips of one
-/// colour in parallel.
+/// Calls `assemble` with every strip, its first control row, and the part of the matrix it contributes to;
+/// strips of one colour in parallel.
 fn for_each_strip(matrix: &mut Stencil, lattice: &Lattice, assemble: impl Fn(usize, usize, &mut [f64]) + Sync) {
     let row_length = matrix.row_length();
     for colour in 0..2 {

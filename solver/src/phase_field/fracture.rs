@@ -1,5 +1,5 @@
-//! Fracture of one body in the total frame: history energy, phase field, and what is measured of them; the seed of a crack in
-//! either frame.
+//! Fracture of one body in the total frame: history energy, phase field, and what is measured of them; the
+//! seed of a crack in either frame.
 
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::extremes::{larger, smaller};
@@ -85,8 +85,8 @@ impl LatticeFracture {
         Ok(())
     }
 
-    /// Degraded stress at the points and its nodal forces; keeps c and `c (H − psi+)` for the history work of the next
-    /// step.
+    /// Degraded stress at the points and its nodal forces; keeps c and `c (H − psi+)` for the history work of
+    /// the next step.
     pub fn degraded_forces(
         &mut self,
         lattice: &Lattice,
@@ -132,8 +132,8 @@ impl LatticeFracture {
         (energy, least)
     }
 
-    /// Point of largest x with c below [`BROKEN`] at heights of at least `lowest` (m), by linear interpolation between
-    /// neighbouring points along a row.
+    /// Point of largest x with c below [`BROKEN`] at heights of at least `lowest` (m), by linear
+    /// interpolation between neighbouring points along a row.
     pub fn crack_tip(&self, lattice: &Lattice, lowest: f64) -> Option<[f64; 2]> {
         let mut tip: Option<[f64; 2]> = None;
         for row in 0..lattice.rows.len() {
@@ -191,8 +191,9 @@ pub fn half_width(crack: &Crack, length_scale: f64) -> f64 {
     crack.half_width.unwrap_or(0.5 * length_scale)
 }
 
-/// Height from which the crack tip is looked for: the middle of the body, or its foot if the body is the upper half of a
-/// symmetric one: it stands on the bottom side, a roller holds that side, and a crack lies along it.
+/// Height from which the crack tip is looked for: the middle of the body, or its foot if the body is the
+/// upper half of a symmetric one: it stands on the bottom side, a roller holds that side, and a crack lies
+/// along it.
 pub(crate) fn lowest_tip(scene: &Scene, body: &Body) -> f64 {
     let (low, high) = scene.mesh.extent(&body.shape);
     let at_foot = |y: f64| (y - low[1]).abs() <= 1e-9 * (high[1] - low[1]);

@@ -38,8 +38,8 @@ impl Method {
         }
     }
 
-    /// Improves `x` until its error in the energy norm is about `tolerance`. An incomplete factor is granted `patience`
-    /// iterations before a better one takes over where it left off.
+    /// Improves `x` until its error in the energy norm is about `tolerance`. An incomplete factor is granted
+    /// `patience` iterations before a better one takes over where it left off.
     pub(crate) fn solve(
         &mut self,
         matrix: &Stencil,

@@ -4,14 +4,14 @@ use crate::linear_algebra::extremes::{larger, smaller};
 use crate::scene::{Shape, Side};
 
 impl Shape {
-    /// Whether `position` (m) lies in the shape; what bounds it belongs to it, except for the edges of a polygon, which
-    /// belong to one side by the even–odd rule, and for what a difference takes away.
+    /// Whether `position` (m) lies in the shape; what bounds it belongs to it, except for the edges of a
+    /// polygon, which belong to one side by the even–odd rule, and for what a difference takes away.
     pub fn contains(&self, position: [f64; 2]) -> bool {
         self.contains_within(position, 0.0)
     }
 
-    /// Whether `position` (m) lies in the shape grown by `margin` (m); a negative margin shrinks it. A small positive
-    /// margin makes it the closure of the shape, up to rounding.
+    /// Whether `position` (m) lies in the shape grown by `margin` (m); a negative margin shrinks it. A small
+    /// positive margin makes it the closure of the shape, up to rounding.
     pub fn contains_within(&self, position: [f64; 2], margin: f64) -> bool {
         let distance = |center: &[f64; 2]| (position[0] - center[0]).hypot(position[1] - center[1]);
         match self {
@@ -39,8 +39,8 @@ impl Shape {
         }
     }
 
-    /// Smallest axis-aligned rectangle around the shape: lower left and upper right corner, m. That of the patch, which the
-    /// shape does not know, is the whole plane; [`crate::scene::Mesh::extent`] clips it.
+    /// Smallest axis-aligned rectangle around the shape: lower left and upper right corner, m. That of the
+    /// patch, which the shape does not know, is the whole plane; [`crate::scene::Mesh::extent`] clips it.
     pub fn bounding_box(&self) -> ([f64; 2], [f64; 2]) {
         match self {
             Self::Rectangle { min, max } => (*min, *max),

@@ -19,8 +19,8 @@ pub enum ResumeError {
 }
 
 impl Simulation {
-    /// The state at the present step: with the same scene, [`Self::resume`] goes on from it bit by bit. Storing it changes
-    /// nothing in the run.
+    /// The state at the present step: with the same scene, [`Self::resume`] goes on from it bit by bit.
+    /// Storing it changes nothing in the run.
     ///
     /// # Errors
     /// If the last step failed, or loads act that only the program knows, as in verification.

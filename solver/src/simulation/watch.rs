@@ -15,8 +15,9 @@ use crate::simulation::breakdown::Breakdown;
 /// Elastic energy beyond this many times all energy that ever came in counts as numerical growth.
 const GROWTH_LIMIT: f64 = 10.0;
 
-/// A ledger open by more than this fraction of the energy that came in is worth a warning, and with a time step above the
-/// critical one the end of the run: damage eats an unstable mode before its elastic energy grows.
+/// A ledger open by more than this fraction of the energy that came in is worth a warning, and with a time
+/// step above the critical one the end of the run: damage eats an unstable mode before its elastic energy
+/// grows.
 const CLOSURE_LIMIT: f64 = 0.02;
 /// Closure below this fraction of the stored energy is round-off and tolerance of the phase field.
 const CLOSURE_FLOOR: f64 = 1e-6;
@@ -31,7 +32,8 @@ impl Simulation {
         Inspection::new(fastest, |f| self.frame.for_each_point(f))
     }
 
-    /// The step just taken was `result`; in the updated frame the critical step is taken again where points moved.
+    /// The step just taken was `result`; in the updated frame the critical step is taken again where points
+    /// moved.
     pub(super) fn judge(&mut self, result: Result<(), Failure>) -> Result<(), Breakdown> {
         let healthy = self.is_healthy();
         match result {
@@ -80,7 +82,8 @@ impl Simulation {
         ));
     }
 
-    /// A point whose numbers are not finite makes the sum over all points so, which no fold or comparison on the way loses.
+    /// A point whose numbers are not finite makes the sum over all points so, which no fold or comparison on
+    /// the way loses.
     fn is_healthy(&mut self) -> bool {
         let (elastic, work) = either!(&self.frame, body => (body.elastic_energy(), body.external_work().abs()));
         self.energy_in = larger(self.energy_in, work);
@@ -89,11 +92,12 @@ impl Simulation {
             && elastic <= GROWTH_LIMIT * (self.energy_in + self.initial.abs())
     }
 
-    /// Holds a sample to its ledger: an open one is a warning, once, and a breakdown if the step is above the critical one.
+    /// Holds a sample to its ledger: an open one is a warning, once, and a breakdown if the step is above the
+    /// critical one.
     ///
     /// # Errors
-    /// If a number of the sample is not finite, or the ledger is open and the time step is too long to be stable, or the
-    /// impulses of contact in the sample did not settle.
+    /// If a number of the sample is not finite, or the ledger is open and the time step is too long to be
+    /// stable, or the impulses of contact in the sample did not settle.
     pub fn watch_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
         let held = self.hold_to_ledger(sample);
         self.failed |= held.is_err();

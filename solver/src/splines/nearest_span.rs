@@ -1,13 +1,13 @@
 //! The span whose polynomials stand for a position on the boundary of a body.
 //!
-//! Such a position may lie in a span that no material point has reached, or beyond the end of the mesh by round-off. The
-//! polynomials of the nearest span with material, continued beyond its end, still sum to one and reproduce positions: no
-//! force and no torque is lost.
+//! Such a position may lie in a span that no material point has reached, or beyond the end of the mesh by
+//! round-off. The polynomials of the nearest span with material, continued beyond its end, still sum to one
+//! and reproduce positions: no force and no torque is lost.
 
 use crate::splines::spline::SplineSpace;
 
-/// The span that is nearest to a position (m) among its own and its eight neighbours, of those that `carries` says can
-/// stand for it; its own if it can.
+/// The span that is nearest to a position (m) among its own and its eight neighbours, of those that `carries`
+/// says can stand for it; its own if it can.
 pub(crate) fn nearest_span(
     spaces: &[SplineSpace; 2],
     position: [f64; 2],

@@ -4,14 +4,17 @@
 //! R_a(ξ) = N_a(ξ) w_a / W(ξ),   W = Σ N_b w_b,   x(ξ) = Σ R_a(ξ) P_a,   J = ∂x/∂ξ,   ∇R_a = J⁻ᵀ ∂R_a/∂ξ
 //! ```
 //!
-//! with `N_a` a product of two B-splines, `w_a` the weights (no unit), `P_a` the control points (m) and ξ the parameters
-//! (in the unit of the knots). Notation and algorithms follow Piegl & Tiller, *The NURBS Book*, chapters 3–5, except degree
-//! elevation, which goes by polar forms (Ramshaw 1989). Control points are stored row by row, first direction fastest.
+//! with `N_a` a product of two B-splines, `w_a` the weights (no unit), `P_a` the control points (m) and ξ the
+//! parameters (in the unit of the knots). Notation and algorithms follow Piegl & Tiller, *The NURBS Book*,
+//! chapters 3–5, except degree elevation, which goes by polar forms (Ramshaw 1989). Control points are stored
+//! row by row, first direction fastest.
 //!
-//! Two special cases skip work and give the same numbers to round-off ([`Form`]): equal weights need no division, and an
-//! affine rectangle needs no inverse map. [`NurbsPatch::general`] takes the fast path away, so that this can be checked.
+//! Two special cases skip work and give the same numbers to round-off ([`Form`]): equal weights need no
+//! division, and an affine rectangle needs no inverse map. [`NurbsPatch::general`] takes the fast path away,
+//! so that this can be checked.
 //!
-//! A scene whose mesh has a geometry runs on such a patch: see [`crate::particles::lattice`] for how its points use it.
+//! A scene whose mesh has a geometry runs on such a patch: see [`crate::particles::lattice`] for how its
+//! points use it.
 //!
 //! ```
 //! use fisura::splines::nurbs::NurbsPatch;
@@ -75,11 +78,13 @@ pub struct NurbsPatch {
 }
 
 impl NurbsPatch {
-    /// The patch of `degree` on open `knots`, with control points (m) and weights row by row, first direction fastest.
+    /// The patch of `degree` on open `knots`, with control points (m) and weights row by row, first direction
+    /// fastest.
     ///
     /// # Errors
-    /// [`NurbsError`] says what is wrong and where: degrees, knots, counts, weights, or a geometry that is folded, that is
-    /// whose Jacobian determinant is not positive at the Gauss points (p + 1 per direction) of every span.
+    /// [`NurbsError`] says what is wrong and where: degrees, knots, counts, weights, or a geometry that is
+    /// folded, that is whose Jacobian determinant is not positive at the Gauss points (p + 1 per direction)
+    /// of every span.
     pub fn new(
         degree: [usize; 2],
         knots: [&[f64]; 2],
@@ -182,7 +187,8 @@ impl NurbsPatch {
         }
     }
 
-    /// The image of a pair of parameters, and the weight function `W = Σ N_b w_b` with its parametric gradient.
+    /// The image of a pair of parameters, and the weight function `W = Σ N_b w_b` with its parametric
+    /// gradient.
     pub(crate) fn image(&self, span: [usize; 2], parameters: [f64; 2]) -> (MapPoint, PointValue) {
         let products = functions::products(&self.spaces, span, parameters);
         let (rational, weight) = functions::weighted(products, &self.weights);
@@ -206,7 +212,8 @@ impl NurbsPatch {
         self.control_points.iter().zip(&self.weights).map(|(p, &w)| [w * p[0], w * p[1], w]).collect()
     }
 
-    /// This patch after a change of one direction: `change` maps each line of homogeneous control points along it.
+    /// This patch after a change of one direction: `change` maps each line of homogeneous control points
+    /// along it.
     fn with_direction_changed(
         &self,
         direction: usize,

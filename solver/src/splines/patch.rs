@@ -1,7 +1,7 @@
 //! The background patch (E 13): a tensor product of two spline spaces.
 //!
-//! Over a rectangle the knots are coordinates in metres. Any other patch has a [`NurbsPatch`] as its geometry, and its knots
-//! are parameters.
+//! Over a rectangle the knots are coordinates in metres. Any other patch has a [`NurbsPatch`] as its
+//! geometry, and its knots are parameters.
 
 use std::ops::Range;
 
@@ -113,7 +113,8 @@ impl Patch {
                     |image| [image.jacobian[0][along], image.jacobian[1][along]],
                 );
                 let speed = tangent[0].hypot(tangent[1]);
-                // The tangent of the first direction has the patch to its left, that of the second to its right.
+                // The tangent of the first direction has the patch to its left, that of the second to its
+                // right.
                 let turn = if along == 0 { -sign } else { sign };
                 points.push(BoundaryPoint {
                     position: image.map_or(parameters, |image| image.position),

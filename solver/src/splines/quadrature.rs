@@ -1,8 +1,8 @@
 //! Positions and weights of material points in a span: the layouts.
 //!
-//! A rule is given on [0, 1] with weights that sum to one. Gauss–Legendre points make the point sums exact for
-//! polynomials of degree `2 n − 1`; equally spaced points with Maclaurin weights for degree `n` (odd n) or `n − 1`;
-//! equally spaced points of equal volume only for degree one.
+//! A rule is given on [0, 1] with weights that sum to one. Gauss–Legendre points make the point sums exact
+//! for polynomials of degree `2 n − 1`; equally spaced points with Maclaurin weights for degree `n` (odd n)
+//! or `n − 1`; equally spaced points of equal volume only for degree one.
 
 use crate::scene::Layout;
 
@@ -22,7 +22,8 @@ impl Rule {
     /// The rule of `layout` with `n` points.
     ///
     /// # Panics
-    /// If `n` is zero, above [`MAX_POINTS`], or above 5 for Maclaurin weights; validation refuses such scenes.
+    /// If `n` is zero, above [`MAX_POINTS`], or above 5 for Maclaurin weights; validation refuses such
+    /// scenes.
     pub fn new(layout: Layout, n: usize) -> Self {
         assert!((1..=MAX_POINTS).contains(&n), "1 to {MAX_POINTS} points per span");
         let rule = match layout {

@@ -1,14 +1,15 @@
 //! One-dimensional B-spline spaces on open knot vectors (E 13).
 //!
-//! On every non-empty knot span the `p + 1` basis functions that live there are kept as polynomials in the local
-//! coordinate `t = (x − left)/(right − left)`, computed once by the Cox–de Boor recursion. An evaluation is then one
-//! Horner scheme per function for any knots, uniform or not.
+//! On every non-empty knot span the `p + 1` basis functions that live there are kept as polynomials in the
+//! local coordinate `t = (x − left)/(right − left)`, computed once by the Cox–de Boor recursion. An
+//! evaluation is then one Horner scheme per function for any knots, uniform or not.
 
 use std::ops::Range;
 
 /// Highest polynomial degree.
 pub(crate) const MAX_DEGREE: usize = 4;
-/// Positions beyond an end of a patch by up to this fraction of its length are on it: an end at `0.1 + 0.7` lies short of 0.8.
+/// Positions beyond an end of a patch by up to this fraction of its length are on it: an end at `0.1 + 0.7`
+/// lies short of 0.8.
 pub const ROUND_OFF: f64 = 1e-9;
 /// Most basis functions on a span, `MAX_DEGREE + 1`.
 pub(crate) const MAX_ORDER: usize = MAX_DEGREE + 1;
@@ -53,7 +54,8 @@ pub struct SplineSpace {
 }
 
 impl SplineSpace {
-    /// Space of `degree` on an open knot vector (non-decreasing, end knots repeated `degree + 1` times), in metres.
+    /// Space of `degree` on an open knot vector (non-decreasing, end knots repeated `degree + 1` times), in
+    /// metres.
     pub fn new(degree: usize, knots: &[f64]) -> Self {
         assert!((1..=MAX_DEGREE).contains(&degree), "degree 1 to {MAX_DEGREE}");
         assert!(knots.len() >= 2 * (degree + 1), "an open knot vector has at least 2 (p + 1) knots");
@@ -69,7 +71,8 @@ impl SplineSpace {
         Self { degree, knots: knots.to_vec(), spans }
     }
 
-    /// The space on some neighbouring spans alone: the same basis functions there, numbered from the first that lives on them.
+    /// The space on some neighbouring spans alone: the same basis functions there, numbered from the first
+    /// that lives on them.
     pub fn part(&self, spans: Range<usize>) -> Self {
         let (first, last) = (self.spans[spans.start].first, self.spans[spans.end - 1].first + self.degree);
         let shifted = self.spans[spans].iter().map(|span| Span { first: span.first - first, ..span.clone() });
@@ -100,8 +103,8 @@ impl SplineSpace {
         &self.spans
     }
 
-    /// Index of the span that holds `x`; the ends of the patch, and what lies beyond them by [`ROUND_OFF`], belong to the end
-    /// spans. `None` outside.
+    /// Index of the span that holds `x`; the ends of the patch, and what lies beyond them by [`ROUND_OFF`],
+    /// belong to the end spans. `None` outside.
     pub fn find_span(&self, x: f64) -> Option<usize> {
         let (left, right) = (self.spans.first()?.left, self.spans.last()?.right);
         let reach = ROUND_OFF * (right - left);
@@ -164,7 +167,8 @@ fn span_polynomials(degree: usize, knots: &[f64], i: usize) -> [[f64; MAX_ORDER]
     basis[0][0] = 1.0;
     for q in 1..=degree {
         let mut next = [[0.0; MAX_ORDER]; MAX_ORDER];
-        // basis[k] is N_{i − q + 1 + k, q − 1}; each feeds N_{·, q} of the same index (rising) and the one before (falling).
+        // basis[k] is N_{i − q + 1 + k, q − 1}; each feeds N_{·, q} of the same index (rising) and the one
+        // before (falling).
         for k in 0..q {
             let start = knots[i + 1 + k - q];
             let end = knots[i + 1 + k];

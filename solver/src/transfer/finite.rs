@@ -1,7 +1,8 @@
 //! Finite kinematics in the total frame: any kernel of small strains on Hencky strains.
 //!
-//! The kernel sees the Hencky strain of `F = I + grad u` in place of the linear one and gives Kirchhoff's stress tau; the
-//! nodal forces take the first Piola–Kirchhoff stress `P = tau F⁻ᵀ`, which works on the gradient in reference positions.
+//! The kernel sees the Hencky strain of `F = I + grad u` in place of the linear one and gives Kirchhoff's
+//! stress tau; the nodal forces take the first Piola–Kirchhoff stress `P = tau F⁻ᵀ`, which works on the
+//! gradient in reference positions.
 
 use crate::linear_algebra::lane::{LANES, Lane, each};
 use crate::material::hencky::hencky_strain;

@@ -133,7 +133,8 @@ impl PointKernel for HeldPhaseStress<'_> {
 /// Smallest principal stretch, squared: the smaller eigenvalue of `F Fᵀ` (see [`crate::material::hencky`]).
 #[derive(Debug)]
 pub(crate) struct LeastStretch<'a> {
-    /// Phase field at the points of the strip, of which those that are broken do not count; empty if all count.
+    /// Phase field at the points of the strip, of which those that are broken do not count; empty if all
+    /// count.
     pub phase: &'a [Lane],
     /// Smallest of the strip; not a number if one is not.
     pub squared: Lane,

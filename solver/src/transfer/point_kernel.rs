@@ -13,8 +13,8 @@ pub struct PointValues {
     pub phase_gradient: [Lane; 2],
 }
 
-/// In-plane stress of a batch of points, Pa: work-conjugate to the displacement gradient, so `xy` is the force in x on a
-/// face with normal y. Only a first Piola–Kirchhoff stress has `xy` and `yx` that differ.
+/// In-plane stress of a batch of points, Pa: work-conjugate to the displacement gradient, so `xy` is the
+/// force in x on a face with normal y. Only a first Piola–Kirchhoff stress has `xy` and `yx` that differ.
 #[derive(Debug, Clone, Copy)]
 pub struct Stress {
     /// Normal stress in x.
@@ -51,7 +51,8 @@ pub trait PointKernel: Send {
     /// Whether it runs in every step, and is compiled for each of the usual degrees.
     const EVERY_STEP: bool = false;
 
-    /// One batch: `at` counts batches from the start of the strip, `weight` is in m² and zero where there is no point.
+    /// One batch: `at` counts batches from the start of the strip, `weight` is in m² and zero where there is
+    /// no point.
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress;
 }
 

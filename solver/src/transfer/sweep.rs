@@ -1,9 +1,11 @@
-//! One pass over the material points of a body: control values to points, physics at the points, points to nodes.
+//! One pass over the material points of a body: control values to points, physics at the points, points to
+//! nodes.
 //!
-//! In the total frame the transfers G2P and P2G (E 15–18) are interpolation from and integration onto control points
-//! that never move, and both factor over the directions. A sweep walks down a column of tiles with the partial sums in x
-//! of the last `q + 1` control rows at hand, so every control value is read and every nodal force written once per
-//! strip. What happens at the points is a [`PointKernel`]; what it does not ask for is not interpolated.
+//! In the total frame the transfers G2P and P2G (E 15–18) are interpolation from and integration onto control
+//! points that never move, and both factor over the directions. A sweep walks down a column of tiles with the
+//! partial sums in x of the last `q + 1` control rows at hand, so every control value is read and every nodal
+//! force written once per strip. What happens at the points is a [`PointKernel`]; what it does not ask for is
+//! not interpolated.
 
 mod strip;
 

@@ -61,7 +61,8 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     }
 }
 
-/// The consistent mass needs the total frame, spans that no body cuts, and points that determine every control value.
+/// The consistent mass needs the total frame, spans that no body cuts, and points that determine every
+/// control value.
 fn consistent_mass(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     let key = "analysis.mass";
     if scene.analysis.frame == Frame::Updated {
@@ -103,8 +104,8 @@ fn consistent_mass(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) 
     }
 }
 
-/// Whether the points of a rule in every span between two ends determine a spline there (Schoenberg and Whitney): taken in
-/// order, each basis function has a point of its own inside its support.
+/// Whether the points of a rule in every span between two ends determine a spline there (Schoenberg and
+/// Whitney): taken in order, each basis function has a point of its own inside its support.
 fn determined(space: &SplineSpace, [from, to]: [f64; 2], rule: &Rule) -> bool {
     let spans: Vec<_> =
         space.spans().iter().filter(|s| 0.5 * (s.left + s.right) > from && 0.5 * (s.left + s.right) < to).collect();
@@ -122,7 +123,8 @@ fn determined(space: &SplineSpace, [from, to]: [f64; 2], rule: &Rule) -> bool {
     next == end
 }
 
-/// Whether the run has a number of steps that can be taken: with a step of choice, one span per step is the estimate.
+/// Whether the run has a number of steps that can be taken: with a step of choice, one span per step is the
+/// estimate.
 fn steps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     let end = scene.analysis.end_time;
     if let TimeStep::Fixed(step) = scene.analysis.time_step {
@@ -142,8 +144,8 @@ fn steps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     }
 }
 
-/// How many times a dilatational wave crosses the smallest span under a body until the end; `None` without a material
-/// that makes sense.
+/// How many times a dilatational wave crosses the smallest span under a body until the end; `None` without a
+/// material that makes sense.
 fn crossings(body: &Body, scene: &Scene, ground: &Ground<'_>) -> Option<f64> {
     let speed = plausible_speed(scene.materials.get(&body.material)?, scene.analysis.plane)?;
     let [smallest, _] = ground.span_lengths(&body.shape);

@@ -143,8 +143,8 @@ fn inside_mesh(key: &str, body: &Body, ground: &Ground<'_>, findings: &mut Findi
     false
 }
 
-/// Whether a shape lies on a patch with a geometry: its outline does, and no side of the patch runs inside it, as that of a
-/// hole would.
+/// Whether a shape lies on a patch with a geometry: its outline does, and no side of the patch runs inside
+/// it, as that of a hole would.
 fn inside_patch(key: &str, shape: &Shape, patch: &NurbsPatch, findings: &mut Findings) -> bool {
     let tolerance = TOLERANCE * patch.size();
     let mut last = None;
@@ -172,7 +172,8 @@ fn inside_patch(key: &str, shape: &Shape, patch: &NurbsPatch, findings: &mut Fin
     true
 }
 
-/// Largest span in the body against the length scale: above it the crack is coarse, above four times it is not there.
+/// Largest span in the body against the length scale: above it the crack is coarse, above four times it is
+/// not there.
 fn resolution(body: &Body, fracture: &Fracture, ground: &Ground<'_>, findings: &mut Findings) {
     let [_, h] = ground.span_lengths(&body.shape);
     let l0 = fracture.length_scale;
@@ -261,8 +262,8 @@ impl<'a> Look<'a> {
         found.map(|location| self.last.set(Some(location.parameters))).is_ok()
     }
 
-    /// First of about `intervals + 1` equally spaced positions (m) between two ends, both included, that is not in the
-    /// closure of the body.
+    /// First of about `intervals + 1` equally spaced positions (m) between two ends, both included, that is
+    /// not in the closure of the body.
     fn first_outside(&self, [from, to]: [[f64; 2]; 2], intervals: usize) -> Option<[f64; 2]> {
         let intervals = intervals.min(self.most - 1);
         let position = |i: usize| {

@@ -72,8 +72,8 @@ fn rigid(key: &str, body: &Body, scene: &Scene, findings: &mut Findings) {
     }
 }
 
-/// Bodies that overlap at t = 0: contact would have to push them apart, and that energy comes from nowhere. False if there are
-/// no boundaries to look at.
+/// Bodies that overlap at t = 0: contact would have to push them apart, and that energy comes from nowhere.
+/// False if there are no boundaries to look at.
 fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) -> bool {
     let errors = findings.errors.len();
     if scene.bodies.iter().any(|body| defect(&body.shape).is_some() || body.particles_per_cell.contains(&0)) {
@@ -116,8 +116,8 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) -> bool
     true
 }
 
-/// How far what lies `beneath` (m) the boundary of one body reaches into the body inside another, m: the boundaries of bodies that
-/// coincide do not cross. Of very many segments, some are looked at.
+/// How far what lies `beneath` (m) the boundary of one body reaches into the body inside another, m: the
+/// boundaries of bodies that coincide do not cross. Of very many segments, some are looked at.
 fn depth(one: &Surface, other: &Surface, inside: &Shape, beneath: f64) -> f64 {
     let [low, high] = other.bounding_box();
     let below = |segment: u32| {

@@ -9,7 +9,8 @@ pub(super) type Position = [f64; 2];
 /// Most points looked at along a polygon, unless it has more corners.
 const MOST_OUTLINE: usize = 4096;
 
-/// Points looked at along a circle or a straight edge of a body on a general patch, and along a side of the patch.
+/// Points looked at along a circle or a straight edge of a body on a general patch, and along a side of the
+/// patch.
 const OUTLINE_INTERVALS: usize = 64;
 
 /// Why a shape is empty or malformed, with a remedy.
@@ -125,7 +126,8 @@ mod tests {
         let cut = Shape::Difference { of: Box::new(Shape::Patch), minus: vec![disk(0.0, 2.0, 0.5)] };
         assert!(covered_side(&cut, &half_ring).is_none(), "the patch less a disk");
 
-        // Almost closed, so that the outline of a disk over the hole lies on the patch but where the ring is open.
+        // Almost closed, so that the outline of a disk over the hole lies on the patch but where the ring is
+        // open.
         let ring = NurbsPatch::annular_sector(1.0, 3.0, [0.0, 2.0 * PI - 1e-3]).unwrap();
         let hole = || vec![disk(0.0, 0.0, 1.0)];
         let around_hole = Shape::Difference { of: Box::new(disk(0.0, 0.0, 2.0)), minus: hole() };

@@ -5,7 +5,8 @@ use crate::linear_algebra::extremes::smaller;
 use crate::scene::Mesh;
 use crate::splines::nurbs::{NurbsError, NurbsPatch};
 
-/// Weights of control points: beyond, sums of them lose the smallest ones, and control points are left without mass.
+/// Weights of control points: beyond, sums of them lose the smallest ones, and control points are left
+/// without mass.
 const WEIGHTS: (f64, f64) = (1e-3, 1e3);
 /// Extent of a mesh in a direction, m or unit of the knots: beyond, areas and stiffnesses over- or underflow.
 const EXTENT: (f64, f64) = (1e-12, 1e12);

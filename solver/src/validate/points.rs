@@ -40,7 +40,8 @@ pub(super) struct Near {
 }
 
 impl<'a> Points<'a> {
-    /// The points of a body with a sound shape and layout on a sound mesh; `None` if there are too many to be mapped.
+    /// The points of a body with a sound shape and layout on a sound mesh; `None` if there are too many to be
+    /// mapped.
     pub(crate) fn new(body: &'a Body, ground: &Ground<'_>) -> Option<Self> {
         let (spaces, patch) = (ground.spaces.as_ref()?, ground.patch.as_ref());
         let axes = point_axes(body, spaces, patch.is_some());
@@ -69,8 +70,8 @@ impl<'a> Points<'a> {
         found || pairs.next().is_some()
     }
 
-    /// The points within a span of a segment, and within `reach` (m), in their order along it; `None` if there are too many to be
-    /// looked at.
+    /// The points within a span of a segment, and within `reach` (m), in their order along it; `None` if
+    /// there are too many to be looked at.
     pub(crate) fn near(&self, [from, to]: [Position; 2], reach: f64) -> Option<Vec<Near>> {
         let along = [to[0] - from[0], to[1] - from[1]];
         let length = along[0].hypot(along[1]);
@@ -98,7 +99,8 @@ impl<'a> Points<'a> {
         Some(near)
     }
 
-    /// Columns and row of the pairs that may lie within a span, or `reach` (m), of a segment: over a rectangle those under it, row by row.
+    /// Columns and row of the pairs that may lie within a span, or `reach` (m), of a segment: over a
+    /// rectangle those under it, row by row.
     fn candidates(&self, from: Position, along: Position, reach: f64) -> Vec<(Range<usize>, usize)> {
         let [xs, ys] = &self.axes;
         if self.mapped.is_some() {

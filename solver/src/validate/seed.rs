@@ -1,8 +1,10 @@
-//! Whether the seeds of cracks break their bodies: a crack is there only in the material points that its history energy reaches.
+//! Whether the seeds of cracks break their bodies: a crack is there only in the material points that its
+//! history energy reaches.
 //!
-//! A history energy H over a narrow band holds `c0 = 1/(1 + S/(4 l0))` at its middle against the gradient of c, with the
-//! strength `S = ∫ 4 l0 H/Gc dn` across the band: the solution of (E 8) on a line. On a mesh of spans h the field varies no faster
-//! than over h, which is like a longer l0. The strength is summed over the points, in every stretch of the length of a span.
+//! A history energy H over a narrow band holds `c0 = 1/(1 + S/(4 l0))` at its middle against the gradient of
+//! c, with the strength `S = ∫ 4 l0 H/Gc dn` across the band: the solution of (E 8) on a line. On a mesh of
+//! spans h the field varies no faster than over h, which is like a longer l0. The strength is summed over the
+//! points, in every stretch of the length of a span.
 
 use super::findings::Findings;
 use super::points::{Near, Points};
@@ -14,12 +16,14 @@ use crate::scene::{Body, Crack, Fracture};
 
 /// Relative tolerance of lengths along a crack.
 const TOLERANCE: f64 = 1e-6;
-/// Strength, of 4 l0 + h, at which c0 is [`BROKEN`] in half of a body that is symmetric about the crack, and 0.095 in a whole one.
+/// Strength, of 4 l0 + h, at which c0 is [`BROKEN`] in half of a body that is symmetric about the crack, and
+/// 0.095 in a whole one.
 const BREAKING: f64 = 0.5 * (1.0 / BROKEN - 1.0);
 /// Distance from a crack up to which points are counted, of l0: they are enough to break it.
 const COUNTED: f64 = 0.25;
 
-/// Errors for seeds that leave their cracks whole somewhere, and for seeds that cover their body; `h` is the largest span, m.
+/// Errors for seeds that leave their cracks whole somewhere, and for seeds that cover their body; `h` is the
+/// largest span, m.
 pub(super) fn check(key: &str, body: &Body, fracture: &Fracture, points: &Points<'_>, h: f64, findings: &mut Findings) {
     let l0 = fracture.length_scale;
     let width = |crack: &Crack| half_width(crack, l0);
@@ -76,8 +80,8 @@ impl Whole {
     }
 }
 
-/// The first stretch of a crack that a seed of half width `width` (m) does not break. Stretches without any point near them do
-/// not count.
+/// The first stretch of a crack that a seed of half width `width` (m) does not break. Stretches without any
+/// point near them do not count.
 fn whole_stretch(near: &[Near], length: f64, width: f64, l0: f64) -> Option<Whole> {
     let strength = |p: &Near| SEED_STRENGTH * p.area * (1.0 - p.distance / width).max(0.0);
     let sums: Vec<f64> = std::iter::once(0.0)
@@ -109,7 +113,8 @@ fn whole_stretch(near: &[Near], length: f64, width: f64, l0: f64) -> Option<Whol
     stretches.find_map(&mut found).or_else(|| between.find_map(&mut found))
 }
 
-/// The least half width, and the largest cells, that would do; rounded so that the figures in the text do too.
+/// The least half width, and the largest cells, that would do; rounded so that the figures in the text do
+/// too.
 fn remedy(near: &[Near], length: f64, width: f64, l0: f64, h: f64) -> String {
     let breaks = |width: f64, l0: f64| whole_stretch(near, length, width, l0).is_none();
     let widest = near.iter().map(|point| point.distance).fold(width, larger) * 100.0;

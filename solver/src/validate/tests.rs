@@ -342,7 +342,8 @@ fn several_bodies_need_the_updated_frame_and_room() {
     assert_eq!(changed(|s| s.bodies[1].shape = s.bodies[0].shape.clone()), ["body.1.shape"], "one body twice");
 }
 
-/// The corner of two sides has what either prescribes, whatever their order; they may not contradict each other.
+/// The corner of two sides has what either prescribes, whatever their order; they may not contradict each
+/// other.
 #[test]
 fn sides_that_meet_agree_in_their_corner() {
     let side = |side, fix, velocity| Boundary { side, fix, velocity };

@@ -1,4 +1,5 @@
-//! Matrices of the phase field: entries against plain sums over the points, and the same bits for any thread count.
+//! Matrices of the phase field: entries against plain sums over the points, and the same bits for any thread
+//! count.
 
 use crate::common::{Random, body, graded_knots, rectangle, with_threads};
 use fisura::linear_algebra::extremes::larger;

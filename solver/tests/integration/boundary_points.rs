@@ -35,8 +35,8 @@ fn check_surface(name: &str, nurbs: &NurbsPatch, points: usize, tolerance: f64) 
     area
 }
 
-/// Sums over the sides close where the points integrate the sides exactly: on polynomial patches, and on rational ones with
-/// more points than round-off needs.
+/// Sums over the sides close where the points integrate the sides exactly: on polynomial patches, and on
+/// rational ones with more points than round-off needs.
 #[test]
 fn surfaces_are_closed() {
     for degree in 2..=4 {

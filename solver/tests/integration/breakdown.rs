@@ -73,14 +73,16 @@ fn below_the_critical_step_it_lasts() {
     }
 }
 
-/// The unstable mode of a fracturing body is torn apart by the phase field before its elastic energy has grown: at 1.3
-/// times the critical step this plate shatters (fracture energy 0.019 J to 0.071 J on 0.014 J of work); the ledger tells.
+/// The unstable mode of a fracturing body is torn apart by the phase field before its elastic energy has
+/// grown: at 1.3 times the critical step this plate shatters (fracture energy 0.019 J to 0.071 J on 0.014 J
+/// of work); the ledger tells.
 #[test]
 fn beyond_the_critical_step_a_fracturing_body_says_so() {
     check("fracture", &with_step(notched_plate(1e5), 1.3, 100));
 }
 
-/// The quadrature of a coarse step leaves the ledger open in the first steps under a hard pull: a warning, not the end.
+/// The quadrature of a coarse step leaves the ledger open in the first steps under a hard pull: a warning,
+/// not the end.
 #[test]
 fn below_the_critical_step_an_open_ledger_is_a_warning() {
     for samples in [1, 20, 100] {
@@ -93,8 +95,8 @@ fn below_the_critical_step_an_open_ledger_is_a_warning() {
     }
 }
 
-/// A load no solid bears turns the body inside out, elastic or fracturing: the run ends at that step and says so instead of blaming
-/// the time step.
+/// A load no solid bears turns the body inside out, elastic or fracturing: the run ends at that step and says
+/// so instead of blaming the time step.
 #[test]
 fn a_body_turned_inside_out_is_named() {
     let brittle_with = |split| Some(Fracture { split, ..crate::common::brittle() });
@@ -131,7 +133,8 @@ fn first_breakdown(scene: &Scene, name: &str) -> (Simulation, Breakdown) {
     }
 }
 
-/// Energies that overflow in a body of either kinematics and material: the run ends where the first number is none.
+/// Energies that overflow in a body of either kinematics and material: the run ends where the first number is
+/// none.
 #[test]
 fn no_number_that_is_not_finite_outlives_its_step() {
     for kinematics in [Kinematics::Small, Kinematics::Finite] {
@@ -163,8 +166,8 @@ fn a_critical_step_that_is_no_number_is_refused() {
     }
 }
 
-/// Loads so large that energies overflow: the step in which that begins says so at the point where it does, and does not blame the
-/// tolerance of the phase field, which is what met the numbers first.
+/// Loads so large that energies overflow: the step in which that begins says so at the point where it does,
+/// and does not blame the tolerance of the phase field, which is what met the numbers first.
 #[test]
 fn numbers_that_are_not_finite_are_named_where_they_begin() {
     for frame in [Frame::Total, Frame::Updated] {

@@ -1,12 +1,13 @@
-//! A run taken up from a checkpoint goes on bit by bit, whatever it models, and a checkpoint leaves the run alone.
+//! A run taken up from a checkpoint goes on bit by bit, whatever it models, and a checkpoint leaves the run
+//! alone.
 
 use crate::common::{body, brittle, elastic_scene, glass, notched_plate, patch_scene, rectangle};
 use fisura::Simulation;
 use fisura::scene::*;
 use fisura::simulation::state::ResumeError;
 
-/// Runs `scene`; from checkpoints after some of its steps the rest is run again. The last states are compared byte by byte,
-/// and so are all samples on the way.
+/// Runs `scene`; from checkpoints after some of its steps the rest is run again. The last states are compared
+/// byte by byte, and so are all samples on the way.
 #[track_caller]
 fn goes_on_bit_by_bit(name: &str, scene: &Scene) {
     fisura::validate::validate(scene).unwrap_or_else(|errors| panic!("{name}: {errors:?}"));

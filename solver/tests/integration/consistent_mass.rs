@@ -15,8 +15,8 @@ fn consistent(mut scene: Scene, points: usize) -> Scene {
     scene
 }
 
-/// Area, distance of the centre of mass from the origin, and polar moment of area about it of the quarter annulus of radii
-/// 1 and 2.
+/// Area, distance of the centre of mass from the origin, and polar moment of area about it of the quarter
+/// annulus of radii 1 and 2.
 fn quarter_annulus() -> (f64, [f64; 2], f64) {
     let area = 0.75 * std::f64::consts::PI;
     let center = 4.0 / (3.0 * std::f64::consts::PI) * 7.0 / 3.0;
@@ -73,7 +73,8 @@ fn closure(samples: &[Sample]) -> f64 {
     samples.iter().map(|s| s.closure.abs() / s.largest_term().max(1e-300)).fold(0.0, larger)
 }
 
-/// A free spinning body under a moving load: momentum is the impulse, angular momentum stays where no load has a moment.
+/// A free spinning body under a moving load: momentum is the impulse, angular momentum stays where no load
+/// has a moment.
 #[test]
 fn momentum_is_the_impulse_and_the_ledger_closes() {
     for degree in 1..=4 {
@@ -155,14 +156,16 @@ fn what_it_cannot_do_is_refused() {
     assert_refused(&part, &["cuts spans", "lumped"]);
 }
 
-/// Points determine a spline if each function has one of its own (Schoenberg and Whitney): not span by span, but in all.
+/// Points determine a spline if each function has one of its own (Schoenberg and Whitney): not span by span,
+/// but in all.
 #[test]
 fn too_few_points_are_refused() {
     for degree in 1..=4 {
         for points in 1..=5 {
             let scene = consistent(elastic_scene(degree, [0.01, 0.008], [10, 8]), points);
             let verdict = validate(&scene);
-            // 10 spans have 10 + p functions; two points per span are enough for all degrees on so many spans.
+            // 10 spans have 10 + p functions; two points per span are enough for all degrees on so many
+            // spans.
             let enough = points >= 2;
             assert_eq!(verdict.is_ok(), enough, "degree {degree}, {points} points: {verdict:?}");
             if enough {
@@ -181,9 +184,10 @@ fn too_few_points_are_refused() {
     }
 }
 
-/// Quartics on spans a millionth as long as their neighbours, four by four: seen from afar they are one knot at which only the
-/// value is continuous, and the two points of each long span, with next to no weight of those between, cannot tell the functions
-/// apart. As many points as functions there are by far: a breakdown in words.
+/// Quartics on spans a millionth as long as their neighbours, four by four: seen from afar they are one knot
+/// at which only the value is continuous, and the two points of each long span, with next to no weight of
+/// those between, cannot tell the functions apart. As many points as functions there are by far: a breakdown
+/// in words.
 #[test]
 fn a_matrix_that_is_singular_to_round_off_is_said_to_be() {
     let mut scene = consistent(elastic_scene(4, [0.01, 0.008], [10, 8]), 2);

@@ -1,5 +1,5 @@
-//! What contact cannot do ends the run, or is said: fits without control points to hold on to, boundaries without material,
-//! bodies too fast to be seen, impulses that do not settle.
+//! What contact cannot do ends the run, or is said: fits without control points to hold on to, boundaries
+//! without material, bodies too fast to be seen, impulses that do not settle.
 
 use crate::common::{body, elastic_scene, rectangle, run};
 use fisura::Simulation;
@@ -37,8 +37,9 @@ fn ending(scene: &Scene) -> (Simulation, Option<Breakdown>) {
     (simulation, None)
 }
 
-/// A block of bilinears whose lower side lies half a span above a knot line: the place half a span below the boundary, where
-/// control points are chosen by, is on that line, and one row of them is all there is. It still stands on its floor.
+/// A block of bilinears whose lower side lies half a span above a knot line: the place half a span below the
+/// boundary, where control points are chosen by, is on that line, and one row of them is all there is. It
+/// still stands on its floor.
 #[test]
 fn a_block_over_one_row_of_control_points_stands_on_its_floor() {
     for (degree, left) in [(1, 0.25), (1, 0.3125), (1, 0.28), (2, 0.25)] {
@@ -61,8 +62,9 @@ fn a_block_over_one_row_of_control_points_stands_on_its_floor() {
     }
 }
 
-/// Bilinears, half a span above the boundary the place itself on a knot line or next to one: the rows of control points differ in
-/// weight by as much as the distance from there. The weights still stand for the boundary, to round-off.
+/// Bilinears, half a span above the boundary the place itself on a knot line or next to one: the rows of
+/// control points differ in weight by as much as the distance from there. The weights still stand for the
+/// boundary, to round-off.
 #[test]
 fn weights_stand_for_their_position_beside_knot_lines() {
     let (mut scene, h) = (scene(1, [1.0, 1.0], [16, 16]), 1.0 / 16.0);
@@ -140,8 +142,8 @@ fn a_fixed_step_that_would_let_bodies_through_ends_the_run_where_they_meet() {
     assert!(found.step == simulation.steps() && found.time < 1.6 / speed && found.place[0] > 0.4, "{text}");
 }
 
-/// A block that slides along a wall far faster than waves, one that flies off from another, and a disc that turns in its bearing
-/// close no gap: nothing shortens their step or ends their run.
+/// A block that slides along a wall far faster than waves, one that flies off from another, and a disc that
+/// turns in its bearing close no gap: nothing shortens their step or ends their run.
 #[test]
 fn bodies_that_do_not_approach_are_not_too_fast() {
     let block = |velocity| Body { velocity, ..body(rectangle([0.5, 0.5], [1.0, 1.0]), [2; 2]) };
@@ -156,7 +158,8 @@ fn bodies_that_do_not_approach_are_not_too_fast() {
         let mut scene = scene(2, [4.0, 2.0], [64, 32]);
         scene.bodies = bodies;
         scene.contact = Some(Contact { friction: 0.0 });
-        scene.analysis.time_step = TimeStep::Fixed(1e-3); // 1.6 spans, and 0.45 on the rim of the disc, to and fro
+        // 1.6 spans, and 0.45 on the rim of the disc, to and fro.
+        scene.analysis.time_step = TimeStep::Fixed(1e-3);
         scene.analysis.end_time = 5e-3;
         let (simulation, found) = ending(&scene);
         assert!(found.is_none(), "{name}: {found:?}");
@@ -213,7 +216,8 @@ fn a_boundary_without_material_neither_spans_a_gap_nor_pushes() {
     assert!((x - 2.0).abs() < 0.3 && (0.9..1.4).contains(&y), "open at ({x}, {y}) m");
 }
 
-/// A disc of next to no stiffness that spins flies apart until its points are further from each other than spans.
+/// A disc of next to no stiffness that spins flies apart until its points are further from each other than
+/// spans.
 #[test]
 fn a_run_says_that_a_boundary_has_lost_its_material() {
     let mut scene = scene(2, [3.0, 3.0], [48, 48]);

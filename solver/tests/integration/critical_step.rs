@@ -1,4 +1,5 @@
-//! The bound on the highest frequency against dense eigenvalues, and the table of critical steps of free bodies.
+//! The bound on the highest frequency against dense eigenvalues, and the table of critical steps of free
+//! bodies.
 
 use crate::common::{body, elastic_scene, rectangle};
 use fisura::Simulation;
@@ -34,9 +35,10 @@ fn frequencies(scene: &Scene) -> (f64, f64) {
     (largest.sqrt(), bound)
 }
 
-/// The residual norm bounds the distance to *some* eigenvalue. Where modes of several corners lie within a millionth of
-/// each other, as at nu = 0, the Lanczos vector may have settled below the largest one by as much (measured: 4e-7). The
-/// tolerance is that, a thousand times less than the distance of the default safety factor.
+/// The residual norm bounds the distance to *some* eigenvalue. Where modes of several corners lie within a
+/// millionth of each other, as at nu = 0, the Lanczos vector may have settled below the largest one by as
+/// much (measured: 4e-7). The tolerance is that, a thousand times less than the distance of the default
+/// safety factor.
 const CLUSTER: f64 = 1e-5;
 
 fn check(name: &str, scene: &Scene) {
@@ -79,7 +81,8 @@ fn the_bound_holds_for_cut_graded_and_oblong_spans() {
     }
 }
 
-/// `c dt/h` of a large free square of square spans, lumped mass, plane strain, nu = 0: measured 1.00 / 0.86 / 0.65.
+/// `c dt/h` of a large free square of square spans, lumped mass, plane strain, nu = 0: measured 1.00 / 0.86 /
+/// 0.65.
 #[test]
 fn table_of_free_bodies() {
     for (degree, expected) in [(1, 1.00), (2, 0.86), (3, 0.65)] {
@@ -120,8 +123,8 @@ fn the_bound_holds_for_the_consistent_mass() {
     }
 }
 
-/// `c dt/h` of a bar with the consistent mass, nu = 0: a strip one span high, so high that only waves along it count.
-/// From an independent one-dimensional code; 1 %, half a unit of its last digit being 0.2 %.
+/// `c dt/h` of a bar with the consistent mass, nu = 0: a strip one span high, so high that only waves along
+/// it count. From an independent one-dimensional code; 1 %, half a unit of its last digit being 0.2 %.
 #[test]
 fn table_of_bars_with_consistent_mass() {
     let table =

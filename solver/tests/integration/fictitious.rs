@@ -9,7 +9,8 @@ use fisura::phase_field::assembly::{Constant, Integrand, add_form};
 use fisura::scene::{Mesh, Shape};
 use fisura::splines::patch::Patch;
 
-/// Points that fill the patch, with weights that integrate its functions exactly, make the same system times α.
+/// Points that fill the patch, with weights that integrate its functions exactly, make the same system times
+/// α.
 #[test]
 fn it_is_a_body_that_fills_the_patch() {
     for degree in 1..=4 {

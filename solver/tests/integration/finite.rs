@@ -88,8 +88,9 @@ fn a_cracking_body_cracks_as_with_small_strains_and_its_ledger_is_as_open() {
     };
     let ([small, least], [finite, closure]) = (run(Kinematics::Small), run(Kinematics::Finite));
     println!("fracture energy {small:.4e} (small), {finite:.4e} (finite), closure {closure:.1e}");
-    // At h = l0 with a body that moves by a tenth of a span the ledger is open by 2 % of the seeded energy with either
-    // kinematics, so the cause is not theirs; energy of the phase field at moving points is not booked.
+    // At h = l0 with a body that moves by a tenth of a span the ledger is open by 2 % of the seeded energy
+    // with either kinematics, so the cause is not theirs; energy of the phase field at moving points is not
+    // booked.
     assert!((closure - least).abs() <= 1e-3, "closure {closure:e}, with small strains {least:e}");
     assert!(small > 1e-7 && (finite / small - 1.0).abs() <= 0.05, "{finite:e} against {small:e}");
 }
@@ -111,8 +112,9 @@ fn small_motions_are_those_of_small_strains() {
     assert!(largest > 1e-10 && apart <= 10.0 * largest * largest + 1e-13 * largest, "{apart:e} of {largest:e}");
 }
 
-/// Mean stress near the centre of a free disc set spinning, over the closed form, and the relative change of the angular
-/// momentum. The disc breathes undamped about the steady state; the smooth window takes the mean over many breaths.
+/// Mean stress near the centre of a free disc set spinning, over the closed form, and the relative change of
+/// the angular momentum. The disc breathes undamped about the steady state; the smooth window takes the mean
+/// over many breaths.
 fn spinning_disc(degree: usize, cells: usize, transfer: Transfer) -> [f64; 2] {
     let (omega, end) = (0.05, 40.0);
     let mut scene = scene(degree, 2.5, cells, Shape::Disk { center: [0.0; 2], radius: 1.0 }, Kinematics::Finite);

@@ -1,5 +1,5 @@
-//! No fold in the workspace drops what is not a number: `f64::max` and `f64::min` do, `fisura::linear_algebra::extremes` does not. Nor does a
-//! loop that keeps an extreme in a variable.
+//! No fold in the workspace drops what is not a number: `f64::max` and `f64::min` do,
+//! `fisura::linear_algebra::extremes` does not. Nor does a loop that keeps an extreme in a variable.
 //!
 //! `f64::max(a, b)` as a call, where one side is a constant, is another matter and stays allowed.
 
@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
-/// Lines on which a fold may lose what is not a number: `f64::max` handed on as a function, or a method of that name on floats
-/// inside a fold.
+/// Lines on which a fold may lose what is not a number: `f64::max` handed on as a function, or a method of
+/// that name on floats inside a fold.
 fn findings(source: TokenStream) -> Vec<usize> {
     let tokens: Vec<TokenTree> = source.into_iter().collect();
     let mut lines = Vec::new();
@@ -134,7 +134,7 @@ fn flat(stream: TokenStream) -> Vec<TokenTree> {
     stream.into_iter().flat_map(within).collect()
 }
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+pub fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
         if entry.is_dir() {
             sources(&entry, found);

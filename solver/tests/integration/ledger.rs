@@ -5,8 +5,9 @@ use fisura::Simulation;
 use fisura::dynamics::energy::{FractureSample, Sample};
 use fisura::scene::*;
 
-/// The plate under 4 MPa, up to the time at which the crack has run half of its way: kinetic and fracture energy are then
-/// of a size. Once it is in two, the halves fly off and their kinetic energy dwarfs whatever closure there is.
+/// The plate under 4 MPa, up to the time at which the crack has run half of its way: kinetic and fracture
+/// energy are then of a size. Once it is in two, the halves fly off and their kinetic energy dwarfs whatever
+/// closure there is.
 fn cracking(safety: f64) -> Scene {
     let mut scene = notched_plate(4e6);
     scene.analysis.end_time = 3.2e-6;
@@ -65,8 +66,8 @@ fn a_fracturing_plate_closes_and_every_term_moves_closure() {
     assert!(work > 0.0 && work > 10.0 * last.closure.abs(), "history work {work:e} J is no part of closure");
 }
 
-/// The terms are recomputed from what the simulation holds, without its ledger: kinetic energy and momentum from masses
-/// and velocities, external work of gravity from the fall of the centre of mass.
+/// The terms are recomputed from what the simulation holds, without its ledger: kinetic energy and momentum
+/// from masses and velocities, external work of gravity from the fall of the centre of mass.
 #[test]
 fn terms_equal_their_definitions() {
     let mut scene = elastic_scene(2, [0.01, 0.005], [20, 10]);

@@ -15,7 +15,8 @@ use fisura::scene::*;
 use fisura::splines::patch::Patch;
 use nalgebra::{DMatrix, DVector};
 
-/// Round-off of a factor that is kept in single precision (6e-8), with room for the condition of the matrices here.
+/// Round-off of a factor that is kept in single precision (6e-8), with room for the condition of the matrices
+/// here.
 const SINGLE: f64 = 2e-6;
 /// Span of the test meshes, m: the length scale of the model.
 const SPAN: f64 = 0.25e-3;
@@ -87,7 +88,8 @@ fn inner(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// A banded matrix on one row of control points: nothing falls outside the stencil, so the factor is the exact one.
+/// A banded matrix on one row of control points: nothing falls outside the stencil, so the factor is the
+/// exact one.
 #[test]
 fn without_fill_the_factor_is_exact() {
     for degree in 1..=4 {
@@ -211,7 +213,8 @@ fn systems_without_a_solution_say_why() {
     assert_eq!(solve(&matrix, &b, 500), SolveFailure::NotPositiveDefinite);
 }
 
-/// Complete factors serve for a while; then the incomplete one is tried again, and less often while it stays poor.
+/// Complete factors serve for a while; then the incomplete one is tried again, and less often while it stays
+/// poor.
 #[test]
 fn complete_factors_take_over_and_go_back() {
     let matrix = phase_field_matrix(3, [31, 57], 1e6);
@@ -238,7 +241,8 @@ fn complete_factors_take_over_and_go_back() {
             preconditioner.prepare(&matrix);
             assert!(preconditioner.is_complete());
         }
-        // one iteration solves, and one more finds no more left than the round-off of a system of condition 1e6
+        // one iteration solves, and one more finds no more left than the round-off of a system of condition
+        // 1e6
         assert_eq!(solve(&preconditioner), 2, "the factor is exact");
     }
     preconditioner.prepare(&matrix);
@@ -264,7 +268,8 @@ fn a_complete_factor_that_fails_becomes_incomplete() {
     assert!(preconditioner.improve(&matrix) && preconditioner.is_complete());
 }
 
-/// Kershaw's ring of four (1978): positive definite, but the coupling that is dropped makes the last pivot negative.
+/// Kershaw's ring of four (1978): positive definite, but the coupling that is dropped makes the last pivot
+/// negative.
 #[test]
 fn a_factor_whose_pivot_falls_is_shifted() {
     let grid = ControlGrid { columns: 3, rows: 3, stride: 24 };
@@ -275,7 +280,8 @@ fn a_factor_whose_pivot_falls_is_shifted() {
         let at = row * matrix.row_length() + offset * grid.stride + grid.index(column, 0);
         matrix.coefficients_mut()[at] = value;
     }
-    // On the stencil the factor is the matrix with its diagonal times 1 + s. The last pivot is positive for 3 (1 + s) > √12.
+    // On the stencil the factor is the matrix with its diagonal times 1 + s. The last pivot is positive for 3
+    // (1 + s) > √12.
     let factor = IncompleteCholesky::new(&matrix);
     let mut inverse = DMatrix::zeros(9, 9);
     for (n, at) in grid.indices().enumerate() {

@@ -1,4 +1,5 @@
-//! No part of a traction is lost on its way to the control points, wherever its edge lies; nor is a body without points begun.
+//! No part of a traction is lost on its way to the control points, wherever its edge lies; nor is a body
+//! without points begun.
 
 use crate::common::{body, elastic_scene, rectangle};
 use fisura::Simulation;
@@ -24,8 +25,8 @@ fn loaded(mesh: Mesh, shape: Shape, traction: Traction, frame: Frame) -> Scene {
     scene
 }
 
-/// Force and moment about the origin that act on a free body at t = 0: in the total frame by the momenta after the first step, in
-/// the updated frame on the control points that can move.
+/// Force and moment about the origin that act on a free body at t = 0: in the total frame by the momenta
+/// after the first step, in the updated frame on the control points that can move.
 fn force_and_moment(scene: &Scene) -> [f64; 3] {
     assert!(validate(scene).is_ok(), "{:?}", validate(scene));
     let simulation = Simulation::new(scene).unwrap();
@@ -39,7 +40,8 @@ fn force_and_moment(scene: &Scene) -> [f64; 3] {
         return moving.map(act).fold([0.0; 3], |sum, f| [0, 1, 2].map(|i| sum[i] + f[i]));
     }
     let mut scene = scene.clone();
-    scene.analysis.time_step = TimeStep::Fixed(1e-14); // no stress yet, which control points without mass would take
+    // No stress yet, which control points without mass would take.
+    scene.analysis.time_step = TimeStep::Fixed(1e-14);
     scene.analysis.end_time = 1e-13;
     let mut simulation = Simulation::new(&scene).unwrap();
     simulation.step().unwrap();
@@ -47,8 +49,8 @@ fn force_and_moment(scene: &Scene) -> [f64; 3] {
     [sample.momentum[0], sample.momentum[1], sample.angular_momentum].map(|p| p / simulation.time())
 }
 
-/// Error of the force and the moment on a body under a uniform traction on a straight edge, of the force (and the moment of that at
-/// the middle of the edge, or at its length).
+/// Error of the force and the moment on a body under a uniform traction on a straight edge, of the force (and
+/// the moment of that at the middle of the edge, or at its length).
 fn error(scene: &Scene, [from, to]: [[f64; 2]; 2]) -> f64 {
     let [fx, fy, found] = force_and_moment(scene);
     let length = (to[0] - from[0]).hypot(to[1] - from[1]);
@@ -82,7 +84,8 @@ fn edges_at_the_ends_of_a_mesh_are_loaded_for_all_one_decimal_origins_and_sizes(
     assert!(short >= 20, "{short} ends lie beyond their mesh");
 }
 
-/// So many spans along an edge that the round-off of a plain sum over its points is more than the balance allows.
+/// So many spans along an edge that the round-off of a plain sum over its points is more than the balance
+/// allows.
 #[test]
 fn long_edges_are_loaded() {
     for frame in FRAMES {
@@ -91,7 +94,8 @@ fn long_edges_are_loaded() {
             let shape = rectangle([0.1, 0.0], [0.8, 1e-4]);
             let ends = shape.side(Side::Top).unwrap();
             let error = error(&loaded(mesh, shape, traction(Edge::Side(Side::Top), [1e6, -2e6]), frame), ends);
-            assert!(error <= 1e-11, "degree {degree}, {frame:?}: {error:e}"); // the sums of the test are plain ones
+            // The sums of the test are plain ones.
+            assert!(error <= 1e-11, "degree {degree}, {frame:?}: {error:e}");
         }
     }
 }
@@ -107,7 +111,8 @@ fn edges_that_cut_spans_are_loaded() {
                     let ends = shape.side(side).unwrap();
                     let scene = loaded(mesh.clone(), shape.clone(), traction(Edge::Side(side), [1e6, 3e6]), frame);
                     let error = error(&scene, ends);
-                    // round-off: momenta of control points with next to no mass, polynomials continued beyond their span
+                    // round-off: momenta of control points with next to no mass, polynomials continued beyond
+                    // their span
                     assert!(error <= 1e-11, "degree {degree}, sliver {sliver:e}, {side:?}, {frame:?}: {error:e}");
                 }
             }

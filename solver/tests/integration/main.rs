@@ -5,6 +5,7 @@ mod assembly;
 mod boundary_points;
 mod breakdown;
 mod checkpoint;
+mod comments;
 mod common;
 mod consistent_mass;
 mod contact;

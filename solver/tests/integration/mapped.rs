@@ -1,5 +1,6 @@
-//! Points of patches with a geometry: sweep, assembly and integrals against plain sums over the NURBS basis itself, with
-//! knots whose spans differ by up to 100, weights from 0.1 to 10, and degrees that differ between the directions.
+//! Points of patches with a geometry: sweep, assembly and integrals against plain sums over the NURBS basis
+//! itself, with knots whose spans differ by up to 100, weights from 0.1 to 10, and degrees that differ
+//! between the directions.
 
 use crate::common::plain_points::{PlainPoint, assert_close, largest, plain_points};
 use crate::common::{Random, annulus, bent_patch, body, random_patch};

@@ -1,5 +1,5 @@
-//! Whole runs on patches with a geometry: the same as over a rectangle where the geometry is one, the same bits for any
-//! number of threads, energies that close, and pictures and crack tips where they belong.
+//! Whole runs on patches with a geometry: the same as over a rectangle where the geometry is one, the same
+//! bits for any number of threads, energies that close, and pictures and crack tips where they belong.
 
 use crate::common::{annulus, bent_patch, brittle, elastic_scene, notched_plate, patch_scene, run, with_threads};
 use fisura::dynamics::energy::Sample;
@@ -66,7 +66,8 @@ fn an_affine_patch_is_the_rectangle() {
     }
 }
 
-/// With fracture both are as close as the tolerance of the phase-field solver, 1e-13, makes them; measured 2.4e-14.
+/// With fracture both are as close as the tolerance of the phase-field solver, 1e-13, makes them; measured
+/// 2.4e-14.
 #[test]
 fn an_affine_patch_fractures_like_the_rectangle() {
     for degree in 1..=4 {
@@ -121,7 +122,8 @@ fn any_number_of_threads_gives_the_same_bits() {
     }
 }
 
-/// Pixels outside the ring are empty, those on the crack broken; the tip begins at the crack's end, and only moves outwards.
+/// Pixels outside the ring are empty, those on the crack broken; the tip begins at the crack's end, and only
+/// moves outwards.
 #[test]
 fn pictures_and_tips_lie_where_the_patch_does() {
     let (simulation, samples) = run(&cracked_annulus());

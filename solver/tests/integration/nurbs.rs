@@ -1,4 +1,5 @@
-//! NURBS patches with random knots, weights and degrees: what must hold for each, and what refinement must not change.
+//! NURBS patches with random knots, weights and degrees: what must hold for each, and what refinement must
+//! not change.
 
 use approx::assert_abs_diff_eq;
 use fisura::linear_algebra::extremes::larger;
@@ -9,7 +10,8 @@ use fisura::splines::spline::SplineSpace;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-/// One direction: degree and spans between 1 and 100 (arbitrary units), each inner knot repeated up to degree times.
+/// One direction: degree and spans between 1 and 100 (arbitrary units), each inner knot repeated up to degree
+/// times.
 #[derive(Debug, Clone)]
 struct Direction {
     degree: usize,
@@ -115,7 +117,8 @@ proptest! {
                 for d in 0..2 {
                     // Central differences extrapolated to O(step⁴): round-off over the step is what is left.
                     let h = lengths(&spaces, [i, j])[d];
-                    // Steps of 3e-6 spans, since weights 100 apart make the basis change over a hundredth of a span.
+                    // Steps of 3e-6 spans, since weights 100 apart make the basis change over a hundredth of
+                    // a span.
                     let difference = |step: f64| {
                         let [plus, minus] = [step, -step].map(|step| {
                             let mut moved = centre;

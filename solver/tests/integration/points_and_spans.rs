@@ -31,7 +31,8 @@ fn close(seen: [f64; 2], expected: [f64; 2], tolerance: f64) -> bool {
 #[test]
 fn in_the_total_frame_points_and_corners_are_displaced() {
     let mut scene = notched_plate(2e6);
-    scene.mesh = Mesh::uniform([2; 2], [0.0; 2], [0.011, 0.006], [44, 24]); // spans without material beside the body
+    // Spans without material beside the body.
+    scene.mesh = Mesh::uniform([2; 2], [0.0; 2], [0.011, 0.006], [44, 24]);
     scene.bodies[0].velocity = [3.0, -2.0];
     let (simulation, samples) = run(&scene);
     let points = points(&simulation);
@@ -39,7 +40,8 @@ fn in_the_total_frame_points_and_corners_are_displaced() {
     for point in &points {
         assert_eq!(point.present, [0, 1].map(|d| point.position[d] + point.displacement[d]));
         for d in 0..2 {
-            momentum[d] += 2450.0 * 0.01 * 0.005 * point.velocity[d] / points.len() as f64; // all of the same volume
+            // All of the same volume.
+            momentum[d] += 2450.0 * 0.01 * 0.005 * point.velocity[d] / points.len() as f64;
             moved[d] += point.displacement[d] / points.len() as f64;
         }
     }
@@ -56,7 +58,8 @@ fn in_the_total_frame_points_and_corners_are_displaced() {
     assert!((areas.iter().sum::<f64>() / 5e-5 - 1.0).abs() < 1e-3, "strains are small");
     let frame = simulation.total_frame().unwrap();
     for corner in &grid.corners {
-        let reference = corner.position.map(|x| (x / 0.25e-3).round() * 0.25e-3); // displacements are far below a span
+        // Displacements are far below a span.
+        let reference = corner.position.map(|x| (x / 0.25e-3).round() * 0.25e-3);
         let at = |field| frame.patch().evaluate(field, reference).unwrap().value;
         let displacement = frame.displacement().each_ref().map(|u| at(u));
         assert!(close(corner.position, [0, 1].map(|d| reference[d] + displacement[d]), 1e-15), "{corner:?}");

@@ -1,5 +1,5 @@
-//! A crack is there only if its seed reaches the material points all along it: where validation says that it does, the phase
-//! field is broken along the crack, and where it does not, validation says what would help.
+//! A crack is there only if its seed reaches the material points all along it: where validation says that it
+//! does, the phase field is broken along the crack, and where it does not, validation says what would help.
 
 use crate::common::{notched_plate, rectangle};
 use fisura::dynamics::total_frame::TotalFrame;
@@ -81,7 +81,8 @@ fn a_seed_that_passes_is_a_crack_and_the_remedy_of_one_that_does_not_makes_it_on
                 }
                 let (energy, phase) = (energy(&scene), largest_phase(&scene));
                 assert!(energy > 0.85, "{name}: {energy} of Gc");
-                assert!(phase < 0.4 || h > L0, "{name}: c = {phase} on the crack"); // coarser splines cannot follow a slanted one
+                // Coarser splines cannot follow a slanted one.
+                assert!(phase < 0.4 || h > L0, "{name}: c = {phase} on the crack");
             }
         }
     }

@@ -156,7 +156,8 @@ proptest! {
         check(turned(-1.0, mean * gap, angle));
     }
 
-    /// sigma± = d psi±/d e; both energies have continuous first derivatives, so central differences see it anywhere.
+    /// sigma± = d psi±/d e; both energies have continuous first derivatives, so central differences see it
+    /// anywhere.
     #[test]
     fn stresses_are_the_slopes_of_the_energies(
         xx in -1.0f64..1.0, yy in -1.0f64..1.0, xy in -1.0f64..1.0, dxx in -1.0f64..1.0, dyy in -1.0f64..1.0, dxy in -1.0f64..1.0

@@ -101,7 +101,8 @@ fn naive(
     result
 }
 
-/// Compares one sweep with the plain evaluation, to 1e-13 of the largest value; returns points and their total area.
+/// Compares one sweep with the plain evaluation, to 1e-13 of the largest value; returns points and their
+/// total area.
 fn compare(mesh: &Mesh, body: &Body) -> (usize, f64) {
     let name = format!("degree {:?}, {:?}, {:?}", mesh.degree, body.particles_per_cell, body.shape);
     let patch = Patch::new(mesh);
@@ -195,7 +196,8 @@ fn graded_and_repeated_knots() {
     }
 }
 
-/// Knots of multiplicity p, where the basis is only continuous: rows of spans then advance by p control rows at once.
+/// Knots of multiplicity p, where the basis is only continuous: rows of spans then advance by p control rows
+/// at once.
 #[test]
 fn knots_repeated_to_continuity() {
     for degree in 2..=4 {

@@ -121,7 +121,8 @@ fn squeezed(stretch: [f64; 2], safety: f64) -> (TotalFrame, f64) {
     (frame, safety * critical)
 }
 
-/// Small vibrations about a compressed state last just below the critical step of that state, and grow just above it.
+/// Small vibrations about a compressed state last just below the critical step of that state, and grow just
+/// above it.
 #[test]
 fn the_critical_step_of_a_compressed_body_is_where_vibrations_begin_to_grow() {
     for stretch in [[0.8, 0.8], [0.7, 1.0], [0.9, 0.75]] {

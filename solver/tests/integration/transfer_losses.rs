@@ -1,4 +1,5 @@
-//! What the transfers of the updated frame lose of a bar's vibration, with points that stay and points that cross spans.
+//! What the transfers of the updated frame lose of a bar's vibration, with points that stay and points that
+//! cross spans.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -25,8 +26,8 @@ fn bar(degree: usize, cells: usize, held: bool, transfer: Transfer) -> Scene {
     scene
 }
 
-/// Energy of points and elasticity after each of 100 periods (2 s) of a bar in its first mode, points at rest but for
-/// 1e-10 of its length, with steps of a fifth of a span.
+/// Energy of points and elasticity after each of 100 periods (2 s) of a bar in its first mode, points at rest
+/// but for 1e-10 of its length, with steps of a fifth of a span.
 fn energy_of_points(degree: usize, held: bool, transfer: Transfer) -> Vec<f64> {
     let scene = bar(degree, 16, held, transfer);
     let mut frame = UpdatedFrame::new(&scene).unwrap();
@@ -58,7 +59,8 @@ fn musl_keeps_the_energy_of_the_points_where_flip_loses_a_third() {
     }
 }
 
-/// Losses per period over the first energy, for points that cross 1.28 of 32 spans and back: mean of four periods.
+/// Losses per period over the first energy, for points that cross 1.28 of 32 spans and back: mean of four
+/// periods.
 fn loss_per_period(degree: usize, transfer: Transfer) -> f64 {
     let wave = StandingWave(0.04);
     let mut scene = bar(degree, 32, true, transfer);
@@ -73,8 +75,8 @@ fn loss_per_period(degree: usize, transfer: Transfer) -> f64 {
     (0..320 * 4).for_each(|_| frame.step(dt).unwrap());
     let mut end = frame.sample(dt);
     end.close(start.stored());
-    // The wave is followed up to the dispersion of lumped mass (0.12 % of the frequency, 3 % of a radian per period) and
-    // the noise of points that cross spans, and the work of the forcing is booked.
+    // The wave is followed up to the dispersion of lumped mass (0.12 % of the frequency, 3 % of a radian per
+    // period) and the noise of points that cross spans, and the work of the forcing is booked.
     let off = |p: &Point| (p.displacement[0] - wave.displacement(p.reference()[0], frame.time())).abs();
     let off = frame.fields()[0].points().iter().map(off).fold(0.0, larger);
     assert!(off <= 0.04 * 0.08, "{transfer:?}, p = {degree}: {off:e} m off the wave");

@@ -1,5 +1,5 @@
-//! The transfers of the updated frame: what each keeps, and that every loss is booked. See `transfer_losses.rs` for what
-//! they lose.
+//! The transfers of the updated frame: what each keeps, and that every loss is booked. See
+//! `transfer_losses.rs` for what they lose.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -149,7 +149,8 @@ fn angular_momentum_is_kept_by_affine_velocities_and_lost_to_the_filter_of_the_o
             println!("{transfer:?}, p = {degree}: angular momentum {change:.2e} of itself");
             let [least, most] = match transfer {
                 Transfer::Apic => [-1e-12, 1e-12],
-                Transfer::Tpic => [-1e-4, 1e-4], // exact where D grad N = N (x_I − x_p), which splines of degree > 1 are near to
+                // Exact where D grad N = N (x_I − x_p), which splines of degree > 1 are near to.
+                Transfer::Tpic => [-1e-4, 1e-4],
                 Transfer::Flip | Transfer::Musl => [-0.05, 0.0],
                 Transfer::Xpic(_) => [-1.0, -0.3],
                 Transfer::Pic => [-1.01, -0.99],
@@ -159,7 +160,8 @@ fn angular_momentum_is_kept_by_affine_velocities_and_lost_to_the_filter_of_the_o
     }
 }
 
-/// A body that is struck on one side and otherwise left alone, after 400 steps of `fraction` of the critical step.
+/// A body that is struck on one side and otherwise left alone, after 400 steps of `fraction` of the critical
+/// step.
 fn struck(transfer: Transfer, degree: usize, fraction: f64) -> bool {
     let mut scene = scene(degree, [1.0, 1.0], [16, 16], [0.237, 0.25], [0.75, 0.75]);
     let kick = Traction { edge: Edge::Side(Side::Left), stress: [1e-6, 7e-7], ramp: Some(1e6) };

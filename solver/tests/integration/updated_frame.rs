@@ -102,7 +102,8 @@ fn momentum_is_kept_to_round_off_and_angular_momentum_by_every_grid() {
     for sample in &samples {
         let off = (sample.momentum[0] - 30.0 * mass).hypot(sample.momentum[1] + 20.0 * mass);
         assert!(off <= 1e-12 * 36.0 * mass, "t = {}: momentum off by {off:e}", sample.time);
-        // Between points and grid FLIP with lumped mass keeps angular momentum only to the order of the projection.
+        // Between points and grid FLIP with lumped mass keeps angular momentum only to the order of the
+        // projection.
         let lost = (sample.angular_momentum - samples[0].angular_momentum).abs();
         assert!(lost <= 2e-3 * samples[0].angular_momentum.abs(), "t = {}: {lost:e}", sample.time);
     }
@@ -156,8 +157,8 @@ fn the_ledger_closes_in_large_motion_with_driven_and_fixed_sides() {
     assert!(losses.kinetic > 0.0 && losses.imposed > 0.0);
 }
 
-/// Largest differences of kinetic, elastic and fracture energy and external work between the frames, over the external
-/// work, and of the crack tip (m).
+/// Largest differences of kinetic, elastic and fracture energy and external work between the frames, over the
+/// external work, and of the crack tip (m).
 fn notched_plate_in_both_frames(cells: usize) -> ([f64; 4], f64) {
     let moving = notched_plate(cells);
     let mut fixed = moving.clone();
@@ -184,8 +185,8 @@ fn notched_plate_in_both_frames(cells: usize) -> ([f64; 4], f64) {
     (apart.map(|a| a / work), tips_apart)
 }
 
-/// What separates the frames is what FLIP loses, which falls with h: 5 % of the work with h = l0, 1.7 % with h = l0/2; the
-/// crack starts a little later for it.
+/// What separates the frames is what FLIP loses, which falls with h: 5 % of the work with h = l0, 1.7 % with
+/// h = l0/2; the crack starts a little later for it.
 #[test]
 fn a_notched_plate_cracks_as_in_the_total_frame_the_more_so_the_finer_the_mesh() {
     let (coarse, coarse_tips) = notched_plate_in_both_frames(40);
@@ -210,7 +211,8 @@ fn a_flying_cracked_plate_closes_its_ledger() {
     assert!(relative_closure(&samples) <= 1e-3, "closure {:e}", relative_closure(&samples));
 }
 
-/// A block that is struck on one side and otherwise left alone, after 400 steps of `fraction` of the critical step.
+/// A block that is struck on one side and otherwise left alone, after 400 steps of `fraction` of the critical
+/// step.
 fn struck_block(degree: usize, fraction: f64) -> bool {
     let mut scene = scene(degree, 16, [0.00237, 0.0025], [0.0075, 0.0075]);
     let kick = Traction { edge: Edge::Side(Side::Left), stress: [1e4, 7e3], ramp: Some(1.0) };

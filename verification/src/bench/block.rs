@@ -1,5 +1,5 @@
-//! A square block of points in the total frame, and the phases of its step one by one: for stage timings and for the
-//! criterion benchmarks.
+//! A square block of points in the total frame, and the phases of its step one by one: for stage timings and
+//! for the criterion benchmarks.
 
 use fisura::linear_algebra::lane::Lane;
 use fisura::linear_algebra::stencil::Stencil;
@@ -25,8 +25,9 @@ pub const SPAN: f64 = 0.25e-3;
 /// Density of the block, kg/m³.
 pub const DENSITY: f64 = 2450.0;
 
-/// A glass square of `cells` × `cells` spans with `points` × `points` Gauss points each and a crack to its middle. On all
-/// sides the mesh reaches `margin` spans beyond it; from p on, all functions on the body are uniform.
+/// A glass square of `cells` × `cells` spans with `points` × `points` Gauss points each and a crack to its
+/// middle. On all sides the mesh reaches `margin` spans beyond it; from p on, all functions on the body are
+/// uniform.
 pub fn cracked_scene(degree: usize, points: usize, cells: usize, margin: usize) -> Scene {
     let fracture = Fracture {
         critical_energy_release_rate: 3.0,
@@ -135,7 +136,8 @@ impl Block {
         sweep(&self.lattice, self.fields(&[]), &mut kernels, None);
     }
 
-    /// Degraded stress and its forces with a split; `at_points` is the phase field and what is remembered there.
+    /// Degraded stress and its forces with a split; `at_points` is the phase field and what is remembered
+    /// there.
     pub fn degraded_sweep(
         &self,
         split: EnergySplit,
@@ -187,8 +189,8 @@ impl Block {
         add_form(matrix, &self.lattice, Integrand::Diffusion, &Constant(self.model.diffusion()));
     }
 
-    /// The phase-field matrix, and how far `1·K·1` is from the integral of the reaction, relative to it: gradients of a
-    /// constant vanish.
+    /// The phase-field matrix, and how far `1·K·1` is from the integral of the reaction, relative to it:
+    /// gradients of a constant vanish.
     pub fn matrix(&self) -> (Stencil, f64) {
         let mut matrix = Stencil::zeros(self.lattice.grid, self.lattice.degree);
         self.assemble(&mut matrix);

@@ -1,9 +1,10 @@
-//! What this machine can do, measured in the same run: bandwidth of memory and rate of arithmetic on one thread; and what
-//! the elastic sweep and step need of both.
+//! What this machine can do, measured in the same run: bandwidth of memory and rate of arithmetic on one
+//! thread; and what the elastic sweep and step need of both.
 //!
-//! Bytes and operations are counted from the code, not by hardware. Per point of a sweep with n × n points per span
-//! ([`flops`]): partial sums in x of the one control row that a row of spans adds, sums in y and the physics at the point,
-//! and the way back. Bytes count what a step streams through memory if nothing stays in a cache ([`sweep_bytes`]).
+//! Bytes and operations are counted from the code, not by hardware. Per point of a sweep with n × n points
+//! per span ([`flops`]): partial sums in x of the one control row that a row of spans adds, sums in y and the
+//! physics at the point, and the way back. Bytes count what a step streams through memory if nothing stays in
+//! a cache ([`sweep_bytes`]).
 
 use std::hint::black_box;
 
@@ -42,8 +43,8 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     })
 }
 
-/// Three arrays far larger than any cache: `a = b + s c`, counted as 24 bytes a number; the line of `a` that is read before it
-/// is written is not counted, as is customary.
+/// Three arrays far larger than any cache: `a = b + s c`, counted as 24 bytes a number; the line of `a` that
+/// is read before it is written is not counted, as is customary.
 fn triad(numbers: usize) -> Contestant<'static> {
     let (mut a, b, c) = (vec![0.0; numbers], vec![1.0; numbers], vec![2.0; numbers]);
     let mut record = BenchRecord::new("ceilings/triad", "memory bandwidth (triad)", 24.0 * numbers as f64, "byte");
@@ -62,8 +63,8 @@ fn triad(numbers: usize) -> Contestant<'static> {
     })
 }
 
-/// Polynomials in Horner's form of numbers in the innermost cache, compiled as the sweeps are: the numbers do not depend on each
-/// other, and a load and a store are shared by [`DEGREE`] multiply-adds.
+/// Polynomials in Horner's form of numbers in the innermost cache, compiled as the sweeps are: the numbers do
+/// not depend on each other, and a load and a store are shared by [`DEGREE`] multiply-adds.
 struct Polynomials<'a> {
     numbers: &'a mut [f64],
     factor: f64,
@@ -121,8 +122,8 @@ pub fn flops(p: usize, n: usize) -> f64 {
     along_x / (n * n) + along_y + PHYSICS
 }
 
-/// Bytes an elastic sweep streams per point, with `n` × `n` points per span: two displacements read, two forces set to zero,
-/// read and written.
+/// Bytes an elastic sweep streams per point, with `n` × `n` points per span: two displacements read, two
+/// forces set to zero, read and written.
 pub fn sweep_bytes(n: usize) -> f64 {
     (2.0 * 8.0 + 2.0 * 3.0 * 8.0) / (n * n) as f64
 }

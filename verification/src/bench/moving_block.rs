@@ -87,8 +87,8 @@ impl MovingBlock {
         });
     }
 
-    /// Velocities and accelerations of the control points, and a kick of `dt` seconds. What [`Self::points_to_grid`] left is
-    /// used up.
+    /// Velocities and accelerations of the control points, and a kick of `dt` seconds. What
+    /// [`Self::points_to_grid`] left is used up.
     pub fn grid(&mut self, dt: f64) {
         self.nodes.divide_by_mass();
         self.nodes.impose_velocities();
@@ -96,7 +96,8 @@ impl MovingBlock {
         self.nodes.kick(dt);
     }
 
-    /// Velocity, position, strain and stress of the points after a step of `dt` seconds; zero leaves them where they are.
+    /// Velocity, position, strain and stress of the points after a step of `dt` seconds; zero leaves them
+    /// where they are.
     pub fn grid_to_points(&mut self, dt: f64) -> StripMotion {
         let Self { patch, points, cells, nodes, moduli } = self;
         let patch = &*patch;
@@ -129,8 +130,8 @@ impl MovingBlock {
         })
     }
 
-    /// Largest difference of the accelerations, recomputed phase by phase, from those of the solver's own step, over the
-    /// largest of these.
+    /// Largest difference of the accelerations, recomputed phase by phase, from those of the solver's own
+    /// step, over the largest of these.
     pub fn deviation(&self) -> f64 {
         let mut again = Self {
             patch: self.patch.clone(),
@@ -173,8 +174,8 @@ pub fn minimal<const P: usize>(points: usize, cells: usize) -> Result<(Minimal<P
     Ok((Minimal::new(&scene.mesh, field.points(), field.moduli(), DENSITY), dt))
 }
 
-/// Takes `steps` steps with the solver and with the minimal kernel on a block of `cells` × `cells` spans: the largest difference
-/// of their nodal accelerations over the largest acceleration.
+/// Takes `steps` steps with the solver and with the minimal kernel on a block of `cells` × `cells` spans: the
+/// largest difference of their nodal accelerations over the largest acceleration.
 ///
 /// # Errors
 /// If a step cannot be increment.

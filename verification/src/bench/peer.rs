@@ -5,9 +5,9 @@
 //! - `particles.csv`: `x, y, volume, vx, vy` (m, m², m/s), one row per point;
 //! - `block.json`: material, time step, number of steps, splines and the grid they live on.
 //!
-//! It runs the steps and leaves `result.csv` there, the same columns and rows at the end, which are held against ours
-//! ([`block`]). It is run with two numbers of steps, and the difference of its times counts: start and end of the program
-//! cancel.
+//! It runs the steps and leaves `result.csv` there, the same columns and rows at the end, which are held
+//! against ours ([`block`]). It is run with two numbers of steps, and the difference of its times counts:
+//! start and end of the program cancel.
 
 pub mod block;
 mod program;
@@ -22,8 +22,8 @@ use program::Program;
 
 /// Least processor time of the steps that counts, s: the system tells the time of other programs to 10 ms.
 const SHORTEST: f64 = 0.1;
-/// Relative difference from our positions and velocities that counts as the same answer: other shape functions at the edges
-/// and other transfers that lose next to nothing are allowed.
+/// Relative difference from our positions and velocities that counts as the same answer: other shape
+/// functions at the edges and other transfers that lose next to nothing are allowed.
 pub const SAME: f64 = 0.05;
 
 /// Folders of the exchange: few steps, and many.

@@ -1,10 +1,12 @@
-//! What an error of the impact-loaded plate costs: whole runs to 80 µs, from the scene in memory to the last row of the
-//! history, in processor time of all threads. The error is the kinetic energy against the independent finite elements, as
-//! the cases of the suite measure it; the finite elements themselves stand beside it with what they took.
+//! What an error of the impact-loaded plate costs: whole runs to 80 µs, from the scene in memory to the last
+//! row of the history, in processor time of all threads. The error is the kinetic energy against the
+//! independent finite elements, as the cases of the suite measure it; the finite elements themselves stand
+//! beside it with what they took.
 //!
-//! Besides equal spans and the tolerance of the suite there is what someone in a hurry would run: spans twice as long where no
-//! crack runs, and a tolerance of the phase field that changes the energies by about as much as the finest meshes are off. What
-//! a tolerance does to the energies is a diagram of its own, against a run with 2e-8.
+//! Besides equal spans and the tolerance of the suite there is what someone in a hurry would run: spans twice
+//! as long where no crack runs, and a tolerance of the phase field that changes the energies by about as much
+//! as the finest meshes are off. What a tolerance does to the energies is a diagram of its own, against a run
+//! with 2e-8.
 
 use std::sync::Arc;
 
@@ -40,8 +42,8 @@ const TIGHT_TOLERANCE: f64 = 2e-8;
 const FINEST_QUARTIC: f64 = 1.0;
 /// Tolerance of the phase field for someone in a hurry.
 const LOOSE_TOLERANCE: f64 = 1e-3;
-/// Where the short spans begin in x and end in y for someone in a hurry, m: the crack starts at x = 50 mm and is 14.3 mm off the axis at
-/// the right edge.
+/// Where the short spans begin in x and end in y for someone in a hurry, m: the crack starts at x = 50 mm and
+/// is 14.3 mm off the axis at the right edge.
 const SHORT_SPANS: [f64; 2] = [44e-3, 36e-3];
 
 /// Runs the half plate on its meshes.
@@ -80,8 +82,8 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
         })
 }
 
-/// Steps of the plate while it cracks, on one thread, and in each of them the part of the phase field: the same solve, from the
-/// same start with the same history, done once more and timed on its own.
+/// Steps of the plate while it cracks, on one thread, and in each of them the part of the phase field: the
+/// same solve, from the same start with the same history, done once more and timed on its own.
 fn share(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     let (scene, run_up, steps) = if settings.quick {
         (half(settings, 2, 1.0)?.scene, 400, 20)
@@ -130,8 +132,8 @@ fn share_of(scene: &Scene, run_up: usize, steps: usize) -> Result<Vec<BenchRecor
     Ok(vec![whole, solve])
 }
 
-/// The half plate of the cases with square spans of `h` length scales, as many Gauss points per direction as the degree but at
-/// least two, without pictures.
+/// The half plate of the cases with square spans of `h` length scales, as many Gauss points per direction as
+/// the degree but at least two, without pictures.
 ///
 /// # Errors
 /// If the case is missing or wrong.
@@ -257,7 +259,8 @@ fn error_of_kinetic(history: &Table, factor: f64, reference: &ReferenceCurve) ->
     })
 }
 
-/// Largest difference of kinetic, elastic and fracture energy from those of another run, over the largest value of each.
+/// Largest difference of kinetic, elastic and fracture energy from those of another run, over the largest
+/// value of each.
 fn difference_of_energies(history: &Table, other: &Table) -> Option<AnswerError> {
     let mut value = 0.0;
     for name in ["kinetic_j", "elastic_j", "fracture_j"] {

@@ -51,7 +51,8 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Spread of some values; zeros if there are none. The median of an even number is the mean of the middle two.
+    /// Spread of some values; zeros if there are none. The median of an even number is the mean of the middle
+    /// two.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut sorted: Vec<f64> = values.into_iter().collect();
         sorted.sort_by(f64::total_cmp);
@@ -162,8 +163,8 @@ impl BenchRecord {
         self
     }
 
-    /// Notes whether the answer held, and what it was. Of several answers the last is kept, unless one did not hold: then the
-    /// first of those.
+    /// Notes whether the answer held, and what it was. Of several answers the last is kept, unless one did
+    /// not hold: then the first of those.
     pub fn verify(&mut self, holds: bool, answer: impl Into<String>) {
         if self.verified || self.answer == NOTHING {
             (self.verified, self.answer) = (holds, answer.into());

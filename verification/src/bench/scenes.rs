@@ -1,5 +1,5 @@
-//! Only what a scene declares is modelled: time and memory of scenes that differ in their physics, in both frames; and half of
-//! a symmetric plate against the whole.
+//! Only what a scene declares is modelled: time and memory of scenes that differ in their physics, in both
+//! frames; and half of a symmetric plate against the whole.
 //!
 //! Blocks of equal numbers of points, p = 2 with 2 × 2 points per span, one thread.
 

@@ -1,8 +1,10 @@
-//! The phase-field solve of a cold crack: incomplete Cholesky against a plain Jacobi preconditioner and a direct solver.
+//! The phase-field solve of a cold crack: incomplete Cholesky against a plain Jacobi preconditioner and a
+//! direct solver.
 //!
-//! The length scale is one span or two, which is what decides how many iterations a plain solver needs: ids are
-//! `solves/p<degree>/l<spans>/<solver>`. One matrix, one start (c = 1 everywhere), one tolerance, one thread. The incomplete factors count as part of their
-//! solve, and so does the numeric factorisation of the direct one; its symbolic part is done once and left out.
+//! The length scale is one span or two, which is what decides how many iterations a plain solver needs: ids
+//! are `solves/p<degree>/l<spans>/<solver>`. One matrix, one start (c = 1 everywhere), one tolerance, one
+//! thread. The incomplete factors count as part of their solve, and so does the numeric factorisation of the
+//! direct one; its symbolic part is done once and left out.
 
 use fisura::linear_algebra::cholesky::SparseCholesky;
 use fisura::linear_algebra::conjugate_gradients::{ConjugateGradients, Remaining};
@@ -135,8 +137,8 @@ fn cholesky_bytes(matrix: &Stencil) -> Result<usize, BenchError> {
     factor.map(|f| f.bytes()).ok_or_else(|| BenchError::other("the matrix of the phase field is not positive definite"))
 }
 
-/// Conjugate gradients preconditioned by the diagonal: improves `x` until its error in the energy norm is about `tolerance`, and
-/// counts the iterations.
+/// Conjugate gradients preconditioned by the diagonal: improves `x` until its error in the energy norm is
+/// about `tolerance`, and counts the iterations.
 fn jacobi(matrix: &Stencil, b: &[f64], x: &mut [f64], tolerance: f64, limit: usize) -> usize {
     let grid = matrix.grid;
     let mut inverse = grid.zeros();

@@ -1,7 +1,7 @@
 //! Where the time of a step goes, phase by phase, and what a straightforward kernel of the same degree takes.
 //!
-//! Blocks of 2 × 2 points per span, one thread. Phases are called through the solver's own functions on a state of their own; ids
-//! are `stages/p<degree>/<phase>`.
+//! Blocks of 2 × 2 points per span, one thread. Phases are called through the solver's own functions on a
+//! state of their own; ids are `stages/p<degree>/<phase>`.
 
 use std::hint::black_box;
 
@@ -221,8 +221,8 @@ fn steps<'a, const P: usize>(block: &'a Block, cells: usize) -> Result<Vec<Conte
     Ok(contestants)
 }
 
-/// Accelerations of the minimal kernel against those of the sweep of the total frame under the same displacement: the largest
-/// difference over the largest acceleration.
+/// Accelerations of the minimal kernel against those of the sweep of the total frame under the same
+/// displacement: the largest difference over the largest acceleration.
 fn sweep_deviation<const P: usize>() -> Result<f64, BenchError> {
     let block = Block::new(P, POINTS, SMALL, P)?;
     let grid = block.lattice.grid;

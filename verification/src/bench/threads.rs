@@ -1,5 +1,5 @@
-//! What more threads bring: steps of an elastic block and of the plate while it cracks, in wall time. The displacements after
-//! all steps must be the same bits for any number of threads.
+//! What more threads bring: steps of an elastic block and of the plate while it cracks, in wall time. The
+//! displacements after all steps must be the same bits for any number of threads.
 
 use fisura::Simulation;
 use fisura::scene::Scene;

@@ -48,7 +48,8 @@ pub fn time(work: impl FnOnce()) -> Sample {
     watch.read()
 }
 
-/// Calls of a short piece of work, given the time of one, that make a sample of about a twentieth of a second.
+/// Calls of a short piece of work, given the time of one, that make a sample of about a twentieth of a
+/// second.
 fn calls_of(once: Sample) -> usize {
     ((0.05 / once.cpu_s.max(1e-7)).ceil() as usize).clamp(1, 2000)
 }
@@ -90,8 +91,8 @@ impl<'a> Contestant<'a> {
     }
 }
 
-/// Runs the contestants one after the other, round after round: what disturbs the machine meets all of them. One whose
-/// samples add up to more than `budget` seconds is left out of further rounds.
+/// Runs the contestants one after the other, round after round: what disturbs the machine meets all of them.
+/// One whose samples add up to more than `budget` seconds is left out of further rounds.
 ///
 /// # Errors
 /// The first contestant that cannot be run.

@@ -1,10 +1,11 @@
 //! Work and precision: what an error costs on one problem with an exact solution.
 //!
-//! The standing wave of [`crate::exact::standing_wave`] on rollers, small enough (a millionth of the amplitude there) that the
-//! updated frame solves the same linear problem. It needs no loads, so that steps cost what steps of a scene cost. Only
-//! steps are timed. Explicit steps of 0.8 of the critical one with the lumped mass; with the consistent mass steps in
-//! proportion to h^((p + 1)/2), so that time and space are of the same order. The error is that of the displacement at the
-//! end, relative, in L2 (in the updated frame: at the points, weighted with their volumes).
+//! The standing wave of [`crate::exact::standing_wave`] on rollers, small enough (a millionth of the
+//! amplitude there) that the updated frame solves the same linear problem. It needs no loads, so that steps
+//! cost what steps of a scene cost. Only steps are timed. Explicit steps of 0.8 of the critical one with the
+//! lumped mass; with the consistent mass steps in proportion to h^((p + 1)/2), so that time and space are of
+//! the same order. The error is that of the displacement at the end, relative, in L2 (in the updated frame:
+//! at the points, weighted with their volumes).
 
 use fisura::dynamics::energy;
 use fisura::dynamics::projection::Projection;
@@ -74,7 +75,8 @@ fn ways() -> impl Iterator<Item = Way> {
 }
 
 impl Way {
-    /// With the numbers of spans per direction. Order 2 needs finer meshes for the same error than order p + 1.
+    /// With the numbers of spans per direction. Order 2 needs finer meshes for the same error than order p +
+    /// 1.
     fn meshes(self, quick: bool) -> impl Iterator<Item = (Self, usize)> {
         let first = if self.mass == Mass::Lumped { 2 * COARSEST } else { COARSEST };
         (0..if quick { 3 } else { 4 }).map(move |level| (self, first << level))
@@ -221,7 +223,8 @@ impl Wave {
         Ok(timed)
     }
 
-    /// Steps a copy of a body to the end: what the steps took, the body, and the closure of its ledger over the largest term.
+    /// Steps a copy of a body to the end: what the steps took, the body, and the closure of its ledger over
+    /// the largest term.
     fn march<B: Clone>(
         &self,
         body: &B,
@@ -284,7 +287,8 @@ mod tests {
         let total =
             |mass, degree| Way { frame: Frame::Total, transfer: Transfer::Flip, mass, layout: Layout::Gauss, degree };
         let updated = |transfer| Way { frame: Frame::Updated, transfer, ..total(Mass::Lumped, 2) };
-        // Points that cross spans have larger errors on such meshes, and are of order 2 as the lumped mass is.
+        // Points that cross spans have larger errors on such meshes, and are of order 2 as the lumped mass
+        // is.
         for (way, least, largest) in [
             (total(Mass::Lumped, 2), 3.0, 0.2),
             (total(Mass::Consistent, 3), 12.0, 0.2),

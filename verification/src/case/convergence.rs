@@ -10,8 +10,8 @@
 //! cells = [4, 8, 16, 32]        # spans per direction
 //! ```
 //!
-//! `frame = "updated"` lets the points of a finite motion cross the spans of a fixed mesh; `transfers = ["flip", "apic"]`
-//! then gives a curve for each.
+//! `frame = "updated"` lets the points of a finite motion cross the spans of a fixed mesh;
+//! `transfers = ["flip", "apic"]` then gives a curve for each.
 
 use fisura::scene::{Frame, Layout, Mass, Plane, Transfer};
 
@@ -87,7 +87,8 @@ pub struct ConvergenceSetup {
     pub loading: Loading,
     /// Mesh or time step.
     pub refine: Refine,
-    /// Time step on the coarsest mesh over its critical one; the fractions tried, where the time step is refined.
+    /// Time step on the coarsest mesh over its critical one; the fractions tried, where the time step is
+    /// refined.
     pub safety: Vec<f64>,
     /// End of the simulated time, s, if not that of the problem.
     pub end_time: Option<f64>,

@@ -1,6 +1,6 @@
-//! Axis-aligned displacement of the unit square, manufactured, after Wallstedt & Guilkey (2008), *An evaluation of explicit
-//! time integration schemes for use with the generalized interpolation material point method*, Journal of Computational
-//! Physics 227.
+//! Axis-aligned displacement of the unit square, manufactured, after Wallstedt & Guilkey (2008), *An
+//! evaluation of explicit time integration schemes for use with the generalized interpolation material point
+//! method*, Journal of Computational Physics 227.
 //!
 //! ```text
 //! u = A sin(2πX) sin(πct),      v = A sin(2πY) sin(πct + 2π/3),      c = sqrt(E/rho)
@@ -8,11 +8,12 @@
 //! b = rho a − Div P,      E = 1 Pa, nu = 0.3, rho = 1 kg/m³,      A = 0.05 m unless said
 //! ```
 //!
-//! The displacement is theirs, the law is fisura's own (Hencky instead of neo-Hookean), so body forces differ. F_i lies
-//! within 1 ± 2πA: 0.69 and 1.31 at A = 0.05, where material points with linear shape functions blow up. The period is 2 s.
+//! The displacement is theirs, the law is fisura's own (Hencky instead of neo-Hookean), so body forces
+//! differ. F_i lies within 1 ± 2πA: 0.69 and 1.31 at A = 0.05, where material points with linear shape
+//! functions blow up. The period is 2 s.
 //!
-//! Boundary conditions: rollers on all four sides of [0, 1]²; shear vanishes everywhere. Displacement and velocity are not zero
-//! at t = 0.
+//! Boundary conditions: rollers on all four sides of [0, 1]²; shear vanishes everywhere. Displacement and
+//! velocity are not zero at t = 0.
 
 use std::f64::consts::PI;
 

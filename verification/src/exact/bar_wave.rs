@@ -7,15 +7,16 @@
 //! hencky-wave    P = E ln(F)/F       b = rho a − dP/dX
 //! ```
 //!
-//! `finite-wave` is an exact solution without any load at any amplitude, since P is linear in F. It is what the total
-//! frame computes with small kinematics, where shape functions and stress refer to the reference configuration; in the
-//! updated frame it needs P = E (F − 1) as a law of its own. F lies within 0.75 and 1.25: points cross many spans of a
-//! fine mesh.
+//! `finite-wave` is an exact solution without any load at any amplitude, since P is linear in F. It is what
+//! the total frame computes with small kinematics, where shape functions and stress refer to the reference
+//! configuration; in the updated frame it needs P = E (F − 1) as a law of its own. F lies within 0.75 and
+//! 1.25: points cross many spans of a fine mesh.
 //!
-//! `hencky-wave` has the same displacement with the logarithmic law, which is what `kinematics = "finite"` computes.
+//! `hencky-wave` has the same displacement with the logarithmic law, which is what `kinematics = "finite"`
+//! computes.
 //!
-//! Boundary conditions: no displacement along x at X = 0 and X = 1. As nu = 0 nothing happens across: other sides may be
-//! free or on rollers, and both plane states agree. It starts from u = 0 with a velocity.
+//! Boundary conditions: no displacement along x at X = 0 and X = 1. As nu = 0 nothing happens across: other
+//! sides may be free or on rollers, and both plane states agree. It starts from u = 0 with a velocity.
 
 use std::f64::consts::PI;
 

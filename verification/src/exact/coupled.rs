@@ -1,5 +1,5 @@
-//! Elastodynamics with a phase field, manufactured, in tension everywhere and at all times, for domains within
-//! [0, 1]² (m) and t in [0, 1] (s).
+//! Elastodynamics with a phase field, manufactured, in tension everywhere and at all times, for domains
+//! within [0, 1]² (m) and t in [0, 1] (s).
 //!
 //! ```text
 //! u = α(t) [x + 0.15 sin(1.7 x + 0.9 y + 0.3)],      α = 0.20 + 0.15 sin(1.2 t + 0.1)
@@ -8,12 +8,13 @@
 //! E = 1 Pa, nu = 0.3, rho = 1 kg/m³, l0 = 0.1 m, Gc = 0.02 J/m², k = 0
 //! ```
 //!
-//! Both principal strains are positive, so `psi− = 0` and the spectral split is smooth: `psi+ = ½ e : C e` and
-//! `sigma = c² C e`. psi+ grows strictly in time everywhere, hence H = psi+. A change of sign would make the split rough
-//! and H stale, and orders of convergence would fall without a bug.
+//! Both principal strains are positive, so `psi− = 0` and the spectral split is smooth: `psi+ = ½ e : C e`
+//! and `sigma = c² C e`. psi+ grows strictly in time everywhere, hence H = psi+. A change of sign would make
+//! the split rough and H stale, and orders of convergence would fall without a bug.
 //!
-//! It needs the body force `rho a − Div sigma`, the source of the phase field, the flux `4 l0² grad c · n` and the displacement or
-//! the traction on the boundary, and non-zero displacement, velocity and history at t = 0. c lies in (0.45, 0.95).
+//! It needs the body force `rho a − Div sigma`, the source of the phase field, the flux `4 l0² grad c · n`
+//! and the displacement or the traction on the boundary, and non-zero displacement, velocity and history at t
+//! = 0. c lies in (0.45, 0.95).
 
 use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Fracture, Frame, Kinematics, Material, Plane, Split};

@@ -1,7 +1,7 @@
 //! Numbers that carry their derivatives with respect to x, y and t (forward differentiation).
 //!
-//! A [`Dual`] is a value with its gradient, and the rules of calculus are its arithmetic. Nested once, in a [`Jet`], the
-//! entries of the gradient carry their own gradients, which are the second derivatives:
+//! A [`Dual`] is a value with its gradient, and the rules of calculus are its arithmetic. Nested once, in a
+//! [`Jet`], the entries of the gradient carry their own gradients, which are the second derivatives:
 //!
 //! ```
 //! use fisura_verification::exact::dual::{Jet, Scalar};

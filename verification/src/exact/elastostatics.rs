@@ -1,5 +1,5 @@
-//! A smooth static displacement of linear elasticity, manufactured. It is defined everywhere and meant for domains in and
-//! around [0, 2]².
+//! A smooth static displacement of linear elasticity, manufactured. It is defined everywhere and meant for
+//! domains in and around [0, 2]².
 //!
 //! ```text
 //! u = 0.10 sin(1.3 x + 0.4) cos(0.9 y − 0.3) + 0.03 exp(0.5 x − 0.4 y)
@@ -7,7 +7,8 @@
 //! b = −Div sigma,      E = 1 Pa, nu = 0.3, rho = 1 kg/m³
 //! ```
 //!
-//! Boundary conditions: the displacement, or the traction sigma n, neither of which vanishes anywhere in particular.
+//! Boundary conditions: the displacement, or the traction sigma n, neither of which vanishes anywhere in
+//! particular.
 
 use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane, Side};

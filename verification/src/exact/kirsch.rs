@@ -8,11 +8,12 @@
 //! v = T a/(8 mu) [ (r/a) (kappa − 3) sin θ + (2 a/r) ((1 − kappa) sin θ + sin 3θ) − (2 a³/r³) sin 3θ ]
 //! ```
 //!
-//! (textbook form, as in the tests of isogeometric analysis: Hughes, Cottrell & Bazilevs 2005). The stress does not
-//! depend on kappa; the hoop stress at the hole is T (1 − 2 cos 2θ), 3 T at θ = ±π/2.
+//! (textbook form, as in the tests of isogeometric analysis: Hughes, Cottrell & Bazilevs 2005). The stress
+//! does not depend on kappa; the hoop stress at the hole is T (1 − 2 cos 2θ), 3 T at θ = ±π/2.
 //!
-//! Valid for r ≥ a. Boundary conditions: none on the hole, which is free of traction; on an outer boundary the traction
-//! sigma n or the displacement; on the axes y = 0 and x = 0 symmetry (normal displacement and shear vanish).
+//! Valid for r ≥ a. Boundary conditions: none on the hole, which is free of traction; on an outer boundary
+//! the traction sigma n or the displacement; on the axes y = 0 and x = 0 symmetry (normal displacement and
+//! shear vanish).
 
 use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane, Side};

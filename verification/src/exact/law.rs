@@ -1,10 +1,11 @@
-//! Stress laws on fields that know their derivatives: the divergence of the stress follows without another formula.
+//! Stress laws on fields that know their derivatives: the divergence of the stress follows without another
+//! formula.
 //!
 //! Linear elasticity: `sigma = lam* tr(e) I + 2 mu e` with `e = sym(grad u)`.
 //!
-//! Hencky: `tau = lam* tr(e) I + 2 mu e` with `e = ½ ln B`, `B = F Fᵀ`, `F = I + grad u`, and `P = tau F⁻ᵀ`. The logarithm
-//! of the 2×2 tensor needs no eigenvectors. With `m = tr B/2`, the deviator `D = B − m I` and `z = (D:D)/(2 m²)`, the
-//! principal values of B are `m (1 ± sqrt z)`, and
+//! Hencky: `tau = lam* tr(e) I + 2 mu e` with `e = ½ ln B`, `B = F Fᵀ`, `F = I + grad u`, and `P = tau F⁻ᵀ`.
+//! The logarithm of the 2×2 tensor needs no eigenvectors. With `m = tr B/2`, the deviator `D = B − m I` and
+//! `z = (D:D)/(2 m²)`, the principal values of B are `m (1 ± sqrt z)`, and
 //!
 //! ```text
 //! e = ¼ ln(det B) I + φ(z)/(2 m) D,      φ(z) = artanh(sqrt z)/sqrt z = 1 + z/3 + z²/5 + …

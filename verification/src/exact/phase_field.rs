@@ -1,4 +1,5 @@
-//! The phase-field equation alone, static, with a smooth history field, on [0, 1] × [0, 0.8] (m). Nothing moves.
+//! The phase-field equation alone, static, with a smooth history field, on [0, 1] × [0, 0.8] (m). Nothing
+//! moves.
 //!
 //! ```text
 //! [F + 1] c − 4 l0² Δc = s,      F = 4 l0 (1 − k) H/Gc = 2 + y sin(3 x)
@@ -7,9 +8,9 @@
 //! l0 = 0.1 m, Gc = 1 J/m², k = 0.01
 //! ```
 //!
-//! The first lies in (0.3, 0.9) everywhere and needs its flux `4 l0² grad c · n` on the boundary. The second lies in
-//! [0.25, 0.95], and its normal derivative vanishes on the sides of the rectangle. k is not zero so that a missing 1 − k
-//! shows.
+//! The first lies in (0.3, 0.9) everywhere and needs its flux `4 l0² grad c · n` on the boundary. The second
+//! lies in [0.25, 0.95], and its normal derivative vanishes on the sides of the rectangle. k is not zero so
+//! that a missing 1 − k shows.
 
 use std::f64::consts::PI;
 

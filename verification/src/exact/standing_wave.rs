@@ -1,7 +1,7 @@
 //! Free vibration of a rectangle on rollers: one dilatational and one shear wave, without loads.
 //!
-//! On [0, Lx] × [0, Ly] = [0, 1] × [0, 0.8] (m), with wave vectors `k = (π mx/Lx, π my/Ly)`, unit vectors `n = k/|k|`, and
-//! `C = cos(kx x) cos(ky y)`, `S = sin(kx x) sin(ky y)`:
+//! On [0, Lx] × [0, Ly] = [0, 1] × [0, 0.8] (m), with wave vectors `k = (π mx/Lx, π my/Ly)`, unit vectors
+//! `n = k/|k|`, and `C = cos(kx x) cos(ky y)`, `S = sin(kx x) sin(ky y)`:
 //!
 //! ```text
 //! u = 0.10 sin(ω_P t + 0.7) grad(C)/|k_P| + 0.07 cos(ω_S t) curl(S)/|k_S|,      curl S = (∂S/∂y, −∂S/∂x)
@@ -9,9 +9,10 @@
 //! ω_P = |k_P| sqrt((lam* + 2 mu)/rho),      ω_S = |k_S| sqrt(mu/rho)
 //! ```
 //!
-//! Normal displacement and shear stress vanish on all four sides at all times, so rollers are the only conditions. At
-//! t = 0 neither displacement nor velocity vanishes: the P wave has both, the S wave starts from rest. E = 1 Pa,
-//! nu = 0.3, rho = 1 kg/m³. The angular frequencies are 9.81 and 4.60 rad/s in plane strain, 8.87 and 4.60 in plane stress.
+//! Normal displacement and shear stress vanish on all four sides at all times, so rollers are the only
+//! conditions. At t = 0 neither displacement nor velocity vanishes: the P wave has both, the S wave starts
+//! from rest. E = 1 Pa, nu = 0.3, rho = 1 kg/m³. The angular frequencies are 9.81 and 4.60 rad/s in plane
+//! strain, 8.87 and 4.60 in plane stress.
 
 use std::f64::consts::PI;
 

@@ -1,5 +1,5 @@
-//! Checks that every exact solution is one: against symbolic derivations (`symbolic`), by finite differences that know
-//! nothing of how a solution is programmed (`residual`), and by what its module claims (`claims`).
+//! Checks that every exact solution is one: against symbolic derivations (`symbolic`), by finite differences
+//! that know nothing of how a solution is programmed (`residual`), and by what its module claims (`claims`).
 
 mod claims;
 mod difference;

@@ -1,5 +1,6 @@
-//! Generalised vortex in a ring, manufactured: concentric circles turn by different angles (Kamojjala, Brannon, Sadeghirad &
-//! Guilkey 2015, *Verification tests in solid mechanics*, Engineering with Computers 31).
+//! Generalised vortex in a ring, manufactured: concentric circles turn by different angles (Kamojjala,
+//! Brannon, Sadeghirad & Guilkey 2015, *Verification tests in solid mechanics*, Engineering with Computers
+//! 31).
 //!
 //! On 0.75 ≤ R ≤ 1.25 (m), with s = R − 1:
 //!
@@ -10,13 +11,14 @@
 //! A = 0.1 rad, E = 1 Pa, nu = 0.3, rho = 1 kg/m³
 //! ```
 //!
-//! The bump equals 1 at R = 1 and vanishes at both radii with its slope: there is neither displacement, nor strain, nor
-//! traction, so the boundary may be free or held. It starts from u = 0 with a velocity; the period is 2 s.
+//! The bump equals 1 at R = 1 and vanishes at both radii with its slope: there is neither displacement, nor
+//! strain, nor traction, so the boundary may be free or held. It starts from u = 0 with a velocity; the
+//! period is 2 s.
 //!
-//! The amplitude is smaller than the 1 rad that others use with neo-Hookean materials, because the Hencky law softens in shear:
-//! with these moduli it loses ellipticity between γ = 2 and 3 (and tau of simple shear peaks at 3), beyond which the body is
-//! unstable and no code could follow the solution. Here |γ| ≤ 0.71. Small kinematics would take the rotation by 0.1 rad for
-//! strains of 0.005.
+//! The amplitude is smaller than the 1 rad that others use with neo-Hookean materials, because the Hencky law
+//! softens in shear: with these moduli it loses ellipticity between γ = 2 and 3 (and tau of simple shear
+//! peaks at 3), beyond which the body is unstable and no code could follow the solution. Here |γ| ≤ 0.71.
+//! Small kinematics would take the rotation by 0.1 rad for strains of 0.005.
 
 use std::f64::consts::PI;
 

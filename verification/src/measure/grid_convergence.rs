@@ -1,7 +1,8 @@
-//! Solution verification: what a quantity tends to as the mesh is refined, and how far the finest mesh is from it.
+//! Solution verification: what a quantity tends to as the mesh is refined, and how far the finest mesh is
+//! from it.
 //!
-//! For a scene study whose variants differ in the mesh only. With spans h1 < h2 < h3, values f1, f2, f3 and ratios
-//! r21 = h2/h1, r32 = h3/h2, a quantity that converges as `f = f0 + C h^p` obeys
+//! For a scene study whose variants differ in the mesh only. With spans h1 < h2 < h3, values f1, f2, f3 and
+//! ratios r21 = h2/h1, r32 = h3/h2, a quantity that converges as `f = f0 + C h^p` obeys
 //!
 //! ```text
 //! (f3 - f2)/(f2 - f1) = r21^p (r32^p - 1)/(r21^p - 1)
@@ -9,16 +10,18 @@
 //! GCI = F |(f1 - f2)/f1| / (r21^p - 1)             Roache's grid convergence index
 //! ```
 //!
-//! The order p is found by the fixed-point iteration of Celik et al. (J. Fluids Eng. 130, 078001, 2008), with half the
-//! correction per step, so that uneven ratios converge as well. It is sought without their absolute values: a quantity
-//! that oscillates or departs has no order here, no limit and no index, but a message.
+//! The order p is found by the fixed-point iteration of Celik et al. (J. Fluids Eng. 130, 078001, 2008), with
+//! half the correction per step, so that uneven ratios converge as well. It is sought without their absolute
+//! values: a quantity that oscillates or departs has no order here, no limit and no index, but a message.
 //!
-//! **Safety factor** F: 1.25 with three meshes, 3 with two and an order of theory. Where theory is known and the observed
-//! order departs from it by more than a tenth, p is limited to the range from 1/2 to theory and F is 3 (Oberkampf and Roy,
-//! Verification and Validation in Scientific Computing, 2010, section 8.6.3); within a tenth, p is that of theory.
+//! **Safety factor** F: 1.25 with three meshes, 3 with two and an order of theory. Where theory is known and
+//! the observed order departs from it by more than a tenth, p is limited to the range from 1/2 to theory and
+//! F is 3 (Oberkampf and Roy, Verification and Validation in Scientific Computing, 2010, section 8.6.3);
+//! within a tenth, p is that of theory.
 //!
-//! **Numerical uncertainty** of the value on the finest mesh, for its comparison with a reference: U_num = GCI |f1|. A sequence
-//! that has no index still has an uncertainty, three times its range (Eça and Hoekstra, J. Mar. Sci. Technol. 14, 2009).
+//! **Numerical uncertainty** of the value on the finest mesh, for its comparison with a reference: U_num =
+//! GCI |f1|. A sequence that has no index still has an uncertainty, three times its range (Eça and Hoekstra,
+//! J. Mar. Sci. Technol. 14, 2009).
 
 use fisura::fault;
 use fisura::particles::spans::largest_spans;
@@ -167,7 +170,8 @@ fn order([fine, coarse]: [f64; 2], [r21, r32]: [f64; 2]) -> Result<f64, String> 
     Err("the iteration for the order does not converge: ratios of the meshes too uneven".into())
 }
 
-/// Whether the scenes of a case give a check with `meshes` something to work with: what is wrong, and what would help.
+/// Whether the scenes of a case give a check with `meshes` something to work with: what is wrong, and what
+/// would help.
 ///
 /// # Errors
 /// If not.

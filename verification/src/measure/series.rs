@@ -11,8 +11,8 @@ use crate::extremes::{self, larger};
 use crate::record::{Reference, ReferenceKind};
 use crate::reference::{Library, relative_rms, relative_uncertainty, rms_difference, rms_uncertainty};
 
-/// Root mean square against a reference curve, relative or absolute. Curves of energy increments are compared with
-/// increments.
+/// Root mean square against a reference curve, relative or absolute. Curves of energy increments are compared
+/// with increments.
 pub(super) fn against_curve(name: &str, check: &Check, run: &Run, library: &Library) -> Result<Measured, String> {
     let path = check.reference.as_deref().ok_or("this measure needs reference = \"folder/quantity\"")?;
     let (folder, quantity) = path.split_once('/').ok_or("write reference = \"folder/quantity\"")?;
@@ -50,7 +50,8 @@ pub(super) fn slope(check: &Check, run: &Run) -> Result<f64, String> {
     fitted_slope(window.map(|i| (times[i], values[i]))).ok_or_else(|| "the window holds one sample".to_string())
 }
 
-/// Slope over the power `W sigma²/(rho c_d)` that two plane waves entering over the width W carry into elastic energy.
+/// Slope over the power `W sigma²/(rho c_d)` that two plane waves entering over the width W carry into
+/// elastic energy.
 pub(super) fn slope_over_plane_wave_power(check: &Check, run: &Run) -> Result<Measured, String> {
     let scene = run.scene;
     let body = scene.bodies.first().ok_or("no body")?;
@@ -85,9 +86,9 @@ pub(super) fn largest(check: &Check, run: &Run) -> Result<f64, String> {
     Ok(extremes::largest(run.column(column(check)?)?[run.window(check)?].iter().map(|v| v.abs())))
 }
 
-/// Time (s) and height of the peak in the window: a parabola fitted to the samples within `at` seconds of the highest (its
-/// neighbours, if `at` is absent). A width beyond the ripples of a wave front makes the time of a flat peak well defined.
-/// None if the highest stands at an end of the window: that is no peak.
+/// Time (s) and height of the peak in the window: a parabola fitted to the samples within `at` seconds of the
+/// highest (its neighbours, if `at` is absent). A width beyond the ripples of a wave front makes the time of
+/// a flat peak well defined. None if the highest stands at an end of the window: that is no peak.
 pub(super) fn peak(check: &Check, run: &Run) -> Result<Option<(f64, f64)>, String> {
     let (times, values) = (run.times()?, run.column(column(check)?)?);
     let Ok(window) = run.window(check) else { return Ok(None) };
@@ -120,8 +121,8 @@ pub(super) fn largest_decrease(check: &Check, run: &Run) -> Result<f64, String> 
     Ok(fall / highest.abs())
 }
 
-/// Largest difference of a column from that of the variant `against`, over the largest magnitude of the latter, at equal
-/// times.
+/// Largest difference of a column from that of the variant `against`, over the largest magnitude of the
+/// latter, at equal times.
 pub(super) fn difference(check: &Check, run: &Run, runs: &[Run]) -> Result<f64, String> {
     let name = check.against.as_deref().ok_or("this measure needs against = \"variant\"")?;
     let other = runs.iter().find(|r| r.name == name).ok_or_else(|| format!("no variant {name:?}"))?;
@@ -135,8 +136,9 @@ pub(super) fn difference(check: &Check, run: &Run, runs: &[Run]) -> Result<f64, 
     Ok(extremes::largest(values.iter().zip(&others).map(apart)) / scale)
 }
 
-/// Largest principal stress in the middle of the mesh, Pa: mean over the frames, weighted with the square of a sine that
-/// vanishes at both ends of the run, which takes the mean of an oscillation without knowing its period.
+/// Largest principal stress in the middle of the mesh, Pa: mean over the frames, weighted with the square of
+/// a sine that vanishes at both ends of the run, which takes the mean of an oscillation without knowing its
+/// period.
 pub(super) fn stress_in_the_middle(run: &Run) -> Result<f64, String> {
     let end = *run.times()?.last().ok_or("an empty history")?;
     let (mut sum, mut weights) = (0.0, 0.0);

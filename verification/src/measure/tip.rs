@@ -1,6 +1,7 @@
 //! Events of a growing crack, from its tip against time and from the last picture.
 //!
-//! The axis is the height of the initial crack. The tip *branches* when it first leaves the axis by [`OFF_AXIS`].
+//! The axis is the height of the initial crack. The tip *branches* when it first leaves the axis by
+//! [`OFF_AXIS`].
 
 use fisura::material::degradation::BROKEN;
 
@@ -10,8 +11,8 @@ use crate::extremes::larger;
 
 /// Distance from the axis that counts as having left it, m.
 const OFF_AXIS: f64 = 0.25e-3;
-/// Phase field of a pixel beyond which a crack along its row has ended. The centre of a pixel stands up to half a pixel off the crack,
-/// where c need not fall below [`BROKEN`] on a mesh that resolves the crack.
+/// Phase field of a pixel beyond which a crack along its row has ended. The centre of a pixel stands up to
+/// half a pixel off the crack, where c need not fall below [`BROKEN`] on a mesh that resolves the crack.
 const INTACT: f64 = 0.5;
 /// Half width of the window in which a speed is fitted, s.
 const SPEED_WINDOW: f64 = 2e-6;
@@ -65,7 +66,8 @@ pub(super) fn largest_speed_before_branching(check: &Check, run: &Run) -> Result
     Ok(centers.map(|t| fitted_speed(&times, &x, t)).filter(|v| v.is_finite()).reduce(larger).map(|v| v / unit))
 }
 
-/// Slope of a straight line fitted to positions x (m) within ±2 µs of `center` (s), m/s; NaN without two of them.
+/// Slope of a straight line fitted to positions x (m) within ±2 µs of `center` (s), m/s; NaN without two of
+/// them.
 pub fn fitted_speed(times: &[f64], x: &[f64], center: f64) -> f64 {
     let near = |row: &(&f64, &f64)| (row.0 - center).abs() <= SPEED_WINDOW * (1.0 + 1e-9) && row.1.is_finite();
     let points = times.iter().zip(x).filter(near).map(|(t, x)| (*t, *x));
@@ -87,7 +89,8 @@ pub(super) fn exit_offset(check: &Check, run: &Run) -> Result<Option<f64>, Strin
     Ok(tips(run)?.into_iter().find(|row| row[1] >= goal).map(|row| (row[2] - axis).abs()))
 }
 
-/// Where the crack along the axis ends: the last broken pixel before the first intact one, in the last picture, m.
+/// Where the crack along the axis ends: the last broken pixel before the first intact one, in the last
+/// picture, m.
 pub(super) fn end_along_axis(run: &Run) -> Option<f64> {
     let picture = run.frames.last()?;
     let phase = picture.phase.as_ref()?;

@@ -1,7 +1,8 @@
 //! What was written into a folder: `fisura.sha256`, which `sha256sum -c` reads.
 //!
-//! While a command runs, lines are appended before the files they list are there, so a name may be listed with several hashes,
-//! and names of temporary files are listed; at the beginning and the end of a command the list is written anew, without these.
+//! While a command runs, lines are appended before the files they list are there, so a name may be listed
+//! with several hashes, and names of temporary files are listed; at the beginning and the end of a command
+//! the list is written anew, without these.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -67,7 +68,8 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, OutputError> {
     Ok(Manifest { owner: String::new(), finished: false, files: BTreeMap::new(), journal: None })
 }
 
-/// Whether a list ends within its first line: the process that made it was killed, and wrote nothing else yet.
+/// Whether a list ends within its first line: the process that made it was killed, and wrote nothing else
+/// yet.
 fn is_begun(text: &[u8]) -> bool {
     !text.contains(&b'\n') && (SCHEMA.as_bytes().starts_with(text) || text.starts_with(SCHEMA.as_bytes()))
 }

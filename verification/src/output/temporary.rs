@@ -10,8 +10,9 @@ use tempfile::{Builder, NamedTempFile};
 pub(super) const TEMPORARY: &str = ".fisura-";
 pub(super) const PART: &str = ".part";
 
-/// A new file of a name that did not exist, with the permissions that any new file gets; it goes unless it is renamed. `list`
-/// hears the name before the file is there: a process that is killed leaves none that nobody knows.
+/// A new file of a name that did not exist, with the permissions that any new file gets; it goes unless it is
+/// renamed. `list` hears the name before the file is there: a process that is killed leaves none that nobody
+/// knows.
 pub(super) fn create(folder: &Path, mut list: impl FnMut(&str) -> Result<()>) -> Result<NamedTempFile<File>> {
     Builder::new().prefix(TEMPORARY).suffix(PART).make_in(folder, |path| {
         if fs::symlink_metadata(path).is_ok() {

@@ -243,7 +243,8 @@ fn a_file_of_the_user_in_place_of_the_lock_keeps_its_content() {
     }
 }
 
-/// A process that is being started has all open files for a moment: the lock must not outlive the folder with it.
+/// A process that is being started has all open files for a moment: the lock must not outlive the folder with
+/// it.
 #[test]
 fn a_lock_ends_with_its_folder_though_another_process_has_the_file() {
     let root = tempfile::tempdir().unwrap();

@@ -111,7 +111,8 @@ pub struct Region {
     pub y: Option<[f64; 2]>,
 }
 
-/// A triangle beside a curve that shows an order: its hypotenuse runs from `(x[0], y0)` with the slope of theory.
+/// A triangle beside a curve that shows an order: its hypotenuse runs from `(x[0], y0)` with the slope of
+/// theory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SlopeTriangle {
     /// Abscissae of its ends, in drawn units.
@@ -124,7 +125,8 @@ pub struct SlopeTriangle {
     pub label: String,
 }
 
-/// A level below which values mean nothing, such as that of round-off; markers at or below it are drawn hollow.
+/// A level below which values mean nothing, such as that of round-off; markers at or below it are drawn
+/// hollow.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Floor {
     /// Ordinate in drawn units.
@@ -154,7 +156,8 @@ pub enum FigureBody {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         floors: Vec<Floor>,
     },
-    /// A field on a regular raster: the series has columns `x_m, y_m, value`, one row per pixel centre, x fastest.
+    /// A field on a regular raster: the series has columns `x_m, y_m, value`, one row per pixel centre, x
+    /// fastest.
     Field {
         /// Series, relative to the results folder.
         series: String,

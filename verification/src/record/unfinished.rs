@@ -13,7 +13,8 @@ impl ResultSet {
 }
 
 impl Record {
-    /// What stands in results as long as only some of all cases are finished: an error, so that nobody takes them for whole.
+    /// What stands in results as long as only some of all cases are finished: an error, so that nobody takes
+    /// them for whole.
     pub fn unfinished(finished: usize, all: usize) -> Self {
         Self {
             id: format!("{UNFINISHED}/run/cases"),

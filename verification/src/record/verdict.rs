@@ -1,7 +1,8 @@
-//! What a value means beyond pass and fail: agreement within uncertainty, and what was expected but is not met.
+//! What a value means beyond pass and fail: agreement within uncertainty, and what was expected but is not
+//! met.
 //!
-//! Validation follows ASME V&V 20-2009. With a value S, a reference D of uncertainty U_ref and the numerical uncertainty
-//! U_num of S (the parameters of the scene are those of the reference, and add none):
+//! Validation follows ASME V&V 20-2009. With a value S, a reference D of uncertainty U_ref and the numerical
+//! uncertainty U_num of S (the parameters of the scene are those of the reference, and add none):
 //!
 //! ```text
 //! E = S − D,     U_val² = U_ref² + U_num²
@@ -49,7 +50,8 @@ pub struct Validation {
     pub u_val: f64,
     /// Verdict.
     pub verdict: Agreement,
-    /// |E| − U_val, the least error of model and code (and of the mesh without `u_num`); absent where they agree.
+    /// The least error of model and code (and of the mesh without `u_num`): |E| − U_val; absent where they
+    /// agree.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub at_least: Option<f64>,
 }
@@ -82,7 +84,8 @@ impl Validation {
 }
 
 impl Record {
-    /// The verdict that `value` deserves under `accept`: a missing or non-finite value fails unless there are no bounds.
+    /// The verdict that `value` deserves under `accept`: a missing or non-finite value fails unless there are
+    /// no bounds.
     pub fn judge(value: Option<f64>, accept: &Accept) -> Status {
         if accept.min.is_none() && accept.max.is_none() {
             return Status::Info;
@@ -92,8 +95,9 @@ impl Record {
         if holds { Status::Pass } else { Status::Fail }
     }
 
-    /// Gives the record its verdicts on the value it holds: against bounds (those of the validation uncertainty, if its bounds
-    /// are of that kind), against the uncertainty of the reference, and against what is expected.
+    /// Gives the record its verdicts on the value it holds: against bounds (those of the validation
+    /// uncertainty, if its bounds are of that kind), against the uncertainty of the reference, and against
+    /// what is expected.
     pub fn decide(&mut self, u_num: Option<f64>) {
         self.validation = Validation::of(self.value, self.reference.as_ref(), u_num);
         self.status = match self.accept.kind {
@@ -169,7 +173,8 @@ mod tests {
         assert_eq!(judged(None, Accept::default(), None, None).status, Status::Info);
     }
 
-    /// A judge that leaves out either uncertainty, or the sign of the error, gives another verdict in one of these rows.
+    /// A judge that leaves out either uncertainty, or the sign of the error, gives another verdict in one of
+    /// these rows.
     #[test]
     fn bounds_by_uncertainty_take_both_uncertainties() {
         let accept = || Accept { kind: Some(BoundKind::Validation), ..Accept::default() };

@@ -45,7 +45,8 @@ impl ReferenceCurve {
         [self.x[0], self.x[self.x.len() - 1]]
     }
 
-    /// Ordinate at `x` by linear interpolation; `None` outside the range and inside a gap wider than `max_gap`.
+    /// Ordinate at `x` by linear interpolation; `None` outside the range and inside a gap wider than
+    /// `max_gap`.
     pub fn at(&self, x: f64) -> Option<f64> {
         let (i, weight) = bracket(&self.x, x)?;
         if weight > 0.0 && weight < 1.0 && self.is_gap(i) {
@@ -59,8 +60,8 @@ impl ReferenceCurve {
         self.uncertainty_absolute.max(self.uncertainty_relative * y.abs())
     }
 
-    /// Half width of the uncertainty at row `i`, SI, with what the abscissa adds where the curve is steep; 0 where none is
-    /// known.
+    /// Half width of the uncertainty at row `i`, SI, with what the abscissa adds where the curve is steep; 0
+    /// where none is known.
     pub(super) fn uncertainty_at_row(&self, i: usize) -> f64 {
         let (before, after) = (i.saturating_sub(1), (i + 1).min(self.x.len() - 1));
         let slope =
@@ -82,9 +83,9 @@ impl ReferenceCurve {
         format!("series/reference-{}-{}.csv", self.id.replace('/', "-"), self.quantity.replace('/', "-"))
     }
 
-    /// The curve for a figure, and the table (columns `x`, `y`, SI) to be stored at [`Self::series_path`], so that the
-    /// results folder stands by itself. The scales take SI to the units of the axes. A row of not-a-number breaks the
-    /// line in a gap wider than `max_gap`; a single point is drawn as a point.
+    /// The curve for a figure, and the table (columns `x`, `y`, SI) to be stored at [`Self::series_path`], so
+    /// that the results folder stands by itself. The scales take SI to the units of the axes. A row of
+    /// not-a-number breaks the line in a gap wider than `max_gap`; a single point is drawn as a point.
     pub fn series(&self, x_scale: f64, y_scale: f64) -> (Curve, Table) {
         let mut table = Table::new(&["x", "y"]);
         for i in 0..self.x.len() {
@@ -113,7 +114,8 @@ impl ReferenceCurve {
     }
 }
 
-/// Row and weight of the next row for linear interpolation at `x` in increasing abscissae; `None` outside their range.
+/// Row and weight of the next row for linear interpolation at `x` in increasing abscissae; `None` outside
+/// their range.
 pub(super) fn bracket(abscissae: &[f64], x: f64) -> Option<(usize, f64)> {
     let (first, last) = (*abscissae.first()?, *abscissae.last()?);
     if !(first..=last).contains(&x) {

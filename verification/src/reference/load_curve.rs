@@ -11,8 +11,8 @@ use super::{Obtained, ReferenceCurve, ReferenceError};
 use crate::history::Table;
 
 impl SourceReader {
-    /// In a picture-only folder a curve may be absent, so a misspelt column would be silently ignored: every column of
-    /// a file that was added has to be one that some curve describes.
+    /// In a picture-only folder a curve may be absent, so a misspelt column would be silently ignored: every
+    /// column of a file that was added has to be one that some curve describes.
     pub(super) fn check_picture_columns(&self) -> Result<(), ReferenceError> {
         if self.source.obtained != Obtained::PictureOnly {
             return Ok(());
@@ -138,7 +138,8 @@ impl SourceReader {
         Ok(Some([x.to_vec(), y.to_vec()]))
     }
 
-    /// Raw values to increments. The first point has to lie at the start, or the increment would lack what came before.
+    /// Raw values to increments. The first point has to lie at the start, or the increment would lack what
+    /// came before.
     fn subtract_first(&self, spanned: &Spanned<CurveEntry>, points: &mut [(f64, f64)]) -> Result<(), ReferenceError> {
         let (start, first) = points[0];
         let end = points[points.len() - 1].0;

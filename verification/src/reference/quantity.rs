@@ -68,7 +68,8 @@ impl<'a> Unit<'a> {
         }
     }
 
-    /// A number in this unit, in SI: the decimal exponents are added, so `35 us` is exactly the double `35e-6`.
+    /// A number in this unit, in SI: the decimal exponents are added, so `35 us` is exactly the double
+    /// `35e-6`.
     ///
     /// # Errors
     /// Not-a-number and infinities.

@@ -72,8 +72,8 @@ pub fn annulus(shape: &Shape) -> Option<([f64; 2], [f64; 2])> {
 }
 
 impl Watch {
-    /// Watch over a body of a scene, the first of which is hit on its right and the second on its left; `None` if it is no
-    /// brittle ring.
+    /// Watch over a body of a scene, the first of which is hit on its right and the second on its left;
+    /// `None` if it is no brittle ring.
     pub fn new(scene: &Scene, number: usize) -> Option<Self> {
         let body = &scene.bodies[number];
         let (center, radii) = annulus(&body.shape)?;
@@ -145,8 +145,8 @@ impl Watch {
         Wall { phases }
     }
 
-    /// Part of the broken material that lies further than a few length scales from the line of centres: zero if the ring splits
-    /// along the diameter alone.
+    /// Part of the broken material that lies further than a few length scales from the line of centres: zero
+    /// if the ring splits along the diameter alone.
     fn aside(&self, simulation: &Simulation) -> f64 {
         let field = &simulation.updated_frame().expect("rings move in the updated frame").fields()[self.body];
         let cracked = field.fracture.iter().flat_map(|cracking| cracking.points.iter());

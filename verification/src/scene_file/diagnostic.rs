@@ -9,10 +9,10 @@ use crate::foreign::{line, steers};
 /// Most problems that are told one by one.
 const MOST_PROBLEMS: usize = 100;
 
-/// A place in the file or in one of the overrides.
+/// A place in the file, in one of the overrides, or in a file that it includes.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Location {
-    /// 0 for the file, `i` for the i-th override (counted from 1).
+    /// 0 for the file; the others in the order in which they were read.
     pub source: usize,
     /// First byte.
     pub start: usize,
@@ -62,7 +62,7 @@ impl Source {
     }
 }
 
-/// The texts that locations point into: the file first, then one per override.
+/// The texts that locations point into: the file first, then one per override or included file.
 #[derive(Debug, Clone)]
 pub struct Sources(Vec<Arc<Source>>);
 
@@ -154,7 +154,8 @@ impl SceneDiagnostic {
         &self.source.text
     }
 
-    /// The same without characters that steer a terminal; in the text of the file as many bytes stand in their place.
+    /// The same without characters that steer a terminal; in the text of the file as many bytes stand in
+    /// their place.
     pub fn for_terminal(&self) -> Self {
         let steers = |c: char| steers(c) && !matches!(c, '\n' | '\t');
         let seen = |c: char| if steers(c) { "?".repeat(c.len_utf8()) } else { c.to_string() };
@@ -181,7 +182,8 @@ impl std::error::Error for SceneDiagnostic {}
 
 /// A file that is no valid scene: everything found wrong with it.
 ///
-/// `Display` is one plain line per problem. For a rendering with source excerpts, render each of `diagnostics`.
+/// `Display` is one plain line per problem. For a rendering with source excerpts, render each of
+/// `diagnostics`.
 #[derive(Debug, Clone, thiserror::Error)]
 #[error("{}", lines(diagnostics))]
 pub struct SceneFileError {

@@ -211,6 +211,17 @@ impl Document {
         Ok(Self { root, sources })
     }
 
+    /// Reads another file, whose places are told with its own name.
+    ///
+    /// # Errors
+    /// Those of [`Document::load`].
+    pub fn include(&mut self, path: &Path) -> Result<Node, SceneFileError> {
+        let other = Self::load(path)?;
+        let source = self.sources.push(&path.display().to_string(), other.text());
+        let (table, _) = DeTable::parse_recoverable(other.text());
+        Ok(Node::new(Value::Table(entries(table.get_ref(), source, 0)), None))
+    }
+
     /// Text of the file.
     pub fn text(&self) -> &str {
         self.sources.text()

@@ -1,7 +1,7 @@
 //! A walker over the tree of a document: typed access that collects problems with their key paths.
 //!
-//! Every accessor returns `None` after it has noted a problem, so that a reader reads all its keys first and assembles
-//! its value with `?` at the end; one pass finds everything.
+//! Every accessor returns `None` after it has noted a problem, so that a reader reads all its keys first and
+//! assembles its value with `?` at the end; one pass finds everything.
 
 use std::cell::RefCell;
 

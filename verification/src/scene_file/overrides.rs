@@ -18,11 +18,12 @@ fn too_deep(keys: usize) -> String {
 }
 
 impl Node {
-    /// Puts `value` at a path such as `body.0.crack.0.half_width`, in place of what stands there; keys of tables that
-    /// are not there are created.
+    /// Puts `value` at a path such as `body.0.crack.0.half_width`, in place of what stands there; keys of
+    /// tables that are not there are created.
     ///
     /// # Errors
-    /// What is wrong with the path, if it is empty, leads through a value that is no table, or beyond an array.
+    /// What is wrong with the path, if it is empty, leads through a value that is no table, or beyond an
+    /// array.
     pub fn set(&mut self, path: &str, value: Node) -> Result<(), String> {
         let keys: Vec<&str> = path.split('.').collect();
         if keys.contains(&"") {
@@ -38,13 +39,13 @@ impl Node {
 impl Document {
     /// Applies overrides in order, each `key.path=value`; array entries count from 0.
     ///
-    /// The value is read as TOML, or if it is none, as a bare string: `body.0.crack.0.half_width=0.25 mm` needs no
-    /// quotes. What starts like an array, a table or a quoted string is never a bare one. A key that the file does not
-    /// have is created.
+    /// The value is read as TOML, or if it is none, as a bare string: `body.0.crack.0.half_width=0.25 mm`
+    /// needs no quotes. What starts like an array, a table or a quoted string is never a bare one. A key that
+    /// the file does not have is created.
     ///
     /// # Errors
-    /// Every override without `=`, with an array, table or quoted string that is not TOML, with an empty key, or whose path leads through a value that is no table or beyond
-    /// the end of an array.
+    /// Every override without `=`, with an array, table or quoted string that is not TOML, with an empty key,
+    /// or whose path leads through a value that is no table or beyond the end of an array.
     pub fn apply(&mut self, overrides: &[String]) -> Result<(), SceneFileError> {
         let problems: Vec<Problem> = overrides.iter().filter_map(|text| self.apply_one(text).err()).collect();
         if problems.is_empty() { Ok(()) } else { Err(self.error(&problems)) }
@@ -80,8 +81,8 @@ impl Document {
     }
 }
 
-/// A TOML value, or the text itself unless it starts like an array, a table or a quoted string; place and message of
-/// the syntax error if it does.
+/// A TOML value, or the text itself unless it starts like an array, a table or a quoted string; place and
+/// message of the syntax error if it does.
 fn parse_value(text: &str, source: usize, offset: usize) -> Result<Node, (Location, String)> {
     let trimmed = text.trim();
     let start = offset + text.len() - text.trim_start().len();

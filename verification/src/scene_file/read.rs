@@ -20,8 +20,8 @@ pub const SCENE_KEYS: [&str; 9] =
 
 /// Reads the scene that `node` declares: a whole document, or the `[scene]` table of a case file.
 ///
-/// `prefix` is the key path of `node` in its document, empty for a whole document. The scene is complete in form; its
-/// sense is checked by [`fisura::validate::validate`].
+/// `prefix` is the key path of `node` in its document, empty for a whole document. The scene is complete in
+/// form; its sense is checked by [`fisura::validate::validate`].
 ///
 /// # Errors
 /// Every unknown key, missing key, wrong type, wrong dimension and number out of range.

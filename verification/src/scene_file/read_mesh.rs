@@ -1,4 +1,5 @@
-//! From the tree of a document to the background mesh: a rectangle, a general NURBS patch, or an annular sector.
+//! From the tree of a document to the background mesh: a rectangle, a general NURBS patch, or an annular
+//! sector.
 
 use fisura::scene::{Geometry, Mesh};
 use fisura::splines::nurbs::{NurbsError, NurbsPatch};
@@ -8,8 +9,8 @@ use super::read::{length, number, point};
 
 /// Largest number of spans in one direction.
 const MOST_CELLS: usize = 100_000;
-/// Largest number of positions, (p + 1)(q + 1) in every span, at which a patch with a geometry is checked for folds: half a
-/// second; and of its spans in one direction.
+/// Largest number of positions, (p + 1)(q + 1) in every span, at which a patch with a geometry is checked for
+/// folds: half a second; and of its spans in one direction.
 const MOST_MAPPED_POSITIONS: usize = 2_500_000;
 const MOST_MAPPED_IN_A_ROW: usize = 10_000;
 /// Angle short of a full turn that a ring has to leave open, rad.
@@ -71,8 +72,8 @@ fn size(item: &Item<'_>) -> Option<[f64; 2]> {
     })
 }
 
-/// Each knot vector scaled affinely, the first knot to `origin`, the last to `origin + size`, and every span cut into equal
-/// parts.
+/// Each knot vector scaled affinely, the first knot to `origin`, the last to `origin + size`, and every span
+/// cut into equal parts.
 fn graded(
     fields: &Fields<'_>,
     degree: [usize; 2],

@@ -1,7 +1,7 @@
 //! The nearest known word to a mistyped one.
 
-/// The candidate with the smallest edit distance to `word`, if it is close enough to be meant; letters of the wrong case count
-/// nothing, two neighbours swapped count one.
+/// The candidate with the smallest edit distance to `word`, if it is close enough to be meant; letters of the
+/// wrong case count nothing, two neighbours swapped count one.
 pub fn nearest<'a>(word: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let word: String = word.chars().take(64).flat_map(char::to_lowercase).collect();
     let limit = word.chars().count().max(3) / 3;

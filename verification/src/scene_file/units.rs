@@ -1,9 +1,10 @@
 //! Quantities with units: `"32 GPa"`, `"0.25 mm"`, `"2450 kg/m^3"` to SI.
 //!
-//! A quantity is a number and a unit: a product, quotient or power of symbols, each with an optional SI prefix. The
-//! dimension is the vector of exponents of mass, length, time and cycles; angles have none. A frequency in Hz counts cycles, so it
-//! is no angular velocity, which is 2 pi times as large. Powers of ten of prefixes are added
-//! to the decimal exponent before the number is read, so that `"80 us"` is exactly the double `80e-6`.
+//! A quantity is a number and a unit: a product, quotient or power of symbols, each with an optional SI
+//! prefix. The dimension is the vector of exponents of mass, length, time and cycles; angles have none. A
+//! frequency in Hz counts cycles, so it is no angular velocity, which is 2 pi times as large. Powers of ten
+//! of prefixes are added to the decimal exponent before the number is read, so that `"80 us"` is exactly the
+//! double `80e-6`.
 
 mod expression;
 

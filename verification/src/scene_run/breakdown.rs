@@ -21,8 +21,8 @@ pub struct BreakdownReport {
     pub what: String,
     /// Likely cause and remedy.
     pub likely_cause: String,
-    /// Row of the history at that moment, by column: energies, momenta, closure. Absent if the run never started, as all
-    /// that follows.
+    /// Row of the history at that moment, by column: energies, momenta, closure. Absent if the run never
+    /// started, as all that follows.
     pub row: Option<serde_json::Map<String, serde_json::Value>>,
     /// Material points, and how many carry a number that is not finite.
     pub points: Option<usize>,
@@ -30,7 +30,8 @@ pub struct BreakdownReport {
     pub points_not_finite: Option<usize>,
     /// Extremes of finite numbers.
     pub extremes: Option<Extremes>,
-    /// The worst points, the worst first: those with numbers that are not finite, then those of largest strain.
+    /// The worst points, the worst first: those with numbers that are not finite, then those of largest
+    /// strain.
     pub worst_points: Vec<WorstPoint>,
     /// Time of the last checkpoint, s: the state before the numbers broke, if one was written.
     pub last_checkpoint_s: Option<f64>,

@@ -1,5 +1,5 @@
-//! The file of a run that can be taken up: four lines of text, what the run gathered with the state of its simulation, and a
-//! check sum of all that.
+//! The file of a run that can be taken up: four lines of text, what the run gathered with the state of its
+//! simulation, and a check sum of all that.
 //!
 //! ```text
 //! fisura checkpoint 3
@@ -66,7 +66,8 @@ pub struct Place {
     pub other: Option<String>,
 }
 
-/// Where a run of `scene` keeps its checkpoint in a folder: [`CHECKPOINT`], unless the run of another scene has it.
+/// Where a run of `scene` keeps its checkpoint in a folder: [`CHECKPOINT`], unless the run of another scene
+/// has it.
 pub fn find(folder: &Path, scene: &Scene) -> Place {
     let own = scene_print(scene);
     let name = format!("checkpoint-{}.bin", &own[..8]);
@@ -163,7 +164,8 @@ impl Head {
     }
 }
 
-/// Fingerprint of the scene in SI units with every value that was left out, digits that read back to the same number.
+/// Fingerprint of the scene in SI units with every value that was left out, digits that read back to the same
+/// number.
 fn scene_print(scene: &Scene) -> String {
     fingerprint([format!("{scene:?}")])
 }

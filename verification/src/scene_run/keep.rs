@@ -49,10 +49,11 @@ pub enum KeepError {
     Output(#[from] OutputError),
 }
 
-/// Runs a valid scene as [`run_scene`](super::run_scene) does, storing checkpoints. From a `stored` one it goes on: history
-/// and frames are then, bit by bit, those of a run that nobody disturbed.
+/// Runs a valid scene as [`run_scene`](super::run_scene) does, storing checkpoints. From a `stored` one it
+/// goes on: history and frames are then, bit by bit, those of a run that nobody disturbed.
 ///
-/// A checkpoint that cannot be written at an interval is a warning in the summary, and tried again at the next.
+/// A checkpoint that cannot be written at an interval is a warning in the summary, and tried again at the
+/// next.
 ///
 /// # Errors
 /// A checkpoint that cannot be taken up, or cannot be written on interrupt.

@@ -33,7 +33,8 @@ pub struct Summary {
     pub stages_s: Stages,
     /// Wall time of the steps per particle and step, ns; absent without a step.
     pub ns_per_particle_step: Option<f64>,
-    /// Largest memory the process held until the end of the run, 10⁶ bytes; absent where the system does not tell.
+    /// Largest memory the process held until the end of the run, 10⁶ bytes; absent where the system does not
+    /// tell.
     pub peak_memory_mb: Option<f64>,
     /// Energies of the last row of the history by column, J; those that are no number are left out.
     pub final_energies_j: BTreeMap<String, f64>,

@@ -4,8 +4,8 @@ use super::SceneRun;
 use crate::output::{OutputError, OutputFolder};
 
 impl SceneRun {
-    /// Writes `history.csv` (if there is a row), `summary.json` and, after a breakdown, `breakdown.json` into `folder`; names
-    /// the files.
+    /// Writes `history.csv` (if there is a row), `summary.json` and, after a breakdown, `breakdown.json` into
+    /// `folder`; names the files.
     ///
     /// # Errors
     /// The first file that cannot be written.

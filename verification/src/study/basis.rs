@@ -1,7 +1,8 @@
-//! Spline bases on random open knot vectors: partition of unity, linear precision, derivatives and continuity.
+//! Spline bases on random open knot vectors: partition of unity, linear precision, derivatives and
+//! continuity.
 //!
-//! Knots come from a fixed linear congruential sequence, with span ratios up to 100. Continuity C^(p−1) at the inner knots
-//! is measured on the values and first derivatives from both sides, relative to their size.
+//! Knots come from a fixed linear congruential sequence, with span ratios up to 100. Continuity C^(p−1) at
+//! the inner knots is measured on the values and first derivatives from both sides, relative to their size.
 
 use fisura::splines::spline::SplineSpace;
 
@@ -80,7 +81,8 @@ impl Worst {
     }
 }
 
-/// Largest jump of a value, and for p ≥ 2 of a first derivative times the shorter span, over the left knot of a span.
+/// Largest jump of a value, and for p ≥ 2 of a first derivative times the shorter span, over the left knot of
+/// a span.
 fn jump_at_knot(space: &SplineSpace, index: usize) -> f64 {
     let (before, after) = (&space.spans()[index - 1], &space.spans()[index]);
     let degree = space.degree();

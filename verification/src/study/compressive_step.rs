@@ -1,7 +1,7 @@
 //! A compressive uniaxial step must not drive fracture: H stays zero.
 //!
-//! The column is held at its sides, so the only strain is compressive and psi+ vanishes identically. Round-off leaves
-//! transverse strains of relative size 1e-16, whose energy is of relative size 1e-32.
+//! The column is held at its sides, so the only strain is compressive and psi+ vanishes identically.
+//! Round-off leaves transverse strains of relative size 1e-16, whose energy is of relative size 1e-32.
 
 use fisura::simulation::Simulation;
 

@@ -1,9 +1,10 @@
 //! The patch test: a body under constant boundary tractions has that constant stress everywhere.
 //!
-//! The body, a rectangle or a whole patch, is loaded on its four sides with the tractions of a unit stress (xx, yy and xy in turn), through its own
-//! surface points. The static equilibrium with the body's own operators is solved densely with the three rigid motions
-//! held, and the stress is evaluated at the material points. With points that integrate the products of gradients of
-//! shape functions exactly the error is round-off; equally spaced cubics miss it at the open ends of the knot vector.
+//! The body, a rectangle or a whole patch, is loaded on its four sides with the tractions of a unit stress
+//! (xx, yy and xy in turn), through its own surface points. The static equilibrium with the body's own
+//! operators is solved densely with the three rigid motions held, and the stress is evaluated at the material
+//! points. With points that integrate the products of gradients of shape functions exactly the error is
+//! round-off; equally spaced cubics miss it at the open ends of the knot vector.
 
 use fisura::dynamics::critical_step::StiffnessOperator;
 use fisura::dynamics::loads::{NodalLoad, boundary_points};

@@ -1,5 +1,5 @@
-//! Studies of bodies that meet. Each takes the scenes of its case, knows the closed form that belongs to them, and looks at
-//! the bodies after every step.
+//! Studies of bodies that meet. Each takes the scenes of its case, knows the closed form that belongs to
+//! them, and looks at the bodies after every step.
 
 pub(super) mod collision;
 pub(super) mod hertz;

@@ -1,8 +1,9 @@
-//! Convergence to an exact solution: the `[convergence]` table of a case says which, on which meshes, and how.
+//! Convergence to an exact solution: the `[convergence]` table of a case says which, on which meshes, and
+//! how.
 //!
-//! A dynamic problem is run with steps in proportion to `h^((p + 1)/2)`, so that the second order in time shows as p + 1,
-//! unless the case gives another power. Errors are relative. In the total frame they are integrated with an independent,
-//! finer quadrature, in the updated frame they are those of the points.
+//! A dynamic problem is run with steps in proportion to `h^((p + 1)/2)`, so that the second order in time
+//! shows as p + 1, unless the case gives another power. Errors are relative. In the total frame they are
+//! integrated with an independent, finer quadrature, in the updated frame they are those of the points.
 
 pub(crate) mod errors;
 pub(crate) mod moving;
@@ -29,8 +30,8 @@ const FLOOR: f64 = 1e-11;
 trait OnMesh {
     /// Solves and measures; a dynamic problem with steps of at most `step` (s).
     fn level(self: Box<Self>, step: f64) -> Result<Level, StudyError>;
-    /// Errors of the best approximation of the exact fields in the end, in the order of those of a level; none where
-    /// errors are those of points that move.
+    /// Errors of the best approximation of the exact fields in the end, in the order of those of a level;
+    /// none where errors are those of points that move.
     fn best_errors(&self) -> Result<Vec<f64>, StudyError>;
     /// Critical time step, s.
     fn critical_step(&self) -> f64;
@@ -167,8 +168,8 @@ fn levels(
     Ok((levels?, mesh(finest)?.best_errors()?))
 }
 
-/// Order that theory gives an error `below` orders under that of the displacement. There is none for moving points: the
-/// error of their quadrature does not fall with h.
+/// Order that theory gives an error `below` orders under that of the displacement. There is none for moving
+/// points: the error of their quadrature does not fall with h.
 fn theory(setup: &ConvergenceSetup, problem: &Problem, degree: usize, below: usize) -> Option<f64> {
     let space = (degree + 1 - below) as f64;
     match (problem.equation, setup.refine) {

@@ -1,4 +1,5 @@
-//! The phase field of one crack, c = 0 on a line, against its closed form `c = 1 − exp(−|x|/(2 l0))` of energy Gc.
+//! The phase field of one crack, c = 0 on a line, against its closed form `c = 1 − exp(−|x|/(2 l0))` of
+//! energy Gc.
 //!
 //! The line lies on knots repeated p times, where splines are continuous and no more, as the profile is. With
 //! `e = 1 − c` the surface energy is `Gc/(4 l0) eᵀ (M + 4 l0² D) e` on the matrices of the phase field.

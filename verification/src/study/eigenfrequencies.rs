@@ -1,8 +1,9 @@
 //! Lowest frequencies of a bar held at both ends, from the solver's own operators, against `n π c/L`.
 //!
-//! The bar is a strip of unit length, one linear span high, between rollers above and below, with Poisson's ratio zero: what
-//! does not vary over its height is one-dimensional, and shear modes lie far above. The generalised eigenproblem is solved
-//! densely. With the consistent mass frequencies are too high, by order 2 p; with the lumped one too low, by order 2.
+//! The bar is a strip of unit length, one linear span high, between rollers above and below, with Poisson's
+//! ratio zero: what does not vary over its height is one-dimensional, and shear modes lie far above. The
+//! generalised eigenproblem is solved densely. With the consistent mass frequencies are too high, by order 2
+//! p; with the lumped one too low, by order 2.
 
 use fisura::dynamics::critical_step::StiffnessOperator;
 use fisura::dynamics::total_frame::TotalFrame;
@@ -20,7 +21,8 @@ const MESHES: [usize; 4] = [8, 16, 32, 64];
 const MODES: usize = 3;
 /// Height over length: the lowest shear mode has the frequency 44 c/L, the third mode of the bar 9.4 c/L.
 const HEIGHT: f64 = 0.05;
-/// Relative errors at or below this are round-off: the spectrum spans four decades and the eigenvalues are squares.
+/// Relative errors at or below this are round-off: the spectrum spans four decades and the eigenvalues are
+/// squares.
 const FLOOR: f64 = 5e-12;
 
 pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {

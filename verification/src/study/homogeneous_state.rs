@@ -1,11 +1,13 @@
 //! The homogeneous state of AT2 against its closed form.
 //!
 //! A body under uniform uniaxial strain e has psi+ = M e²/2 everywhere, so the phase field is the constant
-//! `c = 1/(1 + 2 l0 M e²/Gc)` and the stress `c² M e`, with M = lam + 2 mu. The stress peaks at `e = sqrt(Gc/(6 l0 M))`,
-//! where c = 3/4 and sigma = (9/16) sqrt(M Gc/(6 l0)). Constants are in the space and the same sums stand on both sides,
-//! so the discrete solution is exact for every degree and layout. The displacement is imposed on the control points; strain,
-//! split, history and degraded stress are those of the solver's own sweeps, and the stress is the reaction on the right
-//! side over its height. The closed form takes its numbers from the scene, not from the solver. (The reaction of equally spaced points is exact for p up to 2 only; see the patch test.)
+//! `c = 1/(1 + 2 l0 M e²/Gc)` and the stress `c² M e`, with M = lam + 2 mu. The stress peaks at
+//! `e = sqrt(Gc/(6 l0 M))`, where c = 3/4 and sigma = (9/16) sqrt(M Gc/(6 l0)). Constants are in the space
+//! and the same sums stand on both sides, so the discrete solution is exact for every degree and layout. The
+//! displacement is imposed on the control points; strain, split, history and degraded stress are those of the
+//! solver's own sweeps, and the stress is the reaction on the right side over its height. The closed form
+//! takes its numbers from the scene, not from the solver. (The reaction of equally spaced points is exact for
+//! p up to 2 only; see the patch test.)
 
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::degradation::FractureModel;
@@ -103,7 +105,8 @@ fn closed_form(fracture: &Fracture, modulus: f64, strain: f64) -> f64 {
     1.0 / (1.0 + 4.0 * length_scale * (1.0 - residual_stiffness) * energy / critical_energy_release_rate)
 }
 
-/// Stress over strain in uniaxial strain, Pa: `E (1 − nu)/((1 + nu)(1 − 2 nu))`, and `E/(1 − nu²)` in plane stress.
+/// Stress over strain in uniaxial strain, Pa: `E (1 − nu)/((1 + nu)(1 − 2 nu))`, and `E/(1 − nu²)` in plane
+/// stress.
 fn uniaxial_modulus(material: &Material, plane: Plane) -> f64 {
     let (young, nu) = (material.young_modulus, material.poisson_ratio);
     match plane {

@@ -1,8 +1,9 @@
-//! The judging of results itself: verdicts on values whose verdict is known, and measures on histories whose measure is.
+//! The judging of results itself: verdicts on values whose verdict is known, and measures on histories whose
+//! measure is.
 //!
-//! A judge that ignores a bound passes every other case of the suites. Here wrong verdicts are held from above and right ones
-//! from below, so that a judge which ignores either bound still meets the other, and one that passes everything ends the
-//! study.
+//! A judge that ignores a bound passes every other case of the suites. Here wrong verdicts are held from
+//! above and right ones from below, so that a judge which ignores either bound still meets the other, and one
+//! that passes everything ends the study.
 
 use fisura::scene::{Material, Mesh, Scene};
 

@@ -1,11 +1,13 @@
-//! A linear displacement on rational patches: interpolated exactly, in equilibrium up to the quadrature by points.
+//! A linear displacement on rational patches: interpolated exactly, in equilibrium up to the quadrature by
+//! points.
 //!
-//! A linear field lies in the space of every patch, so its strain is exact at the points. Its internal forces and the
-//! tractions on the four sides then balance but for the error of the point sums, whose integrands are rational: the
-//! *equilibrium residual*. Its work on a smooth field is the error of a composite rule of n Gauss points per direction on a
-//! smooth integrand and falls with order 2 n. The largest nodal force left over, relative to the largest of the tractions,
-//! falls with order 2 n − p only: the functions of a single control point change over a span. The tractions are integrated
-//! with 16 points per span. Weights are drawn once on the coarsest mesh and carried by knot insertion.
+//! A linear field lies in the space of every patch, so its strain is exact at the points. Its internal forces
+//! and the tractions on the four sides then balance but for the error of the point sums, whose integrands are
+//! rational: the *equilibrium residual*. Its work on a smooth field is the error of a composite rule of n
+//! Gauss points per direction on a smooth integrand and falls with order 2 n. The largest nodal force left
+//! over, relative to the largest of the tractions, falls with order 2 n − p only: the functions of a single
+//! control point change over a span. The tractions are integrated with 16 points per span. Weights are drawn
+//! once on the coarsest mesh and carried by knot insertion.
 
 use fisura::particles::lattice::Lattice;
 use fisura::scene::{Body, Layout, Side};
@@ -145,8 +147,8 @@ fn interpolation_errors(patch: &Patch) -> [f64; 2] {
     worst
 }
 
-/// What internal forces and tractions leave: the largest nodal force, relative to the largest of the tractions, and the work
-/// on a smooth field, relative to the sum of the magnitudes of that of the tractions.
+/// What internal forces and tractions leave: the largest nodal force, relative to the largest of the
+/// tractions, and the work on a smooth field, relative to the sum of the magnitudes of that of the tractions.
 fn residual(patch: &Patch, points: usize) -> [f64; 2] {
     let lattice = lattice(patch, points);
     let mut tractions = [lattice.grid.zeros(), lattice.grid.zeros()];

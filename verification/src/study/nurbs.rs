@@ -1,8 +1,10 @@
-//! NURBS patches: rational bases on random knots and weights, refinement that changes nothing, exact circles, inverse map.
+//! NURBS patches: rational bases on random knots and weights, refinement that changes nothing, exact circles,
+//! inverse map.
 //!
-//! Knots and weights come from a fixed linear congruential sequence: span ratios up to 100, every third inner knot repeated,
-//! weights from 0.1 to 10. Basis and gradients are looked at with the full range of weights. Where a geometry is needed, a
-//! bent unit square, bend and weights are tamed (powers of the weights) until it is not folded; how far is reported.
+//! Knots and weights come from a fixed linear congruential sequence: span ratios up to 100, every third inner
+//! knot repeated, weights from 0.1 to 10. Basis and gradients are looked at with the full range of weights.
+//! Where a geometry is needed, a bent unit square, bend and weights are tamed (powers of the weights) until
+//! it is not folded; how far is reported.
 
 use fisura::splines::nurbs::{LocateError, NurbsError, NurbsPatch, RationalFunctions, rational_functions};
 use fisura::splines::spline::SplineSpace;
@@ -17,7 +19,8 @@ const PATCHES: u64 = 20;
 const SPANS: usize = 8;
 /// Positions in a span, as fractions; the ends are knots.
 const FRACTIONS: [f64; 6] = [0.0, 0.11, 0.35, 0.5, 0.72, 1.0];
-/// Step of the differences, in span lengths: weights 100 apart make the basis change over a hundredth of a span.
+/// Step of the differences, in span lengths: weights 100 apart make the basis change over a hundredth of a
+/// span.
 const STEP: f64 = 3e-6;
 const ARC_POINTS: usize = 1000;
 
@@ -212,8 +215,9 @@ impl Worst {
             self.unity = larger(self.unity, (sum(&f, |n| f.value[n]) - 1.0).abs());
             for d in 0..2 {
                 self.gradient_sum = larger(self.gradient_sum, length[d] * sum(&f, |n| f.gradient[n][d]).abs());
-                // Central differences of two steps, extrapolated: error O(step^4). Powers of two, so that the parameters are
-                // not rounded to unequal steps on both sides, which the curvature would make an error of first order.
+                // Central differences of two steps, extrapolated: error O(step^4). Powers of two, so that the
+                // parameters are not rounded to unequal steps on both sides, which the curvature would make
+                // an error of first order.
                 let difference = |step: f64| {
                     let step = (step * length[d]).log2().round().exp2();
                     let [plus, minus] = [step, -step].map(|step| {
@@ -232,7 +236,8 @@ impl Worst {
         }
     }
 
-    /// A linear field, whose length is that over which a basis function changes: one over its largest physical gradient.
+    /// A linear field, whose length is that over which a basis function changes: one over its largest
+    /// physical gradient.
     fn look_at_geometry(&mut self, patch: &NurbsPatch) {
         let value = |[x, y]: [f64; 2]| 3.0 + 2.0 * x - y;
         let field: Vec<f64> = patch.control_points().iter().map(|&p| value(p)).collect();

@@ -1,5 +1,5 @@
-//! What a study yields for a case, known before it runs: which quantities, for which variants, and whether the study brings a
-//! reference value of its own.
+//! What a study yields for a case, known before it runs: which quantities, for which variants, and whether
+//! the study brings a reference value of its own.
 
 use crate::convergence::{Norm, Refined};
 use crate::expand::CaseScene;
@@ -47,8 +47,8 @@ impl Offers {
         self.0.push(Offer { variant: variant.into(), quantity: quantity.into(), unit, held });
     }
 
-    /// Adds what [`Convergence::measurements`](crate::convergence::Convergence::measurements) gives for a curve with these norms
-    /// and orders of theory.
+    /// Adds what [`Convergence::measurements`](crate::convergence::Convergence::measurements) gives for a
+    /// curve with these norms and orders of theory.
     pub fn curve(&mut self, name: &str, refined: Refined, norms: &[&str], orders: &[Option<f64>]) {
         for (norm, order) in norms.iter().zip(orders) {
             self.push(name, &Norm::order_of(norm), "1", order.is_some());

@@ -1,4 +1,5 @@
-//! Speeds of waves from the flight of a pulse: dilatational in a bar between rollers, Rayleigh along a free surface.
+//! Speeds of waves from the flight of a pulse: dilatational in a bar between rollers, Rayleigh along a free
+//! surface.
 //!
 //! A Rayleigh wave of wave number k on the half plane y ≤ 0 is (Graff 1975, section 6.1)
 //!
@@ -7,8 +8,8 @@
 //! u_y = [2 k² q/(s² + k²) e^{s y} − q e^{q y}] cos(k x − k c t),    s = k sqrt(1 − c²/c_s²)
 //! ```
 //!
-//! and c, the same for all k, solves `(2 − c²/c_s²)² = 4 sqrt(1 − c²/c_d²) sqrt(1 − c²/c_s²)`. A packet of such waves keeps
-//! its shape, so the centroid of `u_y²` along the surface travels with c.
+//! and c, the same for all k, solves `(2 − c²/c_s²)² = 4 sqrt(1 − c²/c_d²) sqrt(1 − c²/c_s²)`. A packet of
+//! such waves keeps its shape, so the centroid of `u_y²` along the surface travels with c.
 
 use std::sync::Arc;
 

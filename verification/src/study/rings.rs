@@ -18,7 +18,8 @@ use crate::rings::events::{EVENTS, Watch};
 use crate::scene_run::frame_steps;
 pub(super) use sweep::{offers as sweep_offers, study as sweep};
 
-/// Times (s) of the events in the paper's words; the end of the crack through the rear wall is not among them.
+/// Times (s) of the events in the paper's words; the end of the crack through the rear wall is not among
+/// them.
 pub const PAPER: [Option<f64>; 6] = [Some(30e-6), Some(60e-6), Some(100e-6), None, Some(150e-6), Some(400e-6)];
 /// Phase field below which the first crack has formed.
 const CRACKED: f64 = 0.05;

@@ -1,7 +1,8 @@
 //! One revolution in a thousand increments, each applied exactly.
 //!
-//! The control points get the velocity `(R(θ) − I) x/dt` with θ = 2π/1000, which splines reproduce. What strain is left is
-//! that of the kinematics alone: none for Hencky strain; linear strain gains `cos θ − 1` in both directions per increment.
+//! The control points get the velocity `(R(θ) − I) x/dt` with θ = 2π/1000, which splines reproduce. What
+//! strain is left is that of the kinematics alone: none for Hencky strain; linear strain gains `cos θ − 1` in
+//! both directions per increment.
 
 use std::f64::consts::TAU;
 

@@ -1,4 +1,5 @@
-//! The `scene` study: run every scene of a case, keep histories and pictures, evaluate the measures of its checks.
+//! The `scene` study: run every scene of a case, keep histories and pictures, evaluate the measures of its
+//! checks.
 
 use serde::{Deserialize, Serialize};
 
@@ -84,7 +85,8 @@ impl FinishedScene {
     }
 }
 
-/// Runs the scenes of a case one after the other, until one of them is stopped: those that ended, and why the others did not.
+/// Runs the scenes of a case one after the other, until one of them is stopped: those that ended, and why the
+/// others did not.
 pub fn run_scenes(scenes: &[CaseScene]) -> (Vec<FinishedScene>, Option<Stopped>) {
     let count = scenes.len() as f64;
     let mut finished = Vec::new();

@@ -1,5 +1,5 @@
-//! Studies of hard cases: steps near the critical one, cut spans, nearly incompressible material, strains at the ends of what
-//! numbers hold, points on knots, other units, and runs that have to be the same.
+//! Studies of hard cases: steps near the critical one, cut spans, nearly incompressible material, strains at
+//! the ends of what numbers hold, points on knots, other units, and runs that have to be the same.
 
 pub(super) mod boundary_points;
 pub(super) mod critical_step;

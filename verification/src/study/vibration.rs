@@ -1,9 +1,9 @@
 //! Free vibration of a bar over many periods: what velocity Verlet conserves and what only oscillates.
 //!
 //! The bar stands between rollers (nu = 0) and starts from its first mode at full speed. The staggered energy
-//! `½ vᵀ M v − dt²/8 aᵀ M a + U` is constant; at whole steps the energy `½ vᵀ M v + U` oscillates by `(ω dt)²/4` from peak
-//! to peak, and does not drift. Drift is the difference of the means over the first and the second half of the run, both
-//! with a window that suppresses the oscillation itself.
+//! `½ vᵀ M v − dt²/8 aᵀ M a + U` is constant; at whole steps the energy `½ vᵀ M v + U` oscillates by
+//! `(ω dt)²/4` from peak to peak, and does not drift. Drift is the difference of the means over the first and
+//! the second half of the run, both with a window that suppresses the oscillation itself.
 
 use std::sync::Arc;
 

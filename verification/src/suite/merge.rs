@@ -1,4 +1,5 @@
-//! The parts of a plan joined: what one run of the whole plan writes, byte for byte but for times and environment.
+//! The parts of a plan joined: what one run of the whole plan writes, byte for byte but for times and
+//! environment.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fs;
@@ -109,12 +110,12 @@ fn list(slices: &[usize]) -> String {
     slices.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
 }
 
-/// Joins the parts in `folders` into `out`: `results.json` and `series/`. `sources` is the fingerprint of the sources of the
-/// present program.
+/// Joins the parts in `folders` into `out`: `results.json` and `series/`. `sources` is the fingerprint of the
+/// sources of the present program.
 ///
 /// # Errors
-/// Parts of different plans or programs, emptied or edited ones, slices missing or doubled, files that cannot be read or
-/// written; `out` is then marked as unfinished, without the results of before.
+/// Parts of different plans or programs, emptied or edited ones, slices missing or doubled, files that cannot
+/// be read or written; `out` is then marked as unfinished, without the results of before.
 pub fn merge(
     folders: &[PathBuf],
     out: &OutputFolder,
@@ -125,7 +126,8 @@ pub fn merge(
     if let Some(part) = folders.iter().find(|folder| own.is_some() && fs::canonicalize(folder).ok() == own) {
         return Err(MergeError::Itself(part.clone()));
     }
-    out.begin(|_| false).map_err(VerifyError::from)?; // whatever follows, the verdict of before is not that of these parts
+    // Whatever follows, the verdict of before is not that of these parts.
+    out.begin(|_| false).map_err(VerifyError::from)?;
     let parts = folders.iter().map(|folder| read(folder)).collect::<Result<Vec<Part>, _>>()?;
     let Some(first) = parts.first() else { return Err(MergeError::Missing { count: 0, slices: Vec::new() }) };
     check(folders, &parts)?;

@@ -71,7 +71,7 @@ impl Plan {
             set: set.to_vec(),
             slices,
             reference_data: folder_fingerprint(reference_data)?,
-            cases: cases.iter().map(|case| (case.id(), fingerprint([case.document.text()]))).collect(),
+            cases: cases.iter().map(|case| (case.id(), case.fingerprint())).collect(),
         })
     }
 
@@ -126,8 +126,8 @@ pub struct Part {
 }
 
 impl Part {
-    /// The same part with the fingerprint of what it holds. Whoever can write the file can make one: it tells a part that was
-    /// cut off or edited from a whole one, not who made it.
+    /// The same part with the fingerprint of what it holds. Whoever can write the file can make one: it tells
+    /// a part that was cut off or edited from a whole one, not who made it.
     pub fn sealed(self) -> Self {
         Self { digest: self.content(), ..self }
     }

@@ -1,7 +1,7 @@
 //! Slices of a plan, for job arrays and CI matrices: `slice:2/3` is the second of three.
 //!
-//! Cases are dealt by their committed `seconds`, longest first, each to the slice with the least so far. The deal depends
-//! on nothing but the cases and the number of slices, so machines need not talk to each other.
+//! Cases are dealt by their committed `seconds`, longest first, each to the slice with the least so far. The
+//! deal depends on nothing but the cases and the number of slices, so machines need not talk to each other.
 
 use std::fmt;
 use std::str::FromStr;

@@ -1,6 +1,8 @@
-//! Everything about a case that can be judged before it runs: what its study reads and yields, which records it will have.
+//! Everything about a case that can be judged before it runs: what its study reads and yields, which records
+//! it will have.
 //!
-//! A check that no run could ever judge is an error here, with its place and a remedy, and so is a key that nobody reads.
+//! A check that no run could ever judge is an error here, with its place and a remedy, and so is a key that
+//! nobody reads.
 
 mod scene_checks;
 

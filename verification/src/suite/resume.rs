@@ -1,6 +1,7 @@
 //! Finished cases of an interrupted run, kept in `partial/` of the results folder until the run is complete.
 //!
-//! An outcome is taken up only if program, case file, overrides and reference data are the same, and nobody changed the file.
+//! An outcome is taken up only if program, case file, overrides and reference data are the same, and nobody
+//! changed the file.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -47,8 +48,7 @@ impl Store {
     }
 
     fn name(&self, case: &Case) -> Option<String> {
-        let content = format!("{:?}", case.document.root); // with the overrides
-        let print = fingerprint([self.basis.as_ref()?.as_str(), case.document.text(), &content]);
+        let print = fingerprint([self.basis.as_ref()?, &case.fingerprint()]);
         Some(format!("{FOLDER}{}-{}-{print}.json", case.suite, case.name))
     }
 

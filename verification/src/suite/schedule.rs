@@ -1,7 +1,8 @@
 //! The order in which cases run, and on how many threads.
 //!
-//! Most cases run side by side, on one thread each, the longest first. A case that would still run when all others are
-//! done, or that needs much memory, runs before them on all threads. No result depends on the order or on the threads.
+//! Most cases run side by side, on one thread each, the longest first. A case that would still run when all
+//! others are done, or that needs much memory, runs before them on all threads. No result depends on the
+//! order or on the threads.
 
 use fisura::validate::expected_size;
 

@@ -27,8 +27,9 @@ pub struct Malformed {
     pub error: SceneFileError,
 }
 
-/// Every case below `folder`, `<suite>/<case>.toml`, in order of suite and name, and the files that are wrong. Hidden files,
-/// as editors leave them, are none. `overrides` are `--set` keys, applied to the scene of every case.
+/// Every case below `folder`, `<suite>/<case>.toml`, in order of suite and name, and the files that are
+/// wrong. Hidden files, as editors leave them, are none. `overrides` are `--set` keys, applied to the scene
+/// of every case.
 pub fn read_cases(folder: &Path, overrides: &[String]) -> (Vec<Case>, Vec<Malformed>) {
     let pattern = PathBuf::from(glob::Pattern::escape(&folder.to_string_lossy())).join("*").join("*.toml");
     let options = glob::MatchOptions { require_literal_leading_dot: true, ..glob::MatchOptions::default() };

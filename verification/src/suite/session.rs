@@ -30,12 +30,12 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// Removes the results of the run before from the folder and leaves there, until the cases are finished, results that say
-    /// so. `slice` is what the cases are of a plan, if they are not the whole.
+    /// Removes the results of the run before from the folder and leaves there, until the cases are finished,
+    /// results that say so. `slice` is what the cases are of a plan, if they are not the whole.
     ///
     /// # Errors
-    /// Wrong cases or reference data, finished cases of an interrupted run that this one would not go on with, a folder that cannot be
-    /// written.
+    /// Wrong cases or reference data, finished cases of an interrupted run that this one would not go on
+    /// with, a folder that cannot be written.
     pub fn begin(
         cases: &'a [Case],
         slice: Option<(Slice, Plan)>,
@@ -103,7 +103,8 @@ impl<'a> Session<'a> {
             },
         };
         let records = outcome.records.clone();
-        self.outcomes().insert(index, outcome); // before it is said: an interrupt now would leave it out of the report
+        // Before it is said: an interrupt now would leave it out of the report.
+        self.outcomes().insert(index, outcome);
         progress.finished(case, &records);
         Ok(())
     }
@@ -118,8 +119,8 @@ impl<'a> Session<'a> {
         (self.outcomes().len(), self.cases.len())
     }
 
-    /// Writes the results of the finished cases. As long as others are to come, a record of status error says so; then a slice
-    /// leaves its part as well.
+    /// Writes the results of the finished cases. As long as others are to come, a record of status error says
+    /// so; then a slice leaves its part as well.
     ///
     /// # Errors
     /// A file that cannot be written.

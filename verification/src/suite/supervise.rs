@@ -1,8 +1,8 @@
 //! A case under supervision: one that panics, or does not end, leaves the others their turn.
 //!
-//! The case runs in a pool of threads of its own. Beyond its time it is asked to stop, which every loop over time steps does at
-//! its next round. A case that does not is left behind with its threads after as long again; it takes processor time from
-//! what follows until the program ends, but nothing waits for it.
+//! The case runs in a pool of threads of its own. Beyond its time it is asked to stop, which every loop over
+//! time steps does at its next round. A case that does not is left behind with its threads after as long
+//! again; it takes processor time from what follows until the program ends, but nothing waits for it.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;

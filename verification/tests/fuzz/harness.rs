@@ -1,4 +1,5 @@
-//! Feeds readers with mutated files and watches time, memory and panics; shared by the tests of several crates.
+//! Feeds readers with mutated files and watches time, memory and panics; shared by the tests of several
+//! crates.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::fs;
@@ -119,7 +120,8 @@ pub fn watched(text: &[u8], reader: &impl Fn(&[u8])) -> Result<(), String> {
     Err(format!("{:?} of processor time in {:?}", best[0], best[1]))
 }
 
-/// Processor time of this thread so far: that of a busy machine is no longer. The time that passes has a limit of its own.
+/// Processor time of this thread so far: that of a busy machine is no longer. The time that passes has a
+/// limit of its own.
 fn processor_time() -> Duration {
     #[cfg(unix)]
     {

@@ -1,8 +1,9 @@
 //! Readers of scenes, cases and tables under mutated input: no panic, no hang, no flood of memory.
 //!
-//! Inputs are files of `tests/corpus` and of the project, changed by a few mutations of their tokens, lines, nesting and bytes.
-//! `FISURA_FUZZ=1000000 cargo test -p fisura-verification --test fuzz` takes a million of them, new ones every time; otherwise
-//! 10⁴, always the same. What fails is shrunk to the fewest mutations and printed; it goes to the corpus.
+//! Inputs are files of `tests/corpus` and of the project, changed by a few mutations of their tokens, lines,
+//! nesting and bytes. `FISURA_FUZZ=1000000 cargo test -p fisura-verification --test fuzz` takes a million of
+//! them, new ones every time; otherwise 10⁴, always the same. What fails is shrunk to the fewest mutations
+//! and printed; it goes to the corpus.
 
 mod harness;
 mod mutation;
@@ -20,7 +21,8 @@ use fisura_verification::scene_file::SceneFile;
 use fisura_verification::suite::prepare::prepare;
 use harness::{LONGEST, files, fuzz, watched};
 
-/// A case that is taken has a record for each of its checks, no two of one id; one that is refused is told why.
+/// A case that is taken has a record for each of its checks, no two of one id; one that is refused is told
+/// why.
 fn look_at_plan(case: &Case, library: &Library) {
     match prepare(case, library) {
         Ok(prepared) => {

@@ -1,4 +1,5 @@
-//! Scene files with general patches: good ones give the patch they describe, bad ones say where and what would help.
+//! Scene files with general patches: good ones give the patch they describe, bad ones say where and what
+//! would help.
 
 use fisura::scene::*;
 use fisura::splines::nurbs::NurbsPatch;

@@ -1,4 +1,5 @@
-//! Suites end to end on small cases: verdicts, breakdowns, wrong checks, resuming, reference curves in figures.
+//! Suites end to end on small cases: verdicts, breakdowns, wrong checks, resuming, reference curves in
+//! figures.
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -5,7 +5,8 @@ use fisura_verification::suite::VerifyError;
 
 use crate::support::{run, write_case};
 
-/// A block in free flight: its kinetic energy is ½ · 1 m · 0.5 m · 1 kg/m³ · (0.01 m/s)² = 2.5e-5 J throughout.
+/// A block in free flight: its kinetic energy is ½ · 1 m · 0.5 m · 1 kg/m³ · (0.01 m/s)² = 2.5e-5 J
+/// throughout.
 const SCENE: &str = r#"
 [scene.mesh]
 degree = 2

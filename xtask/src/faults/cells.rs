@@ -1,5 +1,5 @@
-//! What is known of each case with each fault: a file of `cells/` per cell, written as soon as it is done. A cell counts as long
-//! as program, case file and reference data are those it was made with.
+//! What is known of each case with each fault: a file of `cells/` per cell, written as soon as it is done. A
+//! cell counts as long as program, case file and reference data are those it was made with.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -55,13 +55,13 @@ pub fn keys(program: &Path, workspace: &Path, cases: &[Case]) -> Result<BTreeMap
     let bytes = fs::read(program)
         .map_err(|e| Failure::new(Exit::BadInput, format!("{} cannot be read: {e}", program.display())))?;
     let common = [fingerprint([bytes]), folder_fingerprint(&workspace.join("reference-data"))?];
-    let key = |case: &Case| fingerprint([common[0].as_str(), common[1].as_str(), case.document.text()]);
+    let key = |case: &Case| fingerprint([&common[0], &common[1], &case.fingerprint()]);
     Ok(cases.iter().map(|case| (case.id(), key(case))).collect())
 }
 
 impl<'a> Store<'a> {
-    /// The cells in a folder that count; others are removed, and so are those of runs that ended without records: the machine may
-    /// have been busy then.
+    /// The cells in a folder that count; others are removed, and so are those of runs that ended without
+    /// records: the machine may have been busy then.
     ///
     /// # Errors
     /// A file that cannot be removed.

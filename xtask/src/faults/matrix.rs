@@ -76,12 +76,14 @@ impl Matrix {
         matrix
     }
 
-    /// Whether a check stays green with every fault, and nobody said why, or it is not known whether one does.
+    /// Whether a check stays green with every fault, and nobody said why, or it is not known whether one
+    /// does.
     pub fn lacking(&self) -> bool {
         self.is_incomplete() || self.idle.iter().any(|idle| idle.reason.is_none())
     }
 
-    /// Whether cells are to come, of all faults. With some of the faults nothing is said of checks that stay green.
+    /// Whether cells are to come, of all faults. With some of the faults nothing is said of checks that stay
+    /// green.
     fn is_incomplete(&self) -> bool {
         self.faults.len() == FAULTS.len() && self.count(|state| state == State::NotRun) > 0
     }
@@ -180,7 +182,8 @@ fn state(store: &Store, fault: &str, case: &str) -> State {
     }
 }
 
-/// `suite/case/quantity` of a record `suite/case/variant/quantity`; variants may hold slashes, quantities do not.
+/// `suite/case/quantity` of a record `suite/case/variant/quantity`; variants may hold slashes, quantities do
+/// not.
 fn check_of(id: &str) -> String {
     let mut parts = id.splitn(3, '/');
     let (suite, case) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());

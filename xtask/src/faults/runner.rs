@@ -1,4 +1,5 @@
-//! Processes of the program in which errors are planted: several side by side, each with one fault and one thread.
+//! Processes of the program in which errors are planted: several side by side, each with one fault and one
+//! thread.
 
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read, Seek};
@@ -72,7 +73,8 @@ impl Runner {
         self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 
-    /// Runs the jobs, in this order as far as there is only one process; cases after the deadline are left out.
+    /// Runs the jobs, in this order as far as there is only one process; cases after the deadline are left
+    /// out.
     ///
     /// # Errors
     /// A process that cannot be started, and what `tell` says.

@@ -1,5 +1,5 @@
-//! The part of `faults` that runs in the program in which errors are planted: cases one after the other, and a line of JSON on
-//! standard output for each as soon as it is done.
+//! The part of `faults` that runs in the program in which errors are planted: cases one after the other, and
+//! a line of JSON on standard output for each as soon as it is done.
 
 use std::io::{Write, stdout};
 use std::sync::{Arc, Mutex};

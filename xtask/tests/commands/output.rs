@@ -121,7 +121,8 @@ mod signals {
         ])
     }
 
-    /// Starts a command and waits until its standard error has a line with `mark`; what is left of it is read no more.
+    /// Starts a command and waits until its standard error has a line with `mark`; what is left of it is read
+    /// no more.
     fn start(place: &Place, arguments: &[&str], mark: &str) -> Child {
         let mut command = place.command(arguments);
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the binary starts");

@@ -1,23 +1,26 @@
 //! Impulses from the equations of the constraints, where rounds over the constraints settle too slowly.
 //!
-//! Impulses P change the relative velocities at the constraints to `r + A P`. If it is known which constraints are open, stick or slide,
-//! P solves linear equations: no impulse where it is open, no approach where it is not, no sliding where it sticks, and `± mu`
-//! times the normal impulse along where it slides. The states are those the rounds ended with, changed until they agree with the
-//! impulses (a Newton method for the complementarity problem). Nothing is taken on trust: rounds that follow have to find the
-//! impulses settled.
+//! Impulses P change the relative velocities at the constraints to `r + A P`. If it is known which
+//! constraints are open, stick or slide, P solves linear equations: no impulse where it is open, no approach
+//! where it is not, no sliding where it sticks, and `± mu` times the normal impulse along where it slides.
+//! The states are those the rounds ended with, changed until they agree with the impulses (a Newton method
+//! for the complementarity problem). Nothing is taken on trust: rounds that follow have to find the impulses
+//! settled.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::{Acting, Impulse, Problem};
 use crate::linear_algebra::vectors::dot;
 
-/// Most times the states are changed: all that do not agree at once, which may go round in circles, then the first of them, which
-/// does not where there is no friction (Murty 1974).
+/// Most times the states are changed: all that do not agree at once, which may go round in circles, then the
+/// first of them, which does not where there is no friction (Murty 1974).
 const MOST_CHANGES: usize = 100;
 const MOST_AT_ONCE: usize = 10;
-/// Least singular value relative to the largest: more constraints than control points can tell apart share their impulses.
+/// Least singular value relative to the largest: more constraints than control points can tell apart share
+/// their impulses.
 const SINGULAR: f64 = 1e-13;
-/// Least pivot relative to the largest of equations that are far from that, and are solved without singular values.
+/// Least pivot relative to the largest of equations that are far from that, and are solved without singular
+/// values.
 const REGULAR: f64 = 1e-8;
 /// Error of velocities and impulses that changes no state, relative to the largest.
 const ROUND_OFF: f64 = 1e-11;
@@ -40,7 +43,8 @@ struct Equations {
 }
 
 impl Problem<'_> {
-    /// Replaces the impulses by those that solve the equations; false if no states are found that agree with them.
+    /// Replaces the impulses by those that solve the equations; false if no states are found that agree with
+    /// them.
     pub(super) fn solve_directly(&mut self, friction: f64, step: f64) -> bool {
         let equations = Equations::of(self, friction, step);
         let mut states: Vec<State> = self.constraints.iter().map(|acting| equations.state_of(acting.impulse)).collect();

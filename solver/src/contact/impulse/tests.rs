@@ -47,8 +47,8 @@ fn impulses_that_cannot_settle_are_said_to_be_unsettled() {
     assert!(problem.unsettled.expect("no number").residual.is_nan());
 }
 
-/// A wall against a row of control points, at as many places between them: neighbours differ in how it falls on them, and rounds
-/// take as many as the square of the row to find out. The equations say at once.
+/// A wall against a row of control points, at as many places between them: neighbours differ in how it falls
+/// on them, and rounds take as many as the square of the row to find out. The equations say at once.
 #[test]
 fn touches_as_many_as_control_points_settle() {
     let count = 60;

@@ -24,8 +24,8 @@ impl TotalFrame {
     /// The body of `scene` at t = 0 with its initial accelerations.
     ///
     /// # Errors
-    /// If the body holds no material point, a part of a traction would be lost, the initial phase field does not converge, or a
-    /// consistent mass matrix is singular to round-off.
+    /// If the body holds no material point, a part of a traction would be lost, the initial phase field does
+    /// not converge, or a consistent mass matrix is singular to round-off.
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
         let patch = Patch::new(&scene.mesh);
         let body = &scene.bodies[0];
@@ -79,7 +79,8 @@ impl TotalFrame {
         Ok(frame)
     }
 
-    /// Begins anew at t = 0 from given control values of displacement (m) and velocity (m/s), under loads that vary in space.
+    /// Begins anew at t = 0 from given control values of displacement (m) and velocity (m/s), under loads
+    /// that vary in space.
     ///
     /// # Errors
     /// If the initial phase field does not converge.
@@ -98,7 +99,8 @@ impl TotalFrame {
         self.start_with(displacement, velocity)
     }
 
-    /// Begins anew at t = 0 from given control values of displacement (m) and velocity (m/s), under the loads it has.
+    /// Begins anew at t = 0 from given control values of displacement (m) and velocity (m/s), under the loads
+    /// it has.
     ///
     /// # Errors
     /// If the initial phase field does not converge.

@@ -30,7 +30,8 @@ impl TotalFrame {
         (self.patch.control_positions().map(|x| x[fastest]), speed(&fastest))
     }
 
-    /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at zero.
+    /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at
+    /// zero.
     pub fn sample(&self, dt: f64) -> Sample {
         let [x, y] = self.patch.control_positions();
         let kinetic = self.mass.half_square(&self.velocity);
@@ -90,8 +91,8 @@ impl TotalFrame {
         }
     }
 
-    /// Stress `[xx, yy, xy]` (Pa) of the undamaged body under a displacement field at a position; NaN outside the patch. With
-    /// finite kinematics it is Kirchhoff's.
+    /// Stress `[xx, yy, xy]` (Pa) of the undamaged body under a displacement field at a position; NaN outside
+    /// the patch. With finite kinematics it is Kirchhoff's.
     pub fn elastic_stress_at(&self, displacement: &[Vec<f64>; 2], position: [f64; 2]) -> [f64; 3] {
         let [x, y] = [0, 1].map(|c| self.patch.evaluate(&displacement[c], position));
         let (Some(x), Some(y)) = (x, y) else { return [f64::NAN; 3] };

@@ -1,4 +1,5 @@
-//! The critical step of a body with finite strains as it is deformed and broken now: compression raises the stiffness.
+//! The critical step of a body with finite strains as it is deformed and broken now: compression raises the
+//! stiffness.
 
 use super::TotalFrame;
 use super::stiffness::LatticeStiffness;
@@ -21,8 +22,9 @@ const PROBE: f64 = 1e-6;
 const NOTICEABLE: f64 = 1.5;
 
 impl TotalFrame {
-    /// Takes the critical time step (s) of the body as it is now if finite strains may have made it shorter than `dt` (s), and the
-    /// body is stiffer than when it was last taken; `undeformed` is the critical step of the undeformed body, s.
+    /// Takes the critical time step (s) of the body as it is now if finite strains may have made it shorter
+    /// than `dt` (s), and the body is stiffer than when it was last taken; `undeformed` is the critical step
+    /// of the undeformed body, s.
     pub fn retake_critical_step(&mut self, dt: f64, undeformed: f64) -> Option<f64> {
         if self.kinematics == Kinematics::Small {
             return None;
@@ -37,10 +39,12 @@ impl TotalFrame {
         Some(2.0 / frequency).filter(|step| *step > 0.0)
     }
 
-    /// By how much the squared frequency of a wave has grown at most, 1 or more; infinite or not a number for numbers that are.
+    /// By how much the squared frequency of a wave has grown at most, 1 or more; infinite or not a number for
+    /// numbers that are.
     ///
-    /// Along a principal direction of stretch s, Hencky's law has `dP/ds = E (1 − ln s)/s²`; the other direction adds as much
-    /// of the stress at most. Broken points that do not resist compression are left out: they may be crushed to nothing.
+    /// Along a principal direction of stretch s, Hencky's law has `dP/ds = E (1 − ln s)/s²`; the other
+    /// direction adds as much of the stress at most. Broken points that do not resist compression are left
+    /// out: they may be crushed to nothing.
     fn stiffening(&self) -> f64 {
         let lattice = &self.lattice;
         let degraded = self.fracture.as_ref().filter(|fracture| fracture.model.split == EnergySplit::Whole);
@@ -71,7 +75,8 @@ impl TotalFrame {
     }
 }
 
-/// Tangent stiffness on the free degrees of freedom, by central differences of the internal forces: the geometric part is in it.
+/// Tangent stiffness on the free degrees of freedom, by central differences of the internal forces: the
+/// geometric part is in it.
 struct Tangent<'a> {
     frame: &'a TotalFrame,
     undeformed: LatticeStiffness<'a>,

@@ -1,18 +1,20 @@
 //! Affine velocities of the points: APIC and TPIC.
 //!
-//! A point carries a velocity gradient C beside its velocity, and gives the control point I at x_I (its Greville point)
-//! `v_p + C (x_I − x_p)`. Both transfers take `C = Σ v_I g_Iᵀ` from the grid and differ in g alone:
+//! A point carries a velocity gradient C beside its velocity, and gives the control point I at x_I (its
+//! Greville point) `v_p + C (x_I − x_p)`. Both transfers take `C = Σ v_I g_Iᵀ` from the grid and differ in g
+//! alone:
 //!
 //! ```text
 //! APIC   g_I = D⁻¹ N_I (x_I − x_p),    D = Σ N_I (x_I − x_p)(x_I − x_p)ᵀ         Jiang et al. (2015)
 //! TPIC   g_I = grad N_I
 //! ```
 //!
-//! Greville points reproduce positions, so D is diagonal, and g a product of one-dimensional factors. D is computed at every
-//! point: h²/4 for quadratics and h²/3 for cubics on uniform knots, but it goes to zero at the ends of an open knot
-//! vector, where the derivative of N is the limit, and at every knot for p = 1, where both transfers are the same.
-//! C is kept rather than C D: an affine field is then carried exactly wherever the point goes, and angular momentum to
-//! round-off as long as D does not change, which is on uniform knots for p ≥ 2 away from the sides of the patch.
+//! Greville points reproduce positions, so D is diagonal, and g a product of one-dimensional factors. D is
+//! computed at every point: h²/4 for quadratics and h²/3 for cubics on uniform knots, but it goes to zero at
+//! the ends of an open knot vector, where the derivative of N is the limit, and at every knot for p = 1,
+//! where both transfers are the same. C is kept rather than C D: an affine field is then carried exactly
+//! wherever the point goes, and angular momentum to round-off as long as D does not change, which is on
+//! uniform knots for p ≥ 2 away from the sides of the patch.
 
 use rayon::prelude::*;
 
@@ -174,7 +176,8 @@ impl Take<'_> {
                         value = each!(c in [0, 1] => value[c] + sx.value[k] * sy.value[l] * local[l * kx + k][c]);
                     }
                 }
-                // Against the velocity at the point: a constant has no gradient, whatever rounding does to the factors.
+                // Against the velocity at the point: a constant has no gradient, whatever rounding does to
+                // the factors.
                 let mut gradient = [[0.0; 2]; 2];
                 for l in 0..ky {
                     for k in 0..kx {

@@ -26,8 +26,8 @@ impl DiscreteField {
     /// The body of `scene` at t = 0 with its initial velocities and accelerations.
     ///
     /// # Errors
-    /// If the body holds no material point, a part of a traction would be lost, the initial phase field does not converge, or a
-    /// point is not on the patch.
+    /// If the body holds no material point, a part of a traction would be lost, the initial phase field does
+    /// not converge, or a point is not on the patch.
     pub fn new(scene: &Scene, body: &Body, whole: &Arc<Patch>) -> Result<Self, Failure> {
         let mut field = Self::at_rest(scene, body, whole)?;
         let (center, velocity, spin) = (center_of_mass(&field.points), body.velocity, body.angular_velocity);

@@ -77,7 +77,8 @@ impl PointwiseFracture {
         }
     }
 
-    /// Goes over to another part of the patch, whose first control column and row lie `shift` columns and rows further.
+    /// Goes over to another part of the patch, whose first control column and row lie `shift` columns and
+    /// rows further.
     pub(crate) fn relocate(&mut self, patch: &Patch, shift: [isize; 2]) {
         self.field.relocate(patch.control_grid(), shift);
         self.fictitious = FictitiousMaterial::new(patch, self.model.diffusion());
@@ -92,7 +93,8 @@ impl PointwiseFracture {
         });
     }
 
-    /// Assembles and solves the phase-field system at the present positions; `moved` says that points changed spans.
+    /// Assembles and solves the phase-field system at the present positions; `moved` says that points changed
+    /// spans.
     ///
     /// # Errors
     /// If there is no solution to the tolerance.
@@ -240,8 +242,9 @@ impl UpdateStress<'_> {
         sums
     }
 
-    /// Phase field at a point, and the slope of its energy `(1 − k) c² H + Gc [(1 − c)²/(4 l0) + l0 |grad c|²]` with H and the
-    /// control values kept; adds the surface energy (E 3).
+    /// Phase field at a point, and the slope of its energy
+    /// `(1 − k) c² H + Gc [(1 − c)²/(4 l0) + l0 |grad c|²]` with H and the control values kept; adds the
+    /// surface energy (E 3).
     #[inline(always)]
     fn interpolate(
         &self,

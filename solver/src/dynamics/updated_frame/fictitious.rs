@@ -1,15 +1,18 @@
-//! Fictitious material under the phase field of moving points: the finite cell method (Parvizian, Düster and Rank 2007).
+//! Fictitious material under the phase field of moving points: the finite cell method (Parvizian, Düster and
+//! Rank 2007).
 //!
-//! Where a body is cut, or drawn out once it is broken, a span holds fewer points than functions: the points leave combinations of
-//! control values open that vanish at all of them, and the system is singular to round-off. The whole part of the patch is therefore filled
-//! with intact material of `WEIGHT` times the body's,
+//! Where a body is cut, or drawn out once it is broken, a span holds fewer points than functions: the points
+//! leave combinations of control values open that vanish at all of them, and the system is singular to
+//! round-off. The whole part of the patch is therefore filled with intact material of `WEIGHT` times the
+//! body's,
 //!
 //! ```text
 //! K0_IJ = α ∫ (N_I N_J + 4 l0² grad N_I · grad N_J) dx,   load0_I = α ∫ N_I dx
 //! ```
 //!
-//! which gives such combinations smooth values, holds control points without material at c = 1, and changes the phase field
-//! of the points by O(α). Over a rectangle the integrals are products of those of either direction.
+//! which gives such combinations smooth values, holds control points without material at c = 1, and changes
+//! the phase field of the points by O(α). Over a rectangle the integrals are products of those of either
+//! direction.
 
 use rayon::prelude::*;
 

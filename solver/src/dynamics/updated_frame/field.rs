@@ -1,7 +1,7 @@
 //! One body of the updated frame: its points and its own nodal fields, a discrete field on the shared patch.
 //!
-//! The nodal fields cover the part of the patch the body is in and a few spans around it; the part follows the body
-//! ([`part`](super::part)). Bodies know nothing of each other: see [`crate::contact`].
+//! The nodal fields cover the part of the patch the body is in and a few spans around it; the part follows
+//! the body ([`part`](super::part)). Bodies know nothing of each other: see [`crate::contact`].
 
 use std::sync::Arc;
 
@@ -39,7 +39,8 @@ pub struct DiscreteField {
     pub(super) origin: [usize; 2],
     pub(super) boundaries: Vec<Boundary>,
     pub(super) moduli: ElasticModuli,
-    /// Logarithmic change of volume over that of area: less than 1 in plane stress, where the thickness follows.
+    /// Logarithmic change of volume over that of area: less than 1 in plane stress, where the thickness
+    /// follows.
     pub(super) thickening: f64,
     pub(super) density: f64,
     pub(super) thickness: f64,
@@ -137,7 +138,8 @@ impl DiscreteField {
         }
     }
 
-    /// `v_p ← k v_p + Σ N Δv` (k the kept fraction, Δv the increment), `x_p += dt Σ N motion`, and the strain of the motion; whether a point left its span.
+    /// `v_p ← k v_p + Σ N Δv` (k the kept fraction, Δv the increment), `x_p += dt Σ N motion`, and the strain
+    /// of the motion; whether a point left its span.
     pub(super) fn grid_to_points(&mut self, dt: f64) -> bool {
         let Self { patch, cells, points, velocity_transfer, forcing, .. } = self;
         if let Some(forcing) = forcing {

@@ -9,7 +9,8 @@ use crate::splines::patch::Patch;
 
 /// Masses below this fraction of the largest give no acceleration; their control points keep their velocity.
 ///
-/// Removing such a control point (zero velocity) would break the partition of unity and brake every moving boundary.
+/// Removing such a control point (zero velocity) would break the partition of unity and brake every moving
+/// boundary.
 const NEGLIGIBLE_MASS: f64 = 1e-16;
 
 /// Mass, velocities and forces of the control points at the present whole step, per unit thickness.
@@ -137,8 +138,8 @@ impl NodalFields {
         [0, 1].map(|c| self.mass.iter().zip(&velocity[c]).map(|(m, v)| m * v).sum())
     }
 
-    /// Power of the present forces on the present velocities at control points that follow them: those that accelerate,
-    /// and those that are held or driven, W/m.
+    /// Power of the present forces on the present velocities at control points that follow them: those that
+    /// accelerate, and those that are held or driven, W/m.
     pub(crate) fn power_followed(&self) -> f64 {
         let mut power = 0.0;
         for component in 0..2 {
@@ -169,7 +170,8 @@ impl NodalFields {
         [self.greville[0][self.grid.column_of(at)], self.greville[1][self.grid.row_of(at)]]
     }
 
-    /// Values of a velocity field at the Greville points: exact control values of an affine field, of second order for others.
+    /// Values of a velocity field at the Greville points: exact control values of an affine field, of second
+    /// order for others.
     pub(crate) fn at_greville_points(&self, velocity: impl Fn([f64; 2]) -> [f64; 2]) -> VectorField {
         let mut field = [self.grid.zeros(), self.grid.zeros()];
         for at in self.grid.indices() {

@@ -1,4 +1,5 @@
-//! The points of the bodies in the updated frame, one by one, and the spans they are in: for looking at a run.
+//! The points of the bodies in the updated frame, one by one, and the spans they are in: for looking at a
+//! run.
 
 use super::UpdatedFrame;
 use crate::output::inspection::{PointFracture, PointState};

@@ -19,7 +19,8 @@ use crate::phase_field::PhaseFieldCounts;
 use crate::splines::patch::Patch;
 
 impl UpdatedFrame {
-    /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at zero.
+    /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at
+    /// zero.
     pub fn sample(&self, dt: f64) -> Sample {
         let mut accelerations: Vec<_> =
             self.fields.iter().map(|field| Cow::Borrowed(&field.nodes.acceleration)).collect();
@@ -136,8 +137,8 @@ impl UpdatedFrame {
 }
 
 impl DiscreteField {
-    /// Energies, momenta and crack tip of a body a metre thick at the present whole step with the given accelerations (m/s²);
-    /// `dt` is the step in use. Closure is left at zero.
+    /// Energies, momenta and crack tip of a body a metre thick at the present whole step with the given
+    /// accelerations (m/s²); `dt` is the step in use. Closure is left at zero.
     fn sample(&self, dt: f64, acceleration: &VectorField) -> Sample {
         let nodes = &self.nodes;
         let half = if self.at_start { 0.0 } else { fault!("half-step-velocity", 0.5 * dt => 0.0) };
@@ -174,8 +175,8 @@ impl DiscreteField {
         }
     }
 
-    /// Point of largest x with c below [`BROKEN`] in the upper half of the body, moved along x to where c is [`BROKEN`]
-    /// by the gradient of c, at most by the distance between points.
+    /// Point of largest x with c below [`BROKEN`] in the upper half of the body, moved along x to where c is
+    /// [`BROKEN`] by the gradient of c, at most by the distance between points.
     pub fn crack_tip(&self) -> Option<[f64; 2]> {
         let fracture = self.fracture.as_ref()?;
         let broken = |(p, f): &(&Point, &FracturePoint)| f.phase < BROKEN && p.position[1] >= self.lowest_tip;
@@ -192,8 +193,8 @@ impl DiscreteField {
         tips.max_by(|a, b| a[0].total_cmp(&b[0]))
     }
 
-    /// Kinetic energy of the points as the scheme keeps it, `1/2 Σ m v_p(n − 1/2) · v_p(n + 1/2)` with FLIP or MUSL, J; at
-    /// t = 0 that of the initial velocities. `dt` is the step in use.
+    /// Kinetic energy of the points as the scheme keeps it, `1/2 Σ m v_p(n − 1/2) · v_p(n + 1/2)` with FLIP
+    /// or MUSL, J; at t = 0 that of the initial velocities. `dt` is the step in use.
     pub fn point_kinetic_energy(&self, dt: f64) -> f64 {
         let square = |p: &Point| p.volume * (p.velocity[0] * p.velocity[0] + p.velocity[1] * p.velocity[1]);
         let points = 0.5 * self.density * self.points.iter().map(square).sum::<f64>();

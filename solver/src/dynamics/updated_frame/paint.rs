@@ -6,15 +6,17 @@ use crate::material::degradation::largest_principal;
 use crate::output::raster::Raster;
 use crate::particles::points::Point;
 
-/// Side of the square a point fills in a picture, over the root of its volume. The points of a Gauss rule stand up to
-/// 1.16 of that apart.
+/// Side of the square a point fills in a picture, over the root of its volume. The points of a Gauss rule
+/// stand up to 1.16 of that apart.
 const FILL: f64 = 1.25;
 
 impl UpdatedFrame {
-    /// Phase field, if there is one, and largest principal stress (Pa) on a raster; NaN where there is no material.
+    /// Phase field, if there is one, and largest principal stress (Pa) on a raster; NaN where there is no
+    /// material.
     ///
-    /// Each point fills a square, a quarter larger than its volume so that no gaps are left between them. The stress is a mean
-    /// over the points weighted with volume, and the phase field that of the body with the most of a pixel.
+    /// Each point fills a square, a quarter larger than its volume so that no gaps are left between them. The
+    /// stress is a mean over the points weighted with volume, and the phase field that of the body with the
+    /// most of a pixel.
     pub(crate) fn paint(&self, raster: &Raster) -> (Option<Vec<f64>>, Vec<f64>) {
         let count = raster.pixels[0] * raster.pixels[1];
         let (mut covered, mut stress, mut most) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
@@ -63,7 +65,8 @@ impl DiscreteField {
         self.patch.evaluate(fracture.field.control_values(), position).map_or(f64::NAN, |c| c.value)
     }
 
-    /// Present volume over that at t = 0, which leads from the stress of a point to Cauchy's; 1 for small strains.
+    /// Present volume over that at t = 0, which leads from the stress of a point to Cauchy's; 1 for small
+    /// strains.
     fn volume_ratio(&self, point: &Point) -> f64 {
         let dilatation = point.strain[0] + point.strain[1];
         if self.deformation.is_some() { (self.thickening * dilatation).exp() } else { 1.0 }

@@ -50,8 +50,8 @@ pub(crate) fn constraints(whole: &Patch, part: &Patch, origin: [usize; 2], bound
 }
 
 impl DiscreteField {
-    /// Moves the part of the patch to where the points are, and sorts them. Nodal fields are rebuilt at every step; the
-    /// phase field moves with the part.
+    /// Moves the part of the patch to where the points are, and sorts them. Nodal fields are rebuilt at every
+    /// step; the phase field moves with the part.
     ///
     /// # Errors
     /// A point outside the patch.

@@ -1,8 +1,9 @@
 //! The way to the points and back: `S⁺ S` on a nodal field, with `S` the interpolation to the points and
 //! `S⁺ = M⁻¹ Sᵀ m` the mass-weighted mean that P2G takes.
 //!
-//! Its eigenvalues lie between 0 and 1: it keeps what the points see and filters the rest. The lumped mass makes it a
-//! filter for all fields but the constant; that is the loss of PIC, and what XPIC corrects and MUSL balances.
+//! Its eigenvalues lie between 0 and 1: it keeps what the points see and filters the rest. The lumped mass
+//! makes it a filter for all fields but the constant; that is the loss of PIC, and what XPIC corrects and
+//! MUSL balances.
 
 use super::transfer::walk;
 use super::windows::{Window, control_values, scatter};

@@ -1,4 +1,5 @@
-//! The state of the bodies in the updated frame: what the points and surfaces carry. Order and nodal fields follow from it.
+//! The state of the bodies in the updated frame: what the points and surfaces carry. Order and nodal fields
+//! follow from it.
 
 use super::affine::AffineVelocities;
 use super::field::DiscreteField;
@@ -104,7 +105,8 @@ impl DiscreteField {
 
     /// Order of the points, spans of the surface points, nodal fields.
     fn rebuild(&mut self) -> Result<(), OutsidePatch> {
-        self.cells.sort(&self.patch, &mut self.points)?; // they are sorted already: the order of all else stays
+        // They are sorted already: the order of all else stays.
+        self.cells.sort(&self.patch, &mut self.points)?;
         self.points_to_grid();
         self.attach_loads()?;
         self.respond();

@@ -4,8 +4,9 @@ use crate::material::hencky::{Gradient, advance, gradient_at_end, hencky_strain,
 
 /// Strains the points of a strip.
 pub trait StrainUpdate {
-    /// Brings the strain `[xx, yy, xy]` of point `at` of the strip up to date with the displacement of a step, whose
-    /// gradient at the positions before it is `step`. Returns the strain of the step that the new stress works on.
+    /// Brings the strain `[xx, yy, xy]` of point `at` of the strip up to date with the displacement of a
+    /// step, whose gradient at the positions before it is `step`. Returns the strain of the step that the new
+    /// stress works on.
     fn strain(&mut self, at: usize, strain: &mut [f64; 3], step: &Gradient) -> [f64; 3];
 }
 

@@ -52,8 +52,8 @@ impl SurfaceLoad {
         self.points.iter_mut().try_for_each(|point| point.place.attach(patch, &nodes.inverse_mass))
     }
 
-    /// Position (m) of every control point that answers to the load, and its share of the length of the edge, m: once for each
-    /// surface point.
+    /// Position (m) of every control point that answers to the load, and its share of the length of the edge,
+    /// m: once for each surface point.
     pub(crate) fn shares<'a>(
         &'a self,
         patch: &'a Patch,

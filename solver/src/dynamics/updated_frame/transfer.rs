@@ -1,8 +1,8 @@
 //! The passes between points and grid of the updated frame (E 15–18).
 //!
-//! Both go cell by cell: the control values of a span are gathered once for all its points. Shape functions are products
-//! of two one-dimensional Horner schemes at the present position. Four numbers travel together through the inner loops,
-//! which is what the vector instructions of every processor in question hold.
+//! Both go cell by cell: the control values of a span are gathered once for all its points. Shape functions
+//! are products of two one-dimensional Horner schemes at the present position. Four numbers travel together
+//! through the inner loops, which is what the vector instructions of every processor in question hold.
 
 use super::strain::StrainUpdate;
 use super::windows::{Window, control_values};
@@ -14,7 +14,8 @@ use crate::particles::points::{Cell, FracturePoint, Point};
 use crate::splines::patch::Patch;
 use crate::splines::spline::MAX_FUNCTIONS;
 
-/// Instantiates a walk over the usual degrees with loops of constant length on wide processors; any other runs the same code.
+/// Instantiates a walk over the usual degrees with loops of constant length on wide processors; any other
+/// runs the same code.
 macro_rules! walk {
     ($self:ident, $wide:ident) => {
         match $self.patch.spaces.each_ref().map(|space| space.degree()) {
@@ -104,7 +105,8 @@ impl PointsToGrid<'_> {
     }
 }
 
-/// G2P: velocity, position and strain of the points of a strip, and stress and energy where nothing fractures.
+/// G2P: velocity, position and strain of the points of a strip, and stress and energy where nothing
+/// fractures.
 pub struct GridToPoints<'a, K> {
     /// Background patch.
     pub patch: &'a Patch,

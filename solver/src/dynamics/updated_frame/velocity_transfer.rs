@@ -1,8 +1,9 @@
 //! The velocities that the grid gives the points: the transfers PIC, FLIP, MUSL, APIC, TPIC and XPIC.
 //!
-//! Let w be the velocity that arrived on the grid, `v = w + dt a` the one after the step (conditions on the sides imposed),
-//! S the interpolation to the points and `S⁺ S` the way there and back ([`Smoothing`]). A point gets
-//! `v_p ← k v_p + S Δv`, k being the kept fraction and Δv the increment, and moves and strains with `motion`:
+//! Let w be the velocity that arrived on the grid, `v = w + dt a` the one after the step (conditions on the
+//! sides imposed), S the interpolation to the points and `S⁺ S` the way there and back ([`Smoothing`]). A
+//! point gets `v_p ← k v_p + S Δv`, k being the kept fraction and Δv the increment, and moves and strains
+//! with `motion`:
 //!
 //! ```text
 //!          k     Δv                                      motion
@@ -14,23 +15,24 @@
 //! XPIC(m)  0     Σ_{k<m} (I − S⁺ S)^k w + (v − w)        v
 //! ```
 //!
-//! MUSL's motion is what a second P2G of the new point velocities would give. Points move with it as well as strain (Sulsky et
-//! al. move them with v), so that the strain is that of the motion. XPIC(1) is PIC, and XPIC(m) tends to a FLIP without
-//! velocities the grid cannot see (Hammerquist and Nairn 2017).
+//! MUSL's motion is what a second P2G of the new point velocities would give. Points move with it as well as
+//! strain (Sulsky et al. move them with v), so that the strain is that of the motion. XPIC(1) is PIC, and
+//! XPIC(m) tends to a FLIP without velocities the grid cannot see (Hammerquist and Nairn 2017).
 //!
 //! # The critical step
 //!
-//! For points at rest, a mode of the grid with frequency ω that `S⁺ S` (with the affine part, for APIC and TPIC) multiplies
-//! by s obeys, with Ω = ω dt,
+//! For points at rest, a mode of the grid with frequency ω that `S⁺ S` (with the affine part, for APIC and
+//! TPIC) multiplies by s obeys, with Ω = ω dt,
 //!
 //! ```text
-//! FLIP      u ← u + dt (w − dt ω² u),   w ← w − s dt ω² u               stable up to Ω² = 4/(2 − s)
-//! others    u ← u + dt (w − dt ω² u),   w ← q w − s dt ω² u             stable up to Ω² = 2 (1 + q)/(1 + q − s)
-//! MUSL      w ← w − s dt ω² u,          u ← u + dt w                    stable up to Ω² = 4/s
+//! FLIP      u ← u + dt (w − dt ω² u),   w ← w − s dt ω² u          stable up to Ω² = 4/(2 − s)
+//! others    u ← u + dt (w − dt ω² u),   w ← q w − s dt ω² u        stable up to Ω² = 2 (1 + q)/(1 + q − s)
+//! MUSL      w ← w − s dt ω² u,          u ← u + dt w               stable up to Ω² = 4/s
 //! ```
 //!
-//! with q = s for PIC, APIC and TPIC and q = 1 − (1 − s)^m ≥ s for XPIC(m). For 0 ≤ s ≤ 1, which is a theorem but for TPIC
-//! (dense eigenvalues of bodies at random offsets: 0 to 1, all real), none is below √2, and MUSL's is at least 2.
+//! with q = s for PIC, APIC and TPIC and q = 1 − (1 − s)^m ≥ s for XPIC(m). For 0 ≤ s ≤ 1, which is a theorem
+//! but for TPIC (dense eigenvalues of bodies at random offsets: 0 to 1, all real), none is below √2, and
+//! MUSL's is at least 2.
 
 use super::grid::NodalFields;
 use super::smoothing::Smoothing;

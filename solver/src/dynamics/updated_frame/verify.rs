@@ -9,7 +9,8 @@ use crate::dynamics::failure::Failure;
 use crate::dynamics::forcing::Forcing;
 
 impl UpdatedFrame {
-    /// Gives the points an initial velocity (m/s) as a function of the reference position (m), before the first step.
+    /// Gives the points an initial velocity (m/s) as a function of the reference position (m), before the
+    /// first step.
     ///
     /// # Panics
     /// After a step.
@@ -18,7 +19,8 @@ impl UpdatedFrame {
         self.fields.iter_mut().for_each(|field| field.set_velocity(&velocity));
     }
 
-    /// Applies the volume loads of a forcing (`volume` alone) from the present time on, before the first step.
+    /// Applies the volume loads of a forcing (`volume` alone) from the present time on, before the first
+    /// step.
     ///
     /// # Panics
     /// After a step.
@@ -27,8 +29,9 @@ impl UpdatedFrame {
         self.fields.iter_mut().for_each(|field| field.apply_forcing(Arc::clone(&forcing)));
     }
 
-    /// Moves the points for `dt` seconds with a velocity (m/s) prescribed at the Greville points of all control points,
-    /// which makes an affine motion exact. Forces play no part, velocities stay, and the ledger books nothing.
+    /// Moves the points for `dt` seconds with a velocity (m/s) prescribed at the Greville points of all
+    /// control points, which makes an affine motion exact. Forces play no part, velocities stay, and the
+    /// ledger books nothing.
     ///
     /// # Errors
     /// As [`Self::step`].

@@ -1,8 +1,9 @@
 //! Volume loads of a [`Forcing`] on the moving points, for verification.
 //!
-//! A load is given per reference volume as a function of reference position and time, and integrated at the moved point:
-//! its force with the shape functions there, its stress with their gradients there. Work is the mean of the powers of old and
-//! new load on the motion of the step. With finite kinematics the gradient of that motion is taken at either end.
+//! A load is given per reference volume as a function of reference position and time, and integrated at the
+//! moved point: its force with the shape functions there, its stress with their gradients there. Work is the
+//! mean of the powers of old and new load on the motion of the step. With finite kinematics the gradient of
+//! that motion is taken at either end.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! Passes over the strips of points: each strip reads the control values of its cells, and writes its own points or a window of
-//! nodal fields.
+//! Passes over the strips of points: each strip reads the control values of its cells, and writes its own
+//! points or a window of nodal fields.
 
 use std::ops::Range;
 
@@ -52,10 +52,11 @@ pub fn control_values<const N: usize>(
     values
 }
 
-/// Runs `work` once per strip with its window of `fields`, rows of `row_lengths` numbers; results in the order of strips.
+/// Runs `work` once per strip with its window of `fields`, rows of `row_lengths` numbers; results in the
+/// order of strips.
 ///
-/// Strips of one colour (even or odd) share no control row and run side by side, first the even, then the odd: the order
-/// of additions at a control point does not depend on the number of threads.
+/// Strips of one colour (even or odd) share no control row and run side by side, first the even, then the
+/// odd: the order of additions at a control point does not depend on the number of threads.
 pub fn scatter<const N: usize, R: Send>(
     strips: &[Strip],
     mut fields: [&mut [f64]; N],

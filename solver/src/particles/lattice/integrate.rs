@@ -6,15 +6,16 @@ use super::Lattice;
 use crate::linear_algebra::lane::Lane;
 
 impl Lattice {
-    /// `Σ_p V_p f_p N_I(x_p)` of a density at the points, as a field; `density` gets batch, lane and position.
+    /// `Σ_p V_p f_p N_I(x_p)` of a density at the points, as a field; `density` gets batch, lane and
+    /// position.
     pub fn integrate(&self, density: impl Fn(usize, usize, [f64; 2]) -> f64 + Sync) -> Vec<f64> {
         let mut out = self.grid.zeros();
         self.add_integral(&mut [&mut out], |batch, lane, position| ([density(batch, lane, position)], [[0.0; 2]]));
         out
     }
 
-    /// Adds `Σ_p V_p (f_p N_I + s_p · grad N_I)` to fields; `density` gives f and s of each field for a batch, lane and
-    /// position.
+    /// Adds `Σ_p V_p (f_p N_I + s_p · grad N_I)` to fields; `density` gives f and s of each field for a
+    /// batch, lane and position.
     pub fn add_integral<const F: usize>(
         &self,
         out: &mut [&mut Vec<f64>; F],

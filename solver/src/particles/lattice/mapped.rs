@@ -1,7 +1,7 @@
 //! Points of a patch with a geometry.
 //!
-//! The lattice is one of parameters, and each point has a [`MappedPoint`]. A rational field is a quotient of two spline
-//! fields, `u = A/W` with `A = Σ N_a w_a u_a` and `W = Σ N_b w_b`, so that sums still factor:
+//! The lattice is one of parameters, and each point has a [`MappedPoint`]. A rational field is a quotient of
+//! two spline fields, `u = A/W` with `A = Σ N_a w_a u_a` and `W = Σ N_b w_b`, so that sums still factor:
 //!
 //! ```text
 //! ∂u/∂ξ_d = (∂A/∂ξ_d − A ∂W/∂ξ_d / W)/W,   ∂u/∂x_j = Σ_d ∂u/∂ξ_d ∂ξ_d/∂x_j
@@ -55,7 +55,8 @@ impl MappedPoint {
         (value, [u * ux + v * vx, u * uy + v * vy])
     }
 
-    /// The adjoint of [`Self::field`] for a force and a stress: factors of the spline and of its two parametric slopes.
+    /// The adjoint of [`Self::field`] for a force and a stress: factors of the spline and of its two
+    /// parametric slopes.
     #[inline(always)]
     pub(crate) fn adjoint(&self, force: Lane, [x, y]: [Lane; 2]) -> (Lane, [Lane; 2]) {
         let [ux, uy, vx, vy] = self.inverse_jacobian;

@@ -1,5 +1,5 @@
-//! Assembly on a patch with a geometry: rational functions do not factor over the directions, so the sum over the points of
-//! a span is done for every pair of functions.
+//! Assembly on a patch with a geometry: rational functions do not factor over the directions, so the sum over
+//! the points of a span is done for every pair of functions.
 
 use super::form::{Integrand, PointCoefficients};
 use crate::linear_algebra::lane::Lane;

@@ -6,8 +6,8 @@ use super::{Form, NurbsError, NurbsPatch, check};
 use crate::splines::spline::SplineSpace;
 
 impl NurbsPatch {
-    /// The rectangle from `low` to `high` (m), mapped from the knots without distortion: control points at the Greville
-    /// abscissae, weights one, [`Form::Affine`].
+    /// The rectangle from `low` to `high` (m), mapped from the knots without distortion: control points at
+    /// the Greville abscissae, weights one, [`Form::Affine`].
     ///
     /// # Errors
     /// For bad knots, or a rectangle without area.
@@ -35,12 +35,14 @@ impl NurbsPatch {
         Self::with_form(degree, knots, control_points, weights, Form::Affine { origin, slope })
     }
 
-    /// The annular sector between two radii (m) about the origin, `angles` from first to last in radians, counter-clockwise.
+    /// The annular sector between two radii (m) about the origin, `angles` from first to last in radians,
+    /// counter-clockwise.
     ///
-    /// The first direction is radial, linear on knots from 0 to 1; the second is angular, rational quadratic on knots from 0
-    /// to 1, with one piece per quarter turn begun: arcs are exact circles. A full turn is a patch whose ends touch.
-    /// With inner radius zero it is a sector of a disc, whose edge `ξ = 0` is collapsed to the centre; points at the centre itself
-    /// cannot be located, since the Jacobian vanishes there.
+    /// The first direction is radial, linear on knots from 0 to 1; the second is angular, rational quadratic
+    /// on knots from 0 to 1, with one piece per quarter turn begun: arcs are exact circles. A full turn is a
+    /// patch whose ends touch. With inner radius zero it is a sector of a disc, whose edge `ξ = 0` is
+    /// collapsed to the centre; points at the centre itself cannot be located, since the Jacobian vanishes
+    /// there.
     ///
     /// # Errors
     /// If not 0 ≤ inner < outer, or the angles do not grow or differ by more than a turn.

@@ -1,10 +1,11 @@
 //! Degree elevation by polar forms (Ramshaw 1989): the same geometry one degree higher, as smooth as before.
 //!
-//! Raising the degree p by one repeats every distinct knot once more. With f the polar form (blossom) of a polynomial
-//! piece, symmetric and affine in each of its p arguments, the polar form of the same piece as a polynomial of degree
-//! p + 1 is `F(t_1 … t_(p+1)) = Σ_j f(all t but t_j)/(p + 1)`, and the new control point i is F at the new knots
-//! `i + 1 … i + p + 1`. Any piece in the support of the new basis function i gives the same number; taking the widest
-//! span among those knots bounds the extrapolation, hence round-off, whatever the ratio of the spans.
+//! Raising the degree p by one repeats every distinct knot once more. With f the polar form (blossom) of a
+//! polynomial piece, symmetric and affine in each of its p arguments, the polar form of the same piece as a
+//! polynomial of degree p + 1 is `F(t_1 … t_(p+1)) = Σ_j f(all t but t_j)/(p + 1)`, and the new control point
+//! i is F at the new knots `i + 1 … i + p + 1`. Any piece in the support of the new basis function i gives
+//! the same number; taking the widest span among those knots bounds the extrapolation, hence round-off,
+//! whatever the ratio of the spans.
 
 use super::{NurbsError, NurbsPatch};
 use crate::splines::spline::{MAX_DEGREE, MAX_ORDER};
@@ -61,7 +62,8 @@ fn widest_span(degree: usize, knots: &[f64], low: f64, high: f64) -> usize {
         .expect("every group of consecutive raised knots holds or touches a span")
 }
 
-/// Bézier points of the piece on the span `[knots[index], knots[index + 1])`, by the de Boor recursion on its ends.
+/// Bézier points of the piece on the span `[knots[index], knots[index + 1])`, by the de Boor recursion on its
+/// ends.
 fn bezier_points(degree: usize, knots: &[f64], points: &[[f64; 3]], index: usize) -> [[f64; 3]; MAX_ORDER] {
     let (left, right) = (knots[index], knots[index + 1]);
     let mut bezier = [[0.0; 3]; MAX_ORDER];

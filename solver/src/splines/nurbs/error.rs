@@ -1,4 +1,5 @@
-//! What is wrong with a patch, or with a point that should lie on it. Directions count from 0, as in the interface.
+//! What is wrong with a patch, or with a point that should lie on it. Directions count from 0, as in the
+//! interface.
 
 use thiserror::Error;
 

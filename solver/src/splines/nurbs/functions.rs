@@ -95,9 +95,11 @@ pub(crate) fn products(spaces: &[SplineSpace; 2], span: [usize; 2], parameters: 
     functions
 }
 
-/// Rational basis functions of `weights` (positive, first direction fastest) at `parameters`, which should lie in `span`.
+/// Rational basis functions of `weights` (positive, first direction fastest) at `parameters`, which should
+/// lie in `span`.
 ///
-/// The basis needs no geometry; [`NurbsPatch::shape_functions`](super::NurbsPatch::shape_functions) is the way in for a patch.
+/// The basis needs no geometry; [`NurbsPatch::shape_functions`](super::NurbsPatch::shape_functions) is the
+/// way in for a patch.
 ///
 /// # Panics
 /// If there are fewer weights than basis functions.
@@ -110,7 +112,8 @@ pub fn rational_functions(
     weighted(products(spaces, span, parameters), weights).0
 }
 
-/// The rational functions of some products, and the weight function they were divided by with its parametric gradient.
+/// The rational functions of some products, and the weight function they were divided by with its parametric
+/// gradient.
 pub(super) fn weighted(products: RationalFunctions, weights: &[f64]) -> (RationalFunctions, PointValue) {
     let mut functions = products;
     let (mut sum, mut slope) = (0.0, [0.0; 2]);
@@ -141,7 +144,8 @@ mod tests {
 
     #[test]
     fn one_weight_pulls_as_the_textbook_says() {
-        // Quadratic Bernstein with weights 1, 2, 1 at 1/2: values 1/4, 1, 1/4 over 3/2; linear with equal weights across.
+        // Quadratic Bernstein with weights 1, 2, 1 at 1/2: values 1/4, 1, 1/4 over 3/2; linear with equal
+        // weights across.
         let spaces = [SplineSpace::new(2, &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0]), SplineSpace::new(1, &[0.0, 0.0, 1.0, 1.0])];
         let weights = [1.0, 2.0, 1.0, 1.0, 2.0, 1.0];
         let functions = rational_functions(&spaces, &weights, [0, 0], [0.5, 0.25]);

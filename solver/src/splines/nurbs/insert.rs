@@ -1,13 +1,14 @@
 //! Knot insertion (Boehm 1980): the same geometry on more control points.
 //!
-//! Inserting u into the span `[U_k, U_(k+1))` replaces the control points `Q_i = a_i P_i + (1 − a_i) P_(i−1)` with
-//! `a_i = (u − U_i)/(U_(i+p) − U_i)` for `k − p < i ≤ k`, in homogeneous coordinates. These are convex combinations, so
-//! that round-off does not grow.
+//! Inserting u into the span `[U_k, U_(k+1))` replaces the control points `Q_i = a_i P_i + (1 − a_i) P_(i−1)`
+//! with `a_i = (u − U_i)/(U_(i+p) − U_i)` for `k − p < i ≤ k`, in homogeneous coordinates. These are convex
+//! combinations, so that round-off does not grow.
 
 use super::{NurbsError, NurbsPatch};
 
 impl NurbsPatch {
-    /// The same geometry with `new` knots inserted in a direction (0 or 1), in any order and repeated as given.
+    /// The same geometry with `new` knots inserted in a direction (0 or 1), in any order and repeated as
+    /// given.
     ///
     /// # Errors
     /// If a knot is not strictly inside the patch, or appears more often than the degree afterwards.

@@ -1,13 +1,15 @@
 //! From a physical point back to its parameters.
 //!
-//! Newton's method on `x(ξ) = x_p`, started from the last known parameters, clamped to the patch, with steps halved until the
-//! distance falls. Where a bound stops one direction, the other takes its least-squares step. If this gets stuck, the spans
-//! whose control points could reach the point (a span lies within the box of its control points, the weights being positive)
-//! are searched one by one, each with iterates kept inside, where the map is smooth.
+//! Newton's method on `x(ξ) = x_p`, started from the last known parameters, clamped to the patch, with steps
+//! halved until the distance falls. Where a bound stops one direction, the other takes its least-squares
+//! step. If this gets stuck, the spans whose control points could reach the point (a span lies within the box
+//! of its control points, the weights being positive) are searched one by one, each with iterates kept
+//! inside, where the map is smooth.
 
 use super::{Form, LocateError, MapPoint, NurbsPatch};
 
-/// A point counts as on the patch if it is within this times [`NurbsPatch::size`] (and the round-off of its coordinates) of it.
+/// A point counts as on the patch if it is within this times [`NurbsPatch::size`] (and the round-off of its
+/// coordinates) of it.
 pub(crate) const INVERSION_TOLERANCE: f64 = 1e-12;
 
 /// A determinant below this times the mean one is taken for a collapsed geometry.
@@ -38,8 +40,8 @@ impl NurbsPatch {
     /// The parameters of a physical point (m), searched from `start`, its last known parameters.
     ///
     /// # Errors
-    /// If the point is not on the patch by more than [`INVERSION_TOLERANCE`], is not finite, or lies where the Jacobian
-    /// determinant is not positive.
+    /// If the point is not on the patch by more than [`INVERSION_TOLERANCE`], is not finite, or lies where
+    /// the Jacobian determinant is not positive.
     pub fn locate(&self, point: [f64; 2], start: Option<[f64; 2]>) -> Result<Location, LocateError> {
         if !point.iter().all(|x| x.is_finite()) {
             return Err(LocateError::NotFinite { point });

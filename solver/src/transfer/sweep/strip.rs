@@ -1,4 +1,5 @@
-//! The sweep over one strip: control fields to points and stresses back to control points, by sum factorisation.
+//! The sweep over one strip: control fields to points and stresses back to control points, by sum
+//! factorisation.
 
 use crate::linear_algebra::lane::{Lane, Vectorised};
 use crate::particles::lattice::{Lattice, MappedPoint, Row, Tile};
@@ -25,8 +26,8 @@ pub(super) struct StripSweep<'a, K> {
 impl<K: PointKernel> Vectorised for StripSweep<'_, K> {
     type Output = ();
 
-    /// On wide processors, kernels of every step get loops of constant length for the usual degrees and numbers of points over a
-    /// rectangle; any other runs the same code.
+    /// On wide processors, kernels of every step get loops of constant length for the usual degrees and
+    /// numbers of points over a rectangle; any other runs the same code.
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let Lattice { degree: [p, q], points: [nx, ny], .. } = *self.lattice;
@@ -50,7 +51,8 @@ impl<K: PointKernel> Vectorised for StripSweep<'_, K> {
 
 /// Partial sums of one control row: per point column a and field.
 const FIELDS: usize = 3;
-/// Slots of partial sums per control row: values and slopes of three fields, two stress sums per force component.
+/// Slots of partial sums per control row: values and slopes of three fields, two stress sums per force
+/// component.
 const SUMS: usize = 2 * FIELDS + 4;
 
 impl<K: PointKernel> StripSweep<'_, K> {

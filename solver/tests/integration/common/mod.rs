@@ -87,7 +87,8 @@ pub fn unit_solid() -> Material {
     Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: None }
 }
 
-/// A free body of a material called `solid` in the updated frame, with FLIP, at half the critical step, for 1 s.
+/// A free body of a material called `solid` in the updated frame, with FLIP, at half the critical step, for 1
+/// s.
 pub fn updated_scene(material: Material, mesh: Mesh, shape: Shape) -> Scene {
     let mut scene = elastic_scene(mesh.degree[0], [1.0; 2], [1; 2]);
     scene.materials = [("solid".to_string(), material)].into();
@@ -179,7 +180,8 @@ pub fn graded_knots(degree: usize, spans: usize, repeated: &[usize]) -> Vec<f64>
     knots
 }
 
-/// An open knot vector from 0 to 1 whose spans differ by up to a factor of 100; every third inner knot is repeated.
+/// An open knot vector from 0 to 1 whose spans differ by up to a factor of 100; every third inner knot is
+/// repeated.
 pub fn random_knots(random: &mut Random, degree: usize, spans: usize) -> Vec<f64> {
     let lengths: Vec<f64> = (0..spans).map(|_| 10f64.powf(1.0 + random.next())).collect();
     let total: f64 = lengths.iter().sum();
@@ -193,8 +195,8 @@ pub fn random_knots(random: &mut Random, degree: usize, spans: usize) -> Vec<f64
     knots
 }
 
-/// A bent square of about 1 m on random knots with weights from 0.1 to 10; bend and weights are tamed until neither it nor
-/// its halves are folded.
+/// A bent square of about 1 m on random knots with weights from 0.1 to 10; bend and weights are tamed until
+/// neither it nor its halves are folded.
 pub fn random_patch(degree: [usize; 2], spans: [usize; 2], seed: u64) -> NurbsPatch {
     let mut random = Random::new(seed);
     let knots = [0, 1].map(|d| random_knots(&mut random, degree[d], spans[d]));

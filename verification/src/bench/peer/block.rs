@@ -1,15 +1,15 @@
 //! The block of a peer, and what its answer is held against.
 //!
-//! A free elastic square flies over a few spans and swings in a mode that leaves its edges free (Lamé's, with the shear wave
-//! speed c_s):
+//! A free elastic square flies over a few spans and swings in a mode that leaves its edges free (Lamé's, with
+//! the shear wave speed c_s):
 //!
 //! ```text
 //! v = drift + A cos(ωt) [cos(πx/L) sin(πy/L), −sin(πx/L) cos(πy/L)],    ω = √2 π c_s/L
 //! ```
 //!
-//! After three eighths of a period the displacement stands at 0.7 of its largest and the velocity has turned to −0.7 of its first
-//! value: neither a program that leaves the points where they are nor one that lets them fly on is near. Differences are taken
-//! over the swing alone, in whose measure the flight is long.
+//! After three eighths of a period the displacement stands at 0.7 of its largest and the velocity has turned
+//! to −0.7 of its first value: neither a program that leaves the points where they are nor one that lets them
+//! fly on is near. Differences are taken over the swing alone, in whose measure the flight is long.
 
 use std::f64::consts::{PI, SQRT_2, TAU};
 
@@ -36,7 +36,8 @@ const MARGIN: usize = 8;
 const PERIODS: f64 = 0.375;
 /// Amplitude of the velocity over the shear wave speed: strains of 1e-3.
 const AMPLITUDE: f64 = 2e-3;
-/// Relative difference of volumes that is allowed: some keep those of the start, some let them follow the strain.
+/// Relative difference of volumes that is allowed: some keep those of the start, some let them follow the
+/// strain.
 const VOLUME: f64 = 0.01;
 /// Columns of both files.
 const COLUMNS: [&str; 5] = ["x", "y", "volume", "vx", "vy"];
@@ -142,7 +143,8 @@ impl PeerBlock {
         Ok(out.write(&format!("{folder}/block.json"), format!("{block:#}\n"))?)
     }
 
-    /// The larger of the relative differences of positions and velocities from ours: root mean squares over those of the swing.
+    /// The larger of the relative differences of positions and velocities from ours: root mean squares over
+    /// those of the swing.
     ///
     /// # Errors
     /// An answer of another form, with other rows, or with points elsewhere.

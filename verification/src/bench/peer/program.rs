@@ -84,8 +84,8 @@ impl Drop for Running {
     }
 }
 
-/// The process gets a group of its own, to be ended with what it starts; on Linux it also ends if this one does, however that
-/// ends.
+/// The process gets a group of its own, to be ended with what it starts; on Linux it also ends if this one
+/// does, however that ends.
 fn end_with_this_process(command: &mut Command) {
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(command, 0);
@@ -97,7 +97,8 @@ fn end_with_this_process(command: &mut Command) {
             set_parent_process_death_signal(Some(Signal::KILL))?;
             if getppid() == Some(parent) { Ok(()) } else { Err(std::io::ErrorKind::BrokenPipe.into()) }
         };
-        // SAFETY: between fork and exec the closure makes three system calls; it neither allocates nor takes locks.
+        // SAFETY: between fork and exec the closure makes three system calls; it neither allocates nor takes
+        // locks.
         unsafe { std::os::unix::process::CommandExt::pre_exec(command, tie) };
     }
 }

@@ -10,7 +10,8 @@ use super::named;
 use crate::exact::{ExactSolution, kirsch, phase_field, standing_wave, vortex};
 use crate::extremes;
 
-/// Points on the sides of a rectangle with its lower left corner at the origin, with the direction of the normal.
+/// Points on the sides of a rectangle with its lower left corner at the origin, with the direction of the
+/// normal.
 fn sides(size: [f64; 2]) -> Vec<([f64; 2], usize)> {
     let fractions = || (0..=10).map(|i| f64::from(i) / 10.0);
     let along = |d: usize, end: f64| {

@@ -1,5 +1,5 @@
-//! Independent of symbolic algebra: what must be a derivative of what, by finite differences; stresses from the solver's
-//! own moduli; the residuals of the equations.
+//! Independent of symbolic algebra: what must be a derivative of what, by finite differences; stresses from
+//! the solver's own moduli; the residuals of the equations.
 
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::degradation::FractureModel;

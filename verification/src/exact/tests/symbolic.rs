@@ -1,4 +1,5 @@
-//! Every quantity of every solution against the tables that `reference-data/derivations/` computes symbolically.
+//! Every quantity of every solution against the tables that `reference-data/derivations/` computes
+//! symbolically.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,7 +9,8 @@ use fisura::scene::Plane;
 use crate::exact::{ExactSolution, all};
 use crate::extremes::larger;
 
-/// Largest difference allowed, relative to the largest entry of the same kind in the table (and to 1e-3 at least).
+/// Largest difference allowed, relative to the largest entry of the same kind in the table (and to 1e-3 at
+/// least).
 const TOLERANCE: f64 = 1e-12;
 
 type Row = BTreeMap<String, String>;

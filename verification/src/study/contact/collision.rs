@@ -1,4 +1,5 @@
-//! Two elastic bodies that collide in flight: what the scheme conserves, what symmetry demands, and what the impact costs.
+//! Two elastic bodies that collide in flight: what the scheme conserves, what symmetry demands, and what the
+//! impact costs.
 
 use fisura::dynamics::updated_frame::field::DiscreteField;
 use fisura::scene::Scene;
@@ -60,11 +61,12 @@ pub(in super::super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findi
 /// What a collision gave.
 struct Collision {
     books: Books,
-    /// Momentum of the first body at t = 0, kg m/s, and its angular momentum about the middle between the bodies, kg m²/s.
+    /// Momentum of the first body at t = 0, kg m/s, and its angular momentum about the middle between the
+    /// bodies, kg m²/s.
     momentum: f64,
     angular_momentum: f64,
-    /// Largest difference of mirrored velocities over the speed, of mirrored centres over their distance at t = 0, and of the
-    /// kinetic energies of the bodies over their sum at t = 0.
+    /// Largest difference of mirrored velocities over the speed, of mirrored centres over their distance at t
+    /// = 0, and of the kinetic energies of the bodies over their sum at t = 0.
     mirror: [f64; 3],
     /// Mean velocities of both bodies in the end, m/s.
     exit: [[f64; 2]; 2],

@@ -5,12 +5,14 @@
 //! 1/R = 1/R1 + 1/R2,           1/E* = (1 − nu1²)/E1 + (1 − nu2²)/E2,
 //! ```
 //!
-//! and on the axis under the contact the stress `−p0/sqrt(1 + (z/a)²)` at the depth z (Johnson, Contact Mechanics, 1985,
-//! sections 4.2 and 4.1). The force F per unit thickness is the sum of the forces of contact. Everything else is measured
-//! where it acts: the half width from the second moment of the forces across the contact (a²/4 for a semi-ellipse), the peak
-//! pressure from the forces on the middle quarter of the contact, the stress at points under it. Forces at single segments
-//! are not unique, and bunch: only what they are together over a span, which is where control points take them up, means
-//! something. So every force is spread over a span to each side for the pressure. All are means over the steps in which the force is close to its largest.
+//! and on the axis under the contact the stress `−p0/sqrt(1 + (z/a)²)` at the depth z (Johnson, Contact
+//! Mechanics, 1985, sections 4.2 and 4.1). The force F per unit thickness is the sum of the forces of
+//! contact. Everything else is measured where it acts: the half width from the second moment of the forces
+//! across the contact (a²/4 for a semi-ellipse), the peak pressure from the forces on the middle quarter of
+//! the contact, the stress at points under it. Forces at single segments are not unique, and bunch: only what
+//! they are together over a span, which is where control points take them up, means something. So every force
+//! is spread over a span to each side for the pressure. All are means over the steps in which the force is
+//! close to its largest.
 
 use std::f64::consts::PI;
 

@@ -1,8 +1,10 @@
-//! Head-on impact of two bars of one material, the first and shorter one at speed V, the other at rest (nu = 0).
+//! Head-on impact of two bars of one material, the first and shorter one at speed V, the other at rest (nu =
+//! 0).
 //!
-//! Both ends move at V/2 while two waves of stress `rho c V/2` run along the bars. The one in the shorter bar comes back from
-//! its free end after `2 L1/c` and brings it to rest; the force ends, and the longer bar leaves with the mean velocity
-//! `V L1/L2`: a coefficient of restitution of `L1/L2`, though no energy is lost (Goldsmith, Impact, 1960, section 2.1).
+//! Both ends move at V/2 while two waves of stress `rho c V/2` run along the bars. The one in the shorter bar
+//! comes back from its free end after `2 L1/c` and brings it to rest; the force ends, and the longer bar
+//! leaves with the mean velocity `V L1/L2`: a coefficient of restitution of `L1/L2`, though no energy is lost
+//! (Goldsmith, Impact, 1960, section 2.1).
 
 use std::collections::BTreeMap;
 
@@ -226,7 +228,8 @@ impl Bars {
         );
     }
 
-    /// Force against time, both in units of the closed form, from a little before the contact to a little after.
+    /// Force against time, both in units of the closed form, from a little before the contact to a little
+    /// after.
     fn table(&self, found: &Collision) -> Table {
         let mut table = Table::new(&["time_c_over_l1", "force_over_plateau"]);
         let rows = found

@@ -8,9 +8,9 @@
 //!          a = g_s − mu g_n,     alpha = 2 mu g_n/R       otherwise: it slips
 //! ```
 //!
-//! A body that starts in touch with the plane when gravity begins to act vibrates about this motion, and loses touch now and
-//! then. Accelerations are therefore slopes of straight lines through the origin, fitted to the velocity of the centre of mass and
-//! to the spin of the points, `Σ m r × v/Σ m r²`, at all steps.
+//! A body that starts in touch with the plane when gravity begins to act vibrates about this motion, and
+//! loses touch now and then. Accelerations are therefore slopes of straight lines through the origin, fitted
+//! to the velocity of the centre of mass and to the spin of the points, `Σ m r × v/Σ m r²`, at all steps.
 
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::dynamics::updated_frame::field::DiscreteField;

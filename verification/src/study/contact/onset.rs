@@ -1,5 +1,5 @@
-//! Two blocks fly at each other: nothing may happen before the gap is closed, though their control points share spans long
-//! before.
+//! Two blocks fly at each other: nothing may happen before the gap is closed, though their control points
+//! share spans long before.
 
 use std::collections::HashSet;
 

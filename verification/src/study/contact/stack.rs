@@ -1,14 +1,17 @@
-//! Blocks of one width and height on each other on a rigid floor (nu = 0), when gravity suddenly begins to act.
+//! Blocks of one width and height on each other on a rigid floor (nu = 0), when gravity suddenly begins to
+//! act.
 //!
-//! The blocks vibrate about the state of rest. In the mean over time every contact carries the weight above it, and the
-//! settlement of a centre of mass is that of an elastic column: with W the weight above a block of height H, per area,
-//! its lower half space moved by u, its centre settles by `u + W H/(2E) + rho g H²/(3E)` and its top by `u + W H/E + rho g
-//! H²/(2E)`. Means are over the second half of the run, with the weight sin² that suppresses vibrations. The mean of the normal
-//! force is the weight as soon as the blocks stay where they are, whatever the law of the force.
+//! The blocks vibrate about the state of rest. In the mean over time every contact carries the weight above
+//! it, and the settlement of a centre of mass is that of an elastic column: with W the weight above a block
+//! of height H, per area, its lower half space moved by u, its centre settles by
+//! `u + W H/(2E) + rho g H²/(3E)` and its top by `u + W H/E + rho g H²/(2E)`. Means are over the second half
+//! of the run, with the weight sin² that suppresses vibrations. The mean of the normal force is the weight as
+//! soon as the blocks stay where they are, whatever the law of the force.
 //!
-//! An impulse acts on control points by their mass, not by their shape functions at the boundary, and leaves a boundary layer
-//! that gives way more than the column does. What a column settles too far is expressed as the thickness, in spans, of a layer
-//! on every side of a contact that carries the stress there besides: a number that does not fall with h stands for an error of order h.
+//! An impulse acts on control points by their mass, not by their shape functions at the boundary, and leaves
+//! a boundary layer that gives way more than the column does. What a column settles too far is expressed as
+//! the thickness, in spans, of a layer on every side of a contact that carries the stress there besides: a
+//! number that does not fall with h stands for an error of order h.
 
 use std::f64::consts::PI;
 
@@ -177,7 +180,8 @@ impl Column {
             let late = 2 * simulation.steps() > plan.steps();
             let due = sample_is_due(simulation);
             let all = if late || due { frame.contact_forces(plan.step) } else { vec![] };
-            // Contact k joins block k with the one below, the lowest with the floor, which is counted after the blocks.
+            // Contact k joins block k with the one below, the lowest with the floor, which is counted after
+            // the blocks.
             let bodies = |contact: usize| if contact == 0 { [0, count] } else { [contact - 1, contact] };
             let force = |contact: usize| sum(all.iter().filter(|f| f.bodies == bodies(contact)))[1].abs();
             let centers: Vec<_> = frame.fields().iter().map(center).collect();

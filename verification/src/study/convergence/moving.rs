@@ -1,8 +1,9 @@
 //! One mesh of a convergence study whose points move through it: the updated frame with finite kinematics.
 //!
-//! Errors are measured at the points, weighted with their volumes, at a whole step: the points carry velocities of half a
-//! step before, and reading these without the kick `dt/2 a` would leave an error of first order. The velocity is also measured
-//! in the middle of the mesh alone: the lumped way from the points to the grid is of a lower order at its sides.
+//! Errors are measured at the points, weighted with their volumes, at a whole step: the points carry
+//! velocities of half a step before, and reading these without the kick `dt/2 a` would leave an error of
+//! first order. The velocity is also measured in the middle of the mesh alone: the lumped way from the points
+//! to the grid is of a lower order at its sides.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -67,7 +68,8 @@ impl<'a> Moving<'a> {
         Ok(())
     }
 
-    /// Relative errors of displacement, velocity, and velocity in the middle at the end (s) of steps of `dt` (s).
+    /// Relative errors of displacement, velocity, and velocity in the middle at the end (s) of steps of `dt`
+    /// (s).
     fn errors(&self, end: f64, dt: f64) -> Vec<f64> {
         let solution = &self.problem.solution;
         let acceleration = &self.frame.fields()[0].nodes().acceleration;
@@ -131,8 +133,8 @@ impl OnMesh for Moving<'_> {
     }
 }
 
-/// Displaces the points of a body from rest by the projection of a displacement (m), whose error is of order p + 1, within one
-/// second, and sets the clock back to zero.
+/// Displaces the points of a body from rest by the projection of a displacement (m), whose error is of order
+/// p + 1, within one second, and sets the clock back to zero.
 pub(crate) fn displace(
     frame: &mut UpdatedFrame,
     body: &Body,

@@ -12,7 +12,8 @@ use crate::patches;
 use crate::plain_scene::PlainScene;
 use crate::study::StudyError;
 
-/// The scene of one mesh: nothing but the exact solution loads the body, which fills the patch unless it is a ring.
+/// The scene of one mesh: nothing but the exact solution loads the body, which fills the patch unless it is a
+/// ring.
 pub(super) fn scene(
     setup: &ConvergenceSetup,
     problem: &Problem,

@@ -112,7 +112,8 @@ impl<'a> Discrete<'a> {
         Ok(Self { setup, problem, frame, points, scene })
     }
 
-    /// Names of the errors of a kind of problem, in the order of [`Level::errors`], and their order below p + 1.
+    /// Names of the errors of a kind of problem, in the order of [`Level::errors`], and their order below p +
+    /// 1.
     pub fn norms(problem: &Problem) -> Vec<(&'static str, usize)> {
         let displacement = [("displacement error in L2", 0), ("displacement error in H1", 1)];
         let phase = [("phase-field error in L2", 0), ("phase-field error in H1", 1)];
@@ -148,7 +149,8 @@ impl<'a> Discrete<'a> {
         })
     }
 
-    /// Projection of a vector field; components that boundaries hold are zero where they are so in the exact solution.
+    /// Projection of a vector field; components that boundaries hold are zero where they are so in the exact
+    /// solution.
     fn project(&self, function: impl Fn([f64; 2]) -> [f64; 2] + Sync) -> Result<VectorField, StudyError> {
         let component = |i: usize| -> Result<Vec<f64>, StudyError> {
             let held = match self.problem.equation {
@@ -242,9 +244,9 @@ impl<'a> Discrete<'a> {
         Ok(field.control_values().to_vec())
     }
 
-    /// The initial displacement that excites no waves of its own: the elastic energy of its error, plus the kinetic energy
-    /// of as much velocity, is least. A least-squares projection would leave an error of high frequency, which costs the
-    /// velocity an order.
+    /// The initial displacement that excites no waves of its own: the elastic energy of its error, plus the
+    /// kinetic energy of as much velocity, is least. A least-squares projection would leave an error of high
+    /// frequency, which costs the velocity an order.
     fn elliptic_projection(&self) -> Result<VectorField, StudyError> {
         let solution = &self.problem.solution;
         let material = solution.material();

@@ -1,4 +1,5 @@
-//! Figures 5b and 6 of the paper: fracture energy against time with the events marked, and phase-field pictures.
+//! Figures 5b and 6 of the paper: fracture energy against time with the events marked, and phase-field
+//! pictures.
 
 use super::{PAPER, Watched};
 use crate::case::Case;

@@ -1,4 +1,5 @@
-//! Sweep over the geometries of a case's `[rings]` table: half a ring against a frictionless wall, scored by the events.
+//! Sweep over the geometries of a case's `[rings]` table: half a ring against a frictionless wall, scored by
+//! the events.
 
 use fisura::scene::Scene;
 use fisura::simulation::breakdown::Breakdown;
@@ -13,7 +14,8 @@ use crate::rings::{Geometry, PARTICLES};
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 
-/// Events the score counts: the first three. The level of the fracture energy and the end of contact are held out.
+/// Events the score counts: the first three. The level of the fracture energy and the end of contact are held
+/// out.
 const SCORED: usize = 3;
 /// Geometries with up to this score, s, count as near: half of the time between the events.
 const NEAR: f64 = 15e-6;
@@ -28,7 +30,8 @@ struct Trial {
     events: Events,
     /// Part of the broken material aside the diameter at the end.
     aside: f64,
-    /// Fracture energy at the end over that of the walls that broke on the line of centres; none without such a wall.
+    /// Fracture energy at the end over that of the walls that broke on the line of centres; none without such
+    /// a wall.
     energy_over_walls: Option<f64>,
     /// Not a number if the run broke down.
     score: f64,
@@ -77,8 +80,9 @@ impl Trial {
     }
 }
 
-/// Energy (J) that the walls broken on the line of centres cost at least, in the upper half of a ring: Gc per unit area of
-/// crack, half of it on this side, over the depth that counts as reached; none if no wall is broken through.
+/// Energy (J) that the walls broken on the line of centres cost at least, in the upper half of a ring: Gc per
+/// unit area of crack, half of it on this side, over the depth that counts as reached; none if no wall is
+/// broken through.
 fn walls(geometry: &Geometry, events: &Events, template: &Scene) -> Option<f64> {
     let broken = [events[1], events[3]].iter().flatten().count();
     let fracture = template.materials.values().find_map(|material| material.fracture.as_ref())?;
@@ -87,7 +91,8 @@ fn walls(geometry: &Geometry, events: &Events, template: &Scene) -> Option<f64> 
     (broken > 0).then_some(broken as f64 * of_one)
 }
 
-/// Root mean square of the scored events' differences from the paper, s; an event that does not come counts as at the end.
+/// Root mean square of the scored events' differences from the paper, s; an event that does not come counts
+/// as at the end.
 fn score(events: &Events, end: f64) -> f64 {
     let scored =
         events.iter().zip(PAPER).filter_map(|(found, paper)| Some((found.unwrap_or(end), paper?))).take(SCORED);

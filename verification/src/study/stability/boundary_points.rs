@@ -1,9 +1,10 @@
 //! Points exactly on knots, on the edge of the patch, and beyond it; bodies that overlap from the start.
 //!
-//! A block of equally spaced points, two a span, flies a sixteenth of a span in every step: its points stand on knots again
-//! and again. Powers of two make positions exact, or nearly so. Nothing may happen to it until its first point is off the mesh, which has to end the
-//! run in words at the step at which it happens. For p = 1 that is not so: a point a rounding beyond a knot gives a control point next to
-//! no mass but a whole gradient, and no step is short enough. Bodies that overlap at t = 0 have to be refused.
+//! A block of equally spaced points, two a span, flies a sixteenth of a span in every step: its points stand
+//! on knots again and again. Powers of two make positions exact, or nearly so. Nothing may happen to it until
+//! its first point is off the mesh, which has to end the run in words at the step at which it happens. For p
+//! = 1 that is not so: a point a rounding beyond a knot gives a control point next to no mass but a whole
+//! gradient, and no step is short enough. Bodies that overlap at t = 0 have to be refused.
 
 use fisura::Simulation;
 use fisura::scene::{Body, Contact, Frame, Layout, Material, Mesh, Scene, Shape, TimeStep, Transfer};
@@ -138,7 +139,8 @@ impl Flight {
         let Self { on_knots, off, ending, .. } = self;
         findings.add(name, "points that stood on a knot", *on_knots as f64, None);
         findings.add(name, "change of velocity, and strain, over the speed", *off, exact(0.0, "a rigid translation"));
-        // The foremost points stand at 2.75 + t: beyond 12 from t = 9.25 + STEP on; those of a step before are on the edge.
+        // The foremost points stand at 2.75 + t: beyond 12 from t = 9.25 + STEP on; those of a step before
+        // are on the edge.
         let expected = 9.25 + STEP;
         let time = ending.as_ref().map_or(f64::NAN, |ending| ending.time);
         findings.add(name, "time at which the run ends, s", time, exact(expected, "the first point beyond the edge"));

@@ -1,9 +1,9 @@
 //! Critical steps of bodies whose edge cuts a span, and the step the solver takes against dense eigenvalues.
 //!
-//! In one dimension, as a strip so high that only waves along it count (nu = 0), the largest eigenvalue of a bar held at its
-//! left end gives `c dt/h = 2/ω_max`. A function that lives on the cut part η h alone has stiffness over mass of
-//! `K/M ~ η^(2p−1)/η^(p+1)` with the lumped mass: the step falls as η^((2−p)/2) for p = 1 and not for p ≥ 2; with the consistent mass
-//! `η^(2p−1)/η^(2p+1)`, so that it falls as η.
+//! In one dimension, as a strip so high that only waves along it count (nu = 0), the largest eigenvalue of a
+//! bar held at its left end gives `c dt/h = 2/ω_max`. A function that lives on the cut part η h alone has
+//! stiffness over mass of `K/M ~ η^(2p−1)/η^(p+1)` with the lumped mass: the step falls as η^((2−p)/2) for p
+//! = 1 and not for p ≥ 2; with the consistent mass `η^(2p−1)/η^(2p+1)`, so that it falls as η.
 
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::scene::{Analysis, Frame, Mass, Material, Mesh, Scene, Shape, Side};
@@ -23,8 +23,9 @@ use crate::study::{Findings, StudyError};
 const SPANS: usize = 16;
 const CUTS: [f64; 13] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0];
 
-/// The finest two cuts whose function has a mass that counts, 1e-12 of the largest, for p = 1, 2, 3: `η^(p+1)/(p+1)!` of a
-/// span. With less a control point is not accelerated, and the step is that of a body without the cut part.
+/// The finest two cuts whose function has a mass that counts, 1e-12 of the largest, for p = 1, 2, 3:
+/// `η^(p+1)/(p+1)!` of a span. With less a control point is not accelerated, and the step is that of a body
+/// without the cut part.
 const FINEST_CUTS: [[f64; 2]; 3] = [[1e-4, 1e-3], [1e-3, 1e-2], [1e-2, 3e-2]];
 
 /// Squares whose critical step is held against a dense eigenvalue: words, mass, cut part of the last span.

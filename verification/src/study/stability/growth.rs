@@ -1,8 +1,9 @@
 //! Steps below and above the critical one: how fast errors grow, and what a run says about it.
 //!
-//! A mode of frequency ω is multiplied in a step by z with `z + 1/z = 2 − (ω dt)²`. Below ω dt = 2 the modulus of z is one;
-//! above, it is e^θ with `θ = 2 acosh(ω dt/2)`, and the elastic energy grows by 2 θ per step. The largest ω is that of a dense
-//! eigenvalue. Below, the staggered energy is constant and bounds the elastic energy by `1/(1 − (ω dt/2)²)` of it.
+//! A mode of frequency ω is multiplied in a step by z with `z + 1/z = 2 − (ω dt)²`. Below ω dt = 2 the
+//! modulus of z is one; above, it is e^θ with `θ = 2 acosh(ω dt/2)`, and the elastic energy grows by 2 θ per
+//! step. The largest ω is that of a dense eigenvalue. Below, the staggered energy is constant and bounds the
+//! elastic energy by `1/(1 − (ω dt/2)²)` of it.
 
 use fisura::Simulation;
 use fisura::scene::{Boundary, Material, Mesh, Scene, Shape, Side, TimeStep};
@@ -25,7 +26,8 @@ const BELOW: f64 = 0.95;
 const ABOVE: f64 = 1.05;
 /// Steps of the runs below the critical step.
 const LONG: usize = 10_000;
-/// Steps between which growth is measured: when the fastest mode has left the others behind, and before numbers end.
+/// Steps between which growth is measured: when the fastest mode has left the others behind, and before
+/// numbers end.
 const FROM: usize = 100;
 const TO: usize = 300;
 
@@ -164,7 +166,8 @@ fn above(degree: usize, scene: &Scene, frequency: f64, findings: &mut Findings) 
     };
     let (mut steps, mut named) = (f64::NAN, 0.0);
     if let Some(found) = found {
-        let near = scene.bodies[0].shape.contains_within(found.place, 1.0); // control points stand up to a span outside
+        // Control points stand up to a span outside.
+        let near = scene.bodies[0].shape.contains_within(found.place, 1.0);
         let timed = found.time > 0.0 && found.time.is_finite() && !found.to_string().contains("NaN");
         steps = found.step as f64;
         named = f64::from(u8::from(near && timed && found.cause.contains("times the critical step")));

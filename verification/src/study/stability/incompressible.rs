@@ -1,8 +1,9 @@
 //! Poisson's ratio towards 1/2 in plane strain: locking, and the step that goes with the bulk modulus.
 //!
-//! The lowest frequency of a square held at its bottom (shear and bending, hardly any change of volume) on 8 × 8 spans is held
-//! against that of quartics on 12 × 12. Where a space cannot deform without changing its volume the frequency rises
-//! with the bulk modulus, as `1/(1 − 2 nu)` in its square: it locks. A run at nu = 0.4999 is held to its ledger.
+//! The lowest frequency of a square held at its bottom (shear and bending, hardly any change of volume) on 8
+//! × 8 spans is held against that of quartics on 12 × 12. Where a space cannot deform without changing its
+//! volume the frequency rises with the bulk modulus, as `1/(1 − 2 nu)` in its square: it locks. A run at nu =
+//! 0.4999 is held to its ledger.
 
 use fisura::Simulation;
 use fisura::scene::{Boundary, Material, Mesh, Scene, Side, TimeStep};

@@ -1,8 +1,8 @@
-//! Runs that have to be the same: with any number of threads and after checkpoints bit for bit, and mirror images in symmetric
-//! scenes.
+//! Runs that have to be the same: with any number of threads and after checkpoints bit for bit, and mirror
+//! images in symmetric scenes.
 //!
-//! Sums are cut by data and added in a fixed order. A mirror image adds the same numbers in another order, so symmetry
-//! holds to round-off, which a linear run does not amplify, and not bit for bit.
+//! Sums are cut by data and added in a fixed order. A mirror image adds the same numbers in another order, so
+//! symmetry holds to round-off, which a linear run does not amplify, and not bit for bit.
 
 use fisura::Simulation;
 use fisura::scene::{

@@ -1,10 +1,13 @@
-//! The split of the energy where principal strains are equal, nearly equal, of either sign, or at the ends of what numbers hold.
+//! The split of the energy where principal strains are equal, nearly equal, of either sign, or at the ends of
+//! what numbers hold.
 //!
-//! A strain is made of principal strains e1 ≥ e2 and a direction φ, so that its tensile part `Σ ⟨e_i⟩ n_i n_iᵀ` is known without an
-//! eigenvalue being solved for; the map from a strain to its tensile part has the Lipschitz constant one, so that round-off of the strain is all
-//! the error there may be. Then the same motion is run twice, at strains of 1e-3 and at 2^−560 (3e-169) times that: as long as
-//! nothing breaks, the equations do not know the size of the motion, and every velocity has to scale, bit by bit but for what the
-//! phase field of the larger one gives way. Hencky strain is held against logarithms of stretches.
+//! A strain is made of principal strains e1 ≥ e2 and a direction φ, so that its tensile part
+//! `Σ ⟨e_i⟩ n_i n_iᵀ` is known without an eigenvalue being solved for; the map from a strain to its tensile
+//! part has the Lipschitz constant one, so that round-off of the strain is all the error there may be. Then
+//! the same motion is run twice, at strains of 1e-3 and at 2^−560 (3e-169) times that: as long as nothing
+//! breaks, the equations do not know the size of the motion, and every velocity has to scale, bit by bit but
+//! for what the phase field of the larger one gives way. Hencky strain is held against logarithms of
+//! stretches.
 
 use std::f64::consts::TAU;
 
@@ -108,7 +111,8 @@ fn error([e1, e2]: [f64; 2], direction: f64) -> f64 {
     largest((0..3).map(|i| (found[i][0] - expected[i]).abs())) / e1.abs().max(e2.abs())
 }
 
-/// Largest error of the Hencky strain of stretches λ along and across a direction, `Σ ln λ_i n_i n_iᵀ`, over the largest |ln λ|.
+/// Largest error of the Hencky strain of stretches λ along and across a direction, `Σ ln λ_i n_i n_iᵀ`, over
+/// the largest |ln λ|.
 fn hencky_error() -> f64 {
     let mut random = Random::scrambled(11);
     let mut worst = 0.0_f64;
@@ -128,7 +132,8 @@ fn hencky_error() -> f64 {
     worst
 }
 
-/// Largest velocity of both runs step by step, and the largest difference of velocities over the largest velocity.
+/// Largest velocity of both runs step by step, and the largest difference of velocities over the largest
+/// velocity.
 fn scaled_runs() -> Result<(Table, f64), StudyError> {
     let mut runs = [total_frame(&block(1.0))?, total_frame(&block(SMALL))?];
     let dt = 0.8 * runs[0].critical_step();
@@ -149,7 +154,8 @@ fn scaled_runs() -> Result<(Table, f64), StudyError> {
     Ok((table, worst))
 }
 
-/// A block held at its left side whose speed strains it by about `size` times 1e-3; it is far too tough to crack.
+/// A block held at its left side whose speed strains it by about `size` times 1e-3; it is far too tough to
+/// crack.
 fn block(size: f64) -> Scene {
     let fracture = Fracture {
         critical_energy_release_rate: 1e12,

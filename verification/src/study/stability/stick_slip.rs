@@ -1,5 +1,5 @@
-//! A block that slides on a level plane until friction has stopped it, and then has to stay. The plane may move: the way of the
-//! block is the one it makes on it.
+//! A block that slides on a level plane until friction has stopped it, and then has to stay. The plane may
+//! move: the way of the block is the one it makes on it.
 //!
 //! Coulomb friction mu stops a block of speed V after `T = V/(mu g)` and the distance `V²/(2 mu g)`.
 

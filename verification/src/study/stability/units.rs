@@ -1,8 +1,9 @@
 //! The same plate in metres, seconds and kilograms, and in millimetres, seconds and tonnes.
 //!
-//! Numbers of the scene change by factors of 10^3 to 10^12; forces (N) stay, lengths are 10³ times as large, so energies are 10³
-//! times as large (mJ). Everything has to agree after scaling but for round-off. The energy is held against the closed form of the
-//! work of a traction on a wave as well, which an error common to both would not pass.
+//! Numbers of the scene change by factors of 10^3 to 10^12; forces (N) stay, lengths are 10³ times as large,
+//! so energies are 10³ times as large (mJ). Everything has to agree after scaling but for round-off. The
+//! energy is held against the closed form of the work of a traction on a wave as well, which an error common
+//! to both would not pass.
 
 use fisura::Simulation;
 use fisura::dynamics::energy::Sample;
@@ -87,7 +88,8 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
             table.columns.push(samples.iter().map(|s| s.elastic / factor).collect());
         }
         if !cracked {
-            // A traction t on the side of length L drives a wave with the velocity t/(rho c): work t² L d T/(rho c) per side.
+            // A traction t on the side of length L drives a wave with the velocity t/(rho c): work t² L d
+            // T/(rho c) per side.
             let last = si.last().ok_or_else(|| StudyError::Other("an empty history".into()))?;
             let speed = (32e9 * 0.8 / (1.2 * 0.6) / 2450.0_f64).sqrt();
             let work = 2.0 * 1e12 * 4e-3 * THICKNESS * last.time / (2450.0 * speed);
@@ -112,8 +114,8 @@ fn run(scene: &Scene) -> Result<Vec<Sample>, StudyError> {
     Ok(samples)
 }
 
-/// A glass plate, 4 mm × 8 mm, between rollers left and right, pulled at top and bottom by 1 MPa for a microsecond; or with a crack,
-/// by 8 MPa for two.
+/// A glass plate, 4 mm × 8 mm, between rollers left and right, pulled at top and bottom by 1 MPa for a
+/// microsecond; or with a crack, by 8 MPa for two.
 fn plate(units: Units, cracked: bool) -> Scene {
     let [width, height] = [4e-3, 8e-3].map(|x| x * units.length);
     let fracture = cracked.then_some(Fracture {

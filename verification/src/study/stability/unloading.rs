@@ -1,7 +1,9 @@
-//! A body that vibrates below its strength: the history field rises with the tensile energy and stays when that falls.
+//! A body that vibrates below its strength: the history field rises with the tensile energy and stays when
+//! that falls.
 //!
-//! Over many periods psi+ goes up and down at every point. History is a maximum over time, so that it may fall at no point in
-//! any step, not by a rounding. Points are told apart by where they were at t = 0: in the updated frame they change places.
+//! Over many periods psi+ goes up and down at every point. History is a maximum over time, so that it may
+//! fall at no point in any step, not by a rounding. Points are told apart by where they were at t = 0: in the
+//! updated frame they change places.
 
 use std::collections::BTreeMap;
 

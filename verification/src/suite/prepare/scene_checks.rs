@@ -46,7 +46,8 @@ pub(super) fn look(wrong: &mut Wrong<'_>, index: usize, check: &Check, scenes: &
     }
 }
 
-/// Curves of measures that compare with one, and numbers or points of curves that other measures are held against.
+/// Curves of measures that compare with one, and numbers or points of curves that other measures are held
+/// against.
 fn look_at_reference(wrong: &mut Wrong<'_>, index: usize, measure: &Measure, check: &Check, library: &Library) {
     let Some(path) = &check.reference else { return };
     let at = |name: &str| format!("check.{index}.{name}");
