@@ -16,7 +16,7 @@
 //! same for both bodies but for its sign. Impulses are the smallest that keep every gap from closing further
 //! than it is open, `v_rel · n ≥ −max(g, 0)/dt`, with Coulomb friction: they stop sliding or are the
 //! coefficient times their normal part. They never pull, and never push apart. They are found constraint by
-//! constraint until they settle (projected Gauss–Seidel), starting from those of the step before.
+//! constraint until they converge (projected Gauss–Seidel), starting from those of the step before.
 //!
 //! The force P/dt acts over a kick from w to v, so `−P · (w + v)/2`, with w and v relative velocities, is
 //! lost: that is the contact loss of the ledger, half of it booked with the velocity the step begins with,
@@ -24,6 +24,7 @@
 
 pub mod boundary_fit;
 mod constraint;
+mod displacements;
 mod follow;
 pub mod impulse;
 pub(crate) mod motion;
@@ -32,7 +33,6 @@ pub(crate) mod rigid;
 mod state;
 pub(crate) mod surface;
 pub(crate) mod view;
-mod ways;
 
 use std::collections::BTreeMap;
 
@@ -125,11 +125,11 @@ impl ContactSolver {
         let surfaces: Vec<&Surface> =
             bodies.iter().filter_map(|body| body.surface).chain(self.rigid.iter().map(|r| r.surface())).collect();
         let boxes: Vec<_> = surfaces.iter().map(|surface| surface.bounding_box()).collect();
-        let ways: Vec<_> = surfaces.iter().map(|surface| surface.ways()).collect();
+        let displacements: Vec<_> = surfaces.iter().map(|surface| surface.displacements()).collect();
         let mut constraints = Vec::new();
         for b in 1..surfaces.len() {
             for a in 0..b.min(bodies.len()) {
-                let reach = self.reach + AHEAD * ways[a].past(&ways[b]);
+                let reach = self.reach + AHEAD * displacements[a].past(&displacements[b]);
                 let common = [
                     [0, 1].map(|d| boxes[a][0][d].max(boxes[b][0][d]) - reach),
                     [0, 1].map(|d| boxes[a][1][d].min(boxes[b][1][d]) + reach),
@@ -158,7 +158,7 @@ impl ContactSolver {
         let segments = surfaces.map(|surface| surface.segments_in(common));
         for (own, other, sign) in [(0, 1, 1.0), (1, 0, -1.0)] {
             for &segment in &segments[own] {
-                let Center { position, normal, way } = surfaces[own].center(segment);
+                let Center { position, normal, displacement } = surfaces[own].center(segment);
                 let Some(nearest) = surfaces[other].nearest(position, &segments[other], reach) else { continue };
                 if dot(normal, nearest.normal) > FACING {
                     continue;
@@ -166,7 +166,7 @@ impl ContactSolver {
                 let halfway = [0, 1].map(|d| sign * (normal[d] - nearest.normal[d]));
                 let along = fault!("normal-of-one-body", halfway => if own == 0 { normal } else { nearest.normal });
                 let Some(normal) = unit(along) else { continue };
-                let closing = sign * dot([0, 1].map(|d| way[d] - nearest.way[d]), normal);
+                let closing = sign * dot([0, 1].map(|d| displacement[d] - nearest.displacement[d]), normal);
                 if nearest.distance > larger(NEAR * self.reach, AHEAD * closing) {
                     continue;
                 }

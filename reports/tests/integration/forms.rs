@@ -29,7 +29,10 @@ fn the_committed_schema_is_that_of_the_types() {
         std::fs::write(&path, &text).unwrap();
     }
     let committed = std::fs::read_to_string(&path).unwrap();
-    assert!(committed == text, "write it anew: FISURA_BLESS=1 cargo test -p fisura-reports --test integration the_committed_schema");
+    assert!(
+        committed == text,
+        "write it anew: FISURA_BLESS=1 cargo test -p fisura-reports --test integration the_committed_schema"
+    );
 }
 
 #[test]

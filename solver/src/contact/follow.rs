@@ -15,13 +15,13 @@ impl Surface {
     /// Moves with a velocity field (m/s) of its body for `dt` seconds. Where there is no material any more
     /// the boundary ends: it must neither stretch across a gap nor push with nothing behind it.
     pub(crate) fn follow(&mut self, body: &BodyView, velocity: &VectorField, dt: f64) {
-        let ways = self.ways_of(body, velocity, dt);
-        self.ways = ways.iter().map(|way| way.unwrap_or_default()).collect();
-        for (vertex, way) in self.vertices.iter_mut().zip(&self.ways) {
-            *vertex = [0, 1].map(|d| vertex[d] + way[d]);
+        let displacements = self.displacements_of(body, velocity, dt);
+        self.displacements = displacements.iter().map(|displacement| displacement.unwrap_or_default()).collect();
+        for (vertex, displacement) in self.vertices.iter_mut().zip(&self.displacements) {
+            *vertex = [0, 1].map(|d| vertex[d] + displacement[d]);
         }
         let span = body.patch.shortest_span();
-        let held = |vertex: u32| ways[vertex as usize].is_some();
+        let held = |vertex: u32| displacements[vertex as usize].is_some();
         let bare = |segment: &u32| {
             let [from, to] = self.segments[*segment as usize];
             !held(from) || !held(to) || self.spans_a_gap(body, *segment, span)
@@ -46,21 +46,22 @@ impl Surface {
         Follower::nearest(inside, body.patch, body.cells).is_none()
     }
 
-    /// Takes the ways of the coming step from a velocity field (m/s) of its body.
+    /// Takes the displacements of the coming step from a velocity field (m/s) of its body.
     pub(crate) fn expect(&mut self, body: &BodyView, velocity: &VectorField, dt: f64) {
-        self.ways = self.ways_of(body, velocity, dt).into_iter().map(Option::unwrap_or_default).collect();
+        self.displacements =
+            self.displacements_of(body, velocity, dt).into_iter().map(Option::unwrap_or_default).collect();
     }
 
-    /// Ways of the vertices in `dt` seconds, m; `None` where the body has no material any more.
-    fn ways_of(&self, body: &BodyView, velocity: &VectorField, dt: f64) -> Vec<Option<[f64; 2]>> {
+    /// Displacements of the vertices in `dt` seconds, m; `None` where the body has no material any more.
+    fn displacements_of(&self, body: &BodyView, velocity: &VectorField, dt: f64) -> Vec<Option<[f64; 2]>> {
         let depth = DEPTH * body.patch.shortest_span();
-        let way = |vertex: usize| {
+        let displacement = |vertex: usize| {
             let position = self.vertices[vertex];
             let normal = self.vertex_normal(vertex);
             let inside = [0, 1].map(|d| position[d] - depth * normal[d]);
             let time = fault!("boundary-lags-behind", dt => 0.9 * dt);
             BoundaryFit::new(body, position, inside).map(|boundary_fit| boundary_fit.value(velocity).map(|v| time * v))
         };
-        (0..self.vertices.len()).into_par_iter().map(way).collect()
+        (0..self.vertices.len()).into_par_iter().map(displacement).collect()
     }
 }

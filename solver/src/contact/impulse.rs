@@ -10,14 +10,14 @@ use super::{ContactLedger, ContactSolver};
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::vectors::dot;
 
-/// Rounds over the constraints until their equations are solved directly, and most of them: a few tens settle
-/// them but where constraints are many for their control points.
-const ROUNDS: usize = 500;
-const MOST_ROUNDS: usize = 10 * ROUNDS;
-/// Change of an impulse, relative to the largest, below which the rounds end.
-const SETTLED: f64 = 1e-12;
+/// Iterations over the constraints until their equations are solved directly, and most of them: a few tens
+/// converge them but where constraints are many for their control points.
+const ITERATIONS: usize = 500;
+const MOST_ITERATIONS: usize = 10 * ITERATIONS;
+/// Change of an impulse, relative to the largest, below which the iterations end.
+const CONVERGED: f64 = 1e-12;
 /// Round-off of the velocity at a constraint, relative to those it is summed from; impulses that change it by
-/// less are settled.
+/// less have converged.
 const ROUND_OFF: f64 = 1e-14;
 /// Change of an impulse, relative to the largest, above which impulses are not used: momentum is kept by any,
 /// so this is the error of gaps and friction.
@@ -43,13 +43,13 @@ pub(crate) struct Push {
     pub acceleration: [f64; 2],
 }
 
-/// Impulses that did not settle.
+/// Impulses that did not converge.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Unsettled {
-    /// Where the impulse changed most in the last round, m.
+pub struct Unconverged {
+    /// Where the impulse changed most in the last iteration, m.
     pub place: [f64; 2],
-    /// Rounds.
-    pub rounds: usize,
+    /// Iterations.
+    pub iterations: usize,
     /// That change, relative to the largest impulse.
     pub residual: f64,
 }
@@ -82,12 +82,12 @@ struct Node {
 struct Problem<'a> {
     nodes: Vec<Node>,
     constraints: Vec<Acting<'a>>,
-    unsettled: Option<Unsettled>,
+    unconverged: Option<Unconverged>,
 }
 
-/// What a round over the constraints changed.
+/// What an iteration over the constraints changed.
 #[derive(Default)]
-struct Round {
+struct Iteration {
     /// Largest normal impulse, and largest change of an impulse, kg/s per unit thickness.
     largest: f64,
     change: f64,
@@ -127,22 +127,22 @@ impl ContactSolver {
         self.solve(bodies, kick).constraints.iter().filter_map(force).collect()
     }
 
-    /// Whether the impulses of the coming kick settle.
+    /// Whether the impulses of the coming kick converge.
     ///
     /// # Errors
     /// If they do not.
-    pub(crate) fn settles(&self, bodies: &[BodyView], kick: Kick) -> Result<(), Unsettled> {
-        self.solve(bodies, kick).unsettled.map_or(Ok(()), Err)
+    pub(crate) fn converges(&self, bodies: &[BodyView], kick: Kick) -> Result<(), Unconverged> {
+        self.solve(bodies, kick).unconverged.map_or(Ok(()), Err)
     }
 
     /// The accelerations, and books the energies of the kick.
     ///
     /// # Errors
-    /// If the impulses do not settle; nothing is booked.
-    pub(crate) fn act(&mut self, bodies: &[BodyView], kick: Kick) -> Result<Vec<Push>, Unsettled> {
+    /// If the impulses do not converge; nothing is booked.
+    pub(crate) fn act(&mut self, bodies: &[BodyView], kick: Kick) -> Result<Vec<Push>, Unconverged> {
         let problem = self.solve(bodies, kick);
-        if let Some(unsettled) = problem.unsettled {
-            return Err(unsettled);
+        if let Some(unconverged) = problem.unconverged {
+            return Err(unconverged);
         }
         let ledger = self.ledger.plus(problem.arriving(kick)).plus(problem.energy(kick, |node| node.after));
         let pushing = problem.constraints.iter().filter(|acting| acting.impulse.normal > 0.0);
@@ -156,7 +156,7 @@ impl ContactSolver {
     /// Impulses of the coming kick.
     fn solve(&self, bodies: &[BodyView], kick: Kick) -> Problem<'_> {
         let mut problem = self.problem(bodies, kick);
-        problem.settle(self.friction, kick.step);
+        problem.converge(self.friction, kick.step);
         problem
     }
 
@@ -196,62 +196,62 @@ impl ContactSolver {
             acting.find_answers(&nodes);
             acting.give(&mut nodes, acting.impulse);
         }
-        Problem { nodes, constraints, unsettled: None }
+        Problem { nodes, constraints, unconverged: None }
     }
 }
 
-impl Round {
-    fn is_settled(&self, tolerance: f64) -> bool {
+impl Iteration {
+    fn has_converged(&self, tolerance: f64) -> bool {
         self.change <= tolerance * self.largest
     }
 }
 
 impl Problem<'_> {
-    /// Finds impulses with which every constraint is settled, or says that it did not.
-    fn settle(&mut self, friction: f64, step: f64) {
-        let mut last = self.rounds(friction, step);
-        let (mut rounds, mut enough, mut helps) = (ROUNDS, SETTLED, true);
-        while !last.is_settled(enough) && rounds < MOST_ROUNDS {
+    /// Finds impulses with which every constraint has converged, or says that it did not.
+    fn converge(&mut self, friction: f64, step: f64) {
+        let mut last = self.iterations(friction, step);
+        let (mut iterations, mut enough, mut helps) = (ITERATIONS, CONVERGED, true);
+        while !last.has_converged(enough) && iterations < MOST_ITERATIONS {
             helps = helps && self.solve_directly(friction, step);
-            last = self.rounds(friction, step);
-            (rounds, enough) = (rounds + ROUNDS, ACCEPTED);
+            last = self.iterations(friction, step);
+            (iterations, enough) = (iterations + ITERATIONS, ACCEPTED);
         }
-        if !last.is_settled(ACCEPTED) {
+        if !last.has_converged(ACCEPTED) {
             let residual = last.change / last.largest;
-            self.unsettled = Some(Unsettled { place: last.place, rounds, residual });
+            self.unconverged = Some(Unconverged { place: last.place, iterations, residual });
         }
     }
 
-    /// Rounds over the constraints until they settle or are too many; the last one.
-    fn rounds(&mut self, friction: f64, step: f64) -> Round {
-        let mut last = self.round(friction, step);
-        let mut rounds = 1;
-        while rounds < ROUNDS && !last.is_settled(SETTLED) {
-            last = self.round(friction, step);
-            rounds += 1;
+    /// Iterations over the constraints until they converge or are too many; the last one.
+    fn iterations(&mut self, friction: f64, step: f64) -> Iteration {
+        let mut last = self.iteration(friction, step);
+        let mut iterations = 1;
+        while iterations < ITERATIONS && !last.has_converged(CONVERGED) {
+            last = self.iteration(friction, step);
+            iterations += 1;
         }
         last
     }
 
     /// Settles one constraint after the other, with all others as they are.
-    fn round(&mut self, friction: f64, step: f64) -> Round {
+    fn iteration(&mut self, friction: f64, step: f64) -> Iteration {
         let Self { nodes, constraints, .. } = self;
-        let mut round = Round::default();
+        let mut iteration = Iteration::default();
         for acting in constraints {
             let old = acting.impulse;
-            let new = acting.settled(nodes, friction, step);
+            let new = acting.projected(nodes, friction, step);
             let delta = Impulse { normal: new.normal - old.normal, tangent: new.tangent - old.tangent };
             acting.give(nodes, delta);
             acting.impulse = new;
-            round.largest = larger(round.largest, new.normal);
+            iteration.largest = larger(iteration.largest, new.normal);
             for change in [delta.normal.abs(), delta.tangent.abs()] {
-                // what is no number stays: such rounds never settle
-                if (change > round.change && change > acting.round_off) || change.is_nan() {
-                    (round.change, round.place) = (change, acting.constraint.position);
+                // what is no number stays: such impulses never converge
+                if (change > iteration.change && change > acting.round_off) || change.is_nan() {
+                    (iteration.change, iteration.place) = (change, acting.constraint.position);
                 }
             }
         }
-        round
+        iteration
     }
 
     fn pushes(&self, length: f64) -> Vec<Push> {
@@ -318,14 +318,14 @@ impl Acting<'_> {
 
     /// The impulse that, with all others as they are, keeps the gap from closing and sliding below the
     /// friction.
-    fn settled(&self, nodes: &[Node], friction: f64, step: f64) -> Impulse {
+    fn projected(&self, nodes: &[Node], friction: f64, step: f64) -> Impulse {
         let Impulse { mut normal, mut tangent } = self.impulse;
         let relative = self.relative(nodes, |node| node.after);
         let [along_normal, along_tangent] = self.answers;
         if along_normal > 0.0 {
             let allowed = -fault!("open-gap-counts-as-closed", self.constraint.gap.max(0.0) => 0.0) / step;
-            let settled = normal + (allowed - dot(relative, self.constraint.normal)) / along_normal;
-            normal = if settled < fault!("contact-pulls", 0.0 => f64::NEG_INFINITY) { 0.0 } else { settled };
+            let pressed = normal + (allowed - dot(relative, self.constraint.normal)) / along_normal;
+            normal = if pressed < fault!("contact-pulls", 0.0 => f64::NEG_INFINITY) { 0.0 } else { pressed };
         }
         if normal.is_nan() {
             return Impulse { normal, tangent: normal };

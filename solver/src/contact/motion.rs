@@ -10,8 +10,8 @@ use crate::scene::{Body, Mesh, Scene};
 
 /// Most spans by which bodies that meet approach each other in a step.
 pub(crate) const MOST: f64 = 0.5;
-/// A gap that could close in the coming step is one within this many of the ways of the last step: speeds
-/// change.
+/// A gap that could close in the coming step is one within this many of the displacements of the last step:
+/// speeds change.
 pub(crate) const AHEAD: f64 = 1.25;
 /// Segments into which a boundary is cut to find its outward speed. That of a polygon is largest at a corner,
 /// where a segment ends; of a circle cut in so many, whose own is zero, 1 % of the speed at the rim is found.

@@ -36,7 +36,7 @@ impl RigidBody {
             [now[0] + cos * arm[0] - sin * arm[1], now[1] + sin * arm[0] + cos * arm[1]]
         });
         let mut surface = std::mem::take(&mut self.surface);
-        surface.expect_ways(|position| self.velocity_at(position).map(|v| dt * v));
+        surface.expect_displacements(|position| self.velocity_at(position).map(|v| dt * v));
         self.surface = surface;
     }
 

@@ -1,7 +1,7 @@
 //! The boundary of a body as segments between vertices that move with it, and distances from it.
 
+use super::displacements::Range;
 use super::outline::{is_on_boundary, perimeter, rings, spacing, without_patch};
-use super::ways::Range;
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::vectors::{dot, unit};
@@ -15,8 +15,8 @@ const ON_BOUNDARY: f64 = 0.1;
 #[derive(Debug, Clone, Default)]
 pub struct Surface {
     pub(super) vertices: Vec<[f64; 2]>,
-    /// Way of each vertex in the last step, before the first one in the coming step, m.
-    pub(super) ways: Vec<[f64; 2]>,
+    /// Displacement of each vertex in the last step, before the first one in the coming step, m.
+    pub(super) displacements: Vec<[f64; 2]>,
     pub(super) segments: Vec<[u32; 2]>,
     /// Segments that end and begin at each vertex.
     pub(super) neighbours: Vec<[Option<u32>; 2]>,
@@ -31,8 +31,8 @@ pub(crate) struct Nearest {
     pub distance: f64,
     /// Outward unit normal there.
     pub normal: [f64; 2],
-    /// Its way in the last step, m.
-    pub way: [f64; 2],
+    /// Its displacement in the last step, m.
+    pub displacement: [f64; 2],
 }
 
 /// Centre of a segment.
@@ -42,8 +42,8 @@ pub struct Center {
     pub position: [f64; 2],
     /// Outward unit normal.
     pub normal: [f64; 2],
-    /// Its way in the last step, m.
-    pub way: [f64; 2],
+    /// Its displacement in the last step, m.
+    pub displacement: [f64; 2],
 }
 
 impl Surface {
@@ -77,7 +77,7 @@ impl Surface {
         let first = self.vertices.len() as u32;
         let count = ring.len() as u32;
         self.vertices.extend(ring);
-        self.ways.resize(self.vertices.len(), [0.0; 2]);
+        self.displacements.resize(self.vertices.len(), [0.0; 2]);
         for i in 0..count {
             let ends = [i, (i + 1) % count];
             let [a, b] = ends.map(|v| ring[v as usize]);
@@ -98,7 +98,7 @@ impl Surface {
                 kept.len() as u32 - 1
             });
         }
-        for places in [&mut self.vertices, &mut self.ways] {
+        for places in [&mut self.vertices, &mut self.displacements] {
             *places = kept.iter().map(|&old| places[old]).collect();
         }
         self.find_neighbours();
@@ -117,14 +117,14 @@ impl Surface {
         self.vertices.iter_mut().enumerate().for_each(|(index, vertex)| *vertex = place(index));
     }
 
-    /// Takes the ways of the vertices from a map of their positions, m.
-    pub(crate) fn expect_ways(&mut self, way: impl Fn([f64; 2]) -> [f64; 2]) {
-        self.ways = self.vertices.iter().map(|vertex| way(*vertex)).collect();
+    /// Takes the displacements of the vertices from a map of their positions, m.
+    pub(crate) fn expect_displacements(&mut self, displacement: impl Fn([f64; 2]) -> [f64; 2]) {
+        self.displacements = self.vertices.iter().map(|vertex| displacement(*vertex)).collect();
     }
 
-    /// Ways of all vertices, m.
-    pub fn ways(&self) -> Range {
-        Range::of(self.ways.iter().copied())
+    /// Displacements of all vertices, m.
+    pub fn displacements(&self) -> Range {
+        Range::of(self.displacements.iter().copied())
     }
 
     /// Where the boundary was without material first, m, if it ever was.
@@ -137,13 +137,13 @@ impl Surface {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { vertices, ways, segments, neighbours: _, opened } = self;
+        let Self { vertices, displacements, segments, neighbours: _, opened } = self;
         archive.value(vertices)?;
-        archive.value(ways)?;
+        archive.value(displacements)?;
         archive.value(segments)?;
         archive.value(opened)?;
         let ends = segments.iter().flatten().all(|&vertex| (vertex as usize) < vertices.len());
-        if !ends || ways.len() != vertices.len() {
+        if !ends || displacements.len() != vertices.len() {
             return Err(StateError("the state is of another scene: the boundary of a body is none".to_string()));
         }
         self.find_neighbours();
@@ -186,7 +186,11 @@ impl Surface {
     /// Centre of a segment.
     pub fn center(&self, segment: u32) -> Center {
         let [a, b] = self.ends(segment);
-        Center { position: [0, 1].map(|d| 0.5 * (a[d] + b[d])), normal: normal(a, b), way: self.way_at(segment, 0.5) }
+        Center {
+            position: [0, 1].map(|d| 0.5 * (a[d] + b[d])),
+            normal: normal(a, b),
+            displacement: self.way_at(segment, 0.5),
+        }
     }
 
     /// The point nearest to a position (m) on one of `segments`, if any lies within `reach` (m).
@@ -211,12 +215,12 @@ impl Surface {
         let normal = self.normal_at(segment, t);
         let outside = dot(from, normal) >= 0.0;
         let sign = if outside { 1.0 } else { fault!("gap-without-sign", -1.0 => 1.0) };
-        Some(Nearest { distance: sign * distance, normal, way: self.way_at(segment, t) })
+        Some(Nearest { distance: sign * distance, normal, displacement: self.way_at(segment, t) })
     }
 
-    /// Way of a place on a segment, at a fraction t of its length, in the last step, m.
+    /// Displacement of a place on a segment, at a fraction t of its length, in the last step, m.
     fn way_at(&self, segment: u32, t: f64) -> [f64; 2] {
-        let [a, b] = self.segments[segment as usize].map(|vertex| self.ways[vertex as usize]);
+        let [a, b] = self.segments[segment as usize].map(|vertex| self.displacements[vertex as usize]);
         [0, 1].map(|d| (1.0 - t) * a[d] + t * b[d])
     }
 
@@ -254,7 +258,7 @@ impl Surface {
     }
 }
 
-/// Unit normal to the right of the way from `a` to `b`.
+/// Unit normal to the right of the displacement from `a` to `b`.
 fn normal(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     let along = [b[0] - a[0], b[1] - a[1]];
     let length = fault!("normal-not-normalised", along[0].hypot(along[1]) => 1.0);

@@ -1,7 +1,7 @@
 //! Why a body cannot begin, or take a step.
 
 use super::loads::LostTraction;
-use crate::contact::impulse::Unsettled;
+use crate::contact::impulse::Unconverged;
 use crate::contact::motion::TooFast;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::particles::points::OutsidePatch;
@@ -28,8 +28,8 @@ pub enum Failure {
         /// What is lost, and where.
         lost: LostTraction,
     },
-    /// Impulses of contact did not settle.
-    Unsettled(Unsettled),
+    /// Impulses of contact did not converge.
+    Unconverged(Unconverged),
     /// Bodies meet that approach each other too far in a step.
     TooFast(TooFast),
 }
@@ -40,9 +40,9 @@ impl From<SolveFailure> for Failure {
     }
 }
 
-impl From<Unsettled> for Failure {
-    fn from(failure: Unsettled) -> Self {
-        Self::Unsettled(failure)
+impl From<Unconverged> for Failure {
+    fn from(failure: Unconverged) -> Self {
+        Self::Unconverged(failure)
     }
 }
 

@@ -25,7 +25,6 @@ pub(crate) mod affine;
 pub mod assembly;
 mod begin;
 mod booking;
-pub(crate) mod cracking;
 pub mod fictitious;
 pub mod field;
 pub mod grid;
@@ -34,6 +33,7 @@ pub(crate) mod losses;
 pub(crate) mod observe;
 pub(crate) mod paint;
 pub(crate) mod part;
+pub(crate) mod pointwise_fracture;
 pub(crate) mod smoothing;
 mod state;
 pub(crate) mod stiffness;
@@ -96,7 +96,7 @@ impl UpdatedFrame {
     /// One time step of `dt` seconds.
     ///
     /// # Errors
-    /// If a phase field does not converge, a point leaves the patch, impulses of contact do not settle, or
+    /// If a phase field does not converge, a point leaves the patch, impulses of contact do not converge, or
     /// bodies meet that approach each other too far in a step.
     pub fn step(&mut self, dt: f64) -> Result<(), Failure> {
         let kick = self.coming_kick(dt);
@@ -104,7 +104,7 @@ impl UpdatedFrame {
         if let Some(contact) = contact {
             contact.set_step(dt);
             for push in contact.act(&views(fields), kick)? {
-                fields[push.body].push(push.at, push.acceleration);
+                fields[push.body].add_acceleration(push.at, push.acceleration);
             }
         }
         fields.iter_mut().try_for_each(|field| field.step(dt))?;

@@ -40,7 +40,7 @@ pub struct FracturePoint {
     /// Phase field.
     pub phase: f64,
     /// `c (H − psi+)`, J/m³.
-    pub remembered: f64,
+    pub excess: f64,
     /// Strain of the last step.
     pub strain_increment: [f64; 3],
     /// Displacement of the last step, m.

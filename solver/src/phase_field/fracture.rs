@@ -27,7 +27,7 @@ pub struct LatticeFracture {
     /// Phase field at the points.
     pub phase: Vec<Lane>,
     /// `c (H − psi+)` at the points, J/m³.
-    pub remembered: Vec<Lane>,
+    pub excess: Vec<Lane>,
     /// Phase field on the control points.
     pub field: PhaseField,
     /// Iterations of the last solve.
@@ -58,7 +58,7 @@ impl LatticeFracture {
         let zeros = vec![Lane::ZERO; lattice.batches()];
         let mut field = PhaseField::new(lattice, model, settings);
         let convergence = field.initialise(lattice, &history)?;
-        Ok(Self { model, history, phase: zeros.clone(), remembered: zeros, field, iterations: convergence.iterations })
+        Ok(Self { model, history, phase: zeros.clone(), excess: zeros, field, iterations: convergence.iterations })
     }
 
     /// H from the present displacement.
@@ -97,15 +97,15 @@ impl LatticeFracture {
     ) -> StressSums {
         let model = self.model;
         let chunk = lattice.strip_batches();
-        let states = self.phase.chunks_mut(chunk).zip(self.remembered.chunks_mut(chunk));
+        let states = self.phase.chunks_mut(chunk).zip(self.excess.chunks_mut(chunk));
         let mut kernels: Vec<_> = states
             .zip(self.history.chunks(chunk))
-            .map(|((phase, remembered), history)| DegradedStress {
+            .map(|((phase, excess), history)| DegradedStress {
                 moduli,
                 model,
                 history,
                 phase,
-                remembered,
+                excess,
                 energy: Lane::ZERO,
                 history_work: Lane::ZERO,
             })
@@ -181,7 +181,7 @@ impl LatticeFracture {
 
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
-        let lanes = self.history.len() + self.phase.len() + self.remembered.len();
+        let lanes = self.history.len() + self.phase.len() + self.excess.len();
         lanes * size_of::<Lane>() + self.field.bytes()
     }
 }

@@ -1,7 +1,7 @@
 //! What is said of a step that fails, and of a scene that does not start.
 
 use super::breakdown::Breakdown;
-use crate::contact::impulse::Unsettled;
+use crate::contact::impulse::Unconverged;
 use crate::contact::motion::{MOST, TooFast};
 use crate::dynamics::failure::Failure;
 use crate::dynamics::loads::LostTraction;
@@ -15,7 +15,7 @@ const NEAR_TOLERANCE: f64 = 1e3;
 
 const RAISE_TOLERANCE: &str = "solver.phase_field_tolerance is tighter than round-off allows for this length scale and \
                                mesh; raise it, or try phase_field_solver = \"cholesky\"";
-const ILL_CONDITIONED: &str = "history energies so different that iterations do not settle; look for extreme loads or \
+const ILL_CONDITIONED: &str = "history energies so different that iterations do not converge; look for extreme loads or \
                                seeds, or try phase_field_solver = \"cholesky\"";
 const SINGULAR_MASS: &str = "weights or sizes of cells too different for the mass matrix; use mass = \"lumped\", or a mesh \
                              with weights and cells more alike";
@@ -51,7 +51,7 @@ pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> 
         | Failure::LostTraction { body, traction, lost: LostTraction::Unbalanced { place, .. } } => {
             (place, Some(format!("body.{body}.traction.{traction}")))
         }
-        Failure::PhaseField(_) | Failure::SingularMass | Failure::NoStep | Failure::Unsettled(_) => (place, None),
+        Failure::PhaseField(_) | Failure::SingularMass | Failure::NoStep | Failure::Unconverged(_) => (place, None),
     };
     let scene = key.map(|key| Box::new(SceneError { key, message: what.clone(), remedy: cause.clone() }));
     Breakdown { step: 0, time: 0.0, place, point: None, what, cause, scene }
@@ -67,8 +67,10 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
         ),
         Failure::PhaseField(SolveFailure::NotPositiveDefinite) => (INDEFINITE.to_string(), TOO_FEW_POINTS),
         Failure::PhaseField(SolveFailure::NotFinite) => (NOT_FINITE.to_string(), EXTREME),
-        Failure::Unsettled(Unsettled { rounds, residual, .. }) => (
-            format!("the impulses of contact did not settle in {rounds} rounds: they still change by {residual:.3e}"),
+        Failure::Unconverged(Unconverged { iterations, residual, .. }) => (
+            format!(
+                "the impulses of contact did not converge in {iterations} iterations: they still change by {residual:.3e}"
+            ),
             UNSETTLED,
         ),
         Failure::TooFast(TooFast { spans, .. }) => (

@@ -3,7 +3,7 @@
 use super::Simulation;
 use super::causes::{BARE, CONTACT_NOT_FINITE, INSIDE_OUT, LOST, NOT_FINITE, THROWN, TORN, numbers, what_and_cause};
 use super::frame::{Bodies, either};
-use crate::contact::impulse::Unsettled;
+use crate::contact::impulse::Unconverged;
 use crate::contact::motion::TooFast;
 use crate::dynamics::energy::Sample;
 use crate::dynamics::failure::Failure;
@@ -97,7 +97,7 @@ impl Simulation {
     ///
     /// # Errors
     /// If a number of the sample is not finite, or the ledger is open and the time step is too long to be
-    /// stable, or the impulses of contact in the sample did not settle.
+    /// stable, or the impulses of contact in the sample did not converge.
     pub fn watch_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
         let held = self.hold_to_ledger(sample);
         self.failed |= held.is_err();
@@ -109,7 +109,7 @@ impl Simulation {
             return Err(self.at_worst_point(format!("{name} of the history is not a finite number"), None));
         }
         if let Some(frame) = self.updated_frame() {
-            frame.contact_settles(self.plan.step).map_err(|failure| self.broken(failure.into()))?;
+            frame.contact_converges(self.plan.step).map_err(|failure| self.broken(failure.into()))?;
         }
         let Sample { closure, time, .. } = *sample;
         let limit = CLOSURE_LIMIT * self.energy_in + CLOSURE_FLOOR * sample.stored().abs();
@@ -166,8 +166,8 @@ impl Simulation {
                 Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause, scene: None }
             }
             Failure::PhaseField(SolveFailure::NotFinite) => self.not_finite(NOT_FINITE),
-            Failure::Unsettled(found) if !found.residual.is_finite() => self.not_finite(CONTACT_NOT_FINITE),
-            Failure::Unsettled(Unsettled { place, .. }) | Failure::TooFast(TooFast { place, .. }) => {
+            Failure::Unconverged(found) if !found.residual.is_finite() => self.not_finite(CONTACT_NOT_FINITE),
+            Failure::Unconverged(Unconverged { place, .. }) | Failure::TooFast(TooFast { place, .. }) => {
                 let (what, cause) = what_and_cause(failure, self.tolerance);
                 Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause, scene: None }
             }

@@ -77,7 +77,7 @@ pub struct DegradedStress<'a> {
     /// Phase field at the points: at the last step, then at this one.
     pub phase: &'a mut [Lane],
     /// `c (H − psi+)` at the points: at the last step, then at this one, J/m³.
-    pub remembered: &'a mut [Lane],
+    pub excess: &'a mut [Lane],
     /// Elastic energy per unit thickness, J/m.
     pub energy: Lane,
     /// Work of the history field over the step, without the factor 1 − k, J/m.
@@ -95,10 +95,10 @@ impl PointKernel for DegradedStress<'_> {
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
         let state = split(&self.moduli, self.model.split, strain(values.gradient));
         let c = values.phase;
-        let remembered = c * (self.history[at] - state.energy_plus);
-        let change = (remembered + self.remembered[at]) * (self.phase[at] - c);
+        let excess = c * (self.history[at] - state.energy_plus);
+        let change = (excess + self.excess[at]) * (self.phase[at] - c);
         self.history_work = self.history_work.add_product::<FMA>(weight, change);
-        self.remembered[at] = remembered;
+        self.excess[at] = excess;
         self.phase[at] = c;
         let (energy, stress) = state.degraded::<FMA>(self.model.degradation(c));
         self.energy = self.energy.add_product::<FMA>(weight, energy);

@@ -62,13 +62,13 @@ pub(super) fn unchecked(key: String, findings: &mut Findings) {
 }
 
 /// Where a seed leaves a crack whole.
-enum Whole {
+enum Unbroken {
     Everywhere,
     /// Between two places along the crack, m.
     Stretch([f64; 2]),
 }
 
-impl Whole {
+impl Unbroken {
     fn message(&self, width: f64) -> String {
         match self {
             Self::Everywhere => format!("no material point lies within the half width of {width} m: there is no crack"),
@@ -82,7 +82,7 @@ impl Whole {
 
 /// The first stretch of a crack that a seed of half width `width` (m) does not break. Stretches without any
 /// point near them do not count.
-fn whole_stretch(near: &[Near], length: f64, width: f64, l0: f64) -> Option<Whole> {
+fn whole_stretch(near: &[Near], length: f64, width: f64, l0: f64) -> Option<Unbroken> {
     let strength = |p: &Near| SEED_STRENGTH * p.area * (1.0 - p.distance / width).max(0.0);
     let sums: Vec<f64> = std::iter::once(0.0)
         .chain(near.iter().scan(0.0, |sum, point| {
@@ -90,9 +90,9 @@ fn whole_stretch(near: &[Near], length: f64, width: f64, l0: f64) -> Option<Whol
             Some(*sum)
         }))
         .collect();
-    let (Some(first), Some(last)) = (near.first(), near.last()) else { return Some(Whole::Everywhere) };
+    let (Some(first), Some(last)) = (near.first(), near.last()) else { return Some(Unbroken::Everywhere) };
     if sums[near.len()] == 0.0 {
-        return Some(Whole::Everywhere);
+        return Some(Unbroken::Everywhere);
     }
     let before = |along: f64| near.partition_point(|point| point.along <= along);
     let is_whole = |[from, to]: [f64; 2], span: f64, points: std::ops::Range<usize>| {
@@ -109,7 +109,7 @@ fn whole_stretch(near: &[Near], length: f64, width: f64, l0: f64) -> Option<Whol
         let ([from, to], margin) = ([point.along, point.along + point.span], TOLERANCE * point.span);
         ([from, to], point.span, before(from + margin)..before(to + margin))
     });
-    let mut found = |(ends, span, points)| is_whole(ends, span, points).then_some(Whole::Stretch(ends));
+    let mut found = |(ends, span, points)| is_whole(ends, span, points).then_some(Unbroken::Stretch(ends));
     stretches.find_map(&mut found).or_else(|| between.find_map(&mut found))
 }
 

@@ -1,5 +1,5 @@
 //! What contact cannot do ends the run, or is said: fits without control points to hold on to, boundaries
-//! without material, bodies too fast to be seen, impulses that do not settle.
+//! without material, bodies too fast to be seen, impulses that do not converge.
 
 use crate::common::{body, elastic_scene, rectangle, run};
 use fisura::Simulation;

@@ -136,7 +136,7 @@ impl Block {
         sweep(&self.lattice, self.fields(&[]), &mut kernels, None);
     }
 
-    /// Degraded stress and its forces with a split; `at_points` is the phase field and what is remembered
+    /// Degraded stress and its forces with a split; `at_points` is the phase field and what is excess
     /// there.
     pub fn degraded_sweep(
         &self,
@@ -148,15 +148,15 @@ impl Block {
     ) {
         let model = FractureModel { split, ..self.model };
         let chunk = self.lattice.strip_batches();
-        let [phases, remembered] = at_points;
-        let states = phases.chunks_mut(chunk).zip(remembered.chunks_mut(chunk)).zip(history.chunks(chunk));
+        let [phases, excess] = at_points;
+        let states = phases.chunks_mut(chunk).zip(excess.chunks_mut(chunk)).zip(history.chunks(chunk));
         let mut kernels: Vec<_> = states
-            .map(|((phase, remembered), history)| DegradedStress {
+            .map(|((phase, excess), history)| DegradedStress {
                 moduli: self.moduli,
                 model,
                 history,
                 phase,
-                remembered,
+                excess,
                 energy: Lane::ZERO,
                 history_work: Lane::ZERO,
             })

@@ -79,7 +79,7 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
     let mut points = Points {
         lattice: &lattice,
         moduli,
-        fracture: LatticeFracture { model, history, phase: zeros.clone(), remembered: zeros, field, iterations: 0 },
+        fracture: LatticeFracture { model, history, phase: zeros.clone(), excess: zeros, field, iterations: 0 },
         forces: StripForces::new(&lattice),
         greville: patch.spaces[0].greville(),
         height: high[1] - low[1],

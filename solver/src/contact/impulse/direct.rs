@@ -1,11 +1,11 @@
-//! Impulses from the equations of the constraints, where rounds over the constraints settle too slowly.
+//! Impulses from the equations of the constraints, where iterations over the constraints converge too slowly.
 //!
 //! Impulses P change the relative velocities at the constraints to `r + A P`. If it is known which
 //! constraints are open, stick or slide, P solves linear equations: no impulse where it is open, no approach
 //! where it is not, no sliding where it sticks, and `± mu` times the normal impulse along where it slides.
-//! The states are those the rounds ended with, changed until they agree with the impulses (a Newton method
-//! for the complementarity problem). Nothing is taken on trust: rounds that follow have to find the impulses
-//! settled.
+//! The states are those the iterations ended with, changed until they agree with the impulses (a Newton
+//! method for the complementarity problem). Nothing is taken on trust: iterations that follow have to find
+//! the impulses converged.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -25,32 +25,32 @@ fn problem<'a>(nodes: usize, constraints: &'a [Described]) -> Problem<'a> {
         acting
     };
     let constraints = constraints.iter().map(acting).collect();
-    Problem { nodes, constraints, unsettled: None }
+    Problem { nodes, constraints, unconverged: None }
 }
 
 /// Two walls that close on one control point: no impulses keep both out.
 #[test]
-fn impulses_that_cannot_settle_are_said_to_be_unsettled() {
+fn impulses_that_cannot_converge_are_said_to_be_unconverged() {
     for friction in [0.0, 0.3] {
         let walls = [
             (constraint([1.0, 0.0], 0.25), vec![(0, 1.0)], [-1.0, 0.0]),
             (constraint([-1.0, 0.0], 0.75), vec![(0, 1.0)], [1.0, 0.0]),
         ];
         let mut problem = problem(1, &walls);
-        problem.settle(friction, 1.0);
-        let found = problem.unsettled.expect("no solution");
-        assert!(found.residual > ACCEPTED && found.rounds == MOST_ROUNDS && found.place[1] == 0.5, "{found:?}");
+        problem.converge(friction, 1.0);
+        let found = problem.unconverged.expect("no solution");
+        assert!(found.residual > ACCEPTED && found.iterations == MOST_ITERATIONS && found.place[1] == 0.5, "{found:?}");
     }
     let broken = [(constraint([1.0, 0.0], 0.25), vec![(0, 1.0)], [f64::NAN, 0.0])];
     let mut problem = problem(1, &broken);
-    problem.settle(0.3, 1.0);
-    assert!(problem.unsettled.expect("no number").residual.is_nan());
+    problem.converge(0.3, 1.0);
+    assert!(problem.unconverged.expect("no number").residual.is_nan());
 }
 
 /// A wall against a row of control points, at as many places between them: neighbours differ in how it falls
-/// on them, and rounds take as many as the square of the row to find out. The equations say at once.
+/// on them, and iterations take as many as the square of the row to find out. The equations say at once.
 #[test]
-fn touches_as_many_as_control_points_settle() {
+fn touches_as_many_as_control_points_converge() {
     let count = 60;
     for friction in [0.0, 0.3] {
         let between = |i: usize| {
@@ -59,10 +59,13 @@ fn touches_as_many_as_control_points_settle() {
         };
         let constraints: Vec<_> = (0..count).map(between).collect();
         let mut slow = problem(count + 1, &constraints);
-        assert!(!slow.rounds(friction, 1.0).is_settled(SETTLED), "the rounds alone settle: the test is empty");
+        assert!(
+            !slow.iterations(friction, 1.0).has_converged(CONVERGED),
+            "the iterations alone converge: the test is empty"
+        );
         let mut problem = problem(count + 1, &constraints);
-        problem.settle(friction, 1.0);
-        assert_eq!(problem.unsettled, None);
+        problem.converge(friction, 1.0);
+        assert_eq!(problem.unconverged, None);
         for acting in &problem.constraints {
             let [approach, slide] = acting.relative(&problem.nodes, |node| node.after);
             let Impulse { normal, tangent } = acting.impulse;

@@ -71,7 +71,7 @@ impl AffineVelocities {
         gradients.zip(&cells.strips).for_each(|(gradients, strip)| {
             let points = &points[strip.points.clone()];
             let cells = &cells.cells[strip.cells.clone()];
-            dispatch(Take { patch, grid, fit, greville, velocity, cells, points, gradients });
+            dispatch(GradientsFromGrid { patch, grid, fit, greville, velocity, cells, points, gradients });
         });
     }
 
@@ -88,7 +88,7 @@ impl AffineVelocities {
         let grid = patch.control_grid();
         scatter(&cells.strips, momentum.each_mut().map(|f| &mut f[..]), [grid.stride; 2], |strip, window| {
             let cells = &cells.cells[strip.cells.clone()];
-            dispatch(Give { patch, grid, density, greville, cells, points, gradients, window });
+            dispatch(GradientsToGrid { patch, grid, density, greville, cells, points, gradients, window });
         });
     }
 
@@ -135,7 +135,7 @@ fn levers(greville: &[f64], first: usize, order: usize, x: f64) -> [f64; MAX_ORD
     levers
 }
 
-struct Take<'a> {
+struct GradientsFromGrid<'a> {
     patch: &'a Patch,
     grid: ControlGrid,
     fit: Fit,
@@ -146,7 +146,7 @@ struct Take<'a> {
     gradients: &'a mut [Gradient],
 }
 
-impl Vectorised for Take<'_> {
+impl Vectorised for GradientsFromGrid<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -155,7 +155,7 @@ impl Vectorised for Take<'_> {
     }
 }
 
-impl Take<'_> {
+impl GradientsFromGrid<'_> {
     #[inline(always)]
     fn walk(self, kx: usize, ky: usize) {
         let [x, y] = &self.patch.spaces;
@@ -192,7 +192,7 @@ impl Take<'_> {
     }
 }
 
-struct Give<'a> {
+struct GradientsToGrid<'a> {
     patch: &'a Patch,
     grid: ControlGrid,
     density: f64,
@@ -203,7 +203,7 @@ struct Give<'a> {
     window: Window<'a, 2>,
 }
 
-impl Vectorised for Give<'_> {
+impl Vectorised for GradientsToGrid<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -212,7 +212,7 @@ impl Vectorised for Give<'_> {
     }
 }
 
-impl Give<'_> {
+impl GradientsToGrid<'_> {
     #[inline(always)]
     fn walk(mut self, kx: usize, ky: usize) {
         let [x, y] = &self.patch.spaces;

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::affine::{AffineVelocities, Fit};
-use super::cracking::PointwiseFracture;
 use super::field::DiscreteField;
 use super::grid::NodalFields;
 use super::losses::TransferLosses;
 use super::part;
+use super::pointwise_fracture::PointwiseFracture;
 use super::tractions::SurfaceLoad;
 use super::velocity_transfer::VelocityTransfer;
 use crate::contact::Surface;

@@ -8,9 +8,9 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::affine::AffineVelocities;
-use super::cracking::PointwiseFracture;
 use super::grid::{ImposedEnergy, NodalFields};
 use super::losses::TransferLosses;
+use super::pointwise_fracture::PointwiseFracture;
 use super::smoothing::Smoothing;
 use super::strain::{FiniteStrain, SmallStrain, StrainUpdate};
 use super::tractions::SurfaceLoad;
@@ -124,7 +124,7 @@ impl DiscreteField {
     }
 
     /// Adds an acceleration to a control point for the coming kick, m/s².
-    pub fn push(&mut self, at: usize, acceleration: [f64; 2]) {
+    pub fn add_acceleration(&mut self, at: usize, acceleration: [f64; 2]) {
         for (field, a) in self.nodes.acceleration.iter_mut().zip(acceleration) {
             field[at] += a;
         }

@@ -6,7 +6,7 @@ use super::field::DiscreteField;
 use super::grid::NodalFields;
 use super::losses::TransferLosses;
 use super::{UpdatedFrame, views};
-use crate::contact::impulse::{ContactForce, Push, Unsettled};
+use crate::contact::impulse::{ContactForce, Push, Unconverged};
 use crate::contact::{ContactLedger, ContactSolver, Surface};
 use crate::dynamics::energy::{ContactSample, FractureSample, Sample};
 use crate::linear_algebra::control_grid::VectorField;
@@ -69,12 +69,12 @@ impl UpdatedFrame {
             .map_or_else(Vec::new, |contact| contact.forces(&views(&self.fields), self.coming_kick(dt)))
     }
 
-    /// Whether the impulses of contact of the coming step settle; `dt` is the step in use.
+    /// Whether the impulses of contact of the coming step converge; `dt` is the step in use.
     ///
     /// # Errors
     /// If they do not.
-    pub(crate) fn contact_settles(&self, dt: f64) -> Result<(), Unsettled> {
-        self.contact.as_ref().map_or(Ok(()), |contact| contact.settles(&views(&self.fields), self.coming_kick(dt)))
+    pub(crate) fn contact_converges(&self, dt: f64) -> Result<(), Unconverged> {
+        self.contact.as_ref().map_or(Ok(()), |contact| contact.converges(&views(&self.fields), self.coming_kick(dt)))
     }
 
     /// Where the boundary of a body was without material first, m, if one ever was.

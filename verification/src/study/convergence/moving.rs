@@ -173,7 +173,7 @@ fn broken(failure: Failure) -> StudyError {
         Failure::Left([x, y]) => other(format!("a point left the mesh at ({x}, {y})")),
         Failure::NoPoints(_) => other("the body holds no material point"),
         Failure::LostTraction { .. } => other("a part of a traction would not act"),
-        Failure::Unsettled(_) | Failure::TooFast(_) => other("contact cannot follow the bodies"),
+        Failure::Unconverged(_) | Failure::TooFast(_) => other("contact cannot follow the bodies"),
     }
 }
 

@@ -304,10 +304,10 @@ impl UpdateStress<'_> {
             point.stress = each!(i in [0, 1, 2] => stress[i][lane]);
             sums.elastic_energy += point.volume * energy[lane];
             sums.stress_work += point.volume * contract(point.stress, cracked.strain_increment);
-            let remembered = phase[lane] * (cracked.history - state.energy_plus[lane]);
+            let excess = phase[lane] * (cracked.history - state.energy_plus[lane]);
             let widening = cracked.phase - phase[lane];
-            sums.history_work += point.volume * (remembered + cracked.remembered) * widening;
-            (cracked.remembered, cracked.phase) = (remembered, phase[lane]);
+            sums.history_work += point.volume * (excess + cracked.excess) * widening;
+            (cracked.excess, cracked.phase) = (excess, phase[lane]);
         }
     }
 }
