@@ -9,6 +9,7 @@ pub mod expand;
 pub mod figures;
 pub mod foreign;
 pub mod history;
+pub mod judge;
 pub mod measure;
 pub mod output;
 pub mod patches;

@@ -8,6 +8,7 @@ use toml::Spanned;
 use super::quantity::Unit;
 use super::source_file::{BandEntry, SourceFile, ValueEntry};
 use super::{Library, ReferenceBand, ReferenceError, ReferenceValue, Source};
+use crate::judge::submission::SUBMISSION;
 use crate::scene_file::units::UnitError;
 
 /// Name of the file that describes a source.
@@ -31,6 +32,9 @@ fn walk(root: &Path, folder: &Path, library: &mut Library) -> Result<(), Referen
         .and_then(|entries| entries.map(|entry| entry.map(|e| e.path())).collect::<Result<Vec<_>, _>>())
         .map_err(fail)?;
     entries.sort();
+    if entries.iter().any(|path| path.file_name().is_some_and(|name| name == SUBMISSION)) {
+        return Ok(()); // a result to be judged, no reference
+    }
     if entries.iter().any(|path| path.file_name().is_some_and(|name| name == SOURCE)) {
         SourceReader::open(root, folder)?.read(library)?;
     } else if let Some(table) = entries.iter().find(|path| path.extension().is_some_and(|e| e == "csv")) {

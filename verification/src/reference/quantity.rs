@@ -6,13 +6,19 @@ use crate::scene_file::units::{self, Dimension, UnitError};
 const ENERGY_PER_THICKNESS: Dimension = Dimension::FORCE;
 
 /// Quantities of curves: name, dimension of the abscissa, dimension of the ordinate.
-const QUANTITIES: [(&str, Dimension, Dimension); 10] = [
+const QUANTITIES: [(&str, Dimension, Dimension); 16] = [
     ("plate/elastic-energy", Dimension::TIME, ENERGY_PER_THICKNESS),
     ("plate/fracture-increment", Dimension::TIME, ENERGY_PER_THICKNESS),
     ("plate/kinetic-energy", Dimension::TIME, ENERGY_PER_THICKNESS),
     ("plate/external-work", Dimension::TIME, ENERGY_PER_THICKNESS),
     ("plate/tip-x", Dimension::TIME, Dimension::LENGTH),
     ("plate/tip-y", Dimension::TIME, Dimension::LENGTH),
+    ("plate-family/elastic-energy", Dimension::TIME, ENERGY_PER_THICKNESS),
+    ("plate-family/fracture-increment", Dimension::TIME, ENERGY_PER_THICKNESS),
+    ("plate-family/kinetic-energy", Dimension::TIME, ENERGY_PER_THICKNESS),
+    ("plate-family/external-work", Dimension::TIME, ENERGY_PER_THICKNESS),
+    ("plate-family/tip-x", Dimension::TIME, Dimension::LENGTH),
+    ("plate-family/tip-y", Dimension::TIME, Dimension::LENGTH),
     ("plate/kinetic-error-against-processor-time", Dimension::TIME, Dimension::NONE),
     ("rings/fracture-energy", Dimension::TIME, Dimension::ENERGY),
     ("manufactured-bar/displacement-error-small", Dimension::NONE, Dimension::NONE),

@@ -15,6 +15,8 @@ pub enum Obtained {
     Digitised,
     /// Computed with another code for comparison.
     IndependentCode,
+    /// Computed with this code, to recognise something in results of others.
+    OwnCode,
     /// Stated in a text.
     Text,
     /// Put together from other folders.

@@ -16,6 +16,8 @@ use fisura::Simulation;
 use fisura::scene::Scene;
 use fisura_verification::case::Case;
 use fisura_verification::history::Table;
+use fisura_verification::judge::judge;
+use fisura_verification::judge::submission::Submission;
 use fisura_verification::reference::Library;
 use fisura_verification::scene_file::SceneFile;
 use fisura_verification::suite::prepare::prepare;
@@ -79,6 +81,27 @@ fn readers_survive_any_input() {
     fuzz(0.15, &files(&["tests/corpus/csv", "../reference-data"], "csv"), |bytes| {
         if let Ok(table) = Table::parse("table.csv", bytes) {
             assert!(table.columns.iter().all(|column| column.len() == table.rows()));
+        }
+    });
+}
+
+/// Submissions and their tables: a verdict, or an error in words.
+#[test]
+fn submissions_survive_any_input() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../reference-data");
+    fuzz(0.1, &files(&["../reference-data/submissions"], "toml"), |bytes| {
+        if let Err(error) = Submission::parse("submission.toml", &String::from_utf8_lossy(bytes)) {
+            assert!(!error.to_string().is_empty());
+        }
+    });
+    let (library, folder) = (Library::load(&data).expect("references"), tempfile::tempdir().expect("a folder"));
+    let sound = data.join("submissions/fisura-p2-h1");
+    std::fs::copy(sound.join("submission.toml"), folder.path().join("submission.toml")).expect("a copy");
+    fuzz(0.03, &files(&["../reference-data/submissions/fisura-p2-h1", "tests/corpus/csv"], "csv"), |bytes| {
+        std::fs::write(folder.path().join("history.csv"), bytes).expect("a table");
+        match judge(folder.path(), &library, &data, None) {
+            Ok(judged) => assert!(judged.verdict.comparisons().all(|c| c.u_val.is_none_or(f64::is_finite))),
+            Err(error) => assert!(!error.to_string().is_empty()),
         }
     });
 }

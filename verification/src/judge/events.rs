@@ -1,0 +1,158 @@
+//! Events of the crack: onset, branching, right edge, largest speed.
+
+use super::curves::{EVENTS_DECIDE, Numerics, decide};
+use super::family::{END, Variant};
+use super::table::Curve;
+use super::verdict::{Comparison, Outcome};
+use super::{TIP_X, TIP_Y};
+use crate::extremes::larger;
+use crate::measure::fitted_speed;
+use crate::reference::Library;
+
+/// Places at which the crack has started and has reached the right edge, m.
+const PASSED: [f64; 2] = [50.5e-3, 99.5e-3];
+/// Height of the initial crack in the benchmark, and the distance from it that counts as branched, m.
+const AXIS: f64 = 20e-3;
+const OFF_AXIS: f64 = 0.25e-3;
+/// Half width of the window in which a speed is fitted, s.
+const SPEED_WINDOW: f64 = 2e-6;
+
+/// What an event is called, and where its figures stand.
+struct Event {
+    words: &'static str,
+    value: &'static str,
+    study: &'static str,
+    unit: &'static str,
+}
+
+const EVENTS: [Event; 6] = [
+    Event { words: "onset: tip passes 50.5 mm", value: "onset-time", study: "onset_time_s", unit: "s" },
+    Event { words: "branching", value: "branching-time", study: "branching_time_s", unit: "s" },
+    Event { words: "place of branching", value: "branching-x", study: "branching_x_m", unit: "m" },
+    Event {
+        words: "largest speed before branching",
+        value: "largest-speed",
+        study: "largest_speed_m_per_s",
+        unit: "m/s",
+    },
+    Event { words: "right edge: tip passes 99.5 mm", value: "right-edge-time", study: "right_edge_time_s", unit: "s" },
+    Event {
+        words: "distance from the axis there",
+        value: "right-edge-offset",
+        study: "right_edge_offset_m",
+        unit: "m",
+    },
+];
+
+/// The time at which a tip first passes `goal`, interpolated, and the row.
+pub fn passes(tip: &Curve, goal: f64) -> Option<(f64, usize)> {
+    let row = tip.y.iter().position(|x| *x >= goal)?;
+    if row == 0 || !tip.y[row - 1].is_finite() {
+        return Some((tip.t[row], row));
+    }
+    let weight = (goal - tip.y[row - 1]) / (tip.y[row] - tip.y[row - 1]);
+    Some((tip.t[row - 1] + weight * (tip.t[row] - tip.t[row - 1]), row))
+}
+
+/// Values of all events, SI; none where it did not happen or cannot be told.
+fn values(x: &Curve, y: Option<&Curve>, branching: Option<f64>) -> [Option<f64>; 6] {
+    let y = y.filter(|y| y.t == x.t);
+    let onset = passes(x, PASSED[0]);
+    let running = onset.map_or(x.t.len(), |o| o.1);
+    let off = y.and_then(|y| (running..x.t.len()).find(|&i| (y.y[i] - AXIS).abs() > OFF_AXIS && x.y[i].is_finite()));
+    let end = off.map(|row| x.t[row]).or(branching).unwrap_or(END);
+    let centers = x.t.iter().copied().filter(|t| *t >= SPEED_WINDOW && *t <= end - SPEED_WINDOW);
+    let speeds = centers.map(|t| fitted_speed(&x.t, &x.y, t)).filter(|v| v.is_finite());
+    let edge = passes(x, PASSED[1]);
+    let offset = edge.zip(y).map(|((_, row), y)| (y.y[row] - AXIS).abs());
+    [
+        onset.map(|o| o.0),
+        off.map(|row| x.t[row]),
+        off.map(|row| x.y[row]),
+        speeds.reduce(larger),
+        edge.map(|e| e.0),
+        offset.filter(|o| o.is_finite()),
+    ]
+}
+
+/// Verdicts on the events of the reference, and on branching where the reference does not branch.
+pub fn events(
+    curves: &[Option<Curve>; 6],
+    variant: &Variant<'_>,
+    numerics: &Numerics<'_>,
+    library: &Library,
+) -> Vec<Comparison> {
+    let Some(x) = &curves[TIP_X] else { return Vec::new() };
+    let y = curves[TIP_Y].as_ref();
+    let found = values(x, y, variant.branching);
+    let interval = x.t.windows(2).map(|pair| pair[1] - pair[0]).reduce(larger).unwrap_or(0.0);
+    let last = x.t[x.t.len() - 1];
+    let mut out = Vec::new();
+    for (event, value) in EVENTS.iter().zip(found) {
+        let named = library.value("plate-family", &format!("{}/{}", variant.declared.name, event.value));
+        let mut row = Comparison { name: event.words.into(), unit: event.unit.into(), value, ..Comparison::default() };
+        let Some(reference) = named else {
+            if event.value == "branching-time" && value.is_some() {
+                row.outcome = Outcome::Fail;
+                row.why = "the crack branches; that of the reference does not".into();
+                out.push(row);
+            }
+            continue;
+        };
+        row.reference = Some(reference.value);
+        let needs_y = !["onset-time", "largest-speed", "right-edge-time"].contains(&event.value);
+        if needs_y && y.is_none() {
+            row.outcome = Outcome::Incomplete;
+            row.why = "needs tip_y, at the times of tip_x".into();
+            out.push(row);
+            continue;
+        }
+        row.error = value.map(|v| v - reference.value);
+        // what leaves the axis or the edge is known to a row only; the tip moves in between
+        let between = match event.value {
+            "onset-time" | "right-edge-time" => 0.5 * interval,
+            "branching-time" => interval,
+            "largest-speed" => 0.0,
+            _ => {
+                interval
+                    * library
+                        .value("plate-family", &format!("{}/largest-speed", variant.declared.name))
+                        .map_or(0.0, |v| v.value)
+            }
+        };
+        let u_num = numerics.of_event(event.study);
+        let u_num = if between > 0.0 { Some(u_num.unwrap_or(0.0).hypot(between)) } else { u_num };
+        decide(&mut row, reference.uncertainty.unwrap_or(0.0), u_num);
+        let due = if event.value.starts_with("right-edge") { END } else { reference.value.min(END) };
+        let late = event.unit == "s" && reference.value + row.u_val.unwrap_or(0.0) > last.min(due.max(END));
+        if value.is_none() && late {
+            (row.outcome, row.why) = (Outcome::Diagnostic, "not within the run, and it need not be".into());
+        } else if value.is_none() && last >= 0.95 * END && event.unit == "s" {
+            (row.outcome, row.why) = (Outcome::Fail, "it does not happen".into());
+        } else if value.is_none() && event.value == "right-edge-offset" {
+            (row.outcome, row.why) = (Outcome::Diagnostic, "the tip does not reach the edge".into());
+        }
+        let coarse = numerics.spacing().is_some_and(|h| h > EVENTS_DECIDE * (1.0 + 1e-9));
+        if row.outcome == Outcome::Fail && coarse && event.value != "onset-time" {
+            (row.outcome, row.why) = (Outcome::Diagnostic, "spacings above l0/2 miss such events".into());
+        }
+        out.push(row);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn events_are_read_from_the_tip() {
+        let t: Vec<f64> = (0..=80).map(|i| f64::from(i) * 1e-6).collect();
+        let x = Curve { y: t.iter().map(|t| 0.05 + 900.0 * (t - 12e-6).max(0.0)).collect(), t: t.clone() };
+        let y = Curve { y: t.iter().map(|t| if *t > 30.5e-6 { 0.021 } else { 0.02 }).collect(), t };
+        let [onset, branching, place, speed, edge, offset] = values(&x, Some(&y), None).map(Option::unwrap);
+        assert!((onset - (12e-6 + 0.5e-3 / 900.0)).abs() < 1e-12 && (branching - 31e-6).abs() < 1e-12);
+        assert!((place - (0.05 + 900.0 * 19e-6)).abs() < 1e-9 && (speed - 900.0).abs() < 1e-6);
+        assert!((edge - (12e-6 + 49.5e-3 / 900.0)).abs() < 1e-9 && (offset - 1e-3).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,387 @@
+//! `submission.toml`: what somebody says about a result, and where its numbers stand.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::mapping::{Mapping, curves};
+use crate::foreign;
+use crate::scene_file::diagnostic::Sources;
+use crate::scene_file::fields::{Fields, Item, Problems};
+use crate::scene_file::units::Dimension;
+use crate::scene_file::{Document, Problem, SceneFileError};
+
+/// Name of the file that describes a submission.
+pub const SUBMISSION: &str = "submission.toml";
+/// Longest `submission.toml`, bytes.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// Plane state as declared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Plane {
+    /// Plane strain.
+    Strain,
+    /// Plane stress.
+    Stress,
+    /// Nobody knows.
+    Unknown,
+}
+
+/// How the initial crack is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Crack {
+    /// A history field.
+    Seeded,
+    /// A prescribed phase field.
+    PhaseField,
+    /// Free faces in the mesh, or a gap between points.
+    Slit,
+    /// Nobody knows.
+    Unknown,
+}
+
+/// Who computed it, with what.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Code {
+    /// Name of the code.
+    pub name: String,
+    /// Version.
+    pub version: Option<String>,
+    /// Commit.
+    pub commit: Option<String>,
+    /// URL or DOI.
+    pub url: Option<String>,
+    /// Who ran it.
+    pub run_by: Option<String>,
+    /// What else there is to know.
+    pub notes: Vec<String>,
+}
+
+/// What was modelled, SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    /// Plane state.
+    pub plane: Plane,
+    /// Traction on each loaded edge, Pa; absent where unknown.
+    pub traction: Option<f64>,
+    /// How the crack is made.
+    pub crack: Crack,
+    /// `spectral` is that of the references.
+    pub split: String,
+    /// `AT2` is that of the references.
+    pub phase_field: String,
+    /// l0 in Borden's convention, m; absent where not said.
+    pub length_scale: Option<f64>,
+    /// k.
+    pub residual_stiffness: f64,
+    /// Whether the upper half alone was computed.
+    pub half: bool,
+    /// Thickness, m, by which energies in J are divided.
+    pub thickness: Option<f64>,
+    /// What else differs from the benchmark, in words.
+    pub differences: Vec<String>,
+}
+
+/// What it cost; each may be unknown.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Cost {
+    /// Processor time, s.
+    pub cpu_s: Option<f64>,
+    /// Wall time, s.
+    pub wall_s: Option<f64>,
+    /// Cores.
+    pub cores: Option<usize>,
+    /// Processor.
+    pub processor: Option<String>,
+    /// Peak memory, MB.
+    pub memory_mb: Option<f64>,
+    /// Time of a kernel of the bench on the same machine in the same hour, ns per point and step.
+    pub kernel_ns: Option<f64>,
+}
+
+/// Everything that `submission.toml` says.
+#[derive(Debug, Clone)]
+pub struct Submission {
+    /// Benchmark.
+    pub benchmark: String,
+    /// Code.
+    pub code: Code,
+    /// Model.
+    pub model: Model,
+    /// Method in words.
+    pub method: Option<String>,
+    /// Spacing at the crack, m.
+    pub spacing: Option<f64>,
+    /// Further figures of the discretisation, as written.
+    pub discretisation: Vec<(String, String)>,
+    /// Cost.
+    pub cost: Cost,
+    /// Numerical uncertainty that the submission states, by quantity: relative, of the tip in m.
+    pub stated: [Option<f64>; 6],
+    /// `comma`, `semicolon`, `tab`, `space`, or absent to be found out.
+    pub separator: Option<char>,
+    /// Characters with which comment lines start.
+    pub comment: String,
+    /// Column of the time; its file is unused.
+    pub time: Option<Mapping>,
+    /// Columns by quantity, in the order of [`QUANTITIES`].
+    pub curves: [Option<Mapping>; 6],
+    /// Numbers of closed-form benchmarks, SI, with their place.
+    pub values: Vec<(String, f64)>,
+    document: Document,
+}
+
+impl Submission {
+    /// Reads `submission.toml` of a folder.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no TOML, and everything that is wrong with it, each with file, line, column and remedy.
+    pub fn load(folder: &Path) -> Result<Self, SceneFileError> {
+        let name = folder.join(SUBMISSION).display().to_string();
+        let whole = |message: String, remedy: &str| {
+            let problem = Problem { key: String::new(), location: None, message, remedy: remedy.into() };
+            Sources::new(&name, "").error(&[problem])
+        };
+        let bytes = foreign::read(folder, SUBMISSION, MOST_BYTES).map_err(|e| {
+            whole(
+                format!("cannot be read: {e}"),
+                "give a folder with a submission.toml; `judge --new plate` writes one",
+            )
+        })?;
+        let text = String::from_utf8(bytes)
+            .map_err(|_| whole("not UTF-8 text".into(), "save the file in the encoding UTF-8"))?;
+        Self::parse(&name, text.trim_start_matches('\u{feff}'))
+    }
+
+    /// The same from a text; `name` stands for it in messages.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn parse(name: &str, text: &str) -> Result<Self, SceneFileError> {
+        if !text.lines().any(|line| !line.trim().is_empty() && !line.trim_start().starts_with('#')) {
+            let (message, remedy) = ("the file declares nothing", "`cargo xtask judge --new plate` writes a template");
+            let problem =
+                Problem { key: String::new(), location: None, message: message.into(), remedy: remedy.into() };
+            return Err(Sources::new(name, text).error(&[problem]));
+        }
+        let document = Document::parse(name, text)?;
+        let problems = Problems::default();
+        let read = read(&Item::new(&document.root, "", &problems), &document);
+        let problems = problems.into_inner();
+        match read {
+            Some(submission) if problems.is_empty() => Ok(submission),
+            _ => Err(document.error(&problems)),
+        }
+    }
+
+    /// An error at a key of the file.
+    pub fn error(&self, mapping: &Mapping, message: impl Into<String>, remedy: impl Into<String>) -> SceneFileError {
+        self.document.error(&[Problem {
+            key: mapping.key.clone(),
+            location: mapping.location.clone(),
+            message: message.into(),
+            remedy: remedy.into(),
+        }])
+    }
+
+    /// An error about a key that is missing or wrong.
+    pub fn key_error(&self, key: &str, message: impl Into<String>, remedy: impl Into<String>) -> SceneFileError {
+        let location = self.document.root.locate(key);
+        let (message, remedy) = (message.into(), remedy.into());
+        self.document.error(&[Problem { key: key.into(), location, message, remedy }])
+    }
+}
+
+const TOP: [&str; 9] =
+    ["benchmark", "code", "model", "discretisation", "cost", "uncertainty", "files", "curves", "values"];
+
+fn read(root: &Item<'_>, document: &Document) -> Option<Submission> {
+    let fields = root.fields(&TOP)?;
+    let names: Vec<(&str, &str)> = super::BENCHMARKS.iter().map(|b| (b.name, b.name)).collect();
+    let benchmark = fields.need("benchmark", "benchmark = \"plate\"", |item| item.choice(&names));
+    let code = fields.need("code", "[code] with a name", code);
+    let model = fields.get("model").map(|item| model(&item));
+    let plain = |benchmark: Option<&str>| benchmark.is_some_and(|name| name != "plate");
+    let model = match (model, plain(benchmark)) {
+        (Some(model), _) => model,
+        (None, true) => Some(Model::default()),
+        (None, false) => fields.need("model", "[model] with plane, traction, crack and split", model_of),
+    };
+    let rest = fields.get("discretisation").map_or(Some(Default::default()), |item| discretisation(&item));
+    let cost = fields.get("cost").map_or(Some(Cost::default()), |item| cost(&item));
+    let stated = fields.get("uncertainty").map_or(Some([None; 6]), |item| stated(&item));
+    let files = fields.get("files").map_or(Some((None, "#".into())), |item| files(&item));
+    let thickness = model.as_ref().and_then(|m| m.thickness);
+    let curves = fields.get("curves").map_or(Some(Default::default()), |item| curves(&item, thickness));
+    let values = fields.get("values").map_or(Some(Vec::new()), |item| values(&item, benchmark?));
+    let ((method, spacing, discretisation), (separator, comment), (time, curves)) = (rest?, files?, curves?);
+    Some(Submission {
+        benchmark: benchmark?.to_string(),
+        code: code?,
+        model: model?,
+        method,
+        spacing,
+        discretisation,
+        cost: cost?,
+        stated: stated?,
+        separator,
+        comment,
+        time,
+        curves,
+        values: values?,
+        document: document.clone(),
+    })
+}
+
+fn model_of(item: &Item<'_>) -> Option<Model> {
+    model(item)
+}
+
+fn texts(fields: &Fields<'_>, key: &str) -> Option<Vec<String>> {
+    fields.or(key, Vec::new(), |item| item.each(Item::words))
+}
+
+fn code(item: &Item<'_>) -> Option<Code> {
+    let fields = item.fields(&["name", "version", "commit", "url", "run_by", "notes"])?;
+    let name = fields.need("name", "name = \"my-code\"", Item::words);
+    let [version, commit, url, run_by] =
+        ["version", "commit", "url", "run_by"].map(|key| fields.maybe(key, Item::words));
+    let notes = texts(&fields, "notes");
+    Some(Code { name: name?, version: version?, commit: commit?, url: url?, run_by: run_by?, notes: notes? })
+}
+
+impl Default for Model {
+    fn default() -> Self {
+        Self {
+            plane: Plane::Strain,
+            traction: None,
+            crack: Crack::Seeded,
+            split: "spectral".into(),
+            phase_field: "AT2".into(),
+            length_scale: None,
+            residual_stiffness: 0.0,
+            half: false,
+            thickness: None,
+            differences: Vec::new(),
+        }
+    }
+}
+
+const MODEL: [&str; 11] = [
+    "plane",
+    "traction",
+    "crack",
+    "split",
+    "phase_field",
+    "length_scale",
+    "convention",
+    "residual_stiffness",
+    "part",
+    "thickness",
+    "differences",
+];
+
+fn model(item: &Item<'_>) -> Option<Model> {
+    let fields = item.fields(&MODEL)?;
+    let planes = [("strain", Plane::Strain), ("stress", Plane::Stress), ("unknown", Plane::Unknown)];
+    let plane = fields.need("plane", "plane = \"strain\", \"stress\" or \"unknown\"", |item| item.choice(&planes));
+    let unknown = |item: &Item<'_>| item.node.as_str() == Some("unknown");
+    let traction = fields.need("traction", "traction = \"1 MPa\", or \"unknown\"", |item| {
+        if unknown(item) { Some(None) } else { item.positive(Dimension::STRESS).map(Some) }
+    });
+    let cracks = [
+        ("seeded", Crack::Seeded),
+        ("phase-field", Crack::PhaseField),
+        ("slit", Crack::Slit),
+        ("unknown", Crack::Unknown),
+    ];
+    let crack = fields
+        .need("crack", "crack = \"seeded\", \"phase-field\", \"slit\" or \"unknown\"", |item| item.choice(&cracks));
+    let splits = ["spectral", "none", "volumetric-deviatoric", "rankine", "other", "unknown"].map(|w| (w, w));
+    let split = fields.need("split", "split = \"spectral\"", |item| item.choice(&splits));
+    let models = ["AT2", "AT1", "PF-CZM", "other", "unknown"].map(|w| (w, w));
+    let phase_field = fields.or("phase_field", "AT2", |item| item.choice(&models));
+    let length = fields.maybe("length_scale", |item| item.positive(Dimension::LENGTH));
+    let convention = fields.or("convention", 1.0, |item| item.choice(&[("l0", 1.0), ("l", 0.5)]));
+    let k = fields.or("residual_stiffness", 0.0, |item| item.quantity(Dimension::NONE));
+    let half = fields.or("part", false, |item| item.choice(&[("whole", false), ("half", true)]));
+    let thickness = fields.maybe("thickness", |item| item.positive(Dimension::LENGTH));
+    let differences = texts(&fields, "differences");
+    let convention = convention?;
+    Some(Model {
+        plane: plane?,
+        traction: traction?,
+        crack: crack?,
+        split: split?.into(),
+        phase_field: phase_field?.into(),
+        length_scale: length?.map(|l| l * convention),
+        residual_stiffness: k?,
+        half: half?,
+        thickness: thickness?,
+        differences: differences?,
+    })
+}
+
+type Discretisation = (Option<String>, Option<f64>, Vec<(String, String)>);
+
+fn discretisation(item: &Item<'_>) -> Option<Discretisation> {
+    let fields = item.fields(&["method", "spacing", "degree", "unknowns", "steps", "time_step"])?;
+    let method = fields.maybe("method", Item::words);
+    let spacing = fields.maybe("spacing", |item| item.positive(Dimension::LENGTH));
+    let count = |key: &str| fields.maybe(key, |item| item.whole(1, usize::MAX >> 1));
+    let [degree, unknowns, steps] = ["degree", "unknowns", "steps"].map(count);
+    let step = fields.maybe("time_step", |item| item.positive(Dimension::TIME));
+    let mut rest = Vec::new();
+    for (key, value) in [("degree", degree?), ("unknowns", unknowns?), ("steps", steps?)] {
+        rest.extend(value.map(|v| (key.to_string(), v.to_string())));
+    }
+    rest.extend(step?.map(|s| ("time step".to_string(), format!("{s:e} s"))));
+    Some((method?, spacing?, rest))
+}
+
+fn cost(item: &Item<'_>) -> Option<Cost> {
+    let fields = item.fields(&["cpu", "wall", "cores", "processor", "memory_mb", "kernel_ns"])?;
+    let time = |key: &str| fields.maybe(key, |item| item.positive(Dimension::TIME));
+    let number = |key: &str| fields.maybe(key, |item| item.positive(Dimension::NONE));
+    let (cpu, wall) = (time("cpu"), time("wall"));
+    let cores = fields.maybe("cores", |item| item.whole(1, 100_000_000));
+    let processor = fields.maybe("processor", Item::words);
+    let (memory, kernel) = (number("memory_mb"), number("kernel_ns"));
+    Some(Cost {
+        cpu_s: cpu?,
+        wall_s: wall?,
+        cores: cores?,
+        processor: processor?,
+        memory_mb: memory?,
+        kernel_ns: kernel?,
+    })
+}
+
+fn stated(item: &Item<'_>) -> Option<[Option<f64>; 6]> {
+    let fields = item.fields(&["kinetic", "elastic", "work", "fracture", "tip"])?;
+    let [kinetic, elastic, work, fracture] =
+        ["kinetic", "elastic", "work", "fracture"].map(|key| fields.maybe(key, |item| item.positive(Dimension::NONE)));
+    let tip = fields.maybe("tip", |item| item.positive(Dimension::LENGTH));
+    let tip = tip?;
+    Some([kinetic?, elastic?, work?, fracture?, tip, tip])
+}
+
+fn files(item: &Item<'_>) -> Option<(Option<char>, String)> {
+    let fields = item.fields(&["separator", "comment"])?;
+    let separators =
+        [("auto", None), ("comma", Some(',')), ("semicolon", Some(';')), ("tab", Some('\t')), ("space", Some(' '))];
+    let separator = fields.or("separator", None, |item| item.choice(&separators));
+    let comment = fields.or("comment", "#".to_string(), Item::words);
+    Some((separator?, comment?))
+}
+
+fn values(item: &Item<'_>, benchmark: &str) -> Option<Vec<(String, f64)>> {
+    let known = super::closed_form::values(benchmark);
+    let names: Vec<&str> = known.iter().map(|v| v.name).collect();
+    let fields = item.fields(&names)?;
+    let read = known.iter().map(|v| Some((v.name.to_string(), fields.maybe(v.name, |i| i.quantity(v.dimension))?)));
+    let read: Vec<(String, Option<f64>)> = read.collect::<Option<_>>()?;
+    Some(read.into_iter().filter_map(|(name, value)| Some((name, value?))).collect())
+}

@@ -1,0 +1,223 @@
+//! Columns of numbers in files of any layout, with the place of what cannot be read.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::mapping::{ColumnName, Mapping};
+use super::submission::Submission;
+use crate::foreign;
+use crate::scene_file::diagnostic::Sources;
+use crate::scene_file::{Location, Problem, SceneFileError};
+
+/// Most rows of a file.
+pub const MOST_ROWS: usize = 2_000_000;
+
+/// A curve of a submission in SI units.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Curve {
+    /// Times, s, increasing.
+    pub t: Vec<f64>,
+    /// Values; not a number where there is none.
+    pub y: Vec<f64>,
+}
+
+/// The curves of a submission by quantity.
+///
+/// # Errors
+/// A file that cannot be read, a column that is not there, a word among numbers, energies that are not finite, times that do
+/// not increase: each with file, line, column and remedy.
+pub fn curves(folder: &Path, submission: &Submission) -> Result<[Option<Curve>; 6], SceneFileError> {
+    let mut files: BTreeMap<&str, File> = BTreeMap::new();
+    let mut out: [Option<Curve>; 6] = Default::default();
+    for (index, mapping) in submission.curves.iter().enumerate() {
+        let (Some(mapping), Some(time)) = (mapping, &submission.time) else { continue };
+        if !files.contains_key(mapping.file.as_str()) {
+            files.insert(&mapping.file, File::open(folder, mapping, submission)?);
+        }
+        let file = &files[mapping.file.as_str()];
+        let t = file.column(time, submission, true, true)?;
+        let y = file.column(mapping, submission, false, index < 4)?;
+        out[index] = Some(Curve { t, y });
+    }
+    Ok(out)
+}
+
+/// A text file with its lines of numbers.
+struct File {
+    name: String,
+    text: String,
+    names: Vec<String>,
+    separator: char,
+    /// Start of each line of numbers.
+    rows: Vec<usize>,
+}
+
+impl File {
+    fn open(folder: &Path, mapping: &Mapping, submission: &Submission) -> Result<Self, SceneFileError> {
+        let bytes = foreign::read(folder, &mapping.file, foreign::SERIES_BYTES).map_err(|e| {
+            let message = format!("{:?} cannot be read: {e}", mapping.file);
+            submission.error(mapping, message, "name a regular file in the folder; thin out one that is too long")
+        })?;
+        let name = folder.join(&mapping.file).display().to_string();
+        if bytes.starts_with(&[0xff, 0xfe])
+            || bytes.starts_with(&[0xfe, 0xff])
+            || bytes.iter().take(400).any(|b| *b == 0)
+        {
+            let message = format!("{:?} is UTF-16 or binary", mapping.file);
+            return Err(submission.error(mapping, message, "save it as plain text in UTF-8"));
+        }
+        let text =
+            String::from_utf8_lossy(&bytes).trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n");
+        let mut file = Self { name, text, names: Vec::new(), separator: ',', rows: Vec::new() };
+        file.find_rows(submission)?;
+        Ok(file)
+    }
+
+    /// Header, separator and lines of numbers. Without a header, the last comment before the numbers names the columns.
+    fn find_rows(&mut self, submission: &Submission) -> Result<(), SceneFileError> {
+        let (mut start, mut comment, mut header) = (0, String::new(), None);
+        let mut rows = Vec::new();
+        for line in self.text.split('\n') {
+            let (at, trimmed) = (start, line.trim());
+            start += line.len() + 1;
+            if trimmed.is_empty() {
+                continue;
+            }
+            let mark = submission.comment.chars().find(|c| !c.is_whitespace() && trimmed.starts_with(*c));
+            if let Some(mark) = mark {
+                if rows.is_empty() && header.is_none() {
+                    comment = trimmed.trim_start_matches(mark).trim().to_string();
+                }
+                continue;
+            }
+            if rows.is_empty() && header.is_none() {
+                self.separator = submission.separator.unwrap_or_else(|| separator_of(trimmed));
+                let words = fields(line, self.separator);
+                if words.iter().any(|w| number(w.1).is_none()) {
+                    header = Some(words.iter().map(|w| w.1.trim_matches('"').to_string()).collect::<Vec<_>>());
+                    continue;
+                }
+            }
+            rows.push(at);
+            if rows.len() > MOST_ROWS {
+                let message = format!("more than {MOST_ROWS} rows");
+                return Err(self.error(at, 0, message, "thin it out: 1000 rows over the run are plenty"));
+            }
+        }
+        if rows.len() < 2 {
+            let message = format!("{} rows of numbers", rows.len());
+            return Err(self.error(0, 0, message, "give at least two rows; is the comment character right?"));
+        }
+        let separator = separator_of(&comment);
+        let of_comment = || fields(&comment, separator).iter().map(|w| w.1.trim_matches('"').to_string()).collect();
+        self.names = header.unwrap_or_else(of_comment);
+        self.rows = rows;
+        Ok(())
+    }
+
+    /// The numbers of a column, SI.
+    fn column(
+        &self,
+        mapping: &Mapping,
+        submission: &Submission,
+        increasing: bool,
+        finite: bool,
+    ) -> Result<Vec<f64>, SceneFileError> {
+        let index = match &mapping.column {
+            ColumnName::Numbered(number) => number - 1,
+            ColumnName::Named(name) => self.names.iter().position(|n| n == name).ok_or_else(|| {
+                let known: Vec<&str> = self.names.iter().map(String::as_str).collect();
+                let meant = crate::scene_file::suggest::nearest(name, &known);
+                let meant = meant.map_or(String::new(), |n| format!("did you mean {n:?}? "));
+                let remedy = format!("{meant}its columns are {}", known.join(", "));
+                submission.error(mapping, format!("{} has no column {name:?}", self.name), remedy)
+            })?,
+        };
+        let mut out = Vec::with_capacity(self.rows.len());
+        let mut last = f64::NEG_INFINITY;
+        for &at in &self.rows {
+            let line = self.text[at..].split('\n').next().unwrap_or("");
+            let Some((column, word)) = fields(line, self.separator).into_iter().nth(index) else {
+                let message = format!("no column {}, wanted by {}", index + 1, mapping.key);
+                return Err(self.error(at, 0, message, "every row has as many numbers as the header has names"));
+            };
+            let Some(value) = number(word) else {
+                let comma = self.separator != ',' && number(&word.replace(',', ".")).is_some();
+                let remedy = if comma { "write the decimal point as a point" } else { "comment the line out" };
+                return Err(self.error(at, column, format!("{word:?} is not a number"), remedy));
+            };
+            let none = value.is_nan() || mapping.missing.is_some_and(|m| (value - m).abs() <= 1e-9 * m.abs());
+            let value = if none { f64::NAN } else { value * mapping.scale + mapping.offset };
+            if !(value.is_finite() || (value.is_nan() && !finite)) {
+                let message = format!("{word} is no finite number, in the column of {}", mapping.key);
+                return Err(self.error(
+                    at,
+                    column,
+                    message,
+                    "only a tip may be missing; end the curve where the run ended",
+                ));
+            }
+            if increasing && value <= last {
+                let message = format!("the time {word} does not increase");
+                return Err(self.error(at, column, message, "sort the rows by time and keep one row for each time"));
+            }
+            last = value;
+            out.push(value);
+        }
+        Ok(out)
+    }
+
+    fn error(&self, at: usize, column: usize, message: impl Into<String>, remedy: &str) -> SceneFileError {
+        let place = at + column;
+        let end = self.text[place..].find('\n').map_or(self.text.len(), |n| place + n);
+        let location = Some(Location::new(0, place..end));
+        let problem = Problem { key: String::new(), location, message: message.into(), remedy: remedy.into() };
+        Sources::new(&self.name, &self.text[..end]).error(&[problem])
+    }
+}
+
+fn separator_of(line: &str) -> char {
+    [';', '\t', ','].into_iter().find(|c| line.contains(*c)).unwrap_or(' ')
+}
+
+/// Fields of a line with the bytes at which they start; spaces around them do not count, text in quotes stays together.
+fn fields(line: &str, separator: char) -> Vec<(usize, &str)> {
+    let (mut out, mut start, mut quoted) = (Vec::new(), 0, false);
+    for (at, c) in line.char_indices().chain(std::iter::once((line.len(), separator))) {
+        quoted ^= c == '"';
+        let end = at == line.len();
+        if end || (!quoted && (c == separator || (separator == ' ' && c.is_whitespace()))) {
+            let word = &line[start..at];
+            let trimmed = word.trim();
+            if separator != ' ' || !trimmed.is_empty() {
+                out.push((start + word.len() - word.trim_start().len(), trimmed));
+            }
+            start = at + if end { 0 } else { c.len_utf8() };
+        }
+    }
+    out
+}
+
+/// A number, also with the exponent letter of Fortran.
+fn number(word: &str) -> Option<f64> {
+    let word = word.trim_matches('"');
+    if word.is_empty() {
+        return Some(f64::NAN);
+    }
+    word.parse().ok().or_else(|| word.replace(['D', 'd'], "e").parse().ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_are_found_in_any_layout() {
+        let words = |line, separator| fields(line, separator).into_iter().map(|f| f.1).collect::<Vec<_>>();
+        assert_eq!(words(" a ,\"b,c\", 1", ','), ["a", "\"b,c\"", "1"]);
+        assert_eq!(words("  1.0\t 2D-3  ", ' '), ["1.0", "2D-3"]);
+        assert_eq!(words("1;;3", ';'), ["1", "", "3"]);
+        assert_eq!(number("2D-3"), Some(2e-3));
+        assert!(number("").is_some_and(f64::is_nan) && number("x").is_none());
+    }
+}

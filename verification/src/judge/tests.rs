@@ -1,0 +1,270 @@
+//! Sound results are accepted, planted slips are named, hostile folders end in words.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use super::submission::Submission;
+use super::verdict::{Finding, Outcome};
+use super::*;
+use crate::case::Case;
+use crate::history::Table;
+use crate::measure::{Run, measure};
+use crate::scene_file::SceneFile;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn data() -> PathBuf {
+    root().join("reference-data")
+}
+
+fn library() -> Library {
+    Library::load(&data()).unwrap()
+}
+
+fn of(name: &str) -> PathBuf {
+    data().join("submissions").join(name)
+}
+
+fn judged(folder: &Path, against: Option<&str>) -> Judged {
+    judge(folder, &library(), &data(), against).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A copy of a submission with its text changed.
+fn changed(name: &str, change: impl Fn(String) -> String) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for entry in fs::read_dir(of(name)).unwrap().flatten() {
+        fs::copy(entry.path(), folder.path().join(entry.file_name())).unwrap();
+    }
+    let path = folder.path().join("submission.toml");
+    fs::write(&path, change(fs::read_to_string(&path).unwrap())).unwrap();
+    folder
+}
+
+const SOUND: &str = "fisura-p2-h2";
+
+#[test]
+fn a_result_of_fisura_has_the_figures_of_verify() {
+    let path = root().join("verification/cases/plate/half-p2-h2.toml");
+    let case = Case::parse(Path::new("plate/half-p2-h2.toml"), &fs::read_to_string(path).unwrap(), &[]).unwrap();
+    let scene = SceneFile::load(&root().join("verification/scenes/plate.toml"), &[]).unwrap().scene;
+    let history = Table::read(&of(SOUND).join("history.csv")).unwrap();
+    let run = Run { name: "p2", scene: &scene, history: &history, frames: &[], energy_factor: 2.0 };
+    let verdict = judged(&of(SOUND), Some("independent-fem")).verdict;
+    let mut compared = 0;
+    for check in &case.checks {
+        let Some(quantity) = check.reference.as_deref().and_then(|r| r.strip_prefix("independent-fem/plate/")) else {
+            continue;
+        };
+        let value = measure(check, &run, &[run], &library()).unwrap().value.unwrap() / check.scale;
+        let index = QUANTITIES.iter().position(|q| q.reference == quantity).unwrap();
+        let whole = &verdict.quantities[index].comparisons[0];
+        if check.window.iter().zip(whole.window_s.unwrap()).all(|(a, b)| (a - b).abs() < 1e-12) {
+            assert!((whole.error.unwrap() / value - 1.0).abs() < 1e-12, "{quantity}: {whole:?}, verify: {value}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 5, "kinetic, elastic, work, fracture, tip");
+}
+
+#[test]
+fn converged_results_are_accepted() {
+    for name in
+        ["fisura-p2-h1", "fisura-p3-h1", SOUND, "fisura-p3-graded-h2", "independent-fem-h1", "independent-fem-h3"]
+    {
+        let verdict = judged(&of(name), None).verdict;
+        let failing: Vec<_> = verdict.comparisons().filter(|c| c.outcome == Outcome::Fail).collect();
+        assert_eq!(verdict.outcome, Outcome::Pass, "{name}: {failing:?}");
+        assert!(verdict.findings.is_empty(), "{:?}", verdict.findings);
+    }
+}
+
+#[test]
+fn another_model_is_judged_by_its_own_reference_and_its_differences_are_named() {
+    let verdict = judged(&of("solidualsphysics-h2"), None).verdict;
+    assert_eq!(
+        (verdict.reference.id.as_str(), verdict.outcome),
+        ("plate-family/slit-plane-stress", Outcome::Diagnostic)
+    );
+    let whole: Vec<f64> = verdict.quantities.iter().map(|q| q.comparisons[0].error.unwrap()).collect();
+    let expected = [0.017, 0.062, 0.008, 0.081, 2.6e-3];
+    assert!(whole.iter().zip(expected).all(|(a, b)| (a / b - 1.0).abs() < 0.05), "{whole:?}");
+    assert!(verdict.balance.unwrap().outcome == Outcome::Pass && verdict.differences.len() == 3);
+}
+
+/// A slip is recognised by its name, and the result does not pass.
+#[track_caller]
+fn recognised(folder: &Path, id: &str) -> Finding {
+    let verdict = judged(folder, None).verdict;
+    assert_eq!(verdict.outcome, Outcome::Fail, "{id}: {:?}", verdict.findings);
+    let found = verdict.findings.iter().find(|f| f.id == id);
+    found.unwrap_or_else(|| panic!("{id} is not among {:?}", verdict.findings)).clone()
+}
+
+#[test]
+fn slips_planted_in_a_sound_result_are_named() {
+    let planted: [(&str, &dyn Fn(String) -> String); 9] = [
+        ("half-model-factor", &|t| t.replace(", factor = 2", "")),
+        ("half-model-factor", &|t| t.replace("factor = 2", "factor = 4")),
+        ("unit", &|t| t.replacen("unit = \"J/m\"", "unit = \"kJ/m\"", 1)),
+        ("thickness", &|t| t.replace("factor = 2", "factor = 0.002")),
+        ("time-unit", &|t| t.replace("unit = \"s\"", "unit = \"ms\"")),
+        ("time-unit", &|t| t.replace("unit = \"s\"", "unit = \"ks\"")),
+        ("absolute-fracture-energy", &|t| t.replace("\"fracture_j\",", "\"fracture_j\", form = \"increment\",")),
+        ("tip-unit", &|t| t.replace("\"crack_tip_x_m\", unit = \"m\"", "\"crack_tip_x_m\", unit = \"mm\"")),
+        ("sign", &|t| t.replacen("factor = 2", "factor = -2", 1)),
+    ];
+    for (id, change) in planted {
+        let finding = recognised(changed(SOUND, change).path(), id);
+        assert!(finding.text.len() > 40, "{finding:?}");
+    }
+}
+
+/// A reference of the family, submitted as what it is not.
+fn variant(name: &str) -> TempDir {
+    let folder = changed("independent-fem-h4", |t| {
+        t.replace("\"fracture_j_per_m\"", "\"fracture_increment_j_per_m\"").replace(
+            "tip_x = { file = \"history.csv\", column = \"tip_x_mm\", unit = \"mm\" }\ntip_y = { file = \"history.csv\", column = \"tip_y_mm\", unit = \"mm\" }\n",
+            "",
+        )
+    });
+    fs::copy(data().join(format!("plate-family/{name}.csv")), folder.path().join("history.csv")).unwrap();
+    folder
+}
+
+#[test]
+fn the_result_of_another_problem_is_recognised() {
+    let stress = recognised(variant("plane-stress").path(), "plane-state");
+    assert!(stress.text.contains("plane stress with a traction of 1.0"), "{stress:?}");
+    let half = recognised(variant("low-traction").path(), "load");
+    assert!(half.text.contains("a traction of 0.499 MPa"), "{half:?}");
+    recognised(variant("low-traction").path(), "another-benchmark");
+    recognised(variant("slit").path(), "another-benchmark");
+    let twice = root().join("verification/tests/judge/length-scale");
+    recognised(&twice, "length-scale-convention");
+}
+
+#[test]
+fn the_mesh_study_is_what_the_meshes_give() {
+    let table = Table::read(&data().join("plate-family/mesh-study.csv")).unwrap();
+    for (row, name) in ["h1", "h2", "h3", "h4", "h5"].into_iter().enumerate() {
+        let verdict = judged(&of(&format!("independent-fem-{name}")), None).verdict;
+        for (quantity, column) in
+            ["kinetic", "elastic", "external_work", "fracture_increment", "tip_x"].iter().enumerate()
+        {
+            let stored = table.column(&format!("{column}_whole")).unwrap()[row];
+            let error = verdict.quantities[quantity].comparisons[0].error.unwrap();
+            assert!((error / stored - 1.0).abs() < 0.02, "{name} {column}: {error} {stored}");
+        }
+    }
+}
+
+/// The error of a folder whose text or table is changed.
+fn refused(change: impl Fn(String) -> String, table: Option<&[u8]>) -> String {
+    let folder = changed(SOUND, change);
+    if let Some(table) = table {
+        fs::write(folder.path().join("history.csv"), table).unwrap();
+    }
+    judge(folder.path(), &library(), &data(), None).map(|j| j.verdict.sentence).unwrap_err().to_string()
+}
+
+#[test]
+fn what_cannot_be_read_is_told_with_place_and_remedy() {
+    let head = "time_s,kinetic_j,elastic_j,fracture_j,external_work_j,crack_tip_x_m,crack_tip_y_m\n";
+    let rows = |rows: &str| format!("{head}{rows}");
+    let same = |t: String| t;
+    let texts: [(String, &[&str]); 7] = [
+        (refused(|t| t.replace("plane =", "plan ="), None), &["submission.toml:", "plan", "did you mean \"plane\"?"]),
+        (refused(|t| t.replace("\"strain\"", "\"strian\""), None), &["did you mean \"strain\"?"]),
+        (refused(|t| t.replace("\"history.csv\"", "\"../history.csv\""), None), &["leads out of the folder"]),
+        (refused(|t| t.replace("\"history.csv\"", "\"/etc/passwd\""), None), &["leads out of the folder"]),
+        (refused(|t| t.replace("\"kinetic_j\"", "\"kinetik_j\""), None), &["did you mean \"kinetic_j\"?"]),
+        (refused(|t| t.replacen("unit = \"J/m\"", "unit = \"mm\"", 1), None), &["is a length", "energy per thickness"]),
+        (refused(|t| t.replacen("unit = \"J/m\"", "unit = \"J\"", 1), None), &["needs the thickness"]),
+    ];
+    let tables: [(String, &[&str]); 8] = [
+        (rows("0,0,0,0,0,0,0\n1e-6,1,NaN,1,1,0,0\n"), &["history.csv:3:8", "no finite number"]),
+        (rows("0,0,0,0,0,0,0\n1e-6,1,2,x,1,0,0\n"), &["history.csv:3:10", "\"x\" is not a number"]),
+        (rows("0,0,0,0,0,0,0\n2e-6,1,1,1,1,0,0\n1e-6,1,1,1,1,0,0\n"), &["history.csv:4:1", "does not increase"]),
+        (rows("0,0,0,0,0,0,0\n1e-6,1,1,1,1,0,0\n1e-6,1,1,1,1,0,0\n"), &["history.csv:4:1", "does not increase"]),
+        (rows("0,0,0\n1,1,1\n"), &["history.csv:2:1", "no column 5"]),
+        (head.to_string(), &["0 rows of numbers"]),
+        ("\u{feff}a;b\n1,5;2\n3;4\n".into(), &["no column"]),
+        ("\0\0".into(), &["UTF-16 or binary"]),
+    ];
+    for (text, parts) in texts {
+        assert!(parts.iter().all(|p| text.contains(p)), "{parts:?} in {text}");
+    }
+    for (table, parts) in tables {
+        let text = refused(same, Some(table.as_bytes()));
+        assert!(parts.iter().all(|p| text.contains(p)), "{parts:?} in {text}");
+    }
+    let long = format!("{head}{}", "0,0,0,0,0,0,0\n".repeat(2_100_000));
+    assert!(refused(same, Some(long.as_bytes())).contains("more than 2000000 rows"));
+    assert!(refused(same, Some("1\n".repeat(33 << 20).as_bytes())).contains("longer than 64 MiB"));
+    let wide: Vec<u8> = head.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    assert!(refused(same, Some(&[&[0xff, 0xfe], &wide[..]].concat())).contains("UTF-16"));
+}
+
+#[test]
+fn any_layout_gives_the_same_figures() {
+    let sound = judged(&of(SOUND), None).verdict.quantities;
+    let text = fs::read_to_string(of(SOUND).join("history.csv")).unwrap();
+    let quoted = text.lines().next().unwrap().split(',').map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(",");
+    let layouts = [
+        text.replace(',', ";"),
+        text.replace(',', "\t"),
+        format!("# a comment\n#{}", text.replace(',', "  ").replace("time_s", " time_s")),
+        text.replace('\n', "\r\n"),
+        format!("\u{feff}{}", text.replacen(text.lines().next().unwrap(), &quoted, 1)),
+    ];
+    for layout in layouts {
+        let folder = changed(SOUND, |t| t);
+        fs::write(folder.path().join("history.csv"), &layout).unwrap();
+        assert_eq!(judged(folder.path(), None).verdict.quantities, sound, "{}", &layout[..120]);
+    }
+}
+
+#[test]
+fn an_end_or_a_quantity_that_is_missing_is_incomplete() {
+    let text = fs::read_to_string(of(SOUND).join("history.csv")).unwrap();
+    let folder = changed(SOUND, |t| t.lines().filter(|l| !l.starts_with("work")).map(|l| format!("{l}\n")).collect());
+    let short: String = text.lines().take(101).map(|l| format!("{l}\n")).collect();
+    fs::write(folder.path().join("history.csv"), short).unwrap();
+    let verdict = judged(folder.path(), None).verdict;
+    assert_eq!(verdict.quantities[WORK].outcome, Outcome::Incomplete);
+    let kinetic: Vec<Outcome> = verdict.quantities[KINETIC].comparisons.iter().map(|c| c.outcome).collect();
+    assert_eq!(kinetic, [Outcome::Incomplete, Outcome::Pass, Outcome::Pass, Outcome::Incomplete]);
+    assert!(verdict.balance.is_none());
+}
+
+/// With `FISURA_BLESS=1` the file is written instead of compared.
+#[test]
+fn the_committed_schema_is_that_of_the_types() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("schema/verdict.schema.json");
+    let text = serde_json::to_string_pretty(&verdict::json_schema()).unwrap() + "\n";
+    if std::env::var_os("FISURA_BLESS").is_some() {
+        fs::write(&path, &text).unwrap();
+    }
+    assert!(fs::read_to_string(&path).unwrap() == text, "write it anew: FISURA_BLESS=1 cargo test judge::");
+}
+
+#[test]
+fn the_templates_are_valid_and_closed_forms_are_judged() {
+    for benchmark in BENCHMARKS {
+        Submission::parse("submission.toml", &template::template(benchmark.name)).unwrap_or_else(|e| panic!("{e}"));
+        let known = closed_form::values(benchmark.name);
+        for (factor, outcome) in [(1.0 - 1e-9, Outcome::Pass), (1.1, Outcome::Fail)] {
+            let values: String = known.iter().map(|k| format!("{} = {:e}\n", k.name, k.value * factor)).collect();
+            let folder = tempfile::tempdir().unwrap();
+            let text = format!("benchmark = {:?}\n[code]\nname = \"c\"\n[values]\n{values}", benchmark.name);
+            fs::write(folder.path().join("submission.toml"), text).unwrap();
+            if !known.is_empty() {
+                assert_eq!(judged(folder.path(), None).verdict.outcome, outcome, "{}", benchmark.name);
+            }
+        }
+    }
+}
