@@ -19,6 +19,8 @@
 //! [`paper`] finds the figures of the source paper, [`bundle`] writes a figure with its numbers, caption and
 //! provenance.
 //!
+//! [`judge`] shows verdicts on results of other codes, and error against cost of all of them.
+//!
 //! [`vtk`] writes the files that ParaView opens.
 //!
 //! [`text`] prints the verdict on a terminal, [`run_report`] draws the pictures of a single run,
@@ -38,6 +40,7 @@ pub mod error;
 pub mod field;
 pub mod figure;
 pub mod html;
+pub mod judge;
 pub mod junit;
 pub mod markdown;
 pub mod metrics;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::{bench, check, compare, demo, faults, figures, list, merge, report, run, verify};
+use crate::{bench, check, compare, demo, faults, figures, judge, list, merge, report, run, verify};
 
 const EXIT_STATUS: &str = "\
 Exit status: 0 all checks hold, 1 a check fails, 2 bad arguments or bad input, 3 a run broke down, \
@@ -48,6 +48,8 @@ pub enum Command {
     Bench(bench::Args),
     /// Plant known errors, one at a time, and show which checks catch each
     Faults(faults::Args),
+    /// Judge results of any code against the benchmarks: verdict with uncertainty, named slips, error against cost
+    Judge(judge::Args),
     /// Run cases with the error that the environment names, for `faults`
     #[cfg(feature = "faults")]
     #[command(hide = true)]

@@ -1,5 +1,5 @@
 //! The commands of the fisura workspace: `cargo xtask verify`, `merge`, `compare`, `list`, `demo`, `run`,
-//! `check`, `figures`, `report`, `bench`, `faults`.
+//! `check`, `figures`, `report`, `bench`, `faults`, `judge`.
 //!
 //! One file per command; beside them [`cli`] (what can be said on the command line), [`exit`] (statuses),
 //! [`failure`] (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go),
@@ -21,6 +21,7 @@ mod faults;
 mod figures;
 mod folders;
 mod interrupt;
+mod judge;
 mod list;
 mod merge;
 mod pictures;
@@ -60,6 +61,7 @@ fn main() -> ExitCode {
             Command::Report(args) => report::report(&args, &common),
             Command::Bench(args) => bench::bench(&args, &common),
             Command::Faults(args) => faults::faults(&args, &common),
+            Command::Judge(args) => judge::judge(&args, &common),
             #[cfg(feature = "faults")]
             Command::Planted(args) => faults::worker::planted(&args, &common),
         })

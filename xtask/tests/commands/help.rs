@@ -7,7 +7,7 @@ fn help_says_what_there_is() {
     let place = Place::new();
     insta::assert_snapshot!("help", place.xtask(&["--help"]).with_status(0).out);
     for command in
-        ["verify", "merge", "compare", "list", "demo", "run", "check", "figures", "report", "bench", "faults"]
+        ["verify", "merge", "compare", "list", "demo", "run", "check", "figures", "report", "bench", "faults", "judge"]
     {
         insta::assert_snapshot!(format!("help-{command}"), place.xtask(&[command, "--help"]).with_status(0).out);
     }

@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod figures;
 mod help;
+mod judge;
 mod merge;
 mod output;
 mod report;

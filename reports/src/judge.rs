@@ -1,0 +1,203 @@
+//! Verdicts on results of other codes: terminal, page, PFHub export, and the board of all submissions.
+
+mod board;
+mod pfhub;
+
+use fisura_verification::foreign::line;
+use fisura_verification::history::Table;
+use fisura_verification::judge::verdict::{Comparison, Outcome, Verdict, VerdictSet};
+use fisura_verification::judge::{Judged, QUANTITIES};
+use fisura_verification::record::{Curve, CurveStyle, Figure, FigureBody};
+use minijinja::Environment;
+use minijinja::value::Serde;
+use serde::Serialize;
+
+use crate::figure::render_figure;
+use crate::number::{duration, plain};
+use crate::series::SeriesSet;
+
+pub use board::{Board, board, board_markdown, board_page};
+pub use pfhub::pfhub;
+
+const TEMPLATE: &str = include_str!("../templates/judge.html");
+const STYLE: &str = include_str!("../templates/report.css");
+/// The page draws the curves of at most this many submissions.
+const MOST_DRAWN: usize = 12;
+
+/// The verdicts for a terminal.
+pub fn render_text(set: &VerdictSet) -> String {
+    let mut out = String::new();
+    for verdict in &set.verdicts {
+        out.push_str(&format!(
+            "{} {}: {}\n  against {} ({})\n  numerical uncertainty: {}\n",
+            verdict.outcome.word().to_uppercase(),
+            line(&verdict.folder),
+            line(&verdict.code.name),
+            verdict.reference.id,
+            verdict.reference.uncertainty,
+            verdict.numerical_uncertainty
+        ));
+        let rows = rows(verdict);
+        let width = rows.iter().map(|r| r[0].chars().count()).max().unwrap_or(0);
+        for [name, figures, outcome, why] in rows {
+            let why = if why.is_empty() { why } else { format!(": {why}") };
+            out.push_str(&format!("  {name:width$}  {figures:44}  {outcome}{}\n", line(&why)));
+        }
+        for finding in &verdict.findings {
+            out.push_str(&format!("  FOUND {}: {}\n", finding.id, line(&finding.text)));
+        }
+        for difference in &verdict.differences {
+            out.push_str(&format!("  declared difference: {}\n", line(difference)));
+        }
+        for note in &verdict.notes {
+            out.push_str(&format!("  note: {}\n", line(note)));
+        }
+        out.push_str(&format!("  {}\n\n", verdict.sentence));
+    }
+    let count = |outcome| set.verdicts.iter().filter(|v| v.outcome == outcome).count();
+    let [pass, fail, incomplete, diagnostic] =
+        [Outcome::Pass, Outcome::Fail, Outcome::Incomplete, Outcome::Diagnostic].map(count);
+    let total = set.verdicts.len();
+    out + &format!("{total} judged: {pass} pass, {fail} fail, {incomplete} incomplete, {diagnostic} diagnostic\n")
+}
+
+/// Name, figures, outcome and reason of every comparison.
+fn rows(verdict: &Verdict) -> Vec<[String; 4]> {
+    let mut out = Vec::new();
+    for quantity in &verdict.quantities {
+        for comparison in &quantity.comparisons {
+            let name = match comparison.window_s {
+                Some([from, to]) => format!(
+                    "{}, {} ({}–{} µs)",
+                    quantity.quantity,
+                    comparison.name,
+                    plain(1e6 * from, 3),
+                    plain(1e6 * to, 3)
+                ),
+                None => quantity.quantity.clone(),
+            };
+            out.push([name, figures(comparison), comparison.outcome.word().into(), comparison.why.clone()]);
+        }
+    }
+    for event in &verdict.events {
+        out.push([event.name.clone(), figures(event), event.outcome.word().into(), event.why.clone()]);
+    }
+    if let Some(balance) = &verdict.balance {
+        let figures = format!("open by {} % of the work", plain(100.0 * balance.open, 2));
+        out.push(["balance of energies".into(), figures, balance.outcome.word().into(), String::new()]);
+    }
+    out
+}
+
+/// `|E| 2.3 %, U_val 0.5 % (U_ref 0.2, U_num 0.4)`, in units of people.
+fn figures(comparison: &Comparison) -> String {
+    let (scale, unit) = match comparison.unit.as_str() {
+        "1" if comparison.reference.is_none() => (100.0, "%"),
+        "s" => (1e6, "µs"),
+        "m" => (1e3, "mm"),
+        other => (1.0, other),
+    };
+    let Some(error) = comparison.error else { return String::new() };
+    let show = |value: f64| plain(value * scale, 3);
+    let value = match (comparison.value, comparison.reference) {
+        (Some(value), Some(reference)) => format!("{} for {} {unit}, ", show(value), show(reference)),
+        _ => String::new(),
+    };
+    let u_val = comparison.u_val.unwrap_or(f64::NAN);
+    format!("{value}|E| {}, U_val {} {unit}", show(error.abs()), plain(u_val * scale, 2))
+}
+
+#[derive(Serialize)]
+struct Page<'a> {
+    style: &'static str,
+    title: String,
+    verdicts: Vec<Part<'a>>,
+    boards: Vec<Board>,
+}
+
+#[derive(Serialize)]
+struct Part<'a> {
+    verdict: &'a Verdict,
+    word: &'static str,
+    facts: Vec<(&'static str, String)>,
+    rows: Vec<[String; 4]>,
+    pictures: Vec<String>,
+}
+
+/// One page with every verdict and its curves over the band of the reference; complete in itself.
+///
+/// # Errors
+/// Only if the template cannot be filled, which has no cause in the verdicts.
+pub fn page(judged: &[Judged]) -> Result<String, minijinja::Error> {
+    let parts = judged.iter().enumerate().map(|(i, one)| Part {
+        verdict: &one.verdict,
+        word: one.verdict.outcome.word(),
+        facts: facts(&one.verdict),
+        rows: rows(&one.verdict),
+        pictures: if i < MOST_DRAWN { pictures(one, i) } else { Vec::new() },
+    });
+    let title = match judged {
+        [one] => format!("{}: {}", one.verdict.code.name, one.verdict.outcome.word()),
+        _ => format!("{} results judged", judged.len()),
+    };
+    fill(Page { style: STYLE, title, verdicts: parts.collect(), boards: Vec::new() })
+}
+
+fn fill(page: Page<'_>) -> Result<String, minijinja::Error> {
+    let mut environment = Environment::new();
+    environment.add_template("judge.html", TEMPLATE)?;
+    environment.get_template("judge.html")?.render(Serde(page))
+}
+
+fn facts(verdict: &Verdict) -> Vec<(&'static str, String)> {
+    let unknown = || "not stated".to_string();
+    let (code, cost) = (&verdict.code, &verdict.cost);
+    let version = [&code.version, &code.commit].into_iter().flatten().cloned().collect::<Vec<_>>().join(", ");
+    let spacing = verdict.spacing_m.map_or_else(unknown, |h| format!("{} mm", plain(h * 1e3, 4)));
+    let cores = cost.cores.map_or(String::new(), |n| format!(", {n} cores"));
+    vec![
+        ("Folder", verdict.folder.clone()),
+        ("Benchmark", verdict.benchmark.clone()),
+        ("Version", if version.is_empty() { unknown() } else { version }),
+        ("Source", code.url.clone().unwrap_or_else(unknown)),
+        ("Run by", code.run_by.clone().unwrap_or_else(unknown)),
+        ("Method", verdict.method.clone().unwrap_or_else(unknown)),
+        ("Spacing at the crack", spacing),
+        ("Processor time", cost.cpu_s.map_or_else(unknown, |s| duration(s) + &cores)),
+        ("Processor", cost.processor.clone().unwrap_or_else(unknown)),
+        ("Peak memory", cost.memory_mb.map_or_else(unknown, |mb| format!("{} MB", plain(mb, 4)))),
+        (
+            "Reference",
+            format!("{} ({}): {}", verdict.reference.id, verdict.reference.label, verdict.reference.uncertainty),
+        ),
+        ("Numerical uncertainty", verdict.numerical_uncertainty.clone()),
+    ]
+}
+
+/// The curves of a submission over the bands of its reference.
+fn pictures(judged: &Judged, number: usize) -> Vec<String> {
+    let mut out = Vec::new();
+    for (i, quantity) in QUANTITIES.iter().enumerate() {
+        let (Some(curve), Some(reference)) = (&judged.curves[i], &judged.references[i]) else { continue };
+        let (scale, unit) = quantity.drawn;
+        let (band, table) = reference.series(1e6, scale);
+        let mut set = SeriesSet::default();
+        set.insert(band.series.clone(), table);
+        let mut own = Table::new(&["t", "y"]);
+        curve.t.iter().zip(&curve.y).for_each(|(t, y)| own.push(&[*t, *y]));
+        set.insert("series/own.csv", own);
+        let name = line(&judged.verdict.code.name).into_owned();
+        let mut result = Curve::line(&name, "series/own.csv", ["t", "y"]);
+        (result.x_scale, result.y_scale, result.style) = (1e6, scale, CurveStyle::Line);
+        let figure = Figure {
+            id: format!("judge-{number}-{}", quantity.key),
+            suite: "judge".into(),
+            title: format!("{}: {name}", quantity.words),
+            caption: "band: uncertainty of the reference".into(),
+            deviations: Vec::new(),
+            body: FigureBody::over_time(&format!("{} ({unit})", quantity.words), vec![band, result], Vec::new()),
+        };
+        out.extend(render_figure(&figure, &set).ok());
+    }
+    out
+}

@@ -1,0 +1,93 @@
+//! `judge`: verdicts on results of any code.
+
+use std::path::{Path, PathBuf};
+
+use super::support::Place;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// A place that finds the reference data of this project.
+fn place() -> Place {
+    let mut place = Place::new();
+    place.manifest = Some(root().join("xtask"));
+    place
+}
+
+fn submission(name: &str) -> String {
+    root().join("reference-data/submissions").join(name).display().to_string()
+}
+
+#[test]
+fn a_sound_result_passes_and_leaves_page_verdict_and_export() {
+    let place = place();
+    let outcome = place.xtask(&["judge", &submission("fisura-p2-h2"), "--out", "out"]).with_status(0);
+    assert!(
+        outcome.out.starts_with("PASS ")
+            && outcome.out.ends_with("1 judged: 1 pass, 0 fail, 0 incomplete, 0 diagnostic\n")
+    );
+    assert_eq!(place.files("out"), ["judge.html", "pfhub-1.yaml", "verdict.json"]);
+    let page = place.read("out/judge.html");
+    assert!(page.contains("<svg") && !page.contains("<script") && !page.contains("src=\"http"));
+    let json = place.xtask(&["judge", &submission("fisura-p2-h2"), "--format", "json", "--out", "out"]).with_status(0);
+    assert_eq!(json.json(), serde_json::from_str::<serde_json::Value>(&place.read("out/verdict.json")).unwrap());
+    assert_eq!(json.json()["schema"], "fisura.verdict/1");
+}
+
+#[test]
+fn several_folders_are_judged_at_once_and_one_that_fails_ends_with_1() {
+    let place = place();
+    let wrong = root().join("verification/tests/judge/length-scale").display().to_string();
+    let outcome = place.xtask(&["judge", &submission("fisura-p2-h2"), &wrong, "--out", "out"]).with_status(1);
+    assert!(outcome.out.contains("FOUND length-scale-convention") && outcome.out.contains("2 judged: 1 pass, 1 fail"));
+}
+
+#[test]
+fn the_template_is_taken_and_what_is_missing_is_named() {
+    let place = place();
+    let template = place.xtask(&["judge", "--new", "plate"]).with_status(0).out;
+    place.write("mine/submission.toml", &template);
+    place.xtask(&["judge", "mine", "--out", "out"]).with_status(2).complains_of(&[
+        "submission.toml:",
+        "history.csv",
+        "cannot be read",
+    ]);
+    place.xtask(&["judge"]).with_status(2).complains_of(&["FOLDER"]);
+    place.xtask(&["judge", "nowhere", "--out", "out"]).with_status(2).complains_of(&["judge --new plate"]);
+    place.xtask(&["judge", "--new", "plates"]).with_status(2).complains_of(&["plates", "plane-waves"]);
+    let line = template.replace("plane    =", "plan     =");
+    place.write("mine/submission.toml", &line);
+    place.xtask(&["judge", "mine", "--out", "out"]).with_status(2).complains_of(&["did you mean \"plane\"?"]);
+}
+
+#[test]
+fn markup_in_names_stays_text() {
+    let place = place();
+    let text = "benchmark = \"crack-speed\"\n[code]\nname = \"<script>alert(1)</script>\\u001b[2J\"\n[values]\nlargest_speed = 900\n";
+    place.write("mine/submission.toml", text);
+    let outcome = place.xtask(&["judge", "mine", "--out", "out"]).with_status(0);
+    assert!(!outcome.out.contains('\u{1b}'));
+    let page = place.read("out/judge.html");
+    assert!(!page.contains("<script") && page.contains("&lt;script&gt;"), "{page}");
+    assert!(place.read("out/pfhub-1.yaml").contains("\"<script>alert(1)</script>\\u001b[2J\""));
+}
+
+#[test]
+fn the_board_says_what_the_numbers_say() {
+    let place = place();
+    let outcome = place.xtask(&["judge", "--board", "--out", "out"]).with_status(0);
+    assert!(outcome.out.contains("kinetic energy: error against processor time\n  Of "), "{outcome:?}");
+    assert!(outcome.out.contains("Cost not stated: ") && outcome.out.contains("Mandal"), "{outcome:?}");
+    assert_eq!(
+        place.files("out"),
+        ["board-elastic.svg", "board-fracture.svg", "board-kinetic.svg", "board.html", "board.md", "verdict.json"]
+    );
+    let gallery = root().join("reports/gallery/judge");
+    for name in ["board-elastic.svg", "board-fracture.svg", "board-kinetic.svg", "board.md"] {
+        let committed = std::fs::read_to_string(gallery.join(name)).expect("a file of the gallery");
+        let remedy =
+            "copy it anew: cargo xtask judge --board && cp target/fisura/judge/board[-.][kefm]* reports/gallery/judge";
+        assert!(place.read(&format!("out/{name}")) == committed, "{name}: {remedy}");
+    }
+}
