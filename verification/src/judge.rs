@@ -1,10 +1,11 @@
 //! Results of any code held against the benchmarks of this project.
 //!
-//! A submission is a folder with a `submission.toml` ([`submission`]) and files of numbers in any layout ([`table`]). The
-//! nearest reference is chosen by what the submission declares ([`family`]); each quantity is compared with it over the whole
-//! curve and by phase ([`curves`]), events by themselves ([`events`]), and common slips are looked for ([`slips`]).
-//! Every comparison error E is held against the validation uncertainty of ASME V&V 20, U_val² = U_ref² + U_num².
-//! Nothing is extrapolated, and nothing is corrected in silence.
+//! A submission is a folder with a `submission.toml` ([`submission`]) and files of numbers in any layout
+//! ([`table`]). The nearest reference is chosen by what the submission declares ([`family`]); each quantity
+//! is compared with it over the whole curve and by phase ([`curves`]), events by themselves ([`events`]),
+//! and common slips are looked for ([`slips`]). Every comparison error E is held against the validation
+//! uncertainty of ASME V&V 20, U_val² = U_ref² + U_num². Nothing is extrapolated, and nothing is corrected
+//! in silence.
 
 pub mod closed_form;
 pub mod curves;
@@ -95,7 +96,8 @@ pub struct Judged {
     pub references: [Option<ReferenceCurve>; 6],
 }
 
-/// Judges the submission in `folder`. `against` names another reference of the plate than the nearest, by its id in the library.
+/// Judges the submission in `folder`. `against` names another reference of the plate than the nearest, by
+/// its id in the library.
 ///
 /// # Errors
 /// Everything that cannot be read, with file, line, column and remedy.

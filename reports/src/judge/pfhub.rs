@@ -1,4 +1,5 @@
-//! A verdict as a result of PFHub's schema (BenchmarkResult), as far as it applies: PFHub has no such benchmark.
+//! A verdict as a result of PFHub's schema (BenchmarkResult), as far as it applies: PFHub has no such
+//! benchmark.
 
 use fisura_verification::judge::Judged;
 

@@ -14,7 +14,8 @@ const COVERED: f64 = 0.95;
 const WIDEST: f64 = 2e-6;
 /// Safety factor on what bilinear elements of the same spacing are off by.
 const SAFETY: f64 = 1.25;
-/// In a phase, at least this part of the uncertainty over the whole curve: small figures of one mesh may be chance.
+/// In a phase, at least this part of the uncertainty over the whole curve: small figures of one mesh may be
+/// chance.
 const LEAST: f64 = 0.1;
 /// Events are decided on meshes up to this spacing over l0; bilinear elements of l0 miss several.
 pub(super) const EVENTS_DECIDE: f64 = 0.5;
@@ -41,7 +42,8 @@ pub fn at(curve: &Curve, t: f64) -> Option<f64> {
     Some(curve.y[next - 1] + weight * (curve.y[next] - curve.y[next - 1])).filter(|y| y.is_finite())
 }
 
-/// Fracture energies to increments, and a tip where there is none yet to the end of the initial crack; what is done is noted.
+/// Fracture energies to increments, and a tip where there is none yet to the end of the initial crack; what
+/// is done is noted.
 pub fn prepare(
     submission: &Submission,
     curves: &mut [Option<Curve>; 6],
@@ -121,8 +123,8 @@ impl<'a> Numerics<'a> {
         }
     }
 
-    /// The spacing over l0 by which events are judged: that at which bilinear elements have the stated uncertainty of the tip,
-    /// else that of the result.
+    /// The spacing over l0 by which events are judged: that at which bilinear elements have the stated
+    /// uncertainty of the tip, else that of the result.
     pub fn spacing(&self) -> Option<f64> {
         let of_tip = |tip: f64| {
             let mut spacings = (1..=80).map(|i| 0.025 * f64::from(i));

@@ -9,7 +9,8 @@ use crate::reference::{Library, ReferenceCurve};
 
 /// Folder of the variants in the reference data.
 const FOLDER: &str = "plate-family";
-/// Loads within this part of that of a reference are judged against it; the energies then differ by twice as much.
+/// Loads within this part of that of a reference are judged against it; the energies then differ by twice
+/// as much.
 const SAME_LOAD: f64 = 0.02;
 /// l0 of the benchmark, m.
 pub const LENGTH_SCALE: f64 = 0.25e-3;
@@ -157,8 +158,8 @@ impl<'a> Variant<'a> {
         out
     }
 
-    /// Phases with their windows, s; the whole curve first. Fracture increments count from 30 µs over the whole curve, and are
-    /// not judged before the crack runs: they depend on how it was made.
+    /// Phases with their windows, s; the whole curve first. Fracture increments count from 30 µs over the
+    /// whole curve, and are not judged before the crack runs: they depend on how it was made.
     pub fn windows(&self, quantity: usize) -> Vec<(&'static str, [f64; 2])> {
         let whole = if quantity == FRACTURE { FRACTURE_START } else { START };
         let mut out = vec![("whole", [whole, END])];
@@ -187,8 +188,9 @@ impl MeshStudy {
         Table::read(&data.join(FOLDER).join("mesh-study.csv")).map(Self)
     }
 
-    /// The figure in a column at a spacing over l0, interpolated between meshes on logarithmic axes and carried on with the square of
-    /// the spacing beyond them. Of meshes that have none, the nearest that has.
+    /// The figure in a column at a spacing over l0, interpolated between meshes on logarithmic axes and
+    /// carried on with the square of the spacing beyond them. Of meshes that have none, the nearest that
+    /// has.
     pub fn at(&self, column: &str, spacing: f64) -> Option<f64> {
         let (h, values) = (self.0.column("spacing_over_l0")?, self.0.column(column)?);
         let mut rows: Vec<(f64, f64)> = h.iter().copied().zip(values.iter().copied()).filter(|r| r.1 > 0.0).collect();

@@ -1,7 +1,8 @@
 //! Common slips, recognised and named; nothing is corrected.
 //!
-//! A slip is looked for only where something fails. Load and plane state come first: before the crack runs the body is elastic,
-//! energies go with the square of the load, and the shapes of the curves tell the plane state.
+//! A slip is looked for only where something fails. Load and plane state come first: before the crack runs
+//! the body is elastic, energies go with the square of the load, and the shapes of the curves tell the
+//! plane state.
 
 use super::family::{END, Variant};
 use super::submission::{Plane, Submission};
@@ -54,7 +55,8 @@ fn pairs(curve: &Curve, reference: &ReferenceCurve, [from, to]: [f64; 2]) -> Vec
     rows.filter_map(|(t, r)| Some((curves::at(curve, *t)?, *r))).collect()
 }
 
-/// The factor on the reference that is nearest to the result, and what is left, relative to the scaled reference.
+/// The factor on the reference that is nearest to the result, and what is left, relative to the scaled
+/// reference.
 fn fit(curve: &Curve, reference: &ReferenceCurve, window: [f64; 2]) -> Option<(f64, f64)> {
     let pairs = pairs(curve, reference, window);
     let square = pairs.iter().map(|(_, r)| r * r).sum::<f64>();
@@ -167,7 +169,8 @@ fn absolute(curve: Option<&Curve>, reference: Option<&ReferenceCurve>, found: &[
     new.then(|| Finding { id: "absolute-fracture-energy".into(), text })
 }
 
-/// Load and plane state from the energies before the crack runs, where they can be told from a wrong solution.
+/// Load and plane state from the energies before the crack runs, where they can be told from a wrong
+/// solution.
 fn load_and_plane(
     submission: &Submission,
     curves: &[Option<Curve>; 6],

@@ -137,7 +137,8 @@ impl Submission {
     /// Reads `submission.toml` of a folder.
     ///
     /// # Errors
-    /// A file that cannot be read or is no TOML, and everything that is wrong with it, each with file, line, column and remedy.
+    /// A file that cannot be read or is no TOML, and everything that is wrong with it, each with file,
+    /// line, column and remedy.
     pub fn load(folder: &Path) -> Result<Self, SceneFileError> {
         let name = folder.join(SUBMISSION).display().to_string();
         let whole = |message: String, remedy: &str| {

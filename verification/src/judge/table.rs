@@ -24,8 +24,8 @@ pub struct Curve {
 /// The curves of a submission by quantity.
 ///
 /// # Errors
-/// A file that cannot be read, a column that is not there, a word among numbers, energies that are not finite, times that do
-/// not increase: each with file, line, column and remedy.
+/// A file that cannot be read, a column that is not there, a word among numbers, energies that are not
+/// finite, times that do not increase: each with file, line, column and remedy.
 pub fn curves(folder: &Path, submission: &Submission) -> Result<[Option<Curve>; 6], SceneFileError> {
     let mut files: BTreeMap<&str, File> = BTreeMap::new();
     let mut out: [Option<Curve>; 6] = Default::default();
@@ -73,7 +73,8 @@ impl File {
         Ok(file)
     }
 
-    /// Header, separator and lines of numbers. Without a header, the last comment before the numbers names the columns.
+    /// Header, separator and lines of numbers. Without a header, the last comment before the numbers names
+    /// the columns.
     fn find_rows(&mut self, submission: &Submission) -> Result<(), SceneFileError> {
         let (mut start, mut comment, mut header) = (0, String::new(), None);
         let mut rows = Vec::new();
@@ -180,7 +181,8 @@ fn separator_of(line: &str) -> char {
     [';', '\t', ','].into_iter().find(|c| line.contains(*c)).unwrap_or(' ')
 }
 
-/// Fields of a line with the bytes at which they start; spaces around them do not count, text in quotes stays together.
+/// Fields of a line with the bytes at which they start; spaces around them do not count, text in quotes
+/// stays together.
 fn fields(line: &str, separator: char) -> Vec<(usize, &str)> {
     let (mut out, mut start, mut quoted) = (Vec::new(), 0, false);
     for (at, c) in line.char_indices().chain(std::iter::once((line.len(), separator))) {

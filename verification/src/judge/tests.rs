@@ -49,7 +49,7 @@ const SOUND: &str = "fisura-p2-h2";
 #[test]
 fn a_result_of_fisura_has_the_figures_of_verify() {
     let path = root().join("verification/cases/plate/half-p2-h2.toml");
-    let case = Case::parse(Path::new("plate/half-p2-h2.toml"), &fs::read_to_string(path).unwrap(), &[]).unwrap();
+    let case = Case::load(&path, &[]).unwrap();
     let scene = SceneFile::load(&root().join("verification/scenes/plate.toml"), &[]).unwrap().scene;
     let history = Table::read(&of(SOUND).join("history.csv")).unwrap();
     let run = Run { name: "p2", scene: &scene, history: &history, frames: &[], energy_factor: 2.0 };

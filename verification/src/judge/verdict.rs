@@ -50,7 +50,8 @@ impl Outcome {
     }
 }
 
-/// One comparison error against its validation uncertainty. Energies: relative; tip: m; events and numbers: their SI unit.
+/// One comparison error against its validation uncertainty. Energies: relative; tip: m; events and numbers:
+/// their SI unit.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Comparison {
     /// `whole`, `before onset`, `one crack`, `branched`; the name of an event or a number.
