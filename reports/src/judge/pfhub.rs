@@ -7,25 +7,26 @@ use fisura_verification::judge::Judged;
 pub fn pfhub(judged: &Judged) -> String {
     let (verdict, text) = (&judged.verdict, |t: &str| serde_json::Value::from(t).to_string());
     let code = &verdict.code;
-    let link = code.url.as_deref().filter(|url| url.starts_with("http")).unwrap_or("https://example.invalid/unknown");
+    let link = code.url.as_deref().filter(|url| url.starts_with("http"));
     let mut out = format!(
         "# {} of fisura, in the form of PFHub's BenchmarkResult; PFHub itself has no such problem\n---\nid: {}\n\
          benchmark_problem: {}\nbenchmark_version: \"1\"\nsummary: {}\n",
         verdict.benchmark,
-        text(link),
+        text(link.unwrap_or("urn:fisura:submission")), // the schema wants an identifier
         text(&format!("fisura/{}", verdict.benchmark)),
         text(&format!("{}: {}, {}", code.name, verdict.outcome.word(), verdict.sentence))
     );
     if let Some(person) = &code.run_by {
-        out += &format!("contributors:\n  - id: {}\n    name: {}\n", text(link), text(person));
+        out += &format!("contributors:\n  - name: {}\n", text(person));
     }
-    out += &format!("framework:\n  - url: {}\n    name: {}\n", text(link), text(&code.name));
+    out += &format!("framework:\n  - name: {}\n", text(&code.name));
     if let Some(version) = &code.version {
         out += &format!("    version: {}\n", text(version));
     }
-    out += &format!("implementation:\n  url: {}\n", text(link));
+    out += &link.map_or(String::new(), |url| format!("    url: {}\n", text(url)));
     if let Some(commit) = &code.commit {
-        out += &format!("  commit: {}\n", text(commit));
+        out += &format!("implementation:\n  commit: {}\n", text(commit));
+        out += &link.map_or(String::new(), |url| format!("  url: {}\n", text(url)));
     }
     out += "results:\n";
     let cost = &verdict.cost;

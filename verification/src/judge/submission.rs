@@ -126,7 +126,7 @@ pub struct Submission {
     pub comment: String,
     /// Column of the time; its file is unused.
     pub time: Option<Mapping>,
-    /// Columns by quantity, in the order of [`QUANTITIES`].
+    /// Columns by quantity, in the order of [`QUANTITIES`](super::QUANTITIES).
     pub curves: [Option<Mapping>; 6],
     /// Numbers of closed-form benchmarks, SI, with their place.
     pub values: Vec<(String, f64)>,
