@@ -4,6 +4,7 @@
 //! Symbols: A a symmetric matrix, M its preconditioner, r a residual. Calls no other room but
 //! [`checkpoint`](crate::checkpoint).
 
+pub mod active_columns;
 pub mod cholesky;
 pub mod conjugate_gradients;
 pub mod control_grid;
@@ -12,4 +13,5 @@ pub mod incomplete_cholesky;
 pub mod lane;
 pub mod preconditioner;
 pub mod stencil;
+mod terms;
 pub(crate) mod vectors;

@@ -109,8 +109,8 @@ impl PhaseField {
             load,
             previous: phase.clone(),
             phase,
+            method: Method::new(&matrix, settings.phase_field_solver, assembled.is_empty()),
             assembled,
-            method: Method::new(&matrix, settings.phase_field_solver),
             matrix,
             counts: PhaseFieldCounts::default(),
         }
@@ -240,10 +240,16 @@ impl PhaseField {
 
     /// Start of the next solve: linear extrapolation of the last two.
     fn extrapolate(&mut self) {
-        for (phase, previous) in self.phase.iter_mut().zip(&mut self.previous) {
-            let next = 2.0 * *phase - *previous;
-            *previous = *phase;
-            *phase = next;
+        let grid = self.matrix.grid;
+        for row in 0..grid.rows {
+            for range in self.matrix.active().row(row) {
+                let range = grid.index(range.start, row)..grid.index(range.end, row);
+                for (phase, previous) in self.phase[range.clone()].iter_mut().zip(&mut self.previous[range]) {
+                    let next = 2.0 * *phase - *previous;
+                    *previous = *phase;
+                    *phase = next;
+                }
+            }
         }
     }
 

@@ -76,10 +76,13 @@ impl ConjugateGradients {
         tolerance: f64,
         limit: usize,
     ) -> Result<Convergence, SolveFailure> {
-        let chunk = self.chunk;
-        matrix.apply(x, &mut self.image);
-        subtract(chunk, &mut self.residual, b, &self.image);
-        let mut rho = preconditioner.apply(&self.residual, &mut self.preconditioned);
+        let Self { residual, preconditioned, direction, image, chunk } = self;
+        let clear = |field: &mut [f64]| matrix.active().clear_outside(matrix.grid, field);
+        [&mut *preconditioned, &mut *direction, &mut *image].into_iter().for_each(|field| clear(field));
+        matrix.apply(x, image);
+        subtract(*chunk, residual, b, image);
+        clear(residual);
+        let mut rho = preconditioner.apply(matrix, residual, preconditioned);
         let mut remaining = Remaining::from_start(rho);
         let mut beta = 0.0;
         for iterations in 0.. {
@@ -91,7 +94,7 @@ impl ConjugateGradients {
             } else if iterations == limit {
                 return Err(SolveFailure::NotConverged { iterations, error });
             } else if iterations > 0 {
-                let previous = std::mem::replace(&mut rho, self.precondition(preconditioner));
+                let previous = std::mem::replace(&mut rho, self.precondition(matrix, preconditioner));
                 beta = rho / previous;
             }
             self.turn(beta);
@@ -107,8 +110,8 @@ impl ConjugateGradients {
     }
 
     /// `z = M⁻¹ r`; returns `r·z`.
-    fn precondition(&mut self, preconditioner: &Preconditioner) -> f64 {
-        preconditioner.apply(&self.residual, &mut self.preconditioned)
+    fn precondition(&mut self, matrix: &Stencil, preconditioner: &Preconditioner) -> f64 {
+        preconditioner.apply(matrix, &self.residual, &mut self.preconditioned)
     }
 
     /// `d ← z + beta d`.
@@ -171,4 +174,87 @@ fn subtract(chunk: usize, out: &mut [f64], a: &[f64], b: &[f64]) {
             *out = a - b;
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+    use crate::linear_algebra::active_columns::ActiveColumns;
+    use crate::linear_algebra::control_grid::ControlGrid;
+
+    /// Every coupling −0.05 and a diagonal of `factor(column, row)` times 2: diagonally dominant for 0.7 and
+    /// more.
+    fn matrix(grid: ControlGrid, factor: impl Fn(usize, usize) -> f64) -> Stencil {
+        let mut matrix = Stencil::zeros(grid, [2, 2]);
+        for (row, column) in (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (row, column))) {
+            for (index, offset) in matrix.offsets().to_vec().into_iter().enumerate() {
+                let (column_there, row_there) = (column as isize + offset.columns, row + offset.rows);
+                let inside = row_there < grid.rows && (0..grid.columns as isize).contains(&column_there);
+                let at = row * matrix.row_length() + index * grid.stride + grid.index(column, 0);
+                let value = if index == 0 { 2.0 * factor(column, row) } else { -0.05 };
+                matrix.coefficients_mut()[at] = if inside { value } else { 0.0 };
+            }
+        }
+        matrix
+    }
+
+    /// The values of control points that take no part stand, and the others solve their own equations, with a
+    /// factor that was made when others took part and material was elsewhere.
+    #[test]
+    fn control_points_that_take_no_part_keep_their_values() {
+        let grid = ControlGrid::new(45, 30);
+        let within = |column: usize, row: usize, radius: f64| {
+            let distance = (column as f64 - 22.0).hypot(row as f64 - 14.0);
+            distance < radius && distance > radius - 6.0
+        };
+        let marks = |radius: f64| {
+            let mut marks = vec![false; grid.len()];
+            for (row, column) in (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (row, column))) {
+                marks[grid.index(column, row)] = within(column, row, radius);
+            }
+            marks
+        };
+        let mut before = matrix(grid, |column, row| if within(column, row, 10.0) { 1.0 } else { 1e3 });
+        before.restrict(ActiveColumns::marked(grid, &marks(10.0)));
+        let mut preconditioner = Preconditioner::new(&before, true);
+        let mut now = matrix(grid, |column, row| 1.0 + (column * row) as f64);
+        now.restrict(ActiveColumns::marked(grid, &marks(13.0)));
+        preconditioner.prepare(&now);
+
+        let taking_part: Vec<usize> = (0..grid.rows)
+            .flat_map(|row| {
+                now.active().row(row).iter().flat_map(move |r| grid.index(r.start, row)..grid.index(r.end, row))
+            })
+            .collect();
+        assert!(taking_part.len() > 200 && taking_part.len() < 1000, "{}", taking_part.len());
+        let all = ActiveColumns::all(grid);
+        let column_of = |at: usize| {
+            let (mut unit, mut image, mut full) = (grid.zeros(), grid.zeros(), now.clone());
+            full.restrict(all.clone());
+            unit[at] = 1.0;
+            full.apply(&unit, &mut image);
+            image
+        };
+        let mut x = grid.zeros();
+        grid.indices().for_each(|at| x[at] = 0.5);
+        let b: Vec<f64> = (0..grid.len()).map(|at| if grid.indices().any(|i| i == at) { 1.0 } else { 0.0 }).collect();
+        let outside: Vec<usize> = grid.indices().filter(|at| !taking_part.contains(at)).collect();
+        let mut right = b.clone();
+        for &at in &outside {
+            column_of(at).iter().zip(&mut right).for_each(|(entry, right)| *right -= 0.5 * entry);
+        }
+        let n = taking_part.len();
+        let columns: Vec<Vec<f64>> = taking_part.iter().map(|&at| column_of(at)).collect();
+        let dense = DMatrix::from_fn(n, n, |i, j| columns[j][taking_part[i]]);
+        let exact = dense.cholesky().unwrap().solve(&DVector::from_fn(n, |i, _| right[taking_part[i]]));
+        let mut solver = ConjugateGradients::new(&now);
+        let found = solver.solve(&now, &preconditioner, &b, &mut x, 1e-13, 100).unwrap();
+        assert!(found.iterations < 30, "{found:?}");
+        for (i, &at) in taking_part.iter().enumerate() {
+            approx::assert_abs_diff_eq!(x[at], exact[i], epsilon = 1e-12);
+        }
+        assert!(outside.iter().all(|&at| x[at] == 0.5));
+    }
 }

@@ -3,16 +3,24 @@
 //! The factor keeps couplings within blocks of rows only, so blocks are factored and solved independently
 //! (block Jacobi between them). Blocks come from the number of rows, never from the number of threads.
 //!
+//! A matrix that is assembled anew for every solve is scaled to a diagonal of ones first, and the factor is
+//! applied with the scale of the matrix as it is then: `A ≈ S⁻¹ L D Lᵀ S⁻¹`. Material that comes to a control
+//! point and leaves it changes its diagonal most, so an old factor stays a good one for long.
+//!
 //! It is kept in single precision: what it is applied with takes as long as reading it, it stays symmetric
 //! and positive definite, and conjugate gradients work in double precision around it.
+
+use std::ops::Range;
 
 use rayon::prelude::*;
 
 use crate::checkpoint::{Archive, StateError};
+use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised, add_product, dispatch};
 use crate::linear_algebra::stencil::{Offset, Stencil};
+use crate::linear_algebra::terms::Terms;
 
 /// Rows of control points in a block.
 const BLOCK_ROWS: usize = 24;
@@ -43,15 +51,19 @@ pub struct IncompleteCholesky {
     factor: Vec<f32>,
     /// Largest shift of a block.
     shift: f64,
+    /// S, one over the root of the diagonal of the matrix now; none for a matrix that is factored as it is.
+    scale: Option<Vec<f64>>,
 }
 
 impl IncompleteCholesky {
-    /// Factors `matrix`.
-    pub fn new(matrix: &Stencil) -> Self {
+    /// Factors `matrix`, scaled or as it is.
+    pub fn new(matrix: &Stencil, scaled: bool) -> Self {
         let offsets = matrix.offsets().to_vec();
         let updates = updates(&offsets, matrix.degree());
         let factor = vec![0.0; matrix.coefficients().len()];
-        let mut factor = Self { grid: matrix.grid, offsets, updates, factor, shift: 0.0 };
+        let scale = scaled.then(|| matrix.grid.zeros());
+        let mut factor = Self { grid: matrix.grid, offsets, updates, factor, shift: 0.0, scale };
+        factor.rescale(matrix);
         factor.refactor(matrix);
         factor
     }
@@ -59,11 +71,11 @@ impl IncompleteCholesky {
     /// Factors `matrix` again in the same memory.
     pub fn refactor(&mut self, matrix: &Stencil) {
         let block = BLOCK_ROWS * matrix.row_length();
-        let Self { grid, offsets, updates, factor, .. } = self;
-        let blocks = factor.par_chunks_mut(block).zip(matrix.coefficients().par_chunks(block));
-        let shifts = blocks.map(|(factor, matrix)| {
-            let (mut block, mut shift) = (vec![0.0; matrix.len()], 0.0);
-            while !factor_block(*grid, offsets, updates, shift, matrix, &mut block) && shift < LARGEST_SHIFT {
+        let Self { offsets, updates, factor, scale, .. } = self;
+        let shifts = factor.par_chunks_mut(block).enumerate().map(|(index, factor)| {
+            let rows = Rows { matrix, first: index * BLOCK_ROWS, scale: scale.as_deref(), offsets, updates };
+            let (mut block, mut shift) = (vec![0.0; factor.len()], 0.0);
+            while !rows.factor(shift, &mut block) && shift < LARGEST_SHIFT {
                 shift = (SHIFT_GROWTH * shift).max(FIRST_SHIFT);
             }
             factor.iter_mut().zip(block).for_each(|(single, double)| *single = double as f32);
@@ -72,15 +84,30 @@ impl IncompleteCholesky {
         self.shift = shifts.reduce(|| 0.0, larger);
     }
 
-    /// `out = (L D Lᵀ)⁻¹ r`; returns `rᵀ out`.
-    pub fn apply(&self, r: &[f64], out: &mut [f64]) -> f64 {
+    /// Takes the scale from the diagonal of `matrix`, if there is one to take.
+    pub(crate) fn rescale(&mut self, matrix: &Stencil) {
+        let Some(scale) = &mut self.scale else { return };
+        for (row, scale) in scale.chunks_mut(self.grid.stride).enumerate() {
+            for (scale, diagonal) in scale.iter_mut().zip(matrix.row(row, 0)) {
+                *scale = if *diagonal > 0.0 { 1.0 / diagonal.sqrt() } else { 0.0 };
+            }
+        }
+    }
+
+    /// `out = M⁻¹ r` on the `active` control points, for an `out` that is zero elsewhere; returns `rᵀ out`.
+    pub fn apply(&self, active: &ActiveColumns, r: &[f64], out: &mut [f64]) -> f64 {
         let rows = BLOCK_ROWS * self.grid.stride;
         let length = self.offsets.len() * rows;
         let parts: Vec<f64> = out
             .par_chunks_mut(rows)
             .zip(r.par_chunks(rows))
             .zip(self.factor.par_chunks(length))
-            .map(|((out, r), factor)| dispatch(SolveBlock { grid: self.grid, offsets: &self.offsets, factor, r, out }))
+            .enumerate()
+            .map(|(index, ((out, r), factor))| {
+                let first = index * BLOCK_ROWS;
+                let scale = self.scale.as_ref().map(|scale| &scale[first * self.grid.stride..][..r.len()]);
+                dispatch(SolveBlock { grid: self.grid, offsets: &self.offsets, active, first, factor, scale, r, out })
+            })
             .collect();
         parts.iter().sum()
     }
@@ -95,14 +122,14 @@ impl IncompleteCholesky {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { grid: _, offsets: _, updates: _, factor, shift } = self;
+        let Self { grid: _, offsets: _, updates: _, factor, shift, scale: _ } = self;
         archive.list(factor)?;
         archive.value(shift)
     }
 
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
-        size_of::<f32>() * self.factor.len()
+        size_of::<f32>() * self.factor.len() + self.scale.as_ref().map_or(0, |scale| 8 * scale.len())
     }
 }
 
@@ -122,126 +149,244 @@ fn updates(offsets: &[Offset], degree: [usize; 2]) -> Vec<Update> {
     updates
 }
 
-/// Factors the rows of `matrix`, their diagonal times `1 + shift`, into `block`; false as soon as a pivot
-/// falls to nothing beside the diagonal: dropped couplings can leave nothing of it (Manteuffel 1980).
-fn factor_block(
-    grid: ControlGrid,
-    offsets: &[Offset],
-    updates: &[Update],
-    shift: f64,
-    matrix: &[f64],
-    block: &mut [f64],
-) -> bool {
-    block.copy_from_slice(matrix);
-    let row_length = offsets.len() * grid.stride;
-    let rows = block.len() / row_length;
-    if shift > 0.0 {
-        let diagonals = (0..rows).map(|row| row * row_length);
-        diagonals.for_each(|start| block[start..start + grid.stride].iter_mut().for_each(|d| *d *= 1.0 + shift));
-    }
-    for row in 0..rows {
-        let reachable = offsets.iter().take_while(|o| row + o.rows < rows).count();
-        for column in 0..grid.columns {
-            let at = row * row_length + grid.index(column, 0);
-            if block[at] <= LEAST_PIVOT * matrix[at] && shift < LARGEST_SHIFT && matrix[at] > 0.0 {
-                return false;
-            }
-            let inverse = if block[at] > 0.0 { 1.0 / block[at] } else { 1.0 };
-            let mut entries = [0.0; 64];
-            for (index, entry) in entries.iter_mut().enumerate().take(reachable).skip(1) {
-                *entry = block[at + index * grid.stride];
-                block[at + index * grid.stride] *= inverse;
-            }
-            for index in reachable..offsets.len() {
-                block[at + index * grid.stride] = 0.0;
-            }
-            for update in updates.iter().filter(|u| u.second < reachable) {
-                let product = entries[update.first] * entries[update.second] * inverse;
-                if product != 0.0 {
-                    let offset = offsets[update.first];
-                    let there = (at + offset.rows * row_length + update.target * grid.stride)
-                        .wrapping_add_signed(offset.columns);
-                    block[there] -= product;
+/// The rows of a block.
+struct Rows<'a> {
+    matrix: &'a Stencil,
+    first: usize,
+    scale: Option<&'a [f64]>,
+    offsets: &'a [Offset],
+    updates: &'a [Update],
+}
+
+impl Rows<'_> {
+    /// Copies the matrix, scaled if it is to be, into `block`; control points that take no part are left out.
+    fn copy(&self, block: &mut [f64]) {
+        let grid = self.matrix.grid;
+        let row_length = self.matrix.row_length();
+        let Some(scale) = self.scale else {
+            return block.copy_from_slice(&self.matrix.coefficients()[self.first * row_length..][..block.len()]);
+        };
+        block.fill(0.0);
+        for (local, block) in block.chunks_mut(row_length).enumerate() {
+            let row = self.first + local;
+            for (index, offset) in self.offsets.iter().enumerate().filter(|(_, o)| row + o.rows < grid.rows) {
+                let coefficients = self.matrix.row(row, index);
+                let there = ((row + offset.rows) * grid.stride).wrapping_add_signed(offset.columns);
+                for column in self.matrix.active().row(row).iter().cloned().flatten() {
+                    let at = grid.index(column, 0);
+                    let scales = scale[row * grid.stride + at] * scale[there + at];
+                    block[index * grid.stride + at] = coefficients[at] * scales;
                 }
             }
-            block[at] = inverse;
         }
     }
-    true
+
+    /// Factors the rows, their diagonal times `1 + shift`, into `block`; false as soon as a pivot falls to
+    /// nothing beside the diagonal: dropped couplings can leave nothing of it (Manteuffel 1980).
+    fn factor(&self, shift: f64, block: &mut [f64]) -> bool {
+        let Self { matrix, offsets, updates, .. } = *self;
+        self.copy(block);
+        let (grid, row_length) = (matrix.grid, matrix.row_length());
+        let rows = block.len() / row_length;
+        if shift > 0.0 {
+            let diagonals = (0..rows).map(|row| row * row_length);
+            diagonals.for_each(|start| block[start..start + grid.stride].iter_mut().for_each(|d| *d *= 1.0 + shift));
+        }
+        for row in 0..rows {
+            let reachable = offsets.iter().take_while(|o| row + o.rows < rows).count();
+            for column in matrix.active().row(self.first + row).iter().cloned().flatten() {
+                let at = row * row_length + grid.index(column, 0);
+                let own = matrix.diagonal(column, self.first + row);
+                let diagonal = if self.scale.is_some() && own > 0.0 { 1.0 } else { own };
+                if block[at] <= LEAST_PIVOT * diagonal && shift < LARGEST_SHIFT && diagonal > 0.0 {
+                    return false;
+                }
+                let inverse = if block[at] > 0.0 { 1.0 / block[at] } else { 1.0 };
+                let mut entries = [0.0; 64];
+                for (index, entry) in entries.iter_mut().enumerate().take(reachable).skip(1) {
+                    *entry = block[at + index * grid.stride];
+                    block[at + index * grid.stride] *= inverse;
+                }
+                for index in reachable..offsets.len() {
+                    block[at + index * grid.stride] = 0.0;
+                }
+                for update in updates.iter().filter(|u| u.second < reachable) {
+                    let product = entries[update.first] * entries[update.second] * inverse;
+                    if product != 0.0 {
+                        let offset = offsets[update.first];
+                        let there = (at + offset.rows * row_length + update.target * grid.stride)
+                            .wrapping_add_signed(offset.columns);
+                        block[there] -= product;
+                    }
+                }
+                block[at] = inverse;
+            }
+        }
+        self.complete(block);
+        true
+    }
+
+    /// Unit rows where no control point takes part: one that does in a later solve stands for itself.
+    fn complete(&self, block: &mut [f64]) {
+        let grid = self.matrix.grid;
+        for (local, block) in block.chunks_mut(self.matrix.row_length()).enumerate() {
+            for (index, entries) in block.chunks_mut(grid.stride).enumerate() {
+                let unit = if index == 0 { 1.0 } else { 0.0 };
+                let mut end = 0;
+                for range in self.matrix.active().row(self.first + local) {
+                    entries[grid.index(end, 0)..grid.index(range.start, 0)].fill(unit);
+                    end = range.end;
+                }
+                entries[grid.index(end, 0)..grid.index(grid.columns, 0)].fill(unit);
+            }
+        }
+    }
 }
 
 struct SolveBlock<'a> {
     grid: ControlGrid,
     offsets: &'a [Offset],
+    active: &'a ActiveColumns,
+    /// First row of the block.
+    first: usize,
     factor: &'a [f32],
+    scale: Option<&'a [f64]>,
     r: &'a [f64],
     out: &'a mut [f64],
 }
 
 impl SolveBlock<'_> {
     #[inline(always)]
-    fn row(&self, row: usize, offset: usize) -> &[f32] {
-        let start = (row * self.offsets.len() + offset) * self.grid.stride;
-        &self.factor[start..start + self.grid.stride]
+    fn start(&self, row: usize, offset: usize) -> usize {
+        (row * self.offsets.len() + offset) * self.grid.stride
     }
 
-    /// `L z = r`: earlier rows side by side, then along the row.
+    /// `L z = S r`, or `Lᵀ x = D⁻¹ z`: other rows side by side, from the start of each sum on.
     #[inline(always)]
-    fn forward<const FMA: bool>(&mut self, row: usize, same_row: usize) {
-        let grid = self.grid;
-        for column in (0..grid.columns).step_by(LANES) {
-            let at = grid.index(column, 0);
-            let mut sum = Lane::load(self.r, at + row * grid.stride);
-            for (index, offset) in self.offsets.iter().enumerate().skip(same_row) {
-                if row >= offset.rows {
-                    let here = at.wrapping_add_signed(-offset.columns);
-                    let earlier = Lane::load(self.out, here + (row - offset.rows) * grid.stride);
-                    let coefficient = Lane::load_single(self.row(row - offset.rows, index), here);
-                    sum = sum.add_product::<FMA>(coefficient * -1.0, earlier);
-                }
+    fn side_by_side<const FMA: bool, const FORWARD: bool>(&mut self, row: usize, range: &Range<usize>, terms: &Terms) {
+        let mut column = range.start;
+        while column < range.end {
+            let (at, left) = (self.grid.index(column, 0), range.end - column);
+            if left > LANES {
+                self.some::<FMA, FORWARD, 2>(row, at, left, terms);
+            } else {
+                self.some::<FMA, FORWARD, 1>(row, at, left, terms);
             }
-            let used = (grid.columns - column).min(LANES);
-            self.out[at + row * grid.stride..][..used].copy_from_slice(&sum.0[..used]);
-        }
-        let start = (row * self.offsets.len()) * grid.stride;
-        let out = &mut self.out[row * grid.stride..(row + 1) * grid.stride];
-        for at in grid.index(0, 0)..grid.index(grid.columns, 0) {
-            let mut value = out[at];
-            for index in (1..same_row).rev() {
-                let coefficient = -f64::from(self.factor[start + index * grid.stride + at - index]);
-                value = add_product::<FMA>(value, coefficient, out[at - index]);
-            }
-            out[at] = value;
+            column += 2 * LANES;
         }
     }
 
-    /// `Lᵀ x = D⁻¹ z`: later rows side by side, then back along the row.
     #[inline(always)]
-    fn backward<const FMA: bool>(&mut self, row: usize, rows: usize, same_row: usize) {
-        let grid = self.grid;
-        for column in (0..grid.columns).step_by(LANES) {
-            let at = grid.index(column, 0);
-            let mut sum = Lane::load(self.out, at + row * grid.stride) * Lane::load_single(self.row(row, 0), at);
-            for (index, offset) in self.offsets.iter().enumerate().skip(same_row) {
-                if row + offset.rows < rows {
-                    let there = (at + (row + offset.rows) * grid.stride).wrapping_add_signed(offset.columns);
-                    let coefficient = Lane::load_single(self.row(row, index), at);
-                    sum = sum.add_product::<FMA>(coefficient * -1.0, Lane::load(self.out, there));
-                }
-            }
-            let used = (grid.columns - column).min(LANES);
-            self.out[at + row * grid.stride..][..used].copy_from_slice(&sum.0[..used]);
+    fn some<const FMA: bool, const FORWARD: bool, const N: usize>(
+        &mut self,
+        row: usize,
+        at: usize,
+        left: usize,
+        terms: &Terms,
+    ) {
+        let (stride, pivots) = (self.grid.stride, self.start(row, 0));
+        let mut sums = [Lane::ZERO; N];
+        for (n, sum) in sums.iter_mut().enumerate() {
+            let here = at + n * LANES;
+            *sum = match (FORWARD, self.scale) {
+                (true, None) => Lane::load(self.r, here + row * stride),
+                (true, Some(scale)) => Lane::load(self.r, here + row * stride) * Lane::load(scale, here + row * stride),
+                (false, _) => Lane::load(self.out, here + row * stride) * Lane::load_single(self.factor, pivots + here),
+            };
         }
-        let start = (row * self.offsets.len()) * grid.stride;
+        let sums = terms.add::<FMA, true, N, _>(sums, self.factor, self.out, at);
+        for (n, sum) in sums.into_iter().enumerate() {
+            let (here, used) = (at + n * LANES + row * stride, (left - n * LANES).min(LANES));
+            self.out[here..][..used].copy_from_slice(&sum.0[..used]);
+        }
+    }
+
+    /// Earlier rows, then along the row.
+    #[inline(always)]
+    fn forward<const FMA: bool, const P: usize>(&mut self, row: usize) {
+        let (grid, active) = (self.grid, self.active);
+        let mut terms = Terms::none();
+        for (index, offset) in self.offsets.iter().enumerate().skip(P + 1).filter(|(_, o)| row >= o.rows) {
+            let before = row - offset.rows;
+            let here = |start: usize| start.wrapping_add_signed(-offset.columns);
+            terms.push(here(self.start(before, index)), here(before * grid.stride));
+        }
+        for range in active.row(self.first + row) {
+            self.side_by_side::<FMA, true>(row, range, &terms);
+        }
+        let start = self.start(row, 0);
         let out = &mut self.out[row * grid.stride..(row + 1) * grid.stride];
-        for at in (grid.index(0, 0)..grid.index(grid.columns, 0)).rev() {
-            let mut value = out[at];
-            for index in (1..same_row).rev() {
-                let coefficient = -f64::from(self.factor[start + index * grid.stride + at]);
-                value = add_product::<FMA>(value, coefficient, out[at + index]);
+        for range in active.row(self.first + row) {
+            let first = grid.index(range.start, 0);
+            let mut last = [0.0; P];
+            last.iter_mut().enumerate().for_each(|(n, last)| *last = out[first - 1 - n]);
+            for at in first..grid.index(range.end, 0) {
+                let mut value = out[at];
+                for index in (1..=P).rev() {
+                    let coefficient = -f64::from(self.factor[start + index * grid.stride + at - index]);
+                    value = add_product::<FMA>(value, coefficient, last[index - 1]);
+                }
+                out[at] = value;
+                last.copy_within(0..P - 1, 1);
+                last[0] = value;
             }
-            out[at] = value;
         }
+    }
+
+    /// Later rows, then back along the row.
+    #[inline(always)]
+    fn backward<const FMA: bool, const P: usize>(&mut self, row: usize, rows: usize) {
+        let (grid, active) = (self.grid, self.active);
+        let mut terms = Terms::none();
+        for (index, offset) in self.offsets.iter().enumerate().skip(P + 1).filter(|(_, o)| row + o.rows < rows) {
+            let there = ((row + offset.rows) * grid.stride).wrapping_add_signed(offset.columns);
+            terms.push(self.start(row, index), there);
+        }
+        for range in active.row(self.first + row) {
+            self.side_by_side::<FMA, false>(row, range, &terms);
+        }
+        let start = self.start(row, 0);
+        let out = &mut self.out[row * grid.stride..(row + 1) * grid.stride];
+        for range in active.row(self.first + row).iter().rev() {
+            let end = grid.index(range.end, 0);
+            let mut last = [0.0; P];
+            last.iter_mut().enumerate().for_each(|(n, last)| *last = out[end + n]);
+            for at in (grid.index(range.start, 0)..end).rev() {
+                let mut value = out[at];
+                for index in (1..=P).rev() {
+                    let coefficient = -f64::from(self.factor[start + index * grid.stride + at]);
+                    value = add_product::<FMA>(value, coefficient, last[index - 1]);
+                }
+                out[at] = value;
+                last.copy_within(0..P - 1, 1);
+                last[0] = value;
+            }
+        }
+    }
+
+    /// `r · out`, after the scale is taken off both.
+    #[inline(always)]
+    fn finish<const FMA: bool>(&mut self) -> f64 {
+        if let Some(scale) = self.scale {
+            self.out.iter_mut().zip(scale).for_each(|(out, scale)| *out *= scale);
+        }
+        let mut product = Lane::ZERO;
+        for (r, out) in self.r.chunks_exact(LANES).zip(self.out.chunks_exact(LANES)) {
+            product = product.add_product::<FMA>(Lane::load(r, 0), Lane::load(out, 0));
+        }
+        product.sum()
+    }
+
+    #[inline(always)]
+    fn solve<const FMA: bool, const P: usize>(mut self) -> f64 {
+        let rows = self.r.len() / self.grid.stride;
+        for row in 0..rows {
+            self.forward::<FMA, P>(row);
+        }
+        for row in (0..rows).rev() {
+            self.backward::<FMA, P>(row, rows);
+        }
+        self.finish::<FMA>()
     }
 }
 
@@ -249,20 +394,12 @@ impl Vectorised for SolveBlock<'_> {
     type Output = f64;
 
     #[inline(always)]
-    fn run<const FMA: bool>(mut self) -> f64 {
-        let stride = self.grid.stride;
-        let rows = self.r.len() / stride;
-        let same_row = self.offsets.iter().take_while(|o| o.rows == 0).count();
-        for row in 0..rows {
-            self.forward::<FMA>(row, same_row);
+    fn run<const FMA: bool>(self) -> f64 {
+        match self.offsets.iter().take_while(|o| o.rows == 0).count() {
+            2 => self.solve::<FMA, 1>(),
+            3 => self.solve::<FMA, 2>(),
+            4 => self.solve::<FMA, 3>(),
+            _ => self.solve::<FMA, 4>(),
         }
-        for row in (0..rows).rev() {
-            self.backward::<FMA>(row, rows, same_row);
-        }
-        let mut product = Lane::ZERO;
-        for (r, out) in self.r.chunks_exact(LANES).zip(self.out.chunks_exact(LANES)) {
-            product = product.add_product::<FMA>(Lane::load(r, 0), Lane::load(out, 0));
-        }
-        product.sum()
     }
 }

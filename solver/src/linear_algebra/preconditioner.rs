@@ -34,6 +34,8 @@ pub struct Preconditioner {
     /// Iterations of the first solve with the present factor.
     fresh_iterations: Option<usize>,
     pause: Pause,
+    /// Whether the matrix is assembled anew for every solve, and scaled: see [`IncompleteCholesky`].
+    is_scaled: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -53,22 +55,25 @@ struct Pause {
 }
 
 impl Preconditioner {
-    /// Incomplete factor of `matrix`.
-    pub fn new(matrix: &Stencil) -> Self {
+    /// Incomplete factor of `matrix`, which is scaled if it is assembled anew for every solve.
+    pub fn new(matrix: &Stencil, is_scaled: bool) -> Self {
         Self {
-            factor: PreconditionerKind::Incomplete(IncompleteCholesky::new(matrix)),
+            factor: PreconditionerKind::Incomplete(IncompleteCholesky::new(matrix, is_scaled)),
             is_fresh: true,
             fresh_iterations: None,
             pause: Pause { left: 0, next: FIRST_PAUSE },
+            is_scaled,
         }
     }
 
-    /// `out = M⁻¹ r`; returns `rᵀ out`.
-    pub fn apply(&self, r: &[f64], out: &mut [f64]) -> f64 {
+    /// `out = M⁻¹ r` on the control points that take part in the system, for an `out` that is zero elsewhere;
+    /// returns `rᵀ out`.
+    pub fn apply(&self, matrix: &Stencil, r: &[f64], out: &mut [f64]) -> f64 {
         match &self.factor {
-            PreconditionerKind::Incomplete(factor) => factor.apply(r, out),
+            PreconditionerKind::Incomplete(factor) => factor.apply(matrix.active(), r, out),
             PreconditionerKind::Complete(_, factor) => {
                 factor.as_ref().expect("it is made before the solve").solve(r, out);
+                matrix.active().clear_outside(matrix.grid, out);
                 r.iter().zip(out).map(|(r, out)| r * *out).sum()
             }
         }
@@ -81,21 +86,21 @@ impl Preconditioner {
             PreconditionerKind::Complete(cholesky, factor) => {
                 *factor = cholesky.factor(matrix, &[]);
                 if factor.is_none() {
-                    self.factor = PreconditionerKind::Incomplete(IncompleteCholesky::new(matrix));
+                    self.factor = PreconditionerKind::Incomplete(IncompleteCholesky::new(matrix, self.is_scaled));
                 }
             }
         }
         self.is_fresh = true;
     }
 
-    /// Makes ready for a solve: a complete factor is made anew, unless its time is over and the incomplete
-    /// one is tried again.
+    /// Makes ready for a solve: an incomplete factor takes the scale of the matrix, a complete factor is made
+    /// anew, unless its time is over and the incomplete one is tried again.
     pub fn prepare(&mut self, matrix: &Stencil) {
-        if !self.is_complete() {
-            return;
+        if let PreconditionerKind::Incomplete(factor) = &mut self.factor {
+            return factor.rescale(matrix);
         }
         if self.pause.left == 0 {
-            *self = Self { pause: self.pause, ..Self::new(matrix) };
+            *self = Self { pause: self.pause, ..Self::new(matrix, self.is_scaled) };
         } else {
             self.pause.left -= 1;
             self.renew(matrix);
@@ -109,6 +114,11 @@ impl Preconditioner {
             PreconditionerKind::Incomplete(factor) => !factor.is_raised(),
             PreconditionerKind::Complete(..) => true,
         }
+    }
+
+    /// Whether matrices are scaled.
+    pub(crate) fn is_scaled(&self) -> bool {
+        self.is_scaled
     }
 
     /// Whether the factor serves one solve alone.
@@ -167,7 +177,7 @@ impl Preconditioner {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive, matrix: &Stencil) -> Result<(), StateError> {
-        let Self { factor, is_fresh, fresh_iterations, pause } = self;
+        let Self { factor, is_fresh, fresh_iterations, pause, is_scaled } = self;
         archive.value(is_fresh)?;
         archive.value(fresh_iterations)?;
         archive.value(pause)?;
@@ -176,7 +186,7 @@ impl Preconditioner {
         if archive.is_reader() {
             *factor = match complete {
                 true => PreconditionerKind::Complete(SparseCholesky::default(), None),
-                false => PreconditionerKind::Incomplete(IncompleteCholesky::new(matrix)),
+                false => PreconditionerKind::Incomplete(IncompleteCholesky::new(matrix, *is_scaled)),
             };
         }
         match factor {

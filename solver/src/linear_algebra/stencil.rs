@@ -7,8 +7,10 @@
 
 use rayon::prelude::*;
 
+use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised, dispatch};
+use crate::linear_algebra::terms::Terms;
 
 /// Rows of control points whose partial sums are formed together.
 pub(crate) const CHUNK_ROWS: usize = 8;
@@ -30,6 +32,7 @@ pub struct Stencil {
     degree: [usize; 2],
     offsets: Vec<Offset>,
     coefficients: Vec<f64>,
+    active: ActiveColumns,
 }
 
 impl Stencil {
@@ -37,7 +40,7 @@ impl Stencil {
     pub fn zeros(grid: ControlGrid, degree: [usize; 2]) -> Self {
         let offsets = half_stencil(degree);
         let coefficients = vec![0.0; offsets.len() * grid.len()];
-        Self { grid, degree, offsets, coefficients }
+        Self { grid, degree, offsets, coefficients, active: ActiveColumns::all(grid) }
     }
 
     /// Couplings of the half stencil; the first is the diagonal.
@@ -84,6 +87,16 @@ impl Stencil {
         &mut self.coefficients
     }
 
+    /// The control points that take part: all, unless it was said otherwise.
+    pub fn active(&self) -> &ActiveColumns {
+        &self.active
+    }
+
+    /// Leaves others than these out of the system: fields keep their values there.
+    pub(crate) fn restrict(&mut self, active: ActiveColumns) {
+        self.active = active;
+    }
+
     /// Diagonal entry of a control point.
     pub fn diagonal(&self, column: usize, row: usize) -> f64 {
         self.row(row, 0)[self.grid.index(column, 0)]
@@ -95,7 +108,8 @@ impl Stencil {
         self.coefficients[at] = value;
     }
 
-    /// `out = A x`; returns `xᵀ A x`.
+    /// `out = A x` at the control points that take part, zero elsewhere; returns `xᵀ A x` for an x that is
+    /// zero elsewhere, too.
     pub fn apply(&self, x: &[f64], out: &mut [f64]) -> f64 {
         let chunk = CHUNK_ROWS * self.grid.stride;
         let parts: Vec<f64> = out
@@ -126,34 +140,68 @@ struct ApplyRows<'a> {
     first_row: usize,
 }
 
+impl ApplyRows<'_> {
+    /// The couplings of a row with itself and with those after and before it.
+    #[inline(always)]
+    fn terms(&self, row: usize) -> Terms {
+        let grid = self.matrix.grid;
+        let coefficients = |row: usize, index: usize| row * self.matrix.row_length() + index * grid.stride;
+        let mut terms = Terms::none();
+        for (index, offset) in self.matrix.offsets.iter().enumerate() {
+            if row + offset.rows < grid.rows {
+                let there = ((row + offset.rows) * grid.stride).wrapping_add_signed(offset.columns);
+                terms.push(coefficients(row, index), there);
+            }
+            if index > 0 && row >= offset.rows {
+                let before = row - offset.rows;
+                let here = |start: usize| start.wrapping_add_signed(-offset.columns);
+                terms.push(here(coefficients(before, index)), here(before * grid.stride));
+            }
+        }
+        terms
+    }
+
+    /// N batches of neighbours from `at` on in a row of `out`, of which `used` are in it; adds `xᵀ A x`.
+    #[inline(always)]
+    fn some<const FMA: bool, const N: usize>(
+        &mut self,
+        terms: &Terms,
+        at: usize,
+        local: usize,
+        used: usize,
+        product: &mut Lane,
+    ) {
+        let stride = self.matrix.grid.stride;
+        let sums = terms.add::<FMA, false, N, _>([Lane::ZERO; N], self.matrix.coefficients(), self.x, at);
+        for (n, sum) in sums.into_iter().enumerate() {
+            let (here, used) = (at + n * LANES, (used - n * LANES).min(LANES));
+            self.out[local * stride + here..][..used].copy_from_slice(&sum.0[..used]);
+            *product += sum * Lane::load(self.x, here + (self.first_row + local) * stride);
+        }
+    }
+}
+
 impl Vectorised for ApplyRows<'_> {
     type Output = f64;
 
     #[inline(always)]
-    fn run<const FMA: bool>(self) -> f64 {
-        let grid = self.matrix.grid;
+    fn run<const FMA: bool>(mut self) -> f64 {
+        let matrix = self.matrix;
+        let grid = matrix.grid;
         let mut product = Lane::ZERO;
-        for (local, out) in self.out.chunks_exact_mut(grid.stride).enumerate() {
-            let row = self.first_row + local;
-            for column in (0..grid.columns).step_by(LANES) {
-                let at = grid.index(column, 0);
-                let mut sum = Lane::ZERO;
-                for (index, offset) in self.matrix.offsets.iter().enumerate() {
-                    if row + offset.rows < grid.rows {
-                        let there = (at + (row + offset.rows) * grid.stride).wrapping_add_signed(offset.columns);
-                        let coefficient = Lane::load(self.matrix.row(row, index), at);
-                        sum = sum.add_product::<FMA>(coefficient, Lane::load(self.x, there));
+        for local in 0..self.out.len() / grid.stride {
+            let terms = self.terms(self.first_row + local);
+            for range in matrix.active.row(self.first_row + local) {
+                let mut column = range.start;
+                while column < range.end {
+                    let (at, left) = (grid.index(column, 0), range.end - column);
+                    if left > LANES {
+                        self.some::<FMA, 2>(&terms, at, local, left, &mut product);
+                    } else {
+                        self.some::<FMA, 1>(&terms, at, local, left, &mut product);
                     }
-                    if index > 0 && row >= offset.rows {
-                        let here = at.wrapping_add_signed(-offset.columns);
-                        let coefficient = Lane::load(self.matrix.row(row - offset.rows, index), here);
-                        let there = here + (row - offset.rows) * grid.stride;
-                        sum = sum.add_product::<FMA>(coefficient, Lane::load(self.x, there));
-                    }
+                    column += 2 * LANES;
                 }
-                let used = (grid.columns - column).min(LANES);
-                out[at..at + used].copy_from_slice(&sum.0[..used]);
-                product += sum * Lane::load(self.x, at + row * grid.stride);
             }
         }
         product.sum()

@@ -16,17 +16,18 @@ pub(super) enum Method {
 }
 
 impl Method {
-    pub(crate) fn new(matrix: &Stencil, solver: PhaseFieldSolver) -> Self {
+    /// For a matrix that is assembled once, or anew for every solve.
+    pub(crate) fn new(matrix: &Stencil, solver: PhaseFieldSolver, anew: bool) -> Self {
         match solver {
             PhaseFieldSolver::Cholesky => Self::Direct(Box::default()),
-            PhaseFieldSolver::ConjugateGradients => Self::iterative(matrix),
+            PhaseFieldSolver::ConjugateGradients => Self::iterative(matrix, anew),
         }
     }
 
-    fn iterative(matrix: &Stencil) -> Self {
+    fn iterative(matrix: &Stencil, anew: bool) -> Self {
         Self::Iterative {
             workspace: Box::new(ConjugateGradients::new(matrix)),
-            preconditioner: Box::new(Preconditioner::new(matrix)),
+            preconditioner: Box::new(Preconditioner::new(matrix, anew)),
         }
     }
 
@@ -34,7 +35,7 @@ impl Method {
     pub(crate) fn anew(&self, matrix: &Stencil) -> Self {
         match self {
             Self::Direct(_) => Self::Direct(Box::default()),
-            Self::Iterative { .. } => Self::iterative(matrix),
+            Self::Iterative { preconditioner, .. } => Self::iterative(matrix, preconditioner.is_scaled()),
         }
     }
 

@@ -105,7 +105,7 @@ fn without_fill_the_factor_is_exact() {
         }
         let r = random.field(grid, 1.0);
         let mut x = grid.zeros();
-        let product = IncompleteCholesky::new(&matrix).apply(&r, &mut x);
+        let product = IncompleteCholesky::new(&matrix, false).apply(matrix.active(), &r, &mut x);
         let exact = dense(&matrix).cholesky().expect("positive definite").solve(&packed(grid, &r));
         for (i, at) in grid.indices().enumerate() {
             approx::assert_abs_diff_eq!(x[at], exact[i], epsilon = SINGLE * exact.amax());
@@ -131,7 +131,7 @@ fn uncoupled_rows_are_solved_exactly_across_blocks() {
     }
     let r = random.field(grid, 1.0);
     let (mut x, mut back) = (grid.zeros(), grid.zeros());
-    IncompleteCholesky::new(&matrix).apply(&r, &mut x);
+    IncompleteCholesky::new(&matrix, false).apply(matrix.active(), &r, &mut x);
     matrix.apply(&x, &mut back);
     assert!(difference(&r, &back) <= SINGLE, "{}", difference(&r, &back));
 }
@@ -139,17 +139,17 @@ fn uncoupled_rows_are_solved_exactly_across_blocks() {
 #[test]
 fn the_preconditioner_is_symmetric_and_positive_definite() {
     for degree in 1..=4 {
-        for contrast in [1.0, 1e3, 1e6] {
+        for (contrast, scaled) in [(1.0, false), (1e3, false), (1e6, false), (1.0, true), (1e6, true)] {
             let matrix = phase_field_matrix(degree, [31, 57], contrast);
-            let factor = IncompleteCholesky::new(&matrix);
+            let factor = IncompleteCholesky::new(&matrix, scaled);
             let mut random = Random::new(11);
             let (mut x, mut y) = (matrix.grid.zeros(), matrix.grid.zeros());
             for _ in 0..20 {
                 let (r, s) = (random.field(matrix.grid, 1.0), random.field(matrix.grid, 1.0));
-                let product = factor.apply(&r, &mut x);
+                let product = factor.apply(matrix.active(), &r, &mut x);
                 assert!(product > 0.0, "degree {degree}, contrast {contrast}: r·z = {product}");
                 approx::assert_relative_eq!(product, inner(&r, &x), max_relative = 1e-11);
-                factor.apply(&s, &mut y);
+                factor.apply(matrix.active(), &s, &mut y);
                 let scale = (inner(&x, &x) * inner(&s, &s)).sqrt();
                 approx::assert_abs_diff_eq!(inner(&s, &x), inner(&r, &y), epsilon = 1e-12 * scale);
             }
@@ -170,7 +170,7 @@ fn conjugate_gradients_reach_the_solution_of_the_direct_solver() {
             let mut direct = grid.zeros();
             SparseCholesky::default().solve(&matrix, &b, &mut direct).expect("positive definite");
             let mut x = grid.zeros();
-            let factor = Preconditioner::new(&matrix);
+            let factor = Preconditioner::new(&matrix, false);
             let mut solver = ConjugateGradients::new(&matrix);
             let unit = fracture_model().diffusion().sqrt();
             for tolerance in [1e-3, 1e-6, 1e-9, 1e-11] {
@@ -200,7 +200,7 @@ fn systems_without_a_solution_say_why() {
     let mut matrix = phase_field_matrix(2, [13, 11], 1.0);
     let b = Random::new(2).field(matrix.grid, 1.0);
     let mut solver = ConjugateGradients::new(&matrix);
-    let factor = Preconditioner::new(&matrix);
+    let factor = Preconditioner::new(&matrix, false);
     let mut solve = |matrix: &Stencil, b: &[f64], limit| {
         solver.solve(matrix, &factor, b, &mut matrix.grid.zeros(), 1e-12, limit).unwrap_err()
     };
@@ -227,7 +227,7 @@ fn complete_factors_take_over_and_go_back() {
         let mut x = matrix.grid.zeros();
         solver.solve(&matrix, preconditioner, &b, &mut x, 1e-9 * size, 500).expect("it converges").iterations
     };
-    let mut preconditioner = Preconditioner::new(&matrix);
+    let mut preconditioner = Preconditioner::new(&matrix, false);
     let incomplete = solve(&preconditioner);
     preconditioner.learn(&matrix, incomplete);
     assert_eq!(solve(&preconditioner), incomplete, "so few iterations call for nothing");
@@ -257,7 +257,7 @@ fn complete_factors_take_over_and_go_back() {
 #[test]
 fn a_complete_factor_that_fails_becomes_incomplete() {
     let mut matrix = phase_field_matrix(2, [13, 11], 1.0);
-    let mut preconditioner = Preconditioner::new(&matrix);
+    let mut preconditioner = Preconditioner::new(&matrix, false);
     assert!(preconditioner.improve(&matrix) && preconditioner.is_complete());
     let sound = matrix.diagonal(4, 4);
     matrix.set_diagonal(4, 4, -1.0);
@@ -282,12 +282,12 @@ fn a_factor_whose_pivot_falls_is_shifted() {
     }
     // On the stencil the factor is the matrix with its diagonal times 1 + s. The last pivot is positive for 3
     // (1 + s) > √12.
-    let factor = IncompleteCholesky::new(&matrix);
+    let factor = IncompleteCholesky::new(&matrix, false);
     let mut inverse = DMatrix::zeros(9, 9);
     for (n, at) in grid.indices().enumerate() {
         let (mut unit, mut column) = (grid.zeros(), grid.zeros());
         unit[at] = 1.0;
-        factor.apply(&unit, &mut column);
+        factor.apply(matrix.active(), &unit, &mut column);
         inverse.set_column(n, &packed(grid, &column));
     }
     let (product, full) = (inverse.try_inverse().expect("a factor that is not singular"), dense(&matrix));
@@ -305,7 +305,7 @@ fn a_factor_whose_pivot_falls_is_shifted() {
     let mut random = Random::new(3);
     let exact = full.cholesky().expect("positive definite");
     let b = random.field(grid, 1.0);
-    let (mut x, preconditioner) = (grid.zeros(), Preconditioner::new(&matrix));
+    let (mut x, preconditioner) = (grid.zeros(), Preconditioner::new(&matrix, false));
     assert!(!preconditioner.judges_starts(), "the factor is that of a matrix with a diagonal raised by {shift}");
     ConjugateGradients::new(&matrix).solve(&matrix, &preconditioner, &b, &mut x, 1e-13, 20).expect("it converges");
     let exact = exact.solve(&packed(grid, &b));
@@ -339,7 +339,7 @@ fn two_threads_give_the_bits_of_one() {
     let b = Random::new(13).field(matrix.grid, 1.0);
     let solve = || {
         let mut x = matrix.grid.zeros();
-        let factor = Preconditioner::new(&matrix);
+        let factor = Preconditioner::new(&matrix, false);
         ConjugateGradients::new(&matrix).solve(&matrix, &factor, &b, &mut x, 1e-10, 500).expect("it converges");
         x.iter().map(|x| x.to_bits()).collect::<Vec<_>>()
     };

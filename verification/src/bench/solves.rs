@@ -74,7 +74,7 @@ impl System {
     fn contestants(&self, system: &str) -> Result<Vec<Contestant<'_>>, BenchError> {
         let Self { matrix, load, .. } = self;
         let mut workspace = ConjugateGradients::new(matrix);
-        let mut factor = Preconditioner::new(matrix);
+        let mut factor = Preconditioner::new(matrix, false);
         let mut cholesky = SparseCholesky::default();
         let singular = || BenchError::other("the matrix of the phase field is not positive definite");
         let mut exact = self.start.clone();

@@ -121,10 +121,11 @@ fn phase_field<'a, const P: usize>(block: &'a Block) -> Result<Vec<Contestant<'a
     contestants.push(Contestant::short(assembly, move || block.assemble(&mut matrix)));
 
     let mut factorisation = record::<P>("factorisation", "incomplete factorisation", block.points);
-    let mut factor = IncompleteCholesky::new(&fixed);
+    let mut factor = IncompleteCholesky::new(&fixed, false);
     let (mut ones, mut image) = (block.lattice.grid.zeros(), block.lattice.grid.zeros());
     block.lattice.grid.indices().for_each(|at| ones[at] = 1.0);
-    factorisation.verify(factor.apply(&ones, &mut image) > 0.0, "the preconditioner is positive definite");
+    factorisation
+        .verify(factor.apply(fixed.active(), &ones, &mut image) > 0.0, "the preconditioner is positive definite");
     contestants.push(Contestant::short(factorisation, move || factor.refactor(&fixed)));
 
     let tolerance = block.scene.solver.phase_field_tolerance;

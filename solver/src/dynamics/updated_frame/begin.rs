@@ -35,7 +35,7 @@ impl DiscreteField {
         field.points.iter_mut().for_each(|point| point.velocity = rigidly(point.position));
         field.take_affine_velocities(rigidly);
         let number = number_of(body, scene);
-        field.crack_and_stress(true)?;
+        field.crack_and_stress()?;
         (field.ledger, field.losses) = Default::default(); // there was no step yet
         field.points_to_grid();
         field.attach_first(number)?;

@@ -86,7 +86,7 @@ impl DiscreteField {
         if fault!("span-not-renewed", left_span => false) {
             self.sort()?;
         }
-        self.crack_and_stress(left_span)?; // points: psi+, H, phase field, stress at n + 1
+        self.crack_and_stress()?; // points: psi+, H, phase field, stress at n + 1
         self.points_to_grid(); // P2G: mass, velocity, internal forces at x(n+1)
         self.attach_loads()?;
         self.add_external_forces();
@@ -231,11 +231,11 @@ impl DiscreteField {
     }
 
     /// History, phase field and degraded stress; an elastic body has its stress from G2P.
-    pub(super) fn crack_and_stress(&mut self, moved: bool) -> Result<(), SolveFailure> {
+    pub(super) fn crack_and_stress(&mut self) -> Result<(), SolveFailure> {
         let Self { patch, cells, points, moduli, .. } = self;
         let Some(fracture) = &mut self.fracture else { return Ok(()) };
         fracture.update_history(moduli, cells, points);
-        fracture.solve(patch, cells, points, moved)?;
+        fracture.solve(patch, cells, points)?;
         let sums = fracture.update_stress(patch, moduli, cells, points);
         self.elastic_energy = sums.elastic_energy;
         self.stress_work = sums.stress_work;

@@ -93,23 +93,13 @@ impl PointwiseFracture {
         });
     }
 
-    /// Assembles and solves the phase-field system at the present positions; `moved` says that points changed
-    /// spans.
+    /// Assembles and solves the phase-field system at the present positions.
     ///
     /// # Errors
     /// If there is no solution to the tolerance.
-    pub(crate) fn solve(
-        &mut self,
-        patch: &Patch,
-        cells: &Cells,
-        points: &[Point],
-        moved: bool,
-    ) -> Result<(), SolveFailure> {
+    pub(crate) fn solve(&mut self, patch: &Patch, cells: &Cells, points: &[Point]) -> Result<(), SolveFailure> {
         assemble(self.field.system_mut(), patch, cells, points, &self.points, &self.model, &self.fictitious);
         let first = self.field.counts().solves == 0;
-        if moved && !first {
-            self.field.renew_preconditioner();
-        }
         let result = if first { self.field.initialise_system() } else { self.field.solve_system() };
         self.iterations = result?.iterations;
         Ok(())

@@ -18,12 +18,15 @@ use crate::splines::spline::MAX_FUNCTIONS;
 /// runs the same code.
 macro_rules! walk {
     ($self:ident, $wide:ident) => {
+        walk!($self, $wide, walk)
+    };
+    ($self:ident, $wide:ident, $($walk:tt)+) => {
         match $self.patch.spaces.each_ref().map(|space| space.degree()) {
-            [p, q] if !$wide => $self.walk(p + 1, q + 1),
-            [1, 1] => $self.walk(2, 2),
-            [2, 2] => $self.walk(3, 3),
-            [3, 3] => $self.walk(4, 4),
-            [p, q] => $self.walk(p + 1, q + 1),
+            [p, q] if !$wide => $self.$($walk)+(p + 1, q + 1),
+            [1, 1] => $self.$($walk)+(2, 2),
+            [2, 2] => $self.$($walk)+(3, 3),
+            [3, 3] => $self.$($walk)+(4, 4),
+            [p, q] => $self.$($walk)+(p + 1, q + 1),
         }
     };
 }

@@ -61,7 +61,7 @@ impl DiscreteField {
         if self.grid_to_points(dt) {
             self.sort()?;
         }
-        self.crack_and_stress(true)?;
+        self.crack_and_stress()?;
         self.points_to_grid();
         self.attach_loads()?;
         self.respond();
