@@ -8,10 +8,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use fisura_verification::history::{Table, format_number};
 use fisura_verification::output::OutputFolder;
+use fisura_verification::output::fingerprint::fingerprint;
+use fisura_verification::output::history::{Table, format_number};
 use fisura_verification::record::{Environment, Figure, FigureBody};
-use fisura_verification::suite::part::fingerprint;
 use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use fisura_verification::extremes::larger;
-use fisura_verification::history::Table;
+use fisura_verification::output::history::Table;
 use fisura_verification::record::{Axis, Figure, Scale};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};

@@ -1,6 +1,6 @@
 //! Any figure as SVG.
 
-use fisura_verification::foreign::is_plain;
+use fisura_verification::output::foreign::is_plain;
 use fisura_verification::record::{Figure, FigureBody};
 
 use crate::chart::{Marks, render_chart};

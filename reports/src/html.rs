@@ -7,7 +7,7 @@ mod size;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use fisura_verification::foreign::is_plain;
+use fisura_verification::output::foreign::is_plain;
 use fisura_verification::record::{Figure, FigureBody, Record, ReferenceKind, ResultSet};
 use minijinja::Environment;
 use minijinja::syntax::SyntaxConfig;

@@ -3,10 +3,10 @@
 mod board;
 mod pfhub;
 
-use fisura_verification::foreign::line;
-use fisura_verification::history::Table;
 use fisura_verification::judge::verdict::{Comparison, Outcome, Verdict, VerdictSet};
 use fisura_verification::judge::{Judged, QUANTITIES};
+use fisura_verification::output::foreign::line;
+use fisura_verification::output::history::Table;
 use fisura_verification::record::{Curve, CurveStyle, Figure, FigureBody};
 use minijinja::Environment;
 use minijinja::value::Serde;

@@ -3,7 +3,7 @@
 //! [`render`] takes a results folder (`results.json`, `series/*.csv`) and writes beside it what people and
 //! machines read. Nothing here runs a simulation, reads a clock or judges a value: the same results give the
 //! same bytes. Results may come from anywhere: what is opened, linked, printed and drawn of them is bounded,
-//! see [`fisura_verification::foreign`].
+//! see [`fisura_verification::output::foreign`].
 //!
 //! | file | for | module |
 //! |---|---|---|
@@ -65,8 +65,8 @@ mod trace;
 
 use std::path::{Path, PathBuf};
 
-use fisura_verification::foreign;
 use fisura_verification::output::OutputFolder;
+use fisura_verification::output::foreign;
 use fisura_verification::record::{Figure, ResultSet, SCHEMA};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! `summary.md`: what a step summary of a CI run shows first.
 
-use fisura_verification::foreign::line;
+use fisura_verification::output::foreign::line;
 use fisura_verification::record::{Record, ResultSet, Status};
 
 use crate::number::plain;

@@ -1,7 +1,7 @@
 //! Pictures of a single run: energies against time, and one phase-field picture per frame.
 
 use fisura_verification::extremes::larger;
-use fisura_verification::history::Table;
+use fisura_verification::output::history::Table;
 use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Scale};
 
 use crate::field::{Raster, render_field};

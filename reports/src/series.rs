@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
-use fisura_verification::foreign;
-use fisura_verification::history::Table;
+use fisura_verification::output::foreign;
+use fisura_verification::output::history::Table;
 use fisura_verification::record::{Figure, FigureBody};
 use thiserror::Error;
 

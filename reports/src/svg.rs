@@ -1,6 +1,6 @@
 //! From what plotters writes to an SVG that scales, speaks and stays small.
 
-use fisura_verification::foreign::steers;
+use fisura_verification::output::foreign::steers;
 use plotters::prelude::*;
 
 use crate::series::FigureError;

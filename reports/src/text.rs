@@ -1,6 +1,6 @@
 //! The verdict for a terminal.
 
-use fisura_verification::foreign::line;
+use fisura_verification::output::foreign::line;
 use fisura_verification::record::{Record, ResultSet};
 
 use crate::number::plain;

@@ -42,7 +42,7 @@ use thiserror::Error;
 use crate::output::{OutputError, OutputFolder};
 use crate::record::Environment;
 use crate::reference::{Library, ReferenceError, ReferenceValue};
-use crate::scene_file::SceneFileError;
+use crate::scene::SceneFileError;
 use crate::study::StudyError;
 use record::{BenchRecord, BenchSet, CostPoint, NamedPeer, SCHEMA};
 

@@ -7,20 +7,25 @@
 
 mod check;
 pub mod convergence;
+pub mod expand;
+pub mod geometry;
 mod read;
 mod repeat;
 mod rings;
 
+pub use check::Estimate;
+
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use crate::measure::grid_convergence::Estimate;
-use crate::record::{Accept, ReferenceKind};
-use crate::rings::Geometry;
-use crate::scene_file::document::{Document, Node};
-use crate::scene_file::fields::{Item, Problems};
-use crate::scene_file::{Problem, SceneFileError};
-use crate::suite::part::fingerprint;
+use fisura::fault;
+
+use crate::case::geometry::Geometry;
+use crate::output::fingerprint::fingerprint;
+use crate::record::{Accept, Reference, ReferenceKind};
+use crate::scene::document::{Document, Node};
+use crate::scene::fields::{Item, Problems};
+use crate::scene::{Problem, SceneFileError};
 
 /// How much a run may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -102,6 +107,17 @@ pub struct Check {
 }
 
 impl Check {
+    /// Bounds that count from the reference value, if any do.
+    ///
+    /// # Errors
+    /// If there is no value to count from.
+    pub fn bounds_around(&self, reference: Option<&Reference>) -> Result<Option<[f64; 2]>, String> {
+        let Some([below, above]) = self.around_reference else { return Ok(None) };
+        let value = reference.and_then(|reference| reference.value);
+        let value = value.ok_or("there is no reference value from which below and above could count")?;
+        Ok(Some([value - fault!("bounds-both-above", below => -below), value + above]))
+    }
+
     /// Whether it is about a variant: it names none, this one, or a pattern such as `p=[234]` that matches
     /// it.
     pub fn is_about(&self, variant: &str) -> bool {

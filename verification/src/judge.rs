@@ -21,7 +21,7 @@ pub mod verdict;
 use std::path::Path;
 
 use crate::reference::{Library, ReferenceCurve};
-use crate::scene_file::SceneFileError;
+use crate::scene::SceneFileError;
 
 use family::{MeshStudy, Variant};
 use submission::Submission;

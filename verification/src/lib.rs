@@ -1,24 +1,32 @@
 //! Cases, checks and records that verify the fisura solver.
+//!
+//! Rooms, lowest first: each calls those above it in this table, and none below.
+//!
+//! | room | what |
+//! |---|---|
+//! | [`output`] | folders that commands write to, tables, fingerprints, files of others |
+//! | [`watch`] | progress, interrupts and panics of a case |
+//! | [`record`] | results: records, verdicts, figures |
+//! | [`scene`] | scene files, units, what is wrong with a file and where |
+//! | [`reference`] | reference data and their uncertainty |
+//! | [`case`] | case files: claims, checks, variants and study axes |
+//! | [`exact`] | exact solutions, each in a file of its own |
+//! | [`measure`] | what is measured of a run |
+//! | [`scene_run`] | a scene run to its end |
+//! | [`study`] | studies that need more than a scene and its measures |
+//! | [`suite`] | cases chosen, prepared, run, judged, stored, merged |
+//! | [`bench`] | speed against error |
+//! | [`judge`] | results of other codes, held against the benchmarks |
 
 pub mod bench;
 pub mod case;
-pub mod convergence;
-pub mod dense;
 pub mod exact;
-pub mod expand;
-pub mod figures;
-pub mod foreign;
-pub mod history;
 pub mod judge;
 pub mod measure;
 pub mod output;
-pub mod patches;
-pub mod plain_scene;
-pub mod random;
 pub mod record;
 pub mod reference;
-pub mod rings;
-pub mod scene_file;
+pub mod scene;
 pub mod scene_run;
 pub mod study;
 pub mod suite;

@@ -12,7 +12,7 @@ use fisura::output::picture::Picture;
 use fisura::scene::Scene;
 
 use crate::case::Check;
-use crate::history::Table;
+use crate::output::history::Table;
 use crate::record::Reference;
 use crate::reference::Library;
 

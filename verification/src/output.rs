@@ -7,6 +7,9 @@
 //! or not at all: it is written under a random name that did not exist before, and renamed.
 
 mod error;
+pub mod fingerprint;
+pub mod foreign;
+pub mod history;
 mod lock;
 mod manifest;
 mod temporary;
@@ -21,7 +24,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
 
-use crate::history::Table;
+use crate::output::history::Table;
 pub use error::OutputError;
 pub use manifest::MANIFEST;
 use manifest::{Entry, Manifest};

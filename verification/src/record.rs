@@ -9,6 +9,7 @@ mod verdict;
 
 use std::collections::BTreeMap;
 
+use fisura::fault;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -186,4 +187,16 @@ pub struct Record {
     pub series: Option<String>,
     /// Measured time.
     pub timing: Timing,
+}
+
+/// The worst of some verdicts.
+pub fn worst(verdicts: impl IntoIterator<Item = Status>) -> Option<Status> {
+    let rank = |status: &Status| match status {
+        Status::Info => 0,
+        Status::Pass => 1,
+        Status::Fail => 2,
+        Status::Error => 3,
+    };
+    let verdicts = verdicts.into_iter();
+    fault!("last-verdict-counts", verdicts.max_by_key(rank) => verdicts.last())
 }

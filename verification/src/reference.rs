@@ -16,13 +16,15 @@ mod source_file;
 
 use std::path::Path;
 
+use fisura::fault;
+
 pub use compare::{relative_rms, relative_uncertainty, rms_difference, rms_uncertainty};
 pub use curve::ReferenceCurve;
 pub use error::ReferenceError;
 pub use quantity::quantities;
 pub use source_file::{Obtained, Slip};
 
-use crate::record::{Reference, ReferenceKind};
+use crate::record::{Accept, Reference, ReferenceKind};
 
 /// One `source.toml`, numbers aside.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,12 +103,22 @@ impl ReferenceValue {
 }
 
 impl ReferenceBand {
+    /// Its bounds, in the unit of a check.
+    pub fn bounds(&self, scale: f64) -> Accept {
+        let why = format!("what the sources say: {}", self.sources.join(", "));
+        let factor = fault!("band-in-other-units", scale => 1.0);
+        Accept { min: Some(self.min * factor), max: Some(self.max * factor), why, kind: None }
+    }
+
     /// The reference entry of a record that is held against this band.
     pub fn reference(&self) -> Reference {
         let from = if self.sources.is_empty() { self.citation.clone() } else { self.sources.join(", ") };
         Reference::new(None, self.kind, format!("{}, {}: {from}", self.id, self.name))
     }
 }
+
+/// File of a folder that holds a result to be judged, and no reference.
+pub const SUBMISSION: &str = "submission.toml";
 
 /// All reference data of a folder, in the order of folder names.
 #[derive(Debug, Clone, Default, PartialEq)]

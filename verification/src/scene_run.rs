@@ -22,7 +22,7 @@ use fisura::validate::validate;
 use serde::{Deserialize, Serialize};
 
 use crate::extremes::larger;
-use crate::history::Table;
+use crate::output::history::Table;
 use crate::watch;
 
 pub use breakdown::{BreakdownReport, Extremes, WorstPoint};

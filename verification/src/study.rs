@@ -9,13 +9,17 @@ mod constant_stress;
 mod contact;
 pub(crate) mod convergence;
 mod crack_profile;
+mod dense;
 mod eigenfrequencies;
 mod homogeneous_state;
 mod judging;
 mod linear_field;
 mod nurbs;
 mod offers;
+pub mod orders;
+mod patches;
 mod pulse;
+mod random;
 mod rings;
 mod rotation;
 pub mod scene;
@@ -26,8 +30,8 @@ pub use offers::{Offer, Offers};
 use thiserror::Error;
 
 use crate::case::Case;
-use crate::expand::CaseScene;
-use crate::history::Table;
+use crate::case::expand::CaseScene;
+use crate::output::history::Table;
 use crate::record::{Figure, Reference};
 
 /// One number a study found.

@@ -1,5 +1,6 @@
 //! Suites: which cases there are, which are chosen, and running them into a folder of results.
 
+pub mod figures;
 pub(crate) mod judge;
 pub mod merge;
 pub mod part;
@@ -17,15 +18,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use fisura::fault;
 use thiserror::Error;
 
 pub use crate::case::{Case, Tier};
-use crate::figures;
 use crate::output::{OutputError, OutputFolder};
-use crate::record::{Environment, Figure, Record, ResultSet, SCHEMA, Status};
+pub use crate::record::worst;
+use crate::record::{Environment, Figure, Record, ResultSet, SCHEMA};
 use crate::reference::{Library, ReferenceError};
-use crate::scene_file::SceneFileError;
+use crate::scene::SceneFileError;
 use crate::study::scene::RunInfo;
 pub use seconds::Seconds;
 pub use selection::{Malformed, Selection, load_cases, read_cases, select};
@@ -87,20 +87,6 @@ pub enum VerifyError {
         /// Number of finished cases that would be lost.
         cases: usize,
     },
-    /// A file cannot be read.
-    #[error("{path}: {message}")]
-    Output {
-        /// File or folder.
-        path: String,
-        /// What is wrong.
-        message: String,
-    },
-}
-
-impl VerifyError {
-    fn output(path: &Path, error: impl std::fmt::Display) -> Self {
-        Self::Output { path: path.display().to_string(), message: error.to_string() }
-    }
 }
 
 /// What one case found, as stored between sessions.
@@ -188,20 +174,8 @@ fn inputs(cases: &[Case]) -> BTreeMap<String, String> {
     cases.iter().map(|case| (case.id(), case.inputs())).collect()
 }
 
-/// The worst of some verdicts.
-pub fn worst(verdicts: impl IntoIterator<Item = Status>) -> Option<Status> {
-    let rank = |status: &Status| match status {
-        Status::Info => 0,
-        Status::Pass => 1,
-        Status::Fail => 2,
-        Status::Error => 3,
-    };
-    let verdicts = verdicts.into_iter();
-    fault!("last-verdict-counts", verdicts.max_by_key(rank) => verdicts.last())
-}
-
 /// Writes `series/<stem>.csv`; a stem such as `timing/bar` has a folder of its own.
-fn write_series(out: &OutputFolder, stem: &str, table: &crate::history::Table) -> Result<(), VerifyError> {
+fn write_series(out: &OutputFolder, stem: &str, table: &crate::output::history::Table) -> Result<(), VerifyError> {
     Ok(out.write_table(&format!("series/{stem}.csv"), table)?)
 }
 
@@ -209,6 +183,7 @@ fn write_series(out: &OutputFolder, stem: &str, table: &crate::history::Table) -
 mod tests {
     use super::prepare::prepare;
     use super::*;
+    use crate::record::Status;
 
     #[test]
     fn a_panic_is_an_error_for_every_record_of_the_case() {

@@ -10,7 +10,7 @@ use fisura::scene::{Frame, Plane, Scene};
 use fisura::simulation::{Extent, Simulation};
 use fisura::validate::expected_size;
 use fisura_reports::number::{duration, plain};
-use fisura_verification::scene_file::SceneFile;
+use fisura_verification::scene::SceneFile;
 use serde::Serialize;
 
 use crate::cli::{Common, Format, SceneArgs};

@@ -7,7 +7,7 @@
 use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
 use std::process::exit;
 
-use fisura_verification::foreign;
+use fisura_verification::output::foreign;
 use serde::Serialize;
 
 use crate::cli::Common;

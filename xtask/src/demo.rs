@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use fisura::linear_algebra::extremes::larger;
-use fisura_verification::history::Table;
+use fisura_verification::output::history::Table;
 
 use crate::cli::{Common, Format, SceneArgs};
 use crate::exit::Exit;

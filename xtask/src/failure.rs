@@ -3,9 +3,9 @@
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
 use fisura::simulation::breakdown::Breakdown;
 use fisura_reports::ReportError;
-use fisura_verification::foreign::text;
 use fisura_verification::output::OutputError;
-use fisura_verification::scene_file::{SceneDiagnostic, SceneFile, SceneFileError, Severity};
+use fisura_verification::output::foreign::text;
+use fisura_verification::scene::{SceneDiagnostic, SceneFile, SceneFileError, Severity};
 
 use crate::console;
 use crate::exit::Exit;

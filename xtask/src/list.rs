@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use fisura_reports::number::duration;
-use fisura_verification::foreign::line;
-use fisura_verification::scene_file::SceneFileError;
-use fisura_verification::scene_file::document::{self, Node};
+use fisura_verification::output::foreign::line;
+use fisura_verification::scene::SceneFileError;
+use fisura_verification::scene::document::{self, Node};
 use fisura_verification::suite::prepare::{Prepared, prepare};
 use fisura_verification::suite::{Case, Selection, Tier, read_cases, select};
 use serde_json::{Value, json};

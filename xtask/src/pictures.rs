@@ -5,7 +5,7 @@ use fisura_reports::FigureError;
 use fisura_reports::field::{Raster, render_field};
 use fisura_reports::number::pretty;
 use fisura_reports::run_report::{energies_svg, phase_name, phase_svg};
-use fisura_verification::history::Table;
+use fisura_verification::output::history::Table;
 use fisura_verification::record::{Figure, FigureBody};
 use fisura_verification::scene_run::SceneRun;
 

@@ -5,8 +5,8 @@ use std::io::Error;
 use std::path::{Path, PathBuf};
 
 use fisura_reports::{ReportError, bench, read_results, render};
-use fisura_verification::foreign;
 use fisura_verification::output::OutputFolder;
+use fisura_verification::output::foreign;
 use serde_json::json;
 
 use crate::cli::{Common, Format};

@@ -1,6 +1,6 @@
 //! A scene from the command line.
 
-use fisura_verification::scene_file::SceneFile;
+use fisura_verification::scene::SceneFile;
 
 use crate::cli::{Common, SceneArgs};
 use crate::console;

@@ -6,7 +6,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use fisura_reports::number::duration;
-use fisura_verification::foreign::line;
+use fisura_verification::output::foreign::line;
 use fisura_verification::record::{Record, Status};
 use fisura_verification::suite::{Case, Progress, Seconds, worst};
 use indicatif::{MultiProgress, ProgressBar};

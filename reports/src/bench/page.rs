@@ -1,7 +1,7 @@
 //! The report as Markdown, as one HTML page, and its samples as CSV.
 
 use fisura_verification::bench::record::{BenchSet, Spread};
-use fisura_verification::history::format_number;
+use fisura_verification::output::history::format_number;
 use minijinja::Environment;
 use minijinja::value::Serde;
 use serde::Serialize;

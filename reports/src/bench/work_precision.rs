@@ -1,7 +1,7 @@
 //! Error against cost: processor time, particle-steps, memory; with the front of what nothing beats.
 
 use fisura_verification::bench::record::{BenchRecord, CostPoint, Spread};
-use fisura_verification::history::Table;
+use fisura_verification::output::history::Table;
 use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Floor, Scale};
 
 use super::pareto::{cost_of, front};

@@ -1,8 +1,8 @@
 //! The board: error against cost of all submissions.
 
-use fisura_verification::foreign::line;
-use fisura_verification::history::Table;
 use fisura_verification::judge::Judged;
+use fisura_verification::output::foreign::line;
+use fisura_verification::output::history::Table;
 use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Scale};
 use serde::Serialize;
 

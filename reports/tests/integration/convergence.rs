@@ -4,7 +4,7 @@ use std::path::Path;
 
 use fisura_reports::figure::{file_name, render_figure};
 use fisura_reports::series::SeriesSet;
-use fisura_verification::convergence::{Convergence, Curve, Level, Norm, Refined};
+use fisura_verification::study::orders::{Convergence, Curve, Level, Norm, Refined};
 use insta::assert_snapshot;
 
 /// Errors `C h^order`, a little off on coarse meshes, and round-off that grows as meshes are refined.

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use fisura_reports::compare::{compare, render_markdown};
 use fisura_reports::text::render_text;
 use fisura_reports::{Rendered, ReportError, bundle, read_results};
-use fisura_verification::foreign::steers;
 use fisura_verification::output::OutputFolder;
+use fisura_verification::output::foreign::steers;
 use fisura_verification::record::{Curve, Figure, FigureBody, ResultSet};
 
 /// Renders results beside themselves.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use fisura_reports::bundle::{read, redraw};
-use fisura_verification::suite::part::fingerprint;
+use fisura_verification::output::fingerprint::fingerprint;
 use fisura_verification::suite::{Case, load_cases};
 
 fn root() -> PathBuf {

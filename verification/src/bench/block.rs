@@ -18,7 +18,7 @@ use fisura::transfer::sweep::{StripForces, sweep};
 
 use super::BenchError;
 use crate::extremes::largest;
-use crate::plain_scene::PlainScene;
+use crate::scene::plain::PlainScene;
 
 /// Span length, m: the length scale.
 pub const SPAN: f64 = 0.25e-3;

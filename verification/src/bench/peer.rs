@@ -15,8 +15,8 @@ mod program;
 use super::record::{BenchRecord, Sample};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
 use super::{BenchError, Settings};
-use crate::history::Table;
 use crate::output::OutputFolder;
+use crate::output::history::Table;
 use block::PeerBlock;
 use program::Program;
 

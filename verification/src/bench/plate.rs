@@ -18,9 +18,9 @@ use super::record::{AnswerError, BenchRecord, CostPoint};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
 use super::{BenchError, Settings};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::{larger, largest};
-use crate::history::Table;
+use crate::output::history::Table;
 use crate::reference::{Library, ReferenceCurve, relative_rms};
 use crate::scene_run::run_scene;
 

@@ -20,7 +20,7 @@ use super::{BenchError, Settings};
 use crate::exact::ExactSolution;
 use crate::exact::motion::Derived;
 use crate::exact::standing_wave::{SIZE, StandingWave};
-use crate::plain_scene::{PlainScene, ROLLERS};
+use crate::scene::plain::{PlainScene, ROLLERS};
 use crate::study::convergence::errors::{ErrorPoints, Squares};
 use crate::study::convergence::moving::displace;
 

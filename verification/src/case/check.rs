@@ -1,10 +1,9 @@
 //! The `[[check]]` tables of a case file.
 
 use super::{Check, ExpectedBand};
-use crate::measure::grid_convergence::Estimate;
 use crate::record::{Accept, BoundKind, ReferenceKind};
-use crate::scene_file::fields::{Fields, Item};
-use crate::scene_file::units::{self, Dimension};
+use crate::scene::fields::{Fields, Item};
+use crate::scene::units::{self, Dimension};
 
 const KEYS: [&str; 27] = [
     "id",
@@ -35,6 +34,29 @@ const KEYS: [&str; 27] = [
     "why",
     "expectation",
 ];
+
+/// What a check makes of the values of its measure on all meshes: the key `meshes`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Estimate {
+    /// The order p in h.
+    ObservedOrder,
+    /// The value extrapolated to h = 0, in the unit of the check.
+    Richardson,
+    /// Relative uncertainty of the value on the finest mesh.
+    GridConvergenceIndex,
+    /// The value on the finest mesh, with its numerical uncertainty.
+    FinestMesh,
+}
+
+impl Estimate {
+    /// Words of the key.
+    pub const WORDS: [(&str, Self); 4] = [
+        ("observed-order", Self::ObservedOrder),
+        ("richardson", Self::Richardson),
+        ("grid-convergence-index", Self::GridConvergenceIndex),
+        ("finest-mesh", Self::FinestMesh),
+    ];
+}
 
 /// All checks, at least one.
 pub(super) fn read(item: &Item<'_>) -> Option<Vec<Check>> {

@@ -15,9 +15,9 @@
 
 use fisura::scene::{Frame, Layout, Mass, Plane, Transfer};
 
-use crate::scene_file::fields::Item;
-use crate::scene_file::read::transfer;
-use crate::scene_file::units::Dimension;
+use crate::scene::fields::Item;
+use crate::scene::read::transfer;
+use crate::scene::units::Dimension;
 
 /// A family of patches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -194,8 +194,8 @@ fn filled<'a, T>(item: &Item<'a>, like: &str, read: impl Fn(&Item<'a>) -> Option
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene_file::document::Document;
-    use crate::scene_file::fields::Problems;
+    use crate::scene::document::Document;
+    use crate::scene::fields::Problems;
 
     /// What is wrong with a table that is sound but for these lines: keys, messages and remedies.
     fn problems(lines: &str) -> Vec<(String, String, String)> {

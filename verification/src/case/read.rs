@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::{Case, Tier, Variant, check, convergence, rings};
-use crate::scene_file::document::{Document, Node, Value};
-use crate::scene_file::fields::Item;
-use crate::scene_file::units::Dimension;
+use crate::scene::document::{Document, Node, Value};
+use crate::scene::fields::Item;
+use crate::scene::units::Dimension;
 
 const KEYS: [&str; 13] = [
     "claim",

@@ -4,9 +4,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::scene_file::document::{Document, Node, Value};
-use crate::scene_file::suggest::nearest;
-use crate::scene_file::{Problem, SceneFileError};
+use crate::scene::document::{Document, Node, Value};
+use crate::scene::suggest::nearest;
+use crate::scene::{Problem, SceneFileError};
 
 /// File of the sets, in the folder of all cases.
 pub const SETS: &str = "check-sets.toml";

@@ -10,9 +10,9 @@
 //! points = [2]                  # per span and direction
 //! ```
 
-use crate::rings::Geometry;
-use crate::scene_file::fields::Item;
-use crate::scene_file::units::Dimension;
+use crate::case::geometry::Geometry;
+use crate::scene::fields::Item;
+use crate::scene::units::Dimension;
 
 /// Most geometries of a sweep.
 const MOST_GEOMETRIES: usize = 10_000;

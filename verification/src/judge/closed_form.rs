@@ -5,8 +5,8 @@ use super::submission::Submission;
 use super::table::Curve;
 use super::verdict::{Comparison, Outcome, QuantityVerdict, ReferenceUsed, Verdict};
 use super::{BENCHMARKS, Judged};
-use crate::scene_file::SceneFileError;
-use crate::scene_file::units::Dimension;
+use crate::scene::SceneFileError;
+use crate::scene::units::Dimension;
 
 /// Material of all benchmarks.
 pub const YOUNG_MODULUS: f64 = 32e9;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::submission::{Crack, Model, Plane};
 use super::{FRACTURE, QUANTITIES};
-use crate::history::{Table, TableError};
+use crate::output::history::{Table, TableError};
 use crate::reference::{Library, ReferenceCurve};
 
 /// Folder of the variants in the reference data.

@@ -1,10 +1,10 @@
 //! Columns of files mapped to quantities: `[curves]` of `submission.toml`.
 
 use super::QUANTITIES;
-use crate::foreign;
-use crate::scene_file::fields::Item;
-use crate::scene_file::units::{self, Dimension};
-use crate::scene_file::{Location, Value};
+use crate::output::foreign;
+use crate::scene::fields::Item;
+use crate::scene::units::{self, Dimension};
+use crate::scene::{Location, Value};
 
 /// Where a column stands.
 #[derive(Debug, Clone, PartialEq)]

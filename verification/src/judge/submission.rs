@@ -5,14 +5,13 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::mapping::{Mapping, curves};
-use crate::foreign;
-use crate::scene_file::diagnostic::Sources;
-use crate::scene_file::fields::{Fields, Item, Problems};
-use crate::scene_file::units::Dimension;
-use crate::scene_file::{Document, Problem, SceneFileError};
+use crate::output::foreign;
+use crate::reference::SUBMISSION;
+use crate::scene::diagnostic::Sources;
+use crate::scene::fields::{Fields, Item, Problems};
+use crate::scene::units::Dimension;
+use crate::scene::{Document, Problem, SceneFileError};
 
-/// Name of the file that describes a submission.
-pub const SUBMISSION: &str = "submission.toml";
 /// Longest `submission.toml`, bytes.
 const MOST_BYTES: u64 = 1 << 20;
 

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use super::mapping::{ColumnName, Mapping};
 use super::submission::Submission;
-use crate::foreign;
-use crate::scene_file::diagnostic::Sources;
-use crate::scene_file::{Location, Problem, SceneFileError};
+use crate::output::foreign;
+use crate::scene::diagnostic::Sources;
+use crate::scene::{Location, Problem, SceneFileError};
 
 /// Most rows of a file.
 pub const MOST_ROWS: usize = 2_000_000;
@@ -128,7 +128,7 @@ impl File {
             ColumnName::Numbered(number) => number - 1,
             ColumnName::Named(name) => self.names.iter().position(|n| n == name).ok_or_else(|| {
                 let known: Vec<&str> = self.names.iter().map(String::as_str).collect();
-                let meant = crate::scene_file::suggest::nearest(name, &known);
+                let meant = crate::scene::suggest::nearest(name, &known);
                 let meant = meant.map_or(String::new(), |n| format!("did you mean {n:?}? "));
                 let remedy = format!("{meant}its columns are {}", known.join(", "));
                 submission.error(mapping, format!("{} has no column {name:?}", self.name), remedy)

@@ -9,9 +9,9 @@ use super::submission::Submission;
 use super::verdict::{Finding, Outcome};
 use super::*;
 use crate::case::Case;
-use crate::history::Table;
 use crate::measure::{Run, measure};
-use crate::scene_file::SceneFile;
+use crate::output::history::Table;
+use crate::scene::SceneFile;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

@@ -28,8 +28,8 @@ use fisura::particles::spans::largest_spans;
 use fisura::scene::Mesh;
 
 use super::{Measured, Run, expected, held_against, measure};
-use crate::case::Check;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
+use crate::case::{Check, Estimate};
 use crate::extremes::spread;
 use crate::reference::Library;
 
@@ -40,29 +40,6 @@ const AGREEMENT: f64 = 0.1;
 const ITERATIONS: usize = 500;
 /// Uncertainty over the range of a sequence without an order.
 const NO_ORDER: f64 = 3.0;
-
-/// What a check makes of the values of its measure on all meshes: the key `meshes`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Estimate {
-    /// The order p in h.
-    ObservedOrder,
-    /// The value extrapolated to h = 0, in the unit of the check.
-    Richardson,
-    /// Relative uncertainty of the value on the finest mesh.
-    GridConvergenceIndex,
-    /// The value on the finest mesh, with its numerical uncertainty.
-    FinestMesh,
-}
-
-impl Estimate {
-    /// Words of the key.
-    pub const WORDS: [(&str, Self); 4] = [
-        ("observed-order", Self::ObservedOrder),
-        ("richardson", Self::Richardson),
-        ("grid-convergence-index", Self::GridConvergenceIndex),
-        ("finest-mesh", Self::FinestMesh),
-    ];
-}
 
 /// Representative span length of a mesh, m.
 pub fn span(mesh: &Mesh) -> f64 {

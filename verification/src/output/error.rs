@@ -27,6 +27,10 @@ impl OutputError {
         Self::new(format!("{} cannot be written: {reason}", path.display()), ELSEWHERE)
     }
 
+    pub(super) fn unreadable(path: &Path, reason: impl Display) -> Self {
+        Self::new(format!("{} cannot be read: {reason}", path.display()), "check the path and the permissions")
+    }
+
     pub(super) fn folder(path: &Path, reason: impl Display) -> Self {
         Self::new(format!("the output folder {} cannot be written: {reason}", path.display()), ELSEWHERE)
     }

@@ -1,7 +1,7 @@
 //! A reference curve in SI units.
 
 use super::Obtained;
-use crate::history::Table;
+use crate::output::history::Table;
 use crate::record::{Curve, CurveStyle, Reference, ReferenceKind};
 
 /// A curve from elsewhere, in SI units, with its uncertainty.

@@ -8,8 +8,7 @@ use toml::Spanned;
 use super::quantity::Unit;
 use super::source_file::{BandEntry, SourceFile, ValueEntry};
 use super::{Library, ReferenceBand, ReferenceError, ReferenceValue, Source};
-use crate::judge::submission::SUBMISSION;
-use crate::scene_file::units::UnitError;
+use crate::scene::units::UnitError;
 
 /// Name of the file that describes a source.
 pub(super) const SOURCE: &str = "source.toml";
@@ -32,7 +31,7 @@ fn walk(root: &Path, folder: &Path, library: &mut Library) -> Result<(), Referen
         .and_then(|entries| entries.map(|entry| entry.map(|e| e.path())).collect::<Result<Vec<_>, _>>())
         .map_err(fail)?;
     entries.sort();
-    if entries.iter().any(|path| path.file_name().is_some_and(|name| name == SUBMISSION)) {
+    if entries.iter().any(|path| path.file_name().is_some_and(|name| name == super::SUBMISSION)) {
         return Ok(()); // a result to be judged, no reference
     }
     if entries.iter().any(|path| path.file_name().is_some_and(|name| name == SOURCE)) {

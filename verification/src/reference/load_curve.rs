@@ -8,7 +8,7 @@ use super::load::{SOURCE, SourceReader};
 use super::quantity::{self, Unit};
 use super::source_file::CurveEntry;
 use super::{Obtained, ReferenceCurve, ReferenceError};
-use crate::history::Table;
+use crate::output::history::Table;
 
 impl SourceReader {
     /// In a picture-only folder a curve may be absent, so a misspelt column would be silently ignored: every

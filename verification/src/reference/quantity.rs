@@ -1,6 +1,6 @@
 //! Quantities that reference curves describe, and units on their way to SI.
 
-use crate::scene_file::units::{self, Dimension, UnitError};
+use crate::scene::units::{self, Dimension, UnitError};
 
 /// Energy per metre of thickness; the same dimension as a force.
 const ENERGY_PER_THICKNESS: Dimension = Dimension::FORCE;

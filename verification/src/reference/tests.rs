@@ -5,7 +5,7 @@ use approx::assert_relative_eq;
 use tempfile::TempDir;
 
 use super::*;
-use crate::history::Table;
+use crate::output::history::Table;
 use crate::record::CurveStyle;
 
 const FRAME: &str = r#"citation = "made up"

@@ -17,8 +17,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::Record;
+use crate::output::fingerprint::fingerprint;
 use crate::output::{OutputError, OutputFolder};
-use crate::suite::part::fingerprint;
 
 /// First line of the file, with the version of its form.
 const FORM: &str = "fisura checkpoint 3";

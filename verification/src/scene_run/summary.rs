@@ -6,7 +6,7 @@ use fisura::simulation::Simulation;
 use fisura::simulation::breakdown::Breakdown;
 use serde::{Deserialize, Serialize};
 
-use crate::history::Table;
+use crate::output::history::Table;
 
 /// Content of `summary.json`. Counts are zero and the step is absent if the run broke down before it started.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

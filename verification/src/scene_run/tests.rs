@@ -3,7 +3,7 @@
 use fisura::scene::TimeStep;
 
 use super::*;
-use crate::scene_file::SceneFile;
+use crate::scene::SceneFile;
 
 const BLOCK: &str = r#"
     title = "Block"

@@ -8,9 +8,9 @@ use fisura::splines::spline::SplineSpace;
 
 use super::{Findings, StudyError};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::larger;
-use crate::random::Random;
+use crate::study::random::Random;
 
 const KNOT_VECTORS: u64 = 20;
 const SPANS: usize = 12;

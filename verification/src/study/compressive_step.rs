@@ -7,7 +7,7 @@ use fisura::simulation::Simulation;
 
 use super::{Findings, StudyError};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::{larger, largest};
 
 pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {

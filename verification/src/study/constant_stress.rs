@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{Findings, StudyError};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::larger;
 
 pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {

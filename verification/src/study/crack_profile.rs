@@ -13,10 +13,10 @@ use fisura::splines::patch::Patch;
 
 use super::{Findings, StudyError};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::largest;
-use crate::plain_scene::PlainScene;
 use crate::record::{Reference, ReferenceKind};
+use crate::scene::plain::PlainScene;
 
 /// Length scale l0, m.
 const LENGTH: f64 = 1.0;

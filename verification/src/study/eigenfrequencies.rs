@@ -11,10 +11,10 @@ use fisura::scene::{Mass, Mesh, Scene};
 
 use super::{Findings, StudyError};
 use crate::case::Case;
-use crate::convergence::{Convergence, Curve, Level, Norm, Refined};
-use crate::dense;
-use crate::expand::CaseScene;
-use crate::plain_scene::PlainScene;
+use crate::case::expand::CaseScene;
+use crate::scene::plain::PlainScene;
+use crate::study::dense;
+use crate::study::orders::{Convergence, Curve, Level, Norm, Refined};
 
 /// Spans along the bar.
 const MESHES: [usize; 4] = [8, 16, 32, 64];

@@ -22,9 +22,9 @@ use fisura::transfer::sweep::StripForces;
 
 use super::{Findings, StudyError};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::{larger, largest};
-use crate::history::Table;
+use crate::output::history::Table;
 use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind};
 
 /// Strains looked at, over the strain at the peak.

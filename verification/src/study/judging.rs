@@ -8,18 +8,15 @@
 use fisura::scene::{Material, Mesh, Scene};
 
 use super::{Findings, Offered, Offers, StudyError};
+use crate::case::expand::CaseScene;
 use crate::case::{Case, Check};
-use crate::convergence::observed_order;
-use crate::expand::CaseScene;
 use crate::extremes::largest;
-use crate::history::Table;
 use crate::measure::{Run, measure};
-use crate::plain_scene::PlainScene;
-use crate::record::{Accept, Record, Reference, ReferenceKind, Status};
+use crate::output::history::Table;
+use crate::record::{Accept, Record, Reference, ReferenceKind, Status, worst};
 use crate::reference::{Library, Obtained, ReferenceBand, ReferenceCurve, relative_rms};
-use crate::suite::judge::band_bounds;
-use crate::suite::prepare::bounds_around;
-use crate::suite::worst;
+use crate::scene::plain::PlainScene;
+use crate::study::orders::observed_order;
 
 /// Quantities, and the variants of the last.
 const WRONG: &str = "wrong verdicts on known values";
@@ -106,7 +103,7 @@ fn verdicts(base: &Check) -> Vec<bool> {
         right.push(worst(statuses.iter().copied()) == expected);
     }
     let around = Check { around_reference: Some([1.0, 2.0]), ..base.clone() };
-    right.push(bounds_around(&around, exact(10.0).as_ref()) == Ok(Some([9.0, 12.0])));
+    right.push(around.bounds_around(exact(10.0).as_ref()) == Ok(Some([9.0, 12.0])));
     let band = ReferenceBand {
         id: String::new(),
         name: String::new(),
@@ -118,7 +115,7 @@ fn verdicts(base: &Check) -> Vec<bool> {
         citation: String::new(),
         kind: ReferenceKind::Literature,
     };
-    let Accept { min, max, .. } = band_bounds(&band, 1e6);
+    let Accept { min, max, .. } = band.bounds(1e6);
     right.push((min, max) == (Some(2.0), Some(5.0)));
     right
 }

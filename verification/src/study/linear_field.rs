@@ -17,10 +17,10 @@ use fisura::splines::quadrature::{MAX_POINTS, Rule};
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::case::convergence::PatchFamily;
-use crate::convergence::{Convergence, Curve, Level, Norm, Refined};
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::larger;
-use crate::patches;
+use crate::study::orders::{Convergence, Curve, Level, Norm, Refined};
+use crate::study::patches;
 
 const FAMILIES: [(PatchFamily, &str, [usize; 4]); 3] = [
     (PatchFamily::Annulus, "annulus", [2, 4, 8, 16]),

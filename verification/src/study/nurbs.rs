@@ -11,9 +11,9 @@ use fisura::splines::spline::SplineSpace;
 
 use super::{Findings, StudyError};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::{larger, largest};
-use crate::random::Random;
+use crate::study::random::Random;
 
 const PATCHES: u64 = 20;
 const SPANS: usize = 8;

@@ -1,8 +1,8 @@
 //! What a study yields for a case, known before it runs: which quantities, for which variants, and whether
 //! the study brings a reference value of its own.
 
-use crate::convergence::{Norm, Refined};
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
+use crate::study::orders::{Norm, Refined};
 
 /// A number that a study will measure.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,7 +47,7 @@ impl Offers {
         self.0.push(Offer { variant: variant.into(), quantity: quantity.into(), unit, held });
     }
 
-    /// Adds what [`Convergence::measurements`](crate::convergence::Convergence::measurements) gives for a
+    /// Adds what [`Convergence::measurements`](crate::study::orders::Convergence::measurements) gives for a
     /// curve with these norms and orders of theory.
     pub fn curve(&mut self, name: &str, refined: Refined, norms: &[&str], orders: &[Option<f64>]) {
         for (norm, order) in norms.iter().zip(orders) {

@@ -22,9 +22,9 @@ use fisura::splines::quadrature::Rule;
 
 use super::{Findings, StudyError};
 use crate::case::Case;
-use crate::expand::CaseScene;
-use crate::plain_scene::{PlainScene, ROLLERS};
+use crate::case::expand::CaseScene;
 use crate::record::{Reference, ReferenceKind};
+use crate::scene::plain::{PlainScene, ROLLERS};
 
 const MATERIAL: Material = Material { young_modulus: 1.0, poisson_ratio: 0.2, density: 1.0, fracture: None };
 /// Fraction of the critical step.

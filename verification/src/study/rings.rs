@@ -1,5 +1,6 @@
 //! Two rings in head-on collision: the events of every scene of a case.
 
+pub mod events;
 mod figures;
 mod sweep;
 
@@ -11,11 +12,11 @@ use fisura::simulation::square_pixels;
 use super::scene::series_stem;
 use super::{Findings, Measurement, StudyError};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::{larger, largest};
 use crate::record::{Reference, ReferenceKind};
-use crate::rings::events::{EVENTS, Watch};
 use crate::scene_run::frame_steps;
+use crate::study::rings::events::{EVENTS, Watch};
 pub(super) use sweep::{offers as sweep_offers, study as sweep};
 
 /// Times (s) of the events in the paper's words; the end of the crack through the rear wall is not among

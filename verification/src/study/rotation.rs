@@ -11,7 +11,7 @@ use fisura::scene::Kinematics;
 
 use super::{Findings, StudyError};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::largest;
 use crate::record::{Reference, ReferenceKind};
 

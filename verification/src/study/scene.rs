@@ -7,12 +7,12 @@ use fisura::output::picture::Picture;
 use fisura::particles::spans::largest_spans;
 use fisura::scene::Scene;
 
+use crate::case::expand::CaseScene;
 use crate::case::{Case, Check};
-use crate::expand::CaseScene;
 use crate::extremes::{larger, smaller};
-use crate::history::Table;
 use crate::measure::grid_convergence::{over_meshes, span};
 use crate::measure::{Measured, Run, fitted_speed, measure};
+use crate::output::history::Table;
 use crate::record::Timing;
 use crate::reference::Library;
 use crate::scene_run::{Progress, SceneRun, run_scene};

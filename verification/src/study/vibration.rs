@@ -14,10 +14,10 @@ use fisura::scene::{Mass, Mesh};
 
 use super::{Findings, StudyError};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::spread;
-use crate::plain_scene::PlainScene;
 use crate::record::{Reference, ReferenceKind};
+use crate::scene::plain::PlainScene;
 
 const SPANS: usize = 16;
 const PERIODS: f64 = 100.0;

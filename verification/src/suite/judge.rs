@@ -5,14 +5,14 @@ use std::time::Instant;
 
 use fisura::fault;
 
-use super::prepare::{Planned, Prepared, bounds_around, find_band};
+use super::prepare::{Planned, Prepared, find_band};
 use super::{CaseOutcome, VerifyError, write_series};
+use crate::case::expand::CaseScene;
 use crate::case::{Case, Check};
-use crate::expand::CaseScene;
 use crate::measure::{Measured, expected};
 use crate::output::OutputFolder;
-use crate::record::{Accept, BoundKind, Expectation, Record, Status, Timing};
-use crate::reference::{Library, ReferenceBand};
+use crate::record::{BoundKind, Expectation, Record, Status, Timing};
+use crate::reference::Library;
 use crate::study::scene::{FinishedScene, describe, evaluate, run_scenes};
 use crate::study::{Findings, Study, find};
 use crate::watch::{self, Stopped};
@@ -78,15 +78,8 @@ fn judge_runs(
 fn in_band(record: &mut Record, check: &Check, measured: Measured, library: &Library) -> Result<Measured, String> {
     let Some(path) = &check.band else { return Ok(measured) };
     let band = find_band(library, path).ok_or_else(|| format!("no reference band {path:?}"))?;
-    record.accept = band_bounds(band, check.scale);
+    record.accept = band.bounds(check.scale);
     Ok(Measured { reference: measured.reference.or(Some(band.reference())), ..measured })
-}
-
-/// The bounds of a reference band, in the unit of a check.
-pub(crate) fn band_bounds(band: &ReferenceBand, scale: f64) -> Accept {
-    let why = format!("what the sources say: {}", band.sources.join(", "));
-    let factor = fault!("band-in-other-units", scale => 1.0);
-    Accept { min: Some(band.min * factor), max: Some(band.max * factor), why, kind: None }
 }
 
 /// What a check expects beside its bounds, not yet held against anything.
@@ -154,7 +147,7 @@ fn failed(mut record: Record, message: &str) -> Record {
 }
 
 fn judge(mut record: Record, check: &Check, measured: Measured) -> Record {
-    match bounds_around(check, measured.reference.as_ref()) {
+    match check.bounds_around(measured.reference.as_ref()) {
         Ok(None) => (),
         Ok(Some([min, max])) => (record.accept.min, record.accept.max) = (Some(min), Some(max)),
         Err(message) => return failed(record, &message),

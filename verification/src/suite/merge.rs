@@ -7,10 +7,11 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::part::{PART_FILE, PART_SCHEMA, Part, fingerprint, folder_fingerprint};
+use super::part::{PART_FILE, PART_SCHEMA, Part};
 use super::{CaseOutcome, VerifyError, assemble};
-use crate::foreign;
 use crate::output::OutputFolder;
+use crate::output::fingerprint::{fingerprint, folder_fingerprint};
+use crate::output::foreign;
 use crate::record::{Environment, ResultSet};
 use crate::reference::{Library, ReferenceError};
 
@@ -134,7 +135,7 @@ pub fn merge(
     if first.plan.sources != sources {
         return Err(MergeError::OtherProgram { here: sources.to_string(), parts: first.plan.sources.clone() });
     }
-    if folder_fingerprint(reference_data)? != first.plan.reference_data {
+    if folder_fingerprint(reference_data).map_err(VerifyError::from)? != first.plan.reference_data {
         return Err(MergeError::OtherReferences);
     }
     let mut prints: HashMap<&str, (&Path, &str)> = HashMap::new();

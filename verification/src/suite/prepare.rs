@@ -8,15 +8,12 @@ mod scene_checks;
 
 use std::collections::BTreeMap;
 
-use fisura::fault;
-
+use crate::case::expand::CaseScene;
 use crate::case::{Case, Check};
-use crate::expand::CaseScene;
 use crate::measure::grid_convergence;
-use crate::record::Reference;
 use crate::reference::{Library, ReferenceBand};
-use crate::scene_file::suggest::nearest;
-use crate::scene_file::{Problem, SceneFileError};
+use crate::scene::suggest::nearest;
+use crate::scene::{Problem, SceneFileError};
 use crate::study::scene::concerned;
 use crate::study::{INPUTS, Offer, STUDIES, Study, find};
 
@@ -272,15 +269,4 @@ fn distinct<'a>(words: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 pub(super) fn find_band<'a>(library: &'a Library, path: &str) -> Option<&'a ReferenceBand> {
     let (folder, name) = path.split_once('/')?;
     library.band(folder, name)
-}
-
-/// Bounds of a check that count from its reference value, if any do.
-///
-/// # Errors
-/// If there is no value to count from.
-pub(crate) fn bounds_around(check: &Check, reference: Option<&Reference>) -> Result<Option<[f64; 2]>, String> {
-    let Some([below, above]) = check.around_reference else { return Ok(None) };
-    let value = reference.and_then(|reference| reference.value);
-    let value = value.ok_or("there is no reference value from which below and above could count")?;
-    Ok(Some([value - fault!("bounds-both-above", below => -below), value + above]))
 }

@@ -6,10 +6,10 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::part::{fingerprint, folder_fingerprint};
 use super::{CaseOutcome, Options, VerifyError};
 use crate::case::Case;
 use crate::output::OutputFolder;
+use crate::output::fingerprint::{fingerprint, folder_fingerprint};
 
 const FOLDER: &str = "partial/";
 

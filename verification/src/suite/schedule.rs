@@ -9,7 +9,7 @@ use fisura::validate::expected_size;
 use super::prepare::Prepared;
 use super::seconds::Seconds;
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 
 /// Memory, bytes, that a case beside others may need.
 const SIDE_BY_SIDE: usize = 1 << 30;

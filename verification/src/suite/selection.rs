@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::case::{Case, Tier};
-use crate::scene_file::SceneFileError;
+use crate::scene::SceneFileError;
 
 /// Which cases to run.
 #[derive(Debug, Clone)]

@@ -15,11 +15,11 @@ use std::time::Instant;
 use fisura::Simulation;
 use fisura::scene::Scene;
 use fisura_verification::case::Case;
-use fisura_verification::history::Table;
 use fisura_verification::judge::judge;
 use fisura_verification::judge::submission::Submission;
+use fisura_verification::output::history::Table;
 use fisura_verification::reference::Library;
-use fisura_verification::scene_file::SceneFile;
+use fisura_verification::scene::SceneFile;
 use fisura_verification::suite::prepare::prepare;
 use harness::{LONGEST, files, fuzz, watched};
 

@@ -3,7 +3,7 @@
 
 use fisura::scene::*;
 use fisura::splines::nurbs::NurbsPatch;
-use fisura_verification::scene_file::SceneFile;
+use fisura_verification::scene::SceneFile;
 
 const PATCH: &str = include_str!("../scenes/patch.toml");
 /// First and last line of the mesh in [`PATCH`], without its heading.

@@ -1,7 +1,7 @@
 //! Scene files: the example reads as written, broken ones say where and what would help, and nothing panics.
 
 use fisura::scene::*;
-use fisura_verification::scene_file::{Document, SceneFile, read_scene};
+use fisura_verification::scene::{Document, SceneFile, read_scene};
 
 const PLATE: &str = include_str!("../scenes/plate.toml");
 
@@ -364,7 +364,7 @@ fn a_diagnostic_carries_its_place_and_remedy() {
 
 #[test]
 fn a_value_can_be_put_into_a_tree() {
-    use fisura_verification::scene_file::{Node, Value};
+    use fisura_verification::scene::{Node, Value};
     let mut document = Document::parse("plate.toml", PLATE).unwrap();
     document.root.set("mesh.degree", Node::new(Value::Integer(4), None)).unwrap();
     assert_eq!(read_scene(&document.root, "").unwrap().mesh.degree, [4, 4]);

@@ -4,10 +4,10 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use fisura_verification::figures;
 use fisura_verification::record::{Environment, FigureBody, ResultSet, Status, Timing};
 use fisura_verification::reference::Library;
 use fisura_verification::study::scene::RunInfo;
+use fisura_verification::suite::figures;
 use fisura_verification::suite::prepare::prepare;
 use fisura_verification::suite::{CaseOutcome, Selection, Tier, load_cases, select};
 

@@ -1,6 +1,6 @@
 //! Quantities with units: values to the last bit, and what is refused.
 
-use fisura_verification::scene_file::units::{Dimension, parse, parse_as};
+use fisura_verification::scene::units::{Dimension, parse, parse_as};
 
 #[test]
 fn units_give_the_double_of_the_si_value() {

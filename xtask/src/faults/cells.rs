@@ -6,10 +6,10 @@ use std::fs;
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use fisura_verification::output::fingerprint::{fingerprint, folder_fingerprint};
 use fisura_verification::output::{OutputError, OutputFolder};
 use fisura_verification::record::Status;
 use fisura_verification::suite::Case;
-use fisura_verification::suite::part::{fingerprint, folder_fingerprint};
 use serde::{Deserialize, Serialize};
 
 use super::runner::Ending;

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use fisura_verification::suite::part::{Part, fingerprint};
+use fisura_verification::output::fingerprint::fingerprint;
+use fisura_verification::suite::part::Part;
 use serde_json::Value;
 
 use super::support::{Place, notched};

@@ -23,8 +23,8 @@ use serde_json::json;
 use super::super::BenchError;
 use super::super::block::{DENSITY, SPAN, elastic_scene};
 use crate::extremes::larger;
-use crate::history::Table;
 use crate::output::OutputFolder;
+use crate::output::history::Table;
 
 /// Degree of the splines, and points per span and direction.
 const DEGREE: usize = 2;

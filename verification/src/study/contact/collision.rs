@@ -6,8 +6,8 @@ use fisura::scene::Scene;
 
 use super::{Books, center, chart, curve, dot, exact, label, largest, run, sample_is_due};
 use crate::case::Case;
-use crate::expand::CaseScene;
-use crate::history::Table;
+use crate::case::expand::CaseScene;
+use crate::output::history::Table;
 use crate::record::CurveStyle;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};

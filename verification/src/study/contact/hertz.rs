@@ -22,9 +22,9 @@ use fisura::scene::{Body, Plane, Scene, Shape};
 
 use super::{Books, chart, curve, dot, exact, larger, run, sample_is_due, sum};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::smaller;
-use crate::history::Table;
+use crate::output::history::Table;
 use crate::record::CurveStyle;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};

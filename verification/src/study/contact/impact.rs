@@ -14,10 +14,10 @@ use fisura::scene::{Scene, Transfer};
 
 use super::{Books, chart, curve, exact, run, sample_is_due, sum};
 use crate::case::Case;
-use crate::convergence::{Convergence, Curve, Level, Norm, Refined};
-use crate::expand::CaseScene;
-use crate::history::Table;
+use crate::case::expand::CaseScene;
+use crate::output::history::Table;
 use crate::record::CurveStyle;
+use crate::study::orders::{Convergence, Curve, Level, Norm, Refined};
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 

@@ -9,7 +9,7 @@ use fisura::scene::Scene;
 
 use super::{dot, exact, larger, run};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::study::{Findings, StudyError};
 
 pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {

@@ -20,8 +20,8 @@ use super::problem::{Manufactured, Problem};
 use super::scene::scene;
 use super::{OnMesh, other};
 use crate::case::convergence::ConvergenceSetup;
-use crate::convergence::Level;
 use crate::study::StudyError;
+use crate::study::orders::Level;
 
 /// Displacements below this at t = 0 are none, m.
 const AT_REST: f64 = 1e-12;

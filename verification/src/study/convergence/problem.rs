@@ -8,7 +8,7 @@ use fisura::scene::{Frame, Kinematics, Side};
 
 use crate::case::convergence::{ConvergenceSetup, Loading, PatchFamily};
 use crate::exact::{self, Equation, ExactSolution, Held};
-use crate::plain_scene::ROLLERS;
+use crate::scene::plain::ROLLERS;
 
 /// Name of the problem that projects the displacement of elastostatics.
 const PROJECTION: &str = "projection";

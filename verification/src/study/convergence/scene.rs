@@ -8,9 +8,9 @@ use super::problem::Problem;
 use crate::case::convergence::{ConvergenceSetup, PatchFamily};
 use crate::exact::Equation;
 use crate::exact::vortex::RADII;
-use crate::patches;
-use crate::plain_scene::PlainScene;
+use crate::scene::plain::PlainScene;
 use crate::study::StudyError;
+use crate::study::patches;
 
 /// The scene of one mesh: nothing but the exact solution loads the body, which fills the patch unless it is a
 /// ring.

@@ -21,9 +21,9 @@ use super::problem::{Manufactured, Problem};
 use super::scene::scene;
 use super::{OnMesh, other};
 use crate::case::convergence::{ConvergenceSetup, Loading};
-use crate::convergence::Level;
 use crate::exact::Equation;
 use crate::study::StudyError;
+use crate::study::orders::Level;
 
 /// Control values of a vector field, by component.
 type VectorField = [Vec<f64>; 2];

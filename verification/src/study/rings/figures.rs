@@ -3,10 +3,10 @@
 
 use super::{PAPER, Watched};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::record::{Curve, Figure, FigureBody, Region};
-use crate::rings::events::{EVENTS, annulus};
 use crate::study::Findings;
+use crate::study::rings::events::{EVENTS, annulus};
 use crate::study::scene::{length_scale, microseconds, raster, series_stem};
 
 /// Adds the figures of a scene.

@@ -7,10 +7,10 @@ use rayon::prelude::*;
 
 use super::{PAPER, Watched, in_microseconds};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
+use crate::case::geometry::{Geometry, PARTICLES};
 use crate::extremes::{larger, largest};
-use crate::history::Table;
-use crate::rings::{Geometry, PARTICLES};
+use crate::output::history::Table;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 

@@ -13,9 +13,9 @@ use fisura::validate::validate;
 
 use super::exact;
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::{larger, largest};
-use crate::plain_scene::PlainScene;
+use crate::scene::plain::PlainScene;
 use crate::study::{Findings, StudyError};
 
 /// Spans of the mesh along x, all of length one; the block is two long and begins at one.

@@ -11,11 +11,11 @@ use fisura::scene::{Analysis, Frame, Mass, Material, Mesh, Scene, Shape, Side};
 use super::super::contact::curve;
 use super::{exact, logarithmic, theory, total_frame};
 use crate::case::Case;
-use crate::dense;
-use crate::expand::CaseScene;
-use crate::history::Table;
-use crate::plain_scene::PlainScene;
+use crate::case::expand::CaseScene;
+use crate::output::history::Table;
 use crate::record::{CurveStyle, Reference, ReferenceKind};
+use crate::scene::plain::PlainScene;
+use crate::study::dense;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 

@@ -11,12 +11,12 @@ use fisura::scene::{Boundary, Material, Mesh, Scene, Side, TimeStep};
 use super::super::contact::curve;
 use super::{exact, logarithmic, total_frame};
 use crate::case::Case;
-use crate::dense;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::larger;
-use crate::history::Table;
-use crate::plain_scene::PlainScene;
+use crate::output::history::Table;
 use crate::record::{CurveStyle, Reference, ReferenceKind};
+use crate::scene::plain::PlainScene;
+use crate::study::dense;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 

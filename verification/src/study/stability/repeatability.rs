@@ -11,9 +11,9 @@ use fisura::scene::{
 
 use super::exact;
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::{larger, largest};
-use crate::plain_scene::PlainScene;
+use crate::scene::plain::PlainScene;
 use crate::study::{Findings, StudyError};
 use crate::watch;
 

@@ -19,12 +19,12 @@ use fisura::scene::{Boundary, Fracture, Material, Mesh, Scene, Side, Split};
 use super::super::contact::curve;
 use super::{exact, logarithmic, total_frame};
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::{larger, largest};
-use crate::history::Table;
-use crate::plain_scene::PlainScene;
-use crate::random::Random;
+use crate::output::history::Table;
 use crate::record::CurveStyle;
+use crate::scene::plain::PlainScene;
+use crate::study::random::Random;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 

@@ -13,11 +13,11 @@ use fisura::scene::{Boundary, Fracture, Frame, Material, Mesh, Scene, Shape, Sid
 use super::super::contact::{chart, curve};
 use super::exact;
 use crate::case::Case;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::extremes::{larger, largest};
-use crate::history::Table;
-use crate::plain_scene::PlainScene;
+use crate::output::history::Table;
 use crate::record::CurveStyle;
+use crate::scene::plain::PlainScene;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 

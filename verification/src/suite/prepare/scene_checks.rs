@@ -5,11 +5,11 @@ use fisura::scene::{Frame, Scene};
 
 use super::{EVERYWHERE, Wrong, distinct, find_band, grid_convergence};
 use crate::case::Check;
-use crate::expand::CaseScene;
+use crate::case::expand::CaseScene;
 use crate::measure::{LooksAt, Measure, find};
 use crate::record::BoundKind;
 use crate::reference::{Library, relative_uncertainty};
-use crate::scene_file::suggest::nearest;
+use crate::scene::suggest::nearest;
 use crate::study::scene::concerned;
 
 /// Keys that every measure reads, beside those of every study.

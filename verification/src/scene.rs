@@ -9,6 +9,7 @@ pub mod diagnostic;
 pub mod document;
 pub mod fields;
 mod overrides;
+pub mod plain;
 pub(crate) mod read;
 mod read_body;
 mod read_mesh;

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{Dimension, UnitError};
-use crate::scene_file::suggest::nearest;
+use crate::scene::suggest::nearest;
 
 /// The unit that `text` names.
 pub(super) fn unit_factor(text: &str) -> Result<Factor, UnitError> {

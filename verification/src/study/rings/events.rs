@@ -8,7 +8,7 @@ use fisura::material::degradation::BROKEN;
 use fisura::scene::{Scene, Shape};
 
 use crate::extremes::smaller;
-use crate::history::Table;
+use crate::output::history::Table;
 
 /// Part of the final fracture energy at which it counts as levelled off.
 const LEVEL: f64 = 0.97;

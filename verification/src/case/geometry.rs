@@ -1,9 +1,7 @@
-//! Two rings in head-on collision: events, and geometries for a sweep.
+//! Geometries of two rings in head-on collision, for a sweep.
 //!
 //! The paper gives the number of points of a ring but neither its radii nor the length scale. A geometry is
 //! an assumption until the sequence of events it leads to is held against the one in the paper's words.
-
-pub mod events;
 
 use std::f64::consts::PI;
 

@@ -23,7 +23,7 @@ mod charts;
 
 use fisura::fault;
 
-use crate::history::Table;
+use crate::output::history::Table;
 use crate::record::{Figure, Reference, ReferenceKind};
 use crate::study::{Findings, Measurement};
 

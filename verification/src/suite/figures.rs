@@ -3,8 +3,8 @@
 //! Reference curves are looked up by quantity at the time of drawing, so a curve added to the reference data
 //! appears without a change of code.
 
-use crate::history::Table;
 use crate::measure::fitted_speed;
+use crate::output::history::Table;
 use crate::record::{Axis, Curve, Figure, FigureBody, Region};
 use crate::reference::{Library, ReferenceCurve};
 use crate::study::scene::RunInfo;

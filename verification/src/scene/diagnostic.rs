@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::foreign::{line, steers};
+use crate::output::foreign::{line, steers};
 
 /// Most problems that are told one by one.
 const MOST_PROBLEMS: usize = 100;

@@ -4,7 +4,7 @@ use fisura::scene::Mesh;
 use fisura::splines::nurbs::{NurbsError, NurbsPatch};
 
 use crate::case::convergence::PatchFamily;
-use crate::random::Random;
+use crate::study::random::Random;
 
 /// Spans per direction of the mesh on which random knots, weights and control points are drawn.
 const COARSE: usize = 3;

@@ -6,8 +6,8 @@
 use fisura::scene::Scene;
 
 use crate::case::{Case, Variant};
-use crate::scene_file::document::{Node, Value};
-use crate::scene_file::{Problem, SceneFileError, check_scene, read_scene};
+use crate::scene::document::{Node, Value};
+use crate::scene::{Problem, SceneFileError, check_scene, read_scene};
 
 /// Most scenes of a case.
 const MOST_SCENES: usize = 100;
@@ -48,7 +48,7 @@ fn depth(node: &Node) -> usize {
 fn find_axes(node: &Node, path: &str, axes: &mut Vec<(String, Vec<Node>)>) {
     if let Some(table) = node.as_table() {
         for (key, child) in table {
-            find_axes(child, &crate::scene_file::document::join(path, key), axes);
+            find_axes(child, &crate::scene::document::join(path, key), axes);
         }
     } else if let Some(entries) = node.as_array() {
         if entries.iter().any(|entry| entry.as_table().is_some()) {
