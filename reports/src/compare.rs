@@ -3,11 +3,13 @@
 //!
 //! Accuracy is measured in units of what the bounds allow, as METHODOLOGY defines it: values of different
 //! kinds are comparable then, and round-off of a value far inside its bounds is no change. `speed` holds
-//! times against their spread; `partners` finds what is to be compared; `words` writes text and Markdown.
+//! times against their spread, `work` holds counts against each other; `partners` finds what is to be
+//! compared; `words` writes text and Markdown.
 
 mod partners;
 mod speed;
 mod words;
+mod work;
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -18,6 +20,7 @@ use partners::partners;
 use speed::Lookup;
 pub use speed::{Speed, SpeedChange};
 pub use words::{render_markdown, render_text};
+pub use work::WorkChange;
 
 /// Name of the schema written.
 pub const COMPARISON_SCHEMA: &str = "fisura.comparison/1";
@@ -106,8 +109,10 @@ pub struct ComparedSets {
     pub new: Environment,
     /// How many records of each change there are.
     pub counts: BTreeMap<Change, usize>,
-    /// Major losses of accuracy and of speed.
+    /// Major losses of accuracy, of work and of speed.
     pub major_losses: usize,
+    /// Counts of every run that both have.
+    pub work: Vec<WorkChange>,
     /// Times as a whole, and of every measured run.
     pub speed: Speed,
     /// Records of the base in its order, then new ones.
@@ -120,16 +125,22 @@ impl ComparedSets {
         self.counts.get(&change).copied().unwrap_or(0)
     }
 
+    /// Major losses but for those of speed.
+    pub fn losses_besides_speed(&self) -> usize {
+        self.major_losses - self.speed.runs.iter().filter(|run| run.is_major_loss()).count()
+    }
+
     /// Whether nothing at all changed, times included.
     pub fn is_unchanged(&self) -> bool {
         self.count(Change::Unchanged) == self.records.len()
+            && self.work.iter().all(|count| count.change == Change::Unchanged)
             && self.speed.runs.iter().all(|run| run.change == Change::Unchanged)
     }
 }
 
 /// Compares two result sets record by record.
 pub fn compare(base: &ResultSet, new: &ResultSet) -> ComparedSets {
-    let speed = Speed::of(base, new);
+    let (work, speed) = (work::of(base, new), Speed::of(base, new));
     let mut records = Vec::new();
     let lookup = speed.lookup();
     let partners = partners(&base.records, &new.records);
@@ -146,14 +157,16 @@ pub fn compare(base: &ResultSet, new: &ResultSet) -> ComparedSets {
     for change in [Change::Unchanged, Change::Minor, Change::Major, Change::Missing, Change::New] {
         counts.insert(change, records.iter().filter(|r| r.accuracy == change).count());
     }
+    let more = work.iter().filter(|count| count.is_major_loss()).count();
     let slower = speed.runs.iter().filter(|run| run.is_major_loss()).count();
-    let major_losses = records.iter().filter(|r| r.is_major_loss()).count() + slower;
+    let major_losses = records.iter().filter(|r| r.is_major_loss()).count() + more + slower;
     ComparedSets {
         schema: COMPARISON_SCHEMA,
         base: base.environment.clone(),
         new: new.environment.clone(),
         counts,
         major_losses,
+        work,
         speed,
         records,
     }

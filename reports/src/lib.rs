@@ -12,6 +12,7 @@
 //! | `summary.md` | the step summary of a CI run | [`markdown`] |
 //! | `junit.xml` | the test view of a CI service | [`junit`] |
 //! | `metrics.json` | trend charts over commits | [`metrics`] |
+//! | `metrics/` | dashboards, in the form of each | [`dashboards`] |
 //!
 //! [`compare`] holds two such sets side by side, [`annotations`] marks failed checks in the view of a CI
 //! service.
@@ -36,6 +37,7 @@ pub mod bundle;
 pub mod chart;
 pub mod colour;
 pub mod compare;
+pub mod dashboards;
 pub mod error;
 pub mod field;
 pub mod figure;
@@ -91,7 +93,7 @@ pub struct Rendered {
 }
 
 /// Renders the results in `folder` to `out`, which may be the same: figures, `report.html`, `summary.md`,
-/// `junit.xml`, `metrics.json`.
+/// `junit.xml`, `metrics.json`, `metrics/`.
 ///
 /// # Errors
 /// `results.json` is missing, malformed or of another schema, or a file cannot be written. Figures that
@@ -125,6 +127,9 @@ pub fn render(folder: &Path, out: &OutputFolder) -> Result<Rendered, ReportError
     files.push(write(out, "junit.xml", &junit)?);
     let metrics = metrics::render_metrics(&results).map_err(|e| failed("metrics.json", e))?;
     files.push(write(out, "metrics.json", &metrics)?);
+    for (name, content) in dashboards::files(&results).map_err(|(file, error)| failed(file, error))? {
+        files.push(write(out, &format!("metrics/{name}"), &content)?);
+    }
     if broken.is_empty() { Ok(Rendered { results, files }) } else { Err(ReportError::Figures(broken)) }
 }
 

@@ -1,10 +1,12 @@
-//! `metrics.json`: numbers of which smaller is better, for trend charts over commits.
+//! Numbers of which smaller is better, for trend charts over commits: `metrics.json`, and what [`crate::dashboards`] writes.
+//!
+//! [`deterministic`] figures come out the same whenever one program runs the same cases; [`times`] do not.
 
 use fisura_verification::record::{Record, ResultSet};
 use serde::Serialize;
 
 use crate::number::plain;
-use crate::view::{bounds, runs, timing};
+use crate::view::{bounds, run_id, runs, timing};
 
 /// One number, as the "custom smaller-is-better" form of benchmark dashboards takes it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -17,48 +19,86 @@ pub struct Metric {
     pub value: f64,
     /// What is accepted, in words; empty where nothing is.
     pub range: String,
+    /// Record or run.
+    #[serde(skip)]
+    pub subject: String,
+    /// The run, which is the subject or begins its id.
+    #[serde(skip)]
+    pub run: String,
+    /// What was measured, if the name of the record does not say it.
+    #[serde(skip)]
+    pub measure: Option<&'static str>,
 }
 
-/// Errors of all records that have one, then wall time and time per particle-step of each run.
-pub fn metrics(set: &ResultSet) -> Vec<Metric> {
-    let mut all: Vec<Metric> = set.records.iter().filter_map(error).collect();
+impl Metric {
+    fn new(subject: &str, run: &str, measure: Option<&'static str>, unit: &str, value: f64) -> Self {
+        let name = measure.map_or(subject.to_string(), |measure| format!("{subject}: {measure}"));
+        Self { name, unit: unit.into(), value, range: String::new(), subject: subject.into(), run: run.into(), measure }
+    }
+}
+
+/// Errors of all records that have one, then what each run computed.
+pub fn deterministic(set: &ResultSet) -> Vec<Metric> {
+    errors(set).chain(work(set)).collect()
+}
+
+/// Wall time and time per particle-step of each run.
+pub fn times(set: &ResultSet) -> Vec<Metric> {
+    let mut all = Vec::new();
     for (run, records) in runs(&set.records) {
         let timing = timing(&records);
         let measured =
             [("wall time", "s", timing.wall_s), ("time per particle-step", "ns", timing.ns_per_particle_step)];
-        for (what, unit, value) in measured.into_iter().filter(|m| m.2.is_finite() && m.2 > 0.0) {
-            let name = format!("{run}: {what}");
-            all.push(Metric { name, unit: unit.to_string(), value, range: String::new() });
-        }
+        let measured = measured.into_iter().filter(|m| m.2.is_finite() && m.2 > 0.0);
+        all.extend(measured.map(|(what, unit, value)| Metric::new(run, run, Some(what), unit, value)));
     }
     all
+}
+
+fn errors(set: &ResultSet) -> impl Iterator<Item = Metric> {
+    set.records.iter().filter_map(error)
 }
 
 /// The error of a record: relative to its reference if it has one, else a value that is only bounded above.
 fn error(record: &Record) -> Option<Metric> {
     let value = record.value.filter(|v| v.is_finite())?;
     let reference = record.reference.as_ref().and_then(|r| r.value).filter(|r| r.is_finite() && *r != 0.0);
-    let metric = |name: String, unit: &str, value| {
-        let range = bounds(&record.accept, plain);
-        let range = if range == "none" { String::new() } else { format!("accepted value {range}") };
-        Metric { name, unit: unit.to_string(), value, range }
+    let range = match bounds(&record.accept, plain) {
+        range if range == "none" => String::new(),
+        range => format!("accepted value {range}"),
     };
-    match reference {
+    let metric = match reference {
         Some(reference) => {
             let error = (value - reference).abs() / reference.abs();
-            Some(metric(format!("{}: relative error", record.id), "relative error", error))
+            Metric::new(&record.id, run_id(record), Some("relative error"), "relative error", error)
         }
         None if record.accept.max.is_some() && record.accept.min.is_none() => {
-            Some(metric(record.id.clone(), &record.unit, value))
+            Metric::new(&record.id, run_id(record), None, &record.unit, value)
         }
-        None => None,
-    }
+        None => return None,
+    };
+    Some(Metric { range, ..metric })
 }
 
-/// `metrics.json`.
+/// Counts of each run that computed something; counts that are zero are left out.
+fn work(set: &ResultSet) -> impl Iterator<Item = Metric> {
+    runs(&set.records).into_iter().flat_map(|(run, records)| {
+        let work = records.iter().find_map(|record| record.work).unwrap_or_default();
+        let counts = [
+            ("particle-steps", "particle-steps", work.particle_steps),
+            ("phase-field iterations", "iterations", work.phase_field_iterations),
+            ("phase-field traffic", "bytes", work.phase_field_bytes),
+        ];
+        let counts = counts.into_iter().filter(|count| count.2 > 0);
+        counts.map(|(what, unit, count)| Metric::new(run, run, Some(what), unit, count as f64)).collect::<Vec<_>>()
+    })
+}
+
+/// `metrics.json`: errors, then times.
 ///
 /// # Errors
 /// Only if JSON cannot be written, which has no cause in the results.
 pub fn render_metrics(set: &ResultSet) -> serde_json::Result<String> {
-    Ok(serde_json::to_string_pretty(&metrics(set))? + "\n")
+    let all: Vec<Metric> = errors(set).chain(times(set)).collect();
+    Ok(serde_json::to_string_pretty(&all)? + "\n")
 }

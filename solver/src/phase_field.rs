@@ -53,6 +53,8 @@ pub struct PhaseFieldCounts {
     pub solves: usize,
     /// Iterations in all.
     pub iterations: usize,
+    /// Bytes of matrices and factors that iterations have read; factorisations are not counted.
+    pub bytes: u64,
 }
 
 /// Phase field of one body on its control points.
@@ -156,6 +158,10 @@ impl PhaseField {
         self.counts
     }
 
+    fn bytes_read(&self) -> u64 {
+        self.matrix.bytes_read() + self.method.bytes_read()
+    }
+
     /// Solves for c with the history energy (J/m³) of every batch of points.
     ///
     /// # Errors
@@ -180,7 +186,9 @@ impl PhaseField {
         self.extrapolate();
         self.counts.solves += 1;
         let unit = self.model.diffusion().sqrt();
+        let before = self.bytes_read();
         let found = self.method.solve(&self.matrix, &self.load, &mut self.phase, unit * self.tolerance, patience);
+        self.counts.bytes += self.bytes_read() - before;
         let found = found.map_err(|failure| match failure {
             SolveFailure::NotConverged { iterations, error } => {
                 SolveFailure::NotConverged { iterations, error: error / unit }

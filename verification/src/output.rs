@@ -316,7 +316,7 @@ impl Drop for OutputFolder {
 }
 
 /// Files that tell what a command found, or begin so: none may outlive the others.
-const VERDICTS: [&str; 6] = ["results.json", "report.html", "summary.md", "junit.xml", "metrics.json", "bench."];
+const VERDICTS: [&str; 6] = ["results.json", "report.html", "summary.md", "junit.xml", "metrics", "bench."];
 
 /// Names with those that tell a verdict first.
 fn in_order_of_removal(mut names: Vec<String>) -> Vec<String> {

@@ -140,6 +140,26 @@ pub struct Timing {
     pub ns_per_particle_step: f64,
 }
 
+/// What a run computed, counted: the same numbers on every run of one program, whatever the number of threads.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Work {
+    /// Material points times steps.
+    pub particle_steps: u64,
+    /// Phase-field systems solved.
+    #[serde(skip_serializing_if = "is_zero", default)]
+    pub phase_field_solves: u64,
+    /// Iterations of these solves.
+    #[serde(skip_serializing_if = "is_zero", default)]
+    pub phase_field_iterations: u64,
+    /// Bytes of matrices and factors that these iterations read.
+    #[serde(skip_serializing_if = "is_zero", default)]
+    pub phase_field_bytes: u64,
+}
+
+fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
 /// One check and what it found.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Record {
@@ -185,6 +205,9 @@ pub struct Record {
     pub message: Option<String>,
     /// Series with the numbers behind it, relative to the results folder.
     pub series: Option<String>,
+    /// What the run behind the record computed; absent for studies that run no scene.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub work: Option<Work>,
     /// Measured time.
     pub timing: Timing,
 }

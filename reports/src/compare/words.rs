@@ -1,8 +1,8 @@
 //! A comparison as text for a terminal and as Markdown for a step summary.
 
-use super::{Change, ComparedSets, Comparison, Effect, SpeedChange};
+use super::{Change, ComparedSets, Comparison, Effect, SpeedChange, WorkChange};
 use crate::markdown::{LIMIT, cell, code};
-use crate::number::{DIGITS, duration, plain};
+use crate::number::{DIGITS, duration, grouped, plain};
 use crate::view::with_unit;
 
 /// Headings of the changes that are listed, in the order of reading.
@@ -33,6 +33,9 @@ pub fn render_text(sets: &ComparedSets) -> String {
             let mark = mark(record.effect);
             out.push_str(&format!("{mark} {word:7}  {}  {}  ({})\n", record.id, values(record), record.why));
         }
+    }
+    for count in changed_counts(sets) {
+        out.push_str(&format!("{} work     {}  {}: {}\n", mark(count.effect), count.run, count.what, counts(count)));
     }
     for run in changed_runs(sets) {
         out.push_str(&format!("{} speed    {}  {}\n", mark(run.effect), run.run, times(run)));
@@ -69,6 +72,15 @@ pub fn render_markdown(sets: &ComparedSets) -> String {
         }
         out.push_str(if records.is_empty() { "" } else { "\n" });
     }
+    let changed = changed_counts(sets);
+    if !changed.is_empty() {
+        line(&mut out, "## work\n\n| | run | count | base → new |\n|---|---|---|---|\n".to_string());
+    }
+    for count in &changed {
+        let run = code(&count.run);
+        line(&mut out, format!("| {} | {run} | {} | {} |\n", mark(count.effect), count.what, counts(count)));
+    }
+    out.push_str(if changed.is_empty() { "" } else { "\n" });
     let runs = changed_runs(sets);
     if !runs.is_empty() {
         line(&mut out, "## speed\n\n| | run | wall time |\n|---|---|---|\n".to_string());
@@ -94,6 +106,21 @@ fn changed_runs(sets: &ComparedSets) -> Vec<&SpeedChange> {
     let mut runs: Vec<&SpeedChange> = sets.speed.runs.iter().filter(|run| run.change != Change::Unchanged).collect();
     runs.sort_by(|a, b| b.ratio.total_cmp(&a.ratio));
     runs
+}
+
+/// Counts that changed, the largest growth first.
+fn changed_counts(sets: &ComparedSets) -> Vec<&WorkChange> {
+    let mut changed: Vec<&WorkChange> = sets.work.iter().filter(|count| count.change != Change::Unchanged).collect();
+    changed.sort_by(|a, b| ratio(b).total_cmp(&ratio(a)));
+    changed
+}
+
+fn ratio(count: &WorkChange) -> f64 {
+    count.new as f64 / count.base.max(1) as f64
+}
+
+fn counts(count: &WorkChange) -> String {
+    format!("{} → {}, ×{}", grouped(count.base), grouped(count.new), plain(ratio(count), 4))
 }
 
 fn mark(effect: Effect) -> &'static str {

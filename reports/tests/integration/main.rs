@@ -3,6 +3,7 @@
 mod bench;
 mod browser;
 mod convergence;
+mod dashboards;
 mod fixture;
 mod foreign;
 mod forms;

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::counter::Counter;
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised, dispatch};
 use crate::linear_algebra::terms::Terms;
 
@@ -33,6 +34,7 @@ pub struct Stencil {
     offsets: Vec<Offset>,
     coefficients: Vec<f64>,
     active: ActiveColumns,
+    read: Counter,
 }
 
 impl Stencil {
@@ -40,7 +42,7 @@ impl Stencil {
     pub fn zeros(grid: ControlGrid, degree: [usize; 2]) -> Self {
         let offsets = half_stencil(degree);
         let coefficients = vec![0.0; offsets.len() * grid.len()];
-        Self { grid, degree, offsets, coefficients, active: ActiveColumns::all(grid) }
+        Self { grid, degree, offsets, coefficients, active: ActiveColumns::all(grid), read: Counter::default() }
     }
 
     /// Couplings of the half stencil; the first is the diagonal.
@@ -111,6 +113,7 @@ impl Stencil {
     /// `out = A x` at the control points that take part, zero elsewhere; returns `xᵀ A x` for an x that is
     /// zero elsewhere, too.
     pub fn apply(&self, x: &[f64], out: &mut [f64]) -> f64 {
+        self.read.add(self.bytes());
         let chunk = CHUNK_ROWS * self.grid.stride;
         let parts: Vec<f64> = out
             .par_chunks_mut(chunk)
@@ -118,6 +121,11 @@ impl Stencil {
             .map(|(index, out)| dispatch(ApplyRows { matrix: self, x, out, first_row: index * CHUNK_ROWS }))
             .collect();
         parts.iter().sum()
+    }
+
+    /// Bytes of the matrix that [`Self::apply`] has read so far.
+    pub fn bytes_read(&self) -> u64 {
+        self.read.get()
     }
 
     /// Heap memory, bytes.

@@ -84,6 +84,14 @@ impl Method {
         }
     }
 
+    /// Bytes of factors that preconditioning has read so far.
+    pub(crate) fn bytes_read(&self) -> u64 {
+        match self {
+            Self::Iterative { preconditioner, .. } => preconditioner.bytes_read(),
+            Self::Direct(_) => 0,
+        }
+    }
+
     /// Heap memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
         match self {

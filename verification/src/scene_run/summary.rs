@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use fisura::phase_field::PhaseFieldCounts;
 use fisura::simulation::Simulation;
 use fisura::simulation::breakdown::Breakdown;
 use serde::{Deserialize, Serialize};
@@ -27,6 +28,9 @@ pub struct Summary {
     pub time_step_s: Option<f64>,
     /// Critical step of the undamaged body, s; absent if nothing can move.
     pub critical_step_s: Option<f64>,
+    /// Systems of the phase field, their iterations, and the bytes these read; absent without a phase field.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub phase_field: Option<PhaseFieldCounts>,
     /// Wall time in all, s.
     pub wall_s: f64,
     /// Wall time per stage, s.
@@ -87,6 +91,7 @@ impl Summary {
         self.control_points = extent.control_points;
         self.steps = simulation.steps();
         self.planned_steps = plan.steps();
+        self.phase_field = Some(simulation.phase_field_counts()).filter(|counts| counts.solves > 0);
         self.time_step_s = Some(plan.step);
         self.critical_step_s = Some(plan.critical).filter(|c| c.is_finite());
         self.warnings.extend(simulation.warnings().iter().cloned());

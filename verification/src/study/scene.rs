@@ -13,7 +13,7 @@ use crate::extremes::{larger, smaller};
 use crate::measure::grid_convergence::{over_meshes, span};
 use crate::measure::{Measured, Run, fitted_speed, measure};
 use crate::output::history::Table;
-use crate::record::Timing;
+use crate::record::{Timing, Work};
 use crate::reference::Library;
 use crate::scene_run::{Progress, SceneRun, run_scene};
 use crate::watch::{self, Stopped};
@@ -68,6 +68,8 @@ pub struct FinishedScene {
     pub case_scene: CaseScene,
     /// History, pictures, breakdown.
     pub run: SceneRun,
+    /// What was computed.
+    pub work: Work,
     /// Cost.
     pub timing: Timing,
 }
@@ -102,7 +104,14 @@ pub fn run_scenes(scenes: &[CaseScene]) -> (Vec<FinishedScene>, Option<Stopped>)
             particle_steps,
             ns_per_particle_step: 1e9 * run.summary.wall_s / particle_steps.max(1) as f64,
         };
-        finished.push(FinishedScene { case_scene: case_scene.clone(), run, timing });
+        let counts = run.summary.phase_field.unwrap_or_default();
+        let work = Work {
+            particle_steps,
+            phase_field_solves: counts.solves as u64,
+            phase_field_iterations: counts.iterations as u64,
+            phase_field_bytes: counts.bytes,
+        };
+        finished.push(FinishedScene { case_scene: case_scene.clone(), run, work, timing });
     }
     (finished, None)
 }

@@ -61,8 +61,9 @@ fn judge_runs(
         let check = &case.checks[planned.check];
         let mut record = bare_record(case, planned);
         record.expectation = expectation(check, library);
-        record.timing =
-            finished.iter().find(|run| run.case_scene.name == scene.name).map_or(record.timing, |run| run.timing);
+        if let Some(run) = finished.iter().find(|run| run.case_scene.name == scene.name) {
+            (record.work, record.timing) = (Some(run.work), run.timing);
+        }
         record.parameters = parameters(scene);
         record.series = outcome.runs.iter().find(|run| run.variant == scene.name).map(|run| run.series.clone());
         let found = evaluate(check, scene, (scenes, finished), stopped, library);
@@ -186,6 +187,7 @@ fn bare_record(case: &Case, planned: &Planned) -> Record {
         expectation: None,
         message: None,
         series: None,
+        work: None,
         timing: Timing::default(),
     }
 }

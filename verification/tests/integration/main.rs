@@ -1,6 +1,7 @@
 //! The tests of the harness from outside: one program, which is linked once.
 
 mod case_files;
+mod citation;
 mod documents;
 mod endings;
 mod patch_scenes;

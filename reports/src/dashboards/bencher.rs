@@ -1,0 +1,31 @@
+//! Bencher Metric Format: benchmarks by name, in each its measures by name with a value.
+//!
+//! Source: <https://bencher.dev/docs/reference/bencher-metric-format>. Names of benchmarks have at most 1024 characters,
+//! names of measures 64; a measure has one unit, so that values of different units are different measures.
+
+use serde_json::{Map, Value, json};
+
+use crate::metrics::Metric;
+
+const LONGEST_BENCHMARK: usize = 1024;
+const LONGEST_MEASURE: usize = 64;
+
+/// The document of some metrics.
+pub fn document(metrics: &[Metric]) -> Value {
+    let mut benchmarks: Map<String, Value> = Map::new();
+    for metric in metrics {
+        let name: String = metric.subject.chars().take(LONGEST_BENCHMARK).collect();
+        let measure: String = measure(metric).chars().take(LONGEST_MEASURE).collect();
+        let benchmark = benchmarks.entry(name).or_insert_with(|| json!({}));
+        benchmark[measure] = json!({ "value": metric.value });
+    }
+    benchmarks.into()
+}
+
+fn measure(metric: &Metric) -> String {
+    match (metric.measure, metric.unit.as_str()) {
+        (Some(measure), _) => measure.to_string(),
+        (None, "" | "1") => "bounded value".to_string(),
+        (None, unit) => format!("bounded value ({unit})"),
+    }
+}
