@@ -1,10 +1,10 @@
 //! Two result sets side by side: what is unchanged, a minor or a major change, missing or new, in accuracy
 //! and speed.
 //!
-//! Accuracy is measured in units of what the bounds allow, as METHODOLOGY defines it: values of different
-//! kinds are comparable then, and round-off of a value far inside its bounds is no change. `speed` holds
-//! times against their spread, `work` holds counts against each other; `partners` finds what is to be
-//! compared; `words` writes text and Markdown.
+//! Accuracy is measured in units of what the bounds allow, as the chapter Reproducibility of the book defines
+//! it: values of different kinds are comparable then, and round-off of a value far inside its bounds is no
+//! change. `speed` holds times against their spread, `work` holds counts against each other; `partners` finds
+//! what is to be compared; `words` writes text and Markdown.
 
 mod partners;
 mod speed;

@@ -17,6 +17,8 @@
 //! [`compare`] holds two such sets side by side, [`annotations`] marks failed checks in the view of a CI
 //! service.
 //!
+//! [`docs`] writes the generated parts of README and book.
+//!
 //! [`paper`] finds the figures of the source paper, [`bundle`] writes a figure with its numbers, caption and
 //! provenance.
 //!
@@ -38,6 +40,7 @@ pub mod chart;
 pub mod colour;
 pub mod compare;
 pub mod dashboards;
+pub mod docs;
 pub mod error;
 pub mod field;
 pub mod figure;

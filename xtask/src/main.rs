@@ -5,7 +5,8 @@
 //! [`failure`] (how errors are shown), [`console`] (what goes to which stream), [`folders`] (where files go),
 //! [`scene_input`] (scene files with their overrides), [`interrupt`] (Ctrl-C), [`progress`] (bars),
 //! [`pictures`] (figures of a run), [`vtk`] (its files for ParaView), [`watch`] (what is shown of a
-//! verification), [`environment`] (where and when), [`built`] (from which sources).
+//! verification), [`environment`] (where and when), [`built`] (from which sources), [`docs`] (generated
+//! parts of README and book).
 
 mod bench;
 mod built;
@@ -14,6 +15,7 @@ mod cli;
 mod compare;
 mod console;
 mod demo;
+mod docs;
 mod environment;
 mod exit;
 mod failure;

@@ -12,14 +12,17 @@ use serde_json::json;
 use crate::cli::{Common, Format};
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::{console, folders};
+use crate::{console, docs, folders};
 
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Folder with results.json or bench.json; the report is written there, or to --out
-    #[arg(value_name = "DIR")]
-    folder: PathBuf,
+    #[arg(value_name = "DIR", required_unless_present = "docs")]
+    folder: Option<PathBuf>,
+    /// Write the generated parts of README and book anew, from the numbers of DIR if it is given, else from those stored
+    #[arg(long)]
+    docs: bool,
 }
 
 /// Renders a results folder and names the files written.
@@ -28,25 +31,30 @@ pub struct Args {
 /// `results.json` is missing or foreign, or there beside `bench.json`, a file cannot be written, or a figure
 /// cannot be drawn.
 pub fn report(args: &Args, common: &Common) -> Result<Exit, Failure> {
-    let of_bench = bench::is_bench(&args.folder);
-    if of_bench && args.folder.join("results.json").is_file() {
-        let message = format!("{}: results.json and bench.json are both there", args.folder.display());
+    let folder = match &args.folder {
+        from if args.docs => return docs::docs(from.as_ref(), common),
+        Some(folder) => folder,
+        None => return Err(Failure::new(Exit::BadInput, "no folder is given")), // clap asks for one
+    };
+    let of_bench = bench::is_bench(folder);
+    if of_bench && folder.join("results.json").is_file() {
+        let message = format!("{}: results.json and bench.json are both there", folder.display());
         return Err(Failure::new(Exit::BadInput, message)
             .help("their reports have files of the same names; give one of them a folder of its own"));
     }
     if of_bench {
-        bench::read(&args.folder)?;
+        bench::read(folder)?;
     } else {
-        read_results(&args.folder).map_err(|error| unreadable(error, &args.folder))?;
+        read_results(folder).map_err(|error| unreadable(error, folder))?;
     }
-    let same = |out: &PathBuf| fs::canonicalize(out).is_ok_and(|out| Some(out) == fs::canonicalize(&args.folder).ok());
-    let folder = match common.out.as_ref().filter(|out| !same(out)) {
-        Some(_) => copied(&args.folder, if of_bench { "bench.json" } else { "results.json" }, common)?,
-        None => OutputFolder::reopen(&args.folder)?,
+    let same = |out: &PathBuf| fs::canonicalize(out).is_ok_and(|out| Some(out) == fs::canonicalize(folder).ok());
+    let out = match common.out.as_ref().filter(|out| !same(out)) {
+        Some(_) => copied(folder, if of_bench { "bench.json" } else { "results.json" }, common)?,
+        None => OutputFolder::reopen(folder)?,
     };
-    folders::note_without_lock(common, &folder);
-    let path = folder.path();
-    let rendered = if of_bench { bench::render(path, &folder)? } else { render(path, &folder)?.files };
+    folders::note_without_lock(common, &out);
+    let path = out.path();
+    let rendered = if of_bench { bench::render(path, &out)? } else { render(path, &out)?.files };
     let files: Vec<String> = rendered.iter().map(|f| path.join(f).display().to_string()).collect();
     match common.format {
         Format::Json => console::json(&json!({ "files": files })),

@@ -1,0 +1,222 @@
+//! Generated parts of README and book: what stands between `<!-- docs: NAME -->` and `<!-- /docs -->`.
+//!
+//! They come from [`Stored`], which holds the checks of one run as they are printed, with its commit. Nothing between two marks
+//! is typed by hand: `cargo xtask report --docs` writes it, and a test fails where it is not what would be written.
+
+use std::path::Path;
+
+use fisura_verification::record::{Record, ResultSet, Status};
+use serde::{Deserialize, Serialize};
+
+use crate::error::ReportError;
+use crate::markdown::{cell, code};
+use crate::number::plain;
+use crate::rates::rates;
+use crate::text::render_text;
+use crate::view::{self, Counts};
+
+/// Name of the schema written and read.
+pub const DOCS_SCHEMA: &str = "fisura.docs/1";
+
+/// What each suite is about, in the order of the tables.
+const SUITES: [(&str, &str); 9] = [
+    ("patch", "spline bases, constant stress, half models and rigid motion, to round-off"),
+    ("convergence", "orders against exact solutions: p + 1 in L2, p in H1; 2 with lumped mass and with moving points"),
+    ("manufactured", "the same problems with discrete loads; point layouts that lose order; frequencies of a bar"),
+    ("energy", "the energy balance closes; momentum is conserved"),
+    ("contact", "impact, sliding, collision, Hertz and a stack, against closed forms"),
+    ("fracture", "closed forms of AT2, surface energy of cracks, wave speeds, early energies of the plate"),
+    ("rings", "two brittle rings in collision, against the times of the source paper; the geometry is assumed"),
+    ("stability", "critical time step, cut spans, extreme input, units, threads, long runs"),
+    ("plate", "the cracking plate, against independent finite elements and published bands"),
+];
+
+/// The checks of one run as they are printed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Stored {
+    /// [`DOCS_SCHEMA`].
+    pub schema: String,
+    /// Commit of the program, with a word if there were changes.
+    pub commit: String,
+    /// Last line that `verify` printed.
+    pub verdict: String,
+    /// Cases in the order of the plan.
+    pub cases: Vec<StoredCase>,
+}
+
+/// A case and its checks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StoredCase {
+    suite: String,
+    case: String,
+    claim: String,
+    /// Records that are within their bounds, and that have bounds.
+    holding: [usize; 2],
+    /// Name below the case, quantity, value, accepted range and verdict of every record.
+    records: Vec<[String; 5]>,
+    /// Degree, norm, theory, observed, accepted and error on the finest mesh of every order.
+    orders: Vec<[String; 6]>,
+}
+
+impl Stored {
+    /// What is stored of a result set.
+    pub fn of(set: &ResultSet) -> Self {
+        let environment = view::environment(set).into_iter().find(|(name, _)| *name == "Commit");
+        let verdict = render_text(set).lines().last().unwrap_or_default().to_string();
+        let records: Vec<&Record> = set.records.iter().collect();
+        let cases = records.chunk_by(|a, b| (&a.suite, &a.case) == (&b.suite, &b.case)).map(stored_case).collect();
+        let commit = environment.map_or_else(|| "unknown".to_string(), |(_, commit)| commit);
+        Self { schema: DOCS_SCHEMA.to_string(), commit, verdict, cases }
+    }
+
+    /// Reads what a file holds.
+    ///
+    /// # Errors
+    /// The file is missing, malformed or of another schema.
+    pub fn read(folder: &Path, name: &str) -> Result<Self, ReportError> {
+        crate::read_json(folder, name, DOCS_SCHEMA)
+    }
+
+    /// The block of a name; `None` if there is none.
+    pub fn block(&self, name: &str) -> Option<String> {
+        match name.split_once(' ') {
+            None if name == "verdict" => Some(format!("```text\n{}\n```\n", self.verdict)),
+            None if name == "suites" => Some(self.suites()),
+            Some(("suite", suite)) => self.suite(suite),
+            Some(("orders", suite)) => self.orders(suite),
+            _ => None,
+        }
+    }
+
+    fn of_suite(&self, suite: &str) -> Option<Vec<&StoredCase>> {
+        let cases: Vec<&StoredCase> = self.cases.iter().filter(|case| case.suite == suite).collect();
+        (!cases.is_empty()).then_some(cases)
+    }
+
+    fn suites(&self) -> String {
+        let mut out = "| suite | what is checked | cases | checks that hold |\n|---|---|---|---|\n".to_string();
+        for (suite, what) in SUITES {
+            let cases = self.of_suite(suite).unwrap_or_default();
+            let [hold, all] = [0, 1].map(|side| cases.iter().map(|case| case.holding[side]).sum::<usize>());
+            out.push_str(&format!("| `{suite}` | {what} | {} | {hold} of {all} |\n", cases.len()));
+        }
+        format!("{out}\nQuick tier, commit {}.\n", cell(&short(&self.commit)))
+    }
+
+    fn suite(&self, suite: &str) -> Option<String> {
+        let cases = self.of_suite(suite)?;
+        let mut out = format!(
+            "Quick tier, commit {}.\n\n| case | claim | checks that hold |\n|---|---|---|\n",
+            cell(&short(&self.commit))
+        );
+        for StoredCase { case, claim, holding: [hold, all], .. } in &cases {
+            out.push_str(&format!("| {} | {} | {hold} of {all} |\n", code(case), cell(claim)));
+        }
+        for StoredCase { case, records, .. } in &cases {
+            let head = "| check | value | accepted | |\n|---|---|---|---|\n";
+            out.push_str(&format!("\n<details><summary>{}</summary>\n\n{head}", cell(case)));
+            for [name, quantity, value, accepted, status] in records {
+                let run = name.rsplit_once('/').map(|(run, _)| format!("{}: ", cell(run))).unwrap_or_default();
+                out.push_str(&format!(
+                    "| {run}{} | {} | {} | {status} |\n",
+                    cell(quantity),
+                    cell(value),
+                    cell(accepted)
+                ));
+            }
+            out.push_str("\n</details>\n");
+        }
+        Some(out)
+    }
+
+    fn orders(&self, suite: &str) -> Option<String> {
+        let mut out =
+            "| case | degree | error | theory | observed | accepted | finest mesh |\n|---|---|---|---|---|---|---|\n"
+                .to_string();
+        for StoredCase { case, orders, .. } in self.of_suite(suite)? {
+            for order in orders {
+                let cells: Vec<String> = order.iter().map(|text| cell(text)).collect();
+                out.push_str(&format!("| {} | {} |\n", code(case), cells.join(" | ")));
+            }
+        }
+        Some(format!("{out}\nQuick tier, commit {}.\n", cell(&short(&self.commit))))
+    }
+}
+
+fn short(commit: &str) -> String {
+    let (hash, rest) = commit.split_at(commit.find(',').unwrap_or(commit.len()));
+    hash.chars().take(12).chain(rest.chars()).collect()
+}
+
+fn stored_case(records: &[&Record]) -> StoredCase {
+    let first = records[0];
+    let counts = Counts::of(records.iter().copied());
+    let case = format!("{}/{}/", first.suite, first.case);
+    let row = |record: &&Record| {
+        let accepted = match record.status {
+            Status::Info => String::new(),
+            _ => view::accepted(record, plain),
+        };
+        let name = record.id.strip_prefix(&case).unwrap_or(&record.id).to_string();
+        [name, record.quantity.clone(), view::value(record, plain), accepted, view::word(record.status).to_string()]
+    };
+    StoredCase {
+        suite: first.suite.clone(),
+        case: first.case.clone(),
+        claim: first.claim.clone(),
+        holding: [counts.pass, counts.judged()],
+        records: records.iter().map(row).collect(),
+        orders: rates(records).iter().map(|rate| rate.cells(plain)).collect(),
+    }
+}
+
+/// Opening mark of a block, without its name.
+const OPEN: &str = "<!-- docs: ";
+/// Closing mark.
+const CLOSE: &str = "<!-- /docs -->";
+
+/// A document with every block written anew by `block`.
+///
+/// # Errors
+/// In words: a block without a name that is known, or without its end.
+pub fn rewritten(document: &str, block: impl Fn(&str) -> Option<String>) -> Result<String, String> {
+    let (mut out, mut rest) = (String::new(), document);
+    while let Some((before, after)) = rest.split_once(OPEN) {
+        let (name, after) = after.split_once(" -->\n").ok_or("a mark of a block has no end")?;
+        let (_, after) = after.split_once(CLOSE).ok_or_else(|| format!("the block {name:?} has no {CLOSE}"))?;
+        let content = block(name).ok_or_else(|| format!("no block is called {name:?}"))?;
+        out.push_str(&format!("{before}{OPEN}{name} -->\n{content}{CLOSE}"));
+        rest = after;
+    }
+    Ok(out + rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::example::results;
+
+    #[test]
+    fn blocks_are_written_between_their_marks_and_nothing_else_changes() {
+        let block = |name: &str| (name == "a").then(|| "new\n".to_string());
+        let text = "one\n<!-- docs: a -->\nold\n<!-- /docs -->\ntwo\n<!-- docs: a -->\n<!-- /docs -->\n";
+        let once = rewritten(text, block).unwrap();
+        assert_eq!(once, "one\n<!-- docs: a -->\nnew\n<!-- /docs -->\ntwo\n<!-- docs: a -->\nnew\n<!-- /docs -->\n");
+        assert_eq!(rewritten(&once, block).unwrap(), once);
+        assert!(rewritten("<!-- docs: b -->\n<!-- /docs -->", block).unwrap_err().contains("\"b\""));
+        assert!(rewritten("<!-- docs: a -->\n", block).unwrap_err().contains("has no"));
+    }
+
+    #[test]
+    fn what_is_stored_says_what_the_records_say() {
+        let stored = Stored::of(&results());
+        let suites = stored.block("suites").unwrap();
+        assert!(suites.contains("| `plate` |") && suites.contains("commit 0123abcd"), "{suites}");
+        let plate = stored.block("suite plate").unwrap();
+        assert!(plate.contains("38.123") && plate.contains("| fail |"), "{plate}");
+        assert!(stored.block("verdict").unwrap().contains("FAIL") || stored.verdict.starts_with("ERROR"));
+        assert_eq!((stored.block("suite none"), stored.block("nonsense")), (None, None));
+        let text = serde_json::to_string(&stored).unwrap();
+        assert_eq!(serde_json::from_str::<Stored>(&text).unwrap(), stored);
+    }
+}
