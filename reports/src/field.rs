@@ -95,13 +95,14 @@ impl Raster {
     }
 
     /// One path per colour, in units of pixels from the upper left corner. Runs of one colour in a row are
-    /// one rectangle, and so are equal runs in rows on top of each other.
-    fn paths(&self, range: [f64; 2]) -> String {
+    /// one rectangle, and so are equal runs in rows on top of each other. Of the levels of the colour bar
+    /// only every `coarse`-th is used.
+    pub(crate) fn paths(&self, range: [f64; 2], coarse: usize) -> String {
         let [nx, ny] = self.pixels;
         let mut paths = vec![String::new(); LEVELS];
         let mut open: Vec<Run> = Vec::new();
         for row in 0..ny {
-            let mut next = runs(&self.values[(ny - 1 - row) * nx..][..nx], row, range);
+            let mut next = runs(&self.values[(ny - 1 - row) * nx..][..nx], row, (range, coarse));
             for run in open {
                 let same = next.binary_search_by_key(&run.start, |n| n.start).ok().map(|at| &mut next[at]);
                 match same.filter(|n| (n.level, n.end) == (run.level, run.end)) {
@@ -137,10 +138,10 @@ impl Run {
     }
 }
 
-fn runs(values: &[f64], top: usize, range: [f64; 2]) -> Vec<Run> {
+fn runs(values: &[f64], top: usize, (range, coarse): ([f64; 2], usize)) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (i, value) in values.iter().enumerate().filter(|(_, v)| !v.is_nan()) {
-        let level = level(*value, range);
+        let level = (level(*value, range) / coarse * coarse + coarse / 2).min(LEVELS - 1);
         match runs.last_mut() {
             Some(run) if run.end == i && run.level == level => run.end = i + 1,
             _ => runs.push(Run { level, start: i, end: i + 1, top }),
@@ -154,6 +155,16 @@ fn runs(values: &[f64], top: usize, range: [f64; 2]) -> Vec<Run> {
 /// # Errors
 /// A range of the colour bar that is empty or not finite.
 pub fn render_field(figure: &Figure, raster: &Raster, label: &str, range: [f64; 2]) -> Result<String, FigureError> {
+    render_with(figure, raster, (label, range), |place| markup(place, &raster.paths(range, 1), raster.pixels))
+}
+
+/// The axes of a raster and the colour bar, with `content` in their frame.
+pub(crate) fn render_with(
+    figure: &Figure,
+    raster: &Raster,
+    (label, range): (&str, [f64; 2]),
+    content: impl FnOnce(Place) -> String,
+) -> Result<String, FigureError> {
     if !is_range(range[0], range[1]) {
         let message = format!("the colour bar cannot go from {} to {}", range[0], range[1]);
         return Err(FigureError::Drawing { figure: figure.id.clone(), message });
@@ -176,12 +187,12 @@ pub fn render_field(figure: &Figure, raster: &Raster, label: &str, range: [f64; 
         outline(page, place)?;
         let beside = Place { left: place.left + place.width + GAP, width: BAR, ..place };
         draw_bar(page, beside, &bar, label, labels)?;
-        Ok(Some(markup(place, &raster.paths(range), raster.pixels) + &bar_markup(beside)))
+        Ok(Some(content(place) + &bar_markup(beside)))
     })
 }
 
 /// The coloured pixels, stretched onto the frame.
-fn markup(place: Place, paths: &str, pixels: [usize; 2]) -> String {
+pub(crate) fn markup(place: Place, paths: &str, pixels: [usize; 2]) -> String {
     let scale = |length: f64, n: usize| length * SCALE / n as f64;
     format!(
         "<g transform=\"translate({} {}) scale({} {})\" shape-rendering=\"crispEdges\">\n{paths}</g>\n",

@@ -1,6 +1,7 @@
 //! `report.html`: one page with everything, that needs no script and no other file. Figures beyond 5 MB are
 //! links to their files.
 
+mod embed;
 mod page;
 mod size;
 
@@ -19,6 +20,7 @@ use crate::series::names;
 use crate::svg::slug;
 use crate::view::{self, Counts};
 
+use embed::embedded;
 use page::{
     Case, Deviations, ExpectationCell, Link, Order, Orders, Page, Parameters, Picture, ReferenceCell, Row, Source,
     Suite, Verdict,
@@ -44,16 +46,18 @@ pub fn render_html(set: &ResultSet, drawings: &Drawings) -> Result<String, minij
 }
 
 fn render_below(bytes: usize, set: &ResultSet, drawings: &Drawings) -> Result<String, minijinja::Error> {
-    let page = fill(set, set, drawings, &BTreeSet::new())?;
+    let (drawings, looks) = &embedded(drawings);
+    let fill = |shown: &ResultSet, left_out: &BTreeSet<&str>| fill(set, shown, (drawings, looks), left_out);
+    let page = fill(set, &BTreeSet::new())?;
     if page.len() < bytes {
         return Ok(page);
     }
-    let mut page = fill(set, set, drawings, &left_out(set, drawings, page.len() + 1 - bytes))?;
+    let mut page = fill(set, &left_out(set, drawings, page.len() + 1 - bytes))?;
     let mut shown = Cow::Borrowed(set);
     while page.len() >= bytes && shown.records.len() + shown.figures.len() > 0 {
         let part = 0.8 * bytes as f64 / page.len() as f64;
         shown = Cow::Owned(reduced(&shown, part));
-        page = fill(set, &shown, drawings, &left_out(&shown, drawings, usize::MAX))?;
+        page = fill(&shown, &left_out(&shown, drawings, usize::MAX))?;
     }
     Ok(page)
 }
@@ -62,20 +66,22 @@ fn render_below(bytes: usize, set: &ResultSet, drawings: &Drawings) -> Result<St
 fn fill(
     set: &ResultSet,
     shown: &ResultSet,
-    drawings: &Drawings,
+    (drawings, looks): (&Drawings, &str),
     left_out: &BTreeSet<&str>,
 ) -> Result<String, minijinja::Error> {
     let mut environment = Environment::new();
     environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build()?);
     environment.add_template("report.html", TEMPLATE)?;
     let counts = Counts::of(&set.records);
-    let timed = shown.figures.iter().filter(|f| is_timing(f));
+    let opening = opening(&shown.figures);
+    let opens = |figure: &Figure| opening.iter().any(|first| first.id == figure.id);
+    let timed = shown.figures.iter().filter(|f| is_timing(f) && !opens(f));
     let [records, figures] = [set.records.len() - shown.records.len(), set.figures.len() - shown.figures.len()];
     let missing =
         if records + figures == 0 { String::new() } else { format!("{records} records and {figures} figures") };
     let pictures = |figure: &Figure| picture(figure, drawings, left_out);
     let page = Page {
-        style: STYLE,
+        style: format!("{STYLE}{looks}"),
         verdict: Verdict::of(counts.verdict()),
         sentence: counts.sentence(),
         counts: counts.list(),
@@ -84,7 +90,8 @@ fn fill(
         environment: view::environment(set),
         broken: view::broken(shown).into_iter().map(|r| row(r, &r.id)).collect(),
         unmet: view::unmet(shown).into_iter().map(|r| row(r, &r.id)).collect(),
-        suites: suites(shown, &pictures),
+        opening: opening.iter().map(|figure| pictures(figure)).collect(),
+        suites: suites(shown, &opens, &pictures),
         timing: timed.map(pictures).collect(),
         sources: sources(&shown.records),
         deviations: deviations(shown),
@@ -92,14 +99,31 @@ fn fill(
     environment.get_template("report.html")?.render(Serde(page))
 }
 
+/// What a reader came for, as far as it is there: energies of the plate, its crack at the end, speed against error, an order
+/// of convergence. Each stands here and not again in its suite.
+fn opening(figures: &[Figure]) -> Vec<&Figure> {
+    let is_field = |figure: &Figure| matches!(figure.body, FigureBody::Field { .. });
+    let first = |wanted: &dyn Fn(&Figure) -> bool| figures.iter().find(|figure| wanted(figure));
+    let converges =
+        |f: &Figure, words: &str| f.suite == "convergence" && f.id.contains(words) && !f.id.ends_with("-unknowns");
+    let wave = "standing-wave-square-displacement-error";
+    let pictures = [
+        first(&|f| f.id == "plate-elastic-energy"),
+        figures.iter().rfind(|f| f.id.starts_with("plate-phase-") && is_field(f)),
+        first(&|f| is_timing(f) && f.id.contains(wave)).or_else(|| first(&is_timing)),
+        first(&|f| !is_timing(f) && converges(f, wave)).or_else(|| first(&|f| !is_timing(f) && converges(f, "error"))),
+    ];
+    pictures.into_iter().flatten().collect()
+}
+
 /// Figures that show measured time; the page has a section of its own for them.
 fn is_timing(figure: &Figure) -> bool {
     figure.id.starts_with("timing/")
 }
 
-fn suites(set: &ResultSet, picture: &dyn Fn(&Figure) -> Picture) -> Vec<Suite> {
+fn suites(set: &ResultSet, opens: &dyn Fn(&Figure) -> bool, picture: &dyn Fn(&Figure) -> Picture) -> Vec<Suite> {
     let mut figures: HashMap<&str, Vec<&Figure>> = HashMap::new();
-    for figure in set.figures.iter().filter(|f| !is_timing(f)) {
+    for figure in set.figures.iter().filter(|f| !is_timing(f) && !opens(f)) {
         figures.entry(&figure.suite).or_default().push(figure);
     }
     let all = view::by_suite(set).into_iter();

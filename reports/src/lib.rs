@@ -17,7 +17,7 @@
 //! [`compare`] holds two such sets side by side, [`annotations`] marks failed checks in the view of a CI
 //! service.
 //!
-//! [`docs`] writes the generated parts of README and book.
+//! [`animation`] draws moving pictures, [`docs`] writes the generated parts of README and book.
 //!
 //! [`paper`] finds the figures of the source paper, [`bundle`] writes a figure with its numbers, caption and
 //! provenance.
@@ -32,6 +32,7 @@
 //! printed), [`rates`] (orders of convergence among records) and [`view`] (verdicts in words, records in
 //! groups).
 
+pub mod animation;
 pub mod annotations;
 pub mod axis;
 pub mod bench;

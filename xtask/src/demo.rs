@@ -36,6 +36,7 @@ pub fn demo(common: &Common) -> Result<Exit, Failure> {
     let args = run::Args {
         scene: SceneArgs { scene, set: Vec::new() },
         vtk: false,
+        animate: false,
         resume: false,
         checkpoint: Interval::NONE,
     };

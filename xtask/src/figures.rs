@@ -5,11 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use fisura_reports::animation::render_animation;
+use fisura_reports::field::Raster;
 use fisura_reports::number::duration;
 use fisura_reports::paper::{PaperFigure, cases_of};
-use fisura_reports::{bundle, read_results};
+use fisura_reports::{FigureError, SeriesSet, bundle, read_results};
 use fisura_verification::output::OutputFolder;
-use fisura_verification::record::{Figure, ResultSet};
+use fisura_verification::record::{Figure, FigureBody, ResultSet};
 use fisura_verification::suite::{Case, Options, read_cases};
 use serde_json::json;
 
@@ -33,6 +35,9 @@ pub struct Args {
     /// Draw from this results folder instead of running anything
     #[arg(long, value_name = "DIR")]
     from: Option<PathBuf>,
+    /// A moving picture of each series of pictures too, from the moments that the results hold
+    #[arg(long)]
+    animate: bool,
 }
 
 /// Writes each figure as SVG with its numbers, caption and provenance. Where the cases were run for it, a
@@ -86,12 +91,56 @@ fn draw(
         let written = bundle::write((source, figure), (folder, name), &results.environment, inputs)?;
         files.extend(written.into_iter().map(|file| folder.path().join(file).display().to_string()));
     }
+    if args.animate {
+        for (name, svg) in animated(source, &found)? {
+            folder.write(&name, svg)?;
+            files.push(folder.path().join(name).display().to_string());
+        }
+    }
     folder.finish()?;
     match common.format {
         Format::Json => console::json(&json!({ "paper": args.paper, "files": files })),
         Format::Text => console::result(&(files.join("\n") + "\n")),
     }
     Ok(())
+}
+
+/// A moving picture of all pictures whose names differ in the time at their end alone: name and SVG.
+fn animated(source: &Path, found: &[(String, Figure)]) -> Result<Vec<(String, String)>, Failure> {
+    let mut series: BTreeMap<&str, Vec<(f64, &Figure)>> = BTreeMap::new();
+    for (name, figure) in found.iter().filter(|(_, figure)| matches!(figure.body, FigureBody::Field { .. })) {
+        if let Some((stem, time)) = name.rsplit_once('-').and_then(|(stem, word)| Some((stem, time_of(word)?))) {
+            series.entry(stem).or_default().push((time, figure));
+        }
+    }
+    let mut drawn = Vec::new();
+    for (stem, mut pictures) in series.into_iter().filter(|(_, pictures)| pictures.len() > 1) {
+        pictures.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let title = pictures[0].1.title.clone();
+        let title = title.rsplit_once(" at ").map_or(title.as_str(), |(title, _)| title);
+        let name = format!("{stem}-animated");
+        drawn.push((format!("{name}.svg"), animate(&name, title, source, &pictures)?));
+    }
+    Ok(drawn)
+}
+
+/// Seconds of the end of a name, such as 45us.
+fn time_of(word: &str) -> Option<f64> {
+    let units = [("ns", 1e-9), ("us", 1e-6), ("ms", 1e-3), ("s", 1.0)];
+    units.iter().find_map(|(unit, factor)| Some(word.strip_suffix(unit)?.parse::<f64>().ok()? * factor))
+}
+
+fn animate(name: &str, title: &str, source: &Path, pictures: &[(f64, &Figure)]) -> Result<String, Failure> {
+    let fail = |error: FigureError| Failure::new(Exit::BadInput, error.to_string());
+    let set = SeriesSet::load(source, pictures.iter().map(|(_, figure)| *figure));
+    let (mut moments, mut bar) = (Vec::new(), (String::new(), [0.0, 1.0]));
+    for (time, figure) in pictures {
+        if let FigureBody::Field { series, pixels, label, range } = &figure.body {
+            moments.push((*time, Raster::read(&figure.id, series, *pixels, &set).map_err(fail)?));
+            bar = (label.clone(), *range);
+        }
+    }
+    render_animation(name, title, &moments, (&bar.0, bar.1)).map_err(fail)
 }
 
 /// What is asked for.

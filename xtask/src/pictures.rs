@@ -1,7 +1,11 @@
-//! Figures of one run: energies, and phase field and stress at the frames.
+//! Figures of one run: energies, phase field and stress at the frames, and a moving picture.
+
+use std::collections::BTreeSet;
 
 use fisura::output::picture::Picture;
+use fisura::scene::Scene;
 use fisura_reports::FigureError;
+use fisura_reports::animation::{Moment, render_animation};
 use fisura_reports::field::{Raster, render_field};
 use fisura_reports::number::pretty;
 use fisura_reports::run_report::{energies_svg, phase_name, phase_svg};
@@ -13,15 +17,30 @@ use fisura_verification::scene_run::SceneRun;
 /// the rest.
 const CLIPPED: f64 = 0.005;
 
-/// File name and SVG of every figure of a run.
-pub fn draw(run: &SceneRun) -> Vec<(String, Result<String, FigureError>)> {
+/// Moments of a moving picture, beside the frames of the scene.
+const MOMENTS: usize = 40;
+
+/// File name of a figure, and its SVG.
+pub type Drawing = (String, Result<String, FigureError>);
+
+/// Adds the moments of a moving picture to the frames of a scene.
+pub fn add_moments(scene: &mut Scene) {
+    let end = scene.analysis.end_time;
+    let frames = &mut scene.output.frames;
+    frames.extend((0..=MOMENTS).map(|moment| end * moment as f64 / MOMENTS as f64));
+    frames.sort_by(f64::total_cmp);
+    frames.dedup_by(|a, b| (*a - *b).abs() < 0.1 * end / MOMENTS as f64);
+}
+
+/// Every figure of a run: stills nearest to the times of `stills` (s), and all its frames as a moving picture if that is asked for.
+pub fn draw(run: &SceneRun, stills: &[f64], animate: bool) -> Vec<Drawing> {
     let title = &run.summary.title;
     let mut drawings = Vec::new();
     if run.history.rows() > 1 {
         drawings.push(("energies.svg".to_string(), energies_svg(&run.history, title)));
     }
     let stress = StressScale::of(&run.frames);
-    for frame in &run.frames {
+    for frame in nearest(&run.frames, stills) {
         let name = phase_name(frame.time);
         if let Some(phase) = &frame.phase {
             drawings.push((format!("{name}.svg"), phase_svg(&table(frame, phase), frame.time, title)));
@@ -29,7 +48,38 @@ pub fn draw(run: &SceneRun) -> Vec<(String, Result<String, FigureError>)> {
         let name = name.replacen("phase", "stress", 1);
         drawings.push((format!("{name}.svg"), stress_svg(frame, &stress, &name, title)));
     }
+    if animate {
+        drawings.push(animation(run, &stress));
+    }
     drawings
+}
+
+/// The frame nearest to each time, each once and in order.
+fn nearest<'a>(frames: &'a [Picture], times: &[f64]) -> Vec<&'a Picture> {
+    let away = |frame: usize, time: f64| (frames[frame].time - time).abs();
+    let of_time = |time: &f64| (0..frames.len()).min_by(|a, b| away(*a, *time).total_cmp(&away(*b, *time)));
+    let wanted: BTreeSet<usize> = times.iter().filter_map(of_time).collect();
+    wanted.into_iter().map(|frame| &frames[frame]).collect()
+}
+
+fn animation(run: &SceneRun, stress: &StressScale) -> Drawing {
+    let title = &run.summary.title;
+    let has_phase = run.frames.iter().all(|frame| frame.phase.is_some());
+    let values = |frame: &Picture| match frame.phase.as_ref().filter(|_| has_phase) {
+        Some(phase) => phase.clone(),
+        None => frame.stress.iter().map(|s| s * stress.factor).collect(),
+    };
+    let moments: Vec<Moment> = run.frames.iter().map(|frame| (frame.time, raster(frame, values(frame)))).collect();
+    let (name, label, range) = match has_phase {
+        true => ("phase-animated", "phase field c".to_string(), [0.0, 1.0]),
+        false => ("stress-animated", format!("stress σ₁ ({})", stress.unit), stress.range),
+    };
+    (format!("{name}.svg"), render_animation(name, title, &moments, (&label, range)))
+}
+
+fn raster(frame: &Picture, values: Vec<f64>) -> Raster {
+    let high = [0, 1].map(|d| frame.origin[d] + frame.pixels[d] as f64 * frame.pixel[d]);
+    Raster { pixels: frame.pixels, low: frame.origin, high, values }
 }
 
 /// A field of a picture in the form of a series file.
@@ -66,9 +116,7 @@ impl StressScale {
 
 fn stress_svg(frame: &Picture, scale: &StressScale, id: &str, title: &str) -> Result<String, FigureError> {
     let label = format!("stress σ₁ ({})", scale.unit);
-    let high = [0, 1].map(|d| frame.origin[d] + frame.pixels[d] as f64 * frame.pixel[d]);
-    let values = frame.stress.iter().map(|s| s * scale.factor).collect();
-    let raster = Raster { pixels: frame.pixels, low: frame.origin, high, values };
+    let raster = raster(frame, frame.stress.iter().map(|s| s * scale.factor).collect());
     let body =
         FigureBody::Field { series: String::new(), pixels: raster.pixels, label: label.clone(), range: scale.range };
     let figure = Figure {

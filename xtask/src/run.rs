@@ -27,6 +27,9 @@ pub struct Args {
     /// Files for ParaView at every frame: points.pvd (material points) and grid.pvd (mesh) open them
     #[arg(long)]
     pub vtk: bool,
+    /// A moving picture of the run too: the phase field if there is one, else stress; with --vtk its moments are frames as well
+    #[arg(long)]
+    pub animate: bool,
     /// Go on from the checkpoint in the output folder, to the same bytes; from the start if there is none
     #[arg(long)]
     pub resume: bool,
@@ -74,7 +77,11 @@ pub fn run_into(
     common: &Common,
 ) -> Result<Exit, Failure> {
     refuse(args)?;
-    let file = scene_input::load(&args.scene, common)?;
+    let mut file = scene_input::load(&args.scene, common)?;
+    let stills = file.scene.output.frames.clone();
+    if args.animate {
+        pictures::add_moments(&mut file.scene);
+    }
     let folder = open()?;
     let start = Start::new(args, &file.scene, &folder, common)?;
     let mut vtk = args.vtk.then(|| vtk::Files::new(&folder, &file.scene, common));
@@ -99,7 +106,8 @@ pub fn run_into(
     for warning in run.summary.warnings.iter().skip(file.warnings.len()) {
         console::note(common, &format!("warning: {warning}"));
     }
-    let (mut files, undrawn) = write(&run, &folder)?;
+    let drawings = pictures::draw(&run, &stills, args.animate);
+    let (mut files, undrawn) = write(&run, drawings, &folder)?;
     match &vtk {
         Some(vtk) => files.extend(vtk.after(run.frames.len())),
         None if goes_on => vtk::remove(&folder)?,
@@ -223,10 +231,14 @@ fn interrupted(at: Progress, checkpoint: &Path) -> Failure {
 }
 
 /// Writes all files of a run; names them, and what cannot be drawn, with the reason.
-fn write(run: &SceneRun, folder: &OutputFolder) -> Result<(Vec<String>, Vec<String>), Failure> {
+fn write(
+    run: &SceneRun,
+    drawings: Vec<pictures::Drawing>,
+    folder: &OutputFolder,
+) -> Result<(Vec<String>, Vec<String>), Failure> {
     let mut files: Vec<String> = run.write(folder)?.into_iter().map(String::from).collect();
     let mut undrawn = Vec::new();
-    for (name, drawing) in pictures::draw(run) {
+    for (name, drawing) in drawings {
         let drawn = drawing.map_err(|error| error.to_string());
         match drawn.and_then(|svg| folder.write(&name, svg).map_err(|error| error.to_string())) {
             Ok(()) => files.push(name),

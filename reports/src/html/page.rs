@@ -133,7 +133,7 @@ pub(super) struct Deviations {
 
 #[derive(Serialize)]
 pub(super) struct Page {
-    pub style: &'static str,
+    pub style: String,
     pub verdict: Verdict,
     pub sentence: String,
     pub counts: String,
@@ -143,6 +143,8 @@ pub(super) struct Page {
     pub environment: Vec<(&'static str, String)>,
     pub broken: Vec<Row>,
     pub unmet: Vec<Row>,
+    /// What a reader came for.
+    pub opening: Vec<Picture>,
     pub suites: Vec<Suite>,
     pub timing: Vec<Picture>,
     pub sources: Vec<Source>,

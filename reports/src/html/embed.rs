@@ -1,0 +1,164 @@
+//! Drawings as parts of the page: their looks stand once in the style of the page, and what the caption says stands there alone.
+//!
+//! A drawing in a file of its own carries every attribute with every element, and a description for those who cannot see it. On a
+//! page of hundreds of drawings that is most of its bytes.
+
+use std::collections::HashMap;
+use std::fmt::Write;
+
+use super::Drawings;
+
+/// Attributes that a style sheet can say as well.
+const LOOKS: [&str; 6] = ["fill", "stroke", "stroke-width", "opacity", "font-size", "text-anchor"];
+
+/// Drawings for the page, and the rules that they need in its style.
+pub(super) fn embedded(drawings: &Drawings) -> (Drawings, String) {
+    let mut classes = Classes::default();
+    let shorter =
+        |drawing: &Result<String, String>| drawing.as_ref().map(|svg| classes.shorten(svg)).map_err(Clone::clone);
+    let drawings = drawings.iter().map(|(id, drawing)| (id.clone(), drawing)).collect::<Vec<_>>();
+    let mut shorter = shorter;
+    let drawings = drawings.into_iter().map(|(id, drawing)| (id, shorter(drawing))).collect();
+    (drawings, classes.rules)
+}
+
+/// Looks that were met, by the attributes that they stand for.
+#[derive(Default)]
+struct Classes {
+    names: HashMap<String, String>,
+    rules: String,
+}
+
+impl Classes {
+    /// A drawing without what the page says once.
+    fn shorten(&mut self, svg: &str) -> String {
+        let mut out = String::with_capacity(svg.len());
+        let mut rest = svg;
+        while let Some((text, tag)) = rest.split_once('<') {
+            let Some((tag, after)) = tag.split_once('>') else { break };
+            out.push_str(text);
+            rest = after;
+            if tag.starts_with("desc") {
+                rest = after.split_once("</desc>").map_or(after, |(_, after)| after.trim_start_matches('\n'));
+            } else {
+                self.tag(tag, &mut out);
+            }
+        }
+        out + rest
+    }
+
+    fn tag(&mut self, tag: &str, out: &mut String) {
+        out.push('<');
+        let (name, attributes) = tag.split_once(' ').unwrap_or((tag, ""));
+        out.push_str(name);
+        let end = if attributes.ends_with('/') { "/>" } else { ">" };
+        let mut look = String::new();
+        for (key, value) in pairs(attributes) {
+            match key {
+                _ if LOOKS.contains(&key) && name != "svg" => {
+                    let unit = if key == "font-size" { "px" } else { "" };
+                    let _ = write!(look, "{key}:{value}{unit};");
+                }
+                "aria-labelledby" => {
+                    let title = value.split(' ').next().unwrap_or_default();
+                    let _ = write!(out, " {key}=\"{title}\"");
+                }
+                "d" => {
+                    let _ = write!(out, " d=\"{}\"", straight(value));
+                }
+                _ => {
+                    let _ = write!(out, " {key}=\"{value}\"");
+                }
+            }
+        }
+        if !look.is_empty() {
+            let _ = write!(out, " class=\"{}\"", self.class(look));
+        }
+        out.push_str(end);
+    }
+
+    fn class(&mut self, look: String) -> &str {
+        let next = format!("q{}", self.names.len());
+        self.names.entry(look).or_insert_with_key(|look| {
+            let _ = writeln!(self.rules, "svg .{next}{{{}}}", look.trim_end_matches(';'));
+            next
+        })
+    }
+}
+
+/// Keys and values of attributes `key="value" …`.
+fn pairs(attributes: &str) -> impl Iterator<Item = (&str, &str)> {
+    let mut rest = attributes;
+    std::iter::from_fn(move || {
+        let (key, after) = rest.split_once("=\"")?;
+        let (value, after) = after.split_once('"')?;
+        rest = after;
+        Some((key.trim_start(), value))
+    })
+}
+
+/// The data of a path with level and upright lines in their short form.
+fn straight(data: &str) -> String {
+    let mut pieces = data.split('l');
+    let mut out = pieces.next().unwrap_or_default().to_string();
+    for piece in pieces {
+        match level_or_upright(piece) {
+            Some((command, length, after)) => {
+                let _ = write!(out, "{command}{length}{after}");
+            }
+            None => {
+                let _ = write!(out, "l{piece}");
+            }
+        }
+    }
+    out
+}
+
+/// Command, length and rest of a step of which one part is zero; `None` for any other, or if more steps follow without a letter.
+fn level_or_upright(piece: &str) -> Option<(char, &str, &str)> {
+    let number =
+        |text: &str| text[1.min(text.len())..].find(|c: char| !c.is_ascii_digit()).map_or(text.len(), |at| at + 1);
+    let is_number = |text: &str| text.trim_start_matches('-').parse::<u64>().is_ok();
+    let (x, after) = piece.split_at_checked(number(piece))?;
+    let after = after.strip_prefix(' ').unwrap_or(after);
+    let (y, after) = after.split_at_checked(number(after))?;
+    let ends = after.chars().next().is_none_or(|c| c.is_ascii_alphabetic());
+    if !ends || !is_number(x) || !is_number(y) {
+        return None;
+    }
+    match (x, y) {
+        ("0", y) => Some(('v', y, after)),
+        (x, "0") => Some(('h', x, after)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn looks_stand_once_and_what_the_caption_says_goes() {
+        let svg = "<svg role=\"img\" aria-labelledby=\"a-title a-desc\" font-size=\"9\">\n<title id=\"a-title\">A</title>\n\
+                   <desc id=\"a-desc\">Said &lt;below&gt;</desc>\n<circle cx=\"1\" r=\"2\" fill=\"#fff\" stroke-width=\"1\"/>\
+                   <circle cx=\"3\" r=\"2\" fill=\"#fff\" stroke-width=\"1\"/><text font-size=\"12\">B</text></svg>\n";
+        let drawings =
+            Drawings::from([("a".to_string(), Ok(svg.to_string())), ("b".to_string(), Err("none".to_string()))]);
+        let (short, rules) = embedded(&drawings);
+        assert_eq!(
+            short["a"],
+            Ok("<svg role=\"img\" aria-labelledby=\"a-title\" font-size=\"9\">\n<title id=\"a-title\">A</title>\n\
+                <circle cx=\"1\" r=\"2\" class=\"q0\"/><circle cx=\"3\" r=\"2\" class=\"q0\"/><text class=\"q1\">B</text></svg>\n"
+                .to_string())
+        );
+        assert_eq!(rules, "svg .q0{fill:#fff;stroke-width:1}\nsvg .q1{font-size:12px}\n");
+        assert_eq!(short["b"], Err("none".to_string()));
+    }
+
+    #[test]
+    fn straight_lines_are_short() {
+        assert_eq!(straight("m740 120l0 3399m5-6l60 0l0-25l3 4z"), "m740 120v3399m5-6h60v-25l3 4z");
+        assert_eq!(straight("l0 1 2 3l-7 0"), "l0 1 2 3h-7", "steps without a letter stay");
+        assert_eq!(straight("M0.5 1L2 3l1.5 0"), "M0.5 1L2 3l1.5 0");
+    }
+}
