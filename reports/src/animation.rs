@@ -16,8 +16,9 @@ use crate::svg::escape;
 /// The file stays below this many bytes.
 pub const MOST_BYTES: usize = 2_000_000;
 
-/// Time of one moment, s, and of the last, which stays longer.
-const MOMENT: f64 = 0.1;
+/// Time of all moments but the last, s, the longest of one of them, and that of the last, which stays.
+const ALL: f64 = 4.0;
+const LONGEST: f64 = 0.7;
 const LAST: f64 = 1.5;
 /// Coarseness of pixels and of colours, from what looks best to what is smallest.
 const COARSENESS: [[usize; 2]; 4] = [[1, 2], [2, 4], [3, 4], [4, 8]];
@@ -67,8 +68,9 @@ pub fn render_animation(
 
 /// A moment that shows for its part of the cycle, with its time above the frame.
 fn group(number: usize, count: usize, time: &str, [x, y]: [i32; 2], content: &str) -> String {
-    let cycle = MOMENT * (count - 1) as f64 + LAST;
-    let [from, to] = [number, number + 1].map(|n| MOMENT * n as f64 / cycle);
+    let moment = (ALL / (count - 1) as f64).min(LONGEST);
+    let cycle = moment * (count - 1) as f64 + LAST;
+    let [from, to] = [number, number + 1].map(|n| moment * n as f64 / cycle);
     let (values, times) = match number {
         0 => ("visible;hidden".to_string(), format!("0;{to:.5}")),
         _ if number + 1 == count => ("hidden;visible".to_string(), format!("0;{from:.5}")),
@@ -135,7 +137,7 @@ mod tests {
             assert!(svg.contains(time), "{time}: {svg}");
         }
         assert_eq!((svg.matches("<animate ").count(), svg.matches("<g visibility=\"visible\">").count()), (3, 1));
-        assert!(svg.contains("keyTimes=\"0;0.05882;0.11765\"") && !svg.contains("href"), "{svg}");
+        assert!(svg.contains("keyTimes=\"0;0.24138;0.48276\"") && !svg.contains("href"), "{svg}");
     }
 
     #[test]
