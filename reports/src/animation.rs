@@ -1,7 +1,9 @@
-//! Moving pictures: one SVG that browsers play by themselves, with axes in millimetres and the time in the frame.
+//! Moving pictures: one SVG that browsers play by themselves, with axes in millimetres and the time in the
+//! frame.
 //!
-//! Every moment is a group that is visible for its part of the cycle (SMIL, with discrete values). A viewer that does not animate
-//! shows the last one. Pictures are coarsened until the file stays below [`MOST_BYTES`].
+//! Every moment is a group that is visible for its part of the cycle (SMIL, with discrete values). A viewer
+//! that does not animate shows the last one. Pictures are coarsened until the file stays below
+//! [`MOST_BYTES`].
 
 use std::fmt::Write;
 
@@ -29,7 +31,8 @@ pub type Moment = (f64, Raster);
 /// Draws moments one after the other; a title, the label of the colour bar and its range.
 ///
 /// # Errors
-/// Fewer than two moments, moments of other places than the first, or so many that the file would be too large.
+/// Fewer than two moments, moments of other places than the first, or so many that the file would be too
+/// large.
 pub fn render_animation(
     id: &str,
     title: &str,

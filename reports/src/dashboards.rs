@@ -1,4 +1,5 @@
-//! `metrics/`: the numbers of a run in the forms that dashboards read, what is deterministic apart from what is timed.
+//! `metrics/`: the numbers of a run in the forms that dashboards read, what is deterministic apart from what
+//! is timed.
 //!
 //! | below `metrics/` | for |
 //! |---|---|

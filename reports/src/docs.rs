@@ -1,7 +1,8 @@
 //! Generated parts of README and book: what stands between `<!-- docs: NAME -->` and `<!-- /docs -->`.
 //!
-//! They come from [`Stored`], which holds the checks of one run as they are printed, with its commit. Nothing between two marks
-//! is typed by hand: `cargo xtask report --docs` writes it, and a test fails where it is not what would be written.
+//! They come from [`Stored`], which holds the checks of one run as they are printed, with its commit. Nothing
+//! between two marks is typed by hand: `cargo xtask report --docs` writes it, and a test fails where it is
+//! not what would be written.
 
 use std::path::Path;
 

@@ -99,8 +99,8 @@ fn fill(
     environment.get_template("report.html")?.render(Serde(page))
 }
 
-/// What a reader came for, as far as it is there: energies of the plate, its crack at the end, speed against error, an order
-/// of convergence. Each stands here and not again in its suite.
+/// What a reader came for, as far as it is there: energies of the plate, its crack at the end, speed against
+/// error, an order of convergence. Each stands here and not again in its suite.
 fn opening(figures: &[Figure]) -> Vec<&Figure> {
     let is_field = |figure: &Figure| matches!(figure.body, FigureBody::Field { .. });
     let first = |wanted: &dyn Fn(&Figure) -> bool| figures.iter().find(|figure| wanted(figure));

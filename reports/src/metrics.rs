@@ -1,4 +1,5 @@
-//! Numbers of which smaller is better, for trend charts over commits: `metrics.json`, and what [`crate::dashboards`] writes.
+//! Numbers of which smaller is better, for trend charts over commits: `metrics.json`, and what
+//! [`crate::dashboards`] writes.
 //!
 //! [`deterministic`] figures come out the same whenever one program runs the same cases; [`times`] do not.
 

@@ -53,7 +53,8 @@ pub struct PhaseFieldCounts {
     pub solves: usize,
     /// Iterations in all.
     pub iterations: usize,
-    /// Bytes of matrices and factors that iterations have read; factorisations are not counted.
+    /// Passes of iterations over matrices and factors, each times its size, bytes; factorisations are not
+    /// counted, and a pass over a part counts as one over all.
     pub bytes: u64,
 }
 

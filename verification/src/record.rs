@@ -140,7 +140,8 @@ pub struct Timing {
     pub ns_per_particle_step: f64,
 }
 
-/// What a run computed, counted: the same numbers on every run of one program, whatever the number of threads.
+/// What a run computed, counted: the same numbers on every run of one program, whatever the number of
+/// threads.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Work {
     /// Material points times steps.
@@ -151,7 +152,7 @@ pub struct Work {
     /// Iterations of these solves.
     #[serde(skip_serializing_if = "is_zero", default)]
     pub phase_field_iterations: u64,
-    /// Bytes of matrices and factors that these iterations read.
+    /// Passes of these iterations over matrices and factors, each times its size, bytes.
     #[serde(skip_serializing_if = "is_zero", default)]
     pub phase_field_bytes: u64,
 }

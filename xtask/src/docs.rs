@@ -19,7 +19,8 @@ use crate::{console, folders};
 const BOOK: &str = "reports/book";
 const STORED: &str = "records.json";
 
-/// Stores what `from` holds, if it is given, and writes every generated part anew; names the files that changed.
+/// Stores what `from` holds, if it is given, and writes every generated part anew; names the files that
+/// changed.
 ///
 /// # Errors
 /// Results or documents that cannot be read or written, or a block that nobody knows.

@@ -32,7 +32,8 @@ pub fn add_moments(scene: &mut Scene) {
     frames.dedup_by(|a, b| (*a - *b).abs() < 0.1 * end / MOMENTS as f64);
 }
 
-/// Every figure of a run: stills nearest to the times of `stills` (s), and all its frames as a moving picture if that is asked for.
+/// Every figure of a run: stills nearest to the times of `stills` (s), and all its frames as a moving picture
+/// if that is asked for.
 pub fn draw(run: &SceneRun, stills: &[f64], animate: bool) -> Vec<Drawing> {
     let title = &run.summary.title;
     let mut drawings = Vec::new();

@@ -27,7 +27,8 @@ pub struct Args {
     /// Files for ParaView at every frame: points.pvd (material points) and grid.pvd (mesh) open them
     #[arg(long)]
     pub vtk: bool,
-    /// A moving picture of the run too: the phase field if there is one, else stress; with --vtk its moments are frames as well
+    /// A moving picture of the run too: the phase field if there is one, else stress; with --vtk its moments
+    /// are frames as well
     #[arg(long)]
     pub animate: bool,
     /// Go on from the checkpoint in the output folder, to the same bytes; from the start if there is none

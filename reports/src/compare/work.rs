@@ -1,7 +1,9 @@
-//! What runs computed, counted, on both sides: particle-steps, iterations of the phase field and the bytes they read.
+//! What runs computed, counted, on both sides: particle-steps, iterations of the phase field and the bytes
+//! they read.
 //!
-//! Counts of one program are the same on every run, so a gate on them needs no spread. Another compiler or processor may round
-//! differently and so change an iteration here and there: [`MINOR`] and [`MAJOR`] leave room for that.
+//! Counts of one program are the same on every run, so a gate on them needs no spread. Another compiler or
+//! processor may round differently and so change an iteration here and there: [`MINOR`] and [`MAJOR`] leave
+//! room for that.
 
 use std::collections::HashMap;
 

@@ -1,8 +1,9 @@
-//! Results of airspeed velocity: `benchmarks.json`, and per machine `machine.json` and a file per commit and environment.
+//! Results of airspeed velocity: `benchmarks.json`, and per machine `machine.json` and a file per commit and
+//! environment.
 //!
-//! Source: "Benchmark suite layout and file formats" of its developer documentation, and `asv/results.py`. What it calls an
-//! environment separates what is deterministic from what is timed. The date of the commit is not in the results: the start of
-//! the run stands in its place.
+//! Source: "Benchmark suite layout and file formats" of its developer documentation, and `asv/results.py`.
+//! What it calls an environment separates what is deterministic from what is timed. The date of the commit is
+//! not in the results: the start of the run stands in its place.
 
 use chrono::DateTime;
 use fisura_verification::record::ResultSet;

@@ -1,7 +1,8 @@
 //! Bencher Metric Format: benchmarks by name, in each its measures by name with a value.
 //!
-//! Source: <https://bencher.dev/docs/reference/bencher-metric-format>. Names of benchmarks have at most 1024 characters,
-//! names of measures 64; a measure has one unit, so that values of different units are different measures.
+//! Source: <https://bencher.dev/docs/reference/bencher-metric-format>. Names of benchmarks have at most 1024
+//! characters, names of measures 64; a measure has one unit, so that values of different units are different
+//! measures.
 
 use serde_json::{Map, Value, json};
 

@@ -1,7 +1,8 @@
-//! `Test.xml` as `ctest` writes it and CDash reads it: a test per run, with its numbers as named measurements.
+//! `Test.xml` as `ctest` writes it and CDash reads it: a test per run, with its numbers as named
+//! measurements.
 //!
-//! Form: `app/Validators/Schemas/Test.xsd` and `common.xsd` of CDash. Numbers are `numeric/double`; CDash takes the
-//! measurement `Execution Time` (s) for the time of the test.
+//! Form: `app/Validators/Schemas/Test.xsd` and `common.xsd` of CDash. Numbers are `numeric/double`; CDash
+//! takes the measurement `Execution Time` (s) for the time of the test.
 
 use std::collections::HashMap;
 
@@ -16,7 +17,8 @@ use crate::view::{Counts, runs};
 
 type Xml = Writer<Vec<u8>>;
 
-/// The tests of a set and their measurements; `kind` is a part of the name of the build, so that both may be submitted.
+/// The tests of a set and their measurements; `kind` is a part of the name of the build, so that both may be
+/// submitted.
 ///
 /// # Errors
 /// Only if XML cannot be written, which has no cause in the results.

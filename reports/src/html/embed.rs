@@ -1,7 +1,8 @@
-//! Drawings as parts of the page: their looks stand once in the style of the page, and what the caption says stands there alone.
+//! Drawings as parts of the page: their looks stand once in the style of the page, and what the caption says
+//! stands there alone.
 //!
-//! A drawing in a file of its own carries every attribute with every element, and a description for those who cannot see it. On a
-//! page of hundreds of drawings that is most of its bytes.
+//! A drawing in a file of its own carries every attribute with every element, and a description for those who
+//! cannot see it. On a page of hundreds of drawings that is most of its bytes.
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -14,11 +15,10 @@ const LOOKS: [&str; 6] = ["fill", "stroke", "stroke-width", "opacity", "font-siz
 /// Drawings for the page, and the rules that they need in its style.
 pub(super) fn embedded(drawings: &Drawings) -> (Drawings, String) {
     let mut classes = Classes::default();
-    let shorter =
-        |drawing: &Result<String, String>| drawing.as_ref().map(|svg| classes.shorten(svg)).map_err(Clone::clone);
-    let drawings = drawings.iter().map(|(id, drawing)| (id.clone(), drawing)).collect::<Vec<_>>();
-    let mut shorter = shorter;
-    let drawings = drawings.into_iter().map(|(id, drawing)| (id, shorter(drawing))).collect();
+    let mut shorter = |svg: &String| classes.shorten(svg);
+    let drawings = drawings.iter();
+    let drawings =
+        drawings.map(|(id, svg)| (id.clone(), svg.as_ref().map(&mut shorter).map_err(String::clone))).collect();
     (drawings, classes.rules)
 }
 
@@ -114,7 +114,8 @@ fn straight(data: &str) -> String {
     out
 }
 
-/// Command, length and rest of a step of which one part is zero; `None` for any other, or if more steps follow without a letter.
+/// Command, length and rest of a step of which one part is zero; `None` for any other, or if more steps
+/// follow without a letter.
 fn level_or_upright(piece: &str) -> Option<(char, &str, &str)> {
     let number =
         |text: &str| text[1.min(text.len())..].find(|c: char| !c.is_ascii_digit()).map_or(text.len(), |at| at + 1);

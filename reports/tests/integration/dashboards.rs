@@ -51,8 +51,9 @@ fn bencher_takes_the_metrics() {
     assert!(!schema.is_valid(&json!({ "run": { "wall time": { "lower_value": 1.0 } } })), "the rules refuse something");
 }
 
-/// `extractCustomBenchmarkResult` and `BenchmarkResult` of github-action-benchmark (`src/extract.ts`): an array of name, value,
-/// unit, and range and extra if there are any, in words. It finds the value of the commit before by the name.
+/// `extractCustomBenchmarkResult` and `BenchmarkResult` of github-action-benchmark (`src/extract.ts`): an
+/// array of name, value, unit, and range and extra if there are any, in words. It finds the value of the
+/// commit before by the name.
 #[test]
 fn github_action_benchmark_takes_the_metrics() {
     let files = rendered(&named());
@@ -74,8 +75,8 @@ fn github_action_benchmark_takes_the_metrics() {
     }
 }
 
-/// `app/Validators/Schemas/Test.xsd` and `common.xsd` of CDash for the elements in use: attributes that must be there, and
-/// children in their order with the least and most of each.
+/// `app/Validators/Schemas/Test.xsd` and `common.xsd` of CDash for the elements in use: attributes that must
+/// be there, and children in their order with the least and most of each.
 type Rule = (&'static [&'static str], &'static [(&'static str, usize, usize)]);
 
 fn rule(element: &str) -> Rule {
@@ -181,8 +182,8 @@ fn cdash_takes_the_tests_and_their_measurements() {
     }
 }
 
-/// "Benchmark suite layout and file formats" of the developer documentation of airspeed velocity, and what `Results.load`
-/// (`asv/results.py`), `Benchmarks.load` and `Machine.load` ask for.
+/// "Benchmark suite layout and file formats" of the developer documentation of airspeed velocity, and what
+/// `Results.load` (`asv/results.py`), `Benchmarks.load` and `Machine.load` ask for.
 #[test]
 fn asv_takes_the_results() {
     let set = named();

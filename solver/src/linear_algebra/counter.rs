@@ -1,5 +1,5 @@
-//! Bytes of matrices and factors that solves have read. What is counted where the reading is done cannot be forgotten
-//! by those who call it: one more pass over a matrix shows, however often a clock is looked at.
+//! Bytes of matrices and factors that solves have read. What is counted where the reading is done cannot be
+//! forgotten by those who call it: one more pass over a matrix shows, however often a clock is looked at.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
