@@ -4,7 +4,7 @@
 //! | below `metrics/` | for |
 //! |---|---|
 //! | `deterministic/bencher.json`, `timing/bencher.json` | Bencher, adapter `json` (Bencher Metric Format) |
-//! | `deterministic/github-action-benchmark.json`, `timing/…` | github-action-benchmark, `customSmallerIsBetter` |
+//! | `…/github-action-benchmark.json` of both | github-action-benchmark, `customSmallerIsBetter` |
 //! | `deterministic/Test.xml`, `timing/Test.xml` | CDash, as `ctest` submits it |
 //! | `asv/` | `results_dir` of airspeed velocity |
 
