@@ -8,14 +8,14 @@
 //! | [`watch`] | progress, interrupts and panics of a case |
 //! | [`record`] | results: records, verdicts, figures |
 //! | [`scene`] | scene files, units, what is wrong with a file and where |
-//! | [`reference`] | reference data and their uncertainty |
+//! | [`mod@reference`] | reference data and their uncertainty |
 //! | [`case`] | case files: claims, checks, variants and study axes |
 //! | [`exact`] | exact solutions, each in a file of its own |
 //! | [`measure`] | what is measured of a run |
 //! | [`scene_run`] | a scene run to its end |
 //! | [`study`] | studies that need more than a scene and its measures |
 //! | [`suite`] | cases chosen, prepared, run, judged, stored, merged |
-//! | [`bench`] | speed against error |
+//! | [`mod@bench`] | speed against error |
 //! | [`judge`] | results of other codes, held against the benchmarks |
 
 pub mod bench;

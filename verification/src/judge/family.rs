@@ -197,7 +197,8 @@ impl MeshStudy {
         rows.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut most = 0.0;
         rows.iter_mut().for_each(|row| {
-            most = crate::extremes::larger(most, row.1); // a coarse mesh that happens to be near is no better than a finer one
+            // A coarse mesh that happens to be near is no better than a finer one.
+            most = crate::extremes::larger(most, row.1);
             row.1 = most;
         });
         let (first, last) = (*rows.first()?, *rows.last()?);
