@@ -2,8 +2,9 @@
 //! sides, the critical step and the energy ledger.
 //!
 //! Symbols: u, v, a on the control points (m, m/s, m/s²), m lumped or consistent mass (kg/m), dt the time
-//! step (s). Calls every room but [`simulation`](crate::simulation) and [`validate`](crate::validate).
+//! step (s). Calls every module but [`simulation`](crate::simulation) and [`validate`](crate::validate).
 
+pub mod body_sample;
 pub(crate) mod constraints;
 pub mod critical_step;
 pub mod energy;

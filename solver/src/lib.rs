@@ -35,9 +35,9 @@
 //!
 //! # From the paper to the code
 //!
-//! Rooms, lowest first: each calls those above it in this table, and none below.
+//! Modules, lowest first: each calls those above it in this table, and none below.
 //!
-//! | room | equations | what |
+//! | module | equations | what |
 //! |---|---|---|
 //! | [`linear_algebra`] | – | values side by side, matrices, conjugate gradients, factors |
 //! | [`scene`] | – | what a scene declares, shapes |
@@ -115,7 +115,7 @@
 //!     bodies: vec![strip],
 //!     contact: None,
 //!     boundaries: vec![Boundary { side: Side::Left, fix: [true, true], velocity: [0.0, 0.0] }],
-//!     output: Output { samples: 10, frames: vec![] },
+//!     output: Output { samples: 10, frames: vec![], bodies: false },
 //! };
 //!
 //! assert_eq!(fisura::validate::validate(&scene), Ok(vec![]));
@@ -130,7 +130,7 @@
 
 #![deny(unsafe_code)]
 #![warn(unreachable_pub)]
-#![allow(rustdoc::private_intra_doc_links)] // headers of rooms also lead to what is not public
+#![allow(rustdoc::private_intra_doc_links)] // headers of modules also lead to what is not public
 
 #[macro_use]
 pub mod faults;

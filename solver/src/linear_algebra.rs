@@ -1,7 +1,7 @@
 //! Linear algebra: values of several points side by side, matrices whose rows couple neighbouring control
 //! points, conjugate gradients with incomplete and complete factors.
 //!
-//! Symbols: A a symmetric matrix, M its preconditioner, r a residual. Calls no other room but
+//! Symbols: A a symmetric matrix, M its preconditioner, r a residual. Calls no other module but
 //! [`checkpoint`](crate::checkpoint).
 
 pub mod active_columns;

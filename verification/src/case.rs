@@ -2,24 +2,28 @@
 //!
 //! A case is one TOML file `cases/<suite>/<case>.toml`. Its `[scene]` table has the form of a scene file, and
 //! may have a list where a scene has one value: a study axis. `[[variant]]` tables change several keys
-//! together. What several checks have in common stands once: a `[[check]]` may name a `set` of checks, and
+//! together. `[values]` names numbers, which formulas of checks and charts ([`formula`]) use. What several checks have in common stands once: a `[[check]]` may name a `set` of checks, and
 //! list in `variants` what differs between runs.
 
+mod chart;
 mod check;
 pub mod convergence;
 pub mod expand;
+pub mod formula;
 pub mod geometry;
 mod read;
 mod repeat;
 mod rings;
 
-pub use check::Estimate;
+pub use chart::{Chart, ChartCurve};
+pub use check::{Estimate, NumberKey};
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use fisura::fault;
 
+use crate::case::formula::{Amount, Formula};
 use crate::case::geometry::Geometry;
 use crate::output::fingerprint::fingerprint;
 use crate::record::{Accept, Reference, ReferenceKind};
@@ -104,6 +108,8 @@ pub struct Check {
     pub accept: Accept,
     /// A band in which the value is expected, beside bounds that are those of a known limit.
     pub expectation: Option<ExpectedBand>,
+    /// Numbers that a formula gives for every run; until then they are not a number above.
+    pub formulas: Vec<(NumberKey, Formula)>,
 }
 
 impl Check {
@@ -116,6 +122,25 @@ impl Check {
         let value = reference.and_then(|reference| reference.value);
         let value = value.ok_or("there is no reference value from which below and above could count")?;
         Ok(Some([value - fault!("bounds-both-above", below => -below), value + above]))
+    }
+
+    /// With the numbers that `value` gives for its formulas.
+    ///
+    /// # Errors
+    /// Whatever `value` gives.
+    pub fn with_numbers(&self, value: &dyn Fn(&Formula) -> Result<f64, String>) -> Result<Self, String> {
+        let mut check = self.clone();
+        for (key, formula) in &self.formulas {
+            let value = value(formula)?;
+            match key {
+                NumberKey::From => check.window[0] = value,
+                NumberKey::To => check.window[1] = value,
+                NumberKey::At => check.at = Some(value),
+                NumberKey::Expect => check.expect = Some(value),
+                NumberKey::Scale => check.scale = value,
+            }
+        }
+        Ok(check)
     }
 
     /// Whether it is about a variant: it names none, this one, or a pattern such as `p=[234]` that matches
@@ -173,6 +198,8 @@ pub struct Case {
     pub deviations: Vec<String>,
     /// What is modelled.
     pub models: Vec<String>,
+    /// Numbers by name, for formulas.
+    pub values: Vec<(String, Amount)>,
     /// Changed copies of the scene.
     pub variants: Vec<Variant>,
     /// What a convergence study solves.
@@ -181,6 +208,8 @@ pub struct Case {
     pub rings: Option<Vec<Geometry>>,
     /// Checks.
     pub checks: Vec<Check>,
+    /// Charts of its runs.
+    pub charts: Vec<Chart>,
     /// The file with every check written out, for places of errors.
     pub document: Document,
 }

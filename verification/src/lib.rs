@@ -1,8 +1,8 @@
 //! Cases, checks and records that verify the fisura solver.
 //!
-//! Rooms, lowest first: each calls those above it in this table, and none below.
+//! Modules, lowest first: each calls those above it in this table, and none below.
 //!
-//! | room | what |
+//! | module | what |
 //! |---|---|
 //! | [`output`] | folders that commands write to, tables, fingerprints, files of others |
 //! | [`watch`] | progress, interrupts and panics of a case |

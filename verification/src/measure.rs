@@ -7,11 +7,15 @@ mod series;
 mod table;
 mod tip;
 
+use std::collections::BTreeMap;
+
 use fisura::fault;
 use fisura::output::picture::Picture;
 use fisura::scene::Scene;
 
 use crate::case::Check;
+use crate::case::formula::{Formula, Name, Reduction};
+use crate::extremes;
 use crate::output::history::Table;
 use crate::record::Reference;
 use crate::reference::Library;
@@ -33,6 +37,8 @@ pub struct Run<'a> {
     pub frames: &'a [Picture],
     /// Factor from its energies to those of the whole body.
     pub energy_factor: f64,
+    /// Values of the case.
+    pub values: &'a BTreeMap<String, f64>,
 }
 
 /// What a measure found.
@@ -54,37 +60,69 @@ impl Measured {
     }
 }
 
+/// What a name in a formula stands for.
+enum Named<'a> {
+    Number(f64),
+    /// A column, times a factor.
+    Column(&'a [f64], f64),
+}
+
+impl Named<'_> {
+    fn at(&self, row: usize) -> f64 {
+        match self {
+            Self::Number(value) => *value,
+            Self::Column(values, factor) => factor * values[row],
+        }
+    }
+}
+
 impl Run<'_> {
     /// Times, s.
     pub fn times(&self) -> Result<&[f64], String> {
         self.history.column("time_s").ok_or_else(|| "the history has no column time_s".to_string())
     }
 
-    /// A column, energies for the whole body. `sum` columns are written `a + b`, differences `a - b`.
-    pub fn column(&self, name: &str) -> Result<Vec<f64>, String> {
-        let mut total: Option<Vec<f64>> = None;
-        let mut sign = 1.0;
-        for word in name.split_whitespace() {
-            match word {
-                "+" => sign = 1.0,
-                "-" => sign = -1.0,
-                column => {
-                    let values = self.history.column(column).ok_or_else(|| self.no_column(column))?;
-                    let factor = sign
-                        * if column.ends_with("_j") {
-                            fault!("half-model-not-doubled", self.energy_factor => 1.0)
-                        } else {
-                            1.0
-                        };
-                    let scaled = values.iter().map(|v| factor * v);
-                    total = Some(match total {
-                        None => scaled.collect(),
-                        Some(sum) => sum.iter().zip(scaled).map(|(a, b)| a + b).collect(),
-                    });
+    /// A formula of columns, row by row; energies are those of the whole body.
+    pub fn column(&self, formula: &str) -> Result<Vec<f64>, String> {
+        let formula: Formula = formula.parse()?;
+        let found = formula.names().map(|name| self.named(name)).collect::<Result<Vec<_>, _>>()?;
+        let mut row = vec![0.0; found.len()];
+        let rows = (0..self.history.rows()).map(|index| {
+            row.iter_mut().zip(&found).for_each(|(value, named)| *value = named.at(index));
+            formula.value(&row)
+        });
+        Ok(rows.collect())
+    }
+
+    /// A formula of values, and of what is found from columns.
+    pub fn number(&self, formula: &Formula) -> Result<f64, String> {
+        formula.number(&mut |name| match self.named(name)? {
+            Named::Number(value) => Ok(value),
+            Named::Column(..) => Err(format!("{name:?} is a column where a number is needed")),
+        })
+    }
+
+    fn named(&self, name: Name<'_>) -> Result<Named<'_>, String> {
+        match name {
+            Name::Of(reduction, columns) => {
+                let values = self.column(columns)?;
+                let found = match reduction {
+                    Reduction::Initial => values.first().copied(),
+                    Reduction::Final => values.last().copied(),
+                    Reduction::Largest => Some(extremes::largest(values.iter().map(|v| v.abs()))),
+                };
+                found.map(Named::Number).ok_or_else(|| "an empty history".to_string())
+            }
+            Name::Key(key) => Err(format!("name the scene's {{{key}}} in [values]")),
+            Name::Plain(name) => {
+                if let Some(column) = self.history.column(name) {
+                    let half = name.ends_with("_j");
+                    let factor = if half { fault!("half-model-not-doubled", self.energy_factor => 1.0) } else { 1.0 };
+                    return Ok(Named::Column(column, factor));
                 }
+                self.values.get(name).copied().map(Named::Number).ok_or_else(|| self.no_column(name))
             }
         }
-        total.ok_or_else(|| "no column is named".to_string())
     }
 
     fn no_column(&self, column: &str) -> String {
@@ -113,6 +151,7 @@ impl Run<'_> {
 /// # Errors
 /// If the measure or something it needs does not exist.
 pub fn measure(check: &Check, run: &Run, runs: &[Run], library: &Library) -> Result<Measured, String> {
+    let check = &check.with_numbers(&|formula| run.number(formula))?;
     let measure = find(check.measure.as_deref())?;
     let measured = (measure.find)(&Question { check, run, runs, library })?;
     let value = measured.value.filter(|v| v.is_finite()).map(|v| v * check.scale);

@@ -4,6 +4,7 @@
 //! own; each is one file and yields measurements that the checks of the case file refer to by quantity.
 
 mod basis;
+pub mod charts;
 mod compressive_step;
 mod constant_stress;
 mod contact;
@@ -104,13 +105,13 @@ pub struct Study {
 }
 
 /// Tables and keys of a case file that not every study reads.
-pub const INPUTS: [&str; 5] = ["scene", "variant", "energy_factor", "convergence", "rings"];
+pub const INPUTS: [&str; 7] = ["scene", "values", "variant", "energy_factor", "convergence", "rings", "chart"];
 
 const NOTHING: &[&str] = &[];
 const SCENES: &[&str] = &["scene", "variant"];
 
 /// Studies other than `scene`.
-pub static STUDIES: [Study; 30] = [
+pub static STUDIES: [Study; 26] = [
     Study { name: "basis", reads: NOTHING, offers: basis::offers, run: basis::study },
     Study { name: "constant-stress", reads: SCENES, offers: constant_stress::offers, run: constant_stress::study },
     Study {
@@ -130,15 +131,7 @@ pub static STUDIES: [Study; 30] = [
     Study { name: "linear-field", reads: NOTHING, offers: linear_field::offers, run: linear_field::study },
     Study { name: "contact-impact", reads: SCENES, offers: contact::impact::offers, run: contact::impact::study },
     Study { name: "contact-onset", reads: SCENES, offers: contact::onset::offers, run: contact::onset::study },
-    Study { name: "contact-incline", reads: SCENES, offers: contact::incline::offers, run: contact::incline::study },
-    Study {
-        name: "contact-collision",
-        reads: SCENES,
-        offers: contact::collision::offers,
-        run: contact::collision::study,
-    },
     Study { name: "contact-hertz", reads: SCENES, offers: contact::hertz::offers, run: contact::hertz::study },
-    Study { name: "contact-stack", reads: SCENES, offers: contact::stack::offers, run: contact::stack::study },
     Study { name: "rings", reads: &["scene", "variant", "energy_factor"], offers: rings::offers, run: rings::study },
     Study { name: "rings-sweep", reads: &["rings", "scene"], offers: rings::sweep_offers, run: rings::sweep },
     Study {
@@ -174,12 +167,6 @@ pub static STUDIES: [Study; 30] = [
         run: stability::repeatability::study,
     },
     Study { name: "unloading", reads: NOTHING, offers: stability::unloading::offers, run: stability::unloading::study },
-    Study {
-        name: "stick-slip",
-        reads: SCENES,
-        offers: stability::stick_slip::offers,
-        run: stability::stick_slip::study,
-    },
     Study { name: "judging", reads: NOTHING, offers: judging::offers, run: judging::study },
 ];
 

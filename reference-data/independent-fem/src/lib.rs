@@ -3,7 +3,7 @@
 //!
 //! Rectangles with 2 × 2 Gauss points, lumped mass, central differences; spectral split and history field
 //! (Miehe et al. 2010, Borden et al. 2012); the phase field is solved for in every step by conjugate
-//! gradients with Jacobi scaling. Rooms, each calling only those before it: [`mesh`], [`material`],
+//! gradients with Jacobi scaling. Modules, each calling only those before it: [`mesh`], [`material`],
 //! [`element`]; [`stencil`] and [`gradients`] (linear algebra); [`phase_field`], [`dynamics`], [`crack`];
 //! [`plate`] (the run). SI units, per metre of thickness.
 

@@ -9,8 +9,12 @@
 //! the part of the kinetic energy at whole steps that velocity Verlet does not conserve. History work,
 //! `∬ 2 (1 − k) c (H − psi+)(−dc/dt)`, is what the model adds where the crack widens on remembered energy.
 
-use crate::linear_algebra::extremes::{larger, smaller};
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
+
+use super::body_sample::BodySamples;
+use crate::linear_algebra::extremes::{larger, smaller};
 
 /// Work and losses accumulated over a run, J per metre of thickness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -51,6 +55,8 @@ pub struct Sample {
     pub angular_momentum: f64,
     /// Time step, s.
     pub time_step: f64,
+    /// Every body for itself, if the scene records that.
+    pub bodies: Option<BodySamples>,
 }
 
 /// What only a fracturing body has.
@@ -92,7 +98,14 @@ impl FractureSample {
 
 impl Sample {
     /// Columns of `history.csv`, in order; a column is there only with its model.
-    pub fn named_values(&self) -> Vec<(&'static str, f64)> {
+    pub fn named_values(&self) -> Vec<(Cow<'static, str>, f64)> {
+        let mut row: Vec<_> =
+            self.values_of_the_whole().into_iter().map(|(name, value)| (name.into(), value)).collect();
+        row.extend(self.bodies.iter().flat_map(BodySamples::named_values).map(|(name, value)| (name.into(), value)));
+        row
+    }
+
+    fn values_of_the_whole(&self) -> Vec<(&'static str, f64)> {
         let mut row = vec![
             ("time_s", self.time),
             ("kinetic_j", self.kinetic),
@@ -118,9 +131,9 @@ impl Sample {
         row
     }
 
-    /// The first column that is not finite, if one is not. A body without a crack has no tip.
+    /// The first column of the whole that is not finite, if one is not. A body without a crack has no tip.
     pub fn not_finite(&self) -> Option<&'static str> {
-        let mut columns = self.named_values().into_iter();
+        let mut columns = self.values_of_the_whole().into_iter();
         columns.find(|(name, value)| !value.is_finite() && !name.starts_with("crack_tip")).map(|(name, _)| name)
     }
 

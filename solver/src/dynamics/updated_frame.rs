@@ -24,6 +24,7 @@
 pub(crate) mod affine;
 pub mod assembly;
 mod begin;
+mod bodies;
 mod booking;
 pub mod fictitious;
 pub mod field;
@@ -49,6 +50,7 @@ use std::sync::Arc;
 
 use crate::contact::impulse::Kick;
 use crate::contact::{BodyView, ContactSolver};
+use crate::dynamics::body_sample;
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::smaller;
 use crate::scene::Scene;
@@ -62,6 +64,8 @@ pub struct UpdatedFrame {
     fields: Vec<DiscreteField>,
     contact: Option<ContactSolver>,
     thickness: f64,
+    /// Names in columns of the bodies that are recorded one by one, rigid ones last.
+    recorded: Option<Vec<String>>,
 }
 
 impl UpdatedFrame {
@@ -77,7 +81,8 @@ impl UpdatedFrame {
         if let Some(contact) = &mut contact {
             contact.find(&views(&fields))?;
         }
-        Ok(Self { patch, fields, contact, thickness: scene.analysis.thickness })
+        let recorded = scene.output.bodies.then(|| body_sample::names(scene));
+        Ok(Self { patch, fields, contact, thickness: scene.analysis.thickness, recorded })
     }
 
     /// Looks as far ahead as steps of `dt` seconds need, before the first one.

@@ -3,6 +3,7 @@
 use super::findings::{Findings, side_name};
 use super::ground::Ground;
 use super::material::plausible_speed;
+use crate::dynamics::body_sample::column_name;
 use crate::linear_algebra::extremes::larger;
 use crate::scene::{Body, Boundary, Frame, Mass, Scene, Shape, Side, TimeStep, Transfer};
 use crate::splines::quadrature::Rule;
@@ -10,6 +11,8 @@ use crate::splines::spline::SplineSpace;
 
 /// Most steps of a run.
 pub(super) const MOST_STEPS: f64 = 1e9;
+/// Most bodies whose columns are recorded.
+const MOST_RECORDED: usize = 64;
 /// Highest order of XPIC: each costs a transfer to the points and back per step.
 const HIGHEST_XPIC: usize = 100;
 /// Relative tolerance of "on the side", of the size of the mesh.
@@ -242,5 +245,26 @@ fn output(scene: &Scene, findings: &mut Findings) {
             let message = format!("a frame at {time:e} s is outside the simulated time, 0 to {end:e} s");
             findings.error(format!("output.frames.{i}"), message, "remove it, or raise analysis.end_time");
         }
+    }
+    if output.bodies {
+        recorded_bodies(scene, findings);
+    }
+}
+
+/// Bodies can be recorded one by one in the updated frame, under names that differ as columns.
+fn recorded_bodies(scene: &Scene, findings: &mut Findings) {
+    if scene.analysis.frame != Frame::Updated {
+        let message = "bodies are recorded one by one in the updated frame only";
+        findings.error("output.bodies", message, "remove it, or use analysis.frame = \"updated\"");
+    }
+    if scene.bodies.len() > MOST_RECORDED {
+        let message = format!("{} bodies; at most {MOST_RECORDED} are recorded one by one", scene.bodies.len());
+        findings.error("output.bodies", message, "remove it");
+    }
+    let mut names: Vec<String> = scene.bodies.iter().map(|body| column_name(&body.name)).collect();
+    names.sort_unstable();
+    if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+        let message = format!("two bodies would have the columns {}_x_m", twice[0]);
+        findings.error("output.bodies", message, "give the bodies names that differ in letters or digits");
     }
 }

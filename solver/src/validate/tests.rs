@@ -48,7 +48,7 @@ fn square() -> Scene {
         }],
         contact: None,
         boundaries: vec![],
-        output: Output { samples: 10, frames: vec![] },
+        output: Output { samples: 10, frames: vec![], bodies: false },
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod absent_physics;
 mod assembly;
+mod bodies;
 mod boundary_points;
 mod breakdown;
 mod checkpoint;
@@ -20,9 +21,9 @@ mod linear_solvers;
 mod loads;
 mod mapped;
 mod mapped_runs;
+mod modules;
 mod nurbs;
 mod points_and_spans;
-mod rooms;
 mod seeds;
 mod split;
 mod sweep;

@@ -1,5 +1,6 @@
 //! The `[[check]]` tables of a case file.
 
+use super::formula::{Amount, Formula};
 use super::{Check, ExpectedBand};
 use crate::record::{Accept, BoundKind, ReferenceKind};
 use crate::scene::fields::{Fields, Item};
@@ -58,6 +59,21 @@ impl Estimate {
     ];
 }
 
+/// A key of a check that takes a formula in place of a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NumberKey {
+    /// `from`
+    From,
+    /// `to`
+    To,
+    /// `at`
+    At,
+    /// `expect`
+    Expect,
+    /// `scale`
+    Scale,
+}
+
 /// All checks, at least one.
 pub(super) fn read(item: &Item<'_>) -> Option<Vec<Check>> {
     let tables = item.tables()?;
@@ -72,7 +88,10 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
     let fields = item.fields(&KEYS)?;
     let text = |key: &str| fields.maybe(key, Item::text);
     let number = |key: &str| fields.maybe(key, any_quantity);
-    let time = |key: &str, default| fields.or(key, default, |i| i.quantity(Dimension::TIME));
+    let mut formulas = Vec::new();
+    let mut formula_or = |key: &str, meant: NumberKey, dimension: Option<Dimension>| {
+        fields.maybe(key, |item| number_or_formula(item, dimension, &mut |found| formulas.push((meant, found))))
+    };
     let quantity = fields.need("quantity", "quantity = \"what is measured, in words\"", Item::words);
     let like = format!(
         "id = {:?}, by which later results are compared with earlier ones",
@@ -81,21 +100,22 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
     let id = fields.need("id", &like, read_id);
     let formerly = fields.or("formerly", Vec::new(), |i| i.each(read_id));
     let unit = fields.or("unit", "1".to_string(), Item::text);
-    let (measure, column, reference) = (text("measure"), text("column"), text("reference"));
-    let (from, to) = (time("from", f64::NEG_INFINITY), time("to", f64::INFINITY));
-    if let (Some(from), Some(to)) = (from, to)
+    let (measure, column, reference) = (text("measure"), fields.maybe("column", read_column), text("reference"));
+    let from = formula_or("from", NumberKey::From, Some(Dimension::TIME));
+    let to = formula_or("to", NumberKey::To, Some(Dimension::TIME));
+    if let (Some(Some(from)), Some(Some(to))) = (from, to)
         && from > to
     {
         fields.get("to").and_then(|i| i.fail::<()>("to is before from", "give the earlier time as from"));
     }
-    let (at, expect) = (number("at"), number("expect"));
+    let (at, expect) = (formula_or("at", NumberKey::At, None), formula_or("expect", NumberKey::Expect, None));
+    let scale = formula_or("scale", NumberKey::Scale, Some(Dimension::NONE));
     let kind = fields.or("expect_kind", ReferenceKind::Exact, reference_kind);
     let expect_source = fields.or("expect_source", String::new(), Item::text);
     let uncertainty = fields.maybe("uncertainty", positive);
     for key in ["expect_kind", "expect_source", "uncertainty"].into_iter().filter(|_| fields.get("expect").is_none()) {
         fields.get(key).and_then(|i| i.fail::<()>(format!("{key} without expect"), "add expect, or remove it"));
     }
-    let scale = fields.or("scale", 1.0, |i| i.quantity(Dimension::NONE));
     let (band, variant, against) = (text("band"), text("variant"), text("against"));
     let around_reference = read_around(&fields);
     let meshes = fields.maybe("meshes", |i| i.choice(&Estimate::WORDS));
@@ -110,13 +130,13 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
         measure: measure?,
         column: column?,
         reference: reference?,
-        window: [from?, to?],
+        window: [from?.unwrap_or(f64::NEG_INFINITY), to?.unwrap_or(f64::INFINITY)],
         at: at?,
         expect: expect?,
         expect_kind: kind?,
         expect_source: expect_source?,
         uncertainty: uncertainty?,
-        scale: scale?,
+        scale: scale?.unwrap_or(1.0),
         band: band?,
         variant: variant?,
         against: against?,
@@ -125,6 +145,7 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
         order: order?,
         accept: accept?,
         expectation: expectation?,
+        formulas,
     })
 }
 
@@ -222,6 +243,26 @@ fn read_id(item: &Item<'_>) -> Option<String> {
 fn identifier(words: &str) -> String {
     let mapped: String = words.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { ' ' }).collect();
     mapped.split_whitespace().collect::<Vec<_>>().join("-")
+}
+
+/// A number or quantity, of a dimension if one is given; not a number for a formula, which `found` takes.
+fn number_or_formula(item: &Item<'_>, dimension: Option<Dimension>, found: &mut dyn FnMut(Formula)) -> Option<f64> {
+    if item.node.as_str().is_none_or(|text| !text.starts_with('=')) {
+        return dimension.map_or_else(|| any_quantity(item), |dimension| item.quantity(dimension));
+    }
+    if let Amount::Formula(formula) = Amount::read(item)? {
+        found(*formula);
+    }
+    Some(f64::NAN)
+}
+
+/// A formula of columns.
+pub(super) fn read_column(item: &Item<'_>) -> Option<String> {
+    let text = item.text()?;
+    match text.parse::<Formula>() {
+        Ok(_) => Some(text),
+        Err(message) => item.fail(message, "name a column of the history, or write a formula of columns"),
+    }
 }
 
 /// As [`any_quantity`], above zero.

@@ -3,8 +3,11 @@
 //! A list where a scene has one value is an axis; several axes span their product. Each variant changes its
 //! keys on top.
 
+use std::collections::BTreeMap;
+
 use fisura::scene::Scene;
 
+use crate::case::formula::{Amount, Name, value_of_key};
 use crate::case::{Case, Variant};
 use crate::scene::document::{Node, Value};
 use crate::scene::{Problem, SceneFileError, check_scene, read_scene};
@@ -21,6 +24,8 @@ pub struct CaseScene {
     pub parameters: Vec<(String, serde_json::Value)>,
     /// The scene.
     pub scene: Scene,
+    /// Values of the case in this scene.
+    pub values: BTreeMap<String, f64>,
     /// Energies of its run times this are those of the whole body.
     pub energy_factor: f64,
 }
@@ -98,7 +103,35 @@ impl Case {
         let fail = |problems: Vec<Problem>| self.document.error(&problems);
         let scene = read_scene(&tree.node, "scene").map_err(fail)?;
         check_scene(&scene, &tree.node, "scene").map_err(fail)?;
-        Ok(CaseScene { name: tree.name, parameters: tree.parameters, scene, energy_factor: tree.energy_factor })
+        let values = self.values(&tree.node)?;
+        let Tree { name, parameters, energy_factor, .. } = tree;
+        Ok(CaseScene { name, parameters, scene, values, energy_factor })
+    }
+
+    /// The `[values]` in a scene.
+    fn values(&self, scene: &Node) -> Result<BTreeMap<String, f64>, SceneFileError> {
+        let value = |(name, _): &(String, Amount)| {
+            let found = self.value(name, scene, self.values.len());
+            let remedy = "give numbers, formulas of other values, and keys of the scene in braces";
+            Ok((name.clone(), found.map_err(|message| self.error(&format!("values.{name}"), &message, remedy))?))
+        };
+        self.values.iter().map(value).collect()
+    }
+
+    /// One of the values; a chain of them has at most `links`.
+    fn value(&self, name: &str, scene: &Node, links: usize) -> Result<f64, String> {
+        let (_, amount) = self.values.iter().find(|(known, _)| known == name).ok_or(format!("no value {name:?}"))?;
+        let formula = match amount {
+            Amount::Given(value) => return Ok(*value),
+            Amount::Formula(formula) => formula,
+        };
+        let links = links.checked_sub(1).ok_or_else(|| format!("the value {name:?} depends on itself"))?;
+        let value = formula.number(&mut |name| match name {
+            Name::Plain(other) => self.value(other, scene, links),
+            Name::Key(path) => value_of_key(scene, path),
+            Name::Of(_, columns) => Err(format!("{columns:?} is known after a run only")),
+        })?;
+        if value.is_finite() { Ok(value) } else { Err(format!("it is {value}")) }
     }
 }
 

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use super::{Case, Tier, Variant, check, convergence, rings};
+use super::formula::Amount;
+use super::{Case, Tier, Variant, chart, check, convergence, rings};
 use crate::scene::document::{Document, Node, Value};
 use crate::scene::fields::Item;
 use crate::scene::units::Dimension;
 
-const KEYS: [&str; 13] = [
+const KEYS: [&str; 15] = [
     "claim",
     "tier",
     "seconds",
@@ -17,10 +18,12 @@ const KEYS: [&str; 13] = [
     "deviations",
     "models",
     "scene",
+    "values",
     "variant",
     "convergence",
     "rings",
     "check",
+    "chart",
 ];
 
 pub(super) fn case(item: &Item<'_>, path: &Path, document: &Document) -> Option<Case> {
@@ -34,10 +37,12 @@ pub(super) fn case(item: &Item<'_>, path: &Path, document: &Document) -> Option<
     let energy_factor = fields.or("energy_factor", 1.0, |i| i.positive(Dimension::NONE));
     let deviations = fields.or("deviations", Vec::new(), words);
     let models = fields.or("models", default_models(document), words);
+    let values = fields.or("values", Vec::new(), read_values);
     let variants = fields.or("variant", Vec::new(), |i| i.tables()?.iter().map(read_variant).collect());
     let convergence = fields.maybe("convergence", convergence::read);
     let rings = fields.maybe("rings", rings::read);
     let checks = fields.need("check", "at least one [[check]]", check::read);
+    let charts = fields.or("chart", Vec::new(), |i| i.tables()?.iter().map(chart::read).collect());
     let stem = |p: Option<&std::ffi::OsStr>| p.map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     Some(Case {
         suite: stem(path.parent().and_then(Path::file_name)),
@@ -51,10 +56,12 @@ pub(super) fn case(item: &Item<'_>, path: &Path, document: &Document) -> Option<
         energy_factor: energy_factor?,
         deviations: deviations?,
         models: models?,
+        values: values?,
         variants: variants?,
         convergence: convergence?,
         rings: rings?,
         checks: checks?,
+        charts: charts?,
         document: document.clone(),
     })
 }
@@ -72,6 +79,24 @@ fn default_models(document: &Document) -> Vec<String> {
         models.push("contact".to_string());
     }
     models
+}
+
+/// `[values]`: names of letters, digits and underscores, each a number or a formula.
+fn read_values(item: &Item<'_>) -> Option<Vec<(String, Amount)>> {
+    let Value::Table(table) = &item.node.value else { return item.fail("expected a table", "write [values]") };
+    let plain = |name: &str| {
+        name.starts_with(|c: char| c.is_ascii_alphabetic())
+            && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+    };
+    let names: Vec<&str> = table.keys().map(String::as_str).collect();
+    let fields = item.fields(&names)?;
+    let read = |name: &&str| {
+        if !plain(name) {
+            return item.fail(format!("{name:?} is no name in a formula"), "use letters, digits and underscores");
+        }
+        Some((name.to_string(), fields.need(name, "a number", Amount::read)?))
+    };
+    names.iter().map(read).collect()
 }
 
 fn read_variant(item: &Item<'_>) -> Option<Variant> {

@@ -1,5 +1,6 @@
 //! Sound results are accepted, planted slips are named, hostile folders end in words.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -52,7 +53,8 @@ fn a_result_of_fisura_has_the_figures_of_verify() {
     let case = Case::load(&path, &[]).unwrap();
     let scene = SceneFile::load(&root().join("verification/scenes/plate.toml"), &[]).unwrap().scene;
     let history = Table::read(&of(SOUND).join("history.csv")).unwrap();
-    let run = Run { name: "p2", scene: &scene, history: &history, frames: &[], energy_factor: 2.0 };
+    let values = BTreeMap::new();
+    let run = Run { name: "p2", scene: &scene, history: &history, frames: &[], energy_factor: 2.0, values: &values };
     let verdict = judged(&of(SOUND), Some("independent-fem")).verdict;
     let mut compared = 0;
     for check in &case.checks {

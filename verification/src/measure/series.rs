@@ -110,6 +110,32 @@ pub(super) fn peak(check: &Check, run: &Run) -> Result<Option<(f64, f64)>, Strin
     Ok(Some((times[top] + shift * step, fit[0] + 0.5 * fit[1] * shift)))
 }
 
+/// Largest fall of a column from one row to the next.
+pub(super) fn largest_fall(check: &Check, run: &Run) -> Result<f64, String> {
+    let values = run.column(column(check)?)?;
+    Ok(values.windows(2).map(|pair| pair[0] - pair[1]).fold(0.0, larger))
+}
+
+/// Mean over the window with the weight sin², which vanishes at both of its ends: the mean of an oscillation,
+/// without knowing its period.
+pub(super) fn smooth_mean(check: &Check, run: &Run) -> Result<f64, String> {
+    let (times, values, window) = (run.times()?, run.column(column(check)?)?, run.window(check)?);
+    let (first, last) = (times[window.start], times[window.end - 1]);
+    let [from, to] = [check.window[0].max(first), check.window[1].min(last)];
+    let weight = |time: f64| (std::f64::consts::PI * (time - from) / (to - from)).sin().powi(2);
+    let sums = window.map(|i| [weight(times[i]), weight(times[i]) * values[i]]);
+    let [weights, sum] = sums.fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
+    if weights > 0.0 { Ok(sum / weights) } else { Err("too few samples lie between from and to".to_string()) }
+}
+
+/// Slope of the straight line through zero at t = 0 that is nearest over the window, per second.
+pub(super) fn slope_from_zero(check: &Check, run: &Run) -> Result<f64, String> {
+    let (times, values, window) = (run.times()?, run.column(column(check)?)?, run.window(check)?);
+    let sums = window.map(|i| [times[i] * values[i], times[i] * times[i]]);
+    let [moment, square] = sums.fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
+    if square > 0.0 { Ok(moment / square) } else { Err("no sample lies after t = 0".to_string()) }
+}
+
 /// Largest fall of a column below an earlier value, over its largest value.
 pub(super) fn largest_decrease(check: &Check, run: &Run) -> Result<f64, String> {
     let values = run.column(column(check)?)?;

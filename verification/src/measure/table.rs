@@ -44,12 +44,15 @@ pub enum LooksAt {
 const WINDOW: &[&str] = &["from", "to"];
 
 /// All of them.
-pub static MEASURES: [Measure; 24] = [
+pub static MEASURES: [Measure; 28] = [
     on_curve("relative-rms", |q| series::against_curve("relative-rms", q.check, q.run, q.library)),
     on_curve("rms-difference", |q| series::against_curve("rms-difference", q.check, q.run, q.library)),
     of_column("value-at", &["column", "at"], &[], |q| some(series::value_at(q.check, q.run, false)?)),
     of_column("increment-at", &["column", "at"], &[], |q| some(series::value_at(q.check, q.run, true)?)),
     of_column("initial", &["column"], &[], |q| some(q.run.column(column(q.check)?)?.first().copied())),
+    of_column("final", &["column"], &[], |q| some(q.run.column(column(q.check)?)?.last().copied())),
+    of_column("smooth-mean", &["column"], WINDOW, |q| value(series::smooth_mean(q.check, q.run)?)),
+    of_column("slope-from-zero", &["column"], WINDOW, |q| value(series::slope_from_zero(q.check, q.run)?)),
     of_column("slope", &["column"], WINDOW, |q| value(series::slope(q.check, q.run)?)),
     of_column("slope-ratio", &["column"], WINDOW, |q| series::slope_over_plane_wave_power(q.check, q.run)),
     of_column("closure", &[], &[], |q| value(series::closure(q.run)?)),
@@ -62,6 +65,7 @@ pub static MEASURES: [Measure; 24] = [
         some(series::peak(q.check, q.run)?.map(|(time, _)| time))
     }),
     of_column("largest-decrease", &["column"], &[], |q| value(series::largest_decrease(q.check, q.run)?)),
+    of_column("largest-fall", &["column"], &[], |q| value(series::largest_fall(q.check, q.run)?)),
     of_column("difference", &["column", "against"], &[], |q| value(series::difference(q.check, q.run, q.runs)?)),
     of_column("order-in-step", &["column"], WINDOW, |q| some(series::order_in_step(q.check, q.runs)?)),
     looking("stress-in-the-middle", LooksAt::Pictures, &[], |q| value(series::stress_in_the_middle(q.run)?)),

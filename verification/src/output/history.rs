@@ -29,8 +29,8 @@ pub struct TableError {
 
 impl Table {
     /// An empty table with these columns.
-    pub fn new(names: &[&str]) -> Self {
-        Self { names: names.iter().map(|n| n.to_string()).collect(), columns: vec![Vec::new(); names.len()] }
+    pub fn new(names: &[impl AsRef<str>]) -> Self {
+        Self { names: names.iter().map(|n| n.as_ref().to_string()).collect(), columns: vec![Vec::new(); names.len()] }
     }
 
     /// Appends a row; `row` has one value per column.

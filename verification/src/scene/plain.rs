@@ -86,7 +86,7 @@ impl PlainScene {
             bodies: vec![body],
             contact: None,
             boundaries: self.held.into_iter().map(boundary).collect(),
-            output: Output { samples: 1, frames: vec![] },
+            output: Output { samples: 1, frames: vec![], bodies: false },
         }
     }
 }

@@ -48,7 +48,7 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
         Some(Contact { friction: friction? })
     });
     let boundaries = fields.or("boundary", Vec::new(), boundaries);
-    let output = fields.or("output", Output { samples: 320, frames: Vec::new() }, output);
+    let output = fields.or("output", Output { samples: 320, frames: Vec::new(), bodies: false }, output);
     let (mesh, mut bodies) = (mesh?, bodies?);
     if mesh.geometry.is_none() {
         // All of a rectangular mesh is a rectangle.
@@ -186,8 +186,9 @@ fn boundary(item: &Item<'_>) -> Option<Boundary> {
 }
 
 fn output(item: &Item<'_>) -> Option<Output> {
-    let fields = item.fields(&["samples", "frames"])?;
+    let fields = item.fields(&["samples", "frames", "bodies"])?;
     let samples = fields.or("samples", 320, |item| item.whole(1, 100_000_000));
     let frames = fields.or("frames", Vec::new(), |item| item.each(time));
-    Some(Output { samples: samples?, frames: frames? })
+    let bodies = fields.or("bodies", false, Item::flag);
+    Some(Output { samples: samples?, frames: frames?, bodies: bodies? })
 }

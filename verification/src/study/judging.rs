@@ -5,6 +5,8 @@
 //! above and right ones from below, so that a judge which ignores either bound still meets the other, and one
 //! that passes everything ends the study.
 
+use std::collections::BTreeMap;
+
 use fisura::scene::{Material, Mesh, Scene};
 
 use super::{Findings, Offered, Offers, StudyError};
@@ -129,7 +131,9 @@ fn known_measures(case: &Case) -> Result<[(f64, f64); 8], StudyError> {
     }
     let mut higher = history.clone();
     higher.columns[1].iter_mut().for_each(|kinetic| *kinetic += 2.0);
-    let whole = Run { name: "lower", scene: &scene, history: &history, frames: &[], energy_factor: 1.0 };
+    let values = BTreeMap::new();
+    let whole =
+        Run { name: "lower", scene: &scene, history: &history, frames: &[], energy_factor: 1.0, values: &values };
     let half = Run { energy_factor: 2.0, ..whole };
     let other = Run { name: "higher", history: &higher, ..whole };
     let library = Library::default();

@@ -83,6 +83,7 @@ impl FinishedScene {
             history: &self.run.history,
             frames: &self.run.frames,
             energy_factor: self.case_scene.energy_factor,
+            values: &self.case_scene.values,
         }
     }
 }

@@ -7,7 +7,6 @@ pub(super) mod growth;
 pub(super) mod incompressible;
 pub(super) mod repeatability;
 pub(super) mod split_families;
-pub(super) mod stick_slip;
 pub(super) mod units;
 pub(super) mod unloading;
 

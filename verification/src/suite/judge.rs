@@ -13,6 +13,7 @@ use crate::measure::{Measured, expected};
 use crate::output::OutputFolder;
 use crate::record::{BoundKind, Expectation, Record, Status, Timing};
 use crate::reference::Library;
+use crate::study::charts;
 use crate::study::scene::{FinishedScene, describe, evaluate, run_scenes};
 use crate::study::{Findings, Study, find};
 use crate::watch::{self, Stopped};
@@ -55,6 +56,11 @@ fn judge_runs(
         for (stem, table) in tables {
             watch::unless_left(|| write_series(out, &stem, &table))?;
         }
+    }
+    let (figures, series) = charts::of_case(case, finished);
+    outcome.figures = figures;
+    for (stem, table) in series {
+        watch::unless_left(|| write_series(out, &stem, &table))?;
     }
     for planned in records {
         let scene = &scenes[planned.scene.unwrap_or_default()];

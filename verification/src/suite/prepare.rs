@@ -99,6 +99,7 @@ pub fn prepare(case: &Case, library: &Library) -> Result<Prepared, SceneFileErro
                 scene_checks::look(&mut wrong, index, check, &scenes, library);
                 records.extend(of_runs(index, check, &scenes));
             }
+            scene_checks::look_at_charts(&mut wrong, &scenes);
         }
         Some(study) => {
             let offers = (study.offers)(case, &scenes).map_err(|error| {
@@ -141,7 +142,7 @@ impl Wrong<'_> {
 
     /// Tables and keys that the study does not read, or misses.
     fn look_at_inputs(&mut self, study: Option<&Study>) {
-        let reads = study.map_or(&["scene", "variant", "energy_factor"][..], |study| study.reads);
+        let reads = study.map_or(&["scene", "values", "variant", "energy_factor", "chart"][..], |study| study.reads);
         let root = &self.case.document.root;
         let name = &self.case.study;
         for key in INPUTS.into_iter().filter(|key| !reads.contains(key) && root.get(key).is_some()) {

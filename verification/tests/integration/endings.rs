@@ -49,16 +49,17 @@ fn a_case_beyond_its_time_is_a_record_and_the_others_run() {
     let variant = "[[variant]]\nname = \"short\"\nset = { \"analysis.end_time\" = 1.0 }\n\
                    [[variant]]\nname = \"endless\"\nset = { \"mesh.degree\" = 2 }\n";
     write_case(root.path(), "d", &short, &format!("{variant}{CLOSURE}"));
-    let incline = "study = \"stick-slip\"\n".to_string() + SLIDE;
-    let creep = "[[check]]\nid = \"creep\"\nquantity = \"creep after it has stopped over the distance\"";
-    write_case(root.path(), "b", &incline, creep);
+    let apart = "study = \"contact-onset\"\n".to_string() + APART;
+    let force = "[[check]]\nid = \"force\"\n\
+                 quantity = \"force of contact in the end over the momentum per second\"";
+    write_case(root.path(), "b", &apart, force);
     write_case(root.path(), "c", SCENE, CLOSURE);
     let limit = Some(Duration::from_secs(1));
     let results = run_watched(root.path(), Environment::default(), limit, &Silent).unwrap();
     let expected = [
         ("trial/a/degree=2/closure", Status::Error),
         ("trial/a/degree=3/closure", Status::Error),
-        ("trial/b/creep", Status::Error),
+        ("trial/b/force", Status::Error),
         ("trial/c/closure", Status::Pass),
         ("trial/d/short/closure", Status::Pass),
         ("trial/d/endless/closure", Status::Error),
@@ -72,8 +73,8 @@ fn a_case_beyond_its_time_is_a_record_and_the_others_run() {
     assert!(root.path().join("out/results.json").exists());
 }
 
-/// A block that slides for ever.
-const SLIDE: &str = r#"
+/// Two blocks that never meet.
+const APART: &str = r#"
 [scene.mesh]
 degree = 2
 origin = [0.0, 0.0]
@@ -100,8 +101,7 @@ shape = { rectangle = { min = [0.5, 0.25], max = [1.0, 0.5] } }
 velocity = [1e-12, 0.0]
 
 [[scene.body]]
-name = "floor"
+name = "other"
 material = "solid"
-rigid = true
-shape = { rectangle = { min = [-1.0, -1.0], max = [3.0, 0.25] } }
+shape = { rectangle = { min = [1.25, 0.25], max = [1.75, 0.5] } }
 "#;

@@ -52,7 +52,7 @@ fn plate() -> Scene {
         }],
         contact: None,
         boundaries: vec![Boundary { side: Side::Left, fix: [true, false], velocity: [0.0, 0.0] }],
-        output: Output { samples: 320, frames: vec![0.0, 45e-6, 80e-6] },
+        output: Output { samples: 320, frames: vec![0.0, 45e-6, 80e-6], bodies: false },
     }
 }
 

@@ -126,7 +126,7 @@ fn thickening(material: &Material, plane: Plane) -> f64 {
 }
 
 /// Centre of mass, m.
-fn center_of_mass(points: &[Point]) -> [f64; 2] {
+pub(super) fn center_of_mass(points: &[Point]) -> [f64; 2] {
     let volume: f64 = points.iter().map(|p| p.volume).sum();
     [0, 1].map(|d| points.iter().map(|p| p.volume * p.position[d]).sum::<f64>() / volume)
 }

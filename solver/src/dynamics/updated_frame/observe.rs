@@ -32,14 +32,15 @@ impl UpdatedFrame {
             }
             ledger
         });
-        let mut bodies = self.fields.iter().zip(&accelerations).map(|(field, a)| field.sample(dt, a));
-        let first = bodies.next().expect("a scene has a body");
-        let mut sample = bodies.fold(first, Sample::with);
+        let bodies: Vec<Sample> =
+            self.fields.iter().zip(&accelerations).map(|(field, a)| field.sample(dt, a)).collect();
+        let recorded = self.recorded.as_ref().map(|names| self.sample_bodies(names, &bodies, dt));
+        let mut sample = bodies.into_iter().reduce(Sample::with).expect("a scene has a body");
         if let Some(ContactLedger { loss, friction, work }) = contact {
             sample.external_work += work;
             sample.contact = Some(ContactSample { loss, friction });
         }
-        sample.for_thickness(self.thickness)
+        Sample { bodies: recorded, ..sample.for_thickness(self.thickness) }
     }
 
     /// The bodies that deform, in the order of the scene.

@@ -13,7 +13,7 @@ impl UpdatedFrame {
     /// # Errors
     /// Bytes of another scene, and loads that only the program knows.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { patch: _, fields, contact, thickness: _ } = self;
+        let Self { patch: _, fields, contact, thickness: _, recorded: _ } = self;
         fields.iter_mut().try_for_each(|field| field.exchange(archive))?;
         if let Some(contact) = contact {
             contact.exchange(archive)?;

@@ -78,7 +78,7 @@ pub fn elastic_scene(degree: usize, size: [f64; 2], cells: [usize; 2]) -> Scene 
         bodies: vec![body(rectangle([0.0; 2], size), [degree.max(2); 2])],
         contact: None,
         boundaries: vec![],
-        output: Output { samples: 10, frames: vec![] },
+        output: Output { samples: 10, frames: vec![], bodies: false },
     }
 }
 

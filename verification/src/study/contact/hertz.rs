@@ -20,12 +20,13 @@ use fisura::contact::impulse::ContactForce;
 use fisura::dynamics::updated_frame::field::DiscreteField;
 use fisura::scene::{Body, Plane, Scene, Shape};
 
-use super::{Books, chart, curve, dot, exact, larger, run, sample_is_due, sum};
+use super::{Books, dot, exact, larger, run, sample_is_due, sum};
 use crate::case::Case;
 use crate::case::expand::CaseScene;
 use crate::extremes::smaller;
 use crate::output::history::Table;
 use crate::record::CurveStyle;
+use crate::study::charts::{chart, curve};
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 

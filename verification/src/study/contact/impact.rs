@@ -12,11 +12,12 @@ use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::spans::largest_spans;
 use fisura::scene::{Scene, Transfer};
 
-use super::{Books, chart, curve, exact, run, sample_is_due, sum};
+use super::{Books, exact, run, sample_is_due, sum};
 use crate::case::Case;
 use crate::case::expand::CaseScene;
 use crate::output::history::Table;
 use crate::record::CurveStyle;
+use crate::study::charts::{chart, curve};
 use crate::study::orders::{Convergence, Curve, Level, Norm, Refined};
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};

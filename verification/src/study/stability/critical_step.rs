@@ -8,13 +8,13 @@
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::scene::{Analysis, Frame, Mass, Material, Mesh, Scene, Shape, Side};
 
-use super::super::contact::curve;
 use super::{exact, logarithmic, theory, total_frame};
 use crate::case::Case;
 use crate::case::expand::CaseScene;
 use crate::output::history::Table;
 use crate::record::{CurveStyle, Reference, ReferenceKind};
 use crate::scene::plain::PlainScene;
+use crate::study::charts::curve;
 use crate::study::dense;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};

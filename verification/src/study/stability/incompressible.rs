@@ -8,7 +8,6 @@
 use fisura::Simulation;
 use fisura::scene::{Boundary, Material, Mesh, Scene, Side, TimeStep};
 
-use super::super::contact::curve;
 use super::{exact, logarithmic, total_frame};
 use crate::case::Case;
 use crate::case::expand::CaseScene;
@@ -16,6 +15,7 @@ use crate::extremes::larger;
 use crate::output::history::Table;
 use crate::record::{CurveStyle, Reference, ReferenceKind};
 use crate::scene::plain::PlainScene;
+use crate::study::charts::curve;
 use crate::study::dense;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};

@@ -16,7 +16,6 @@ use fisura::material::hencky::hencky_strain;
 use fisura::material::split::tensile_strain;
 use fisura::scene::{Boundary, Fracture, Material, Mesh, Scene, Side, Split};
 
-use super::super::contact::curve;
 use super::{exact, logarithmic, total_frame};
 use crate::case::Case;
 use crate::case::expand::CaseScene;
@@ -24,6 +23,7 @@ use crate::extremes::{larger, largest};
 use crate::output::history::Table;
 use crate::record::CurveStyle;
 use crate::scene::plain::PlainScene;
+use crate::study::charts::curve;
 use crate::study::random::Random;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};

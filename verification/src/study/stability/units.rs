@@ -9,7 +9,6 @@ use fisura::Simulation;
 use fisura::dynamics::energy::Sample;
 use fisura::scene::{Boundary, Crack, Edge, Fracture, Material, Mesh, Scene, Shape, Side, Split, Traction};
 
-use super::super::contact::{chart, curve};
 use super::exact;
 use crate::case::Case;
 use crate::case::expand::CaseScene;
@@ -17,6 +16,7 @@ use crate::extremes::largest;
 use crate::output::history::Table;
 use crate::record::CurveStyle;
 use crate::scene::plain::PlainScene;
+use crate::study::charts::{chart, curve};
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 

@@ -10,7 +10,6 @@ use std::collections::BTreeMap;
 use fisura::Simulation;
 use fisura::scene::{Boundary, Fracture, Frame, Material, Mesh, Scene, Shape, Side, Split};
 
-use super::super::contact::{chart, curve};
 use super::exact;
 use crate::case::Case;
 use crate::case::expand::CaseScene;
@@ -18,6 +17,7 @@ use crate::extremes::{larger, largest};
 use crate::output::history::Table;
 use crate::record::CurveStyle;
 use crate::scene::plain::PlainScene;
+use crate::study::charts::{chart, curve};
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
 

@@ -1,12 +1,14 @@
 //! Checks of a scene study before it runs: measures, columns, windows, references, variants.
 
+use fisura::dynamics::body_sample::BodySamples;
 use fisura::dynamics::energy::{ContactSample, FractureSample, Sample};
 use fisura::scene::{Frame, Scene};
 
 use super::{EVERYWHERE, Wrong, distinct, find_band, grid_convergence};
 use crate::case::Check;
 use crate::case::expand::CaseScene;
-use crate::measure::{LooksAt, Measure, find};
+use crate::measure::{LooksAt, Measure, Run, find};
+use crate::output::history::Table;
 use crate::record::BoundKind;
 use crate::reference::{Library, relative_uncertainty};
 use crate::scene::suggest::nearest;
@@ -39,7 +41,7 @@ pub(super) fn look(wrong: &mut Wrong<'_>, index: usize, check: &Check, scenes: &
         return;
     }
     for scene in concerned(check, scenes) {
-        if let Err((key, message, remedy)) = look_at_run(measure, check, &scenes[scene].scene) {
+        if let Err((key, message, remedy)) = look_at_run(measure, check, &scenes[scene]) {
             wrong.note(at(key), message, remedy);
             break; // the other runs of the check would say the same
         }
@@ -128,19 +130,44 @@ fn look_at_variants(wrong: &mut Wrong<'_>, index: usize, check: &Check, scenes: 
     wrong.problems.len() == before
 }
 
-/// What one run would not have: key, message, remedy.
-fn look_at_run(measure: &Measure, check: &Check, scene: &Scene) -> Result<(), (&'static str, String, String)> {
-    let columns = columns(scene);
-    let words = check.column.iter().flat_map(|column| column.split_whitespace());
-    let mut named = words.filter(|word| !["+", "-"].contains(word)).peekable();
-    if check.column.is_some() && named.peek().is_none() {
-        return Err(("column", "no column is named".into(), format!("known columns: {}", columns.join(", "))));
+/// Notes names in charts that no run has.
+pub(super) fn look_at_charts(wrong: &mut Wrong<'_>, scenes: &[CaseScene]) {
+    let case = wrong.case;
+    for (index, chart) in case.charts.iter().enumerate() {
+        let curves = chart.curves.iter().enumerate().map(|(i, curve)| (format!("curves.{i}.column"), &curve.column));
+        for (key, formula) in std::iter::once(("x".to_string(), &chart.x)).chain(curves) {
+            let missing = scenes.iter().find_map(|scene| on_blank_run(scene, |run| run.column(formula).err()));
+            if let Some(message) = missing {
+                wrong.note(format!("chart.{index}.{key}"), message, "name a column, or a value of the case");
+            }
+        }
     }
-    if let Some(unknown) = named.find(|word| !columns.contains(word)) {
-        let remedy = format!("it has {}", columns.join(", "));
-        return Err(("column", format!("the history has no column {unknown:?}"), remedy));
-    }
-    let fractures = columns.contains(&"min_phase_field");
+}
+
+/// Looks at a run of a scene whose numbers are not known yet.
+fn on_blank_run<T>(of: &CaseScene, look: impl FnOnce(&Run<'_>) -> T) -> T {
+    let CaseScene { name, scene, values, energy_factor, .. } = of;
+    let history = blank_history(scene);
+    look(&Run { name, scene, history: &history, frames: &[], energy_factor: *energy_factor, values })
+}
+
+/// What a run would not have: key, message, remedy.
+type Lacking = (&'static str, String, String);
+
+/// What one run would not have.
+fn look_at_run(measure: &Measure, check: &Check, of: &CaseScene) -> Result<(), Lacking> {
+    let scene = &of.scene;
+    let known = |run: &Run<'_>| -> Result<(Check, bool), Lacking> {
+        if let Some(column) = &check.column {
+            run.column(column)
+                .map_err(|message| ("column", message, "name a column, or a value of the case".into()))?;
+        }
+        let numbers = check.with_numbers(&|formula| run.number(formula)).map_err(|message| {
+            ("id", message, "use values of the case, and {initial …}, {final …}, {largest …} of columns".into())
+        })?;
+        Ok((numbers, run.history.column("min_phase_field").is_some()))
+    };
+    let (check, fractures) = on_blank_run(of, known)?;
     if matches!(measure.looks_at, LooksAt::Tip | LooksAt::PhaseField) && !fractures {
         let remedy = "add [scene.material.NAME.fracture], or choose another measure";
         return Err(("measure", format!("{:?} looks at a crack, and nothing fractures", measure.name), remedy.into()));
@@ -149,15 +176,15 @@ fn look_at_run(measure: &Measure, check: &Check, scene: &Scene) -> Result<(), (&
         let message = format!("{:?} looks at pictures, and there are none", measure.name);
         return Err(("measure", message, "add scene.output.frames".into()));
     }
-    look_at_times(measure, check, scene)
+    look_at_times(measure, &check, scene)
 }
 
 /// Times outside the run.
-fn look_at_times(measure: &Measure, check: &Check, scene: &Scene) -> Result<(), (&'static str, String, String)> {
+fn look_at_times(measure: &Measure, check: &Check, scene: &Scene) -> Result<(), Lacking> {
     let end = scene.analysis.end_time;
     let slack = SLACK * end;
     if matches!(measure.name, "value-at" | "increment-at")
-        && let Some(time) = check.at.filter(|time| !(-slack..=end + slack).contains(time))
+        && let Some(time) = check.at.filter(|time| !time.is_nan() && !(-slack..=end + slack).contains(time))
     {
         return Err(("at", format!("{time:e} s is outside the run"), format!("choose a time from 0 to {end:e} s")));
     }
@@ -171,8 +198,8 @@ fn look_at_times(measure: &Measure, check: &Check, scene: &Scene) -> Result<(), 
     Ok(())
 }
 
-/// Columns of the history of a scene.
-fn columns(scene: &Scene) -> Vec<&'static str> {
+/// A history of one row with the columns that a scene will have; none of its numbers is known.
+fn blank_history(scene: &Scene) -> Table {
     let moving = scene.bodies.iter().filter(|body| !body.rigid);
     let mut materials = moving.filter_map(|body| scene.materials.get(&body.material));
     let fracture = FractureSample { energy: 0.0, history_work: 0.0, crack_tip: None, min_phase: 1.0, iterations: 0 };
@@ -180,7 +207,11 @@ fn columns(scene: &Scene) -> Vec<&'static str> {
         fracture: materials.any(|material| material.fracture.is_some()).then_some(fracture),
         contact: scene.contact.is_some().then_some(ContactSample { loss: 0.0, friction: 0.0 }),
         transfer_loss: (scene.analysis.frame == Frame::Updated).then_some(0.0),
+        bodies: scene.output.bodies.then(|| BodySamples::blank(scene)),
         ..Sample::default()
     };
-    sample.named_values().into_iter().map(|(name, _)| name).collect()
+    let names: Vec<_> = sample.named_values().into_iter().map(|(name, _)| name).collect();
+    let mut table = Table::new(&names);
+    table.push(&vec![f64::NAN; names.len()]);
+    table
 }

@@ -1,4 +1,4 @@
-//! The rooms of the solver call downwards only, and no files import each other in a circle. The rooms of the
+//! The folders of the solver call downwards only, and no files import each other in a circle. The folders of the
 //! harness call downwards only.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use syn::visit::{self, Visit};
 
-/// The rooms of the harness, lowest first.
+/// The folders of the harness, lowest first.
 const OF_THE_HARNESS: [&str; 13] = [
     "output",
     "watch",
@@ -24,8 +24,8 @@ const OF_THE_HARNESS: [&str; 13] = [
     "judge",
 ];
 
-/// The rooms of the solver, lowest first: each calls those before it. `faults` is everywhere.
-const ROOMS: [&str; 14] = [
+/// The folders of the solver, lowest first: each calls those before it. `faults` is everywhere.
+const OF_THE_SOLVER: [&str; 14] = [
     "faults",
     "checkpoint",
     "linear_algebra",
@@ -110,11 +110,11 @@ impl Imports {
         Self(files.iter().map(import).collect())
     }
 
-    /// Imports from a room that stands above.
-    fn upward(&self, rooms: &[&str]) -> Vec<String> {
+    /// Imports from a folder that stands above.
+    fn upward(&self, folders: &[&str]) -> Vec<String> {
         let rank = |module: &Module| {
-            let room = rooms.iter().position(|room| *room == module[0]);
-            room.unwrap_or_else(|| panic!("{} has no room: give it a place in the list", module.join("/")))
+            let folder = folders.iter().position(|folder| *folder == module[0]);
+            folder.unwrap_or_else(|| panic!("{} has no folder: give it a place in the list", module.join("/")))
         };
         let pairs = self.0.iter().flat_map(|(from, all)| all.iter().map(move |to| (from, to)));
         pairs.filter(|(from, to)| rank(from) < rank(to)).map(|(from, to)| arrow(&[from, to])).collect()
@@ -193,7 +193,7 @@ fn files(name: &str) -> BTreeMap<Module, String> {
 fn rooms_call_downwards_and_files_import_in_no_circle() {
     let imports = Imports::of(&files("solver"));
     assert!(imports.0.values().map(BTreeSet::len).sum::<usize>() > 500, "paths are found");
-    assert_eq!(imports.upward(&ROOMS), [""; 0]);
+    assert_eq!(imports.upward(&OF_THE_SOLVER), [""; 0]);
     assert_eq!(imports.circles(), [""; 0]);
 }
 
@@ -216,7 +216,7 @@ fn an_upward_import_and_circles_are_found() {
         ("dynamics", ""),
         ("dynamics/mass", "use crate::splines::{self, patch::Patch};"),
     ]);
-    assert_eq!(up.upward(&ROOMS), ["splines/patch -> dynamics/mass"]);
+    assert_eq!(up.upward(&OF_THE_SOLVER), ["splines/patch -> dynamics/mass"]);
     let pair = imports(&[("contact", "mod touch; pub use touch::Touch;"), ("contact/touch", "use super::Contact;")]);
     assert_eq!(pair.circles(), ["contact -> contact/touch -> contact", "contact/touch -> contact -> contact/touch"]);
     let ring = imports(&[
@@ -227,7 +227,7 @@ fn an_upward_import_and_circles_are_found() {
     ]);
     assert_eq!(ring.circles().len(), 3);
     assert_eq!(ring.circles()[1], "scene -> splines -> material -> scene");
-    assert_eq!(ring.upward(&ROOMS).len(), 2, "what tests import does not count");
+    assert_eq!(ring.upward(&OF_THE_SOLVER).len(), 2, "what tests import does not count");
 }
 
 #[test]
