@@ -1,9 +1,10 @@
 //! Case files: a claim, a scene, what is measured, and the bounds within which the claim holds.
 //!
-//! A case is one TOML file `cases/<suite>/<case>.toml`. Its `[scene]` table has the form of a scene file, and
-//! may have a list where a scene has one value: a study axis. `[[variant]]` tables change several keys
-//! together. `[values]` names numbers, which formulas of checks and charts ([`formula`]) use. What several checks have in common stands once: a `[[check]]` may name a `set` of checks, and
-//! list in `variants` what differs between runs.
+//! A case is one TOML file `cases/<suite>/<case>.toml`. Its `[scene]` table has the form of a scene file,
+//! and may have a list where a scene has one value: a study axis. `[[variant]]` tables change several
+//! keys together. `[values]` names numbers, which formulas of checks and charts ([`formula`]) use. What
+//! several checks have in common stands once: a `[[check]]` may name a `set` of checks, and list in
+//! `variants` what differs between runs.
 
 mod chart;
 mod check;

@@ -1,5 +1,5 @@
-//! The folders of the solver call downwards only, and no files import each other in a circle. The folders of the
-//! harness call downwards only.
+//! The folders of the solver call downwards only, and no files import each other in a circle. The folders
+//! of the harness call downwards only.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
