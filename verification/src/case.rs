@@ -128,11 +128,14 @@ impl Check {
     /// With the numbers that `value` gives for its formulas.
     ///
     /// # Errors
-    /// Whatever `value` gives.
-    pub fn with_numbers(&self, value: &dyn Fn(&Formula) -> Result<f64, String>) -> Result<Self, String> {
+    /// Whatever `value` gives, with the key.
+    pub fn with_numbers(
+        &self,
+        value: &dyn Fn(&Formula) -> Result<f64, String>,
+    ) -> Result<Self, (&'static str, String)> {
         let mut check = self.clone();
         for (key, formula) in &self.formulas {
-            let value = value(formula)?;
+            let value = value(formula).map_err(|message| (key.name(), message))?;
             match key {
                 NumberKey::From => check.window[0] = value,
                 NumberKey::To => check.window[1] = value,

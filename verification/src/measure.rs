@@ -151,7 +151,8 @@ impl Run<'_> {
 /// # Errors
 /// If the measure or something it needs does not exist.
 pub fn measure(check: &Check, run: &Run, runs: &[Run], library: &Library) -> Result<Measured, String> {
-    let check = &check.with_numbers(&|formula| run.number(formula))?;
+    let numbers = check.with_numbers(&|formula| run.number(formula));
+    let check = &numbers.map_err(|(key, message)| format!("{key}: {message}"))?;
     let measure = find(check.measure.as_deref())?;
     let measured = (measure.find)(&Question { check, run, runs, library })?;
     let value = measured.value.filter(|v| v.is_finite()).map(|v| v * check.scale);

@@ -74,6 +74,19 @@ pub enum NumberKey {
     Scale,
 }
 
+impl NumberKey {
+    /// As it stands in a file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::From => "from",
+            Self::To => "to",
+            Self::At => "at",
+            Self::Expect => "expect",
+            Self::Scale => "scale",
+        }
+    }
+}
+
 /// All checks, at least one.
 pub(super) fn read(item: &Item<'_>) -> Option<Vec<Check>> {
     let tables = item.tables()?;
@@ -89,8 +102,9 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
     let text = |key: &str| fields.maybe(key, Item::text);
     let number = |key: &str| fields.maybe(key, any_quantity);
     let mut formulas = Vec::new();
-    let mut formula_or = |key: &str, meant: NumberKey, dimension: Option<Dimension>| {
-        fields.maybe(key, |item| number_or_formula(item, dimension, &mut |found| formulas.push((meant, found))))
+    let mut formula_or = |meant: NumberKey, dimension: Option<Dimension>| {
+        fields
+            .maybe(meant.name(), |item| number_or_formula(item, dimension, &mut |found| formulas.push((meant, found))))
     };
     let quantity = fields.need("quantity", "quantity = \"what is measured, in words\"", Item::words);
     let like = format!(
@@ -101,15 +115,15 @@ fn read_check(item: &Item<'_>) -> Option<Check> {
     let formerly = fields.or("formerly", Vec::new(), |i| i.each(read_id));
     let unit = fields.or("unit", "1".to_string(), Item::text);
     let (measure, column, reference) = (text("measure"), fields.maybe("column", read_column), text("reference"));
-    let from = formula_or("from", NumberKey::From, Some(Dimension::TIME));
-    let to = formula_or("to", NumberKey::To, Some(Dimension::TIME));
+    let from = formula_or(NumberKey::From, Some(Dimension::TIME));
+    let to = formula_or(NumberKey::To, Some(Dimension::TIME));
     if let (Some(Some(from)), Some(Some(to))) = (from, to)
         && from > to
     {
         fields.get("to").and_then(|i| i.fail::<()>("to is before from", "give the earlier time as from"));
     }
-    let (at, expect) = (formula_or("at", NumberKey::At, None), formula_or("expect", NumberKey::Expect, None));
-    let scale = formula_or("scale", NumberKey::Scale, Some(Dimension::NONE));
+    let (at, expect) = (formula_or(NumberKey::At, None), formula_or(NumberKey::Expect, None));
+    let scale = formula_or(NumberKey::Scale, Some(Dimension::NONE));
     let kind = fields.or("expect_kind", ReferenceKind::Exact, reference_kind);
     let expect_source = fields.or("expect_source", String::new(), Item::text);
     let uncertainty = fields.maybe("uncertainty", positive);

@@ -67,6 +67,9 @@ impl FromStr for Formula {
         if text.len() > LONGEST {
             return Err(format!("a formula of {} bytes; at most {LONGEST} are read", text.len()));
         }
+        if text.trim().is_empty() {
+            return Err("no column is named".to_string());
+        }
         if text.contains('^') {
             return Err(format!("{text:?} has a ^; write pow(a, b)"));
         }

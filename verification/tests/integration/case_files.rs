@@ -123,6 +123,10 @@ fn what_no_run_of_a_scene_has_is_refused_before_it_runs() {
         ("measure = \"drift\"", &["needs column", "add column"]),
         ("measure = \"initial\"\ncolumn = \"elastic_j + elastics_j\"", &["no column \"elastics_j\"", "momentum_x"]),
         ("measure = \"initial\"\ncolumn = \" \"", &["no column is named"]),
+        ("measure = \"initial\"\ncolumn = \"elastic_j^2\"", &["check.0.column", "write pow(a, b)"]),
+        ("measure = \"initial\"\ncolumn = \"{greatest elastic_j}\"", &["no column \"greatest elastic_j\""]),
+        ("measure = \"slope\"\ncolumn = \"elastic_j\"\nto = \"= 2*period\"", &["no column \"period\""]),
+        ("measure = \"slope\"\ncolumn = \"elastic_j\"\nto = \"= 2*elastic_j\"", &["where a number is needed"]),
         ("measure = \"slope\"\ncolumn = \"elastic_j\"\nfrom = 2\nto = 3", &["no sample lies between", "ends at"]),
         ("measure = \"slope\"\ncolumn = \"elastic_j\"\nfrom = 0.11\nto = 0.19", &["no sample lies between"]),
         ("measure = \"value-at\"\ncolumn = \"elastic_j\"\nat = 2", &["check.0.at", "outside the run"]),
@@ -137,6 +141,30 @@ fn what_no_run_of_a_scene_has_is_refused_before_it_runs() {
         refused_by("scene", &of(lines), parts);
     }
     assert_eq!(prepared("scene", &of("measure = \"slope\"\ncolumn = \"elastic_j\"\nfrom = 0.1\nto = 0.3")), "");
+}
+
+#[test]
+fn values_follow_the_scene_and_charts_name_what_is_there() {
+    let closure = quantity("q", "measure = \"closure\"");
+    let of = |more: &str| format!("{SCENE}\n{more}\n{closure}");
+    let chart = |column: &str| {
+        format!("[[chart]]\nid = \"c\"\ntitle = \"t\"\naxes = [\"x\", \"y\"]\ncurves = [{{ column = {column:?} }}]\n")
+    };
+    let values = "[values]\nend = \"= {analysis.end_time}\"\nhalf = \"= end/2\"\n";
+    assert_eq!(prepared("scene", &of(&format!("{values}{}", chart("elastic_j*(time_s < half)")))), "");
+    refused_by("scene", &of(&chart("elastic")), &["chart.0.curves.0.column", "no column \"elastic\""]);
+    for (value, parts) in [
+        ("a = \"= b\"\nb = \"= a\"", &["values.a", "depends on itself"][..]),
+        ("a = \"= c\"", &["values.a", "no value \"c\""]),
+        ("a = \"= {analysis.ende}\"", &["no key \"analysis.ende\""]),
+        ("a = \"= {initial elastic_j}\"", &["after a run only"]),
+        ("a = \"= 1/0\"", &["it is inf"]),
+        ("a = \"= (\"", &["no formula"]),
+        ("\"a b\" = 1", &["is no name in a formula"]),
+    ] {
+        refused_by("scene", &of(&format!("[values]\n{value}\n")), parts);
+    }
+    refused_by("basis", &format!("[values]\na = 1\n{}", check("unity", "")), &["does not read values"]);
 }
 
 #[test]

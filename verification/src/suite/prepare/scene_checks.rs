@@ -162,8 +162,8 @@ fn look_at_run(measure: &Measure, check: &Check, of: &CaseScene) -> Result<(), L
             run.column(column)
                 .map_err(|message| ("column", message, "name a column, or a value of the case".into()))?;
         }
-        let numbers = check.with_numbers(&|formula| run.number(formula)).map_err(|message| {
-            ("id", message, "use values of the case, and {initial …}, {final …}, {largest …} of columns".into())
+        let numbers = check.with_numbers(&|formula| run.number(formula)).map_err(|(key, message)| {
+            (key, message, "use values of the case, and {initial …}, {final …}, {largest …} of columns".into())
         })?;
         Ok((numbers, run.history.column("min_phase_field").is_some()))
     };
