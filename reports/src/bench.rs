@@ -2,13 +2,14 @@
 //!
 //! [`render`] writes `samples.csv` (every sample), `figures/timing/*.svg`, `summary.md` (with links to the
 //! figures) and `bench.html` (figures inline). Everything is a pure function of `bench.json`:
-//! [`work_precision`], [`stages`] and [`conditions`] make the exhibits, [`ratios`] holds the targets,
+//! [`work_precision`], [`plate`](mod@plate), [`stages`] and [`conditions`] make the exhibits, [`ratios`] holds the targets,
 //! [`bars`] draws bars, [`page`] puts it together.
 
 pub mod bars;
 pub mod conditions;
 pub mod page;
 pub mod pareto;
+pub mod plate;
 pub mod ratios;
 pub mod stages;
 pub mod work_precision;
@@ -99,7 +100,7 @@ pub fn sections(set: &BenchSet) -> Vec<Section> {
     let parts = [
         ("Targets", ratios::exhibits(records)),
         ("Work and precision", work_precision::exhibits(records)),
-        ("The plate", work_precision::plate(records, &set.fem)),
+        ("The plate", plate::exhibits(set)),
         ("Where the time of a step goes", stages::exhibits(records)),
         ("Solving for the phase field", stages::solves(records)),
         ("Threads", conditions::threads(records)),

@@ -19,6 +19,7 @@
 
 pub mod block;
 pub mod ceilings;
+pub mod elements;
 pub mod minimal;
 pub mod moving_block;
 pub mod peer;
@@ -32,7 +33,7 @@ pub mod timing;
 pub mod wave;
 
 use std::path::PathBuf;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 use fisura::Simulation;
@@ -63,6 +64,8 @@ pub struct Settings<'a> {
     pub peer_timeout: Duration,
     /// Families to run; empty: all.
     pub families: Vec<String>,
+    /// The program of the finite elements, or why there is none, once it was asked for.
+    pub elements: OnceLock<Result<PathBuf, String>>,
 }
 
 impl Settings<'_> {
@@ -210,7 +213,9 @@ impl<'a> Session<'a> {
             records.push(record);
         }
         let (environment, peers, fem) = (self.environment.clone(), self.peers.clone(), self.fem.clone());
-        BenchSet { schema: SCHEMA.into(), environment, quick: self.settings.quick, records, peers, fem }
+        let unbuilt = self.settings.elements.get().and_then(|built| built.as_ref().err().cloned());
+        let quick = self.settings.quick;
+        BenchSet { schema: SCHEMA.into(), environment, quick, records, peers, fem, fem_unbuilt: unbuilt }
     }
 }
 

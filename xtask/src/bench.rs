@@ -1,5 +1,6 @@
 //! `bench`: speed against error.
 
+use std::sync::OnceLock;
 use std::time::Duration;
 
 use fisura_reports::bench::{self as report, Exhibit, Records, Section};
@@ -56,6 +57,7 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
         peer: args.peer.clone(),
         peer_timeout: Duration::from_secs(args.peer_timeout),
         families: args.family.clone(),
+        elements: OnceLock::new(),
     };
     let session = Session::new(&settings, environment(&workspace))?;
     folder.begin(|_| false)?;

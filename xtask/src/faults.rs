@@ -10,6 +10,7 @@
 mod campaign;
 mod cells;
 mod idle;
+mod judged;
 mod matrix;
 mod results;
 mod runner;
@@ -22,6 +23,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use fisura_verification::output::OutputFolder;
 use fisura_verification::suite::{Case, Selection, Tier, load_cases, select};
 
 use crate::cli::{Common, Format};
@@ -47,6 +49,9 @@ pub struct Args {
     /// Every fault on every case of the quick tier, cheap cases first, not only on those named for it
     #[arg(long)]
     matrix: bool,
+    /// Hand the curves of the plate with each fault to the judge, as CSV, instead of running cases
+    #[arg(long, conflicts_with = "matrix")]
+    judge: bool,
     /// Start no more after this time; what is done is kept, and the next run goes on from there
     #[arg(long, value_name = "SECONDS")]
     budget: Option<u64>,
@@ -63,17 +68,18 @@ pub struct Args {
 pub fn faults(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let faults = chosen(args)?;
     let folder = folders::output(common, "faults")?;
-    folder.begin(|name| name.starts_with(cells::FOLDER))?;
+    folder.begin(|name| name.starts_with(cells::FOLDER) || name.starts_with(judged::FOLDER))?;
     let program = match &args.program {
         Some(program) => program.clone(),
         None => build(common)?,
     };
+    if args.judge {
+        return judge(args, common, &faults, &folder, program);
+    }
     let cases = load_cases(&verify::cases_folder()?, &[])?;
     let cases = select(cases, &Selection { suites: Vec::new(), case_glob: None, tier: Tier::Quick });
     let store = Store::open(&folder, &cells::keys(&program, &folders::workspace(), &cases)?)?;
-    let deadline = args.budget.map(|seconds| Instant::now() + Duration::from_secs(seconds));
-    let threads = common.threads.map_or_else(rayon::current_num_threads, |n| usize::from(n.get()));
-    let runner = Runner::new(program, threads, deadline);
+    let runner = runner(args, common, program);
     let campaign = Campaign { faults: &faults, cases: &cases, store: &store, runner: &runner, common };
     campaign.run(args.matrix)?;
     let ids: Vec<String> = cases.iter().map(Case::id).collect();
@@ -86,6 +92,32 @@ pub fn faults(args: &Args, common: &Common) -> Result<Exit, Failure> {
     }
     let lacking = results.lacking() || matrix.is_some_and(|matrix| matrix.lacking());
     Ok(if lacking { Exit::CheckFailed } else { Exit::Done })
+}
+
+/// Processes side by side, until the time is over.
+fn runner(args: &Args, common: &Common, program: PathBuf) -> Runner {
+    let deadline = args.budget.map(|seconds| Instant::now() + Duration::from_secs(seconds));
+    let threads = common.threads.map_or_else(rayon::current_num_threads, |n| usize::from(n.get()));
+    Runner::new(program, threads, deadline)
+}
+
+/// `faults --judge`.
+fn judge(
+    args: &Args,
+    common: &Common,
+    faults: &[&'static Fault],
+    folder: &OutputFolder,
+    program: PathBuf,
+) -> Result<Exit, Failure> {
+    let fingerprint = cells::program_key(&program)?;
+    let runner = runner(args, common, program);
+    let report = judged::Campaign { faults, folder, runner: &runner, program: fingerprint, common }.run()?;
+    report.write(folder)?;
+    match common.format {
+        Format::Json => console::json(&report),
+        Format::Text => console::result(&report.text()),
+    }
+    Ok(if report.lacks() { Exit::CheckFailed } else { Exit::Done })
 }
 
 /// Plants the fault that the environment names, if it names one.

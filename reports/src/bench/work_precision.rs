@@ -7,13 +7,13 @@ use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, F
 use super::pareto::{cost_of, front};
 use super::{Exhibit, Plot, Records};
 use crate::figure::render_figure;
-use crate::number::{DIGITS, pretty};
+use crate::number::pretty;
 use crate::series::SeriesSet;
 use crate::svg::slug;
 
 /// What is paid.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Cost {
+pub(super) enum Cost {
     Time,
     ParticleSteps,
     Memory,
@@ -22,7 +22,7 @@ enum Cost {
 impl Cost {
     const ALL: [Self; 3] = [Self::Time, Self::ParticleSteps, Self::Memory];
 
-    fn of(self, record: &BenchRecord) -> Spread {
+    pub(super) fn of(self, record: &BenchRecord) -> Spread {
         let exactly = |value: f64| Spread { median: value, min: value, max: value };
         match self {
             Self::Time => record.cpu_s,
@@ -42,24 +42,24 @@ impl Cost {
 }
 
 /// One curve: a label and its points.
-struct Line<'a> {
-    label: String,
-    records: Vec<&'a BenchRecord>,
+pub(super) struct Line<'a> {
+    pub label: String,
+    pub records: Vec<&'a BenchRecord>,
 }
 
 impl Line<'_> {
     /// Cost and error of each verified point.
-    fn points(&self, cost: Cost) -> Vec<(f64, f64)> {
+    pub(super) fn points(&self, cost: Cost) -> Vec<(f64, f64)> {
         self.records.iter().map(|r| (cost.of(r).median, error(r))).collect()
     }
 }
 
-fn error(record: &BenchRecord) -> f64 {
+pub(super) fn error(record: &BenchRecord) -> f64 {
     record.error.as_ref().map_or(f64::NAN, |error| error.value)
 }
 
 /// Records whose answers hold, by label, in the order in which labels appear.
-fn lines<'a>(records: impl IntoIterator<Item = &'a BenchRecord>) -> Vec<Line<'a>> {
+pub(super) fn lines<'a>(records: impl IntoIterator<Item = &'a BenchRecord>) -> Vec<Line<'a>> {
     let mut lines: Vec<Line> = Vec::new();
     for record in records.into_iter().filter(|r| r.verified && error(r).is_finite()) {
         match lines.iter_mut().find(|line| line.label == record.label) {
@@ -103,63 +103,22 @@ fn frontier<'a>(records: &[&'a BenchRecord], cost: Cost) -> Vec<&'a BenchRecord>
     front(&points).into_iter().map(|i| usable[i]).collect()
 }
 
-/// The plate, with the finite elements beside it.
-pub fn plate(records: Records, fem: &[CostPoint]) -> Vec<Exhibit> {
-    let lines = lines(records.below("plate/p"));
-    let Some(first) = lines.first().and_then(|line| line.records.first()) else { return Vec::new() };
-    let uncertainty = first.error.as_ref().map_or(0.0, |e| e.uncertainty);
-    let particles: Vec<String> =
-        lines.iter().flat_map(|l| &l.records).map(|r| format!("{}", r.number("particles").unwrap_or(0.0))).collect();
-    let caption = format!(
-        "Half plate to 80 µs, whole runs on {} threads; kinetic energy from 5 to 80 µs against {}; {} points",
-        first.threads,
-        first.error.as_ref().map_or("", |e| e.reference.as_str()),
-        particles.join(", ")
-    );
-    let axis = "processor time of all threads (s)";
-    let title = "The plate: error against processor time".to_string();
-    let id = "timing/plate-error-against-time".to_string();
-    let chart = Chart { id, title, lines: &lines, front: None, fem, cost: Cost::Time, axis, uncertainty };
-    let mut exhibits = vec![chart.plot(&caption, reading_of_plate(&lines, fem))];
-    exhibits.extend(tolerances(records, axis));
-    exhibits
-}
-
-/// What the tolerance of the phase field does to the energies of the plate.
-fn tolerances(records: Records, axis: &'static str) -> Option<Exhibit> {
-    let found = records.below("plate/tolerance/");
-    let lines = lines(found.iter().copied());
-    let reference = found.first()?.error.as_ref()?;
-    let caption = format!(
-        "Half plate to 80 µs; {} (kinetic, elastic, fracture) from a run with {}",
-        reference.quantity, reference.reference
-    );
-    let word = |r: &&BenchRecord| {
-        let tolerance = r.id.rsplit('/').next().unwrap_or_default();
-        format!("{tolerance}: {} % in {} s", pretty(100.0 * error(r), 2), pretty(Cost::Time.of(r).median, 3))
-    };
-    let reading = format!("Tolerance: {}.", found.iter().map(word).collect::<Vec<_>>().join("; "));
-    let title = "The plate: tolerance of the phase field against processor time".to_string();
-    let id = "timing/plate-tolerance-against-time".to_string();
-    let chart = Chart { id, title, lines: &lines, front: None, fem: &[], cost: Cost::Time, axis, uncertainty: 0.0 };
-    Some(chart.plot(&caption, reading))
-}
-
 /// Everything a diagram is drawn from.
-struct Chart<'a> {
-    id: String,
-    title: String,
-    lines: &'a [Line<'a>],
-    front: Option<&'a Line<'a>>,
-    fem: &'a [CostPoint],
-    cost: Cost,
-    axis: &'a str,
+pub(super) struct Chart<'a> {
+    pub id: String,
+    pub title: String,
+    pub lines: &'a [Line<'a>],
+    pub front: Option<&'a Line<'a>>,
+    /// Stored costs of the finite elements.
+    pub fem: &'a [CostPoint],
+    pub cost: Cost,
+    pub axis: &'a str,
     /// Relative uncertainty of the reference.
-    uncertainty: f64,
+    pub uncertainty: f64,
 }
 
 impl Chart<'_> {
-    fn plot(&self, caption: &str, reading: String) -> Exhibit {
+    pub(super) fn plot(&self, caption: &str, reading: String) -> Exhibit {
         let mut set = SeriesSet::default();
         let mut curves = Vec::new();
         for line in self.lines {
@@ -258,43 +217,4 @@ fn cheapest(lines: &[Line], error: f64, cost: Cost) -> Option<String> {
     };
     let unit = cost.words()[2];
     Some(format!("Error {}: {}, {} {unit}{beside}.", pretty(error, 1), first.0, pretty(first.1, 3)))
-}
-
-/// What our runs take at the errors of the finite elements, or the nearest that can be said.
-fn reading_of_plate(lines: &[Line], fem: &[CostPoint]) -> String {
-    let best = |error: f64| {
-        let costs = lines.iter().filter_map(|l| Some((l.label.as_str(), cost_of(&l.points(Cost::Time), error)?)));
-        costs.min_by(|a, b| a.1.total_cmp(&b.1))
-    };
-    let sentence = |point: &CostPoint| match best(point.error) {
-        Some((label, seconds)) => format!(
-            "At the error of {} % that the finite elements bought with {} s, {label} takes {} s: {}.",
-            pretty(100.0 * point.error, 2),
-            pretty(point.cpu_s, DIGITS),
-            pretty(seconds, 3),
-            if seconds <= point.cpu_s {
-                format!("{} times less", pretty(point.cpu_s / seconds, 2))
-            } else {
-                format!("{} times more", pretty(seconds / point.cpu_s, 2))
-            }
-        ),
-        None => {
-            let all = lines.iter().flat_map(|line| line.points(Cost::Time).into_iter().map(move |p| (line, p)));
-            let least = all.min_by(|a, b| a.1.1.total_cmp(&b.1.1));
-            let least = least.map_or(String::new(), |(line, (cost, error))| {
-                format!(
-                    " the smallest error is {} % ({}, {} s).",
-                    pretty(100.0 * error, 2),
-                    line.label,
-                    pretty(cost, 3)
-                )
-            });
-            format!("No curve here crosses the finite elements' error of {} %:{least}", pretty(100.0 * point.error, 2))
-        }
-    };
-    if fem.is_empty() {
-        return "There is nothing to compare with.".into();
-    }
-    let sentences: Vec<String> = fem.iter().map(sentence).collect();
-    format!("{} The machines differ (see the legend): read the factors as orders.", sentences.join(" "))
 }

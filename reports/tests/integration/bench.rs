@@ -116,6 +116,7 @@ fn set() -> BenchSet {
             error: 0.02,
             conditions: conditions_of.into(),
         }],
+        fem_unbuilt: None,
     }
 }
 

@@ -10,7 +10,7 @@
 //! start and end of the program cancel.
 
 pub mod block;
-mod program;
+pub(super) mod program;
 
 use super::record::{BenchRecord, Sample};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};

@@ -1,7 +1,8 @@
 //! What an error of the impact-loaded plate costs: whole runs to 80 µs, from the scene in memory to the last
 //! row of the history, in processor time of all threads. The error is the kinetic energy against the
-//! independent finite elements, as the cases of the suite measure it; the finite elements themselves stand
-//! beside it with what they took.
+//! independent finite elements, as the cases of the suite measure it. The finite elements themselves run in
+//! the same rounds ([`elements`](super::elements)); where they cannot be built, what they took elsewhere
+//! stands beside it.
 //!
 //! Besides equal spans and the tolerance of the suite there is what someone in a hurry would run: spans twice
 //! as long where no crack runs, and a tolerance of the phase field that changes the energies by about as much
@@ -16,7 +17,7 @@ use fisura::scene::Scene;
 
 use super::record::{AnswerError, BenchRecord, CostPoint};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
-use super::{BenchError, Settings};
+use super::{BenchError, Settings, elements};
 use crate::case::Case;
 use crate::case::expand::CaseScene;
 use crate::extremes::{larger, largest};
@@ -57,10 +58,13 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     let meshes: &[f64] = if settings.quick { &[2.0, 1.0] } else { &[2.0, 1.0, 0.5] };
     let hurried: &[f64] = if settings.quick { &[1.0, 0.7] } else { &[1.0, 0.7, 0.5, 0.4] };
     let threads = settings.threads;
+    let elements = settings.elements.get_or_init(|| elements::build(&settings.workspace));
     pool(threads)?
         .install(|| {
             let mut contestants = Vec::new();
-            let against_elements = |history: &Table, factor: f64| error_of_kinetic(history, factor, reference);
+            let against_elements = |history: &Table, factor: f64| {
+                error_of_kinetic(history.column("time_s")?, history.column("kinetic_j")?, factor, reference)
+            };
             for degree in if settings.quick { 2..=3 } else { 1..=4 } {
                 for &h in meshes.iter().filter(|&&h| degree < 4 || h >= FINEST_QUARTIC) {
                     let name = (format!("plate/p{degree}/h{h}"), format!("p = {degree}"));
@@ -72,6 +76,9 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
                     let name = (format!("plate/p{degree}-graded/h{h}"), label);
                     contestants.push(plate(graded(settings, degree, h)?, name, h, threads, against_elements)?);
                 }
+            }
+            if let Ok(program) = elements {
+                contestants.extend(elements::contestants(settings, program, reference)?);
             }
             contestants.extend(tolerances(settings, if settings.quick { 2.0 } else { 1.0 })?);
             round_robin(contestants, if settings.quick { 1 } else { 3 }, settings.budget())
@@ -194,7 +201,7 @@ fn tolerances<'a>(settings: &Settings, h: f64) -> Result<Vec<Contestant<'a>>, Be
     TOLERANCES.into_iter().map(contestant).collect()
 }
 
-/// Costs of the finite elements.
+/// Stored costs of the finite elements, on another machine.
 pub fn finite_elements(library: &Library) -> Vec<CostPoint> {
     let curves = library.curves(COST).into_iter();
     let points = curves.flat_map(|curve| {
@@ -248,9 +255,15 @@ fn plate<'a>(
 }
 
 /// Kinetic energy, times a factor, against the finite elements.
-fn error_of_kinetic(history: &Table, factor: f64, reference: &ReferenceCurve) -> Option<AnswerError> {
-    let kinetic: Vec<f64> = history.column("kinetic_j")?.iter().map(|k| factor * k).collect();
-    let value = relative_rms(reference, history.column("time_s")?, &kinetic, WINDOW[0], WINDOW[1])?;
+pub(super) fn error_of_kinetic(
+    seconds: &[f64],
+    kinetic: &[f64],
+    factor: f64,
+    reference: &ReferenceCurve,
+) -> Option<AnswerError> {
+    let kinetic: Vec<f64> = kinetic.iter().map(|k| factor * k).collect();
+    let value = (kinetic.len() == seconds.len())
+        .then(|| relative_rms(reference, seconds, &kinetic, WINDOW[0], WINDOW[1]))??;
     Some(AnswerError {
         quantity: "kinetic energy, relative rms from 5 to 80 µs".into(),
         value,
@@ -305,6 +318,7 @@ mod tests {
             peer: None,
             peer_timeout: std::time::Duration::ZERO,
             families: vec![],
+            elements: Default::default(),
         };
         let case = half(&settings, 3, 2.0).unwrap();
         let spans = case.scene.mesh.knots.each_ref().map(|knots| knots.len() - 7);

@@ -26,8 +26,11 @@ pub struct BenchSet {
     pub records: Vec<BenchRecord>,
     /// Stored ratios to other codes.
     pub peers: Vec<NamedPeer>,
-    /// What bilinear finite elements took for the plate.
+    /// What bilinear finite elements took for the plate on another machine, if they are not run here.
     pub fem: Vec<CostPoint>,
+    /// Why the finite elements were not run in this session, if they were to be.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub fem_unbuilt: Option<String>,
 }
 
 /// One run of one thing.

@@ -1,6 +1,7 @@
 //! The order of the runs: first the cases named for a fault, then the others, the cheap ones first.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::time::Duration;
 
 use fisura_verification::suite::Case;
@@ -35,12 +36,12 @@ struct Stage<'a> {
 }
 
 /// Time that a run without a fault may take: its estimate is for an idle machine.
-fn sound_limit(case: &Case) -> Duration {
+pub(super) fn sound_limit(case: &Case) -> Duration {
     Duration::from_secs_f64(120.0 + 20.0 * case.seconds)
 }
 
 /// Time that a run with a fault may take.
-fn planted_limit(sound_seconds: f64) -> Duration {
+pub(super) fn planted_limit(sound_seconds: f64) -> Duration {
     Duration::from_secs_f64(30.0 + 5.0 * sound_seconds)
 }
 
@@ -78,7 +79,7 @@ impl<'a> Campaign<'a> {
 
     fn sound_job(&self, case: &Case) -> Option<Job> {
         let known = self.store.get(None, &case.id()).is_some();
-        (!known).then(|| Job { fault: None, cases: vec![(case.id(), sound_limit(case))] })
+        (!known).then(|| Job { fault: None, cases: vec![(case.id(), sound_limit(case))], set: &[] })
     }
 
     /// The cells of a fault that are wanted: on sound cases that pass a site of it.
@@ -91,7 +92,7 @@ impl<'a> Campaign<'a> {
             (missing && passed).then(|| (id, planted_limit(sound.seconds)))
         });
         let cases: Vec<_> = limited.collect();
-        (!cases.is_empty()).then_some(Job { fault: Some(fault.id), cases })
+        (!cases.is_empty()).then_some(Job { fault: Some(fault.id), cases, set: &[] })
     }
 
     fn fill(&self, what: &str, jobs: Vec<Job>) -> Result<(), Failure> {
@@ -103,7 +104,7 @@ impl<'a> Campaign<'a> {
             console::note(self.common, &format!("{what}: {count} runs"));
         }
         let bar: ProgressBar = progress::bar(self.common, "{msg} {wide_bar} {pos}/{len}, {elapsed}", count as u64);
-        let tell = |fault: Option<&'static str>, case: &str, ending: Ending| {
+        let tell = |fault: Option<&'static str>, case: &str, ending: Ending, _: &Path| {
             bar.set_message(format!("{what}: {}, {case}", fault.unwrap_or("no fault")));
             bar.inc(1);
             Ok(self.store.put(fault, case, ending)?)

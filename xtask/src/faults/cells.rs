@@ -52,11 +52,18 @@ pub struct Store<'a> {
 /// # Errors
 /// A program or reference data that cannot be read.
 pub fn keys(program: &Path, workspace: &Path, cases: &[Case]) -> Result<BTreeMap<String, String>, Failure> {
-    let bytes = fs::read(program)
-        .map_err(|e| Failure::new(Exit::BadInput, format!("{} cannot be read: {e}", program.display())))?;
-    let common = [fingerprint([bytes]), folder_fingerprint(&workspace.join("reference-data"))?];
+    let common = [program_key(program)?, folder_fingerprint(&workspace.join("reference-data"))?];
     let key = |case: &Case| fingerprint([&common[0], &common[1], &case.fingerprint()]);
     Ok(cases.iter().map(|case| (case.id(), key(case))).collect())
+}
+
+/// Fingerprint of the planted program.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn program_key(program: &Path) -> Result<String, Failure> {
+    let unreadable = |e| Failure::new(Exit::BadInput, format!("{} cannot be read: {e}", program.display()));
+    Ok(fingerprint([fs::read(program).map_err(unreadable)?]))
 }
 
 impl<'a> Store<'a> {

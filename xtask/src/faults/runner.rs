@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read, Seek};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -39,10 +39,12 @@ pub struct Job {
     pub fault: Option<&'static str>,
     /// Id of each case, and the time it may take.
     pub cases: Vec<(String, Duration)>,
+    /// Values of the scenes to be changed, `key.path=value`.
+    pub set: &'static [&'static str],
 }
 
-/// Told what became of a case.
-pub type Tell<'a> = &'a (dyn Fn(Option<&'static str>, &str, Ending) -> Result<(), Failure> + Sync);
+/// Told what became of a case, and in which folder its series are until this returns.
+pub type Tell<'a> = &'a (dyn Fn(Option<&'static str>, &str, Ending, &Path) -> Result<(), Failure> + Sync);
 
 /// Runs jobs.
 #[derive(Debug)]
@@ -85,7 +87,7 @@ impl Runner {
             while let Some(job) = next() {
                 let mut rest = &job.cases[..];
                 while !rest.is_empty() && !self.expired() {
-                    rest = &rest[self.process(job.fault, rest, tell)?..];
+                    rest = &rest[self.process(&job, rest, tell)?..];
                 }
             }
             Ok(())
@@ -98,7 +100,7 @@ impl Runner {
     }
 
     /// Runs cases in one process until it has done them all or ends before that; how many are settled.
-    fn process(&self, fault: Option<&'static str>, cases: &[(String, Duration)], tell: Tell) -> Result<usize, Failure> {
+    fn process(&self, job: &Job, cases: &[(String, Duration)], tell: Tell) -> Result<usize, Failure> {
         let unstarted = |error: std::io::Error| {
             Failure::new(Exit::BadInput, format!("{} cannot be started: {error}", self.program.display()))
         };
@@ -106,7 +108,8 @@ impl Runner {
         let mut command = Command::new(&self.program);
         command.arg("planted").args(cases.iter().map(|(case, _)| case)).args(["--threads", "1", "--quiet", "--out"]);
         command.arg(out.path()).env_remove(PLANTED);
-        command.envs(fault.map(|fault| (PLANTED, fault)));
+        command.args(job.set.iter().flat_map(|set| ["--set", set]));
+        command.envs(job.fault.map(|fault| (PLANTED, fault)));
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(complaints.try_clone().map_err(unstarted)?);
         let mut process = Process(command.spawn().map_err(unstarted)?);
         let lines = reports(&mut process.0);
@@ -126,7 +129,7 @@ impl Runner {
                 }
             };
             let over = ending.is_err() || self.expired();
-            tell(fault, case, ending)?;
+            tell(job.fault, case, ending, out.path())?;
             if over {
                 return Ok(settled + 1);
             }

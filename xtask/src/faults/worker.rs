@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use fisura_verification::record::{Environment, Record};
-use fisura_verification::suite::{self, Case, Options, Progress, Seconds, load_cases};
+use fisura_verification::suite::{self, Case, Options, Progress, Seconds};
 
 use super::runner::Report;
 use crate::cli::Common;
@@ -20,6 +20,9 @@ pub struct Args {
     /// Ids of the cases to run, in this order
     #[arg(required = true)]
     case: Vec<String>,
+    /// Change a value of their scenes
+    #[arg(long, value_name = "key.path=value")]
+    set: Vec<String>,
 }
 
 /// Runs the cases.
@@ -27,12 +30,9 @@ pub struct Args {
 /// # Errors
 /// A case or reference file that is wrong, a folder that cannot be written.
 pub fn planted(args: &Args, common: &Common) -> Result<Exit, Failure> {
-    let all = load_cases(&verify::cases_folder()?, &[])?;
-    let find = |id: &String| {
-        let found = all.iter().find(|case| case.id() == *id).cloned();
-        found.ok_or_else(|| Failure::new(Exit::BadInput, format!("there is no case {id}")))
-    };
-    let cases = args.case.iter().map(find).collect::<Result<Vec<Case>, _>>()?;
+    let all = verify::cases_folder()?;
+    let load = |id: &String| Case::load(&all.join(id).with_extension("toml"), &args.set);
+    let cases = args.case.iter().map(load).collect::<Result<Vec<Case>, _>>()?;
     let (out, reference_data) = (folders::output(common, "planted")?, folders::workspace().join("reference-data"));
     let options = Options {
         out: Arc::new(out),

@@ -35,6 +35,11 @@ impl Program {
         }
     }
 
+    /// A program and its arguments as they are.
+    pub fn of_words(words: Vec<String>, limit: Duration) -> Self {
+        Self { command: words.join(" "), words, limit }
+    }
+
     fn failed(&self, message: impl Into<String>) -> BenchError {
         BenchError::Peer { command: self.command.clone(), message: message.into() }
     }
