@@ -2,8 +2,11 @@
 //!
 //! A planted error moves a curve from y₀ to y. With E = |y − r| and the triangle inequality, a sound result
 //! (E₀ ≤ U_val) that is moved by more than 2 U_val cannot be accepted any more, and one that is moved by less
-//! than U_val may not be told from a sound one. *Visible* is what moves a curve by more than U_val.
+//! than U_val may not be told from a sound one. *Visible* is what moves a curve by more than U_val. Events count
+//! where the spacing lets the judge decide on them.
 
+use super::events;
+use super::family::LENGTH_SCALE;
 use super::table::Curve;
 use super::verdict::{Comparison, Outcome};
 use super::{BALANCE, Judged, QUANTITIES, TIP_X, TIP_Y, curves};
@@ -52,7 +55,8 @@ pub fn largest(sound: &Judged, other: &Judged) -> Option<Effect> {
             });
         }
     }
-    for event in &sound.verdict.events {
+    let spacing = sound.verdict.spacing_m.map_or(0.0, |h| h / LENGTH_SCALE);
+    for event in sound.verdict.events.iter().filter(|event| events::decides_at(&event.name, spacing)) {
         let Some((value, u_val)) = event.value.zip(decides(event)) else { continue };
         let moved = other.verdict.events.iter().find(|e| e.name == event.name).and_then(|e| e.value);
         let (what, unit) = (event.name.clone(), event.unit.clone());

@@ -75,6 +75,11 @@ fn values(x: &Curve, y: Option<&Curve>, branching: Option<f64>) -> [Option<f64>;
     ]
 }
 
+/// Whether an event fails at a spacing over l0; the onset always does.
+pub(super) fn decides_at(words: &str, spacing: f64) -> bool {
+    spacing <= EVENTS_DECIDE * (1.0 + 1e-9) || words == EVENTS[0].words
+}
+
 /// Verdicts on the events of the reference, and on branching where the reference does not branch.
 pub fn events(
     curves: &[Option<Curve>; 6],
@@ -132,8 +137,8 @@ pub fn events(
         } else if value.is_none() && event.value == "right-edge-offset" {
             (row.outcome, row.why) = (Outcome::Diagnostic, "the tip does not reach the edge".into());
         }
-        let coarse = numerics.spacing().is_some_and(|h| h > EVENTS_DECIDE * (1.0 + 1e-9));
-        if row.outcome == Outcome::Fail && coarse && event.value != "onset-time" {
+        let decides = numerics.spacing().is_none_or(|h| decides_at(event.words, h));
+        if row.outcome == Outcome::Fail && !decides {
             (row.outcome, row.why) = (Outcome::Diagnostic, "spacings above l0/2 miss such events".into());
         }
         out.push(row);

@@ -89,6 +89,9 @@ const PLATES: [Plate; 3] = [
     },
 ];
 
+/// Some errors make a run slow, and other programs may be running: more time than a case gets.
+const PATIENCE: u32 = 4;
+
 /// What became of a run.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Run {
@@ -153,7 +156,7 @@ impl Campaign<'_> {
             }
             self.fill(plate, &key, vec![(None, limit)])?;
             let Some(sound) = self.stored(plate, &key, None) else { continue };
-            let planted_limit = planted_limit(sound.seconds);
+            let planted_limit = PATIENCE * planted_limit(sound.seconds);
             let passes = |f: &&&Fault| sound.passed.iter().any(|p| p == f.id);
             let new = |f: &&&Fault| plate.errors != Errors::New || !report.passed.contains(f.id);
             let errors: Vec<&'static Fault> = errors.iter().filter(passes).filter(new).copied().collect();
@@ -182,7 +185,9 @@ impl Campaign<'_> {
     }
 
     fn fill(&self, plate: &Plate, key: &str, wanted: Vec<(Option<&'static str>, Duration)>) -> Result<(), Failure> {
-        let missing = wanted.into_iter().filter(|(fault, _)| self.stored(plate, key, *fault).is_none());
+        // what ended without a history may do better on a machine that is less busy
+        let known = |fault| self.stored(plate, key, fault).is_some_and(|run| run.ended.is_none());
+        let missing = wanted.into_iter().filter(|(fault, _)| !known(*fault));
         let case = plate.case.to_string();
         let jobs: Vec<Job> =
             missing.map(|(fault, limit)| Job { fault, cases: vec![(case.clone(), limit)], set: plate.set }).collect();
@@ -264,7 +269,7 @@ fn row<E: ToString>(
     row.what = what;
     match judged {
         Ok(None) => row.verdict = format!("no result: {}", ended.unwrap_or_default()),
-        Err(_) => (row.changed, row.verdict, row.rejected) = (true, "cannot be read".into(), true),
+        Err(_) => (row.changed, row.verdict, row.rejected) = (true, "breaks down, no curves".into(), true),
         Ok(Some(judged)) => {
             row.changed = judged.curves != sound.curves;
             row.effect = effect::largest(sound, &judged).filter(|_| row.changed);

@@ -38,9 +38,9 @@ impl Report {
         rows.peek().is_some() && rows.all(|row| !row.rejected)
     }
 
-    /// Visible errors that are accepted.
+    /// Visible errors that are accepted on every plate they were tried on.
     fn lacking(&self) -> impl Iterator<Item = &Row> {
-        self.rows.iter().filter(|row| row.visible && !row.rejected)
+        self.rows.iter().filter(|row| row.visible && self.is_accepted(row.fault))
     }
 
     /// Whether a visible error is accepted, or a sound plate is not.
