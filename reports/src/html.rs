@@ -14,6 +14,7 @@ use minijinja::Environment;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
 
+use crate::judge::stored_boards;
 use crate::number::{duration, grouped, plain, pretty};
 use crate::rates::{Rate, rates};
 use crate::series::names;
@@ -93,6 +94,7 @@ fn fill(
         opening: opening.iter().map(|figure| pictures(figure)).collect(),
         suites: suites(shown, &opens, &pictures),
         timing: timed.map(pictures).collect(),
+        boards: if shown.records.iter().any(|r| r.suite == "plate") { stored_boards() } else { Vec::new() },
         sources: sources(&shown.records),
         deviations: deviations(shown),
     };

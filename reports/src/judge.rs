@@ -2,6 +2,7 @@
 
 mod board;
 mod pfhub;
+mod stored;
 
 use fisura_verification::judge::verdict::{Comparison, Outcome, Verdict, VerdictSet};
 use fisura_verification::judge::{Judged, QUANTITIES};
@@ -18,6 +19,7 @@ use crate::series::SeriesSet;
 
 pub use board::{Board, board, board_markdown, board_page};
 pub use pfhub::pfhub;
+pub use stored::{StoredBoard, board_of_the_book, stored_boards};
 
 const TEMPLATE: &str = include_str!("../templates/judge.html");
 const STYLE: &str = include_str!("../templates/report.css");

@@ -74,13 +74,14 @@ pub struct Benchmark {
 }
 
 /// All benchmarks.
-pub const BENCHMARKS: [Benchmark; 6] = [
+pub const BENCHMARKS: [Benchmark; 7] = [
     Benchmark { name: "plate", what: "impact-loaded plate and its family: a crack that runs and branches" },
     Benchmark { name: "patch-bar", what: "bar under uniform tension at rest, closed form" },
     Benchmark { name: "homogeneous-bar", what: "uniform damage under growing strain, closed form" },
     Benchmark { name: "seeded-crack", what: "fracture energy of a crack made by a history field, closed form" },
     Benchmark { name: "plane-waves", what: "two waves that enter an uncracked plate, closed form" },
     Benchmark { name: "crack-speed", what: "largest speed of the tip in the plate, below the Rayleigh speed" },
+    Benchmark { name: "rings", what: "two brittle rings in collision: times of events, diagnostic only" },
 ];
 
 /// A balance open by less than this part of the work fails nobody.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::CommandFactory;
 use fisura_reports::docs::{Stored, rewritten};
+use fisura_reports::judge::board_of_the_book;
 use fisura_reports::read_results;
 use fisura_verification::record::ResultSet;
 use serde_json::json;
@@ -73,7 +74,11 @@ fn anew(root: &Path) -> Result<Vec<(PathBuf, String)>, Failure> {
     paths.sort();
     let one = |path: PathBuf| {
         let text = fs::read_to_string(&path).map_err(|error| bad(&path, error.to_string()))?;
-        let block = |name: &str| if name == "commands" { Some(commands()) } else { stored.block(name) };
+        let block = |name: &str| match name {
+            "commands" => Some(commands()),
+            "board" => Some(board_of_the_book()),
+            _ => stored.block(name),
+        };
         let text = rewritten(&text, block).map_err(|error| bad(&path, error))?;
         Ok((path, text))
     };
@@ -107,7 +112,7 @@ mod tests {
             assert!(found == *text, "{} is out of date: cargo xtask report --docs", path.display());
         }
         let all: String = documents.iter().map(|(_, text)| text.as_str()).collect();
-        for block in ["suites", "verdict", "commands", "suite plate", "orders convergence"] {
+        for block in ["suites", "verdict", "commands", "board", "suite plate", "orders convergence"] {
             assert!(all.contains(&format!("<!-- docs: {block} -->")), "no document has the block {block}");
         }
         assert!(commands().contains("## verify") && commands().contains("--partition <slice:K/N>"));

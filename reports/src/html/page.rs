@@ -3,6 +3,7 @@
 use fisura_verification::record::Status;
 use serde::Serialize;
 
+use crate::judge::StoredBoard;
 use crate::view;
 
 #[derive(Serialize)]
@@ -147,6 +148,8 @@ pub(super) struct Page {
     pub opening: Vec<Picture>,
     pub suites: Vec<Suite>,
     pub timing: Vec<Picture>,
+    /// Error against cost of other codes, as stored.
+    pub boards: Vec<StoredBoard>,
     pub sources: Vec<Source>,
     pub deviations: Vec<Deviations>,
 }

@@ -163,7 +163,7 @@ impl Campaign<'_> {
             self.fill(plate, &key, errors.iter().map(|f| (Some(f.id), planted_limit)).collect())?;
             let of = |fault| judge(&self.path(plate, fault), &library, &data, None);
             let right = of(None)?;
-            report.sound.push((plate.words, plate.case, right.verdict.outcome, sound.seconds));
+            report.sound.push((plate.words, plate.case, right.verdict.outcome));
             for fault in errors {
                 let Some(run) = self.stored(plate, &key, Some(fault.id)) else { continue };
                 let judged = run.ended.is_none().then(|| of(Some(fault.id)));

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use fisura_reports::number::{duration, plain};
+use fisura_reports::number::plain;
 use fisura_verification::judge::effect::Effect;
 use fisura_verification::judge::verdict::Outcome;
 use fisura_verification::output::{OutputError, OutputFolder};
@@ -22,8 +22,8 @@ effect above U_val. Above 2 U_val, no sound result can be moved and still be acc
 /// All rows.
 #[derive(Debug, Default, Serialize)]
 pub struct Report {
-    /// Plate, its case, the verdict on it without an error, and its time, s.
-    pub sound: Vec<(&'static str, &'static str, Outcome, f64)>,
+    /// Plate, its case, and the verdict on it without an error.
+    pub sound: Vec<(&'static str, &'static str, Outcome)>,
     /// Errors in plates.
     pub rows: Vec<Row>,
     /// Errors whose sites a plate passes.
@@ -66,8 +66,8 @@ impl Report {
             let seen = if row.visible { "visible" } else { "" };
             let _ = writeln!(out, "{:width$}  {seen:7}  {}  {}", row.fault, row.word(), row.effect_words());
         }
-        for (plate, _, outcome, seconds) in &self.sound {
-            let _ = writeln!(out, "{plate}, no fault: {}, {}", outcome.word(), duration(*seconds));
+        for (plate, _, outcome) in &self.sound {
+            let _ = writeln!(out, "{plate}, no fault: {}", outcome.word());
         }
         out + &self.count() + "\n"
     }
@@ -91,13 +91,12 @@ impl Report {
     fn markdown(&self) -> String {
         let mut out = String::from(HEAD);
         let _ = writeln!(out, "\n{}.", self.count());
-        for (plate, case, outcome, seconds) in &self.sound {
+        for (plate, case, outcome) in &self.sound {
             let _ = writeln!(
                 out,
-                "\n## {plate}\n\nCase `{case}`; without an error: {}, {} on one thread.\n\n\
+                "\n## {plate}\n\nCase `{case}`; without an error: {}.\n\n\
                  | error | what is wrong | largest effect | U_val | visible | verdict |\n|---|---|---|---|---|---|",
-                outcome.word(),
-                duration(*seconds)
+                outcome.word()
             );
             let here = || self.rows.iter().filter(|row| row.plate == *plate);
             for row in here().filter(|row| row.changed || row.verdict.starts_with("no result")) {
@@ -149,4 +148,41 @@ fn figures(effect: &Effect) -> (String, String) {
     };
     let show = |value: f64| format!("{} {unit}", plain(scale * value, 3));
     (effect.size.map_or_else(|| "ends early, or does not happen".to_string(), show), show(effect.u_val))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(plate: &'static str, size: f64, rejected: bool) -> Row {
+        let effect = Effect { what: "elastic energy, whole".into(), unit: "1".into(), size: Some(size), u_val: 0.1 };
+        Row {
+            plate,
+            fault: "sign",
+            what: "a sign",
+            changed: true,
+            visible: effect.is_visible(),
+            effect: Some(effect),
+            verdict: if rejected { "fail" } else { "pass" }.into(),
+            rejected,
+            findings: vec!["unexplained".into()],
+        }
+    }
+
+    #[test]
+    fn an_error_that_is_visible_has_to_be_rejected_on_some_plate() {
+        let sound = vec![("coarse", "plate/a", Outcome::Pass), ("fine", "plate/b", Outcome::Pass)];
+        let report = |rows| Report { sound: sound.clone(), rows, passed: BTreeSet::new() };
+        let accepted = report(vec![row("coarse", 0.15, false)]);
+        assert!(accepted.lacks() && accepted.is_accepted("sign"));
+        let markdown = accepted.markdown();
+        assert!(
+            markdown.contains("| sign | a sign | 15 %, elastic energy, whole | 10 % | yes | **pass** |"),
+            "{markdown}"
+        );
+        assert!(markdown.contains("**sign is visible (coarse) and is not rejected.**"), "{markdown}");
+        let rejected = report(vec![row("coarse", 0.15, false), row("fine", 0.3, true)]);
+        assert!(!rejected.lacks() && rejected.text().contains("1 change the curves, 1 visibly; 1 of these"));
+        assert!(!report(vec![row("coarse", 0.05, false)]).lacks(), "what cannot be seen need not be rejected");
+    }
 }
