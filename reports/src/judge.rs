@@ -105,8 +105,8 @@ fn figures(comparison: &Comparison) -> String {
         (Some(value), Some(reference)) => format!("{} for {} {unit}, ", show(value), show(reference)),
         _ => String::new(),
     };
-    let u_val = comparison.u_val.unwrap_or(f64::NAN);
-    format!("{value}|E| {}, U_val {} {unit}", show(error.abs()), plain(u_val * scale, 2))
+    let u_val = comparison.u_val.map_or(String::new(), |u_val| format!(", U_val {}", plain(u_val * scale, 2)));
+    format!("{value}|E| {}{u_val} {unit}", show(error.abs()))
 }
 
 #[derive(Serialize)]
