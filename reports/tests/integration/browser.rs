@@ -50,7 +50,7 @@ fn the_page_fits_wide_and_narrow_windows_in_light_and_dark() {
         let numbers: Vec<u32> = found.iter().take(3).filter_map(|n| n.parse().ok()).collect();
         let [scroll, window, drawings] = numbers[..] else { panic!("the browser says {found:?}") };
         assert!(scroll <= window, "{width} px: the page is {scroll} wide in a window of {window}");
-        assert_eq!(drawings, 3, "all figures are on the page");
+        assert_eq!(drawings, 3 + 3, "all figures and the board are on the page");
         backgrounds.push(found[3].clone());
     }
     assert_ne!(backgrounds[0], backgrounds[1], "light and dark");

@@ -70,7 +70,7 @@ fn markup_in_names_stays_text() {
     assert!(!outcome.out.contains('\u{1b}'));
     let page = place.read("out/judge.html");
     assert!(!page.contains("<script") && page.contains("&lt;script&gt;"), "{page}");
-    assert!(place.read("out/pfhub-1.yaml").contains("\"<script>alert(1)</script>\\u001b[2J\""));
+    assert!(place.read("out/pfhub-1.yaml").contains("summary: \"<script>alert(1)</script>\\u001b[2J: pass"));
 }
 
 #[test]
