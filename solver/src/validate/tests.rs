@@ -29,6 +29,7 @@ fn square() -> Scene {
             time_step: TimeStep::Auto,
             safety: 0.8,
             transfer: Transfer::Flip,
+            quadrature: Quadrature::Points,
             mass: Mass::Lumped,
             gravity: [0.0; 2],
         },

@@ -41,6 +41,9 @@ impl DiscreteField {
             self.occupy(&spans);
         }
         self.exchange_points(archive)?;
+        if let Some(spans) = &mut self.spans {
+            spans.exchange(archive, self.points.len())?;
+        }
         if archive.is_reader() {
             self.rebuild().map_err(|OutsidePatch([x, y])| {
                 StateError(format!("the state is of another scene: a point lies at ({x:.6e}, {y:.6e}) m"))
@@ -77,6 +80,7 @@ impl DiscreteField {
             driven_power: _,
             ledger: _,
             losses: _,
+            spans: _,
             time,
             at_start,
             travelled: _,
