@@ -115,7 +115,8 @@ impl Stencil {
             return 0.0;
         }
         let is_ahead = rows > 0 || (rows == 0 && columns >= 0);
-        let [c, r, dx, dy] = if is_ahead { [column, row, columns, rows] } else { [column + columns, row + rows, -columns, -rows] };
+        let [c, r, dx, dy] =
+            if is_ahead { [column, row, columns, rows] } else { [column + columns, row + rows, -columns, -rows] };
         let offset = Self::offset_index(self.degree, dx, dy as usize);
         self.row(r as usize, offset)[self.grid.index(c as usize, 0)]
     }

@@ -77,7 +77,11 @@ fn spans_integrate(scene: &Scene, findings: &mut Findings) {
             findings.error(key, message, format!("{remedy}, {points}"));
         }
     };
-    refuse(analysis.frame == Frame::Total, "in the total frame, which has no quadrature to choose", "use frame = \"updated\"");
+    refuse(
+        analysis.frame == Frame::Total,
+        "in the total frame, which has no quadrature to choose",
+        "use frame = \"updated\"",
+    );
     refuse(analysis.kinematics == Kinematics::Small, "with small strains", "use kinematics = \"finite\"");
     refuse(analysis.transfer != Transfer::Flip, "with a transfer, of which it has none", "leave transfer out");
     refuse(scene.mesh.degree[0] != scene.mesh.degree[1], "with two degrees", "give the same degree twice");

@@ -271,6 +271,34 @@ fn shapes_without_area_are_refused() {
 }
 
 #[test]
+fn gauss_quadrature_by_spans_is_refused_where_it_does_not_exist() {
+    let sound = |s: &mut Scene| {
+        (s.analysis.frame, s.analysis.kinematics) = (Frame::Updated, Kinematics::Finite);
+        s.analysis.quadrature = Quadrature::Gauss;
+        s.bodies[0].tractions.clear();
+        s.bodies[0].cracks.clear();
+        s.materials.values_mut().for_each(|material| material.fracture = None);
+        s.boundaries.clear();
+    };
+    let key = ["analysis.quadrature"];
+    assert_eq!(errors(sound), [""; 0]);
+    let but = |change: fn(&mut Scene)| {
+        errors(move |s| {
+            sound(s);
+            change(s);
+        })
+    };
+    assert_eq!(but(|s| s.analysis.kinematics = Kinematics::Small), key);
+    assert_eq!(but(|s| s.analysis.frame = Frame::Total), key);
+    assert_eq!(but(|s| s.analysis.transfer = Transfer::Apic), key);
+    assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.1 })), key);
+    assert_eq!(
+        but(|s| s.boundaries = vec![Boundary { side: Side::Left, fix: [true, false], velocity: [1.0, 0.0] }]),
+        key
+    );
+}
+
+#[test]
 fn what_the_solver_cannot_do_is_refused_by_key() {
     assert_eq!(warnings(|s| s.analysis.transfer = Transfer::Apic), ["analysis.transfer"]);
     let updated = |transfer| {

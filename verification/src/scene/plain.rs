@@ -2,8 +2,8 @@
 //! say.
 
 use fisura::scene::{
-    Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldSolver, Plane, Quadrature, Scene,
-    Shape, Side, SolverSettings, TimeStep, Transfer,
+    Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldSolver, Plane,
+    Quadrature, Scene, Shape, Side, SolverSettings, TimeStep, Transfer,
 };
 
 /// What differs from study to study.

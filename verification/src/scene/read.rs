@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use fisura::scene::{
-    Analysis, Boundary, Contact, Frame, Kinematics, Mass, Output, PhaseFieldSolver, Plane, Quadrature, Scene, Shape, Side,
-    SolverSettings, TimeStep, Transfer,
+    Analysis, Boundary, Contact, Frame, Kinematics, Mass, Output, PhaseFieldSolver, Plane, Quadrature, Scene, Shape,
+    Side, SolverSettings, TimeStep, Transfer,
 };
 
 use super::diagnostic::Problem;

@@ -184,7 +184,11 @@ fn theory(setup: &ConvergenceSetup, problem: &Problem, degree: usize, below: usi
         _ if setup.frame == Frame::Updated && setup.quadrature == Quadrature::Points => None,
         (Equation::Dynamic, Refine::TimeStep) => Some(2.0),
         (Equation::Dynamic, Refine::Mesh(power)) => {
-            let space = if setup.mass == Mass::Lumped && setup.quadrature == Quadrature::Points { space.min(2.0) } else { space };
+            let space = if setup.mass == Mass::Lumped && setup.quadrature == Quadrature::Points {
+                space.min(2.0)
+            } else {
+                space
+            };
             Some(power.map_or(space, |power| space.min(2.0 * power)))
         }
         _ => Some(space),
@@ -198,7 +202,9 @@ fn other(message: impl Into<String>) -> StudyError {
 fn words_of_theory(setup: &ConvergenceSetup, problem: &Problem) -> String {
     match (problem.equation, setup.refine) {
         (Equation::Dynamic, Refine::TimeStep) => "velocity Verlet is of order 2",
-        (Equation::Dynamic, _) if setup.mass == Mass::Lumped && setup.quadrature == Quadrature::Points => "a lumped mass is of order 2 for every degree",
+        (Equation::Dynamic, _) if setup.mass == Mass::Lumped && setup.quadrature == Quadrature::Points => {
+            "a lumped mass is of order 2 for every degree"
+        }
         _ => "best approximation by splines: p + 1 in L2, p in H1",
     }
     .into()

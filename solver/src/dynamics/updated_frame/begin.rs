@@ -74,7 +74,8 @@ impl DiscreteField {
         let nodes = NodalFields::new(&patch, part::constraints(whole, &patch, origin, &scene.boundaries));
         let moduli = ElasticModuli::new(material, analysis.plane);
         let by_spans = analysis.quadrature == Quadrature::Gauss;
-        let spans = by_spans.then(|| SpanQuadrature::new((&scene.mesh, &body.shape), &patch, &nodes, moduli, material.density));
+        let spans =
+            by_spans.then(|| SpanQuadrature::new((&scene.mesh, &body.shape), &patch, &nodes, moduli, material.density));
         let finite = analysis.kinematics == Kinematics::Finite && !by_spans;
         Ok(Self {
             fracture: material.fracture.as_ref().map(crack),

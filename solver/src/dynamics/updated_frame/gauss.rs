@@ -53,7 +53,7 @@ use balance::Balance;
 use boundary::{Boundary, edges};
 use fit::Fit;
 use kronecker::Kronecker;
-use map::InverseMap;
+use map::{InverseMap, displacement_gradient};
 use rule::GaussPoints;
 use system::MassSystem;
 
@@ -61,6 +61,7 @@ use super::grid::NodalFields;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::material::elasticity::ElasticModuli;
+use crate::material::hencky::hencky_strain;
 use crate::particles::points::{Cells, Point};
 use crate::scene::{Mesh, Shape};
 use crate::splines::patch::Patch;
@@ -155,11 +156,9 @@ impl SpanQuadrature {
     /// If a solve does not converge: where the displacement has turned inside out, or points no longer hold
     /// it.
     pub(crate) fn respond(&mut self, on: OnPatch<'_>) -> Result<f64, SolveFailure> {
-        let OnPatch { patch, cells, points } = on;
-        let mean = self.mean(points, |at| points[at].displacement);
-        let fit = Fit { patch, cells, points, density: self.density };
-        fit.assemble(&mut self.fit.matrix, &mut self.load, mean);
-        self.fit.begin(&self.kronecker, around(patch, cells), &self.held);
+        let OnPatch { patch, points, .. } = on;
+        let mean = self.begin_fit(on);
+        let fit = Fit { patch, cells: on.cells, points, density: self.density };
         let held = self.held.each_ref().map(|held| &held[..]);
         extrapolate(&mut self.displacement);
         self.fit.solve(&self.kronecker, &self.load, &mut self.displacement[0], held, TOLERANCES[0])?;
@@ -175,6 +174,22 @@ impl SpanQuadrature {
         let excess = self.mean(points, |at| self.point_acceleration[at]);
         self.point_acceleration.iter_mut().for_each(|a| (0..2).for_each(|c| a[c] -= excess[c]));
         Ok(energy)
+    }
+
+    /// Matrix and right-hand side of the fit at the present positions; the mean displacement, m.
+    pub(crate) fn begin_fit(&mut self, OnPatch { patch, cells, points }: OnPatch<'_>) -> [f64; 2] {
+        let mean = self.mean(points, |at| points[at].displacement);
+        let fit = Fit { patch, cells, points, density: self.density };
+        fit.assemble(&mut self.fit.matrix, &mut self.load, mean);
+        self.fit.begin(&self.kronecker, around(patch, cells), &self.held);
+        mean
+    }
+
+    /// Hencky strain `[xx, yy, xy]` at a position, m.
+    pub(crate) fn strain_at(&self, patch: &Patch, position: [f64; 2]) -> [f64; 3] {
+        let displacement = &self.displacement[0];
+        let map = InverseMap { patch, grid: patch.control_grid(), displacement, mean: [0.0; 2] };
+        hencky_strain(&displacement_gradient(&map.at(position).1))
     }
 
     /// Brings the velocities of the points by β towards that of the grid; the kinetic energy this takes, J/m.

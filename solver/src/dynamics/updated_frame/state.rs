@@ -3,6 +3,7 @@
 
 use super::affine::AffineVelocities;
 use super::field::DiscreteField;
+use super::gauss::OnPatch;
 use super::{UpdatedFrame, views};
 use crate::checkpoint::{Archive, StateError};
 use crate::particles::points::OutsidePatch;
@@ -41,13 +42,16 @@ impl DiscreteField {
             self.occupy(&spans);
         }
         self.exchange_points(archive)?;
-        if let Some(spans) = &mut self.spans {
-            spans.exchange(archive, self.points.len())?;
-        }
         if archive.is_reader() {
             self.rebuild().map_err(|OutsidePatch([x, y])| {
                 StateError(format!("the state is of another scene: a point lies at ({x:.6e}, {y:.6e}) m"))
             })?;
+        }
+        if let Some(spans) = &mut self.spans {
+            spans.exchange(archive, self.points.len())?;
+            if archive.is_reader() {
+                spans.begin_fit(OnPatch { patch: &self.patch, cells: &self.cells, points: &self.points });
+            }
         }
         self.exchange_sums(archive)
     }

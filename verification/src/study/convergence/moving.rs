@@ -77,9 +77,11 @@ impl<'a> Moving<'a> {
         let mut squares = [[0.0; 2]; 3];
         let of_points = self.frame.fields()[0].point_accelerations();
         for (at, point) in self.frame.fields()[0].points().iter().enumerate() {
-            let of_grid = || acceleration
-                .each_ref()
-                .map(|a| self.frame.fields()[0].patch().evaluate(a, point.position).unwrap_or_default().value);
+            let of_grid = || {
+                acceleration
+                    .each_ref()
+                    .map(|a| self.frame.fields()[0].patch().evaluate(a, point.position).unwrap_or_default().value)
+            };
             let a = of_points.as_ref().map_or_else(of_grid, |of_points| of_points[at]);
             let velocity = [0, 1].map(|d: usize| point.velocity[d] + 0.5 * dt * a[d]);
             let reference = point.reference();

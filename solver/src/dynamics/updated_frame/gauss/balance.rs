@@ -12,11 +12,36 @@ use super::map::displacement_gradient;
 use super::rule::GaussPoints;
 use crate::dynamics::updated_frame::windows::{Window, control_values, scatter};
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
-use crate::linear_algebra::lane::{LANES, Lane, each};
+use crate::linear_algebra::lane::{LANES, Lane, Vectorised, dispatch, each};
 use crate::linear_algebra::stencil::Stencil;
 use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::{Gradient, hencky_strain};
 use crate::particles::points::Cell;
+use crate::splines::spline::MAX_FUNCTIONS;
+
+/// Forces and inertia of a strip.
+struct AssembleBalance<'a, 'b> {
+    balance: &'a Balance<'a>,
+    cells: &'a [Cell],
+    window: Window<'b, 3>,
+    grid: ControlGrid,
+    row_length: usize,
+}
+
+impl Vectorised for AssembleBalance<'_, '_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<const FMA: bool>(mut self) -> f64 {
+        let Self { balance, cells, window, grid, row_length } = &mut self;
+        match balance.gauss.count[0] {
+            2 => balance.strip::<2, 4>(cells, window, *grid, *row_length),
+            3 => balance.strip::<3, 9>(cells, window, *grid, *row_length),
+            4 => balance.strip::<4, 16>(cells, window, *grid, *row_length),
+            _ => balance.strip::<5, 25>(cells, window, *grid, *row_length),
+        }
+    }
+}
 
 /// What the sums need.
 #[derive(Debug, Clone, Copy)]
@@ -39,14 +64,9 @@ impl Balance<'_> {
         force.iter_mut().for_each(|force| force.fill(0.0));
         let [x, y] = force;
         let fields = [matrix.coefficients_mut(), x.as_mut_slice(), y.as_mut_slice()];
-        let energies = scatter(&self.gauss.strips, fields, [row_length, grid.stride, grid.stride], |strip, mut w| {
+        let energies = scatter(&self.gauss.strips, fields, [row_length, grid.stride, grid.stride], |strip, window| {
             let cells = &self.gauss.cells[strip.cells.clone()];
-            match self.gauss.count {
-                [3, 3] => self.strip::<3, 9>(cells, &mut w, grid, row_length),
-                [4, 4] => self.strip::<4, 16>(cells, &mut w, grid, row_length),
-                [5, 5] => self.strip::<5, 25>(cells, &mut w, grid, row_length),
-                _ => self.strip::<2, 4>(cells, &mut w, grid, row_length),
-            }
+            dispatch(AssembleBalance { balance: self, cells, window, grid, row_length })
         });
         energies.iter().sum()
     }
@@ -97,7 +117,7 @@ impl Balance<'_> {
         }
     }
 
-    #[inline(never)]
+    #[inline(always)]
     fn strip<const K: usize, const F: usize>(
         &self,
         cells: &[Cell],
@@ -132,7 +152,7 @@ impl Balance<'_> {
     fn gradients<const K: usize, const F: usize>(
         &self,
         cell: &Cell,
-        local: &[[f64; 2]; crate::splines::spline::MAX_FUNCTIONS],
+        local: &[[f64; 2]; MAX_FUNCTIONS],
         out: &mut [Gradient; F],
     ) {
         let (tx, ty) = (&self.gauss.tables[0][cell.span[0]], &self.gauss.tables[1][cell.span[1]]);

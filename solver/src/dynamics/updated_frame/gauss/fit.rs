@@ -6,7 +6,7 @@
 
 use crate::dynamics::updated_frame::windows::{Window, scatter};
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
-use crate::linear_algebra::lane::each;
+use crate::linear_algebra::lane::{Vectorised, dispatch, each};
 use crate::linear_algebra::stencil::Stencil;
 use crate::particles::points::{Cell, Cells, Point};
 use crate::splines::patch::Patch;
@@ -33,19 +33,13 @@ impl Fit<'_> {
         load.iter_mut().for_each(|load| load.fill(0.0));
         let [x, y] = load;
         let fields = [matrix.coefficients_mut(), x.as_mut_slice(), y.as_mut_slice()];
-        let [kx, ky] = self.patch.spaces.each_ref().map(|space| space.degree() + 1);
-        scatter(&self.cells.strips, fields, [row_length, grid.stride, grid.stride], |strip, mut window| {
+        scatter(&self.cells.strips, fields, [row_length, grid.stride, grid.stride], |strip, window| {
             let cells = &self.cells.cells[strip.cells.clone()];
-            match [kx, ky] {
-                [3, 3] => self.strip::<3, 9>(cells, &mut window, grid, row_length, mean),
-                [4, 4] => self.strip::<4, 16>(cells, &mut window, grid, row_length, mean),
-                [5, 5] => self.strip::<5, 25>(cells, &mut window, grid, row_length, mean),
-                _ => self.strip::<2, 4>(cells, &mut window, grid, row_length, mean),
-            }
+            dispatch(AssembleFit { fit: self, cells, window, grid, row_length, mean });
         });
     }
 
-    #[inline(never)]
+    #[inline(always)]
     fn strip<const K: usize, const F: usize>(
         &self,
         cells: &[Cell],
@@ -83,7 +77,11 @@ impl Fit<'_> {
     fn functions<const K: usize, const F: usize>(&self, cell: &Cell, position: [f64; 2]) -> [f64; F] {
         let sx = self.patch.spaces[0].shape_functions(cell.span[0], position[0]).value;
         let sy = self.patch.spaces[1].shape_functions(cell.span[1], position[1]).value;
-        std::array::from_fn(|i| sx[i % K] * sy[i / K])
+        let mut n = [0.0; F];
+        for i in 0..F {
+            n[i] = sx[i % K] * sy[i / K];
+        }
+        n
     }
 
     /// `b_i = Σ m_p N_i u_p` of a vector per point.
@@ -126,6 +124,31 @@ impl Fit<'_> {
                 }
                 out.push(sum);
             }
+        }
+    }
+}
+
+/// Matrix and right-hand side of the points of a strip.
+struct AssembleFit<'a, 'b> {
+    fit: &'a Fit<'a>,
+    cells: &'a [Cell],
+    window: Window<'b, 3>,
+    grid: ControlGrid,
+    row_length: usize,
+    mean: [f64; 2],
+}
+
+impl Vectorised for AssembleFit<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(mut self) {
+        let Self { fit, cells, window, grid, row_length, mean } = &mut self;
+        match fit.patch.spaces[0].degree() {
+            1 => fit.strip::<2, 4>(cells, window, *grid, *row_length, *mean),
+            2 => fit.strip::<3, 9>(cells, window, *grid, *row_length, *mean),
+            3 => fit.strip::<4, 16>(cells, window, *grid, *row_length, *mean),
+            _ => fit.strip::<5, 25>(cells, window, *grid, *row_length, *mean),
         }
     }
 }

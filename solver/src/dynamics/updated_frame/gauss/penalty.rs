@@ -123,3 +123,30 @@ impl Penalty {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::splines::spline::SplineSpace;
+
+    #[test]
+    fn jumps_are_binomial_on_equal_spans_and_vanish_for_polynomials_on_any() {
+        let equal: Vec<f64> = [0.0; 3].into_iter().chain((1..8).map(f64::from)).chain([8.0; 3]).collect();
+        let jump = &jumps(&SplineSpace::new(2, &equal))[3];
+        for (factor, binomial) in jump.factors.iter().zip([-1.0, 3.0, -3.0, 1.0]) {
+            assert!((factor - binomial).abs() <= 1e-13, "{:?}", jump.factors);
+        }
+        for degree in 1..=4 {
+            let mut knots = vec![0.0; degree + 1];
+            knots.extend([0.1, 0.15, 0.4, 0.6, 0.9]);
+            knots.extend(vec![1.0; degree + 1]);
+            let space = SplineSpace::new(degree, &knots);
+            // The blossom of (x - 1/3)^p: its control values.
+            let control = |i: usize| knots[i + 1..=i + degree].iter().map(|k| k - 1.0 / 3.0).product::<f64>();
+            for Jump { first, factors } in jumps(&space) {
+                let jump: f64 = factors.iter().enumerate().map(|(k, f)| f * control(first + k)).sum();
+                assert!(jump.abs() <= 1e-11, "p = {degree}: {jump:e}");
+            }
+        }
+    }
+}

@@ -133,11 +133,8 @@ impl GaussPoints {
                     let mut own = [0.0; MAX_ORDER * MAX_ORDER];
                     for b in 0..*ny {
                         for a in 0..*nx {
-                            let full = rules[0].weights[a] * if cut[at].is_some() {
-                                beyond[b]
-                            } else {
-                                rules[1].weights[b] * inside.round()
-                            };
+                            let full = rules[0].weights[a]
+                                * if cut[at].is_some() { beyond[b] } else { rules[1].weights[b] * inside.round() };
                             own[b * *nx + a] = area * (full + cut[at].as_ref().map_or(0.0, |cut| cut[b * *nx + a]));
                         }
                     }
@@ -197,4 +194,58 @@ fn value(polynomial: &[f64], t: f64) -> f64 {
 /// Integral from 0 to t.
 fn integral(polynomial: &[f64], t: f64) -> f64 {
     polynomial.iter().enumerate().rev().fold(0.0, |sum, (m, c)| (sum * t) + c / (m + 1) as f64) * t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::updated_frame::gauss::boundary::edges;
+    use crate::scene::{Mesh, Shape};
+
+    /// Sum over the Gauss points of `x^a y^b` inside a shape at rest.
+    fn moment(shape: &Shape, degree: usize, [a, b]: [i32; 2]) -> f64 {
+        let mesh = Mesh::uniform([degree; 2], [-1.5, -1.4], [3.0, 2.8], [13, 11]);
+        let patch = Patch::new(&mesh);
+        let mut gauss = GaussPoints::new(&patch);
+        let zeros = [gauss.grid.zeros(), gauss.grid.zeros()];
+        let map = InverseMap { patch: &patch, grid: gauss.grid, displacement: &zeros, mean: [0.0; 2] };
+        let mut boundary = Boundary::new(edges(shape, &mesh).unwrap(), patch.shortest_span(), degree);
+        gauss.enclose(&mut boundary, &map);
+        let mut sum = 0.0;
+        for cell in &gauss.cells {
+            for (n, weight) in gauss.weights[cell.points.clone()].iter().enumerate() {
+                let at = [n % gauss.count[0], n / gauss.count[0]];
+                let x = [0, 1].map(|d: usize| {
+                    let span = &patch.spaces[d].spans()[cell.span[d]];
+                    span.left + gauss.rules[d].points[at[d]] * span.length()
+                });
+                sum += weight * x[0].powi(a) * x[1].powi(b);
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn what_a_boundary_encloses_is_integrated_up_to_the_degree() {
+        let rectangle = Shape::Rectangle { min: [-0.71, -0.33], max: [0.64, 1.05] };
+        let triangle = Shape::Polygon { points: vec![[0.9, -0.8], [-1.1, -0.6], [0.2, 1.1]] };
+        let disk = Shape::Disk { center: [0.1, -0.2], radius: 0.9 };
+        let ring = Shape::Annulus { center: [0.0; 2], inner_radius: 0.4, outer_radius: 1.1 };
+        let power = |from: f64, to: f64, n: i32| (to.powi(n + 1) - from.powi(n + 1)) / f64::from(n + 1);
+        let pi = std::f64::consts::PI;
+        for degree in [2, 3] {
+            for [a, b] in [[0, 0], [1, 0], [0, 1], [2, 0], [1, 2], [2, 2]] {
+                let exact = power(-0.71, 0.64, a) * power(-0.33, 1.05, b);
+                assert!((moment(&rectangle, degree, [a, b]) - exact).abs() <= 1e-13, "{a} {b}");
+            }
+            let area = 1.83; // half of (−2, 0.2) × (−0.7, 1.9)
+            assert!((moment(&triangle, degree, [0, 0]) - area).abs() <= 1e-12);
+            // pieces of circles are integrated by Gauss points along them, not exactly
+            let near = |found: f64, exact: f64| assert!((found - exact).abs() <= 1e-8, "{found} instead of {exact}");
+            near(moment(&disk, degree, [0, 0]), pi * 0.81);
+            near(moment(&disk, degree, [2, 0]), pi * (0.9_f64.powi(4) / 4.0 + 0.81 * 0.01));
+            near(moment(&ring, degree, [0, 0]), pi * (1.21 - 0.16));
+            near(moment(&ring, degree, [0, 2]), pi * (1.1_f64.powi(4) - 0.4_f64.powi(4)) / 4.0);
+        }
+    }
 }

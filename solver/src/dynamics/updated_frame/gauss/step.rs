@@ -42,7 +42,7 @@ impl DiscreteField {
     /// Once in the time a wave takes through half a span, velocities are relaxed by that part of it.
     fn relax_velocities(&mut self, dt: f64) -> Result<(), SolveFailure> {
         let Self { patch, cells, points, spans: Some(spans), moduli, density, .. } = self else { return Ok(()) };
-        let courant = dt * ((moduli.lambda + 2.0 * moduli.mu) / *density).sqrt() / patch.shortest_span();
+        let courant = dt * moduli.dilatational_speed(*density) / patch.shortest_span();
         let every = (0.5 / courant).round().max(1.0) as usize;
         if spans.since_relaxation >= every {
             let beta = (every as f64 * courant).min(1.0);

@@ -69,7 +69,8 @@ impl Weak {
                 width = width.max(i.saturating_sub(place[number[at] as usize]));
             }
         }
-        let mut weak = Self { nodes: order.iter().map(|&old| nodes[old]).collect(), starts: vec![0], ..Self::default() };
+        let mut weak =
+            Self { nodes: order.iter().map(|&old| nodes[old]).collect(), starts: vec![0], ..Self::default() };
         let mut band = BandFactor::zeros(width, nodes.len());
         for (i, &old) in order.iter().enumerate() {
             for (at, value) in entries(old) {
