@@ -204,6 +204,7 @@ impl SpanQuadrature {
         self.fit.solve(&self.kronecker, &self.load, &mut self.velocity, held, TOLERANCES[2])?;
         let mut fitted = Vec::new();
         fit.at_points(&self.velocity, &mut fitted);
+        fitted.iter_mut().for_each(|v| (0..2).for_each(|c| v[c] += mean[c]));
         let change = self.mean(points, |at| [0, 1].map(|c| fitted[at][c] - points[at].velocity[c]));
         let mut loss = 0.0;
         for (point, fitted) in points.iter_mut().zip(&fitted) {
