@@ -53,8 +53,9 @@ fn momentum_is_kept_and_the_ledger_closes_with_the_mesh() {
         let ((elastic, coarse), (_, fine)) = (vibrate(degree, 8), vibrate(degree, 16));
         println!("p = {degree}: elastic energy {elastic:.2e}, closure over it {coarse:.1e} and {fine:.1e}");
         assert!(elastic > 1e-4);
-        // an error of fit and quadrature: at least third order in energy
-        assert!(fine <= coarse / 8.0, "p = {degree}: {coarse:e}, {fine:e}");
+        // the trapezoidal sum of the work is of order dt², fit and quadrature are of higher order; dt
+        // goes with h
+        assert!(fine <= coarse / 4.0, "p = {degree}: {coarse:e}, {fine:e}");
         assert!(fine <= 1e-2, "p = {degree}: {fine:e}");
     }
 }

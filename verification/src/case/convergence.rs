@@ -11,8 +11,8 @@
 //! ```
 //!
 //! `frame = "updated"` lets the points of a finite motion cross the spans of a fixed mesh;
-//! `transfers = ["flip", "apic"]` then gives a curve for each, and so does `offsets = [0.0, 0.5]`, by which the
-//! mesh is shifted against the body. `quadrature = "gauss"` integrates by spans.
+//! `transfers = ["flip", "apic"]` then gives a curve for each, and so does `offsets = [0.0, 0.5]`, by
+//! which the mesh is shifted against the body. `quadrature = "gauss"` integrates by spans.
 
 use fisura::scene::{Frame, Layout, Mass, Plane, Quadrature, Transfer};
 
@@ -39,10 +39,11 @@ pub enum PatchFamily {
     Strip,
     /// The square [0, 1]² m with equal spans.
     UnitSquare,
-    /// A rectangle around the block [0, 1]² m and its way of (0.675, 0.36) m, with equal spans of which `cells`
-    /// are 1 m.
+    /// A rectangle around the block [0, 1]² m and its way of (0.675, 0.36) m, with equal spans of which
+    /// `cells` are 1 m.
     Block,
-    /// The ring between the radii 0.75 and 1.25 m in the square [−1.4, 1.4]² m with equal spans that it cuts.
+    /// The ring between the radii 0.75 and 1.25 m in the square [−1.4, 1.4]² m with equal spans that it
+    /// cuts.
     Ring,
 }
 

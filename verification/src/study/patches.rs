@@ -31,8 +31,8 @@ pub fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<Mesh, Nu
     shifted_mesh(family, degree, cells, 0.0)
 }
 
-/// The same with the mesh shifted by some spans to the left, and by 0.37 times as many downwards, where a body
-/// cuts it.
+/// The same with the mesh shifted by some spans to the left, and by 0.37 times as many downwards, where a
+/// body cuts it.
 ///
 /// # Errors
 /// As [`mesh`].

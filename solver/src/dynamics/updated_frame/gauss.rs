@@ -18,23 +18,23 @@
 //! points, so points need not be a quadrature rule of the spans they are in; only forces and inertia must be
 //! integrated well. Without the relaxation by β what the grid does not see of the velocities would grow.
 //!
-//! A control point of a side that is held keeps a displacement of zero. Without one held, s and the mean of the
-//! relaxation are taken out per component, so that momentum is kept to round-off. Momentum about a point is
-//! not: fit and quadrature keep it to their order.
+//! A control point of a side that is held keeps a displacement of zero. Without one held, s and the mean
+//! of the relaxation are taken out per component, so that momentum is kept to round-off. Momentum about a
+//! point is not: fit and quadrature keep it to their order.
 //!
 //! # The energy ledger
 //!
-//! Points are a leapfrog of their own: `Δ(kinetic − stagger) = dt/2 Σ m (a(n) + a(n+1)) · v(n+1/2)`, exactly.
-//! The share of body forces is external work. What the relaxation takes is measured where it happens
-//! ([`TransferLosses::relaxation`](super::losses::TransferLosses)). Closure is what the work of the stresses
-//! on the motion of the points differs from the elastic energy at the Gauss points: an error of fit and
-//! quadrature that falls with the mesh, not round-off.
+//! Points are a leapfrog of their own: `Δ(kinetic − stagger) = dt/2 Σ m (a(n) + a(n+1)) · v(n+1/2)`,
+//! exactly. The share of body forces is external work. What the relaxation takes is measured where it
+//! happens ([`TransferLosses::relaxation`](super::losses::TransferLosses)). Closure is what the work of
+//! the stresses on the motion of the points differs from the elastic energy at the Gauss points: an error
+//! of fit and quadrature that falls with the mesh, not round-off.
 //!
 //! The idea of a fit of what points carry and a quadrature by spans is that of Wobbes, Tielen, Möller & Vuik
 //! (2021, *Comparison and unification of material-point and optimal transportation meshfree methods*,
 //! Computational Particle Mechanics 8) and of Sulsky & Gong (2016, *Improving the material-point method*,
-//! Innovative Numerical Approaches for Multi-Field and Multi-Scale Problems); F from labels instead of from a
-//! product of increments is fisura's own.
+//! Innovative Numerical Approaches for Multi-Field and Multi-Scale Problems); F from labels instead of
+//! from a product of increments is fisura's own.
 
 pub(crate) mod balance;
 pub(crate) mod boundary;
@@ -49,9 +49,9 @@ pub(crate) mod stiffness;
 pub(crate) mod system;
 pub(crate) mod weak;
 
-use balance::Balance;
-use boundary::{Boundary, edges};
-use fit::Fit;
+use balance::SpanBalance;
+use boundary::{MovingBoundary, edges};
+use fit::PointFit;
 use kronecker::Kronecker;
 use map::{InverseMap, displacement_gradient};
 use rule::GaussPoints;
@@ -68,7 +68,7 @@ use crate::splines::patch::Patch;
 
 /// Weight γ of the penalty in the inertia. Measured in one and two dimensions: a tenth lets the errors of
 /// cut spans grow with p = 3, thrice as much costs accuracy on coarse meshes.
-const INERTIA_PENALTY: f64 = 0.005;
+const INERTIA_PENALTY: f64 = 0.01;
 /// Weight ε of the penalty in the fit, for quadratics and for higher degrees.
 const FIT_PENALTY: [f64; 2] = [0.005, 0.0005];
 /// Errors of the solves for displacement, acceleration and velocity, relative to their solutions: four
@@ -79,7 +79,7 @@ const TOLERANCES: [f64; 3] = [1e-8, 1e-6, 1e-6];
 #[derive(Debug, Clone)]
 pub(crate) struct SpanQuadrature {
     gauss: GaussPoints,
-    boundary: Boundary,
+    boundary: MovingBoundary,
     kronecker: Kronecker,
     fit: MassSystem,
     inertia: MassSystem,
@@ -122,11 +122,11 @@ impl SpanQuadrature {
         moduli: ElasticModuli,
         density: f64,
     ) -> Option<Self> {
-        let boundary = Boundary::new(edges(shape, mesh)?, patch.shortest_span(), patch.spaces[0].degree());
+        let boundary = MovingBoundary::new(edges(shape, mesh)?, patch.shortest_span(), patch.spaces[0].degree());
         Some(Self::on(patch, nodes, boundary, moduli, density))
     }
 
-    fn on(patch: &Patch, nodes: &NodalFields, boundary: Boundary, moduli: ElasticModuli, density: f64) -> Self {
+    fn on(patch: &Patch, nodes: &NodalFields, boundary: MovingBoundary, moduli: ElasticModuli, density: f64) -> Self {
         let (grid, h) = (patch.control_grid(), patch.shortest_span());
         let field = || [grid.zeros(), grid.zeros()];
         let [quadratic, higher] = FIT_PENALTY;
@@ -150,7 +150,7 @@ impl SpanQuadrature {
         }
     }
 
-    /// Fit, forces and accelerations at the present positions; the elastic energy, J/m.
+    /// PointFit, forces and accelerations at the present positions; the elastic energy, J/m.
     ///
     /// # Errors
     /// If a solve does not converge: where the displacement has turned inside out, or points no longer hold
@@ -158,14 +158,14 @@ impl SpanQuadrature {
     pub(crate) fn respond(&mut self, on: OnPatch<'_>) -> Result<f64, SolveFailure> {
         let OnPatch { patch, points, .. } = on;
         let mean = self.begin_fit(on);
-        let fit = Fit { patch, cells: on.cells, points, density: self.density };
+        let fit = PointFit { patch, cells: on.cells, points, density: self.density };
         let held = self.held.each_ref().map(|held| &held[..]);
         extrapolate(&mut self.displacement);
         self.fit.solve(&self.kronecker, &self.load, &mut self.displacement[0], held, TOLERANCES[0])?;
         let displacement = &self.displacement[0];
         let map = InverseMap { patch, grid: patch.control_grid(), displacement, mean };
         self.gauss.enclose(&mut self.boundary, &map);
-        let balance = Balance { gauss: &self.gauss, displacement, moduli: self.moduli, density: self.density };
+        let balance = SpanBalance { gauss: &self.gauss, displacement, moduli: self.moduli, density: self.density };
         let energy = balance.assemble(&mut self.inertia.matrix, &mut self.force);
         self.inertia.begin(&self.kronecker, self.gauss.marks(patch.control_grid()), &self.held);
         extrapolate(&mut self.acceleration);
@@ -179,7 +179,7 @@ impl SpanQuadrature {
     /// Matrix and right-hand side of the fit at the present positions; the mean displacement, m.
     pub(crate) fn begin_fit(&mut self, OnPatch { patch, cells, points }: OnPatch<'_>) -> [f64; 2] {
         let mean = self.mean(points, |at| points[at].displacement);
-        let fit = Fit { patch, cells, points, density: self.density };
+        let fit = PointFit { patch, cells, points, density: self.density };
         fit.assemble(&mut self.fit.matrix, &mut self.load, mean);
         self.fit.begin(&self.kronecker, around(patch, cells), &self.held);
         mean
@@ -192,13 +192,14 @@ impl SpanQuadrature {
         hencky_strain(&displacement_gradient(&map.at(position).1))
     }
 
-    /// Brings the velocities of the points by β towards that of the grid; the kinetic energy this takes, J/m.
+    /// Brings the velocities of the points by β towards that of the grid; the kinetic energy this takes,
+    /// J/m.
     ///
     /// # Errors
     /// If the solve does not converge.
     fn relax(&mut self, patch: &Patch, cells: &Cells, points: &mut [Point], beta: f64) -> Result<f64, SolveFailure> {
         let mean = self.mean(points, |at| points[at].velocity);
-        let fit = Fit { patch, cells, points, density: self.density };
+        let fit = PointFit { patch, cells, points, density: self.density };
         fit.load(|point| [0, 1].map(|c| point.velocity[c] - mean[c]), &mut self.load);
         let held = self.held.each_ref().map(|held| &held[..]);
         self.fit.solve(&self.kronecker, &self.load, &mut self.velocity, held, TOLERANCES[2])?;
@@ -241,7 +242,8 @@ fn extrapolate(fields: &mut [VectorField; 3]) {
     }
 }
 
-/// Control points of the spans with points and of those around them: the boundary may be ahead of the points.
+/// Control points of the spans with points and of those around them: the boundary may be ahead of the
+/// points.
 fn around(patch: &Patch, cells: &Cells) -> Vec<bool> {
     let grid = patch.control_grid();
     let order = [0, 1].map(|d| patch.spaces[d].degree() + 1);

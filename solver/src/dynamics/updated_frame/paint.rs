@@ -15,9 +15,9 @@ impl UpdatedFrame {
     /// Phase field, if there is one, and largest principal stress (Pa) on a raster; NaN where there is no
     /// material.
     ///
-    /// Each point fills a square, a quarter larger than its volume so that no gaps are left between them. The
-    /// stress is a mean over the points weighted with volume, and the phase field that of the body with the
-    /// most of a pixel.
+    /// Each point fills a square, a quarter larger than its volume so that no gaps are left between them.
+    /// The stress is a mean over the points weighted with volume, and the phase field that of the body
+    /// with the most of a pixel.
     pub(crate) fn paint(&self, raster: &Raster) -> (Option<Vec<f64>>, Vec<f64>) {
         let count = raster.pixels[0] * raster.pixels[1];
         let (mut covered, mut stress, mut most) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
@@ -75,7 +75,8 @@ impl DiscreteField {
         if is_finite { (self.thickening * dilatation).exp() } else { 1.0 }
     }
 
-    /// Stress of a point, Pa, and [`Self::volume_ratio`]; where spans integrate points have none of their own.
+    /// Stress of a point, Pa, and [`Self::volume_ratio`]; where spans integrate points have none of their
+    /// own.
     fn stress_of(&self, point: &Point) -> ([f64; 3], f64) {
         let Some(spans) = &self.spans else { return (point.stress, self.volume_ratio(point.strain)) };
         let strain = spans.strain_at(&self.patch, point.position);

@@ -20,15 +20,15 @@ use crate::particles::points::Cell;
 use crate::splines::spline::MAX_FUNCTIONS;
 
 /// Forces and inertia of a strip.
-struct AssembleBalance<'a, 'b> {
-    balance: &'a Balance<'a>,
+struct AssembleSpans<'a, 'b> {
+    balance: &'a SpanBalance<'a>,
     cells: &'a [Cell],
     window: Window<'b, 3>,
     grid: ControlGrid,
     row_length: usize,
 }
 
-impl Vectorised for AssembleBalance<'_, '_> {
+impl Vectorised for AssembleSpans<'_, '_> {
     type Output = f64;
 
     #[inline(always)]
@@ -45,7 +45,7 @@ impl Vectorised for AssembleBalance<'_, '_> {
 
 /// What the sums need.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Balance<'a> {
+pub(crate) struct SpanBalance<'a> {
     /// Gauss points.
     pub gauss: &'a GaussPoints,
     /// Control values of the displacement, m.
@@ -56,7 +56,7 @@ pub(crate) struct Balance<'a> {
     pub density: f64,
 }
 
-impl Balance<'_> {
+impl SpanBalance<'_> {
     /// Mass matrix and internal forces (N/m); returns the elastic energy, J/m.
     pub(crate) fn assemble(&self, matrix: &mut Stencil, force: &mut VectorField) -> f64 {
         let (grid, row_length) = (matrix.grid, matrix.row_length());
@@ -66,7 +66,7 @@ impl Balance<'_> {
         let fields = [matrix.coefficients_mut(), x.as_mut_slice(), y.as_mut_slice()];
         let energies = scatter(&self.gauss.strips, fields, [row_length, grid.stride, grid.stride], |strip, window| {
             let cells = &self.gauss.cells[strip.cells.clone()];
-            dispatch(AssembleBalance { balance: self, cells, window, grid, row_length })
+            dispatch(AssembleSpans { balance: self, cells, window, grid, row_length })
         });
         energies.iter().sum()
     }

@@ -2,10 +2,10 @@
 //! enclose now.
 //!
 //! A span that the boundary cuts keeps its Gauss points; their weights are the integrals of their Lagrange
-//! polynomials over the part inside (moment fitting: Müller, Kummer & Oberlack 2013, *Highly accurate surface
-//! and volume integration on implicit domains by means of moment-fitting*, International Journal for Numerical
-//! Methods in Engineering 96), so that a polynomial up to the degree of the rule is integrated exactly. By
-//! Gauss's theorem, with the body to the left of its boundary,
+//! polynomials over the part inside (moment fitting: Müller, Kummer & Oberlack 2013, *Highly accurate
+//! surface and volume integration on implicit domains by means of moment-fitting*, International Journal
+//! for Numerical Methods in Engineering 96), so that a polynomial up to the degree of the rule is
+//! integrated exactly. By Gauss's theorem, with the body to the left of its boundary,
 //!
 //! ```text
 //! w_ab = ∫ ℓ_a(x) ℓ_b(y) dx dy = ∮ L_a(x) ℓ_b(y) dy,      L_a(x) = ∫ ℓ_a from the left end of the span to x
@@ -29,7 +29,7 @@ const CROSSING_CLOSE: f64 = 1e-13;
 
 /// A smooth part of the boundary, by reference positions.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Edge {
+pub(crate) enum BoundaryEdge {
     /// From one corner to another, m.
     Line([[f64; 2]; 2]),
     /// Circle, counterclockwise if `sign` is 1, else clockwise.
@@ -43,7 +43,7 @@ pub(crate) enum Edge {
     },
 }
 
-impl Edge {
+impl BoundaryEdge {
     /// Position (m) and its derivative at s from 0 to 1.
     fn at(&self, s: f64) -> ([f64; 2], [f64; 2]) {
         match self {
@@ -69,11 +69,12 @@ impl Edge {
 }
 
 /// The edges of a shape, the body to their left; `None` of a shape that has no rule yet.
-pub(crate) fn edges(shape: &Shape, mesh: &Mesh) -> Option<Vec<Edge>> {
-    let polygon = |corners: &[[f64; 2]]| -> Vec<Edge> {
+pub(crate) fn edges(shape: &Shape, mesh: &Mesh) -> Option<Vec<BoundaryEdge>> {
+    let polygon = |corners: &[[f64; 2]]| -> Vec<BoundaryEdge> {
         let next = |i: usize| corners[(i + 1) % corners.len()];
         let doubled: f64 = (0..corners.len()).map(|i| corners[i][0] * next(i)[1] - corners[i][1] * next(i)[0]).sum();
-        let line = |i: usize| Edge::Line(if doubled > 0.0 { [corners[i], next(i)] } else { [next(i), corners[i]] });
+        let line =
+            |i: usize| BoundaryEdge::Line(if doubled > 0.0 { [corners[i], next(i)] } else { [next(i), corners[i]] });
         (0..corners.len()).map(line).collect()
     };
     let box_of = |low: [f64; 2], high: [f64; 2]| polygon(&[low, [high[0], low[1]], high, [low[0], high[1]]]);
@@ -83,10 +84,10 @@ pub(crate) fn edges(shape: &Shape, mesh: &Mesh) -> Option<Vec<Edge>> {
             box_of(low, high)
         }
         Shape::Polygon { points } => polygon(points),
-        Shape::Disk { center, radius } => vec![Edge::Circle { center: *center, radius: *radius, sign: 1.0 }],
+        Shape::Disk { center, radius } => vec![BoundaryEdge::Circle { center: *center, radius: *radius, sign: 1.0 }],
         Shape::Annulus { center, inner_radius, outer_radius } => vec![
-            Edge::Circle { center: *center, radius: *outer_radius, sign: 1.0 },
-            Edge::Circle { center: *center, radius: *inner_radius, sign: -1.0 },
+            BoundaryEdge::Circle { center: *center, radius: *outer_radius, sign: 1.0 },
+            BoundaryEdge::Circle { center: *center, radius: *inner_radius, sign: -1.0 },
         ],
         Shape::Difference { .. } => return None,
     })
@@ -94,8 +95,8 @@ pub(crate) fn edges(shape: &Shape, mesh: &Mesh) -> Option<Vec<Edge>> {
 
 /// A boundary, and where it was last.
 #[derive(Debug, Clone)]
-pub(crate) struct Boundary {
-    edges: Vec<Edge>,
+pub(crate) struct MovingBoundary {
+    edges: Vec<BoundaryEdge>,
     /// Present positions (m) of equally spaced s, the ends of each edge among them.
     nodes: Vec<Vec<[f64; 2]>>,
     /// Rule along a piece.
@@ -110,10 +111,10 @@ pub(crate) struct Piece<'a> {
     pub points: &'a [([f64; 2], f64)],
 }
 
-impl Boundary {
+impl MovingBoundary {
     /// Edges at rest on a mesh whose shortest span has this length, m, for splines of degree p.
-    pub(crate) fn new(edges: Vec<Edge>, shortest: f64, degree: usize) -> Self {
-        let nodes_of = |edge: &Edge| {
+    pub(crate) fn new(edges: Vec<BoundaryEdge>, shortest: f64, degree: usize) -> Self {
+        let nodes_of = |edge: &BoundaryEdge| {
             let count = (edge.length() / shortest).ceil().max(1.0) as usize;
             (0..=count).map(|i| edge.at(i as f64 / count as f64).0).collect()
         };
@@ -153,7 +154,7 @@ impl Boundary {
 
 /// Where a step of an edge crosses knots of either direction: s and position.
 fn crossings(
-    edge: &Edge,
+    edge: &BoundaryEdge,
     map: &InverseMap<'_>,
     [from, to]: [f64; 2],
     [a, b]: [[f64; 2]; 2],
@@ -187,7 +188,7 @@ fn crossings(
 
 /// Hands on one piece between two breaks.
 fn piece(
-    edge: &Edge,
+    edge: &BoundaryEdge,
     map: &InverseMap<'_>,
     along: &Rule,
     [(from, a), (to, b)]: [(f64, [f64; 2]); 2],

@@ -14,7 +14,7 @@ use crate::splines::spline::MAX_FUNCTIONS;
 
 /// Points on a patch, with their density (kg/m³).
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Fit<'a> {
+pub(crate) struct PointFit<'a> {
     /// Background patch.
     pub patch: &'a Patch,
     /// Order of the points.
@@ -25,7 +25,7 @@ pub(crate) struct Fit<'a> {
     pub density: f64,
 }
 
-impl Fit<'_> {
+impl PointFit<'_> {
     /// Matrix, and right-hand side of the displacements less `mean` (m).
     pub(crate) fn assemble(&self, matrix: &mut Stencil, load: &mut VectorField, mean: [f64; 2]) {
         let (grid, row_length) = (matrix.grid, matrix.row_length());
@@ -35,7 +35,7 @@ impl Fit<'_> {
         let fields = [matrix.coefficients_mut(), x.as_mut_slice(), y.as_mut_slice()];
         scatter(&self.cells.strips, fields, [row_length, grid.stride, grid.stride], |strip, window| {
             let cells = &self.cells.cells[strip.cells.clone()];
-            dispatch(AssembleFit { fit: self, cells, window, grid, row_length, mean });
+            dispatch(AssemblePointFit { fit: self, cells, window, grid, row_length, mean });
         });
     }
 
@@ -129,8 +129,8 @@ impl Fit<'_> {
 }
 
 /// Matrix and right-hand side of the points of a strip.
-struct AssembleFit<'a, 'b> {
-    fit: &'a Fit<'a>,
+struct AssemblePointFit<'a, 'b> {
+    fit: &'a PointFit<'a>,
     cells: &'a [Cell],
     window: Window<'b, 3>,
     grid: ControlGrid,
@@ -138,7 +138,7 @@ struct AssembleFit<'a, 'b> {
     mean: [f64; 2],
 }
 
-impl Vectorised for AssembleFit<'_, '_> {
+impl Vectorised for AssemblePointFit<'_, '_> {
     type Output = ();
 
     #[inline(always)]

@@ -6,8 +6,8 @@
 //! P⁻¹ = S (Bx⁻¹ ⊗ By⁻¹) S,      B = ∫ N_i N_j dx + ε h Jᵀ J per direction,      S² = diag(Bx ⊗ By)/diag(A)
 //! ```
 //!
-//! A is the matrix of the present points, with its penalty ([`super::penalty`]). Iterations then depend little
-//! on degree, mesh and cut spans.
+//! A is the matrix of the present points, with its penalty ([`super::penalty`]). Iterations then depend
+//! little on degree, mesh and cut spans.
 
 use super::penalty::jumps;
 use crate::linear_algebra::control_grid::ControlGrid;
@@ -41,8 +41,8 @@ impl Kronecker {
     }
 
     /// S for a matrix with this `diagonal`, of which `mass` is the part without penalty: zero where that is
-    /// less than `threshold` times the diagonal of the product. Control points for which it is, and which are
-    /// not held, are returned.
+    /// less than `threshold` times the diagonal of the product. Control points for which it is, and which
+    /// are not held, are returned.
     pub(crate) fn scale(
         &self,
         [mass, diagonal]: [&[f64]; 2],

@@ -1,6 +1,6 @@
 //! Gauss points of the spans that a body covers, and their weights in the part inside.
 
-use super::boundary::{Boundary, Piece};
+use super::boundary::{MovingBoundary, Piece};
 use super::map::InverseMap;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::particles::points::{Cell, Strip};
@@ -68,7 +68,7 @@ impl GaussPoints {
     }
 
     /// Weights inside a boundary that follows the motion.
-    pub(crate) fn enclose(&mut self, boundary: &mut Boundary, map: &InverseMap<'_>) {
+    pub(crate) fn enclose(&mut self, boundary: &mut MovingBoundary, map: &InverseMap<'_>) {
         self.passing.fill([0.0; MAX_ORDER]);
         self.cut.fill(None);
         boundary.follow(map, |piece| self.add(map.patch, &piece));
@@ -209,7 +209,7 @@ mod tests {
         let mut gauss = GaussPoints::new(&patch);
         let zeros = [gauss.grid.zeros(), gauss.grid.zeros()];
         let map = InverseMap { patch: &patch, grid: gauss.grid, displacement: &zeros, mean: [0.0; 2] };
-        let mut boundary = Boundary::new(edges(shape, &mesh).unwrap(), patch.shortest_span(), degree);
+        let mut boundary = MovingBoundary::new(edges(shape, &mesh).unwrap(), patch.shortest_span(), degree);
         gauss.enclose(&mut boundary, &map);
         let mut sum = 0.0;
         for cell in &gauss.cells {

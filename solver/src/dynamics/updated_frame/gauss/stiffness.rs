@@ -4,7 +4,7 @@
 //! with the highest frequency ω of `M⁻¹ K`. The penalty in M bounds ω however the boundary cuts spans.
 
 use super::SpanQuadrature;
-use super::balance::Balance;
+use super::balance::SpanBalance;
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::VectorField;
 
@@ -50,7 +50,7 @@ impl StiffnessOperator for SpanStiffness {
         self.unpack(x);
         let Self { spans, field, image, .. } = self;
         let SpanQuadrature { gauss, displacement, moduli, density, .. } = spans;
-        let balance = Balance { gauss, displacement: &displacement[0], moduli: *moduli, density: *density };
+        let balance = SpanBalance { gauss, displacement: &displacement[0], moduli: *moduli, density: *density };
         balance.stiffness(field, image);
         self.pack(out);
     }
