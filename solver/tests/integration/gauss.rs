@@ -3,6 +3,7 @@
 use crate::common::{unit_solid, updated_scene, with_threads};
 use fisura::Simulation;
 use fisura::dynamics::updated_frame::UpdatedFrame;
+use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
 use std::f64::consts::PI;
 
@@ -36,9 +37,9 @@ fn vibrate(degree: usize, cells: usize) -> (f64, f64) {
     for _ in 0..(0.5 / dt) as usize {
         frame.step(dt).unwrap();
         let (now, sample) = left(&frame);
-        largest = largest.max(sample.elastic);
-        apart = apart.max((now - first).abs());
-        let drift = (0..2).map(|c| (sample.momentum[c] - start.momentum[c]).abs()).fold(0.0, f64::max);
+        largest = larger(largest, sample.elastic);
+        apart = larger(apart, (now - first).abs());
+        let drift = (0..2).map(|c| (sample.momentum[c] - start.momentum[c]).abs()).fold(0.0, larger);
         assert!(drift <= 1e-12, "momentum drifts by {drift:e}");
     }
     let mass: f64 = frame.fields()[0].points().iter().map(|p| p.volume).sum();
