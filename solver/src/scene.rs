@@ -139,6 +139,15 @@ pub enum Transfer {
     Xpic(usize),
 }
 
+/// What integrates forces and inertia in the updated frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quadrature {
+    /// The material points.
+    Points,
+    /// Gauss points of the part of each span that the body fills.
+    Gauss,
+}
+
 /// Mass matrix of the control points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mass {
@@ -176,6 +185,8 @@ pub struct Analysis {
     pub safety: f64,
     /// Transfer of the updated frame.
     pub transfer: Transfer,
+    /// Quadrature of the updated frame.
+    pub quadrature: Quadrature,
     /// Mass matrix.
     pub mass: Mass,
     /// Gravity, m/s².

@@ -18,10 +18,11 @@ pub mod phase_field;
 pub mod standing_wave;
 #[cfg(test)]
 mod tests;
+pub mod translating_block;
 pub mod vortex;
 
 /// What every file registers.
-const REGISTERED: [&[Solution]; 8] = [
+const REGISTERED: [&[Solution]; 9] = [
     axis_aligned::SOLUTIONS,
     bar_wave::SOLUTIONS,
     coupled::SOLUTIONS,
@@ -29,6 +30,7 @@ const REGISTERED: [&[Solution]; 8] = [
     kirsch::SOLUTIONS,
     phase_field::SOLUTIONS,
     standing_wave::SOLUTIONS,
+    translating_block::SOLUTIONS,
     vortex::SOLUTIONS,
 ];
 

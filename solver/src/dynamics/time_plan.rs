@@ -78,7 +78,7 @@ impl TimePlan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Frame, Kinematics, Mass, Plane, Transfer};
+    use crate::scene::{Frame, Kinematics, Mass, Plane, Quadrature, Transfer};
 
     fn plan(end_time: f64, time_step: TimeStep, samples: usize, critical: f64) -> (TimePlan, Vec<String>) {
         plan_within(end_time, time_step, samples, critical, f64::INFINITY)
@@ -100,6 +100,7 @@ mod tests {
             time_step,
             safety: 0.8,
             transfer: Transfer::Flip,
+            quadrature: Quadrature::Points,
             mass: Mass::Lumped,
             gravity: [0.0; 2],
         };

@@ -28,6 +28,7 @@ mod bodies;
 mod booking;
 pub mod fictitious;
 pub mod field;
+pub(crate) mod gauss;
 pub mod grid;
 mod inspect;
 pub(crate) mod losses;

@@ -5,7 +5,7 @@ use super::ground::Ground;
 use super::material::plausible_speed;
 use crate::dynamics::body_sample::column_name;
 use crate::linear_algebra::extremes::larger;
-use crate::scene::{Body, Boundary, Frame, Mass, Scene, Shape, Side, TimeStep, Transfer};
+use crate::scene::{Body, Boundary, Frame, Kinematics, Mass, Quadrature, Scene, Shape, Side, TimeStep, Transfer};
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
 
@@ -41,6 +41,9 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     if analysis.mass == Mass::Consistent {
         consistent_mass(scene, ground, findings);
     }
+    if analysis.quadrature == Quadrature::Gauss {
+        spans_integrate(scene, findings);
+    }
     if let Transfer::Xpic(order) = analysis.transfer
         && !(1..=HIGHEST_XPIC).contains(&order)
     {
@@ -61,6 +64,48 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     {
         let message = format!("a friction coefficient of {}", contact.friction);
         findings.error("contact.friction", message, "give a coefficient of 0 or more");
+    }
+}
+
+/// Gauss points of spans integrate elastic bodies of finite strain that are free or held, and not more yet.
+fn spans_integrate(scene: &Scene, findings: &mut Findings) {
+    let (key, points) = ("analysis.quadrature", "or use quadrature = \"points\"");
+    let analysis = &scene.analysis;
+    let mut refuse = |holds: bool, message: &str, remedy: &str| {
+        if holds {
+            let message = format!("quadrature = \"gauss\" {message}");
+            findings.error(key, message, format!("{remedy}, {points}"));
+        }
+    };
+    refuse(
+        analysis.frame == Frame::Total,
+        "in the total frame, which has no quadrature to choose",
+        "use frame = \"updated\"",
+    );
+    refuse(analysis.kinematics == Kinematics::Small, "with small strains", "use kinematics = \"finite\"");
+    refuse(analysis.transfer != Transfer::Flip, "with a transfer, of which it has none", "leave transfer out");
+    refuse(scene.mesh.degree[0] != scene.mesh.degree[1], "with two degrees", "give the same degree twice");
+    refuse(scene.contact.is_some(), "with contact, which has no forces there yet", "remove [contact]");
+    for body in &scene.bodies {
+        let name = format!("for body {:?}", body.name);
+        let fractures = scene.materials.get(&body.material).is_some_and(|material| material.fracture.is_some());
+        refuse(fractures, &format!("{name}, which fractures"), "remove the fracture table of its material");
+        refuse(!body.tractions.is_empty(), &format!("{name}, which has tractions"), "remove them");
+        refuse(matches!(body.shape, Shape::Difference { .. }), &format!("{name}, a difference"), "use another shape");
+        let (low, high) = scene.mesh.extent(&body.shape);
+        let (origin, end) = (scene.mesh.origin(), scene.mesh.end());
+        for boundary in &scene.boundaries {
+            let apart = match boundary.side {
+                Side::Left => low[0] - origin[0],
+                Side::Right => end[0] - high[0],
+                Side::Bottom => low[1] - origin[1],
+                Side::Top => end[1] - high[1],
+            };
+            let size = (end[0] - origin[0]).max(end[1] - origin[1]);
+            let message = format!("{name}, which does not begin on the {} side", side_name(boundary.side));
+            refuse(apart > TOLERANCE * size, &message, "let every body begin on the sides that are held");
+            refuse(boundary.velocity != [0.0; 2], "with a side that moves", "give it the velocity zero");
+        }
     }
 }
 

@@ -29,6 +29,7 @@ fn square() -> Scene {
             time_step: TimeStep::Auto,
             safety: 0.8,
             transfer: Transfer::Flip,
+            quadrature: Quadrature::Points,
             mass: Mass::Lumped,
             gravity: [0.0; 2],
         },
@@ -267,6 +268,34 @@ fn shapes_without_area_are_refused() {
     ] {
         assert_eq!(errors(|s| s.bodies[0].shape = shape.clone()), ["body.0.shape"], "{shape:?}");
     }
+}
+
+#[test]
+fn gauss_quadrature_by_spans_is_refused_where_it_does_not_exist() {
+    let sound = |s: &mut Scene| {
+        (s.analysis.frame, s.analysis.kinematics) = (Frame::Updated, Kinematics::Finite);
+        s.analysis.quadrature = Quadrature::Gauss;
+        s.bodies[0].tractions.clear();
+        s.bodies[0].cracks.clear();
+        s.materials.values_mut().for_each(|material| material.fracture = None);
+        s.boundaries.clear();
+    };
+    let key = ["analysis.quadrature"];
+    assert_eq!(errors(sound), [""; 0]);
+    let but = |change: fn(&mut Scene)| {
+        errors(move |s| {
+            sound(s);
+            change(s);
+        })
+    };
+    assert_eq!(but(|s| s.analysis.kinematics = Kinematics::Small), key);
+    assert_eq!(but(|s| s.analysis.frame = Frame::Total), key);
+    assert_eq!(but(|s| s.analysis.transfer = Transfer::Apic), key);
+    assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.1 })), key);
+    assert_eq!(
+        but(|s| s.boundaries = vec![Boundary { side: Side::Left, fix: [true, false], velocity: [1.0, 0.0] }]),
+        key
+    );
 }
 
 #[test]

@@ -96,6 +96,12 @@ fn in_the_updated_frame_with_every_transfer() {
         let kinematics = if transfer == Transfer::Pic { Kinematics::Small } else { Kinematics::Finite };
         goes_on_bit_by_bit(&format!("{transfer:?}"), &flying(transfer, kinematics));
     }
+    let mut by_spans = flying(Transfer::Flip, Kinematics::Finite);
+    by_spans.analysis.quadrature = Quadrature::Gauss;
+    by_spans.bodies[0].tractions.clear();
+    by_spans.bodies[0].cracks.clear();
+    by_spans.materials.get_mut("glass").unwrap().fracture = None;
+    goes_on_bit_by_bit("Gauss quadrature by spans", &by_spans);
     let mut far = flying(Transfer::Flip, Kinematics::Small);
     far.bodies[0].tractions.clear();
     (far.bodies[0].velocity, far.analysis.end_time) = ([900.0, 100.0], 4e-6); // the part follows the body

@@ -16,6 +16,7 @@ mod determinism;
 mod fictitious;
 mod finite;
 mod folds;
+mod gauss;
 mod ledger;
 mod linear_solvers;
 mod loads;

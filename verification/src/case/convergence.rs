@@ -11,9 +11,10 @@
 //! ```
 //!
 //! `frame = "updated"` lets the points of a finite motion cross the spans of a fixed mesh;
-//! `transfers = ["flip", "apic"]` then gives a curve for each.
+//! `transfers = ["flip", "apic"]` then gives a curve for each, and so does `offsets = [0.0, 0.5]`, by
+//! which the mesh is shifted against the body. `quadrature = "gauss"` integrates by spans.
 
-use fisura::scene::{Frame, Layout, Mass, Plane, Transfer};
+use fisura::scene::{Frame, Layout, Mass, Plane, Quadrature, Transfer};
 
 use crate::scene::fields::Item;
 use crate::scene::read::transfer;
@@ -38,7 +39,11 @@ pub enum PatchFamily {
     Strip,
     /// The square [0, 1]² m with equal spans.
     UnitSquare,
-    /// The ring between the radii 0.75 and 1.25 m in the square [−1.4, 1.4]² m with equal spans that it cuts.
+    /// A rectangle around the block [0, 1]² m and its way of (0.675, 0.36) m, with equal spans of which
+    /// `cells` are 1 m.
+    Block,
+    /// The ring between the radii 0.75 and 1.25 m in the square [−1.4, 1.4]² m with equal spans that it
+    /// cuts.
     Ring,
 }
 
@@ -71,6 +76,10 @@ pub struct ConvergenceSetup {
     pub frame: Frame,
     /// Transfers of the updated frame, a curve each.
     pub transfers: Vec<Transfer>,
+    /// Quadrature of the updated frame.
+    pub quadrature: Quadrature,
+    /// Offsets of the mesh against a body that cuts it, in spans, a curve each; 0.37 of it in y.
+    pub offsets: Vec<f64>,
     /// Meshes.
     pub patch: PatchFamily,
     /// Degrees.
@@ -101,11 +110,13 @@ impl ConvergenceSetup {
     }
 }
 
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 17] = [
     "problem",
     "plane",
     "frame",
     "transfers",
+    "quadrature",
+    "offsets",
     "patch",
     "degrees",
     "cells",
@@ -133,10 +144,14 @@ pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
         ("random", PatchFamily::Random),
         ("strip", PatchFamily::Strip),
         ("unit-square", PatchFamily::UnitSquare),
+        ("block", PatchFamily::Block),
         ("ring", PatchFamily::Ring),
     ];
     let frame = fields.or("frame", Frame::Total, |i| i.choice(&[("total", Frame::Total), ("updated", Frame::Updated)]));
     let transfers = fields.maybe("transfers", |i| filled(i, "[\"flip\", \"apic\"]", transfer));
+    let quadratures = [("points", Quadrature::Points), ("gauss", Quadrature::Gauss)];
+    let quadrature = fields.or("quadrature", Quadrature::Points, |i| i.choice(&quadratures));
+    let offsets = fields.or("offsets", vec![0.0], |i| filled(i, "[0.0, 0.5]", |n| n.quantity(Dimension::NONE)));
     let patch = fields.or("patch", PatchFamily::Square, |i| i.choice(&families));
     let degrees = fields.need("degrees", "degrees = [2, 3]", |i| filled(i, "[2, 3]", |n| n.whole(1, 4)));
     let cells = fields.need("cells", "cells = [4, 8, 16, 32]", |i| filled(i, "[4, 8, 16, 32]", |n| n.whole(1, 4096)));
@@ -169,6 +184,8 @@ pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
         plane: plane?,
         frame,
         transfers: transfers.unwrap_or(vec![Transfer::Flip]),
+        quadrature: quadrature?,
+        offsets: offsets?,
         patch: patch?,
         degrees,
         cells: cells?,

@@ -2,8 +2,8 @@
 //! say.
 
 use fisura::scene::{
-    Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldSolver, Plane, Scene,
-    Shape, Side, SolverSettings, TimeStep, Transfer,
+    Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldSolver, Plane,
+    Quadrature, Scene, Shape, Side, SolverSettings, TimeStep, Transfer,
 };
 
 /// What differs from study to study.
@@ -78,6 +78,7 @@ impl PlainScene {
                 time_step: TimeStep::Auto,
                 safety: 0.5,
                 transfer: Transfer::Flip,
+                quadrature: Quadrature::Points,
                 mass: self.mass,
                 gravity: [0.0; 2],
             },

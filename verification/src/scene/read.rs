@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use fisura::scene::{
-    Analysis, Boundary, Contact, Frame, Kinematics, Mass, Output, PhaseFieldSolver, Plane, Scene, Shape, Side,
-    SolverSettings, TimeStep, Transfer,
+    Analysis, Boundary, Contact, Frame, Kinematics, Mass, Output, PhaseFieldSolver, Plane, Quadrature, Scene, Shape,
+    Side, SolverSettings, TimeStep, Transfer,
 };
 
 use super::diagnostic::Problem;
@@ -99,12 +99,14 @@ fn analysis(item: &Item<'_>) -> Option<Analysis> {
         "time_step",
         "safety",
         "transfer",
+        "quadrature",
         "mass",
         "gravity",
     ])?;
     let planes = [("strain", Plane::Strain), ("stress", Plane::Stress)];
     let frames = [("total", Frame::Total), ("updated", Frame::Updated)];
     let strains = [("small", Kinematics::Small), ("finite", Kinematics::Finite)];
+    let quadratures = [("points", Quadrature::Points), ("gauss", Quadrature::Gauss)];
     let masses = [("lumped", Mass::Lumped), ("consistent", Mass::Consistent)];
     let plane = fields.or("plane", Plane::Strain, |item| item.choice(&planes));
     let thickness = fields.or("thickness", 1.0, length);
@@ -117,6 +119,7 @@ fn analysis(item: &Item<'_>) -> Option<Analysis> {
     });
     let safety = fields.or("safety", 0.8, number);
     let transfer = fields.or("transfer", Transfer::Flip, transfer);
+    let quadrature = fields.or("quadrature", Quadrature::Points, |item| item.choice(&quadratures));
     let mass = fields.or("mass", Mass::Lumped, |item| item.choice(&masses));
     let gravity = fields.or("gravity", [0.0, 0.0], |item| item.vector(Dimension::ACCELERATION));
     Some(Analysis {
@@ -128,6 +131,7 @@ fn analysis(item: &Item<'_>) -> Option<Analysis> {
         time_step: time_step?,
         safety: safety?,
         transfer: transfer?,
+        quadrature: quadrature?,
         mass: mass?,
         gravity: gravity?,
     })

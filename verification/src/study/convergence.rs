@@ -11,7 +11,7 @@ mod problem;
 mod scene;
 mod solve;
 
-use fisura::scene::{Frame, Layout, Mass, Transfer};
+use fisura::scene::{Frame, Layout, Mass, Quadrature, Transfer};
 
 use super::{Findings, StudyError};
 use crate::case::Case;
@@ -44,8 +44,8 @@ pub(super) fn offers(case: &Case, _scenes: &[CaseScene]) -> super::Offered {
     let mut offers = super::Offers::default();
     let refined = refined(setup);
     for (n, &degree) in setup.degrees.iter().enumerate() {
-        for &transfer in &setup.transfers {
-            let name = curve_name(setup, n, transfer);
+        for (transfer, offset) in variants(setup) {
+            let name = curve_name(setup, n, (transfer, offset));
             for &(norm, below) in &norms {
                 offers.curve(&name, refined, &[norm], &[theory(setup, &problem, degree, below)]);
                 if setup.frame == Frame::Total {
@@ -87,10 +87,10 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
     let mut findings = Findings::default();
     let mut curves = Vec::new();
     for (n, &degree) in setup.degrees.iter().enumerate() {
-        for &transfer in &setup.transfers {
+        for (transfer, offset) in variants(setup) {
             let orders = norms.iter().map(|&(_, below)| theory(setup, &problem, degree, below)).collect();
-            let name = curve_name(setup, n, transfer);
-            let (levels, best) = levels(setup, &problem, n, transfer)?;
+            let name = curve_name(setup, n, (transfer, offset));
+            let (levels, best) = levels(setup, &problem, n, (transfer, offset))?;
             for (index, best) in best.into_iter().enumerate() {
                 let error = levels.last().map_or(f64::NAN, |level| level.errors[index]);
                 findings.add(&name, &over_best(norms[index].0), error / best, None);
@@ -115,7 +115,7 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
 }
 
 /// What distinguishes a curve: the degree, with points or transfer where these vary.
-fn curve_name(setup: &ConvergenceSetup, n: usize, transfer: Transfer) -> String {
+fn curve_name(setup: &ConvergenceSetup, n: usize, (transfer, offset): (Transfer, f64)) -> String {
     let degree = setup.degrees[n];
     let mut name = format!("p={degree}");
     if setup.degrees.iter().filter(|d| **d == degree).count() > 1 {
@@ -127,7 +127,15 @@ fn curve_name(setup: &ConvergenceSetup, n: usize, transfer: Transfer) -> String 
             named => format!(" {named:?}").to_lowercase(),
         };
     }
+    if setup.offsets.len() > 1 {
+        name += &format!(" offset {offset}");
+    }
     name
+}
+
+/// Transfers and offsets of the mesh, a curve each.
+fn variants(setup: &ConvergenceSetup) -> impl Iterator<Item = (Transfer, f64)> {
+    setup.transfers.iter().flat_map(|transfer| setup.offsets.iter().map(|offset| (*transfer, *offset)))
 }
 
 /// The levels of the n-th degree, and the errors of the best approximation on the last.
@@ -135,12 +143,12 @@ fn levels(
     setup: &ConvergenceSetup,
     problem: &Problem,
     n: usize,
-    transfer: Transfer,
+    variant: (Transfer, f64),
 ) -> Result<(Vec<Level>, Vec<f64>), StudyError> {
     let mesh = |cells: usize| -> Result<Box<dyn OnMesh + '_>, StudyError> {
         Ok(match setup.frame {
             Frame::Total => Box::new(Discrete::new(setup, problem, n, cells)?),
-            Frame::Updated => Box::new(Moving::new(setup, problem, n, cells, transfer)?),
+            Frame::Updated => Box::new(Moving::new(setup, problem, n, cells, variant)?),
         })
     };
     let finest = setup.cells[setup.cells.len() - 1];
@@ -173,10 +181,14 @@ fn levels(
 fn theory(setup: &ConvergenceSetup, problem: &Problem, degree: usize, below: usize) -> Option<f64> {
     let space = (degree + 1 - below) as f64;
     match (problem.equation, setup.refine) {
-        _ if setup.frame == Frame::Updated => None,
+        _ if setup.frame == Frame::Updated && setup.quadrature == Quadrature::Points => None,
         (Equation::Dynamic, Refine::TimeStep) => Some(2.0),
         (Equation::Dynamic, Refine::Mesh(power)) => {
-            let space = if setup.mass == Mass::Lumped { space.min(2.0) } else { space };
+            let space = if setup.mass == Mass::Lumped && setup.quadrature == Quadrature::Points {
+                space.min(2.0)
+            } else {
+                space
+            };
             Some(power.map_or(space, |power| space.min(2.0 * power)))
         }
         _ => Some(space),
@@ -190,7 +202,9 @@ fn other(message: impl Into<String>) -> StudyError {
 fn words_of_theory(setup: &ConvergenceSetup, problem: &Problem) -> String {
     match (problem.equation, setup.refine) {
         (Equation::Dynamic, Refine::TimeStep) => "velocity Verlet is of order 2",
-        (Equation::Dynamic, _) if setup.mass == Mass::Lumped => "a lumped mass is of order 2 for every degree",
+        (Equation::Dynamic, _) if setup.mass == Mass::Lumped && setup.quadrature == Quadrature::Points => {
+            "a lumped mass is of order 2 for every degree"
+        }
         _ => "best approximation by splines: p + 1 in L2, p in H1",
     }
     .into()
@@ -214,6 +228,7 @@ fn words_of_patch(family: PatchFamily) -> &'static str {
         PatchFamily::Random => "random weights and knots",
         PatchFamily::Strip => "a strip",
         PatchFamily::UnitSquare => "the unit square",
+        PatchFamily::Block => "a block that cuts a rectangle",
         PatchFamily::Ring => "a ring cut out of a square",
     }
 }

@@ -16,17 +16,43 @@ const SIZE: [f64; 2] = [1.0, 0.8];
 /// of the centre.
 const AROUND_RING: f64 = 1.4;
 
+/// Way of the block, m, and the room around it.
+const WAY: [f64; 2] = [0.675, 0.36];
+const AROUND_BLOCK: f64 = 0.06;
+
+/// Offset of a mesh in y over that in x.
+const ACROSS: f64 = 0.37;
+
 /// Mesh of a family with `cells` spans per direction. Random families have a multiple of three spans.
 ///
 /// # Errors
 /// If a family cannot have that degree, such as arcs of degree 1.
 pub fn mesh(family: PatchFamily, degree: usize, cells: usize) -> Result<Mesh, NurbsError> {
+    shifted_mesh(family, degree, cells, 0.0)
+}
+
+/// The same with the mesh shifted by some spans to the left, and by 0.37 times as many downwards, where a
+/// body cuts it.
+///
+/// # Errors
+/// As [`mesh`].
+pub fn shifted_mesh(family: PatchFamily, degree: usize, cells: usize, offset: f64) -> Result<Mesh, NurbsError> {
     let parts = cells.div_ceil(COARSE);
     match family {
         PatchFamily::Square => Ok(Mesh::uniform([degree; 2], [0.0; 2], SIZE, [cells; 2])),
         PatchFamily::UnitSquare => Ok(Mesh::uniform([degree; 2], [0.0; 2], [1.0; 2], [cells; 2])),
         PatchFamily::Strip => Ok(Mesh::uniform([degree; 2], [0.0; 2], [1.0, 1.0 / cells as f64], [cells, 1])),
-        PatchFamily::Ring => Ok(Mesh::uniform([degree; 2], [-AROUND_RING; 2], [2.0 * AROUND_RING; 2], [cells; 2])),
+        PatchFamily::Block => {
+            let h = 1.0 / cells as f64;
+            let origin = [1.0, ACROSS].map(|part| -h * (2.0 + part * offset) - AROUND_BLOCK);
+            let counts = WAY.map(|way| ((1.0 + way + 2.0 * AROUND_BLOCK) * cells as f64).ceil() as usize + 5);
+            Ok(Mesh::uniform([degree; 2], origin, counts.map(|count| count as f64 * h), counts))
+        }
+        PatchFamily::Ring => {
+            let h = 2.0 * AROUND_RING / cells as f64;
+            let origin = [1.0, ACROSS].map(|part| -AROUND_RING - h * part * offset);
+            Ok(Mesh::uniform([degree; 2], origin, [2.0 * AROUND_RING; 2], [cells; 2]))
+        }
         PatchFamily::Graded => {
             let mut random = Random::new(11);
             let knots = SIZE.map(|size| open(degree, &subdivided(&breaks(&mut random, size), parts)));

@@ -30,6 +30,7 @@ fn plate() -> Scene {
             time_step: TimeStep::Auto,
             safety: 0.8,
             transfer: Transfer::Flip,
+            quadrature: Quadrature::Points,
             mass: Mass::Lumped,
             gravity: [0.0, 0.0],
         },

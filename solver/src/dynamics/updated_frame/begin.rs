@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::affine::{AffineVelocities, Fit};
 use super::field::DiscreteField;
+use super::gauss::SpanQuadrature;
 use super::grid::NodalFields;
 use super::losses::TransferLosses;
 use super::part;
@@ -19,7 +20,7 @@ use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
 use crate::particles::points::{Cells, OutsidePatch, Point};
 use crate::phase_field::fracture::lowest_tip;
-use crate::scene::{Body, Kinematics, Material, Plane, Scene, Transfer};
+use crate::scene::{Body, Kinematics, Material, Plane, Quadrature, Scene, Transfer};
 use crate::splines::patch::Patch;
 
 impl DiscreteField {
@@ -40,6 +41,7 @@ impl DiscreteField {
         field.points_to_grid();
         field.attach_first(number)?;
         field.respond();
+        field.respond_with_spans()?;
         for (traction, load) in field.loads.iter().enumerate() {
             let balance = Balance::of_edge(body, &body.tractions[traction].edge);
             let shares = load.shares(&field.patch, &field.nodes);
@@ -69,17 +71,23 @@ impl DiscreteField {
         let mut cells = Cells::default();
         cells.sort(&patch, &mut points)?;
         let crack = |f| PointwiseFracture::new(&patch, body, FractureModel::new(f), &scene.solver, &points);
-        let constraints = part::constraints(whole, &patch, origin, &scene.boundaries);
+        let nodes = NodalFields::new(&patch, part::constraints(whole, &patch, origin, &scene.boundaries));
+        let moduli = ElasticModuli::new(material, analysis.plane);
+        let by_spans = analysis.quadrature == Quadrature::Gauss;
+        let spans =
+            by_spans.then(|| SpanQuadrature::new((&scene.mesh, &body.shape), &patch, &nodes, moduli, material.density));
+        let finite = analysis.kinematics == Kinematics::Finite && !by_spans;
         Ok(Self {
             fracture: material.fracture.as_ref().map(crack),
-            nodes: NodalFields::new(&patch, constraints),
+            spans: spans.flatten().map(Box::new),
+            nodes,
             velocity_transfer: VelocityTransfer::new(patch.control_grid(), analysis.transfer),
             affine: fit(analysis.transfer).map(|fit| AffineVelocities::new(fit, &patch, points.len())),
-            deformation: (analysis.kinematics == Kinematics::Finite).then(|| vec![[[0.0; 2]; 2]; points.len()]),
+            deformation: finite.then(|| vec![[[0.0; 2]; 2]; points.len()]),
             loads: body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t)).collect(),
             forcing: None,
             surface: scene.contact.is_some().then(|| Surface::new(&scene.mesh, body)),
-            moduli: ElasticModuli::new(material, analysis.plane),
+            moduli,
             thickening: thickening(material, analysis.plane),
             density: material.density,
             thickness: analysis.thickness,

@@ -51,6 +51,9 @@ pub struct TransferLosses {
     pub power: f64,
     /// Loss where prescribed velocities are imposed on what arrived.
     pub imposed: f64,
+    /// Kinetic energy that relaxing the velocities of points takes, where spans integrate
+    /// ([`gauss`](super::gauss)).
+    pub relaxation: f64,
     /// Loss of the phase field as points move through it.
     pub phase_field: f64,
 }
@@ -58,7 +61,7 @@ pub struct TransferLosses {
 impl TransferLosses {
     /// All of it.
     pub fn sum(&self) -> f64 {
-        self.kinetic + self.power + self.imposed + self.phase_field
+        self.kinetic + self.power + self.imposed + self.relaxation + self.phase_field
     }
 
     pub(super) fn plus(self, other: Self) -> Self {
@@ -66,6 +69,7 @@ impl TransferLosses {
             kinetic: self.kinetic + other.kinetic,
             power: self.power + other.power,
             imposed: self.imposed + other.imposed,
+            relaxation: self.relaxation + other.relaxation,
             phase_field: self.phase_field + other.phase_field,
         }
     }
@@ -75,6 +79,7 @@ impl TransferLosses {
             kinetic: factor * self.kinetic,
             power: factor * self.power,
             imposed: factor * self.imposed,
+            relaxation: factor * self.relaxation,
             phase_field: factor * self.phase_field,
         }
     }

@@ -145,6 +145,9 @@ impl DiscreteField {
     /// Energies, momenta and crack tip of a body a metre thick at the present whole step with the given
     /// accelerations (m/s²); `dt` is the step in use. Closure is left at zero.
     fn sample(&self, dt: f64, acceleration: &VectorField) -> Sample {
+        if let Some(sample) = self.sample_points(dt) {
+            return sample;
+        }
         let nodes = &self.nodes;
         let half = if self.at_start { 0.0 } else { fault!("half-step-velocity", 0.5 * dt => 0.0) };
         let (mut kinetic, mut stagger, mut momentum, mut angular) = (0.0, 0.0, [0.0; 2], 0.0);
@@ -296,7 +299,8 @@ impl DiscreteField {
         let deformation = self.deformation.as_ref().map_or(0, |gradients| gradients.len() * size_of::<Gradient>());
         let forcing = self.forcing.as_ref().map_or(0, |forcing| forcing.bytes());
         let surface = self.surface.as_ref().map_or(0, |surface| surface.bytes());
-        let points = points + affine + deformation + forcing + surface;
+        let spans = self.spans.as_ref().map_or(0, |spans| spans.bytes());
+        let points = points + affine + deformation + forcing + surface + spans;
         [
             points + self.nodes.bytes() + self.velocity_transfer.bytes() + loads,
             self.fracture.as_ref().map_or(0, |f| f.bytes()),

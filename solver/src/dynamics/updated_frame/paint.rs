@@ -2,6 +2,7 @@
 
 use super::UpdatedFrame;
 use super::field::DiscreteField;
+use crate::linear_algebra::lane::Lane;
 use crate::material::degradation::largest_principal;
 use crate::output::raster::Raster;
 use crate::particles::points::Point;
@@ -14,9 +15,9 @@ impl UpdatedFrame {
     /// Phase field, if there is one, and largest principal stress (Pa) on a raster; NaN where there is no
     /// material.
     ///
-    /// Each point fills a square, a quarter larger than its volume so that no gaps are left between them. The
-    /// stress is a mean over the points weighted with volume, and the phase field that of the body with the
-    /// most of a pixel.
+    /// Each point fills a square, a quarter larger than its volume so that no gaps are left between them.
+    /// The stress is a mean over the points weighted with volume, and the phase field that of the body
+    /// with the most of a pixel.
     pub(crate) fn paint(&self, raster: &Raster) -> (Option<Vec<f64>>, Vec<f64>) {
         let count = raster.pixels[0] * raster.pixels[1];
         let (mut covered, mut stress, mut most) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
@@ -50,7 +51,8 @@ impl DiscreteField {
         let mut stress = covered.clone();
         for point in &self.points {
             let half = 0.5 * FILL * point.volume.sqrt();
-            let principal = largest_principal(point.stress) / self.volume_ratio(point);
+            let (of_point, ratio) = self.stress_of(point);
+            let principal = largest_principal(of_point) / ratio;
             raster.for_each_overlap(point.position.map(|x| [x - half, x + half]), |pixel, area| {
                 covered[pixel] += area;
                 stress[pixel] += area * principal;
@@ -67,8 +69,18 @@ impl DiscreteField {
 
     /// Present volume over that at t = 0, which leads from the stress of a point to Cauchy's; 1 for small
     /// strains.
-    fn volume_ratio(&self, point: &Point) -> f64 {
-        let dilatation = point.strain[0] + point.strain[1];
-        if self.deformation.is_some() { (self.thickening * dilatation).exp() } else { 1.0 }
+    fn volume_ratio(&self, strain: [f64; 3]) -> f64 {
+        let dilatation = strain[0] + strain[1];
+        let is_finite = self.deformation.is_some() || self.spans.is_some();
+        if is_finite { (self.thickening * dilatation).exp() } else { 1.0 }
+    }
+
+    /// Stress of a point, Pa, and [`Self::volume_ratio`]; where spans integrate points have none of their
+    /// own.
+    fn stress_of(&self, point: &Point) -> ([f64; 3], f64) {
+        let Some(spans) = &self.spans else { return (point.stress, self.volume_ratio(point.strain)) };
+        let strain = spans.strain_at(&self.patch, point.position);
+        let stress = self.moduli.stress(strain.map(Lane::splat)).map(|lane| lane[0]);
+        (stress, self.volume_ratio(strain))
     }
 }

@@ -74,13 +74,16 @@ impl DiscreteField {
     pub(super) fn occupy(&mut self, spans: &[Range<usize>; 2]) {
         let (patch, origin) = (self.whole.part(spans), origin(&self.whole, spans));
         let constraints = constraints(&self.whole, &patch, origin, &self.boundaries);
+        let shift = [0, 1].map(|d| origin[d] as isize - self.origin[d] as isize);
         self.nodes = NodalFields::new(&patch, constraints);
+        if let Some(spans) = &mut self.spans {
+            spans.follow(self.patch.control_grid(), &patch, &self.nodes, shift);
+        }
         self.velocity_transfer = VelocityTransfer::new(patch.control_grid(), self.velocity_transfer.transfer());
         if let Some(affine) = &mut self.affine {
             affine.follow(&patch);
         }
         if let Some(fracture) = &mut self.fracture {
-            let shift = [0, 1].map(|d| origin[d] as isize - self.origin[d] as isize);
             fracture.relocate(&patch, shift);
         }
         (self.patch, self.origin) = (patch, origin);

@@ -3,6 +3,7 @@
 
 use super::affine::AffineVelocities;
 use super::field::DiscreteField;
+use super::gauss::OnPatch;
 use super::{UpdatedFrame, views};
 use crate::checkpoint::{Archive, StateError};
 use crate::particles::points::OutsidePatch;
@@ -46,6 +47,12 @@ impl DiscreteField {
                 StateError(format!("the state is of another scene: a point lies at ({x:.6e}, {y:.6e}) m"))
             })?;
         }
+        if let Some(spans) = &mut self.spans {
+            spans.exchange(archive, self.points.len())?;
+            if archive.is_reader() {
+                spans.begin_fit(OnPatch { patch: &self.patch, cells: &self.cells, points: &self.points });
+            }
+        }
         self.exchange_sums(archive)
     }
 
@@ -77,6 +84,7 @@ impl DiscreteField {
             driven_power: _,
             ledger: _,
             losses: _,
+            spans: _,
             time,
             at_start,
             travelled: _,

@@ -65,6 +65,7 @@ impl DiscreteField {
         self.points_to_grid();
         self.attach_loads()?;
         self.respond();
+        self.respond_with_spans()?;
         Ok(())
     }
 }

@@ -48,9 +48,9 @@ impl<'a> Moving<'a> {
         problem: &'a Problem,
         n: usize,
         cells: usize,
-        transfer: Transfer,
+        variant: (Transfer, f64),
     ) -> Result<Self, StudyError> {
-        let scene = scene(setup, problem, n, cells, transfer)?;
+        let scene = scene(setup, problem, n, cells, variant)?;
         let frame = UpdatedFrame::new(&scene).map_err(broken)?;
         Ok(Self { setup, problem, frame, scene })
     }
@@ -75,11 +75,15 @@ impl<'a> Moving<'a> {
         let acceleration = &self.frame.fields()[0].nodes().acceleration;
         let sides = self.frame.patch().spaces.each_ref().map(sides);
         let mut squares = [[0.0; 2]; 3];
-        for point in self.frame.fields()[0].points() {
-            let a = acceleration
-                .each_ref()
-                .map(|a| self.frame.fields()[0].patch().evaluate(a, point.position).unwrap_or_default());
-            let velocity = [0, 1].map(|d: usize| point.velocity[d] + 0.5 * dt * a[d].value);
+        let of_points = self.frame.fields()[0].point_accelerations();
+        for (at, point) in self.frame.fields()[0].points().iter().enumerate() {
+            let of_grid = || {
+                acceleration
+                    .each_ref()
+                    .map(|a| self.frame.fields()[0].patch().evaluate(a, point.position).unwrap_or_default().value)
+            };
+            let a = of_points.as_ref().map_or_else(of_grid, |of_points| of_points[at]);
+            let velocity = [0, 1].map(|d: usize| point.velocity[d] + 0.5 * dt * a[d]);
             let reference = point.reference();
             let middle = (0..2).all(|d| is_in_middle(reference[d], sides[d]));
             let velocities = (velocity, solution.velocity(reference, end));

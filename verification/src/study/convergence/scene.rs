@@ -19,14 +19,14 @@ pub(super) fn scene(
     problem: &Problem,
     n: usize,
     cells: usize,
-    transfer: Transfer,
+    (transfer, offset): (Transfer, f64),
 ) -> Result<Scene, StudyError> {
     let mut material = problem.solution.material();
     if problem.equation == Equation::PhaseField {
         material.fracture = None; // the study builds its own phase field, on the points of this scene
     }
     let plain = PlainScene {
-        mesh: patches::mesh(setup.patch, setup.degrees[n], cells).map_err(|e| other(e.to_string()))?,
+        mesh: patches::shifted_mesh(setup.patch, setup.degrees[n], cells, offset).map_err(|e| other(e.to_string()))?,
         material,
         plane: setup.plane,
         mass: setup.mass,
@@ -38,6 +38,7 @@ pub(super) fn scene(
     scene.analysis.kinematics = problem.kinematics;
     if setup.frame == Frame::Updated {
         (scene.analysis.frame, scene.analysis.transfer) = (Frame::Updated, transfer);
+        scene.analysis.quadrature = setup.quadrature;
     }
     let body = &mut scene.bodies[0];
     match setup.patch {
@@ -45,6 +46,7 @@ pub(super) fn scene(
             let [inner_radius, outer_radius] = RADII;
             body.shape = Shape::Annulus { center: [0.0; 2], inner_radius, outer_radius };
         }
+        PatchFamily::Block => body.shape = Shape::Rectangle { min: [0.0; 2], max: [1.0; 2] },
         // Nothing varies across a strip, where two points will do.
         PatchFamily::Strip => body.particles_per_cell[1] = setup.points(n).min(2),
         _ => {}

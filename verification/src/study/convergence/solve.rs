@@ -106,7 +106,7 @@ impl OnMesh for Discrete<'_> {
 impl<'a> Discrete<'a> {
     /// The mesh with `cells` spans per direction for the n-th degree.
     pub fn new(setup: &'a ConvergenceSetup, problem: &'a Problem, n: usize, cells: usize) -> Result<Self, StudyError> {
-        let scene = scene(setup, problem, n, cells, Transfer::Flip)?;
+        let scene = scene(setup, problem, n, cells, (Transfer::Flip, 0.0))?;
         let frame = TotalFrame::new(&scene).map_err(|_| other("the initial phase field does not converge"))?;
         let points = ErrorPoints::new(frame.patch(), &scene.bodies[0]);
         Ok(Self { setup, problem, frame, points, scene })

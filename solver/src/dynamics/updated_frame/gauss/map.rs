@@ -1,0 +1,79 @@
+//! The inverse of the motion, `X = x − d(x)`, with the displacement d as a spline of present positions.
+
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
+use crate::linear_algebra::lane::each;
+use crate::material::hencky::{Gradient, gradient_at_end};
+use crate::splines::patch::Patch;
+
+/// Corrections at most; each squares the error.
+const LIMIT: usize = 20;
+/// A correction below this fraction of a span is the last.
+const CLOSE: f64 = 1e-9;
+
+/// Displacement `d(x)`, m, of the material that is at x now.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct InverseMap<'a> {
+    /// Background patch.
+    pub patch: &'a Patch,
+    /// Layout of the control points.
+    pub grid: ControlGrid,
+    /// Control values of the displacement less its mean, m.
+    pub displacement: &'a VectorField,
+    /// Its mean, m.
+    pub mean: [f64; 2],
+}
+
+impl InverseMap<'_> {
+    /// Displacement (m) and its gradient at a position (m), with the polynomials of the nearest span.
+    pub(crate) fn at(&self, position: [f64; 2]) -> ([f64; 2], Gradient) {
+        let along = |d: usize| {
+            let spans = self.patch.spaces[d].spans();
+            let span = spans.partition_point(|span| span.right <= position[d]).min(spans.len() - 1);
+            (spans[span].first, self.patch.spaces[d].shape_functions(span, position[d]))
+        };
+        let [(column, x), (row, y)] = [along(0), along(1)];
+        let (mut value, mut gradient) = (self.mean, [[0.0; 2]; 2]);
+        for l in 0..=self.patch.spaces[1].degree() {
+            for k in 0..=self.patch.spaces[0].degree() {
+                let node = self.grid.index(column + k, row + l);
+                for c in 0..2 {
+                    let u = self.displacement[c][node];
+                    value[c] += x.value[k] * y.value[l] * u;
+                    gradient[c][0] += x.derivative[k] * y.value[l] * u;
+                    gradient[c][1] += x.value[k] * y.derivative[l] * u;
+                }
+            }
+        }
+        (value, gradient)
+    }
+
+    /// Where the material of a reference position is now, m, by Newton's method from `start`, and how a
+    /// reference vector `along` is carried there, `F along`.
+    pub(crate) fn forward(&self, reference: [f64; 2], along: [f64; 2], start: [f64; 2]) -> ([f64; 2], [f64; 2]) {
+        let close = CLOSE * self.patch.shortest_span();
+        let mut x = start;
+        for _ in 0..LIMIT {
+            let (d, gradient) = self.at(x);
+            let carried = displacement_gradient(&gradient);
+            let apart = [0, 1].map(|c: usize| reference[c] + d[c] - x[c]);
+            let step = times(&carried, apart);
+            x = [0, 1].map(|c| x[c] + step[c]);
+            if !(step[0].hypot(step[1]) > close) {
+                return (x, times(&carried, along));
+            }
+        }
+        (x, times(&displacement_gradient(&self.at(x).1), along))
+    }
+}
+
+/// `F v` from `F − I`.
+fn times(h: &Gradient, v: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|i| v[i] + h[i][0] * v[0] + h[i][1] * v[1])
+}
+
+/// `F − I` of the deformation gradient `F = (I − ∇d)⁻¹`.
+#[inline(always)]
+pub(crate) fn displacement_gradient(gradient: &Gradient) -> Gradient {
+    let inverse = gradient_at_end(&each!(i in [0, 1] => each!(j in [0, 1] => -gradient[i][j])));
+    each!(i in [0, 1] => each!(j in [0, 1] => -inverse[i][j]))
+}

@@ -1,0 +1,129 @@
+//! One step of a body whose spans integrate, and what is read from it.
+
+use super::OnPatch;
+use crate::dynamics::energy::Sample;
+use crate::dynamics::failure::Failure;
+use crate::dynamics::updated_frame::field::DiscreteField;
+use crate::linear_algebra::conjugate_gradients::SolveFailure;
+use crate::linear_algebra::extremes::larger;
+
+impl DiscreteField {
+    /// One time step of `dt` seconds (see [the module](super)).
+    ///
+    /// # Errors
+    /// If a point leaves the patch, or a solve does not converge.
+    pub(in super::super) fn step_with_spans(&mut self, dt: f64) -> Result<(), Failure> {
+        self.relax_velocities(dt)?; // v_p(n−1/2) towards the velocity of the grid
+        let before = self.body_forces();
+        let kick = self.kick_length(dt);
+        self.kick_points(kick, &before); // v_p(n+1/2) = v_p(n−1/2) + dt [a(x_p) − s + b_p]
+        self.book_work(0.5 * dt, &before); // dt/2 Σ m b(n) · v(n+1/2)
+        self.drift_points(dt); // x_p(n+1) = x_p(n) + dt v_p(n+1/2)
+        self.time += dt;
+        self.at_start = false;
+        if let Some(forcing) = &mut self.forcing {
+            forcing.renew(&self.points, self.time);
+        }
+        self.book_work(0.5 * dt, &self.body_forces()); // dt/2 Σ m b(n+1) · v(n+1/2)
+        self.sort()?;
+        self.respond_with_spans()?; // D, F, sigma, M a = f at x(n+1)
+        Ok(())
+    }
+
+    /// Displacement, forces and accelerations at the present positions.
+    pub(in super::super) fn respond_with_spans(&mut self) -> Result<(), SolveFailure> {
+        let Self { patch, cells, points, spans, .. } = self;
+        if let Some(spans) = spans {
+            self.elastic_energy = spans.respond(OnPatch { patch, cells, points })?;
+        }
+        Ok(())
+    }
+
+    /// Once in the time a wave takes through half a span, velocities are relaxed by that part of it.
+    fn relax_velocities(&mut self, dt: f64) -> Result<(), SolveFailure> {
+        let Self { patch, cells, points, spans: Some(spans), moduli, density, .. } = self else { return Ok(()) };
+        let courant = dt * moduli.dilatational_speed(*density) / patch.shortest_span();
+        let every = (0.5 / courant).round().max(1.0) as usize;
+        if spans.since_relaxation >= every {
+            let beta = (every as f64 * courant).min(1.0);
+            let loss = spans.relax(patch, cells, points, beta)?;
+            spans.since_relaxation = 0;
+            self.losses.relaxation += loss;
+            self.ledger.transfer_loss = self.losses.sum();
+        }
+        if let Some(spans) = &mut self.spans {
+            spans.since_relaxation += 1;
+        }
+        Ok(())
+    }
+
+    /// Force per mass on each point, m/s².
+    fn body_forces(&self) -> Vec<[f64; 2]> {
+        let of_load = |at: usize| self.forcing.as_ref().map_or([0.0; 2], |forcing| forcing.force(at));
+        let per_mass = |at: usize| {
+            let force = of_load(at);
+            [0, 1].map(|c| self.gravity[c] + force[c] / self.density)
+        };
+        (0..self.points.len()).map(per_mass).collect()
+    }
+
+    fn kick_points(&mut self, dt: f64, forces: &[[f64; 2]]) {
+        let Self { points, spans: Some(spans), .. } = self else { return };
+        for ((point, a), b) in points.iter_mut().zip(&spans.point_acceleration).zip(forces) {
+            (0..2).for_each(|c| point.velocity[c] += dt * (a[c] + b[c]));
+        }
+    }
+
+    fn drift_points(&mut self, dt: f64) {
+        let mut fastest = 0.0;
+        for point in &mut self.points {
+            for c in 0..2 {
+                let moved = dt * point.velocity[c];
+                point.displacement[c] += moved;
+                point.position[c] += moved;
+                fastest = larger(fastest, moved.abs());
+            }
+        }
+        self.travelled += std::f64::consts::SQRT_2 * fastest;
+    }
+
+    fn book_work(&mut self, dt: f64, forces: &[[f64; 2]]) {
+        let power: f64 = self
+            .points
+            .iter()
+            .zip(forces)
+            .map(|(point, b)| point.volume * (b[0] * point.velocity[0] + b[1] * point.velocity[1]))
+            .sum();
+        self.ledger.external_work += dt * self.density * power;
+    }
+
+    /// Acceleration of each point, m/s², where spans integrate.
+    pub fn point_accelerations(&self) -> Option<Vec<[f64; 2]>> {
+        let spans = self.spans.as_ref()?;
+        let sum = |(a, b): (&[f64; 2], [f64; 2])| [a[0] + b[0], a[1] + b[1]];
+        Some(spans.point_acceleration.iter().zip(self.body_forces()).map(sum).collect())
+    }
+
+    /// Energies and momenta of the points at the present whole step; `dt` is the step in use.
+    pub(in super::super) fn sample_points(&self, dt: f64) -> Option<Sample> {
+        let accelerations = self.point_accelerations()?;
+        let half = if self.at_start { 0.0 } else { 0.5 * dt };
+        let mut sample = Sample {
+            time: self.time,
+            elastic: self.elastic_energy,
+            external_work: self.ledger.external_work,
+            transfer_loss: Some(self.ledger.transfer_loss),
+            time_step: dt,
+            ..Sample::default()
+        };
+        for (point, a) in self.points.iter().zip(&accelerations) {
+            let m = self.density * point.volume;
+            let v = [0, 1].map(|c| point.velocity[c] + half * a[c]);
+            sample.kinetic += 0.5 * m * (v[0] * v[0] + v[1] * v[1]);
+            sample.stagger += 0.125 * dt * dt * m * (a[0] * a[0] + a[1] * a[1]);
+            (0..2).for_each(|c| sample.momentum[c] += m * v[c]);
+            sample.angular_momentum += m * (point.position[0] * v[1] - point.position[1] * v[0]);
+        }
+        Some(sample)
+    }
+}
