@@ -58,7 +58,7 @@ impl InverseMap<'_> {
             let apart = [0, 1].map(|c: usize| reference[c] + d[c] - x[c]);
             let step = times(&carried, apart);
             x = [0, 1].map(|c| x[c] + step[c]);
-            if !(step[0].hypot(step[1]) > close) {
+            if step[0].hypot(step[1]) <= close {
                 return (x, times(&carried, along));
             }
         }

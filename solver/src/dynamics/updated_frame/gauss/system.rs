@@ -119,7 +119,10 @@ impl MassSystem {
         direction.copy_from_slice(preconditioned);
         let mut iterations = 0;
         let mut outcome = Ok(());
-        while !(rho <= tolerance * tolerance * from_zero) {
+        loop {
+            if rho <= tolerance * tolerance * from_zero {
+                break;
+            }
             let curvature = apply(direction, image);
             if !curvature.is_finite() {
                 outcome = Err(SolveFailure::NotFinite);
