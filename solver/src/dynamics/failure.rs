@@ -11,6 +11,8 @@ use crate::particles::points::OutsidePatch;
 pub enum Failure {
     /// The phase field could not be solved for.
     PhaseField(SolveFailure),
+    /// The quadrature by spans found no displacement, acceleration or velocity.
+    Spans(SolveFailure),
     /// A point left the patch, m.
     Left([f64; 2]),
     /// The consistent mass matrix is singular to round-off.

@@ -172,6 +172,7 @@ impl Simulation {
                 Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause, scene: None }
             }
             Failure::PhaseField(_)
+            | Failure::Spans(_)
             | Failure::SingularMass
             | Failure::NoStep
             | Failure::NoPoints(_)

@@ -33,8 +33,9 @@
 //! The idea of a fit of what points carry and a quadrature by spans is that of Wobbes, Tielen, Möller & Vuik
 //! (2021, *Comparison and unification of material-point and optimal transportation meshfree methods*,
 //! Computational Particle Mechanics 8) and of Sulsky & Gong (2016, *Improving the material-point method*,
-//! Innovative Numerical Approaches for Multi-Field and Multi-Scale Problems); F from labels instead of
-//! from a product of increments is fisura's own.
+//! Innovative Numerical Approaches for Multi-Field and Multi-Scale Problems). F from the gradient of a map
+//! back to the reference positions is known on fixed grids from Kamrin, Rycroft & Nave (2012, *Reference map
+//! technique for finite-strain elasticity and fluid-solid interaction*, J. Mech. Phys. Solids 60).
 
 pub(crate) mod balance;
 pub(crate) mod boundary;

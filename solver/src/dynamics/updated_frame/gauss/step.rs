@@ -13,7 +13,7 @@ impl DiscreteField {
     /// # Errors
     /// If a point leaves the patch, or a solve does not converge.
     pub(in super::super) fn step_with_spans(&mut self, dt: f64) -> Result<(), Failure> {
-        self.relax_velocities(dt)?; // v_p(n−1/2) towards the velocity of the grid
+        self.relax_velocities(dt).map_err(Failure::Spans)?; // v_p(n−1/2) towards the velocity of the grid
         let before = self.body_forces();
         let kick = self.kick_length(dt);
         self.kick_points(kick, &before); // v_p(n+1/2) = v_p(n−1/2) + dt [a(x_p) − s + b_p]
@@ -31,10 +31,10 @@ impl DiscreteField {
     }
 
     /// Displacement, forces and accelerations at the present positions.
-    pub(in super::super) fn respond_with_spans(&mut self) -> Result<(), SolveFailure> {
+    pub(in super::super) fn respond_with_spans(&mut self) -> Result<(), Failure> {
         let Self { patch, cells, points, spans, .. } = self;
         if let Some(spans) = spans {
-            self.elastic_energy = spans.respond(OnPatch { patch, cells, points })?;
+            self.elastic_energy = spans.respond(OnPatch { patch, cells, points }).map_err(Failure::Spans)?;
         }
         Ok(())
     }
