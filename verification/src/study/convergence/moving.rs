@@ -172,6 +172,7 @@ fn is_in_middle(x: f64, [left, right]: [f64; 2]) -> bool {
 fn broken(failure: Failure) -> StudyError {
     match failure {
         Failure::PhaseField(failure) => other(format!("the phase-field solve {failure}")),
+        Failure::Spans(failure) => other(format!("a solve of the quadrature by spans {failure}")),
         Failure::SingularMass => other("the mass matrix is singular to round-off"),
         Failure::NoStep => other("the critical time step is not a number"),
         Failure::Left([x, y]) => other(format!("a point left the mesh at ({x}, {y})")),
