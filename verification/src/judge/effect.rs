@@ -1,9 +1,9 @@
 //! What an error does to the curves of a result, held against the uncertainty by which they are judged.
 //!
-//! A planted error moves a curve from y₀ to y. With E = |y − r| and the triangle inequality, a sound result
-//! (E₀ ≤ U_val) that is moved by more than 2 U_val cannot be accepted any more, and one that is moved by less
-//! than U_val may not be told from a sound one. *Visible* is what moves a curve by more than U_val. Events count
-//! where the spacing lets the judge decide on them.
+//! A planted error moves a curve from y₀ to y. With E = |y − r| and the triangle inequality, a sound
+//! result (E₀ ≤ U_val) that is moved by more than 2 U_val cannot be accepted any more, and one that is
+//! moved by less than U_val may not be told from a sound one. *Visible* is what moves a curve by more than
+//! U_val. Events count where the spacing lets the judge decide on them.
 
 use super::events;
 use super::family::LENGTH_SCALE;
