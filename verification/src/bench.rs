@@ -24,6 +24,7 @@ pub mod minimal;
 pub mod moving_block;
 pub mod peer;
 pub mod plate;
+mod plate_error;
 pub mod record;
 pub mod scenes;
 pub mod solves;

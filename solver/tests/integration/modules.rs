@@ -190,7 +190,7 @@ fn files(name: &str) -> BTreeMap<Module, String> {
 }
 
 #[test]
-fn rooms_call_downwards_and_files_import_in_no_circle() {
+fn folders_call_downwards_and_files_import_in_no_circle() {
     let imports = Imports::of(&files("solver"));
     assert!(imports.0.values().map(BTreeSet::len).sum::<usize>() > 500, "paths are found");
     assert_eq!(imports.upward(&OF_THE_SOLVER), [""; 0]);
@@ -198,7 +198,7 @@ fn rooms_call_downwards_and_files_import_in_no_circle() {
 }
 
 #[test]
-fn rooms_of_the_harness_call_downwards() {
+fn folders_of_the_harness_call_downwards() {
     let imports = Imports::of(&files("verification"));
     assert!(imports.0.values().map(BTreeSet::len).sum::<usize>() > 300, "paths are found");
     assert_eq!(imports.upward(&OF_THE_HARNESS), [""; 0]);

@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use super::peer::program::Program;
-use super::plate::error_of_kinetic;
+use super::plate_error::error_of_kinetic;
 use super::record::BenchRecord;
 use super::timing::Contestant;
 use super::{BenchError, Settings};

@@ -1,7 +1,7 @@
 //! What an error of the impact-loaded plate costs: whole runs to 80 µs, from the scene in memory to the last
 //! row of the history, in processor time of all threads. The error is the kinetic energy against the
 //! independent finite elements, as the cases of the suite measure it. The finite elements themselves run in
-//! the same rounds ([`elements`](super::elements)); where they cannot be built, what they took elsewhere
+//! the same rounds ([`elements`]); where they cannot be built, what they took elsewhere
 //! stands beside it.
 //!
 //! Besides equal spans and the tolerance of the suite there is what someone in a hurry would run: spans twice
@@ -15,14 +15,15 @@ use fisura::Simulation;
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::scene::Scene;
 
+use super::plate_error::{TIGHT_TOLERANCE, difference_of_energies, error_of_kinetic};
 use super::record::{AnswerError, BenchRecord, CostPoint};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
 use super::{BenchError, Settings, elements};
 use crate::case::Case;
 use crate::case::expand::CaseScene;
-use crate::extremes::{larger, largest};
+use crate::extremes::larger;
 use crate::output::history::Table;
-use crate::reference::{Library, ReferenceCurve, relative_rms};
+use crate::reference::Library;
 use crate::scene_run::run_scene;
 
 /// Quantity of the reference.
@@ -31,14 +32,11 @@ const KINETIC: &str = "plate/kinetic-energy";
 const REFERENCE: &str = "independent-fem";
 /// What the finite elements took, and the error they had.
 const COST: &str = "plate/kinetic-error-against-processor-time";
-/// Window of the comparison, s.
-const WINDOW: [f64; 2] = [5e-6, 80e-6];
 /// The suite asks for the same closure of the ledger.
 const CLOSURE: f64 = 1e-3;
 
-/// Tolerances of the phase field whose effect is shown, and the one they are held against.
+/// Tolerances of the phase field whose effect is shown.
 const TOLERANCES: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 2e-6];
-const TIGHT_TOLERANCE: f64 = 2e-8;
 /// Finest mesh for p = 4, length scales: a finer one would take as long as all others together.
 const FINEST_QUARTIC: f64 = 1.0;
 /// Tolerance of the phase field for someone in a hurry.
@@ -252,42 +250,6 @@ fn plate<'a>(
         Ok(sample)
     };
     Ok(Contestant { record, run: Box::new(run) })
-}
-
-/// Kinetic energy, times a factor, against the finite elements.
-pub(super) fn error_of_kinetic(
-    seconds: &[f64],
-    kinetic: &[f64],
-    factor: f64,
-    reference: &ReferenceCurve,
-) -> Option<AnswerError> {
-    let kinetic: Vec<f64> = kinetic.iter().map(|k| factor * k).collect();
-    let value = (kinetic.len() == seconds.len())
-        .then(|| relative_rms(reference, seconds, &kinetic, WINDOW[0], WINDOW[1]))??;
-    Some(AnswerError {
-        quantity: "kinetic energy, relative rms from 5 to 80 µs".into(),
-        value,
-        reference: reference.label.clone(),
-        uncertainty: reference.uncertainty_relative,
-    })
-}
-
-/// Largest difference of kinetic, elastic and fracture energy from those of another run, over the largest
-/// value of each.
-fn difference_of_energies(history: &Table, other: &Table) -> Option<AnswerError> {
-    let mut value = 0.0;
-    for name in ["kinetic_j", "elastic_j", "fracture_j"] {
-        let (ours, theirs) = (history.column(name)?, other.column(name)?);
-        let size = largest(theirs.iter().map(|x| x.abs()));
-        let pairs = (ours.len() == theirs.len() && size > 0.0).then(|| ours.iter().zip(theirs))?;
-        value = larger(value, largest(pairs.map(|(a, b)| (a - b).abs() / size)));
-    }
-    Some(AnswerError {
-        quantity: "largest relative difference of an energy".into(),
-        value,
-        reference: format!("tolerance {TIGHT_TOLERANCE:e}"),
-        uncertainty: 0.0,
-    })
 }
 
 #[cfg(test)]
