@@ -13,5 +13,6 @@ mod resume;
 mod run;
 mod support;
 mod templates;
+mod tutorial;
 mod verify;
 mod vtk;
