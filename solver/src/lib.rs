@@ -35,7 +35,8 @@
 //!
 //! # From the paper to the code
 //!
-//! Modules, lowest first: each calls those above it in this table, and none below.
+//! Modules, lowest first: each calls those above it in this table, and none below. Below all of them is
+//! `checkpoint`, the state of a run as bytes.
 //!
 //! | module | equations | what |
 //! |---|---|---|
@@ -44,13 +45,16 @@
 //! | [`splines`] | E 13 | spline spaces, NURBS, the patch they span, quadrature |
 //! | [`material`] | E 4–7 | elastic energy, its split, degradation, finite strain |
 //! | [`particles`] | – | material points: layouts, tiles of spans, points that move |
-//! | [`transfer`] | E 3, 6, 10, 15–18 | sweeps over points, and what they compute at each |
+//! | [`transfer`] | E 3, 6, 10, 15–18 | sweeps of the total frame over its points, and what they compute there |
 //! | [`phase_field`] | E 9–12, 19–24 | history energy, the equation, its matrix, seeded cracks |
 //! | [`contact`] | – | boundaries, frictional impulses, rigid bodies |
 //! | [`output`] | – | pictures, states of points, spans that hold material |
 //! | [`dynamics`] | E 14–18 | the step in both frames, mass, loads, critical step, energy ledger |
 //! | [`validate`] | – | what is wrong with a scene |
 //! | [`simulation`] | – | the run: steps, samples, checkpoints, breakdowns |
+//!
+//! FLIP, XPIC and the other transfers of velocities are in [`dynamics::updated_frame`], as is Gauss quadrature
+//! by spans (`analysis.quadrature = "gauss"`).
 //!
 //! Where the paper prints a slip, the module that uses the equation says so.
 //!

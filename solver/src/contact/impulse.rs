@@ -1,4 +1,5 @@
-//! Impulses of contact, and their energy.
+//! Impulses of contact, and their energy. The equations are those of [`contact`](super); one constraint is
+//! made to hold in `Acting::projected`.
 
 mod direct;
 

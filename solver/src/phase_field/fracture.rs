@@ -1,5 +1,5 @@
 //! Fracture of one body in the total frame: history energy, phase field, and what is measured of them; the
-//! seed of a crack in either frame.
+//! seed of a crack in either frame, `H0 = B Gc/(4 l0) (1 − d/w)` at the distance d < w from it.
 
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::extremes::{larger, smaller};
@@ -17,6 +17,7 @@ use crate::transfer::sweep::{StripForces, sweep};
 
 /// Ratio of the largest initial history energy to Gc/(4 l0) on a seeded crack (Borden et al. 2012).
 pub(crate) const SEED_STRENGTH: f64 = 1000.0;
+
 /// History and phase field of a body.
 #[derive(Debug, Clone)]
 pub struct LatticeFracture {

@@ -1,4 +1,10 @@
-//! What happens at the material points in the total frame, one kernel per sweep.
+//! What happens at the material points in the total frame, one kernel per sweep:
+//!
+//! ```text
+//! H ← max(H, psi+(e))                                 history energy                             E 10
+//! sigma = g(c) dpsi+/de + dpsi−/de                    degraded stress                            E 6
+//! Σ V Gc ((1 − c)²/(4 l0) + l0 |grad c|²)             surface energy of the crack                E 3
+//! ```
 
 use crate::linear_algebra::extremes::smaller;
 use crate::linear_algebra::lane::Lane;

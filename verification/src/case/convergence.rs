@@ -110,7 +110,8 @@ impl ConvergenceSetup {
     }
 }
 
-const KEYS: [&str; 17] = [
+/// Keys of `[convergence]`.
+pub const KEYS: [&str; 17] = [
     "problem",
     "plane",
     "frame",
@@ -130,29 +131,31 @@ const KEYS: [&str; 17] = [
     "end_time",
 ];
 
+/// Names of the families of patches.
+pub const PATCHES: [(&str, PatchFamily); 10] = [
+    ("square", PatchFamily::Square),
+    ("graded", PatchFamily::Graded),
+    ("bent", PatchFamily::Bent),
+    ("annulus", PatchFamily::Annulus),
+    ("weighted", PatchFamily::Weighted),
+    ("random", PatchFamily::Random),
+    ("strip", PatchFamily::Strip),
+    ("unit-square", PatchFamily::UnitSquare),
+    ("block", PatchFamily::Block),
+    ("ring", PatchFamily::Ring),
+];
+
 pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
     let fields = item.fields(&KEYS)?;
     let problem = fields.need("problem", "problem = \"elastostatics\"", Item::text);
     let planes = [("strain", Plane::Strain), ("stress", Plane::Stress)];
     let plane = fields.or("plane", Plane::Strain, |i| i.choice(&planes));
-    let families = [
-        ("square", PatchFamily::Square),
-        ("graded", PatchFamily::Graded),
-        ("bent", PatchFamily::Bent),
-        ("annulus", PatchFamily::Annulus),
-        ("weighted", PatchFamily::Weighted),
-        ("random", PatchFamily::Random),
-        ("strip", PatchFamily::Strip),
-        ("unit-square", PatchFamily::UnitSquare),
-        ("block", PatchFamily::Block),
-        ("ring", PatchFamily::Ring),
-    ];
     let frame = fields.or("frame", Frame::Total, |i| i.choice(&[("total", Frame::Total), ("updated", Frame::Updated)]));
     let transfers = fields.maybe("transfers", |i| filled(i, "[\"flip\", \"apic\"]", transfer));
     let quadratures = [("points", Quadrature::Points), ("gauss", Quadrature::Gauss)];
     let quadrature = fields.or("quadrature", Quadrature::Points, |i| i.choice(&quadratures));
     let offsets = fields.or("offsets", vec![0.0], |i| filled(i, "[0.0, 0.5]", |n| n.quantity(Dimension::NONE)));
-    let patch = fields.or("patch", PatchFamily::Square, |i| i.choice(&families));
+    let patch = fields.or("patch", PatchFamily::Square, |i| i.choice(&PATCHES));
     let degrees = fields.need("degrees", "degrees = [2, 3]", |i| filled(i, "[2, 3]", |n| n.whole(1, 4)));
     let cells = fields.need("cells", "cells = [4, 8, 16, 32]", |i| filled(i, "[4, 8, 16, 32]", |n| n.whole(1, 4096)));
     let layouts = [("gauss", Layout::Gauss), ("uniform", Layout::Uniform), ("maclaurin", Layout::Maclaurin)];

@@ -102,3 +102,19 @@ fn the_cases_shown_in_the_book_are_the_files() {
         assert!(text.contains(&format!("```toml\n{file}```")), "{BOOK}/cases.md shows another {case} than its file");
     }
 }
+
+#[test]
+fn exact_solutions_and_keys_of_convergence_cases_have_their_lines() {
+    let solutions = read(&format!("{BOOK}/exact-solutions.md"));
+    for solution in fisura_verification::exact::all() {
+        let row = format!("| `{}` |", solution.name);
+        assert!(solutions.lines().any(|line| line.starts_with(&row)), "exact-solutions.md has no row {row}");
+    }
+    let cases = read(&format!("{BOOK}/cases.md"));
+    for key in fisura_verification::case::convergence::KEYS {
+        assert!(cases.contains(&format!("`{key}")) || cases.contains(&format!("\n{key} = ")), "cases.md lacks `{key}`");
+    }
+    for (name, _) in fisura_verification::case::convergence::PATCHES {
+        assert!(cases.contains(&format!("`{name}`")), "cases.md lacks the patch `{name}`");
+    }
+}

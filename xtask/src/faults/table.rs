@@ -234,6 +234,19 @@ pub const FAULTS: &[Fault] = &[
         "the value of the first variant is held against the bounds of all",
         &["convergence/elastostatics-square"],
     ),
+    fault(
+        "one-iteration-is-enough",
+        "the phase field is taken after one iteration",
+        &["fracture/tolerance-at-the-crack"],
+    ),
+    fault("cut-spans-half-way", "weights of cut spans are halved", &["energy/gauss-quadrature"]),
+    fault(
+        "spans-miss-the-jacobian",
+        "Gauss points of spans have the volume of now for that of t = 0",
+        &["energy/gauss-quadrature"],
+    ),
+    fault("mean-of-the-fit-kept", "points keep the mean error of the fit", &["energy/gauss-quadrature"]),
+    fault("relaxation-unbooked", "the ledger misses what the relaxation takes", &["energy/gauss-quadrature"]),
 ];
 
 #[cfg(test)]

@@ -151,7 +151,7 @@ impl SpanQuadrature {
         }
     }
 
-    /// PointFit, forces and accelerations at the present positions; the elastic energy, J/m.
+    /// The fit, forces and accelerations at the present positions; the elastic energy, J/m.
     ///
     /// # Errors
     /// If a solve does not converge: where the displacement has turned inside out, or points no longer hold
@@ -173,6 +173,7 @@ impl SpanQuadrature {
         self.inertia.solve(&self.kronecker, &self.force, &mut self.acceleration[0], held, TOLERANCES[1])?;
         fit.at_points(&self.acceleration[0], &mut self.point_acceleration);
         let excess = self.mean(points, |at| self.point_acceleration[at]);
+        let excess = fault!("mean-of-the-fit-kept", excess => excess.map(|_| 0.0));
         self.point_acceleration.iter_mut().for_each(|a| (0..2).for_each(|c| a[c] -= excess[c]));
         Ok(energy)
     }

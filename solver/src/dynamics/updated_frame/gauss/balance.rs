@@ -182,7 +182,8 @@ impl SpanBalance<'_> {
         let mut strain = [Lane::ZERO; 3];
         for (i, (gradient, weight)) in gradients.iter().zip(weights).enumerate() {
             let [[xx, xy], [yx, yy]] = *gradient;
-            volumes[i] = weight * ((1.0 - xx) * (1.0 - yy) - xy * yx);
+            let jacobian = (1.0 - xx) * (1.0 - yy) - xy * yx;
+            volumes[i] = weight * fault!("spans-miss-the-jacobian", jacobian => 1.0);
             let e = hencky_strain(&displacement_gradient(gradient));
             (0..3).for_each(|c| strain[c][i] = e[c]);
         }

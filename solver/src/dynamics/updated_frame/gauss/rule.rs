@@ -135,7 +135,9 @@ impl GaussPoints {
                         for a in 0..*nx {
                             let full = rules[0].weights[a]
                                 * if cut[at].is_some() { beyond[b] } else { rules[1].weights[b] * inside.round() };
-                            own[b * *nx + a] = area * (full + cut[at].as_ref().map_or(0.0, |cut| cut[b * *nx + a]));
+                            let part = cut[at].as_ref().map_or(0.0, |cut| cut[b * *nx + a]);
+                            let part = fault!("cut-spans-half-way", part => 0.5 * part);
+                            own[b * *nx + a] = area * (full + part);
                         }
                     }
                     let covered = own.iter().sum::<f64>() / area;

@@ -48,7 +48,7 @@ impl DiscreteField {
             let beta = (every as f64 * courant).min(1.0);
             let loss = spans.relax(patch, cells, points, beta)?;
             spans.since_relaxation = 0;
-            self.losses.relaxation += loss;
+            self.losses.relaxation += fault!("relaxation-unbooked", loss => 0.0);
             self.ledger.transfer_loss = self.losses.sum();
         }
         if let Some(spans) = &mut self.spans {
