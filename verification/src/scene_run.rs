@@ -28,7 +28,7 @@ use crate::watch;
 pub use breakdown::{BreakdownReport, Extremes, WorstPoint};
 use keep::Keeper;
 pub use keep::{Keep, KeepError, Outcome, run_scene_kept};
-pub use summary::{BreakdownSummary, Stages, Summary};
+pub use summary::{BreakdownSummary, Stages, Summary, peak_memory_mb};
 
 /// Pixels of a frame along its longer side.
 pub const FRAME_PIXELS: usize = 400;

@@ -1,6 +1,8 @@
 //! `check SCENE.toml`: what will be modelled and what it will cost.
 
 use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::time::Instant;
 
 use fisura::dynamics::time_plan::TimePlan;
 use fisura::linear_algebra::extremes::larger;
@@ -18,18 +20,16 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::{console, scene_input};
 
-/// Rough wall time of mechanics per particle and step on two cores, s.
-const MECHANICS: f64 = 15e-9;
-/// Rough wall time of the phase field per control point and step on two cores, s.
-const PHASE_FIELD: f64 = 150e-9;
+mod trial;
+
+use trial::{Trial, coarser, spans};
 
 /// Points or control points up to which a scene is made ready to be checked: seconds, and less than 1 GiB.
 const MOST_PREPARED: usize = 1_000_000;
 /// Critical step over the time a dilatational wave takes to cross the smallest span, roughly.
 const CRITICAL: f64 = 0.5;
-const ROUGH: &str = "rough: 15 ns per particle and step, with fracture 150 ns per control point and step, two cores";
-const UNPREPARED: &str =
-    "too large to be made ready for a look: counts, memory and steps are estimated from cells and wave speed";
+/// Spans of the coarser scene that stands for one too large to be made ready: beyond what caches hold.
+const COARSER: usize = 65_536;
 
 /// Arguments of `check`.
 #[derive(Debug, clap::Args)]
@@ -38,15 +38,15 @@ pub struct Args {
     scene: SceneArgs,
 }
 
-/// Validates a scene, prepares it without a step, and says what it found.
+/// Validates a scene, prepares it, tries its first steps for a second, and says what it found.
 ///
 /// # Errors
-/// A bad scene, or an initial phase field that does not converge.
+/// A bad scene, or an initial phase field that does not converge. A breakdown within the trial is a warning.
 pub fn check(args: &Args, common: &Common) -> Result<Exit, Failure> {
     console::no_files(common, "check");
     let file = scene_input::load(&args.scene, common)?;
     let mut found = match prepared(&file)? {
-        Some(simulation) => Findings::new(&file.scene, &simulation.extent(), simulation.plan(), simulation.warnings()),
+        Some((simulation, seconds)) => Findings::new(&file.scene, &simulation).tried(&file.scene, simulation, seconds),
         None => Findings::unprepared(&file.scene),
     };
     for warning in &found.warnings {
@@ -60,13 +60,16 @@ pub fn check(args: &Args, common: &Common) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// The scene ready to run, unless it is too large to be made ready only to be looked at.
-fn prepared(file: &SceneFile) -> Result<Option<Simulation>, Failure> {
+/// The scene ready to run and the seconds that took, unless it is too large to be made ready only to be looked
+/// at.
+fn prepared(file: &SceneFile) -> Result<Option<(Simulation, f64)>, Failure> {
     let size = expected_size(&file.scene);
     if size.points.max(size.control_points) > MOST_PREPARED {
         return Ok(None);
     }
-    Simulation::new(&file.scene).map(Some).map_err(|breakdown| Failure::of_run(&breakdown, file))
+    let start = Instant::now();
+    let simulation = Simulation::new(&file.scene).map_err(|breakdown| Failure::of_run(&breakdown, file))?;
+    Ok(Some((simulation, start.elapsed().as_secs_f64())))
 }
 
 /// What will be modelled and what it will cost.
@@ -92,8 +95,10 @@ struct Findings {
     frames: usize,
     memory_mb: f64,
     phase_field_memory_mb: f64,
-    estimated_wall_s: f64,
-    estimate: &'static str,
+    /// Absent if no step could be tried.
+    estimated_wall_s: Option<f64>,
+    /// How time and memory were found.
+    estimate: String,
     warnings: Vec<String>,
 }
 
@@ -132,14 +137,49 @@ impl Findings {
         let fastest = materials(scene, 1.0).values().map(|m| m.wave_speed_m_per_s).fold(0.0, larger);
         let critical = CRITICAL * smallest_span(&scene.mesh) / fastest;
         let (plan, warnings) = TimePlan::new(scene, critical);
-        Self { estimate: UNPREPARED, ..Self::new(scene, &extent, &plan, &warnings) }
+        let mut found = Self::of(scene, &extent, &plan, &warnings);
+        found.estimate =
+            "counts, memory and steps from cells and wave speed: too large to be made ready for a look".to_string();
+        let ready = coarser(scene, COARSER).and_then(|coarse| Some((Simulation::new(&coarse).ok()?, coarse)));
+        if let Some((mut simulation, coarse)) = ready
+            && let Ok(Some(trial)) = Trial::of(&coarse, &mut simulation)
+        {
+            let points = simulation.extent().particles;
+            let larger = size.points as f64 / points as f64;
+            found.estimated_wall_s = Some(larger * trial.step_s() * plan.steps() as f64);
+            let _ = write!(found.estimate, "; time from {} steps of a mesh with {points} particles", trial.steps);
+        }
+        found
     }
 
-    fn new(scene: &Scene, extent: &Extent, plan: &TimePlan, warnings: &[String]) -> Self {
+    /// Of a scene that is ready.
+    fn new(scene: &Scene, simulation: &Simulation) -> Self {
+        Self::of(scene, &simulation.extent(), simulation.plan(), simulation.warnings())
+    }
+
+    /// With time and memory of a short trial; `seconds` is what making it ready took.
+    fn tried(mut self, scene: &Scene, mut simulation: Simulation, seconds: f64) -> Self {
+        match Trial::of(scene, &mut simulation) {
+            Ok(Some(trial)) => {
+                let rows = self.samples as f64 * trial.sample_s + self.frames as f64 * trial.picture_s;
+                self.estimated_wall_s = Some(seconds + rows + self.steps as f64 * trial.step_s());
+                self.memory_mb = trial.memory_mb.map_or(self.memory_mb, |mb| larger(mb, self.memory_mb));
+                self.memory_mb += 1e-6 * (self.frames * trial.picture_bytes) as f64;
+                self.estimate = format!(
+                    "from {} steps that took {} here, with {} threads",
+                    trial.steps,
+                    duration(trial.steps_s),
+                    rayon::current_num_threads()
+                );
+            }
+            Ok(None) => self.estimate = "no step to try".to_string(),
+            Err(breakdown) => self.warnings.push(format!("a trial of the first steps breaks down: {breakdown}")),
+        }
+        self
+    }
+
+    fn of(scene: &Scene, extent: &Extent, plan: &TimePlan, warnings: &[String]) -> Self {
         let span_m = largest_spans(&scene.mesh);
-        let fractures = extent.phase_field_bytes > 0;
-        let per_step = MECHANICS * extent.particles as f64
-            + if fractures { PHASE_FIELD * extent.control_points as f64 } else { 0.0 };
         Self {
             title: scene.title.clone(),
             models: extent.models.clone(),
@@ -148,7 +188,7 @@ impl Findings {
             bodies: bodies(scene),
             materials: materials(scene, span_m[0].max(span_m[1])),
             degree: scene.mesh.degree,
-            cells: scene.mesh.knots.each_ref().map(|knots| spans(knots)),
+            cells: spans(&scene.mesh),
             span_m,
             particles: extent.particles,
             control_points: extent.control_points,
@@ -160,8 +200,8 @@ impl Findings {
             frames: scene.output.frames.len(),
             memory_mb: 1e-6 * (extent.mechanics_bytes + extent.phase_field_bytes) as f64,
             phase_field_memory_mb: 1e-6 * extent.phase_field_bytes as f64,
-            estimated_wall_s: per_step * plan.steps() as f64,
-            estimate: ROUGH,
+            estimated_wall_s: None,
+            estimate: String::new(),
             warnings: warnings.to_vec(),
         }
     }
@@ -190,8 +230,8 @@ impl Findings {
             ("time", time),
             ("output", format!("{} rows after the first, {} frames", self.samples, self.frames)),
             ("memory", format!("about {} MB{memory}", plain(self.memory_mb, 3))),
-            ("wall time", format!("about {}", duration(self.estimated_wall_s))),
-            ("", self.estimate.to_string()),
+            ("wall time", self.estimated_wall_s.map_or("unknown".into(), |s| format!("about {}", duration(s)))),
+            ("", self.estimate.clone()),
         ]);
         rows.extend(self.warnings.iter().map(|w| ("warning", w.clone())));
         console::table(&rows)
@@ -210,11 +250,6 @@ impl MaterialFindings {
         let ratio = self.length_scale_over_span.map(|r| format!(", l0/h {}", plain(r, 4))).unwrap_or_default();
         format!("{name}; wave speed {} m/s{ratio}", plain(self.wave_speed_m_per_s, 5))
     }
-}
-
-/// Number of the non-empty spans of a knot vector.
-fn spans(knots: &[f64]) -> usize {
-    knots.windows(2).filter(|k| k[1] > k[0]).count()
 }
 
 fn bodies(scene: &Scene) -> Vec<BodyFindings> {

@@ -89,7 +89,9 @@ impl ConjugateGradients {
             let error = remaining.estimate.sqrt();
             if !error.is_finite() {
                 return Err(SolveFailure::NotFinite);
-            } else if fault!("one-iteration-is-enough", error <= tolerance => iterations > 0) && (iterations > 0 || error == 0.0 || preconditioner.judges_starts()) {
+            } else if fault!("one-iteration-is-enough", error <= tolerance => iterations > 0)
+                && (iterations > 0 || error == 0.0 || preconditioner.judges_starts())
+            {
                 return Ok(Convergence { iterations, error });
             } else if iterations == limit {
                 return Err(SolveFailure::NotConverged { iterations, error });

@@ -22,6 +22,9 @@ const BREAKING: f64 = 0.5 * (1.0 / BROKEN - 1.0);
 /// Distance from a crack up to which points are counted, of l0: they are enough to break it.
 const COUNTED: f64 = 0.25;
 
+/// Most halvings of the logarithm of a half width: from the least number to the largest it takes 24.
+const HALVINGS: usize = 64;
+
 /// Errors for seeds that leave their cracks whole somewhere, and for seeds that cover their body; `h` is the
 /// largest span, m.
 pub(super) fn check(key: &str, body: &Body, fracture: &Fracture, points: &Points<'_>, h: f64, findings: &mut Findings) {
@@ -122,9 +125,12 @@ fn remedy(near: &[Near], length: f64, width: f64, l0: f64, h: f64) -> String {
         return "use smaller cells, or more particles_per_cell".to_string();
     }
     let (mut least, mut enough) = (width, widest);
-    while enough > 1.0001 * least {
-        let middle = (least * enough).sqrt();
+    for _ in 0..HALVINGS {
+        let middle = least.sqrt() * enough.sqrt(); // their product may be no number
         *(if breaks(middle, l0) { &mut enough } else { &mut least }) = middle;
+        if enough <= 1.0001 * least {
+            break;
+        }
     }
     let wider = format!("give a half_width of at least {:.3e} m", 1.0006 * enough);
     // smaller cells are like a larger width and length scale

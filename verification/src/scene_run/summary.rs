@@ -119,7 +119,7 @@ pub(super) fn final_energies(history: &Table) -> BTreeMap<String, f64> {
 }
 
 /// High-water mark of the resident memory of this process, 10⁶ bytes, where `/proc` tells it.
-pub(super) fn peak_memory_mb() -> Option<f64> {
+pub fn peak_memory_mb() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kibibytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
