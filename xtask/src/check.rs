@@ -165,12 +165,9 @@ impl Findings {
                 self.estimated_wall_s = Some(seconds + rows + self.steps as f64 * trial.step_s());
                 self.memory_mb = trial.memory_mb.map_or(self.memory_mb, |mb| larger(mb, self.memory_mb));
                 self.memory_mb += 1e-6 * (self.frames * trial.picture_bytes) as f64;
-                self.estimate = format!(
-                    "from {} steps that took {} here, with {} threads",
-                    trial.steps,
-                    duration(trial.steps_s),
-                    rayon::current_num_threads()
-                );
+                let (threads, took) = (rayon::current_num_threads(), duration(trial.steps_s));
+                let threads = if threads == 1 { "one thread".to_string() } else { format!("{threads} threads") };
+                self.estimate = format!("from {} steps that took {took} here, with {threads}", trial.steps);
             }
             Ok(None) => self.estimate = "no step to try".to_string(),
             Err(breakdown) => self.warnings.push(format!("a trial of the first steps breaks down: {breakdown}")),

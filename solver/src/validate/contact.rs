@@ -13,8 +13,8 @@ use crate::scene::{Body, Frame, Scene, Shape, TimeStep, Transfer};
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
 const TOLERANCE: f64 = 1e-3;
 
-/// Most segments of boundaries times corners and circles of their shapes: half a second.
-const MOST_WORK: f64 = 2e7;
+/// Most segments of boundaries times corners and circles of their shapes: a quarter of a second, half a GiB.
+const MOST_WORK: f64 = 1e7;
 /// Overlaps that are told, and most distances that are taken for each.
 const MOST_OVERLAPS: usize = 10;
 const MOST_DISTANCES: usize = 1_000_000;
