@@ -45,7 +45,7 @@
 //! | [`splines`] | E 13 | spline spaces, NURBS, the patch they span, quadrature |
 //! | [`material`] | E 4–7 | elastic energy, its split, degradation, finite strain |
 //! | [`particles`] | – | material points: layouts, tiles of spans, points that move |
-//! | [`transfer`] | E 3, 6, 10, 15–18 | sweeps of the total frame over its points, and what they compute there |
+//! | [`transfer`] | E 3, 6, 10, 15–18 | sweeps of the total frame over points, and what they compute |
 //! | [`phase_field`] | E 9–12, 19–24 | history energy, the equation, its matrix, seeded cracks |
 //! | [`contact`] | – | boundaries, frictional impulses, rigid bodies |
 //! | [`output`] | – | pictures, states of points, spans that hold material |
@@ -53,8 +53,8 @@
 //! | [`validate`] | – | what is wrong with a scene |
 //! | [`simulation`] | – | the run: steps, samples, checkpoints, breakdowns |
 //!
-//! FLIP, XPIC and the other transfers of velocities are in [`dynamics::updated_frame`], as is Gauss quadrature
-//! by spans (`analysis.quadrature = "gauss"`).
+//! FLIP, XPIC and the other transfers of velocities are in [`dynamics::updated_frame`], as is Gauss
+//! quadrature by spans (`analysis.quadrature = "gauss"`).
 //!
 //! Where the paper prints a slip, the module that uses the equation says so.
 //!

@@ -60,8 +60,8 @@ pub fn check(args: &Args, common: &Common) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// The scene ready to run and the seconds that took, unless it is too large to be made ready only to be looked
-/// at.
+/// The scene ready to run and the seconds that took, unless it is too large to be made ready only to be
+/// looked at.
 fn prepared(file: &SceneFile) -> Result<Option<(Simulation, f64)>, Failure> {
     let size = expected_size(&file.scene);
     if size.points.max(size.control_points) > MOST_PREPARED {

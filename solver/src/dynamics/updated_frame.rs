@@ -1,6 +1,6 @@
 //! Explicit dynamics in the updated frame: points carry everything, the grid is rebuilt at every step (lumped
-//! mass). With `quadrature = "gauss"` spans integrate instead of points: the matrix of mass is not lumped, and
-//! the critical step is `2/ω_max`; see [`gauss`].
+//! mass). With `quadrature = "gauss"` spans integrate instead of points: the matrix of mass is not lumped,
+//! and the critical step is `2/ω_max`; see [`gauss`].
 //!
 //! Between two whole steps n and n + 1 the shape functions are those at the positions x(n). The scheme is
 //! velocity Verlet written as one full kick on the rebuilt grid; no acceleration outlives its grid. What the

@@ -4,7 +4,9 @@
 //! psi± = lam*/2 ⟨tr e⟩±² + mu tr[(e±)²],      sigma = g(c) dpsi+/de + dpsi−/de
 //! ```
 //!
-//! The degradation g(c) is in [`degradation`](super::degradation). //! With `m = (exx + eyy)/2` and `r = hypot((exx − eyy)/2, exy)` the principal strains are `m ± r`, and the
+//! The degradation g(c) is in [`degradation`](super::degradation).
+//!
+//! With `m = (exx + eyy)/2` and `r = hypot((exx − eyy)/2, exy)` the principal strains are `m ± r`, and the
 //! tensile part is `e+ = a (e − b I)` with (a, b) = (1, 0) where both are tensile, (0, ·) where both are
 //! compressive and `(e1/(2 r), e2)` between, where `2 r ≥ max(|e1|, |e2|)`: nothing is ever divided by a
 //! small number, so equal and nearly equal principal strains need no special care. The hypotenuse is scaled,

@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 1e-3;
 const MOST_WORK: f64 = 1e7;
 /// Overlaps that are told, and most distances that are taken for each.
 const MOST_OVERLAPS: usize = 10;
-const MOST_DISTANCES: usize = 1_000_000;
+const MOST_DISTANCES: usize = 250_000;
 
 pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     if !scene.bodies.is_empty() && scene.bodies.iter().all(|body| body.rigid) {
