@@ -172,8 +172,8 @@ impl SpanQuadrature {
         extrapolate(&mut self.acceleration);
         self.inertia.solve(&self.kronecker, &self.force, &mut self.acceleration[0], held, TOLERANCES[1])?;
         fit.at_points(&self.acceleration[0], &mut self.point_acceleration);
-        let excess = self.mean(points, |at| self.point_acceleration[at]);
-        let excess = fault!("mean-of-the-fit-kept", excess => excess.map(|_| 0.0));
+        let mean = self.mean(points, |at| self.point_acceleration[at]);
+        let excess = fault!("mean-of-the-fit-kept", mean => mean.map(|_| 0.0));
         self.point_acceleration.iter_mut().for_each(|a| (0..2).for_each(|c| a[c] -= excess[c]));
         Ok(energy)
     }

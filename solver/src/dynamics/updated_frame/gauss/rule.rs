@@ -136,8 +136,7 @@ impl GaussPoints {
                             let full = rules[0].weights[a]
                                 * if cut[at].is_some() { beyond[b] } else { rules[1].weights[b] * inside.round() };
                             let part = cut[at].as_ref().map_or(0.0, |cut| cut[b * *nx + a]);
-                            let part = fault!("cut-spans-half-way", part => 0.5 * part);
-                            own[b * *nx + a] = area * (full + part);
+                            own[b * *nx + a] = area * (full + fault!("cut-spans-half-way", part => 0.5 * part));
                         }
                     }
                     let covered = own.iter().sum::<f64>() / area;
