@@ -104,6 +104,11 @@ pub struct ConvergenceSetup {
 }
 
 impl ConvergenceSetup {
+    /// Whether the mass matrix is lumped: where spans integrate it never is.
+    pub fn lumps_mass(&self) -> bool {
+        self.mass == Mass::Lumped && self.quadrature == Quadrature::Points
+    }
+
     /// Points per span and direction for the n-th degree.
     pub fn points(&self, n: usize) -> usize {
         self.points.as_ref().map_or(self.degrees[n] + 1, |points| points[n])

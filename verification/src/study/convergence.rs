@@ -11,7 +11,7 @@ mod problem;
 mod scene;
 mod solve;
 
-use fisura::scene::{Frame, Layout, Mass, Quadrature, Transfer};
+use fisura::scene::{Frame, Layout, Quadrature, Transfer};
 
 use super::{Findings, StudyError};
 use crate::case::Case;
@@ -184,11 +184,7 @@ fn theory(setup: &ConvergenceSetup, problem: &Problem, degree: usize, below: usi
         _ if setup.frame == Frame::Updated && setup.quadrature == Quadrature::Points => None,
         (Equation::Dynamic, Refine::TimeStep) => Some(2.0),
         (Equation::Dynamic, Refine::Mesh(power)) => {
-            let space = if setup.mass == Mass::Lumped && setup.quadrature == Quadrature::Points {
-                space.min(2.0)
-            } else {
-                space
-            };
+            let space = if setup.lumps_mass() { space.min(2.0) } else { space };
             Some(power.map_or(space, |power| space.min(2.0 * power)))
         }
         _ => Some(space),
@@ -202,9 +198,7 @@ fn other(message: impl Into<String>) -> StudyError {
 fn words_of_theory(setup: &ConvergenceSetup, problem: &Problem) -> String {
     match (problem.equation, setup.refine) {
         (Equation::Dynamic, Refine::TimeStep) => "velocity Verlet is of order 2",
-        (Equation::Dynamic, _) if setup.mass == Mass::Lumped && setup.quadrature == Quadrature::Points => {
-            "a lumped mass is of order 2 for every degree"
-        }
+        (Equation::Dynamic, _) if setup.lumps_mass() => "a lumped mass is of order 2 for every degree",
         _ => "best approximation by splines: p + 1 in L2, p in H1",
     }
     .into()
@@ -247,11 +241,14 @@ fn caption(setup: &ConvergenceSetup, problem: &Problem) -> String {
     };
     let mut words = format!("On {}; {layout} points, {}; {loading}", words_of_patch(setup.patch), points.join(", "));
     if problem.equation == Equation::Dynamic {
-        let mass = if setup.mass == Mass::Lumped { "lumped" } else { "consistent" };
+        let mass = if setup.lumps_mass() { "lumped" } else { "consistent" };
         words.push_str(&format!("; {mass} mass"));
     }
     if setup.frame == Frame::Updated {
         words.push_str("; updated frame, the points cross spans");
+        if setup.quadrature == Quadrature::Gauss {
+            words.push_str(", spans integrate");
+        }
     }
     words + ". Errors relative to the exact field."
 }

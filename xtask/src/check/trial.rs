@@ -3,7 +3,6 @@
 use std::time::Instant;
 
 use fisura::Scene;
-use fisura::particles::spans::smallest_span;
 use fisura::scene::Mesh;
 use fisura::simulation::breakdown::Breakdown;
 use fisura::simulation::{Simulation, square_pixels};
@@ -79,7 +78,7 @@ pub(super) fn coarser(scene: &Scene, most: usize) -> Option<Scene> {
             *knots = [&knots[..first], &inner, &knots[last..]].concat();
         }
     }
-    (smallest_span(&scene.mesh) > 0.0).then_some(scene)
+    Some(scene)
 }
 
 /// Number of non-empty spans per direction.

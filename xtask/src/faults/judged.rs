@@ -265,8 +265,7 @@ fn row<E: ToString>(
     judged: Result<Option<Judged>, E>,
     ended: Option<String>,
 ) -> Row {
-    let (what, mut row) = (fault.what, Row::new(plate, fault));
-    row.what = what;
+    let mut row = Row::new(plate, fault);
     match judged {
         Ok(None) => row.verdict = format!("no result: {}", ended.unwrap_or_default()),
         Err(_) => (row.changed, row.verdict, row.rejected) = (true, "breaks down, no curves".into(), true),

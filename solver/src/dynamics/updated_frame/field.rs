@@ -8,7 +8,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::affine::AffineVelocities;
-use super::gauss::SpanQuadrature;
+use super::gauss::{self, SpanQuadrature};
 use super::grid::{ImposedEnergy, NodalFields};
 use super::losses::TransferLosses;
 use super::pointwise_fracture::PointwiseFracture;
@@ -311,7 +311,7 @@ impl DiscreteField {
 
     /// Whether a point may have moved a quarter of the shortest span since the critical step was taken.
     pub(crate) fn has_moved(&self) -> bool {
-        // Cut spans do not lower the critical step where spans integrate: only the strain does.
-        self.travelled >= if self.spans.is_some() { 4.0 } else { 0.25 } * self.patch.shortest_span()
+        let spans = if self.spans.is_some() { gauss::WAY_BETWEEN_STEPS } else { 0.25 };
+        self.travelled >= spans * self.patch.shortest_span()
     }
 }

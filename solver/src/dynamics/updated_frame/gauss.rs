@@ -76,6 +76,10 @@ const FIT_PENALTY: [f64; 2] = [0.005, 0.0005];
 /// decades above them the errors of the study cases are still the same to two digits.
 const TOLERANCES: [f64; 3] = [1e-8, 1e-6, 1e-6];
 
+/// Way of a point after which the critical step is taken anew, spans: the penalty keeps it whatever the
+/// boundary cuts, so it changes with the strain alone, and a point on its way vibrates by less than a span.
+pub(crate) const WAY_BETWEEN_STEPS: f64 = 4.0;
+
 /// What a body has besides its points if spans integrate.
 #[derive(Debug, Clone)]
 pub(crate) struct SpanQuadrature {

@@ -7,7 +7,7 @@
 //!
 //! with Kirchhoff's stress tau of the Hencky strain of F ([`crate::material::hencky`]).
 
-use super::fit::add_cell;
+use super::fit::{add_cell, cleared};
 use super::map::displacement_gradient;
 use super::rule::GaussPoints;
 use crate::dynamics::updated_frame::windows::{Window, control_values, scatter};
@@ -60,11 +60,8 @@ impl SpanBalance<'_> {
     /// Mass matrix and internal forces (N/m); returns the elastic energy, J/m.
     pub(crate) fn assemble(&self, matrix: &mut Stencil, force: &mut VectorField) -> f64 {
         let (grid, row_length) = (matrix.grid, matrix.row_length());
-        matrix.coefficients_mut().fill(0.0);
-        force.iter_mut().for_each(|force| force.fill(0.0));
-        let [x, y] = force;
-        let fields = [matrix.coefficients_mut(), x.as_mut_slice(), y.as_mut_slice()];
-        let energies = scatter(&self.gauss.strips, fields, [row_length, grid.stride, grid.stride], |strip, window| {
+        let (fields, strides) = cleared(matrix, force);
+        let energies = scatter(&self.gauss.strips, fields, strides, |strip, window| {
             let cells = &self.gauss.cells[strip.cells.clone()];
             dispatch(AssembleSpans { balance: self, cells, window, grid, row_length })
         });

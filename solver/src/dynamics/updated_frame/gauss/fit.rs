@@ -29,11 +29,8 @@ impl PointFit<'_> {
     /// Matrix, and right-hand side of the displacements less `mean` (m).
     pub(crate) fn assemble(&self, matrix: &mut Stencil, load: &mut VectorField, mean: [f64; 2]) {
         let (grid, row_length) = (matrix.grid, matrix.row_length());
-        matrix.coefficients_mut().fill(0.0);
-        load.iter_mut().for_each(|load| load.fill(0.0));
-        let [x, y] = load;
-        let fields = [matrix.coefficients_mut(), x.as_mut_slice(), y.as_mut_slice()];
-        scatter(&self.cells.strips, fields, [row_length, grid.stride, grid.stride], |strip, window| {
+        let (fields, strides) = cleared(matrix, load);
+        scatter(&self.cells.strips, fields, strides, |strip, window| {
             let cells = &self.cells.cells[strip.cells.clone()];
             dispatch(AssemblePointFit { fit: self, cells, window, grid, row_length, mean });
         });
@@ -151,6 +148,15 @@ impl Vectorised for AssemblePointFit<'_, '_> {
             _ => fit.strip::<5, 25>(cells, window, *grid, *row_length, *mean),
         }
     }
+}
+
+/// Coefficients of a matrix and a field, all zero, and their lengths per row of control points.
+pub(crate) fn cleared<'a>(matrix: &'a mut Stencil, field: &'a mut VectorField) -> ([&'a mut [f64]; 3], [usize; 3]) {
+    let strides = [matrix.row_length(), matrix.grid.stride, matrix.grid.stride];
+    let [x, y] = field;
+    let mut fields = [matrix.coefficients_mut(), x.as_mut_slice(), y.as_mut_slice()];
+    fields.iter_mut().for_each(|values| values.fill(0.0));
+    (fields, strides)
 }
 
 /// Adds the symmetric matrix of a cell to the half stencil.
