@@ -15,6 +15,7 @@ pub mod geometry;
 mod read;
 mod repeat;
 mod rings;
+mod value;
 
 pub use chart::{Chart, ChartCurve};
 pub use check::{Estimate, NumberKey};
@@ -23,6 +24,8 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use fisura::fault;
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 use crate::case::formula::{Amount, Formula};
 use crate::case::geometry::Geometry;
@@ -33,9 +36,11 @@ use crate::scene::fields::{Item, Problems};
 use crate::scene::{Problem, SceneFileError};
 
 /// How much a run may cost.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum Tier {
     /// Minutes in all; what CI runs.
+    #[default]
     Quick,
     /// Paper resolution.
     Full,
@@ -216,6 +221,11 @@ pub struct Case {
     pub charts: Vec<Chart>,
     /// The file with every check written out, for places of errors.
     pub document: Document,
+}
+
+/// The JSON schema of a case file, for editors; its scene may be any table.
+pub fn json_schema() -> serde_json::Value {
+    schemars::schema_for!(read::CaseTable).to_value()
 }
 
 impl Case {

@@ -14,7 +14,9 @@ pub(crate) mod read;
 mod read_body;
 mod read_mesh;
 pub mod suggest;
+pub mod typed;
 pub mod units;
+mod words;
 
 use std::path::Path;
 

@@ -19,20 +19,48 @@ fn results() -> Value {
     serde_json::to_value(crate::fixture::results()).unwrap()
 }
 
-/// With `FISURA_BLESS=1` the file is written instead of compared.
+/// With `FISURA_BLESS=1` the files are written instead of compared.
 #[test]
-fn the_committed_schema_is_that_of_the_types() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../verification/schema/results.schema.json");
-    let text = serde_json::to_string_pretty(&json_schema()).unwrap() + "\n";
-    if std::env::var_os("FISURA_BLESS").is_some() {
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(&path, &text).unwrap();
+fn the_committed_schemas_are_those_of_the_types() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../verification/schema");
+    let schemas = [
+        ("results", json_schema()),
+        ("verdict", fisura_verification::judge::verdict::json_schema()),
+        ("case", fisura_verification::case::json_schema()),
+    ];
+    for (name, schema) in schemas {
+        let path = folder.join(format!("{name}.schema.json"));
+        let text = serde_json::to_string_pretty(&schema).unwrap() + "\n";
+        if std::env::var_os("FISURA_BLESS").is_some() {
+            std::fs::write(&path, &text).unwrap();
+        }
+        let command = "FISURA_BLESS=1 cargo test --workspace the_committed_schemas";
+        assert!(std::fs::read_to_string(&path).unwrap() == text, "write {name} anew: {command}");
     }
-    let committed = std::fs::read_to_string(&path).unwrap();
-    assert!(
-        committed == text,
-        "write it anew: FISURA_BLESS=1 cargo test -p fisura-reports --test integration the_committed_schema"
-    );
+}
+
+/// What editors complete and mark in a case file.
+#[test]
+fn case_files_follow_their_schema_and_misspelt_ones_do_not() {
+    let schema = jsonschema::validator_for(&fisura_verification::case::json_schema()).unwrap();
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../verification/cases");
+    let suites = std::fs::read_dir(cases).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir());
+    let files: Vec<_> = suites.flat_map(|suite| std::fs::read_dir(suite).unwrap().map(|e| e.unwrap().path())).collect();
+    assert!(files.len() > 100);
+    for file in files {
+        let case: Value = toml::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
+        let found: Vec<String> = schema.iter_errors(&case).map(|e| format!("{}: {e}", e.instance_path())).collect();
+        assert_eq!(found, Vec::<String>::new(), "{}", file.display());
+    }
+    let sound = "claim = \"c\"\nseconds = 1\n[[check]]\nid = \"a\"\nquantity = \"q\"\nmax = \"1 mm\"\n";
+    let valid = |text: &str| schema.is_valid(&toml::from_str(text).unwrap());
+    assert!(valid(sound));
+    for (right, wrong) in
+        [("seconds", "second"), ("seconds = 1", "seconds = 0"), ("max", "mox"), ("[[check]]", "[check]")]
+    {
+        assert!(!valid(&sound.replace(right, wrong)), "{wrong}");
+    }
+    assert!(!valid(&format!("{sound}meshes = \"coarsest\"\n")));
 }
 
 #[test]

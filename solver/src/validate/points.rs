@@ -12,8 +12,10 @@ use crate::splines::nurbs::{MapPoint, NurbsPatch};
 
 /// Most tests of a point against a corner or circle, over all looks at a body: a tenth of a second.
 const MOST_LOOKS: usize = 10_000_000;
-/// Most points that are mapped by a geometry: half a second.
-const MOST_MAPPED: usize = 2_000_000;
+/// Most points that are mapped by a geometry: a quarter of a second.
+const MOST_MAPPED: usize = 1_000_000;
+/// Most points along a segment that are put in order: a tenth of a second.
+const MOST_NEAR: usize = 400_000;
 
 /// The points of a body: pairs of its positions along both directions of the mesh that lie in its shape.
 pub(super) struct Points<'a> {
@@ -71,7 +73,7 @@ impl<'a> Points<'a> {
     }
 
     /// The points within a span of a segment, and within `reach` (m), in their order along it; `None` if
-    /// there are too many to be looked at.
+    /// there are too many.
     pub(crate) fn near(&self, [from, to]: [Position; 2], reach: f64) -> Option<Vec<Near>> {
         let along = [to[0] - from[0], to[1] - from[1]];
         let length = along[0].hypot(along[1]);
@@ -87,6 +89,9 @@ impl<'a> Points<'a> {
             let diagonal = (ax * ax + ay * ay + bx * bx + by * by).sqrt();
             let distance = distance_to_segment(position, from, to);
             if distance <= diagonal.max(reach) && self.is_inside(position) {
+                if near.len() == MOST_NEAR {
+                    return None;
+                }
                 let project = |v: Position| (v[0] * along[0] + v[1] * along[1]) / length;
                 let foot = project([position[0] - from[0], position[1] - from[1]]);
                 let span = spans.into_iter().map(|span| project(span).abs()).sum();

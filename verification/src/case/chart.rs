@@ -1,7 +1,9 @@
 //! The `[[chart]]` tables of a case file: what is drawn of its runs.
 
-use super::check::read_column;
-use crate::scene::fields::Item;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::value::{Column, Words};
 
 /// A chart of columns of the histories of all runs.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,27 +33,53 @@ pub struct ChartCurve {
     pub exact: bool,
 }
 
-/// One of the tables.
-pub(super) fn read(item: &Item<'_>) -> Option<Chart> {
-    let fields = item.fields(&["id", "title", "caption", "x", "axes", "curves"])?;
-    let id = fields.need("id", "id = \"energies\"", Item::words);
-    let title = fields.need("title", "title = \"what is shown\"", Item::words);
-    let caption = fields.or("caption", String::new(), Item::text);
-    let x = fields.or("x", "time_s".to_string(), read_column);
-    let axes = fields.need("axes", "axes = [\"time (s)\", \"energy (J)\"]", |item| {
-        let axes = item.each(Item::words)?;
-        axes.try_into().ok().or_else(|| item.fail("there are two axes", "give the label of x and that of y"))
-    });
-    let curves = fields.need("curves", "curves = [{ label = \"\", column = \"kinetic_j\" }]", |item| {
-        item.tables()?.iter().map(read_curve).collect()
-    });
-    Some(Chart { id: id?, title: title?, caption: caption?, x: x?, axes: axes?, curves: curves? })
+/// As it stands in the file.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ChartTable {
+    /// Last part of the id of the figure: `id = "energies"`.
+    id: Words,
+    /// What is shown.
+    title: Words,
+    /// A sentence below the figure.
+    #[serde(default)]
+    caption: String,
+    /// Formula of columns along the abscissa.
+    #[serde(default = "time")]
+    x: Column,
+    /// Labels of both axes: `axes = ["time (s)", "energy (J)"]`.
+    axes: [Words; 2],
+    /// What is drawn: `curves = [{ label = "", column = "kinetic_j" }]`.
+    curves: Vec<CurveTable>,
 }
 
-fn read_curve(item: &Item<'_>) -> Option<ChartCurve> {
-    let fields = item.fields(&["label", "column", "exact"])?;
-    let label = fields.or("label", String::new(), Item::text);
-    let column = fields.need("column", "column = \"kinetic_j\"", read_column);
-    let exact = fields.or("exact", false, Item::flag);
-    Some(ChartCurve { label: label?, column: column?, exact: exact? })
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct CurveTable {
+    /// Name beside that of the run.
+    #[serde(default)]
+    label: String,
+    /// Formula of columns: `column = "kinetic_j"`.
+    column: Column,
+    /// Whether it is a closed form and no result.
+    #[serde(default)]
+    exact: bool,
+}
+
+fn time() -> Column {
+    Column("time_s".into())
+}
+
+impl From<ChartTable> for Chart {
+    fn from(table: ChartTable) -> Self {
+        let curve = |table: CurveTable| ChartCurve { label: table.label, column: table.column.0, exact: table.exact };
+        Self {
+            id: table.id.0,
+            title: table.title.0,
+            caption: table.caption,
+            x: table.x.0,
+            axes: table.axes.map(|label| label.0),
+            curves: table.curves.into_iter().map(curve).collect(),
+        }
+    }
 }

@@ -1,43 +1,21 @@
 //! The `[[check]]` tables of a case file.
 
-use super::formula::{Amount, Formula};
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use serde_json::{Map, Value};
+
+use super::formula::Amount;
+use super::value::{AnyAmount, Column, Factor, Id, Quantity, Time, Uncertainty, Words, identifier};
 use super::{Check, ExpectedBand};
 use crate::record::{Accept, BoundKind, ReferenceKind};
-use crate::scene::fields::{Fields, Item};
-use crate::scene::units::{self, Dimension};
-
-const KEYS: [&str; 27] = [
-    "id",
-    "formerly",
-    "quantity",
-    "unit",
-    "measure",
-    "column",
-    "reference",
-    "from",
-    "to",
-    "at",
-    "expect",
-    "expect_kind",
-    "expect_source",
-    "uncertainty",
-    "scale",
-    "band",
-    "variant",
-    "against",
-    "meshes",
-    "order",
-    "min",
-    "max",
-    "below",
-    "above",
-    "bounds",
-    "why",
-    "expectation",
-];
+use crate::scene::fields::Item;
 
 /// What a check makes of the values of its measure on all meshes: the key `meshes`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Estimate {
     /// The order p in h.
     ObservedOrder,
@@ -47,16 +25,6 @@ pub enum Estimate {
     GridConvergenceIndex,
     /// The value on the finest mesh, with its numerical uncertainty.
     FinestMesh,
-}
-
-impl Estimate {
-    /// Words of the key.
-    pub const WORDS: [(&str, Self); 4] = [
-        ("observed-order", Self::ObservedOrder),
-        ("richardson", Self::Richardson),
-        ("grid-convergence-index", Self::GridConvergenceIndex),
-        ("finest-mesh", Self::FinestMesh),
-    ];
 }
 
 /// A key of a check that takes a formula in place of a number.
@@ -87,88 +55,170 @@ impl NumberKey {
     }
 }
 
-/// All checks, at least one.
-pub(super) fn read(item: &Item<'_>) -> Option<Vec<Check>> {
-    let tables = item.tables()?;
-    if tables.is_empty() {
-        return item.fail("there is no check", "add at least one [[check]]");
-    }
-    let checks: Vec<Option<Check>> = tables.iter().map(read_check).collect();
-    checks.into_iter().collect()
+/// A check as it stands in the file, or a set of checks or one for each of some variants, which are written
+/// out before it is read.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CheckTable {
+    /// Last part of the id of its records, by which later results are compared with earlier ones: lower-case
+    /// words joined by dashes.
+    id: Option<Id>,
+    /// Ids it had before.
+    #[serde(default)]
+    formerly: Vec<Id>,
+    /// What is measured, in words.
+    quantity: Option<Words>,
+    /// Unit of the value; 1 if absent.
+    unit: Option<String>,
+    /// The measure; absent where the study itself measures the quantity.
+    measure: Option<String>,
+    /// Column of the history, or a formula of columns.
+    column: Option<Column>,
+    /// Reference curve or value: `reference = "folder/quantity"`.
+    reference: Option<String>,
+    /// Begin of the window in time.
+    from: Option<Time>,
+    /// End of the window in time.
+    to: Option<Time>,
+    /// Position, time or threshold that the measure needs.
+    at: Option<AnyAmount>,
+    /// Expected value, if it is one number.
+    expect: Option<AnyAmount>,
+    /// Kind of the expected value.
+    expect_kind: Option<ReferenceKind>,
+    /// Where the expected value comes from.
+    expect_source: Option<String>,
+    /// Half width of the uncertainty of the expected value, in its unit.
+    uncertainty: Option<Uncertainty>,
+    /// Factor from the measured to the reported unit.
+    scale: Option<Factor>,
+    /// Reference band that gives the bounds: `band = "folder/name"`.
+    band: Option<String>,
+    /// The variant it is about, or a pattern of variants; each, if absent.
+    variant: Option<String>,
+    /// The variant it is compared with.
+    against: Option<String>,
+    /// What to make of the values on all meshes.
+    meshes: Option<Estimate>,
+    /// Order of theory in the span length, for `meshes`.
+    order: Option<Quantity>,
+    /// Least value, with the reason in `why`.
+    min: Option<Quantity>,
+    /// Largest value, with the reason in `why`.
+    max: Option<Quantity>,
+    /// How far below its reference the value may lie.
+    below: Option<Quantity>,
+    /// How far above its reference the value may lie.
+    above: Option<Quantity>,
+    /// `regression`: bounds chosen after the result. `validation`: those of the uncertainty of the reference.
+    bounds: Option<BoundKind>,
+    /// Where the bounds come from.
+    #[serde(default)]
+    why: String,
+    /// A band in which the value is expected, beside bounds that are those of a known limit.
+    expectation: Option<ExpectationTable>,
+    /// A set of checks of `check-sets.toml`, in place of id and quantity.
+    #[schemars(with = "Option<String>")]
+    set: Option<IgnoredAny>,
+    /// What changes in checks of the set: `with = { id-of-a-check = { max = 1 } }`.
+    #[schemars(with = "Option<BTreeMap<String, Map<String, Value>>>")]
+    with: Option<IgnoredAny>,
+    /// A check for each of some variants: `variants = [{ variant = "p=2", max = 1 }]`.
+    #[schemars(with = "Option<Vec<Map<String, Value>>>")]
+    variants: Option<IgnoredAny>,
 }
 
-fn read_check(item: &Item<'_>) -> Option<Check> {
-    let fields = item.fields(&KEYS)?;
-    let text = |key: &str| fields.maybe(key, Item::text);
-    let number = |key: &str| fields.maybe(key, any_quantity);
-    let mut formulas = Vec::new();
-    let mut formula_or = |meant: NumberKey, dimension: Option<Dimension>| {
-        fields
-            .maybe(meant.name(), |item| number_or_formula(item, dimension, &mut |found| formulas.push((meant, found))))
-    };
-    let quantity = fields.need("quantity", "quantity = \"what is measured, in words\"", Item::words);
-    let like = format!(
-        "id = {:?}, by which later results are compared with earlier ones",
-        quantity.as_deref().map_or("…".into(), identifier)
-    );
-    let id = fields.need("id", &like, read_id);
-    let formerly = fields.or("formerly", Vec::new(), |i| i.each(read_id));
-    let unit = fields.or("unit", "1".to_string(), Item::text);
-    let (measure, column, reference) = (text("measure"), fields.maybe("column", read_column), text("reference"));
-    let from = formula_or(NumberKey::From, Some(Dimension::TIME));
-    let to = formula_or(NumberKey::To, Some(Dimension::TIME));
-    if let (Some(Some(from)), Some(Some(to))) = (from, to)
-        && from > to
+/// `expectation = { min = 0.165, max = 0.2, source = "…" }`, or `{ band = "plate-events/…" }`.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct ExpectationTable {
+    /// Least value expected.
+    min: Option<Quantity>,
+    /// Largest value expected.
+    max: Option<Quantity>,
+    /// Reference band that gives them instead: `band = "folder/name"`.
+    band: Option<String>,
+    /// Who expects it.
+    #[serde(default)]
+    source: String,
+}
+
+fn number(quantity: Option<Quantity>) -> Option<f64> {
+    quantity.map(|quantity| quantity.0)
+}
+
+/// The check of a table; `item` is the table.
+pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
+    let like = table.quantity.as_ref().map_or("…".into(), |quantity| identifier(&quantity.0));
+    let missing = |key: &str, like: &str| item.missing::<()>(key, like);
+    if table.quantity.is_none() {
+        missing("quantity", "quantity = \"what is measured, in words\"");
+    }
+    if table.id.is_none() {
+        missing("id", &format!("id = {like:?}, by which later results are compared with earlier ones"));
+    }
+    for (key, _) in [("set", &table.set), ("with", &table.with), ("variants", &table.variants)]
+        .into_iter()
+        .filter(|(_, given)| given.is_some())
     {
-        fields.get("to").and_then(|i| i.fail::<()>("to is before from", "give the earlier time as from"));
+        item.at(key)?.fail::<()>(format!("{key} beside the keys of one check"), "see \"Adding a case\" in the book");
     }
-    let (at, expect) = (formula_or(NumberKey::At, None), formula_or(NumberKey::Expect, None));
-    let scale = formula_or(NumberKey::Scale, Some(Dimension::NONE));
-    let kind = fields.or("expect_kind", ReferenceKind::Exact, reference_kind);
-    let expect_source = fields.or("expect_source", String::new(), Item::text);
-    let uncertainty = fields.maybe("uncertainty", positive);
-    for key in ["expect_kind", "expect_source", "uncertainty"].into_iter().filter(|_| fields.get("expect").is_none()) {
-        fields.get(key).and_then(|i| i.fail::<()>(format!("{key} without expect"), "add expect, or remove it"));
+    let mut formulas = Vec::new();
+    let mut value = |key: NumberKey, amount: Option<Amount>| {
+        amount.map(|amount| match amount {
+            Amount::Given(value) => value,
+            Amount::Formula(formula) => {
+                formulas.push((key, *formula));
+                f64::NAN
+            }
+        })
+    };
+    let from = value(NumberKey::From, table.from.as_ref().map(|time| time.0.clone()));
+    let to = value(NumberKey::To, table.to.as_ref().map(|time| time.0.clone()));
+    let at = value(NumberKey::At, table.at.as_ref().map(|at| at.0.clone()));
+    let expect = value(NumberKey::Expect, table.expect.as_ref().map(|expect| expect.0.clone()));
+    let scale = value(NumberKey::Scale, table.scale.as_ref().map(|scale| scale.0.clone()));
+    if from.zip(to).is_some_and(|(from, to)| from > to) {
+        item.at("to")?.fail::<()>("to is before from", "give the earlier time as from");
     }
-    let (band, variant, against) = (text("band"), text("variant"), text("against"));
-    let around_reference = read_around(&fields);
-    let meshes = fields.maybe("meshes", |i| i.choice(&Estimate::WORDS));
-    let order = number("order");
-    let accept = read_accept(&fields);
-    let expectation = fields.maybe("expectation", read_expectation);
+    let of_expect = ["expect_kind", "expect_source", "uncertainty"];
+    for given in of_expect.into_iter().filter(|_| expect.is_none()).filter_map(|key| item.at(key)) {
+        let key = given.path.rsplit('.').next().unwrap_or_default();
+        given.fail::<()>(format!("{key} without expect"), "add expect, or remove it");
+    }
+    let around_reference = around(&table, item);
+    let accept = accept(&table, item);
+    let expectation = table.expectation.map(|table| expected_band(table, &item.at("expectation").expect("it is read")));
     Some(Check {
-        id: id?,
-        formerly: formerly?,
-        quantity: quantity?,
-        unit: unit?,
-        measure: measure?,
-        column: column?,
-        reference: reference?,
-        window: [from?.unwrap_or(f64::NEG_INFINITY), to?.unwrap_or(f64::INFINITY)],
-        at: at?,
-        expect: expect?,
-        expect_kind: kind?,
-        expect_source: expect_source?,
-        uncertainty: uncertainty?,
-        scale: scale?.unwrap_or(1.0),
-        band: band?,
-        variant: variant?,
-        against: against?,
+        id: table.id?.0,
+        formerly: table.formerly.into_iter().map(|id| id.0).collect(),
+        quantity: table.quantity?.0,
+        unit: table.unit.unwrap_or("1".into()),
+        measure: table.measure,
+        column: table.column.map(|column| column.0),
+        reference: table.reference,
+        window: [from.unwrap_or(f64::NEG_INFINITY), to.unwrap_or(f64::INFINITY)],
+        at,
+        expect,
+        expect_kind: table.expect_kind.unwrap_or_default(),
+        expect_source: table.expect_source.unwrap_or_default(),
+        uncertainty: table.uncertainty.map(|uncertainty| uncertainty.0),
+        scale: scale.unwrap_or(1.0),
+        band: table.band,
+        variant: table.variant,
+        against: table.against,
         around_reference: around_reference?,
-        meshes: meshes?,
-        order: order?,
+        meshes: table.meshes,
+        order: number(table.order),
         accept: accept?,
-        expectation: expectation?,
+        expectation: expectation.map_or(Some(None), |read| read.map(Some))?,
         formulas,
     })
 }
 
-/// `expectation = { min = 0.165, max = 0.2, source = "…" }`, or `{ band = "plate-events/…" }`.
-fn read_expectation(item: &Item<'_>) -> Option<ExpectedBand> {
-    let fields = item.fields(&["min", "max", "band", "source"])?;
-    let number = |key: &str| fields.maybe(key, any_quantity);
-    let (min, max) = (number("min")?, number("max")?);
-    let (band, source) = (fields.maybe("band", Item::text)?, fields.or("source", String::new(), Item::text)?);
+fn expected_band(table: ExpectationTable, item: &Item<'_>) -> Option<ExpectedBand> {
+    let ExpectationTable { min, max, band, source } = table;
+    let (min, max) = (number(min), number(max));
     if band.is_some() != (min.is_none() && max.is_none()) {
         return item.fail("an expectation is a band of the reference data or has bounds", "give band, or min and max");
     }
@@ -182,118 +232,46 @@ fn read_expectation(item: &Item<'_>) -> Option<ExpectedBand> {
 }
 
 /// `below = 0.1, above = 0.5`: bounds around the reference value.
-fn read_around(fields: &Fields<'_>) -> Option<Option<[f64; 2]>> {
-    let (below, above) = (fields.maybe("below", any_quantity)?, fields.maybe("above", any_quantity)?);
-    match (below, above) {
+fn around(table: &CheckTable, item: &Item<'_>) -> Option<Option<[f64; 2]>> {
+    match (&table.below, &table.above) {
         (None, None) => Some(None),
-        (Some(below), Some(above)) if below >= 0.0 && above >= 0.0 => Some(Some([below, above])),
+        (Some(below), Some(above)) if below.0 >= 0.0 && above.0 >= 0.0 => Some(Some([below.0, above.0])),
         (Some(_), Some(_)) => {
-            fields.get("below")?.fail("below or above is negative", "give how far the value may lie to either side")
+            item.at("below")?.fail("below or above is negative", "give how far the value may lie to either side")
         }
-        _ => fields.item().fail("one of below and above is missing", "give both: how far from the reference value"),
+        _ => item.fail("one of below and above is missing", "give both: how far from the reference value"),
     }
 }
 
 /// Bounds need a reason, and those by uncertainty an uncertainty.
-fn read_accept(fields: &Fields<'_>) -> Option<Accept> {
-    let number = |key: &str| fields.maybe(key, any_quantity);
-    let (min, max) = (number("min"), number("max"));
-    let why = fields.or("why", String::new(), Item::text);
-    let known = [("regression", BoundKind::Regression), ("validation", BoundKind::Validation)];
-    let kind = fields.maybe("bounds", |i| i.choice(&known));
-    let (min, max, why, kind) = (min?, max?, why?, kind?);
-    let given = |keys: &[&str]| keys.iter().any(|key| fields.get(key).is_some());
-    let kinds = [given(&["min", "max"]), given(&["below", "above"]), given(&["band"])];
-    if kinds.into_iter().filter(|kind| *kind).count() > 1 {
-        return fields.item().fail("bounds of two kinds", "give min and max, or below and above, or band");
+fn accept(table: &CheckTable, item: &Item<'_>) -> Option<Accept> {
+    let bound = |quantity: &Option<Quantity>| quantity.as_ref().map(|bound| bound.0);
+    let (min, max, kind) = (bound(&table.min), bound(&table.max), table.bounds);
+    let around = table.below.is_some() || table.above.is_some();
+    let own = min.is_some() || max.is_some();
+    if [own, around, table.band.is_some()].into_iter().filter(|kind| *kind).count() > 1 {
+        return item.fail("bounds of two kinds", "give min and max, or below and above, or band");
     }
     if let (Some(low), Some(high)) = (min, max)
         && low > high
     {
-        return fields.get("min")?.fail(format!("min {low} is above max {high}"), "no value lies between them");
+        return item.at("min")?.fail(format!("min {low} is above max {high}"), "no value lies between them");
     }
-    let bounded = given(&["min", "max", "below", "above"]);
-    if (bounded || kind.is_some()) && why.trim().is_empty() {
-        return fields.item().fail("bounds without a reason", "add why = \"where the bound comes from\"");
+    let bounded = own || around;
+    if (bounded || kind.is_some()) && table.why.trim().is_empty() {
+        return item.fail("bounds without a reason", "add why = \"where the bound comes from\"");
     }
-    let wrong = |message, remedy| fields.get("bounds")?.fail(message, remedy);
+    let wrong = |message, remedy| item.at("bounds")?.fail(message, remedy);
     match kind {
-        Some(BoundKind::Validation) if bounded || given(&["band"]) => {
+        Some(BoundKind::Validation) if bounded || table.band.is_some() => {
             wrong("bounds of its own beside those of the uncertainty", "remove min, max, below, above and band")
         }
-        Some(BoundKind::Validation) if given(&["expect"]) && !given(&["uncertainty"]) => {
+        Some(BoundKind::Validation) if table.expect.is_some() && table.uncertainty.is_none() => {
             wrong("bounds by an uncertainty that is not given", "add uncertainty, the half width of that of expect")
         }
         Some(BoundKind::Regression) if !bounded => {
             wrong("bounds = \"regression\" without bounds", "give min and max, or below and above")
         }
-        _ => Some(Accept { min, max, why, kind }),
-    }
-}
-
-fn reference_kind(item: &Item<'_>) -> Option<ReferenceKind> {
-    item.choice(&[
-        ("exact", ReferenceKind::Exact),
-        ("theory", ReferenceKind::Theory),
-        ("literature", ReferenceKind::Literature),
-        ("independent-code", ReferenceKind::IndependentCode),
-        ("self-convergence", ReferenceKind::SelfConvergence),
-        ("regression", ReferenceKind::Regression),
-    ])
-}
-
-/// Words of letters and digits joined by dashes.
-fn read_id(item: &Item<'_>) -> Option<String> {
-    let text = item.text()?;
-    let plain = identifier(&text);
-    if plain == text && !text.is_empty() {
-        return Some(text);
-    }
-    let like = if plain.is_empty() { "largest-error" } else { &plain };
-    item.fail(format!("{text:?} is no id"), format!("join lower-case words by dashes: {like:?}"))
-}
-
-/// Words as an id.
-fn identifier(words: &str) -> String {
-    let mapped: String = words.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { ' ' }).collect();
-    mapped.split_whitespace().collect::<Vec<_>>().join("-")
-}
-
-/// A number or quantity, of a dimension if one is given; not a number for a formula, which `found` takes.
-fn number_or_formula(item: &Item<'_>, dimension: Option<Dimension>, found: &mut dyn FnMut(Formula)) -> Option<f64> {
-    if item.node.as_str().is_none_or(|text| !text.starts_with('=')) {
-        return dimension.map_or_else(|| any_quantity(item), |dimension| item.quantity(dimension));
-    }
-    if let Amount::Formula(formula) = Amount::read(item)? {
-        found(*formula);
-    }
-    Some(f64::NAN)
-}
-
-/// A formula of columns.
-pub(super) fn read_column(item: &Item<'_>) -> Option<String> {
-    let text = item.text()?;
-    match text.parse::<Formula>() {
-        Ok(_) => Some(text),
-        Err(message) => item.fail(message, "name a column of the history, or write a formula of columns"),
-    }
-}
-
-/// As [`any_quantity`], above zero.
-fn positive(item: &Item<'_>) -> Option<f64> {
-    match any_quantity(item)? {
-        value if value > 0.0 => Some(value),
-        value => item.fail(format!("{value} is no uncertainty"), "give a positive number, or none if it is unknown"),
-    }
-}
-
-/// A number, or a string with any unit, in SI.
-fn any_quantity(item: &Item<'_>) -> Option<f64> {
-    match item.node.as_str() {
-        None => item.quantity(Dimension::NONE),
-        Some(text) => match units::parse(text) {
-            Ok(quantity) => Some(quantity.value),
-            Err(e) => item.fail(e.message, e.remedy),
-        },
+        _ => Some(Accept { min, max, why: table.why.clone(), kind }),
     }
 }

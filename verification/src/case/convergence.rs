@@ -16,14 +16,18 @@
 
 use fisura::scene::{Frame, Layout, Mass, Plane, Quadrature, Transfer};
 
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::value::{Duration, Filled, Number, Positive, TransferName, Whole, Word};
 use crate::scene::fields::Item;
-use crate::scene::read::transfer;
-use crate::scene::units::Dimension;
 
 /// A family of patches.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum PatchFamily {
     /// The rectangle [0, 1] × [0, 0.8] m with equal spans.
+    #[default]
     Square,
     /// The same with spans of random lengths, drawn once on the coarsest mesh.
     Graded,
@@ -48,9 +52,11 @@ pub enum PatchFamily {
 }
 
 /// How the problem is loaded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Loading {
     /// Body force and traction: measures the method.
+    #[default]
     Strong,
     /// Exact stress and inertia through the code's own sums: verifies the code, blind to the quadrature.
     Weak,
@@ -115,105 +121,118 @@ impl ConvergenceSetup {
     }
 }
 
-/// Keys of `[convergence]`.
-pub const KEYS: [&str; 17] = [
-    "problem",
-    "plane",
-    "frame",
-    "transfers",
-    "quadrature",
-    "offsets",
-    "patch",
-    "degrees",
-    "cells",
-    "layout",
-    "points",
-    "mass",
-    "loading",
-    "refine",
-    "step_power",
-    "safety",
-    "end_time",
-];
+/// As it stands in the file.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ConvergenceTable {
+    /// The exact solution: `problem = "elastostatics"`.
+    problem: String,
+    /// Plane strain or plane stress.
+    #[serde(default = "plane_strain")]
+    plane: Word<Plane>,
+    /// The updated frame has finite kinematics, and points that cross spans.
+    #[serde(default = "total_frame")]
+    frame: Word<Frame>,
+    /// Transfers of the updated frame, a curve each: `transfers = ["flip", "apic"]`.
+    transfers: Option<Filled<TransferName>>,
+    /// Quadrature of the updated frame.
+    #[serde(default = "by_points")]
+    quadrature: Word<Quadrature>,
+    /// Offsets of the mesh against the body, in spans, a curve each: `offsets = [0.0, 0.5]`.
+    offsets: Option<Filled<Number>>,
+    /// The family of meshes.
+    #[serde(default)]
+    patch: PatchFamily,
+    /// Degrees of the splines: `degrees = [2, 3]`.
+    degrees: Filled<Whole<1, 4>>,
+    /// Spans per direction, level by level: `cells = [4, 8, 16, 32]`.
+    cells: Filled<Whole<1, 4096>>,
+    /// Layout of the points.
+    #[serde(default = "gauss_layout")]
+    layout: Word<Layout>,
+    /// Points per span and direction, one number for each degree; p + 1 if absent.
+    points: Option<Vec<Whole<1, 16>>>,
+    /// Mass matrix.
+    #[serde(default = "consistent")]
+    mass: Word<Mass>,
+    /// How the problem is loaded.
+    #[serde(default)]
+    loading: Loading,
+    /// What is refined.
+    #[serde(default)]
+    refine: Refined,
+    /// Power of the span length to which the time step is proportional; (p + 1)/2 if absent.
+    step_power: Option<Number>,
+    /// Time steps over the critical one: `safety = [0.4]`.
+    safety: Option<Filled<Positive>>,
+    /// End of the simulated time, if not that of the problem.
+    end_time: Option<Duration>,
+}
 
-/// Names of the families of patches.
-pub const PATCHES: [(&str, PatchFamily); 10] = [
-    ("square", PatchFamily::Square),
-    ("graded", PatchFamily::Graded),
-    ("bent", PatchFamily::Bent),
-    ("annulus", PatchFamily::Annulus),
-    ("weighted", PatchFamily::Weighted),
-    ("random", PatchFamily::Random),
-    ("strip", PatchFamily::Strip),
-    ("unit-square", PatchFamily::UnitSquare),
-    ("block", PatchFamily::Block),
-    ("ring", PatchFamily::Ring),
-];
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum Refined {
+    #[default]
+    Mesh,
+    TimeStep,
+}
 
-pub(super) fn read(item: &Item<'_>) -> Option<ConvergenceSetup> {
-    let fields = item.fields(&KEYS)?;
-    let problem = fields.need("problem", "problem = \"elastostatics\"", Item::text);
-    let planes = [("strain", Plane::Strain), ("stress", Plane::Stress)];
-    let plane = fields.or("plane", Plane::Strain, |i| i.choice(&planes));
-    let frame = fields.or("frame", Frame::Total, |i| i.choice(&[("total", Frame::Total), ("updated", Frame::Updated)]));
-    let transfers = fields.maybe("transfers", |i| filled(i, "[\"flip\", \"apic\"]", transfer));
-    let quadratures = [("points", Quadrature::Points), ("gauss", Quadrature::Gauss)];
-    let quadrature = fields.or("quadrature", Quadrature::Points, |i| i.choice(&quadratures));
-    let offsets = fields.or("offsets", vec![0.0], |i| filled(i, "[0.0, 0.5]", |n| n.quantity(Dimension::NONE)));
-    let patch = fields.or("patch", PatchFamily::Square, |i| i.choice(&PATCHES));
-    let degrees = fields.need("degrees", "degrees = [2, 3]", |i| filled(i, "[2, 3]", |n| n.whole(1, 4)));
-    let cells = fields.need("cells", "cells = [4, 8, 16, 32]", |i| filled(i, "[4, 8, 16, 32]", |n| n.whole(1, 4096)));
-    let layouts = [("gauss", Layout::Gauss), ("uniform", Layout::Uniform), ("maclaurin", Layout::Maclaurin)];
-    let layout = fields.or("layout", Layout::Gauss, |i| i.choice(&layouts));
-    let points = fields.maybe("points", |i| i.each(|n| n.whole(1, 16)));
-    let masses = [("consistent", Mass::Consistent), ("lumped", Mass::Lumped)];
-    let mass = fields.or("mass", Mass::Consistent, |i| i.choice(&masses));
-    let loadings = [("strong", Loading::Strong), ("weak", Loading::Weak)];
-    let loading = fields.or("loading", Loading::Strong, |i| i.choice(&loadings));
-    let step_power = fields.maybe("step_power", |i| i.quantity(Dimension::NONE));
-    let refine = fields.or("refine", true, |i| i.choice(&[("mesh", true), ("time-step", false)]));
-    let safety = fields.or("safety", vec![0.4], |i| filled(i, "[0.4]", |n| n.positive(Dimension::NONE)));
-    let end_time = fields.maybe("end_time", |i| i.positive(Dimension::TIME));
-    let (degrees, points) = (degrees?, points?);
+fn plane_strain() -> Word<Plane> {
+    Word(Plane::Strain)
+}
+
+fn total_frame() -> Word<Frame> {
+    Word(Frame::Total)
+}
+
+fn by_points() -> Word<Quadrature> {
+    Word(Quadrature::Points)
+}
+
+fn gauss_layout() -> Word<Layout> {
+    Word(Layout::Gauss)
+}
+
+fn consistent() -> Word<Mass> {
+    Word(Mass::Consistent)
+}
+
+/// The study of a table; `item` is the table.
+pub(super) fn setup(table: ConvergenceTable, item: &Item<'_>) -> Option<ConvergenceSetup> {
+    let degrees: Vec<usize> = table.degrees.0.iter().map(|degree| degree.0).collect();
+    let points: Option<Vec<usize>> = table.points.map(|points| points.iter().map(|n| n.0).collect());
     if let Some(points) = &points
         && points.len() != degrees.len()
     {
         let message = format!("{} numbers of points for {} degrees", points.len(), degrees.len());
-        return fields.get("points")?.fail(message, "give one number of points per span and direction for each degree");
+        return item.at("points")?.fail(message, "give one number of points per span and direction for each degree");
     }
-    let (frame, transfers) = (frame?, transfers?);
-    if frame == Frame::Total && transfers.is_some() {
+    if table.frame.0 == Frame::Total && table.transfers.is_some() {
         let remedy = "leave transfers out, or give frame = \"updated\"";
-        return fields.get("transfers")?.fail("the total frame has no transfers", remedy);
+        return item.at("transfers")?.fail("the total frame has no transfers", remedy);
     }
-    let step_power = step_power?;
+    let transfers = table.transfers.map(|all| all.0.iter().map(|transfer| transfer.0).collect());
     Some(ConvergenceSetup {
-        problem: problem?,
-        plane: plane?,
-        frame,
+        problem: table.problem,
+        plane: table.plane.0,
+        frame: table.frame.0,
         transfers: transfers.unwrap_or(vec![Transfer::Flip]),
-        quadrature: quadrature?,
-        offsets: offsets?,
-        patch: patch?,
+        quadrature: table.quadrature.0,
+        offsets: table.offsets.map_or(vec![0.0], |all| all.0.iter().map(|offset| offset.0).collect()),
+        patch: table.patch,
         degrees,
-        cells: cells?,
-        layout: layout?,
+        cells: table.cells.0.iter().map(|cells| cells.0).collect(),
+        layout: table.layout.0,
         points,
-        mass: mass?,
-        loading: loading?,
-        refine: if refine? { Refine::Mesh(step_power) } else { Refine::TimeStep },
-        safety: safety?,
-        end_time: end_time?,
+        mass: table.mass.0,
+        loading: table.loading,
+        refine: match table.refine {
+            Refined::Mesh => Refine::Mesh(table.step_power.map(|power| power.0)),
+            Refined::TimeStep => Refine::TimeStep,
+        },
+        safety: table.safety.map_or(vec![0.4], |all| all.0.iter().map(|safety| safety.0).collect()),
+        end_time: table.end_time.map(|end| end.0),
     })
-}
-
-/// A list with at least one entry.
-fn filled<'a, T>(item: &Item<'a>, like: &str, read: impl Fn(&Item<'a>) -> Option<T>) -> Option<Vec<T>> {
-    let entries = item.each(read)?;
-    if entries.is_empty() {
-        return item.fail("the list is empty", format!("give at least one entry, such as {like}"));
-    }
-    Some(entries)
 }
 
 #[cfg(test)]
@@ -221,6 +240,7 @@ mod tests {
     use super::*;
     use crate::scene::document::Document;
     use crate::scene::fields::Problems;
+    use crate::scene::typed;
 
     /// What is wrong with a table that is sound but for these lines: keys, messages and remedies.
     fn problems(lines: &str) -> Vec<(String, String, String)> {
@@ -230,7 +250,8 @@ mod tests {
             sound.iter().filter(|(key, _)| !given(key)).map(|(key, value)| format!("{key} = {value}\n")).collect();
         let document = Document::parse("trial.toml", &format!("{rest}{lines}\n")).unwrap();
         let problems = Problems::default();
-        let setup = read(&Item::new(&document.root, "convergence", &problems));
+        let item = Item::new(&document.root, "convergence", &problems);
+        let setup = typed::read(&item).and_then(|table| setup(table, &item));
         let found = problems.into_inner();
         assert_eq!(setup.is_none(), !found.is_empty(), "{lines}");
         found.into_iter().map(|p| (p.key, p.message, p.remedy)).collect()

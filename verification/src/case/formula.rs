@@ -10,8 +10,7 @@ use exmex::{BinOp, Express, FlatEx, MakeOperators, MatchLiteral, Operator};
 
 use crate::extremes::{larger, smaller};
 use crate::scene::document::Node;
-use crate::scene::fields::Item;
-use crate::scene::units::{self, Dimension};
+use crate::scene::units;
 
 /// Longest formula, in bytes.
 const LONGEST: usize = 1000;
@@ -138,23 +137,6 @@ pub enum Amount {
     Given(f64),
     /// To be found for every scene.
     Formula(Box<Formula>),
-}
-
-impl Amount {
-    /// A number, a quantity of any unit, or a string that begins with `=`.
-    pub(super) fn read(item: &Item<'_>) -> Option<Self> {
-        let Some(text) = item.node.as_str() else { return item.quantity(Dimension::NONE).map(Self::Given) };
-        let Some(formula) = text.strip_prefix('=') else {
-            return match units::parse(text) {
-                Ok(quantity) => Some(Self::Given(quantity.value)),
-                Err(e) => item.fail(e.message, e.remedy),
-            };
-        };
-        match formula.trim().parse() {
-            Ok(formula) => Some(Self::Formula(Box::new(formula))),
-            Err(message) => item.fail(message, "write a formula such as \"= 2*length/speed\""),
-        }
-    }
 }
 
 /// The value of a key of a scene in SI.

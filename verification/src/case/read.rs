@@ -1,67 +1,127 @@
 //! How a case file is read.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::formula::Amount;
-use super::{Case, Tier, Variant, chart, check, convergence, rings};
-use crate::scene::document::{Document, Node, Value};
-use crate::scene::fields::Item;
-use crate::scene::units::Dimension;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use serde_json::{Map, Value};
 
-const KEYS: [&str; 15] = [
-    "claim",
-    "tier",
-    "seconds",
-    "study",
-    "label",
-    "energy_factor",
-    "deviations",
-    "models",
-    "scene",
-    "values",
-    "variant",
-    "convergence",
-    "rings",
-    "check",
-    "chart",
-];
+use super::chart::{Chart, ChartTable};
+use super::check::{self, CheckTable};
+use super::convergence::{self, ConvergenceTable};
+use super::formula::Amount;
+use super::rings::{self, RingsTable};
+use super::value::{AnyAmount, Positive, Words};
+use super::{Case, Tier, Variant};
+use crate::scene::document::{Document, Node};
+use crate::scene::fields::Item;
+use crate::scene::typed;
+
+/// A case file as it stands.
+#[derive(Deserialize, JsonSchema)]
+#[schemars(title = "case of fisura")]
+#[serde(deny_unknown_fields)]
+pub(super) struct CaseTable {
+    /// One sentence that a check can refute.
+    claim: Words,
+    /// How much a run may cost.
+    #[serde(default)]
+    tier: Tier,
+    /// Estimated wall time on two cores, s: `seconds = 10`.
+    seconds: Positive,
+    /// The study that runs the case; `scene` runs its scene and measures the results.
+    study: Option<String>,
+    /// Label in figures.
+    #[serde(default)]
+    label: String,
+    /// Energies of the run times this are those of the whole body: 2 for a half model.
+    energy_factor: Option<Positive>,
+    /// What differs from the cited source.
+    #[serde(default)]
+    deviations: Vec<String>,
+    /// What is modelled, if it does not follow from the scene.
+    models: Option<Vec<String>>,
+    /// A scene as in a scene file; a list in place of a value is an axis of the study.
+    #[schemars(with = "Option<Map<String, Value>>")]
+    #[expect(dead_code, reason = "it is read as a scene file")]
+    scene: Option<IgnoredAny>,
+    /// Numbers by name, for formulas of checks and charts: `speed = "= sqrt({material.bar.young_modulus})"`.
+    #[serde(default)]
+    values: BTreeMap<String, AnyAmount>,
+    /// Changed copies of the scene.
+    #[serde(default)]
+    variant: Vec<VariantTable>,
+    /// What a convergence study solves.
+    convergence: Option<ConvergenceTable>,
+    /// Geometries of the study `rings-sweep`.
+    rings: Option<RingsTable>,
+    /// What is measured, and the bounds within which the claim holds: at least one `[[check]]`.
+    #[schemars(length(min = 1))]
+    check: Vec<CheckTable>,
+    /// What is drawn of the runs.
+    #[serde(default)]
+    chart: Vec<ChartTable>,
+}
+
+/// A changed copy of the scene.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct VariantTable {
+    /// Name, part of the ids of its records.
+    name: Words,
+    /// Keys of the scene and their values: `set = { "mesh.degree" = 3 }`.
+    #[schemars(with = "Map<String, Value>")]
+    #[expect(dead_code, reason = "its values are read with their places")]
+    set: BTreeMap<String, IgnoredAny>,
+    /// Energies of this run times this are those of the whole body, if not those of the case.
+    energy_factor: Option<Positive>,
+}
 
 pub(super) fn case(item: &Item<'_>, path: &Path, document: &Document) -> Option<Case> {
-    let fields = item.fields(&KEYS)?;
-    let words = |item: &Item<'_>| item.each(|entry| entry.text());
-    let claim = fields.need("claim", "claim = \"one sentence that a check can refute\"", Item::words);
-    let tier = fields.or("tier", Tier::Quick, |i| i.choice(&[("quick", Tier::Quick), ("full", Tier::Full)]));
-    let seconds = fields.need("seconds", "seconds = 10, the estimated wall time", |i| i.positive(Dimension::NONE));
-    let study = fields.or("study", "scene".to_string(), Item::text);
-    let label = fields.or("label", String::new(), Item::text);
-    let energy_factor = fields.or("energy_factor", 1.0, |i| i.positive(Dimension::NONE));
-    let deviations = fields.or("deviations", Vec::new(), words);
-    let models = fields.or("models", default_models(document), words);
-    let values = fields.or("values", Vec::new(), read_values);
-    let variants = fields.or("variant", Vec::new(), |i| i.tables()?.iter().map(read_variant).collect());
-    let convergence = fields.maybe("convergence", convergence::read);
-    let rings = fields.maybe("rings", rings::read);
-    let checks = fields.need("check", "at least one [[check]]", check::read);
-    let charts = fields.or("chart", Vec::new(), |i| i.tables()?.iter().map(chart::read).collect());
+    let table: CaseTable = typed::read(item)?;
+    let below = |key: &str| item.at(key).expect("what was read is there");
+    if table.check.is_empty() {
+        return below("check").fail("there is no check", "add at least one [[check]]");
+    }
+    let checks =
+        table.check.into_iter().enumerate().map(|(i, table)| check::check(table, &below(&format!("check.{i}"))));
+    let checks: Vec<Option<_>> = checks.collect();
+    let variants = table.variant.into_iter().enumerate().map(|(i, variant)| Variant {
+        name: variant.name.0,
+        set: item
+            .node
+            .at(&format!("variant.{i}.set"))
+            .and_then(Node::as_table)
+            .cloned()
+            .into_iter()
+            .flatten()
+            .collect(),
+        energy_factor: variant.energy_factor.map(|factor| factor.0),
+    });
+    let values = values(table.values, item);
+    let convergence = table.convergence.map(|table| convergence::setup(table, &below("convergence")));
+    let rings = table.rings.map(|table| rings::geometries(&table, &below("rings")));
     let stem = |p: Option<&std::ffi::OsStr>| p.map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     Some(Case {
         suite: stem(path.parent().and_then(Path::file_name)),
         name: stem(path.file_stem()),
         path: path.to_path_buf(),
-        claim: claim?,
-        tier: tier?,
-        seconds: seconds?,
-        study: study?,
-        label: label?,
-        energy_factor: energy_factor?,
-        deviations: deviations?,
-        models: models?,
+        claim: table.claim.0,
+        tier: table.tier,
+        seconds: table.seconds.0,
+        study: table.study.unwrap_or("scene".into()),
+        label: table.label,
+        energy_factor: table.energy_factor.map_or(1.0, |factor| factor.0),
+        deviations: table.deviations,
+        models: table.models.unwrap_or_else(|| default_models(document)),
         values: values?,
-        variants: variants?,
-        convergence: convergence?,
-        rings: rings?,
-        checks: checks?,
-        charts: charts?,
+        variants: variants.collect(),
+        convergence: convergence.map_or(Some(None), |read| read.map(Some))?,
+        rings: rings.map_or(Some(None), |read| read.map(Some))?,
+        checks: checks.into_iter().collect::<Option<_>>()?,
+        charts: table.chart.into_iter().map(Chart::from).collect(),
         document: document.clone(),
     })
 }
@@ -82,30 +142,16 @@ fn default_models(document: &Document) -> Vec<String> {
 }
 
 /// `[values]`: names of letters, digits and underscores, each a number or a formula.
-fn read_values(item: &Item<'_>) -> Option<Vec<(String, Amount)>> {
-    let Value::Table(table) = &item.node.value else { return item.fail("expected a table", "write [values]") };
+fn values(table: BTreeMap<String, AnyAmount>, item: &Item<'_>) -> Option<Vec<(String, Amount)>> {
     let plain = |name: &str| {
         name.starts_with(|c: char| c.is_ascii_alphabetic())
             && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
     };
-    let names: Vec<&str> = table.keys().map(String::as_str).collect();
-    let fields = item.fields(&names)?;
-    let read = |name: &&str| {
-        if !plain(name) {
-            return item.fail(format!("{name:?} is no name in a formula"), "use letters, digits and underscores");
+    match table.keys().find(|name| !plain(name)) {
+        Some(name) => {
+            let message = format!("{name:?} is no name in a formula");
+            item.at("values")?.fail(message, "use letters, digits and underscores")
         }
-        Some((name.to_string(), fields.need(name, "a number", Amount::read)?))
-    };
-    names.iter().map(read).collect()
-}
-
-fn read_variant(item: &Item<'_>) -> Option<Variant> {
-    let fields = item.fields(&["name", "set", "energy_factor"])?;
-    let name = fields.need("name", "name = \"…\"", Item::words);
-    let set = fields.need("set", "set = { \"mesh.degree\" = 3 }", |i| match &i.node.value {
-        Value::Table(table) => Some(table.iter().map(|(key, node)| (key.clone(), node.clone())).collect()),
-        _ => i.fail("expected a table", "write set = { \"mesh.degree\" = 3 }"),
-    });
-    let energy_factor = fields.maybe("energy_factor", |i| i.positive(Dimension::NONE));
-    Some(Variant { name: name?, set: set?, energy_factor: energy_factor? })
+        None => Some(table.into_iter().map(|(name, amount)| (name, amount.0)).collect()),
+    }
 }

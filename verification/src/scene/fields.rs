@@ -10,6 +10,12 @@ use super::document::{Node, Value, join};
 use super::suggest::nearest;
 use super::units::{self, Dimension};
 
+/// A type whose values are words of a file.
+pub trait Words: Copy + 'static {
+    /// All of them.
+    const WORDS: &'static [(&'static str, Self)];
+}
+
 /// Problems found so far.
 #[derive(Debug, Default)]
 pub struct Problems(RefCell<Vec<Problem>>);
@@ -42,6 +48,17 @@ impl<'a> Item<'a> {
         Self { node, path: path.to_string(), problems }
     }
 
+    /// Notes a problem found elsewhere.
+    pub fn note(&self, problem: Problem) {
+        self.problems.push(problem);
+    }
+
+    /// The value at a path below this one.
+    pub fn at(&self, path: &str) -> Option<Item<'a>> {
+        let keys = path.split('.').fold(self.path.clone(), |path, key| join(&path, key));
+        Some(Self { node: self.node.at(path)?, path: keys, problems: self.problems })
+    }
+
     /// Notes a problem with this value; `None`, for use in a return.
     pub fn fail<T>(&self, message: impl Into<String>, remedy: impl Into<String>) -> Option<T> {
         self.fail_at(self.node.location.clone(), &self.path, message.into(), remedy.into())
@@ -50,6 +67,11 @@ impl<'a> Item<'a> {
     fn fail_at<T>(&self, location: Option<Location>, key: &str, message: String, remedy: String) -> Option<T> {
         self.problems.push(Problem { key: key.to_string(), location, message, remedy });
         None
+    }
+
+    /// Notes that this table lacks a key; `like` says what to write.
+    pub fn missing<T>(&self, key: &str, like: &str) -> Option<T> {
+        self.fail_at(self.node.location.clone(), &join(&self.path, key), "missing".into(), format!("add {like}"))
     }
 
     fn wrong_kind<T>(&self, expected: &str) -> Option<T> {
@@ -124,6 +146,11 @@ impl<'a> Item<'a> {
         }
         let meant = nearest(text, &names).map_or(String::new(), |n| format!("did you mean {n:?}? "));
         self.fail(format!("unknown value {text:?}"), format!("{meant}known: {list}"))
+    }
+
+    /// One of the words of a type.
+    pub fn word<T: Words>(&self) -> Option<T> {
+        self.choice(T::WORDS)
     }
 
     /// The entries of an array.
@@ -209,11 +236,7 @@ impl<'a> Fields<'a> {
 
     /// A key that must be there; `like` says what to write.
     pub fn need<T>(&self, key: &str, like: &str, read: impl FnOnce(&Item<'a>) -> Option<T>) -> Option<T> {
-        if let Some(item) = self.get(key) {
-            return read(&item);
-        }
-        let (path, location) = (join(&self.item.path, key), self.item.node.location.clone());
-        self.item.fail_at(location, &path, "missing".to_string(), format!("add {like}"))
+        self.get(key).map_or_else(|| self.item.missing(key, like), |item| read(&item))
     }
 
     /// A key with a default.

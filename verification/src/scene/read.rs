@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use fisura::scene::{
     Analysis, Boundary, Contact, Frame, Kinematics, Mass, Output, PhaseFieldSolver, Plane, Quadrature, Scene, Shape,
-    Side, SolverSettings, TimeStep, Transfer,
+    SolverSettings, TimeStep, Transfer,
 };
 
 use super::diagnostic::Problem;
@@ -103,15 +103,10 @@ fn analysis(item: &Item<'_>) -> Option<Analysis> {
         "mass",
         "gravity",
     ])?;
-    let planes = [("strain", Plane::Strain), ("stress", Plane::Stress)];
-    let frames = [("total", Frame::Total), ("updated", Frame::Updated)];
-    let strains = [("small", Kinematics::Small), ("finite", Kinematics::Finite)];
-    let quadratures = [("points", Quadrature::Points), ("gauss", Quadrature::Gauss)];
-    let masses = [("lumped", Mass::Lumped), ("consistent", Mass::Consistent)];
-    let plane = fields.or("plane", Plane::Strain, |item| item.choice(&planes));
+    let plane = fields.or("plane", Plane::Strain, Item::word);
     let thickness = fields.or("thickness", 1.0, length);
-    let frame = fields.or("frame", Frame::Total, |item| item.choice(&frames));
-    let kinematics = fields.or("kinematics", Kinematics::Small, |item| item.choice(&strains));
+    let frame = fields.or("frame", Frame::Total, Item::word);
+    let kinematics = fields.or("kinematics", Kinematics::Small, Item::word);
     let end_time = fields.need("end_time", "end_time = \"80 us\"", time);
     let time_step = fields.or("time_step", TimeStep::Auto, |item| match item.node.as_str() {
         Some("auto") => Some(TimeStep::Auto),
@@ -119,8 +114,8 @@ fn analysis(item: &Item<'_>) -> Option<Analysis> {
     });
     let safety = fields.or("safety", 0.8, number);
     let transfer = fields.or("transfer", Transfer::Flip, transfer);
-    let quadrature = fields.or("quadrature", Quadrature::Points, |item| item.choice(&quadratures));
-    let mass = fields.or("mass", Mass::Lumped, |item| item.choice(&masses));
+    let quadrature = fields.or("quadrature", Quadrature::Points, Item::word);
+    let mass = fields.or("mass", Mass::Lumped, Item::word);
     let gravity = fields.or("gravity", [0.0, 0.0], |item| item.vector(Dimension::ACCELERATION));
     Some(Analysis {
         plane: plane?,
@@ -161,17 +156,11 @@ fn default_solver() -> SolverSettings {
 
 fn solver(item: &Item<'_>) -> Option<SolverSettings> {
     let default = default_solver();
-    let solvers =
-        [("conjugate-gradients", PhaseFieldSolver::ConjugateGradients), ("cholesky", PhaseFieldSolver::Cholesky)];
     let fields = item.fields(&["phase_field_tolerance", "phase_field_solver"])?;
     let tolerance = fields.or("phase_field_tolerance", default.phase_field_tolerance, number);
-    let solver = fields.or("phase_field_solver", default.phase_field_solver, |item| item.choice(&solvers));
+    let solver = fields.or("phase_field_solver", default.phase_field_solver, Item::word);
     Some(SolverSettings { phase_field_tolerance: tolerance?, phase_field_solver: solver? })
 }
-
-/// Sides of a rectangle by name.
-pub(super) const SIDES: [(&str, Side); 4] =
-    [("left", Side::Left), ("right", Side::Right), ("bottom", Side::Bottom), ("top", Side::Top)];
 
 fn boundaries(item: &Item<'_>) -> Option<Vec<Boundary>> {
     let read: Vec<Option<Boundary>> = item.tables()?.iter().map(boundary).collect();
@@ -180,7 +169,7 @@ fn boundaries(item: &Item<'_>) -> Option<Vec<Boundary>> {
 
 fn boundary(item: &Item<'_>) -> Option<Boundary> {
     let fields = item.fields(&["side", "fix", "velocity"])?;
-    let side = fields.need("side", "side = \"left\"", |item| item.choice(&SIDES));
+    let side = fields.need("side", "side = \"left\"", Item::word);
     let components = fields.need("fix", "fix = [\"x\"], the fixed components", |item| {
         item.each(|component| component.choice(&[("x", 0), ("y", 1)]))
     });

@@ -6,7 +6,7 @@ use fisura::scene::{Body, Crack, Edge, Fracture, Layout, Material, Shape, Split,
 
 use super::document::join;
 use super::fields::{Fields, Item};
-use super::read::{SIDES, length, number, point, time};
+use super::read::{length, number, point, time};
 use super::units::Dimension;
 
 /// `[material.NAME]` tables by name.
@@ -51,8 +51,7 @@ fn fracture(item: &Item<'_>) -> Option<Fracture> {
     });
     let scale = fields.need("length_scale", "length_scale = \"0.25 mm\"", length);
     let residual = fields.or("residual_stiffness", 0.0, number);
-    let splits = [("spectral", Split::Spectral), ("none", Split::None)];
-    let split = fields.or("split", Split::Spectral, |item| item.choice(&splits));
+    let split = fields.or("split", Split::Spectral, Item::word);
     Some(Fracture {
         critical_energy_release_rate: rate?,
         length_scale: scale?,
@@ -85,13 +84,12 @@ fn body(item: &Item<'_>) -> Option<Body> {
         "traction",
         "crack",
     ])?;
-    let layouts = [("gauss", Layout::Gauss), ("uniform", Layout::Uniform), ("maclaurin", Layout::Maclaurin)];
     let name = fields.need("name", "name = \"plate\"", Item::text);
     let material = fields.need("material", "the name of a [material.NAME] table", Item::text);
     let shape_like = "shape = { rectangle = { min = [0.0, 0.0], max = [0.1, 0.04] } }";
     let shape = fields.need("shape", shape_like, shape);
     let points = fields.or("particles_per_cell", [2, 2], |item| item.whole_per_direction(1, 16));
-    let layout = fields.or("layout", Layout::Gauss, |item| item.choice(&layouts));
+    let layout = fields.or("layout", Layout::Gauss, Item::word);
     let velocity = fields.or("velocity", [0.0, 0.0], |item| item.vector(Dimension::VELOCITY));
     let angular_velocity = fields.or("angular_velocity", 0.0, |item| item.quantity(Dimension::RATE));
     let rigid = fields.or("rigid", false, Item::flag);
@@ -164,7 +162,7 @@ fn center(fields: &Fields<'_>) -> Option<[f64; 2]> {
 fn traction(item: &Item<'_>) -> Option<Traction> {
     let fields = item.fields(&["edge", "segment", "stress", "ramp"])?;
     let edge = match (fields.get("edge"), fields.get("segment")) {
-        (Some(edge), None) => edge.choice(&SIDES).map(Edge::Side),
+        (Some(edge), None) => edge.word().map(Edge::Side),
         (None, Some(segment)) => segment.pair(point).map(Edge::Segment),
         (Some(edge), Some(_)) => edge.fail("both edge and segment are given", "remove one of the two"),
         (None, None) => fields.need("edge", "edge = \"top\", or segment = [[x0, y0], [x1, y1]]", |_| None),

@@ -1,0 +1,216 @@
+//! What keys of a case file may hold, as types: read by serde, described by their JSON schemas.
+
+use std::borrow::Cow;
+
+use fisura::scene::Transfer;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
+
+use super::formula::{Amount, Formula};
+use crate::scene::fields::{self, Item};
+use crate::scene::read::transfer;
+use crate::scene::typed::through;
+use crate::scene::units::{self, Dimension};
+
+/// A type of values: what it holds, its JSON schema, and how an item is read.
+macro_rules! value {
+    ($(#[$doc:meta])* $name:ident($held:ty), $schema:tt, $read:expr) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, PartialEq)]
+        pub(super) struct $name(pub(super) $held);
+
+        impl<'de> Deserialize<'de> for $name {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                through(deserializer, $read).map(Self)
+            }
+        }
+
+        impl JsonSchema for $name {
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($name).into()
+            }
+
+            fn inline_schema() -> bool {
+                true
+            }
+
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                json_schema!($schema)
+            }
+        }
+    };
+}
+
+value!(
+    /// A string that says something.
+    Words(String), { "type": "string", "minLength": 1 }, |item| item.words()
+);
+value!(
+    /// Lower-case words joined by dashes.
+    Id(String), { "type": "string", "pattern": "^[^\\sA-Z_]+$" }, read_id
+);
+value!(
+    /// A formula of columns.
+    Column(String), { "type": "string", "minLength": 1 }, read_column
+);
+value!(
+    /// A number, or a quantity of any unit, in SI.
+    Quantity(f64), { "type": ["number", "string"] }, any_quantity
+);
+value!(
+    /// As [`Quantity`], above zero.
+    Uncertainty(f64), { "type": ["number", "string"] }, uncertainty
+);
+value!(
+    /// A plain number.
+    Number(f64), { "type": "number" }, |item| item.quantity(Dimension::NONE)
+);
+value!(
+    /// A plain number above zero.
+    Positive(f64), { "type": "number", "exclusiveMinimum": 0 }, |item| item.positive(Dimension::NONE)
+);
+value!(
+    /// A time above zero, s.
+    Duration(f64), { "type": ["number", "string"] }, |item| item.positive(Dimension::TIME)
+);
+value!(
+    /// A length above zero, m.
+    Length(f64), { "type": ["number", "string"] }, |item| item.positive(Dimension::LENGTH)
+);
+value!(
+    /// A number, a quantity of any unit, or a formula.
+    AnyAmount(Amount), { "type": ["number", "string"] }, |item| amount(item, None)
+);
+value!(
+    /// A time, or a formula.
+    Time(Amount), { "type": ["number", "string"] }, |item| amount(item, Some(Dimension::TIME))
+);
+value!(
+    /// A plain number, or a formula.
+    Factor(Amount), { "type": ["number", "string"] }, |item| amount(item, Some(Dimension::NONE))
+);
+value!(
+    /// A transfer of the updated frame.
+    TransferName(Transfer),
+    { "anyOf": [{ "type": "string" }, { "type": "object", "properties": { "xpic": { "type": "integer" } } }] },
+    transfer
+);
+
+/// One of the words of a type.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Word<T>(pub(super) T);
+
+impl<'de, T: fields::Words> Deserialize<'de> for Word<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        through(deserializer, |item| item.word()).map(Self)
+    }
+}
+
+impl<T: fields::Words> JsonSchema for Word<T> {
+    fn schema_name() -> Cow<'static, str> {
+        "Word".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "enum": T::WORDS.iter().map(|(word, _)| *word).collect::<Vec<_>>() })
+    }
+}
+
+/// A whole number between `MIN` and `MAX`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Whole<const MIN: usize, const MAX: usize>(pub(super) usize);
+
+impl<'de, const MIN: usize, const MAX: usize> Deserialize<'de> for Whole<MIN, MAX> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        through(deserializer, |item| item.whole(MIN, MAX)).map(Self)
+    }
+}
+
+impl<const MIN: usize, const MAX: usize> JsonSchema for Whole<MIN, MAX> {
+    fn schema_name() -> Cow<'static, str> {
+        "Whole".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "integer", "minimum": MIN, "maximum": MAX })
+    }
+}
+
+/// A list with at least one entry.
+#[derive(Debug, Clone, PartialEq, JsonSchema)]
+#[schemars(inline)]
+pub(super) struct Filled<T>(#[schemars(length(min = 1))] pub(super) Vec<T>);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Filled<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let entries = Vec::deserialize(deserializer)?;
+        if entries.is_empty() {
+            Err(D::Error::custom("the list is empty\u{1f}give at least one entry\u{1f}"))
+        } else {
+            Ok(Self(entries))
+        }
+    }
+}
+
+/// Words of letters and digits joined by dashes.
+fn read_id(item: &Item<'_>) -> Option<String> {
+    let text = item.text()?;
+    let plain = identifier(&text);
+    if plain == text && !text.is_empty() {
+        return Some(text);
+    }
+    let like = if plain.is_empty() { "largest-error" } else { &plain };
+    item.fail(format!("{text:?} is no id"), format!("join lower-case words by dashes: {like:?}"))
+}
+
+/// Words as an id.
+pub(super) fn identifier(words: &str) -> String {
+    let mapped: String = words.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { ' ' }).collect();
+    mapped.split_whitespace().collect::<Vec<_>>().join("-")
+}
+
+fn read_column(item: &Item<'_>) -> Option<String> {
+    let text = item.text()?;
+    match text.parse::<Formula>() {
+        Ok(_) => Some(text),
+        Err(message) => item.fail(message, "name a column of the history, or write a formula of columns"),
+    }
+}
+
+fn uncertainty(item: &Item<'_>) -> Option<f64> {
+    match any_quantity(item)? {
+        value if value > 0.0 => Some(value),
+        value => item.fail(format!("{value} is no uncertainty"), "give a positive number, or none if it is unknown"),
+    }
+}
+
+fn any_quantity(item: &Item<'_>) -> Option<f64> {
+    match item.node.as_str() {
+        None => item.quantity(Dimension::NONE),
+        Some(text) => match units::parse(text) {
+            Ok(quantity) => Some(quantity.value),
+            Err(e) => item.fail(e.message, e.remedy),
+        },
+    }
+}
+
+/// A formula, or a number of a dimension if one is given.
+fn amount(item: &Item<'_>, dimension: Option<Dimension>) -> Option<Amount> {
+    let formula = item.node.as_str().and_then(|text| text.strip_prefix('='));
+    let Some(formula) = formula else {
+        return dimension.map_or_else(|| any_quantity(item), |d| item.quantity(d)).map(Amount::Given);
+    };
+    match formula.trim().parse() {
+        Ok(formula) => Some(Amount::Formula(Box::new(formula))),
+        Err(message) => item.fail(message, "write a formula such as \"= 2*length/speed\""),
+    }
+}
