@@ -35,8 +35,8 @@
 //!
 //! # From the paper to the code
 //!
-//! Modules, lowest first: each calls those above it in this table, and none below. Below all of them is
-//! `checkpoint`, the state of a run as bytes.
+//! Each module calls only those that stand before it in this table. All may call `checkpoint`, the state of
+//! a run as bytes, and `faults`, the planted errors `fault!("name", right => wrong)` of the tests.
 //!
 //! | module | equations | what |
 //! |---|---|---|

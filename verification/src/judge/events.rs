@@ -5,7 +5,7 @@ use super::family::{END, Variant};
 use super::table::Curve;
 use super::verdict::{Comparison, Outcome};
 use super::{TIP_X, TIP_Y};
-use crate::extremes::larger;
+use crate::extremes::{larger, smaller};
 use crate::measure::fitted_speed;
 use crate::reference::Library;
 
@@ -90,7 +90,8 @@ pub fn events(
     let Some(x) = &curves[TIP_X] else { return Vec::new() };
     let y = curves[TIP_Y].as_ref();
     let found = values(x, y, variant.branching);
-    let interval = x.t.windows(2).map(|pair| pair[1] - pair[0]).reduce(larger).unwrap_or(0.0);
+    let widest = x.t.windows(2).map(|pair| pair[1] - pair[0]).reduce(larger).unwrap_or(0.0);
+    let interval = smaller(widest, END); // nothing is less certain than to within the run
     let last = x.t[x.t.len() - 1];
     let mut out = Vec::new();
     for (event, value) in EVENTS.iter().zip(found) {

@@ -11,7 +11,7 @@
 //! ```
 //!
 //! with the reactions r. The forces of n and n + 1 work on the points' motion `u` but on the grid's `v` and
-//! `w*`. So the transfer loss has three parts, each measured where it happens:
+//! `w*`. So the transfer loss of an elastic body has three parts, each measured where it happens:
 //!
 //! - `kinetic`: `1/2 vᵀ M(n) v − 1/2 wᵀ M(n+1) w`, the fall from the end of one step to the grid of the next.
 //!   `w` holds what the transfer gives back, affine parts included;
@@ -38,7 +38,7 @@
 //!
 //! It swings with the period of a span where a body moves on as a whole, and grows where a crack opens and
 //! stretches the gradient of c across it. What then remains is the stress-work quadrature, O(dt²), as in the
-//! total frame.
+//! total frame. With Gauss quadrature by spans there is `relaxation`: see [`super::gauss`].
 
 use serde::{Deserialize, Serialize};
 
