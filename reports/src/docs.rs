@@ -21,14 +21,17 @@ pub const DOCS_SCHEMA: &str = "fisura.docs/1";
 
 /// What each suite is about, in the order of the tables.
 const SUITES: [(&str, &str); 9] = [
-    ("patch", "spline bases, constant stress, half models and rigid motion, to round-off"),
+    ("patch", "spline bases, constant stress, bodies halved by symmetry and rigid motion, to round-off"),
     ("convergence", "orders against exact solutions: p + 1 in L2, p in H1; 2 with lumped mass and with moving points"),
     ("manufactured", "the same problems with discrete loads; point layouts that lose order; frequencies of a bar"),
     ("energy", "the energy balance closes; momentum is conserved"),
     ("contact", "impact, sliding, collision, Hertz and a stack, against closed forms"),
-    ("fracture", "closed forms of AT2, surface energy of cracks, wave speeds, early energies of the plate"),
+    (
+        "fracture",
+        "closed forms of the phase-field model (AT2), surface energy of cracks, wave speeds, early energies of the plate",
+    ),
     ("rings", "two brittle rings in collision, against the times of the source paper; the geometry is assumed"),
-    ("stability", "critical time step, cut spans, extreme input, units, threads, long runs"),
+    ("stability", "critical time step, bodies that end inside a span, extreme input, units, threads, long runs"),
     ("plate", "the cracking plate, against independent finite elements and published bands"),
 ];
 

@@ -1,12 +1,12 @@
 //! Hencky strain `e = ½ ln(F Fᵀ)` of plane deformations, in closed form.
 //!
-//! The deformation gradient is kept as the displacement gradient `H = F − I`, so that small strains keep
-//! their digits. With `c = F Fᵀ − I = H + Hᵀ + H Hᵀ`, its mean m and the root r of the squared half
-//! difference and the shear, the eigenvalues of `F Fᵀ` are `1 + m ± r`, and
+//! The deformation gradient F is kept as the displacement gradient `D = F − I`, so that small strains keep
+//! their digits. With `B = F Fᵀ − I = D + Dᵀ + D Dᵀ`, its mean `m = tr B/2` and
+//! `r = hypot((Bxx − Byy)/2, Bxy)`, the eigenvalues of `F Fᵀ` are `1 + m ± r`, and
 //!
 //! ```text
-//! e = ½ ln(det F) I + β (c − m I),    β = atanh(q)/q / (2 (1 + m)),    q = r/(1 + m)
-//! ln(det F) = log1p(tr H + det H)
+//! e = ½ ln(det F) I + β (B − m I),    β = atanh(q)/q / (2 (1 + m)),    q = r/(1 + m)
+//! ln(det F) = log1p(tr D + det D)
 //! ```
 //!
 //! Nothing is divided by the difference of the eigenvalues, so equal ones need no special care, and no

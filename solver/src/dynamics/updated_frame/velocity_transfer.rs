@@ -30,9 +30,9 @@
 //! MUSL      w ← w − s dt ω² u,          u ← u + dt w               stable up to Ω² = 4/s
 //! ```
 //!
-//! with q = s for PIC, APIC and TPIC and q = 1 − (1 − s)^m ≥ s for XPIC(m). For 0 ≤ s ≤ 1, which is a theorem
-//! but for TPIC (dense eigenvalues of bodies at random offsets: 0 to 1, all real), none is below √2, and
-//! MUSL's is at least 2.
+//! with q = s for PIC, APIC and TPIC and q = 1 − (1 − s)^m ≥ s for XPIC(m). 0 ≤ s ≤ 1 is a theorem, but for
+//! TPIC, where it was measured (all eigenvalues of bodies at random offsets: real, 0 to 1). So Ω ≤ √2 is
+//! stable for all, and Ω ≤ 2 for MUSL.
 
 use super::grid::NodalFields;
 use super::smoothing::Smoothing;
