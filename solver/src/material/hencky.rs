@@ -13,7 +13,8 @@
 //! logarithm is taken of a number that lost its digits to the 1 it stands beside. The stress that goes with
 //! it is Kirchhoff's, `tau = dpsi/de`: for an isotropic energy it has the principal directions of e, and
 //! `tau : d` is the power per unit of reference volume for the rate of deformation d. It is computed from e
-//! by the law of small strains, where points are: `transfer/finite.rs`, and `transfer.rs` of the updated frame.
+//! by the law of small strains, where points are: in `transfer/finite.rs` and, for the updated frame, in
+//! `transfer.rs`.
 
 use crate::linear_algebra::lane::each;
 
