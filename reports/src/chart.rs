@@ -7,13 +7,13 @@ use plotters::prelude::*;
 use crate::axis::AxisScale;
 use crate::frame::{self, BELOW, EDGE, Frame, Place};
 use crate::guides;
-use crate::legend::{BAND, Legend, draw_marker};
+use crate::legend::{BAND, Legend, draw_markers};
 use crate::regions::{self, Labels};
 use crate::series::{FigureError, SeriesSet};
 use crate::style::{AXIS, CURVE_WIDTH, TICK_SIZE, WIDTH, looks, px, text_width};
 use crate::svg::{self, Drawn, Page};
 use crate::thin::{drawable, markable, thin};
-use crate::trace::{Point, Trace, dash, pieces, visible};
+use crate::trace::{Point, Trace, pieces, visible};
 
 /// Nominal height of the frame.
 const HEIGHT: f64 = 340.0;
@@ -153,8 +153,8 @@ impl<'a> Chart<'a> {
             let size = (self.place.width, self.place.height);
             let lines: Vec<_> = pieces(&points, x, y).into_iter().map(|line| thin(line, x, y, size)).collect();
             bounded(trace, drawable(&lines, x, y, size))?;
-            let lines = lines.iter().flat_map(|line| dash(line, trace.look.dashes, x, y, size));
-            frame.draw_series(lines.map(|line| PathElement::new(line, stroke)))?;
+            let lines = lines.into_iter().map(|line| PathElement::new(line, stroke));
+            page.dashed(trace.look.dashes, || Ok(frame.draw_series(lines).map(|_| ())?))?;
         }
         self.draw_spread(frame, trace)?;
         let seen: Vec<Point> = points.into_iter().filter(|p| visible(*p, x, y)).collect();
@@ -164,10 +164,8 @@ impl<'a> Chart<'a> {
         bounded(trace, markable(marked.len()))?;
         let radius = if marked.len() > 24 { 2.6 } else { 3.6 };
         let floor = self.marks.floors.iter().map(|f| y.coordinate(f.y)).fold(f64::NEG_INFINITY, larger);
-        for p in marked {
-            draw_marker(page, frame.backend_coord(&p), marker, radius, trace.look.colour, p.1 <= floor)?;
-        }
-        Ok(())
+        let places: Vec<_> = marked.iter().map(|p| (frame.backend_coord(p), p.1 <= floor)).collect();
+        draw_markers(page, &places, marker, radius, trace.look.colour)
     }
 
     /// Bars along the abscissa from the least to the largest of repeated measurements.

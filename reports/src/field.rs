@@ -21,6 +21,8 @@ const TALLEST: f64 = 460.0;
 const MOST: [usize; 2] = [1_000_000, 10_000];
 /// Largest ratio of the sides of a picture.
 const SLIMMEST: f64 = 1000.0;
+/// Bytes above which a picture is drawn with half of the levels of the colour bar.
+const LARGE: usize = 32_000;
 /// Nominal width of the colour bar.
 const BAR: f64 = 16.0;
 /// Nominal distance of the colour bar from the frame.
@@ -99,7 +101,7 @@ impl Raster {
     /// only every `coarse`-th is used.
     pub(crate) fn paths(&self, range: [f64; 2], coarse: usize) -> String {
         let [nx, ny] = self.pixels;
-        let mut paths = vec![String::new(); LEVELS];
+        let mut paths = vec![(String::new(), (0, 0)); LEVELS];
         let mut open: Vec<Run> = Vec::new();
         for row in 0..ny {
             let mut next = runs(&self.values[(ny - 1 - row) * nx..][..nx], row, (range, coarse));
@@ -115,8 +117,8 @@ impl Raster {
         for run in open {
             run.close(ny, &mut paths);
         }
-        let filled = paths.iter().enumerate().filter(|(_, path)| !path.is_empty());
-        filled.fold(String::new(), |mut out, (level, path)| {
+        let filled = paths.iter().enumerate().filter(|(_, (path, _))| !path.is_empty());
+        filled.fold(String::new(), |mut out, (level, (path, _))| {
             let _ = writeln!(out, "<path fill=\"{}\" d=\"{path}\"/>", level_colour(level));
             out
         })
@@ -132,9 +134,15 @@ struct Run {
 }
 
 impl Run {
-    fn close(self, bottom: usize, paths: &mut [String]) {
+    /// Adds the rectangle to the path of its colour, from the corner where the one before began.
+    fn close(self, bottom: usize, paths: &mut [(String, (isize, isize))]) {
         let (width, height) = (self.end - self.start, bottom - self.top);
-        let _ = write!(paths[self.level], "M{} {}h{width}v{height}h-{width}z", self.start, self.top);
+        let (path, at) = &mut paths[self.level];
+        let corner = (self.start as isize, self.top as isize);
+        let (across, down) = (corner.0 - at.0, corner.1 - at.1);
+        let between = if down < 0 { "" } else { " " };
+        let _ = write!(path, "m{across}{between}{down}h{width}v{height}h-{width}z"); // cannot fail
+        *at = corner;
     }
 }
 
@@ -155,7 +163,11 @@ fn runs(values: &[f64], top: usize, (range, coarse): ([f64; 2], usize)) -> Vec<R
 /// # Errors
 /// A range of the colour bar that is empty or not finite.
 pub fn render_field(figure: &Figure, raster: &Raster, label: &str, range: [f64; 2]) -> Result<String, FigureError> {
-    render_with(figure, raster, (label, range), |place| markup(place, &raster.paths(range, 1), raster.pixels))
+    let mut paths = raster.paths(range, 1);
+    if paths.len() > LARGE {
+        paths = raster.paths(range, 2);
+    }
+    render_with(figure, raster, (label, range), |place| markup(place, &paths, raster.pixels))
 }
 
 /// The axes of a raster and the colour bar, with `content` in their frame.

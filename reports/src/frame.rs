@@ -6,12 +6,13 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use crate::axis::AxisScale;
+use crate::canvas::Canvas;
 use crate::number::power_of_ten;
 use crate::style::{AXIS, GRID, INK, LABEL_SIZE, TICK_SIZE, px, text, text_width};
 use crate::svg::{Drawn, Page};
 
 /// Chart of plotters over our own axes.
-pub type Frame<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<AxisScale, AxisScale>>;
+pub type Frame<'a> = ChartContext<'a, Canvas, Cartesian2d<AxisScale, AxisScale>>;
 
 /// Room below the frame for tick labels and the title of the abscissa.
 pub const BELOW: f64 = 42.0;
@@ -40,16 +41,16 @@ pub fn room_left(y: &AxisScale) -> f64 {
 }
 
 /// Draws axes, grid and titles; the frame returned takes curves in axis coordinates.
-pub fn draw<'a, 'b>(
-    page: &'a Page<'b>,
+pub fn draw<'a>(
+    page: &'a Page,
     place: Place,
     axes: &[AxisScale; 2],
     titles: [&str; 2],
     grid: bool,
-) -> Drawn<Frame<'a, 'b>> {
+) -> Drawn<Frame<'a>> {
     let left = room_left(&axes[1]);
     let (width, _) = page.dim_in_pixel();
-    let area = page.clone().shrink(
+    let area = (**page).clone().shrink(
         (px(place.left - left), px(place.top)),
         ((px(left + place.width)).min(width as i32) as u32, px(place.height + BELOW) as u32),
     );
@@ -59,12 +60,11 @@ pub fn draw<'a, 'b>(
         .build_cartesian_2d(axes[0].clone(), axes[1].clone())?;
     let tick = text(TICK_SIZE, INK, HPos::Center, VPos::Center);
     let line = if grid { GRID.stroke_width(px(0.8) as u32) } else { TRANSPARENT.into() };
-    let fine = if grid { GRID.mix(0.55).stroke_width(px(0.6) as u32) } else { TRANSPARENT.into() };
     frame
         .configure_mesh()
         .axis_style(AXIS.stroke_width(px(1.0) as u32))
         .bold_line_style(line)
-        .light_line_style(fine)
+        .light_line_style(TRANSPARENT)
         .label_style(tick)
         .axis_desc_style(text(LABEL_SIZE, INK, HPos::Center, VPos::Center))
         .set_all_tick_mark_size(px(4.0))

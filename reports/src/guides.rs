@@ -9,7 +9,7 @@ use crate::axis::AxisScale;
 use crate::frame::{Frame, Place};
 use crate::style::{AXIS, INK, REGION, TICK_SIZE, px, text, text_width};
 use crate::svg::{Drawn, Page};
-use crate::trace::{Point, dash, meets, visible};
+use crate::trace::{Point, meets, visible};
 
 /// Height of a label.
 const LINE: f64 = 16.0;
@@ -62,9 +62,8 @@ pub fn draw_floors(
             continue;
         }
         frame.draw_series([Rectangle::new([(x.low, y.low), (x.high, u)], REGION.mix(0.10).filled())])?;
-        let size = (place.width, place.height);
-        let dashes = dash(&[(x.low, u), (x.high, u)], &[6.0, 4.0], x, y, size);
-        frame.draw_series(dashes.into_iter().map(|line| PathElement::new(line, AXIS.stroke_width(px(1.1) as u32))))?;
+        let line = PathElement::new([(x.low, u), (x.high, u)], AXIS.stroke_width(px(1.1) as u32));
+        page.dashed(&[6.0, 4.0], || Ok(frame.draw_series([line]).map(|_| ())?))?;
         let (right, below) = label_place(&floor.label, u, place, axes, lines);
         let (edge, side) = if right { (place.width - 6.0, HPos::Right) } else { (6.0, HPos::Left) };
         let (shift, anchor) = if below { (4.0, VPos::Top) } else { (-4.0, VPos::Bottom) };

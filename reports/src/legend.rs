@@ -86,36 +86,43 @@ impl Entry {
             let bar = vec![(px(x + 0.5 * SAMPLE), px(y - 7.0)), (px(x + 0.5 * SAMPLE), px(y + 7.0))];
             page.draw(&PathElement::new(bar, look.colour.stroke_width(px(1.2) as u32)))?;
         } else {
-            let (mut start, mut phase) = (0.0, 0);
-            while start < SAMPLE {
-                let length = look.dashes.get(phase).copied().unwrap_or(SAMPLE);
-                let end = (start + length).min(SAMPLE);
-                if phase % 2 == 0 {
-                    let dash = vec![(px(x + start), px(y)), (px(x + end), px(y))];
-                    page.draw(&PathElement::new(dash, look.colour.stroke_width(px(CURVE_WIDTH) as u32)))?;
-                }
-                (start, phase) = (end, (phase + 1) % look.dashes.len().max(1));
-            }
+            let line = vec![(px(x), px(y)), (px(x + SAMPLE), px(y))];
+            let line = PathElement::new(line, look.colour.stroke_width(px(CURVE_WIDTH) as u32));
+            page.dashed(look.dashes, || Ok(page.draw(&line)?))?;
         }
         match look.marker {
-            Some(marker) => draw_marker(page, (px(x + 0.5 * SAMPLE), px(y)), marker, 3.6, look.colour, false),
+            Some(marker) => draw_markers(page, &[((px(x + 0.5 * SAMPLE), px(y)), false)], marker, 3.6, look.colour),
             None => Ok(()),
         }
     }
 }
 
-/// Draws a marker of nominal `radius` at a place on the page, with a thin white rim that sets it off from
-/// lines.
-pub fn draw_marker(page: &Page, at: (i32, i32), marker: Marker, radius: f64, colour: RGBColor, hollow: bool) -> Drawn {
-    let layers = [(radius + 0.9, WHITE), (radius, colour), (radius - 1.4, WHITE)];
-    for (radius, colour) in layers.into_iter().take(if hollow { 3 } else { 2 }) {
-        let corners = marker.corners(radius);
-        if corners.is_empty() {
-            page.draw(&Circle::new(at, px(radius), colour.filled()))?;
-        } else {
-            let corners: Vec<(i32, i32)> = corners.iter().map(|c| (at.0 + c.0, at.1 + c.1)).collect();
-            page.draw(&Polygon::new(corners, colour.filled()))?;
+/// Nominal width of the rim of a marker.
+const RIM: f64 = 0.9;
+
+/// Draws markers of nominal `radius` at places on the page, some of them hollow, with a thin white rim that
+/// sets them off from lines.
+pub fn draw_markers(
+    page: &Page,
+    places: &[((i32, i32), bool)],
+    marker: Marker,
+    radius: f64,
+    colour: RGBColor,
+) -> Drawn {
+    let hollow: Vec<_> = places.iter().filter(|(_, hollow)| *hollow).copied().collect();
+    if marker == Marker::Circle {
+        for (radius, colour, places) in
+            [(radius + RIM, WHITE, places), (radius, colour, places), (radius - 1.4, WHITE, &hollow)]
+        {
+            places.iter().try_for_each(|(at, _)| page.draw(&Circle::new(*at, px(radius), colour.filled())))?;
         }
+        return Ok(());
     }
-    Ok(())
+    let draw = |radius: f64, colour: RGBColor, places: &[((i32, i32), bool)]| -> Drawn {
+        let corners = marker.corners(radius);
+        let shape = |at: (i32, i32)| corners.iter().map(|c| (at.0 + c.0, at.1 + c.1)).collect::<Vec<_>>();
+        Ok(places.iter().try_for_each(|(at, _)| page.draw(&Polygon::new(shape(*at), colour.filled())))?)
+    };
+    page.rimmed(RIM, || draw(radius, colour, places))?;
+    draw(radius - 1.4, WHITE, &hollow)
 }

@@ -59,7 +59,7 @@ pub mod text;
 pub mod view;
 pub mod vtk;
 
-mod compact;
+mod canvas;
 mod frame;
 mod guides;
 mod legend;

@@ -143,7 +143,7 @@ mod tests {
             table.push(&[(i % 4) as f64 * 1e-3, (i / 4) as f64 * 1e-3, if i == 5 { f64::NAN } else { 0.5 }]);
         }
         let svg = phase_svg(&table, 45e-6, "Plate").unwrap();
-        assert!(svg.contains("phase field at 45 µs") && svg.contains("M0 0h4v1h-4z"), "{svg}");
+        assert!(svg.contains("phase field at 45 µs") && svg.contains("m0 0h4v1h-4z"), "{svg}");
         table.push(&[0.0, 3e-3, 1.0]);
         assert!(phase_svg(&table, 45e-6, "Plate").unwrap_err().to_string().contains("13 rows"));
     }

@@ -69,8 +69,7 @@ fn wrap_by(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
 
 /// Text style of a nominal size, anchored at the given side.
 pub fn text(size: f64, colour: RGBColor, horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
-    // the SVG backend divides the size of a font by 1.24
-    FontDesc::from(("sans-serif", size * SCALE * 1.24)).color(&colour).pos(Pos::new(horizontal, vertical))
+    FontDesc::from(("sans-serif", size * SCALE)).color(&colour).pos(Pos::new(horizontal, vertical))
 }
 
 /// Shape of a marker.

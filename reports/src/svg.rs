@@ -1,13 +1,21 @@
-//! From what plotters writes to an SVG that scales, speaks and stays small.
+//! A figure as an SVG that scales, has words for those who cannot see it, and stays small.
+
+use std::ops::Deref;
 
 use fisura_verification::output::foreign::steers;
+use plotters::coord::Shift;
 use plotters::prelude::*;
 
+use crate::canvas::Canvas;
 use crate::series::FigureError;
 use crate::style::{SCALE, px};
 
-/// A drawing area of plotters that ends in a string.
-pub type Page<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+/// A drawing area of plotters, and the canvas below it.
+pub struct Page {
+    area: DrawingArea<Canvas, Shift>,
+    canvas: Canvas,
+}
+
 /// What a drawing function returns.
 pub type Drawn<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
@@ -19,40 +27,47 @@ pub fn page(
     (width, height): (f64, f64),
     draw: impl FnOnce(&Page) -> Drawn<Option<String>>,
 ) -> Result<String, FigureError> {
-    let mut buffer = String::new();
-    let size = (px(width) as u32, px(height) as u32);
-    let drawn = || -> Drawn<Option<String>> {
-        let root = SVGBackend::with_string(&mut buffer, size).into_drawing_area();
-        let below = draw(&root)?;
-        root.present()?;
-        Ok(below)
-    };
-    let below = drawn().map_err(|e| FigureError::Drawing { figure: figure.to_string(), message: e.to_string() })?;
-    Ok(finish(&buffer, figure, title, description, (width, height), below.as_deref().unwrap_or("")))
-}
-
-/// Gives the document its nominal size, a title and a description, and drops attributes that say nothing and
-/// the round-off of sizes of fonts, which plotters divides by a factor that `style` multiplies them with.
-fn finish(raw: &str, id: &str, title: &str, description: &str, size: (f64, f64), below: &str) -> String {
-    let body = raw.split_once(">\n").map_or(raw, |(_, body)| body);
-    let body = body
-        .replace(" opacity=\"1\"", "")
-        .replace(" font-family=\"sans-serif\"", "")
-        .replace(" \"/>", "\"/>")
-        .replace(".00000000000001\"", "\"");
-    let body = crate::compact::compact(&body);
-    let id = slug(id);
-    let (width, height) = size;
+    let canvas = Canvas::new((px(width) as u32, px(height) as u32));
+    let failed = |e: Box<dyn std::error::Error>| FigureError::Drawing { figure: figure.into(), message: e.to_string() };
+    let page = Page { area: canvas.clone().into_drawing_area(), canvas: canvas.clone() };
+    let below = draw(&page).map_err(failed)?.unwrap_or_default();
+    let (id, body) = (slug(figure), canvas.markup());
     let (outer_width, outer_height) = (width * SCALE, height * SCALE);
-    format!(
+    Ok(format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
          viewBox=\"0 0 {outer_width} {outer_height}\" role=\"img\" aria-labelledby=\"{id}-title {id}-desc\" \
          font-family=\"sans-serif\" stroke-linejoin=\"round\">\n\
          <title id=\"{id}-title\">{}</title>\n<desc id=\"{id}-desc\">{}</desc>\n\
-         <rect width=\"{outer_width}\" height=\"{outer_height}\" fill=\"#fff\"/>\n{below}{body}",
+         <rect width=\"{outer_width}\" height=\"{outer_height}\" fill=\"#fff\"/>\n{below}{body}</svg>\n",
         escape(title),
         escape(description)
-    )
+    ))
+}
+
+impl Page {
+    /// Draws with lines dashed by a pattern, lengths of dashes and gaps in nominal pixels.
+    pub fn dashed(&self, pattern: &'static [f64], draw: impl FnOnce() -> Drawn) -> Drawn {
+        self.canvas.dash(pattern);
+        let drawn = draw();
+        self.canvas.dash(&[]);
+        drawn
+    }
+
+    /// Draws areas with a white rim of a nominal width that sets them off from lines.
+    pub fn rimmed(&self, width: f64, draw: impl FnOnce() -> Drawn) -> Drawn {
+        self.canvas.rim(width);
+        let drawn = draw();
+        self.canvas.rim(0.0);
+        drawn
+    }
+}
+
+impl Deref for Page {
+    type Target = DrawingArea<Canvas, Shift>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.area
+    }
 }
 
 /// An identifier for an anchor: letters, digits and single hyphens.

@@ -175,42 +175,6 @@ fn clip(a: Point, b: Point, x: [f64; 2], y: [f64; 2]) -> Option<(Point, Point)> 
     (enter <= leave).then_some((start, if leave == 1.0 { b } else { at(leave) }))
 }
 
-/// Cuts a polyline into dashes. `size` is that of the frame in nominal pixels, in which the pattern is given.
-pub fn dash(line: &[Point], pattern: &[f64], x: &AxisScale, y: &AxisScale, size: (f64, f64)) -> Vec<Vec<Point>> {
-    if pattern.is_empty() {
-        return vec![line.to_vec()];
-    }
-    let (unit_x, unit_y) = (size.0 / (x.high - x.low), size.1 / (y.high - y.low));
-    let mut dashes = Vec::new();
-    let (mut phase, mut left) = (0, pattern[0]);
-    let mut current = line.first().copied().into_iter().collect::<Vec<_>>();
-    for pair in line.windows(2) {
-        let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
-        let length = (dx * unit_x).hypot(dy * unit_y);
-        let mut done = 0.0;
-        while length - done > left {
-            done += left;
-            let p = (pair[0].0 + dx * done / length, pair[0].1 + dy * done / length);
-            if phase % 2 == 0 {
-                current.push(p);
-                dashes.push(std::mem::take(&mut current));
-            } else {
-                current = vec![p];
-            }
-            phase = (phase + 1) % pattern.len();
-            left = pattern[phase];
-        }
-        left -= length - done;
-        if phase % 2 == 0 {
-            current.push(pair[1]);
-        }
-    }
-    if phase % 2 == 0 && current.len() > 1 {
-        dashes.push(current);
-    }
-    dashes
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -230,14 +194,5 @@ mod tests {
     fn lines_end_at_the_frame() {
         let pieces = pieces(&[(-1.0, 0.5), (0.5, 0.5), (0.5, 3.0), (0.7, 3.0)], &unit(), &unit());
         assert_eq!(pieces, [vec![(0.0, 0.5), (0.5, 0.5), (0.5, 1.0)]]);
-    }
-
-    #[test]
-    fn dashes_keep_their_pattern_across_corners() {
-        let line = [(0.0, 0.0), (0.05, 0.0), (1.0, 0.0)];
-        let dashes = dash(&line, &[10.0, 10.0], &unit(), &unit(), (100.0, 100.0));
-        assert_eq!(dashes.len(), 5);
-        assert_eq!(dashes[0].len(), 3);
-        assert!(dashes.iter().all(|d| (d[d.len() - 1].0 - d[0].0 - 0.1).abs() < 1e-12), "{dashes:?}");
     }
 }

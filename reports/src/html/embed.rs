@@ -10,7 +10,17 @@ use std::fmt::Write;
 use super::Drawings;
 
 /// Attributes that a style sheet can say as well.
-const LOOKS: [&str; 6] = ["fill", "stroke", "stroke-width", "opacity", "font-size", "text-anchor"];
+const LOOKS: [&str; 9] = [
+    "fill",
+    "stroke",
+    "stroke-width",
+    "stroke-linecap",
+    "stroke-dasharray",
+    "paint-order",
+    "opacity",
+    "font-size",
+    "text-anchor",
+];
 
 /// Drawings for the page, and the rules that they need in its style.
 pub(super) fn embedded(drawings: &Drawings) -> (Drawings, String) {
@@ -55,6 +65,7 @@ impl Classes {
         let mut look = String::new();
         for (key, value) in pairs(attributes) {
             match key {
+                "xmlns" | "font-family" | "stroke-linejoin" => {}
                 _ if LOOKS.contains(&key) && name != "svg" => {
                     let unit = if key == "font-size" { "px" } else { "" };
                     let _ = write!(look, "{key}:{value}{unit};");
@@ -62,9 +73,6 @@ impl Classes {
                 "aria-labelledby" => {
                     let title = value.split(' ').next().unwrap_or_default();
                     let _ = write!(out, " {key}=\"{title}\"");
-                }
-                "d" => {
-                    let _ = write!(out, " d=\"{}\"", straight(value));
                 }
                 _ => {
                     let _ = write!(out, " {key}=\"{value}\"");
@@ -97,43 +105,6 @@ fn pairs(attributes: &str) -> impl Iterator<Item = (&str, &str)> {
     })
 }
 
-/// The data of a path with level and upright lines in their short form.
-fn straight(data: &str) -> String {
-    let mut pieces = data.split('l');
-    let mut out = pieces.next().unwrap_or_default().to_string();
-    for piece in pieces {
-        match level_or_upright(piece) {
-            Some((command, length, after)) => {
-                let _ = write!(out, "{command}{length}{after}");
-            }
-            None => {
-                let _ = write!(out, "l{piece}");
-            }
-        }
-    }
-    out
-}
-
-/// Command, length and rest of a step of which one part is zero; `None` for any other, or if more steps
-/// follow without a letter.
-fn level_or_upright(piece: &str) -> Option<(char, &str, &str)> {
-    let number =
-        |text: &str| text[1.min(text.len())..].find(|c: char| !c.is_ascii_digit()).map_or(text.len(), |at| at + 1);
-    let is_number = |text: &str| text.trim_start_matches('-').parse::<u64>().is_ok();
-    let (x, after) = piece.split_at_checked(number(piece))?;
-    let after = after.strip_prefix(' ').unwrap_or(after);
-    let (y, after) = after.split_at_checked(number(after))?;
-    let ends = after.chars().next().is_none_or(|c| c.is_ascii_alphabetic());
-    if !ends || !is_number(x) || !is_number(y) {
-        return None;
-    }
-    match (x, y) {
-        ("0", y) => Some(('v', y, after)),
-        (x, "0") => Some(('h', x, after)),
-        _ => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -154,12 +125,5 @@ mod tests {
         );
         assert_eq!(rules, "svg .q0{fill:#fff;stroke-width:1}\nsvg .q1{font-size:12px}\n");
         assert_eq!(short["b"], Err("none".to_string()));
-    }
-
-    #[test]
-    fn straight_lines_are_short() {
-        assert_eq!(straight("m740 120l0 3399m5-6l60 0l0-25l3 4z"), "m740 120v3399m5-6h60v-25l3 4z");
-        assert_eq!(straight("l0 1 2 3l-7 0"), "l0 1 2 3h-7", "steps without a letter stay");
-        assert_eq!(straight("M0.5 1L2 3l1.5 0"), "M0.5 1L2 3l1.5 0");
     }
 }
