@@ -4,9 +4,10 @@
 //! between two marks is typed by hand: `cargo xtask report --docs` writes it, and a test fails where it is
 //! not what would be written.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
-use fisura_verification::record::{Record, ResultSet, Status};
+use fisura_verification::record::{Figure, Record, ResultSet, Status};
 use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
@@ -35,6 +36,29 @@ const SUITES: [(&str, &str); 9] = [
     ("plate", "the cracking plate, against independent finite elements and published bands"),
 ];
 
+/// Figures of each page of a suite, by their ids in the results.
+const FIGURES: [&str; 19] = [
+    "patch-linear-field-rational-equilibrium-residual-of-a-linear-field",
+    "convergence-elastostatics-random-displacement-error-in-l2",
+    "convergence-standing-wave-square-displacement-error-in-l2",
+    "convergence-moving-wave-displacement-error-at-the-points",
+    "manufactured-bar-eigenfrequencies-frequency-error-of-mode-1",
+    "manufactured-limit-uniform-cubics-elastostatics-displacement-error-in-l2",
+    "contact-impact-equal-force",
+    "contact-hertz-pressure",
+    "contact-discs-head-on-energies",
+    "fracture-homogeneous-bar",
+    "collision-phase-60us",
+    "collision-phase-200us",
+    "collision-fracture-energy",
+    "stability-growth-energy",
+    "stability-critical-step-cut",
+    "plate-phase-half-p2-h1-80us",
+    "plate-elastic-energy",
+    "plate-fracture-increment",
+    "plate-tip-position",
+];
+
 /// The checks of one run as they are printed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stored {
@@ -46,6 +70,20 @@ pub struct Stored {
     pub verdict: String,
     /// Cases in the order of the plan.
     pub cases: Vec<StoredCase>,
+    /// Figures of the pages of the suites, in the order of the results.
+    pub figures: Vec<StoredFigure>,
+}
+
+/// A figure and what stands below it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StoredFigure {
+    suite: String,
+    /// Name of its drawing, without the ending.
+    pub id: String,
+    title: String,
+    caption: String,
+    /// Every deviation from the cited source.
+    deviations: Vec<String>,
 }
 
 /// A case and its checks.
@@ -70,7 +108,9 @@ impl Stored {
         let records: Vec<&Record> = set.records.iter().collect();
         let cases = records.chunk_by(|a, b| (&a.suite, &a.case) == (&b.suite, &b.case)).map(stored_case).collect();
         let commit = environment.map_or_else(|| "unknown".to_string(), |(_, commit)| commit);
-        Self { schema: DOCS_SCHEMA.to_string(), commit, verdict, cases }
+        let listed = set.figures.iter().filter(|figure| FIGURES.contains(&figure.id.as_str()));
+        let figures = listed.map(stored_figure).collect();
+        Self { schema: DOCS_SCHEMA.to_string(), commit, verdict, cases, figures }
     }
 
     /// Reads what a file holds.
@@ -88,6 +128,7 @@ impl Stored {
             None if name == "suites" => Some(self.suites()),
             Some(("suite", suite)) => self.suite(suite),
             Some(("orders", suite)) => self.orders(suite),
+            Some(("figures", suite)) => self.figures(suite),
             _ => None,
         }
     }
@@ -133,6 +174,23 @@ impl Stored {
         Some(out)
     }
 
+    fn figures(&self, suite: &str) -> Option<String> {
+        let figures: Vec<&StoredFigure> = self.figures.iter().filter(|figure| figure.suite == suite).collect();
+        let one = |figure: &&StoredFigure| {
+            let [title, caption] = [&figure.title, &figure.caption].map(|text| cell(text));
+            let below = format!("{title}. {caption}");
+            format!("![{title}](figures/{}.svg)\n\n{}\n", figure.id, below.trim_end())
+        };
+        let mut parts: Vec<String> = figures.iter().map(one).collect();
+        let mut deviations: Vec<String> = figures.iter().flat_map(|f| &f.deviations).map(|text| cell(text)).collect();
+        let mut seen = BTreeSet::new();
+        deviations.retain(|deviation| seen.insert(deviation.clone()));
+        if !deviations.is_empty() {
+            parts.push(format!("What differs from the source paper:\n\n- {}\n", deviations.join("\n- ")));
+        }
+        (!parts.is_empty()).then(|| parts.join("\n"))
+    }
+
     fn orders(&self, suite: &str) -> Option<String> {
         let mut out =
             "| case | degree | error | theory | observed | accepted | finest mesh |\n|---|---|---|---|---|---|---|\n"
@@ -145,6 +203,11 @@ impl Stored {
         }
         Some(format!("{out}\nQuick tier, commit {}.\n", cell(&short(&self.commit))))
     }
+}
+
+fn stored_figure(figure: &Figure) -> StoredFigure {
+    let [suite, id, title, caption] = [&figure.suite, &figure.id, &figure.title, &figure.caption].map(Clone::clone);
+    StoredFigure { suite, id, title, caption, deviations: figure.deviations.clone() }
 }
 
 fn short(commit: &str) -> String {

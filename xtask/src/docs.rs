@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::CommandFactory;
 use fisura_reports::docs::{Stored, rewritten};
-use fisura_reports::judge::board_of_the_book;
+use fisura_reports::judge::{board_of_the_book, stored_boards};
 use fisura_reports::read_results;
 use fisura_verification::record::ResultSet;
 use serde_json::json;
@@ -19,6 +19,8 @@ use crate::{console, folders};
 /// Folder of the book, and the file in it that holds what its tables show.
 const BOOK: &str = "reports/book";
 const STORED: &str = "records.json";
+/// Folder of the figures of the book.
+const FIGURES: &str = "src/figures";
 
 /// Stores what `from` holds, if it is given, and writes every generated part anew; names the files that
 /// changed.
@@ -40,7 +42,15 @@ pub fn docs(from: Option<&PathBuf>, common: &Common) -> Result<Exit, Failure> {
     if let Some(from) = from {
         let set = read_results(from).map_err(|error| unreadable(error, from))?;
         refuse_parts(&set, from)?;
-        let text = serde_json::to_string_pretty(&Stored::of(&set)).unwrap_or_default() + "\n"; // plain data
+        let stored = Stored::of(&set);
+        for figure in &stored.figures {
+            let name = format!("{}.svg", figure.id);
+            let drawn = from.join("figures").join(&name);
+            let missing = |error| Failure::new(Exit::BadInput, format!("{}: {error}", drawn.display()));
+            let text = fs::read_to_string(&drawn).map_err(missing)?;
+            store(root.join(BOOK).join(FIGURES).join(&name), text)?;
+        }
+        let text = serde_json::to_string_pretty(&stored).unwrap_or_default() + "\n"; // plain data
         store(root.join(BOOK).join(STORED), text)?;
     }
     for (path, text) in anew(&root)? {
@@ -62,7 +72,7 @@ fn refuse_parts(set: &ResultSet, from: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Every document with generated parts, and its text with them as they should be.
+/// Every document with its generated parts as they should be, and the drawings of the board.
 fn anew(root: &Path) -> Result<Vec<(PathBuf, String)>, Failure> {
     let bad = |path: &Path, error: String| Failure::new(Exit::BadInput, format!("{}: {error}", path.display()));
     let stored = Stored::read(&root.join(BOOK), STORED)?;
@@ -82,7 +92,9 @@ fn anew(root: &Path) -> Result<Vec<(PathBuf, String)>, Failure> {
         let text = rewritten(&text, block).map_err(|error| bad(&path, error))?;
         Ok((path, text))
     };
-    paths.into_iter().map(one).collect()
+    let figures = root.join(BOOK).join(FIGURES);
+    let boards = stored_boards().into_iter().map(|board| Ok((figures.join(board.file), board.svg.to_string())));
+    paths.into_iter().map(one).chain(boards).collect()
 }
 
 /// Every command with its options, as the command line itself describes them.
@@ -116,5 +128,18 @@ mod tests {
             assert!(all.contains(&format!("<!-- docs: {block} -->")), "no document has the block {block}");
         }
         assert!(commands().contains("## verify") && commands().contains("--partition <slice:K/N>"));
+    }
+
+    #[test]
+    fn every_figure_of_the_book_is_one_of_the_stored_results() {
+        let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(BOOK);
+        let stored = Stored::read(&book, STORED).unwrap();
+        let mut named: Vec<String> = stored.figures.iter().map(|figure| format!("{}.svg", figure.id)).collect();
+        named.extend(stored_boards().iter().map(|board| board.file.to_string()));
+        let files = fs::read_dir(book.join(FIGURES)).unwrap();
+        let mut found: Vec<String> = files.map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
+        named.sort();
+        found.sort();
+        assert_eq!(named, found);
     }
 }

@@ -36,10 +36,9 @@ pub fn stored_boards() -> Vec<StoredBoard> {
     sections.filter_map(board).collect()
 }
 
-/// The same for the book: title, drawing and sentence.
+/// The same for the book: title, drawing (among the figures of the book) and sentence.
 pub fn board_of_the_book() -> String {
-    let part =
-        |b: StoredBoard| format!("### {}\n\n![{0}](../../gallery/judge/{})\n\n{}\n", b.title, b.file, b.sentence);
+    let part = |b: StoredBoard| format!("### {}\n\n![{0}](figures/{})\n\n{}\n", b.title, b.file, b.sentence);
     let parts: Vec<String> = stored_boards().into_iter().map(part).collect();
     parts.join("\n") + "\nVerdicts, errors and costs as tables: [gallery](../../gallery/judge/board.md).\n"
 }
