@@ -179,7 +179,8 @@ impl Stored {
         let one = |figure: &&StoredFigure| {
             let [title, caption] = [&figure.title, &figure.caption].map(|text| cell(text));
             let below = format!("{title}. {caption}");
-            format!("![{title}](figures/{}.svg)\n\n{}\n", figure.id, below.trim_end())
+            let file = format!("figures/{}.svg", figure.id);
+            format!("[![{title}]({file})]({file})\n\n{}\n", below.trim_end())
         };
         let mut parts: Vec<String> = figures.iter().map(one).collect();
         let mut deviations: Vec<String> = figures.iter().flat_map(|f| &f.deviations).map(|text| cell(text)).collect();

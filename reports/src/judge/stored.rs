@@ -38,7 +38,10 @@ pub fn stored_boards() -> Vec<StoredBoard> {
 
 /// The same for the book: title, drawing (among the figures of the book) and sentence.
 pub fn board_of_the_book() -> String {
-    let part = |b: StoredBoard| format!("### {}\n\n![{0}](figures/{})\n\n{}\n", b.title, b.file, b.sentence);
+    let part = |b: StoredBoard| {
+        let (title, file) = (b.title, format!("figures/{}", b.file));
+        format!("### {title}\n\n[![{title}]({file})]({file})\n\n{}\n", b.sentence)
+    };
     let parts: Vec<String> = stored_boards().into_iter().map(part).collect();
     parts.join("\n") + "\nVerdicts, errors and costs as tables: [gallery](../../gallery/judge/board.md).\n"
 }
