@@ -97,17 +97,24 @@ fn anew(root: &Path) -> Result<Vec<(PathBuf, String)>, Failure> {
     paths.into_iter().map(one).chain(boards).collect()
 }
 
-/// Every command with its options, as the command line itself describes them.
+/// Heading of the options that every command has.
+const COMMON: &str = "\n\nCommon options:\n";
+
+/// Every command with its options, as the command line itself describes them; those of all commands once.
 fn commands() -> String {
     let mut cli = Cli::command();
     cli.build();
-    let mut out = String::new();
+    let (mut out, mut common) = (String::new(), String::new());
     for command in cli.get_subcommands_mut().filter(|command| !command.is_hide_set() && command.get_name() != "help") {
         let name = command.get_name().to_string();
         let help = command.clone().term_width(100).render_help().to_string();
         let help: Vec<&str> = help.lines().map(str::trim_end).collect();
-        out.push_str(&format!("## {name}\n\n```text\n{}\n```\n\n", help.join("\n").trim_end()));
+        let help = help.join("\n");
+        let (own, of_all) = help.split_once(COMMON).unwrap_or((&help, ""));
+        out.push_str(&format!("## {name}\n\n```text\n{}\n```\n\n", own.trim_end()));
+        common = of_all.trim_end().to_string();
     }
+    out.push_str(&format!("## Options of every command\n\n```text\n{common}\n```\n"));
     out
 }
 
