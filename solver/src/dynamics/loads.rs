@@ -1,5 +1,5 @@
-//! External loads: tractions carried by surface points, `f_I = min(t/ramp, 1) Σ l t N_I` with the length l of
-//! a point and the traction t (E 18). Those that move are in
+//! External loads: tractions carried by surface points, `f_I = min(time/ramp, 1) Σ_s l_s t N_I(x_s)` with the
+//! length l of a point and the traction t (E 18). Those that move are in
 //! [`updated_frame::tractions`](super::updated_frame).
 //!
 //! Nothing of a traction may be lost on the way to the control points: [`Balance`] holds every load to the

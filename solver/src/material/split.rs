@@ -4,7 +4,8 @@
 //! psi± = lam*/2 ⟨tr e⟩±² + mu tr[(e±)²],      sigma = g(c) dpsi+/de + dpsi−/de
 //! ```
 //!
-//! The degradation g(c) is in [`degradation`](super::degradation).
+//! with `⟨a⟩± = (a ± |a|)/2`, and lam* of [`elasticity`](super::elasticity). The degradation g(c) is in
+//! [`degradation`](super::degradation).
 //!
 //! With `m = (exx + eyy)/2` and `r = hypot((exx − eyy)/2, exy)` the principal strains are `m ± r`, and the
 //! tensile part is `e+ = a (e − b I)` with (a, b) = (1, 0) where both are tensile, (0, ·) where both are

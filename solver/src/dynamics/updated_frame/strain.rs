@@ -1,4 +1,5 @@
-//! How a step strains the points: small or finite kinematics.
+//! How a step strains the points, with the gradient A of its displacement at the positions before it: small
+//! kinematics `e ← e + sym A`, finite ones `F ← (I + A) F`, in [`hencky`](crate::material::hencky).
 
 use crate::material::hencky::{Gradient, advance, gradient_at_end, hencky_strain, symmetric};
 

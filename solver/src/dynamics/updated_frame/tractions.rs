@@ -1,4 +1,4 @@
-//! Tractions on surface points that move with the body.
+//! Tractions on surface points s that move with the body: `f_I = min(time/ramp, 1) Σ_s l_s t N_I(x_s)`.
 
 use super::grid::NodalFields;
 use crate::checkpoint::{Archive, StateError};

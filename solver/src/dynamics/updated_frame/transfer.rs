@@ -1,4 +1,11 @@
-//! The passes between points and grid of the updated frame (E 15–18).
+//! The passes between points and grid of the updated frame (E 15–18). With the fraction k of its velocity
+//! that a point keeps, the increment Δv and the motion of [`velocity_transfer`](super::velocity_transfer),
+//!
+//! ```text
+//! v_p ← k v_p + Σ N_I Δv_I,      x_p ← x_p + dt Σ N_I motion_I,      A = dt Σ motion_I ⊗ grad N_I
+//! ```
+//!
+//! Strain and deformation gradient follow from A in [`strain`](super::strain).
 //!
 //! Both go cell by cell: the control values of a span are gathered once for all its points. Shape functions
 //! are products of two one-dimensional Horner schemes at the present position. Four numbers travel together

@@ -12,7 +12,7 @@
 //! MUSL     1     v − w                                   w + S⁺ S (v − w), conditions imposed again
 //! APIC     0     v, and C from v (see `affine`)          v
 //! TPIC     0     v, and C from v                         v
-//! XPIC(m)  0     Σ_{k<m} (I − S⁺ S)^k w + (v − w)        v
+//! XPIC(m)  0     [Σ_{j<m} (I − S⁺ S)^j] w + (v − w)      v
 //! ```
 //!
 //! MUSL's motion is what a second P2G of the new point velocities would give. Points move with it as well as

@@ -1,4 +1,5 @@
-//! Rational basis functions, their gradients, and what the geometry map makes of them.
+//! Rational basis functions, their gradients, and what the geometry map makes of them:
+//! `R_a = N_a w_a / W` and `∂R_a = (w_a ∂N_a − R_a ∂W) / W` with `W = Σ N_b w_b`.
 
 use crate::splines::point_value::PointValue;
 use crate::splines::spline::{MAX_FUNCTIONS, SplineSpace};

@@ -82,9 +82,8 @@ const ORDERS: [Option<f64>; 2] = [Some(2.0 / 3.0), Some(1.0)];
 /// Runs that differ in the mesh only.
 fn group(scene: &Scene) -> String {
     let transfer = match scene.analysis.transfer {
-        Transfer::Flip => "",
-        Transfer::Apic => ", APIC",
-        _ => ", other transfer",
+        Transfer::Flip => String::new(),
+        other => format!(", {}", format!("{other:?}").to_uppercase()),
     };
     format!("p={}{transfer}", scene.mesh.degree[0])
 }

@@ -58,8 +58,8 @@ fn caption(CaseScene { scene, .. }: &CaseScene, watched: &Watched) -> String {
         .map_or(String::new(), |(_, [inner, outer])| format!("radii {:.0} and {:.0} mm, ", 1e3 * inner, 1e3 * outer));
     let l0 = length_scale(scene).unwrap_or(f64::NAN);
     format!(
-        "Geometry assumed: {radii}l0 = {:.1} mm. p = {}, h = {:.3} mm, {} points, {} steps of {:.3e} s.",
-        1e3 * l0,
+        "Geometry assumed: {radii}l0 = {} mm. p = {}, h = {:.3} mm, {} points, {} steps of {:.3e} s.",
+        (1e6 * l0).round() / 1e3,
         scene.mesh.degree[0],
         1e3 * fisura::particles::spans::largest_spans(&scene.mesh)[0],
         watched.particles,
