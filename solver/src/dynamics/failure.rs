@@ -3,6 +3,7 @@
 use super::loads::LostTraction;
 use crate::contact::impulse::Unconverged;
 use crate::contact::motion::TooFast;
+use crate::dynamics::updated_frame::gauss::map::Folded;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::particles::points::OutsidePatch;
 
@@ -13,6 +14,8 @@ pub enum Failure {
     PhaseField(SolveFailure),
     /// The quadrature by spans found no displacement, acceleration or velocity.
     Spans(SolveFailure),
+    /// The displacement of a body whose spans integrate has no inverse at its boundary near this place, m.
+    Folded([f64; 2]),
     /// A point left the patch, m.
     Left([f64; 2]),
     /// The consistent mass matrix is singular to round-off.
@@ -39,6 +42,12 @@ pub enum Failure {
 impl From<SolveFailure> for Failure {
     fn from(failure: SolveFailure) -> Self {
         Self::PhaseField(failure)
+    }
+}
+
+impl From<Folded> for Failure {
+    fn from(Folded(place): Folded) -> Self {
+        Self::Folded(place)
     }
 }
 

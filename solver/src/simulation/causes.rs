@@ -47,7 +47,7 @@ pub(super) const TORN: &str = "the load has torn off the points under it; lower 
 pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> Breakdown {
     let (what, cause) = what_and_cause(failure, tolerance);
     let (place, key) = match failure {
-        Failure::Left(place) | Failure::TooFast(TooFast { place, .. }) => (place, None),
+        Failure::Left(place) | Failure::Folded(place) | Failure::TooFast(TooFast { place, .. }) => (place, None),
         Failure::NoPoints(body) => (place, Some(format!("body.{body}.shape"))),
         Failure::LostTraction { body, traction, lost: LostTraction::Bare(place) }
         | Failure::LostTraction { body, traction, lost: LostTraction::Unbalanced { place, .. } } => {
@@ -73,6 +73,7 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
         ),
         Failure::PhaseField(SolveFailure::NotPositiveDefinite) => (INDEFINITE.to_string(), TOO_FEW_POINTS),
         Failure::PhaseField(SolveFailure::NotFinite) => (NOT_FINITE.to_string(), EXTREME),
+        Failure::Folded(_) => ("the displacement at the boundary has no inverse".to_string(), INSIDE_OUT),
         Failure::Spans(reason) => (
             match reason {
                 SolveFailure::NotConverged { iterations, error } => {

@@ -158,8 +158,9 @@ impl Simulation {
         match failure {
             Failure::Left(place) if !place.iter().all(|x| x.is_finite()) => self.not_finite(LOST),
             Failure::Left(place) if self.is_far_outside(place) => self.at_worst_point(THROWN.to_string(), None),
-            Failure::Left(place) => {
-                let bare = self.updated_frame().is_some_and(|frame| frame.patch().locate(place).is_some());
+            Failure::Left(place) | Failure::Folded(place) => {
+                let left = matches!(failure, Failure::Left(_));
+                let bare = left && self.updated_frame().is_some_and(|frame| frame.patch().locate(place).is_some());
                 let torn = (BARE.to_string(), TORN.to_string());
                 let (what, cause) = if bare { torn } else { what_and_cause(failure, self.tolerance) };
                 let cause = if self.step_is_too_long() { self.cause_of_growth() } else { cause };

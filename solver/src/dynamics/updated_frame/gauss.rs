@@ -59,6 +59,7 @@ use rule::GaussPoints;
 use system::MassSystem;
 
 use super::grid::NodalFields;
+use crate::dynamics::failure::Failure;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::material::elasticity::ElasticModuli;
@@ -158,23 +159,26 @@ impl SpanQuadrature {
     /// The fit, forces and accelerations at the present positions; the elastic energy, J/m.
     ///
     /// # Errors
-    /// If a solve does not converge: where the displacement has turned inside out, or points no longer hold
-    /// it.
-    pub(crate) fn respond(&mut self, on: OnPatch<'_>) -> Result<f64, SolveFailure> {
+    /// If a solve does not converge because points no longer hold the displacement, or the displacement has
+    /// turned inside out on the boundary.
+    pub(crate) fn respond(&mut self, on: OnPatch<'_>) -> Result<f64, Failure> {
         let OnPatch { patch, points, .. } = on;
         let mean = self.begin_fit(on);
         let fit = PointFit { patch, cells: on.cells, points, density: self.density };
         let held = self.held.each_ref().map(|held| &held[..]);
         extrapolate(&mut self.displacement);
-        self.fit.solve(&self.kronecker, &self.load, &mut self.displacement[0], held, TOLERANCES[0])?;
+        self.fit
+            .solve(&self.kronecker, &self.load, &mut self.displacement[0], held, TOLERANCES[0])
+            .map_err(Failure::Spans)?;
         let displacement = &self.displacement[0];
         let map = InverseMap { patch, grid: patch.control_grid(), displacement, mean };
-        self.gauss.enclose(&mut self.boundary, &map);
+        self.gauss.enclose(&mut self.boundary, &map)?;
         let balance = SpanBalance { gauss: &self.gauss, displacement, moduli: self.moduli, density: self.density };
         let energy = balance.assemble(&mut self.inertia.matrix, &mut self.force);
         self.inertia.begin(&self.kronecker, self.gauss.marks(patch.control_grid()), &self.held);
         extrapolate(&mut self.acceleration);
-        self.inertia.solve(&self.kronecker, &self.force, &mut self.acceleration[0], held, TOLERANCES[1])?;
+        let solved = self.inertia.solve(&self.kronecker, &self.force, &mut self.acceleration[0], held, TOLERANCES[1]);
+        solved.map_err(Failure::Spans)?;
         fit.at_points(&self.acceleration[0], &mut self.point_acceleration);
         let mean = self.mean(points, |at| self.point_acceleration[at]);
         let excess = fault!("mean-of-the-fit-kept", mean => mean.map(|_| 0.0));

@@ -179,6 +179,7 @@ fn broken(failure: Failure) -> StudyError {
         Failure::NoPoints(_) => other("the body holds no material point"),
         Failure::LostTraction { .. } => other("a part of a traction would not act"),
         Failure::Unconverged(_) | Failure::TooFast(_) => other("contact cannot follow the bodies"),
+        Failure::Folded(_) => other("the displacement at the boundary has no inverse"),
     }
 }
 

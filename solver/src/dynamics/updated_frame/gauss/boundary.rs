@@ -18,7 +18,7 @@
 //! Positions x(s) on the boundary are roots of `x − d(x) = X(s)` ([`InverseMap`]); it is divided where x(s)
 //! crosses knots.
 
-use super::map::InverseMap;
+use super::map::{Folded, InverseMap};
 use crate::linear_algebra::extremes::smaller;
 use crate::scene::{Layout, Mesh, Shape};
 use crate::splines::quadrature::Rule;
@@ -128,27 +128,31 @@ impl MovingBoundary {
     }
 
     /// Follows the motion and calls `f` with the pieces.
-    pub(crate) fn follow(&mut self, map: &InverseMap<'_>, mut f: impl FnMut(Piece<'_>)) {
+    ///
+    /// # Errors
+    /// If the motion has no inverse somewhere on the boundary.
+    pub(crate) fn follow(&mut self, map: &InverseMap<'_>, mut f: impl FnMut(Piece<'_>)) -> Result<(), Folded> {
         let Self { edges, nodes, along } = self;
         let mut breaks = Vec::new();
         for (edge, nodes) in edges.iter().zip(nodes) {
             let count = nodes.len() - 1;
             for (i, node) in nodes.iter_mut().enumerate() {
-                *node = map.forward(edge.at(i as f64 / count as f64).0, [0.0; 2], *node).0;
+                *node = map.forward(edge.at(i as f64 / count as f64).0, [0.0; 2], *node)?.0;
             }
             for i in 0..count {
                 let ends = [i, i + 1].map(|i| i as f64 / count as f64);
                 let places = [nodes[i], nodes[i + 1]];
                 breaks.clear();
                 breaks.push((ends[0], places[0]));
-                crossings(edge, map, ends, places, &mut breaks);
+                crossings(edge, map, ends, places, &mut breaks)?;
                 breaks[1..].sort_by(|a, b| a.0.total_cmp(&b.0));
                 breaks.push((ends[1], places[1]));
                 for pair in breaks.windows(2) {
-                    piece(edge, map, along, [pair[0], pair[1]], &mut f);
+                    piece(edge, map, along, [pair[0], pair[1]], &mut f)?;
                 }
             }
         }
+        Ok(())
     }
 }
 
@@ -159,7 +163,7 @@ fn crossings(
     [from, to]: [f64; 2],
     [a, b]: [[f64; 2]; 2],
     breaks: &mut Vec<(f64, [f64; 2])>,
-) {
+) -> Result<(), Folded> {
     for d in 0..2 {
         let spans = map.patch.spaces[d].spans();
         let (low, high) = (smaller(a[d], b[d]), -smaller(-a[d], -b[d]));
@@ -170,7 +174,7 @@ fn crossings(
             let mut x = [0, 1].map(|c| a[c] + share * (b[c] - a[c]));
             for _ in 0..CROSSING_LIMIT {
                 let (position, tangent) = edge.at(s);
-                let (place, carried) = map.forward(position, tangent, x);
+                let (place, carried) = map.forward(position, tangent, x)?;
                 let correction = (knot - place[d]) / carried[d];
                 x = place;
                 if !correction.is_finite() {
@@ -184,6 +188,7 @@ fn crossings(
             breaks.push((s, x));
         }
     }
+    Ok(())
 }
 
 /// Hands on one piece between two breaks.
@@ -193,14 +198,14 @@ fn piece(
     along: &Rule,
     [(from, a), (to, b)]: [(f64, [f64; 2]); 2],
     f: &mut impl FnMut(Piece<'_>),
-) {
+) -> Result<(), Folded> {
     if to <= from {
-        return;
+        return Ok(());
     }
     let mut points = [([0.0; 2], 0.0); 8];
     for ((point, t), weight) in points.iter_mut().zip(&along.points).zip(&along.weights) {
         let (position, tangent) = edge.at(from + t * (to - from));
-        let (x, carried) = map.forward(position, tangent, [0, 1].map(|c| a[c] + t * (b[c] - a[c])));
+        let (x, carried) = map.forward(position, tangent, [0, 1].map(|c| a[c] + t * (b[c] - a[c])))?;
         *point = (x, weight * (to - from) * carried[1]);
     }
     let points = &points[..along.points.len()];
@@ -210,4 +215,5 @@ fn piece(
         spans.partition_point(|span| span.right <= middle[d]).min(spans.len() - 1)
     });
     f(Piece { span, points });
+    Ok(())
 }

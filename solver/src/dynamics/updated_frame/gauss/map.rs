@@ -7,8 +7,14 @@ use crate::splines::patch::Patch;
 
 /// Corrections at most; each squares the error.
 const LIMIT: usize = 20;
-/// A correction below this fraction of a span is the last.
+/// A correction below this fraction of a span is the last, or below this multiple of the round-off of a
+/// position.
 const CLOSE: f64 = 1e-9;
+const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
+
+/// No present position was found of material near this place, m: the displacement is turned inside out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Folded(pub [f64; 2]);
 
 /// Displacement `d(x)`, m, of the material that is at x now.
 #[derive(Debug, Clone, Copy)]
@@ -49,8 +55,16 @@ impl InverseMap<'_> {
 
     /// Where the material of a reference position is now, m, by Newton's method from `start`, and how a
     /// reference vector `along` is carried there, `F along`.
-    pub(crate) fn forward(&self, reference: [f64; 2], along: [f64; 2], start: [f64; 2]) -> ([f64; 2], [f64; 2]) {
-        let close = CLOSE * self.patch.shortest_span();
+    ///
+    /// # Errors
+    /// If Newton's method finds no root.
+    pub(crate) fn forward(
+        &self,
+        reference: [f64; 2],
+        along: [f64; 2],
+        start: [f64; 2],
+    ) -> Result<([f64; 2], [f64; 2]), Folded> {
+        let close = CLOSE * self.patch.shortest_span() + ROUND_OFF * reference[0].hypot(reference[1]);
         let mut x = start;
         for _ in 0..LIMIT {
             let (d, gradient) = self.at(x);
@@ -59,10 +73,10 @@ impl InverseMap<'_> {
             let step = times(&carried, apart);
             x = [0, 1].map(|c| x[c] + step[c]);
             if step[0].hypot(step[1]) <= close {
-                return (x, times(&carried, along));
+                return Ok((x, times(&carried, along)));
             }
         }
-        (x, times(&displacement_gradient(&self.at(x).1), along))
+        Err(Folded(start))
     }
 }
 
@@ -76,4 +90,41 @@ fn times(h: &Gradient, v: [f64; 2]) -> [f64; 2] {
 pub(crate) fn displacement_gradient(gradient: &Gradient) -> Gradient {
     let inverse = gradient_at_end(&each!(i in [0, 1] => each!(j in [0, 1] => -gradient[i][j])));
     each!(i in [0, 1] => each!(j in [0, 1] => -inverse[i][j]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Mesh;
+
+    /// What `forward` finds from (0.5, 0.5) m where the displacement is `slope x` along x.
+    fn found(slope: f64, reference: [f64; 2]) -> Result<([f64; 2], [f64; 2]), Folded> {
+        let patch = Patch::new(&Mesh::uniform([2; 2], [0.0; 2], [1.0; 2], [4; 2]));
+        let grid = patch.control_grid();
+        let mut displacement = [grid.zeros(), grid.zeros()];
+        let abscissae = patch.spaces[0].greville();
+        for row in 0..grid.rows {
+            for (column, x) in abscissae.iter().enumerate() {
+                displacement[0][grid.index(column, row)] = slope * x;
+            }
+        }
+        InverseMap { patch: &patch, grid, displacement: &displacement, mean: [0.0; 2] }.forward(
+            reference,
+            [1.0, 1.0],
+            [0.5; 2],
+        )
+    }
+
+    #[test]
+    fn a_position_is_found_and_a_vector_carried_with_it() {
+        let (x, carried) = found(0.5, [0.2, 0.3]).unwrap();
+        assert!((x[0] - 0.4).abs() < 1e-14 && (x[1] - 0.3).abs() < 1e-14, "x − x/2 = 0.2: {x:?}");
+        assert!((carried[0] - 2.0).abs() < 1e-13 && (carried[1] - 1.0).abs() < 1e-13, "{carried:?}");
+    }
+
+    #[test]
+    fn a_displacement_that_has_no_inverse_is_said_with_its_place() {
+        assert_eq!(found(1.0, [0.2, 0.3]), Err(Folded([0.5; 2])), "all x come from X = 0");
+        assert!(found(f64::NAN, [0.2, 0.3]).is_err());
+    }
 }

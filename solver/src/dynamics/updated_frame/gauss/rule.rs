@@ -1,7 +1,7 @@
 //! Gauss points of the spans that a body covers, and their weights in the part inside.
 
 use super::boundary::{MovingBoundary, Piece};
-use super::map::InverseMap;
+use super::map::{Folded, InverseMap};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::particles::points::{Cell, Strip};
 use crate::scene::Layout;
@@ -68,11 +68,15 @@ impl GaussPoints {
     }
 
     /// Weights inside a boundary that follows the motion.
-    pub(crate) fn enclose(&mut self, boundary: &mut MovingBoundary, map: &InverseMap<'_>) {
+    ///
+    /// # Errors
+    /// If the motion has no inverse somewhere on the boundary.
+    pub(crate) fn enclose(&mut self, boundary: &mut MovingBoundary, map: &InverseMap<'_>) -> Result<(), Folded> {
         self.passing.fill([0.0; MAX_ORDER]);
         self.cut.fill(None);
-        boundary.follow(map, |piece| self.add(map.patch, &piece));
+        boundary.follow(map, |piece| self.add(map.patch, &piece))?;
         self.list(map.patch);
+        Ok(())
     }
 
     /// Heap memory, bytes.
@@ -211,7 +215,7 @@ mod tests {
         let zeros = [gauss.grid.zeros(), gauss.grid.zeros()];
         let map = InverseMap { patch: &patch, grid: gauss.grid, displacement: &zeros, mean: [0.0; 2] };
         let mut boundary = MovingBoundary::new(edges(shape, &mesh).unwrap(), patch.shortest_span(), degree);
-        gauss.enclose(&mut boundary, &map);
+        gauss.enclose(&mut boundary, &map).unwrap();
         let mut sum = 0.0;
         for cell in &gauss.cells {
             for (n, weight) in gauss.weights[cell.points.clone()].iter().enumerate() {

@@ -11,7 +11,7 @@ impl DiscreteField {
     /// One time step of `dt` seconds (see [the module](super)).
     ///
     /// # Errors
-    /// If a point leaves the patch, or a solve does not converge.
+    /// If a point leaves the patch, a solve does not converge, or the body is turned inside out.
     pub(in super::super) fn step_with_spans(&mut self, dt: f64) -> Result<(), Failure> {
         self.relax_velocities(dt).map_err(Failure::Spans)?; // v_p(n−1/2) towards the velocity of the grid
         let before = self.body_forces();
@@ -21,10 +21,8 @@ impl DiscreteField {
         self.drift_points(dt); // x_p(n+1) = x_p(n) + dt v_p(n+1/2)
         self.time += dt;
         self.at_start = false;
-        if let Some(forcing) = &mut self.forcing {
-            forcing.renew(&self.points, self.time);
-        }
-        self.book_work(0.5 * dt, &self.body_forces()); // dt/2 Σ m b(n+1) · v(n+1/2)
+        let after = self.renewed(before); // b_p(n+1)
+        self.book_work(0.5 * dt, &after); // dt/2 Σ m b(n+1) · v(n+1/2)
         self.sort()?;
         self.respond_with_spans()?; // D, F, sigma, M a = f at x(n+1)
         Ok(())
@@ -34,7 +32,7 @@ impl DiscreteField {
     pub(in super::super) fn respond_with_spans(&mut self) -> Result<(), Failure> {
         let Self { patch, cells, points, spans, .. } = self;
         if let Some(spans) = spans {
-            self.elastic_energy = spans.respond(OnPatch { patch, cells, points }).map_err(Failure::Spans)?;
+            self.elastic_energy = spans.respond(OnPatch { patch, cells, points })?;
         }
         Ok(())
     }
@@ -55,6 +53,14 @@ impl DiscreteField {
             spans.since_relaxation += 1;
         }
         Ok(())
+    }
+
+    /// Force per mass on each point at the present time, m/s²: that of half a step ago without a load that
+    /// changes.
+    fn renewed(&mut self, before: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+        let Some(forcing) = &mut self.forcing else { return before };
+        forcing.renew(&self.points, self.time);
+        self.body_forces()
     }
 
     /// Force per mass on each point, m/s².
