@@ -108,3 +108,23 @@ fn threads_change_no_bit() {
     };
     assert!(with_threads(1, run) == with_threads(3, run));
 }
+
+#[test]
+fn points_show_the_strain_and_stress_that_spans_integrate() {
+    let mut scene = flying(2, 16);
+    scene.bodies[0].angular_velocity = 0.6;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    while !simulation.finished() {
+        simulation.step().unwrap();
+    }
+    let frame = simulation.updated_frame().unwrap();
+    let volumes: Vec<f64> = frame.fields()[0].points().iter().map(|point| point.volume).collect();
+    let mut energy = 0.0;
+    simulation.for_each_point(&mut |point| {
+        let ([xx, yy, xy], stress) = (point.strain, point.stress);
+        energy += 0.5 * volumes[point.point] * (stress[0] * xx + stress[1] * yy + 2.0 * stress[2] * xy);
+    });
+    // two quadratures of one energy: points of three by three a cell, and Gauss points of cut spans
+    let elastic = frame.elastic_energy();
+    assert!(elastic > 1e-6 && (energy / elastic - 1.0).abs() <= 0.02, "{energy:e} instead of {elastic:e}");
+}

@@ -13,7 +13,8 @@ impl UpdatedFrame {
             for (point, carried) in field.points().iter().enumerate() {
                 let cracked = field.fracture.as_ref().map(|fracture| fracture.points[point]);
                 let fracture = cracked.map(|c| PointFracture { history: c.history, phase: c.phase });
-                let Point { position, velocity, displacement, strain, stress, volume: _ } = *carried;
+                let Point { position, velocity, displacement, .. } = *carried;
+                let [strain, stress] = field.strain_and_stress(carried);
                 let present = position;
                 f(PointState { body, point, position, present, displacement, velocity, strain, stress, fracture });
             }

@@ -51,8 +51,8 @@ impl DiscreteField {
         let mut stress = covered.clone();
         for point in &self.points {
             let half = 0.5 * FILL * point.volume.sqrt();
-            let (of_point, ratio) = self.stress_of(point);
-            let principal = largest_principal(of_point) / ratio;
+            let [strain, of_point] = self.strain_and_stress(point);
+            let principal = largest_principal(of_point) / self.volume_ratio(strain);
             raster.for_each_overlap(point.position.map(|x| [x - half, x + half]), |pixel, area| {
                 covered[pixel] += area;
                 stress[pixel] += area * principal;
@@ -75,12 +75,11 @@ impl DiscreteField {
         if is_finite { (self.thickening * dilatation).exp() } else { 1.0 }
     }
 
-    /// Stress of a point, Pa, and [`Self::volume_ratio`]; where spans integrate points have none of their
-    /// own.
-    fn stress_of(&self, point: &Point) -> ([f64; 3], f64) {
-        let Some(spans) = &self.spans else { return (point.stress, self.volume_ratio(point.strain)) };
+    /// Strain of a point and its stress, Pa; where spans integrate points have none of their own, and these
+    /// are those of the fitted displacement.
+    pub(super) fn strain_and_stress(&self, point: &Point) -> [[f64; 3]; 2] {
+        let Some(spans) = &self.spans else { return [point.strain, point.stress] };
         let strain = spans.strain_at(&self.patch, point.position);
-        let stress = self.moduli.stress(strain.map(Lane::splat)).map(|lane| lane[0]);
-        (stress, self.volume_ratio(strain))
+        [strain, self.moduli.stress(strain.map(Lane::splat)).map(|lane| lane[0])]
     }
 }
