@@ -2,15 +2,17 @@
 //!
 //! [`render`] writes `samples.csv` (every sample), `figures/timing/*.svg`, `summary.md` (with links to the
 //! figures) and `bench.html` (figures inline). Everything is a pure function of `bench.json`:
-//! [`work_precision`], [`plate`](mod@plate), [`stages`] and [`conditions`] make the exhibits, [`ratios`]
-//! holds the targets, [`bars`] draws bars, [`page`] puts it together.
+//! [`work_precision`], [`plate`](mod@plate), [`stages`], [`contact`], [`scale`] and [`conditions`] make the
+//! exhibits, [`ratios`] holds the targets, [`bars`] draws bars, [`page`] puts it together.
 
 pub mod bars;
 pub mod conditions;
+pub mod contact;
 pub mod page;
 pub mod pareto;
 pub mod plate;
 pub mod ratios;
+pub mod scale;
 pub mod stages;
 pub mod work_precision;
 
@@ -105,7 +107,10 @@ pub fn sections(set: &BenchSet) -> Vec<Section> {
         ("Solving for the phase field", stages::solves(records)),
         ("Threads", conditions::threads(records)),
         ("Ceilings", conditions::ceilings(records)),
+        ("Collisions", contact::exhibits(records)),
+        ("From ten thousand points to sixteen million", scale::exhibits(records)),
         ("Only what a scene declares", conditions::scenes(records)),
+        ("Another checkout", conditions::baseline(records)),
         ("Other codes", conditions::peers(set)),
         ("All records", vec![Exhibit::Grid(page::all_records(set))]),
     ];

@@ -15,10 +15,15 @@
 //! | `threads` | what another thread brings ([`threads`]) |
 //! | `ceilings` | bandwidth and arithmetic of this machine, and the distance to them ([`ceilings`]) |
 //! | `scenes` | what the physics that a scene declares costs ([`scenes`]) |
+//! | `contact` | what an error of a collision costs ([`contact`]) |
+//! | `scale` | time and memory per point from 10⁴ to 1.6·10⁷ points ([`scale`]) |
+//! | `baseline` | another checkout of this workspace on the same scenes ([`baseline`]) |
 //! | `peer` | a program of the user on the same block of points ([`peer`]) |
 
+pub mod baseline;
 pub mod block;
 pub mod ceilings;
+pub mod contact;
 pub mod elements;
 pub mod minimal;
 pub mod moving_block;
@@ -26,6 +31,7 @@ pub mod peer;
 pub mod plate;
 mod plate_error;
 pub mod record;
+pub mod scale;
 pub mod scenes;
 pub mod solves;
 pub mod stages;
@@ -46,6 +52,7 @@ use crate::record::Environment;
 use crate::reference::{Library, ReferenceError, ReferenceValue};
 use crate::scene::SceneFileError;
 use crate::study::StudyError;
+use baseline::Baseline;
 use record::{BenchRecord, BenchSet, CostPoint, NamedPeer, SCHEMA};
 
 /// What is to be measured, and where the files are.
@@ -59,6 +66,8 @@ pub struct Settings<'a> {
     pub workspace: PathBuf,
     /// Folder for what a peer reads.
     pub out: &'a OutputFolder,
+    /// Another checkout, if there is one; it is then run whatever families are asked for.
+    pub baseline: Option<Baseline>,
     /// Command of a peer, if there is one; it is then run whatever families are asked for.
     pub peer: Option<String>,
     /// Time that one run of the peer may take.
@@ -144,7 +153,7 @@ impl From<Breakdown> for BenchError {
 type Family = fn(&Settings<'_>) -> Result<Vec<BenchRecord>, BenchError>;
 
 /// All families, in the order of the report.
-pub const FAMILIES: [(&str, Family); 8] = [
+pub const FAMILIES: [(&str, Family); 11] = [
     ("work-precision", wave::family),
     ("plate", plate::family),
     ("stages", stages::family),
@@ -152,6 +161,9 @@ pub const FAMILIES: [(&str, Family); 8] = [
     ("threads", threads::family),
     ("ceilings", ceilings::family),
     ("scenes", scenes::family),
+    ("contact", contact::family),
+    ("scale", scale::family),
+    ("baseline", baseline::family),
     ("peer", peer::family),
 ];
 
@@ -174,6 +186,7 @@ impl<'a> Session<'a> {
     pub fn new(settings: &'a Settings<'a>, environment: Environment) -> Result<Self, BenchError> {
         let library = settings.library()?;
         let wanted = |name: &str| match name {
+            "baseline" => settings.baseline.is_some(),
             "peer" => settings.peer.is_some(),
             _ => settings.families.is_empty() || settings.families.iter().any(|f| f == name),
         };

@@ -7,7 +7,7 @@ mod basis;
 pub mod charts;
 mod compressive_step;
 mod constant_stress;
-mod contact;
+pub(crate) mod contact;
 pub(crate) mod convergence;
 mod crack_profile;
 mod dense;

@@ -1,9 +1,11 @@
 //! `bench`: speed against error.
 
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 
 use fisura_reports::bench::{self as report, Exhibit, Records, Section};
+use fisura_verification::bench::baseline::Baseline;
 use fisura_verification::bench::record::BenchSet;
 use fisura_verification::bench::{BenchError, FAMILIES, Session, Settings};
 use fisura_verification::output::OutputFolder;
@@ -22,9 +24,12 @@ pub struct Args {
     #[arg(long)]
     quick: bool,
     /// Only these families, separated by commas: work-precision, plate, stages, solves, threads, ceilings,
-    /// scenes
+    /// scenes, contact, scale
     #[arg(long, value_name = "FAMILY,…", value_delimiter = ',')]
     family: Vec<String>,
+    /// Time another checkout of this workspace on the same scenes as well: it is built in its own folder
+    #[arg(long, value_name = "PATH")]
+    baseline: Option<PathBuf>,
     /// Time this program as well; its last argument is a folder with particles.csv and block.json
     #[arg(long, value_name = "CMD")]
     peer: Option<String>,
@@ -47,6 +52,11 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
     if args.family.iter().any(|name| name == "peer") && args.peer.is_none() {
         return Err(Failure::new(Exit::BadInput, "the family peer needs a program").help("give one with --peer CMD"));
     }
+    if args.family.iter().any(|name| name == "baseline") && args.baseline.is_none() {
+        let failure = Failure::new(Exit::BadInput, "the family baseline needs another checkout");
+        return Err(failure.help("give its folder with --baseline PATH"));
+    }
+    let baseline = args.baseline.as_deref().map(other_checkout).transpose()?;
     let folder = folders::output(common, "bench")?;
     let workspace = folders::workspace();
     let settings = Settings {
@@ -54,6 +64,7 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
         threads: rayon::current_num_threads(),
         workspace: workspace.clone(),
         out: &folder,
+        baseline,
         peer: args.peer.clone(),
         peer_timeout: Duration::from_secs(args.peer_timeout),
         families: args.family.clone(),
@@ -90,6 +101,18 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
     }
     let holds = set.records.iter().all(|record| record.verified);
     Failure::beside(if holds { Exit::Done } else { Exit::CheckFailed }, written)
+}
+
+/// The other checkout, and this program to run beside it.
+fn other_checkout(path: &Path) -> Result<Baseline, Failure> {
+    let checkout = path.canonicalize().ok().filter(|path| path.join("xtask/Cargo.toml").is_file());
+    let checkout = checkout.ok_or_else(|| {
+        let failure = Failure::new(Exit::BadInput, format!("--baseline {}: no checkout of fisura", path.display()));
+        failure.help("name a folder with another commit of this workspace, such as one of `git worktree add`")
+    })?;
+    let program = std::env::current_exe();
+    let program = program.map_err(|e| Failure::new(Exit::BadInput, format!("this program has no path: {e}")))?;
+    Ok(Baseline { program, checkout })
 }
 
 /// Writes what is measured so far, and its report.

@@ -106,6 +106,34 @@ fn rate(record: &BenchRecord, unit: &str) -> Vec<String> {
     vec![record.label.clone(), format!("{} {unit}", rates[0]), format!("{} to {}", rates[1], rates[2]), String::new()]
 }
 
+/// Another checkout on the same scenes.
+pub fn baseline(records: Records) -> Vec<Exhibit> {
+    let row = |ours: &&BenchRecord| -> Option<Vec<String>> {
+        let theirs = records.find(&format!("{}other", ours.id.strip_suffix("this")?))?;
+        let difference = |r: &BenchRecord| r.error.as_ref().map_or("–".into(), |error| pretty(error.value, 2));
+        let part = ours.cpu_s.median / theirs.cpu_s.median;
+        let verdict = if ours.verified && theirs.verified { "both hold" } else { "an answer does not hold" };
+        let [one, two] = [ours, theirs].map(|r| format!("{} s", plain(r.cpu_s.median, 3)));
+        Some(vec![ours.label.clone(), one, two, plain(part, 3), difference(ours), difference(theirs), verdict.into()])
+    };
+    let ours: Vec<&BenchRecord> = records.0.iter().filter(|r| r.family == "baseline").collect();
+    let rows: Vec<Vec<String>> = ours.iter().filter_map(row).collect();
+    let Some(other) = ours.iter().find_map(|r| r.parameters.get("checkout")?.as_str().filter(|path| *path != "."))
+    else {
+        return Vec::new();
+    };
+    let head = ["scene", "this checkout", "the other", "ratio", "energies here", "energies there", "verified"];
+    vec![Exhibit::Grid(Grid {
+        title: "Another checkout on the same scenes".into(),
+        head: head.map(String::from).to_vec(),
+        rows,
+        note: format!(
+            "The other is {other}. Processor time of whole processes on all threads, in turn. Energies: largest difference at the \
+             end from a run here with a phase-field tolerance of 1e-10, over the largest energy."
+        ),
+    })]
+}
+
 /// Time and memory of scenes by what they model.
 pub fn scenes(records: Records) -> Vec<Exhibit> {
     let all: Vec<&BenchRecord> = records.0.iter().filter(|record| record.family == "scenes").collect();

@@ -38,7 +38,7 @@ const fn ratio(
 const KERNEL: Target = Target::AtMost(1.4);
 
 /// What is asked for, and what is good to know beside it.
-const RATIOS: [Ratio; 17] = [
+const RATIOS: [Ratio; 20] = [
     ratio(
         "elastic step over the minimal kernel, total frame, p = 2",
         &[(1.0, "stages/p2/elastic-step")],
@@ -124,6 +124,19 @@ const RATIOS: [Ratio; 17] = [
         &[(1.0, "threads/plate/2")],
         Target::AtLeast(1.7),
     ),
+    ratio(
+        "1.6e7 points over 2.6e6, elastic block",
+        &[(1.0, "scale/elastic/2000")],
+        &[(1.0, "scale/elastic/800")],
+        Target::AtMost(1.25),
+    ),
+    ratio(
+        "the same, growing cracks",
+        &[(1.0, "scale/cracking/2000")],
+        &[(1.0, "scale/cracking/800")],
+        Target::AtMost(1.25),
+    ),
+    ratio("the same, moving points", &[(1.0, "scale/moving/2000")], &[(1.0, "scale/moving/800")], Target::AtMost(1.25)),
     ratio(
         "fracture with a frozen crack over elastic, total frame",
         &[(1.0, "scenes/total/elastic-with-a-frozen-crack")],

@@ -277,6 +277,7 @@ mod tests {
             threads: 1,
             workspace: crate::bench::own_workspace(),
             out: &out,
+            baseline: None,
             peer: None,
             peer_timeout: std::time::Duration::ZERO,
             families: vec![],

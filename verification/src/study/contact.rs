@@ -16,7 +16,7 @@ use crate::extremes::{self, larger};
 use crate::record::{Reference, ReferenceKind};
 
 /// Runs a scene to its end; `seen` looks at it at the start and after every step.
-pub(super) fn run(scene: &Scene, seen: &mut dyn FnMut(&Simulation, &UpdatedFrame)) -> Result<(), StudyError> {
+pub(crate) fn run(scene: &Scene, seen: &mut dyn FnMut(&Simulation, &UpdatedFrame)) -> Result<(), StudyError> {
     let mut simulation = Simulation::new(scene)?;
     loop {
         crate::watch::check()?;
@@ -35,7 +35,7 @@ pub(super) fn run(scene: &Scene, seen: &mut dyn FnMut(&Simulation, &UpdatedFrame
 const SAMPLES: usize = 400;
 
 /// Whether a sample is to be taken now.
-fn sample_is_due(simulation: &Simulation) -> bool {
+pub(crate) fn sample_is_due(simulation: &Simulation) -> bool {
     simulation.steps().is_multiple_of(simulation.plan().steps().div_ceil(SAMPLES)) || simulation.finished()
 }
 

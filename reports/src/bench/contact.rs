@@ -1,0 +1,52 @@
+//! Errors of collisions against time.
+
+use super::work_precision::{Chart, Cost, error, lines};
+use super::{Exhibit, Records};
+use crate::number::{plain, pretty};
+
+/// Bodies and errors in the order of the report: parts of the id.
+const BODIES: [(&str, &str, &str); 2] = [("bars", "Two equal bars", "length"), ("discs", "Two equal discs", "radius")];
+const ERRORS: [(&str, &str); 3] =
+    [("rebound", "rebound velocity"), ("duration", "contact time"), ("loss", "energy lost")];
+
+/// A figure for each pair of bodies and each error.
+pub fn exhibits(records: Records) -> Vec<Exhibit> {
+    let mut exhibits = Vec::new();
+    for (bodies, title, size) in BODIES {
+        let all = records.below(&format!("contact/{bodies}/"));
+        for (name, words) in ERRORS {
+            let lines = lines(all.iter().copied().filter(|record| record.id.ends_with(&format!("/{name}"))));
+            let Some(first) = lines.first() else { continue };
+            let reference = first.records[0].error.as_ref();
+            let uncertainty = reference.map_or(0.0, |error| error.uncertainty);
+            let caption = format!(
+                "{title}, head-on, elastic, without friction, one thread; against {}",
+                reference.map_or("", |error| error.reference.as_str())
+            );
+            let chart = Chart {
+                id: format!("timing/contact-{bodies}-{name}"),
+                title: format!("{title} in collision: {words} against time"),
+                lines: &lines,
+                front: None,
+                fem: &[],
+                cost: Cost::Time,
+                axis: "processor time of the steps (s)",
+                uncertainty,
+            };
+            let sentence = |line: &super::work_precision::Line| {
+                let last = line.records.last()?;
+                let value = error(last);
+                let spans = last.number("spans")?;
+                Some(format!(
+                    "{}: {} with {spans} spans per {size}, {} s.",
+                    line.label,
+                    pretty(value, 2),
+                    plain(last.cpu_s.median, 3)
+                ))
+            };
+            let reading = lines.iter().filter_map(sentence).collect::<Vec<_>>().join(" ");
+            exhibits.push(chart.plot(&caption, reading));
+        }
+    }
+    exhibits
+}

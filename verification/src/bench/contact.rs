@@ -1,0 +1,275 @@
+//! What an error of a collision costs: two equal bars and two equal discs, head-on, elastic, without friction.
+//!
+//! The bars exchange their velocities in the time `2 L/c` and lose nothing (Goldsmith, Impact, 1960, section
+//! 2.1). Discs leave with some vibration, so that only the lost energy has an exact value; rebound velocity and
+//! contact time are compared with a run on spans of half the finest length, whose uncertainty is taken as its
+//! difference from the finest contestant.
+//!
+//! The errors come from a run that looks at every step; what is timed is the same run without looking.
+
+use fisura::Simulation;
+use fisura::material::elasticity::ElasticModuli;
+use fisura::scene::{Mesh, Scene, Shape, Transfer};
+
+use super::record::{AnswerError, BenchRecord};
+use super::timing::{Contestant, Stopwatch, pool, round_robin};
+use super::{BenchError, Settings};
+use crate::case::Case;
+use crate::case::expand::CaseScene;
+use crate::extremes::largest;
+use crate::study::contact::{run, sample_is_due};
+
+/// Closure of the ledger over the energy at t = 0.
+const CLOSURE: f64 = 1e-3;
+/// Height of the bars over their length.
+const HEIGHT: f64 = 0.125;
+/// Spans to the left of the first bar.
+const MARGIN: f64 = 7.0;
+
+/// Spans of the mesh over those of a radius of the discs.
+const SPANS_PER_RADIUS: usize = 5;
+
+/// A degree and a transfer.
+#[derive(Debug, Clone, Copy)]
+struct Way(usize, Transfer);
+
+const WAYS: [Way; 4] = [Way(2, Transfer::Flip), Way(3, Transfer::Flip), Way(2, Transfer::Apic), Way(3, Transfer::Apic)];
+
+impl Way {
+    fn label(self) -> String {
+        format!("p = {}, {}", self.0, format!("{:?}", self.1).to_uppercase())
+    }
+
+    fn apply(self, scene: &mut Scene) {
+        scene.analysis.transfer = self.1;
+        scene.bodies.iter_mut().for_each(|body| body.particles_per_cell = [self.0; 2]);
+    }
+}
+
+/// The errors of one run.
+struct Errors {
+    errors: Vec<(&'static str, AnswerError)>,
+    /// Closure of the ledger over the energy at t = 0.
+    closure: f64,
+}
+
+/// Times collisions of bars and of discs.
+///
+/// # Errors
+/// If a case is missing, or a run breaks down.
+pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
+    pool(1)?.install(|| {
+        let mut contestants = Vec::new();
+        let mut found = Vec::new();
+        for (id, way, spans, scene, errors) in bars(settings)?.into_iter().chain(discs(settings)?) {
+            contestants.push(contestant(&id, way, spans, scene)?);
+            found.push(errors);
+        }
+        let records = round_robin(contestants, settings.rounds(), settings.budget())?;
+        Ok(records.iter().zip(&found).flat_map(|(record, errors)| with_errors(record, errors)).collect())
+    })
+}
+
+/// Id, way, spans per length or radius, scene, errors.
+type Collision = (String, Way, usize, Scene, Errors);
+
+/// The same samples once for every error.
+fn with_errors(record: &BenchRecord, found: &Errors) -> Vec<BenchRecord> {
+    let of = |(name, error): &(&str, AnswerError)| {
+        let mut record = record.clone();
+        record.id = format!("{}/{name}", record.id);
+        record.error = Some(error.clone());
+        record.verify_at_most("closure of the ledger over the energy at t = 0", found.closure.abs(), CLOSURE);
+        record
+    };
+    found.errors.iter().map(of).collect()
+}
+
+fn contestant(id: &str, way: Way, spans: usize, scene: Scene) -> Result<Contestant<'static>, BenchError> {
+    let prepared = Simulation::new(&scene)?;
+    let (extent, steps) = (prepared.extent(), prepared.plan().steps());
+    let mut record = BenchRecord::new(id, way.label(), (extent.particles * steps) as f64, "particle-step")
+        .with("degree", way.0)
+        .with("spans", spans)
+        .with("particles", extent.particles)
+        .with("steps", steps);
+    record.memory_bytes = extent.mechanics_bytes as u64;
+    let run = move |_: &mut BenchRecord| {
+        let mut simulation = Simulation::new(&scene)?;
+        let watch = Stopwatch::start();
+        super::advance(&mut simulation, steps)?;
+        Ok(watch.read())
+    };
+    Ok(Contestant { record, run: Box::new(run) })
+}
+
+fn base(settings: &Settings, name: &str) -> Result<Scene, BenchError> {
+    let path = settings.workspace.join("verification/cases/contact").join(name).with_extension("toml");
+    let CaseScene { scene, .. } = Case::load(&path, &[])?
+        .scenes()?
+        .into_iter()
+        .next()
+        .ok_or_else(|| BenchError::input(format!("the case {name} has no scene")))?;
+    Ok(scene)
+}
+
+/// What the collision of a scene is off from a rebound velocity (over that of approach) and a contact time, s.
+fn errors(found: &Watched, exact: &Reference) -> Errors {
+    let error = |quantity: &str, value: f64, reference: &str, uncertainty: f64| AnswerError {
+        quantity: quantity.into(),
+        value,
+        reference: reference.into(),
+        uncertainty,
+    };
+    let off = |found: f64, exact: f64| (found / exact - 1.0).abs();
+    let [rebound, duration] = exact.uncertainty;
+    let rebound =
+        error("relative error of the rebound velocity", off(found.rebound, exact.rebound), &exact.source, rebound);
+    let duration =
+        error("relative error of the contact time", off(found.duration, exact.duration), &exact.source, duration);
+    let loss = error("energy lost over that at t = 0", found.loss.abs(), "an elastic impact", 0.0);
+    Errors { errors: vec![("rebound", rebound), ("duration", duration), ("loss", loss)], closure: found.closure }
+}
+
+/// What the errors are measured against.
+struct Reference {
+    /// Velocity of separation over that of approach.
+    rebound: f64,
+    /// Contact time, s.
+    duration: f64,
+    source: String,
+    /// Of both, relative.
+    uncertainty: [f64; 2],
+}
+
+fn bars(settings: &Settings) -> Result<Vec<Collision>, BenchError> {
+    let base = base(settings, "impact-equal")?;
+    let material = &base.materials[&base.bodies[0].material];
+    let wave = ElasticModuli::new(material, base.analysis.plane).dilatational_speed(material.density);
+    let source = "equal bars exchange their velocities in 2 L/c".to_string();
+    let exact = Reference { rebound: 1.0, duration: 2.0 / wave, source, uncertainty: [0.0; 2] };
+    let meshes: &[usize] = if settings.quick { &[8, 16, 32] } else { &[16, 32, 64, 128] };
+    let runs = WAYS.into_iter().flat_map(|way| meshes.iter().map(move |&spans| (way, spans)));
+    runs.map(|(way, spans)| {
+        let scene = bars_of(&base, way, spans);
+        let errors = errors(&watched(&scene)?, &exact);
+        Ok((format!("contact/bars/{}/{spans}", id_of(way)), way, spans, scene, errors))
+    })
+    .collect()
+}
+
+fn id_of(way: Way) -> String {
+    format!("p{}-{}", way.0, format!("{:?}", way.1).to_lowercase())
+}
+
+/// Two bars of unit length, one span apart, on a mesh of square spans.
+fn bars_of(base: &Scene, way: Way, spans: usize) -> Scene {
+    let mut scene = base.clone();
+    let h = 1.0 / spans as f64;
+    let cells = [2 * spans + 2 * MARGIN as usize + 1, (HEIGHT * spans as f64).round() as usize];
+    scene.mesh = Mesh::uniform([way.0; 2], [0.0; 2], cells.map(|n| n as f64 * h), cells);
+    let (left, middle) = (MARGIN * h, (MARGIN + 1.0) * h + 1.0);
+    for (body, x) in scene.bodies.iter_mut().zip([left, middle]) {
+        body.shape = Shape::Rectangle { min: [x, 0.0], max: [x + 1.0, HEIGHT] };
+    }
+    let speed = scene.bodies[0].velocity[0];
+    scene.analysis.end_time = h / speed + 4.0;
+    way.apply(&mut scene);
+    scene
+}
+
+fn discs(settings: &Settings) -> Result<Vec<Collision>, BenchError> {
+    let base = base(settings, "discs-head-on")?;
+    let meshes: &[usize] = if settings.quick { &[10, 20] } else { &[20, 40, 80] };
+    let finest = 2 * meshes[meshes.len() - 1];
+    let reference = watched(&discs_of(&base, WAYS[0], finest))?;
+    let mut runs = Vec::new();
+    for way in WAYS {
+        for &cells in meshes {
+            let scene = discs_of(&base, way, cells);
+            runs.push((way, cells, watched(&scene)?, scene));
+        }
+    }
+    let nearest = &runs[meshes.len() - 1].2;
+    let off = |found: f64, exact: f64| (found / exact - 1.0).abs();
+    let Watched { rebound, duration, .. } = reference;
+    let exact = Reference {
+        rebound,
+        duration,
+        source: format!("a run with h = 1/{finest} m, {}", WAYS[0].label()),
+        uncertainty: [off(nearest.rebound, rebound), off(nearest.duration, duration)],
+    };
+    let collision = |(way, cells, found, scene): (Way, usize, Watched, Scene)| {
+        let spans = cells / SPANS_PER_RADIUS;
+        (format!("contact/discs/{}/{spans}", id_of(way)), way, spans, scene, errors(&found, &exact))
+    };
+    Ok(runs.into_iter().map(collision).collect())
+}
+
+fn discs_of(base: &Scene, way: Way, cells: usize) -> Scene {
+    let mut scene = base.clone();
+    scene.mesh = Mesh::uniform([way.0; 2], scene.mesh.origin(), [1.0; 2], [cells; 2]);
+    way.apply(&mut scene);
+    scene
+}
+
+/// What a collision gave.
+struct Watched {
+    /// Velocity of separation over that of approach.
+    rebound: f64,
+    /// Contact time by the momentum of the first body: that between a tenth and nine tenths of its change,
+    /// over 0.8, s.
+    duration: f64,
+    /// Loss in contact and transfers over the energy at t = 0.
+    loss: f64,
+    /// Closure of the ledger over the energy at t = 0.
+    closure: f64,
+}
+
+/// Looks at a collision along x of two bodies.
+fn watched(scene: &Scene) -> Result<Watched, BenchError> {
+    let (mut energies, mut momenta) = (Vec::new(), Vec::new());
+    let mut velocities = Vec::new();
+    run(scene, &mut |simulation, frame| {
+        let momentum = [0, 1].map(|i| frame.fields()[i].momentum()[0]);
+        momenta.push([frame.time(), momentum[0]]);
+        velocities.push(momentum[1] / frame.fields()[1].mass() - momentum[0] / frame.fields()[0].mass());
+        if sample_is_due(simulation) {
+            let sample = simulation.sample();
+            let contact = sample.contact.map_or(f64::NAN, |contact| contact.loss);
+            energies.push([sample.stored(), contact + sample.transfer_loss.unwrap_or(0.0), sample.closure.abs()]);
+        }
+    })?;
+    let (Some([initial, ..]), Some([_, loss, _])) = (energies.first(), energies.last()) else {
+        return Err(BenchError::other("a collision without samples"));
+    };
+    let closure = largest(energies.iter().map(|e| e[2])) / initial;
+    let rebound = -velocities[velocities.len() - 1] / velocities[0];
+    Ok(Watched { rebound, duration: passage(&momenta) / 0.8, loss: loss / initial, closure })
+}
+
+/// Time between a tenth and nine tenths of the change of a quantity; rows are time and value.
+fn passage(rows: &[[f64; 2]]) -> f64 {
+    let (first, last) = (rows[0][1], rows[rows.len() - 1][1]);
+    let part = |row: &[f64; 2]| (row[1] - first) / (last - first);
+    let time = |level: f64| {
+        let pair = rows.windows(2).find(|pair| part(&pair[0]) < level && part(&pair[1]) >= level);
+        pair.map_or(f64::NAN, |pair| {
+            let [a, b] = [part(&pair[0]), part(&pair[1])];
+            pair[0][0] + (level - a) / (b - a) * (pair[1][0] - pair[0][0])
+        })
+    };
+    time(0.9) - time(0.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_passage_of_a_ramp_is_four_fifths_of_it() {
+        let rows: Vec<[f64; 2]> =
+            (0..=20).map(|i| f64::from(i)).map(|t| [t, 3.0 - (t - 5.0).clamp(0.0, 10.0)]).collect();
+        assert!((passage(&rows) - 8.0).abs() < 1e-12);
+    }
+}
