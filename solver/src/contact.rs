@@ -26,6 +26,7 @@ pub mod boundary_fit;
 mod constraint;
 mod displacements;
 mod follow;
+pub(crate) mod gap_potential;
 pub mod impulse;
 pub(crate) mod motion;
 mod outline;

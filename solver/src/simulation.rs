@@ -169,7 +169,7 @@ impl Simulation {
         if self.frame.phase_field_counts().is_some() {
             models.push("phase field".to_string());
         }
-        if self.updated_frame().is_some_and(|frame| frame.contact().is_some()) {
+        if self.updated_frame().is_some_and(|frame| frame.has_contact()) {
             models.push("contact".to_string());
         }
         let [mechanics_bytes, phase_field_bytes] = either!(&self.frame, body => body.bytes());

@@ -51,12 +51,14 @@ pub mod windows;
 
 use std::sync::Arc;
 
+use crate::contact::gap_potential::{GapPotential, Outline};
 use crate::contact::impulse::Kick;
+use crate::contact::motion::TooFast;
 use crate::contact::{BodyView, ContactSolver};
 use crate::dynamics::body_sample;
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::smaller;
-use crate::scene::Scene;
+use crate::scene::{Quadrature, Scene};
 use crate::splines::patch::Patch;
 use field::DiscreteField;
 
@@ -66,6 +68,8 @@ pub struct UpdatedFrame {
     patch: Arc<Patch>,
     fields: Vec<DiscreteField>,
     contact: Option<ContactSolver>,
+    /// Contact of bodies whose spans integrate.
+    gap_potential: Option<GapPotential>,
     thickness: f64,
     /// Names in columns of the bodies that are recorded one by one, rigid ones last.
     recorded: Option<Vec<String>>,
@@ -80,12 +84,14 @@ impl UpdatedFrame {
         let patch = Arc::new(Patch::new(&scene.mesh));
         let deformable = scene.bodies.iter().filter(|body| !body.rigid);
         let fields = deformable.map(|body| DiscreteField::new(scene, body, &patch)).collect::<Result<Vec<_>, _>>()?;
-        let mut contact = ContactSolver::new(scene, &patch);
+        let by_spans = scene.analysis.quadrature == Quadrature::Gauss;
+        let mut contact = if by_spans { None } else { ContactSolver::new(scene, &patch) };
+        let gap_potential = (by_spans && scene.contact.is_some()).then(|| GapPotential::new(patch.shortest_span()));
         if let Some(contact) = &mut contact {
             contact.find(&views(&fields))?;
         }
         let recorded = scene.output.bodies.then(|| body_sample::names(scene));
-        Ok(Self { patch, fields, contact, thickness: scene.analysis.thickness, recorded })
+        Ok(Self { patch, fields, contact, gap_potential, thickness: scene.analysis.thickness, recorded })
     }
 
     /// Looks as far ahead as steps of `dt` seconds need, before the first one.
@@ -120,6 +126,17 @@ impl UpdatedFrame {
             contact.move_rigid(fields[0].time());
             contact.find(&views(fields))?;
         }
+        self.push_apart()?;
+        self.fields.iter_mut().try_for_each(DiscreteField::accelerate_with_spans)
+    }
+
+    /// Adds the forces of the gap potential to those of the spans.
+    fn push_apart(&mut self) -> Result<(), Failure> {
+        let Self { fields, gap_potential: Some(potential), .. } = self else { return Ok(()) };
+        find_gaps(potential, fields)?;
+        for pair in potential.forces() {
+            (0..2).for_each(|side| fields[pair.bodies[side]].push(pair, side));
+        }
         Ok(())
     }
 
@@ -142,6 +159,12 @@ impl UpdatedFrame {
         self.fields.iter_mut().for_each(|field| field.travelled = 0.0);
         Some(self.critical_step())
     }
+}
+
+/// Finds the forces between the boundaries of bodies whose spans integrate.
+fn find_gaps(potential: &mut GapPotential, fields: &[DiscreteField]) -> Result<(), TooFast> {
+    let outlines: Vec<Outline> = fields.iter().filter_map(DiscreteField::outline).collect();
+    potential.find(&outlines)
 }
 
 /// The bodies as contact sees them.

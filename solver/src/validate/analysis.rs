@@ -85,7 +85,10 @@ fn spans_integrate(scene: &Scene, findings: &mut Findings) {
     refuse(analysis.kinematics == Kinematics::Small, "with small strains", "use kinematics = \"finite\"");
     refuse(analysis.transfer != Transfer::Flip, "with a transfer, of which it has none", "leave transfer out");
     refuse(scene.mesh.degree[0] != scene.mesh.degree[1], "with two degrees", "give the same degree twice");
-    refuse(scene.contact.is_some(), "with contact, which has no forces there yet", "remove [contact]");
+    let rubs = scene.contact.as_ref().is_some_and(|contact| contact.friction > 0.0);
+    refuse(rubs, "with friction, which its contact does not have yet", "give contact.friction = 0");
+    let rigid = scene.bodies.iter().any(|body| body.rigid);
+    refuse(rigid, "with a rigid body, which its contact does not know yet", "let every body deform");
     for body in &scene.bodies {
         let name = format!("for body {:?}", body.name);
         let fractures = scene.materials.get(&body.material).is_some_and(|material| material.fracture.is_some());

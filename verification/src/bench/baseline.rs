@@ -36,6 +36,8 @@ const QUICK: (&str, &str, &str, &[&str]) =
     ("half-plate-coarse", "half of the plate, h = 2 l0, p = 2", "plate/half-p2-h2", &["output.frames=[]"]);
 /// Time that one run may take.
 const LIMIT: Duration = Duration::from_secs(3600);
+/// Seconds after which a program is not run once more.
+const ENOUGH: f64 = 60.0;
 /// Tolerance of the run that both are held against.
 const TIGHT: &str = "solver.phase_field_tolerance=1e-10";
 /// Energies at the end, compared over the largest of them.
@@ -91,7 +93,7 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
             contestants.push(Contestant { record, run: Box::new(run) });
         }
     }
-    round_robin(contestants, 3, f64::INFINITY)
+    round_robin(contestants, 3, ENOUGH)
 }
 
 fn path(path: &Path) -> String {

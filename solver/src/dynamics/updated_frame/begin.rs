@@ -42,12 +42,23 @@ impl DiscreteField {
         field.attach_first(number)?;
         field.respond();
         field.respond_with_spans()?;
+        if scene.contact.is_some() {
+            field.expect_contact();
+        }
         for (traction, load) in field.loads.iter().enumerate() {
             let balance = Balance::of_edge(body, &body.tractions[traction].edge);
             let shares = load.shares(&field.patch, &field.nodes);
             balance.check(shares).map_err(|lost| Failure::LostTraction { body: number, traction, lost })?;
         }
         Ok(field)
+    }
+
+    /// Tells spans that integrate that the boundary may meet others.
+    fn expect_contact(&mut self) {
+        let Self { patch, spans, .. } = self;
+        if let Some(spans) = spans {
+            spans.expect_contact(patch);
+        }
     }
 
     /// Finds the first spans for the surface points of loads.
@@ -86,7 +97,7 @@ impl DiscreteField {
             deformation: finite.then(|| vec![[[0.0; 2]; 2]; points.len()]),
             loads: body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t)).collect(),
             forcing: None,
-            surface: scene.contact.is_some().then(|| Surface::new(&scene.mesh, body)),
+            surface: (scene.contact.is_some() && !by_spans).then(|| Surface::new(&scene.mesh, body)),
             moduli,
             thickening: thickening(material, analysis.plane),
             density: material.density,

@@ -3,6 +3,7 @@
 use super::UpdatedFrame;
 use super::begin::center_of_mass;
 use super::field::DiscreteField;
+use crate::contact::gap_potential::GapForce;
 use crate::dynamics::body_sample::{BodySample, BodySamples, PairForce, pairs};
 use crate::dynamics::energy::Sample;
 use crate::linear_algebra::extremes::smaller;
@@ -12,14 +13,18 @@ impl UpdatedFrame {
     pub(super) fn sample_bodies(&self, names: &[String], samples: &[Sample], dt: f64) -> BodySamples {
         let bodies = self.fields.iter().zip(samples).zip(names);
         let bodies = bodies.map(|((field, sample), name)| field.sample_body(name, sample)).collect();
-        let Some(contact) = &self.contact else { return BodySamples { bodies, ..BodySamples::default() } };
+        if !self.has_contact() {
+            return BodySamples { bodies, ..BodySamples::default() };
+        }
         let forces = self.contact_forces(dt);
         let force = |pair: [usize; 2]| {
             let acting = forces.iter().filter(|force| force.bodies == pair);
             let sum = acting.fold([0.0; 2], |[x, y], f| [x + f.force[0], y + f.force[1]]);
             PairForce { names: pair.map(|i| names[i].clone()), force: sum.map(|f| f * self.thickness) }
         };
-        let gaps = contact.constraints().iter().map(|constraint| constraint.gap);
+        let constraints = self.contact.iter().flat_map(|contact| contact.constraints().iter().map(|c| c.gap));
+        let depths = self.gap_potential.iter().flat_map(|potential| potential.forces().iter().map(GapForce::gap));
+        let gaps = constraints.chain(depths);
         let smallest_gap = Some(gaps.reduce(smaller).unwrap_or(f64::NAN));
         BodySamples { bodies, forces: pairs(self.fields.len(), names.len()).map(force).collect(), smallest_gap }
     }

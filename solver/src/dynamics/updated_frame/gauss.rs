@@ -22,6 +22,9 @@
 //! of the relaxation are taken out per component, so that momentum is kept to round-off. Momentum about a
 //! point is not: fit and quadrature keep it to their order.
 //!
+//! Boundaries that meet push each other apart by a potential of the gap ([`contact`],
+//! [`crate::contact::gap_potential`]), which adds to the forces before `M a` is solved.
+//!
 //! # The energy ledger
 //!
 //! Points are a leapfrog of their own: `Δ(kinetic − stagger) = dt/2 Σ m (a(n) + a(n+1)) · v(n+1/2)`,
@@ -39,6 +42,7 @@
 
 pub(crate) mod balance;
 pub(crate) mod boundary;
+pub(crate) mod contact;
 pub(crate) mod fit;
 pub(crate) mod kronecker;
 pub(crate) mod map;
@@ -56,12 +60,13 @@ use fit::PointFit;
 use kronecker::Kronecker;
 use map::{InverseMap, displacement_gradient};
 use rule::GaussPoints;
-use system::MassSystem;
+use system::{Accuracy, MassSystem};
 
 use super::grid::NodalFields;
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::extremes::larger;
 use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::hencky_strain;
 use crate::particles::points::{Cells, Point};
@@ -73,7 +78,7 @@ use crate::splines::patch::Patch;
 const INERTIA_PENALTY: f64 = 0.01;
 /// Weight ε of the penalty in the fit, for quadratics and for higher degrees.
 const FIT_PENALTY: [f64; 2] = [0.005, 0.0005];
-/// Errors of the solves for displacement, acceleration and velocity, relative to their solutions: four
+/// Errors of the solves for displacement, velocity and acceleration, relative to their solutions: four
 /// decades above them the errors of the study cases are still the same to two digits.
 const TOLERANCES: [f64; 3] = [1e-8, 1e-6, 1e-6];
 
@@ -102,6 +107,9 @@ pub(crate) struct SpanQuadrature {
     point_acceleration: Vec<[f64; 2]>,
     /// Control points at which a component is held.
     held: [Vec<usize>; 2],
+    /// Stiffness of the boundary where it meets others, Pa/m, if it may, and the sum of forces there, N/m.
+    spring: Option<f64>,
+    pushed: [f64; 2],
     /// Steps since the velocities were last relaxed.
     since_relaxation: usize,
     moduli: ElasticModuli,
@@ -150,40 +158,55 @@ impl SpanQuadrature {
             force: field(),
             point_acceleration: Vec::new(),
             held: [0, 1].map(|c| nodes.fixed().iter().filter(|(_, component)| *component == c).map(|f| f.0).collect()),
+            spring: None,
+            pushed: [0.0; 2],
             since_relaxation: 0,
             moduli,
             density,
         }
     }
 
-    /// The fit, forces and accelerations at the present positions; the elastic energy, J/m.
+    /// The fit, and the forces of the stresses at the present positions; the elastic energy, J/m.
     ///
     /// # Errors
-    /// If a solve does not converge because points no longer hold the displacement, or the displacement has
-    /// turned inside out on the boundary.
-    pub(crate) fn respond(&mut self, on: OnPatch<'_>) -> Result<f64, Failure> {
-        let OnPatch { patch, points, .. } = on;
+    /// If the fit does not converge because points no longer hold the displacement, or that has turned inside
+    /// out on the boundary.
+    pub(crate) fn find_forces(&mut self, on: OnPatch<'_>) -> Result<f64, Failure> {
+        let patch = on.patch;
         let mean = self.begin_fit(on);
-        let fit = PointFit { patch, cells: on.cells, points, density: self.density };
         let held = self.held.each_ref().map(|held| &held[..]);
+        let accuracy = self.accuracy(patch, 0);
         extrapolate(&mut self.displacement);
         self.fit
-            .solve(&self.kronecker, &self.load, &mut self.displacement[0], held, TOLERANCES[0])
+            .solve(&self.kronecker, &self.load, &mut self.displacement[0], held, accuracy)
             .map_err(Failure::Spans)?;
         let displacement = &self.displacement[0];
         let map = InverseMap { patch, grid: patch.control_grid(), displacement, mean };
         self.gauss.enclose(&mut self.boundary, &map)?;
         let balance = SpanBalance { gauss: &self.gauss, displacement, moduli: self.moduli, density: self.density };
-        let energy = balance.assemble(&mut self.inertia.matrix, &mut self.force);
+        self.pushed = [0.0; 2];
+        Ok(balance.assemble(&mut self.inertia.matrix, &mut self.force))
+    }
+
+    /// The accelerations by these forces, and by those of contact.
+    ///
+    /// # Errors
+    /// If the solve does not converge.
+    pub(crate) fn accelerate(&mut self, OnPatch { patch, cells, points }: OnPatch<'_>) -> Result<(), Failure> {
+        let held = self.held.each_ref().map(|held| &held[..]);
         self.inertia.begin(&self.kronecker, self.gauss.marks(patch.control_grid()), &self.held);
         extrapolate(&mut self.acceleration);
-        let solved = self.inertia.solve(&self.kronecker, &self.force, &mut self.acceleration[0], held, TOLERANCES[1]);
+        let accuracy = self.accuracy(patch, 2);
+        let solved = self.inertia.solve(&self.kronecker, &self.force, &mut self.acceleration[0], held, accuracy);
         solved.map_err(Failure::Spans)?;
+        let fit = PointFit { patch, cells, points, density: self.density };
         fit.at_points(&self.acceleration[0], &mut self.point_acceleration);
         let mean = self.mean(points, |at| self.point_acceleration[at]);
+        let pushed = self.pushed_mean(points);
+        let mean = [0, 1].map(|c| mean[c] - pushed[c]);
         let excess = fault!("mean-of-the-fit-kept", mean => mean.map(|_| 0.0));
         self.point_acceleration.iter_mut().for_each(|a| (0..2).for_each(|c| a[c] -= excess[c]));
-        Ok(energy)
+        Ok(())
     }
 
     /// Matrix and right-hand side of the fit at the present positions; the mean displacement, m.
@@ -212,7 +235,8 @@ impl SpanQuadrature {
         let fit = PointFit { patch, cells, points, density: self.density };
         fit.load(|point| [0, 1].map(|c| point.velocity[c] - mean[c]), &mut self.load);
         let held = self.held.each_ref().map(|held| &held[..]);
-        self.fit.solve(&self.kronecker, &self.load, &mut self.velocity, held, TOLERANCES[2])?;
+        let accuracy = self.accuracy(patch, 1);
+        self.fit.solve(&self.kronecker, &self.load, &mut self.velocity, held, accuracy)?;
         let mut fitted = Vec::new();
         fit.at_points(&self.velocity, &mut fitted);
         fitted.iter_mut().for_each(|v| (0..2).for_each(|c| v[c] += mean[c]));
@@ -226,6 +250,20 @@ impl SpanQuadrature {
             }
         }
         Ok(loss)
+    }
+
+    /// Forces of contact over the mass of the points, m/s², of a component that is held nowhere.
+    fn pushed_mean(&self, points: &[Point]) -> [f64; 2] {
+        let mass = self.density * points.iter().map(|point| point.volume).sum::<f64>();
+        [0, 1].map(|c| if self.held[c].is_empty() { self.pushed[c] / mass } else { 0.0 })
+    }
+
+    /// When the solve for the derivative of that order of the displacement ends: what is left is round-off of
+    /// positions, times the frequency of a span for each derivative.
+    fn accuracy(&self, patch: &Patch, order: usize) -> Accuracy {
+        let size = patch.spaces.iter().flat_map(|space| space.spans()).fold(0.0, |most, s| larger(most, s.right.abs()));
+        let frequency = self.moduli.dilatational_speed(self.density) / patch.shortest_span();
+        Accuracy { tolerance: TOLERANCES[order], round_off: f64::EPSILON * size * frequency.powi(order as i32) }
     }
 
     /// Mean over the mass of the points, of a component that is held nowhere; zero of others.

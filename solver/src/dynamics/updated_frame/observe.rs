@@ -36,6 +36,9 @@ impl UpdatedFrame {
             self.fields.iter().zip(&accelerations).map(|(field, a)| field.sample(dt, a)).collect();
         let recorded = self.recorded.as_ref().map(|names| self.sample_bodies(names, &bodies, dt));
         let mut sample = bodies.into_iter().reduce(Sample::with).expect("a scene has a body");
+        if let Some(potential) = &self.gap_potential {
+            sample.contact = Some(ContactSample { loss: potential.energy(), friction: 0.0 });
+        }
         if let Some(ContactLedger { loss, friction, work }) = contact {
             sample.external_work += work;
             sample.contact = Some(ContactSample { loss, friction });
@@ -53,6 +56,11 @@ impl UpdatedFrame {
         self.contact.as_ref()
     }
 
+    /// Whether bodies may meet.
+    pub fn has_contact(&self) -> bool {
+        self.contact.is_some() || self.gap_potential.is_some()
+    }
+
     /// Time, s.
     pub fn time(&self) -> f64 {
         self.fields.first().map_or(0.0, |field| field.time)
@@ -65,6 +73,9 @@ impl UpdatedFrame {
 
     /// Forces of contact now; `dt` is the step in use.
     pub fn contact_forces(&self, dt: f64) -> Vec<ContactForce> {
+        if let Some(potential) = &self.gap_potential {
+            return potential.contact_forces();
+        }
         self.contact
             .as_ref()
             .map_or_else(Vec::new, |contact| contact.forces(&views(&self.fields), self.coming_kick(dt)))
@@ -134,6 +145,7 @@ impl UpdatedFrame {
     /// Heap memory of mechanics and of the phase fields, bytes.
     pub fn bytes(&self) -> [usize; 2] {
         let contact = self.contact.as_ref().map_or(0, |contact| contact.bytes());
+        let contact = contact + self.gap_potential.as_ref().map_or(0, |potential| potential.bytes());
         self.fields
             .iter()
             .map(|field| field.bytes())

@@ -4,8 +4,9 @@
 use super::affine::AffineVelocities;
 use super::field::DiscreteField;
 use super::gauss::OnPatch;
-use super::{UpdatedFrame, views};
+use super::{UpdatedFrame, find_gaps, views};
 use crate::checkpoint::{Archive, StateError};
+use crate::contact::motion::TooFast;
 use crate::particles::points::OutsidePatch;
 
 impl UpdatedFrame {
@@ -14,19 +15,24 @@ impl UpdatedFrame {
     /// # Errors
     /// Bytes of another scene, and loads that only the program knows.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { patch: _, fields, contact, thickness: _, recorded: _ } = self;
+        let Self { patch: _, fields, contact, gap_potential, thickness: _, recorded: _ } = self;
         fields.iter_mut().try_for_each(|field| field.exchange(archive))?;
+        if let Some(potential) = gap_potential.as_mut().filter(|_| archive.is_reader()) {
+            find_gaps(potential, fields).map_err(too_fast)?;
+        }
         if let Some(contact) = contact {
             contact.exchange(archive)?;
             if archive.is_reader() && fields[0].time() > 0.0 {
                 contact.move_rigid(fields[0].time());
-                contact.find(&views(fields)).map_err(|fast| {
-                    StateError(format!("the state is of another scene: bodies move {:.3} spans in a step", fast.spans))
-                })?;
+                contact.find(&views(fields)).map_err(too_fast)?;
             }
         }
         Ok(())
     }
+}
+
+fn too_fast(fast: TooFast) -> StateError {
+    StateError(format!("the state is of another scene: bodies move {:.3} spans in a step", fast.spans))
 }
 
 impl DiscreteField {

@@ -15,7 +15,7 @@ impl DiscreteField {
     /// Critical time step of the undamaged body at the present positions, s; infinite if nothing can move.
     pub fn critical_step(&self) -> f64 {
         if let Some(spans) = &self.spans {
-            return spans.critical_step();
+            return spans.critical_step(&self.patch);
         }
         let frequency = highest_frequency(&mut PointStiffness::new(self));
         self.velocity_transfer.stable_fraction() / frequency

@@ -34,12 +34,20 @@ impl Vectorised for AssembleSpans<'_, '_> {
     #[inline(always)]
     fn run<const FMA: bool>(mut self) -> f64 {
         let Self { balance, cells, window, grid, row_length } = &mut self;
-        match balance.gauss.count[0] {
-            2 => balance.strip::<2, 4>(cells, window, *grid, *row_length),
-            3 => balance.strip::<3, 9>(cells, window, *grid, *row_length),
-            4 => balance.strip::<4, 16>(cells, window, *grid, *row_length),
-            _ => balance.strip::<5, 25>(cells, window, *grid, *row_length),
-        }
+        cells.iter().fold(0.0, |energy, cell| {
+            let (window, grid, row_length) = (&mut *window, *grid, *row_length);
+            energy
+                + match (balance.gauss.count, balance.gauss.is_cut(cell)) {
+                    (2, false) => balance.cell::<2, 4, 2, 4>(cell, window, grid, row_length),
+                    (2, true) => balance.cell::<2, 4, 3, 9>(cell, window, grid, row_length),
+                    (3, false) => balance.cell::<3, 9, 3, 9>(cell, window, grid, row_length),
+                    (3, true) => balance.cell::<3, 9, 5, 25>(cell, window, grid, row_length),
+                    (4, false) => balance.cell::<4, 16, 4, 16>(cell, window, grid, row_length),
+                    (4, true) => balance.cell::<4, 16, 7, 49>(cell, window, grid, row_length),
+                    (_, false) => balance.cell::<5, 25, 5, 25>(cell, window, grid, row_length),
+                    (_, true) => balance.cell::<5, 25, 9, 81>(cell, window, grid, row_length),
+                }
+        })
     }
 }
 
@@ -75,85 +83,89 @@ impl SpanBalance<'_> {
         let [ox, oy] = out.each_mut().map(|f| &mut f[..]);
         scatter(&self.gauss.strips, [ox, oy], [grid.stride; 2], |strip, mut window| {
             let cells = &self.gauss.cells[strip.cells.clone()];
-            match self.gauss.count {
-                [3, 3] => self.stiffness_strip::<3, 9>(cells, x, &mut window, grid),
-                [4, 4] => self.stiffness_strip::<4, 16>(cells, x, &mut window, grid),
-                [5, 5] => self.stiffness_strip::<5, 25>(cells, x, &mut window, grid),
-                _ => self.stiffness_strip::<2, 4>(cells, x, &mut window, grid),
+            for cell in cells {
+                match (self.gauss.count, self.gauss.is_cut(cell)) {
+                    (2, false) => self.stiffness_cell::<2, 4, 2, 4>(cell, x, &mut window, grid),
+                    (2, true) => self.stiffness_cell::<2, 4, 3, 9>(cell, x, &mut window, grid),
+                    (3, false) => self.stiffness_cell::<3, 9, 3, 9>(cell, x, &mut window, grid),
+                    (3, true) => self.stiffness_cell::<3, 9, 5, 25>(cell, x, &mut window, grid),
+                    (4, false) => self.stiffness_cell::<4, 16, 4, 16>(cell, x, &mut window, grid),
+                    (4, true) => self.stiffness_cell::<4, 16, 7, 49>(cell, x, &mut window, grid),
+                    (_, false) => self.stiffness_cell::<5, 25, 5, 25>(cell, x, &mut window, grid),
+                    (_, true) => self.stiffness_cell::<5, 25, 9, 81>(cell, x, &mut window, grid),
+                }
             }
         });
     }
 
-    fn stiffness_strip<const K: usize, const F: usize>(
+    fn stiffness_cell<const K: usize, const F: usize, const Q: usize, const R: usize>(
         &self,
-        cells: &[Cell],
+        cell: &Cell,
         x: &VectorField,
         window: &mut Window<'_, 2>,
         grid: ControlGrid,
     ) {
         let ElasticModuli { lambda, mu } = self.moduli;
-        for cell in cells {
-            let gradients_of = |field: &VectorField| {
-                let local = control_values(field.each_ref().map(|d| &d[..]), grid, cell, K, K);
-                let mut gradients = [[[0.0; 2]; 2]; F];
-                self.gradients::<K, F>(cell, &local, &mut gradients);
-                gradients
-            };
-            let (motion, strain) = (gradients_of(self.displacement), gradients_of(x));
-            let mut stresses = [[0.0; 3]; F];
-            for i in 0..F {
-                let [[dxx, dxy], [dyx, dyy]] = motion[i];
-                let volume = self.gauss.weights[cell.points.start + i] * ((1.0 - dxx) * (1.0 - dyy) - dxy * dyx);
-                let [[xx, xy], [yx, yy]] = strain[i];
-                let spherical = lambda * (xx + yy);
-                let stress = [spherical + 2.0 * mu * xx, spherical + 2.0 * mu * yy, mu * (xy + yx)];
-                stresses[i] = stress.map(|s| -volume * s);
-            }
-            let [ox, oy] = &mut window.fields;
-            self.forces::<K, F>(cell, &stresses, [ox, oy], window.first_row, grid);
+        let gradients_of = |field: &VectorField| {
+            let local = control_values(field.each_ref().map(|d| &d[..]), grid, cell, K, K);
+            let mut gradients = [[[0.0; 2]; 2]; R];
+            self.gradients::<K, Q, R>(cell, &local, &mut gradients);
+            gradients
+        };
+        let (motion, strain) = (gradients_of(self.displacement), gradients_of(x));
+        let mut stresses = [[0.0; 3]; R];
+        for i in 0..R {
+            let [[dxx, dxy], [dyx, dyy]] = motion[i];
+            let volume = self.gauss.weights[cell.points.start + i] * ((1.0 - dxx) * (1.0 - dyy) - dxy * dyx);
+            let [[xx, xy], [yx, yy]] = strain[i];
+            let spherical = lambda * (xx + yy);
+            let stress = [spherical + 2.0 * mu * xx, spherical + 2.0 * mu * yy, mu * (xy + yx)];
+            stresses[i] = stress.map(|s| -volume * s);
         }
+        let [ox, oy] = &mut window.fields;
+        self.forces::<K, F, Q, R>(cell, &stresses, [ox, oy], window.first_row, grid);
     }
 
+    /// Forces and masses of a span with K shape functions and Q Gauss points per direction, F and R in all; its
+    /// elastic energy, J/m.
     #[inline(always)]
-    fn strip<const K: usize, const F: usize>(
+    fn cell<const K: usize, const F: usize, const Q: usize, const R: usize>(
         &self,
-        cells: &[Cell],
+        cell: &Cell,
         window: &mut Window<'_, 3>,
         grid: ControlGrid,
         row_length: usize,
     ) -> f64 {
         let mut energy = 0.0;
-        for cell in cells {
-            let local = control_values(self.displacement.each_ref().map(|d| &d[..]), grid, cell, K, K);
-            let mut gradients = [[[0.0; 2]; 2]; F];
-            self.gradients::<K, F>(cell, &local, &mut gradients);
-            let (mut volumes, mut stresses) = ([0.0; F], [[0.0; 3]; F]);
-            for (first, some) in gradients.chunks(LANES).enumerate() {
-                energy += self.stress(
-                    some,
-                    &self.gauss.weights[cell.points.start + first * LANES..][..some.len()],
-                    &mut volumes[first * LANES..],
-                    &mut stresses[first * LANES..],
-                );
-            }
-            let [_, x, y] = &mut window.fields;
-            self.forces::<K, F>(cell, &stresses, [x, y], window.first_row, grid);
-            let matrix = self.masses::<K, F>(cell, &volumes);
-            add_cell::<K, F>(window.fields[0], cell.first, window.first_row, grid, row_length, &matrix);
+        let local = control_values(self.displacement.each_ref().map(|d| &d[..]), grid, cell, K, K);
+        let mut gradients = [[[0.0; 2]; 2]; R];
+        self.gradients::<K, Q, R>(cell, &local, &mut gradients);
+        let (mut volumes, mut stresses) = ([0.0; R], [[0.0; 3]; R]);
+        for (first, some) in gradients.chunks(LANES).enumerate() {
+            energy += self.stress(
+                some,
+                &self.gauss.weights[cell.points.start + first * LANES..][..some.len()],
+                &mut volumes[first * LANES..],
+                &mut stresses[first * LANES..],
+            );
         }
+        let [_, x, y] = &mut window.fields;
+        self.forces::<K, F, Q, R>(cell, &stresses, [x, y], window.first_row, grid);
+        let matrix = self.masses::<K, F, Q, R>(cell, &volumes);
+        add_cell::<K, F>(window.fields[0], cell.first, window.first_row, grid, row_length, &matrix);
         energy
     }
 
     /// `∇d` at the Gauss points of a span.
     #[inline(always)]
-    fn gradients<const K: usize, const F: usize>(
+    fn gradients<const K: usize, const Q: usize, const R: usize>(
         &self,
         cell: &Cell,
         local: &[[f64; 2]; MAX_FUNCTIONS],
-        out: &mut [Gradient; F],
+        out: &mut [Gradient; R],
     ) {
-        let (tx, ty) = (&self.gauss.tables[0][cell.span[0]], &self.gauss.tables[1][cell.span[1]]);
-        for a in 0..K {
+        let [tx, ty] = self.gauss.tables(cell);
+        for a in 0..Q {
             let (mut rows, mut slopes) = ([[0.0; 2]; K], [[0.0; 2]; K]);
             for l in 0..K {
                 for k in 0..K {
@@ -161,8 +173,8 @@ impl SpanBalance<'_> {
                     slopes[l] = each!(c in [0, 1] => slopes[l][c] + tx[a].derivative[k] * local[l * K + k][c]);
                 }
             }
-            for b in 0..K {
-                let sum = &mut out[b * K + a];
+            for b in 0..Q {
+                let sum = &mut out[b * Q + a];
                 for l in 0..K {
                     *sum = each!(c in [0, 1] => [
                         sum[c][0] + ty[b].value[l] * slopes[l][c],
@@ -196,20 +208,20 @@ impl SpanBalance<'_> {
 
     /// `f_i −= Σ stress ∇N_i`.
     #[inline(always)]
-    fn forces<const K: usize, const F: usize>(
+    fn forces<const K: usize, const F: usize, const Q: usize, const R: usize>(
         &self,
         cell: &Cell,
-        stresses: &[[f64; 3]; F],
+        stresses: &[[f64; 3]; R],
         [x, y]: [&mut [f64]; 2],
         first_row: usize,
         grid: ControlGrid,
     ) {
-        let (tx, ty) = (&self.gauss.tables[0][cell.span[0]], &self.gauss.tables[1][cell.span[1]]);
+        let [tx, ty] = self.gauss.tables(cell);
         let mut forces = [[0.0; 2]; F];
-        for a in 0..K {
+        for a in 0..Q {
             let (mut by_slope, mut by_value) = ([[0.0; 2]; K], [[0.0; 2]; K]);
-            for b in 0..K {
-                let [xx, yy, xy] = stresses[b * K + a];
+            for b in 0..Q {
+                let [xx, yy, xy] = stresses[b * Q + a];
                 for l in 0..K {
                     let (n, d) = (ty[b].value[l], ty[b].derivative[l]);
                     by_slope[l] = [by_slope[l][0] + xx * n, by_slope[l][1] + xy * n];
@@ -235,13 +247,17 @@ impl SpanBalance<'_> {
 
     /// Mass matrix of a span, one direction after the other.
     #[inline(always)]
-    fn masses<const K: usize, const F: usize>(&self, cell: &Cell, volumes: &[f64; F]) -> [[f64; F]; F] {
-        let (tx, ty) = (&self.gauss.tables[0][cell.span[0]], &self.gauss.tables[1][cell.span[1]]);
+    fn masses<const K: usize, const F: usize, const Q: usize, const R: usize>(
+        &self,
+        cell: &Cell,
+        volumes: &[f64; R],
+    ) -> [[f64; F]; F] {
+        let [tx, ty] = self.gauss.tables(cell);
         let mut matrix = [[0.0; F]; F];
-        for b in 0..K {
+        for b in 0..Q {
             let mut along = [[0.0; K]; K];
-            for a in 0..K {
-                let mass = self.density * volumes[b * K + a];
+            for a in 0..Q {
+                let mass = self.density * volumes[b * Q + a];
                 for k in 0..K {
                     let weighted = mass * tx[a].value[k];
                     for j in 0..K {

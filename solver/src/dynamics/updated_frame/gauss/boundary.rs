@@ -19,12 +19,13 @@
 //! crosses knots.
 
 use super::map::{Folded, InverseMap};
+use crate::contact::gap_potential::Arc;
 use crate::linear_algebra::extremes::smaller;
 use crate::scene::{Layout, Mesh, Shape};
-use crate::splines::quadrature::Rule;
+use crate::splines::quadrature::{MAX_POINTS, Rule};
 
-/// Corrections to where a line crosses a knot, and what is near enough, in lengths of the step.
-const CROSSING_LIMIT: usize = 12;
+/// Trials for where a line crosses a knot or turns back, and what is near enough, in lengths of the step.
+const CROSSING_LIMIT: usize = 60;
 const CROSSING_CLOSE: f64 = 1e-13;
 
 /// A smooth part of the boundary, by reference positions.
@@ -97,8 +98,10 @@ pub(crate) fn edges(shape: &Shape, mesh: &Mesh) -> Option<Vec<BoundaryEdge>> {
 #[derive(Debug, Clone)]
 pub(crate) struct MovingBoundary {
     edges: Vec<BoundaryEdge>,
-    /// Present positions (m) of equally spaced s, the ends of each edge among them.
+    /// Present positions (m) of equally spaced s, the ends of each edge among them, and their derivatives by
+    /// s.
     nodes: Vec<Vec<[f64; 2]>>,
+    tangents: Vec<Vec<[f64; 2]>>,
     /// Rule along a piece.
     along: Rule,
 }
@@ -116,15 +119,25 @@ impl MovingBoundary {
     pub(crate) fn new(edges: Vec<BoundaryEdge>, shortest: f64, degree: usize) -> Self {
         let nodes_of = |edge: &BoundaryEdge| {
             let count = (edge.length() / shortest).ceil().max(1.0) as usize;
-            (0..=count).map(|i| edge.at(i as f64 / count as f64).0).collect()
+            (0..=count).map(|i| edge.at(i as f64 / count as f64)).unzip()
         };
-        let nodes = edges.iter().map(nodes_of).collect();
-        Self { edges, nodes, along: Rule::new(Layout::Gauss, degree + 2) }
+        let (nodes, tangents) = edges.iter().map(nodes_of).unzip();
+        Self { edges, nodes, tangents, along: Rule::new(Layout::Gauss, (2 * degree + 1).min(MAX_POINTS)) }
     }
 
-    /// Present positions, edge by edge, m.
+    /// Present positions and tangents, edge by edge, m.
     pub(crate) fn places(&mut self) -> impl Iterator<Item = &mut Vec<[f64; 2]>> {
-        self.nodes.iter_mut()
+        self.nodes.iter_mut().chain(&mut self.tangents)
+    }
+
+    /// The cubics through the nodes now.
+    pub(crate) fn arcs(&self) -> Vec<Arc> {
+        let of_edge = |(nodes, tangents): (&Vec<[f64; 2]>, &Vec<[f64; 2]>)| -> Vec<Arc> {
+            let steps = (nodes.len() - 1) as f64;
+            let ends = nodes.windows(2).zip(tangents.windows(2));
+            ends.map(|(x, t)| Arc::new([x[0], x[1]], [t[0], t[1]].map(|t| t.map(|t| t / steps)))).collect()
+        };
+        self.nodes.iter().zip(&self.tangents).flat_map(of_edge).collect()
     }
 
     /// Follows the motion and calls `f` with the pieces.
@@ -132,21 +145,19 @@ impl MovingBoundary {
     /// # Errors
     /// If the motion has no inverse somewhere on the boundary.
     pub(crate) fn follow(&mut self, map: &InverseMap<'_>, mut f: impl FnMut(Piece<'_>)) -> Result<(), Folded> {
-        let Self { edges, nodes, along } = self;
+        let Self { edges, nodes, tangents, along } = self;
         let mut breaks = Vec::new();
-        for (edge, nodes) in edges.iter().zip(nodes) {
+        for ((edge, nodes), tangents) in edges.iter().zip(nodes).zip(tangents) {
             let count = nodes.len() - 1;
-            for (i, node) in nodes.iter_mut().enumerate() {
-                *node = map.forward(edge.at(i as f64 / count as f64).0, [0.0; 2], *node)?.0;
+            for (i, (node, carried)) in nodes.iter_mut().zip(tangents.iter_mut()).enumerate() {
+                let (position, tangent) = edge.at(i as f64 / count as f64);
+                (*node, *carried) = map.forward(position, tangent, *node)?;
             }
             for i in 0..count {
-                let ends = [i, i + 1].map(|i| i as f64 / count as f64);
-                let places = [nodes[i], nodes[i + 1]];
+                let place = |i: usize| Place { s: i as f64 / count as f64, x: nodes[i], tangent: tangents[i] };
+                let step = Step { edge, map, ends: [place(i), place(i + 1)] };
                 breaks.clear();
-                breaks.push((ends[0], places[0]));
-                crossings(edge, map, ends, places, &mut breaks)?;
-                breaks[1..].sort_by(|a, b| a.0.total_cmp(&b.0));
-                breaks.push((ends[1], places[1]));
+                step.divide(&mut breaks)?;
                 for pair in breaks.windows(2) {
                     piece(edge, map, along, [pair[0], pair[1]], &mut f)?;
                 }
@@ -156,39 +167,94 @@ impl MovingBoundary {
     }
 }
 
-/// Where a step of an edge crosses knots of either direction: s and position.
-fn crossings(
-    edge: &BoundaryEdge,
-    map: &InverseMap<'_>,
-    [from, to]: [f64; 2],
-    [a, b]: [[f64; 2]; 2],
-    breaks: &mut Vec<(f64, [f64; 2])>,
-) -> Result<(), Folded> {
-    for d in 0..2 {
-        let spans = map.patch.spaces[d].spans();
-        let (low, high) = (smaller(a[d], b[d]), -smaller(-a[d], -b[d]));
-        let first = spans.partition_point(|span| span.left <= low);
-        for knot in spans[first..].iter().map(|span| span.left).take_while(|knot| *knot < high) {
-            let share = (knot - a[d]) / (b[d] - a[d]);
-            let mut s = from + share * (to - from);
-            let mut x = [0, 1].map(|c| a[c] + share * (b[c] - a[c]));
-            for _ in 0..CROSSING_LIMIT {
-                let (position, tangent) = edge.at(s);
-                let (place, carried) = map.forward(position, tangent, x)?;
-                let correction = (knot - place[d]) / carried[d];
-                x = place;
-                if !correction.is_finite() {
-                    break;
-                }
-                s = (s + correction).clamp(from, to);
-                if correction.abs() <= CROSSING_CLOSE * (to - from) {
-                    break;
-                }
-            }
-            breaks.push((s, x));
-        }
+/// A place on an edge: s, position (m), and its derivative by s (m).
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    s: f64,
+    x: [f64; 2],
+    tangent: [f64; 2],
+}
+
+/// A part of an edge.
+struct Step<'a> {
+    edge: &'a BoundaryEdge,
+    map: &'a InverseMap<'a>,
+    ends: [Place; 2],
+}
+
+impl Step<'_> {
+    /// The place at s, looked for from a position, m.
+    fn at(&self, s: f64, near: [f64; 2]) -> Result<Place, Folded> {
+        let (position, tangent) = self.edge.at(s);
+        let (x, tangent) = self.map.forward(position, tangent, near)?;
+        Ok(Place { s, x, tangent })
     }
-    Ok(())
+
+    /// Its ends and where it crosses knots of either direction, in order: s and position. Where it turns back
+    /// in a direction it may cross a knot twice, so it is divided there first.
+    fn divide(&self, breaks: &mut Vec<(f64, [f64; 2])>) -> Result<(), Folded> {
+        let mut places = vec![self.ends[0]];
+        for d in 0..2 {
+            let tangents = self.ends.map(|end| end.tangent[d]);
+            if tangents[0] * tangents[1] < 0.0 {
+                places.push(self.root(self.ends, |place| place.tangent[d])?);
+            }
+        }
+        places[1..].sort_by(|a, b| a.s.total_cmp(&b.s));
+        places.push(self.ends[1]);
+        for pair in places.windows(2) {
+            let first = breaks.len();
+            breaks.push((pair[0].s, pair[0].x));
+            self.crossings([pair[0], pair[1]], breaks)?;
+            breaks[first..].sort_by(|a, b| a.0.total_cmp(&b.0));
+        }
+        breaks.push((self.ends[1].s, self.ends[1].x));
+        Ok(())
+    }
+
+    /// Where a part that turns back nowhere crosses knots.
+    fn crossings(&self, ends: [Place; 2], breaks: &mut Vec<(f64, [f64; 2])>) -> Result<(), Folded> {
+        for d in 0..2 {
+            let spans = self.map.patch.spaces[d].spans();
+            let [a, b] = ends.map(|end| end.x[d]);
+            let (low, high) = (smaller(a, b), -smaller(-a, -b));
+            let first = spans.partition_point(|span| span.left <= low);
+            for knot in spans[first..].iter().map(|span| span.left).take_while(|knot| *knot < high) {
+                let place = self.root(ends, |place| place.x[d] - knot)?;
+                breaks.push((place.s, place.x));
+            }
+        }
+        Ok(())
+    }
+
+    /// The place between two at which a function that has opposite signs there is zero, by false position with
+    /// the weight of an end that stays halved (Dowell & Jarratt 1971, *A modified regula falsi method for
+    /// computing the root of an equation*, BIT 11).
+    fn root(&self, [mut a, mut b]: [Place; 2], f: impl Fn(&Place) -> f64) -> Result<Place, Folded> {
+        let (mut at_a, mut at_b) = (f(&a), f(&b));
+        let close = CROSSING_CLOSE * (b.s - a.s);
+        let mut side = 0;
+        for _ in 0..CROSSING_LIMIT {
+            let share = at_a / (at_a - at_b);
+            let s = a.s + share * (b.s - a.s);
+            let place = self.at(s, [0, 1].map(|c| a.x[c] + share * (b.x[c] - a.x[c])))?;
+            let found = f(&place);
+            let narrow = smaller((place.s - a.s).abs(), (b.s - place.s).abs()) <= close;
+            if found == 0.0 || narrow || !found.is_finite() {
+                return Ok(place);
+            }
+            if found * at_a < 0.0 {
+                (b, at_b) = (place, found);
+                at_a *= if side == -1 { 0.5 } else { 1.0 };
+                side = -1;
+            } else {
+                (a, at_a) = (place, found);
+                at_b *= if side == 1 { 0.5 } else { 1.0 };
+                side = 1;
+            }
+        }
+        Ok(a)
+    }
 }
 
 /// Hands on one piece between two breaks.
@@ -202,7 +268,7 @@ fn piece(
     if to <= from {
         return Ok(());
     }
-    let mut points = [([0.0; 2], 0.0); 8];
+    let mut points = [([0.0; 2], 0.0); MAX_POINTS];
     for ((point, t), weight) in points.iter_mut().zip(&along.points).zip(&along.weights) {
         let (position, tangent) = edge.at(from + t * (to - from));
         let (x, carried) = map.forward(position, tangent, [0, 1].map(|c| a[c] + t * (b[c] - a[c])))?;

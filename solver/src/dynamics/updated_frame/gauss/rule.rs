@@ -7,33 +7,39 @@ use crate::particles::points::{Cell, Strip};
 use crate::scene::Layout;
 use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
-use crate::splines::spline::{MAX_DEGREE, MAX_ORDER, ShapeFunctions};
+use crate::splines::spline::{MAX_DEGREE, ShapeFunctions};
 
 /// Rows of spans in a strip: every second strip has control points of its own.
 const STRIP_ROWS: usize = MAX_DEGREE;
 /// Parts of a span smaller than this are none, and all but this are all.
 const SLIVER: f64 = 1e-11;
 
-/// p + 1 Gauss points per direction in the spans of a body.
+/// Most Gauss points per direction in a span that the boundary cuts.
+const MOST: usize = 2 * MAX_DEGREE + 1;
+
+/// Gauss points of the spans of a body: p + 1 per direction, and 2 p + 1 where the boundary cuts a span. Only
+/// these integrate the products of shape functions over the part inside exactly, so that its mass matrix has no
+/// negative eigenvalue however small it is.
 #[derive(Debug, Clone)]
 pub(crate) struct GaussPoints {
     /// Layout of the control points.
     pub grid: ControlGrid,
-    /// Points per span and direction.
-    pub count: [usize; 2],
+    /// Points per direction of a span inside.
+    pub count: usize,
     /// Spans of the body; their points are those of [`Self::weights`], x fastest.
     pub cells: Vec<Cell>,
     /// Strips of those spans.
     pub strips: Vec<Strip>,
     /// Area per point, m².
     pub weights: Vec<f64>,
-    /// Shape functions at the Gauss points of each span, per direction.
-    pub tables: [Vec<Vec<ShapeFunctions>>; 2],
+    /// Rules of spans inside and of those that are cut, and shape functions at their points, per direction and
+    /// span.
     rules: [Rule; 2],
-    /// Lagrange polynomials of the points, and their integrals, by powers of the local coordinate.
-    lagrange: [Vec<Vec<f64>>; 2],
+    tables: [[Vec<Vec<ShapeFunctions>>; 2]; 2],
+    /// Lagrange polynomials of the points of a cut span by powers of the local coordinate.
+    lagrange: Vec<Vec<f64>>,
     /// Per span: what boundary passes to the right, `∫ ℓ_b dy` over the length of the span.
-    passing: Vec<[f64; MAX_ORDER]>,
+    passing: Vec<[f64; MOST]>,
     /// Per span that the boundary cuts: `∮ L_a ℓ_b dy` over the area of the span.
     cut: Vec<Option<Box<[f64]>>>,
 }
@@ -41,16 +47,16 @@ pub(crate) struct GaussPoints {
 impl GaussPoints {
     /// Tables of a patch, for no body yet.
     pub(crate) fn new(patch: &Patch) -> Self {
-        let count = patch.spaces.each_ref().map(|space| space.degree() + 1);
-        let rules = count.map(|n| Rule::new(Layout::Gauss, n));
-        let table = |d: usize| {
+        let count = patch.spaces[0].degree() + 1;
+        let rules = [count, 2 * count - 1].map(|n| Rule::new(Layout::Gauss, n));
+        let table = |rule: &Rule, d: usize| -> Vec<Vec<ShapeFunctions>> {
             let space = &patch.spaces[d];
             let at = |span: usize, t: f64| {
                 let s = &space.spans()[span];
                 space.shape_functions(span, s.left + t * s.length())
             };
             let spans = 0..space.spans().len();
-            spans.map(|span| rules[d].points.iter().map(|t| at(span, *t)).collect()).collect()
+            spans.map(|span| rule.points.iter().map(|t| at(span, *t)).collect()).collect()
         };
         let spans = patch.spaces[0].spans().len() * patch.spaces[1].spans().len();
         Self {
@@ -59,10 +65,10 @@ impl GaussPoints {
             cells: Vec::new(),
             strips: Vec::new(),
             weights: Vec::new(),
-            tables: [table(0), table(1)],
-            lagrange: rules.each_ref().map(|rule| lagrange(&rule.points)),
+            tables: rules.each_ref().map(|rule| [table(rule, 0), table(rule, 1)]),
+            lagrange: lagrange(&rules[1].points),
             rules,
-            passing: vec![[0.0; MAX_ORDER]; spans],
+            passing: vec![[0.0; MOST]; spans],
             cut: vec![None; spans],
         }
     }
@@ -72,17 +78,31 @@ impl GaussPoints {
     /// # Errors
     /// If the motion has no inverse somewhere on the boundary.
     pub(crate) fn enclose(&mut self, boundary: &mut MovingBoundary, map: &InverseMap<'_>) -> Result<(), Folded> {
-        self.passing.fill([0.0; MAX_ORDER]);
+        self.passing.fill([0.0; MOST]);
         self.cut.fill(None);
         boundary.follow(map, |piece| self.add(map.patch, &piece))?;
         self.list(map.patch);
         Ok(())
     }
 
+    /// Whether the boundary cuts a span of the body.
+    #[inline(always)]
+    pub(crate) fn is_cut(&self, cell: &Cell) -> bool {
+        cell.points.len() > self.count * self.count
+    }
+
+    /// Shape functions at the Gauss points of a span, in x and in y.
+    #[inline(always)]
+    pub(crate) fn tables(&self, cell: &Cell) -> [&[ShapeFunctions]; 2] {
+        let tables = &self.tables[usize::from(self.is_cut(cell))];
+        [&tables[0][cell.span[0]], &tables[1][cell.span[1]]]
+    }
+
     /// Heap memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
-        let tables: usize = self.tables.iter().flatten().map(|span| span.len() * size_of::<ShapeFunctions>()).sum();
-        let lists = self.cells.len() * size_of::<Cell>() + self.passing.len() * size_of::<[f64; MAX_ORDER]>();
+        let tables: usize =
+            self.tables.iter().flatten().flatten().map(|span| span.len() * size_of::<ShapeFunctions>()).sum();
+        let lists = self.cells.len() * size_of::<Cell>() + self.passing.len() * size_of::<[f64; MOST]>();
         tables + lists + 8 * self.weights.len()
     }
 
@@ -90,35 +110,35 @@ impl GaussPoints {
     pub(crate) fn marks(&self, grid: ControlGrid) -> Vec<bool> {
         let mut marks = vec![false; grid.len()];
         for cell in &self.cells {
-            for l in 0..self.count[1] {
-                marks[grid.index(cell.first[0], cell.first[1] + l)..][..self.count[0]].fill(true);
+            for l in 0..self.count {
+                marks[grid.index(cell.first[0], cell.first[1] + l)..][..self.count].fill(true);
             }
         }
         marks
     }
 
     fn add(&mut self, patch: &Patch, piece: &Piece<'_>) {
-        let Self { count: [nx, ny], lagrange, passing, cut, .. } = self;
+        let Self { lagrange, passing, cut, .. } = self;
+        let n = lagrange.len();
         let [i, j] = piece.span;
         let spans = [&patch.spaces[0].spans()[i], &patch.spaces[1].spans()[j]];
         let at = j * patch.spaces[0].spans().len() + i;
-        let cut = cut[at].get_or_insert_with(|| vec![0.0; *nx * *ny].into_boxed_slice());
+        let cut = cut[at].get_or_insert_with(|| vec![0.0; n * n].into_boxed_slice());
         for (x, dy) in piece.points {
             let t = [0, 1].map(|d: usize| (x[d] - spans[d].left) / spans[d].length());
             let dy = dy / spans[1].length();
-            for b in 0..*ny {
-                let across = dy * value(&lagrange[1][b], t[1]);
+            let left: Vec<f64> = lagrange.iter().map(|polynomial| integral(polynomial, t[0])).collect();
+            for (b, polynomial) in lagrange.iter().enumerate() {
+                let across = dy * value(polynomial, t[1]);
                 passing[at][b] += across;
-                for a in 0..*nx {
-                    cut[b * *nx + a] += across * integral(&lagrange[0][a], t[0]);
-                }
+                cut[b * n..][..n].iter_mut().zip(&left).for_each(|(cut, left)| *cut += across * left);
             }
         }
     }
 
     /// Cells, strips and weights from what the boundary left.
     fn list(&mut self, patch: &Patch) {
-        let Self { count: [nx, ny], cells, strips, weights, rules, passing, cut, .. } = self;
+        let Self { count, cells, strips, weights, rules: [inside_rule, cut_rule], passing, cut, .. } = self;
         let [columns, rows] = [0, 1].map(|d| patch.spaces[d].spans());
         cells.clear();
         strips.clear();
@@ -128,37 +148,38 @@ impl GaussPoints {
             let rows_of = index * STRIP_ROWS..((index + 1) * STRIP_ROWS).min(rows.len());
             let (first_cell, first_point) = (cells.len(), weights.len());
             for j in rows_of.clone() {
-                let mut beyond = [0.0; MAX_ORDER];
+                let mut beyond = [0.0; MOST];
                 found.clear();
                 for i in (0..columns.len()).rev() {
                     let at = j * columns.len() + i;
                     let area = columns[i].length() * rows[j].length();
-                    let inside: f64 = beyond[..*ny].iter().sum();
-                    let mut own = [0.0; MAX_ORDER * MAX_ORDER];
-                    for b in 0..*ny {
-                        for a in 0..*nx {
-                            let full = rules[0].weights[a]
-                                * if cut[at].is_some() { beyond[b] } else { rules[1].weights[b] * inside.round() };
-                            let part = cut[at].as_ref().map_or(0.0, |cut| cut[b * *nx + a]);
-                            own[b * *nx + a] = area * (full + fault!("cut-spans-half-way", part => 0.5 * part));
-                        }
-                    }
-                    let covered = own.iter().sum::<f64>() / area;
-                    if (1.0 - covered).abs() < SLIVER {
-                        for b in 0..*ny {
-                            for a in 0..*nx {
-                                own[b * *nx + a] = area * rules[0].weights[a] * rules[1].weights[b];
-                            }
-                        }
-                    }
+                    let n = cut_rule.weights.len();
+                    let part = cut[at].as_ref().map(|cut| {
+                        let full = beyond[..n].iter().flat_map(|b| cut_rule.weights.iter().map(move |a| a * b));
+                        let cut = cut.iter().map(|part| fault!("cut-spans-half-way", *part => 0.5 * part));
+                        full.zip(cut).map(|(full, part)| area * (full + part)).collect::<Vec<f64>>()
+                    });
+                    let covered = part.as_ref().map_or_else(
+                        || beyond[..n].iter().sum::<f64>().round(),
+                        |part| part.iter().sum::<f64>() / area,
+                    );
                     if covered > SLIVER {
-                        found.push((i, own));
+                        found.push((i, area, part.filter(|_| (1.0 - covered).abs() >= SLIVER)));
                     }
-                    (0..*ny).for_each(|b| beyond[b] += passing[at][b]);
+                    (0..n).for_each(|b| beyond[b] += passing[at][b]);
                 }
-                for (i, own) in found.iter().rev() {
-                    let points = weights.len()..weights.len() + *nx * *ny;
-                    weights.extend_from_slice(&own[..*nx * *ny]);
+                for (i, area, part) in found.iter().rev() {
+                    let first = weights.len();
+                    match part {
+                        Some(part) => weights.extend_from_slice(part),
+                        None => weights.extend(
+                            inside_rule
+                                .weights
+                                .iter()
+                                .flat_map(|b| inside_rule.weights.iter().map(move |a| area * a * b)),
+                        ),
+                    }
+                    let points = first..weights.len();
                     cells.push(Cell { span: [*i, j], first: [columns[*i].first, rows[j].first], points });
                 }
             }
@@ -167,7 +188,7 @@ impl GaussPoints {
                     index,
                     cells: first_cell..cells.len(),
                     points: first_point..weights.len(),
-                    control_rows: rows[rows_of.start].first..rows[rows_of.end - 1].first + *ny,
+                    control_rows: rows[rows_of.start].first..rows[rows_of.end - 1].first + *count,
                 });
             }
         }
@@ -218,11 +239,12 @@ mod tests {
         gauss.enclose(&mut boundary, &map).unwrap();
         let mut sum = 0.0;
         for cell in &gauss.cells {
+            let rule = &gauss.rules[usize::from(gauss.is_cut(cell))].points;
             for (n, weight) in gauss.weights[cell.points.clone()].iter().enumerate() {
-                let at = [n % gauss.count[0], n / gauss.count[0]];
+                let at = [n % rule.len(), n / rule.len()];
                 let x = [0, 1].map(|d: usize| {
                     let span = &patch.spaces[d].spans()[cell.span[d]];
-                    span.left + gauss.rules[d].points[at[d]] * span.length()
+                    span.left + rule[at[d]] * span.length()
                 });
                 sum += weight * x[0].powi(a) * x[1].powi(b);
             }

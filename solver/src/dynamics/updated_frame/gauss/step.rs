@@ -1,6 +1,7 @@
 //! One step of a body whose spans integrate, and what is read from it.
 
 use super::OnPatch;
+use crate::contact::gap_potential::{GapForce, Outline};
 use crate::dynamics::energy::Sample;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::updated_frame::field::DiscreteField;
@@ -8,7 +9,8 @@ use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::extremes::larger;
 
 impl DiscreteField {
-    /// One time step of `dt` seconds (see [the module](super)).
+    /// One time step of `dt` seconds but for its last solve, which contact comes before (see [the
+    /// module](super)).
     ///
     /// # Errors
     /// If a point leaves the patch, a solve does not converge, or the body is turned inside out.
@@ -24,17 +26,41 @@ impl DiscreteField {
         let after = self.renewed(before); // b_p(n+1)
         self.book_work(0.5 * dt, &after); // dt/2 Σ m b(n+1) · v(n+1/2)
         self.sort()?;
-        self.respond_with_spans()?; // D, F, sigma, M a = f at x(n+1)
+        self.find_forces_of_spans() // D, F, sigma at x(n+1); contact adds its forces, and then M a = f
+    }
+
+    /// Displacement, forces and accelerations at the present positions, without contact.
+    pub(in super::super) fn respond_with_spans(&mut self) -> Result<(), Failure> {
+        self.find_forces_of_spans()?;
+        self.accelerate_with_spans()
+    }
+
+    /// Displacement and forces of the stresses at the present positions.
+    fn find_forces_of_spans(&mut self) -> Result<(), Failure> {
+        let Self { patch, cells, points, spans, .. } = self;
+        if let Some(spans) = spans {
+            self.elastic_energy = spans.find_forces(OnPatch { patch, cells, points })?;
+        }
         Ok(())
     }
 
-    /// Displacement, forces and accelerations at the present positions.
-    pub(in super::super) fn respond_with_spans(&mut self) -> Result<(), Failure> {
+    /// Accelerations of the points by all forces, where spans integrate.
+    pub(in super::super) fn accelerate_with_spans(&mut self) -> Result<(), Failure> {
         let Self { patch, cells, points, spans, .. } = self;
+        spans.as_mut().map_or(Ok(()), |spans| spans.accelerate(OnPatch { patch, cells, points }))
+    }
+
+    /// The boundary of a body whose spans integrate, if it may meet others.
+    pub(in super::super) fn outline(&self) -> Option<Outline> {
+        self.spans.as_ref()?.outline()
+    }
+
+    /// Takes the force of a pair on this body, which is its `side`.
+    pub(in super::super) fn push(&mut self, pair: &GapForce, side: usize) {
+        let Self { patch, spans, .. } = self;
         if let Some(spans) = spans {
-            self.elastic_energy = spans.respond(OnPatch { patch, cells, points })?;
+            spans.push(patch, pair, side);
         }
-        Ok(())
     }
 
     /// Once in the time a wave takes through half a span, velocities are relaxed by that part of it.

@@ -2,18 +2,22 @@
 //!
 //! Points follow the grid's accelerations and are a leapfrog of their own, so the step is stable up to `2/ω`
 //! with the highest frequency ω of `M⁻¹ K`. The penalty in M bounds ω however the boundary cuts spans.
+//! Where bodies may meet, K has the springs of the boundary ([`contact`](super::contact)).
 
 use super::SpanQuadrature;
 use super::balance::SpanBalance;
+use super::system::Accuracy;
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::VectorField;
+use crate::splines::patch::Patch;
 
 /// Error of the solves with M.
 const TOLERANCE: f64 = 1e-10;
 
 /// `K x` and `M⁻¹ x` on the control points that take part and are not held.
-struct SpanStiffness {
+struct SpanStiffness<'a> {
     spans: SpanQuadrature,
+    patch: &'a Patch,
     free: Vec<(usize, usize)>,
     field: VectorField,
     image: VectorField,
@@ -21,17 +25,17 @@ struct SpanStiffness {
 
 impl SpanQuadrature {
     /// Critical time step at the present positions, s.
-    pub(crate) fn critical_step(&self) -> f64 {
+    pub(crate) fn critical_step(&self, patch: &Patch) -> f64 {
         let grid = self.inertia.matrix.grid;
         let moves = |&(at, c): &(usize, usize)| self.inertia.takes(at) && self.held[c].binary_search(&at).is_err();
         let free = grid.indices().flat_map(|at| [(at, 0), (at, 1)]).filter(moves).collect();
         let field = || [grid.zeros(), grid.zeros()];
-        let mut operator = SpanStiffness { spans: self.clone(), free, field: field(), image: field() };
+        let mut operator = SpanStiffness { spans: self.clone(), patch, free, field: field(), image: field() };
         2.0 / highest_frequency(&mut operator)
     }
 }
 
-impl SpanStiffness {
+impl SpanStiffness<'_> {
     fn unpack(&mut self, x: &[f64]) {
         self.free.iter().zip(x).for_each(|(&(at, c), x)| self.field[c][at] = *x);
     }
@@ -41,17 +45,18 @@ impl SpanStiffness {
     }
 }
 
-impl StiffnessOperator for SpanStiffness {
+impl StiffnessOperator for SpanStiffness<'_> {
     fn size(&self) -> usize {
         self.free.len()
     }
 
     fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
         self.unpack(x);
-        let Self { spans, field, image, .. } = self;
+        let Self { spans, patch, field, image, .. } = self;
         let SpanQuadrature { gauss, displacement, moduli, density, .. } = spans;
         let balance = SpanBalance { gauss, displacement: &displacement[0], moduli: *moduli, density: *density };
         balance.stiffness(field, image);
+        spans.add_springs(patch, field, image);
         self.pack(out);
     }
 
@@ -61,7 +66,7 @@ impl StiffnessOperator for SpanStiffness {
         let SpanQuadrature { inertia, kronecker, held, .. } = spans;
         image.iter_mut().for_each(|image| image.fill(0.0));
         let held = held.each_ref().map(|held| &held[..]);
-        if inertia.solve(kronecker, field, image, held, TOLERANCE).is_err() {
+        if inertia.solve(kronecker, field, image, held, Accuracy { tolerance: TOLERANCE, round_off: 0.0 }).is_err() {
             image.iter_mut().for_each(|image| image.fill(f64::NAN));
         }
         self.pack(out);

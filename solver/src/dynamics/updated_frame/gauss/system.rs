@@ -5,6 +5,7 @@ use super::penalty::Penalty;
 use super::weak::Weak;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::stencil::Stencil;
 use crate::splines::patch::Patch;
 
@@ -12,6 +13,15 @@ use crate::splines::patch::Patch;
 const WEAK: f64 = 0.3;
 /// Most iterations of a solve.
 const LIMIT: usize = 300;
+
+/// When a solve ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Accuracy {
+    /// Relative to the solution.
+    pub tolerance: f64,
+    /// In units of the solution.
+    pub round_off: f64,
+}
 
 /// `A = Σ m N_i N_j + w Jᵀ J` on the control points that take part.
 #[derive(Debug, Clone)]
@@ -23,6 +33,8 @@ pub(crate) struct MassSystem {
     marks: Vec<bool>,
     scale: Vec<f64>,
     weak: Weak,
+    /// Sum of the diagonal, kg/m.
+    mass: f64,
     residual: Vec<f64>,
     preconditioned: Vec<f64>,
     direction: Vec<f64>,
@@ -41,6 +53,7 @@ impl MassSystem {
             marks: Vec::new(),
             scale: zeros(),
             weak: Weak::default(),
+            mass: 0.0,
             residual: zeros(),
             preconditioned: zeros(),
             direction: zeros(),
@@ -60,6 +73,7 @@ impl MassSystem {
         for at in grid.indices().filter(|&at| self.marks[at]) {
             mass[at] = matrix.diagonal(grid.column_of(at), grid.row_of(at));
         }
+        self.mass = mass.iter().sum();
         let mut diagonal = mass.clone();
         penalty.add_diagonal(*weight, &mut diagonal);
         scale.fill(0.0);
@@ -78,7 +92,8 @@ impl MassSystem {
     }
 
     /// Solves `A x = b` for both components; those of `held` keep their values. The error in the norm of the
-    /// preconditioner falls below `tolerance` times that of a start from zero.
+    /// preconditioner falls below `tolerance` times that of a start from zero, or below that of `round_off` all
+    /// over the body: a body that moves as it is has nothing else.
     ///
     /// # Errors
     /// If the iterations do not converge.
@@ -88,9 +103,10 @@ impl MassSystem {
         b: &VectorField,
         x: &mut VectorField,
         held: [&[usize]; 2],
-        tolerance: f64,
+        Accuracy { tolerance, round_off }: Accuracy,
     ) -> Result<(), SolveFailure> {
-        (0..2).try_for_each(|c| self.solve_component(kronecker, &b[c], &mut x[c], held[c], tolerance))
+        let floor = self.mass * round_off * round_off;
+        (0..2).try_for_each(|c| self.solve_component(kronecker, &b[c], &mut x[c], held[c], [tolerance, floor]))
     }
 
     fn solve_component(
@@ -99,7 +115,7 @@ impl MassSystem {
         b: &[f64],
         x: &mut [f64],
         held: &[usize],
-        tolerance: f64,
+        [tolerance, floor]: [f64; 2],
     ) -> Result<(), SolveFailure> {
         let Self { matrix, penalty, weight, marks, scale, weak, residual, preconditioned, direction, image, .. } = self;
         let mut scale = std::mem::take(scale);
@@ -120,7 +136,7 @@ impl MassSystem {
         let mut iterations = 0;
         let mut outcome = Ok(());
         loop {
-            if rho <= tolerance * tolerance * from_zero {
+            if rho <= larger(tolerance * tolerance * from_zero, floor) {
                 break;
             }
             let curvature = apply(direction, image);
