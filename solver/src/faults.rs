@@ -65,6 +65,7 @@ mod planted {
         "fictitious-material-heavy",
         "friction-one-way",
         "friction-twice",
+        "gap-force-one-sided",
         "gap-without-sign",
         "gaps-are-overlooked",
         "gradient-sign",

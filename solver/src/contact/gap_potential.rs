@@ -44,7 +44,7 @@ pub(crate) struct Arc([[f64; 2]; 4]);
 
 /// A place on a boundary.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct BoundaryPlace {
     /// m.
     pub position: [f64; 2],
     /// Outward unit normal.
@@ -78,11 +78,11 @@ impl Arc {
     }
 
     /// Its Gauss points.
-    pub(crate) fn places<'a>(&'a self, rule: &'a Rule) -> impl Iterator<Item = Place> + 'a {
+    pub(crate) fn places<'a>(&'a self, rule: &'a Rule) -> impl Iterator<Item = BoundaryPlace> + 'a {
         rule.points.iter().zip(&rule.weights).map(|(&t, weight)| {
             let [tx, ty] = self.tangent(t);
             let length = tx.hypot(ty);
-            Place { position: self.position(t), normal: [ty / length, -tx / length], length: weight * length }
+            BoundaryPlace { position: self.position(t), normal: [ty / length, -tx / length], length: weight * length }
         })
     }
 
@@ -205,14 +205,14 @@ impl GapPotential {
             if dot(place.normal, nearest.normal) >= 0.0 || nearest.depth <= 0.0 {
                 continue;
             }
-            let Nearest { depth, position, .. } = nearest;
+            let Closest { depth, position, .. } = nearest;
             if depth > self.reach {
                 return Err(TooFast { place: place.position, spans: depth / self.reach });
             }
             let out = [0, 1].map(|d| (position[d] - place.position[d]) / depth);
             let pressure = 0.5 * spring * depth * place.length;
             self.energy += 0.5 * pressure * depth;
-            let force = out.map(|out| fault!("gap-force-one-sided", -pressure => -0.9 * pressure) * out);
+            let force = out.map(|out| -pressure * out);
             self.forces.push(GapForce { bodies: [a, b], places: [place.position, position], force });
         }
         Ok(())
@@ -254,7 +254,7 @@ pub(crate) fn rule() -> Rule {
 }
 
 /// The nearest place of a boundary.
-struct Nearest {
+struct Closest {
     /// How deep the position is inside the body, m; negative outside.
     depth: f64,
     position: [f64; 2],
@@ -262,7 +262,7 @@ struct Nearest {
     normal: [f64; 2],
 }
 
-fn nearest(position: [f64; 2], arcs: &[&Arc]) -> Option<Nearest> {
+fn nearest(position: [f64; 2], arcs: &[&Arc]) -> Option<Closest> {
     let mut best: Option<(f64, &Arc, f64, [f64; 2])> = None;
     for &arc in arcs {
         let [low, high] = arc.bounds();
@@ -279,7 +279,7 @@ fn nearest(position: [f64; 2], arcs: &[&Arc]) -> Option<Nearest> {
     let [tx, ty] = arc.tangent(t);
     let normal = unit([ty, -tx].map(|x| x / tx.hypot(ty)))?;
     let inside = dot([0, 1].map(|d| position[d] - place[d]), normal) < 0.0;
-    Some(Nearest { depth: if inside { square.sqrt() } else { -square.sqrt() }, position: place, normal })
+    Some(Closest { depth: if inside { square.sqrt() } else { -square.sqrt() }, position: place, normal })
 }
 
 #[cfg(test)]

@@ -16,6 +16,9 @@ use crate::linear_algebra::terms::Terms;
 /// Rows of control points whose partial sums are formed together.
 pub(crate) const CHUNK_ROWS: usize = 8;
 
+/// Couplings that are worth waking another thread for: some ten microseconds.
+const LEAST_WORK: usize = 50_000;
+
 /// A coupling within the half stencil.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Offset {
@@ -134,6 +137,7 @@ impl Stencil {
         let chunk = CHUNK_ROWS * self.grid.stride;
         let parts: Vec<f64> = out
             .par_chunks_mut(chunk)
+            .with_min_len(LEAST_WORK.div_ceil(chunk * self.offsets.len()))
             .enumerate()
             .map(|(index, out)| dispatch(ApplyRows { matrix: self, x, out, first_row: index * CHUNK_ROWS }))
             .collect();

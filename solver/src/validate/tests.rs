@@ -292,6 +292,8 @@ fn gauss_quadrature_by_spans_is_refused_where_it_does_not_exist() {
     assert_eq!(but(|s| s.analysis.frame = Frame::Total), key);
     assert_eq!(but(|s| s.analysis.transfer = Transfer::Apic), key);
     assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.1 })), key);
+    assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.0 })), [""; 0]);
+    assert_eq!(but(|s| s.bodies[0].rigid = true).first().map(String::as_str), Some(key[0]));
     assert_eq!(
         but(|s| s.boundaries = vec![Boundary { side: Side::Left, fix: [true, false], velocity: [1.0, 0.0] }]),
         key

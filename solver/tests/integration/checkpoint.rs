@@ -139,6 +139,23 @@ fn with_contact_friction_and_rigid_bodies() {
 }
 
 #[test]
+fn with_contact_of_bodies_whose_spans_integrate() {
+    let mut scene = elastic_scene(2, [0.02, 0.02], [40, 40]);
+    let disc = |name: &str, x: f64, speed: f64| Body {
+        name: name.into(),
+        velocity: [speed, 0.0],
+        ..body(Shape::Disk { center: [x, 0.01], radius: 0.004 }, [3, 3])
+    };
+    scene.bodies = vec![disc("left", 0.00595, 60.0), disc("right", 0.01405, -60.0)];
+    scene.contact = Some(Contact { friction: 0.0 });
+    let (frame, kinematics, quadrature) = (Frame::Updated, Kinematics::Finite, Quadrature::Gauss);
+    scene.analysis = Analysis { frame, kinematics, quadrature, end_time: 4e-6, ..scene.analysis };
+    let (_, samples) = crate::common::run(&scene);
+    assert!(samples.last().unwrap().contact.unwrap().loss > 0.0, "the bodies meet");
+    goes_on_bit_by_bit("contact of spans", &scene);
+}
+
+#[test]
 fn a_state_of_another_scene_or_cut_short_is_refused_in_words() {
     let scene = notched_plate(1e6);
     let mut simulation = Simulation::new(&scene).unwrap();

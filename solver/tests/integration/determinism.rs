@@ -65,6 +65,15 @@ fn bodies_in_contact() {
     check(&scene);
 }
 
+#[test]
+fn bodies_in_contact_whose_spans_integrate() {
+    let mut scene = updated_scene_of_two();
+    scene.analysis.quadrature = Quadrature::Gauss;
+    scene.materials.values_mut().for_each(|material| material.fracture = None);
+    scene.contact = Some(Contact { friction: 0.0 });
+    check(&scene);
+}
+
 /// Two brittle discs in collision.
 fn updated_scene_of_two() -> Scene {
     let mut scene = notched_plate(1e6);

@@ -17,6 +17,7 @@ mod fictitious;
 mod finite;
 mod folds;
 mod gauss;
+mod gauss_contact;
 mod ledger;
 mod linear_solvers;
 mod loads;

@@ -1,9 +1,10 @@
 //! Another checkout of this workspace on the same scenes: `bench --baseline PATH`.
 //!
-//! Its `xtask` is built in its own folder. Then both programs run the same scene files in turn, as processes of
-//! their own on all threads, and processor time from start to end counts. An answer holds if kinetic, elastic
-//! and fracture energy at the end are those of a run of this checkout with a phase-field tolerance of 1e-10,
-//! within 1e-3 of the largest of them; for the other checkout, which may have had looser rules, within 1e-2.
+//! Its `xtask` is built in its own folder. Then both programs run the same scene files in turn, as processes
+//! of their own on all threads, and processor time from start to end counts. An answer holds if kinetic,
+//! elastic and fracture energy at the end are those of a run of this checkout with a phase-field tolerance of
+//! 1e-10, within 1e-3 of the largest of them; for the other checkout, which may have had looser rules, within
+//! 1e-2.
 
 use std::ffi::OsString;
 use std::fs;
@@ -133,12 +134,12 @@ fn build(checkout: &Path) -> Result<PathBuf, BenchError> {
         return Err(wrong(format!("its package xtask cannot be built: cargo, {}", output.status)));
     }
     let messages = String::from_utf8_lossy(&output.stdout);
-    let programs = messages.lines().filter_map(|line| {
+    let mut programs = messages.lines().filter_map(|line| {
         let message: Value = serde_json::from_str(line).ok()?;
         let named = message["target"]["name"] == "xtask";
         message["executable"].as_str().filter(|_| named).map(PathBuf::from)
     });
-    programs.last().ok_or_else(|| wrong("cargo built no program named xtask".into()))
+    programs.next_back().ok_or_else(|| wrong("cargo built no program named xtask".into()))
 }
 
 #[cfg(test)]

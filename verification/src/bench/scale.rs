@@ -4,11 +4,11 @@
 //! | block | what a step does |
 //! |---|---|
 //! | `elastic` | the total frame, without fracture |
-//! | `cracking` | the same with fracture: cracks side by side below the upper edge and above the lower one, which are pulled; all of their tips grow |
+//! | `cracking` | the same with fracture: a row of cracks at both edges, which are pulled; all tips grow |
 //! | `moving` | elastic points that move through the mesh, FLIP |
 //!
-//! The cracks are as close to the pulled edges on every mesh, so that they grow after the same number of steps,
-//! and their number grows with the width. One block is in memory at a time.
+//! The cracks are as close to the pulled edges on every mesh, so that they grow after the same number of
+//! steps, and their number grows with the width. One block is in memory at a time.
 
 use fisura::Simulation;
 use fisura::scene::{Crack, Edge, Frame, Scene, Side, Traction};

@@ -246,6 +246,11 @@ pub const FAULTS: &[Fault] = &[
         &["energy/gauss-quadrature"],
     ),
     fault("mean-of-the-fit-kept", "points keep the mean error of the fit", &["energy/gauss-quadrature"]),
+    fault(
+        "gap-force-one-sided",
+        "a body feels nine tenths of the force of the gap potential",
+        &["contact/impact-equal-gauss"],
+    ),
     fault("relaxation-unbooked", "the ledger misses what the relaxation takes", &["energy/gauss-quadrature"]),
 ];
 

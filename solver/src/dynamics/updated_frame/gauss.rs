@@ -19,8 +19,8 @@
 //! integrated well. Without the relaxation by β what the grid does not see of the velocities would grow.
 //!
 //! A control point of a side that is held keeps a displacement of zero. Without one held, s and the mean
-//! of the relaxation are taken out per component, so that momentum is kept to round-off. Momentum about a
-//! point is not: fit and quadrature keep it to their order.
+//! of the relaxation are taken out per component, and of a free body the mean rotation too, so that momentum
+//! and angular momentum are kept to round-off ([`rigid`]).
 //!
 //! Boundaries that meet push each other apart by a potential of the gap ([`contact`],
 //! [`crate::contact::gap_potential`]), which adds to the forces before `M a` is solved.
@@ -47,6 +47,7 @@ pub(crate) mod fit;
 pub(crate) mod kronecker;
 pub(crate) mod map;
 pub(crate) mod penalty;
+pub(crate) mod rigid;
 pub(crate) mod rule;
 pub(crate) mod state;
 pub(crate) mod step;
@@ -59,6 +60,7 @@ use boundary::{MovingBoundary, edges};
 use fit::PointFit;
 use kronecker::Kronecker;
 use map::{InverseMap, displacement_gradient};
+use rigid::{Resultant, RigidPart};
 use rule::GaussPoints;
 use system::{Accuracy, MassSystem};
 
@@ -109,7 +111,7 @@ pub(crate) struct SpanQuadrature {
     held: [Vec<usize>; 2],
     /// Stiffness of the boundary where it meets others, Pa/m, if it may, and the sum of forces there, N/m.
     spring: Option<f64>,
-    pushed: [f64; 2],
+    pushed: Resultant,
     /// Steps since the velocities were last relaxed.
     since_relaxation: usize,
     moduli: ElasticModuli,
@@ -159,7 +161,7 @@ impl SpanQuadrature {
             point_acceleration: Vec::new(),
             held: [0, 1].map(|c| nodes.fixed().iter().filter(|(_, component)| *component == c).map(|f| f.0).collect()),
             spring: None,
-            pushed: [0.0; 2],
+            pushed: Resultant::default(),
             since_relaxation: 0,
             moduli,
             density,
@@ -184,7 +186,7 @@ impl SpanQuadrature {
         let map = InverseMap { patch, grid: patch.control_grid(), displacement, mean };
         self.gauss.enclose(&mut self.boundary, &map)?;
         let balance = SpanBalance { gauss: &self.gauss, displacement, moduli: self.moduli, density: self.density };
-        self.pushed = [0.0; 2];
+        self.pushed = Resultant::default();
         Ok(balance.assemble(&mut self.inertia.matrix, &mut self.force))
     }
 
@@ -201,11 +203,8 @@ impl SpanQuadrature {
         solved.map_err(Failure::Spans)?;
         let fit = PointFit { patch, cells, points, density: self.density };
         fit.at_points(&self.acceleration[0], &mut self.point_acceleration);
-        let mean = self.mean(points, |at| self.point_acceleration[at]);
-        let pushed = self.pushed_mean(points);
-        let mean = [0, 1].map(|c| mean[c] - pushed[c]);
-        let excess = fault!("mean-of-the-fit-kept", mean => mean.map(|_| 0.0));
-        self.point_acceleration.iter_mut().for_each(|a| (0..2).for_each(|c| a[c] -= excess[c]));
+        let rigid = RigidPart { points, density: self.density, free: self.held.each_ref().map(Vec::is_empty) };
+        rigid.remove_excess(&mut self.point_acceleration, self.pushed);
         Ok(())
     }
 
@@ -239,23 +238,21 @@ impl SpanQuadrature {
         self.fit.solve(&self.kronecker, &self.load, &mut self.velocity, held, accuracy)?;
         let mut fitted = Vec::new();
         fit.at_points(&self.velocity, &mut fitted);
-        fitted.iter_mut().for_each(|v| (0..2).for_each(|c| v[c] += mean[c]));
-        let change = self.mean(points, |at| [0, 1].map(|c| fitted[at][c] - points[at].velocity[c]));
+        let mut changes = fitted;
+        for (change, point) in changes.iter_mut().zip(&*points) {
+            (0..2).for_each(|c| change[c] += mean[c] - point.velocity[c]);
+        }
+        let rigid = RigidPart { points, density: self.density, free: self.held.each_ref().map(Vec::is_empty) };
+        rigid.remove_excess(&mut changes, Resultant::default());
         let mut loss = 0.0;
-        for (point, fitted) in points.iter_mut().zip(&fitted) {
+        for (point, change) in points.iter_mut().zip(&changes) {
             for c in 0..2 {
                 let before = point.velocity[c];
-                point.velocity[c] += beta * (fitted[c] - change[c] - before);
+                point.velocity[c] += beta * change[c];
                 loss += 0.5 * self.density * point.volume * (before * before - point.velocity[c].powi(2));
             }
         }
         Ok(loss)
-    }
-
-    /// Forces of contact over the mass of the points, m/s², of a component that is held nowhere.
-    fn pushed_mean(&self, points: &[Point]) -> [f64; 2] {
-        let mass = self.density * points.iter().map(|point| point.volume).sum::<f64>();
-        [0, 1].map(|c| if self.held[c].is_empty() { self.pushed[c] / mass } else { 0.0 })
     }
 
     /// When the solve for the derivative of that order of the displacement ends: what is left is round-off of

@@ -126,8 +126,8 @@ impl SpanBalance<'_> {
         self.forces::<K, F, Q, R>(cell, &stresses, [ox, oy], window.first_row, grid);
     }
 
-    /// Forces and masses of a span with K shape functions and Q Gauss points per direction, F and R in all; its
-    /// elastic energy, J/m.
+    /// Forces and masses of a span with K shape functions and Q Gauss points per direction, F and R in all;
+    /// its elastic energy, J/m.
     #[inline(always)]
     fn cell<const K: usize, const F: usize, const Q: usize, const R: usize>(
         &self,

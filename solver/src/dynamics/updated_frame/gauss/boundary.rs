@@ -154,7 +154,7 @@ impl MovingBoundary {
                 (*node, *carried) = map.forward(position, tangent, *node)?;
             }
             for i in 0..count {
-                let place = |i: usize| Place { s: i as f64 / count as f64, x: nodes[i], tangent: tangents[i] };
+                let place = |i: usize| EdgePlace { s: i as f64 / count as f64, x: nodes[i], tangent: tangents[i] };
                 let step = Step { edge, map, ends: [place(i), place(i + 1)] };
                 breaks.clear();
                 step.divide(&mut breaks)?;
@@ -169,7 +169,7 @@ impl MovingBoundary {
 
 /// A place on an edge: s, position (m), and its derivative by s (m).
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct EdgePlace {
     s: f64,
     x: [f64; 2],
     tangent: [f64; 2],
@@ -179,15 +179,15 @@ struct Place {
 struct Step<'a> {
     edge: &'a BoundaryEdge,
     map: &'a InverseMap<'a>,
-    ends: [Place; 2],
+    ends: [EdgePlace; 2],
 }
 
 impl Step<'_> {
     /// The place at s, looked for from a position, m.
-    fn at(&self, s: f64, near: [f64; 2]) -> Result<Place, Folded> {
+    fn at(&self, s: f64, near: [f64; 2]) -> Result<EdgePlace, Folded> {
         let (position, tangent) = self.edge.at(s);
         let (x, tangent) = self.map.forward(position, tangent, near)?;
-        Ok(Place { s, x, tangent })
+        Ok(EdgePlace { s, x, tangent })
     }
 
     /// Its ends and where it crosses knots of either direction, in order: s and position. Where it turns back
@@ -213,7 +213,7 @@ impl Step<'_> {
     }
 
     /// Where a part that turns back nowhere crosses knots.
-    fn crossings(&self, ends: [Place; 2], breaks: &mut Vec<(f64, [f64; 2])>) -> Result<(), Folded> {
+    fn crossings(&self, ends: [EdgePlace; 2], breaks: &mut Vec<(f64, [f64; 2])>) -> Result<(), Folded> {
         for d in 0..2 {
             let spans = self.map.patch.spaces[d].spans();
             let [a, b] = ends.map(|end| end.x[d]);
@@ -227,10 +227,10 @@ impl Step<'_> {
         Ok(())
     }
 
-    /// The place between two at which a function that has opposite signs there is zero, by false position with
-    /// the weight of an end that stays halved (Dowell & Jarratt 1971, *A modified regula falsi method for
-    /// computing the root of an equation*, BIT 11).
-    fn root(&self, [mut a, mut b]: [Place; 2], f: impl Fn(&Place) -> f64) -> Result<Place, Folded> {
+    /// The place between two at which a function that has opposite signs there is zero, by false position
+    /// with the weight of an end that stays halved (Dowell & Jarratt 1971, *A modified regula falsi method
+    /// for computing the root of an equation*, BIT 11).
+    fn root(&self, [mut a, mut b]: [EdgePlace; 2], f: impl Fn(&EdgePlace) -> f64) -> Result<EdgePlace, Folded> {
         let (mut at_a, mut at_b) = (f(&a), f(&b));
         let close = CROSSING_CLOSE * (b.s - a.s);
         let mut side = 0;

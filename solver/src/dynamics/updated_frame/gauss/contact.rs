@@ -1,8 +1,8 @@
 //! Contact of bodies whose spans integrate: their boundaries, and forces on them.
 //!
-//! A force at x acts on control point i with the share `N_i(x)`, as the work of it on the motion of x asks. The
-//! critical step counts a spring of twice κ all along the boundary: for two equal bodies that is what both
-//! feel of each other, and bodies that are held feel less.
+//! A force at x acts on control point i with the share `N_i(x)`, as the work of it on the motion of x asks.
+//! The critical step counts a spring of twice κ all along the boundary: for two equal bodies that is what
+//! both feel of each other.
 
 use super::SpanQuadrature;
 use crate::contact::gap_potential::{GapForce, Outline, rule, spring};
@@ -55,9 +55,10 @@ impl SpanQuadrature {
 
     /// Takes the force of a pair on this body, which is its `side`, until the accelerations are found.
     pub(crate) fn push(&mut self, patch: &Patch, pair: &GapForce, side: usize) {
-        let force = if side == 0 { pair.force.map(|f| -f) } else { pair.force };
+        let force =
+            if side == 0 { pair.force.map(|f| fault!("gap-force-one-sided", -f => -0.9 * f)) } else { pair.force };
         let Self { force: field, pushed, .. } = self;
-        (0..2).for_each(|c| pushed[c] += force[c]);
+        pushed.add(pair.places[side], force);
         Shares::new(patch, pair.places[side]).for_each(|at, share| {
             (0..2).for_each(|c| field[c][at] += share * force[c]);
         });

@@ -92,8 +92,8 @@ impl MassSystem {
     }
 
     /// Solves `A x = b` for both components; those of `held` keep their values. The error in the norm of the
-    /// preconditioner falls below `tolerance` times that of a start from zero, or below that of `round_off` all
-    /// over the body: a body that moves as it is has nothing else.
+    /// preconditioner falls below `tolerance` times that of a start from zero, or below that of `round_off`
+    /// all over the body: one that moves as it is has nothing else.
     ///
     /// # Errors
     /// If the iterations do not converge.

@@ -1,0 +1,70 @@
+//! Contact of bodies whose spans integrate: what is conserved, and what is not there before bodies meet.
+
+use crate::common::{unit_solid, updated_scene};
+use fisura::Simulation;
+use fisura::linear_algebra::extremes::larger;
+use fisura::scene::*;
+
+const RADIUS: f64 = 0.2;
+
+/// Two discs that meet off centre, `gap` metres apart at the start.
+fn discs(degree: usize, cells: usize, gap: f64) -> Scene {
+    let mesh = Mesh::uniform([degree; 2], [0.0; 2], [1.4, 1.2], [7 * cells / 5, 6 * cells / 5]);
+    let offset: f64 = 0.15;
+    let apart = (2.0 * RADIUS + gap).powi(2) - offset * offset;
+    let center = [0.7 - 0.5 * apart.sqrt(), 0.6 - 0.5 * offset];
+    let mut scene = updated_scene(unit_solid(), mesh, Shape::Disk { center, radius: RADIUS });
+    scene.bodies[0].particles_per_cell = [degree + 1; 2];
+    scene.bodies[0].layout = Layout::Gauss;
+    scene.bodies[0].velocity = [0.05, 0.0];
+    let center = [1.4 - center[0], 1.2 - center[1]];
+    scene.bodies.push(Body {
+        name: "right".into(),
+        shape: Shape::Disk { center, radius: RADIUS },
+        velocity: [-0.05, 0.0],
+        ..scene.bodies[0].clone()
+    });
+    scene.contact = Some(Contact { friction: 0.0 });
+    scene.analysis.kinematics = Kinematics::Finite;
+    scene.analysis.quadrature = Quadrature::Gauss;
+    scene.analysis.safety = 0.5;
+    scene
+}
+
+#[test]
+fn momenta_are_kept_and_the_potential_gives_back_what_it_took() {
+    for cells in [20, 40] {
+        let mut scene = discs(2, cells, 0.01);
+        scene.analysis.end_time = 2.0;
+        let (_, samples) = crate::common::run(&scene);
+        let (first, last) = (samples.first().unwrap(), samples.last().unwrap());
+        let held = samples.iter().map(|s| s.contact.unwrap().loss).fold(0.0, larger);
+        assert!(held > 0.02 * first.kinetic && last.contact.unwrap().loss == 0.0, "{held:e}");
+        let momentum = samples.iter().flat_map(|s| s.momentum).map(f64::abs).fold(0.0, larger);
+        assert!(momentum <= 1e-12 * first.kinetic, "{momentum:e}");
+        let energy = last.kinetic + last.elastic;
+        assert!(energy <= 1.001 * first.kinetic && energy >= 0.9 * first.kinetic, "{energy} of {}", first.kinetic);
+        let angular = first.angular_momentum;
+        let drift = samples.iter().map(|s| (s.angular_momentum - angular).abs()).fold(0.0, larger) / angular.abs();
+        assert!(drift <= 1e-12, "angular momentum drifts by {drift:e}");
+    }
+}
+
+#[test]
+fn there_is_no_force_before_boundaries_meet() {
+    for degree in [2, 3] {
+        let scene = discs(degree, 20, 0.004); // a twelfth of a span
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert_eq!(simulation.extent().models, ["momentum", "contact"]);
+        let step = simulation.plan().step;
+        // they approach by 0.1 m/s, along a line that is nearly that of the centres
+        let touching = (0.004 / 0.1 / step) as usize;
+        for _ in 0..touching {
+            simulation.step().unwrap();
+            let frame = simulation.updated_frame().unwrap();
+            assert!(frame.contact_forces(step).is_empty() && frame.elastic_energy() <= 1e-24);
+        }
+        (0..40).for_each(|_| simulation.step().unwrap());
+        assert!(!simulation.updated_frame().unwrap().contact_forces(step).is_empty());
+    }
+}
