@@ -7,9 +7,9 @@
 //! S_f = max(S, 1/2)/2:
 //! ```
 //!
-//! halfway between the outermost points of two fragments while the crack is closed, so that both have the same
-//! line and the gap is zero, and at their own outermost points once it is open. Lines between the lattice's
-//! points are found cell by cell (marching squares), the fragment to their left.
+//! halfway between the outermost points of two fragments while the crack is closed, so that both have the
+//! same line and the gap is zero, and at their own outermost points once it is open. Lines between the
+//! lattice's points are found cell by cell (marching squares), the fragment to their left.
 
 use std::collections::BTreeMap;
 

@@ -38,6 +38,7 @@ pub(crate) mod losses;
 pub(crate) mod observe;
 pub(crate) mod paint;
 pub(crate) mod part;
+mod parting;
 pub(crate) mod pointwise_fracture;
 pub(crate) mod smoothing;
 mod state;

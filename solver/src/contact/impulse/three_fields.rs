@@ -200,11 +200,7 @@ fn normals_at_a_corner_need_not_be_parallel() {
     let corner = Meeting {
         masses: [1.0; 3],
         velocities: [[0.1, 0.1], [0.0; 2], [0.0; 2]],
-        touching: vec![
-            ([0, 1], ALONG_X, -0.01),
-            ([0, 2], [0.0, 1.0], -0.01),
-            ([1, 2], [-half, half], -0.01),
-        ],
+        touching: vec![([0, 1], ALONG_X, -0.01), ([0, 2], [0.0, 1.0], -0.01), ([1, 2], [-half, half], -0.01)],
         friction: 0.0,
     };
     let outcome = corner.outcome();

@@ -44,8 +44,9 @@ impl UpdatedFrame {
     }
 }
 
-/// A body as the fields of its fragments and their samples have it, those of bodies a metre thick; its spin is
-/// that of the points about the centre of mass, `Σ m r × v/Σ m r²`, with their velocities half a step back.
+/// A body as the fields of its fragments and their samples have it, those of bodies a metre thick; its spin
+/// is that of the points about the centre of mass, `Σ m r × v/Σ m r²`, with their velocities half a step
+/// back.
 fn sample_body(name: &str, fields: &[&DiscreteField], samples: &[&Sample]) -> BodySample {
     let mass: f64 = fields.iter().map(|field| field.mass()).sum();
     let points = || fields.iter().flat_map(|field| &field.points);

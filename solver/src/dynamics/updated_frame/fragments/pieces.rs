@@ -99,7 +99,8 @@ impl<'a> Pieces<'a> {
     /// The nearest point within a step of a place (m) among those that count, the first of several.
     fn nearest(&self, place: [f64; 2], counts: impl Fn(usize) -> bool) -> Option<usize> {
         let near = self.neighbours.near(place).filter(|at| counts(*at));
-        let squares = near.map(|at| (self.square(place, at), at)).filter(|(square, _)| *square <= self.step * self.step);
+        let squares =
+            near.map(|at| (self.square(place, at), at)).filter(|(square, _)| *square <= self.step * self.step);
         squares.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, at)| at)
     }
 
@@ -160,23 +161,23 @@ mod tests {
 
     #[test]
     fn a_crack_through_the_body_parts_it_and_one_that_ends_does_not() {
-        assert_eq!(found(&["###...###", "###...###", "###...###"], 0.05).unwrap(), vec!["000011111"; 3]);
-        assert_eq!(found(&["#########", "###...###", "###...###"], 0.05), None);
+        assert_eq!(found(&["###....###", "###....###", "###....###"], 0.05).unwrap(), vec!["0000011111"; 3]);
+        assert_eq!(found(&["##########", "###....###", "###....###"], 0.05), None);
     }
 
     #[test]
     fn splinters_and_broken_points_go_with_what_is_nearest() {
-        let rows = ["######...###", "######...###", "......#..###", "######...###"];
-        let parts = found(&rows, 0.05).unwrap();
-        assert_eq!(parts[0], "000000011111");
-        // One row of six points is no fragment of its own.
-        assert_eq!(found(&rows, 0.11).unwrap()[3], "000000011111");
+        let rows = ["######....###", "######..#.###", "######....###"];
+        assert_eq!(found(&rows, 0.05).unwrap(), vec!["0000000011111"; 3]);
+        let rows = ["######....###", "..........###", "######....###"];
+        assert_eq!(found(&rows, 0.05).unwrap()[2], "0000000011111");
+        assert_eq!(found(&rows, 0.07), None, "rows of six points are no fragments");
         assert_eq!(found(&["###   ###"], 0.5), None);
     }
 
     #[test]
     fn what_no_chain_of_points_reaches_goes_with_the_first() {
-        assert_eq!(found(&["####     ####", "####   . ####"], 0.05).unwrap()[1], "0000   1 1111");
-        assert_eq!(found(&["####         ####", "####    .    ####"], 0.05).unwrap()[1], "0000    0    1111");
+        assert_eq!(found(&["####     ####", "####    .####"], 0.03).unwrap()[1], "0000    11111");
+        assert_eq!(found(&["####         ####", "####    .    ####"], 0.03).unwrap()[1], "0000    0    1111");
     }
 }
