@@ -18,6 +18,9 @@ use super::Surface;
 /// Least distance of a vertex from the ends of its side of a cell, over that side: no segment is a point.
 const LEAST: f64 = 0.01;
 
+/// How often lines are smoothed: over about a span, below which contact resolves nothing.
+const SMOOTHINGS: usize = 16;
+
 /// A point of the body.
 pub(crate) struct Place {
     /// Where it is, m.
@@ -138,21 +141,39 @@ impl Surface {
         };
         let all = 0..self.segments.len() as u32;
         part.segments = all.filter(|s| belongs(under(*s))).map(|s| self.segments[s as usize]).collect();
-        let first = part.vertices.len() as u32;
-        part.vertices.extend(&faces.vertices);
-        part.displacements.resize(part.vertices.len(), [0.0; 2]);
-        for ends in &faces.segments {
+        let within = |ends: &[u32; 2]| {
             let [a, b] = ends.map(|vertex| faces.vertices[vertex as usize]);
-            let middle = [0, 1].map(|d| 0.5 * (a[d] + b[d]));
-            let reach = faces.spacing;
+            let (middle, reach) = ([0, 1].map(|d| 0.5 * (a[d] + b[d])), faces.spacing);
             let near = self.segments_in([middle.map(|x| x - reach), middle.map(|x| x + reach)]);
-            if self.nearest(middle, &near, reach).is_none() {
-                part.segments.push(ends.map(|vertex| first + vertex));
-            }
-        }
+            self.nearest(middle, &near, reach).is_none()
+        };
+        let segments: Vec<[u32; 2]> = faces.segments.iter().filter(|ends| within(ends)).copied().collect();
+        let first = part.vertices.len() as u32;
+        part.vertices.extend(smooth(&faces.vertices, &segments));
+        part.displacements.resize(part.vertices.len(), [0.0; 2]);
+        part.segments.extend(segments.iter().map(|ends| ends.map(|vertex| first + vertex)));
         part.join();
         part
     }
+}
+
+/// Vertices of lines moved towards the middle of their neighbours, time and again; ends stay. Points of a
+/// lattice end in steps where the crack runs across it, on which fragments would catch.
+fn smooth(vertices: &[[f64; 2]], segments: &[[u32; 2]]) -> Vec<[f64; 2]> {
+    let mut neighbours = vec![[None; 2]; vertices.len()];
+    for &[from, to] in segments {
+        (neighbours[from as usize][1], neighbours[to as usize][0]) = (Some(to as usize), Some(from as usize));
+    }
+    let mut smooth = vertices.to_vec();
+    for _ in 0..SMOOTHINGS {
+        let rough = smooth.clone();
+        for (vertex, neighbours) in smooth.iter_mut().zip(&neighbours) {
+            if let [Some(before), Some(after)] = *neighbours {
+                *vertex = [0, 1].map(|d| 0.5 * vertex[d] + 0.25 * (rough[before][d] + rough[after][d]));
+            }
+        }
+    }
+    smooth
 }
 
 /// Quadratic spline of integral one, between ±1.5.
