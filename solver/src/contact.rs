@@ -24,6 +24,7 @@
 
 pub mod boundary_fit;
 mod constraint;
+pub(crate) mod crack_faces;
 mod displacements;
 mod follow;
 pub(crate) mod gap_potential;
@@ -212,6 +213,11 @@ impl ContactSolver {
     /// Where bodies are near each other.
     pub fn constraints(&self) -> &[ContactConstraint] {
         &self.constraints
+    }
+
+    /// Forgets the impulses to start from: the bodies are numbered anew.
+    pub(crate) fn forget_impulses(&mut self) {
+        self.last.clear();
     }
 
     /// What contact took and gave so far.

@@ -105,6 +105,7 @@ mod planted {
         "one-iteration-is-enough",
         "open-gap-counts-as-closed",
         "order-with-the-wrong-sign",
+        "partition-unbooked",
         "phase-gradient-halved",
         "phase-load-without-volumes",
         "phase-motion-unbooked",

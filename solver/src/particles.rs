@@ -5,5 +5,6 @@
 
 pub(crate) mod follower;
 pub mod lattice;
+pub(crate) mod neighbours;
 pub mod points;
 pub mod spans;

@@ -159,6 +159,11 @@ impl PhaseField {
         self.counts
     }
 
+    /// Begins to count anew, as if nothing had been solved yet.
+    pub(crate) fn forget_counts(&mut self) {
+        self.counts = PhaseFieldCounts::default();
+    }
+
     fn bytes_read(&self) -> u64 {
         self.matrix.bytes_read() + self.method.bytes_read()
     }

@@ -374,6 +374,8 @@ pub struct Body {
 pub struct Contact {
     /// Coulomb coefficient.
     pub friction: f64,
+    /// Whether a body that is cracked through becomes fragments with fields of their own.
+    pub fragments: bool,
 }
 
 /// Condition on a side of the mesh.

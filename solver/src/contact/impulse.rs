@@ -363,3 +363,5 @@ impl ContactLedger {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod three_fields;

@@ -58,6 +58,8 @@ pub struct Sample {
     pub angular_momentum: f64,
     /// Time step, s.
     pub time_step: f64,
+    /// How many pieces the bodies are in, if they may fall into fragments.
+    pub fragments: Option<usize>,
     /// Every body for itself, if the scene records that.
     pub bodies: Option<BodySamples>,
 }
@@ -131,6 +133,7 @@ impl Sample {
         row.push(("angular_momentum", self.angular_momentum));
         row.push(("time_step_s", self.time_step));
         row.extend(fracture.map(|f| ("phase_field_iterations", f.iterations as f64)));
+        row.extend(self.fragments.map(|count| ("fragments", count as f64)));
         row
     }
 

@@ -30,6 +30,7 @@ mod bodies;
 mod booking;
 pub mod fictitious;
 pub mod field;
+mod fragments;
 pub(crate) mod gauss;
 pub mod grid;
 mod inspect;
@@ -37,6 +38,7 @@ pub(crate) mod losses;
 pub(crate) mod observe;
 pub(crate) mod paint;
 pub(crate) mod part;
+mod parting;
 pub(crate) mod pointwise_fracture;
 pub(crate) mod smoothing;
 mod state;
@@ -61,6 +63,7 @@ use crate::linear_algebra::extremes::smaller;
 use crate::scene::{Quadrature, Scene};
 use crate::splines::patch::Patch;
 use field::DiscreteField;
+use fragments::Fragments;
 
 /// The bodies of a scene in the updated frame.
 #[derive(Debug, Clone)]
@@ -70,6 +73,8 @@ pub struct UpdatedFrame {
     contact: Option<ContactSolver>,
     /// Contact of bodies whose spans integrate.
     gap_potential: Option<GapPotential>,
+    /// Which fields are fragments of a body, if bodies may fall into some.
+    fragments: Option<Fragments>,
     thickness: f64,
     /// Names in columns of the bodies that are recorded one by one, rigid ones last.
     recorded: Option<Vec<String>>,
@@ -85,13 +90,18 @@ impl UpdatedFrame {
         let deformable = scene.bodies.iter().filter(|body| !body.rigid);
         let fields = deformable.map(|body| DiscreteField::new(scene, body, &patch)).collect::<Result<Vec<_>, _>>()?;
         let by_spans = scene.analysis.quadrature == Quadrature::Gauss;
-        let mut contact = if by_spans { None } else { ContactSolver::new(scene, &patch) };
+        let contact = if by_spans { None } else { ContactSolver::new(scene, &patch) };
         let gap_potential = (by_spans && scene.contact.is_some()).then(|| GapPotential::new(patch.shortest_span()));
-        if let Some(contact) = &mut contact {
-            contact.find(&views(&fields))?;
-        }
         let recorded = scene.output.bodies.then(|| body_sample::names(scene));
-        Ok(Self { patch, fields, contact, gap_potential, thickness: scene.analysis.thickness, recorded })
+        let parts = scene.contact.as_ref().is_some_and(|contact| contact.fragments);
+        let fragments = parts.then(|| Fragments::new(fields.len()));
+        let thickness = scene.analysis.thickness;
+        let mut frame = Self { patch, fields, contact, gap_potential, fragments, thickness, recorded };
+        frame.part_at_start()?;
+        if let Some(contact) = &mut frame.contact {
+            contact.find(&views(&frame.fields))?;
+        }
+        Ok(frame)
     }
 
     /// Looks as far ahead as steps of `dt` seconds need, before the first one.
@@ -122,6 +132,8 @@ impl UpdatedFrame {
             }
         }
         fields.iter_mut().try_for_each(|field| field.step(dt))?;
+        self.part_now_and_then(dt)?;
+        let Self { fields, contact, .. } = self;
         if let Some(contact) = contact {
             contact.move_rigid(fields[0].time());
             contact.find(&views(fields))?;

@@ -32,11 +32,14 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         let message = "contact with MUSL, whose points follow a filtered motion that contact does not hold back";
         findings.error("analysis.transfer", message, "use transfer = \"flip\" or \"apic\"");
     }
+    if scene.contact.as_ref().is_some_and(|contact| contact.fragments) {
+        fragments(scene, findings);
+    }
     for (i, body) in scene.bodies.iter().enumerate().filter(|(_, body)| body.rigid) {
         rigid(&format!("body.{i}"), body, scene, findings);
     }
-    match scene.contact {
-        Some(_) if scene.bodies.len() == 1 => findings.warn("contact", "there is only one body; remove the table"),
+    match &scene.contact {
+        Some(contact) if scene.bodies.len() == 1 && !contact.fragments => findings.warn("contact", "there is only one body; remove the table"),
         Some(_) if ground.is_sound && overlaps(scene, ground, findings) => speeds(scene, findings),
         None if scene.bodies.len() > 1 => findings.warn(
             "contact",
@@ -47,6 +50,21 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
             ),
         ),
         _ => (),
+    }
+}
+
+/// Bodies that may fall into fragments.
+fn fragments(scene: &Scene, findings: &mut Findings) {
+    let fractures = |body: &Body| scene.materials.get(&body.material).is_some_and(|m| m.fracture.is_some());
+    let mut fracturing = scene.bodies.iter().enumerate().filter(|(_, body)| !body.rigid && fractures(body)).peekable();
+    if fracturing.peek().is_none() {
+        let remedy = "give a material a fracture table, or remove the key";
+        findings.error("contact.fragments", "no body fractures, so none falls into fragments", remedy);
+    }
+    for (i, body) in fracturing.filter(|(_, body)| !body.tractions.is_empty()) {
+        let message = format!("a traction on body {:?}, which may fall into fragments", body.name);
+        let remedy = "drive a side of the mesh instead, or remove contact.fragments";
+        findings.error(format!("body.{i}.traction"), message, remedy);
     }
 }
 

@@ -291,8 +291,8 @@ fn gauss_quadrature_by_spans_is_refused_where_it_does_not_exist() {
     assert_eq!(but(|s| s.analysis.kinematics = Kinematics::Small), key);
     assert_eq!(but(|s| s.analysis.frame = Frame::Total), key);
     assert_eq!(but(|s| s.analysis.transfer = Transfer::Apic), key);
-    assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.1 })), key);
-    assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.0 })), [""; 0]);
+    assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.1, fragments: false })), key);
+    assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.0, fragments: false })), [""; 0]);
     assert_eq!(but(|s| s.bodies[0].rigid = true).first().map(String::as_str), Some(key[0]));
     assert_eq!(
         but(|s| s.boundaries = vec![Boundary { side: Side::Left, fix: [true, false], velocity: [1.0, 0.0] }]),
@@ -327,7 +327,7 @@ fn several_bodies_need_the_updated_frame_and_room() {
     let two = |gap: f64| {
         move |s: &mut Scene| {
             s.analysis.frame = Frame::Updated;
-            s.contact = Some(Contact { friction: 0.3 });
+            s.contact = Some(Contact { friction: 0.3, fragments: false });
             let block = |name: &str, left: f64, right: f64| Body {
                 name: name.into(),
                 shape: Shape::Rectangle { min: [left, 0.0], max: [right, 0.01] },
@@ -347,7 +347,12 @@ fn several_bodies_need_the_updated_frame_and_room() {
         })
     };
     assert_eq!(changed(|s| s.analysis.frame = Frame::Total), ["analysis.frame"]);
-    assert_eq!(changed(|s| s.contact = Some(Contact { friction: -0.1 })), ["contact.friction"]);
+    assert_eq!(changed(|s| s.contact = Some(Contact { friction: -0.1, fragments: false })), ["contact.friction"]);
+    let whole = changed(|s| {
+        s.contact = Some(Contact { friction: 0.1, fragments: true });
+        s.materials.values_mut().for_each(|material| material.fracture = None);
+    });
+    assert_eq!(whole, ["contact.fragments"]);
     assert_eq!(changed(|s| s.analysis.transfer = Transfer::Musl), ["analysis.transfer"]);
     assert_eq!(changed(|s| s.bodies[1].name = "left".into()), ["body.1.name"]);
     assert!(changed(|s| s.bodies[1].rigid = true).is_empty());

@@ -129,13 +129,30 @@ fn with_contact_friction_and_rigid_bodies() {
         ..body(rectangle([0.001, 0.001], [0.019, 0.0049]), [2, 2])
     };
     scene.bodies = vec![disc("left", 0.0059, 60.0), disc("right", 0.0141, -60.0), floor];
-    scene.contact = Some(Contact { friction: 0.4 });
+    scene.contact = Some(Contact { friction: 0.4, fragments: false });
     scene.analysis = Analysis { frame: Frame::Updated, end_time: 8e-6, ..scene.analysis };
     let (simulation, samples) = crate::common::run(&scene);
     let end = samples.last().unwrap().contact.unwrap();
     assert!(end.loss > 0.0 && end.friction > 0.0, "the bodies meet and rub: {end:?}");
     assert_eq!(simulation.extent().models, ["momentum", "phase field", "contact"]);
     goes_on_bit_by_bit("contact", &scene);
+}
+
+#[test]
+fn with_fragments() {
+    let mut scene = elastic_scene(2, [0.016, 0.01], [64, 40]);
+    scene.materials.insert("glass".into(), Material { fracture: Some(brittle()), ..glass() });
+    let crack = Crack { from: [0.008, 0.004], to: [0.008, 0.006], half_width: None };
+    scene.bodies = vec![Body {
+        cracks: vec![crack],
+        angular_velocity: 2e4,
+        ..body(rectangle([0.004, 0.004], [0.012, 0.006]), [2, 2])
+    }];
+    scene.contact = Some(Contact { friction: 0.2, fragments: true });
+    scene.analysis = Analysis { frame: Frame::Updated, end_time: 3e-6, safety: 0.5, ..scene.analysis };
+    let (simulation, _) = crate::common::run(&scene);
+    assert!(simulation.updated_frame().unwrap().fields().len() >= 2);
+    goes_on_bit_by_bit("fragments", &scene);
 }
 
 #[test]
@@ -147,7 +164,7 @@ fn with_contact_of_bodies_whose_spans_integrate() {
         ..body(Shape::Disk { center: [x, 0.01], radius: 0.004 }, [3, 3])
     };
     scene.bodies = vec![disc("left", 0.00595, 60.0), disc("right", 0.01405, -60.0)];
-    scene.contact = Some(Contact { friction: 0.0 });
+    scene.contact = Some(Contact { friction: 0.0, fragments: false });
     let (frame, kinematics, quadrature) = (Frame::Updated, Kinematics::Finite, Quadrature::Gauss);
     scene.analysis = Analysis { frame, kinematics, quadrature, end_time: 4e-6, ..scene.analysis };
     let (_, samples) = crate::common::run(&scene);

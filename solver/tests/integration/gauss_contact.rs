@@ -24,7 +24,7 @@ fn discs(degree: usize, cells: usize, gap: f64) -> Scene {
         velocity: [-0.05, 0.0],
         ..scene.bodies[0].clone()
     });
-    scene.contact = Some(Contact { friction: 0.0 });
+    scene.contact = Some(Contact { friction: 0.0, fragments: false });
     scene.analysis.kinematics = Kinematics::Finite;
     scene.analysis.quadrature = Quadrature::Gauss;
     scene.analysis.safety = 0.5;

@@ -16,6 +16,7 @@ mod determinism;
 mod fictitious;
 mod finite;
 mod folds;
+mod fragments;
 mod gauss;
 mod gauss_contact;
 mod ledger;

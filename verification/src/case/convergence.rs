@@ -12,7 +12,8 @@
 //!
 //! `frame = "updated"` lets the points of a finite motion cross the spans of a fixed mesh;
 //! `transfers = ["flip", "apic"]` then gives a curve for each, and so does `offsets = [0.0, 0.5]`, by
-//! which the mesh is shifted against the body. `quadrature = "gauss"` integrates by spans.
+//! which the mesh is shifted against the body, and `quadratures = ["points", "gauss"]`: the latter integrates
+//! by spans.
 
 use fisura::scene::{Frame, Layout, Mass, Plane, Quadrature, Transfer};
 
@@ -82,8 +83,8 @@ pub struct ConvergenceSetup {
     pub frame: Frame,
     /// Transfers of the updated frame, a curve each.
     pub transfers: Vec<Transfer>,
-    /// Quadrature of the updated frame.
-    pub quadrature: Quadrature,
+    /// Quadratures of the updated frame, a curve each.
+    pub quadratures: Vec<Quadrature>,
     /// Offsets of the mesh against a body that cuts it, in spans, a curve each; 0.37 of it in y.
     pub offsets: Vec<f64>,
     /// Meshes.
@@ -110,9 +111,9 @@ pub struct ConvergenceSetup {
 }
 
 impl ConvergenceSetup {
-    /// Whether the mass matrix is lumped: where spans integrate it never is.
-    pub fn lumps_mass(&self) -> bool {
-        self.mass == Mass::Lumped && self.quadrature == Quadrature::Points
+    /// Whether the mass matrix is lumped with a quadrature: where spans integrate it never is.
+    pub fn lumps_mass(&self, quadrature: Quadrature) -> bool {
+        self.mass == Mass::Lumped && quadrature == Quadrature::Points
     }
 
     /// Points per span and direction for the n-th degree.
@@ -135,9 +136,8 @@ pub(super) struct ConvergenceTable {
     frame: Word<Frame>,
     /// Transfers of the updated frame, a curve each: `transfers = ["flip", "apic"]`.
     transfers: Option<Filled<TransferName>>,
-    /// Quadrature of the updated frame.
-    #[serde(default = "by_points")]
-    quadrature: Word<Quadrature>,
+    /// Quadratures of the updated frame, a curve each: `quadratures = ["points", "gauss"]`.
+    quadratures: Option<Filled<Word<Quadrature>>>,
     /// Offsets of the mesh against the body, in spans, a curve each: `offsets = [0.0, 0.5]`.
     offsets: Option<Filled<Number>>,
     /// The family of meshes.
@@ -185,10 +185,6 @@ fn total_frame() -> Word<Frame> {
     Word(Frame::Total)
 }
 
-fn by_points() -> Word<Quadrature> {
-    Word(Quadrature::Points)
-}
-
 fn gauss_layout() -> Word<Layout> {
     Word(Layout::Gauss)
 }
@@ -212,12 +208,13 @@ pub(super) fn setup(table: ConvergenceTable, item: &Item<'_>) -> Option<Converge
         return item.at("transfers")?.fail("the total frame has no transfers", remedy);
     }
     let transfers = table.transfers.map(|all| all.0.iter().map(|transfer| transfer.0).collect());
+    let quadratures = table.quadratures.map(|all| all.0.iter().map(|quadrature| quadrature.0).collect());
     Some(ConvergenceSetup {
         problem: table.problem,
         plane: table.plane.0,
         frame: table.frame.0,
         transfers: transfers.unwrap_or(vec![Transfer::Flip]),
-        quadrature: table.quadrature.0,
+        quadratures: quadratures.unwrap_or(vec![Quadrature::Points]),
         offsets: table.offsets.map_or(vec![0.0], |all| all.0.iter().map(|offset| offset.0).collect()),
         patch: table.patch,
         degrees,

@@ -44,8 +44,10 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     let materials = fields.or("material", BTreeMap::new(), materials);
     let bodies = fields.or("body", Vec::new(), bodies);
     let contact = fields.maybe("contact", |item| {
-        let friction = item.fields(&["friction"])?.need("friction", "friction = 0.65", number);
-        Some(Contact { friction: friction? })
+        let fields = item.fields(&["friction", "fragments"])?;
+        let friction = fields.need("friction", "friction = 0.65", number);
+        let fragments = fields.or("fragments", false, Item::flag);
+        Some(Contact { friction: friction?, fragments: fragments? })
     });
     let boundaries = fields.or("boundary", Vec::new(), boundaries);
     let output = fields.or("output", Output { samples: 320, frames: Vec::new(), bodies: false }, output);

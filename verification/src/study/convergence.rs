@@ -44,10 +44,10 @@ pub(super) fn offers(case: &Case, _scenes: &[CaseScene]) -> super::Offered {
     let mut offers = super::Offers::default();
     let refined = refined(setup);
     for (n, &degree) in setup.degrees.iter().enumerate() {
-        for (transfer, offset) in variants(setup) {
-            let name = curve_name(setup, n, (transfer, offset));
+        for variant in variants(setup) {
+            let name = curve_name(setup, n, variant);
             for &(norm, below) in &norms {
-                offers.curve(&name, refined, &[norm], &[theory(setup, &problem, degree, below)]);
+                offers.curve(&name, refined, &[norm], &[theory(setup, &problem, variant, degree, below)]);
                 if setup.frame == Frame::Total {
                     offers.bare(&name, [over_best(norm)]);
                 }
@@ -87,10 +87,10 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
     let mut findings = Findings::default();
     let mut curves = Vec::new();
     for (n, &degree) in setup.degrees.iter().enumerate() {
-        for (transfer, offset) in variants(setup) {
-            let orders = norms.iter().map(|&(_, below)| theory(setup, &problem, degree, below)).collect();
-            let name = curve_name(setup, n, (transfer, offset));
-            let (levels, best) = levels(setup, &problem, n, (transfer, offset))?;
+        for variant in variants(setup) {
+            let orders = norms.iter().map(|&(_, below)| theory(setup, &problem, variant, degree, below)).collect();
+            let name = curve_name(setup, n, variant);
+            let (levels, best) = levels(setup, &problem, n, variant)?;
             for (index, best) in best.into_iter().enumerate() {
                 let error = levels.last().map_or(f64::NAN, |level| level.errors[index]);
                 findings.add(&name, &over_best(norms[index].0), error / best, None);
@@ -114,8 +114,22 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
     Ok(findings)
 }
 
-/// What distinguishes a curve: the degree, with points or transfer where these vary.
-fn curve_name(setup: &ConvergenceSetup, n: usize, (transfer, offset): (Transfer, f64)) -> String {
+/// What distinguishes the curves of one degree.
+#[derive(Debug, Clone, Copy)]
+struct Variant {
+    transfer: Transfer,
+    quadrature: Quadrature,
+    /// Offset of the mesh, in spans.
+    offset: f64,
+}
+
+impl Variant {
+    /// In the total frame there is one.
+    const PLAIN: Self = Self { transfer: Transfer::Flip, quadrature: Quadrature::Points, offset: 0.0 };
+}
+
+/// Name of a curve: the degree, with points, transfer, quadrature or offset where these vary.
+fn curve_name(setup: &ConvergenceSetup, n: usize, Variant { transfer, quadrature, offset }: Variant) -> String {
     let degree = setup.degrees[n];
     let mut name = format!("p={degree}");
     if setup.degrees.iter().filter(|d| **d == degree).count() > 1 {
@@ -127,15 +141,27 @@ fn curve_name(setup: &ConvergenceSetup, n: usize, (transfer, offset): (Transfer,
             named => format!(" {named:?}").to_lowercase(),
         };
     }
+    if setup.quadratures.len() > 1 {
+        name += match quadrature {
+            Quadrature::Points => " points",
+            Quadrature::Gauss => " spans",
+        };
+    }
     if setup.offsets.len() > 1 {
         name += &format!(" offset {offset}");
     }
     name
 }
 
-/// Transfers and offsets of the mesh, a curve each.
-fn variants(setup: &ConvergenceSetup) -> impl Iterator<Item = (Transfer, f64)> {
-    setup.transfers.iter().flat_map(|transfer| setup.offsets.iter().map(|offset| (*transfer, *offset)))
+/// The curves of a degree.
+fn variants(setup: &ConvergenceSetup) -> Vec<Variant> {
+    let mut variants = Vec::new();
+    for &transfer in &setup.transfers {
+        for &quadrature in &setup.quadratures {
+            variants.extend(setup.offsets.iter().map(|&offset| Variant { transfer, quadrature, offset }));
+        }
+    }
+    variants
 }
 
 /// The levels of the n-th degree, and the errors of the best approximation on the last.
@@ -143,7 +169,7 @@ fn levels(
     setup: &ConvergenceSetup,
     problem: &Problem,
     n: usize,
-    variant: (Transfer, f64),
+    variant: Variant,
 ) -> Result<(Vec<Level>, Vec<f64>), StudyError> {
     let mesh = |cells: usize| -> Result<Box<dyn OnMesh + '_>, StudyError> {
         Ok(match setup.frame {
@@ -178,13 +204,19 @@ fn levels(
 
 /// Order that theory gives an error `below` orders under that of the displacement. There is none for moving
 /// points: the error of their quadrature does not fall with h.
-fn theory(setup: &ConvergenceSetup, problem: &Problem, degree: usize, below: usize) -> Option<f64> {
+fn theory(
+    setup: &ConvergenceSetup,
+    problem: &Problem,
+    Variant { quadrature, .. }: Variant,
+    degree: usize,
+    below: usize,
+) -> Option<f64> {
     let space = (degree + 1 - below) as f64;
     match (problem.equation, setup.refine) {
-        _ if setup.frame == Frame::Updated && setup.quadrature == Quadrature::Points => None,
+        _ if setup.frame == Frame::Updated && quadrature == Quadrature::Points => None,
         (Equation::Dynamic, Refine::TimeStep) => Some(2.0),
         (Equation::Dynamic, Refine::Mesh(power)) => {
-            let space = if setup.lumps_mass() { space.min(2.0) } else { space };
+            let space = if setup.lumps_mass(quadrature) { space.min(2.0) } else { space };
             Some(power.map_or(space, |power| space.min(2.0 * power)))
         }
         _ => Some(space),
@@ -198,7 +230,9 @@ fn other(message: impl Into<String>) -> StudyError {
 fn words_of_theory(setup: &ConvergenceSetup, problem: &Problem) -> String {
     match (problem.equation, setup.refine) {
         (Equation::Dynamic, Refine::TimeStep) => "velocity Verlet is of order 2",
-        (Equation::Dynamic, _) if setup.lumps_mass() => "a lumped mass is of order 2 for every degree",
+        (Equation::Dynamic, _) if setup.quadratures.iter().all(|quadrature| setup.lumps_mass(*quadrature)) => {
+            "a lumped mass is of order 2 for every degree"
+        }
         _ => "best approximation by splines: p + 1 in L2, p in H1",
     }
     .into()
@@ -227,6 +261,10 @@ fn words_of_patch(family: PatchFamily) -> &'static str {
     }
 }
 
+fn words_of_mass(setup: &ConvergenceSetup, quadrature: Quadrature) -> &'static str {
+    if setup.lumps_mass(quadrature) { "lumped" } else { "consistent" }
+}
+
 fn caption(setup: &ConvergenceSetup, problem: &Problem) -> String {
     let layout = match setup.layout {
         Layout::Gauss => "Gauss",
@@ -241,14 +279,18 @@ fn caption(setup: &ConvergenceSetup, problem: &Problem) -> String {
     };
     let mut words = format!("On {}; {layout} points, {}; {loading}", words_of_patch(setup.patch), points.join(", "));
     if problem.equation == Equation::Dynamic {
-        let mass = if setup.lumps_mass() { "lumped" } else { "consistent" };
-        words.push_str(&format!("; {mass} mass"));
+        let mut masses: Vec<&str> =
+            setup.quadratures.iter().map(|quadrature| words_of_mass(setup, *quadrature)).collect();
+        masses.dedup();
+        words.push_str(&format!("; {} mass", masses.join(" and ")));
     }
     if setup.frame == Frame::Updated {
         words.push_str("; updated frame, the points cross spans");
-        if setup.quadrature == Quadrature::Gauss {
-            words.push_str(", spans integrate");
-        }
+        words.push_str(match setup.quadratures[..] {
+            [Quadrature::Gauss] => ", spans integrate",
+            [Quadrature::Points] => "",
+            _ => ", points integrate with a lumped mass or spans with the consistent one",
+        });
     }
     words + ". Errors relative to the exact field."
 }

@@ -73,6 +73,11 @@ pub const FAULTS: &[Fault] = &[
         &["stability/flying-crack"],
     ),
     fault("friction-twice", "friction up to twice the coefficient", &["contact/incline-polygon"]),
+    fault(
+        "partition-unbooked",
+        "the ledger leaves out what changes where a body falls into fragments",
+        &["contact/parted-bar"],
+    ),
     fault("normal-not-normalised", "normals of contact are as long as a segment", &["contact/onset"]),
     fault("impulse-one-sided", "body a feels nine tenths of the impulse", &["contact/discs-head-on"]),
     fault(

@@ -31,7 +31,7 @@ impl DiscreteField {
     /// not converge, or a point is not on the patch.
     pub fn new(scene: &Scene, body: &Body, whole: &Arc<Patch>) -> Result<Self, Failure> {
         let mut field = Self::at_rest(scene, body, whole)?;
-        let (center, velocity, spin) = (center_of_mass(&field.points), body.velocity, body.angular_velocity);
+        let (center, velocity, spin) = (center_of_mass(field.points.iter()), body.velocity, body.angular_velocity);
         let rigidly = |x: [f64; 2]| [velocity[0] - spin * (x[1] - center[1]), velocity[1] + spin * (x[0] - center[0])];
         field.points.iter_mut().for_each(|point| point.velocity = rigidly(point.position));
         field.take_affine_velocities(rigidly);
@@ -145,7 +145,7 @@ fn thickening(material: &Material, plane: Plane) -> f64 {
 }
 
 /// Centre of mass, m.
-pub(super) fn center_of_mass(points: &[Point]) -> [f64; 2] {
-    let volume: f64 = points.iter().map(|p| p.volume).sum();
-    [0, 1].map(|d| points.iter().map(|p| p.volume * p.position[d]).sum::<f64>() / volume)
+pub(super) fn center_of_mass<'a>(points: impl Iterator<Item = &'a Point> + Clone) -> [f64; 2] {
+    let volume: f64 = points.clone().map(|p| p.volume).sum();
+    [0, 1].map(|d| points.clone().map(|p| p.volume * p.position[d]).sum::<f64>() / volume)
 }

@@ -9,46 +9,63 @@ use crate::dynamics::energy::Sample;
 use crate::linear_algebra::extremes::smaller;
 
 impl UpdatedFrame {
-    /// The bodies of these names; `samples` are theirs, a metre thick, and `dt` is the step in use.
+    /// The bodies of these names; `samples` are those of the fields, a metre thick, and `dt` is the step in
+    /// use.
     pub(super) fn sample_bodies(&self, names: &[String], samples: &[Sample], dt: f64) -> BodySamples {
-        let bodies = self.fields.iter().zip(samples).zip(names);
-        let bodies = bodies.map(|((field, sample), name)| field.sample_body(name, sample)).collect();
+        let deformable = (0..self.fields.len()).map(|field| self.body_of(field) + 1).max().unwrap_or_default();
+        let body = |body: usize| {
+            let of_body = self.fields.iter().zip(samples).enumerate().filter(|(at, _)| self.body_of(*at) == body);
+            let (fields, samples): (Vec<_>, Vec<_>) = of_body.map(|(_, pair)| pair).unzip();
+            sample_body(&names[body], &fields, &samples)
+        };
+        let bodies = (0..deformable).map(body).collect();
         if !self.has_contact() {
             return BodySamples { bodies, ..BodySamples::default() };
         }
+        // Rigid bodies are counted after the fields there, after the other bodies in the names.
+        let named = |at: usize| if at < samples.len() { self.body_of(at) } else { at - samples.len() + deformable };
         let forces = self.contact_forces(dt);
         let force = |pair: [usize; 2]| {
-            let acting = forces.iter().filter(|force| force.bodies == pair);
-            let sum = acting.fold([0.0; 2], |[x, y], f| [x + f.force[0], y + f.force[1]]);
+            let sum = forces.iter().fold([0.0; 2], |sum, force| {
+                let sign = match force.bodies.map(named) {
+                    bodies if bodies == pair => 1.0,
+                    [b, a] if [a, b] == pair => -1.0,
+                    _ => return sum,
+                };
+                [0, 1].map(|d| sum[d] + sign * force.force[d])
+            });
             PairForce { names: pair.map(|i| names[i].clone()), force: sum.map(|f| f * self.thickness) }
         };
         let constraints = self.contact.iter().flat_map(|contact| contact.constraints().iter().map(|c| c.gap));
         let depths = self.gap_potential.iter().flat_map(|potential| potential.forces().iter().map(GapForce::gap));
         let gaps = constraints.chain(depths);
         let smallest_gap = Some(gaps.reduce(smaller).unwrap_or(f64::NAN));
-        BodySamples { bodies, forces: pairs(self.fields.len(), names.len()).map(force).collect(), smallest_gap }
+        BodySamples { bodies, forces: pairs(deformable, names.len()).map(force).collect(), smallest_gap }
     }
 }
 
-impl DiscreteField {
-    /// The body as `sample`, that of a body a metre thick, has it; its spin is that of the points about the
-    /// centre of mass, `Σ m r × v/Σ m r²`, with their velocities half a step back.
-    fn sample_body(&self, name: &str, sample: &Sample) -> BodySample {
-        let (mass, center) = (self.mass(), center_of_mass(&self.points));
-        let mean = self.momentum().map(|p| p / mass);
-        let parts = self.points.iter().map(|point| {
-            let [x, y] = [0, 1].map(|d| point.position[d] - center[d]);
-            let [u, v] = [0, 1].map(|d| point.velocity[d] - mean[d]);
-            [point.volume * (x * v - y * u), point.volume * (x * x + y * y)]
-        });
-        let [moment, inertia] = parts.fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
-        BodySample {
-            name: name.to_string(),
-            mass,
-            center,
-            velocity: sample.momentum.map(|p| p * self.thickness / mass),
-            spin: moment / inertia,
-            kinetic: sample.kinetic * self.thickness,
-        }
+/// A body as the fields of its fragments and their samples have it, those of bodies a metre thick; its spin
+/// is that of the points about the centre of mass, `Σ m r × v/Σ m r²`, with their velocities half a step
+/// back.
+fn sample_body(name: &str, fields: &[&DiscreteField], samples: &[&Sample]) -> BodySample {
+    let mass: f64 = fields.iter().map(|field| field.mass()).sum();
+    let points = || fields.iter().flat_map(|field| &field.points);
+    let center = center_of_mass(points());
+    let sum = |part: &dyn Fn(usize) -> f64| (0..fields.len()).map(part).sum::<f64>();
+    let mean = [0, 1].map(|d| sum(&|at| fields[at].momentum()[d]) / mass);
+    let parts = points().map(|point| {
+        let [x, y] = [0, 1].map(|d| point.position[d] - center[d]);
+        let [u, v] = [0, 1].map(|d| point.velocity[d] - mean[d]);
+        [point.volume * (x * v - y * u), point.volume * (x * x + y * y)]
+    });
+    let [moment, inertia] = parts.fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
+    let thickness = fields.first().map_or(1.0, |field| field.thickness);
+    BodySample {
+        name: name.to_string(),
+        mass,
+        center,
+        velocity: [0, 1].map(|d| sum(&|at| samples[at].momentum[d]) * thickness / mass),
+        spin: moment / inertia,
+        kinetic: sum(&|at| samples[at].kinetic) * thickness,
     }
 }

@@ -9,7 +9,7 @@ use crate::particles::points::Point;
 impl UpdatedFrame {
     /// Calls `f` with the state of every point.
     pub(crate) fn for_each_point_state(&self, f: &mut dyn FnMut(PointState)) {
-        for (body, field) in self.fields().iter().enumerate() {
+        for (field, body) in self.fields().iter().zip((0..).map(|at| self.body_of(at))) {
             for (point, carried) in field.points().iter().enumerate() {
                 let cracked = field.fracture.as_ref().map(|fracture| fracture.points[point]);
                 let fracture = cracked.map(|c| PointFracture { history: c.history, phase: c.phase });
@@ -24,7 +24,7 @@ impl UpdatedFrame {
     /// The spans with points of each body, with the nodal fields of that body.
     pub(crate) fn span_grid(&self) -> SpanGrid {
         let mut grid = SpanGrid::default();
-        for (body, field) in self.fields().iter().enumerate() {
+        for (field, body) in self.fields().iter().zip((0..).map(|at| self.body_of(at))) {
             let spans = field.cells().cells.iter().map(|cell| cell.span);
             grid.add(field.patch(), spans, |functions| Corner {
                 body,

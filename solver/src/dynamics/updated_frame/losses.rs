@@ -38,7 +38,8 @@
 //!
 //! It swings with the period of a span where a body moves on as a whole, and grows where a crack opens and
 //! stretches the gradient of c across it. What then remains is the stress-work quadrature, O(dt²), as in the
-//! total frame. With Gauss quadrature by spans there is `relaxation`: see [`super::gauss`].
+//! total frame. Where a body falls into fragments its stored energy changes at once, by `partition`: see
+//! [`super::fragments`]. With Gauss quadrature by spans there is `relaxation`: see [`super::gauss`].
 
 use serde::{Deserialize, Serialize};
 
@@ -56,12 +57,14 @@ pub struct TransferLosses {
     pub relaxation: f64,
     /// Loss of the phase field as points move through it.
     pub phase_field: f64,
+    /// Loss where bodies fell into fragments ([`fragments`](super::fragments)).
+    pub partition: f64,
 }
 
 impl TransferLosses {
     /// All of it.
     pub fn sum(&self) -> f64 {
-        self.kinetic + self.power + self.imposed + self.relaxation + self.phase_field
+        self.kinetic + self.power + self.imposed + self.relaxation + self.phase_field + self.partition
     }
 
     pub(super) fn plus(self, other: Self) -> Self {
@@ -71,6 +74,7 @@ impl TransferLosses {
             imposed: self.imposed + other.imposed,
             relaxation: self.relaxation + other.relaxation,
             phase_field: self.phase_field + other.phase_field,
+            partition: self.partition + other.partition,
         }
     }
 
@@ -81,6 +85,7 @@ impl TransferLosses {
             imposed: factor * self.imposed,
             relaxation: factor * self.relaxation,
             phase_field: factor * self.phase_field,
+            partition: factor * self.partition,
         }
     }
 }

@@ -43,7 +43,7 @@ impl UpdatedFrame {
             sample.external_work += work;
             sample.contact = Some(ContactSample { loss, friction });
         }
-        Sample { bodies: recorded, ..sample.for_thickness(self.thickness) }
+        Sample { bodies: recorded, fragments: self.count_fragments(), ..sample.for_thickness(self.thickness) }
     }
 
     /// The bodies that deform, in the order of the scene.
@@ -156,7 +156,7 @@ impl UpdatedFrame {
 impl DiscreteField {
     /// Energies, momenta and crack tip of a body a metre thick at the present whole step with the given
     /// accelerations (m/s²); `dt` is the step in use. Closure is left at zero.
-    fn sample(&self, dt: f64, acceleration: &VectorField) -> Sample {
+    pub(super) fn sample(&self, dt: f64, acceleration: &VectorField) -> Sample {
         if let Some(sample) = self.sample_points(dt) {
             return sample;
         }

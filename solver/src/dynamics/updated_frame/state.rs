@@ -15,7 +15,8 @@ impl UpdatedFrame {
     /// # Errors
     /// Bytes of another scene, and loads that only the program knows.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { patch: _, fields, contact, gap_potential, thickness: _, recorded: _ } = self;
+        self.exchange_fragments(archive)?;
+        let Self { patch: _, fields, contact, gap_potential, fragments: _, thickness: _, recorded: _ } = self;
         fields.iter_mut().try_for_each(|field| field.exchange(archive))?;
         if let Some(potential) = gap_potential.as_mut().filter(|_| archive.is_reader()) {
             find_gaps(potential, fields).map_err(too_fast)?;

@@ -13,12 +13,12 @@ use fisura::dynamics::projection::Projection;
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::particles::lattice::Lattice;
 use fisura::particles::points::Point;
-use fisura::scene::{Body, Layout, Scene, Shape, Transfer};
+use fisura::scene::{Body, Layout, Scene, Shape};
 use fisura::splines::spline::SplineSpace;
 
 use super::problem::{Manufactured, Problem};
 use super::scene::scene;
-use super::{OnMesh, other};
+use super::{OnMesh, Variant, other};
 use crate::case::convergence::ConvergenceSetup;
 use crate::study::StudyError;
 use crate::study::orders::Level;
@@ -48,7 +48,7 @@ impl<'a> Moving<'a> {
         problem: &'a Problem,
         n: usize,
         cells: usize,
-        variant: (Transfer, f64),
+        variant: Variant,
     ) -> Result<Self, StudyError> {
         let scene = scene(setup, problem, n, cells, variant)?;
         let frame = UpdatedFrame::new(&scene).map_err(broken)?;

@@ -1,10 +1,10 @@
 //! The scene of one mesh of a convergence study.
 
-use fisura::scene::{Frame, Scene, Shape, Transfer};
+use fisura::scene::{Frame, Scene, Shape};
 use fisura::validate::validate;
 
-use super::other;
 use super::problem::Problem;
+use super::{Variant, other};
 use crate::case::convergence::{ConvergenceSetup, PatchFamily};
 use crate::exact::Equation;
 use crate::exact::vortex::RADII;
@@ -19,7 +19,7 @@ pub(super) fn scene(
     problem: &Problem,
     n: usize,
     cells: usize,
-    (transfer, offset): (Transfer, f64),
+    Variant { transfer, quadrature, offset }: Variant,
 ) -> Result<Scene, StudyError> {
     let mut material = problem.solution.material();
     if problem.equation == Equation::PhaseField {
@@ -38,7 +38,7 @@ pub(super) fn scene(
     scene.analysis.kinematics = problem.kinematics;
     if setup.frame == Frame::Updated {
         (scene.analysis.frame, scene.analysis.transfer) = (Frame::Updated, transfer);
-        scene.analysis.quadrature = setup.quadrature;
+        scene.analysis.quadrature = quadrature;
     }
     let body = &mut scene.bodies[0];
     match setup.patch {

@@ -11,7 +11,7 @@ use fisura::linear_algebra::lane::Lane;
 use fisura::material::degradation::FractureModel;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::phase_field::PhaseField;
-use fisura::scene::{Layout, Mass, Scene, Transfer};
+use fisura::scene::{Layout, Mass, Scene};
 use fisura::splines::patch::control_points_on;
 use fisura::splines::quadrature::Rule;
 use nalgebra::DMatrix;
@@ -19,7 +19,7 @@ use nalgebra::DMatrix;
 use super::errors::{ErrorPoints, Squares};
 use super::problem::{Manufactured, Problem};
 use super::scene::scene;
-use super::{OnMesh, other};
+use super::{OnMesh, Variant, other};
 use crate::case::convergence::{ConvergenceSetup, Loading};
 use crate::exact::Equation;
 use crate::study::StudyError;
@@ -106,7 +106,7 @@ impl OnMesh for Discrete<'_> {
 impl<'a> Discrete<'a> {
     /// The mesh with `cells` spans per direction for the n-th degree.
     pub fn new(setup: &'a ConvergenceSetup, problem: &'a Problem, n: usize, cells: usize) -> Result<Self, StudyError> {
-        let scene = scene(setup, problem, n, cells, (Transfer::Flip, 0.0))?;
+        let scene = scene(setup, problem, n, cells, Variant::PLAIN)?;
         let frame = TotalFrame::new(&scene).map_err(|_| other("the initial phase field does not converge"))?;
         let points = ErrorPoints::new(frame.patch(), &scene.bodies[0]);
         Ok(Self { setup, problem, frame, points, scene })

@@ -207,6 +207,7 @@ fn blank_history(scene: &Scene) -> Table {
         fracture: materials.any(|material| material.fracture.is_some()).then_some(fracture),
         contact: scene.contact.is_some().then_some(ContactSample { loss: 0.0, friction: 0.0 }),
         transfer_loss: (scene.analysis.frame == Frame::Updated).then_some(0.0),
+        fragments: scene.contact.as_ref().and_then(|contact| contact.fragments.then_some(0)),
         bodies: scene.output.bodies.then(|| BodySamples::blank(scene)),
         ..Sample::default()
     };

@@ -1,0 +1,81 @@
+//! Bodies of the updated frame that fall into fragments.
+
+use super::UpdatedFrame;
+use super::field::DiscreteField;
+use super::fragments::Fragments;
+use crate::checkpoint::{Archive, StateError};
+use crate::dynamics::failure::Failure;
+
+impl UpdatedFrame {
+    /// Number of the body that a field is of, or is a fragment of.
+    pub(super) fn body_of(&self, field: usize) -> usize {
+        self.fragments.as_ref().map_or(field, |fragments| fragments.bodies[field])
+    }
+
+    /// How many fields there are, if bodies may fall into fragments.
+    pub(super) fn count_fragments(&self) -> Option<usize> {
+        self.fragments.as_ref().map(|_| self.fields.len())
+    }
+
+    /// From time to time, parts the bodies that are cracked through; `dt` is the step in use, s.
+    ///
+    /// # Errors
+    /// If the phase field of a fragment does not converge.
+    pub(super) fn part_now_and_then(&mut self, dt: f64) -> Result<(), Failure> {
+        if self.fragments.as_mut().is_some_and(Fragments::look) { self.part_bodies(dt) } else { Ok(()) }
+    }
+
+    /// Parts the bodies whose seeds cut them through.
+    ///
+    /// # Errors
+    /// If the phase field of a fragment does not converge.
+    pub(super) fn part_at_start(&mut self) -> Result<(), Failure> {
+        self.part_bodies(0.0)?;
+        self.fields.iter_mut().for_each(DiscreteField::begin_ledger);
+        Ok(())
+    }
+
+    /// Parts the bodies that are cracked through.
+    ///
+    /// # Errors
+    /// If the phase field of a fragment does not converge.
+    fn part_bodies(&mut self, dt: f64) -> Result<(), Failure> {
+        let Self { fields, contact, fragments: Some(fragments), .. } = self else { return Ok(()) };
+        for at in 0..fields.len() {
+            let Some(mut parts) = fields[at].part(dt)? else { continue };
+            fragments.bodies.resize(fragments.bodies.len() + parts.len() - 1, fragments.bodies[at]);
+            fields.extend(parts.drain(1..));
+            fields.splice(at..=at, parts);
+            if let Some(contact) = contact {
+                contact.forget_impulses();
+            }
+        }
+        Ok(())
+    }
+
+    /// Stores or takes up which fields there are, with as many points each.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(super) fn exchange_fragments(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { fields, fragments: Some(fragments), .. } = self else { return Ok(()) };
+        let bodies = fragments.bodies.iter().copied().max().map_or(0, |last| last + 1);
+        let mut points: Vec<usize> = fields.iter().map(|field| field.points.len()).collect();
+        archive.value(&mut fragments.steps)?;
+        archive.value(&mut fragments.bodies)?;
+        archive.value(&mut points)?;
+        if archive.is_reader() {
+            let all: usize = fields.iter().map(|field| field.points.len()).sum();
+            let first = fragments.bodies.iter().take(bodies).copied().eq(0..bodies);
+            let known = fragments.bodies.iter().all(|body| *body < bodies);
+            let kept = points.iter().try_fold(0_usize, |sum, count| sum.checked_add(*count)) == Some(all);
+            if !first || !known || !kept || points.len() != fragments.bodies.len() || points.contains(&0) {
+                return Err(StateError("the state is of another scene: its fragments are not of these bodies".into()));
+            }
+            let whole = fields[..bodies].to_vec();
+            *fields = fragments.bodies.iter().map(|body| whole[*body].clone()).collect();
+            fields.iter_mut().zip(points).for_each(|(field, count)| field.make_room(count));
+        }
+        Ok(())
+    }
+}
