@@ -2,12 +2,13 @@
 //!
 //! [`render`] writes `samples.csv` (every sample), `figures/timing/*.svg`, `summary.md` (with links to the
 //! figures) and `bench.html` (figures inline). Everything is a pure function of `bench.json`:
-//! [`work_precision`], [`plate`](mod@plate), [`stages`], [`contact`], [`scale`] and [`conditions`] make the
+//! [`work_precision`], [`plate`](mod@plate), [`stages`], [`contact`], [`motion`], [`scale`] and [`conditions`] make the
 //! exhibits, [`ratios`] holds the targets, [`bars`] draws bars, [`page`] puts it together.
 
 pub mod bars;
 pub mod conditions;
 pub mod contact;
+pub mod motion;
 pub mod page;
 pub mod pareto;
 pub mod plate;
@@ -108,6 +109,7 @@ pub fn sections(set: &BenchSet) -> Vec<Section> {
         ("Threads", conditions::threads(records)),
         ("Ceilings", conditions::ceilings(records)),
         ("Collisions", contact::exhibits(records)),
+        ("Points that cross spans", motion::exhibits(records)),
         ("From ten thousand points to sixteen million", scale::exhibits(records)),
         ("Only what a scene declares", conditions::scenes(records)),
         ("Another checkout", conditions::baseline(records)),

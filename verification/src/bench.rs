@@ -16,6 +16,7 @@
 //! | `ceilings` | bandwidth and arithmetic of this machine, and the distance to them ([`ceilings`]) |
 //! | `scenes` | what the physics that a scene declares costs ([`scenes`]) |
 //! | `contact` | what an error of a collision costs ([`contact`]) |
+//! | `motion` | what an error costs where points cross spans ([`motion`]) |
 //! | `scale` | time and memory per point from 10⁴ to 1.6·10⁷ points ([`scale`]) |
 //! | `baseline` | another checkout of this workspace on the same scenes ([`baseline`]) |
 //! | `peer` | a program of the user on the same block of points ([`peer`]) |
@@ -26,6 +27,7 @@ pub mod ceilings;
 pub mod contact;
 pub mod elements;
 pub mod minimal;
+pub mod motion;
 pub mod moving_block;
 pub mod peer;
 pub mod plate;
@@ -153,7 +155,7 @@ impl From<Breakdown> for BenchError {
 type Family = fn(&Settings<'_>) -> Result<Vec<BenchRecord>, BenchError>;
 
 /// All families, in the order of the report.
-pub const FAMILIES: [(&str, Family); 11] = [
+pub const FAMILIES: [(&str, Family); 12] = [
     ("work-precision", wave::family),
     ("plate", plate::family),
     ("stages", stages::family),
@@ -162,6 +164,7 @@ pub const FAMILIES: [(&str, Family); 11] = [
     ("ceilings", ceilings::family),
     ("scenes", scenes::family),
     ("contact", contact::family),
+    ("motion", motion::family),
     ("scale", scale::family),
     ("baseline", baseline::family),
     ("peer", peer::family),

@@ -24,7 +24,7 @@ pub struct Args {
     #[arg(long)]
     quick: bool,
     /// Only these families, separated by commas: work-precision, plate, stages, solves, threads, ceilings,
-    /// scenes, contact, scale
+    /// scenes, contact, motion, scale
     #[arg(long, value_name = "FAMILY,…", value_delimiter = ',')]
     family: Vec<String>,
     /// Time another checkout of this workspace on the same scenes as well: it is built in its own folder

@@ -90,7 +90,7 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
         for variant in variants(setup) {
             let orders = norms.iter().map(|&(_, below)| theory(setup, &problem, variant, degree, below)).collect();
             let name = curve_name(setup, n, variant);
-            let (levels, best) = levels(setup, &problem, n, variant)?;
+            let (levels, best) = Meshes { setup, problem: &problem }.levels(CurveKey { n, variant })?;
             for (index, best) in best.into_iter().enumerate() {
                 let error = levels.last().map_or(f64::NAN, |level| level.errors[index]);
                 findings.add(&name, &over_best(norms[index].0), error / best, None);
@@ -164,42 +164,79 @@ fn variants(setup: &ConvergenceSetup) -> Vec<Variant> {
     variants
 }
 
-/// The levels of the n-th degree, and the errors of the best approximation on the last.
-fn levels(
-    setup: &ConvergenceSetup,
-    problem: &Problem,
+/// A curve of a case: number of its degree, and what distinguishes it from others of that degree.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CurveKey {
     n: usize,
     variant: Variant,
-) -> Result<(Vec<Level>, Vec<f64>), StudyError> {
-    let mesh = |cells: usize| -> Result<Box<dyn OnMesh + '_>, StudyError> {
-        Ok(match setup.frame {
-            Frame::Total => Box::new(Discrete::new(setup, problem, n, cells)?),
-            Frame::Updated => Box::new(Moving::new(setup, problem, n, cells, variant)?),
+}
+
+/// What a case solves, mesh by mesh.
+pub(crate) struct Meshes<'a> {
+    setup: &'a ConvergenceSetup,
+    problem: &'a Problem,
+}
+
+impl<'a> Meshes<'a> {
+    /// Solves a case on some mesh, without a study.
+    ///
+    /// # Errors
+    /// A case without such a problem.
+    pub(crate) fn with<R>(case: &Case, work: impl FnOnce(Meshes) -> R) -> Result<R, StudyError> {
+        let (setup, problem, _) = problem_of(case)?;
+        Ok(work(Meshes { setup, problem: &problem }))
+    }
+
+    /// The curves of the case.
+    pub(crate) fn curves(&self) -> Vec<CurveKey> {
+        let of_degree = |n| variants(self.setup).into_iter().map(move |variant| CurveKey { n, variant });
+        (0..self.setup.degrees.len()).flat_map(of_degree).collect()
+    }
+
+    /// Degree of a curve, and its quadrature.
+    pub(crate) fn degree_and_quadrature(&self, curve: CurveKey) -> (usize, Quadrature) {
+        (self.setup.degrees[curve.n], curve.variant.quadrature)
+    }
+
+    fn mesh(&self, CurveKey { n, variant }: CurveKey, cells: usize) -> Result<Box<dyn OnMesh + 'a>, StudyError> {
+        Ok(match self.setup.frame {
+            Frame::Total => Box::new(Discrete::new(self.setup, self.problem, n, cells)?),
+            Frame::Updated => Box::new(Moving::new(self.setup, self.problem, n, cells, variant)?),
         })
-    };
-    let finest = setup.cells[setup.cells.len() - 1];
-    let levels: Result<Vec<Level>, StudyError> = match setup.refine {
-        Refine::Mesh(power) => {
-            let power = power.unwrap_or(0.5 * (setup.degrees[n] + 1) as f64);
-            let coarsest = mesh(setup.cells[0])?;
-            let critical = if problem.equation == Equation::Dynamic { coarsest.critical_step() } else { 0.0 };
-            let level = |&cells: &usize| {
-                let mesh = mesh(cells)?;
-                let step = setup.safety[0] * critical * (mesh.span_length() / coarsest.span_length()).powf(power);
-                mesh.level(step)
-            };
-            setup.cells.iter().map(level).collect()
-        }
-        Refine::TimeStep => {
-            let critical = mesh(finest)?.critical_step();
-            let level = |&fraction: &f64| {
-                let level = mesh(finest)?.level(fraction * critical)?;
-                Ok(Level { h: fraction * critical, ..level })
-            };
-            setup.safety.iter().map(level).collect()
-        }
-    };
-    Ok((levels?, mesh(finest)?.best_errors()?))
+    }
+
+    /// Solves on a mesh with so many spans per direction, with steps that belong to it.
+    ///
+    /// # Errors
+    /// A run that breaks down.
+    pub(crate) fn level(&self, curve: CurveKey, cells: usize) -> Result<Level, StudyError> {
+        let power = match self.setup.refine {
+            Refine::Mesh(Some(power)) => power,
+            _ => 0.5 * (self.setup.degrees[curve.n] + 1) as f64,
+        };
+        let coarsest = self.mesh(curve, self.setup.cells[0])?;
+        let critical = if self.problem.equation == Equation::Dynamic { coarsest.critical_step() } else { 0.0 };
+        let mesh = self.mesh(curve, cells)?;
+        let step = self.setup.safety[0] * critical * (mesh.span_length() / coarsest.span_length()).powf(power);
+        mesh.level(step)
+    }
+
+    /// All levels of a curve, and the errors of the best approximation on the last.
+    fn levels(&self, curve: CurveKey) -> Result<(Vec<Level>, Vec<f64>), StudyError> {
+        let finest = self.setup.cells[self.setup.cells.len() - 1];
+        let levels: Result<Vec<Level>, StudyError> = match self.setup.refine {
+            Refine::Mesh(_) => self.setup.cells.iter().map(|cells| self.level(curve, *cells)).collect(),
+            Refine::TimeStep => {
+                let critical = self.mesh(curve, finest)?.critical_step();
+                let level = |&fraction: &f64| {
+                    let level = self.mesh(curve, finest)?.level(fraction * critical)?;
+                    Ok(Level { h: fraction * critical, ..level })
+                };
+                self.setup.safety.iter().map(level).collect()
+            }
+        };
+        Ok((levels?, self.mesh(curve, finest)?.best_errors()?))
+    }
 }
 
 /// Order that theory gives an error `below` orders under that of the displacement. There is none for moving

@@ -1,0 +1,31 @@
+//! The error of a motion in which points cross spans, against time.
+
+use super::work_precision::{Chart, Cost, Line, error, lines};
+use super::{Exhibit, Records};
+use crate::number::{plain, pretty};
+
+/// One figure.
+pub fn exhibits(records: Records) -> Vec<Exhibit> {
+    let lines = lines(records.below("motion/").into_iter());
+    if lines.is_empty() {
+        return Vec::new();
+    }
+    let chart = Chart {
+        id: "timing/motion".into(),
+        title: "Points that cross spans: error of the displacement against time".into(),
+        lines: &lines,
+        front: None,
+        fem: &[],
+        cost: Cost::Time,
+        axis: "processor time of the run (s)",
+        uncertainty: 0.0,
+    };
+    let sentence = |line: &Line| {
+        let last = line.records.last()?;
+        let (value, spans) = (error(last), last.number("spans")?);
+        Some(format!("{}: {} with {spans} spans, {} s.", line.label, pretty(value, 2), plain(last.cpu_s.median, 3)))
+    };
+    let reading = lines.iter().filter_map(sentence).collect::<Vec<_>>().join(" ");
+    let caption = "Axis-aligned displacement of finite strain (convergence/gauss-axis-aligned), one thread; against the exact motion";
+    vec![chart.plot(caption, reading)]
+}
