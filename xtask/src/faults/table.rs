@@ -73,6 +73,8 @@ pub const FAULTS: &[Fault] = &[
         &["stability/flying-crack"],
     ),
     fault("friction-twice", "friction up to twice the coefficient", &["contact/incline-polygon"]),
+    fault("broken-points-hold", "broken points hold fragments together", &["contact/parted-bar"]),
+    fault("crack-faces-left-out", "fragments have no boundary along the crack", &["contact/cracked-slope"]),
     fault(
         "partition-unbooked",
         "the ledger leaves out what changes where a body falls into fragments",

@@ -28,7 +28,7 @@ impl<'a> Pieces<'a> {
         let step = STEP * spacing(points);
         let neighbours = Neighbours::new(points.iter().map(|point| point.position), step);
         let mut pieces = Self { points, neighbours, step, of: Vec::new(), count: 0 };
-        let groups = pieces.groups(|at| fracture[at].phase >= SEPARATED);
+        let groups = pieces.groups(|at| fault!("broken-points-hold", fracture[at].phase >= SEPARATED => true));
         let mut areas = vec![0.0; points.len()];
         for (group, point) in groups.iter().zip(points) {
             areas[*group] += point.volume;
