@@ -28,6 +28,8 @@ const MARGIN: f64 = 7.0;
 
 /// Spans of the mesh over those of a radius of the discs.
 const SPANS_PER_RADIUS: usize = 5;
+/// Fewest spans of the mesh on which discs whose spans integrate close their ledger to [`CLOSURE`].
+const FEWEST: usize = 20;
 
 /// A degree, and a transfer of points that integrate; none if spans do.
 #[derive(Debug, Clone, Copy)]
@@ -146,9 +148,14 @@ fn error(quantity: &str, value: f64, reference: &str) -> AnswerError {
     AnswerError { quantity: quantity.into(), value, reference: reference.into(), uncertainty: 0.0 }
 }
 
-/// The meshes that a way is run on.
-fn meshes(way: Way, all: &[usize]) -> &[usize] {
-    if way.is_costly() { &all[..all.len() - 1] } else { all }
+/// The meshes that a way is run on: by spans none coarser than `least`.
+fn meshes(way: Way, all: &[usize], least: usize) -> Vec<usize> {
+    let fits = |n: &usize| way.1.is_some() || *n >= least;
+    let mut meshes: Vec<usize> = all.iter().copied().filter(fits).collect();
+    if way.is_costly() && meshes.len() > 1 {
+        meshes.pop();
+    }
+    meshes
 }
 
 fn bars(settings: &Settings) -> Result<Vec<Collision>, BenchError> {
@@ -157,7 +164,7 @@ fn bars(settings: &Settings) -> Result<Vec<Collision>, BenchError> {
     let wave = ElasticModuli::new(material, base.analysis.plane).dilatational_speed(material.density);
     let all: &[usize] = if settings.quick { &[8, 16, 32] } else { &[16, 32, 64, 128] };
     let all = |way: Way| if way.1.is_none() { &all[..all.len() - 1] } else { all };
-    let runs = WAYS.into_iter().flat_map(|way| meshes(way, all(way)).iter().map(move |&spans| (way, spans)));
+    let runs = WAYS.into_iter().flat_map(|way| meshes(way, all(way), 0).into_iter().map(move |spans| (way, spans)));
     runs.map(|(way, spans)| {
         let scene = bars_of(&base, way, spans);
         let found = watched(&scene)?;
@@ -197,7 +204,7 @@ fn bars_of(base: &Scene, way: Way, spans: usize) -> Scene {
 fn discs(settings: &Settings) -> Result<Vec<Collision>, BenchError> {
     let base = base(settings, "discs-head-on")?;
     let all: &[usize] = if settings.quick { &[10, 20] } else { &[20, 40, 80] };
-    let runs = WAYS.into_iter().flat_map(|way| meshes(way, all).iter().map(move |&cells| (way, cells)));
+    let runs = WAYS.into_iter().flat_map(|way| meshes(way, all, FEWEST).into_iter().map(move |cells| (way, cells)));
     runs.map(|(way, cells)| {
         let scene = discs_of(&base, way, cells);
         let found = watched(&scene)?;
