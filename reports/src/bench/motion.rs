@@ -6,7 +6,7 @@ use crate::number::{plain, pretty};
 
 /// One figure.
 pub fn exhibits(records: Records) -> Vec<Exhibit> {
-    let lines = lines(records.below("motion/").into_iter());
+    let lines = lines(records.below("motion/"));
     if lines.is_empty() {
         return Vec::new();
     }

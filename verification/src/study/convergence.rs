@@ -6,6 +6,7 @@
 //! integrated with an independent, finer quadrature, in the updated frame they are those of the points.
 
 pub(crate) mod errors;
+mod meshes;
 pub(crate) mod moving;
 mod problem;
 mod scene;
@@ -19,7 +20,7 @@ use crate::case::convergence::{ConvergenceSetup, Loading, PatchFamily, Refine};
 use crate::case::expand::CaseScene;
 use crate::exact::Equation;
 use crate::study::orders::{Convergence, Curve, Level, Norm, Refined};
-use moving::Moving;
+pub(crate) use meshes::{CurveKey, Meshes};
 use problem::Problem;
 use solve::Discrete;
 
@@ -162,81 +163,6 @@ fn variants(setup: &ConvergenceSetup) -> Vec<Variant> {
         }
     }
     variants
-}
-
-/// A curve of a case: number of its degree, and what distinguishes it from others of that degree.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct CurveKey {
-    n: usize,
-    variant: Variant,
-}
-
-/// What a case solves, mesh by mesh.
-pub(crate) struct Meshes<'a> {
-    setup: &'a ConvergenceSetup,
-    problem: &'a Problem,
-}
-
-impl<'a> Meshes<'a> {
-    /// Solves a case on some mesh, without a study.
-    ///
-    /// # Errors
-    /// A case without such a problem.
-    pub(crate) fn with<R>(case: &Case, work: impl FnOnce(Meshes) -> R) -> Result<R, StudyError> {
-        let (setup, problem, _) = problem_of(case)?;
-        Ok(work(Meshes { setup, problem: &problem }))
-    }
-
-    /// The curves of the case.
-    pub(crate) fn curves(&self) -> Vec<CurveKey> {
-        let of_degree = |n| variants(self.setup).into_iter().map(move |variant| CurveKey { n, variant });
-        (0..self.setup.degrees.len()).flat_map(of_degree).collect()
-    }
-
-    /// Degree of a curve, and its quadrature.
-    pub(crate) fn degree_and_quadrature(&self, curve: CurveKey) -> (usize, Quadrature) {
-        (self.setup.degrees[curve.n], curve.variant.quadrature)
-    }
-
-    fn mesh(&self, CurveKey { n, variant }: CurveKey, cells: usize) -> Result<Box<dyn OnMesh + 'a>, StudyError> {
-        Ok(match self.setup.frame {
-            Frame::Total => Box::new(Discrete::new(self.setup, self.problem, n, cells)?),
-            Frame::Updated => Box::new(Moving::new(self.setup, self.problem, n, cells, variant)?),
-        })
-    }
-
-    /// Solves on a mesh with so many spans per direction, with steps that belong to it.
-    ///
-    /// # Errors
-    /// A run that breaks down.
-    pub(crate) fn level(&self, curve: CurveKey, cells: usize) -> Result<Level, StudyError> {
-        let power = match self.setup.refine {
-            Refine::Mesh(Some(power)) => power,
-            _ => 0.5 * (self.setup.degrees[curve.n] + 1) as f64,
-        };
-        let coarsest = self.mesh(curve, self.setup.cells[0])?;
-        let critical = if self.problem.equation == Equation::Dynamic { coarsest.critical_step() } else { 0.0 };
-        let mesh = self.mesh(curve, cells)?;
-        let step = self.setup.safety[0] * critical * (mesh.span_length() / coarsest.span_length()).powf(power);
-        mesh.level(step)
-    }
-
-    /// All levels of a curve, and the errors of the best approximation on the last.
-    fn levels(&self, curve: CurveKey) -> Result<(Vec<Level>, Vec<f64>), StudyError> {
-        let finest = self.setup.cells[self.setup.cells.len() - 1];
-        let levels: Result<Vec<Level>, StudyError> = match self.setup.refine {
-            Refine::Mesh(_) => self.setup.cells.iter().map(|cells| self.level(curve, *cells)).collect(),
-            Refine::TimeStep => {
-                let critical = self.mesh(curve, finest)?.critical_step();
-                let level = |&fraction: &f64| {
-                    let level = self.mesh(curve, finest)?.level(fraction * critical)?;
-                    Ok(Level { h: fraction * critical, ..level })
-                };
-                self.setup.safety.iter().map(level).collect()
-            }
-        };
-        Ok((levels?, self.mesh(curve, finest)?.best_errors()?))
-    }
 }
 
 /// Order that theory gives an error `below` orders under that of the displacement. There is none for moving
