@@ -1,6 +1,7 @@
 //! What an error costs where points cross spans: the axis-aligned displacement of
-//! `convergence/gauss-axis-aligned`, by points and by spans, on one thread. The errors are those of the displacement
-//! at the points, against the exact solution; what is timed is the whole run with its preparation.
+//! `convergence/gauss-axis-aligned`, by points and by spans, on one thread. The errors are those of the
+//! displacement at the points, against the exact solution; what is timed is the whole run with its
+//! preparation.
 
 use fisura::scene::Quadrature;
 
