@@ -58,6 +58,18 @@ pub struct PhaseFieldCounts {
     pub bytes: u64,
 }
 
+impl PhaseFieldCounts {
+    /// Of two solvers together.
+    #[must_use]
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self {
+            solves: self.solves + other.solves,
+            iterations: self.iterations + other.iterations,
+            bytes: self.bytes + other.bytes,
+        }
+    }
+}
+
 /// Phase field of one body on its control points.
 #[derive(Debug, Clone)]
 pub struct PhaseField {
@@ -162,6 +174,11 @@ impl PhaseField {
     /// Begins to count anew, as if nothing had been solved yet.
     pub(crate) fn forget_counts(&mut self) {
         self.counts = PhaseFieldCounts::default();
+    }
+
+    /// Counts the work of another solver as its own.
+    pub(crate) fn count_also(&mut self, counts: PhaseFieldCounts) {
+        self.counts = self.counts.plus(counts);
     }
 
     fn bytes_read(&self) -> u64 {

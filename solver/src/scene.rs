@@ -396,7 +396,6 @@ pub struct Output {
     pub samples: usize,
     /// Times of the field pictures, s.
     pub frames: Vec<f64>,
-    /// Whether centre, velocity, spin and kinetic energy of every body, and the forces between them, are
-    /// recorded (updated frame).
+    /// Whether the motion of every body and the forces between them are recorded (updated frame).
     pub bodies: bool,
 }

@@ -1,8 +1,7 @@
 //! Errors of collisions against time.
 
-use super::work_precision::{Chart, Cost, error, lines};
+use super::work_precision::{Chart, Cost, lines, on_finest};
 use super::{Exhibit, Records};
-use crate::number::{plain, pretty};
 
 /// Bodies and errors in the order of the report: parts of the id.
 const BODIES: [(&str, &str, &str); 2] = [("bars", "Two equal bars", "length"), ("discs", "Two equal discs", "radius")];
@@ -33,19 +32,7 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
                 axis: "processor time of the steps (s)",
                 uncertainty,
             };
-            let sentence = |line: &super::work_precision::Line| {
-                let last = line.records.last()?;
-                let value = error(last);
-                let spans = last.number("spans")?;
-                Some(format!(
-                    "{}: {} with {spans} spans per {size}, {} s.",
-                    line.label,
-                    pretty(value, 2),
-                    plain(last.cpu_s.median, 3)
-                ))
-            };
-            let reading = lines.iter().filter_map(sentence).collect::<Vec<_>>().join(" ");
-            exhibits.push(chart.plot(&caption, reading));
+            exhibits.push(chart.plot(&caption, on_finest(&lines, &format!("spans per {size}"))));
         }
     }
     exhibits

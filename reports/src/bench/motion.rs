@@ -1,8 +1,7 @@
 //! The error of a motion in which points cross spans, against time.
 
-use super::work_precision::{Chart, Cost, Line, error, lines};
+use super::work_precision::{Chart, Cost, lines, on_finest};
 use super::{Exhibit, Records};
-use crate::number::{plain, pretty};
 
 /// One figure.
 pub fn exhibits(records: Records) -> Vec<Exhibit> {
@@ -20,12 +19,6 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
         axis: "processor time of the run (s)",
         uncertainty: 0.0,
     };
-    let sentence = |line: &Line| {
-        let last = line.records.last()?;
-        let (value, spans) = (error(last), last.number("spans")?);
-        Some(format!("{}: {} with {spans} spans, {} s.", line.label, pretty(value, 2), plain(last.cpu_s.median, 3)))
-    };
-    let reading = lines.iter().filter_map(sentence).collect::<Vec<_>>().join(" ");
     let caption = "Axis-aligned displacement of finite strain (convergence/gauss-axis-aligned), one thread; against the exact motion";
-    vec![chart.plot(caption, reading)]
+    vec![chart.plot(caption, on_finest(&lines, "spans"))]
 }

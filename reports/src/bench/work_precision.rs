@@ -7,7 +7,7 @@ use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, F
 use super::pareto::{cost_of, front};
 use super::{Exhibit, Plot, Records};
 use crate::figure::render_figure;
-use crate::number::pretty;
+use crate::number::{plain, pretty};
 use crate::series::SeriesSet;
 use crate::svg::slug;
 
@@ -56,6 +56,16 @@ impl Line<'_> {
 
 pub(super) fn error(record: &BenchRecord) -> f64 {
     record.error.as_ref().map_or(f64::NAN, |error| error.value)
+}
+
+/// What the last mesh of every line gave: its error, with so many `spans` ("spans per radius"), and its time.
+pub(super) fn on_finest(lines: &[Line], spans: &str) -> String {
+    let sentence = |line: &Line| {
+        let last = line.records.last()?;
+        let (value, count) = (pretty(error(last), 2), last.number("spans")?);
+        Some(format!("{}: {value} with {count} {spans}, {} s.", line.label, plain(last.cpu_s.median, 3)))
+    };
+    lines.iter().filter_map(sentence).collect::<Vec<_>>().join(" ")
 }
 
 /// Records whose answers hold, by label, in the order in which labels appear.

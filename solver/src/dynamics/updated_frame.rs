@@ -132,7 +132,7 @@ impl UpdatedFrame {
             }
         }
         fields.iter_mut().try_for_each(|field| field.step(dt))?;
-        self.part_now_and_then(dt)?;
+        self.part_if_due(dt)?;
         let Self { fields, contact, .. } = self;
         if let Some(contact) = contact {
             contact.move_rigid(fields[0].time());

@@ -39,13 +39,15 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         rigid(&format!("body.{i}"), body, scene, findings);
     }
     match &scene.contact {
-        Some(contact) if scene.bodies.len() == 1 && !contact.fragments => findings.warn("contact", "there is only one body; remove the table"),
+        Some(contact) if scene.bodies.len() == 1 && !contact.fragments => {
+            findings.warn("contact", "there is only one body; remove the table");
+        }
         Some(_) if ground.is_sound && overlaps(scene, ground, findings) => speeds(scene, findings),
         None if scene.bodies.len() > 1 => findings.warn(
             "contact",
             format!(
-                "{} bodies and no [contact] table: they pass through each other; add [contact] with a friction, or keep them \
-                 apart",
+                "{} bodies and no [contact] table: they pass through each other; add [contact] with a friction, or \
+                 keep them apart",
                 scene.bodies.len()
             ),
         ),

@@ -353,6 +353,11 @@ fn several_bodies_need_the_updated_frame_and_room() {
         s.materials.values_mut().for_each(|material| material.fracture = None);
     });
     assert_eq!(whole, ["contact.fragments"]);
+    let pulled = changed(|s| {
+        s.contact = Some(Contact { friction: 0.1, fragments: true });
+        s.bodies[1].tractions = vec![Traction { edge: Edge::Side(Side::Right), stress: [1e3, 0.0], ramp: None }];
+    });
+    assert_eq!(pulled, ["body.1.traction"]);
     assert_eq!(changed(|s| s.analysis.transfer = Transfer::Musl), ["analysis.transfer"]);
     assert_eq!(changed(|s| s.bodies[1].name = "left".into()), ["body.1.name"]);
     assert!(changed(|s| s.bodies[1].rigid = true).is_empty());

@@ -11,10 +11,9 @@ use super::{BenchError, Settings};
 use crate::case::Case;
 use crate::study::convergence::Meshes;
 
-/// Spans per direction.
+/// Spans per direction, and the one that points alone need: their error falls more slowly.
 const MESHES: [usize; 4] = [12, 16, 24, 32];
-/// Points alone are cheap enough for these, and need them.
-const FINE: [usize; 2] = [64, 128];
+const FINE: usize = 64;
 
 /// Times the motion on all meshes.
 ///
@@ -31,11 +30,11 @@ fn timed(meshes: &Meshes, settings: &Settings) -> Result<Vec<BenchRecord>, Bench
     for curve in meshes.curves() {
         let (degree, quadrature) = meshes.degree_and_quadrature(curve);
         let (word, fine) = match quadrature {
-            Quadrature::Points => ("points", if settings.quick { &FINE[..1] } else { &FINE[..] }),
-            Quadrature::Gauss => ("spans", &[][..]),
+            Quadrature::Points => ("points", (!settings.quick).then_some(FINE)),
+            Quadrature::Gauss => ("spans", None),
         };
         let some = if settings.quick { &MESHES[..3] } else { &MESHES[..] };
-        for &cells in some.iter().chain(fine) {
+        for cells in some.iter().copied().chain(fine) {
             let first = meshes.level(curve, cells)?;
             let (id, label) =
                 (format!("motion/p{degree}-{word}/{cells}"), format!("p = {degree}, quadrature by {word}"));

@@ -92,6 +92,11 @@ pub fn prepare(case: &Case, library: &Library) -> Result<Prepared, SceneFileErro
         return Err(wrong.error());
     }
     let scenes = case.scenes()?;
+    if study.is_some() && scenes.iter().any(|of| of.scene.contact.as_ref().is_some_and(|contact| contact.fragments)) {
+        let message = format!("the study {:?} follows bodies that stay whole", case.study);
+        wrong.note("scene.contact.fragments", message, "remove it, or leave the study out");
+        return Err(wrong.error());
+    }
     let mut records = Vec::new();
     match study {
         None => {

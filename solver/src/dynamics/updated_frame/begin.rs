@@ -37,7 +37,7 @@ impl DiscreteField {
         field.take_affine_velocities(rigidly);
         let number = number_of(body, scene);
         field.crack_and_stress()?;
-        (field.ledger, field.losses) = Default::default(); // there was no step yet
+        field.begin_ledger();
         field.points_to_grid();
         field.attach_first(number)?;
         field.respond();

@@ -16,7 +16,7 @@ impl UpdatedFrame {
         let body = |body: usize| {
             let of_body = self.fields.iter().zip(samples).enumerate().filter(|(at, _)| self.body_of(*at) == body);
             let (fields, samples): (Vec<_>, Vec<_>) = of_body.map(|(_, pair)| pair).unzip();
-            sample_body(&names[body], &fields, &samples)
+            sample_body(&names[body], &fields, &samples, self.thickness)
         };
         let bodies = (0..deformable).map(body).collect();
         if !self.has_contact() {
@@ -47,25 +47,23 @@ impl UpdatedFrame {
 /// A body as the fields of its fragments and their samples have it, those of bodies a metre thick; its spin
 /// is that of the points about the centre of mass, `Σ m r × v/Σ m r²`, with their velocities half a step
 /// back.
-fn sample_body(name: &str, fields: &[&DiscreteField], samples: &[&Sample]) -> BodySample {
+fn sample_body(name: &str, fields: &[&DiscreteField], samples: &[&Sample], thickness: f64) -> BodySample {
     let mass: f64 = fields.iter().map(|field| field.mass()).sum();
     let points = || fields.iter().flat_map(|field| &field.points);
     let center = center_of_mass(points());
-    let sum = |part: &dyn Fn(usize) -> f64| (0..fields.len()).map(part).sum::<f64>();
-    let mean = [0, 1].map(|d| sum(&|at| fields[at].momentum()[d]) / mass);
+    let mean = [0, 1].map(|d| fields.iter().map(|field| field.momentum()[d]).sum::<f64>() / mass);
     let parts = points().map(|point| {
         let [x, y] = [0, 1].map(|d| point.position[d] - center[d]);
         let [u, v] = [0, 1].map(|d| point.velocity[d] - mean[d]);
         [point.volume * (x * v - y * u), point.volume * (x * x + y * y)]
     });
     let [moment, inertia] = parts.fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
-    let thickness = fields.first().map_or(1.0, |field| field.thickness);
     BodySample {
         name: name.to_string(),
         mass,
         center,
-        velocity: [0, 1].map(|d| sum(&|at| samples[at].momentum[d]) * thickness / mass),
+        velocity: [0, 1].map(|d| samples.iter().map(|sample| sample.momentum[d]).sum::<f64>() * thickness / mass),
         spin: moment / inertia,
-        kinetic: sum(&|at| samples[at].kinetic) * thickness,
+        kinetic: samples.iter().map(|sample| sample.kinetic).sum::<f64>() * thickness,
     }
 }

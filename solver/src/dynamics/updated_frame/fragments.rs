@@ -1,13 +1,12 @@
 //! Fragments: a body that is cracked through becomes bodies with nodal fields of their own, that part, meet
 //! and rub on each other.
 //!
-//! Intact points hang together along chains of short steps ([`pieces`]). Each group that is large enough for
-//! a field of its own becomes a fragment: it takes its points with all they carry, its part of the
-//! boundary, and faces along the crack ([`crate::contact::crack_faces`]). Its phase field begins with the
-//! control values of the body and is solved for on the fragment alone. Mass and momentum are those of the
-//! points, so both are kept. The energy on the grid is not: velocities no longer average over the crack, and
-//! no phase field spans it. That change is a loss of its own
-//! ([`TransferLosses::partition`](super::losses::TransferLosses)).
+//! The connected components of the intact points ([`pieces`]) that are large enough for a field of their own
+//! become fragments. Each takes its points with all they carry, its part of the boundary, and faces along the
+//! crack ([`crate::contact::crack_faces`]). Its phase field begins with the control values of the body and is
+//! solved for on the fragment alone. Mass and momentum are those of the points, so both are kept. The energy
+//! on the grid is not: velocities no longer average over the crack, and no phase field spans it. That change
+//! is a loss of its own ([`TransferLosses::partition`](super::losses::TransferLosses)).
 
 mod pieces;
 
@@ -18,8 +17,8 @@ use crate::dynamics::failure::Failure;
 use crate::particles::points::Point;
 use pieces::{Pieces, SEPARATED, spacing};
 
-/// Steps from one look at the bodies to the next: a crack grows by a few spans in them.
-const STEPS_BETWEEN_LOOKS: usize = 16;
+/// Steps between checks of the bodies: a crack grows by a few spans in them.
+const CHECK_INTERVAL: usize = 16;
 /// Area of the smallest fragment, in squares of a span: fewer points have no field of their own.
 const LEAST_SPANS: f64 = 9.0;
 
@@ -28,7 +27,7 @@ const LEAST_SPANS: f64 = 9.0;
 pub(super) struct Fragments {
     /// Number of the body of each field; the first fields are one of each.
     pub(super) bodies: Vec<usize>,
-    /// Steps since the bodies were looked at.
+    /// Steps since the bodies were checked.
     pub(super) steps: usize,
 }
 
@@ -38,15 +37,15 @@ impl Fragments {
         Self { bodies: (0..bodies).collect(), steps: 0 }
     }
 
-    /// Whether it is time for a look, one step later.
-    pub(super) fn look(&mut self) -> bool {
-        self.steps = (self.steps + 1) % STEPS_BETWEEN_LOOKS;
+    /// Whether a check is due, one step later.
+    pub(super) fn is_due(&mut self) -> bool {
+        self.steps = (self.steps + 1) % CHECK_INTERVAL;
         self.steps == 0
     }
 }
 
 impl DiscreteField {
-    /// Its fragments, the first with its ledger, if it is cracked through.
+    /// Its fragments, if it is cracked through; the first takes over its ledger and what its solver counted.
     pub(super) fn part(&self, dt: f64) -> Result<Option<Vec<Self>>, Failure> {
         let Some(fracture) = self.fracture.as_ref().filter(|fracture| fracture.least_phase < SEPARATED) else {
             return Ok(None);
@@ -60,6 +59,7 @@ impl DiscreteField {
         (first.ledger, first.losses) = (self.ledger, self.losses);
         first.losses.partition += fault!("partition-unbooked", self.stored(dt) - kept => 0.0);
         first.ledger.transfer_loss = first.losses.sum();
+        first.fracture.iter_mut().for_each(|part| part.field.count_also(fracture.field.counts()));
         Ok(Some(parts))
     }
 

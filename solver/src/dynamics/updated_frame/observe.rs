@@ -124,11 +124,7 @@ impl UpdatedFrame {
     /// Counters of the phase fields, if there are any.
     pub(crate) fn phase_field_counts(&self) -> Option<PhaseFieldCounts> {
         let counts = self.fields.iter().filter_map(|field| field.fracture.as_ref()).map(|f| f.field.counts());
-        counts.reduce(|a, b| PhaseFieldCounts {
-            solves: a.solves + b.solves,
-            iterations: a.iterations + b.iterations,
-            bytes: a.bytes + b.bytes,
-        })
+        counts.reduce(PhaseFieldCounts::plus)
     }
 
     /// Position (m) of the fastest control point with mass, and its speed (m/s), infinite if it is no number.

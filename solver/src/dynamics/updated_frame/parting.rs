@@ -17,12 +17,12 @@ impl UpdatedFrame {
         self.fragments.as_ref().map(|_| self.fields.len())
     }
 
-    /// From time to time, parts the bodies that are cracked through; `dt` is the step in use, s.
+    /// Parts the bodies that are cracked through, where a check is due; `dt` is the step in use, s.
     ///
     /// # Errors
     /// If the phase field of a fragment does not converge.
-    pub(super) fn part_now_and_then(&mut self, dt: f64) -> Result<(), Failure> {
-        if self.fragments.as_mut().is_some_and(Fragments::look) { self.part_bodies(dt) } else { Ok(()) }
+    pub(super) fn part_if_due(&mut self, dt: f64) -> Result<(), Failure> {
+        if self.fragments.as_mut().is_some_and(Fragments::is_due) { self.part_bodies(dt) } else { Ok(()) }
     }
 
     /// Parts the bodies whose seeds cut them through.
@@ -31,7 +31,9 @@ impl UpdatedFrame {
     /// If the phase field of a fragment does not converge.
     pub(super) fn part_at_start(&mut self) -> Result<(), Failure> {
         self.part_bodies(0.0)?;
-        self.fields.iter_mut().for_each(DiscreteField::begin_ledger);
+        if self.fragments.is_some() {
+            self.fields.iter_mut().for_each(DiscreteField::begin_ledger);
+        }
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-//! The pieces of a body that intact material no longer holds together.
+//! Connected components of the intact points of a body, and which of the others go with each.
 
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::vectors::dot;
