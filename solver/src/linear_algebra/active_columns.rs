@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::control_grid::ControlGrid;
-use super::lane::LANES;
+use super::lane::{LANES, Scalar};
 
 /// Ranges of columns in each row of control points. Between two ranges lie at least [`LANES`] control points:
 /// shorter gaps take part, which costs less than to begin anew.
@@ -43,14 +43,14 @@ impl ActiveColumns {
     }
 
     /// Sets a field to zero outside.
-    pub(crate) fn clear_outside(&self, grid: ControlGrid, field: &mut [f64]) {
+    pub(crate) fn clear_outside<T: Scalar>(&self, grid: ControlGrid, field: &mut [T]) {
         for (row, values) in field.chunks_mut(grid.stride).enumerate() {
             let mut end = 0;
             for range in self.row(row) {
-                values[end..grid.index(range.start, 0)].fill(0.0);
+                values[end..grid.index(range.start, 0)].fill(T::ZERO);
                 end = grid.index(range.end, 0);
             }
-            values[end..].fill(0.0);
+            values[end..].fill(T::ZERO);
         }
     }
 }

@@ -11,6 +11,7 @@ use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, factorize_symboli
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use faer::{Conj, Mat, Par, Side};
 
+use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::stencil::Stencil;
 
 /// Direct solver for matrices of one pattern.
@@ -22,6 +23,7 @@ pub struct SparseCholesky {
 /// A factored matrix.
 #[derive(Debug, Clone)]
 pub struct Factor {
+    grid: ControlGrid,
     symbolic: Arc<SymbolicCholesky<usize>>,
     values: Vec<f64>,
     /// Index in a field of each unknown.
@@ -52,7 +54,7 @@ impl SparseCholesky {
         symbolic
             .factorize_numeric_llt(&mut values, lower, Side::Lower, regularization, threads, room, Default::default())
             .ok()?;
-        Some(Factor { symbolic, values, indices, held })
+        Some(Factor { grid: matrix.grid, symbolic, values, indices, held })
     }
 
     /// Solves `A x = b`; `None` if the matrix is not positive definite.
@@ -78,6 +80,11 @@ impl Factor {
         for (i, &index) in self.indices.iter().enumerate() {
             x[index] = solution[(i, 0)];
         }
+    }
+
+    /// Layout of the fields.
+    pub(crate) fn grid(&self) -> ControlGrid {
+        self.grid
     }
 
     /// Heap memory of the factor, bytes; that of the pattern, which factors share, is left out.

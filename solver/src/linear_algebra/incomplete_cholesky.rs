@@ -7,8 +7,10 @@
 //! applied with the scale of the matrix as it is then: `A ≈ S⁻¹ L D Lᵀ S⁻¹`. Material that comes to a control
 //! point and leaves it changes its diagonal most, so an old factor stays a good one for long.
 //!
-//! It is kept in single precision: what it is applied with takes as long as reading it, it stays symmetric
-//! and positive definite, and conjugate gradients work in double precision around it.
+//! It is made in double precision, and kept and applied in single precision: it stays symmetric and positive
+//! definite, and applying it takes as long as reading it. It stands for `unit A` with a power of two that
+//! makes the largest diagonal entry about one ([`IncompleteCholesky::unit`]): nothing underflows, whatever
+//! the units of a scene.
 
 use std::ops::Range;
 
@@ -20,7 +22,7 @@ use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised, add_product, dispatch};
 use crate::linear_algebra::stencil::{Offset, Stencil};
-use crate::linear_algebra::terms::Terms;
+use crate::linear_algebra::terms::{Terms, batches};
 
 /// Rows of control points in a block.
 const BLOCK_ROWS: usize = 24;
@@ -52,7 +54,8 @@ pub struct IncompleteCholesky {
     /// Largest shift of a block.
     shift: f64,
     /// S, one over the root of the diagonal of the matrix now; none for a matrix that is factored as it is.
-    scale: Option<Vec<f64>>,
+    scale: Option<Vec<f32>>,
+    unit: f64,
 }
 
 impl IncompleteCholesky {
@@ -61,8 +64,8 @@ impl IncompleteCholesky {
         let offsets = matrix.offsets().to_vec();
         let updates = updates(&offsets, matrix.degree());
         let factor = vec![0.0; matrix.coefficients().len()];
-        let scale = scaled.then(|| matrix.grid.zeros());
-        let mut factor = Self { grid: matrix.grid, offsets, updates, factor, shift: 0.0, scale };
+        let scale = scaled.then(|| vec![0.0; matrix.grid.len()]);
+        let mut factor = Self { grid: matrix.grid, offsets, updates, factor, shift: 0.0, scale, unit: 1.0 };
         factor.rescale(matrix);
         factor.refactor(matrix);
         factor
@@ -71,9 +74,13 @@ impl IncompleteCholesky {
     /// Factors `matrix` again in the same memory.
     pub fn refactor(&mut self, matrix: &Stencil) {
         let block = BLOCK_ROWS * matrix.row_length();
-        let Self { offsets, updates, factor, scale, .. } = self;
+        if self.scale.is_none() {
+            self.unit = unit(matrix);
+        }
+        let Self { offsets, updates, factor, scale, unit, .. } = self;
         let shifts = factor.par_chunks_mut(block).enumerate().map(|(index, factor)| {
-            let rows = Rows { matrix, first: index * BLOCK_ROWS, scale: scale.as_deref(), offsets, updates };
+            let (first, scale) = (index * BLOCK_ROWS, scale.as_deref());
+            let rows = Rows { matrix, first, unit: *unit, scale, offsets, updates };
             let (mut block, mut shift) = (vec![0.0; factor.len()], 0.0);
             while !rows.factor(shift, &mut block) && shift < LARGEST_SHIFT {
                 shift = (SHIFT_GROWTH * shift).max(FIRST_SHIFT);
@@ -87,15 +94,22 @@ impl IncompleteCholesky {
     /// Takes the scale from the diagonal of `matrix`, if there is one to take.
     pub(crate) fn rescale(&mut self, matrix: &Stencil) {
         let Some(scale) = &mut self.scale else { return };
+        self.unit = unit(matrix);
         for (row, scale) in scale.chunks_mut(self.grid.stride).enumerate() {
             for (scale, diagonal) in scale.iter_mut().zip(matrix.row(row, 0)) {
-                *scale = if *diagonal > 0.0 { 1.0 / diagonal.sqrt() } else { 0.0 };
+                *scale = if *diagonal > 0.0 { 1.0 / (self.unit * diagonal).sqrt() as f32 } else { 0.0 };
             }
         }
     }
 
-    /// `out = M⁻¹ r` on the `active` control points, for an `out` that is zero elsewhere; returns `rᵀ out`.
-    pub fn apply(&self, active: &ActiveColumns, r: &[f64], out: &mut [f64]) -> f64 {
+    /// What the matrix is multiplied by, a power of two.
+    pub fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// `out = (unit M)⁻¹ r` on the `active` control points, for an `out` that is zero elsewhere; returns
+    /// `rᵀ out`.
+    pub fn apply(&self, active: &ActiveColumns, r: &[f32], out: &mut [f32]) -> f64 {
         let rows = BLOCK_ROWS * self.grid.stride;
         let length = self.offsets.len() * rows;
         let parts: Vec<f64> = out
@@ -122,15 +136,23 @@ impl IncompleteCholesky {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { grid: _, offsets: _, updates: _, factor, shift, scale: _ } = self;
+        let Self { grid: _, offsets: _, updates: _, factor, shift, scale: _, unit } = self;
         archive.list(factor)?;
+        archive.value(unit)?;
         archive.value(shift)
     }
 
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
-        size_of::<f32>() * self.factor.len() + self.scale.as_ref().map_or(0, |scale| 8 * scale.len())
+        size_of::<f32>() * (self.factor.len() + self.scale.as_ref().map_or(0, Vec::len))
     }
+}
+
+/// The power of two that brings the largest diagonal entry next to one; one for a matrix without any.
+pub(crate) fn unit(matrix: &Stencil) -> f64 {
+    let rows = (0..matrix.grid.rows).flat_map(|row| matrix.row(row, 0));
+    let largest = rows.copied().fold(0.0, larger);
+    if largest > 0.0 && largest.is_finite() { (-largest.log2().round()).exp2() } else { 1.0 }
 }
 
 /// Pairs of couplings whose difference is a coupling too.
@@ -153,18 +175,20 @@ fn updates(offsets: &[Offset], degree: [usize; 2]) -> Vec<Update> {
 struct Rows<'a> {
     matrix: &'a Stencil,
     first: usize,
-    scale: Option<&'a [f64]>,
+    unit: f64,
+    scale: Option<&'a [f32]>,
     offsets: &'a [Offset],
     updates: &'a [Update],
 }
 
 impl Rows<'_> {
-    /// Copies the matrix, scaled if it is to be, into `block`; control points that take no part are left out.
+    /// Copies the matrix times the unit, scaled if it is to be, into `block`; control points that take no part are left out.
     fn copy(&self, block: &mut [f64]) {
         let grid = self.matrix.grid;
         let row_length = self.matrix.row_length();
         let Some(scale) = self.scale else {
-            return block.copy_from_slice(&self.matrix.coefficients()[self.first * row_length..][..block.len()]);
+            let coefficients = &self.matrix.coefficients()[self.first * row_length..];
+            return block.iter_mut().zip(coefficients).for_each(|(block, value)| *block = self.unit * value);
         };
         block.fill(0.0);
         for (local, block) in block.chunks_mut(row_length).enumerate() {
@@ -174,8 +198,8 @@ impl Rows<'_> {
                 let there = ((row + offset.rows) * grid.stride).wrapping_add_signed(offset.columns);
                 for column in self.matrix.active().row(row).iter().cloned().flatten() {
                     let at = grid.index(column, 0);
-                    let scales = scale[row * grid.stride + at] * scale[there + at];
-                    block[index * grid.stride + at] = coefficients[at] * scales;
+                    let scales = f64::from(scale[row * grid.stride + at]) * f64::from(scale[there + at]);
+                    block[index * grid.stride + at] = self.unit * coefficients[at] * scales;
                 }
             }
         }
@@ -196,7 +220,7 @@ impl Rows<'_> {
             let reachable = offsets.iter().take_while(|o| row + o.rows < rows).count();
             for column in matrix.active().row(self.first + row).iter().cloned().flatten() {
                 let at = row * row_length + grid.index(column, 0);
-                let own = matrix.diagonal(column, self.first + row);
+                let own = self.unit * matrix.diagonal(column, self.first + row);
                 let diagonal = if self.scale.is_some() && own > 0.0 { 1.0 } else { own };
                 if block[at] <= LEAST_PIVOT * diagonal && shift < LARGEST_SHIFT && diagonal > 0.0 {
                     return false;
@@ -250,9 +274,9 @@ struct SolveBlock<'a> {
     /// First row of the block.
     first: usize,
     factor: &'a [f32],
-    scale: Option<&'a [f64]>,
-    r: &'a [f64],
-    out: &'a mut [f64],
+    scale: Option<&'a [f32]>,
+    r: &'a [f32],
+    out: &'a mut [f32],
 }
 
 impl SolveBlock<'_> {
@@ -267,12 +291,11 @@ impl SolveBlock<'_> {
         let mut column = range.start;
         while column < range.end {
             let (at, left) = (self.grid.index(column, 0), range.end - column);
-            if left > LANES {
-                self.some::<FMA, FORWARD, 2>(row, at, left, terms);
-            } else {
-                self.some::<FMA, FORWARD, 1>(row, at, left, terms);
-            }
-            column += 2 * LANES;
+            column += match batches::<f32>(left) {
+                4 => self.some::<FMA, FORWARD, 4>(row, at, left, terms),
+                2 => self.some::<FMA, FORWARD, 2>(row, at, left, terms),
+                _ => self.some::<FMA, FORWARD, 1>(row, at, left, terms),
+            };
         }
     }
 
@@ -283,7 +306,7 @@ impl SolveBlock<'_> {
         at: usize,
         left: usize,
         terms: &Terms,
-    ) {
+    ) -> usize {
         let (stride, pivots) = (self.grid.stride, self.start(row, 0));
         let mut sums = [Lane::ZERO; N];
         for (n, sum) in sums.iter_mut().enumerate() {
@@ -291,7 +314,7 @@ impl SolveBlock<'_> {
             *sum = match (FORWARD, self.scale) {
                 (true, None) => Lane::load(self.r, here + row * stride),
                 (true, Some(scale)) => Lane::load(self.r, here + row * stride) * Lane::load(scale, here + row * stride),
-                (false, _) => Lane::load(self.out, here + row * stride) * Lane::load_single(self.factor, pivots + here),
+                (false, _) => Lane::load(self.out, here + row * stride) * Lane::load(self.factor, pivots + here),
             };
         }
         let sums = terms.add::<FMA, true, N, _>(sums, self.factor, self.out, at);
@@ -299,6 +322,7 @@ impl SolveBlock<'_> {
             let (here, used) = (at + n * LANES + row * stride, (left - n * LANES).min(LANES));
             self.out[here..][..used].copy_from_slice(&sum.0[..used]);
         }
+        N * LANES
     }
 
     /// Earlier rows, then along the row.
@@ -323,8 +347,8 @@ impl SolveBlock<'_> {
             for at in first..grid.index(range.end, 0) {
                 let mut value = out[at];
                 for index in (1..=P).rev() {
-                    let coefficient = -f64::from(self.factor[start + index * grid.stride + at - index]);
-                    value = add_product::<FMA>(value, coefficient, last[index - 1]);
+                    let coefficient = -self.factor[start + index * grid.stride + at - index];
+                    value = add_product::<FMA, _>(value, coefficient, last[index - 1]);
                 }
                 out[at] = value;
                 last.copy_within(0..P - 1, 1);
@@ -354,8 +378,8 @@ impl SolveBlock<'_> {
             for at in (grid.index(range.start, 0)..end).rev() {
                 let mut value = out[at];
                 for index in (1..=P).rev() {
-                    let coefficient = -f64::from(self.factor[start + index * grid.stride + at]);
-                    value = add_product::<FMA>(value, coefficient, last[index - 1]);
+                    let coefficient = -self.factor[start + index * grid.stride + at];
+                    value = add_product::<FMA, _>(value, coefficient, last[index - 1]);
                 }
                 out[at] = value;
                 last.copy_within(0..P - 1, 1);
@@ -370,11 +394,16 @@ impl SolveBlock<'_> {
         if let Some(scale) = self.scale {
             self.out.iter_mut().zip(scale).for_each(|(out, scale)| *out *= scale);
         }
-        let mut product = Lane::ZERO;
-        for (r, out) in self.r.chunks_exact(LANES).zip(self.out.chunks_exact(LANES)) {
-            product = product.add_product::<FMA>(Lane::load(r, 0), Lane::load(out, 0));
-        }
-        product.sum()
+        let stride = self.grid.stride;
+        let rows = self.r.chunks(stride).zip(self.out.chunks(stride));
+        let products = rows.map(|(r, out)| {
+            let mut product = Lane::ZERO;
+            for (r, out) in r.chunks_exact(LANES).zip(out.chunks_exact(LANES)) {
+                product = product.add_product::<FMA>(Lane::load(r, 0), Lane::load(out, 0));
+            }
+            f64::from(product.sum())
+        });
+        products.sum()
     }
 
     #[inline(always)]

@@ -6,55 +6,83 @@
 //! for AVX2 and FMA where the processor has them, so a default build needs no compiler flags.
 
 use serde::{Deserialize, Serialize};
-use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Sub};
+use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub};
 
 /// Spans handled together.
 pub const LANES: usize = 8;
 
+/// Numbers of single or double precision.
+pub trait Scalar:
+    Copy
+    + Default
+    + PartialOrd
+    + Send
+    + Sync
+    + Into<f64>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Neg<Output = Self>
+{
+    /// Zero.
+    const ZERO: Self;
+    /// The nearest number of this precision.
+    fn of(value: f64) -> Self;
+    /// `self a + b` with one rounding.
+    fn fused(self, a: Self, b: Self) -> Self;
+}
+
+macro_rules! scalar {
+    ($($type:ty),+) => {$(
+        impl Scalar for $type {
+            const ZERO: Self = 0.0;
+            #[inline(always)]
+            fn of(value: f64) -> Self {
+                value as Self
+            }
+            #[inline(always)]
+            fn fused(self, a: Self, b: Self) -> Self {
+                self.mul_add(a, b)
+            }
+        }
+    )+};
+}
+scalar!(f32, f64);
+
 /// One number for each of [`LANES`] neighbouring spans.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[repr(C, align(64))]
-pub struct Lane(pub [f64; LANES]);
+pub struct Lane<T = f64>(pub [T; LANES]);
 
-impl Lane {
+impl<T: Scalar> Lane<T> {
     /// All zero.
-    pub const ZERO: Self = Self([0.0; LANES]);
+    pub const ZERO: Self = Self([T::ZERO; LANES]);
 
     /// The same number in every lane.
     #[inline(always)]
-    pub fn splat(value: f64) -> Self {
+    pub fn splat(value: T) -> Self {
         Self([value; LANES])
     }
 
     /// Reads eight neighbours.
     #[inline(always)]
-    pub fn load(values: &[f64], at: usize) -> Self {
+    pub fn load(values: &[T], at: usize) -> Self {
         let mut lane = Self::ZERO;
-        lane.0.copy_from_slice(&values[at..at + LANES]);
-        lane
-    }
-
-    /// Reads eight neighbours in single precision.
-    #[inline(always)]
-    pub(crate) fn load_single(values: &[f32], at: usize) -> Self {
-        let mut lane = Self::ZERO;
-        for (lane, value) in lane.0.iter_mut().zip(&values[at..at + LANES]) {
-            *lane = f64::from(*value);
-        }
+        lane.0.iter_mut().zip(&values[at..at + LANES]).for_each(|(lane, value)| *lane = *value);
         lane
     }
 
     /// Adds to eight neighbours.
     #[inline(always)]
-    pub fn add_to(self, values: &mut [f64], at: usize) {
+    pub fn add_to(self, values: &mut [T], at: usize) {
         for (value, add) in values[at..at + LANES].iter_mut().zip(self.0) {
-            *value += add;
+            *value = *value + add;
         }
     }
 
     /// `f` of each lane.
     #[inline(always)]
-    pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
+    pub fn map(self, f: impl Fn(T) -> T) -> Self {
         let mut out = Self::ZERO;
         for l in 0..LANES {
             out.0[l] = f(self.0[l]);
@@ -64,7 +92,7 @@ impl Lane {
 
     /// `f` of each pair of lanes.
     #[inline(always)]
-    pub fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+    pub fn zip(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
         let mut out = Self::ZERO;
         for l in 0..LANES {
             out.0[l] = f(self.0[l], other.0[l]);
@@ -77,14 +105,14 @@ impl Lane {
     pub fn add_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
         let mut out = self;
         for l in 0..LANES {
-            out.0[l] = add_product::<FMA>(out.0[l], a.0[l], b.0[l]);
+            out.0[l] = add_product::<FMA, _>(out.0[l], a.0[l], b.0[l]);
         }
         out
     }
 
     /// `self + a b` with the same `b` in every lane.
     #[inline(always)]
-    pub(crate) fn add_scaled<const FMA: bool>(self, a: Self, b: f64) -> Self {
+    pub(crate) fn add_scaled<const FMA: bool>(self, a: Self, b: T) -> Self {
         self.add_product::<FMA>(a, Self::splat(b))
     }
 
@@ -104,7 +132,7 @@ impl Lane {
 
     /// Sum over the lanes, always in the same order.
     #[inline(always)]
-    pub fn sum(self) -> f64 {
+    pub fn sum(self) -> T {
         let v = self.0;
         ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]))
     }
@@ -112,38 +140,38 @@ impl Lane {
 
 /// `sum + a b`, with one rounding if `FMA`.
 #[inline(always)]
-pub fn add_product<const FMA: bool>(sum: f64, a: f64, b: f64) -> f64 {
-    if FMA { a.mul_add(b, sum) } else { sum + a * b }
+pub fn add_product<const FMA: bool, T: Scalar>(sum: T, a: T, b: T) -> T {
+    if FMA { a.fused(b, sum) } else { sum + a * b }
 }
 
-impl Index<usize> for Lane {
-    type Output = f64;
+impl<T> Index<usize> for Lane<T> {
+    type Output = T;
     #[inline(always)]
-    fn index(&self, lane: usize) -> &f64 {
+    fn index(&self, lane: usize) -> &T {
         &self.0[lane]
     }
 }
 
-impl IndexMut<usize> for Lane {
+impl<T> IndexMut<usize> for Lane<T> {
     #[inline(always)]
-    fn index_mut(&mut self, lane: usize) -> &mut f64 {
+    fn index_mut(&mut self, lane: usize) -> &mut T {
         &mut self.0[lane]
     }
 }
 
 macro_rules! lanewise {
     ($trait:ident, $method:ident, $op:tt) => {
-        impl $trait for Lane {
+        impl<T: Scalar> $trait for Lane<T> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
                 self.zip(other, |a, b| a $op b)
             }
         }
-        impl $trait<f64> for Lane {
+        impl<T: Scalar> $trait<T> for Lane<T> {
             type Output = Self;
             #[inline(always)]
-            fn $method(self, other: f64) -> Self {
+            fn $method(self, other: T) -> Self {
                 self.map(|a| a $op other)
             }
         }
@@ -153,7 +181,7 @@ lanewise!(Add, add, +);
 lanewise!(Sub, sub, -);
 lanewise!(Mul, mul, *);
 
-impl AddAssign for Lane {
+impl<T: Scalar> AddAssign for Lane<T> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;

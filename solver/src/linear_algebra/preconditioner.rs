@@ -10,9 +10,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::checkpoint::{Archive, StateError};
+use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::cholesky::{Factor, SparseCholesky};
 use crate::linear_algebra::counter::Counter;
-use crate::linear_algebra::incomplete_cholesky::IncompleteCholesky;
+use crate::linear_algebra::incomplete_cholesky::{IncompleteCholesky, unit};
 use crate::linear_algebra::stencil::Stencil;
 
 /// A factor is renewed once a solve needs this many more iterations than the one after its renewal.
@@ -43,8 +44,8 @@ pub struct Preconditioner {
 #[derive(Debug, Clone)]
 enum PreconditionerKind {
     Incomplete(IncompleteCholesky),
-    /// None between a checkpoint and the solve that makes one.
-    Complete(SparseCholesky, Option<Factor>),
+    /// With its unit; none between a checkpoint and the solve that makes one.
+    Complete(SparseCholesky, Option<(Factor, f64)>),
 }
 
 /// How long complete factors serve.
@@ -69,16 +70,28 @@ impl Preconditioner {
         }
     }
 
-    /// `out = M⁻¹ r` on the control points that take part in the system, for an `out` that is zero elsewhere;
-    /// returns `rᵀ out`.
-    pub fn apply(&self, matrix: &Stencil, r: &[f64], out: &mut [f64]) -> f64 {
+    /// What the matrix is multiplied by, a power of two: see [`IncompleteCholesky::unit`].
+    pub fn unit(&self) -> f64 {
+        match &self.factor {
+            PreconditionerKind::Incomplete(factor) => factor.unit(),
+            PreconditionerKind::Complete(_, factor) => factor.as_ref().map_or(1.0, |(_, unit)| *unit),
+        }
+    }
+
+    /// `out = (unit M)⁻¹ r` on the control points that take part in the system, for an `out` that is zero
+    /// elsewhere; returns `rᵀ out`.
+    pub fn apply(&self, active: &ActiveColumns, r: &[f32], out: &mut [f32]) -> f64 {
         self.read.add(self.bytes());
         match &self.factor {
-            PreconditionerKind::Incomplete(factor) => factor.apply(matrix.active(), r, out),
+            PreconditionerKind::Incomplete(factor) => factor.apply(active, r, out),
             PreconditionerKind::Complete(_, factor) => {
-                factor.as_ref().expect("it is made before the solve").solve(r, out);
-                matrix.active().clear_outside(matrix.grid, out);
-                r.iter().zip(out).map(|(r, out)| r * *out).sum()
+                let (factor, unit) = factor.as_ref().expect("it is made before the solve");
+                let right: Vec<f64> = r.iter().map(|r| f64::from(*r) / unit).collect();
+                let mut solution = vec![0.0; out.len()];
+                factor.solve(&right, &mut solution);
+                out.iter_mut().zip(solution).for_each(|(out, solution)| *out = solution as f32);
+                active.clear_outside(factor.grid(), out);
+                r.iter().zip(out).map(|(r, out)| f64::from(*r) * f64::from(*out)).sum()
             }
         }
     }
@@ -88,7 +101,7 @@ impl Preconditioner {
         match &mut self.factor {
             PreconditionerKind::Incomplete(factor) => factor.refactor(matrix),
             PreconditionerKind::Complete(cholesky, factor) => {
-                *factor = cholesky.factor(matrix, &[]);
+                *factor = cholesky.factor(matrix, &[]).map(|factor| (factor, unit(matrix)));
                 if factor.is_none() {
                     self.factor = PreconditionerKind::Incomplete(IncompleteCholesky::new(matrix, self.is_scaled));
                 }
@@ -162,7 +175,7 @@ impl Preconditioner {
         }
         let mut cholesky = SparseCholesky::default();
         let Some(factor) = cholesky.factor(matrix, &[]) else { return false };
-        self.factor = PreconditionerKind::Complete(cholesky, Some(factor));
+        self.factor = PreconditionerKind::Complete(cholesky, Some((factor, unit(matrix))));
         self.pause = Pause { left: self.pause.next, next: (2 * self.pause.next).min(LONGEST_PAUSE) };
         true
     }
@@ -176,7 +189,7 @@ impl Preconditioner {
     pub fn bytes(&self) -> usize {
         match &self.factor {
             PreconditionerKind::Incomplete(factor) => factor.bytes(),
-            PreconditionerKind::Complete(_, factor) => factor.as_ref().map_or(0, |factor| factor.bytes()),
+            PreconditionerKind::Complete(_, factor) => factor.as_ref().map_or(0, |(factor, _)| factor.bytes()),
         }
     }
 

@@ -4,14 +4,17 @@
 //! matrix has the couplings of each control point with itself and the ones after it: `(2 p + 1) q + p + 1`
 //! numbers, kept row of control points by row of control points. Applying it reads every coefficient once
 //! from memory.
+//!
+//! Iterations read a copy in single precision, half as many bytes, which is written where the residual is
+//! taken in double precision ([`Stencil::residual`]).
 
 use rayon::prelude::*;
 
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::counter::Counter;
-use crate::linear_algebra::lane::{LANES, Lane, Vectorised, dispatch};
-use crate::linear_algebra::terms::Terms;
+use crate::linear_algebra::lane::{LANES, Lane, Scalar, Vectorised, dispatch};
+use crate::linear_algebra::terms::{Terms, batches};
 
 /// Rows of control points whose partial sums are formed together.
 pub(crate) const CHUNK_ROWS: usize = 8;
@@ -30,12 +33,12 @@ pub struct Offset {
 
 /// Symmetric matrix on a control grid.
 #[derive(Debug, Clone)]
-pub struct Stencil {
+pub struct Stencil<T = f64> {
     /// Layout of the control points.
     pub grid: ControlGrid,
     degree: [usize; 2],
     offsets: Vec<Offset>,
-    coefficients: Vec<f64>,
+    coefficients: Vec<T>,
     active: ActiveColumns,
     read: Counter,
 }
@@ -48,14 +51,12 @@ impl Stencil {
         Self { grid, degree, offsets, coefficients, active: ActiveColumns::all(grid), read: Counter::default() }
     }
 
-    /// Couplings of the half stencil; the first is the diagonal.
-    pub fn offsets(&self) -> &[Offset] {
-        &self.offsets
-    }
-
-    /// Degree in x and y.
-    pub fn degree(&self) -> [usize; 2] {
-        self.degree
+    /// A copy of zeros in single precision.
+    pub(crate) fn single(&self) -> Stencil<f32> {
+        let Self { grid, degree, offsets, coefficients, active, read: _ } = self;
+        let coefficients = vec![0.0; coefficients.len()];
+        let (offsets, active) = (offsets.clone(), active.clone());
+        Stencil { grid: *grid, degree: *degree, offsets, coefficients, active, read: Counter::default() }
     }
 
     /// Position of a coupling in [`Self::offsets`].
@@ -63,11 +64,6 @@ impl Stencil {
     pub fn offset_index(degree: [usize; 2], columns: isize, rows: usize) -> usize {
         let p = degree[0] as isize;
         if rows == 0 { columns as usize } else { (p + 1 + (rows as isize - 1) * (2 * p + 1) + columns + p) as usize }
-    }
-
-    /// Numbers per row of control points.
-    pub fn row_length(&self) -> usize {
-        self.offsets.len() * self.grid.stride
     }
 
     /// Coefficients of coupling `offset` along a row of control points, with the room of a field row around
@@ -90,16 +86,6 @@ impl Stencil {
 
     pub(crate) fn values_mut(&mut self) -> &mut Vec<f64> {
         &mut self.coefficients
-    }
-
-    /// The control points that take part: all, unless it was said otherwise.
-    pub fn active(&self) -> &ActiveColumns {
-        &self.active
-    }
-
-    /// Leaves others than these out of the system: fields keep their values there.
-    pub(crate) fn restrict(&mut self, active: ActiveColumns) {
-        self.active = active;
     }
 
     /// Diagonal entry of a control point.
@@ -130,18 +116,79 @@ impl Stencil {
         self.coefficients[at] = value;
     }
 
+    /// `unit (b − A x)` at the control points that take part, zero elsewhere, and a copy of `unit A`, both in
+    /// single precision; `image` is `A x`.
+    pub(crate) fn residual(
+        &self,
+        unit: f64,
+        b: &[f64],
+        x: &[f64],
+        image: &mut [f64],
+        residual: &mut [f32],
+        copy: &mut Stencil<f32>,
+    ) {
+        self.read.add(self.bytes());
+        if copy.active != self.active {
+            copy.active = self.active.clone();
+        }
+        let chunk = CHUNK_ROWS * self.grid.stride;
+        let rows = image.par_chunks_mut(chunk).zip(residual.par_chunks_mut(chunk)).zip(b.par_chunks(chunk));
+        let coefficients = CHUNK_ROWS * self.row_length();
+        rows.zip(self.coefficients.par_chunks(coefficients))
+            .zip(copy.coefficients.par_chunks_mut(coefficients))
+            .with_min_len(self.least_chunks())
+            .enumerate()
+            .for_each(|(index, ((((image, residual), b), coefficients), copy))| {
+                dispatch(ApplyRows { matrix: self, x, out: image, first_row: index * CHUNK_ROWS });
+                dispatch(Rounded { unit, values: coefficients, subtract: None, out: copy });
+                dispatch(Rounded { unit, values: b, subtract: Some(image), out: residual });
+            });
+        self.active.clear_outside(self.grid, residual);
+    }
+}
+
+impl<T: Scalar> Stencil<T> {
+    /// Couplings of the half stencil; the first is the diagonal.
+    pub fn offsets(&self) -> &[Offset] {
+        &self.offsets
+    }
+
+    /// Degree in x and y.
+    pub fn degree(&self) -> [usize; 2] {
+        self.degree
+    }
+
+    /// Numbers per row of control points.
+    pub fn row_length(&self) -> usize {
+        self.offsets.len() * self.grid.stride
+    }
+
+    /// The control points that take part: all, unless it was said otherwise.
+    pub fn active(&self) -> &ActiveColumns {
+        &self.active
+    }
+
+    /// Leaves others than these out of the system: fields keep their values there.
+    pub(crate) fn restrict(&mut self, active: ActiveColumns) {
+        self.active = active;
+    }
+
     /// `out = A x` at the control points that take part, zero elsewhere; returns `xᵀ A x` for an x that is
     /// zero elsewhere, too.
-    pub fn apply(&self, x: &[f64], out: &mut [f64]) -> f64 {
+    pub fn apply(&self, x: &[T], out: &mut [T]) -> f64 {
         self.read.add(self.bytes());
         let chunk = CHUNK_ROWS * self.grid.stride;
         let parts: Vec<f64> = out
             .par_chunks_mut(chunk)
-            .with_min_len(LEAST_WORK.div_ceil(chunk * self.offsets.len()))
+            .with_min_len(self.least_chunks())
             .enumerate()
             .map(|(index, out)| dispatch(ApplyRows { matrix: self, x, out, first_row: index * CHUNK_ROWS }))
             .collect();
         parts.iter().sum()
+    }
+
+    fn least_chunks(&self) -> usize {
+        LEAST_WORK.div_ceil(CHUNK_ROWS * self.row_length())
     }
 
     /// Bytes of the matrix that [`Self::apply`] has read so far.
@@ -151,7 +198,7 @@ impl Stencil {
 
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
-        8 * self.coefficients.len()
+        size_of::<T>() * self.coefficients.len()
     }
 }
 
@@ -162,14 +209,38 @@ fn half_stencil([p, q]: [usize; 2]) -> Vec<Offset> {
     same_row.chain(rows_ahead).collect()
 }
 
-struct ApplyRows<'a> {
-    matrix: &'a Stencil,
-    x: &'a [f64],
-    out: &'a mut [f64],
+/// `out = unit (values − subtract)` in single precision.
+struct Rounded<'a> {
+    unit: f64,
+    values: &'a [f64],
+    subtract: Option<&'a [f64]>,
+    out: &'a mut [f32],
+}
+
+impl Vectorised for Rounded<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let Self { unit, values, subtract, out } = self;
+        match subtract {
+            None => out.iter_mut().zip(values).for_each(|(out, value)| *out = (unit * value) as f32),
+            Some(subtract) => {
+                let differences = values.iter().zip(subtract).map(|(value, subtract)| value - subtract);
+                out.iter_mut().zip(differences).for_each(|(out, value)| *out = (unit * value) as f32);
+            }
+        }
+    }
+}
+
+struct ApplyRows<'a, T> {
+    matrix: &'a Stencil<T>,
+    x: &'a [T],
+    out: &'a mut [T],
     first_row: usize,
 }
 
-impl ApplyRows<'_> {
+impl<T: Scalar> ApplyRows<'_, T> {
     /// The couplings of a row with itself and with those after and before it.
     #[inline(always)]
     fn terms(&self, row: usize) -> Terms {
@@ -190,7 +261,8 @@ impl ApplyRows<'_> {
         terms
     }
 
-    /// N batches of neighbours from `at` on in a row of `out`, of which `used` are in it; adds `xᵀ A x`.
+    /// N batches of neighbours from `at` on in a row of `out`, of which `used` are in it; adds `xᵀ A x`,
+    /// returns how many neighbours that were.
     #[inline(always)]
     fn some<const FMA: bool, const N: usize>(
         &mut self,
@@ -198,42 +270,44 @@ impl ApplyRows<'_> {
         at: usize,
         local: usize,
         used: usize,
-        product: &mut Lane,
-    ) {
+        product: &mut Lane<T>,
+    ) -> usize {
         let stride = self.matrix.grid.stride;
-        let sums = terms.add::<FMA, false, N, _>([Lane::ZERO; N], self.matrix.coefficients(), self.x, at);
+        let sums = terms.add::<FMA, false, N, _>([Lane::ZERO; N], &self.matrix.coefficients, self.x, at);
         for (n, sum) in sums.into_iter().enumerate() {
             let (here, used) = (at + n * LANES, (used - n * LANES).min(LANES));
             self.out[local * stride + here..][..used].copy_from_slice(&sum.0[..used]);
             *product += sum * Lane::load(self.x, here + (self.first_row + local) * stride);
         }
+        N * LANES
     }
 }
 
-impl Vectorised for ApplyRows<'_> {
+impl<T: Scalar> Vectorised for ApplyRows<'_, T> {
     type Output = f64;
 
     #[inline(always)]
     fn run<const FMA: bool>(mut self) -> f64 {
         let matrix = self.matrix;
         let grid = matrix.grid;
-        let mut product = Lane::ZERO;
+        let mut total = 0.0;
         for local in 0..self.out.len() / grid.stride {
             let terms = self.terms(self.first_row + local);
+            let mut product = Lane::ZERO;
             for range in matrix.active.row(self.first_row + local) {
                 let mut column = range.start;
                 while column < range.end {
                     let (at, left) = (grid.index(column, 0), range.end - column);
-                    if left > LANES {
-                        self.some::<FMA, 2>(&terms, at, local, left, &mut product);
-                    } else {
-                        self.some::<FMA, 1>(&terms, at, local, left, &mut product);
-                    }
-                    column += 2 * LANES;
+                    column += match batches::<T>(left) {
+                        4 => self.some::<FMA, 4>(&terms, at, local, left, &mut product),
+                        2 => self.some::<FMA, 2>(&terms, at, local, left, &mut product),
+                        _ => self.some::<FMA, 1>(&terms, at, local, left, &mut product),
+                    };
                 }
             }
+            total += product.sum().into();
         }
-        product.sum()
+        total
     }
 }
 

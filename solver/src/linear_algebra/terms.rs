@@ -1,27 +1,20 @@
 //! Sums over the couplings of a row of control points, for several neighbours at a time.
 
-use super::lane::{LANES, Lane};
+use super::lane::{LANES, Lane, Scalar};
 
 /// Most couplings of a control point: those of quartic splines.
 const MOST: usize = 81;
 
-/// Numbers that are read eight at a time.
-pub(super) trait Coefficients {
-    /// Eight neighbours.
-    fn lane(&self, at: usize) -> Lane;
-}
-
-impl Coefficients for [f64] {
-    #[inline(always)]
-    fn lane(&self, at: usize) -> Lane {
-        Lane::load(self, at)
-    }
-}
-
-impl Coefficients for [f32] {
-    #[inline(always)]
-    fn lane(&self, at: usize) -> Lane {
-        Lane::load_single(self, at)
+/// Batches of neighbours that are summed together when so many neighbours are left: as many as keep four
+/// vector registers of 32 bytes busy.
+#[inline(always)]
+pub(super) fn batches<T>(left: usize) -> usize {
+    if size_of::<T>() == 4 && left > 3 * LANES {
+        4
+    } else if left > LANES {
+        2
+    } else {
+        1
     }
 }
 
@@ -48,17 +41,17 @@ impl Terms {
     /// `sums ± Σ coefficient · value`, in the order of the couplings, for N batches of neighbours from `at`
     /// on. Several sums at once keep the arithmetic units busy, where one would wait for itself.
     #[inline(always)]
-    pub(super) fn add<const FMA: bool, const MINUS: bool, const N: usize, C: Coefficients + ?Sized>(
+    pub(super) fn add<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar>(
         &self,
-        mut sums: [Lane; N],
-        coefficients: &C,
-        values: &[f64],
+        mut sums: [Lane<T>; N],
+        coefficients: &[T],
+        values: &[T],
         at: usize,
-    ) -> [Lane; N] {
+    ) -> [Lane<T>; N] {
         for &(coefficient, value) in &self.starts[..self.count] {
             for n in 0..N {
-                let factor = coefficients.lane(coefficient.wrapping_add(at) + n * LANES);
-                let factor = if MINUS { factor * -1.0 } else { factor };
+                let factor = Lane::load(coefficients, coefficient.wrapping_add(at) + n * LANES);
+                let factor = if MINUS { factor.map(|factor| -factor) } else { factor };
                 sums[n] = sums[n].add_product::<FMA>(factor, Lane::load(values, value.wrapping_add(at) + n * LANES));
             }
         }

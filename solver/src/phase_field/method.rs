@@ -84,10 +84,10 @@ impl Method {
         }
     }
 
-    /// Bytes of factors that preconditioning has read so far.
+    /// Bytes of factors, and of the matrix in single precision, that iterations have read so far.
     pub(crate) fn bytes_read(&self) -> u64 {
         match self {
-            Self::Iterative { preconditioner, .. } => preconditioner.bytes_read(),
+            Self::Iterative { workspace, preconditioner } => workspace.bytes_read() + preconditioner.bytes_read(),
             Self::Direct(_) => 0,
         }
     }

@@ -78,7 +78,7 @@ impl Vectorised for Polynomials<'_> {
         for _ in 0..REPEATS {
             for number in &mut *self.numbers {
                 for _ in 0..DEGREE {
-                    *number = add_product::<FMA>(1.0, *number, self.factor);
+                    *number = add_product::<FMA, _>(1.0, *number, self.factor);
                 }
             }
         }

@@ -122,7 +122,7 @@ fn phase_field<'a, const P: usize>(block: &'a Block) -> Result<Vec<Contestant<'a
 
     let mut factorisation = record::<P>("factorisation", "incomplete factorisation", block.points);
     let mut factor = IncompleteCholesky::new(&fixed, false);
-    let (mut ones, mut image) = (block.lattice.grid.zeros(), block.lattice.grid.zeros());
+    let (mut ones, mut image) = (vec![0.0; block.lattice.grid.len()], vec![0.0; block.lattice.grid.len()]);
     block.lattice.grid.indices().for_each(|at| ones[at] = 1.0);
     factorisation
         .verify(factor.apply(fixed.active(), &ones, &mut image) > 0.0, "the preconditioner is positive definite");

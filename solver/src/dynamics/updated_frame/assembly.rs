@@ -168,8 +168,8 @@ impl Products {
             for (weight, vector) in self.weights.iter().zip(&self.vectors) {
                 let (above, below) = (weight * vector[row], weight * vector[row + 1]);
                 for j in 0..functions {
-                    upper[j] = add_product::<FMA>(upper[j], above, vector[j]);
-                    lower[j] = add_product::<FMA>(lower[j], below, vector[j]);
+                    upper[j] = add_product::<FMA, _>(upper[j], above, vector[j]);
+                    lower[j] = add_product::<FMA, _>(lower[j], below, vector[j]);
                 }
             }
             (matrix[row], matrix[row + 1]) = (upper, lower);
@@ -177,7 +177,7 @@ impl Products {
         }
         if row < functions {
             for (weight, vector) in self.weights.iter().zip(&self.vectors) {
-                matrix[row][row] = add_product::<FMA>(matrix[row][row], weight * vector[row], vector[row]);
+                matrix[row][row] = add_product::<FMA, _>(matrix[row][row], weight * vector[row], vector[row]);
             }
         }
     }
