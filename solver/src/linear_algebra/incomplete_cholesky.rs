@@ -12,7 +12,7 @@
 //! makes the largest diagonal entry about one ([`IncompleteCholesky::unit`]): nothing underflows, whatever
 //! the units of a scene.
 
-use std::ops::Range;
+mod solve;
 
 use rayon::prelude::*;
 
@@ -20,9 +20,9 @@ use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
-use crate::linear_algebra::lane::{LANES, Lane, Vectorised, add_product, dispatch};
+use crate::linear_algebra::lane::dispatch;
 use crate::linear_algebra::stencil::{Offset, Stencil};
-use crate::linear_algebra::terms::{Terms, batches};
+use solve::{SolveBlock, SolvePair};
 
 /// Rows of control points in a block.
 const BLOCK_ROWS: usize = 24;
@@ -113,17 +113,33 @@ impl IncompleteCholesky {
         let rows = BLOCK_ROWS * self.grid.stride;
         let length = self.offsets.len() * rows;
         let parts: Vec<f64> = out
-            .par_chunks_mut(rows)
-            .zip(r.par_chunks(rows))
-            .zip(self.factor.par_chunks(length))
+            .par_chunks_mut(2 * rows)
+            .zip(r.par_chunks(2 * rows))
+            .zip(self.factor.par_chunks(2 * length))
             .enumerate()
-            .map(|(index, ((out, r), factor))| {
-                let first = index * BLOCK_ROWS;
-                let scale = self.scale.as_ref().map(|scale| &scale[first * self.grid.stride..][..r.len()]);
-                dispatch(SolveBlock { grid: self.grid, offsets: &self.offsets, active, first, factor, scale, r, out })
+            .map(|(pair, ((out, r), factor))| {
+                let (out, other_out) = out.split_at_mut(rows.min(out.len()));
+                let (r, other_r) = r.split_at(out.len());
+                let (factor, other_factor) = factor.split_at(length.min(factor.len()));
+                let one = self.block(active, 2 * pair, factor, r, out);
+                dispatch(SolvePair([one, self.block(active, 2 * pair + 1, other_factor, other_r, other_out)]))
             })
             .collect();
         parts.iter().sum()
+    }
+
+    fn block<'a>(
+        &'a self,
+        active: &'a ActiveColumns,
+        number: usize,
+        factor: &'a [f32],
+        r: &'a [f32],
+        out: &'a mut [f32],
+    ) -> SolveBlock<'a> {
+        let first = number * BLOCK_ROWS;
+        let scale = self.scale.as_ref().filter(|_| !r.is_empty());
+        let scale = scale.map(|scale| &scale[first * self.grid.stride..][..r.len()]);
+        SolveBlock { grid: self.grid, offsets: &self.offsets, active, first, factor, scale, r, out }
     }
 
     /// Whether the diagonal of the matrix had to be raised so much that the factor is that of another one.
@@ -263,172 +279,6 @@ impl Rows<'_> {
                 }
                 entries[grid.index(end, 0)..grid.index(grid.columns, 0)].fill(unit);
             }
-        }
-    }
-}
-
-struct SolveBlock<'a> {
-    grid: ControlGrid,
-    offsets: &'a [Offset],
-    active: &'a ActiveColumns,
-    /// First row of the block.
-    first: usize,
-    factor: &'a [f32],
-    scale: Option<&'a [f32]>,
-    r: &'a [f32],
-    out: &'a mut [f32],
-}
-
-impl SolveBlock<'_> {
-    #[inline(always)]
-    fn start(&self, row: usize, offset: usize) -> usize {
-        (row * self.offsets.len() + offset) * self.grid.stride
-    }
-
-    /// `L z = S r`, or `Lᵀ x = D⁻¹ z`: other rows side by side, from the start of each sum on.
-    #[inline(always)]
-    fn side_by_side<const FMA: bool, const FORWARD: bool>(&mut self, row: usize, range: &Range<usize>, terms: &Terms) {
-        let mut column = range.start;
-        while column < range.end {
-            let (at, left) = (self.grid.index(column, 0), range.end - column);
-            column += match batches::<f32>(left) {
-                4 => self.some::<FMA, FORWARD, 4>(row, at, left, terms),
-                2 => self.some::<FMA, FORWARD, 2>(row, at, left, terms),
-                _ => self.some::<FMA, FORWARD, 1>(row, at, left, terms),
-            };
-        }
-    }
-
-    #[inline(always)]
-    fn some<const FMA: bool, const FORWARD: bool, const N: usize>(
-        &mut self,
-        row: usize,
-        at: usize,
-        left: usize,
-        terms: &Terms,
-    ) -> usize {
-        let (stride, pivots) = (self.grid.stride, self.start(row, 0));
-        let mut sums = [Lane::ZERO; N];
-        for (n, sum) in sums.iter_mut().enumerate() {
-            let here = at + n * LANES;
-            *sum = match (FORWARD, self.scale) {
-                (true, None) => Lane::load(self.r, here + row * stride),
-                (true, Some(scale)) => Lane::load(self.r, here + row * stride) * Lane::load(scale, here + row * stride),
-                (false, _) => Lane::load(self.out, here + row * stride) * Lane::load(self.factor, pivots + here),
-            };
-        }
-        let sums = terms.add::<FMA, true, N, _>(sums, self.factor, self.out, at);
-        for (n, sum) in sums.into_iter().enumerate() {
-            let (here, used) = (at + n * LANES + row * stride, (left - n * LANES).min(LANES));
-            self.out[here..][..used].copy_from_slice(&sum.0[..used]);
-        }
-        N * LANES
-    }
-
-    /// Earlier rows, then along the row.
-    #[inline(always)]
-    fn forward<const FMA: bool, const P: usize>(&mut self, row: usize) {
-        let (grid, active) = (self.grid, self.active);
-        let mut terms = Terms::none();
-        for (index, offset) in self.offsets.iter().enumerate().skip(P + 1).filter(|(_, o)| row >= o.rows) {
-            let before = row - offset.rows;
-            let here = |start: usize| start.wrapping_add_signed(-offset.columns);
-            terms.push(here(self.start(before, index)), here(before * grid.stride));
-        }
-        for range in active.row(self.first + row) {
-            self.side_by_side::<FMA, true>(row, range, &terms);
-        }
-        let start = self.start(row, 0);
-        let out = &mut self.out[row * grid.stride..(row + 1) * grid.stride];
-        for range in active.row(self.first + row) {
-            let first = grid.index(range.start, 0);
-            let mut last = [0.0; P];
-            last.iter_mut().enumerate().for_each(|(n, last)| *last = out[first - 1 - n]);
-            for at in first..grid.index(range.end, 0) {
-                let mut value = out[at];
-                for index in (1..=P).rev() {
-                    let coefficient = -self.factor[start + index * grid.stride + at - index];
-                    value = add_product::<FMA, _>(value, coefficient, last[index - 1]);
-                }
-                out[at] = value;
-                last.copy_within(0..P - 1, 1);
-                last[0] = value;
-            }
-        }
-    }
-
-    /// Later rows, then back along the row.
-    #[inline(always)]
-    fn backward<const FMA: bool, const P: usize>(&mut self, row: usize, rows: usize) {
-        let (grid, active) = (self.grid, self.active);
-        let mut terms = Terms::none();
-        for (index, offset) in self.offsets.iter().enumerate().skip(P + 1).filter(|(_, o)| row + o.rows < rows) {
-            let there = ((row + offset.rows) * grid.stride).wrapping_add_signed(offset.columns);
-            terms.push(self.start(row, index), there);
-        }
-        for range in active.row(self.first + row) {
-            self.side_by_side::<FMA, false>(row, range, &terms);
-        }
-        let start = self.start(row, 0);
-        let out = &mut self.out[row * grid.stride..(row + 1) * grid.stride];
-        for range in active.row(self.first + row).iter().rev() {
-            let end = grid.index(range.end, 0);
-            let mut last = [0.0; P];
-            last.iter_mut().enumerate().for_each(|(n, last)| *last = out[end + n]);
-            for at in (grid.index(range.start, 0)..end).rev() {
-                let mut value = out[at];
-                for index in (1..=P).rev() {
-                    let coefficient = -self.factor[start + index * grid.stride + at];
-                    value = add_product::<FMA, _>(value, coefficient, last[index - 1]);
-                }
-                out[at] = value;
-                last.copy_within(0..P - 1, 1);
-                last[0] = value;
-            }
-        }
-    }
-
-    /// `r · out`, after the scale is taken off both.
-    #[inline(always)]
-    fn finish<const FMA: bool>(&mut self) -> f64 {
-        if let Some(scale) = self.scale {
-            self.out.iter_mut().zip(scale).for_each(|(out, scale)| *out *= scale);
-        }
-        let stride = self.grid.stride;
-        let rows = self.r.chunks(stride).zip(self.out.chunks(stride));
-        let products = rows.map(|(r, out)| {
-            let mut product = Lane::ZERO;
-            for (r, out) in r.chunks_exact(LANES).zip(out.chunks_exact(LANES)) {
-                product = product.add_product::<FMA>(Lane::load(r, 0), Lane::load(out, 0));
-            }
-            f64::from(product.sum())
-        });
-        products.sum()
-    }
-
-    #[inline(always)]
-    fn solve<const FMA: bool, const P: usize>(mut self) -> f64 {
-        let rows = self.r.len() / self.grid.stride;
-        for row in 0..rows {
-            self.forward::<FMA, P>(row);
-        }
-        for row in (0..rows).rev() {
-            self.backward::<FMA, P>(row, rows);
-        }
-        self.finish::<FMA>()
-    }
-}
-
-impl Vectorised for SolveBlock<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) -> f64 {
-        match self.offsets.iter().take_while(|o| o.rows == 0).count() {
-            2 => self.solve::<FMA, 1>(),
-            3 => self.solve::<FMA, 2>(),
-            4 => self.solve::<FMA, 3>(),
-            _ => self.solve::<FMA, 4>(),
         }
     }
 }

@@ -68,7 +68,7 @@ impl<T: Scalar> Lane<T> {
     #[inline(always)]
     pub fn load(values: &[T], at: usize) -> Self {
         let mut lane = Self::ZERO;
-        lane.0.iter_mut().zip(&values[at..at + LANES]).for_each(|(lane, value)| *lane = *value);
+        lane.0.copy_from_slice(&values[at..at + LANES]);
         lane
     }
 

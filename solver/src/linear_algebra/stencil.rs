@@ -14,7 +14,7 @@ use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::counter::Counter;
 use crate::linear_algebra::lane::{LANES, Lane, Scalar, Vectorised, dispatch};
-use crate::linear_algebra::terms::{Terms, batches};
+use crate::linear_algebra::terms::Terms;
 
 /// Rows of control points whose partial sums are formed together.
 pub(crate) const CHUNK_ROWS: usize = 8;
@@ -260,49 +260,27 @@ impl<T: Scalar> ApplyRows<'_, T> {
         }
         terms
     }
-
-    /// N batches of neighbours from `at` on in a row of `out`, of which `used` are in it; adds `xᵀ A x`,
-    /// returns how many neighbours that were.
-    #[inline(always)]
-    fn some<const FMA: bool, const N: usize>(
-        &mut self,
-        terms: &Terms,
-        at: usize,
-        local: usize,
-        used: usize,
-        product: &mut Lane<T>,
-    ) -> usize {
-        let stride = self.matrix.grid.stride;
-        let sums = terms.add::<FMA, false, N, _>([Lane::ZERO; N], &self.matrix.coefficients, self.x, at);
-        for (n, sum) in sums.into_iter().enumerate() {
-            let (here, used) = (at + n * LANES, (used - n * LANES).min(LANES));
-            self.out[local * stride + here..][..used].copy_from_slice(&sum.0[..used]);
-            *product += sum * Lane::load(self.x, here + (self.first_row + local) * stride);
-        }
-        N * LANES
-    }
 }
 
 impl<T: Scalar> Vectorised for ApplyRows<'_, T> {
     type Output = f64;
 
     #[inline(always)]
-    fn run<const FMA: bool>(mut self) -> f64 {
-        let matrix = self.matrix;
+    fn run<const FMA: bool>(self) -> f64 {
+        let Self { matrix, x, .. } = self;
         let grid = matrix.grid;
         let mut total = 0.0;
         for local in 0..self.out.len() / grid.stride {
-            let terms = self.terms(self.first_row + local);
+            let row = self.first_row + local;
+            let terms = self.terms(row);
+            let (x_of_row, out) = (&x[row * grid.stride..], &mut self.out[local * grid.stride..][..grid.stride]);
             let mut product = Lane::ZERO;
-            for range in matrix.active.row(self.first_row + local) {
-                let mut column = range.start;
-                while column < range.end {
-                    let (at, left) = (grid.index(column, 0), range.end - column);
-                    column += match batches::<T>(left) {
-                        4 => self.some::<FMA, 4>(&terms, at, local, left, &mut product),
-                        2 => self.some::<FMA, 2>(&terms, at, local, left, &mut product),
-                        _ => self.some::<FMA, 1>(&terms, at, local, left, &mut product),
-                    };
+            for range in matrix.active.row(row) {
+                let (at, used) = (grid.index(range.start, 0), range.len());
+                out[at..at + used].fill(T::ZERO);
+                terms.add::<FMA, false, T>(&mut out[at..], used, &matrix.coefficients, x, at);
+                for at in (at..at + used).step_by(LANES) {
+                    product = product.add_product::<FMA>(Lane::load(out, at), Lane::load(x_of_row, at));
                 }
             }
             total += product.sum().into();

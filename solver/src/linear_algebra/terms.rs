@@ -1,22 +1,14 @@
-//! Sums over the couplings of a row of control points, for several neighbours at a time.
+//! Sums over the couplings of a row of control points.
+//!
+//! A few couplings at a time go along the whole row: memory delivers a few long streams faster than many that
+//! take turns, and the sums stay in the nearest cache.
 
-use super::lane::{LANES, Lane, Scalar};
+use super::lane::{LANES, Lane, Scalar, each};
 
 /// Most couplings of a control point: those of quartic splines.
 const MOST: usize = 81;
-
-/// Batches of neighbours that are summed together when so many neighbours are left: as many as keep four
-/// vector registers of 32 bytes busy.
-#[inline(always)]
-pub(super) fn batches<T>(left: usize) -> usize {
-    if size_of::<T>() == 4 && left > 3 * LANES {
-        4
-    } else if left > LANES {
-        2
-    } else {
-        1
-    }
-}
+/// Couplings that go along a row together.
+const TOGETHER: usize = 5;
 
 /// Where the coefficients of each coupling, and the values they are multiplied by, begin.
 pub(super) struct Terms {
@@ -38,23 +30,67 @@ impl Terms {
         self.count += 1;
     }
 
-    /// `sums ± Σ coefficient · value`, in the order of the couplings, for N batches of neighbours from `at`
-    /// on. Several sums at once keep the arithmetic units busy, where one would wait for itself.
+    /// `sums ± Σ coefficient · value`, in the order of the couplings, for the `used` neighbours from `at` on.
+    /// All fields have room for reading to the end of a batch.
     #[inline(always)]
-    pub(super) fn add<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar>(
+    pub(super) fn add<const FMA: bool, const MINUS: bool, T: Scalar>(
         &self,
-        mut sums: [Lane<T>; N],
+        sums: &mut [T],
+        used: usize,
         coefficients: &[T],
         values: &[T],
         at: usize,
-    ) -> [Lane<T>; N] {
-        for &(coefficient, value) in &self.starts[..self.count] {
-            for n in 0..N {
-                let factor = Lane::load(coefficients, coefficient.wrapping_add(at) + n * LANES);
-                let factor = if MINUS { factor.map(|factor| -factor) } else { factor };
-                sums[n] = sums[n].add_product::<FMA>(factor, Lane::load(values, value.wrapping_add(at) + n * LANES));
-            }
+    ) {
+        let length = used.next_multiple_of(LANES);
+        let part = |n: usize| {
+            let (coefficient, value) = self.starts[n];
+            (&coefficients[coefficient.wrapping_add(at)..][..length], &values[value.wrapping_add(at)..][..length])
+        };
+        let sums = &mut sums[..length];
+        let mut n = 0;
+        while n + TOGETHER <= self.count {
+            add_some::<FMA, MINUS, TOGETHER, T>(sums, used, each!(k in [0, 1, 2, 3, 4] => part(n + k)));
+            n += TOGETHER;
         }
-        sums
+        for n in n..self.count {
+            add_some::<FMA, MINUS, 1, T>(sums, used, [part(n)]);
+        }
     }
+}
+
+/// N couplings along a row.
+#[inline(always)]
+fn add_some<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar>(
+    sums: &mut [T],
+    used: usize,
+    parts: [(&[T], &[T]); N],
+) {
+    let whole = used - used % LANES;
+    let mut at = 0;
+    while at < whole {
+        let sum = add_batch::<FMA, MINUS, N, T>(sums, &parts, at);
+        sums[at..at + LANES].copy_from_slice(&sum.0);
+        at += LANES;
+    }
+    if whole < used {
+        let sum = add_batch::<FMA, MINUS, N, T>(sums, &parts, whole);
+        sums[whole..used].copy_from_slice(&sum.0[..used - whole]);
+    }
+}
+
+#[inline(always)]
+fn add_batch<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar>(
+    sums: &[T],
+    parts: &[(&[T], &[T]); N],
+    at: usize,
+) -> Lane<T> {
+    let mut sum = Lane::load(sums, at);
+    for (coefficients, values) in parts {
+        let mut factor = Lane::load(coefficients, at);
+        if MINUS {
+            factor = factor.map(|factor| -factor);
+        }
+        sum = sum.add_product::<FMA>(factor, Lane::load(values, at));
+    }
+    sum
 }
