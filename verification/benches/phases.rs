@@ -94,6 +94,7 @@ fn matrices(criterion: &mut Criterion, square: &Block) {
     });
 
     let mut factor = IncompleteCholesky::new(&matrix, false);
+    let (x, mut image): (Vec<f32>, _) = (x.iter().map(|x| *x as f32).collect(), vec![0.0; image.len()]);
     assert!(factor.apply(matrix.active(), &x, &mut image) > 0.0, "the preconditioner is positive definite");
     phase(criterion, "factorisation", square, || factor.refactor(&matrix));
     phase(criterion, "preconditioner", square, || {

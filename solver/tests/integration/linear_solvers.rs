@@ -88,6 +88,14 @@ fn inner(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
+/// `z = M⁻¹ r` with a factor, which works in single precision on the matrix times its unit, and `r·z`.
+fn preconditioned(factor: &IncompleteCholesky, matrix: &Stencil, r: &[f64]) -> (Vec<f64>, f64) {
+    let single: Vec<f32> = r.iter().map(|r| *r as f32).collect();
+    let mut out = vec![0.0; r.len()];
+    let product = factor.apply(matrix.active(), &single, &mut out);
+    (out.iter().map(|z| factor.unit() * f64::from(*z)).collect(), factor.unit() * product)
+}
+
 /// A banded matrix on one row of control points: nothing falls outside the stencil, so the factor is the
 /// exact one.
 #[test]
@@ -104,13 +112,12 @@ fn without_fill_the_factor_is_exact() {
             matrix.set_diagonal(column, 0, 2.0 * degree as f64 + 0.1);
         }
         let r = random.field(grid, 1.0);
-        let mut x = grid.zeros();
-        let product = IncompleteCholesky::new(&matrix, false).apply(matrix.active(), &r, &mut x);
+        let (x, product) = preconditioned(&IncompleteCholesky::new(&matrix, false), &matrix, &r);
         let exact = dense(&matrix).cholesky().expect("positive definite").solve(&packed(grid, &r));
         for (i, at) in grid.indices().enumerate() {
             approx::assert_abs_diff_eq!(x[at], exact[i], epsilon = SINGLE * exact.amax());
         }
-        approx::assert_relative_eq!(product, inner(&r, &x), max_relative = 1e-13);
+        approx::assert_relative_eq!(product, inner(&r, &x), max_relative = SINGLE);
     }
 }
 
@@ -130,8 +137,8 @@ fn uncoupled_rows_are_solved_exactly_across_blocks() {
         }
     }
     let r = random.field(grid, 1.0);
-    let (mut x, mut back) = (grid.zeros(), grid.zeros());
-    IncompleteCholesky::new(&matrix, false).apply(matrix.active(), &r, &mut x);
+    let mut back = grid.zeros();
+    let (x, _) = preconditioned(&IncompleteCholesky::new(&matrix, false), &matrix, &r);
     matrix.apply(&x, &mut back);
     assert!(difference(&r, &back) <= SINGLE, "{}", difference(&r, &back));
 }
@@ -143,15 +150,14 @@ fn the_preconditioner_is_symmetric_and_positive_definite() {
             let matrix = phase_field_matrix(degree, [31, 57], contrast);
             let factor = IncompleteCholesky::new(&matrix, scaled);
             let mut random = Random::new(11);
-            let (mut x, mut y) = (matrix.grid.zeros(), matrix.grid.zeros());
             for _ in 0..20 {
                 let (r, s) = (random.field(matrix.grid, 1.0), random.field(matrix.grid, 1.0));
-                let product = factor.apply(matrix.active(), &r, &mut x);
+                let (x, product) = preconditioned(&factor, &matrix, &r);
                 assert!(product > 0.0, "degree {degree}, contrast {contrast}: r·z = {product}");
-                approx::assert_relative_eq!(product, inner(&r, &x), max_relative = 1e-11);
-                factor.apply(matrix.active(), &s, &mut y);
+                approx::assert_relative_eq!(product, inner(&r, &x), max_relative = SINGLE);
+                let (y, _) = preconditioned(&factor, &matrix, &s);
                 let scale = (inner(&x, &x) * inner(&s, &s)).sqrt();
-                approx::assert_abs_diff_eq!(inner(&s, &x), inner(&r, &y), epsilon = 1e-12 * scale);
+                approx::assert_abs_diff_eq!(inner(&s, &x), inner(&r, &y), epsilon = SINGLE * scale);
             }
         }
     }
@@ -241,9 +247,9 @@ fn complete_factors_take_over_and_go_back() {
             preconditioner.prepare(&matrix);
             assert!(preconditioner.is_complete());
         }
-        // one iteration solves, and one more finds no more left than the round-off of a system of condition
-        // 1e6
-        assert_eq!(solve(&preconditioner), 2, "the factor is exact");
+        // nine digits are three corrections in single precision; in each an iteration solves, and one more
+        // finds nothing left but round-off
+        assert!(solve(&preconditioner) <= 6, "the factor is exact");
     }
     preconditioner.prepare(&matrix);
     preconditioner.learn(&matrix, incomplete);
@@ -285,9 +291,9 @@ fn a_factor_whose_pivot_falls_is_shifted() {
     let factor = IncompleteCholesky::new(&matrix, false);
     let mut inverse = DMatrix::zeros(9, 9);
     for (n, at) in grid.indices().enumerate() {
-        let (mut unit, mut column) = (grid.zeros(), grid.zeros());
+        let mut unit = grid.zeros();
         unit[at] = 1.0;
-        factor.apply(matrix.active(), &unit, &mut column);
+        let (column, _) = preconditioned(&factor, &matrix, &unit);
         inverse.set_column(n, &packed(grid, &column));
     }
     let (product, full) = (inverse.try_inverse().expect("a factor that is not singular"), dense(&matrix));
