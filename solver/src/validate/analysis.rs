@@ -85,16 +85,15 @@ fn spans_integrate(scene: &Scene, findings: &mut Findings) {
     refuse(analysis.kinematics == Kinematics::Small, "with small strains", "use kinematics = \"finite\"");
     refuse(analysis.transfer != Transfer::Flip, "with a transfer, of which it has none", "leave transfer out");
     refuse(scene.mesh.degree[0] != scene.mesh.degree[1], "with two degrees", "give the same degree twice");
-    let rubs = scene.contact.as_ref().is_some_and(|contact| contact.friction > 0.0);
-    refuse(rubs, "with friction, which its contact does not have yet", "give contact.friction = 0");
-    let rigid = scene.bodies.iter().any(|body| body.rigid);
-    refuse(rigid, "with a rigid body, which its contact does not know yet", "let every body deform");
     for body in &scene.bodies {
+        let name = format!("for body {:?}", body.name);
+        refuse(matches!(body.shape, Shape::Difference { .. }), &format!("{name}, a difference"), "use another shape");
+    }
+    for body in scene.bodies.iter().filter(|body| !body.rigid) {
         let name = format!("for body {:?}", body.name);
         let fractures = scene.materials.get(&body.material).is_some_and(|material| material.fracture.is_some());
         refuse(fractures, &format!("{name}, which fractures"), "remove the fracture table of its material");
         refuse(!body.tractions.is_empty(), &format!("{name}, which has tractions"), "remove them");
-        refuse(matches!(body.shape, Shape::Difference { .. }), &format!("{name}, a difference"), "use another shape");
         let (low, high) = scene.mesh.extent(&body.shape);
         let (origin, end) = (scene.mesh.origin(), scene.mesh.end());
         for boundary in &scene.boundaries {

@@ -291,9 +291,18 @@ fn gauss_quadrature_by_spans_is_refused_where_it_does_not_exist() {
     assert_eq!(but(|s| s.analysis.kinematics = Kinematics::Small), key);
     assert_eq!(but(|s| s.analysis.frame = Frame::Total), key);
     assert_eq!(but(|s| s.analysis.transfer = Transfer::Apic), key);
-    assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.1, fragments: false })), key);
+    assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.1, fragments: false })), [""; 0]);
     assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.0, fragments: false })), [""; 0]);
-    assert_eq!(but(|s| s.bodies[0].rigid = true).first().map(String::as_str), Some(key[0]));
+    let above = |shape: fn(Shape) -> Shape| {
+        errors(move |s| {
+            sound(s);
+            s.contact = Some(Contact { friction: 0.1, fragments: false });
+            let floor = Shape::Rectangle { min: [-1.0, -1.0], max: [2.0, 0.0] };
+            s.bodies.push(Body { name: "floor".into(), rigid: true, shape: shape(floor), ..s.bodies[0].clone() });
+        })
+    };
+    assert_eq!(above(|floor| floor), [""; 0]);
+    assert_eq!(above(|floor| Shape::Difference { of: Box::new(floor), minus: vec![] }), key);
     assert_eq!(
         but(|s| s.boundaries = vec![Boundary { side: Side::Left, fix: [true, false], velocity: [1.0, 0.0] }]),
         key

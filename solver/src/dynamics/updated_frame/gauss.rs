@@ -22,7 +22,7 @@
 //! of the relaxation are taken out per component, and of a free body the mean rotation too, so that momentum
 //! and angular momentum are kept to round-off ([`rigid`]).
 //!
-//! Boundaries that meet push each other apart by a potential of the gap ([`contact`],
+//! Boundaries that meet push each other apart by a potential of the gap, and rub ([`contact`],
 //! [`crate::contact::gap_potential`]), which adds to the forces before `M a` is solved.
 //!
 //! # The energy ledger
@@ -57,6 +57,7 @@ pub(crate) mod weak;
 
 use balance::SpanBalance;
 use boundary::{MovingBoundary, edges};
+use contact::BoundarySprings;
 use fit::PointFit;
 use kronecker::Kronecker;
 use map::{InverseMap, displacement_gradient};
@@ -109,8 +110,8 @@ pub(crate) struct SpanQuadrature {
     point_acceleration: Vec<[f64; 2]>,
     /// Control points at which a component is held.
     held: [Vec<usize>; 2],
-    /// Stiffness of the boundary where it meets others, Pa/m, if it may, and the sum of forces there, N/m.
-    spring: Option<f64>,
+    /// Springs of the boundary, if it may meet others, and the sum of forces there, N/m.
+    springs: Option<BoundarySprings>,
     pushed: Resultant,
     /// Steps since the velocities were last relaxed.
     since_relaxation: usize,
@@ -160,7 +161,7 @@ impl SpanQuadrature {
             force: field(),
             point_acceleration: Vec::new(),
             held: [0, 1].map(|c| nodes.fixed().iter().filter(|(_, component)| *component == c).map(|f| f.0).collect()),
-            spring: None,
+            springs: None,
             pushed: Resultant::default(),
             since_relaxation: 0,
             moduli,
