@@ -10,7 +10,8 @@
 //! distance to the nearest place y on the boundary of b; the force on a at x and its opposite on b at y act
 //! along the line through both. They keep momentum and angular momentum, and what the potential takes while
 //! bodies approach it gives back while they part: contact loses nothing, and no force acts before the gap is
-//! closed. The price is a depth of p/κ under a pressure p, a strain times h.
+//! closed. The price is a depth of p/κ under a pressure p: a strain times h/α, with the stiffness α over that
+//! of a span which the scene chooses (`contact.stiffness`). The critical step counts κ.
 //!
 //! Friction acts beside it ([`friction`]). Rigid bodies ([`rigid_outline`]) have an outline and no stiffness
 //! of their own; they work on the others with their own velocity, `−(F(n) · V(n) + F(n+1) · V(n+1)) dt/2` with
@@ -35,15 +36,6 @@ use crate::splines::quadrature::Rule;
 use arc::{Arc, Outline, around, nearest, rule};
 use friction::{Friction, Meeting};
 use rigid_outline::RigidOutline;
-
-/// α: stiffness over that of a span. The critical step counts it ([`spring`]). Half of it makes a contact
-/// softer than the first span behind it, and longer.
-const STIFFNESS: f64 = 0.5;
-
-/// Stiffness κ of the boundary of a body, Pa/m, by its `ρ c²`, Pa, and the shortest span, m.
-pub(crate) fn spring(modulus: f64, span: f64) -> f64 {
-    STIFFNESS * modulus / span
-}
 
 /// A pair of opposite forces, and that of friction beside it.
 #[derive(Debug, Clone, Copy)]

@@ -5,7 +5,9 @@ use super::ground::Ground;
 use super::material::plausible_speed;
 use crate::dynamics::body_sample::column_name;
 use crate::linear_algebra::extremes::larger;
-use crate::scene::{Body, Boundary, Frame, Kinematics, Mass, Quadrature, Scene, Shape, Side, TimeStep, Transfer};
+use crate::scene::{
+    Body, Boundary, Contact, Frame, Kinematics, Mass, Quadrature, Scene, Shape, Side, TimeStep, Transfer,
+};
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
 
@@ -64,6 +66,20 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     {
         let message = format!("a friction coefficient of {}", contact.friction);
         findings.error("contact.friction", message, "give a coefficient of 0 or more");
+    }
+    if let Some(contact) = &scene.contact {
+        stiffness(contact, analysis.quadrature, findings);
+    }
+}
+
+/// Boundaries that push each other apart have a stiffness.
+fn stiffness(contact: &Contact, quadrature: Quadrature, findings: &mut Findings) {
+    let (key, stiffness) = ("contact.stiffness", contact.stiffness);
+    if !(stiffness > 0.0 && stiffness.is_finite()) {
+        let remedy = format!("give a number above 0, such as {}", Contact::default().stiffness);
+        findings.error(key, format!("boundaries with {stiffness} times the stiffness of a span"), remedy);
+    } else if quadrature == Quadrature::Points && stiffness != Contact::default().stiffness {
+        findings.warn(key, "has no effect with quadrature = \"points\", whose contact is rigid; remove it");
     }
 }
 

@@ -7,9 +7,9 @@
 
 use super::SpanQuadrature;
 use super::boundary::{MovingBoundary, edges};
+use crate::contact::gap_potential::GapForce;
 use crate::contact::gap_potential::arc::{Outline, rule};
 use crate::contact::gap_potential::rigid_outline::RigidOutline;
-use crate::contact::gap_potential::{GapForce, spring};
 use crate::contact::rigid::RigidMotion;
 use crate::contact::surface::Surface;
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
@@ -68,7 +68,7 @@ impl SpanQuadrature {
     /// From now on the boundary may meet others.
     pub(crate) fn expect_contact(&mut self, patch: &Patch, contact: &Contact) {
         let speed = self.moduli.dilatational_speed(self.density);
-        let stiffness = spring(self.density * speed * speed, patch.shortest_span());
+        let stiffness = contact.stiffness * (self.density * speed * speed) / patch.shortest_span();
         self.springs = Some(BoundarySprings { stiffness, rubs: contact.friction > 0.0 });
     }
 
