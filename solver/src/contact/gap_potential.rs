@@ -14,8 +14,8 @@
 //! of a span which the scene chooses (`contact.stiffness`). The critical step counts κ.
 //!
 //! Friction acts beside it ([`friction`]). Rigid bodies ([`rigid_outline`]) have an outline and no stiffness
-//! of their own; they work on the others with their own velocity, `−(F(n) · V(n) + F(n+1) · V(n+1)) dt/2` with
-//! the forces F on them.
+//! of their own; they work on the others with their own velocity V, `−(F(n) · V(n) + F(n+1) · V(n+1)) dt/2`
+//! with the forces F on them.
 //!
 //! The boundaries are the cubics through the places and tangents that the inverse of the motion gives
 //! ([`arc`]), with four Gauss points each. Wriggers 2006, *Computational contact mechanics*, section 6.3, has
@@ -34,7 +34,7 @@ use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::vectors::dot;
 use crate::splines::quadrature::Rule;
 use arc::{Arc, Outline, around, nearest, rule};
-use friction::{Friction, Meeting};
+use friction::{Friction, RubbingPlace};
 use rigid_outline::RigidOutline;
 
 /// A pair of opposite forces, and that of friction beside it.
@@ -147,7 +147,7 @@ impl GapPotential {
                 self.energy += 0.5 * pressure * depth;
                 let friction = self.friction.as_mut().map(|friction| {
                     let (label, stiffness) = (([a, b], number, point), 0.5 * spring * place.length);
-                    friction.force(&Meeting { label, place, nearest, arcs: &outlines[b].arcs, stiffness })
+                    friction.force(&RubbingPlace { label, place, nearest, arcs: &outlines[b].arcs, stiffness })
                 });
                 self.forces.push(GapForce {
                     bodies: [a, b],

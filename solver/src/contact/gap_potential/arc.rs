@@ -158,8 +158,8 @@ pub(crate) fn nearest(position: [f64; 2], arcs: &[(usize, &Arc)]) -> Option<Clos
     }
     let (square, (number, arc), t, place) = best?;
     let own = arc.normal(t);
-    // At a corner neither normal tells inside from outside, but the mean of both does (Bærentzen & Aanæs 2005,
-    // *Signed distance computation using the angle weighted pseudonormal*).
+    // At a corner neither normal tells inside from outside, but the mean of both does (Bærentzen & Aanæs
+    // 2005, *Signed distance computation using the angle weighted pseudonormal*).
     let next = if t == 0.0 || t == 1.0 { beside(number, place, 1.0 - t, arcs) } else { None };
     let normal = unit(next.map_or(own, |next| [0, 1].map(|d| own[d] + next[d])))?;
     let inside = dot([0, 1].map(|d| position[d] - place[d]), normal) < 0.0;
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn beside_an_acute_corner_is_outside() {
-        // A body above the line y = 0, left of a line that leans to the right: its corner is sharper than 90°.
+        // A body above the line y = 0, left of a line that leans to the left: a corner sharper than 90°.
         let corner = [0.0, 0.0];
         let below = Arc::new([[-1.0, 0.0], corner], [[1.0, 0.0]; 2]);
         let beside = Arc::new([corner, [-0.1, 1.0]], [[-0.1, 1.0]; 2]);

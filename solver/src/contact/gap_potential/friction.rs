@@ -36,7 +36,7 @@ pub(crate) type Label = ([usize; 2], usize, usize);
 
 /// A Gauss point of a boundary that is inside another body.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Meeting<'a> {
+pub(crate) struct RubbingPlace<'a> {
     pub label: Label,
     /// On the boundary of a.
     pub place: BoundaryPlace,
@@ -83,8 +83,8 @@ impl Friction {
 
     /// Force on b at a Gauss point, N/m. They come in the order of their labels. Asked again at the same
     /// positions, it is the same bit by bit.
-    pub(crate) fn force(&mut self, meeting: &Meeting<'_>) -> [f64; 2] {
-        let Meeting { label, place, nearest, arcs, stiffness } = *meeting;
+    pub(crate) fn force(&mut self, meeting: &RubbingPlace<'_>) -> [f64; 2] {
+        let RubbingPlace { label, place, nearest, arcs, stiffness } = *meeting;
         let tangent = [-nearest.normal[1], nearest.normal[0]];
         let limit = self.coefficient * nearest.depth;
         let before = self.memories.binary_search_by(|memory| memory.label.cmp(&label)).ok().map(|at| self.memories[at]);
@@ -156,8 +156,8 @@ impl Friction {
 
 impl Memory {
     /// How the material of a moved past that of b since then, where b is now, m.
-    fn motion(&self, meeting: &Meeting<'_>) -> [f64; 2] {
-        let Meeting { place, nearest, arcs, .. } = *meeting;
+    fn motion(&self, meeting: &RubbingPlace<'_>) -> [f64; 2] {
+        let RubbingPlace { place, nearest, arcs, .. } = *meeting;
         let turn = self.normal[0] * place.normal[1] - self.normal[1] * place.normal[0];
         let arm = [0, 1].map(|d| nearest.position[d] - place.position[d]);
         let turned = [-turn * arm[1], turn * arm[0]];
@@ -182,7 +182,7 @@ mod tests {
         friction.begin();
         let nearest = nearest(place.position, &[(0, &arcs[0])]).unwrap();
         let label = ([0, 1], 3, 2);
-        let meeting = Meeting { label, place, nearest, arcs: &arcs, stiffness: STIFFNESS };
+        let meeting = RubbingPlace { label, place, nearest, arcs: &arcs, stiffness: STIFFNESS };
         let [x, y] = if depth > 0.0 { friction.force(&meeting) } else { [0.0; 2] };
         friction.end();
         assert_eq!(y, 0.0);

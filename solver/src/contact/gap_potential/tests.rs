@@ -69,7 +69,8 @@ fn circles_that_turn_together_do_not_slip_and_one_that_turns_alone_is_held_back(
     let rubbing = |potential: &GapPotential| {
         potential.forces().iter().fold([0.0; 2], |sum: [f64; 2], pair| {
             let friction = pair.friction.unwrap();
-            [0, 1].map(|d| sum[d] + friction[d])
+            let on_b = if pair.bodies == [0, 1] { 1.0 } else { -1.0 };
+            [0, 1].map(|d| sum[d] + on_b * friction[d])
         })
     };
     let normal =

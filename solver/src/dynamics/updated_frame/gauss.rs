@@ -57,7 +57,6 @@ pub(crate) mod weak;
 
 use balance::SpanBalance;
 use boundary::{MovingBoundary, edges};
-use contact::BoundarySprings;
 use fit::PointFit;
 use kronecker::Kronecker;
 use map::{InverseMap, displacement_gradient};
@@ -117,6 +116,15 @@ pub(crate) struct SpanQuadrature {
     since_relaxation: usize,
     moduli: ElasticModuli,
     density: f64,
+}
+
+/// Springs of a boundary that may meet others.
+#[derive(Debug, Clone, Copy)]
+struct BoundarySprings {
+    /// κ, Pa/m.
+    stiffness: f64,
+    /// Whether others rub along it.
+    rubs: bool,
 }
 
 /// Points of a body on its part of the patch.

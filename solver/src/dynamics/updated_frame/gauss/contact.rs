@@ -5,8 +5,8 @@
 //! both feel of each other. With friction they resist motion along the boundary as they do across it.
 //! Friction acts on both bodies at one place, which is inside one of them by the depth of the overlap.
 
-use super::SpanQuadrature;
 use super::boundary::{MovingBoundary, edges};
+use super::{BoundarySprings, SpanQuadrature};
 use crate::contact::gap_potential::GapForce;
 use crate::contact::gap_potential::arc::{Outline, rule};
 use crate::contact::gap_potential::rigid_outline::RigidOutline;
@@ -17,15 +17,6 @@ use crate::linear_algebra::vectors::dot;
 use crate::scene::{Body, Contact, Mesh};
 use crate::splines::patch::Patch;
 use crate::splines::spline::ShapeFunctions;
-
-/// Springs of a boundary that may meet others.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BoundarySprings {
-    /// κ, Pa/m.
-    stiffness: f64,
-    /// Whether others rub along it.
-    rubs: bool,
-}
 
 /// The boundary of a rigid body on a patch; `None` of a shape whose boundary has no rule.
 pub(crate) fn rigid_outline(mesh: &Mesh, body: &Body, patch: &Patch) -> Option<RigidOutline> {
