@@ -83,8 +83,8 @@ impl Arc {
         around(ends.into_iter().chain(inner).map(|x| [x, x]))
     }
 
-    /// The place nearest to a position, m: t, the square of the distance, and the place.
-    fn nearest(&self, position: [f64; 2]) -> (f64, f64, [f64; 2]) {
+    /// The place nearest to a position, m: t, and the square of the distance, m².
+    fn nearest(&self, position: [f64; 2]) -> (f64, f64) {
         let from = |t: f64| {
             let x = self.position(t);
             [0, 1].map(|d| x[d] - position[d])
@@ -104,7 +104,7 @@ impl Arc {
             }
         }
         let apart = from(t);
-        (t, dot(apart, apart), self.position(t))
+        (t, dot(apart, apart))
     }
 }
 
@@ -144,19 +144,21 @@ pub(crate) struct Closest {
 
 /// The place nearest to a position among some arcs and their numbers.
 pub(crate) fn nearest(position: [f64; 2], arcs: &[(usize, &Arc)]) -> Option<Closest> {
-    let mut best: Option<(f64, (usize, &Arc), f64, [f64; 2])> = None;
-    for &(number, arc) in arcs {
+    let mut best: Option<(f64, usize, f64)> = None;
+    for (at, (_, arc)) in arcs.iter().enumerate() {
         let [low, high] = arc.bounds();
         let beside = [0, 1].map(|d| larger(0.0, larger(low[d] - position[d], position[d] - high[d])));
         if best.is_some_and(|(least, ..)| dot(beside, beside) > least) {
             continue;
         }
-        let (t, square, place) = arc.nearest(position);
+        let (t, square) = arc.nearest(position);
         if best.is_none_or(|(least, ..)| square < least) {
-            best = Some((square, (number, arc), t, place));
+            best = Some((square, at, t));
         }
     }
-    let (square, (number, arc), t, place) = best?;
+    let (square, at, t) = best?;
+    let (number, arc) = arcs[at];
+    let place = arc.position(t);
     let own = arc.normal(t);
     // At a corner neither normal tells inside from outside, but the mean of both does (Bærentzen & Aanæs
     // 2005, *Signed distance computation using the angle weighted pseudonormal*).

@@ -96,9 +96,9 @@ impl Friction {
                 let trial = memory.slip + moved;
                 let slip = trial.clamp(-limit, limit);
                 let force = stiffness * slip;
-                let slip = fault!("slip-not-returned", slip => trial);
-                self.dissipated += 0.5 * (memory.force + force) * (moved - (slip - memory.slip));
-                (slip, force)
+                let kept = fault!("slip-not-returned", slip => trial);
+                self.dissipated += 0.5 * (memory.force + force) * (moved - (kept - memory.slip));
+                (kept, force)
             }
         };
         self.stored += 0.5 * force * slip;
