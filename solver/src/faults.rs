@@ -126,6 +126,7 @@ mod planted {
         "shear-halved",
         "shear-strain-doubled",
         "side-holds-the-other-component",
+        "slip-not-returned",
         "small-growth-never-assembled",
         "span-not-renewed",
         "spans-miss-the-jacobian",

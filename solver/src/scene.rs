@@ -376,6 +376,16 @@ pub struct Contact {
     pub friction: f64,
     /// Whether a body that is cracked through becomes fragments with fields of their own.
     pub fragments: bool,
+    /// Stiffness of the boundaries of bodies whose spans integrate, over that of a span.
+    pub stiffness: f64,
+}
+
+impl Default for Contact {
+    /// Without friction. Half of this stiffness makes a contact softer than the first span behind it, and
+    /// longer.
+    fn default() -> Self {
+        Self { friction: 0.0, fragments: false, stiffness: 0.5 }
+    }
 }
 
 /// Condition on a side of the mesh.

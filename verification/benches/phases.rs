@@ -180,7 +180,7 @@ fn contact(criterion: &mut Criterion, cells: usize) {
         (0..5).for_each(|_| simulation.step().expect("a stable step"));
         simulation
     };
-    let (mut apart, mut meeting) = (begun(None), begun(Some(Contact { friction: 0.3, fragments: false })));
+    let (mut apart, mut meeting) = (begun(None), begun(Some(Contact { friction: 0.3, ..Contact::default() })));
     let frame = meeting.updated_frame().expect("the frame of contact");
     let mut found = frame.contact().expect("it is declared").clone();
     let forces = frame.contact_forces(meeting.plan().step);

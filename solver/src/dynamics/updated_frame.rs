@@ -53,7 +53,8 @@ pub mod windows;
 
 use std::sync::Arc;
 
-use crate::contact::gap_potential::{GapPotential, Outline};
+use crate::contact::gap_potential::GapPotential;
+use crate::contact::gap_potential::arc::Outline;
 use crate::contact::impulse::Kick;
 use crate::contact::motion::TooFast;
 use crate::contact::{BodyView, ContactSolver};
@@ -64,6 +65,7 @@ use crate::scene::{Quadrature, Scene};
 use crate::splines::patch::Patch;
 use field::DiscreteField;
 use fragments::Fragments;
+use gauss::contact::rigid_outline;
 
 /// The bodies of a scene in the updated frame.
 #[derive(Debug, Clone)]
@@ -91,7 +93,11 @@ impl UpdatedFrame {
         let fields = deformable.map(|body| DiscreteField::new(scene, body, &patch)).collect::<Result<Vec<_>, _>>()?;
         let by_spans = scene.analysis.quadrature == Quadrature::Gauss;
         let contact = if by_spans { None } else { ContactSolver::new(scene, &patch) };
-        let gap_potential = (by_spans && scene.contact.is_some()).then(|| GapPotential::new(patch.shortest_span()));
+        let gap_potential = scene.contact.as_ref().filter(|_| by_spans).map(|contact| {
+            let rigid = scene.bodies.iter().filter(|body| body.rigid);
+            let outlines = rigid.filter_map(|body| rigid_outline(&scene.mesh, body, &patch)).collect();
+            GapPotential::new(patch.shortest_span(), contact.friction, outlines)
+        });
         let recorded = scene.output.bodies.then(|| body_sample::names(scene));
         let parts = scene.contact.as_ref().is_some_and(|contact| contact.fragments);
         let fragments = parts.then(|| Fragments::new(fields.len()));
@@ -138,16 +144,21 @@ impl UpdatedFrame {
             contact.move_rigid(fields[0].time());
             contact.find(&views(fields))?;
         }
-        self.push_apart()?;
+        self.push_apart(dt)?;
         self.fields.iter_mut().try_for_each(DiscreteField::accelerate_with_spans)
     }
 
-    /// Adds the forces of the gap potential to those of the spans.
-    fn push_apart(&mut self) -> Result<(), Failure> {
+    /// Adds the forces of the gap potential to those of the spans, `dt` seconds after the last ones.
+    fn push_apart(&mut self, dt: f64) -> Result<(), Failure> {
         let Self { fields, gap_potential: Some(potential), .. } = self else { return Ok(()) };
-        find_gaps(potential, fields)?;
+        find_gaps(potential, fields, dt)?;
         for pair in potential.forces() {
-            (0..2).for_each(|side| fields[pair.bodies[side]].push(pair, side));
+            for (side, body) in pair.bodies.into_iter().enumerate() {
+                // Rigid bodies, which are counted after the fields, feel nothing.
+                if let Some(field) = fields.get_mut(body) {
+                    field.push(pair, side);
+                }
+            }
         }
         Ok(())
     }
@@ -173,10 +184,10 @@ impl UpdatedFrame {
     }
 }
 
-/// Finds the forces between the boundaries of bodies whose spans integrate.
-fn find_gaps(potential: &mut GapPotential, fields: &[DiscreteField]) -> Result<(), TooFast> {
+/// Finds the forces between the boundaries of bodies whose spans integrate, `dt` seconds after the last ones.
+fn find_gaps(potential: &mut GapPotential, fields: &[DiscreteField], dt: f64) -> Result<(), TooFast> {
     let outlines: Vec<Outline> = fields.iter().filter_map(DiscreteField::outline).collect();
-    potential.find(&outlines)
+    potential.find(outlines, fields[0].time(), dt)
 }
 
 /// The bodies as contact sees them.

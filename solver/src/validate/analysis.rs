@@ -5,7 +5,9 @@ use super::ground::Ground;
 use super::material::plausible_speed;
 use crate::dynamics::body_sample::column_name;
 use crate::linear_algebra::extremes::larger;
-use crate::scene::{Body, Boundary, Frame, Kinematics, Mass, Quadrature, Scene, Shape, Side, TimeStep, Transfer};
+use crate::scene::{
+    Body, Boundary, Contact, Frame, Kinematics, Mass, Quadrature, Scene, Shape, Side, TimeStep, Transfer,
+};
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
 
@@ -65,6 +67,20 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         let message = format!("a friction coefficient of {}", contact.friction);
         findings.error("contact.friction", message, "give a coefficient of 0 or more");
     }
+    if let Some(contact) = &scene.contact {
+        stiffness(contact, analysis.quadrature, findings);
+    }
+}
+
+/// Boundaries that push each other apart have a stiffness.
+fn stiffness(contact: &Contact, quadrature: Quadrature, findings: &mut Findings) {
+    let (key, stiffness) = ("contact.stiffness", contact.stiffness);
+    if !(stiffness > 0.0 && stiffness.is_finite()) {
+        let remedy = format!("give a number above 0, such as {}", Contact::default().stiffness);
+        findings.error(key, format!("boundaries with {stiffness} times the stiffness of a span"), remedy);
+    } else if quadrature == Quadrature::Points && stiffness != Contact::default().stiffness {
+        findings.warn(key, "has no effect with quadrature = \"points\", whose contact is rigid; remove it");
+    }
 }
 
 /// Gauss points of spans integrate elastic bodies of finite strain that are free or held, and not more yet.
@@ -85,16 +101,15 @@ fn spans_integrate(scene: &Scene, findings: &mut Findings) {
     refuse(analysis.kinematics == Kinematics::Small, "with small strains", "use kinematics = \"finite\"");
     refuse(analysis.transfer != Transfer::Flip, "with a transfer, of which it has none", "leave transfer out");
     refuse(scene.mesh.degree[0] != scene.mesh.degree[1], "with two degrees", "give the same degree twice");
-    let rubs = scene.contact.as_ref().is_some_and(|contact| contact.friction > 0.0);
-    refuse(rubs, "with friction, which its contact does not have yet", "give contact.friction = 0");
-    let rigid = scene.bodies.iter().any(|body| body.rigid);
-    refuse(rigid, "with a rigid body, which its contact does not know yet", "let every body deform");
     for body in &scene.bodies {
+        let name = format!("for body {:?}", body.name);
+        refuse(matches!(body.shape, Shape::Difference { .. }), &format!("{name}, a difference"), "use another shape");
+    }
+    for body in scene.bodies.iter().filter(|body| !body.rigid) {
         let name = format!("for body {:?}", body.name);
         let fractures = scene.materials.get(&body.material).is_some_and(|material| material.fracture.is_some());
         refuse(fractures, &format!("{name}, which fractures"), "remove the fracture table of its material");
         refuse(!body.tractions.is_empty(), &format!("{name}, which has tractions"), "remove them");
-        refuse(matches!(body.shape, Shape::Difference { .. }), &format!("{name}, a difference"), "use another shape");
         let (low, high) = scene.mesh.extent(&body.shape);
         let (origin, end) = (scene.mesh.origin(), scene.mesh.end());
         for boundary in &scene.boundaries {

@@ -291,9 +291,18 @@ fn gauss_quadrature_by_spans_is_refused_where_it_does_not_exist() {
     assert_eq!(but(|s| s.analysis.kinematics = Kinematics::Small), key);
     assert_eq!(but(|s| s.analysis.frame = Frame::Total), key);
     assert_eq!(but(|s| s.analysis.transfer = Transfer::Apic), key);
-    assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.1, fragments: false })), key);
-    assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.0, fragments: false })), [""; 0]);
-    assert_eq!(but(|s| s.bodies[0].rigid = true).first().map(String::as_str), Some(key[0]));
+    assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.1, ..Contact::default() })), [""; 0]);
+    assert_eq!(but(|s| s.contact = Some(Contact::default())), [""; 0]);
+    let above = |shape: fn(Shape) -> Shape| {
+        errors(move |s| {
+            sound(s);
+            s.contact = Some(Contact { friction: 0.1, ..Contact::default() });
+            let floor = Shape::Rectangle { min: [-1.0, -1.0], max: [2.0, 0.0] };
+            s.bodies.push(Body { name: "floor".into(), rigid: true, shape: shape(floor), ..s.bodies[0].clone() });
+        })
+    };
+    assert_eq!(above(|floor| floor), [""; 0]);
+    assert_eq!(above(|floor| Shape::Difference { of: Box::new(floor), minus: vec![] }), key);
     assert_eq!(
         but(|s| s.boundaries = vec![Boundary { side: Side::Left, fix: [true, false], velocity: [1.0, 0.0] }]),
         key
@@ -327,7 +336,7 @@ fn several_bodies_need_the_updated_frame_and_room() {
     let two = |gap: f64| {
         move |s: &mut Scene| {
             s.analysis.frame = Frame::Updated;
-            s.contact = Some(Contact { friction: 0.3, fragments: false });
+            s.contact = Some(Contact { friction: 0.3, ..Contact::default() });
             let block = |name: &str, left: f64, right: f64| Body {
                 name: name.into(),
                 shape: Shape::Rectangle { min: [left, 0.0], max: [right, 0.01] },
@@ -347,14 +356,26 @@ fn several_bodies_need_the_updated_frame_and_room() {
         })
     };
     assert_eq!(changed(|s| s.analysis.frame = Frame::Total), ["analysis.frame"]);
-    assert_eq!(changed(|s| s.contact = Some(Contact { friction: -0.1, fragments: false })), ["contact.friction"]);
+    assert_eq!(changed(|s| s.contact = Some(Contact { friction: -0.1, ..Contact::default() })), ["contact.friction"]);
+    for stiffness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let soft = move |s: &mut Scene| {
+            two(0.0)(s);
+            s.contact = Some(Contact { stiffness, ..Contact::default() });
+        };
+        assert_eq!(errors(soft), ["contact.stiffness"]);
+    }
+    let stiff = |s: &mut Scene| {
+        two(0.0)(s);
+        s.contact = Some(Contact { stiffness: 8.0, ..Contact::default() });
+    };
+    assert_eq!(warnings(stiff), ["contact.stiffness"]);
     let whole = changed(|s| {
-        s.contact = Some(Contact { friction: 0.1, fragments: true });
+        s.contact = Some(Contact { friction: 0.1, fragments: true, ..Contact::default() });
         s.materials.values_mut().for_each(|material| material.fracture = None);
     });
     assert_eq!(whole, ["contact.fragments"]);
     let pulled = changed(|s| {
-        s.contact = Some(Contact { friction: 0.1, fragments: true });
+        s.contact = Some(Contact { friction: 0.1, fragments: true, ..Contact::default() });
         s.bodies[1].tractions = vec![Traction { edge: Edge::Side(Side::Right), stress: [1e3, 0.0], ramp: None }];
     });
     assert_eq!(pulled, ["body.1.traction"]);

@@ -18,7 +18,7 @@ fn discs() -> Scene {
     scene.bodies[0].velocity = [0.05, 0.0];
     scene.bodies[0].angular_velocity = 0.3;
     scene.bodies.push(Body { name: "other".into(), material: "solid".into(), ..body(disc(0.62), [2, 2]) });
-    scene.contact = Some(Contact { friction: 0.0, fragments: false });
+    scene.contact = Some(Contact::default());
     scene.output.bodies = true;
     scene
 }

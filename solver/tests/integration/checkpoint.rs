@@ -129,7 +129,7 @@ fn with_contact_friction_and_rigid_bodies() {
         ..body(rectangle([0.001, 0.001], [0.019, 0.0049]), [2, 2])
     };
     scene.bodies = vec![disc("left", 0.0059, 60.0), disc("right", 0.0141, -60.0), floor];
-    scene.contact = Some(Contact { friction: 0.4, fragments: false });
+    scene.contact = Some(Contact { friction: 0.4, ..Contact::default() });
     scene.analysis = Analysis { frame: Frame::Updated, end_time: 8e-6, ..scene.analysis };
     let (simulation, samples) = crate::common::run(&scene);
     let end = samples.last().unwrap().contact.unwrap();
@@ -148,7 +148,7 @@ fn with_fragments() {
         angular_velocity: 2e4,
         ..body(rectangle([0.004, 0.004], [0.012, 0.006]), [2, 2])
     }];
-    scene.contact = Some(Contact { friction: 0.2, fragments: true });
+    scene.contact = Some(Contact { friction: 0.2, fragments: true, ..Contact::default() });
     scene.analysis = Analysis { frame: Frame::Updated, end_time: 3e-6, safety: 0.5, ..scene.analysis };
     let (simulation, _) = crate::common::run(&scene);
     assert!(simulation.updated_frame().unwrap().fields().len() >= 2);
@@ -164,12 +164,26 @@ fn with_contact_of_bodies_whose_spans_integrate() {
         ..body(Shape::Disk { center: [x, 0.01], radius: 0.004 }, [3, 3])
     };
     scene.bodies = vec![disc("left", 0.00595, 60.0), disc("right", 0.01405, -60.0)];
-    scene.contact = Some(Contact { friction: 0.0, fragments: false });
+    scene.contact = Some(Contact::default());
     let (frame, kinematics, quadrature) = (Frame::Updated, Kinematics::Finite, Quadrature::Gauss);
     scene.analysis = Analysis { frame, kinematics, quadrature, end_time: 4e-6, ..scene.analysis };
     let (_, samples) = crate::common::run(&scene);
     assert!(samples.last().unwrap().contact.unwrap().loss > 0.0, "the bodies meet");
     goes_on_bit_by_bit("contact of spans", &scene);
+    let floor = Body {
+        rigid: true,
+        velocity: [5.0, 30.0],
+        angular_velocity: 100.0,
+        name: "floor".into(),
+        ..body(rectangle([0.001, 0.001], [0.019, 0.0059]), [2, 2])
+    };
+    scene.bodies.iter_mut().for_each(|body| (body.velocity[1], body.angular_velocity) = (-20.0, 2e3));
+    scene.bodies.push(floor);
+    scene.contact = Some(Contact { friction: 0.4, ..Contact::default() });
+    let (_, samples) = crate::common::run(&scene);
+    let end = samples.last().unwrap();
+    assert!(end.contact.unwrap().friction > 0.0 && end.external_work != 0.0, "the bodies meet and rub: {end:?}");
+    goes_on_bit_by_bit("friction and a rigid body with contact of spans", &scene);
 }
 
 #[test]

@@ -18,7 +18,7 @@ fn bars(degree: usize, spans: usize) -> Scene {
         ..body(rectangle([left, 0.0], [left + 1.0, 4.0 * h]), [degree.max(2); 2])
     };
     scene.bodies = vec![bar("left", 7.0 * h, 0.01), bar("right", 8.0 * h + 1.0, 0.0)];
-    scene.contact = Some(Contact { friction: 0.0, fragments: false });
+    scene.contact = Some(Contact::default());
     scene.analysis.frame = Frame::Updated;
     scene.analysis.end_time = 4.0 + h / 0.01;
     scene.analysis.safety = 0.5;
@@ -62,7 +62,7 @@ fn incline(degree: usize, shape: Shape, slope: f64, friction: f64, cells: [usize
         other => other,
     };
     scene.bodies = vec![body(lifted, [degree.max(2); 2]), floor];
-    scene.contact = Some(Contact { friction, fragments: false });
+    scene.contact = Some(Contact { friction, ..Contact::default() });
     scene.analysis.frame = Frame::Updated;
     scene.analysis.kinematics = Kinematics::Finite;
     scene.analysis.gravity = [10.0 * slope.sin(), -10.0 * slope.cos()];
@@ -121,7 +121,7 @@ fn bodies_pass_through_each_other_without_a_contact_table() {
     for (field, speed) in frame.fields().iter().zip([1.0, -1.0]) {
         assert!(field.points().iter().all(|p| (p.velocity[0] - speed).abs() < 1e-12 && p.velocity[1].abs() < 1e-12));
     }
-    let (simulation, samples) = run(&blocks(Some(Contact { friction: 0.3, fragments: false })));
+    let (simulation, samples) = run(&blocks(Some(Contact { friction: 0.3, ..Contact::default() })));
     let fields = simulation.updated_frame().unwrap().fields();
     assert!(fields[0].momentum()[0] < 0.0 && fields[1].momentum()[0] > 0.0, "they bounce with contact");
     let one = fields[0].mass();

@@ -18,7 +18,7 @@ fn scene(degree: usize, size: [f64; 2], cells: [usize; 2]) -> Scene {
     scene.materials = [("glass".to_string(), solid(1.0))].into();
     scene.analysis.frame = Frame::Updated;
     scene.analysis.safety = 0.5;
-    scene.contact = Some(Contact { friction: 0.3, fragments: false });
+    scene.contact = Some(Contact { friction: 0.3, ..Contact::default() });
     scene
 }
 
@@ -157,7 +157,7 @@ fn bodies_that_do_not_approach_are_not_too_fast() {
     ] {
         let mut scene = scene(2, [4.0, 2.0], [64, 32]);
         scene.bodies = bodies;
-        scene.contact = Some(Contact { friction: 0.0, fragments: false });
+        scene.contact = Some(Contact::default());
         // 1.6 spans, and 0.45 on the rim of the disc, to and fro.
         scene.analysis.time_step = TimeStep::Fixed(1e-3);
         scene.analysis.end_time = 5e-3;

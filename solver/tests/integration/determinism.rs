@@ -70,7 +70,10 @@ fn bodies_in_contact_whose_spans_integrate() {
     let mut scene = updated_scene_of_two();
     scene.analysis.quadrature = Quadrature::Gauss;
     scene.materials.values_mut().for_each(|material| material.fracture = None);
-    scene.contact = Some(Contact { friction: 0.0, fragments: false });
+    scene.contact = Some(Contact::default());
+    check(&scene);
+    scene.contact = Some(Contact { friction: 0.3, ..Contact::default() });
+    scene.bodies[0].angular_velocity = 2e3;
     check(&scene);
 }
 
@@ -88,7 +91,7 @@ fn updated_scene_of_two() -> Scene {
     };
     scene.bodies = vec![disc("left", 0.006, 20.0), disc("right", 0.014, -20.0)];
     scene.boundaries.clear();
-    scene.contact = Some(Contact { friction: 0.2, fragments: false });
+    scene.contact = Some(Contact { friction: 0.2, ..Contact::default() });
     scene.analysis.frame = Frame::Updated;
     scene.analysis.kinematics = Kinematics::Finite;
     scene.analysis.end_time = 3e-6;

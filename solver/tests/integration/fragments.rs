@@ -12,7 +12,7 @@ fn cracked_bar() -> Scene {
     scene.bodies = vec![Body { cracks: vec![crack], ..body(rectangle([0.0; 2], [0.008, 0.002]), [2, 2]) }];
     scene.analysis =
         Analysis { frame: Frame::Updated, kinematics: Kinematics::Finite, safety: 0.5, ..scene.analysis.clone() };
-    scene.contact = Some(Contact { friction: 0.3, fragments: true });
+    scene.contact = Some(Contact { friction: 0.3, fragments: true, ..Contact::default() });
     scene.output.samples = 10;
     scene
 }

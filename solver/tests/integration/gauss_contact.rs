@@ -24,7 +24,7 @@ fn discs(degree: usize, cells: usize, gap: f64) -> Scene {
         velocity: [-0.05, 0.0],
         ..scene.bodies[0].clone()
     });
-    scene.contact = Some(Contact { friction: 0.0, fragments: false });
+    scene.contact = Some(Contact::default());
     scene.analysis.kinematics = Kinematics::Finite;
     scene.analysis.quadrature = Quadrature::Gauss;
     scene.analysis.safety = 0.5;
@@ -48,6 +48,51 @@ fn momenta_are_kept_and_the_potential_gives_back_what_it_took() {
         let drift = samples.iter().map(|s| (s.angular_momentum - angular).abs()).fold(0.0, larger) / angular.abs();
         assert!(drift <= 1e-12, "angular momentum drifts by {drift:e}");
     }
+}
+
+#[test]
+fn friction_keeps_momenta_and_takes_the_energy_it_books() {
+    for friction in [0.1, 1.0] {
+        let mut scene = discs(2, 20, 0.01);
+        scene.analysis.end_time = 2.0;
+        scene.contact = Some(Contact { friction, ..Contact::default() });
+        let (_, samples) = crate::common::run(&scene);
+        let (first, last) = (samples.first().unwrap(), samples.last().unwrap());
+        let momentum = samples.iter().flat_map(|s| s.momentum).map(f64::abs).fold(0.0, larger);
+        assert!(momentum <= 1e-12 * first.kinetic, "{momentum:e}");
+        let angular = first.angular_momentum;
+        let drift = samples.iter().map(|s| (s.angular_momentum - angular).abs()).fold(0.0, larger) / angular.abs();
+        assert!(drift <= 1e-12, "angular momentum drifts by {drift:e}");
+        let falls = samples.windows(2).map(|s| s[0].contact.unwrap().friction - s[1].contact.unwrap().friction);
+        assert!(falls.fold(0.0, larger) <= 1e-12 * first.kinetic);
+        let end = last.contact.unwrap();
+        assert!(end.friction > 0.01 * first.kinetic, "{end:?}");
+        // Slip that is let go as bodies part is friction.
+        assert!((end.loss - end.friction).abs() <= 1e-15 * first.kinetic, "{end:?}");
+        let closure = samples.iter().map(|s| s.closure.abs()).fold(0.0, larger);
+        assert!(closure < 0.02 * first.kinetic, "{closure:e}");
+    }
+}
+
+#[test]
+fn a_rigid_plate_works_on_the_disc_it_pushes() {
+    let mut scene = discs(2, 20, 0.01);
+    scene.bodies[0].velocity = [0.0; 2];
+    let plate = Shape::Rectangle { min: [0.9, 0.0], max: [1.2, 1.2] };
+    let left = scene.bodies[0].shape.bounding_box().1[0];
+    scene.bodies[1] = Body { rigid: true, shape: plate, ..scene.bodies[1].clone() };
+    scene.contact = Some(Contact { friction: 0.5, ..Contact::default() });
+    scene.analysis.end_time = (0.9 - left) / 0.05 + 1.5;
+    let (simulation, samples) = crate::common::run(&scene);
+    let last = samples.last().unwrap();
+    let closure = samples.iter().map(|s| s.closure.abs()).fold(0.0, larger);
+    assert!(last.external_work > 0.0 && closure < 0.02 * last.external_work, "{last:?}");
+    // Elastic: the disc leaves at twice the speed of the plate, but for its vibration.
+    let field = &simulation.updated_frame().unwrap().fields()[0];
+    let speed = field.momentum()[0] / field.mass();
+    assert!((-0.1..-0.09).contains(&speed), "{speed}");
+    let work = 0.05 * field.mass() * -speed;
+    assert!((last.external_work - work).abs() < 0.02 * work, "{} {work}", last.external_work);
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn scenes(cells: usize, frame: Frame) -> Vec<(&'static str, Scene, Happens)> {
         ("fracture", fracture, Happens::CrackGrows),
     ];
     if frame == Frame::Updated {
-        let contact = Some(Contact { friction: 0.3, fragments: false });
+        let contact = Some(Contact { friction: 0.3, ..Contact::default() });
         scenes.push(("two bodies, no contact declared", pair(cells, 2.0, None), Happens::Motion));
         scenes.push(("two bodies apart, contact declared", pair(cells, 4.0, contact.clone()), Happens::Apart));
         scenes.push(("two bodies in contact", pair(cells, 0.0, contact), Happens::Contact));

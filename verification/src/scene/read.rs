@@ -44,10 +44,11 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     let materials = fields.or("material", BTreeMap::new(), materials);
     let bodies = fields.or("body", Vec::new(), bodies);
     let contact = fields.maybe("contact", |item| {
-        let fields = item.fields(&["friction", "fragments"])?;
+        let fields = item.fields(&["friction", "fragments", "stiffness"])?;
         let friction = fields.need("friction", "friction = 0.65", number);
         let fragments = fields.or("fragments", false, Item::flag);
-        Some(Contact { friction: friction?, fragments: fragments? })
+        let stiffness = fields.or("stiffness", Contact::default().stiffness, number);
+        Some(Contact { friction: friction?, fragments: fragments?, stiffness: stiffness? })
     });
     let boundaries = fields.or("boundary", Vec::new(), boundaries);
     let output = fields.or("output", Output { samples: 320, frames: Vec::new(), bodies: false }, output);

@@ -109,7 +109,7 @@ fn every_form_of_a_key_is_read() {
     assert_eq!(cut[0], [0.0, 0.0, 0.0, 0.0125, 0.025, 0.05, 0.1 * 0.75, 0.1 * 0.875, 0.1, 0.1, 0.1]);
     assert_eq!(cut[1], [0.0, 0.0, 0.0, 0.02, 0.04, 0.04, 0.04]);
     assert_eq!(scene.analysis.transfer, Transfer::Xpic(5));
-    assert_eq!(scene.contact, Some(Contact { friction: 0.65, fragments: false }));
+    assert_eq!(scene.contact, Some(Contact { friction: 0.65, ..Contact::default() }));
     assert_eq!(scene.bodies[0].tractions[1].edge, Edge::Segment([[0.0, 0.0], [0.05, 0.0]]));
     assert_eq!(scene.bodies[0].tractions[1].ramp, Some(1e-6));
     let shapes = "{ difference = { of = { disk = { center = [0.05, 0.02], radius = 0.02 } }, minus = [

@@ -258,6 +258,11 @@ pub const FAULTS: &[Fault] = &[
         "a body feels nine tenths of the force of the gap potential",
         &["contact/impact-equal-gauss"],
     ),
+    fault(
+        "slip-not-returned",
+        "sliding in contact by a potential of the gap goes on loading its spring",
+        &["contact/incline-block-gauss"],
+    ),
     fault("relaxation-unbooked", "the ledger misses what the relaxation takes", &["energy/gauss-quadrature"]),
 ];
 

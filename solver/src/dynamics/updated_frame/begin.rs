@@ -20,7 +20,7 @@ use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
 use crate::particles::points::{Cells, OutsidePatch, Point};
 use crate::phase_field::fracture::lowest_tip;
-use crate::scene::{Body, Kinematics, Material, Plane, Quadrature, Scene, Transfer};
+use crate::scene::{Body, Contact, Kinematics, Material, Plane, Quadrature, Scene, Transfer};
 use crate::splines::patch::Patch;
 
 impl DiscreteField {
@@ -42,8 +42,8 @@ impl DiscreteField {
         field.attach_first(number)?;
         field.respond();
         field.respond_with_spans()?;
-        if scene.contact.is_some() {
-            field.expect_contact();
+        if let Some(contact) = &scene.contact {
+            field.expect_contact(contact);
         }
         for (traction, load) in field.loads.iter().enumerate() {
             let balance = Balance::of_edge(body, &body.tractions[traction].edge);
@@ -54,10 +54,10 @@ impl DiscreteField {
     }
 
     /// Tells spans that integrate that the boundary may meet others.
-    fn expect_contact(&mut self) {
+    fn expect_contact(&mut self, contact: &Contact) {
         let Self { patch, spans, .. } = self;
         if let Some(spans) = spans {
-            spans.expect_contact(patch);
+            spans.expect_contact(patch, contact);
         }
     }
 

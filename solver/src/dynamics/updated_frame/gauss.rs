@@ -22,7 +22,7 @@
 //! of the relaxation are taken out per component, and of a free body the mean rotation too, so that momentum
 //! and angular momentum are kept to round-off ([`rigid`]).
 //!
-//! Boundaries that meet push each other apart by a potential of the gap ([`contact`],
+//! Boundaries that meet push each other apart by a potential of the gap, and rub ([`contact`],
 //! [`crate::contact::gap_potential`]), which adds to the forces before `M a` is solved.
 //!
 //! # The energy ledger
@@ -109,13 +109,22 @@ pub(crate) struct SpanQuadrature {
     point_acceleration: Vec<[f64; 2]>,
     /// Control points at which a component is held.
     held: [Vec<usize>; 2],
-    /// Stiffness of the boundary where it meets others, Pa/m, if it may, and the sum of forces there, N/m.
-    spring: Option<f64>,
+    /// Springs of the boundary, if it may meet others, and the sum of forces there, N/m.
+    springs: Option<BoundarySprings>,
     pushed: Resultant,
     /// Steps since the velocities were last relaxed.
     since_relaxation: usize,
     moduli: ElasticModuli,
     density: f64,
+}
+
+/// Springs of a boundary that may meet others.
+#[derive(Debug, Clone, Copy)]
+struct BoundarySprings {
+    /// κ, Pa/m.
+    stiffness: f64,
+    /// Whether others rub along it.
+    rubs: bool,
 }
 
 /// Points of a body on its part of the patch.
@@ -160,7 +169,7 @@ impl SpanQuadrature {
             force: field(),
             point_acceleration: Vec::new(),
             held: [0, 1].map(|c| nodes.fixed().iter().filter(|(_, component)| *component == c).map(|f| f.0).collect()),
-            spring: None,
+            springs: None,
             pushed: Resultant::default(),
             since_relaxation: 0,
             moduli,

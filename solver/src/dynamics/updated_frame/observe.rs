@@ -36,9 +36,7 @@ impl UpdatedFrame {
             self.fields.iter().zip(&accelerations).map(|(field, a)| field.sample(dt, a)).collect();
         let recorded = self.recorded.as_ref().map(|names| self.sample_bodies(names, &bodies, dt));
         let mut sample = bodies.into_iter().reduce(Sample::with).expect("a scene has a body");
-        if let Some(potential) = &self.gap_potential {
-            sample.contact = Some(ContactSample { loss: potential.energy(), friction: 0.0 });
-        }
+        let contact = contact.or_else(|| self.gap_potential.as_ref().map(|potential| potential.ledger()));
         if let Some(ContactLedger { loss, friction, work }) = contact {
             sample.external_work += work;
             sample.contact = Some(ContactSample { loss, friction });
@@ -106,7 +104,9 @@ impl UpdatedFrame {
 
     /// External work so far, J.
     pub fn external_work(&self) -> f64 {
-        let rigid = self.contact.as_ref().map_or(0.0, |contact| contact.ledger().work) * self.thickness;
+        let by_impulses = self.contact.as_ref().map(|contact| contact.ledger());
+        let ledger = by_impulses.or_else(|| self.gap_potential.as_ref().map(|potential| potential.ledger()));
+        let rigid = ledger.map_or(0.0, |ledger| ledger.work) * self.thickness;
         self.fields.iter().map(|field| field.external_work()).sum::<f64>() + rigid
     }
 

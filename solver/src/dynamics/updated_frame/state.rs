@@ -18,8 +18,11 @@ impl UpdatedFrame {
         self.exchange_fragments(archive)?;
         let Self { patch: _, fields, contact, gap_potential, fragments: _, thickness: _, recorded: _ } = self;
         fields.iter_mut().try_for_each(|field| field.exchange(archive))?;
-        if let Some(potential) = gap_potential.as_mut().filter(|_| archive.is_reader()) {
-            find_gaps(potential, fields).map_err(too_fast)?;
+        if let Some(potential) = gap_potential {
+            potential.exchange(archive)?;
+            if archive.is_reader() && fields[0].time() > 0.0 {
+                find_gaps(potential, fields, 0.0).map_err(too_fast)?;
+            }
         }
         if let Some(contact) = contact {
             contact.exchange(archive)?;

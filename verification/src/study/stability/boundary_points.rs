@@ -159,7 +159,7 @@ impl Flight {
 /// Two blocks, one span a side, that overlap by some of a span.
 fn overlapping(depth: f64) -> Scene {
     let mut scene = flying(2, Transfer::Flip);
-    scene.contact = Some(Contact { friction: 0.0, fragments: false });
+    scene.contact = Some(Contact::default());
     scene.bodies[0].velocity = [0.0; 2];
     let other = Body {
         name: "other".into(),

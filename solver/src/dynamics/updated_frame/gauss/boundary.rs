@@ -19,7 +19,7 @@
 //! crosses knots.
 
 use super::map::{Folded, InverseMap};
-use crate::contact::gap_potential::Arc;
+use crate::contact::gap_potential::arc::Arc;
 use crate::linear_algebra::extremes::smaller;
 use crate::scene::{Layout, Mesh, Shape};
 use crate::splines::quadrature::{MAX_POINTS, Rule};

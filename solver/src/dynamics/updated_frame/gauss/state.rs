@@ -29,7 +29,7 @@ impl SpanQuadrature {
         let new = moved.displacement.iter_mut().chain(&mut moved.acceleration).chain([&mut moved.velocity]);
         old.zip(new).for_each(|(old, new)| relocate(old, from, new, to, shift));
         moved.since_relaxation = self.since_relaxation;
-        moved.spring = self.spring;
+        moved.springs = self.springs;
         *self = moved;
     }
 

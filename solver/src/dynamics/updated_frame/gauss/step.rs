@@ -1,7 +1,8 @@
 //! One step of a body whose spans integrate, and what is read from it.
 
 use super::OnPatch;
-use crate::contact::gap_potential::{GapForce, Outline};
+use crate::contact::gap_potential::GapForce;
+use crate::contact::gap_potential::arc::Outline;
 use crate::dynamics::energy::Sample;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::updated_frame::field::DiscreteField;
