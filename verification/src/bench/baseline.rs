@@ -128,6 +128,10 @@ fn build(checkout: &Path) -> Result<PathBuf, BenchError> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
     let mut command = Command::new(cargo);
     command.args(["build", "--package", "xtask", "--message-format", "json-render-diagnostics"]);
+    let aliases = fs::read_to_string(checkout.join(".cargo/config.toml")).unwrap_or_default();
+    if aliases.contains("--release") {
+        command.arg("--release"); // as its alias has it
+    }
     command.current_dir(checkout).stdin(Stdio::null()).stderr(Stdio::inherit());
     let output = command.output().map_err(|error| wrong(format!("cargo cannot be started there: {error}")))?;
     if !output.status.success() {
