@@ -198,7 +198,7 @@ struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// Copies the matrix times the unit, scaled if it is to be, into `block`. Control points that take no part
+    /// Copies the matrix times the unit, scaled if it is to be, into `block`. Control points without a part
     /// are left out.
     fn copy(&self, block: &mut [f64]) {
         let grid = self.matrix.grid;
