@@ -11,13 +11,19 @@
 //! `A e = r`. The residual is taken and the correction added in double precision (iterative refinement,
 //! Wilkinson 1963; Higham 2002, *Accuracy and stability of numerical algorithms*, chapter 12). A correction
 //! in single precision is good for [`DIGITS`]; a tolerance below that takes another one.
+//!
+//! Rounded to single precision, a matrix whose coefficients differ by more than seven digits from one control
+//! point to the next may no longer be positive definite: material under a strain of one and more has 1e9
+//! times the reaction of intact material. Where iterations fail in single precision, they go on in double
+//! precision.
 
 use rayon::prelude::*;
 use thiserror::Error;
 
-use crate::linear_algebra::lane::{Vectorised, add_product, dispatch};
+use crate::linear_algebra::lane::{Scalar, Vectorised, add_product, dispatch};
 use crate::linear_algebra::preconditioner::Preconditioner;
 use crate::linear_algebra::stencil::{CHUNK_ROWS, Stencil};
+use crate::linear_algebra::terms::Coefficients;
 
 /// Ratio of two decreases from which on iterations count as stagnating.
 const STAGNATING: f64 = 0.999;
@@ -58,13 +64,9 @@ pub enum SolveFailure {
 /// Working vectors, kept between solves.
 #[derive(Debug, Clone)]
 pub struct ConjugateGradients {
-    /// The matrix in single precision.
-    matrix: Stencil<f32>,
-    correction: Vec<f32>,
-    residual: Vec<f32>,
-    preconditioned: Vec<f32>,
-    direction: Vec<f32>,
-    image: Vec<f32>,
+    single: Workspace<f32>,
+    /// Only where single precision has failed.
+    double: Option<Box<Workspace<f64>>>,
     /// `A x`.
     product: Vec<f64>,
 }
@@ -72,16 +74,7 @@ pub struct ConjugateGradients {
 impl ConjugateGradients {
     /// Room for systems of the size of `matrix`.
     pub fn new(matrix: &Stencil) -> Self {
-        let zeros = || vec![0.0; matrix.grid.len()];
-        Self {
-            matrix: matrix.single(),
-            correction: zeros(),
-            residual: zeros(),
-            preconditioned: zeros(),
-            direction: zeros(),
-            image: zeros(),
-            product: matrix.grid.zeros(),
-        }
+        Self { single: Workspace::new(matrix), double: None, product: matrix.grid.zeros() }
     }
 
     /// Improves `x` until its error in the energy norm is about `tolerance`; a start whose preconditioned
@@ -98,15 +91,70 @@ impl ConjugateGradients {
         tolerance: f64,
         limit: usize,
     ) -> Result<Convergence, SolveFailure> {
-        let clear = |field: &mut [f32]| matrix.active().clear_outside(matrix.grid, field);
+        let Self { single, double, product } = self;
+        let system = System { matrix, preconditioner, b, tolerance, limit };
+        match single.solve(&system, x, product) {
+            Err(SolveFailure::NotPositiveDefinite | SolveFailure::NotConverged { .. }) => {
+                double.get_or_insert_with(|| Box::new(Workspace::new(matrix))).solve(&system, x, product)
+            }
+            ended => ended,
+        }
+    }
+
+    /// Bytes of matrices that iterations have read so far.
+    pub fn bytes_read(&self) -> u64 {
+        self.single.matrix.bytes_read() + self.double.as_ref().map_or(0, |double| double.matrix.bytes_read())
+    }
+
+    /// Heap memory, bytes.
+    pub fn bytes(&self) -> usize {
+        8 * self.product.len() + self.single.bytes() + self.double.as_ref().map_or(0, |double| double.bytes())
+    }
+}
+
+/// What is to be solved, and how well.
+struct System<'a> {
+    matrix: &'a Stencil,
+    preconditioner: &'a Preconditioner,
+    b: &'a [f64],
+    tolerance: f64,
+    limit: usize,
+}
+
+/// Matrix and vectors of the iterations.
+#[derive(Debug, Clone)]
+struct Workspace<T> {
+    matrix: Stencil<T>,
+    correction: Vec<T>,
+    residual: Vec<T>,
+    preconditioned: Vec<T>,
+    direction: Vec<T>,
+    image: Vec<T>,
+}
+
+impl<T: Scalar + Coefficients<T>> Workspace<T> {
+    fn new(matrix: &Stencil) -> Self {
+        let zeros = || vec![T::ZERO; matrix.grid.len()];
+        Self {
+            matrix: matrix.empty(),
+            correction: zeros(),
+            residual: zeros(),
+            preconditioned: zeros(),
+            direction: zeros(),
+            image: zeros(),
+        }
+    }
+
+    fn solve(&mut self, system: &System, x: &mut [f64], product: &mut [f64]) -> Result<Convergence, SolveFailure> {
+        let &System { matrix, preconditioner, b, .. } = system;
+        let clear = |field: &mut [T]| matrix.active().clear_outside(matrix.grid, field);
         let Self { preconditioned, direction, image, .. } = self;
         [preconditioned, direction, image].into_iter().for_each(|field| clear(field));
         let mut iterations = 0;
         loop {
-            let unit = preconditioner.unit();
-            matrix.residual(unit, b, x, &mut self.product, &mut self.residual, &mut self.matrix);
-            self.correction.fill(0.0);
-            let corrected = self.correct(preconditioner, tolerance, &mut iterations, limit);
+            matrix.residual(preconditioner.unit(), b, x, product, &mut self.residual, &mut self.matrix);
+            self.correction.fill(T::ZERO);
+            let corrected = self.correct(system, &mut iterations);
             add(x, &self.correction);
             if let Some(error) = corrected? {
                 return Ok(Convergence { iterations, error });
@@ -114,15 +162,10 @@ impl ConjugateGradients {
         }
     }
 
-    /// Finds a correction in single precision, and counts its iterations; returns the error that is left, or
-    /// none if the tolerance is below what a correction is good for.
-    fn correct(
-        &mut self,
-        preconditioner: &Preconditioner,
-        tolerance: f64,
-        iterations: &mut usize,
-        limit: usize,
-    ) -> Result<Option<f64>, SolveFailure> {
+    /// Finds a correction, and counts its iterations; returns the error that is left, or none if the
+    /// tolerance is below what a correction is good for.
+    fn correct(&mut self, system: &System, iterations: &mut usize) -> Result<Option<f64>, SolveFailure> {
+        let &System { preconditioner, tolerance, limit, .. } = system;
         let unit = preconditioner.unit();
         let mut rho = self.precondition(preconditioner);
         let mut remaining = Remaining::from_start(rho / unit);
@@ -144,13 +187,13 @@ impl ConjugateGradients {
                 let previous = std::mem::replace(&mut rho, self.precondition(preconditioner));
                 beta = rho / previous;
             }
-            self.turn(beta as f32);
+            self.turn(T::of(beta));
             let curvature = self.matrix.apply(&self.direction, &mut self.image);
             if curvature <= 0.0 {
                 return Err(SolveFailure::NotPositiveDefinite);
             }
             let alpha = rho / curvature;
-            self.advance(alpha as f32);
+            self.advance(T::of(alpha));
             remaining.learn(alpha * rho / unit);
             *iterations += 1;
         }
@@ -162,14 +205,14 @@ impl ConjugateGradients {
     }
 
     /// `d ← z + beta d`.
-    fn turn(&mut self, beta: f32) {
+    fn turn(&mut self, beta: T) {
         let chunk = CHUNK_ROWS * self.matrix.grid.stride;
         let chunks = self.direction.par_chunks_mut(chunk).zip(self.preconditioned.par_chunks(chunk));
         chunks.for_each(|(direction, preconditioned)| dispatch(Turn { direction, preconditioned, beta }));
     }
 
     /// `e += alpha d`, `r −= alpha A d`.
-    fn advance(&mut self, alpha: f32) {
+    fn advance(&mut self, alpha: T) {
         let chunk = CHUNK_ROWS * self.matrix.grid.stride;
         let correction = self.correction.par_chunks_mut(chunk).zip(self.direction.par_chunks(chunk));
         let residual = self.residual.par_chunks_mut(chunk).zip(self.image.par_chunks(chunk));
@@ -178,25 +221,19 @@ impl ConjugateGradients {
         });
     }
 
-    /// Bytes of matrices and factors that iterations have read so far.
-    pub fn bytes_read(&self) -> u64 {
-        self.matrix.bytes_read()
-    }
-
-    /// Heap memory, bytes.
-    pub fn bytes(&self) -> usize {
-        self.matrix.bytes() + (5 * size_of::<f32>() + size_of::<f64>()) * self.product.len()
+    fn bytes(&self) -> usize {
+        self.matrix.bytes() + 5 * size_of::<T>() * self.image.len()
     }
 }
 
 /// `d ← z + beta d`.
-struct Turn<'a> {
-    direction: &'a mut [f32],
-    preconditioned: &'a [f32],
-    beta: f32,
+struct Turn<'a, T> {
+    direction: &'a mut [T],
+    preconditioned: &'a [T],
+    beta: T,
 }
 
-impl Vectorised for Turn<'_> {
+impl<T: Scalar> Vectorised for Turn<'_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -208,15 +245,15 @@ impl Vectorised for Turn<'_> {
 }
 
 /// `e += alpha d`, `r −= alpha A d`.
-struct Advance<'a> {
-    correction: &'a mut [f32],
-    direction: &'a [f32],
-    residual: &'a mut [f32],
-    image: &'a [f32],
-    alpha: f32,
+struct Advance<'a, T> {
+    correction: &'a mut [T],
+    direction: &'a [T],
+    residual: &'a mut [T],
+    image: &'a [T],
+    alpha: T,
 }
 
-impl Vectorised for Advance<'_> {
+impl<T: Scalar> Vectorised for Advance<'_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -231,9 +268,9 @@ impl Vectorised for Advance<'_> {
 }
 
 /// `x += e`.
-fn add(x: &mut [f64], correction: &[f32]) {
+fn add<T: Scalar>(x: &mut [f64], correction: &[T]) {
     x.par_chunks_mut(PARALLEL).zip(correction.par_chunks(PARALLEL)).for_each(|(x, correction)| {
-        x.iter_mut().zip(correction).for_each(|(x, e)| *x += f64::from(*e));
+        x.iter_mut().zip(correction).for_each(|(x, e)| *x += (*e).into());
     });
 }
 

@@ -7,7 +7,7 @@
 //! applied with the scale of the matrix as it is then: `A ≈ S⁻¹ L D Lᵀ S⁻¹`. Material that comes to a control
 //! point and leaves it changes its diagonal most, so an old factor stays a good one for long.
 //!
-//! It is made in double precision, and kept and applied in single precision: it stays symmetric and positive
+//! It is made in double precision, kept in single precision, and applied in that of the vectors: it stays symmetric and positive
 //! definite, and applying it takes as long as reading it. It stands for `unit A` with a power of two that
 //! makes the largest diagonal entry about one ([`IncompleteCholesky::unit`]): nothing underflows, whatever
 //! the units of a scene.
@@ -20,7 +20,7 @@ use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
-use crate::linear_algebra::lane::dispatch;
+use crate::linear_algebra::lane::{Scalar, dispatch};
 use crate::linear_algebra::stencil::{Offset, Stencil};
 use solve::{SolveBlock, SolvePair};
 
@@ -109,7 +109,7 @@ impl IncompleteCholesky {
 
     /// `out = (unit M)⁻¹ r` on the `active` control points, for an `out` that is zero elsewhere; returns
     /// `rᵀ out`.
-    pub fn apply(&self, active: &ActiveColumns, r: &[f32], out: &mut [f32]) -> f64 {
+    pub fn apply<T: Scalar>(&self, active: &ActiveColumns, r: &[T], out: &mut [T]) -> f64 {
         let rows = BLOCK_ROWS * self.grid.stride;
         let length = self.offsets.len() * rows;
         let parts: Vec<f64> = out
@@ -128,14 +128,14 @@ impl IncompleteCholesky {
         parts.iter().sum()
     }
 
-    fn block<'a>(
+    fn block<'a, T>(
         &'a self,
         active: &'a ActiveColumns,
         number: usize,
         factor: &'a [f32],
-        r: &'a [f32],
-        out: &'a mut [f32],
-    ) -> SolveBlock<'a> {
+        r: &'a [T],
+        out: &'a mut [T],
+    ) -> SolveBlock<'a, T> {
         let first = number * BLOCK_ROWS;
         let scale = self.scale.as_ref().filter(|_| !r.is_empty());
         let scale = scale.map(|scale| &scale[first * self.grid.stride..][..r.len()]);

@@ -19,6 +19,7 @@ pub trait Scalar:
     + Send
     + Sync
     + Into<f64>
+    + From<f32>
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
@@ -69,6 +70,16 @@ impl<T: Scalar> Lane<T> {
     pub fn load(values: &[T], at: usize) -> Self {
         let mut lane = Self::ZERO;
         lane.0.copy_from_slice(&values[at..at + LANES]);
+        lane
+    }
+
+    /// Reads eight neighbours of single precision.
+    #[inline(always)]
+    pub(crate) fn load_single(values: &[f32], at: usize) -> Self {
+        let mut lane = Self::ZERO;
+        for (lane, value) in lane.0.iter_mut().zip(&values[at..at + LANES]) {
+            *lane = T::from(*value);
+        }
         lane
     }
 

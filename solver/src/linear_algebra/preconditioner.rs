@@ -14,6 +14,7 @@ use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::cholesky::{Factor, SparseCholesky};
 use crate::linear_algebra::counter::Counter;
 use crate::linear_algebra::incomplete_cholesky::{IncompleteCholesky, unit};
+use crate::linear_algebra::lane::Scalar;
 use crate::linear_algebra::stencil::Stencil;
 
 /// A factor is renewed once a solve needs this many more iterations than the one after its renewal.
@@ -80,18 +81,18 @@ impl Preconditioner {
 
     /// `out = (unit M)⁻¹ r` on the control points that take part in the system, for an `out` that is zero
     /// elsewhere; returns `rᵀ out`.
-    pub fn apply(&self, active: &ActiveColumns, r: &[f32], out: &mut [f32]) -> f64 {
+    pub fn apply<T: Scalar>(&self, active: &ActiveColumns, r: &[T], out: &mut [T]) -> f64 {
         self.read.add(self.bytes());
         match &self.factor {
             PreconditionerKind::Incomplete(factor) => factor.apply(active, r, out),
             PreconditionerKind::Complete(_, factor) => {
                 let (factor, unit) = factor.as_ref().expect("it is made before the solve");
-                let right: Vec<f64> = r.iter().map(|r| f64::from(*r) / unit).collect();
+                let right: Vec<f64> = r.iter().map(|r| (*r).into() / unit).collect();
                 let mut solution = vec![0.0; out.len()];
                 factor.solve(&right, &mut solution);
-                out.iter_mut().zip(solution).for_each(|(out, solution)| *out = solution as f32);
+                out.iter_mut().zip(solution).for_each(|(out, solution)| *out = T::of(solution));
                 active.clear_outside(factor.grid(), out);
-                r.iter().zip(out).map(|(r, out)| f64::from(*r) * f64::from(*out)).sum()
+                r.iter().zip(out).map(|(r, out)| (*r).into() * (*out).into()).sum()
             }
         }
     }

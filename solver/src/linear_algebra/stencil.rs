@@ -14,7 +14,7 @@ use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::counter::Counter;
 use crate::linear_algebra::lane::{LANES, Lane, Scalar, Vectorised, dispatch};
-use crate::linear_algebra::terms::Terms;
+use crate::linear_algebra::terms::{Coefficients, Terms};
 
 /// Rows of control points whose partial sums are formed together.
 pub(crate) const CHUNK_ROWS: usize = 8;
@@ -51,10 +51,10 @@ impl Stencil {
         Self { grid, degree, offsets, coefficients, active: ActiveColumns::all(grid), read: Counter::default() }
     }
 
-    /// A copy of zeros in single precision.
-    pub(crate) fn single(&self) -> Stencil<f32> {
+    /// A matrix of zeros of another precision.
+    pub(crate) fn empty<T: Scalar>(&self) -> Stencil<T> {
         let Self { grid, degree, offsets, coefficients, active, read: _ } = self;
-        let coefficients = vec![0.0; coefficients.len()];
+        let coefficients = vec![T::ZERO; coefficients.len()];
         let (offsets, active) = (offsets.clone(), active.clone());
         Stencil { grid: *grid, degree: *degree, offsets, coefficients, active, read: Counter::default() }
     }
@@ -117,15 +117,15 @@ impl Stencil {
     }
 
     /// `unit (b − A x)` at the control points that take part, zero elsewhere, and a copy of `unit A`, both in
-    /// single precision; `image` is `A x`.
-    pub(crate) fn residual(
+    /// the precision of iterations; `image` is `A x`.
+    pub(crate) fn residual<T: Scalar>(
         &self,
         unit: f64,
         b: &[f64],
         x: &[f64],
         image: &mut [f64],
-        residual: &mut [f32],
-        copy: &mut Stencil<f32>,
+        residual: &mut [T],
+        copy: &mut Stencil<T>,
     ) {
         self.read.add(self.bytes());
         if copy.active != self.active {
@@ -147,7 +147,7 @@ impl Stencil {
     }
 }
 
-impl<T: Scalar> Stencil<T> {
+impl<T: Scalar + Coefficients<T>> Stencil<T> {
     /// Couplings of the half stencil; the first is the diagonal.
     pub fn offsets(&self) -> &[Offset] {
         &self.offsets
@@ -209,25 +209,25 @@ fn half_stencil([p, q]: [usize; 2]) -> Vec<Offset> {
     same_row.chain(rows_ahead).collect()
 }
 
-/// `out = unit (values − subtract)` in single precision.
-struct Rounded<'a> {
+/// `out = unit (values − subtract)`, rounded.
+struct Rounded<'a, T> {
     unit: f64,
     values: &'a [f64],
     subtract: Option<&'a [f64]>,
-    out: &'a mut [f32],
+    out: &'a mut [T],
 }
 
-impl Vectorised for Rounded<'_> {
+impl<T: Scalar> Vectorised for Rounded<'_, T> {
     type Output = ();
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let Self { unit, values, subtract, out } = self;
         match subtract {
-            None => out.iter_mut().zip(values).for_each(|(out, value)| *out = (unit * value) as f32),
+            None => out.iter_mut().zip(values).for_each(|(out, value)| *out = T::of(unit * value)),
             Some(subtract) => {
                 let differences = values.iter().zip(subtract).map(|(value, subtract)| value - subtract);
-                out.iter_mut().zip(differences).for_each(|(out, value)| *out = (unit * value) as f32);
+                out.iter_mut().zip(differences).for_each(|(out, value)| *out = T::of(unit * value));
             }
         }
     }
@@ -240,7 +240,7 @@ struct ApplyRows<'a, T> {
     first_row: usize,
 }
 
-impl<T: Scalar> ApplyRows<'_, T> {
+impl<T: Scalar + Coefficients<T>> ApplyRows<'_, T> {
     /// The couplings of a row with itself and with those after and before it.
     #[inline(always)]
     fn terms(&self, row: usize) -> Terms {
@@ -262,7 +262,7 @@ impl<T: Scalar> ApplyRows<'_, T> {
     }
 }
 
-impl<T: Scalar> Vectorised for ApplyRows<'_, T> {
+impl<T: Scalar + Coefficients<T>> Vectorised for ApplyRows<'_, T> {
     type Output = f64;
 
     #[inline(always)]
@@ -278,7 +278,7 @@ impl<T: Scalar> Vectorised for ApplyRows<'_, T> {
             for range in matrix.active.row(row) {
                 let (at, used) = (grid.index(range.start, 0), range.len());
                 out[at..at + used].fill(T::ZERO);
-                terms.add::<FMA, false, T>(&mut out[at..], used, &matrix.coefficients, x, at);
+                terms.add::<FMA, false, T, T>(&mut out[at..], used, &matrix.coefficients, x, at);
                 for at in (at..at + used).step_by(LANES) {
                     product = product.add_product::<FMA>(Lane::load(out, at), Lane::load(x_of_row, at));
                 }

@@ -5,6 +5,26 @@
 
 use super::lane::{LANES, Lane, Scalar, each};
 
+/// Coefficients that are read as numbers of a kind.
+pub trait Coefficients<T>: Copy {
+    /// Eight neighbours.
+    fn lane(values: &[Self], at: usize) -> Lane<T>;
+}
+
+impl<T: Scalar> Coefficients<T> for f32 {
+    #[inline(always)]
+    fn lane(values: &[Self], at: usize) -> Lane<T> {
+        Lane::load_single(values, at)
+    }
+}
+
+impl Coefficients<f64> for f64 {
+    #[inline(always)]
+    fn lane(values: &[Self], at: usize) -> Lane<f64> {
+        Lane::load(values, at)
+    }
+}
+
 /// Most couplings of a control point: those of quartic splines.
 const MOST: usize = 81;
 /// Couplings that go along a row together.
@@ -33,11 +53,11 @@ impl Terms {
     /// `sums ± Σ coefficient · value`, in the order of the couplings, for the `used` neighbours from `at` on.
     /// All fields have room for reading to the end of a batch.
     #[inline(always)]
-    pub(super) fn add<const FMA: bool, const MINUS: bool, T: Scalar>(
+    pub(super) fn add<const FMA: bool, const MINUS: bool, T: Scalar, C: Coefficients<T>>(
         &self,
         sums: &mut [T],
         used: usize,
-        coefficients: &[T],
+        coefficients: &[C],
         values: &[T],
         at: usize,
     ) {
@@ -49,44 +69,44 @@ impl Terms {
         let sums = &mut sums[..length];
         let mut n = 0;
         while n + TOGETHER <= self.count {
-            add_some::<FMA, MINUS, TOGETHER, T>(sums, used, each!(k in [0, 1, 2, 3, 4] => part(n + k)));
+            add_some::<FMA, MINUS, TOGETHER, T, C>(sums, used, each!(k in [0, 1, 2, 3, 4] => part(n + k)));
             n += TOGETHER;
         }
         for n in n..self.count {
-            add_some::<FMA, MINUS, 1, T>(sums, used, [part(n)]);
+            add_some::<FMA, MINUS, 1, T, C>(sums, used, [part(n)]);
         }
     }
 }
 
 /// N couplings along a row.
 #[inline(always)]
-fn add_some<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar>(
+fn add_some<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar, C: Coefficients<T>>(
     sums: &mut [T],
     used: usize,
-    parts: [(&[T], &[T]); N],
+    parts: [(&[C], &[T]); N],
 ) {
     let whole = used - used % LANES;
     let mut at = 0;
     while at < whole {
-        let sum = add_batch::<FMA, MINUS, N, T>(sums, &parts, at);
+        let sum = add_batch::<FMA, MINUS, N, T, C>(sums, &parts, at);
         sums[at..at + LANES].copy_from_slice(&sum.0);
         at += LANES;
     }
     if whole < used {
-        let sum = add_batch::<FMA, MINUS, N, T>(sums, &parts, whole);
+        let sum = add_batch::<FMA, MINUS, N, T, C>(sums, &parts, whole);
         sums[whole..used].copy_from_slice(&sum.0[..used - whole]);
     }
 }
 
 #[inline(always)]
-fn add_batch<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar>(
+fn add_batch<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar, C: Coefficients<T>>(
     sums: &[T],
-    parts: &[(&[T], &[T]); N],
+    parts: &[(&[C], &[T]); N],
     at: usize,
 ) -> Lane<T> {
     let mut sum = Lane::load(sums, at);
     for (coefficients, values) in parts {
-        let mut factor = Lane::load(coefficients, at);
+        let mut factor = C::lane(coefficients, at);
         if MINUS {
             factor = factor.map(|factor| -factor);
         }

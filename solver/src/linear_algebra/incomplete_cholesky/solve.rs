@@ -5,12 +5,12 @@
 
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::control_grid::ControlGrid;
-use crate::linear_algebra::lane::{LANES, Lane, Vectorised, add_product};
+use crate::linear_algebra::lane::{LANES, Lane, Scalar, Vectorised, add_product};
 use crate::linear_algebra::stencil::Offset;
 use crate::linear_algebra::terms::Terms;
 
 /// A block of rows.
-pub(super) struct SolveBlock<'a> {
+pub(super) struct SolveBlock<'a, T> {
     pub grid: ControlGrid,
     pub offsets: &'a [Offset],
     pub active: &'a ActiveColumns,
@@ -18,28 +18,29 @@ pub(super) struct SolveBlock<'a> {
     pub first: usize,
     pub factor: &'a [f32],
     pub scale: Option<&'a [f32]>,
-    pub r: &'a [f32],
-    pub out: &'a mut [f32],
+    pub r: &'a [T],
+    pub out: &'a mut [T],
 }
 
 /// Two blocks; the second may have no rows.
-pub(super) struct SolvePair<'a>(pub [SolveBlock<'a>; 2]);
+pub(super) struct SolvePair<'a, T>(pub [SolveBlock<'a, T>; 2]);
 
 /// Values along a part of a row, each of which takes from the P before it.
-struct Recurrence<'a, const P: usize> {
+struct Recurrence<'a, T, const P: usize> {
     coefficients: [&'a [f32]; P],
-    values: &'a mut [f32],
-    last: [f32; P],
+    values: &'a mut [T],
+    last: [T; P],
 }
 
-impl<const P: usize> Recurrence<'_, P> {
+impl<T: Scalar, const P: usize> Recurrence<'_, T, P> {
     /// The next value: number n from the left, or from the right.
     #[inline(always)]
     fn step<const FMA: bool, const FORWARD: bool>(&mut self, n: usize) {
         let at = if FORWARD { n } else { self.values.len() - 1 - n };
         let mut value = self.values[at];
         for index in (0..P).rev() {
-            value = add_product::<FMA, _>(value, -self.coefficients[index][at], self.last[index]);
+            let coefficient = -T::from(self.coefficients[index][at]);
+            value = add_product::<FMA, _>(value, coefficient, self.last[index]);
         }
         self.values[at] = value;
         self.last.copy_within(0..P - 1, 1);
@@ -49,7 +50,7 @@ impl<const P: usize> Recurrence<'_, P> {
 
 /// One or two recurrences to their ends.
 #[inline(always)]
-fn run_along<const FMA: bool, const FORWARD: bool, const P: usize>(parts: [Option<Recurrence<P>>; 2]) {
+fn run_along<const FMA: bool, const FORWARD: bool, T: Scalar, const P: usize>(parts: [Option<Recurrence<T, P>>; 2]) {
     let (mut one, from) = match parts {
         [Some(mut a), Some(mut b)] => {
             let common = a.values.len().min(b.values.len());
@@ -67,7 +68,7 @@ fn run_along<const FMA: bool, const FORWARD: bool, const P: usize>(parts: [Optio
     }
 }
 
-impl SolveBlock<'_> {
+impl<T: Scalar> SolveBlock<'_, T> {
     #[inline(always)]
     fn rows(&self) -> usize {
         self.r.len() / self.grid.stride
@@ -106,18 +107,21 @@ impl SolveBlock<'_> {
                 let here = row * stride + at;
                 sums[..used].copy_from_slice(&self.r[here..][..used]);
                 if let Some(scale) = self.scale {
-                    sums[..used].iter_mut().zip(&scale[here..]).for_each(|(sum, scale)| *sum *= scale);
+                    sums[..used].iter_mut().zip(&scale[here..]).for_each(|(sum, scale)| *sum = *sum * T::from(*scale));
                 }
             } else {
-                sums[..used].iter_mut().zip(&self.factor[pivots + at..]).for_each(|(sum, pivot)| *sum *= pivot);
+                sums[..used]
+                    .iter_mut()
+                    .zip(&self.factor[pivots + at..])
+                    .for_each(|(sum, pivot)| *sum = *sum * T::from(*pivot));
             }
-            terms.add::<FMA, true, f32>(sums, used, self.factor, if FORWARD { before } else { after }, at);
+            terms.add::<FMA, true, T, f32>(sums, used, self.factor, if FORWARD { before } else { after }, at);
         }
     }
 
     /// Along range number n of a row, counted from the left or from the right.
     #[inline(always)]
-    fn along<const FORWARD: bool, const P: usize>(&mut self, row: usize, n: usize) -> Option<Recurrence<'_, P>> {
+    fn along<const FORWARD: bool, const P: usize>(&mut self, row: usize, n: usize) -> Option<Recurrence<'_, T, P>> {
         if row >= self.rows() {
             return None;
         }
@@ -126,7 +130,7 @@ impl SolveBlock<'_> {
         let (first, length, stride) = (self.grid.index(range.start, 0), range.len(), self.grid.stride);
         let start = self.start(row, 0);
         let out = &mut self.out[row * stride..][..stride];
-        let mut last = [0.0; P];
+        let mut last = [T::ZERO; P];
         for (n, last) in last.iter_mut().enumerate() {
             *last = if FORWARD { out[first - 1 - n] } else { out[first + length + n] };
         }
@@ -142,7 +146,7 @@ impl SolveBlock<'_> {
     #[inline(always)]
     fn finish<const FMA: bool>(&mut self) -> f64 {
         if let Some(scale) = self.scale {
-            self.out.iter_mut().zip(scale).for_each(|(out, scale)| *out *= scale);
+            self.out.iter_mut().zip(scale).for_each(|(out, scale)| *out = *out * T::from(*scale));
         }
         let stride = self.grid.stride;
         let mut total = 0.0;
@@ -151,13 +155,13 @@ impl SolveBlock<'_> {
             for at in (0..stride).step_by(LANES) {
                 product = product.add_product::<FMA>(Lane::load(r, at), Lane::load(out, at));
             }
-            total += f64::from(product.sum());
+            total += product.sum().into();
         }
         total
     }
 }
 
-impl SolvePair<'_> {
+impl<T: Scalar> SolvePair<'_, T> {
     #[inline(always)]
     fn row<const FMA: bool, const FORWARD: bool, const P: usize>(&mut self, row: usize) {
         let [a, b] = &mut self.0;
@@ -168,7 +172,7 @@ impl SolvePair<'_> {
             if parts.iter().all(Option::is_none) {
                 break;
             }
-            run_along::<FMA, FORWARD, P>(parts);
+            run_along::<FMA, FORWARD, T, P>(parts);
         }
     }
 
@@ -186,7 +190,7 @@ impl SolvePair<'_> {
     }
 }
 
-impl Vectorised for SolvePair<'_> {
+impl<T: Scalar> Vectorised for SolvePair<'_, T> {
     type Output = f64;
 
     #[inline(always)]
