@@ -14,8 +14,8 @@
 //!
 //! Rounded to single precision, a matrix whose coefficients differ by more than seven digits from one control
 //! point to the next may no longer be positive definite: material under a strain of one and more has 1e9
-//! times the reaction of intact material. Where iterations fail in single precision, they go on in double
-//! precision.
+//! times the reaction of intact material. Where iterations fail in single precision, or are many, they go on
+//! in double precision.
 
 use rayon::prelude::*;
 use thiserror::Error;
@@ -30,6 +30,9 @@ const STAGNATING: f64 = 0.999;
 /// What is left of an error in the energy norm when the residual is taken anew: round-off of single precision
 /// is a thousandth of it.
 const DIGITS: f64 = 1e-4;
+/// Iterations after which single precision is not trusted any more: a matrix that far from its factor may have
+/// lost its small eigenvalues when it was rounded.
+const TRUSTED: usize = 40;
 /// Numbers that a thread adds at a time.
 const PARALLEL: usize = 4096;
 
@@ -93,12 +96,14 @@ impl ConjugateGradients {
     ) -> Result<Convergence, SolveFailure> {
         let Self { single, double, product } = self;
         let system = System { matrix, preconditioner, b, tolerance, limit };
-        match single.solve(&system, x, product) {
-            Err(SolveFailure::NotPositiveDefinite | SolveFailure::NotConverged { .. }) => {
-                double.get_or_insert_with(|| Box::new(Workspace::new(matrix))).solve(&system, x, product)
-            }
-            ended => ended,
-        }
+        let spent = match single.solve(&system, x, product) {
+            Ok(found) if found.iterations < TRUSTED => return Ok(found),
+            Err(SolveFailure::NotFinite) => return Err(SolveFailure::NotFinite),
+            found => found.map_or(0, |found| found.iterations),
+        };
+        let double = double.get_or_insert_with(|| Box::new(Workspace::new(matrix)));
+        let found = double.solve(&system, x, product)?;
+        Ok(Convergence { iterations: spent + found.iterations, ..found })
     }
 
     /// Bytes of matrices that iterations have read so far.

@@ -7,10 +7,10 @@
 //! applied with the scale of the matrix as it is then: `A ≈ S⁻¹ L D Lᵀ S⁻¹`. Material that comes to a control
 //! point and leaves it changes its diagonal most, so an old factor stays a good one for long.
 //!
-//! It is made in double precision, kept in single precision, and applied in that of the vectors: it stays symmetric and positive
-//! definite, and applying it takes as long as reading it. It stands for `unit A` with a power of two that
-//! makes the largest diagonal entry about one ([`IncompleteCholesky::unit`]): nothing underflows, whatever
-//! the units of a scene.
+//! It is made in double precision, kept in single precision, and applied in that of the vectors. It stays
+//! symmetric and positive definite, and applying it takes as long as reading it. It stands for `unit A` with
+//! a power of two that makes the largest diagonal entry about one ([`IncompleteCholesky::unit`]): nothing
+//! underflows, whatever the units of a scene.
 
 mod solve;
 
