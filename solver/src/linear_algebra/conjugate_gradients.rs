@@ -30,8 +30,8 @@ const STAGNATING: f64 = 0.999;
 /// What is left of an error in the energy norm when the residual is taken anew: round-off of single precision
 /// is a thousandth of it.
 const DIGITS: f64 = 1e-4;
-/// Iterations after which single precision is not trusted any more: a matrix that far from its factor may have
-/// lost its small eigenvalues when it was rounded.
+/// Iterations after which single precision is not trusted: a matrix so far from its factor may have lost its
+/// small eigenvalues when it was rounded.
 const TRUSTED: usize = 40;
 /// Numbers that a thread adds at a time.
 const PARALLEL: usize = 4096;

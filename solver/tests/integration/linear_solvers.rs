@@ -195,8 +195,8 @@ fn conjugate_gradients_reach_the_solution_of_the_direct_solver() {
     }
 }
 
-/// A reaction of 1e10 at four points of a span with nine functions: rounded to single precision, the matrix is
-/// not positive definite any more.
+/// A reaction of 1e10 at four points of a span with nine functions: rounded to single precision, the matrix
+/// is not positive definite any more.
 #[test]
 fn where_single_precision_fails_double_precision_goes_on() {
     for contrast in [1e7, 1e8, 1e9, 1e10] {
