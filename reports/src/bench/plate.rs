@@ -1,14 +1,18 @@
 //! The plate: error against cost, with the finite elements beside it, measured in the same run or stored.
 
-use fisura_verification::bench::record::{BenchRecord, BenchSet, CostPoint};
+use fisura_verification::bench::record::{BenchRecord, BenchSet, CostPoint, Spread};
 
 use super::pareto::cost_of;
+use super::ratios::{Found, Target};
 use super::work_precision::{Chart, Cost, Line, error, lines};
 use super::{Exhibit, Grid, Records};
 use crate::number::{DIGITS, plain, pretty};
 
 /// Ids of the finite elements that ran here.
 const ELEMENTS: &str = "plate/elements/";
+/// Errors of the kinetic energy at which both are compared, and how many times less time fisura should take.
+const ERRORS: [f64; 2] = [0.02, 0.006];
+const LESS_TIME: f64 = 5.0;
 const AXIS: &str = "processor time of all threads (s)";
 
 /// Diagram and table of the plate, and its tolerances.
@@ -109,13 +113,31 @@ fn tolerances(records: Records) -> Option<Exhibit> {
     Some(chart.plot(&caption, reading))
 }
 
+/// How many times less processor time than the finite elements the plate takes at some errors.
+pub fn against_elements(records: Records) -> Vec<Found> {
+    let of = |id: &str, threads: Option<usize>| {
+        let chosen = records.below(id).into_iter().filter(|r| threads.is_none_or(|threads| r.threads == threads));
+        lines(chosen)
+    };
+    let (ours, elements) = (of("plate/p", None), of(ELEMENTS, Some(1)));
+    let factor = |error: f64| {
+        let value = best(&elements, error)?.1 / best(&ours, error)?.1;
+        let what = format!("finite elements over fisura, plate, error of {} %", plain(100.0 * error, 2));
+        let value = Spread { median: value, min: value, max: value };
+        Some(Found { what, value, target: Target::AtLeast(LESS_TIME), verified: true })
+    };
+    ERRORS.into_iter().filter_map(factor).collect()
+}
+
+/// The line that buys an error with the least time, and that time, s.
+fn best<'a>(lines: &'a [Line], error: f64) -> Option<(&'a str, f64)> {
+    let costs = lines.iter().filter_map(|l| Some((l.label.as_str(), cost_of(&l.points(Cost::Time), error)?)));
+    costs.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
 /// What our runs take at the errors of the finite elements, or the nearest that can be said.
 fn reading(lines: &[Line], fem: &[CostPoint], here: bool, unbuilt: Option<&str>) -> String {
-    let best = |error: f64| {
-        let costs = lines.iter().filter_map(|l| Some((l.label.as_str(), cost_of(&l.points(Cost::Time), error)?)));
-        costs.min_by(|a, b| a.1.total_cmp(&b.1))
-    };
-    let sentence = |point: &CostPoint| match best(point.error) {
+    let sentence = |point: &CostPoint| match best(lines, point.error) {
         Some((label, seconds)) => format!(
             "At the error of {} % that the finite elements bought with {} s, {label} takes {} s: {}.",
             pretty(100.0 * point.error, 2),

@@ -37,8 +37,11 @@ const fn ratio(
 
 const KERNEL: Target = Target::AtMost(1.4);
 
+/// Bytes that an elastic step of the updated frame with p = 2 reads and writes per point at least.
+const UPDATED_BYTES: f64 = 368.0;
+
 /// What is asked for, and what is good to know beside it.
-const RATIOS: [Ratio; 20] = [
+const RATIOS: [Ratio; 23] = [
     ratio(
         "elastic step over the minimal kernel, total frame, p = 2",
         &[(1.0, "stages/p2/elastic-step")],
@@ -53,6 +56,12 @@ const RATIOS: [Ratio; 20] = [
         KERNEL,
     ),
     ratio("the same, p = 3", &[(1.0, "stages/p3/elastic-step-updated")], &[(1.0, "stages/p3/minimal-step")], KERNEL),
+    ratio(
+        "the same over its 368 bytes at the bandwidth of this machine, p = 2",
+        &[(1.0, "stages/p2/elastic-step-updated")],
+        &[(UPDATED_BYTES, "ceilings/triad")],
+        Target::AtMost(2.0),
+    ),
     ratio(
         "p = 3 over p = 2 per particle-step, total frame",
         &[(1.0, "stages/p3/elastic-step")],
@@ -125,6 +134,12 @@ const RATIOS: [Ratio; 20] = [
         Target::AtLeast(1.7),
     ),
     ratio(
+        "two threads against one, moving points",
+        &[(1.0, "threads/moving/1")],
+        &[(1.0, "threads/moving/2")],
+        Target::AtLeast(1.7),
+    ),
+    ratio(
         "1.6e7 points over 2.6e6, elastic block",
         &[(1.0, "scale/elastic/2000")],
         &[(1.0, "scale/elastic/800")],
@@ -142,6 +157,12 @@ const RATIOS: [Ratio; 20] = [
         &[(1.0, "scenes/total/elastic-with-a-frozen-crack")],
         &[(1.0, "scenes/total/elastic")],
         Target::None,
+    ),
+    ratio(
+        "the same, updated frame",
+        &[(1.0, "scenes/updated/elastic-with-a-frozen-crack")],
+        &[(1.0, "scenes/updated/elastic")],
+        Target::AtMost(1.5),
     ),
     Ratio {
         what: "the whole plate over half of it, time per step",
@@ -188,7 +209,8 @@ impl Found {
 
 /// All ratios whose records are there and took any time.
 pub fn found(records: Records) -> Vec<Found> {
-    RATIOS.iter().filter_map(|ratio| value(ratio, records)).collect()
+    let stages = RATIOS.iter().filter_map(|ratio| value(ratio, records));
+    stages.chain(super::plate::against_elements(records)).collect()
 }
 
 fn value(ratio: &Ratio, records: Records) -> Option<Found> {

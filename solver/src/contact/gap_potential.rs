@@ -34,7 +34,7 @@ use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::vectors::dot;
 use crate::splines::quadrature::Rule;
 use arc::{Arc, Outline, around, nearest, rule};
-use friction::{Friction, RubbingPlace};
+use friction::{ContactPoint, Friction};
 use rigid_outline::RigidOutline;
 
 /// A pair of opposite forces, and that of friction beside it.
@@ -147,7 +147,7 @@ impl GapPotential {
                 self.energy += 0.5 * pressure * depth;
                 let friction = self.friction.as_mut().map(|friction| {
                     let (label, stiffness) = (([a, b], number, point), 0.5 * spring * place.length);
-                    friction.force(&RubbingPlace { label, place, nearest, arcs: &outlines[b].arcs, stiffness })
+                    friction.force(&ContactPoint { label, place, nearest, arcs: &outlines[b].arcs, stiffness })
                 });
                 self.forces.push(GapForce {
                     bodies: [a, b],
@@ -168,8 +168,8 @@ impl GapPotential {
         };
         let of_pair = |pair: &GapForce| {
             let GapForce { bodies: [a, b], places: [x, y], force, friction } = *pair;
-            let rubbing = friction.unwrap_or_default();
-            on(a, x, force.map(|f| -f)) + on(b, y, force) + on(a, y, rubbing.map(|f| -f)) + on(b, y, rubbing)
+            let friction = friction.unwrap_or_default();
+            on(a, x, force.map(|f| -f)) + on(b, y, force) + on(a, y, friction.map(|f| -f)) + on(b, y, friction)
         };
         self.forces.iter().map(of_pair).sum()
     }

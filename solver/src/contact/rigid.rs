@@ -36,10 +36,9 @@ impl RigidMotion {
 
     /// A place of t = 0 at a time, s.
     pub(crate) fn place(&self, reference: [f64; 2], time: f64) -> [f64; 2] {
-        let (center, now) = (self.center, self.center_at(time));
-        let (sin, cos) = (self.spin * time).sin_cos();
-        let arm = [0, 1].map(|d| reference[d] - center[d]);
-        [now[0] + cos * arm[0] - sin * arm[1], now[1] + sin * arm[0] + cos * arm[1]]
+        let now = self.center_at(time);
+        let arm = self.turn([0, 1].map(|d| reference[d] - self.center[d]), time);
+        [0, 1].map(|d| now[d] + arm[d])
     }
 
     /// Velocity at a position, m/s, at a time, s.

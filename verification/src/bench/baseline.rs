@@ -128,9 +128,9 @@ fn build(checkout: &Path) -> Result<PathBuf, BenchError> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
     let mut command = Command::new(cargo);
     command.args(["build", "--package", "xtask", "--message-format", "json-render-diagnostics"]);
-    let aliases = fs::read_to_string(checkout.join(".cargo/config.toml")).unwrap_or_default();
-    if aliases.contains("--release") {
-        command.arg("--release"); // as its alias has it
+    let config = fs::read_to_string(checkout.join(".cargo/config.toml")).unwrap_or_default();
+    if alias_is_optimised(&config) {
+        command.arg("--release");
     }
     command.current_dir(checkout).stdin(Stdio::null()).stderr(Stdio::inherit());
     let output = command.output().map_err(|error| wrong(format!("cargo cannot be started there: {error}")))?;
@@ -144,6 +144,13 @@ fn build(checkout: &Path) -> Result<PathBuf, BenchError> {
         message["executable"].as_str().filter(|_| named).map(PathBuf::from)
     });
     programs.next_back().ok_or_else(|| wrong("cargo built no program named xtask".into()))
+}
+
+/// Whether the alias `xtask` of a configuration of cargo asks for the release profile.
+fn alias_is_optimised(config: &str) -> bool {
+    let config: toml::Table = config.parse().unwrap_or_default();
+    let alias = config.get("alias").and_then(|aliases| aliases.get("xtask"));
+    alias.is_some_and(|alias| alias.to_string().contains("--release"))
 }
 
 #[cfg(test)]

@@ -133,7 +133,8 @@ fn contestant(
         let closure = found.closure.abs() / found.largest_term().max(f64::MIN_POSITIVE);
         let holds = match happens {
             Happens::Motion => solves == 0 && forces == 0,
-            Happens::NothingGrows => solves == STEPS && iterations == 0,
+            // A factor that was raised judges a start by one iteration.
+            Happens::NothingGrows => solves == STEPS && iterations <= STEPS,
             Happens::CrackGrows => solves == STEPS && iterations >= STEPS,
             Happens::Apart => solves == 0 && forces == 0,
             Happens::Contact => forces > 0,

@@ -1,8 +1,8 @@
-//! What more threads bring: steps of an elastic block and of the plate while it cracks, in wall time. The
-//! displacements after all steps must be the same bits for any number of threads.
+//! What more threads bring: steps of an elastic block, of moving points and of the plate while it cracks, in
+//! wall time. All points must be the same bit by bit for any number of threads.
 
 use fisura::Simulation;
-use fisura::scene::Scene;
+use fisura::scene::{Frame, Scene};
 use rayon::ThreadPool;
 
 use super::block::elastic_scene;
@@ -13,6 +13,9 @@ use super::{BenchError, Settings, advance};
 
 /// Largest closure of the ledger over its largest term, as for the plate.
 const CLOSURE: f64 = 1e-3;
+
+/// Spans that the mesh reaches beyond the moving block.
+const MARGIN: usize = 4;
 
 /// A scene on its way with some number of threads.
 struct Runner {
@@ -37,6 +40,9 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     let cells = if settings.quick { 192 } else { 256 };
     let plate = plate::half(settings, 2, if settings.quick { 1.0 } else { 0.5 })?.scene;
     let mut records = scaled(settings, "elastic", "elastic block, p = 2", &elastic_scene(2, 2, cells, 0), [5, 20])?;
+    let mut moving = elastic_scene(2, 2, cells, MARGIN);
+    moving.analysis.frame = Frame::Updated;
+    records.extend(scaled(settings, "moving", "moving points, p = 2", &moving, [5, 20])?);
     let steps = if settings.quick { [400, 10] } else { [800, 20] };
     records.extend(scaled(settings, "plate", "plate with a growing crack, p = 2", &plate, steps)?);
     Ok(records)
@@ -76,7 +82,7 @@ fn scaled(
         let closure = sample.closure.abs() / sample.largest_term();
         runner.record.verify_at_most("closure of the ledger over the largest term", closure, CLOSURE);
         if bits(&runner.simulation) != first {
-            runner.record.verify(false, "displacement and phase field are not the same bits as with one thread");
+            runner.record.verify(false, "points are not the same bits as with one thread");
         }
         runner.record.summarise();
         runner.record
@@ -84,11 +90,14 @@ fn scaled(
     Ok(runners.into_iter().map(finish).collect())
 }
 
-/// Displacement and phase field, bit for bit.
+/// Position, velocity, stress and phase field of every point, bit by bit.
 fn bits(simulation: &Simulation) -> Vec<u64> {
-    let Some(frame) = simulation.total_frame() else { return Vec::new() };
-    let phase = frame.fracture.as_ref().map_or(&[][..], |f| f.field.control_values());
-    frame.displacement().iter().flatten().chain(phase).map(|x| x.to_bits()).collect()
+    let mut bits = Vec::new();
+    simulation.for_each_point(&mut |point| {
+        let numbers = point.present.into_iter().chain(point.velocity).chain(point.stress);
+        bits.extend(numbers.chain(point.fracture.map(|fracture| fracture.phase)).map(f64::to_bits));
+    });
+    bits
 }
 
 #[cfg(test)]

@@ -15,8 +15,8 @@
 //! stored  E_t = Σ T g/2,     dissipated  Δ = (T(n) + T(n+1))/2 γ.
 //! ```
 //!
-//! Both together are what T takes from the motion, `(T(n) + T(n+1))/2 Δs`, exactly while w stays. A boundary
-//! that parts lets go of its slip: its stored energy is dissipated.
+//! Both together are what T takes from the motion, `(T(n) + T(n+1))/2 Δs`, exactly while w stays. Where
+//! boundaries part, the stored energy of slip is dissipated.
 //!
 //! The pair ±T acts at one place for both bodies, y on the boundary of b, so that it has no moment. There the
 //! material of a moves as its boundary at x does, turned with that: `Δs = τ · [Δx + Δθ × (y − x) − Δy]`,
@@ -36,7 +36,7 @@ pub(crate) type Label = ([usize; 2], usize, usize);
 
 /// A Gauss point of a boundary that is inside another body.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct RubbingPlace<'a> {
+pub(crate) struct ContactPoint<'a> {
     pub label: Label,
     /// On the boundary of a.
     pub place: BoundaryPlace,
@@ -48,9 +48,9 @@ pub(crate) struct RubbingPlace<'a> {
     pub stiffness: f64,
 }
 
-/// What a Gauss point remembers of its contact.
+/// History variables of a Gauss point in contact.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-struct Memory {
+struct History {
     label: Label,
     /// Place and outward normal on a, m.
     place: [f64; 2],
@@ -68,8 +68,8 @@ struct Memory {
 pub(crate) struct Friction {
     coefficient: f64,
     /// In the order of their labels: of the last step, and of this one so far.
-    memories: Vec<Memory>,
-    found: Vec<Memory>,
+    histories: Vec<History>,
+    found: Vec<History>,
     stored: f64,
     dissipated: f64,
 }
@@ -77,33 +77,34 @@ pub(crate) struct Friction {
 impl Friction {
     /// None between bodies that do not touch; `None` for a coefficient of zero.
     pub(crate) fn new(coefficient: f64) -> Option<Self> {
-        let (memories, found) = (Vec::new(), Vec::new());
-        (coefficient > 0.0).then_some(Self { coefficient, memories, found, stored: 0.0, dissipated: 0.0 })
+        let (histories, found) = (Vec::new(), Vec::new());
+        (coefficient > 0.0).then_some(Self { coefficient, histories, found, stored: 0.0, dissipated: 0.0 })
     }
 
     /// Force on b at a Gauss point, N/m. They come in the order of their labels. Asked again at the same
     /// positions, it is the same bit by bit.
-    pub(crate) fn force(&mut self, meeting: &RubbingPlace<'_>) -> [f64; 2] {
-        let RubbingPlace { label, place, nearest, arcs, stiffness } = *meeting;
+    pub(crate) fn force(&mut self, point: &ContactPoint<'_>) -> [f64; 2] {
+        let ContactPoint { label, place, nearest, arcs, stiffness } = *point;
         let tangent = [-nearest.normal[1], nearest.normal[0]];
         let limit = self.coefficient * nearest.depth;
-        let before = self.memories.binary_search_by(|memory| memory.label.cmp(&label)).ok().map(|at| self.memories[at]);
+        let before =
+            self.histories.binary_search_by(|history| history.label.cmp(&label)).ok().map(|at| self.histories[at]);
         let (slip, force) = match before {
             // What it slid by since it closed is not known: that counts from here.
             None => (0.0, 0.0),
-            Some(memory) => {
-                let moved = dot(memory.motion(meeting), tangent);
-                let trial = memory.slip + moved;
+            Some(history) => {
+                let moved = dot(history.motion(point), tangent);
+                let trial = history.slip + moved;
                 let slip = trial.clamp(-limit, limit);
                 let force = stiffness * slip;
                 let kept = fault!("slip-not-returned", slip => trial);
-                self.dissipated += 0.5 * (memory.force + force) * (moved - (kept - memory.slip));
+                self.dissipated += 0.5 * (history.force + force) * (moved - (kept - history.slip));
                 (kept, force)
             }
         };
         self.stored += 0.5 * force * slip;
         let (arc, t) = nearest.label;
-        self.found.push(Memory {
+        self.found.push(History {
             label,
             place: place.position,
             normal: place.normal,
@@ -115,18 +116,18 @@ impl Friction {
         tangent.map(|tangent| force * tangent)
     }
 
-    /// Begins to look for contacts.
+    /// Begins to collect the contact points of a step.
     pub(crate) fn begin(&mut self) {
         self.found.clear();
         self.stored = 0.0;
     }
 
-    /// Lets go of the slip where boundaries have parted.
+    /// Dissipates the stored energy of slip where boundaries have parted.
     pub(crate) fn end(&mut self) {
-        let Self { memories, found, dissipated, .. } = self;
-        let parted = |memory: &&Memory| found.binary_search_by(|other| other.label.cmp(&memory.label)).is_err();
-        *dissipated += memories.iter().filter(parted).map(|memory| 0.5 * memory.force * memory.slip).sum::<f64>();
-        std::mem::swap(memories, found);
+        let Self { histories, found, dissipated, .. } = self;
+        let parted = |history: &&History| found.binary_search_by(|other| other.label.cmp(&history.label)).is_err();
+        *dissipated += histories.iter().filter(parted).map(|history| 0.5 * history.force * history.slip).sum::<f64>();
+        std::mem::swap(histories, found);
     }
 
     /// Energy that slip holds, J/m.
@@ -144,20 +145,20 @@ impl Friction {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        archive.value(&mut self.memories)?;
+        archive.value(&mut self.histories)?;
         archive.value(&mut self.dissipated)
     }
 
     /// Heap memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
-        (self.memories.len() + self.found.len()) * size_of::<Memory>()
+        (self.histories.len() + self.found.len()) * size_of::<History>()
     }
 }
 
-impl Memory {
+impl History {
     /// How the material of a moved past that of b since then, where b is now, m.
-    fn motion(&self, meeting: &RubbingPlace<'_>) -> [f64; 2] {
-        let RubbingPlace { place, nearest, arcs, .. } = *meeting;
+    fn motion(&self, point: &ContactPoint<'_>) -> [f64; 2] {
+        let ContactPoint { place, nearest, arcs, .. } = *point;
         let turn = self.normal[0] * place.normal[1] - self.normal[1] * place.normal[0];
         let arm = [0, 1].map(|d| nearest.position[d] - place.position[d]);
         let turned = [-turn * arm[1], turn * arm[0]];
@@ -182,8 +183,8 @@ mod tests {
         friction.begin();
         let nearest = nearest(place.position, &[(0, &arcs[0])]).unwrap();
         let label = ([0, 1], 3, 2);
-        let meeting = RubbingPlace { label, place, nearest, arcs: &arcs, stiffness: STIFFNESS };
-        let [x, y] = if depth > 0.0 { friction.force(&meeting) } else { [0.0; 2] };
+        let point = ContactPoint { label, place, nearest, arcs: &arcs, stiffness: STIFFNESS };
+        let [x, y] = if depth > 0.0 { friction.force(&point) } else { [0.0; 2] };
         friction.end();
         assert_eq!(y, 0.0);
         x
@@ -213,7 +214,7 @@ mod tests {
         let (stored, dissipated) = (friction.stored(), friction.dissipated());
         assert_eq!(look(&mut friction, 5e-5 * 40.0, 0.0, DEPTH), last);
         assert_eq!((friction.stored(), friction.dissipated()), (stored, dissipated));
-        // What parts lets go of what slip held.
+        // What parts dissipates what slip stored.
         look(&mut friction, 5e-5 * 40.0, 0.0, -DEPTH);
         assert_eq!(friction.stored(), 0.0);
         assert!((friction.dissipated() - stored - dissipated).abs() < 1e-15);

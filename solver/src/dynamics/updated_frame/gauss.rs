@@ -124,7 +124,7 @@ struct BoundarySprings {
     /// κ, Pa/m.
     stiffness: f64,
     /// Whether others rub along it.
-    rubs: bool,
+    friction: bool,
 }
 
 /// Points of a body on its part of the patch.

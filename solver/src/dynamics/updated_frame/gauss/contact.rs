@@ -60,7 +60,7 @@ impl SpanQuadrature {
     pub(crate) fn expect_contact(&mut self, patch: &Patch, contact: &Contact) {
         let speed = self.moduli.dilatational_speed(self.density);
         let stiffness = contact.stiffness * (self.density * speed * speed) / patch.shortest_span();
-        self.springs = Some(BoundarySprings { stiffness, rubs: contact.friction > 0.0 });
+        self.springs = Some(BoundarySprings { stiffness, friction: contact.friction > 0.0 });
     }
 
     /// The boundary at the last response, if it may meet others.
@@ -89,14 +89,14 @@ impl SpanQuadrature {
 
     /// Adds what springs along the boundary answer to a motion of the control points.
     pub(crate) fn add_springs(&self, patch: &Patch, motion: &VectorField, out: &mut VectorField) {
-        let Some(BoundarySprings { stiffness, rubs }) = self.springs else { return };
+        let Some(BoundarySprings { stiffness, friction }) = self.springs else { return };
         let rule = rule();
         for place in self.boundary.arcs().iter().flat_map(|arc| arc.places(&rule)) {
             let shares = Shares::new(patch, place.position);
             let mut moved = [0.0; 2];
             shares.for_each(|at, share| (0..2).for_each(|c| moved[c] += share * motion[c][at]));
             let stiffness = 2.0 * stiffness * place.length;
-            if rubs {
+            if friction {
                 shares.for_each(|at, share| (0..2).for_each(|c| out[c][at] += share * stiffness * moved[c]));
             } else {
                 let answer = stiffness * dot(moved, place.normal);
