@@ -11,6 +11,7 @@
 
 use super::penalty::jumps;
 use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::lane::{LANES, Lane, Vectorised, add_product, dispatch};
 use crate::scene::Layout;
 use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
@@ -64,12 +65,37 @@ impl Kronecker {
 
     /// `z ← P⁻¹ z`, zero where S is.
     pub(crate) fn apply(&self, scale: &[f64], z: &mut [f64]) {
+        dispatch(ApplyProduct { product: self, scale, z });
+    }
+}
+
+/// `z ← P⁻¹ z`.
+struct ApplyProduct<'a> {
+    product: &'a Kronecker,
+    scale: &'a [f64],
+    z: &'a mut [f64],
+}
+
+impl Vectorised for ApplyProduct<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let Self { product: Kronecker { grid, factors: [x, y], .. }, scale, z } = self;
         z.iter_mut().zip(scale).for_each(|(z, s)| *z *= s);
-        let Self { grid, factors: [x, y], .. } = self;
-        for row in z.chunks_mut(grid.stride) {
-            x.solve_line(&mut row[grid.index(0, 0)..][..grid.columns]);
+        let mut lines = vec![Lane::ZERO; grid.columns];
+        for rows in z.chunks_mut(LANES * grid.stride) {
+            for (l, row) in rows.chunks(grid.stride).enumerate() {
+                let row = &row[grid.index(0, 0)..][..grid.columns];
+                lines.iter_mut().zip(row).for_each(|(lane, value)| lane[l] = *value);
+            }
+            x.solve_lines::<FMA>(&mut lines);
+            for (l, row) in rows.chunks_mut(grid.stride).enumerate() {
+                let row = &mut row[grid.index(0, 0)..][..grid.columns];
+                row.iter_mut().zip(&lines).for_each(|(value, lane)| *value = lane[l]);
+            }
         }
-        y.solve_rows(z, grid.stride);
+        y.solve_rows::<FMA>(z, grid.stride);
         z.iter_mut().zip(scale).for_each(|(z, s)| *z *= s);
     }
 }
@@ -130,44 +156,105 @@ impl BandFactor {
 
     /// Solves in place.
     pub(crate) fn solve_line(&self, x: &mut [f64]) {
+        dispatch(SolveLine { factor: self, x });
+    }
+
+    /// Couplings of a row with the unknowns before it, as far as there are any, and the inverse of its pivot.
+    #[inline(always)]
+    fn row(&self, i: usize) -> (&[f64], f64) {
         let w = self.width;
+        let row = &self.rows[i * (w + 1)..][..=w];
+        (&row[w - i.min(w)..w], row[w])
+    }
+
+    /// Solves eight lines side by side.
+    #[inline(always)]
+    fn solve_lines<const FMA: bool>(&self, x: &mut [Lane]) {
         for i in 0..x.len() {
-            let row = &self.rows[i * (w + 1)..][..=w];
-            let reach = i.min(w);
-            let sum: f64 = (1..=reach).map(|k| row[w - k] * x[i - k]).sum();
-            x[i] = (x[i] - sum) * row[w];
+            let (couplings, pivot) = self.row(i);
+            let mut rest = x[i];
+            for (coupling, other) in couplings.iter().zip(&x[i - couplings.len()..]) {
+                rest = rest.add_scaled::<FMA>(*other, -coupling);
+            }
+            x[i] = rest * pivot;
         }
         for i in (0..x.len()).rev() {
-            let row = &self.rows[i * (w + 1)..][..=w];
-            x[i] *= row[w];
-            for k in 1..=i.min(w) {
-                x[i - k] -= row[w - k] * x[i];
+            let (couplings, pivot) = self.row(i);
+            let here = x[i] * pivot;
+            x[i] = here;
+            for (coupling, other) in couplings.iter().zip(&mut x[i - couplings.len()..]) {
+                *other = other.add_scaled::<FMA>(here, -coupling);
             }
         }
     }
 
     /// The same along columns, a row of control points at a time.
-    fn solve_rows(&self, x: &mut [f64], stride: usize) {
-        let (w, order) = (self.width, x.len() / stride);
+    #[inline(always)]
+    fn solve_rows<const FMA: bool>(&self, x: &mut [f64], stride: usize) {
+        let order = x.len() / stride;
         for i in 0..order {
-            let row = &self.rows[i * (w + 1)..][..=w];
+            let (couplings, pivot) = self.row(i);
             let (before, here) = x.split_at_mut(i * stride);
             let here = &mut here[..stride];
-            for k in 1..=i.min(w) {
-                let other = &before[(i - k) * stride..][..stride];
-                here.iter_mut().zip(other).for_each(|(x, o)| *x -= row[w - k] * o);
+            let others = before[(i - couplings.len()) * stride..].chunks_exact(stride);
+            for (coupling, other) in couplings.iter().zip(others) {
+                here.iter_mut().zip(other).for_each(|(x, o)| *x = add_product::<FMA, _>(*x, -coupling, *o));
             }
-            here.iter_mut().for_each(|x| *x *= row[w]);
+            here.iter_mut().for_each(|x| *x *= pivot);
         }
         for i in (0..order).rev() {
-            let row = &self.rows[i * (w + 1)..][..=w];
+            let (couplings, pivot) = self.row(i);
             let (before, here) = x.split_at_mut(i * stride);
             let here = &mut here[..stride];
-            here.iter_mut().for_each(|x| *x *= row[w]);
-            for k in 1..=i.min(w) {
-                let other = &mut before[(i - k) * stride..][..stride];
-                other.iter_mut().zip(here.iter()).for_each(|(o, x)| *o -= row[w - k] * x);
+            here.iter_mut().for_each(|x| *x *= pivot);
+            let others = before[(i - couplings.len()) * stride..].chunks_exact_mut(stride);
+            for (coupling, other) in couplings.iter().zip(others) {
+                other.iter_mut().zip(&*here).for_each(|(o, x)| *o = add_product::<FMA, _>(*o, -coupling, *x));
             }
         }
     }
+}
+
+/// Solves one line in place: the couplings of a row side by side.
+struct SolveLine<'a> {
+    factor: &'a BandFactor,
+    x: &'a mut [f64],
+}
+
+impl Vectorised for SolveLine<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let Self { factor, x } = self;
+        for i in 0..x.len() {
+            let (couplings, pivot) = factor.row(i);
+            let (before, here) = x.split_at_mut(i);
+            here[0] = (here[0] - product::<FMA>(couplings, &before[i - couplings.len()..])) * pivot;
+        }
+        for i in (0..x.len()).rev() {
+            let (couplings, pivot) = factor.row(i);
+            let (before, here) = x.split_at_mut(i);
+            here[0] *= pivot;
+            let others = &mut before[i - couplings.len()..];
+            for (other, coupling) in others.iter_mut().zip(couplings) {
+                *other = add_product::<FMA, _>(*other, -coupling, here[0]);
+            }
+        }
+    }
+}
+
+/// `a · b`.
+#[inline(always)]
+fn product<const FMA: bool>(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = Lane::ZERO;
+    let whole = a.len() / LANES * LANES;
+    for at in (0..whole).step_by(LANES) {
+        sums = sums.add_product::<FMA>(Lane::load(a, at), Lane::load(b, at));
+    }
+    let mut sum = sums.sum();
+    for (a, b) in a[whole..].iter().zip(&b[whole..]) {
+        sum = add_product::<FMA, _>(sum, *a, *b);
+    }
+    sum
 }
