@@ -57,7 +57,7 @@ const RATIOS: [Ratio; 23] = [
     ),
     ratio("the same, p = 3", &[(1.0, "stages/p3/elastic-step-updated")], &[(1.0, "stages/p3/minimal-step")], KERNEL),
     ratio(
-        "the same over its 368 bytes at the bandwidth of this machine, p = 2",
+        "elastic step over its 368 bytes at the bandwidth of this machine, updated frame, p = 2",
         &[(1.0, "stages/p2/elastic-step-updated")],
         &[(UPDATED_BYTES, "ceilings/triad")],
         Target::AtMost(2.0),
