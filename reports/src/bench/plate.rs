@@ -123,8 +123,7 @@ pub fn against_elements(records: Records) -> Vec<Found> {
     let factor = |error: f64| {
         let value = best(&elements, error)?.1 / best(&ours, error)?.1;
         let what = format!("finite elements over fisura, plate, error of {} %", plain(100.0 * error, 2));
-        let value = Spread { median: value, min: value, max: value };
-        Some(Found { what, value, target: Target::AtLeast(LESS_TIME), verified: true })
+        Some(Found { what, value: Spread::of([value]), target: Target::AtLeast(LESS_TIME), verified: true })
     };
     ERRORS.into_iter().filter_map(factor).collect()
 }

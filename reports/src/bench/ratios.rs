@@ -37,7 +37,8 @@ const fn ratio(
 
 const KERNEL: Target = Target::AtMost(1.4);
 
-/// Bytes that an elastic step of the updated frame with p = 2 reads and writes per point at least.
+/// Bytes that an elastic step of the updated frame with p = 2 and four points per span reads and writes per
+/// point at least: three times the 104 of a point, and its share of the control points.
 const UPDATED_BYTES: f64 = 368.0;
 
 /// What is asked for, and what is good to know beside it.
@@ -209,8 +210,8 @@ impl Found {
 
 /// All ratios whose records are there and took any time.
 pub fn found(records: Records) -> Vec<Found> {
-    let stages = RATIOS.iter().filter_map(|ratio| value(ratio, records));
-    stages.chain(super::plate::against_elements(records)).collect()
+    let of_records = RATIOS.iter().filter_map(|ratio| value(ratio, records));
+    of_records.chain(super::plate::against_elements(records)).collect()
 }
 
 fn value(ratio: &Ratio, records: Records) -> Option<Found> {

@@ -167,6 +167,14 @@ mod tests {
     }
 
     #[test]
+    fn the_profile_is_that_of_the_alias_and_of_nothing_else() {
+        assert!(alias_is_optimised("[alias]\nxtask = \"run --release --package xtask --\""));
+        assert!(alias_is_optimised("[alias]\nxtask = [\"run\", \"--release\"]"));
+        assert!(!alias_is_optimised("[alias]\nxtask = \"run --package xtask --\"\nfast = \"run --release\""));
+        assert!(!alias_is_optimised(""));
+    }
+
+    #[test]
     fn the_energies_are_those_of_the_last_row() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("history.csv"), "time_s,kinetic_j,elastic_j\n0,1,2\n1,3,4\n").unwrap();

@@ -10,7 +10,9 @@ use fisura::particles::lattice::Lattice;
 use fisura::phase_field::PhaseField;
 use fisura::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_form};
 use fisura::phase_field::fracture::LatticeFracture;
-use fisura::scene::{Crack, Fracture, Material, Mesh, PhaseFieldSolver, Plane, Scene, Shape, SolverSettings, Split};
+use fisura::scene::{
+    Crack, Fracture, Frame, Material, Mesh, PhaseFieldSolver, Plane, Scene, Shape, SolverSettings, Split,
+};
 use fisura::splines::patch::Patch;
 use fisura::transfer::kernels::{DegradedStress, ElasticStress, HistoryUpdate};
 use fisura::transfer::point_kernel::Fields;
@@ -24,6 +26,8 @@ use crate::scene::plain::PlainScene;
 pub const SPAN: f64 = 0.25e-3;
 /// Density of the block, kg/m³.
 pub const DENSITY: f64 = 2450.0;
+/// Spans that the mesh reaches beyond a moving block.
+pub const MARGIN: usize = 4;
 
 /// A glass square of `cells` × `cells` spans with `points` × `points` Gauss points each and a crack to its
 /// middle. On all sides the mesh reaches `margin` spans beyond it; from p on, all functions on the body are
@@ -60,6 +64,13 @@ pub fn elastic_scene(degree: usize, points: usize, cells: usize, margin: usize) 
     scene.bodies[0].cracks.clear();
     scene.bodies[0].angular_velocity = 100.0;
     scene.materials.values_mut().for_each(|m| m.fracture = None);
+    scene
+}
+
+/// Elastic points that move through a mesh which reaches [`MARGIN`] spans beyond them.
+pub fn moving_scene(degree: usize, points: usize, cells: usize) -> Scene {
+    let mut scene = elastic_scene(degree, points, cells, MARGIN);
+    scene.analysis.frame = Frame::Updated;
     scene
 }
 

@@ -11,16 +11,14 @@
 //! steps, and their number grows with the width. One block is in memory at a time.
 
 use fisura::Simulation;
-use fisura::scene::{Crack, Edge, Frame, Scene, Side, Traction};
+use fisura::scene::{Crack, Edge, Scene, Side, Traction};
 
-use super::block::{SPAN, cracked_scene, elastic_scene};
+use super::block::{SPAN, cracked_scene, elastic_scene, moving_scene};
 use super::record::BenchRecord;
 use super::timing::{Stopwatch, pool};
 use super::{BenchError, Settings, advance};
 
 const DEGREE: usize = 2;
-/// Spans that the mesh reaches beyond a moving block.
-const MARGIN: usize = 4;
 /// Spans between neighbouring cracks, of which each is half as long, and between cracks and the pulled edge.
 const PITCH: usize = 32;
 const DEPTH: usize = 12;
@@ -54,9 +52,7 @@ fn elastic(cells: usize) -> Scene {
 }
 
 fn moving(cells: usize) -> Scene {
-    let mut scene = elastic_scene(DEGREE, 2, cells, MARGIN);
-    scene.analysis.frame = Frame::Updated;
-    scene
+    moving_scene(DEGREE, 2, cells)
 }
 
 fn cracking(cells: usize) -> Scene {

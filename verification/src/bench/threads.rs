@@ -2,10 +2,10 @@
 //! wall time. All points must be the same bit by bit for any number of threads.
 
 use fisura::Simulation;
-use fisura::scene::{Frame, Scene};
+use fisura::scene::Scene;
 use rayon::ThreadPool;
 
-use super::block::elastic_scene;
+use super::block::{elastic_scene, moving_scene};
 use super::plate;
 use super::record::{BenchRecord, Clock};
 use super::timing::{Stopwatch, pool};
@@ -13,9 +13,6 @@ use super::{BenchError, Settings, advance};
 
 /// Largest closure of the ledger over its largest term, as for the plate.
 const CLOSURE: f64 = 1e-3;
-
-/// Spans that the mesh reaches beyond the moving block.
-const MARGIN: usize = 4;
 
 /// A scene on its way with some number of threads.
 struct Runner {
@@ -40,9 +37,7 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     let cells = if settings.quick { 192 } else { 256 };
     let plate = plate::half(settings, 2, if settings.quick { 1.0 } else { 0.5 })?.scene;
     let mut records = scaled(settings, "elastic", "elastic block, p = 2", &elastic_scene(2, 2, cells, 0), [5, 20])?;
-    let mut moving = elastic_scene(2, 2, cells, MARGIN);
-    moving.analysis.frame = Frame::Updated;
-    records.extend(scaled(settings, "moving", "moving points, p = 2", &moving, [5, 20])?);
+    records.extend(scaled(settings, "moving", "moving points, p = 2", &moving_scene(2, 2, cells), [5, 20])?);
     let steps = if settings.quick { [400, 10] } else { [800, 20] };
     records.extend(scaled(settings, "plate", "plate with a growing crack, p = 2", &plate, steps)?);
     Ok(records)

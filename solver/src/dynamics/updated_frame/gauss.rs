@@ -22,7 +22,7 @@
 //! of the relaxation are taken out per component, and of a free body the mean rotation too, so that momentum
 //! and angular momentum are kept to round-off ([`rigid`]).
 //!
-//! Boundaries that meet push each other apart by a potential of the gap, and rub ([`contact`],
+//! Boundaries that meet push each other apart by a potential of the gap, with friction ([`contact`],
 //! [`crate::contact::gap_potential`]), which adds to the forces before `M a` is solved.
 //!
 //! # The energy ledger
@@ -123,7 +123,7 @@ pub(crate) struct SpanQuadrature {
 struct BoundarySprings {
     /// κ, Pa/m.
     stiffness: f64,
-    /// Whether others rub along it.
+    /// Whether contact has friction.
     friction: bool,
 }
 

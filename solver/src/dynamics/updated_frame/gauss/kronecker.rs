@@ -83,16 +83,16 @@ impl Vectorised for ApplyProduct<'_> {
     fn run<const FMA: bool>(self) {
         let Self { product: Kronecker { grid, factors: [x, y], .. }, scale, z } = self;
         z.iter_mut().zip(scale).for_each(|(z, s)| *z *= s);
-        let mut lines = vec![Lane::ZERO; grid.columns];
+        let mut lines = vec![0.0; grid.columns * LANES];
         for rows in z.chunks_mut(LANES * grid.stride) {
             for (l, row) in rows.chunks(grid.stride).enumerate() {
                 let row = &row[grid.index(0, 0)..][..grid.columns];
-                lines.iter_mut().zip(row).for_each(|(lane, value)| lane[l] = *value);
+                lines.iter_mut().skip(l).step_by(LANES).zip(row).for_each(|(line, value)| *line = *value);
             }
-            x.solve_lines::<FMA>(&mut lines);
+            x.solve_rows::<FMA>(&mut lines, LANES);
             for (l, row) in rows.chunks_mut(grid.stride).enumerate() {
                 let row = &mut row[grid.index(0, 0)..][..grid.columns];
-                row.iter_mut().zip(&lines).for_each(|(value, lane)| *value = lane[l]);
+                row.iter_mut().zip(lines.iter().skip(l).step_by(LANES)).for_each(|(value, line)| *value = *line);
             }
         }
         y.solve_rows::<FMA>(z, grid.stride);
@@ -167,28 +167,7 @@ impl BandFactor {
         (&row[w - i.min(w)..w], row[w])
     }
 
-    /// Solves eight lines side by side.
-    #[inline(always)]
-    fn solve_lines<const FMA: bool>(&self, x: &mut [Lane]) {
-        for i in 0..x.len() {
-            let (couplings, pivot) = self.row(i);
-            let mut rest = x[i];
-            for (coupling, other) in couplings.iter().zip(&x[i - couplings.len()..]) {
-                rest = rest.add_scaled::<FMA>(*other, -coupling);
-            }
-            x[i] = rest * pivot;
-        }
-        for i in (0..x.len()).rev() {
-            let (couplings, pivot) = self.row(i);
-            let here = x[i] * pivot;
-            x[i] = here;
-            for (coupling, other) in couplings.iter().zip(&mut x[i - couplings.len()..]) {
-                *other = other.add_scaled::<FMA>(here, -coupling);
-            }
-        }
-    }
-
-    /// The same along columns, a row of control points at a time.
+    /// Solves as many lines side by side as a row of `x` is long.
     #[inline(always)]
     fn solve_rows<const FMA: bool>(&self, x: &mut [f64], stride: usize) {
         let order = x.len() / stride;
