@@ -34,13 +34,14 @@ use crate::linear_algebra::conjugate_gradients::{Convergence, SolveFailure};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::{LANES, Lane};
+use crate::linear_algebra::preconditioned::ITERATION_LIMIT;
 use crate::linear_algebra::preconditioner::TOO_MANY;
 use crate::linear_algebra::stencil::Stencil;
 use crate::material::degradation::FractureModel;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_form};
 use crate::scene::SolverSettings;
-use method::{ITERATION_LIMIT, Method};
+use method::Method;
 
 /// Diagonal and right-hand side of control points without material, as a fraction of the largest right-hand
 /// side.

@@ -7,9 +7,9 @@ use super::lane::LANES;
 
 /// Room before the first control point of a row.
 const LEAD: usize = LANES;
-/// Least room behind the last one: the neighbours that functions of the highest degree reach, and those read
-/// with them.
-const MARGIN: usize = 4 + LANES;
+/// Least room behind the last one: the neighbours that functions of the highest degree and their penalty
+/// reach, and those read with them.
+const MARGIN: usize = 5 + LANES;
 
 /// A field of vectors on the control points, by component.
 pub type VectorField = [Vec<f64>; 2];

@@ -93,23 +93,6 @@ impl Stencil {
         self.row(row, 0)[self.grid.index(column, 0)]
     }
 
-    /// Coupling of a control point with the one so many columns and rows on; zero beyond the stencil and the
-    /// grid.
-    pub fn entry(&self, at: usize, columns: isize, rows: isize) -> f64 {
-        let (row, column) = (self.grid.row_of(at) as isize, self.grid.column_of(at) as isize);
-        let [p, q] = self.degree.map(|degree| degree as isize);
-        let inside = (0..self.grid.rows as isize).contains(&(row + rows))
-            && (0..self.grid.columns as isize).contains(&(column + columns));
-        if !inside || columns.abs() > p || rows.abs() > q {
-            return 0.0;
-        }
-        let is_ahead = rows > 0 || (rows == 0 && columns >= 0);
-        let [c, r, dx, dy] =
-            if is_ahead { [column, row, columns, rows] } else { [column + columns, row + rows, -columns, -rows] };
-        let offset = Self::offset_index(self.degree, dx, dy as usize);
-        self.row(r as usize, offset)[self.grid.index(c as usize, 0)]
-    }
-
     /// Sets the diagonal entry of a control point.
     pub fn set_diagonal(&mut self, column: usize, row: usize, value: f64) {
         let at = row * self.row_length() + self.grid.index(column, 0);

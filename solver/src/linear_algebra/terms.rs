@@ -25,8 +25,8 @@ impl Coefficients<f64> for f64 {
     }
 }
 
-/// Most couplings of a control point: those of quartic splines.
-const MOST: usize = 81;
+/// Most couplings of a control point: those of quartic splines and their penalty.
+const MOST: usize = 121;
 /// Couplings that go along a row together.
 const TOGETHER: usize = 5;
 

@@ -44,7 +44,6 @@ pub(crate) mod balance;
 pub(crate) mod boundary;
 pub(crate) mod contact;
 pub(crate) mod fit;
-pub(crate) mod kronecker;
 pub(crate) mod map;
 pub(crate) mod penalty;
 pub(crate) mod rigid;
@@ -53,12 +52,10 @@ pub(crate) mod state;
 pub(crate) mod step;
 pub(crate) mod stiffness;
 pub(crate) mod system;
-pub(crate) mod weak;
 
 use balance::SpanBalance;
 use boundary::{MovingBoundary, edges};
 use fit::PointFit;
-use kronecker::Kronecker;
 use map::{InverseMap, displacement_gradient};
 use rigid::{Resultant, RigidPart};
 use rule::GaussPoints;
@@ -93,7 +90,6 @@ pub(crate) const WAY_BETWEEN_STEPS: f64 = 4.0;
 pub(crate) struct SpanQuadrature {
     gauss: GaussPoints,
     boundary: MovingBoundary,
-    kronecker: Kronecker,
     fit: MassSystem,
     inertia: MassSystem,
     /// Control values of the displacement less its mean, m, and those of the two steps before.
@@ -159,7 +155,6 @@ impl SpanQuadrature {
         Self {
             gauss: GaussPoints::new(patch),
             boundary,
-            kronecker: Kronecker::new(patch, INERTIA_PENALTY),
             fit: MassSystem::new(patch, fit_penalty * density * h * h),
             inertia: MassSystem::new(patch, INERTIA_PENALTY * density * h * h),
             displacement: [field(), field(), field()],
@@ -185,14 +180,13 @@ impl SpanQuadrature {
     pub(crate) fn find_forces(&mut self, on: OnPatch<'_>) -> Result<f64, Failure> {
         let patch = on.patch;
         let mean = self.begin_fit(on);
-        let held = self.held.each_ref().map(|held| &held[..]);
         let accuracy = self.accuracy(patch, 0);
         extrapolate(&mut self.displacement);
         self.fit
-            .solve(&self.kronecker, &self.load, &mut self.displacement[0], held, accuracy)
+            .solve(&self.load, &mut self.displacement[0], accuracy)
             .map_err(Failure::Spans)?;
         let displacement = &self.displacement[0];
-        let map = InverseMap { patch, grid: patch.control_grid(), displacement, mean };
+        let map = InverseMap::new(patch, displacement, mean);
         self.gauss.enclose(&mut self.boundary, &map)?;
         let balance = SpanBalance { gauss: &self.gauss, displacement, moduli: self.moduli, density: self.density };
         self.pushed = Resultant::default();
@@ -204,11 +198,10 @@ impl SpanQuadrature {
     /// # Errors
     /// If the solve does not converge.
     pub(crate) fn accelerate(&mut self, OnPatch { patch, cells, points }: OnPatch<'_>) -> Result<(), Failure> {
-        let held = self.held.each_ref().map(|held| &held[..]);
-        self.inertia.begin(&self.kronecker, self.gauss.marks(patch.control_grid()), &self.held);
+        self.inertia.begin(self.gauss.marks(patch.control_grid()), &self.held);
         extrapolate(&mut self.acceleration);
         let accuracy = self.accuracy(patch, 2);
-        let solved = self.inertia.solve(&self.kronecker, &self.force, &mut self.acceleration[0], held, accuracy);
+        let solved = self.inertia.solve(&self.force, &mut self.acceleration[0], accuracy);
         solved.map_err(Failure::Spans)?;
         let fit = PointFit { patch, cells, points, density: self.density };
         fit.at_points(&self.acceleration[0], &mut self.point_acceleration);
@@ -222,14 +215,14 @@ impl SpanQuadrature {
         let mean = self.mean(points, |at| points[at].displacement);
         let fit = PointFit { patch, cells, points, density: self.density };
         fit.assemble(&mut self.fit.matrix, &mut self.load, mean);
-        self.fit.begin(&self.kronecker, around(patch, cells), &self.held);
+        self.fit.begin(around(patch, cells), &self.held);
         mean
     }
 
     /// Hencky strain `[xx, yy, xy]` at a position, m.
     pub(crate) fn strain_at(&self, patch: &Patch, position: [f64; 2]) -> [f64; 3] {
         let displacement = &self.displacement[0];
-        let map = InverseMap { patch, grid: patch.control_grid(), displacement, mean: [0.0; 2] };
+        let map = InverseMap::new(patch, displacement, [0.0; 2]);
         hencky_strain(&displacement_gradient(&map.at(position).1))
     }
 
@@ -242,9 +235,8 @@ impl SpanQuadrature {
         let mean = self.mean(points, |at| points[at].velocity);
         let fit = PointFit { patch, cells, points, density: self.density };
         fit.load(|point| [0, 1].map(|c| point.velocity[c] - mean[c]), &mut self.load);
-        let held = self.held.each_ref().map(|held| &held[..]);
         let accuracy = self.accuracy(patch, 1);
-        self.fit.solve(&self.kronecker, &self.load, &mut self.velocity, held, accuracy)?;
+        self.fit.solve(&self.load, &mut self.velocity, accuracy)?;
         let mut fitted = Vec::new();
         fit.at_points(&self.velocity, &mut fitted);
         let mut changes = fitted;

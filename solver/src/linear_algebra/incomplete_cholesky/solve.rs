@@ -199,7 +199,8 @@ impl<T: Scalar> Vectorised for SolvePair<'_, T> {
             2 => self.solve::<FMA, 1>(),
             3 => self.solve::<FMA, 2>(),
             4 => self.solve::<FMA, 3>(),
-            _ => self.solve::<FMA, 4>(),
+            5 => self.solve::<FMA, 4>(),
+            _ => self.solve::<FMA, 5>(),
         }
     }
 }

@@ -34,20 +34,21 @@ impl Vectorised for AssembleSpans<'_, '_> {
     #[inline(always)]
     fn run<const FMA: bool>(mut self) -> f64 {
         let Self { balance, cells, window, grid, row_length } = &mut self;
-        cells.iter().fold(0.0, |energy, cell| {
-            let (window, grid, row_length) = (&mut *window, *grid, *row_length);
-            energy
-                + match (balance.gauss.count, balance.gauss.is_cut(cell)) {
-                    (2, false) => balance.cell::<2, 4, 2, 4>(cell, window, grid, row_length),
-                    (2, true) => balance.cell::<2, 4, 3, 9>(cell, window, grid, row_length),
-                    (3, false) => balance.cell::<3, 9, 3, 9>(cell, window, grid, row_length),
-                    (3, true) => balance.cell::<3, 9, 5, 25>(cell, window, grid, row_length),
-                    (4, false) => balance.cell::<4, 16, 4, 16>(cell, window, grid, row_length),
-                    (4, true) => balance.cell::<4, 16, 7, 49>(cell, window, grid, row_length),
-                    (_, false) => balance.cell::<5, 25, 5, 25>(cell, window, grid, row_length),
-                    (_, true) => balance.cell::<5, 25, 9, 81>(cell, window, grid, row_length),
-                }
-        })
+        let (grid, row_length) = (*grid, *row_length);
+        let mut energy = 0.0;
+        for cell in *cells {
+            energy += match (balance.gauss.count, balance.gauss.is_cut(cell)) {
+                (2, false) => balance.cell::<2, 4, 2, 4>(cell, window, grid, row_length),
+                (2, true) => balance.cell::<2, 4, 3, 9>(cell, window, grid, row_length),
+                (3, false) => balance.cell::<3, 9, 3, 9>(cell, window, grid, row_length),
+                (3, true) => balance.cell::<3, 9, 5, 25>(cell, window, grid, row_length),
+                (4, false) => balance.cell::<4, 16, 4, 16>(cell, window, grid, row_length),
+                (4, true) => balance.cell::<4, 16, 7, 49>(cell, window, grid, row_length),
+                (_, false) => balance.cell::<5, 25, 5, 25>(cell, window, grid, row_length),
+                (_, true) => balance.cell::<5, 25, 9, 81>(cell, window, grid, row_length),
+            };
+        }
+        energy
     }
 }
 

@@ -159,7 +159,8 @@ pub(crate) fn cleared<'a>(matrix: &'a mut Stencil, field: &'a mut VectorField) -
     (fields, strides)
 }
 
-/// Adds the symmetric matrix of a cell to the half stencil.
+/// Adds the symmetric matrix of a cell of K × K functions to that of a
+/// [`MassSystem`](super::system::MassSystem).
 #[inline(always)]
 pub(crate) fn add_cell<const K: usize, const F: usize>(
     matrix: &mut [f64],
@@ -173,7 +174,7 @@ pub(crate) fn add_cell<const K: usize, const F: usize>(
         let row = (first[1] + i / K - first_row) * row_length;
         let column = grid.index(first[0] + i % K, 0);
         for j in i..F {
-            let offset = Stencil::offset_index([K - 1; 2], (j % K) as isize - (i % K) as isize, j / K - i / K);
+            let offset = Stencil::offset_index([K; 2], (j % K) as isize - (i % K) as isize, j / K - i / K);
             matrix[row + offset * grid.stride + column] += local[i][j];
         }
     }

@@ -22,14 +22,21 @@ pub(crate) struct InverseMap<'a> {
     /// Background patch.
     pub patch: &'a Patch,
     /// Layout of the control points.
-    pub grid: ControlGrid,
+    grid: ControlGrid,
     /// Control values of the displacement less its mean, m.
-    pub displacement: &'a VectorField,
+    displacement: &'a VectorField,
     /// Its mean, m.
-    pub mean: [f64; 2],
+    mean: [f64; 2],
+    /// Length of the shortest span, m.
+    shortest_span: f64,
 }
 
-impl InverseMap<'_> {
+impl<'a> InverseMap<'a> {
+    /// For control values of the displacement less its mean, m.
+    pub(crate) fn new(patch: &'a Patch, displacement: &'a VectorField, mean: [f64; 2]) -> Self {
+        Self { patch, grid: patch.control_grid(), displacement, mean, shortest_span: patch.shortest_span() }
+    }
+
     /// Displacement (m) and its gradient at a position (m), with the polynomials of the nearest span.
     pub(crate) fn at(&self, position: [f64; 2]) -> ([f64; 2], Gradient) {
         let along = |d: usize| {
@@ -64,7 +71,7 @@ impl InverseMap<'_> {
         along: [f64; 2],
         start: [f64; 2],
     ) -> Result<([f64; 2], [f64; 2]), Folded> {
-        let close = CLOSE * self.patch.shortest_span() + ROUND_OFF * reference[0].hypot(reference[1]);
+        let close = CLOSE * self.shortest_span + ROUND_OFF * reference[0].hypot(reference[1]);
         let mut x = start;
         for _ in 0..LIMIT {
             let (d, gradient) = self.at(x);
@@ -108,7 +115,7 @@ mod tests {
                 displacement[0][grid.index(column, row)] = slope * x;
             }
         }
-        InverseMap { patch: &patch, grid, displacement: &displacement, mean: [0.0; 2] }.forward(
+        InverseMap::new(&patch, &displacement, [0.0; 2]).forward(
             reference,
             [1.0, 1.0],
             [0.5; 2],

@@ -14,6 +14,7 @@
 //! that hold few points or are cut by the boundary of a body.
 
 use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::stencil::Stencil;
 use crate::splines::patch::Patch;
 use crate::splines::spline::SplineSpace;
 
@@ -79,45 +80,22 @@ impl Penalty {
         }
     }
 
-    /// `out += weight Jᵀ J x`; returns `weight |J x|²`.
-    pub(crate) fn add(&self, weight: f64, x: &[f64], out: &mut [f64]) -> f64 {
-        let mut energy = 0.0;
-        for d in 0..2 {
-            let stride = self.strides[d];
-            for &(at, number) in &self.places[d] {
-                let factors = &self.jumps[d][number].factors;
-                let jump: f64 = factors.iter().enumerate().map(|(k, f)| f * x[at + k * stride]).sum();
-                energy += weight * jump * jump;
-                for (k, f) in factors.iter().enumerate() {
-                    out[at + k * stride] += weight * jump * f;
-                }
-            }
-        }
-        energy
-    }
-
-    /// Calls `f` with the entries of `weight Jᵀ J`: control point, columns and rows to the other one, value.
-    pub(crate) fn for_each_pair(&self, weight: f64, mut f: impl FnMut(usize, isize, isize, f64)) {
+    /// Adds `weight Jᵀ J` to a matrix with the pattern of splines one degree higher.
+    pub(crate) fn add(&self, weight: f64, matrix: &mut Stencil) {
+        let (grid, degree, row_length) = (matrix.grid, matrix.degree(), matrix.row_length());
+        let coefficients = matrix.coefficients_mut();
         for d in 0..2 {
             for &(at, number) in &self.places[d] {
                 let factors = &self.jumps[d][number].factors;
                 for (k, a) in factors.iter().enumerate() {
-                    for (l, b) in factors.iter().enumerate() {
-                        let apart = l as isize - k as isize;
-                        let [dx, dy] = if d == 0 { [apart, 0] } else { [0, apart] };
-                        f(at + k * self.strides[d], dx, dy, weight * a * b);
+                    let at = at + k * self.strides[d];
+                    let row = grid.row_of(at);
+                    let start = row * row_length + at - row * grid.stride;
+                    for (apart, b) in factors[k..].iter().enumerate() {
+                        let [columns, rows] = if d == 0 { [apart, 0] } else { [0, apart] };
+                        let coupling = Stencil::offset_index(degree, columns as isize, rows);
+                        coefficients[start + coupling * grid.stride] += weight * a * b;
                     }
-                }
-            }
-        }
-    }
-
-    /// Adds the diagonal of `weight Jᵀ J`.
-    pub(crate) fn add_diagonal(&self, weight: f64, diagonal: &mut [f64]) {
-        for d in 0..2 {
-            for &(at, number) in &self.places[d] {
-                for (k, f) in self.jumps[d][number].factors.iter().enumerate() {
-                    diagonal[at + k * self.strides[d]] += weight * f * f;
                 }
             }
         }

@@ -234,7 +234,7 @@ mod tests {
         let patch = Patch::new(&mesh);
         let mut gauss = GaussPoints::new(&patch);
         let zeros = [gauss.grid.zeros(), gauss.grid.zeros()];
-        let map = InverseMap { patch: &patch, grid: gauss.grid, displacement: &zeros, mean: [0.0; 2] };
+        let map = InverseMap::new(&patch, &zeros, [0.0; 2]);
         let mut boundary = MovingBoundary::new(edges(shape, &mesh).unwrap(), patch.shortest_span(), degree);
         gauss.enclose(&mut boundary, &map).unwrap();
         let mut sum = 0.0;

@@ -63,10 +63,9 @@ impl StiffnessOperator for SpanStiffness<'_> {
     fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]) {
         self.unpack(x);
         let Self { spans, field, image, .. } = self;
-        let SpanQuadrature { inertia, kronecker, held, .. } = spans;
+        let inertia = &mut spans.inertia;
         image.iter_mut().for_each(|image| image.fill(0.0));
-        let held = held.each_ref().map(|held| &held[..]);
-        if inertia.solve(kronecker, field, image, held, Accuracy { tolerance: TOLERANCE, round_off: 0.0 }).is_err() {
+        if inertia.solve(field, image, Accuracy { tolerance: TOLERANCE, round_off: 0.0 }).is_err() {
             image.iter_mut().for_each(|image| image.fill(f64::NAN));
         }
         self.pack(out);

@@ -1,18 +1,20 @@
-//! A mass matrix with its penalty, and conjugate gradients on it.
+//! A mass matrix with its penalty, and its solves.
+//!
+//! The penalty reaches one control point further than the masses, so that the matrix has the pattern of
+//! splines one degree higher. An incomplete factor on it takes the thin rings along a boundary, where the
+//! penalty alone ties control values to their neighbours, as well as the inside: 5 to 8 iterations for 8
+//! digits. Without the couplings that are zero in the matrix a step takes 1.3 to 1.6 times as long.
 
-use super::kronecker::Kronecker;
 use super::penalty::Penalty;
-use super::weak::Weak;
+use crate::checkpoint::{Archive, StateError};
+use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::larger;
+use crate::linear_algebra::preconditioned::PreconditionedSolver;
+use crate::linear_algebra::preconditioner::TOO_MANY;
 use crate::linear_algebra::stencil::Stencil;
 use crate::splines::patch::Patch;
-
-/// A control point with less than this part of the mass it would have within the body is weak.
-const WEAK: f64 = 0.3;
-/// Most iterations of a solve.
-const LIMIT: usize = 300;
 
 /// When a solve ends.
 #[derive(Debug, Clone, Copy)]
@@ -26,59 +28,52 @@ pub(crate) struct Accuracy {
 /// `A = Σ m N_i N_j + w Jᵀ J` on the control points that take part.
 #[derive(Debug, Clone)]
 pub(crate) struct MassSystem {
-    /// The mass matrix, to be assembled.
+    /// The matrix; its masses are to be assembled.
     pub matrix: Stencil,
     penalty: Penalty,
     weight: f64,
     marks: Vec<bool>,
-    scale: Vec<f64>,
-    weak: Weak,
-    /// Sum of the diagonal, kg/m.
+    /// Control points whose component is not held, by component.
+    free: [ActiveColumns; 2],
+    /// Sum of the diagonal without penalty, kg/m.
     mass: f64,
-    residual: Vec<f64>,
+    /// None before the first solve.
+    solver: Option<Box<PreconditionedSolver>>,
     preconditioned: Vec<f64>,
-    direction: Vec<f64>,
-    image: Vec<f64>,
 }
 
 impl MassSystem {
     /// The zero matrix on a patch, with a penalty of weight w, kg/m.
     pub(crate) fn new(patch: &Patch, weight: f64) -> Self {
         let grid = patch.control_grid();
-        let zeros = || grid.zeros();
         Self {
-            matrix: Stencil::zeros(grid, patch.spaces.each_ref().map(|space| space.degree())),
+            matrix: Stencil::zeros(grid, patch.spaces.each_ref().map(|space| space.degree() + 1)),
             penalty: Penalty::new(patch),
             weight,
             marks: Vec::new(),
-            scale: zeros(),
-            weak: Weak::default(),
+            free: [0, 1].map(|_| ActiveColumns::all(grid)),
             mass: 0.0,
-            residual: zeros(),
-            preconditioned: zeros(),
-            direction: zeros(),
-            image: zeros(),
+            solver: None,
+            preconditioned: grid.zeros(),
         }
     }
 
-    /// Takes the marked control points, once the matrix is assembled.
-    pub(crate) fn begin(&mut self, kronecker: &Kronecker, marks: Vec<bool>, held: &[Vec<usize>; 2]) {
-        let Self { matrix, penalty, weight, scale, .. } = self;
+    /// Takes the marked control points, once the masses are assembled, and adds the penalty.
+    pub(crate) fn begin(&mut self, marks: Vec<bool>, held: &[Vec<usize>; 2]) {
+        let Self { matrix, penalty, weight, free, .. } = self;
         let grid = matrix.grid;
         if marks != self.marks {
             penalty.restrict(grid, &marks);
+            *free = held.each_ref().map(|held| {
+                let mut free = marks.clone();
+                held.iter().for_each(|&at| free[at] = false);
+                ActiveColumns::marked(grid, &free)
+            });
             self.marks = marks;
         }
-        let mut mass = grid.zeros();
-        for at in grid.indices().filter(|&at| self.marks[at]) {
-            mass[at] = matrix.diagonal(grid.column_of(at), grid.row_of(at));
-        }
-        self.mass = mass.iter().sum();
-        let mut diagonal = mass.clone();
-        penalty.add_diagonal(*weight, &mut diagonal);
-        scale.fill(0.0);
-        let weak = kronecker.scale([&mass, &diagonal], WEAK, held, scale);
-        self.weak = Weak::new(&weak, matrix, penalty, *weight);
+        let masses = grid.indices().filter(|&at| self.marks[at]);
+        self.mass = masses.map(|at| matrix.diagonal(grid.column_of(at), grid.row_of(at))).sum();
+        penalty.add(*weight, matrix);
     }
 
     /// Whether a control point takes part.
@@ -86,80 +81,46 @@ impl MassSystem {
         self.marks.get(at).is_some_and(|mark| *mark)
     }
 
-    /// Heap memory, bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        self.matrix.bytes() + 5 * 8 * self.scale.len() + self.marks.len()
+    /// Stores or takes up the factor.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { matrix, solver, .. } = self;
+        let solver = solver.get_or_insert_with(|| Box::new(PreconditionedSolver::new(matrix, true)));
+        solver.preconditioner.exchange(archive, matrix)
     }
 
-    /// Solves `A x = b` for both components; those of `held` keep their values. The error in the norm of the
-    /// preconditioner falls below `tolerance` times that of a start from zero, or below that of `round_off`
-    /// all over the body: one that moves as it is has nothing else.
+    /// Heap memory, bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        let solver = self.solver.as_ref().map_or(0, |solver| solver.bytes());
+        self.matrix.bytes() + solver + 8 * self.preconditioned.len() + self.marks.len()
+    }
+
+    /// Solves `A x = b` for both components; those that are held keep their values. The error in the energy
+    /// norm falls below `tolerance` times that of a start from zero, or below that of `round_off` all over
+    /// the body: one that moves as it is has nothing else.
     ///
     /// # Errors
     /// If the iterations do not converge.
     pub(crate) fn solve(
         &mut self,
-        kronecker: &Kronecker,
         b: &VectorField,
         x: &mut VectorField,
-        held: [&[usize]; 2],
         Accuracy { tolerance, round_off }: Accuracy,
     ) -> Result<(), SolveFailure> {
-        let floor = self.mass * round_off * round_off;
-        (0..2).try_for_each(|c| self.solve_component(kronecker, &b[c], &mut x[c], held[c], [tolerance, floor]))
-    }
-
-    fn solve_component(
-        &mut self,
-        kronecker: &Kronecker,
-        b: &[f64],
-        x: &mut [f64],
-        held: &[usize],
-        [tolerance, floor]: [f64; 2],
-    ) -> Result<(), SolveFailure> {
-        let Self { matrix, penalty, weight, marks, scale, weak, residual, preconditioned, direction, image, .. } = self;
-        let mut scale = std::mem::take(scale);
-        let kept: Vec<f64> = held.iter().map(|&at| std::mem::replace(&mut scale[at], 0.0)).collect();
-        let mut precondition = |r: &[f64], z: &mut [f64]| -> f64 {
-            weak.eliminate(r, z);
-            kronecker.apply(&scale, z);
-            weak.substitute(r, z);
-            r.iter().zip(&*z).map(|(r, z)| r * z).sum()
-        };
-        x.iter_mut().zip(&*marks).for_each(|(x, mark)| *x = if *mark { *x } else { 0.0 });
-        let apply = |x: &[f64], out: &mut [f64]| matrix.apply(x, out) + penalty.add(*weight, x, out);
-        let from_zero = precondition(b, preconditioned);
-        apply(x, image);
-        residual.iter_mut().zip(b).zip(&*image).for_each(|((r, b), image)| *r = b - image);
-        let mut rho = precondition(residual, preconditioned);
-        direction.copy_from_slice(preconditioned);
-        let mut iterations = 0;
-        let mut outcome = Ok(());
-        loop {
-            if rho <= larger(tolerance * tolerance * from_zero, floor) {
-                break;
-            }
-            let curvature = apply(direction, image);
-            if !curvature.is_finite() {
-                outcome = Err(SolveFailure::NotFinite);
-                break;
-            } else if curvature <= 0.0 {
-                outcome = Err(SolveFailure::NotPositiveDefinite);
-                break;
-            } else if iterations == LIMIT {
-                outcome = Err(SolveFailure::NotConverged { iterations, error: rho.sqrt() });
-                break;
-            }
-            let alpha = rho / curvature;
-            x.iter_mut().zip(&*direction).for_each(|(x, d)| *x += alpha * d);
-            residual.iter_mut().zip(&*image).for_each(|(r, image)| *r -= alpha * image);
-            let previous = std::mem::replace(&mut rho, precondition(residual, preconditioned));
-            let beta = rho / previous;
-            direction.iter_mut().zip(&*preconditioned).for_each(|(d, z)| *d = z + beta * *d);
-            iterations += 1;
+        let Self { matrix, marks, free, mass, solver, preconditioned, .. } = self;
+        let solver = solver.get_or_insert_with(|| Box::new(PreconditionedSolver::new(matrix, true)));
+        for ((free, b), x) in free.iter().zip(b).zip(x) {
+            x.iter_mut().zip(&*marks).for_each(|(x, mark)| *x = if *mark { *x } else { 0.0 });
+            matrix.restrict(free.clone());
+            preconditioned.fill(0.0);
+            solver.prepare(matrix);
+            let preconditioner = &solver.preconditioner;
+            let from_zero = preconditioner.apply(free, b, preconditioned) * preconditioner.unit();
+            let tolerance = larger(tolerance * from_zero.sqrt(), mass.sqrt() * round_off);
+            solver.solve(matrix, b, x, tolerance, TOO_MANY)?;
         }
-        held.iter().zip(kept).for_each(|(&at, kept)| scale[at] = kept);
-        self.scale = scale;
-        outcome
+        Ok(())
     }
 }
