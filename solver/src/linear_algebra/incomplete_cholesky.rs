@@ -22,6 +22,7 @@ use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::{Scalar, dispatch};
 use crate::linear_algebra::stencil::{Offset, Stencil};
+use crate::linear_algebra::terms::Terms;
 use solve::{SolveBlock, SolvePair};
 
 /// Rows of control points in a block.
@@ -139,7 +140,7 @@ impl IncompleteCholesky {
         let first = number * BLOCK_ROWS;
         let scale = self.scale.as_ref().filter(|_| !r.is_empty());
         let scale = scale.map(|scale| &scale[first * self.grid.stride..][..r.len()]);
-        SolveBlock { grid: self.grid, offsets: &self.offsets, active, first, factor, scale, r, out }
+        SolveBlock { grid: self.grid, offsets: &self.offsets, active, first, factor, scale, terms: Terms::none(), r, out }
     }
 
     /// Whether the diagonal of the matrix had to be raised so much that the factor is that of another one.

@@ -226,22 +226,22 @@ struct ApplyRows<'a, T> {
 impl<T: Scalar + Coefficients<T>> ApplyRows<'_, T> {
     /// The couplings of a row with itself and with those after and before it.
     #[inline(always)]
-    fn terms(&self, row: usize) -> Terms {
-        let grid = self.matrix.grid;
-        let coefficients = |row: usize, index: usize| row * self.matrix.row_length() + index * grid.stride;
-        let mut terms = Terms::none();
-        for (index, offset) in self.matrix.offsets.iter().enumerate() {
-            if row + offset.rows < grid.rows {
-                let there = ((row + offset.rows) * grid.stride).wrapping_add_signed(offset.columns);
-                terms.push(coefficients(row, index), there);
+    fn find_terms(&self, row: usize, terms: &mut Terms) {
+        let Self { matrix: Stencil { grid, degree, offsets, .. }, .. } = self;
+        let (before, after) = (row.min(degree[1]), (grid.rows - 1 - row).min(degree[1]));
+        if !terms.begin([before, after]) {
+            return;
+        }
+        let [stride, row_length] = [grid.stride, self.matrix.row_length()].map(|length| length as isize);
+        for (index, offset) in offsets.iter().enumerate() {
+            let (coefficients, rows) = (index as isize * stride, offset.rows as isize);
+            if offset.rows <= after {
+                terms.push(coefficients, rows * stride + offset.columns);
             }
-            if index > 0 && row >= offset.rows {
-                let before = row - offset.rows;
-                let here = |start: usize| start.wrapping_add_signed(-offset.columns);
-                terms.push(here(coefficients(before, index)), here(before * grid.stride));
+            if index > 0 && offset.rows <= before {
+                terms.push(coefficients - rows * row_length - offset.columns, -rows * stride - offset.columns);
             }
         }
-        terms
     }
 }
 
@@ -253,15 +253,17 @@ impl<T: Scalar + Coefficients<T>> Vectorised for ApplyRows<'_, T> {
         let Self { matrix, x, .. } = self;
         let grid = matrix.grid;
         let mut total = 0.0;
+        let mut terms = Terms::none();
         for local in 0..self.out.len() / grid.stride {
             let row = self.first_row + local;
-            let terms = self.terms(row);
+            self.find_terms(row, &mut terms);
             let (x_of_row, out) = (&x[row * grid.stride..], &mut self.out[local * grid.stride..][..grid.stride]);
             let mut product = Lane::ZERO;
             for range in matrix.active.row(row) {
                 let (at, used) = (grid.index(range.start, 0), range.len());
                 out[at..at + used].fill(T::ZERO);
-                terms.add::<FMA, false, T, T>(&mut out[at..], used, &matrix.coefficients, x, at);
+                let coefficients = (&matrix.coefficients[..], row * matrix.row_length() + at);
+                terms.add::<FMA, false, T, T>(&mut out[at..], used, coefficients, (x, row * grid.stride + at));
                 for at in (at..at + used).step_by(LANES) {
                     product = product.add_product::<FMA>(Lane::load(out, at), Lane::load(x_of_row, at));
                 }

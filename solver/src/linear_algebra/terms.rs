@@ -30,41 +30,55 @@ const MOST: usize = 121;
 /// Couplings that go along a row together.
 const TOGETHER: usize = 5;
 
-/// Where the coefficients of each coupling, and the values they are multiplied by, begin.
+/// Where the coefficients of each coupling of a row, and the values they are multiplied by, begin: relative to
+/// the row, so that rows with as many rows before and after them have the same.
 pub(super) struct Terms {
-    starts: [(usize, usize); MOST],
+    starts: [(isize, isize); MOST],
     count: usize,
+    /// Rows before and after that count.
+    rows: [usize; 2],
 }
 
 impl Terms {
-    /// No couplings.
-    #[inline(always)]
+    /// No couplings, of no row.
     pub(super) fn none() -> Self {
-        Self { starts: [(0, 0); MOST], count: 0 }
+        Self { starts: [(0, 0); MOST], count: 0, rows: [usize::MAX; 2] }
+    }
+
+    /// Whether they are not those of a row with that many before and after it; then none is left.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, rows: [usize; 2]) -> bool {
+        let other = self.rows != rows;
+        if other {
+            self.rows = rows;
+            self.count = 0;
+        }
+        other
     }
 
     /// Adds a coupling.
     #[inline(always)]
-    pub(super) fn push(&mut self, coefficients: usize, values: usize) {
+    pub(super) fn push(&mut self, coefficients: isize, values: isize) {
         self.starts[self.count] = (coefficients, values);
         self.count += 1;
     }
 
-    /// `sums ± Σ coefficient · value`, in the order of the couplings, for the `used` neighbours from `at` on.
-    /// All fields have room for reading to the end of a batch.
+    /// `sums ± Σ coefficient · value`, in the order of the couplings, for `used` neighbours; coefficients and
+    /// values with the place of the first. All fields have room for reading to the end of a batch, and sums
+    /// behind the last become zero.
     #[inline(always)]
     pub(super) fn add<const FMA: bool, const MINUS: bool, T: Scalar, C: Coefficients<T>>(
         &self,
         sums: &mut [T],
         used: usize,
-        coefficients: &[C],
-        values: &[T],
-        at: usize,
+        (coefficients, coefficient_at): (&[C], usize),
+        (values, value_at): (&[T], usize),
     ) {
         let length = used.next_multiple_of(LANES);
         let part = |n: usize| {
             let (coefficient, value) = self.starts[n];
-            (&coefficients[coefficient.wrapping_add(at)..][..length], &values[value.wrapping_add(at)..][..length])
+            let first = coefficient_at.wrapping_add_signed(coefficient);
+            (&coefficients[first..][..length], &values[value_at.wrapping_add_signed(value)..][..length])
         };
         let sums = &mut sums[..length];
         let mut n = 0;
@@ -93,8 +107,11 @@ fn add_some<const FMA: bool, const MINUS: bool, const N: usize, T: Scalar, C: Co
         at += LANES;
     }
     if whole < used {
-        let sum = add_batch::<FMA, MINUS, N, T, C>(sums, &parts, whole);
-        sums[whole..used].copy_from_slice(&sum.0[..used - whole]);
+        let mut sum = add_batch::<FMA, MINUS, N, T, C>(sums, &parts, whole);
+        for l in 0..LANES {
+            sum.0[l] = if whole + l < used { sum.0[l] } else { T::ZERO };
+        }
+        sums[whole..whole + LANES].copy_from_slice(&sum.0);
     }
 }
 

@@ -18,6 +18,8 @@ pub(super) struct SolveBlock<'a, T> {
     pub first: usize,
     pub factor: &'a [f32],
     pub scale: Option<&'a [f32]>,
+    /// Couplings of the rows now at hand.
+    pub terms: Terms,
     pub r: &'a [T],
     pub out: &'a mut [T],
 }
@@ -86,15 +88,18 @@ impl<T: Scalar> SolveBlock<'_, T> {
         if row >= rows {
             return;
         }
-        let mut terms = Terms::none();
-        for (index, offset) in self.offsets.iter().enumerate().skip(P + 1) {
-            if FORWARD && row >= offset.rows {
-                let before = row - offset.rows;
-                let here = |start: usize| start.wrapping_add_signed(-offset.columns);
-                terms.push(here(self.start(before, index)), here(before * grid.stride));
-            } else if !FORWARD && row + offset.rows < rows {
-                let there = ((offset.rows - 1) * grid.stride).wrapping_add_signed(offset.columns);
-                terms.push(self.start(row, index), there);
+        let last = self.offsets.last().map_or(0, |offset| offset.rows);
+        let reach = if FORWARD { [row.min(last), 0] } else { [0, (rows - 1 - row).min(last)] };
+        if self.terms.begin(reach) {
+            let [stride, row_length] = [1, self.offsets.len()].map(|lines| (lines * grid.stride) as isize);
+            for (index, offset) in self.offsets.iter().enumerate().skip(P + 1) {
+                let (coefficients, rows) = (index as isize * stride, offset.rows as isize);
+                if offset.rows <= reach[0] {
+                    let there = -rows * stride - offset.columns;
+                    self.terms.push(coefficients - rows * row_length - offset.columns, there);
+                } else if offset.rows <= reach[1] {
+                    self.terms.push(coefficients, (rows - 1) * stride + offset.columns);
+                }
             }
         }
         let (stride, pivots) = (grid.stride, self.start(row, 0));
@@ -115,7 +120,8 @@ impl<T: Scalar> SolveBlock<'_, T> {
                     .zip(&self.factor[pivots + at..])
                     .for_each(|(sum, pivot)| *sum = *sum * T::from(*pivot));
             }
-            terms.add::<FMA, true, T, f32>(sums, used, self.factor, if FORWARD { before } else { after }, at);
+            let values = if FORWARD { (&*before, row * stride + at) } else { (&*after, at) };
+            self.terms.add::<FMA, true, T, f32>(sums, used, (self.factor, pivots + at), values);
         }
     }
 
