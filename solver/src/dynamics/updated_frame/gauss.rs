@@ -77,9 +77,9 @@ use crate::splines::patch::Patch;
 const INERTIA_PENALTY: f64 = 0.01;
 /// Weight ε of the penalty in the fit, for quadratics and for higher degrees.
 const FIT_PENALTY: [f64; 2] = [0.005, 0.0005];
-/// Errors of the solves for displacement, velocity and acceleration, relative to their solutions: four
+/// Errors of the solves for displacement, velocity and acceleration, relative to their solutions: three
 /// decades above them the errors of the study cases are still the same to two digits.
-const TOLERANCES: [f64; 3] = [1e-8, 1e-6, 1e-6];
+const TOLERANCES: [f64; 3] = [1e-7, 1e-5, 1e-5];
 
 /// Way of a point after which the critical step is taken anew, spans: the penalty keeps it whatever the
 /// boundary cuts, so it changes with the strain alone, and a point on its way vibrates by less than a span.

@@ -159,7 +159,7 @@ impl MovingBoundary {
                 breaks.clear();
                 step.divide(&mut breaks)?;
                 for pair in breaks.windows(2) {
-                    piece(edge, map, along, [pair[0], pair[1]], &mut f)?;
+                    step.piece(along, [pair[0], pair[1]], &mut f)?;
                 }
             }
         }
@@ -183,16 +183,21 @@ struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// The place at s, looked for from a position, m.
-    fn at(&self, s: f64, near: [f64; 2]) -> Result<EdgePlace, Folded> {
+    /// The place at s, looked for from the cubic between the ends.
+    fn at(&self, s: f64) -> Result<EdgePlace, Folded> {
+        let [a, b] = self.ends;
+        let length = b.s - a.s;
+        let t = (s - a.s) / length;
+        let [turn, left, right] = [t * t * (3.0 - 2.0 * t), t * (1.0 - t).powi(2) * length, t * t * (t - 1.0) * length];
+        let near = [0, 1].map(|c| a.x[c] + turn * (b.x[c] - a.x[c]) + left * a.tangent[c] + right * b.tangent[c]);
         let (position, tangent) = self.edge.at(s);
         let (x, tangent) = self.map.forward(position, tangent, near)?;
         Ok(EdgePlace { s, x, tangent })
     }
 
-    /// Its ends and where it crosses knots of either direction, in order: s and position. Where it turns back
-    /// in a direction it may cross a knot twice, so it is divided there first.
-    fn divide(&self, breaks: &mut Vec<(f64, [f64; 2])>) -> Result<(), Folded> {
+    /// s at its ends and where it crosses knots of either direction, in order. Where it turns back in a
+    /// direction it may cross a knot twice, so it is divided there first.
+    fn divide(&self, breaks: &mut Vec<f64>) -> Result<(), Folded> {
         let mut places = vec![self.ends[0]];
         for d in 0..2 {
             let tangents = self.ends.map(|end| end.tangent[d]);
@@ -204,24 +209,23 @@ impl Step<'_> {
         places.push(self.ends[1]);
         for pair in places.windows(2) {
             let first = breaks.len();
-            breaks.push((pair[0].s, pair[0].x));
+            breaks.push(pair[0].s);
             self.crossings([pair[0], pair[1]], breaks)?;
-            breaks[first..].sort_by(|a, b| a.0.total_cmp(&b.0));
+            breaks[first..].sort_by(f64::total_cmp);
         }
-        breaks.push((self.ends[1].s, self.ends[1].x));
+        breaks.push(self.ends[1].s);
         Ok(())
     }
 
     /// Where a part that turns back nowhere crosses knots.
-    fn crossings(&self, ends: [EdgePlace; 2], breaks: &mut Vec<(f64, [f64; 2])>) -> Result<(), Folded> {
+    fn crossings(&self, ends: [EdgePlace; 2], breaks: &mut Vec<f64>) -> Result<(), Folded> {
         for d in 0..2 {
             let spans = self.map.patch.spaces[d].spans();
             let [a, b] = ends.map(|end| end.x[d]);
             let (low, high) = (smaller(a, b), -smaller(-a, -b));
             let first = spans.partition_point(|span| span.left <= low);
             for knot in spans[first..].iter().map(|span| span.left).take_while(|knot| *knot < high) {
-                let place = self.root(ends, |place| place.x[d] - knot)?;
-                breaks.push((place.s, place.x));
+                breaks.push(self.root(ends, |place| place.x[d] - knot)?.s);
             }
         }
         Ok(())
@@ -236,8 +240,7 @@ impl Step<'_> {
         let mut side = 0;
         for _ in 0..CROSSING_LIMIT {
             let share = at_a / (at_a - at_b);
-            let s = a.s + share * (b.s - a.s);
-            let place = self.at(s, [0, 1].map(|c| a.x[c] + share * (b.x[c] - a.x[c])))?;
+            let place = self.at(a.s + share * (b.s - a.s))?;
             let found = f(&place);
             let narrow = smaller((place.s - a.s).abs(), (b.s - place.s).abs()) <= close;
             if found == 0.0 || narrow || !found.is_finite() {
@@ -255,31 +258,24 @@ impl Step<'_> {
         }
         Ok(a)
     }
-}
 
-/// Hands on one piece between two breaks.
-fn piece(
-    edge: &BoundaryEdge,
-    map: &InverseMap<'_>,
-    along: &Rule,
-    [(from, a), (to, b)]: [(f64, [f64; 2]); 2],
-    f: &mut impl FnMut(Piece<'_>),
-) -> Result<(), Folded> {
-    if to <= from {
-        return Ok(());
+    /// Hands on the piece between two breaks.
+    fn piece(&self, along: &Rule, [from, to]: [f64; 2], f: &mut impl FnMut(Piece<'_>)) -> Result<(), Folded> {
+        if to <= from {
+            return Ok(());
+        }
+        let mut points = [([0.0; 2], 0.0); MAX_POINTS];
+        for ((point, t), weight) in points.iter_mut().zip(&along.points).zip(&along.weights) {
+            let place = self.at(from + t * (to - from))?;
+            *point = (place.x, weight * (to - from) * place.tangent[1]);
+        }
+        let points = &points[..along.points.len()];
+        let middle = points[points.len() / 2].0;
+        let span = [0, 1].map(|d| {
+            let spans = self.map.patch.spaces[d].spans();
+            spans.partition_point(|span| span.right <= middle[d]).min(spans.len() - 1)
+        });
+        f(Piece { span, points });
+        Ok(())
     }
-    let mut points = [([0.0; 2], 0.0); MAX_POINTS];
-    for ((point, t), weight) in points.iter_mut().zip(&along.points).zip(&along.weights) {
-        let (position, tangent) = edge.at(from + t * (to - from));
-        let (x, carried) = map.forward(position, tangent, [0, 1].map(|c| a[c] + t * (b[c] - a[c])))?;
-        *point = (x, weight * (to - from) * carried[1]);
-    }
-    let points = &points[..along.points.len()];
-    let middle = points[points.len() / 2].0;
-    let span = [0, 1].map(|d| {
-        let spans = map.patch.spaces[d].spans();
-        spans.partition_point(|span| span.right <= middle[d]).min(spans.len() - 1)
-    });
-    f(Piece { span, points });
-    Ok(())
 }

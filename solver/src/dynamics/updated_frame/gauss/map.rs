@@ -48,14 +48,17 @@ impl<'a> InverseMap<'a> {
         let [(column, x), (row, y)] = [along(0), along(1)];
         let (mut value, mut gradient) = (self.mean, [[0.0; 2]; 2]);
         for l in 0..=self.patch.spaces[1].degree() {
-            for k in 0..=self.patch.spaces[0].degree() {
-                let node = self.grid.index(column + k, row + l);
-                for c in 0..2 {
-                    let u = self.displacement[c][node];
-                    value[c] += x.value[k] * y.value[l] * u;
-                    gradient[c][0] += x.derivative[k] * y.value[l] * u;
-                    gradient[c][1] += x.value[k] * y.derivative[l] * u;
+            let first = self.grid.index(column, row + l);
+            for c in 0..2 {
+                let along = &self.displacement[c][first..=first + self.patch.spaces[0].degree()];
+                let (mut sum, mut slope) = (0.0, 0.0);
+                for (k, u) in along.iter().enumerate() {
+                    sum += x.value[k] * u;
+                    slope += x.derivative[k] * u;
                 }
+                value[c] += y.value[l] * sum;
+                gradient[c][0] += y.value[l] * slope;
+                gradient[c][1] += y.derivative[l] * sum;
             }
         }
         (value, gradient)
