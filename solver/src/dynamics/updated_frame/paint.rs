@@ -77,7 +77,7 @@ impl DiscreteField {
 
     /// Strain of a point and its stress, Pa; where spans integrate points have none of their own, and these
     /// are those of the fitted displacement.
-    pub(super) fn strain_and_stress(&self, point: &Point) -> [[f64; 3]; 2] {
+    pub fn strain_and_stress(&self, point: &Point) -> [[f64; 3]; 2] {
         let Some(spans) = &self.spans else { return [point.strain, point.stress] };
         let strain = spans.strain_at(&self.patch, point.position);
         [strain, self.moduli.stress(strain.map(Lane::splat)).map(|lane| lane[0])]

@@ -185,7 +185,7 @@ impl Hertz {
         for point in field.points() {
             let (s, z) = (place(point.position, along) / half, place(point.position, normal) / half);
             if s.abs() < UNDER[0] && z.abs() < UNDER[1] {
-                let [xx, yy, xy] = point.stress;
+                let [_, [xx, yy, xy]] = field.strain_and_stress(point);
                 let traction = [xx * normal[0] + xy * normal[1], xy * normal[0] + yy * normal[1]];
                 stress -= dot(traction, normal) * (1.0 + z * z).sqrt() / peak;
                 count += 1;
