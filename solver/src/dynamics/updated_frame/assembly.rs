@@ -4,18 +4,16 @@
 //! K_IJ = Σ_p V_p [ (4 l0 (1 − k) H_p/Gc + 1) N_I N_J + 4 l0² grad N_I · grad N_J ],   load_I = Σ_p V_p N_I
 //! ```
 
-use std::ops::Range;
-
 use super::fictitious::FictitiousMaterial;
 use super::transfer::walk;
 use super::windows::{Window, scatter};
 use crate::linear_algebra::active_columns::ActiveColumns;
-use crate::linear_algebra::lane::{Vectorised, add_product, dispatch};
+use crate::linear_algebra::lane::{LANES, Lane, Vectorised, dispatch};
 use crate::linear_algebra::stencil::Stencil;
 use crate::material::degradation::FractureModel;
 use crate::particles::points::{Cell, Cells, FracturePoint, Point};
 use crate::splines::patch::Patch;
-use crate::splines::spline::MAX_FUNCTIONS;
+use crate::splines::spline::{MAX_FUNCTIONS, MAX_ORDER};
 
 /// Control points around those whose functions see a point that take part in the system: the fictitious
 /// material continues the field to where points may come next. Without them the ledger of a crack that flies
@@ -81,63 +79,85 @@ impl Vectorised for AssemblePoints<'_> {
     }
 }
 
-/// Matrix of one cell.
-type CellMatrix = [[f64; MAX_FUNCTIONS]; MAX_FUNCTIONS];
+/// Most pairs of functions of a direction, each with itself and those after it, and their batches.
+const PAIRS: usize = MAX_ORDER * (MAX_ORDER + 1) / 2;
+const BATCHES: usize = PAIRS.div_ceil(LANES);
 
 /// Points whose products are summed together, before the sums go back to memory.
 const TOGETHER: usize = 4;
 
-/// The matrix of some points is a sum of products `w v vᵀ`, three of each point.
-struct Products {
-    weights: [f64; 3 * TOGETHER],
-    vectors: [[f64; MAX_FUNCTIONS]; 3 * TOGETHER],
+/// Matrix of one cell: for each pair of functions in y, those in x. An entry is the same for both orders of
+/// a pair.
+type CellMatrix = [[Lane; BATCHES]; PAIRS];
+
+/// What a point adds to the matrix of its cell, `a X X + b X' X'` for every pair.
+#[derive(Clone, Copy)]
+struct PointProducts {
+    /// `X X` and `X' X'` of the functions in x.
+    values: [Lane; BATCHES],
+    slopes: [Lane; BATCHES],
+    /// a and b for each pair in y.
+    factors: [[f64; 2]; PAIRS],
+}
+
+impl PointProducts {
+    const NONE: Self =
+        Self { values: [Lane::ZERO; BATCHES], slopes: [Lane::ZERO; BATCHES], factors: [[0.0; 2]; PAIRS] };
 }
 
 impl AssemblePoints<'_> {
     #[inline(always)]
     fn walk<const FMA: bool>(mut self, kx: usize, ky: usize) {
         for cell in self.cells {
-            let mut local: CellMatrix = [[0.0; MAX_FUNCTIONS]; MAX_FUNCTIONS];
+            let mut local: CellMatrix = [[Lane::ZERO; BATCHES]; PAIRS];
             let mut load = [0.0; MAX_FUNCTIONS];
             for first in cell.points.clone().step_by(TOGETHER) {
-                let some = first..(first + TOGETHER).min(cell.points.end);
-                let products = self.products(cell, some, &mut load, kx, ky);
-                products.add_to::<FMA>(&mut local, kx * ky);
+                let mut products = [PointProducts::NONE; TOGETHER];
+                for (products, at) in products.iter_mut().zip(first..cell.points.end) {
+                    self.multiply(cell, at, products, &mut load, kx, ky);
+                }
+                add_products::<FMA>(&mut local, &products, kx, ky);
             }
             self.add_cell(cell, &local, &load, kx, ky);
         }
     }
 
-    /// The products of at most [`TOGETHER`] points, and their share of the load.
+    /// The products of a point, and its share of the load.
     #[inline(always)]
-    fn products(
+    fn multiply(
         &self,
         cell: &Cell,
-        some: Range<usize>,
+        at: usize,
+        products: &mut PointProducts,
         load: &mut [f64; MAX_FUNCTIONS],
         kx: usize,
         ky: usize,
-    ) -> Products {
+    ) {
         let [x, y] = &self.patch.spaces;
-        let mut products = Products { weights: [0.0; 3 * TOGETHER], vectors: [[0.0; MAX_FUNCTIONS]; 3 * TOGETHER] };
-        for (number, at) in some.enumerate() {
-            let point = &self.points[at];
-            let sx = x.shape_functions(cell.span[0], point.position[0]);
-            let sy = y.shape_functions(cell.span[1], point.position[1]);
-            let reaction = point.volume * (self.model.reaction_per_energy() * self.fracture[at].history + 1.0);
-            let diffusion = point.volume * self.model.diffusion();
-            products.weights[3 * number..][..3].copy_from_slice(&[reaction, diffusion, diffusion]);
-            for l in 0..ky {
-                for k in 0..kx {
-                    let n = sx.value[k] * sy.value[l];
-                    products.vectors[3 * number][l * kx + k] = n;
-                    products.vectors[3 * number + 1][l * kx + k] = sx.derivative[k] * sy.value[l];
-                    products.vectors[3 * number + 2][l * kx + k] = sx.value[k] * sy.derivative[l];
-                    load[l * kx + k] += point.volume * n;
-                }
+        let point = &self.points[at];
+        let sx = x.shape_functions(cell.span[0], point.position[0]);
+        let sy = y.shape_functions(cell.span[1], point.position[1]);
+        let reaction = point.volume * (self.model.reaction_per_energy() * self.fracture[at].history + 1.0);
+        let diffusion = point.volume * self.model.diffusion();
+        let mut pair = 0;
+        for k in 0..kx {
+            for j in k..kx {
+                products.values[pair / LANES][pair % LANES] = sx.value[k] * sx.value[j];
+                products.slopes[pair / LANES][pair % LANES] = sx.derivative[k] * sx.derivative[j];
+                pair += 1;
             }
         }
-        products
+        let mut pair = 0;
+        for l in 0..ky {
+            for m in l..ky {
+                let (value, slope) = (sy.value[l] * sy.value[m], sy.derivative[l] * sy.derivative[m]);
+                products.factors[pair] = [reaction * value + diffusion * slope, diffusion * value];
+                pair += 1;
+            }
+            for k in 0..kx {
+                load[l * kx + k] += point.volume * sx.value[k] * sy.value[l];
+            }
+        }
     }
 
     /// The couplings of each function with itself and those after it, into the half stencil.
@@ -145,40 +165,46 @@ impl AssemblePoints<'_> {
     fn add_cell(&mut self, cell: &Cell, local: &CellMatrix, load: &[f64; MAX_FUNCTIONS], kx: usize, ky: usize) {
         let degree = [kx - 1, ky - 1];
         let [matrix, loads] = &mut self.window.fields;
-        for i in 0..kx * ky {
-            let (k, l) = (i % kx, i / kx);
-            let row = cell.first[1] + l - self.window.first_row;
-            let column = self.lead + cell.first[0] + k;
-            loads[row * self.stride + column] += load[i];
-            for j in i..kx * ky {
-                let offset = Stencil::offset_index(degree, (j % kx) as isize - k as isize, j / kx - l);
-                matrix[row * self.row_length + offset * self.stride + column] += local[i][j];
+        let first_row = cell.first[1] - self.window.first_row;
+        let first_column = self.lead + cell.first[0];
+        let mut rows = local.iter();
+        for l in 0..ky {
+            let row = (first_row + l) * self.stride + first_column;
+            for k in 0..kx {
+                loads[row + k] += load[l * kx + k];
+            }
+            for (m, sums) in (l..ky).zip(&mut rows) {
+                let mut add = |k: usize, j: usize, value: f64| {
+                    let offset = Stencil::offset_index(degree, j as isize - k as isize, m - l);
+                    matrix[(first_row + l) * self.row_length + offset * self.stride + first_column + k] += value;
+                };
+                let mut pair = 0;
+                for k in 0..kx {
+                    for j in k..kx {
+                        let value = sums[pair / LANES][pair % LANES];
+                        add(k, j, value);
+                        if j > k && m > l {
+                            add(j, k, value);
+                        }
+                        pair += 1;
+                    }
+                }
             }
         }
     }
 }
 
-impl Products {
-    /// Adds them to a matrix of so many functions, two rows at a time: their sums stay in registers.
-    #[inline(always)]
-    fn add_to<const FMA: bool>(&self, matrix: &mut CellMatrix, functions: usize) {
-        let mut row = 0;
-        while row + 1 < functions {
-            let [mut upper, mut lower] = [matrix[row], matrix[row + 1]];
-            for (weight, vector) in self.weights.iter().zip(&self.vectors) {
-                let (above, below) = (weight * vector[row], weight * vector[row + 1]);
-                for j in 0..functions {
-                    upper[j] = add_product::<FMA, _>(upper[j], above, vector[j]);
-                    lower[j] = add_product::<FMA, _>(lower[j], below, vector[j]);
-                }
+/// Adds the products of some points to the matrix of their cell.
+#[inline(always)]
+fn add_products<const FMA: bool>(local: &mut CellMatrix, products: &[PointProducts; TOGETHER], kx: usize, ky: usize) {
+    for pair in 0..ky * (ky + 1) / 2 {
+        for batch in 0..(kx * (kx + 1) / 2).div_ceil(LANES) {
+            let mut sum = local[pair][batch];
+            for point in products {
+                let [a, b] = point.factors[pair];
+                sum = sum.add_scaled::<FMA>(point.values[batch], a).add_scaled::<FMA>(point.slopes[batch], b);
             }
-            (matrix[row], matrix[row + 1]) = (upper, lower);
-            row += 2;
-        }
-        if row < functions {
-            for (weight, vector) in self.weights.iter().zip(&self.vectors) {
-                matrix[row][row] = add_product::<FMA, _>(matrix[row][row], weight * vector[row], vector[row]);
-            }
+            local[pair][batch] = sum;
         }
     }
 }
