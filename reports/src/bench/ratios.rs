@@ -42,7 +42,7 @@ const KERNEL: Target = Target::AtMost(1.4);
 const UPDATED_BYTES: f64 = 368.0;
 
 /// What is asked for, and what is good to know beside it.
-const RATIOS: [Ratio; 23] = [
+const RATIOS: [Ratio; 25] = [
     ratio(
         "elastic step over the minimal kernel, total frame, p = 2",
         &[(1.0, "stages/p2/elastic-step")],
@@ -172,6 +172,20 @@ const RATIOS: [Ratio; 23] = [
         target: Target::None,
         whole: true,
     },
+    Ratio {
+        what: "spans that integrate over points, time per step: discs with 16 spans per radius, p = 2",
+        above: &[(1.0, "contact/discs/p2-spans/16/loss")],
+        below: &[(1.0, "contact/discs/p2-flip/16/loss")],
+        target: Target::AtMost(2.0),
+        whole: true,
+    },
+    Ratio {
+        what: "the same, p = 3",
+        above: &[(1.0, "contact/discs/p3-spans/16/loss")],
+        below: &[(1.0, "contact/discs/p3-flip/16/loss")],
+        target: Target::AtMost(2.0),
+        whole: true,
+    },
 ];
 
 /// A ratio with its spread and whether its target is met; `verified` if all answers behind it hold.
@@ -222,7 +236,10 @@ fn value(ratio: &Ratio, records: Records) -> Option<Found> {
     let all = || above.iter().chain(&below).map(|(_, record)| *record);
     let rounds = above[0].1.samples.len();
     let paired = rounds > 0 && all().all(|record| record.samples.len() == rounds);
-    let unit = |record: &BenchRecord| if ratio.whole { record.work.amount } else { 1.0 };
+    let unit = |record: &BenchRecord| match ratio.whole {
+        true => record.work.amount / record.number("steps").unwrap_or(1.0),
+        false => 1.0,
+    };
     let sum = |terms: &[(f64, &BenchRecord)], time: &dyn Fn(&BenchRecord) -> f64| {
         terms.iter().map(|(sign, record)| sign * unit(record) * time(record)).sum::<f64>()
     };

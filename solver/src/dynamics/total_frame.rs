@@ -6,6 +6,7 @@
 //! scheme is converged.
 
 mod begin;
+mod driven;
 mod forced;
 mod inspect;
 mod observe;
@@ -32,6 +33,7 @@ use crate::splines::patch::Patch;
 use crate::transfer::sweep::StripForces;
 
 use crate::transfer::elastic_forces::elastic_forces;
+use driven::DrivenSides;
 use forced::LatticeForcing;
 
 /// One body in the total frame.
@@ -61,6 +63,8 @@ pub struct TotalFrame {
     elastic_energy: f64,
     ledger: Ledger,
     time: f64,
+    /// Sides that are driven, if there are any, and their power at the last whole step, W/m.
+    driven: Option<Box<DrivenSides>>,
     driven_power: f64,
     /// Stiffening by finite strains at which the critical step was last taken.
     judged_stiffening: f64,
@@ -198,29 +202,5 @@ impl TotalFrame {
         power += 0.5 * (self.driven_power + driven);
         self.driven_power = driven;
         self.ledger.external_work += dt * power;
-    }
-
-    /// Reaction times velocity of the driven control points: internal and inertial minus external force.
-    fn power_of_driven_sides(&self) -> f64 {
-        let driven: Vec<_> = self.constraints.iter().filter(|(_, _, value)| *value != 0.0).collect();
-        if driven.is_empty() {
-            return 0.0;
-        }
-        let mut inertia = [self.grid.zeros(), self.grid.zeros()];
-        let mut forced = [self.grid.zeros(), self.grid.zeros()];
-        for component in 0..2 {
-            self.mass.multiply(&self.acceleration[component], &mut inertia[component]);
-        }
-        if let Some(loads) = &self.forced {
-            loads.add_to(&mut forced);
-        }
-        let mut power = 0.0;
-        for (at, component, value) in driven {
-            let loads = self.loads.iter().flat_map(|load| load.forces.iter().map(|f| (load.factor(self.time), f)));
-            let applied: f64 = loads.filter(|(_, f)| f.0 == at).map(|(factor, f)| factor * f.1[component]).sum();
-            let external = applied + forced[component][at] + self.gravity[component] * self.mass.row_sums()[at];
-            power += value * (self.internal[component][at] + inertia[component][at] - external);
-        }
-        power
     }
 }

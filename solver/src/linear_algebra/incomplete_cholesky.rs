@@ -140,7 +140,17 @@ impl IncompleteCholesky {
         let first = number * BLOCK_ROWS;
         let scale = self.scale.as_ref().filter(|_| !r.is_empty());
         let scale = scale.map(|scale| &scale[first * self.grid.stride..][..r.len()]);
-        SolveBlock { grid: self.grid, offsets: &self.offsets, active, first, factor, scale, terms: Terms::none(), r, out }
+        SolveBlock {
+            grid: self.grid,
+            offsets: &self.offsets,
+            active,
+            first,
+            factor,
+            scale,
+            terms: Terms::none(),
+            r,
+            out,
+        }
     }
 
     /// Whether the diagonal of the matrix had to be raised so much that the factor is that of another one.

@@ -1,6 +1,7 @@
 //! The tests of the solver from outside: one program, which is linked once.
 
 mod absent_physics;
+mod allocation;
 mod assembly;
 mod bodies;
 mod boundary_points;

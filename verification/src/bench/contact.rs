@@ -70,11 +70,6 @@ impl Way {
         };
         scene.bodies.iter_mut().for_each(|body| body.particles_per_cell = [points; 2]);
     }
-
-    /// Whether its cost on the finest mesh is that of all others together.
-    fn is_costly(self) -> bool {
-        self.1.is_none() && self.0 > 2
-    }
 }
 
 /// The errors of one run.
@@ -151,11 +146,7 @@ fn error(quantity: &str, value: f64, reference: &str) -> AnswerError {
 /// The meshes that a way is run on: by spans none coarser than `least`.
 fn meshes(way: Way, all: &[usize], least: usize) -> Vec<usize> {
     let fits = |n: &usize| way.1.is_some() || *n >= least;
-    let mut meshes: Vec<usize> = all.iter().copied().filter(fits).collect();
-    if way.is_costly() && meshes.len() > 1 {
-        meshes.pop();
-    }
-    meshes
+    all.iter().copied().filter(fits).collect()
 }
 
 fn bars(settings: &Settings) -> Result<Vec<Collision>, BenchError> {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::TotalFrame;
+use super::driven::DrivenSides;
 use super::forced::LatticeForcing;
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::Ledger;
@@ -52,7 +53,6 @@ impl TotalFrame {
             loads: body.tractions.iter().enumerate().map(load).collect::<Result<_, _>>()?,
             forced: None,
             mass,
-            constraints,
             moduli: ElasticModuli::new(material, scene.analysis.plane),
             kinematics: scene.analysis.kinematics,
             shape: body.shape.clone(),
@@ -67,6 +67,8 @@ impl TotalFrame {
             elastic_energy: 0.0,
             ledger: Ledger::default(),
             time: 0.0,
+            driven: DrivenSides::new(&constraints, grid),
+            constraints,
             driven_power: 0.0,
             judged_stiffening: 1.0,
             patch,

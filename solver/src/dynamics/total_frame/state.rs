@@ -33,6 +33,7 @@ impl TotalFrame {
             elastic_energy,
             ledger,
             time,
+            driven: _,
             driven_power,
             judged_stiffening,
         } = self;

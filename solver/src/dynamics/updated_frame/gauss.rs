@@ -182,9 +182,7 @@ impl SpanQuadrature {
         let mean = self.begin_fit(on);
         let accuracy = self.accuracy(patch, 0);
         extrapolate(&mut self.displacement);
-        self.fit
-            .solve(&self.load, &mut self.displacement[0], accuracy)
-            .map_err(Failure::Spans)?;
+        self.fit.solve(&self.load, &mut self.displacement[0], accuracy).map_err(Failure::Spans)?;
         let displacement = &self.displacement[0];
         let map = InverseMap::new(patch, displacement, mean);
         self.gauss.enclose(&mut self.boundary, &map)?;

@@ -123,11 +123,7 @@ mod tests {
                 displacement[0][grid.index(column, row)] = slope * x;
             }
         }
-        InverseMap::new(&patch, &displacement, [0.0; 2]).forward(
-            reference,
-            [1.0, 1.0],
-            [0.5; 2],
-        )
+        InverseMap::new(&patch, &displacement, [0.0; 2]).forward(reference, [1.0, 1.0], [0.5; 2])
     }
 
     #[test]

@@ -12,8 +12,17 @@ impl SpanQuadrature {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive, points: usize) -> Result<(), StateError> {
-        let Self { displacement, acceleration, velocity, point_acceleration, boundary, fit, inertia, since_relaxation, .. } =
-            self;
+        let Self {
+            displacement,
+            acceleration,
+            velocity,
+            point_acceleration,
+            boundary,
+            fit,
+            inertia,
+            since_relaxation,
+            ..
+        } = self;
         let fields = displacement.iter_mut().chain(acceleration).chain([velocity]);
         fields.flatten().try_for_each(|field| archive.list(field))?;
         boundary.places().try_for_each(|places| archive.list(places))?;
