@@ -12,7 +12,7 @@ pub mod counter;
 pub mod extremes;
 pub mod incomplete_cholesky;
 pub mod lane;
-pub mod preconditioned;
+pub(crate) mod preconditioned;
 pub mod preconditioner;
 pub mod stencil;
 mod terms;

@@ -203,4 +203,27 @@ impl TotalFrame {
         self.driven_power = driven;
         self.ledger.external_work += dt * power;
     }
+
+    /// Reaction times velocity of the driven control points, W/m: internal and inertial minus external force.
+    fn power_of_driven_sides(&mut self) -> f64 {
+        let Self { driven: Some(driven), mass, acceleration, internal, loads, gravity, time, .. } = self else {
+            return 0.0;
+        };
+        let DrivenSides { points, inertia, forced } = &mut **driven;
+        for component in 0..2 {
+            mass.multiply(&acceleration[component], &mut inertia[component]);
+        }
+        if let Some(loads) = &self.forced {
+            forced.iter_mut().for_each(|forced| forced.fill(0.0));
+            loads.add_to(forced);
+        }
+        let mut power = 0.0;
+        for &(at, component, value) in &*points {
+            let loads = loads.iter().flat_map(|load| load.forces.iter().map(|f| (load.factor(*time), f)));
+            let applied: f64 = loads.filter(|(_, f)| f.0 == at).map(|(factor, f)| factor * f.1[component]).sum();
+            let external = applied + forced[component][at] + gravity[component] * mass.row_sums()[at];
+            power += value * (internal[component][at] + inertia[component][at] - external);
+        }
+        power
+    }
 }

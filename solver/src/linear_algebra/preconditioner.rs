@@ -1,5 +1,5 @@
-//! What preconditions the phase-field solve: an incomplete factorisation, made anew when it has grown stale,
-//! or a complete one where the incomplete one is too poor.
+//! What preconditions the solves for the phase field and by the masses of spans: an incomplete factorisation,
+//! made anew when it has grown stale, or a complete one where the incomplete one is too poor.
 //!
 //! Couplings that an incomplete factor drops matter little as long as every span is full of points. In
 //! material that is broken and drawn out, spans hold a point or two with a reaction 1e5 times that of intact
@@ -102,7 +102,7 @@ impl Preconditioner {
         match &mut self.factor {
             PreconditionerKind::Incomplete(factor) => factor.refactor(matrix),
             PreconditionerKind::Complete(cholesky, factor) => {
-                *factor = cholesky.factor(matrix, &[]).map(|factor| (factor, unit(matrix)));
+                *factor = complete(cholesky, matrix);
                 if factor.is_none() {
                     self.factor = PreconditionerKind::Incomplete(IncompleteCholesky::new(matrix, self.is_scaled));
                 }
@@ -175,8 +175,8 @@ impl Preconditioner {
             return false;
         }
         let mut cholesky = SparseCholesky::default();
-        let Some(factor) = cholesky.factor(matrix, &[]) else { return false };
-        self.factor = PreconditionerKind::Complete(cholesky, Some((factor, unit(matrix))));
+        let Some(factor) = complete(&mut cholesky, matrix) else { return false };
+        self.factor = PreconditionerKind::Complete(cholesky, Some(factor));
         self.pause = Pause { left: self.pause.next, next: (2 * self.pause.next).min(LONGEST_PAUSE) };
         true
     }
@@ -217,4 +217,18 @@ impl Preconditioner {
             PreconditionerKind::Complete(..) => Ok(()),
         }
     }
+}
+
+/// The complete factor of the control points that take part and have any material, with its unit; none if
+/// there is none.
+fn complete(cholesky: &mut SparseCholesky, matrix: &Stencil) -> Option<(Factor, f64)> {
+    let grid = matrix.grid;
+    let mut takes_part = vec![false; grid.len()];
+    for row in 0..grid.rows {
+        for column in matrix.active().row(row).iter().cloned().flatten() {
+            takes_part[grid.index(column, row)] = matrix.diagonal(column, row) != 0.0;
+        }
+    }
+    let others: Vec<usize> = grid.indices().filter(|&at| !takes_part[at]).collect();
+    cholesky.factor(matrix, &others).map(|factor| (factor, unit(matrix)))
 }

@@ -30,8 +30,8 @@ const MOST: usize = 121;
 /// Couplings that go along a row together.
 const TOGETHER: usize = 5;
 
-/// Where the coefficients of each coupling of a row, and the values they are multiplied by, begin: relative to
-/// the row, so that rows with as many rows before and after them have the same.
+/// Where the coefficients of each coupling of a row, and the values they are multiplied by, begin: relative
+/// to the row, so that rows with as many rows before and after them have the same.
 pub(super) struct Terms {
     starts: [(isize, isize); MOST],
     count: usize,

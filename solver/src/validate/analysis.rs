@@ -101,6 +101,11 @@ fn spans_integrate(scene: &Scene, findings: &mut Findings) {
     refuse(analysis.kinematics == Kinematics::Small, "with small strains", "use kinematics = \"finite\"");
     refuse(analysis.transfer != Transfer::Flip, "with a transfer, of which it has none", "leave transfer out");
     refuse(scene.mesh.degree[0] != scene.mesh.degree[1], "with two degrees", "give the same degree twice");
+    let repeated = (0..2).any(|d| {
+        let (knots, ends) = (&scene.mesh.knots[d], scene.mesh.degree[d] + 1);
+        knots.get(ends..knots.len().saturating_sub(ends)).is_some_and(|inner| inner.windows(2).any(|k| k[0] == k[1]))
+    });
+    refuse(repeated, "with a repeated inner knot", "give every inner knot once");
     for body in &scene.bodies {
         let name = format!("for body {:?}", body.name);
         refuse(matches!(body.shape, Shape::Difference { .. }), &format!("{name}, a difference"), "use another shape");

@@ -291,6 +291,7 @@ fn gauss_quadrature_by_spans_is_refused_where_it_does_not_exist() {
     assert_eq!(but(|s| s.analysis.kinematics = Kinematics::Small), key);
     assert_eq!(but(|s| s.analysis.frame = Frame::Total), key);
     assert_eq!(but(|s| s.analysis.transfer = Transfer::Apic), key);
+    assert_eq!(but(|s| s.mesh.knots[0][4] = s.mesh.knots[0][3]), key);
     assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.1, ..Contact::default() })), [""; 0]);
     assert_eq!(but(|s| s.contact = Some(Contact::default())), [""; 0]);
     let above = |shape: fn(Shape) -> Shape| {

@@ -76,7 +76,7 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
         let tight = energies(&tight)?;
         for (who, program, limit) in [("this", &baseline.program, 1e-3), ("other", &theirs, 1e-2)] {
             let mut record = BenchRecord::new(format!("baseline/{name}/{who}"), label, 1.0, "run")
-                .with("checkout", if who == "this" { ".".to_string() } else { path(&baseline.checkout) });
+                .with("checkout", if who == "this" { ".".to_string() } else { name_of(&baseline.checkout) });
             record.threads = settings.threads;
             let (program, folder) = (run(program, &[]), folder.join(who));
             let run = move |record: &mut BenchRecord| {
@@ -99,6 +99,13 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
 
 fn path(path: &Path) -> String {
     path.to_string_lossy().into_owned()
+}
+
+/// The commit of a checkout, or its folder where git knows none.
+fn name_of(checkout: &Path) -> String {
+    let git = Command::new("git").args(["rev-parse", "--short", "HEAD"]).current_dir(checkout).output();
+    let commit = git.ok().filter(|output| output.status.success());
+    commit.map_or_else(|| path(checkout), |output| String::from_utf8_lossy(&output.stdout).trim().to_string())
 }
 
 /// The scene of a case as a file of its own, which `run` takes.

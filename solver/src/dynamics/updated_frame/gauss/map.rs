@@ -1,7 +1,7 @@
 //! The inverse of the motion, `X = x − d(x)`, with the displacement d as a spline of present positions.
 
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
-use crate::linear_algebra::extremes::larger;
+use crate::linear_algebra::extremes::largest;
 use crate::linear_algebra::lane::each;
 use crate::material::hencky::{Gradient, gradient_at_end};
 use crate::splines::patch::Patch;
@@ -75,7 +75,7 @@ impl<'a> InverseMap<'a> {
         along: [f64; 2],
         start: [f64; 2],
     ) -> Result<([f64; 2], [f64; 2]), Folded> {
-        let close = CLOSE * self.shortest_span + ROUND_OFF * largest(reference);
+        let close = CLOSE * self.shortest_span + ROUND_OFF * largest(reference.map(f64::abs));
         let mut x = start;
         for _ in 0..LIMIT {
             let (d, gradient) = self.at(x);
@@ -83,16 +83,12 @@ impl<'a> InverseMap<'a> {
             let apart = [0, 1].map(|c: usize| reference[c] + d[c] - x[c]);
             let step = times(&carried, apart);
             x = [0, 1].map(|c| x[c] + step[c]);
-            if largest(step) <= close {
+            if largest(step.map(f64::abs)) <= close {
                 return Ok((x, times(&carried, along)));
             }
         }
         Err(Folded(start))
     }
-}
-
-fn largest(v: [f64; 2]) -> f64 {
-    larger(v[0].abs(), v[1].abs())
 }
 
 /// `F v` from `F − I`.

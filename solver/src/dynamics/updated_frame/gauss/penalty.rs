@@ -20,15 +20,15 @@ use crate::splines::spline::SplineSpace;
 
 /// The jump at a knot as a combination of control values.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Jump {
+struct Jump {
     /// Index of the first control value.
-    pub first: usize,
+    first: usize,
     /// Factors of the control values from there on.
-    pub factors: Vec<f64>,
+    factors: Vec<f64>,
 }
 
 /// Jumps at the inner knots of a spline space, from left to right.
-pub(crate) fn jumps(space: &SplineSpace) -> Vec<Jump> {
+fn jumps(space: &SplineSpace) -> Vec<Jump> {
     let (p, spans) = (space.degree(), space.spans());
     let factorial: f64 = (1..=p).map(|i| i as f64).product();
     let at_knot = |left: usize| {
@@ -80,7 +80,7 @@ impl Penalty {
         }
     }
 
-    /// Adds `weight Jᵀ J` to a matrix with the pattern of splines one degree higher.
+    /// Adds `weight Jᵀ J` to a matrix with the pattern of splines one degree higher: inner knots are simple.
     pub(crate) fn add(&self, weight: f64, matrix: &mut Stencil) {
         let (grid, degree, row_length) = (matrix.grid, matrix.degree(), matrix.row_length());
         let coefficients = matrix.coefficients_mut();
