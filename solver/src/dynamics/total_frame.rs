@@ -214,6 +214,7 @@ impl TotalFrame {
             mass.multiply(&acceleration[component], &mut inertia[component]);
         }
         if let Some(loads) = &self.forced {
+            let forced = forced.get_or_insert_with(|| [self.grid.zeros(), self.grid.zeros()]);
             forced.iter_mut().for_each(|forced| forced.fill(0.0));
             loads.add_to(forced);
         }
@@ -221,7 +222,8 @@ impl TotalFrame {
         for &(at, component, value) in &*points {
             let loads = loads.iter().flat_map(|load| load.forces.iter().map(|f| (load.factor(*time), f)));
             let applied: f64 = loads.filter(|(_, f)| f.0 == at).map(|(factor, f)| factor * f.1[component]).sum();
-            let external = applied + forced[component][at] + gravity[component] * mass.row_sums()[at];
+            let varying = forced.as_ref().map_or(0.0, |forced| forced[component][at]);
+            let external = applied + varying + gravity[component] * mass.row_sums()[at];
             power += value * (internal[component][at] + inertia[component][at] - external);
         }
         power

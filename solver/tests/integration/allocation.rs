@@ -1,7 +1,7 @@
 //! Steps work in the memory of the model: what one allocates is lists with a number per strip of points, and
 //! where systems are solved or bodies meet a share of the model.
 
-use crate::common::{bent_patch, elastic_scene, notched_plate, patch_scene, pulled_plate, with_threads};
+use crate::common::{bent_patch, elastic_scene, notched_plate, patch_scene, pulled_plate, two_discs, with_threads};
 use fisura::Simulation;
 use fisura::scene::*;
 
@@ -69,21 +69,8 @@ fn in_the_updated_frame() {
 
 #[test]
 fn in_contact() {
-    let mut scene = notched_plate(1e6);
-    scene.mesh = Mesh::uniform([2; 2], [0.0; 2], [0.02, 0.01], [80, 40]);
-    let disc = |name: &str, x: f64, speed: f64| Body {
-        name: name.into(),
-        shape: Shape::Disk { center: [x, 0.005], radius: 0.004 },
-        velocity: [speed, 0.0],
-        cracks: vec![],
-        tractions: vec![],
-        ..scene.bodies[0].clone()
-    };
-    scene.bodies = vec![disc("left", 0.006, 20.0), disc("right", 0.014, -20.0)];
-    scene.boundaries.clear();
-    scene.contact = Some(Contact { friction: 0.2, ..Contact::default() });
-    scene.analysis =
-        Analysis { frame: Frame::Updated, kinematics: Kinematics::Finite, end_time: 3e-5, ..scene.analysis };
+    let mut scene = two_discs();
+    scene.analysis.end_time = 3e-5;
     a_share("fracture and impulses", &scene, 0.1);
     scene.materials.values_mut().for_each(|material| material.fracture = None);
     a_share("impulses", &scene, 0.1);

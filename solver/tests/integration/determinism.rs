@@ -1,6 +1,6 @@
 //! The same bits for any number of threads, and for every repetition.
 
-use crate::common::{notched_plate, pulled_plate, run, with_threads};
+use crate::common::{notched_plate, pulled_plate, run, two_discs, with_threads};
 use fisura::scene::*;
 
 /// Every value of every sample, and the final displacements, as bits.
@@ -60,14 +60,14 @@ fn updated_frame() {
 
 #[test]
 fn bodies_in_contact() {
-    let mut scene = updated_scene_of_two();
+    let mut scene = two_discs();
     scene.analysis.transfer = Transfer::Apic;
     check(&scene);
 }
 
 #[test]
 fn bodies_in_contact_whose_spans_integrate() {
-    let mut scene = updated_scene_of_two();
+    let mut scene = two_discs();
     scene.analysis.quadrature = Quadrature::Gauss;
     scene.materials.values_mut().for_each(|material| material.fracture = None);
     scene.contact = Some(Contact::default());
@@ -75,25 +75,4 @@ fn bodies_in_contact_whose_spans_integrate() {
     scene.contact = Some(Contact { friction: 0.3, ..Contact::default() });
     scene.bodies[0].angular_velocity = 2e3;
     check(&scene);
-}
-
-/// Two brittle discs in collision.
-fn updated_scene_of_two() -> Scene {
-    let mut scene = notched_plate(1e6);
-    scene.mesh = Mesh::uniform([2; 2], [0.0; 2], [0.02, 0.01], [80, 40]);
-    let disc = |name: &str, x: f64, speed: f64| Body {
-        name: name.into(),
-        shape: Shape::Disk { center: [x, 0.005], radius: 0.004 },
-        velocity: [speed, 0.0],
-        cracks: vec![],
-        tractions: vec![],
-        ..scene.bodies[0].clone()
-    };
-    scene.bodies = vec![disc("left", 0.006, 20.0), disc("right", 0.014, -20.0)];
-    scene.boundaries.clear();
-    scene.contact = Some(Contact { friction: 0.2, ..Contact::default() });
-    scene.analysis.frame = Frame::Updated;
-    scene.analysis.kinematics = Kinematics::Finite;
-    scene.analysis.end_time = 3e-6;
-    scene
 }

@@ -8,16 +8,15 @@ use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 pub(super) struct DrivenSides {
     /// Control point, component, velocity (m/s).
     pub points: Vec<(usize, usize, f64)>,
-    /// Mass times acceleration, and loads that vary in space, N/m.
+    /// Mass times acceleration, and loads that vary in space if there are any, N/m.
     pub inertia: VectorField,
-    pub forced: VectorField,
+    pub forced: Option<VectorField>,
 }
 
 impl DrivenSides {
     /// None if no side moves.
     pub(super) fn new(constraints: &Constraints, grid: ControlGrid) -> Option<Box<Self>> {
         let points: Vec<_> = constraints.iter().filter(|(_, _, value)| *value != 0.0).collect();
-        let zeros = || [grid.zeros(), grid.zeros()];
-        (!points.is_empty()).then(|| Box::new(Self { points, inertia: zeros(), forced: zeros() }))
+        (!points.is_empty()).then(|| Box::new(Self { points, inertia: [grid.zeros(), grid.zeros()], forced: None }))
     }
 }

@@ -118,6 +118,27 @@ pub fn notched_plate(stress: f64) -> Scene {
     scene
 }
 
+/// Two brittle discs in collision, with finite strains.
+pub fn two_discs() -> Scene {
+    let mut scene = notched_plate(1e6);
+    scene.mesh = Mesh::uniform([2; 2], [0.0; 2], [0.02, 0.01], [80, 40]);
+    let disc = |name: &str, x: f64, speed: f64| Body {
+        name: name.into(),
+        shape: Shape::Disk { center: [x, 0.005], radius: 0.004 },
+        velocity: [speed, 0.0],
+        cracks: vec![],
+        tractions: vec![],
+        ..scene.bodies[0].clone()
+    };
+    scene.bodies = vec![disc("left", 0.006, 20.0), disc("right", 0.014, -20.0)];
+    scene.boundaries.clear();
+    scene.contact = Some(Contact { friction: 0.2, ..Contact::default() });
+    scene.analysis.frame = Frame::Updated;
+    scene.analysis.kinematics = Kinematics::Finite;
+    scene.analysis.end_time = 3e-6;
+    scene
+}
+
 /// Runs a scene; its samples from t = 0 on.
 pub fn run(scene: &Scene) -> (Simulation, Vec<Sample>) {
     let mut simulation = Simulation::new(scene).expect("the scene starts");

@@ -125,3 +125,53 @@ impl MassSystem {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Mesh;
+
+    /// A body in the middle of a patch with unit masses on the diagonal: the penalty vanishes for polynomials
+    /// of degree p, solves leave no residual, and what is held keeps its value.
+    #[test]
+    fn the_penalty_spares_polynomials_and_solves_leave_no_residual() {
+        for degree in 1..=4 {
+            let patch = Patch::new(&Mesh::uniform([degree; 2], [0.0; 2], [1.0, 0.8], [14, 9]));
+            let mut system = MassSystem::new(&patch, 0.3);
+            let grid = system.matrix.grid;
+            let mut marks = vec![false; grid.len()];
+            grid.indices().filter(|&at| grid.column_of(at) < 10).for_each(|at| marks[at] = true);
+            let held: Vec<usize> = (0..grid.rows).map(|row| grid.index(0, row)).collect();
+            let knots = |d: usize| patch.spaces[d].greville();
+            let (x, y) = (knots(0), knots(1));
+            system.begin(marks.clone(), &[vec![], held.clone()]);
+            let mut linear = grid.zeros();
+            for at in grid.indices().filter(|&at| marks[at]) {
+                linear[at] = 2.0 + x[grid.column_of(at)] - 3.0 * y[grid.row_of(at)];
+            }
+            let mut image = grid.zeros();
+            let energy = system.matrix.apply(&linear, &mut image);
+            // round-off of sums of 1e5
+            assert!(energy.abs() <= 1e-9, "p = {degree}: {energy:e}");
+            linear[grid.index(4, 4)] += 1.0;
+            assert!(system.matrix.apply(&linear, &mut image) > 0.1, "p = {degree}: a control value apart counts");
+
+            grid.indices().filter(|&at| marks[at]).for_each(|at| {
+                let (column, row) = (grid.column_of(at), grid.row_of(at));
+                system.matrix.set_diagonal(column, row, 1.0 + system.matrix.diagonal(column, row));
+            });
+            system.mass = 1.0;
+            let b = [linear.clone(), linear];
+            let mut found = [grid.zeros(), grid.zeros()];
+            system.solve(&b, &mut found, Accuracy { tolerance: 1e-10, round_off: 0.0 }).unwrap();
+            for (c, held) in [vec![], held].iter().enumerate() {
+                system.matrix.restrict(ActiveColumns::all(grid));
+                system.matrix.apply(&found[c], &mut image);
+                for at in grid.indices().filter(|at| marks[*at]) {
+                    let off = if held.contains(&at) { found[c][at] } else { image[at] - b[c][at] };
+                    assert!(off.abs() <= 1e-8, "p = {degree}, component {c}: {off:e}");
+                }
+            }
+        }
+    }
+}
