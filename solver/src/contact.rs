@@ -26,12 +26,14 @@ pub mod boundary_fit;
 mod constraint;
 pub(crate) mod crack_faces;
 mod displacements;
+mod encounter;
 mod follow;
 pub(crate) mod gap_potential;
 pub mod impulse;
 pub(crate) mod motion;
 mod outline;
 pub(crate) mod rigid;
+mod seams;
 mod state;
 pub(crate) mod surface;
 pub(crate) mod view;
@@ -47,6 +49,7 @@ use crate::splines::patch::Patch;
 use boundary_fit::{BoundaryFit, DEPTH};
 pub use constraint::ContactConstraint;
 use constraint::Impulse;
+use encounter::Encounter;
 use motion::{AHEAD, MOST, TooFast};
 pub(crate) use rigid::RigidBody;
 use surface::Center;
@@ -55,17 +58,10 @@ pub use view::BodyView;
 
 /// Cosine of the angle between outward normals above which boundaries do not face each other.
 const FACING: f64 = -0.5;
+/// Depth in spans from which on a slice of a body is not inside another, but on the far side of it.
+const FAR_SIDE: f64 = 0.5;
 /// Gap up to which a constraint is looked at, in spans, unless more could close in a step.
 const NEAR: f64 = 0.1;
-
-/// Sums over the segments of both bodies whose middle of the gap lies in a square.
-#[derive(Default)]
-struct Sums {
-    count: f64,
-    position: [f64; 2],
-    gap: f64,
-    normal: [f64; 2],
-}
 
 /// What contact took and gave so far, J per metre of thickness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -128,7 +124,7 @@ impl ContactSolver {
             bodies.iter().filter_map(|body| body.surface).chain(self.rigid.iter().map(|r| r.surface())).collect();
         let boxes: Vec<_> = surfaces.iter().map(|surface| surface.bounding_box()).collect();
         let displacements: Vec<_> = surfaces.iter().map(|surface| surface.displacements()).collect();
-        let mut constraints = Vec::new();
+        let mut encounters = Vec::new();
         for b in 1..surfaces.len() {
             for a in 0..b.min(bodies.len()) {
                 let reach = self.reach + AHEAD * displacements[a].past(&displacements[b]);
@@ -137,14 +133,14 @@ impl ContactSolver {
                     [0, 1].map(|d| boxes[a][1][d].min(boxes[b][1][d]) + reach),
                 ];
                 if (0..2).all(|d| common[0][d] <= common[1][d]) {
-                    let sums = self.compare([surfaces[a], surfaces[b]], common, reach)?;
-                    constraints.extend(
-                        sums.into_iter().filter_map(|(square, sums)| self.constraint([a, b], square, &sums, bodies)),
-                    );
+                    encounters.extend(self.compare([surfaces[a], surfaces[b]], [a, b], common, reach)?);
                 }
             }
         }
-        self.constraints = constraints;
+        if bodies.iter().any(|body| body.copies.is_some()) {
+            encounters = seams::pooled(encounters, bodies);
+        }
+        self.constraints = encounters.iter().filter_map(|encounter| self.constraint(encounter, bodies)).collect();
         Ok(())
     }
 
@@ -153,9 +149,10 @@ impl ContactSolver {
     fn compare(
         &self,
         surfaces: [&Surface; 2],
+        bodies: [usize; 2],
         common: [[f64; 2]; 2],
         reach: f64,
-    ) -> Result<BTreeMap<[i32; 2], Sums>, TooFast> {
+    ) -> Result<impl Iterator<Item = Encounter> + use<>, TooFast> {
         let mut squares = BTreeMap::new();
         let segments = surfaces.map(|surface| surface.segments_in(common));
         for (own, other, sign) in [(0, 1, 1.0), (1, 0, -1.0)] {
@@ -172,13 +169,16 @@ impl ContactSolver {
                 if nearest.distance > larger(NEAR * self.reach, AHEAD * closing) {
                     continue;
                 }
+                if surfaces.iter().all(|surface| surface.goes_on) && nearest.distance < -FAR_SIDE * self.reach {
+                    continue;
+                }
                 if closing > MOST * self.reach {
                     return Err(TooFast { place: position, spans: closing / self.reach });
                 }
                 let middle = [0, 1].map(|d| position[d] + 0.5 * sign * nearest.distance * normal[d]);
                 // Squares around the knots: a plane of symmetry along a knot line cuts none.
                 let square = [0, 1].map(|d| ((middle[d] - self.origin[d]) / self.reach).round() as i32);
-                let sums: &mut Sums = squares.entry(square).or_default();
+                let sums: &mut Encounter = squares.entry(square).or_insert_with(|| Encounter::new(bodies, square));
                 sums.count += 1.0;
                 sums.gap += nearest.distance;
                 for d in 0..2 {
@@ -187,27 +187,29 @@ impl ContactSolver {
                 }
             }
         }
-        Ok(squares)
+        Ok(squares.into_values())
     }
 
     /// The constraint of a square; none if a body has no material there.
-    fn constraint(
-        &self,
-        pair: [usize; 2],
-        square: [i32; 2],
-        sums: &Sums,
-        bodies: &[BodyView],
-    ) -> Option<ContactConstraint> {
-        let position = sums.position.map(|sum| sum / sums.count);
-        let normal = unit(sums.normal)?;
+    fn constraint(&self, encounter: &Encounter, bodies: &[BodyView]) -> Option<ContactConstraint> {
+        let position = encounter.position();
+        let normal = unit(encounter.normal)?;
         let inside = |depth: f64| [0, 1].map(|d| position[d] + depth * self.reach * normal[d]);
-        let [a, b] = pair;
+        let Encounter { bodies: pair @ [a, b], square, .. } = *encounter;
         let on_a = BoundaryFit::new(&bodies[a], position, inside(-DEPTH))?;
         let on_b = match bodies.get(b) {
             Some(body) => Some(BoundaryFit::new(body, position, inside(DEPTH))?),
             None => None,
         };
-        Some(ContactConstraint { gap: sums.gap / sums.count, bodies: pair, square, position, normal, on_a, on_b })
+        Some(ContactConstraint {
+            gap: encounter.gap / encounter.count,
+            bodies: pair,
+            square,
+            position,
+            normal,
+            on_a,
+            on_b,
+        })
     }
 
     /// Where bodies are near each other.

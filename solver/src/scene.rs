@@ -376,6 +376,8 @@ pub struct Contact {
     pub friction: f64,
     /// Whether a body that is cracked through becomes fragments with fields of their own.
     pub fragments: bool,
+    /// Whether a body may meet itself.
+    pub self_contact: bool,
     /// Stiffness of the boundaries of bodies whose spans integrate, over that of a span.
     pub stiffness: f64,
 }
@@ -384,7 +386,7 @@ impl Default for Contact {
     /// Without friction. Half of this stiffness makes a contact softer than the first span behind it, and
     /// longer.
     fn default() -> Self {
-        Self { friction: 0.0, fragments: false, stiffness: 0.5 }
+        Self { friction: 0.0, fragments: false, self_contact: false, stiffness: 0.5 }
     }
 }
 

@@ -135,12 +135,7 @@ impl Surface {
     /// faces where there was no boundary.
     pub(crate) fn of_fragment(&self, belongs: impl Fn([f64; 2]) -> bool, faces: &Faces) -> Self {
         let mut part = self.clone();
-        let under = |segment: u32| {
-            let center = self.center(segment);
-            [0, 1].map(|d| center.position[d] - 0.5 * faces.spacing * center.normal[d])
-        };
-        let all = 0..self.segments.len() as u32;
-        part.segments = all.filter(|s| belongs(under(*s))).map(|s| self.segments[s as usize]).collect();
+        part.keep(faces.spacing, belongs);
         let within = |ends: &[u32; 2]| {
             let [a, b] = ends.map(|vertex| faces.vertices[vertex as usize]);
             let (middle, reach) = ([0, 1].map(|d| 0.5 * (a[d] + b[d])), faces.spacing);

@@ -22,6 +22,8 @@ pub struct Surface {
     pub(super) neighbours: Vec<[Option<u32>; 2]>,
     /// Where it was without material first, m.
     pub(super) opened: Option<[f64; 2]>,
+    /// Whether the boundary goes on in others beyond its ends: it is that of a slice of a body.
+    pub(super) goes_on: bool,
 }
 
 /// The point of a boundary that is nearest to a position.
@@ -137,7 +139,7 @@ impl Surface {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { vertices, displacements, segments, neighbours: _, opened } = self;
+        let Self { vertices, displacements, segments, neighbours: _, opened, goes_on: _ } = self;
         archive.value(vertices)?;
         archive.value(displacements)?;
         archive.value(segments)?;
@@ -209,13 +211,37 @@ impl Surface {
         }
         let (square, segment, t, from) = best?;
         let distance = square.sqrt();
-        if distance > reach {
+        if distance > reach || (self.goes_on && self.is_beyond(segment, t)) {
             return None;
         }
         let normal = self.normal_at(segment, t);
         let outside = dot(from, normal) >= 0.0;
         let sign = if outside { 1.0 } else { fault!("gap-without-sign", -1.0 => 1.0) };
         Some(Nearest { distance: sign * distance, normal, displacement: self.way_at(segment, t) })
+    }
+
+    /// Whether a place at a fraction t of a segment is an end of the boundary.
+    fn is_beyond(&self, segment: u32, t: f64) -> bool {
+        let [from, to] = self.segments[segment as usize].map(|vertex| self.neighbours[vertex as usize]);
+        (t <= 0.0 && from[0].is_none()) || (t >= 1.0 && to[1].is_none())
+    }
+
+    /// The part of it whose places just under it (m) belong to a slice of the body; it goes on in others.
+    pub(crate) fn part(&self, spacing: f64, belongs: impl Fn([f64; 2]) -> bool) -> Self {
+        let mut part = Self { goes_on: true, ..self.clone() };
+        part.keep(spacing, belongs);
+        part.join();
+        part
+    }
+
+    /// Keeps the segments whose places half a spacing of points (m) under them belong.
+    pub(super) fn keep(&mut self, spacing: f64, belongs: impl Fn([f64; 2]) -> bool) {
+        let under = |segment: u32| {
+            let center = self.center(segment);
+            [0, 1].map(|d| center.position[d] - 0.5 * spacing * center.normal[d])
+        };
+        let kept = (0..self.segments.len() as u32).filter(|s| belongs(under(*s))).map(|s| self.segments[s as usize]);
+        self.segments = kept.collect();
     }
 
     /// Displacement of a place on a segment, at a fraction t of its length, in the last step, m.

@@ -39,7 +39,9 @@ pub(crate) mod observe;
 pub(crate) mod paint;
 pub(crate) mod part;
 mod parting;
+mod pieces;
 pub(crate) mod pointwise_fracture;
+mod self_contact;
 pub(crate) mod smoothing;
 mod state;
 pub(crate) mod stiffness;
@@ -72,10 +74,12 @@ use gauss::contact::rigid_outline;
 pub struct UpdatedFrame {
     patch: Arc<Patch>,
     fields: Vec<DiscreteField>,
+    /// Number of the body that each field is of, is a fragment of or a slice of.
+    bodies: Vec<usize>,
     contact: Option<ContactSolver>,
     /// Contact of bodies whose spans integrate.
     gap_potential: Option<GapPotential>,
-    /// Which fields are fragments of a body, if bodies may fall into some.
+    /// If bodies may fall into fragments.
     fragments: Option<Fragments>,
     thickness: f64,
     /// Names in columns of the bodies that are recorded one by one, rigid ones last.
@@ -90,7 +94,14 @@ impl UpdatedFrame {
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
         let patch = Arc::new(Patch::new(&scene.mesh));
         let deformable = scene.bodies.iter().filter(|body| !body.rigid);
-        let fields = deformable.map(|body| DiscreteField::new(scene, body, &patch)).collect::<Result<Vec<_>, _>>()?;
+        let meets_itself = scene.contact.as_ref().is_some_and(|contact| contact.self_contact);
+        let (mut fields, mut bodies) = (Vec::new(), Vec::new());
+        for (number, body) in deformable.enumerate() {
+            let whole = DiscreteField::new(scene, body, &patch)?;
+            let slices = if meets_itself { whole.slices(&body.shape, fields.len())? } else { None };
+            fields.extend(slices.unwrap_or_else(|| vec![whole]));
+            bodies.resize(fields.len(), number);
+        }
         let by_spans = scene.analysis.quadrature == Quadrature::Gauss;
         let contact = if by_spans { None } else { ContactSolver::new(scene, &patch) };
         let gap_potential = scene.contact.as_ref().filter(|_| by_spans).map(|contact| {
@@ -100,9 +111,10 @@ impl UpdatedFrame {
         });
         let recorded = scene.output.bodies.then(|| body_sample::names(scene));
         let parts = scene.contact.as_ref().is_some_and(|contact| contact.fragments);
-        let fragments = parts.then(|| Fragments::new(fields.len()));
+        let fragments = parts.then(Fragments::default);
         let thickness = scene.analysis.thickness;
-        let mut frame = Self { patch, fields, contact, gap_potential, fragments, thickness, recorded };
+        let mut frame = Self { patch, fields, bodies, contact, gap_potential, fragments, thickness, recorded };
+        frame.join_slices();
         frame.part_at_start()?;
         if let Some(contact) = &mut frame.contact {
             contact.find(&views(&frame.fields))?;
@@ -137,7 +149,11 @@ impl UpdatedFrame {
                 fields[push.body].add_acceleration(push.at, push.acceleration);
             }
         }
-        fields.iter_mut().try_for_each(|field| field.step(dt))?;
+        if are_joined(fields) {
+            self_contact::step(fields, dt)?;
+        } else {
+            fields.iter_mut().try_for_each(|field| field.step(dt))?;
+        }
         self.part_if_due(dt)?;
         let Self { fields, contact, .. } = self;
         if let Some(contact) = contact {
@@ -170,7 +186,22 @@ impl UpdatedFrame {
 
     /// Critical time step of the undamaged bodies at the present positions, s; infinite if nothing can move.
     pub fn critical_step(&self) -> f64 {
+        if are_joined(&self.fields) {
+            return self_contact::critical_step(&self.fields);
+        }
         self.fields.iter().map(|field| field.critical_step()).fold(f64::INFINITY, smaller)
+    }
+
+    /// Accelerations of slices, where no step leads to them.
+    fn join_slices(&mut self) {
+        if are_joined(&self.fields) {
+            self_contact::find_accelerations(&mut self.fields);
+        }
+    }
+
+    /// Number of the body that a field is of, or is a part of.
+    fn body_of(&self, field: usize) -> usize {
+        self.bodies[field]
     }
 
     /// Takes the critical time step (s) again if a point may have moved a quarter of the shortest span since
@@ -188,6 +219,11 @@ impl UpdatedFrame {
 fn find_gaps(potential: &mut GapPotential, fields: &[DiscreteField], dt: f64) -> Result<(), TooFast> {
     let outlines: Vec<Outline> = fields.iter().filter_map(DiscreteField::outline).collect();
     potential.find(outlines, fields[0].time(), dt)
+}
+
+/// Whether some fields are slices that share control points.
+fn are_joined(fields: &[DiscreteField]) -> bool {
+    fields.iter().any(|field| field.slice.is_some())
 }
 
 /// The bodies as contact sees them.

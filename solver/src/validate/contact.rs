@@ -8,7 +8,7 @@ use crate::contact::Surface;
 use crate::contact::motion::longest_step;
 use crate::contact::surface::Center;
 use crate::linear_algebra::extremes::larger;
-use crate::scene::{Body, Frame, Scene, Shape, TimeStep, Transfer};
+use crate::scene::{Body, Frame, Quadrature, Scene, Shape, TimeStep, Transfer};
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
 const TOLERANCE: f64 = 1e-3;
@@ -35,11 +35,14 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     if scene.contact.as_ref().is_some_and(|contact| contact.fragments) {
         fragments(scene, findings);
     }
+    if scene.contact.as_ref().is_some_and(|contact| contact.self_contact) {
+        self_contact(scene, findings);
+    }
     for (i, body) in scene.bodies.iter().enumerate().filter(|(_, body)| body.rigid) {
         rigid(&format!("body.{i}"), body, scene, findings);
     }
     match &scene.contact {
-        Some(contact) if scene.bodies.len() == 1 && !contact.fragments => {
+        Some(contact) if scene.bodies.len() == 1 && !contact.fragments && !contact.self_contact => {
             findings.warn("contact", "there is only one body; remove the table");
         }
         Some(_) if ground.is_sound && overlaps(scene, ground, findings) => speeds(scene, findings),
@@ -67,6 +70,25 @@ fn fragments(scene: &Scene, findings: &mut Findings) {
         let message = format!("a traction on body {:?}, which may fall into fragments", body.name);
         let remedy = "drive a side of the mesh instead, or remove contact.fragments";
         findings.error(format!("body.{i}.traction"), message, remedy);
+    }
+}
+
+/// Bodies that may meet themselves.
+fn self_contact(scene: &Scene, findings: &mut Findings) {
+    let key = "contact.self_contact";
+    let fractures = |body: &Body| scene.materials.get(&body.material).is_some_and(|m| m.fracture.is_some());
+    if let Some(body) = scene.bodies.iter().find(|body| !body.rigid && fractures(body)) {
+        let message =
+            format!("body {:?} fractures, and its phase field sees no gap between parts that meet", body.name);
+        findings.error(key, message, "remove the fracture table of its material, or the key");
+    }
+    if scene.analysis.quadrature == Quadrature::Gauss {
+        let remedy = "use analysis.quadrature = \"points\", or remove the key";
+        findings.error(key, "bodies whose spans integrate do not meet themselves", remedy);
+    }
+    if let Transfer::Xpic(_) = scene.analysis.transfer {
+        let remedy = "use analysis.transfer = \"flip\" or \"apic\", or remove the key";
+        findings.error(key, "XPIC smooths velocities across the parts of a body that meet", remedy);
     }
 }
 

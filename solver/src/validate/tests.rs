@@ -375,6 +375,16 @@ fn several_bodies_need_the_updated_frame_and_room() {
         s.materials.values_mut().for_each(|material| material.fracture = None);
     });
     assert_eq!(whole, ["contact.fragments"]);
+    let itself = |s: &mut Scene| {
+        s.contact = Some(Contact { friction: 0.1, self_contact: true, ..Contact::default() });
+    };
+    assert_eq!(changed(itself), ["contact.self_contact"]);
+    let smoothed = changed(|s| {
+        s.contact = Some(Contact { friction: 0.1, self_contact: true, ..Contact::default() });
+        s.materials.values_mut().for_each(|material| material.fracture = None);
+        s.analysis.transfer = Transfer::Xpic(3);
+    });
+    assert_eq!(smoothed, ["contact.self_contact"]);
     let pulled = changed(|s| {
         s.contact = Some(Contact { friction: 0.1, fragments: true, ..Contact::default() });
         s.bodies[1].tractions = vec![Traction { edge: Edge::Side(Side::Right), stress: [1e3, 0.0], ramp: None }];

@@ -1,7 +1,7 @@
 //! A run taken up from a checkpoint goes on bit by bit, whatever it models, and a checkpoint leaves the run
 //! alone.
 
-use crate::common::{body, brittle, elastic_scene, glass, notched_plate, patch_scene, rectangle};
+use crate::common::{body, brittle, elastic_scene, glass, horseshoe, notched_plate, patch_scene, rectangle};
 use fisura::Simulation;
 use fisura::scene::*;
 use fisura::simulation::state::ResumeError;
@@ -153,6 +153,15 @@ fn with_fragments() {
     let (simulation, _) = crate::common::run(&scene);
     assert!(simulation.updated_frame().unwrap().fields().len() >= 2);
     goes_on_bit_by_bit("fragments", &scene);
+}
+
+#[test]
+fn with_contact_of_a_body_with_itself() {
+    let scene = horseshoe();
+    let (simulation, samples) = crate::common::run(&scene);
+    assert!(simulation.updated_frame().unwrap().fields().len() > 1);
+    assert!(samples.last().unwrap().contact.unwrap().friction > 0.0, "its sides meet");
+    goes_on_bit_by_bit("a body that may meet itself", &scene);
 }
 
 #[test]

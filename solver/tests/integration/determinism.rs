@@ -1,6 +1,6 @@
 //! The same bits for any number of threads, and for every repetition.
 
-use crate::common::{notched_plate, pulled_plate, run, two_discs, with_threads};
+use crate::common::{horseshoe, notched_plate, pulled_plate, run, two_discs, with_threads};
 use fisura::scene::*;
 
 /// Every value of every sample, and the final displacements, as bits.
@@ -63,6 +63,11 @@ fn bodies_in_contact() {
     let mut scene = two_discs();
     scene.analysis.transfer = Transfer::Apic;
     check(&scene);
+}
+
+#[test]
+fn a_body_in_contact_with_itself() {
+    check(&horseshoe());
 }
 
 #[test]

@@ -29,6 +29,7 @@ mod modules;
 mod nurbs;
 mod points_and_spans;
 mod seeds;
+mod self_contact;
 mod split;
 mod sweep;
 mod total_finite;

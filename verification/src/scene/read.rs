@@ -44,11 +44,12 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     let materials = fields.or("material", BTreeMap::new(), materials);
     let bodies = fields.or("body", Vec::new(), bodies);
     let contact = fields.maybe("contact", |item| {
-        let fields = item.fields(&["friction", "fragments", "stiffness"])?;
+        let fields = item.fields(&["friction", "fragments", "self_contact", "stiffness"])?;
         let friction = fields.need("friction", "friction = 0.65", number);
         let fragments = fields.or("fragments", false, Item::flag);
+        let self_contact = fields.or("self_contact", false, Item::flag);
         let stiffness = fields.or("stiffness", Contact::default().stiffness, number);
-        Some(Contact { friction: friction?, fragments: fragments?, stiffness: stiffness? })
+        Some(Contact { friction: friction?, fragments: fragments?, self_contact: self_contact?, stiffness: stiffness? })
     });
     let boundaries = fields.or("boundary", Vec::new(), boundaries);
     let output = fields.or("output", Output { samples: 320, frames: Vec::new(), bodies: false }, output);

@@ -80,6 +80,12 @@ pub const FAULTS: &[Fault] = &[
         "the ledger leaves out what changes where a body falls into fragments",
         &["contact/parted-bar"],
     ),
+    fault(
+        "joint-force-of-one-slice",
+        "the forces of one slice count where two share a control point",
+        &["contact/closing-ring"],
+    ),
+    fault("seam-left-behind", "slices hang together where their seam was at t = 0", &["contact/closing-ring"]),
     fault("normal-not-normalised", "normals of contact are as long as a segment", &["contact/onset"]),
     fault("impulse-one-sided", "body a feels nine tenths of the impulse", &["contact/discs-head-on"]),
     fault(

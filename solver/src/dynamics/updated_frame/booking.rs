@@ -1,16 +1,7 @@
 //! What a step adds to the energy ledger of a body, and to the losses of its transfers.
 
 use super::field::DiscreteField;
-use super::grid::ImposedEnergy;
-
-/// What the grid holds at the end of a step, per unit thickness.
-pub(super) struct EndOfStep {
-    kinetic: f64,
-    /// Momentum of the motion of the points.
-    momentum: [f64; 2],
-    /// Power of the forces on that motion, less what the grid follows.
-    not_followed: f64,
-}
+use super::grid::{EndOfStep, ImposedEnergy};
 
 impl DiscreteField {
     /// To be asked once the velocities for the points are known.

@@ -9,9 +9,10 @@ use rayon::prelude::*;
 
 use super::affine::AffineVelocities;
 use super::gauss::{self, SpanQuadrature};
-use super::grid::{ImposedEnergy, NodalFields};
+use super::grid::{EndOfStep, ImposedEnergy, NodalFields};
 use super::losses::TransferLosses;
 use super::pointwise_fracture::PointwiseFracture;
+use super::self_contact::slice::Slice;
 use super::smoothing::Smoothing;
 use super::strain::{FiniteStrain, SmallStrain, StrainUpdate};
 use super::tractions::SurfaceLoad;
@@ -60,6 +61,8 @@ pub struct DiscreteField {
     pub(super) forcing: Option<PointForcing>,
     /// The boundary, if the body may meet others.
     pub(super) surface: Option<Surface>,
+    /// What it shares with other fields, if it is a slice of a body that may meet itself.
+    pub(super) slice: Option<Box<Slice>>,
     /// The phase field, if the material fractures.
     pub fracture: Option<PointwiseFracture>,
     pub(super) lowest_tip: f64,
@@ -85,6 +88,16 @@ impl DiscreteField {
         if self.spans.is_some() {
             return self.step_with_spans(dt);
         }
+        let end_of_step = self.advance(dt)?;
+        self.respond_and_book(dt, &end_of_step); // a(n+1)
+        Ok(())
+    }
+
+    /// The step up to the forces at its end; what the grid held before them.
+    ///
+    /// # Errors
+    /// If the phase field does not converge, or a point leaves the patch.
+    pub(super) fn advance(&mut self, dt: f64) -> Result<EndOfStep, Failure> {
         self.kick(dt); // grid: v(n+1/2) = v(n−1/2) + dt a(n)
         self.choose_velocities(); // transfer: the increment for the points, and the motion they follow
         let end_of_step = self.end_of_step();
@@ -96,10 +109,14 @@ impl DiscreteField {
         self.points_to_grid(); // P2G: mass, velocity, internal forces at x(n+1)
         self.attach_loads()?;
         self.add_external_forces();
+        Ok(end_of_step)
+    }
+
+    /// Accelerations of the forces, and what the step adds to the ledger.
+    pub(super) fn respond_and_book(&mut self, dt: f64, end_of_step: &EndOfStep) {
         let imposed = self.apply_boundary();
-        self.accelerate(); // a(n+1)
-        self.book(dt, &end_of_step, imposed);
-        Ok(())
+        self.accelerate();
+        self.book(dt, end_of_step, imposed);
     }
 
     /// Length of the coming kick, s: half a step at the start, where the points carry v(0).
@@ -123,10 +140,22 @@ impl DiscreteField {
 
     /// What contact sees of it.
     pub fn view(&self) -> BodyView<'_> {
-        let Self { patch, cells, surface, nodes, .. } = self;
+        let Self { patch, cells, surface, nodes, slice, .. } = self;
         let NodalFields { grid, greville, mass, inverse_mass, velocity, acceleration, .. } = nodes;
-        let (surface, fixed) = (surface.as_ref(), nodes.fixed());
-        BodyView { patch, cells, surface, grid: *grid, greville, mass, inverse_mass, fixed, velocity, acceleration }
+        let joint = slice.as_ref().map(|slice| slice.joint());
+        BodyView {
+            patch,
+            cells,
+            surface: surface.as_ref(),
+            grid: *grid,
+            greville,
+            mass: joint.map_or(mass, |(_, mass, _)| mass),
+            inverse_mass: joint.map_or(inverse_mass, |(_, _, inverse)| inverse),
+            copies: joint.map(|(copies, ..)| copies),
+            fixed: nodes.fixed(),
+            velocity,
+            acceleration,
+        }
     }
 
     /// Adds an acceleration to a control point for the coming kick, m/s².
@@ -164,7 +193,10 @@ impl DiscreteField {
             surface.follow(&self.view(), &self.velocity_transfer.motion, dt);
             self.surface = Some(surface);
         }
-        let Self { patch, nodes, points, velocity_transfer, forcing, loads, .. } = self;
+        let Self { patch, cells, nodes, points, velocity_transfer, forcing, loads, slice, .. } = self;
+        if let Some(slice) = slice {
+            slice.follow((patch, cells, nodes), &velocity_transfer.motion, dt);
+        }
         for load in loads {
             load.move_points(patch, nodes.grid, &velocity_transfer.motion, dt);
         }
@@ -267,7 +299,7 @@ impl DiscreteField {
     }
 
     /// Gravity, tractions and other loads.
-    fn add_external_forces(&mut self) {
+    pub(super) fn add_external_forces(&mut self) {
         let Self { patch, cells, points, nodes, .. } = self;
         let grid = nodes.grid;
         nodes.add_gravity(self.gravity);
@@ -296,6 +328,11 @@ impl DiscreteField {
     /// Accelerations on a grid that has its masses and internal forces, where no step leads to them.
     pub(super) fn respond(&mut self) {
         self.add_external_forces();
+        self.accelerate_freely();
+    }
+
+    /// Accelerations of the forces, where no step leads to them.
+    pub(super) fn accelerate_freely(&mut self) {
         self.apply_boundary();
         self.accelerate();
         self.driven_power = self.nodes.power_of_driven_sides();

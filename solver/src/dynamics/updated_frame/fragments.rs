@@ -1,42 +1,33 @@
 //! Fragments: a body that is cracked through becomes bodies with nodal fields of their own, that part, meet
 //! and rub on each other.
 //!
-//! The connected components of the intact points ([`pieces`]) that are large enough for a field of their own
-//! become fragments. Each takes its points with all they carry, its part of the boundary, and faces along the
-//! crack ([`crate::contact::crack_faces`]). Its phase field begins with the control values of the body and is
-//! solved for on the fragment alone. Mass and momentum are those of the points, so both are kept. The energy
-//! on the grid is not: velocities no longer average over the crack, and no phase field spans it. That change
-//! is a loss of its own ([`TransferLosses::partition`](super::losses::TransferLosses)).
-
-mod pieces;
+//! The connected components of the intact points ([`pieces`](super::pieces)) that are large enough for a
+//! field of their own become fragments. Each takes its points with all they carry, its part of the boundary,
+//! and faces along the crack ([`crate::contact::crack_faces`]). Its phase field begins with the control values of
+//! the body and is solved for on the fragment alone. Mass and momentum are those of the points, so both are
+//! kept. The energy on the grid is not: velocities no longer average over the crack, and no phase field spans
+//! it. That change is a loss of its own ([`TransferLosses::partition`](super::losses::TransferLosses)).
 
 use super::field::DiscreteField;
 use super::part::spans_around;
+use super::pieces::{Pieces, SEPARATED, spacing};
 use crate::contact::crack_faces::{Faces, Place};
 use crate::dynamics::failure::Failure;
 use crate::particles::points::Point;
-use pieces::{Pieces, SEPARATED, spacing};
 
 /// Steps between checks of the bodies: a crack grows by a few spans in them.
 const CHECK_INTERVAL: usize = 16;
 /// Area of the smallest fragment, in squares of a span: fewer points have no field of their own.
 const LEAST_SPANS: f64 = 9.0;
 
-/// What the fields of the bodies are fragments of.
-#[derive(Debug, Clone)]
+/// When the bodies are checked for fragments.
+#[derive(Debug, Clone, Default)]
 pub(super) struct Fragments {
-    /// Number of the body of each field; the first fields are one of each.
-    pub(super) bodies: Vec<usize>,
     /// Steps since the bodies were checked.
     pub(super) steps: usize,
 }
 
 impl Fragments {
-    /// Of bodies in one piece each.
-    pub(super) fn new(bodies: usize) -> Self {
-        Self { bodies: (0..bodies).collect(), steps: 0 }
-    }
-
     /// Whether a check is due, one step later.
     pub(super) fn is_due(&mut self) -> bool {
         self.steps = (self.steps + 1) % CHECK_INTERVAL;
@@ -65,16 +56,12 @@ impl DiscreteField {
 
     /// The fragment of one piece, with an empty ledger.
     fn fragment(&self, pieces: &Pieces, piece: u32, dt: f64) -> Result<Self, Failure> {
-        let mut part = self.clone();
-        part.keep(|at| pieces.of(at) == piece);
-        part.occupy(&spans_around(&self.whole, &part.points)?);
-        part.sort()?;
+        let mut part = self.piece(pieces, piece)?;
         if let Some(fracture) = &mut part.fracture {
             fracture.field.forget_counts();
         }
         part.crack_and_stress()?;
         part.find_accelerations();
-        part.begin_ledger();
         part.travelled = f64::INFINITY; // its critical step is another
         if let Some(surface) = &self.surface {
             let place = |(at, point): (usize, &Point)| Place {
@@ -87,6 +74,16 @@ impl DiscreteField {
             part.surface = Some(surface.of_fragment(|place| pieces.at(place) == piece, &faces));
             part.expect_motion(dt);
         }
+        Ok(part)
+    }
+
+    /// The field of one piece, sorted, with nodal fields of zeros and an empty ledger.
+    pub(super) fn piece(&self, pieces: &Pieces, piece: u32) -> Result<Self, Failure> {
+        let mut part = self.clone();
+        part.keep(|at| pieces.of(at) == piece);
+        part.occupy(&spans_around(&self.whole, &part.points)?);
+        part.sort()?;
+        part.begin_ledger();
         Ok(part)
     }
 
@@ -105,6 +102,7 @@ impl DiscreteField {
         fn some<T>(items: &mut Vec<T>, keeps: impl Fn(usize) -> bool) {
             let mut number = 0..;
             items.retain(|_| number.next().is_some_and(&keeps));
+            items.shrink_to_fit();
         }
         some(&mut self.points, &keeps);
         self.fracture.iter_mut().for_each(|fracture| some(&mut fracture.points, &keeps));

@@ -308,7 +308,8 @@ impl DiscreteField {
         let forcing = self.forcing.as_ref().map_or(0, |forcing| forcing.bytes());
         let surface = self.surface.as_ref().map_or(0, |surface| surface.bytes());
         let spans = self.spans.as_ref().map_or(0, |spans| spans.bytes());
-        let points = points + affine + deformation + forcing + surface + spans;
+        let slice = self.slice.as_ref().map_or(0, |slice| slice.bytes());
+        let points = points + affine + deformation + forcing + surface + spans + slice;
         [
             points + self.nodes.bytes() + self.velocity_transfer.bytes() + loads,
             self.fracture.as_ref().map_or(0, |f| f.bytes()),

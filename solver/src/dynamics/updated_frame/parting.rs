@@ -7,11 +7,6 @@ use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::failure::Failure;
 
 impl UpdatedFrame {
-    /// Number of the body that a field is of, or is a fragment of.
-    pub(super) fn body_of(&self, field: usize) -> usize {
-        self.fragments.as_ref().map_or(field, |fragments| fragments.bodies[field])
-    }
-
     /// How many fields there are, if bodies may fall into fragments.
     pub(super) fn count_fragments(&self) -> Option<usize> {
         self.fragments.as_ref().map(|_| self.fields.len())
@@ -42,10 +37,10 @@ impl UpdatedFrame {
     /// # Errors
     /// If the phase field of a fragment does not converge.
     fn part_bodies(&mut self, dt: f64) -> Result<(), Failure> {
-        let Self { fields, contact, fragments: Some(fragments), .. } = self else { return Ok(()) };
+        let Self { fields, contact, bodies, fragments: Some(_), .. } = self else { return Ok(()) };
         for at in 0..fields.len() {
             let Some(mut parts) = fields[at].part(dt)? else { continue };
-            fragments.bodies.resize(fragments.bodies.len() + parts.len() - 1, fragments.bodies[at]);
+            bodies.resize(bodies.len() + parts.len() - 1, bodies[at]);
             fields.extend(parts.drain(1..));
             fields.splice(at..=at, parts);
             if let Some(contact) = contact {
@@ -60,22 +55,22 @@ impl UpdatedFrame {
     /// # Errors
     /// Bytes of another scene.
     pub(super) fn exchange_fragments(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { fields, fragments: Some(fragments), .. } = self else { return Ok(()) };
-        let bodies = fragments.bodies.iter().copied().max().map_or(0, |last| last + 1);
+        let Self { fields, bodies, fragments: Some(fragments), .. } = self else { return Ok(()) };
+        let count = bodies.iter().copied().max().map_or(0, |last| last + 1);
         let mut points: Vec<usize> = fields.iter().map(|field| field.points.len()).collect();
         archive.value(&mut fragments.steps)?;
-        archive.value(&mut fragments.bodies)?;
+        archive.value(bodies)?;
         archive.value(&mut points)?;
         if archive.is_reader() {
             let all: usize = fields.iter().map(|field| field.points.len()).sum();
-            let first = fragments.bodies.iter().take(bodies).copied().eq(0..bodies);
-            let known = fragments.bodies.iter().all(|body| *body < bodies);
+            let first = bodies.iter().take(count).copied().eq(0..count);
+            let known = bodies.iter().all(|body| *body < count);
             let kept = points.iter().try_fold(0_usize, |sum, count| sum.checked_add(*count)) == Some(all);
-            if !first || !known || !kept || points.len() != fragments.bodies.len() || points.contains(&0) {
+            if !first || !known || !kept || points.len() != bodies.len() || points.contains(&0) {
                 return Err(StateError("the state is of another scene: its fragments are not of these bodies".into()));
             }
-            let whole = fields[..bodies].to_vec();
-            *fields = fragments.bodies.iter().map(|body| whole[*body].clone()).collect();
+            let whole = fields[..count].to_vec();
+            *fields = bodies.iter().map(|body| whole[*body].clone()).collect();
             fields.iter_mut().zip(points).for_each(|(field, count)| field.make_room(count));
         }
         Ok(())

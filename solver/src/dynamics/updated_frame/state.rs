@@ -4,7 +4,7 @@
 use super::affine::AffineVelocities;
 use super::field::DiscreteField;
 use super::gauss::OnPatch;
-use super::{UpdatedFrame, find_gaps, views};
+use super::{UpdatedFrame, are_joined, find_gaps, self_contact, views};
 use crate::checkpoint::{Archive, StateError};
 use crate::contact::motion::TooFast;
 use crate::particles::points::OutsidePatch;
@@ -16,8 +16,12 @@ impl UpdatedFrame {
     /// Bytes of another scene, and loads that only the program knows.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
         self.exchange_fragments(archive)?;
-        let Self { patch: _, fields, contact, gap_potential, fragments: _, thickness: _, recorded: _ } = self;
+        let Self { patch: _, fields, bodies: _, contact, gap_potential, fragments: _, thickness: _, recorded: _ } =
+            self;
         fields.iter_mut().try_for_each(|field| field.exchange(archive))?;
+        if archive.is_reader() && are_joined(fields) {
+            self_contact::find_accelerations(fields);
+        }
         if let Some(potential) = gap_potential {
             potential.exchange(archive)?;
             if archive.is_reader() && fields[0].time() > 0.0 {
@@ -87,6 +91,7 @@ impl DiscreteField {
             loads,
             forcing,
             surface,
+            slice,
             fracture,
             lowest_tip: _,
             elastic_energy: _, // see exchange_sums
@@ -114,6 +119,9 @@ impl DiscreteField {
         loads.iter_mut().try_for_each(|load| load.exchange(archive))?;
         if let Some(surface) = surface {
             surface.exchange(archive)?;
+        }
+        if let Some(slice) = slice {
+            slice.exchange(archive)?;
         }
         if let Some(fracture) = fracture {
             fracture.exchange(archive)?;

@@ -55,9 +55,22 @@ impl StiffnessOperator for PointStiffness<'_> {
     }
 
     fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
+        self.set(x);
+        self.find_forces();
+        self.forces(out);
+    }
+}
+
+impl PointStiffness<'_> {
+    /// Takes the displacements of the free components.
+    pub(super) fn set(&mut self, x: &[f64]) {
         for (&(at, component), x) in self.free.iter().zip(x) {
             self.field[component][at] = *x;
         }
+    }
+
+    /// The forces of the displacements.
+    pub(super) fn find_forces(&mut self) {
         self.image.iter_mut().for_each(|field| field.fill(0.0));
         let (frame, field) = (self.frame, self.field.each_ref().map(|f| &f[..]));
         let grid = frame.nodes().grid;
@@ -73,9 +86,33 @@ impl StiffnessOperator for PointStiffness<'_> {
                 window,
             });
         });
+    }
+
+    /// Those on the free components.
+    pub(super) fn forces(&self, out: &mut [f64]) {
         for (&(at, component), out) in self.free.iter().zip(out) {
             *out = self.image[component][at];
         }
+    }
+
+    /// Displacement of a control point.
+    pub(super) fn value(&self, at: usize) -> [f64; 2] {
+        [0, 1].map(|c| self.field[c][at])
+    }
+
+    /// Gives a control point a displacement.
+    pub(super) fn set_value(&mut self, at: usize, value: [f64; 2]) {
+        (0..2).for_each(|c| self.field[c][at] = value[c]);
+    }
+
+    /// Force on a control point.
+    pub(super) fn force(&self, at: usize) -> [f64; 2] {
+        [0, 1].map(|c| self.image[c][at])
+    }
+
+    /// Adds a force on a control point.
+    pub(super) fn add_force(&mut self, at: usize, force: [f64; 2]) {
+        (0..2).for_each(|c| self.image[c][at] += force[c]);
     }
 }
 

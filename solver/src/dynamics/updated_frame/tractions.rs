@@ -34,6 +34,11 @@ impl SurfaceLoad {
         Self { points, stress: traction.stress, ramp: traction.ramp, power: 0.0 }
     }
 
+    /// Keeps some of the surface points, by their positions (m).
+    pub(crate) fn keep(&mut self, keeps: impl Fn([f64; 2]) -> bool) {
+        self.points.retain(|point| keeps(point.place.position));
+    }
+
     /// Factor at a time (s): rises linearly over the ramp.
     pub(crate) fn factor(&self, time: f64) -> f64 {
         fault!("ramp-forgotten", self.ramp => None).map_or(1.0, |ramp: f64| (time / ramp).clamp(0.0, 1.0))

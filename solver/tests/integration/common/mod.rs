@@ -139,6 +139,28 @@ pub fn two_discs() -> Scene {
     scene
 }
 
+/// An elastic horseshoe whose sides rigid blocks press together, one further down than the other.
+pub fn horseshoe() -> Scene {
+    let mut scene = two_discs();
+    scene.materials.values_mut().for_each(|material| material.fracture = None);
+    let around = Box::new(rectangle([0.004, 0.002], [0.016, 0.008]));
+    let slit = rectangle([0.00995, 0.001], [0.01005, 0.007]);
+    let block = |name: &str, x: [f64; 2], y: [f64; 2], speed: f64| Body {
+        name: name.into(),
+        rigid: true,
+        velocity: [speed, 0.0],
+        ..body(rectangle([x[0], y[0]], [x[1], y[1]]), [2, 2])
+    };
+    scene.bodies = vec![
+        body(Shape::Difference { of: around, minus: vec![slit] }, [2, 2]),
+        block("left", [0.002, 0.004], [0.003, 0.006], 30.0),
+        block("right", [0.016, 0.018], [0.002, 0.005], -30.0),
+    ];
+    scene.contact = Some(Contact { friction: 0.4, self_contact: true, ..Contact::default() });
+    scene.analysis = Analysis { end_time: 6e-6, transfer: Transfer::Apic, ..scene.analysis };
+    scene
+}
+
 /// Runs a scene; its samples from t = 0 on.
 pub fn run(scene: &Scene) -> (Simulation, Vec<Sample>) {
     let mut simulation = Simulation::new(scene).expect("the scene starts");

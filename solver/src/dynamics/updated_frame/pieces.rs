@@ -1,4 +1,5 @@
-//! Connected components of the intact points of a body, and which of the others go with each.
+//! Pieces of a body: the connected components of its intact points and which of the others go with each, or
+//! given ones.
 
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::vectors::dot;
@@ -9,7 +10,7 @@ use crate::particles::points::{FracturePoint, Point};
 pub(super) const SEPARATED: f64 = 0.5;
 /// Length of the steps by which points hang together, over the distance between points: more than a diagonal
 /// of points that a strain draws apart, less than the width in which a crack has c below [`SEPARATED`].
-const STEP: f64 = 1.6;
+pub(super) const STEP: f64 = 1.6;
 
 /// Which piece every point belongs to.
 pub(super) struct Pieces<'a> {
@@ -49,6 +50,14 @@ impl<'a> Pieces<'a> {
         }
         pieces.grow();
         Some(pieces)
+    }
+
+    /// Given for every point.
+    pub(super) fn given(points: &'a [Point], of: &[u32]) -> Self {
+        let step = STEP * spacing(points);
+        let neighbours = Neighbours::new(points.iter().map(|point| point.position), step);
+        let count = of.iter().max().map_or(0, |last| last + 1);
+        Self { points, neighbours, step, of: of.iter().copied().map(Some).collect(), count }
     }
 
     /// How many there are.
@@ -117,7 +126,7 @@ pub(super) fn spacing(points: &[Point]) -> f64 {
 }
 
 /// The first of a group, and shortens the way to it.
-fn root(parents: &mut [usize], mut at: usize) -> usize {
+pub(super) fn root(parents: &mut [usize], mut at: usize) -> usize {
     while parents[at] != at {
         parents[at] = parents[parents[at]];
         at = parents[at];
