@@ -102,6 +102,7 @@ impl Preconditioner {
         match &mut self.factor {
             PreconditionerKind::Incomplete(factor) => factor.refactor(matrix),
             PreconditionerKind::Complete(cholesky, factor) => {
+                *factor = None; // two would take twice the memory
                 *factor = complete(cholesky, matrix);
                 if factor.is_none() {
                     self.factor = PreconditionerKind::Incomplete(IncompleteCholesky::new(matrix, self.is_scaled));

@@ -2,11 +2,12 @@
 //! and rub on each other.
 //!
 //! The connected components of the intact points ([`pieces`](super::pieces)) that are large enough for a
-//! field of their own become fragments. Each takes its points with all they carry, its part of the boundary,
-//! and faces along the crack ([`crate::contact::crack_faces`]). Its phase field begins with the control values of
-//! the body and is solved for on the fragment alone. Mass and momentum are those of the points, so both are
-//! kept. The energy on the grid is not: velocities no longer average over the crack, and no phase field spans
-//! it. That change is a loss of its own ([`TransferLosses::partition`](super::losses::TransferLosses)).
+//! field of their own become fragments. Each takes its points with all they carry, its part of the
+//! boundary, and faces along the crack ([`crate::contact::crack_faces`]). Its phase field begins with the
+//! control values of the body and is solved for on the fragment alone. Mass and momentum are those of the
+//! points, so both are kept. The energy on the grid is not: velocities no longer average over the crack,
+//! and no phase field spans it. That change is a loss of its own
+//! ([`TransferLosses::partition`](super::losses::TransferLosses)).
 
 use super::field::DiscreteField;
 use super::part::spans_around;

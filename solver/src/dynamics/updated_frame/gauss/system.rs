@@ -112,11 +112,14 @@ impl MassSystem {
     ) -> Result<(), SolveFailure> {
         let Self { matrix, marks, free, mass, solver, preconditioned, .. } = self;
         let solver = solver.get_or_insert_with(|| Box::new(PreconditionedSolver::new(matrix, true)));
-        for ((free, b), x) in free.iter().zip(b).zip(x) {
+        let alike = free[0] == free[1];
+        for ((component, free), (b, x)) in free.iter().enumerate().zip(b.iter().zip(x)) {
             x.iter_mut().zip(&*marks).for_each(|(x, mark)| *x = if *mark { *x } else { 0.0 });
             matrix.restrict(free.clone());
             preconditioned.fill(0.0);
-            solver.prepare(matrix);
+            if component == 0 || !alike {
+                solver.prepare(matrix);
+            }
             let preconditioner = &solver.preconditioner;
             let from_zero = preconditioner.apply(free, b, preconditioned) * preconditioner.unit();
             let tolerance = larger(tolerance * from_zero.sqrt(), mass.sqrt() * round_off);
