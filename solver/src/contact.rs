@@ -169,7 +169,8 @@ impl ContactSolver {
                 if nearest.distance > larger(NEAR * self.reach, AHEAD * closing) {
                     continue;
                 }
-                if surfaces.iter().all(|surface| surface.goes_on) && nearest.distance < -FAR_SIDE * self.reach {
+                let one_body = surfaces[0].slice_of.is_some() && surfaces[0].slice_of == surfaces[1].slice_of;
+                if one_body && nearest.distance < -FAR_SIDE * self.reach {
                     continue;
                 }
                 if closing > MOST * self.reach {

@@ -22,8 +22,8 @@ pub struct Surface {
     pub(super) neighbours: Vec<[Option<u32>; 2]>,
     /// Where it was without material first, m.
     pub(super) opened: Option<[f64; 2]>,
-    /// Whether the boundary goes on in others beyond its ends: it is that of a slice of a body.
-    pub(super) goes_on: bool,
+    /// Number of the body it bounds a slice of: it goes on in others beyond its ends.
+    pub(super) slice_of: Option<usize>,
 }
 
 /// The point of a boundary that is nearest to a position.
@@ -139,7 +139,7 @@ impl Surface {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { vertices, displacements, segments, neighbours: _, opened, goes_on: _ } = self;
+        let Self { vertices, displacements, segments, neighbours: _, opened, slice_of: _ } = self;
         archive.value(vertices)?;
         archive.value(displacements)?;
         archive.value(segments)?;
@@ -162,6 +162,11 @@ impl Surface {
             moment = [0, 1].map(|d| moment[d] + part * (a[d] + b[d]) / 3.0);
         }
         moment.map(|m| m / area)
+    }
+
+    /// Ends of its segments, m.
+    pub(crate) fn lines(&self) -> Vec<[[f64; 2]; 2]> {
+        (0..self.segments.len() as u32).map(|segment| self.ends(segment)).collect()
     }
 
     /// Positions of the vertices, m.
@@ -211,7 +216,7 @@ impl Surface {
         }
         let (square, segment, t, from) = best?;
         let distance = square.sqrt();
-        if distance > reach || (self.goes_on && self.is_beyond(segment, t)) {
+        if distance > reach || (self.slice_of.is_some() && self.is_beyond(segment, t)) {
             return None;
         }
         let normal = self.normal_at(segment, t);
@@ -226,9 +231,9 @@ impl Surface {
         (t <= 0.0 && from[0].is_none()) || (t >= 1.0 && to[1].is_none())
     }
 
-    /// The part of it whose places just under it (m) belong to a slice of the body; it goes on in others.
-    pub(crate) fn part(&self, spacing: f64, belongs: impl Fn([f64; 2]) -> bool) -> Self {
-        let mut part = Self { goes_on: true, ..self.clone() };
+    /// The part of it whose places just under it (m) belong to a slice of the body of that number.
+    pub(crate) fn part(&self, body: usize, spacing: f64, belongs: impl Fn([f64; 2]) -> bool) -> Self {
+        let mut part = Self { slice_of: Some(body), ..self.clone() };
         part.keep(spacing, belongs);
         part.join();
         part

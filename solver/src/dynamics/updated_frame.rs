@@ -98,7 +98,7 @@ impl UpdatedFrame {
         let (mut fields, mut bodies) = (Vec::new(), Vec::new());
         for (number, body) in deformable.enumerate() {
             let whole = DiscreteField::new(scene, body, &patch)?;
-            let slices = if meets_itself { whole.slices(&body.shape, fields.len())? } else { None };
+            let slices = if meets_itself { whole.slices(number, fields.len())? } else { None };
             fields.extend(slices.unwrap_or_else(|| vec![whole]));
             bodies.resize(fields.len(), number);
         }

@@ -80,14 +80,14 @@ fn self_contact(scene: &Scene, findings: &mut Findings) {
     if let Some(body) = scene.bodies.iter().find(|body| !body.rigid && fractures(body)) {
         let message =
             format!("body {:?} fractures, and its phase field sees no gap between parts that meet", body.name);
-        findings.error(key, message, "remove the fracture table of its material, or the key");
+        findings.error(key, message, "use contact.fragments instead, or remove the fracture table");
     }
     if scene.analysis.quadrature == Quadrature::Gauss {
         let remedy = "use analysis.quadrature = \"points\", or remove the key";
         findings.error(key, "bodies whose spans integrate do not meet themselves", remedy);
     }
     if let Transfer::Xpic(_) = scene.analysis.transfer {
-        let remedy = "use analysis.transfer = \"flip\" or \"apic\", or remove the key";
+        let remedy = "use analysis.transfer = \"flip\", \"pic\", \"apic\" or \"tpic\", or remove the key";
         findings.error(key, "XPIC smooths velocities across the parts of a body that meet", remedy);
     }
 }

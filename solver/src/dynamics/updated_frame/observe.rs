@@ -44,7 +44,7 @@ impl UpdatedFrame {
         Sample { bodies: recorded, fragments: self.count_fragments(), ..sample.for_thickness(self.thickness) }
     }
 
-    /// The bodies that deform, in the order of the scene.
+    /// The fields of the bodies that deform: of those that are whole, of fragments or of slices.
     pub fn fields(&self) -> &[DiscreteField] {
         &self.fields
     }

@@ -10,8 +10,8 @@
 //! m_I = Σ_s m_I^s,     m_I w_I = Σ_s m_I^s w_I^s,     f_I = Σ_s f_I^s,
 //! ```
 //!
-//! which is the sum over the points of the whole body in another order. So nothing changes where the body
-//! does not meet itself. All others are of a slice alone: where slices come near each other there, the
+//! which is the sum over the points of the whole body in another order. So nothing changes until the body
+//! meets something. All others are of a slice alone: where slices come near each other there, the
 //! splines of one do not see the other, and they meet as bodies do ([`crate::contact`]).
 //!
 //! Of the slices that share a control point the first one has mass and forces, so that sums over all fields
@@ -27,28 +27,30 @@ use super::field::DiscreteField;
 use super::pieces::{Pieces, spacing};
 use crate::dynamics::critical_step::highest_frequency;
 use crate::dynamics::failure::Failure;
-use crate::scene::Shape;
 use joint_stiffness::JointStiffness;
 use slice::Slice;
 use slicing::Slicing;
 
 impl DiscreteField {
-    /// Its slices, if it is of several; `first` is the number of the first of their fields.
-    pub(super) fn slices(&self, shape: &Shape, first: usize) -> Result<Option<Vec<Self>>, Failure> {
-        let Slicing { of, seams } = Slicing::new(&self.points, shape, self.patch.shortest_span());
-        let pieces = Pieces::given(&self.points, &of);
+    /// Its slices, if it is of several; `first` is the number of the first of their fields, and `body` that
+    /// of the body.
+    pub(super) fn slices(&self, body: usize, first: usize) -> Result<Option<Vec<Self>>, Failure> {
+        let Some(surface) = &self.surface else { return Ok(None) };
+        let slicing = Slicing::new(&self.points, surface, self.patch.shortest_span());
+        let of = &slicing.of;
+        let pieces = Pieces::given(&self.points, of);
         if pieces.count() < 2 {
             return Ok(None);
         }
         let mut marks = vec![BTreeSet::new(); pieces.count() as usize];
-        for [a, b] in seams.into_iter().flat_map(|[a, b]| [[a, b], [b, a]]) {
+        for [a, b] in slicing.seams.iter().flat_map(|&[a, b]| [[a, b], [b, a]]) {
             marks[of[a] as usize].insert((a, of[b] as usize));
         }
         let slice = |(piece, marks): (u32, BTreeSet<(usize, usize)>)| {
             let mut part = self.piece(&pieces, piece)?;
-            part.loads.iter_mut().for_each(|load| load.keep(|place| pieces.at(place) == piece));
-            let belongs = |place| pieces.at(place) == piece;
-            part.surface = self.surface.as_ref().map(|surface| surface.part(spacing(&self.points), belongs));
+            let belongs = |place| slicing.at(place).unwrap_or_else(|| pieces.at(place)) == piece;
+            part.loads.iter_mut().for_each(|load| load.keep(belongs));
+            part.surface = Some(surface.part(body, spacing(&self.points), belongs));
             part.points_to_grid();
             part.attach_loads()?;
             let seam = marks.into_iter().map(|(at, other)| (self.points[at].position, first + other)).collect();
