@@ -30,6 +30,10 @@ const MOST_PREPARED: usize = 1_000_000;
 const CRITICAL: f64 = 0.5;
 /// Spans of the coarser scene that stands for one too large to be made ready: beyond what caches hold.
 const COARSER: usize = 65_536;
+/// Wall time after which a run stores its state, s, and how often that is in memory then: as it grows and as
+/// it is written.
+const BETWEEN_CHECKPOINTS: f64 = 60.0;
+const STATES: usize = 3;
 
 /// Arguments of `check`.
 #[derive(Debug, clap::Args)]
@@ -165,6 +169,9 @@ impl Findings {
                 self.estimated_wall_s = Some(seconds + rows + self.steps as f64 * trial.step_s());
                 self.memory_mb = trial.memory_mb.map_or(self.memory_mb, |mb| larger(mb, self.memory_mb));
                 self.memory_mb += 1e-6 * (self.frames * trial.picture_bytes) as f64;
+                if self.estimated_wall_s.is_some_and(|seconds| seconds > BETWEEN_CHECKPOINTS) {
+                    self.memory_mb += 1e-6 * (STATES * trial.state_bytes) as f64;
+                }
                 let (threads, took) = (rayon::current_num_threads(), duration(trial.steps_s));
                 let threads = if threads == 1 { "one thread".to_string() } else { format!("{threads} threads") };
                 self.estimate = format!("from {} steps that took {took} here, with {threads}", trial.steps);

@@ -30,6 +30,8 @@ pub(super) struct Trial {
     pub picture_bytes: usize,
     /// Largest memory of the process, 10⁶ bytes, where the system tells.
     pub memory_mb: Option<f64>,
+    /// Size of the state, bytes, which a checkpoint holds.
+    pub state_bytes: usize,
 }
 
 impl Trial {
@@ -54,8 +56,9 @@ impl Trial {
             simulation.step()?;
         }
         let (steps, steps_s) = (simulation.steps() - before, start.elapsed().as_secs_f64());
-        let trial =
-            Self { steps, steps_s, sample_s, picture_s, picture_bytes: 8 * values, memory_mb: peak_memory_mb() };
+        let (picture_bytes, memory_mb) = (8 * values, peak_memory_mb());
+        let state_bytes = simulation.checkpoint().map_or(0, |state| state.len());
+        let trial = Self { steps, steps_s, sample_s, picture_s, picture_bytes, memory_mb, state_bytes };
         Ok((steps > 0).then_some(trial))
     }
 
