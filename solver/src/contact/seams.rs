@@ -51,10 +51,7 @@ fn hang_together(bodies: &[BodyView], [a, b]: [usize; 2], place: [f64; 2]) -> bo
 
 /// Control points whose support a place (m) is in, as those they are copies of.
 fn originals(number: usize, body: &BodyView, place: [f64; 2]) -> BTreeSet<(usize, usize)> {
-    let first = |d: usize| {
-        let space = &body.patch.spaces[d];
-        Some(space.spans()[space.find_span(place[d])?].first)
-    };
+    let first = |d: usize| body.patch.spaces[d].first_function(place[d]);
     let (Some(column), Some(row)) = (first(0), first(1)) else { return BTreeSet::new() };
     let [columns, rows] = [0, 1].map(|d| body.patch.spaces[d].degree() + 1);
     let all = (0..rows).flat_map(|l| (0..columns).map(move |k| (column + k, row + l)));

@@ -103,6 +103,11 @@ impl SplineSpace {
         &self.spans
     }
 
+    /// Number of the first function whose support holds `x`; `None` outside.
+    pub(crate) fn first_function(&self, x: f64) -> Option<usize> {
+        self.find_span(x).map(|span| self.spans[span].first)
+    }
+
     /// Index of the span that holds `x`; the ends of the patch, and what lies beyond them by [`ROUND_OFF`],
     /// belong to the end spans. `None` outside.
     pub fn find_span(&self, x: f64) -> Option<usize> {

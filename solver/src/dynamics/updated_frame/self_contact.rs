@@ -65,10 +65,7 @@ impl DiscreteField {
     fn marked(&self) -> impl Iterator<Item = ([usize; 2], usize)> + '_ {
         let seam = self.slice.iter().flat_map(|slice| &slice.seam);
         seam.filter_map(|&(place, other)| {
-            let first = |d: usize| {
-                let space = &self.whole.spaces[d];
-                Some(space.spans()[space.find_span(place[d])?].first)
-            };
+            let first = |d: usize| self.whole.spaces[d].first_function(place[d]);
             Some(([first(0)?, first(1)?], other))
         })
     }
@@ -86,7 +83,7 @@ impl DiscreteField {
 /// # Errors
 /// If a point leaves the patch.
 pub(super) fn step(fields: &mut [DiscreteField], dt: f64) -> Result<(), Failure> {
-    share(fields);
+    share(fields); // the accelerations of contact
     let ends = fields.iter_mut().map(|field| field.advance(dt)).collect::<Result<Vec<_>, _>>()?;
     join(fields);
     fields.iter_mut().zip(&ends).for_each(|(field, end_of_step)| field.respond_and_book(dt, end_of_step));
@@ -108,7 +105,7 @@ pub(super) fn find_accelerations(fields: &mut [DiscreteField]) {
 /// Critical time step of all fields, s.
 pub(super) fn critical_step(fields: &[DiscreteField]) -> f64 {
     let stable = fields[0].velocity_transfer.stable_fraction();
-    stable / highest_frequency(&mut JointStiffness::new(fields))
+    stable / highest_frequency(&mut JointStiffness::new(fields, copies(fields)))
 }
 
 /// Adds up what the slices have at control points that are one, and leaves it to the first of them.
@@ -143,15 +140,19 @@ fn join(fields: &mut [DiscreteField]) {
 
 /// Gives copies of control points the velocities and the acceleration of the original.
 fn share(fields: &mut [DiscreteField]) {
-    let of_field = |(number, field): (usize, &DiscreteField)| {
-        let copies = field.slice.iter().flat_map(|slice| &slice.copies);
-        copies.map(|(&at, &original)| (number, at, original)).collect::<Vec<_>>()
-    };
-    let copies: Vec<_> = fields.iter().enumerate().flat_map(of_field).collect();
-    for (field, at, (of, original)) in copies {
+    for [(field, at), (of, original)] in copies(fields) {
         let motion = fields[of].nodes.motion(original);
         fields[field].nodes.set_motion(at, motion);
     }
+}
+
+/// Numbers of a field and of a copy in it, and those of the original.
+fn copies(fields: &[DiscreteField]) -> Vec<[(usize, usize); 2]> {
+    let of_field = |(number, field): (usize, &DiscreteField)| {
+        let copies = field.slice.iter().flat_map(|slice| &slice.copies);
+        copies.map(|(&at, &original)| [(number, at), original]).collect::<Vec<_>>()
+    };
+    fields.iter().enumerate().flat_map(of_field).collect()
 }
 
 /// Control points that are one: numbers of fields, and in their nodal fields.

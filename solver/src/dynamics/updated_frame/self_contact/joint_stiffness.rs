@@ -13,12 +13,7 @@ pub(super) struct JointStiffness<'a> {
 }
 
 impl<'a> JointStiffness<'a> {
-    pub(super) fn new(fields: &'a [DiscreteField]) -> Self {
-        let of_field = |(number, field): (usize, &'a DiscreteField)| {
-            let copies = field.slice.iter().flat_map(|slice| &slice.copies);
-            copies.map(move |(&at, &original)| [(number, at), original])
-        };
-        let copies = fields.iter().enumerate().flat_map(of_field).collect();
+    pub(super) fn new(fields: &'a [DiscreteField], copies: Vec<[(usize, usize); 2]>) -> Self {
         Self { parts: fields.iter().map(PointStiffness::new).collect(), copies }
     }
 }

@@ -1,10 +1,11 @@
 //! Slices of a body at t = 0: parts in which no place can meet another.
 //!
-//! Points are neighbours if they are within [`STEP`] of each other and no line of the boundary lies between
-//! them. From an end of the body on, points as many steps between neighbours away are a layer; layers
-//! together as long as [`LENGTH`] are cut into connected parts. A part in which two points at the boundary
-//! are further from each other along the material than straight on lies around a slit, a notch or a hole: it
-//! is cut again from one of them, half-way to the other, until that way is no longer than [`SHORTEST_FOLD`].
+//! Points are neighbours if they are within [`STEP`] of each other and the way between them does not leave
+//! the body and enter it again. From an end of the body on, points as many steps between neighbours away
+//! are a layer; layers together as long as [`LENGTH`] are cut into connected parts. A part in which two
+//! points at the boundary are further from each other along the material than straight on lies around a
+//! slit, a notch or a hole: it is cut again from one of them, half-way to the other, until that way is no
+//! longer than [`SHORTEST_FOLD`].
 
 use std::collections::BTreeMap;
 
@@ -98,13 +99,15 @@ impl Lines {
         Self { ends, neighbours }
     }
 
-    /// Whether one of them crosses the way between two places (m) no further apart than a step.
+    /// Whether the way between two places (m), no further apart than a step, leaves the body and enters it
+    /// again. A single line is crossed from a point beyond the chord of an arc.
     fn lie_between(&self, a: [f64; 2], b: [f64; 2]) -> bool {
         let middle = [0, 1].map(|d| 0.5 * (a[d] + b[d]));
-        self.neighbours.near(middle).any(|at| {
-            let [c, d] = self.ends[at];
+        let crosses = |at: &usize| {
+            let [c, d] = self.ends[*at];
             side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
-        })
+        };
+        self.neighbours.near(middle).filter(crosses).nth(1).is_some()
     }
 }
 
@@ -322,6 +325,16 @@ mod tests {
         pairs.dedup();
         let count = of.iter().max().unwrap() + 1;
         assert_eq!(pairs.len() as u32, count, "each has two neighbours: {pairs:?}");
+    }
+
+    /// The lines of a circle are chords, and points may lie beyond them: none is left alone.
+    #[test]
+    fn points_beyond_a_chord_are_of_the_body() {
+        for step in 0..50 {
+            let radius = 1.0 + 0.0117 * f64::from(step);
+            let (places, of, _) = sliced(&Shape::Disk { center: [5.013, 5.0], radius });
+            assert!(of.iter().all(|slice| *slice == 0), "{} points, radius {radius}", places.len());
+        }
     }
 
     /// A body no longer than a slice is one, and the rest of a longer one goes with its neighbour if it is
