@@ -1,4 +1,4 @@
-//! Slices of a body at t = 0: parts in which no place can meet another.
+//! Slices of a body at t = 0, so that places which may meet are of different ones.
 //!
 //! Points are neighbours if they are within [`STEP`] of each other and the way between them does not leave
 //! the body and enter it again. From an end of the body on, points as many steps between neighbours away
