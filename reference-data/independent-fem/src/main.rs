@@ -45,6 +45,10 @@ struct Options {
     /// Traction, MPa
     #[arg(long, value_name = "MPA", default_value_t = 1.0)]
     traction_mpa: f64,
+    /// Critical energy release rate Gc, J/m²; a crack on a mesh costs more than Gc, and a value divided by
+    /// that factor makes up for it
+    #[arg(long, value_name = "J_PER_M2", default_value_t = 3.0)]
+    toughness: f64,
     /// Residual of the phase field over its right-hand side
     #[arg(long, default_value_t = 1e-6)]
     tolerance: f64,
@@ -80,7 +84,7 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
-    let material = Material::new(32e9, 0.2, options.plane_stress);
+    let material = Material { toughness: options.toughness, ..Material::new(32e9, 0.2, options.plane_stress) };
     let grading = Grading { fine_from: options.fine_from_mm * 1e-3, fine_to: options.fine_mm * 1e-3 };
     let plate = Plate {
         h: options.h_mm * 1e-3,
