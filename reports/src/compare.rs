@@ -180,12 +180,12 @@ fn side(record: &Record) -> Option<Side> {
 /// holds. A new one that does not hold is a loss, too: a study that breaks down has fewer records, with ids
 /// of their own.
 fn one_sided(record: &Record, accuracy: Change) -> Comparison {
-    let holds = rank(record.status) == 0;
+    let holds = rank(record.status) <= rank(Status::KnownLimit);
     let (base, new) = if accuracy == Change::New { (None, side(record)) } else { (side(record), None) };
     let (effect, why) = match (accuracy, holds) {
         (Change::New, false) => (Effect::Worse, format!("new, and does not hold: {}", crate::view::reason(record))),
         (Change::New, true) => (Effect::Neutral, "new".to_string()),
-        _ if matches!(record.status, Status::Pass | Status::Fail) => {
+        _ if matches!(record.status, Status::Pass | Status::KnownLimit | Status::Fail) => {
             let remedy = "if it has another id now, its case names this one in formerly";
             (Effect::Worse, format!("the check is gone; {remedy}"))
         }
@@ -214,12 +214,21 @@ fn both(base: &Record, new: &Record, speed: &Lookup) -> Comparison {
     }
 }
 
-/// Holds, does not hold, broke down.
+/// Holds, lies within a known limit, does not hold, broke down.
 fn rank(status: Status) -> u8 {
     match status {
         Status::Pass | Status::Info => 0,
-        Status::Fail => 1,
-        Status::Error => 2,
+        Status::KnownLimit => 1,
+        Status::Fail => 2,
+        Status::Error => 3,
+    }
+}
+
+/// The bounds that a value has to keep: those of the limit, where it is in one.
+fn bounds_of(record: &Record) -> [Option<f64>; 2] {
+    match &record.limit {
+        Some(limit) if record.status == Status::KnownLimit => [limit.min, limit.max],
+        _ => [record.accept.min, record.accept.max],
     }
 }
 
@@ -229,7 +238,7 @@ fn accuracy(base: &Record, new: &Record) -> (Change, Effect, String) {
     let under_base = match new.status {
         Status::Error => Status::Error,
         _ if base.unit != new.unit => new.status, // the bounds of the base are numbers of another unit
-        _ => Record::judge(new.value, &base.accept),
+        _ => base.status_of(new.value),
     };
     let found = if rank(under_base) > rank(new.status) { under_base } else { new.status };
     if rank(found) > rank(base.status) {
@@ -249,11 +258,8 @@ fn accuracy(base: &Record, new: &Record) -> (Change, Effect, String) {
             _ => (Change::Major, Effect::Worse, why),
         };
     }
-    if base.expectation.as_ref().is_some_and(|expected| expected.met) && new.misses_expectation() {
-        return (Change::Minor, Effect::Worse, "what was expected of it is no longer met".to_string());
-    }
-    let bounds = [base.accept.min, base.accept.max];
-    let rebound = bounds != [new.accept.min, new.accept.max];
+    let bounds = bounds_of(base);
+    let rebound = bounds != bounds_of(new);
     let (change, effect, why) = match (base.value, new.value) {
         (None, None) => (Change::Unchanged, Effect::Neutral, String::new()),
         (Some(_), None) => (Change::Minor, Effect::Neutral, "it has no value any more".to_string()),

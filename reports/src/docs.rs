@@ -15,10 +15,10 @@ use crate::markdown::{cell, code};
 use crate::number::plain;
 use crate::rates::rates;
 use crate::text::render_text;
-use crate::view::{self, Counts};
+use crate::view::{self, BASES, Basis, Counts};
 
 /// Name of the schema written and read.
-pub const DOCS_SCHEMA: &str = "fisura.docs/1";
+pub const DOCS_SCHEMA: &str = "fisura.docs/2";
 
 /// What each suite is about, in the order of the tables.
 const SUITES: [(&str, &str); 9] = [
@@ -92,8 +92,10 @@ pub struct StoredCase {
     suite: String,
     case: String,
     claim: String,
-    /// Records that are within their bounds, and that have bounds.
-    holding: [usize; 2],
+    /// Passes by what they were compared with, in the order of [`BASES`].
+    passes: [usize; BASES.len()],
+    /// Known limits, what fails or broke down, and what is only shown.
+    others: [usize; 3],
     /// Name below the case, quantity, value, accepted range and verdict of every record.
     records: Vec<[String; 5]>,
     /// Degree, norm, theory, observed, accepted and error on the finest mesh of every order.
@@ -139,11 +141,24 @@ impl Stored {
     }
 
     fn suites(&self) -> String {
-        let mut out = "| suite | what is checked | cases | checks that hold |\n|---|---|---|---|\n".to_string();
+        let mut out = "| suite | what is checked | agree with a reference | hold without one | known limits | fail | shown |\n\
+                       |---|---|---|---|---|---|---|\n"
+            .to_string();
         for (suite, what) in SUITES {
             let cases = self.of_suite(suite).unwrap_or_default();
-            let [hold, all] = [0, 1].map(|side| cases.iter().map(|case| case.holding[side]).sum::<usize>());
-            out.push_str(&format!("| `{suite}` | {what} | {} | {hold} of {all} |\n", cases.len()));
+            let sum = |count: &dyn Fn(&StoredCase) -> usize| cases.iter().map(|case| count(case)).sum::<usize>();
+            let (mut with, mut without) = (Vec::new(), Vec::new());
+            for (index, (basis, name)) in BASES.into_iter().enumerate() {
+                let count = sum(&|case| case.passes[index]);
+                let none = matches!(basis, Basis::Invariant | Basis::Regression);
+                let words = if none { &mut without } else { &mut with };
+                if count > 0 {
+                    words.push(format!("{count} {name}"));
+                }
+            }
+            let [with, without] = [with, without].map(|words| if words.is_empty() { "–".into() } else { words.join(", ") });
+            let [limits, fails, shown] = [0, 1, 2].map(|index| sum(&|case| case.others[index]));
+            out.push_str(&format!("| `{suite}` | {what} | {with} | {without} | {limits} | {fails} | {shown} |\n"));
         }
         format!("{out}\nQuick tier, commit {}.\n", cell(&short(&self.commit)))
     }
@@ -151,11 +166,12 @@ impl Stored {
     fn suite(&self, suite: &str) -> Option<String> {
         let cases = self.of_suite(suite)?;
         let mut out = format!(
-            "Quick tier, commit {}.\n\n| case | claim | checks that hold |\n|---|---|---|\n",
+            "Quick tier, commit {}.\n\n| case | claim | pass | known limits |\n|---|---|---|---|\n",
             cell(&short(&self.commit))
         );
-        for StoredCase { case, claim, holding: [hold, all], .. } in &cases {
-            out.push_str(&format!("| {} | {} | {hold} of {all} |\n", code(case), cell(claim)));
+        for StoredCase { case, claim, passes, others: [limits, ..], .. } in &cases {
+            let pass: usize = passes.iter().sum();
+            out.push_str(&format!("| {} | {} | {pass} | {limits} |\n", code(case), cell(claim)));
         }
         for StoredCase { case, records, .. } in &cases {
             let head = "| check | value | accepted | |\n|---|---|---|---|\n";
@@ -223,6 +239,7 @@ fn stored_case(records: &[&Record]) -> StoredCase {
     let row = |record: &&Record| {
         let accepted = match record.status {
             Status::Info => String::new(),
+            Status::KnownLimit => format!("limit {}", view::limit(record, plain).unwrap_or_default()),
             _ => view::accepted(record, plain),
         };
         let name = record.id.strip_prefix(&case).unwrap_or(&record.id).to_string();
@@ -232,7 +249,8 @@ fn stored_case(records: &[&Record]) -> StoredCase {
         suite: first.suite.clone(),
         case: first.case.clone(),
         claim: first.claim.clone(),
-        holding: [counts.pass, counts.judged()],
+        passes: counts.passes,
+        others: [counts.known_limit, counts.fail + counts.error, counts.info],
         records: records.iter().map(row).collect(),
         orders: rates(records).iter().map(|rate| rate.cells(plain)).collect(),
     }

@@ -23,7 +23,7 @@ use crate::view::{self, Counts};
 
 use embed::embedded;
 use page::{
-    Case, Deviations, ExpectationCell, Link, Order, Orders, Page, Parameters, Picture, ReferenceCell, Row, Source,
+    Case, Deviations, LimitCell, Link, Order, Orders, Page, Parameters, Picture, ReferenceCell, Row, Source,
     Suite, Verdict,
 };
 use size::{left_out, reduced};
@@ -90,7 +90,7 @@ fn fill(
         missing,
         environment: view::environment(set),
         broken: view::broken(shown).into_iter().map(|r| row(r, &r.id)).collect(),
-        unmet: view::unmet(shown).into_iter().map(|r| row(r, &r.id)).collect(),
+        limited: view::limited(shown).into_iter().map(|r| row(r, &r.id)).collect(),
         opening: opening.iter().map(|figure| pictures(figure)).collect(),
         suites: suites(shown, &opens, &pictures),
         timing: timed.map(pictures).collect(),
@@ -170,7 +170,8 @@ fn case(records: &[&Record]) -> Case {
     let run = |record| view::run_id(record).strip_prefix(id.as_str()).unwrap_or_default().trim_start_matches('/');
     let holding = match counts.judged() {
         0 => format!("{} shown", counts.info),
-        judged => format!("{} of {judged}", counts.pass),
+        judged if counts.known_limit == 0 => format!("{} of {judged}", counts.pass),
+        judged => format!("{} of {judged}, known limits {}", counts.pass, counts.known_limit),
     };
     Case {
         anchor: format!("case-{}", slug(&id)),
@@ -225,10 +226,9 @@ fn row(record: &Record, name: &str) -> Row {
         reference,
         bounds: view::accepted(record, pretty),
         why: record.accept.why.clone(),
-        expectation: record.expectation.as_ref().map(|e| ExpectationCell {
-            range: view::expected(record, pretty).unwrap_or_default(),
-            met: e.met,
-            source: e.source.clone(),
+        limit: record.limit.as_ref().map(|limit| LimitCell {
+            range: view::limit(record, pretty).unwrap_or_default(),
+            why: limit.why.clone(),
         }),
         message: record.message.clone().unwrap_or_default(),
     }

@@ -3,10 +3,10 @@
 use std::time::Duration;
 
 use fisura_verification::record::{Record, ResultSet, Status};
-use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use quick_junit::{NonSuccessKind, Property, Report, TestCase, TestCaseStatus, TestSuite};
 
 use crate::number::plain;
-use crate::view::{accepted, by_suite, expected, kind, own_times, reason, value, with_unit};
+use crate::view::{accepted, by_suite, kind, limit, own_times, reason, value, with_unit, word};
 
 /// The report as XML. A value outside its bounds is a failure, a run that broke down an error; a record
 /// without bounds is skipped, with its value in the message, since nothing was judged. The time of a run, or
@@ -32,13 +32,13 @@ pub fn render_junit(set: &ResultSet) -> Result<String, quick_junit::SerializeErr
 
 fn case(record: &Record, time: Duration) -> TestCase {
     let mut status = match record.status {
-        Status::Pass => TestCaseStatus::success(),
+        Status::Pass | Status::KnownLimit => TestCaseStatus::success(),
         Status::Info => TestCaseStatus::skipped(),
         Status::Fail => TestCaseStatus::non_success(NonSuccessKind::Failure),
         Status::Error => TestCaseStatus::non_success(NonSuccessKind::Error),
     };
     match record.status {
-        Status::Pass => {}
+        Status::Pass | Status::KnownLimit => {}
         Status::Info => {
             status.set_message(message(record));
         }
@@ -52,6 +52,7 @@ fn case(record: &Record, time: Duration) -> TestCase {
     let mut case = TestCase::new(record.id.as_str(), status);
     case.set_classname(format!("{}.{}", record.suite, record.case));
     case.set_time(time);
+    case.add_property(Property::new("status", word(record.status)));
     case.set_system_out(message(record));
     case
 }
@@ -66,9 +67,8 @@ fn message(record: &Record) -> String {
     if !why.is_empty() {
         text.push_str(&format!(" ({why})"));
     }
-    if let Some((range, expectation)) = expected(record, plain).zip(record.expectation.as_ref()) {
-        let met = if expectation.met { "met" } else { "not met" };
-        text.push_str(&format!("; expected {range}: {met}"));
+    if let Some((range, limit)) = limit(record, plain).zip(record.limit.as_ref()) {
+        text.push_str(&format!("; known limit {range}: {}", limit.why));
     }
     if let Some(reference) = &record.reference {
         let number = reference.value.map(|v| with_unit(&plain(v, crate::number::DIGITS), &record.unit) + ", ");

@@ -6,8 +6,8 @@ use fisura_verification::record::{Record, ResultSet, Status};
 use crate::number::plain;
 use crate::rates::rates;
 use crate::view::{
-    Counts, accepted, broken, by_suite, comparison, environment, expected, kind, reason, reference_value, symbol,
-    unmet, value, word,
+    Counts, accepted, broken, by_suite, comparison, environment, kind, limited, reason, reference_value, symbol,
+    value, word,
 };
 
 /// Largest size in bytes; a step summary over 1 MiB is dropped whole by GitHub.
@@ -38,13 +38,13 @@ fn render_limited(set: &ResultSet, limit: usize) -> String {
             [verdict(r.status), code(&r.id), cell(&value(r, plain)), accepted(r, plain), cell(&why)]
         });
     }
-    let unmet = unmet(set);
-    if !unmet.is_empty() {
-        let head = "| check | value | expected | by | accepted |\n|---|---|---|---|---|";
-        budget.table("## Expected, and not met", head, &unmet, |r| {
-            let source = r.expectation.as_ref().map(|e| cell(&e.source)).unwrap_or_default();
-            let expected = expected(r, plain).unwrap_or_default();
-            [code(&r.id), cell(&value(r, plain)), expected, source, accepted(r, plain)]
+    let limited = limited(set);
+    if !limited.is_empty() {
+        let head = "| check | value | reference | agrees within | limit | cause |\n|---|---|---|---|---|---|";
+        budget.table("## Known limits", head, &limited, |r| {
+            let cause = r.limit.as_ref().map(|limit| cell(&limit.why)).unwrap_or_default();
+            let [value, reference] = [value(r, plain), reference(r)].map(|text| cell(&text));
+            [code(&r.id), value, reference, accepted(r, plain), crate::view::limit(r, plain).unwrap_or_default(), cause]
         });
     }
     for (suite, mut records) in by_suite(set).into_iter().filter(|(_, records)| !records.is_empty()) {
@@ -70,13 +70,14 @@ fn render_limited(set: &ResultSet, limit: usize) -> String {
     budget.finish()
 }
 
-/// Failures first, then errors, passes, and what has no bounds.
+/// Failures first, then errors, known limits, passes, and what has no bounds.
 fn rank(status: Status) -> u8 {
     match status {
         Status::Fail => 0,
         Status::Error => 1,
-        Status::Pass => 2,
-        Status::Info => 3,
+        Status::KnownLimit => 2,
+        Status::Pass => 3,
+        Status::Info => 4,
     }
 }
 

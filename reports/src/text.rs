@@ -5,29 +5,36 @@ use fisura_verification::record::{Record, ResultSet};
 
 use crate::number::plain;
 use crate::style::wrap_columns;
-use crate::view::{Counts, accepted, broken, by_suite, expected, reason, unmet, value, word};
+use crate::view::{Counts, accepted, broken, by_suite, limit, reason, value, word};
 
-/// A plain-text table: what does not hold with value, bounds and reason, counts per suite, the verdict on the
-/// whole in the last line.
+/// Where the known limits are listed one by one.
+const LISTED: &str = "report.html#limits lists them";
+
+/// A plain-text table: what does not hold with value, bounds and reason, one line per suite with known
+/// limits, counts per suite, the status of the whole in the last line.
 pub fn render_text(set: &ResultSet) -> String {
     let mut out = String::new();
     for record in broken(set) {
         out.push_str(&block(record));
     }
-    for record in unmet(set) {
-        let expected = expected(record, plain).unwrap_or_default();
-        let text = format!("NOT MET {}: {}, expected {expected}", record.id, value(record, plain));
-        out.push_str(&(wrap_columns(&line(&text), 106).join("\n  ") + "\n"));
+    for (suite, records) in by_suite(set) {
+        let count = Counts::of(records).known_limit;
+        if count > 0 {
+            let limits = if count == 1 { "known limit" } else { "known limits" };
+            out.push_str(&format!("{}: {count} {limits}; {LISTED}\n", line(suite)));
+        }
     }
     let suites: Vec<_> = by_suite(set).into_iter().map(|(suite, records)| (line(suite), records)).collect();
     let widest = suites.iter().map(|s| s.0.chars().count()).max().unwrap_or(0).max("suite".len());
     if !set.records.is_empty() {
-        out.push_str(&format!("{:widest$}  {:>5} {:>5} {:>5} {:>5}\n", "suite", "pass", "fail", "error", "info"));
+        let head = ["pass", "limit", "fail", "error", "info"].map(|word| format!("{word:>5}")).join(" ");
+        out.push_str(&format!("{:widest$}  {head}\n", "suite"));
     }
     for (suite, records) in suites {
         let c = Counts::of(records);
         if c != Counts::default() {
-            out.push_str(&format!("{suite:widest$}  {:>5} {:>5} {:>5} {:>5}\n", c.pass, c.fail, c.error, c.info));
+            let row = [c.pass, c.known_limit, c.fail, c.error, c.info].map(|count| format!("{count:>5}")).join(" ");
+            out.push_str(&format!("{suite:widest$}  {row}\n"));
         }
     }
     let counts = Counts::of(&set.records);
@@ -47,9 +54,10 @@ fn block(record: &Record) -> String {
         ("claim", record.claim.clone()),
         ("value", format!("{} ({})", value(record, plain), record.quantity)),
         ("accepted", accepted(record, plain)),
+        ("limit", limit(record, plain).unwrap_or_default()),
         ("why", reason(record)),
     ];
-    for (name, text) in lines {
+    for (name, text) in lines.into_iter().filter(|(_, text)| !text.is_empty()) {
         for (i, line) in wrap_columns(&text, 96).iter().enumerate() {
             out.push_str(&format!("  {:9} {line}\n", if i == 0 { name } else { "" }));
         }

@@ -3,34 +3,74 @@
 
 use std::collections::{HashMap, HashSet};
 
-use fisura_verification::record::{
-    Accept, Agreement, BoundKind, Record, Reference, ReferenceKind, ResultSet, Status, Timing, Validation,
-};
+use fisura_verification::record::{Accept, Record, Reference, ReferenceKind, ResultSet, Status, Timing};
 
 use crate::number::{DIGITS, plain};
 
 /// Digits of an uncertainty; more mean nothing.
 const UNCERTAINTY_DIGITS: usize = 2;
 
-/// How often each verdict was given.
+/// What a record that holds was compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Basis {
+    /// A closed form.
+    ClosedForm,
+    /// A theorem or an asymptotic rate.
+    Theory,
+    /// Published numbers.
+    Literature,
+    /// Another code, which may be one of this project.
+    IndependentCode,
+    /// Finer runs of the solver itself.
+    FinerRuns,
+    /// Nothing: a property such as a balance that closes, within stated bounds.
+    Invariant,
+    /// An earlier result of the solver.
+    Regression,
+}
+
+/// Every basis with its name, in the order of tables.
+pub const BASES: [(Basis, &str); 7] = [
+    (Basis::ClosedForm, "closed form"),
+    (Basis::Theory, "theory"),
+    (Basis::Literature, "literature"),
+    (Basis::IndependentCode, "independent code"),
+    (Basis::FinerRuns, "finer runs"),
+    (Basis::Invariant, "invariant"),
+    (Basis::Regression, "regression"),
+];
+
+impl Basis {
+    /// That of a record.
+    pub fn of(record: &Record) -> Self {
+        match record.reference.as_ref().map(|reference| reference.kind) {
+            _ if record.is_regression() => Self::Regression,
+            None => Self::Invariant,
+            Some(ReferenceKind::Exact) => Self::ClosedForm,
+            Some(ReferenceKind::Theory) => Self::Theory,
+            Some(ReferenceKind::Literature) => Self::Literature,
+            Some(ReferenceKind::IndependentCode) => Self::IndependentCode,
+            Some(ReferenceKind::SelfConvergence) => Self::FinerRuns,
+            Some(ReferenceKind::Regression) => Self::Regression,
+        }
+    }
+}
+
+/// How often each status occurs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Within bounds.
+    /// Agrees with its reference, or lies within its bounds where there is none.
     pub pass: usize,
-    /// Outside bounds.
+    /// Within a documented limit.
+    pub known_limit: usize,
+    /// Outside bounds and limits.
     pub fail: usize,
     /// Broke down.
     pub error: usize,
-    /// No bounds.
+    /// Not bounded.
     pub info: usize,
-    /// Those held against bounds that were chosen after the result.
-    pub regression: usize,
-    /// Those of which something was expected that is not met.
-    pub unmet: usize,
-    /// Those compared with a reference of known uncertainty.
-    pub compared: usize,
-    /// Those of them that agree within the validation uncertainty.
-    pub agreeing: usize,
+    /// Passes by what they were compared with, in the order of [`BASES`].
+    pub passes: [usize; BASES.len()],
 }
 
 impl Counts {
@@ -39,84 +79,89 @@ impl Counts {
         let mut counts = Self::default();
         for record in records {
             match record.status {
-                Status::Pass => counts.pass += 1,
+                Status::Pass => {
+                    counts.pass += 1;
+                    counts.passes[Basis::of(record) as usize] += 1;
+                }
+                Status::KnownLimit => counts.known_limit += 1,
                 Status::Fail => counts.fail += 1,
                 Status::Error => counts.error += 1,
                 Status::Info => counts.info += 1,
             }
-            counts.regression += usize::from(record.is_regression());
-            counts.unmet += usize::from(record.misses_expectation());
-            counts.compared += usize::from(record.validation.is_some());
-            counts.agreeing += usize::from(record.validation.as_ref().is_some_and(|v| v.verdict == Agreement::Agrees));
         }
         counts
     }
 
-    /// Records that hold their claim against bounds or not; those without bounds are not counted.
+    /// Records that have a status other than `info`.
     pub fn judged(&self) -> usize {
-        self.pass + self.fail + self.error
+        self.pass + self.known_limit + self.fail + self.error
     }
 
-    /// Verdict on the whole: `pass` if something was judged and everything holds.
+    /// Status of the whole: `pass` if something holds and nothing fails.
     pub fn verdict(&self) -> Status {
         match self {
             Self { error: 1.., .. } => Status::Error,
             Self { fail: 1.., .. } => Status::Fail,
             Self { pass: 1.., .. } => Status::Pass,
+            Self { known_limit: 1.., .. } => Status::KnownLimit,
             _ => Status::Info,
         }
     }
 
-    /// The verdict in a sentence.
+    /// The status of the whole in a sentence.
     pub fn sentence(&self) -> String {
-        let checks = |n: usize| if n == 1 { "1 check".to_string() } else { format!("{n} checks") };
+        let limits = match self.known_limit {
+            0 => String::new(),
+            1 => "; 1 is a known limit".to_string(),
+            n => format!("; {n} are known limits"),
+        };
         match self.verdict() {
-            Status::Info => "Nothing was judged".to_string(),
-            Status::Pass if self.pass == 1 => "The one check holds".to_string(),
-            Status::Pass => format!("All {} checks hold", self.pass),
-            _ => {
+            Status::Info => "No check has bounds".to_string(),
+            Status::KnownLimit => format!("No check fails{limits}"),
+            Status::Pass if self.pass == 1 => format!("1 check holds{limits}"),
+            Status::Pass => format!("{} checks hold{limits}", self.pass),
+            Status::Fail | Status::Error => {
                 let bad = self.fail + self.error;
                 let verb = if bad == 1 { "does" } else { "do" };
-                format!("{bad} of {} {verb} not hold", checks(self.judged()))
+                let checks = if self.judged() == 1 { "check" } else { "checks" };
+                format!("{bad} of {} {checks} {verb} not hold{limits}", self.judged())
             }
         }
     }
 
-    /// `12 pass, 1 fail, 0 errors, 3 info`.
+    /// `12 pass, 2 known limits, 1 fail, 0 errors, 3 info`.
     pub fn list(&self) -> String {
+        let Self { pass, fail, info, .. } = self;
+        let limits = if self.known_limit == 1 { "known limit" } else { "known limits" };
         let errors = if self.error == 1 { "error" } else { "errors" };
-        format!("{} pass, {} fail, {} {errors}, {} info", self.pass, self.fail, self.error, self.info)
+        format!("{pass} pass, {} {limits}, {fail} fail, {} {errors}, {info} info", self.known_limit, self.error)
     }
 
-    /// What pass and fail leave out: `2 checks by bounds of regression; 1 expectation not met; …`; empty if
-    /// there is nothing.
+    /// What the passes were compared with: `passes: 340 closed form, 12 theory, 900 invariant`; empty if
+    /// nothing passes.
     pub fn remarks(&self) -> String {
-        let many = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
-        let compared = many(self.compared, "value");
-        let remarks = [
-            (self.regression, format!("{} by bounds of regression", many(self.regression, "check"))),
-            (self.unmet, format!("{} not met", many(self.unmet, "expectation"))),
-            (self.compared, format!("{} of {compared} within the uncertainty of the comparison", self.agreeing)),
-        ];
-        let said = remarks.into_iter().filter(|(count, _)| *count > 0).map(|(_, words)| words);
-        said.collect::<Vec<_>>().join("; ")
+        let named = BASES.iter().zip(self.passes).filter(|(_, count)| *count > 0);
+        let words: Vec<String> = named.map(|((_, name), count)| format!("{count} {name}")).collect();
+        if words.is_empty() { String::new() } else { format!("passes: {}", words.join(", ")) }
     }
 }
 
-/// A verdict as a word.
+/// A status in words.
 pub fn word(status: Status) -> &'static str {
     match status {
         Status::Pass => "pass",
+        Status::KnownLimit => "known limit",
         Status::Fail => "fail",
         Status::Error => "error",
         Status::Info => "info",
     }
 }
 
-/// A verdict as a symbol.
+/// A status as a symbol.
 pub fn symbol(status: Status) -> &'static str {
     match status {
         Status::Pass => "✓",
+        Status::KnownLimit => "≈",
         Status::Fail => "✗",
         Status::Error => "‼",
         Status::Info => "·",
@@ -129,9 +174,9 @@ pub fn broken(set: &ResultSet) -> Vec<&Record> {
     with(Status::Fail).chain(with(Status::Error)).collect()
 }
 
-/// Records of which something was expected that is not met, in the order of the plan.
-pub fn unmet(set: &ResultSet) -> Vec<&Record> {
-    set.records.iter().filter(|r| r.misses_expectation()).collect()
+/// Records within a documented limit, in the order of the plan.
+pub fn limited(set: &ResultSet) -> Vec<&Record> {
+    set.records.iter().filter(|r| r.status == Status::KnownLimit).collect()
 }
 
 /// Suites in the order in which they first appear, those with figures only at the end.
@@ -204,19 +249,19 @@ pub fn bounds(accept: &Accept, show: fn(f64, usize) -> String) -> String {
     range(accept.min, accept.max, show)
 }
 
-/// The accepted range, with a word on bounds of a kind of their own: `3.9 to 4.5 (regression)`.
+/// The accepted range, with a word on where it comes from: `3.9 to 4.5 (regression)`.
 pub fn accepted(record: &Record, show: fn(f64, usize) -> String) -> String {
-    let kind = match record.accept.kind {
+    let kind = match record.uncertainty() {
         _ if record.is_regression() => " (regression)",
-        Some(BoundKind::Validation) => " (U_val)",
-        _ => "",
+        Some(_) => " (uncertainty)",
+        None => "",
     };
     bounds(&record.accept, show) + kind
 }
 
-/// The range in which a value is expected beside its bounds, if there is one: `0.165 to 0.2`.
-pub fn expected(record: &Record, show: fn(f64, usize) -> String) -> Option<String> {
-    record.expectation.as_ref().map(|e| range(e.min, e.max, show))
+/// The documented limit of a record: `0.165 to 0.2`.
+pub fn limit(record: &Record, show: fn(f64, usize) -> String) -> Option<String> {
+    record.limit.as_ref().map(|limit| range(limit.min, limit.max, show))
 }
 
 /// A reference value with unit and uncertainty: `31 ± 0.3 us`; of a curve its uncertainty alone.
@@ -231,17 +276,16 @@ pub fn reference_value(reference: &Reference, unit: &str, show: fn(f64, usize) -
     }
 }
 
-/// The comparison with the uncertainty of the reference: `agrees: |E| = 0.1 ≤ U_val = 0.3`.
+/// The comparison with the uncertainty: `|E| = 0.1, U = 0.3`; absent where no uncertainty is known.
 pub fn comparison(record: &Record, show: fn(f64, usize) -> String) -> Option<String> {
-    let Validation { error, u_num, u_val, at_least, .. } = record.validation.as_ref()?;
-    let [e, u] = [error.abs(), *u_val].map(|v| show(v, UNCERTAINTY_DIGITS));
-    let mesh = if u_num.is_some() { "" } else { " without the mesh" };
-    Some(match at_least {
-        None => format!("agrees: |E| = {e} ≤ U_val = {u}{mesh}"),
-        Some(least) => {
-            format!("off by at least {}: |E| = {e}, U_val = {u}{mesh}", show(*least, UNCERTAINTY_DIGITS))
-        }
-    })
+    let uncertainty = record.uncertainty()?;
+    let error = record.value? - record.reference.as_ref()?.value.unwrap_or(0.0);
+    let [error, uncertainty] = [error.abs(), uncertainty].map(|v| show(v, UNCERTAINTY_DIGITS));
+    let mesh = match &record.discretisation {
+        Some(error) => format!(", with the discretisation error ({})", error.from),
+        None => ", without a discretisation error".to_string(),
+    };
+    Some(format!("|E| = {error}, U = {uncertainty}{mesh}"))
 }
 
 fn range(min: Option<f64>, max: Option<f64>, show: fn(f64, usize) -> String) -> String {
@@ -269,7 +313,10 @@ pub fn kind(reference: &Reference) -> &'static str {
 
 /// Why a record does not hold: its message, or its bounds and their reason.
 pub fn reason(record: &Record) -> String {
-    let why = record.accept.why.trim();
+    let why = match &record.limit {
+        Some(limit) if record.accept.why.trim().is_empty() => limit.why.trim(),
+        _ => record.accept.why.trim(),
+    };
     match (&record.message, record.status) {
         (Some(message), Status::Error) => message.clone(),
         (Some(message), _) if why.is_empty() => message.clone(),

@@ -30,7 +30,7 @@ use serde::Deserialize;
 use crate::case::formula::{Amount, Formula};
 use crate::case::geometry::Geometry;
 use crate::output::fingerprint::fingerprint;
-use crate::record::{Accept, Reference, ReferenceKind};
+use crate::record::{Accept, Limit, Reference, ReferenceKind, Side};
 use crate::scene::document::{Document, Node};
 use crate::scene::fields::{Item, Problems};
 use crate::scene::{Problem, SceneFileError};
@@ -94,8 +94,12 @@ pub struct Check {
     pub expect_kind: ReferenceKind,
     /// Where the expected value comes from.
     pub expect_source: String,
+    /// On which side of the expected value a measured one agrees with it.
+    pub expect_side: Side,
     /// Half width of the uncertainty of the expected value, in its unit.
     pub uncertainty: Option<f64>,
+    /// Discretisation error of the value, in the unit of the measure.
+    pub discretisation: Option<f64>,
     /// Factor from the measured to the reported unit.
     pub scale: f64,
     /// Reference band that gives the bounds: `folder/name`.
@@ -112,8 +116,8 @@ pub struct Check {
     pub order: Option<f64>,
     /// Bounds.
     pub accept: Accept,
-    /// A band in which the value is expected, beside bounds that are those of a known limit.
-    pub expectation: Option<ExpectedBand>,
+    /// Documented limit, in which a value may lie that does not agree with its reference.
+    pub limit: Option<Limit>,
     /// Numbers that a formula gives for every run; until then they are not a number above.
     pub formulas: Vec<(NumberKey, Formula)>,
 }
@@ -146,6 +150,7 @@ impl Check {
                 NumberKey::To => check.window[1] = value,
                 NumberKey::At => check.at = Some(value),
                 NumberKey::Expect => check.expect = Some(value),
+                NumberKey::Discretisation => check.discretisation = Some(value),
                 NumberKey::Scale => check.scale = value,
             }
         }
@@ -158,17 +163,6 @@ impl Check {
         let matches = |wanted: &str| glob::Pattern::new(wanted).is_ok_and(|pattern| pattern.matches(variant));
         self.variant.as_deref().is_none_or(|wanted| wanted == variant || matches(wanted))
     }
-}
-
-/// What a check expects without failing for it: the `expectation` table.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ExpectedBand {
-    /// Smallest and largest value, in the unit of the check.
-    pub range: [Option<f64>; 2],
-    /// Reference band that gives them instead: `folder/name`.
-    pub band: Option<String>,
-    /// Who expects it.
-    pub source: String,
 }
 
 /// Keys changed together.

@@ -17,7 +17,7 @@ use crate::case::Check;
 use crate::case::formula::{Formula, Name, Reduction};
 use crate::extremes;
 use crate::output::history::Table;
-use crate::record::Reference;
+use crate::record::{Discretisation, Reference};
 use crate::reference::Library;
 
 use table::Question;
@@ -50,8 +50,8 @@ pub struct Measured {
     pub reference: Option<Reference>,
     /// Why there is no value, if the measure knows.
     pub message: Option<String>,
-    /// Numerical uncertainty of the value, from a study over meshes.
-    pub u_num: Option<f64>,
+    /// Discretisation error of the value.
+    pub discretisation: Option<Discretisation>,
 }
 
 impl Measured {
@@ -160,7 +160,11 @@ pub fn measure(check: &Check, run: &Run, runs: &[Run], library: &Library) -> Res
         true => measured.reference,
         false => held_against(check, check.scale, library)?.or(measured.reference),
     };
-    Ok(Measured { value, reference, ..measured })
+    let stated = check.discretisation.map(|error| Discretisation {
+        value: (error * check.scale).abs(),
+        from: "the order and the constant that the check states".to_string(),
+    });
+    Ok(Measured { value, reference, discretisation: stated.or(measured.discretisation), ..measured })
 }
 
 /// What the value of a check is held against, times `factor`: its expected value, or what the library has
@@ -176,7 +180,7 @@ fn held_against(check: &Check, factor: f64, library: &Library) -> Result<Option<
 pub fn expected(check: &Check, factor: f64) -> Option<Reference> {
     let uncertainty = check.uncertainty.map(|u| u * factor.abs());
     let of = |value| Reference::new(Some(value * factor), check.expect_kind, &check.expect_source);
-    check.expect.map(|value| Reference { uncertainty, ..of(value) })
+    check.expect.map(|value| Reference { uncertainty, side: check.expect_side, ..of(value) })
 }
 
 fn column(check: &Check) -> Result<&str, String> {

@@ -4,17 +4,16 @@
 //! Everything a report shows is a pure function of that folder.
 
 mod figure;
+mod status;
 mod unfinished;
-mod verdict;
 
 use std::collections::BTreeMap;
 
-use fisura::fault;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use figure::{Axis, Curve, CurveStyle, Figure, FigureBody, Floor, Region, Scale, SlopeTriangle};
-pub use verdict::{Agreement, BoundKind, Expectation, Validation};
+pub use status::{Discretisation, Limit, worst};
 
 /// Name of the schema written and read.
 pub const SCHEMA: &str = "fisura.results/1";
@@ -59,17 +58,19 @@ pub struct Environment {
     pub started: String,
 }
 
-/// Verdict of one check.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
+/// Status of one check; [`Record::decide`] says how it is found.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Status {
-    /// Within its bounds.
+    /// The value agrees with its reference; without a reference, it lies within its bounds.
     Pass,
-    /// Outside its bounds.
+    /// The value does not agree with its reference, but lies within a documented limit.
+    KnownLimit,
+    /// The value lies outside its bounds and outside every documented limit.
     Fail,
     /// The run broke down.
     Error,
-    /// No bounds: a figure to read.
+    /// Nothing bounds the value, or its reference is too uncertain to decide.
     #[default]
     Info,
 }
@@ -93,7 +94,26 @@ pub enum ReferenceKind {
     Regression,
 }
 
-/// What a value is held against.
+/// On which side of its reference a value has to lie.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// The reference is the value itself.
+    #[default]
+    Both,
+    /// The reference is a lower bound, such as an order of convergence.
+    AtLeast,
+    /// The reference is an upper bound.
+    AtMost,
+}
+
+impl Side {
+    fn is_both(&self) -> bool {
+        *self == Self::Both
+    }
+}
+
+/// What a value is compared with.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reference {
     /// Value, if it is one number.
@@ -102,6 +122,9 @@ pub struct Reference {
     pub kind: ReferenceKind,
     /// Where it comes from.
     pub source: String,
+    /// On which side of it values agree with it.
+    #[serde(skip_serializing_if = "Side::is_both", default)]
+    pub side: Side,
     /// Half width of its uncertainty, in the unit of the record: of the value, or of the curve in the norm of
     /// the record; absent where none is known.
     #[serde(skip_serializing_if = "Option::is_none", default)]
@@ -109,9 +132,14 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// A reference whose uncertainty is not known, or does not matter.
+    /// A reference whose uncertainty is not known, or is zero.
     pub fn new(value: Option<f64>, kind: ReferenceKind, source: impl Into<String>) -> Self {
-        Self { value, kind, source: source.into(), uncertainty: None }
+        Self { value, kind, source: source.into(), ..Self::default() }
+    }
+
+    /// A lower bound, such as the order of convergence that theory guarantees.
+    pub fn at_least(value: f64, kind: ReferenceKind, source: impl Into<String>) -> Self {
+        Self { side: Side::AtLeast, ..Self::new(Some(value), kind, source) }
     }
 }
 
@@ -124,9 +152,9 @@ pub struct Accept {
     pub max: Option<f64>,
     /// Reason.
     pub why: String,
-    /// Where they come from, if they were not set before the result.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub kind: Option<BoundKind>,
+    /// Whether they were chosen after the result: they tell a change, not whether the result is right.
+    #[serde(skip_serializing_if = "std::ops::Not::not", default)]
+    pub regression: bool,
 }
 
 /// Measured time; exempt from byte-for-byte comparison.
@@ -189,18 +217,18 @@ pub struct Record {
     pub unit: String,
     /// Its value; absent when the run broke down or the event did not occur.
     pub value: Option<f64>,
-    /// What it is held against.
+    /// What it is compared with.
     pub reference: Option<Reference>,
-    /// Bounds.
+    /// Discretisation error of the value, computed.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub discretisation: Option<Discretisation>,
+    /// Bounds within which the value agrees with its reference, or holds without one.
     pub accept: Accept,
-    /// Verdict.
+    /// Documented limit, in which the value may lie instead.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub limit: Option<Limit>,
+    /// Status.
     pub status: Status,
-    /// Comparison with the uncertainty of the reference, where it has one.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub validation: Option<Validation>,
-    /// A band in which the value was expected; missing it fails nothing and is counted.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub expectation: Option<Expectation>,
     /// How, where and when, for errors and remarks.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub message: Option<String>,
@@ -211,16 +239,4 @@ pub struct Record {
     pub work: Option<Work>,
     /// Measured time.
     pub timing: Timing,
-}
-
-/// The worst of some verdicts.
-pub fn worst(verdicts: impl IntoIterator<Item = Status>) -> Option<Status> {
-    let rank = |status: &Status| match status {
-        Status::Info => 0,
-        Status::Pass => 1,
-        Status::Fail => 2,
-        Status::Error => 3,
-    };
-    let verdicts = verdicts.into_iter();
-    fault!("last-verdict-counts", verdicts.max_by_key(rank) => verdicts.last())
 }

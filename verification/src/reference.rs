@@ -24,7 +24,7 @@ pub use error::ReferenceError;
 pub use quantity::quantities;
 pub use source_file::{Obtained, Slip};
 
-use crate::record::{Accept, Reference, ReferenceKind};
+use crate::record::{Reference, ReferenceKind};
 
 /// One `source.toml`, numbers aside.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,17 +103,19 @@ impl ReferenceValue {
 }
 
 impl ReferenceBand {
-    /// Its bounds, in the unit of a check.
-    pub fn bounds(&self, scale: f64) -> Accept {
-        let why = format!("what the sources say: {}", self.sources.join(", "));
-        let factor = fault!("band-in-other-units", scale => 1.0);
-        Accept { min: Some(self.min * factor), max: Some(self.max * factor), why, kind: None }
+    /// Why a record is held against it.
+    pub fn why(&self) -> String {
+        format!("the range of the sources: {}", self.sources.join(", "))
     }
 
-    /// The reference entry of a record that is held against this band.
-    pub fn reference(&self) -> Reference {
+    /// The reference entry of a record that is held against this band, in the unit of a check: its middle,
+    /// with half its width as the uncertainty.
+    pub fn reference(&self, scale: f64) -> Reference {
         let from = if self.sources.is_empty() { self.citation.clone() } else { self.sources.join(", ") };
-        Reference::new(None, self.kind, format!("{}, {}: {from}", self.id, self.name))
+        let factor = fault!("band-in-other-units", scale => 1.0);
+        let (middle, half) = (0.5 * (self.min + self.max), 0.5 * (self.max - self.min));
+        let source = format!("{}, {}: {from}", self.id, self.name);
+        Reference { uncertainty: Some(half * factor.abs()), ..Reference::new(Some(middle * factor), self.kind, source) }
     }
 }
 

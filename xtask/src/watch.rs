@@ -123,6 +123,7 @@ impl Progress for Watch<'_> {
         let word = match worst(records.iter().map(|record| record.status)) {
             Some(Status::Error) => "error",
             Some(Status::Fail) => "fail",
+            Some(Status::KnownLimit) => "pass, with known limits",
             Some(Status::Pass) => "pass",
             Some(Status::Info) | None => "info",
         };

@@ -9,14 +9,14 @@ use crate::example::results;
 fn record(value: f64, min: Option<f64>, max: Option<f64>) -> Record {
     let mut record = results().records.remove(0);
     record.reference = None;
-    record.accept = Accept { min, max, why: "a test".into(), kind: None };
+    record.accept = Accept { min, max, why: "a test".into(), regression: false };
     record.value = Some(value);
-    record.status = Record::judge(record.value, &record.accept);
+    record.status = record.status_of(record.value);
     record
 }
 
 fn changed(base: &Record, value: f64) -> (Change, Effect) {
-    let new = Record { value: Some(value), status: Record::judge(Some(value), &base.accept), ..base.clone() };
+    let new = Record { value: Some(value), status: base.status_of(Some(value)), ..base.clone() };
     let (change, effect, _) = accuracy(base, &new);
     (change, effect)
 }

@@ -9,12 +9,15 @@ use crate::view;
 #[derive(Serialize)]
 pub(super) struct Verdict {
     word: &'static str,
+    /// The word as the name of a class.
+    class: String,
     symbol: &'static str,
 }
 
 impl Verdict {
     pub(super) fn of(status: Status) -> Self {
-        Self { word: view::word(status), symbol: view::symbol(status) }
+        let word = view::word(status);
+        Self { word, class: word.replace(' ', "-"), symbol: view::symbol(status) }
     }
 }
 
@@ -28,15 +31,14 @@ pub(super) struct Row {
     pub reference: Option<ReferenceCell>,
     pub bounds: String,
     pub why: String,
-    pub expectation: Option<ExpectationCell>,
+    pub limit: Option<LimitCell>,
     pub message: String,
 }
 
 #[derive(Serialize)]
-pub(super) struct ExpectationCell {
+pub(super) struct LimitCell {
     pub range: String,
-    pub met: bool,
-    pub source: String,
+    pub why: String,
 }
 
 #[derive(Serialize)]
@@ -143,7 +145,7 @@ pub(super) struct Page {
     pub missing: String,
     pub environment: Vec<(&'static str, String)>,
     pub broken: Vec<Row>,
-    pub unmet: Vec<Row>,
+    pub limited: Vec<Row>,
     /// What a reader came for.
     pub opening: Vec<Picture>,
     pub suites: Vec<Suite>,

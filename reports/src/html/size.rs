@@ -14,7 +14,7 @@ const NOTE_BYTES: usize = 500;
 pub(super) fn reduced(set: &ResultSet, part: f64) -> ResultSet {
     let count = |all: usize| (part * all as f64) as usize;
     let mut places: Vec<usize> = (0..set.records.len()).collect();
-    places.sort_by_key(|&at| matches!(set.records[at].status, Status::Pass | Status::Info));
+    places.sort_by_key(|&at| matches!(set.records[at].status, Status::Pass | Status::KnownLimit | Status::Info));
     places.truncate(count(set.records.len()));
     places.sort_unstable();
     ResultSet {

@@ -9,8 +9,8 @@ use serde_json::{Map, Value};
 
 use super::formula::Amount;
 use super::value::{AnyAmount, Column, Factor, Id, Quantity, Time, Uncertainty, Words, identifier};
-use super::{Check, ExpectedBand};
-use crate::record::{Accept, BoundKind, ReferenceKind};
+use super::Check;
+use crate::record::{Accept, Limit, ReferenceKind, Side};
 use crate::scene::fields::Item;
 
 /// What a check makes of the values of its measure on all meshes: the key `meshes`.
@@ -38,6 +38,8 @@ pub enum NumberKey {
     At,
     /// `expect`
     Expect,
+    /// `discretisation`
+    Discretisation,
     /// `scale`
     Scale,
 }
@@ -50,6 +52,7 @@ impl NumberKey {
             Self::To => "to",
             Self::At => "at",
             Self::Expect => "expect",
+            Self::Discretisation => "discretisation",
             Self::Scale => "scale",
         }
     }
@@ -88,8 +91,12 @@ pub(super) struct CheckTable {
     expect_kind: Option<ReferenceKind>,
     /// Where the expected value comes from.
     expect_source: Option<String>,
+    /// On which side of the expected value a measured one agrees with it.
+    expect_side: Option<Side>,
     /// Half width of the uncertainty of the expected value, in its unit.
     uncertainty: Option<Uncertainty>,
+    /// Discretisation error of the value as a formula, an order and a constant: `"= 0.6*span/radius"`.
+    discretisation: Option<AnyAmount>,
     /// Factor from the measured to the reported unit.
     scale: Option<Factor>,
     /// Reference band that gives the bounds: `band = "folder/name"`.
@@ -110,13 +117,13 @@ pub(super) struct CheckTable {
     below: Option<Quantity>,
     /// How far above its reference the value may lie.
     above: Option<Quantity>,
-    /// `regression`: bounds chosen after the result. `validation`: those of the uncertainty of the reference.
-    bounds: Option<BoundKind>,
-    /// Where the bounds come from.
+    /// `regression`: bounds chosen after the result.
+    bounds: Option<Bounds>,
+    /// Where the bounds come from, or the discretisation error.
     #[serde(default)]
     why: String,
-    /// A band in which the value is expected, beside bounds that are those of a known limit.
-    expectation: Option<ExpectationTable>,
+    /// A documented limit, in which a value may lie that does not agree with its reference.
+    limit: Option<LimitTable>,
     /// A set of checks of `check-sets.toml`, in place of id and quantity.
     #[schemars(with = "Option<String>")]
     set: Option<IgnoredAny>,
@@ -128,19 +135,24 @@ pub(super) struct CheckTable {
     variants: Option<IgnoredAny>,
 }
 
-/// `expectation = { min = 0.165, max = 0.2, source = "…" }`, or `{ band = "plate-events/…" }`.
+/// The word of `bounds`.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+enum Bounds {
+    Regression,
+}
+
+/// `limit = { min = 0.82, max = 1.24, why = "…" }`.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct ExpectationTable {
-    /// Least value expected.
+struct LimitTable {
+    /// Smallest value within the limit.
     min: Option<Quantity>,
-    /// Largest value expected.
+    /// Largest value within the limit.
     max: Option<Quantity>,
-    /// Reference band that gives them instead: `band = "folder/name"`.
-    band: Option<String>,
-    /// Who expects it.
+    /// Cause of the limit, and where its bounds come from.
     #[serde(default)]
-    source: String,
+    why: String,
 }
 
 fn number(quantity: Option<Quantity>) -> Option<f64> {
@@ -181,14 +193,15 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
     if from.zip(to).is_some_and(|(from, to)| from > to) {
         item.at("to")?.fail::<()>("to is before from", "give the earlier time as from");
     }
-    let of_expect = ["expect_kind", "expect_source", "uncertainty"];
+    let discretisation = value(NumberKey::Discretisation, table.discretisation.as_ref().map(|error| error.0.clone()));
+    let of_expect = ["expect_kind", "expect_source", "expect_side", "uncertainty"];
     for given in of_expect.into_iter().filter(|_| expect.is_none()).filter_map(|key| item.at(key)) {
         let key = given.path.rsplit('.').next().unwrap_or_default();
         given.fail::<()>(format!("{key} without expect"), "add expect, or remove it");
     }
     let around_reference = around(&table, item);
     let accept = accept(&table, item);
-    let expectation = table.expectation.map(|table| expected_band(table, &item.at("expectation").expect("it is read")));
+    let limit = table.limit.map(|table| limit(table, &item.at("limit").expect("it is read")));
     Some(Check {
         id: table.id?.0,
         formerly: table.formerly.into_iter().map(|id| id.0).collect(),
@@ -202,6 +215,7 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
         expect,
         expect_kind: table.expect_kind.unwrap_or_default(),
         expect_source: table.expect_source.unwrap_or_default(),
+        expect_side: table.expect_side.unwrap_or_default(),
         uncertainty: table.uncertainty.map(|uncertainty| uncertainty.0),
         scale: scale.unwrap_or(1.0),
         band: table.band,
@@ -211,24 +225,26 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
         meshes: table.meshes,
         order: number(table.order),
         accept: accept?,
-        expectation: expectation.map_or(Some(None), |read| read.map(Some))?,
+        limit: limit.map_or(Some(None), |read| read.map(Some))?,
+        discretisation,
         formulas,
     })
 }
 
-fn expected_band(table: ExpectationTable, item: &Item<'_>) -> Option<ExpectedBand> {
-    let ExpectationTable { min, max, band, source } = table;
+/// A documented limit has bounds, a cause, and nothing the wrong way round.
+fn limit(table: LimitTable, item: &Item<'_>) -> Option<Limit> {
+    let LimitTable { min, max, why } = table;
     let (min, max) = (number(min), number(max));
-    if band.is_some() != (min.is_none() && max.is_none()) {
-        return item.fail("an expectation is a band of the reference data or has bounds", "give band, or min and max");
+    if min.is_none() && max.is_none() {
+        return item.fail("a limit without bounds", "give min, max or both");
     }
-    if band.is_none() && source.trim().is_empty() {
-        return item.fail("an expectation without a source", "add source = \"who expects it\"");
+    if why.trim().is_empty() {
+        return item.fail("a limit without a cause", "add why = \"what limits the value, and where the bounds come from\"");
     }
     if min.zip(max).is_some_and(|(min, max)| min > max) {
         return item.fail("min is above max", "swap the two");
     }
-    Some(ExpectedBand { range: [min, max], band, source })
+    Some(Limit { min, max, why })
 }
 
 /// `below = 0.1, above = 0.5`: bounds around the reference value.
@@ -243,10 +259,10 @@ fn around(table: &CheckTable, item: &Item<'_>) -> Option<Option<[f64; 2]>> {
     }
 }
 
-/// Bounds need a reason, and those by uncertainty an uncertainty.
+/// Bounds need a reason, and there are none beside an uncertainty, which bounds the value itself.
 fn accept(table: &CheckTable, item: &Item<'_>) -> Option<Accept> {
     let bound = |quantity: &Option<Quantity>| quantity.as_ref().map(|bound| bound.0);
-    let (min, max, kind) = (bound(&table.min), bound(&table.max), table.bounds);
+    let (min, max, regression) = (bound(&table.min), bound(&table.max), table.bounds.is_some());
     let around = table.below.is_some() || table.above.is_some();
     let own = min.is_some() || max.is_some();
     if [own, around, table.band.is_some()].into_iter().filter(|kind| *kind).count() > 1 {
@@ -258,20 +274,17 @@ fn accept(table: &CheckTable, item: &Item<'_>) -> Option<Accept> {
         return item.at("min")?.fail(format!("min {low} is above max {high}"), "no value lies between them");
     }
     let bounded = own || around;
-    if (bounded || kind.is_some()) && table.why.trim().is_empty() {
+    let computed = table.uncertainty.is_some() || table.discretisation.is_some();
+    if bounded && computed {
+        let remedy = "remove min, max, below and above, or write them as limit = { max = …, why = \"…\" }";
+        return item.fail("bounds of its own beside those of the uncertainty", remedy);
+    }
+    if (bounded || regression || table.discretisation.is_some()) && table.why.trim().is_empty() {
         return item.fail("bounds without a reason", "add why = \"where the bound comes from\"");
     }
-    let wrong = |message, remedy| item.at("bounds")?.fail(message, remedy);
-    match kind {
-        Some(BoundKind::Validation) if bounded || table.band.is_some() => {
-            wrong("bounds of its own beside those of the uncertainty", "remove min, max, below, above and band")
-        }
-        Some(BoundKind::Validation) if table.expect.is_some() && table.uncertainty.is_none() => {
-            wrong("bounds by an uncertainty that is not given", "add uncertainty, the half width of that of expect")
-        }
-        Some(BoundKind::Regression) if !bounded => {
-            wrong("bounds = \"regression\" without bounds", "give min and max, or below and above")
-        }
-        _ => Some(Accept { min, max, why: table.why.clone(), kind }),
+    if regression && !bounded {
+        let remedy = "give min and max, or below and above";
+        return item.at("bounds")?.fail("bounds = \"regression\" without bounds", remedy);
     }
+    Some(Accept { min, max, why: table.why.clone(), regression })
 }

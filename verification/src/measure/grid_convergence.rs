@@ -31,6 +31,7 @@ use super::{Measured, Run, expected, held_against, measure};
 use crate::case::expand::CaseScene;
 use crate::case::{Check, Estimate};
 use crate::extremes::spread;
+use crate::record::Discretisation;
 use crate::reference::Library;
 
 /// Extrapolation by an order below this would go far beyond what was computed.
@@ -38,6 +39,8 @@ const LEAST_ORDER: f64 = 0.5;
 /// Observed and theoretical order agree within this fraction.
 const AGREEMENT: f64 = 0.1;
 const ITERATIONS: usize = 500;
+/// Where a discretisation error comes from.
+const FAMILY: &str = "grid convergence index of the meshes of this case";
 /// Uncertainty over the range of a sequence without an order.
 const NO_ORDER: f64 = 3.0;
 
@@ -60,10 +63,10 @@ pub fn over_meshes(estimate: Estimate, check: &Check, runs: &[Run], library: &Li
             None => missing.push(run.name),
         }
     }
-    let mut u_num = None;
+    let mut discretisation = None;
     let found = match missing.as_slice() {
         [] if estimate == Estimate::FinestMesh => on_finest_mesh(meshes, check.order).map(|(value, uncertainty)| {
-            u_num = Some(uncertainty);
+            discretisation = Some(Discretisation { value: uncertainty, from: FAMILY.to_string() });
             value
         }),
         [] => combine(estimate, meshes, check.order),
@@ -74,7 +77,7 @@ pub fn over_meshes(estimate: Estimate, check: &Check, runs: &[Run], library: &Li
         _ => expected(check, 1.0),
     };
     let (value, message) = found.map_or_else(|message| (None, Some(message)), |value| (Some(value), None));
-    Ok(Measured { value, reference, message, u_num })
+    Ok(Measured { value, reference, message, discretisation })
 }
 
 /// The value on the finest of the meshes (h, value), in any order, and its numerical uncertainty.

@@ -15,7 +15,7 @@ use crate::case::{Case, Check};
 use crate::extremes::largest;
 use crate::measure::{Run, measure};
 use crate::output::history::Table;
-use crate::record::{Accept, Record, Reference, ReferenceKind, Status, worst};
+use crate::record::{Accept, Limit, Record, Reference, ReferenceKind, Status, worst};
 use crate::reference::{Library, Obtained, ReferenceBand, ReferenceCurve, relative_rms};
 use crate::scene::plain::PlainScene;
 use crate::study::orders::observed_order;
@@ -47,7 +47,7 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
     let right = verdicts(&case.checks[0]);
     let wrong = right.iter().filter(|right| !**right).count();
     if !right.iter().any(|right| *right)
-        || Record::judge(Some(1.0), &bounds(None, Some(0.0))) != Status::Fail && wrong > 0
+        || of_accept(bounds(None, Some(0.0))).status_of(Some(1.0)) != Status::Fail && wrong > 0
     {
         return Err(StudyError::Other(format!("{wrong} verdicts are wrong, and the judge would pass that")));
     }
@@ -69,11 +69,15 @@ fn bounds(min: Option<f64>, max: Option<f64>) -> Accept {
     Accept { min, max, ..Accept::default() }
 }
 
-/// Whether each of some verdicts is right.
+fn of_accept(accept: Accept) -> Record {
+    Record { accept, ..Record::default() }
+}
+
+/// Whether each of some statuses is right.
 fn verdicts(base: &Check) -> Vec<bool> {
-    use Status::{Error, Fail, Info, Pass};
+    use Status::{Error, Fail, Info, KnownLimit, Pass};
     let (one, two) = (Some(1.0), Some(2.0));
-    let known = [
+    let bounded = [
         (Some(1.5), one, two, Pass),
         (one, one, two, Pass),
         (two, one, two, Pass),
@@ -94,12 +98,38 @@ fn verdicts(base: &Check) -> Vec<bool> {
         (Some(5.0), None, None, Info),
         (None, None, None, Info),
     ];
-    let mut right: Vec<bool> =
-        known.into_iter().map(|(value, min, max, status)| Record::judge(value, &bounds(min, max)) == status).collect();
+    let status = |mut record: Record| {
+        record.decide();
+        record.status
+    };
+    let of_bounds = |(value, min, max, expected)| {
+        status(Record { value, ..of_accept(bounds(min, max)) }) == expected
+    };
+    let mut right: Vec<bool> = bounded.into_iter().map(of_bounds).collect();
+    // reference 10, its uncertainty, bounds, and a limit from 20 to 30
+    let limit = Limit { min: Some(20.0), max: Some(30.0), why: String::new() };
+    for (value, uncertainty, accept, limited, expected) in [
+        (10.1, Some(0.2), bounds(None, None), false, Pass),
+        (10.3, Some(0.2), bounds(None, None), false, Fail),
+        (9.7, Some(0.2), bounds(None, None), true, Fail),
+        (25.0, Some(0.2), bounds(None, None), true, KnownLimit),
+        (31.0, Some(0.2), bounds(None, None), true, Fail),
+        (10.3, None, bounds(Some(9.6), Some(10.4)), false, Pass),
+        (10.3, None, bounds(Some(10.2), Some(10.4)), false, Fail),
+        (10.3, None, bounds(Some(9.0), Some(11.0)), false, Info),
+        (25.0, None, bounds(Some(9.0), Some(11.0)), true, KnownLimit),
+        (10.3, Some(0.6), bounds(None, None), false, Info),
+    ] {
+        let reference = exact(10.0).map(|reference| Reference { uncertainty, ..reference });
+        let limit = limited.then(|| limit.clone());
+        let record = Record { value: Some(value), reference, accept, limit, ..Record::default() };
+        right.push(status(record) == expected);
+    }
     for (statuses, expected) in [
         (&[Fail, Pass, Info][..], Some(Fail)),
         (&[Pass, Error, Fail, Pass], Some(Error)),
         (&[Info, Pass, Info], Some(Pass)),
+        (&[KnownLimit, Pass], Some(KnownLimit)),
         (&[], None),
     ] {
         right.push(worst(statuses.iter().copied()) == expected);
@@ -117,8 +147,8 @@ fn verdicts(base: &Check) -> Vec<bool> {
         citation: String::new(),
         kind: ReferenceKind::Literature,
     };
-    let Accept { min, max, .. } = band.bounds(1e6);
-    right.push((min, max) == (Some(2.0), Some(5.0)));
+    let Reference { value, uncertainty, .. } = band.reference(1e6);
+    right.push((value, uncertainty) == (Some(3.5), Some(1.5)));
     right
 }
 

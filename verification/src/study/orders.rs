@@ -161,7 +161,7 @@ impl Convergence {
         for curve in &self.curves {
             for (index, norm) in self.norms.iter().enumerate() {
                 let levels = curve.errors(index);
-                let theory = |value| Reference::new(Some(value), ReferenceKind::Theory, &self.theory);
+                let theory = |value| Reference::at_least(value, ReferenceKind::Theory, &self.theory);
                 measurements.push(Measurement {
                     variant: curve.name.clone(),
                     quantity: Norm::order_of(&norm.quantity),

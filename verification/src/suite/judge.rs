@@ -11,7 +11,7 @@ use crate::case::expand::CaseScene;
 use crate::case::{Case, Check};
 use crate::measure::{Measured, expected};
 use crate::output::OutputFolder;
-use crate::record::{BoundKind, Expectation, Record, Status, Timing};
+use crate::record::{Record, Status, Timing};
 use crate::reference::Library;
 use crate::study::charts;
 use crate::study::scene::{FinishedScene, describe, evaluate, run_scenes};
@@ -30,7 +30,7 @@ pub(super) fn run_case(
             let (finished, stopped) = run_scenes(&prepared.scenes);
             judge_runs(case, prepared, &finished, stopped.as_ref(), out, library)
         }
-        Some(study) => judge_study(case, prepared, study, out, library),
+        Some(study) => judge_study(case, prepared, study, out),
     }
 }
 
@@ -66,7 +66,6 @@ fn judge_runs(
         let scene = &scenes[planned.scene.unwrap_or_default()];
         let check = &case.checks[planned.check];
         let mut record = bare_record(case, planned);
-        record.expectation = expectation(check, library);
         if let Some(run) = finished.iter().find(|run| run.case_scene.name == scene.name) {
             (record.work, record.timing) = (Some(run.work), run.timing);
         }
@@ -85,21 +84,8 @@ fn judge_runs(
 fn in_band(record: &mut Record, check: &Check, measured: Measured, library: &Library) -> Result<Measured, String> {
     let Some(path) = &check.band else { return Ok(measured) };
     let band = find_band(library, path).ok_or_else(|| format!("no reference band {path:?}"))?;
-    record.accept = band.bounds(check.scale);
-    Ok(Measured { reference: measured.reference.or(Some(band.reference())), ..measured })
-}
-
-/// What a check expects beside its bounds, not yet held against anything.
-fn expectation(check: &Check, library: &Library) -> Option<Expectation> {
-    let expected = check.expectation.as_ref()?;
-    let ([mut min, mut max], mut source) = (expected.range, expected.source.clone());
-    if let Some(band) = expected.band.as_ref().and_then(|path| find_band(library, path)) {
-        (min, max) = (Some(band.min * check.scale), Some(band.max * check.scale));
-        if source.is_empty() {
-            source = band.reference().source;
-        }
-    }
-    Some(Expectation { min, max, met: false, source })
+    record.accept.why = band.why();
+    Ok(Measured { reference: Some(band.reference(check.scale)), ..measured })
 }
 
 /// Checks of any other study: each names a quantity that the study measures.
@@ -108,7 +94,6 @@ fn judge_study(
     prepared: &Prepared,
     study: &Study,
     out: &OutputFolder,
-    library: &Library,
 ) -> Result<CaseOutcome, VerifyError> {
     let start = Instant::now();
     let found = (study.run)(case, &prepared.scenes).and_then(|findings| {
@@ -127,7 +112,6 @@ fn judge_study(
     let judged = prepared.records.iter().map(|planned| {
         let mut record = bare_record(case, planned);
         (record.timing, record.series) = (timing, series.clone());
-        record.expectation = expectation(&case.checks[planned.check], library);
         let scene = prepared.scenes.iter().find(|scene| scene.name == planned.variant);
         record.parameters = scene.map(parameters).unwrap_or_default();
         judge_finding(record, &case.checks[planned.check], planned, &findings)
@@ -161,12 +145,14 @@ fn judge(mut record: Record, check: &Check, measured: Measured) -> Record {
     }
     record.value = measured.value;
     record.reference = measured.reference;
-    record.decide(measured.u_num);
+    record.discretisation = measured.discretisation;
+    if record.uncertainty().is_some() && (record.accept.min.is_some() || record.accept.max.is_some()) {
+        return failed(record, "bounds of its own beside an uncertainty, which bounds the value: write them as limit");
+    }
+    record.decide();
     if record.value.is_none() {
         let otherwise = || "what is measured did not happen within the run".to_string();
         record.message = Some(measured.message.unwrap_or_else(otherwise));
-    } else if record.accept.kind == Some(BoundKind::Validation) && record.validation.is_none() {
-        record.message = Some("the reference has no uncertainty to be judged by".to_string());
     }
     record
 }
@@ -189,8 +175,8 @@ fn bare_record(case: &Case, planned: &Planned) -> Record {
         reference: None,
         accept: check.accept.clone(),
         status: Status::Info,
-        validation: None,
-        expectation: None,
+        discretisation: None,
+        limit: check.limit.clone(),
         message: None,
         series: None,
         work: None,

@@ -18,7 +18,7 @@ use crate::study::scene::concerned;
 use crate::study::{INPUTS, Offer, STUDIES, Study, find};
 
 /// Keys of a check that every study reads.
-const EVERYWHERE: [&str; 16] = [
+const EVERYWHERE: [&str; 17] = [
     "id",
     "formerly",
     "quantity",
@@ -27,6 +27,7 @@ const EVERYWHERE: [&str; 16] = [
     "expect",
     "expect_kind",
     "expect_source",
+    "expect_side",
     "uncertainty",
     "min",
     "max",
@@ -34,7 +35,7 @@ const EVERYWHERE: [&str; 16] = [
     "above",
     "bounds",
     "why",
-    "expectation",
+    "limit",
 ];
 
 /// A case that can run.
@@ -115,7 +116,6 @@ pub fn prepare(case: &Case, library: &Library) -> Result<Prepared, SceneFileErro
             }
         }
     }
-    wrong.look_at_expectations(library);
     wrong.look_for_twins(&records);
     wrong.look_for_copies();
     if wrong.problems.is_empty() { Ok(Prepared { scenes, records }) } else { Err(wrong.error()) }
@@ -211,17 +211,6 @@ impl Wrong<'_> {
             self.note(key("unit"), message, format!("unit = {:?}, or leave it out", offer.unit));
         }
         meant.iter().map(|offer| Planned { check: index, variant: offer.variant.clone(), scene: None }).collect()
-    }
-
-    /// Expectations in bands that are not there.
-    fn look_at_expectations(&mut self, library: &Library) {
-        for (index, check) in self.case.checks.iter().enumerate() {
-            let band = check.expectation.as_ref().and_then(|expected| expected.band.as_ref());
-            if let Some(path) = band.filter(|path| find_band(library, path).is_none()) {
-                let key = format!("check.{index}.expectation.band");
-                self.note(key, format!("no reference band {path:?}"), "name one of reference-data: folder/name");
-            }
-        }
     }
 
     /// Records with one id would hide each other, and a former id that is one of today leads astray.

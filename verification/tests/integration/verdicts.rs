@@ -1,6 +1,6 @@
-//! Verdicts from the keys of a check to the record: uncertainty, bounds of regression, expectations.
+//! The status of a record from the keys of its check: uncertainties, bounds of regression, known limits.
 
-use fisura_verification::record::{Agreement, BoundKind, Environment, Record, ReferenceKind, Status};
+use fisura_verification::record::{Environment, Record, ReferenceKind, Status};
 use fisura_verification::suite::VerifyError;
 
 use crate::support::{run, write_case};
@@ -47,29 +47,32 @@ fn one(check: &str) -> Record {
 }
 
 #[test]
-fn the_uncertainty_of_the_reference_decides_where_a_check_says_so() {
-    for (uncertainty, status, verdict) in
-        [(2e-7, Status::Pass, Agreement::Agrees), (5e-8, Status::Fail, Agreement::Differs)]
-    {
-        let record = one(&format!(
-            "expect = 2.51e-5\nexpect_kind = \"independent-code\"\nuncertainty = {uncertainty}\nbounds = \"validation\"\n\
-             why = \"half a unit of the last digit\""
-        ));
-        let validation = record.validation.as_ref().unwrap();
-        assert_eq!((record.status, validation.verdict), (status, verdict), "{record:?}");
-        assert!((validation.error + 0.01).abs() < 1e-9 && (validation.u_val - 1e5 * uncertainty).abs() < 1e-12);
-        assert_eq!(record.accept.kind, Some(BoundKind::Validation));
+fn the_uncertainty_of_the_reference_bounds_the_value() {
+    for (uncertainty, status) in [(2e-7, Status::Pass), (5e-8, Status::Fail)] {
+        let record =
+            one(&format!("expect = 2.51e-5\nexpect_kind = \"independent-code\"\nuncertainty = {uncertainty}"));
+        assert_eq!(record.status, status, "{record:?}");
+        assert!((record.uncertainty().unwrap() - 1e5 * uncertainty).abs() < 1e-12);
+        assert!((record.accept.max.unwrap() - 2.51 - 1e5 * uncertainty).abs() < 1e-9, "{record:?}");
     }
 }
 
 #[test]
 fn the_mesh_adds_its_part_of_the_uncertainty() {
-    let record =
-        one("meshes = \"finest-mesh\"\norder = 2\nexpect = 2.5e-5\nuncertainty = 1e-7\nbounds = \"validation\"\n\
-                      why = \"as far as both reach\"");
-    let validation = record.validation.unwrap();
-    assert!(validation.u_num.is_some_and(|u| u < 1e-9), "every mesh has the mass of the block: {validation:?}");
+    let record = one("meshes = \"finest-mesh\"\norder = 2\nexpect = 2.5e-5\nuncertainty = 1e-7");
+    let error = record.discretisation.as_ref().unwrap();
+    assert!(error.value < 1e-9 && error.from.contains("meshes"), "every mesh has the mass of the block: {error:?}");
     assert_eq!((record.status, record.id.as_str()), (Status::Pass, "trial/flight/kinetic"));
+}
+
+#[test]
+fn an_order_and_a_constant_give_the_discretisation_error() {
+    for (constant, status) in [(0.05, Status::Pass), (0.01, Status::Fail)] {
+        let record = one(&format!("expect = 2.51e-5\ndiscretisation = \"= {constant}*2.51e-5\"\nwhy = \"order 0\""));
+        let error = record.discretisation.as_ref().unwrap();
+        assert!((error.value - 2.51 * constant).abs() < 1e-9, "{error:?}");
+        assert_eq!(record.status, if constant > 0.03 { Status::Pass } else { status }, "{record:?}");
+    }
 }
 
 #[test]
@@ -82,38 +85,36 @@ fn numbers_of_the_library_bring_their_uncertainty() {
     let record = one("measure = \"value-at\"\nat = \"60 us\"\nreference = \"independent-fem/plate/kinetic-energy\"");
     let reference = record.reference.unwrap();
     assert!((reference.uncertainty.unwrap() / reference.value.unwrap() - 0.004).abs() < 1e-9, "{reference:?}");
-    assert_eq!(record.validation.unwrap().verdict, Agreement::Differs);
-    assert_eq!(record.status, Status::Info, "without bounds it is shown");
+    assert_eq!(record.status, Status::Fail, "it is far from the curve");
 }
 
 #[test]
-fn an_expectation_that_is_not_met_stands_beside_the_bounds_of_the_limit() {
-    let limit = "bounds = \"regression\"\nmin = 2.4\nmax = 2.6\nwhy = \"a known limit\"\n";
-    let expecting = |band: &str| one(&format!("{limit}expectation = {{ {band} }}"));
-    let met = expecting("min = 2.0, max = 3.0, source = \"a plan\"");
-    assert!(met.status == Status::Pass && !met.misses_expectation(), "{met:?}");
-    for band in
-        ["min = 3.0, source = \"a plan\"", "max = 2.0, source = \"a plan\"", "band = \"plate-events/branching-x\""]
-    {
-        let missed = expecting(band);
-        assert!(missed.status == Status::Pass && missed.misses_expectation() && missed.is_regression(), "{missed:?}");
-        assert_eq!(missed.reference.unwrap().kind, ReferenceKind::Regression);
-    }
+fn a_value_within_a_documented_limit_is_a_known_limit() {
+    let limited = |limit: &str| {
+        one(&format!("expect = 3e-5\nmin = 2.99\nmax = 3.01\nwhy = \"theory\"\nlimit = {{ {limit}, why = \"a cause\" }}"))
+    };
+    let within = limited("min = 2.4, max = 2.6");
+    assert!(within.status == Status::KnownLimit && within.limit.is_some(), "{within:?}");
+    assert_eq!(limited("min = 2.6").status, Status::Fail);
+    let of_uncertainty =
+        one("expect = 3e-5\nuncertainty = 1e-7\nlimit = { min = 2.4, max = 2.6, why = \"a cause\" }");
+    assert_eq!(of_uncertainty.status, Status::KnownLimit);
 }
 
 #[test]
 fn keys_that_say_nothing_are_refused() {
     for (check, expected) in [
-        ("bounds = \"validation\"\nmax = 1.0\nwhy = \"w\"", "bounds of its own beside those of the uncertainty"),
+        ("expect = 1.0\nuncertainty = 0.1\nmax = 1.0\nwhy = \"w\"", "bounds of its own beside those of the uncertainty"),
         ("bounds = \"regression\"\nwhy = \"w\"", "without bounds"),
-        ("bounds = \"validation\"", "bounds without a reason"),
-        ("expect = 1.0\nbounds = \"validation\"\nwhy = \"w\"", "an uncertainty that is not given"),
+        ("bounds = \"validation\"", "validation"),
+        ("max = 1.0", "bounds without a reason"),
+        ("expect = 1.0\ndiscretisation = 0.1", "bounds without a reason"),
         ("expect = 1.0\nuncertainty = 0.0", "no uncertainty"),
         ("uncertainty = 0.1", "uncertainty without expect"),
-        ("expectation = { max = 1.0 }", "an expectation without a source"),
-        ("expectation = { source = \"a plan\" }", "band of the reference data or has bounds"),
-        ("expectation = { min = 2.0, max = 1.0, source = \"a plan\" }", "min is above max"),
-        ("expectation = { band = \"plate-events/none\" }", "no reference band"),
+        ("expect_side = \"at-least\"", "expect_side without expect"),
+        ("limit = { max = 1.0 }", "a limit without a cause"),
+        ("limit = { why = \"a cause\" }", "a limit without bounds"),
+        ("limit = { min = 2.0, max = 1.0, why = \"a cause\" }", "min is above max"),
         ("reference = \"independent-fem/none\"", "no reference value or curve"),
     ] {
         let error = records(check).unwrap_err().to_string();

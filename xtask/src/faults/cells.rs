@@ -29,8 +29,10 @@ pub struct Cell {
     key: String,
     /// Wall time on one thread, s.
     pub seconds: f64,
-    /// Records that fail or are errors.
+    /// Records that fail or are errors; with a fault also those that pass in the sound run and no longer do.
     pub red: Vec<String>,
+    /// Records within a known limit.
+    limited: Vec<String>,
     /// Of a sound run: records that pass, which are those that could turn red.
     pub green: Vec<String>,
     /// Of a sound run: faults whose sites it passes.
@@ -90,7 +92,11 @@ impl<'a> Store<'a> {
     /// # Errors
     /// If it cannot be written.
     pub fn put(&self, fault: Option<&str>, case: &str, ending: Ending) -> Result<(), OutputError> {
-        let cell = Cell::new(fault, case, self.keys.get(case).cloned().unwrap_or_default(), ending);
+        let mut cell = Cell::new(fault, case, self.keys.get(case).cloned().unwrap_or_default(), ending);
+        if let Some(sound) = fault.and_then(|_| self.get(None, case)) {
+            let lost = cell.limited.iter().filter(|id| sound.green.contains(id));
+            cell.red.extend(lost.cloned());
+        }
         self.folder.write_json(&format!("{FOLDER}{}/{case}.json", fault.unwrap_or("none")), &cell)?;
         self.cells().insert((cell.fault.clone(), cell.case.clone()), cell);
         Ok(())
@@ -120,12 +126,13 @@ impl Cell {
             ids.collect::<Vec<String>>()
         };
         let red = those(|status| matches!(status, Status::Fail | Status::Error));
+        let limited = those(|status| status == Status::KnownLimit);
         let sound = fault.is_none();
         let green = if sound { those(|status| status == Status::Pass) } else { Vec::new() };
-        Self { fault, case, key, seconds, red, green, passed: if sound { passed } else { Vec::new() }, ended }
+        Self { fault, case, key, seconds, red, limited, green, passed: if sound { passed } else { Vec::new() }, ended }
     }
 
-    /// Whether every check holds.
+    /// Whether no check fails.
     pub fn holds(&self) -> bool {
         self.red.is_empty() && self.ended.is_none()
     }

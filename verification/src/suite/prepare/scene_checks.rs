@@ -9,13 +9,12 @@ use crate::case::Check;
 use crate::case::expand::CaseScene;
 use crate::measure::{LooksAt, Measure, Run, find};
 use crate::output::history::Table;
-use crate::record::BoundKind;
 use crate::reference::{Library, relative_uncertainty};
 use crate::scene::suggest::nearest;
 use crate::study::scene::concerned;
 
 /// Keys that every measure reads, beside those of every study.
-const MEASURED: [&str; 6] = ["measure", "scale", "band", "reference", "meshes", "order"];
+const MEASURED: [&str; 7] = ["measure", "scale", "band", "reference", "meshes", "order", "discretisation"];
 /// Times that differ by less than this part are the same.
 const SLACK: f64 = 1e-9;
 
@@ -61,10 +60,7 @@ fn look_at_reference(wrong: &mut Wrong<'_>, index: usize, measure: &Measure, che
             Err(message) => {
                 wrong.note(at("reference"), message, "write reference = \"folder/name\" as in reference-data");
             }
-            Ok(reference) if reference.uncertainty.is_none() && check.accept.kind == Some(BoundKind::Validation) => {
-                wrong.note(at("bounds"), "the reference has no uncertainty", "give bounds of another kind");
-            }
-            Ok(_) => {}
+            Ok(reference) => look_at_bounds(wrong, index, check, reference.uncertainty),
         }
         return;
     }
@@ -77,8 +73,18 @@ fn look_at_reference(wrong: &mut Wrong<'_>, index: usize, measure: &Measure, che
         let [first, last] = curve.range();
         let remedy = format!("choose from and to between {first:e} s and {last:e} s");
         wrong.note(at("from"), "the reference curve has no point between from and to", remedy);
-    } else if relative_uncertainty(curve, from, to).is_none() && check.accept.kind == Some(BoundKind::Validation) {
-        wrong.note(at("bounds"), "the reference curve has no uncertainty", "give bounds of another kind");
+    } else {
+        look_at_bounds(wrong, index, check, relative_uncertainty(curve, from, to));
+    }
+}
+
+/// A reference with an uncertainty bounds the value itself.
+fn look_at_bounds(wrong: &mut Wrong<'_>, index: usize, check: &Check, uncertainty: Option<f64>) {
+    let bounded = check.accept.min.is_some() || check.accept.max.is_some() || check.around_reference.is_some();
+    if uncertainty.is_some() && bounded {
+        let remedy = "write them as limit = { max = …, why = \"…\" }";
+        let message = "bounds of its own, where the reference has an uncertainty";
+        wrong.note(format!("check.{index}"), message, remedy);
     }
 }
 

@@ -1,0 +1,197 @@
+use super::*;
+
+fn both(min: f64, max: f64) -> Accept {
+    Accept { min: Some(min), max: Some(max), ..Accept::default() }
+}
+
+fn reference(value: f64, uncertainty: Option<f64>) -> Option<Reference> {
+    Some(Reference { value: Some(value), uncertainty, ..Reference::default() })
+}
+
+fn limit(min: f64, max: f64) -> Option<Limit> {
+    Some(Limit { min: Some(min), max: Some(max), why: "a cause".into() })
+}
+
+fn mesh(value: f64) -> Option<Discretisation> {
+    Some(Discretisation { value, from: "a family of meshes".into() })
+}
+
+fn decided(mut record: Record) -> Status {
+    record.decide();
+    record.status
+}
+
+#[test]
+fn a_value_outside_its_bounds_or_missing_fails() {
+    for (accept, inside, outside) in [
+        (both(1.0, 2.0), [1.0, 2.0], [0.9, 2.1]),
+        (Accept { max: Some(2.0), ..Accept::default() }, [-9.0, 2.0], [2.1, f64::NAN]),
+        (Accept { min: Some(1.0), ..Accept::default() }, [1.0, 9.0], [0.9, f64::INFINITY]),
+    ] {
+        let status = |value| decided(Record { value, accept: accept.clone(), ..Record::default() });
+        assert_eq!(inside.map(|v| status(Some(v))), [Status::Pass; 2], "{accept:?}");
+        assert_eq!(outside.map(|v| status(Some(v))), [Status::Fail; 2], "{accept:?}");
+        assert_eq!(status(None), Status::Fail, "{accept:?}");
+    }
+    assert_eq!(decided(Record::default()), Status::Info);
+}
+
+/// Leaving out either uncertainty, or the sign of the error, gives another status in one of these rows.
+#[test]
+fn both_uncertainties_bound_the_value() {
+    for (value, u_ref, u_num, status) in [
+        (10.3, Some(0.4), None, Status::Pass),
+        (9.7, Some(0.4), None, Status::Pass),
+        (10.3, Some(0.2), None, Status::Fail),
+        (9.7, Some(0.2), None, Status::Fail),
+        (10.3, Some(0.2), Some(0.3), Status::Pass),
+        (10.3, Some(0.3), Some(0.2), Status::Pass),
+        (10.3, Some(0.2), Some(0.2), Status::Fail),
+        (10.3, None, Some(0.4), Status::Pass),
+        (10.3, None, Some(0.2), Status::Fail),
+    ] {
+        let (value, discretisation) = (Some(value), u_num.and_then(mesh));
+        let mut record = Record { value, reference: reference(10.0, u_ref), discretisation, ..Record::default() };
+        record.decide();
+        assert_eq!(record.status, status, "{record:?}");
+        let half_width = u_ref.unwrap_or(0.0).hypot(u_num.unwrap_or(0.0));
+        let [min, max] = [record.accept.min, record.accept.max].map(Option::unwrap);
+        assert!((max - 10.0 - half_width).abs() < 1e-12 && (min - 10.0 + half_width).abs() < 1e-12, "{record:?}");
+    }
+    let distance = |value| {
+        let curve = Some(Reference { uncertainty: Some(0.01), ..Reference::default() });
+        decided(Record { value: Some(value), reference: curve, ..Record::default() })
+    };
+    assert_eq!([distance(0.009), distance(0.011)], [Status::Pass, Status::Fail]);
+}
+
+#[test]
+fn bounds_that_exclude_their_reference_make_no_pass() {
+    let held = |value: f64, accept: Accept, limit: Option<Limit>| {
+        decided(Record { value: Some(value), reference: reference(1.0, None), accept, limit, ..Record::default() })
+    };
+    assert_eq!(held(1.3, both(1.2, 1.4), None), Status::Fail);
+    assert_eq!(held(1.3, both(0.98, 1.02), limit(1.2, 1.4)), Status::KnownLimit);
+    assert_eq!(held(1.01, both(0.98, 1.02), limit(1.2, 1.4)), Status::Pass);
+    assert_eq!(held(1.1, both(0.98, 1.02), limit(1.2, 1.4)), Status::Fail, "between agreement and limit");
+    assert_eq!(held(1.5, both(0.98, 1.02), limit(1.2, 1.4)), Status::Fail);
+    assert_eq!(held(1.3, Accept::default(), limit(1.2, 1.4)), Status::KnownLimit);
+    assert_eq!(held(1.0, Accept::default(), limit(1.2, 1.4)), Status::Fail);
+    let typed = both(1.0 + 1e-12, 1.0 + 1e-12);
+    assert_eq!(held(1.0 + 1e-12, typed, None), Status::Pass, "round-off of a typed bound");
+}
+
+#[test]
+fn more_than_a_twentieth_of_the_reference_is_no_agreement() {
+    let held = |accept: Accept, uncertainty, limit| {
+        let reference = reference(2.0, uncertainty);
+        decided(Record { value: Some(2.05), reference, accept, limit, ..Record::default() })
+    };
+    assert_eq!(held(both(1.9, 2.1), None, None), Status::Pass);
+    assert_eq!(held(both(1.9, 2.2), None, None), Status::Info);
+    assert_eq!(held(Accept { min: Some(1.9), ..Accept::default() }, None, None), Status::Info);
+    assert_eq!(held(Accept::default(), Some(0.09), None), Status::Pass);
+    assert_eq!(held(Accept::default(), Some(0.2), None), Status::Info);
+    assert_eq!(held(Accept::default(), Some(0.2), limit(2.0, 2.5)), Status::KnownLimit);
+    assert_eq!(held(Accept::default(), Some(0.2), limit(2.2, 2.5)), Status::Fail);
+    let missing = Record { reference: reference(2.0, Some(0.2)), ..Record::default() };
+    assert_eq!(decided(missing), Status::Info);
+    let of_zero = Record { value: Some(0.1), reference: reference(0.0, None), accept: both(0.0, 0.2), ..Record::default() };
+    assert_eq!(decided(of_zero), Status::Pass, "a fraction of zero says nothing");
+}
+
+#[test]
+fn a_lower_or_upper_bound_is_met_on_its_side() {
+    let held = |side, value: f64, accept: Accept| {
+        let reference = Some(Reference { side, ..Reference::new(Some(3.0), ReferenceKind::Theory, "p + 1") });
+        decided(Record { value: Some(value), reference, accept, ..Record::default() })
+    };
+    let order = both(2.9, 3.5);
+    assert_eq!(held(Side::AtLeast, 3.3, order.clone()), Status::Pass);
+    assert_eq!(held(Side::AtLeast, 3.6, order.clone()), Status::Fail);
+    assert_eq!(held(Side::AtLeast, 2.8, order.clone()), Status::Fail);
+    assert_eq!(held(Side::Both, 3.3, order), Status::Info);
+    assert_eq!(held(Side::AtMost, 2.0, both(0.0, 3.1)), Status::Pass);
+    assert_eq!(held(Side::AtMost, 2.0, both(0.0, 3.3)), Status::Info);
+}
+
+#[test]
+fn a_bound_chosen_after_the_result_is_one_of_regression() {
+    let of = |reference, regression, max| {
+        let accept = Accept { max, regression, ..Accept::default() };
+        let mut record = Record { value: Some(1.0), reference, accept, ..Record::default() };
+        record.decide();
+        record
+    };
+    let record = of(None, true, Some(2.0));
+    assert!(record.is_regression() && record.reference.unwrap().kind == ReferenceKind::Regression);
+    assert!(!of(None, true, None).is_regression(), "without bounds");
+    assert!(!of(None, false, Some(2.0)).is_regression());
+}
+
+/// Records in which every part of the judgement matters, with the status they deserve.
+fn table() -> Vec<(Record, Status)> {
+    use Status::{Fail, Info, KnownLimit, Pass};
+    let mut rows = Vec::new();
+    for (value, status) in [(0.5, Fail), (1.5, Pass), (2.5, Fail)] {
+        rows.push((Record { value: Some(value), accept: both(1.0, 2.0), ..Record::default() }, status));
+    }
+    for (value, u_ref, u_num, status) in
+        [(10.3, 0.4, None, Pass), (9.7, 0.2, None, Fail), (10.3, 0.2, Some(0.3), Pass), (10.3, 2.0, None, Info)]
+    {
+        let (reference, discretisation) = (reference(10.0, Some(u_ref)), u_num.and_then(mesh));
+        rows.push((Record { value: Some(value), reference, discretisation, ..Record::default() }, status));
+    }
+    for (value, status) in [(1.9, Fail), (2.5, KnownLimit), (3.1, Fail)] {
+        let (reference, limit) = (reference(1.0, None), limit(2.0, 3.0));
+        rows.push((Record { value: Some(value), reference, accept: both(0.96, 1.04), limit, ..Record::default() }, status));
+    }
+    let excluded = Record { value: Some(1.02), reference: reference(1.0, None), ..Record::default() };
+    rows.push((Record { accept: both(1.01, 1.04), ..excluded }, Fail));
+    rows
+}
+
+#[test]
+fn a_judge_that_ignores_a_part_of_the_record_is_caught() {
+    type Ignore = fn(&mut Record);
+    let wrong = |ignore: Ignore| {
+        let judged = table().into_iter().map(|(mut record, deserved)| {
+            ignore(&mut record);
+            decided(record) != deserved
+        });
+        judged.filter(|wrong| *wrong).count()
+    };
+    assert_eq!(wrong(|_| {}), 0);
+    let of_reference = |record: &mut Record, change: fn(&mut Reference)| record.reference.iter_mut().for_each(change);
+    assert!(wrong(|r| r.reference = None) > 0, "the reference");
+    let ignorant: [(&str, Ignore); 8] = [
+        ("the lower bound", |r| r.accept.min = None),
+        ("the upper bound", |r| r.accept.max = None),
+        ("the discretisation error", |r| r.discretisation = None),
+        ("the limit", |r| r.limit = None),
+        ("the lower end of the limit", |r| r.limit.iter_mut().for_each(|limit| limit.min = None)),
+        ("the upper end of the limit", |r| r.limit.iter_mut().for_each(|limit| limit.max = None)),
+        ("the value of the reference", |r| r.reference.iter_mut().for_each(|r| r.value = None)),
+        ("the uncertainty", |r| r.reference.iter_mut().for_each(|r| r.uncertainty = r.uncertainty.map(|_| 0.0))),
+    ];
+    for (what, ignore) in ignorant {
+        assert!(wrong(ignore) > 0, "a judge may ignore {what}");
+    }
+    let mut record = table().remove(3).0;
+    of_reference(&mut record, |reference| reference.side = Side::AtMost);
+    assert_eq!(decided(record), Status::Pass);
+}
+
+#[test]
+fn the_worst_status_counts() {
+    use Status::{Error, Fail, Info, KnownLimit, Pass};
+    for (statuses, expected) in [
+        (&[Fail, Pass, Info][..], Some(Fail)),
+        (&[Pass, Error, Fail], Some(Error)),
+        (&[KnownLimit, Pass, Info], Some(KnownLimit)),
+        (&[Info, Pass], Some(Pass)),
+        (&[], None),
+    ] {
+        assert_eq!(worst(statuses.iter().copied()), expected);
+    }
+}
