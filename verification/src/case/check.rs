@@ -150,7 +150,7 @@ struct LimitTable {
     min: Option<Quantity>,
     /// Largest value within the limit.
     max: Option<Quantity>,
-    /// Cause of the limit, and where its bounds come from.
+    /// Cause of the limit, and where its bounds come from; that of the check, if absent.
     #[serde(default)]
     why: String,
 }
@@ -201,7 +201,7 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
     }
     let around_reference = around(&table, item);
     let accept = accept(&table, item);
-    let limit = table.limit.map(|table| limit(table, &item.at("limit").expect("it is read")));
+    let limit = table.limit.map(|limited| limit(limited, &table.why, &item.at("limit").expect("it is read")));
     Some(Check {
         id: table.id?.0,
         formerly: table.formerly.into_iter().map(|id| id.0).collect(),
@@ -231,9 +231,13 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
     })
 }
 
-/// A documented limit has bounds, a cause, and nothing the wrong way round.
-fn limit(table: LimitTable, item: &Item<'_>) -> Option<Limit> {
-    let LimitTable { min, max, why } = table;
+/// A documented limit has bounds, a cause, which may be the reason of the check, and nothing the wrong way
+/// round.
+fn limit(table: LimitTable, reason: &str, item: &Item<'_>) -> Option<Limit> {
+    let LimitTable { min, max, mut why } = table;
+    if why.trim().is_empty() {
+        why = reason.to_string();
+    }
     let (min, max) = (number(min), number(max));
     if min.is_none() && max.is_none() {
         return item.fail("a limit without bounds", "give min, max or both");

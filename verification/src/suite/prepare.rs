@@ -201,8 +201,8 @@ impl Wrong<'_> {
             let remedy = "give min and max, or the value with expect";
             self.note(key("below"), "there is no reference value from which below and above could count", remedy);
         }
-        if check.expect.is_some() && meant.iter().any(|offer| offer.held) {
-            let remedy = "remove expect; below and above count from the value of the study";
+        if check.expect.is_some() && check.expect_source.is_empty() && meant.iter().any(|offer| offer.held) {
+            let remedy = "remove expect, or say in expect_source what holds here instead";
             self.note(key("expect"), "the study has a reference value of its own", remedy);
         }
         let given = self.case.document.root.at(&key("unit")).is_some();
