@@ -116,6 +116,8 @@ pub struct Check {
     pub order: Option<f64>,
     /// Bounds.
     pub accept: Accept,
+    /// Why the value is shown beside its reference and not judged.
+    pub shown: Option<String>,
     /// Documented limit, in which a value may lie that does not agree with its reference.
     pub limit: Option<Limit>,
     /// Numbers that a formula gives for every run; until then they are not a number above.

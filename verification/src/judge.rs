@@ -151,7 +151,7 @@ fn plate(
         let known = !differences.is_empty();
         let all = quantities.iter_mut().flat_map(|q| &mut q.comparisons).chain(&mut events);
         all.for_each(|comparison| explained_by_difference(comparison, known));
-        quantities.iter_mut().for_each(curves::worst);
+        quantities.iter_mut().for_each(curves::conclude);
     }
     let mut verdict = Verdict {
         folder: folder.to_string(),

@@ -9,6 +9,7 @@ mod compressive_step;
 mod constant_stress;
 pub(crate) mod contact;
 pub(crate) mod convergence;
+mod crack_cost;
 mod crack_profile;
 mod dense;
 mod eigenfrequencies;
@@ -111,7 +112,7 @@ const NOTHING: &[&str] = &[];
 const SCENES: &[&str] = &["scene", "variant"];
 
 /// Studies other than `scene`.
-pub static STUDIES: [Study; 26] = [
+pub static STUDIES: [Study; 27] = [
     Study { name: "basis", reads: NOTHING, offers: basis::offers, run: basis::study },
     Study { name: "constant-stress", reads: SCENES, offers: constant_stress::offers, run: constant_stress::study },
     Study {
@@ -125,6 +126,7 @@ pub static STUDIES: [Study; 26] = [
     Study { name: "convergence", reads: &["convergence"], offers: convergence::offers, run: convergence::study },
     Study { name: "vibration", reads: NOTHING, offers: vibration::offers, run: vibration::study },
     Study { name: "pulse", reads: NOTHING, offers: pulse::offers, run: pulse::study },
+    Study { name: "crack-cost", reads: NOTHING, offers: crack_cost::offers, run: crack_cost::study },
     Study { name: "crack-profile", reads: NOTHING, offers: crack_profile::offers, run: crack_profile::study },
     Study { name: "rotation", reads: SCENES, offers: rotation::offers, run: rotation::study },
     Study { name: "eigenfrequencies", reads: NOTHING, offers: eigenfrequencies::offers, run: eigenfrequencies::study },

@@ -27,8 +27,8 @@ pub struct Args {
     /// Error against cost of all submissions in reference-data/submissions, and of the folders given
     #[arg(long)]
     board: bool,
-    /// Hold the plate against this reference instead of the nearest variant: slit, plane-stress,
-    /// independent-fem, …
+    /// Compare the plate with this reference instead of the nearest variant: slit, plane-stress,
+    /// low-traction, …
     #[arg(long, value_name = "ID")]
     against: Option<String>,
 }

@@ -165,15 +165,18 @@ pub fn quantities(curves: &[Option<Curve>; 6], variant: &Variant<'_>, numerics: 
             }
         };
         let mut verdict = QuantityVerdict { quantity: words, outcome: Outcome::Diagnostic, comparisons };
-        worst(&mut verdict);
+        conclude(&mut verdict);
         verdict
     });
     judged.collect()
 }
 
-/// The verdict on a quantity from those on its phases.
-pub fn worst(verdict: &mut QuantityVerdict) {
-    verdict.outcome = verdict.comparisons.iter().map(|c| c.outcome).max().unwrap_or_default();
+/// The verdict on a quantity: it fails where any phase fails, and is that on the whole curve otherwise. One
+/// phase that agrees hides no curve that does not.
+pub fn conclude(verdict: &mut QuantityVerdict) {
+    let fails = verdict.comparisons.iter().any(|c| c.outcome == Outcome::Fail);
+    let whole = verdict.comparisons.first().map(|c| c.outcome).unwrap_or_default();
+    verdict.outcome = if fails { Outcome::Fail } else { whole };
 }
 
 fn unit(quantity: usize) -> &'static str {

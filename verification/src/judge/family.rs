@@ -106,7 +106,7 @@ impl<'a> Variant<'a> {
         let curves = QUANTITIES.map(|q| library.curve(id, &format!("{prefix}/{}", q.reference)));
         let Some(first) = curves.iter().flatten().next() else {
             let known: Vec<&str> = FAMILY.iter().map(|d| d.name).collect();
-            return Err((format!("no reference {id:?}"), format!("give one of {}, independent-fem", known.join(", "))));
+            return Err((format!("no reference {id:?}"), format!("give one of {}", known.join(", "))));
         };
         let time = |name: &str| Some(library.value(FOLDER, &format!("{}/{name}", declared.name))?.value);
         let onset = time("onset-time").ok_or_else(|| {

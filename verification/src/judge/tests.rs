@@ -55,10 +55,10 @@ fn a_result_of_fisura_has_the_figures_of_verify() {
     let history = Table::read(&of(SOUND).join("history.csv")).unwrap();
     let values = BTreeMap::new();
     let run = Run { name: "p2", scene: &scene, history: &history, frames: &[], energy_factor: 2.0, values: &values };
-    let verdict = judged(&of(SOUND), Some("independent-fem")).verdict;
+    let verdict = judged(&of(SOUND), None).verdict;
     let mut compared = 0;
     for check in &case.checks {
-        let Some(quantity) = check.reference.as_deref().and_then(|r| r.strip_prefix("independent-fem/plate/")) else {
+        let Some(quantity) = check.reference.as_deref().and_then(|r| r.strip_prefix("plate-family/plate/")) else {
             continue;
         };
         let value = measure(check, &run, &[run], &library()).unwrap().value.unwrap() / check.scale;

@@ -87,7 +87,7 @@ pub struct Comparison {
 pub struct QuantityVerdict {
     /// Words.
     pub quantity: String,
-    /// The worst of its comparisons.
+    /// Fail where a comparison fails, else that of the whole curve.
     pub outcome: Outcome,
     /// Whole curve first, then phases.
     pub comparisons: Vec<Comparison>,

@@ -71,35 +71,33 @@ fn every_committed_folder_loads_and_says_where_it_comes_from() {
     // A reader may have added figures of the source paper.
     let elastic = library.curves("plate/elastic-energy").into_iter().map(|c| c.id.as_str());
     let elastic: Vec<_> = elastic.filter(|id| !id.starts_with("estrada-2024")).collect();
-    let mandal = ["mandal-2020/at2", "mandal-2020/at1", "mandal-2020/pfczm"];
-    assert_eq!((elastic[0], &elastic[1..4]), ("independent-fem", &mandal[..]));
-    assert_eq!(elastic[4..], ["raibagi-2022", "raibagi-benchmark-digitised"]);
+    let others = ["plate-family", "raibagi-2022", "raibagi-benchmark-digitised"];
+    assert_eq!(elastic[..3], ["mandal-2020/at2", "mandal-2020/at1", "mandal-2020/pfczm"]);
+    assert_eq!(elastic[3..], others);
 }
 
 #[test]
 fn committed_numbers_come_out_in_si_units() {
     let library = Library::load(&committed()).unwrap();
-    let tip = library.curve("independent-fem", "plate/tip-x").unwrap();
-    assert_eq!((tip.x[35], tip.x_unit, tip.y_unit), (35e-6, "s", "m"));
-    assert_eq!((tip.y[0], tip.uncertainty_absolute), (50.196e-3, 0.25e-3));
+    let tip = library.curve("plate-family", "plate/tip-x").unwrap();
+    assert_eq!((tip.x[70], tip.x_unit, tip.y_unit), (35e-6, "s", "m"));
+    assert!((50.1e-3..50.3e-3).contains(&tip.y[0]) && (0.1e-3..1e-3).contains(&tip.uncertainty_absolute), "{tip:?}");
     let time = library.band("plate-events", "branching-time").unwrap();
     assert_eq!((time.min, time.max, time.unit), (30.5e-6, 38e-6, "s"));
-    let value = library.value("independent-fem", "elastic-energy-80us").unwrap();
-    assert_eq!((value.value, value.unit), (0.0889, "J/m"));
+    let value = library.value("plate-family", "plane-stress/onset-time").unwrap();
+    assert_eq!((value.value, value.unit), (12.7e-6, "s"));
     assert_eq!(library.value("estrada-2024", "plate-density").unwrap().unit, "kg/m^3");
     assert_eq!(library.value("estrada-2024", "rings-young-modulus").unwrap().value, 190e9);
 }
 
 #[test]
-fn the_sharp_reference_lies_in_its_bands_and_near_its_extrapolated_values() {
+fn the_reference_of_the_plate_lies_in_its_bands() {
     let library = Library::load(&committed()).unwrap();
-    let increment = library.curve("independent-fem", "plate/fracture-increment").unwrap();
+    let increment = library.curve("plate-family", "plate/fracture-increment").unwrap();
     for (time, name) in [(50e-6, "fracture-increment-50us"), (80e-6, "fracture-increment-80us")] {
         let band = library.band("plate-events", name).unwrap();
         let value = increment.at(time).unwrap();
         assert!((band.min..=band.max).contains(&value), "{name}: {value}");
-        let sharp = library.value("independent-fem", name).unwrap().value;
-        assert!((value - sharp).abs() <= 1.1 * increment.uncertainty(value), "{name}: {value} against {sharp}");
     }
 }
 

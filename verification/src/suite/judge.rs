@@ -149,7 +149,10 @@ fn judge(mut record: Record, check: &Check, measured: Measured) -> Record {
     if record.uncertainty().is_some() && (record.accept.min.is_some() || record.accept.max.is_some()) {
         return failed(record, "bounds of its own beside an uncertainty, which bounds the value: write them as limit");
     }
-    record.decide();
+    match &check.shown {
+        Some(why) => record.accept.why.clone_from(why),
+        None => record.decide(),
+    }
     if record.value.is_none() {
         let otherwise = || "what is measured did not happen within the run".to_string();
         record.message = Some(measured.message.unwrap_or_else(otherwise));

@@ -18,7 +18,7 @@ use crate::study::scene::concerned;
 use crate::study::{INPUTS, Offer, STUDIES, Study, find};
 
 /// Keys of a check that every study reads.
-const EVERYWHERE: [&str; 17] = [
+const EVERYWHERE: [&str; 18] = [
     "id",
     "formerly",
     "quantity",
@@ -36,6 +36,7 @@ const EVERYWHERE: [&str; 17] = [
     "bounds",
     "why",
     "limit",
+    "shown",
 ];
 
 /// A case that can run.
