@@ -2,7 +2,7 @@
 //!
 //! [`render`] writes `samples.csv` (every sample), `figures/timing/*.svg`, `summary.md` (with links to the
 //! figures) and `bench.html` (figures inline). Everything is a pure function of `bench.json`:
-//! [`work_precision`], [`plate`](mod@plate), [`stages`], [`contact`], [`motion`], [`scale`] and
+//! [`work_precision`], [`plate`](mod@plate), [`plate_match`], [`stages`], [`contact`], [`motion`], [`scale`] and
 //! [`conditions`] make the exhibits, [`ratios`] holds the targets, [`bars`] draws bars, [`page`] puts it
 //! together.
 
@@ -13,6 +13,8 @@ pub mod motion;
 pub mod page;
 pub mod pareto;
 pub mod plate;
+pub mod plate_match;
+mod ratio_list;
 pub mod ratios;
 pub mod scale;
 pub mod stages;

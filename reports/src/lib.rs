@@ -22,7 +22,7 @@
 //! [`paper`] finds the figures of the source paper, [`bundle`] writes a figure with its numbers, caption and
 //! provenance.
 //!
-//! [`judge`] shows verdicts on results of other codes, and error against cost of all of them.
+//! [`judge`] shows verdicts on results of other codes, and the errors of all of them.
 //!
 //! [`vtk`] writes the files that ParaView opens.
 //!

@@ -9,7 +9,7 @@
 //! | family | question |
 //! |---|---|
 //! | `work-precision` | what an error costs: degrees, mass, layouts and frames, one problem ([`wave`]) |
-//! | `plate` | what an error of the plate costs, against the independent finite elements ([`plate`]) |
+//! | `plate` | what an error of the plate costs, for fisura and for the independent finite elements ([`plate`]) |
 //! | `stages` | where the time of a step goes, beside a plain kernel ([`stages`], [`minimal`]) |
 //! | `solves` | the phase-field solver against plain ones ([`solves`]) |
 //! | `threads` | what another thread brings ([`threads`]) |
@@ -26,12 +26,15 @@ pub mod block;
 pub mod ceilings;
 pub mod contact;
 pub mod elements;
+pub mod mesh_toughness;
 pub mod minimal;
 pub mod motion;
 pub mod moving_block;
 pub mod peer;
 pub mod plate;
-mod plate_error;
+pub mod plate_error;
+mod plate_scene;
+mod plate_share;
 pub mod record;
 pub mod scale;
 pub mod scenes;
@@ -55,7 +58,8 @@ use crate::reference::{Library, ReferenceError, ReferenceValue};
 use crate::scene::SceneFileError;
 use crate::study::StudyError;
 use baseline::Baseline;
-use record::{BenchRecord, BenchSet, CostPoint, NamedPeer, SCHEMA};
+use elements::Built;
+use record::{BenchRecord, BenchSet, NamedPeer, SCHEMA};
 
 /// What is to be measured, and where the files are.
 #[derive(Debug, Clone)]
@@ -77,7 +81,7 @@ pub struct Settings<'a> {
     /// Families to run; empty: all.
     pub families: Vec<String>,
     /// The program of the finite elements, or why there is none, once it was asked for.
-    pub elements: OnceLock<Result<PathBuf, String>>,
+    pub elements: OnceLock<Result<Built, String>>,
 }
 
 impl Settings<'_> {
@@ -176,7 +180,6 @@ pub struct Session<'a> {
     settings: &'a Settings<'a>,
     environment: Environment,
     peers: Vec<NamedPeer>,
-    fem: Vec<CostPoint>,
     families: Vec<(&'static str, Family)>,
     measured: Mutex<(usize, Vec<BenchRecord>)>,
 }
@@ -197,7 +200,6 @@ impl<'a> Session<'a> {
             settings,
             environment,
             peers: named_peers(&library)?,
-            fem: plate::finite_elements(&library),
             families: FAMILIES.into_iter().filter(|(name, _)| wanted(name)).collect(),
             measured: Mutex::default(),
         })
@@ -229,10 +231,10 @@ impl<'a> Session<'a> {
             record.verify(false, answer);
             records.push(record);
         }
-        let (environment, peers, fem) = (self.environment.clone(), self.peers.clone(), self.fem.clone());
+        let (environment, peers) = (self.environment.clone(), self.peers.clone());
         let unbuilt = self.settings.elements.get().and_then(|built| built.as_ref().err().cloned());
         let quick = self.settings.quick;
-        BenchSet { schema: SCHEMA.into(), environment, quick, records, peers, fem, fem_unbuilt: unbuilt }
+        BenchSet { schema: SCHEMA.into(), environment, quick, records, peers, fem_unbuilt: unbuilt }
     }
 }
 
@@ -298,7 +300,5 @@ mod tests {
         let warp = peers.iter().find(|p| p.code.starts_with("Warp") && p.quantity == "over-tuned-kernel").unwrap();
         assert_eq!((warp.degree, warp.value), (2, 3.2));
         assert!(warp.conditions.contains("2026") && warp.conditions.contains("2.5 GHz"), "{}", warp.conditions);
-        let fem = plate::finite_elements(&library);
-        assert_eq!(fem.iter().map(|point| point.cpu_s).collect::<Vec<_>>(), [49.0, 412.0]);
     }
 }

@@ -1,7 +1,6 @@
 //! `check SCENE.toml`: what will be modelled and what it will cost.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::time::Instant;
 
 use fisura::dynamics::time_plan::TimePlan;
@@ -13,6 +12,7 @@ use fisura::simulation::{Extent, Simulation};
 use fisura::validate::expected_size;
 use fisura_reports::number::{duration, plain};
 use fisura_verification::scene::SceneFile;
+use fisura_verification::scene_run::peak_memory_mb;
 use serde::Serialize;
 
 use crate::cli::{Common, Format, SceneArgs};
@@ -20,16 +20,16 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::{console, scene_input};
 
+mod growth;
 mod trial;
 
-use trial::{Trial, coarser, spans};
+use growth::Tried;
+use trial::{Trial, spans};
 
 /// Points or control points up to which a scene is made ready to be checked: seconds, and less than 1 GiB.
 const MOST_PREPARED: usize = 1_000_000;
 /// Critical step over the time a dilatational wave takes to cross the smallest span, roughly.
 const CRITICAL: f64 = 0.5;
-/// Spans of the coarser scene that stands for one too large to be made ready: beyond what caches hold.
-const COARSER: usize = 65_536;
 /// Wall time after which a run stores its state, s, and how often that is in memory then: as it grows and as
 /// it is written.
 const BETWEEN_CHECKPOINTS: f64 = 60.0;
@@ -97,6 +97,7 @@ struct Findings {
     steps: usize,
     samples: usize,
     frames: usize,
+    /// Largest memory of the process of a run, 10⁶ bytes.
     memory_mb: f64,
     phase_field_memory_mb: f64,
     /// Absent if no step could be tried.
@@ -142,17 +143,20 @@ impl Findings {
         let critical = CRITICAL * smallest_span(&scene.mesh) / fastest;
         let (plan, warnings) = TimePlan::new(scene, critical);
         let mut found = Self::of(scene, &extent, &plan, &warnings);
+        found.memory_mb += peak_memory_mb().unwrap_or(0.0);
         found.estimate =
             "counts, memory and steps from cells and wave speed: too large to be made ready for a look".to_string();
-        let ready = coarser(scene, COARSER).and_then(|coarse| Some((Simulation::new(&coarse).ok()?, coarse)));
-        if let Some((mut simulation, coarse)) = ready
-            && let Ok(Some(trial)) = Trial::of(&coarse, &mut simulation)
-        {
-            let points = simulation.extent().particles;
-            let larger = size.points as f64 / points as f64;
-            found.estimated_wall_s = Some(larger * trial.step_s() * plan.steps() as f64);
-            let _ = write!(found.estimate, "; time from {} steps of a mesh with {points} particles", trial.steps);
-        }
+        let Some(tried) = Tried::of(scene) else { return found };
+        let (trial, larger) = (&tried.trial, size.points as f64 / tried.points);
+        found.estimated_wall_s = Some(larger * trial.step_s() * plan.steps() as f64);
+        found.memory_mb = tried.memory_mb(scene, size.points as f64).unwrap_or(found.memory_mb);
+        found.phase_field_memory_mb = larger * 1e-6 * tried.extent.phase_field_bytes as f64;
+        found.add_output(trial, larger);
+        found.estimate = format!(
+            "counts and steps from cells and wave speed: too large to be made ready for a look; time and memory from {} \
+             steps of a mesh with {} particles",
+            trial.steps, tried.extent.particles
+        );
         found
     }
 
@@ -168,10 +172,7 @@ impl Findings {
                 let rows = self.samples as f64 * trial.sample_s + self.frames as f64 * trial.picture_s;
                 self.estimated_wall_s = Some(seconds + rows + self.steps as f64 * trial.step_s());
                 self.memory_mb = trial.memory_mb.map_or(self.memory_mb, |mb| larger(mb, self.memory_mb));
-                self.memory_mb += 1e-6 * (self.frames * trial.picture_bytes) as f64;
-                if self.estimated_wall_s.is_some_and(|seconds| seconds > BETWEEN_CHECKPOINTS) {
-                    self.memory_mb += 1e-6 * (STATES * trial.state_bytes) as f64;
-                }
+                self.add_output(&trial, 1.0);
                 let (threads, took) = (rayon::current_num_threads(), duration(trial.steps_s));
                 let threads = if threads == 1 { "one thread".to_string() } else { format!("{threads} threads") };
                 self.estimate = format!("from {} steps that took {took} here, with {threads}", trial.steps);
@@ -180,6 +181,15 @@ impl Findings {
             Err(breakdown) => self.warnings.push(format!("a trial of the first steps breaks down: {breakdown}")),
         }
         self
+    }
+
+    /// Memory of what a run keeps to write: pictures, and its state if it lasts; of a scene so many times larger
+    /// than that of the trial.
+    fn add_output(&mut self, trial: &Trial, larger: f64) {
+        self.memory_mb += 1e-6 * (self.frames * trial.picture_bytes) as f64;
+        if self.estimated_wall_s.is_some_and(|seconds| seconds > BETWEEN_CHECKPOINTS) {
+            self.memory_mb += 1e-6 * larger * (STATES * trial.state_bytes) as f64;
+        }
     }
 
     fn of(scene: &Scene, extent: &Extent, plan: &TimePlan, warnings: &[String]) -> Self {

@@ -24,7 +24,7 @@ pub struct Args {
     /// Write a commented submission.toml for a benchmark to standard output
     #[arg(long, value_name = "BENCHMARK", conflicts_with_all = ["folders", "board"], value_parser = BENCHMARKS.map(|b| b.name))]
     new: Option<String>,
-    /// Error against cost of all submissions in reference-data/submissions, and of the folders given
+    /// Errors of all submissions in reference-data/submissions, and of the folders given
     #[arg(long)]
     board: bool,
     /// Compare the plate with this reference instead of the nearest variant: slit, plane-stress,

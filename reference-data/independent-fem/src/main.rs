@@ -58,6 +58,12 @@ struct Options {
     /// Divide the time step by this
     #[arg(long, value_name = "N", default_value_t = 1)]
     divide: usize,
+    /// Most of the critical step of an element that a step may take
+    #[arg(long, value_name = "PART", default_value_t = 0.853)]
+    fraction: f64,
+    /// Solve for the phase field in every N-th step; in between it goes on linearly
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    every: u32,
     /// End, us
     #[arg(long, value_name = "US", default_value_t = 80.0)]
     end_us: f64,
@@ -97,6 +103,8 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         tolerance: options.tolerance,
         tiles: !options.all_tiles,
         divide: options.divide,
+        fraction: options.fraction,
+        every: options.every as usize,
         end: options.end_us * 1e-6,
         interval: options.interval_us * 1e-6,
         threads: options.threads,

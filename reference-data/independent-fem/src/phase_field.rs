@@ -15,6 +15,8 @@ pub struct PhaseField {
     /// Nodal values; 1 where intact.
     pub c: Vec<f64>,
     previous: Vec<f64>,
+    /// c between two solves.
+    between: Vec<f64>,
     /// History at the Gauss points: per row of elements, four rows of numbers. J/m³.
     pub history: Vec<f64>,
     /// Lumped volumes, m².
@@ -50,6 +52,7 @@ impl PhaseField {
         c.chunks_exact_mut(stride).for_each(|row| row[1..stride - 1].fill(1.0));
         Self {
             previous: c.clone(),
+            between: c.clone(),
             c,
             history: vec![0.0; mesh.rows() * 4 * stride],
             volumes: mesh.volumes(),
@@ -117,6 +120,18 @@ impl PhaseField {
             }
         });
         iterations
+    }
+
+    /// The field `part` of the interval between solves after the last: it goes on as it did before, but falls
+    /// no further than to zero.
+    pub fn gone_on(&mut self, part: f64) -> &[f64] {
+        let both = self.c.par_chunks(self.stride).zip(self.previous.par_chunks(self.stride));
+        self.between.par_chunks_mut(self.stride).zip(both).for_each(|(between, (c, previous))| {
+            for ((between, c), previous) in between.iter_mut().zip(c).zip(previous) {
+                *between = larger(c + part * (c - previous), c.min(0.0));
+            }
+        });
+        &self.between
     }
 
     /// Solves from the start to `tolerance`, and takes the solution for the one before as well.

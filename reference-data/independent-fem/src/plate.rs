@@ -10,8 +10,6 @@ use crate::phase_field::PhaseField;
 
 /// Factor B of the history that seeds the crack.
 const SEED: f64 = 1000.0;
-/// Fraction of the critical step of an element.
-const SAFETY: f64 = 0.853;
 
 /// What is computed.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +34,10 @@ pub struct Plate {
     pub tiles: bool,
     /// Steps are shortened by this factor.
     pub divide: usize,
+    /// Most of the critical step of an element that a step may take.
+    pub fraction: f64,
+    /// The phase field is solved for in every step whose number is a multiple of this.
+    pub every: usize,
     /// Time at the end, s.
     pub end: f64,
     /// Time between samples, s.
@@ -87,31 +89,33 @@ impl Plate {
             field.settle(1e-12);
         }
         let critical = self.material.critical_step(mesh.smallest());
-        let per_sample = (self.interval / (SAFETY * critical) - 1e-9).ceil() as usize * self.divide;
+        let per_sample = (self.interval / (self.fraction * critical) - 1e-9).ceil() as usize * self.divide;
         let dt = self.interval / per_sample as f64;
         let steps = (self.end / dt).round() as usize;
         let stop = Stop { tolerance: self.tolerance, tiles: self.tiles, most: 2000 };
         let (mut iterations, mut since) = (0, 0);
         for n in 0..=steps {
-            if n > 0 && !self.frozen {
+            let between = n % self.every;
+            if n > 0 && between == 0 && !self.frozen {
                 field.remember(&body.displacement[0], &body.displacement[1]);
                 let needed = field.solve(stop);
                 iterations += needed;
                 since += needed;
             }
-            body.evaluate(&field.c);
+            let c = if between == 0 { &field.c } else { field.gone_on(between as f64 / self.every as f64) };
+            body.evaluate(c);
             let kick = if n == 0 { 0.5 * dt } else { dt };
             if n % per_sample == 0 {
                 let solves = per_sample.min(n).max(1) as f64;
-                let energies = self.of_the_whole(body.energies(kick, &field.c), n == 0);
+                let energies = self.of_the_whole(body.energies(kick, c), n == 0);
                 let total = energies.elastic + energies.kinetic + energies.fracture;
                 if !total.is_finite() {
                     return Err(format!("numbers are not finite at step {n}, t = {:.3e} s", n as f64 * dt));
                 }
-                let crack = crack::find(&mesh, &field.c, self.whole);
-                let range = range(&field.c, &mesh);
+                let crack = crack::find(&mesh, c, self.whole);
+                let range = range(c, &mesh);
                 let time = n as f64 * dt;
-                take(&mesh, &field.c, Sample { time, energies, crack, iterations: since as f64 / solves, range });
+                take(&mesh, c, Sample { time, energies, crack, iterations: since as f64 / solves, range });
                 since = 0;
             }
             body.kick(kick, dt);

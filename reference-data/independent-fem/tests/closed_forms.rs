@@ -22,6 +22,8 @@ fn plate(h: f64) -> Plate {
         tolerance: 1e-10,
         tiles: true,
         divide: 1,
+        fraction: 0.853,
+        every: 1,
         end: 8e-6,
         interval: 1e-6,
         threads: 1,
@@ -105,6 +107,17 @@ fn early_energies_are_those_of_plane_waves() {
     let work = 2.0 * 0.1 * 1e12 / (material.density * material.wave_speed()) * 4e-6;
     assert!((sample.energies.work / work - 1.0).abs() < 0.01, "{} of {work}", sample.energies.work);
     assert!((2.0 * sample.energies.kinetic / work - 1.0).abs() < 0.02, "{sample:?}");
+}
+
+#[test]
+fn a_phase_field_that_goes_on_between_solves_changes_little() {
+    let of = |every, fraction| last(Plate { every, fraction, end: 20e-6, ..plate(0.5e-3) }).energies;
+    let (each, third, long) = (of(1, 0.853), of(3, 0.853), of(1, 1.0));
+    let parts = |e: independent_fem::dynamics::Energies| [e.kinetic, e.elastic, e.fracture, e.work];
+    for ((each, third), long) in parts(each).into_iter().zip(parts(third)).zip(parts(long)) {
+        assert!(third != each && (third / each - 1.0).abs() < 5e-3, "{third} for {each}");
+        assert!(long != each && (long / each - 1.0).abs() < 5e-3, "{long} for {each}");
+    }
 }
 
 #[test]

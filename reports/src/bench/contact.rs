@@ -27,7 +27,6 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
                 title: format!("{title} in collision: {words} against time"),
                 lines: &lines,
                 front: None,
-                fem: &[],
                 cost: Cost::Time,
                 axis: "processor time of the steps (s)",
                 uncertainty,

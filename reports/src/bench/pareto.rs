@@ -28,6 +28,13 @@ pub fn cost_of(curve: &[(f64, f64)], error: f64) -> Option<f64> {
     })
 }
 
+/// Cost of an error of at most `error` on a curve: as [`cost_of`], or that of its cheapest point if that is
+/// good enough already.
+pub fn cost_to_reach(curve: &[(f64, f64)], error: f64) -> Option<f64> {
+    let cheapest = curve.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    if cheapest.1 <= error { Some(cheapest.0) } else { cost_of(curve, error) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,5 +58,7 @@ mod tests {
         assert!((found - 10.0).abs() <= 1e-12, "{found}");
         assert_eq!(cost_of(&curve, 1e-6), None);
         assert_eq!(cost_of(&curve, 2.0), None);
+        assert_eq!((cost_to_reach(&curve, 2.0), cost_to_reach(&curve, 1e-6)), (Some(1.0), None));
+        assert_eq!(cost_to_reach(&curve, 1e-2), Some(found));
     }
 }

@@ -1,94 +1,94 @@
-//! The plate: error against cost, with the finite elements beside it, measured in the same run or stored.
+//! The plate: error against cost for fisura and the finite elements that ran beside it.
 
-use fisura_verification::bench::record::{BenchRecord, BenchSet, CostPoint, Spread};
+use fisura_verification::bench::plate_error::{QUANTITIES, Quantity};
+use fisura_verification::bench::record::{AnswerError, BenchRecord, BenchSet};
 
-use super::pareto::cost_of;
-use super::ratios::{Found, Target};
 use super::work_precision::{Chart, Cost, Line, error, lines};
-use super::{Exhibit, Grid, Records};
-use crate::number::{DIGITS, plain, pretty};
+use super::{Exhibit, Grid, Records, plate_match};
+use crate::number::{plain, pretty};
 
-/// Ids of the finite elements that ran here.
-const ELEMENTS: &str = "plate/elements/";
-/// Errors of the kinetic energy that both reach, and how many times less time fisura should take.
-const ERRORS: [f64; 2] = [0.02, 0.007];
-const LESS_TIME: f64 = 5.0;
-const AXIS: &str = "processor time of all threads (s)";
+/// Ids of runs: equal spans and the tolerance of the suite, graded spans, the finite elements.
+pub(super) const EQUAL: &str = "plate/equal/";
+pub(super) const GRADED: &str = "plate/graded/";
+pub(super) const ELEMENTS: &str = "plate/elements/";
+const AXIS: &str = "processor time (s)";
 
-/// Diagram and table of the plate, and its tolerances.
+/// Diagrams and tables of the plate, and its tolerances.
 pub fn exhibits(set: &BenchSet) -> Vec<Exhibit> {
     let records = Records(&set.records);
-    let ours = lines(records.below("plate/p"));
-    let Some(first) = ours.first().and_then(|line| line.records.first()) else { return Vec::new() };
-    let elements = lines(records.below(ELEMENTS));
-    let here = !elements.is_empty();
-    let fem = if here { measured(&elements) } else { set.fem.clone() };
-    let uncertainty = first.error.as_ref().map_or(0.0, |e| e.uncertainty);
-    let particles: Vec<String> =
-        ours.iter().flat_map(|l| &l.records).map(|r| format!("{}", r.number("particles").unwrap_or(0.0))).collect();
-    let caption = format!(
-        "Half plate to 80 µs, whole runs on {} threads; kinetic energy from 5 to 80 µs against {}; {} points",
-        first.threads,
-        first.error.as_ref().map_or("", |e| e.reference.as_str()),
-        particles.join(", ")
-    );
-    let reading = reading(&ours, &fem, here, set.fem_unbuilt.as_deref());
-    let rows = table(&ours, &elements, if here { &[] } else { &fem });
-    let drawn: Vec<Line> = ours.into_iter().chain(elements).collect();
-    let chart = Chart {
-        id: "timing/plate-error-against-time".to_string(),
-        title: "The plate: error against processor time".to_string(),
-        lines: &drawn,
-        front: None,
-        fem: if here { &[] } else { &fem },
-        cost: Cost::Time,
-        axis: AXIS,
-        uncertainty,
-    };
-    let mut exhibits = vec![chart.plot(&caption, reading), Exhibit::Grid(rows)];
+    let (graded, equal) = ([GRADED, ELEMENTS].map(|id| records.below(id)).concat(), records.below(EQUAL));
+    let mut exhibits = Vec::new();
+    if !graded.is_empty() {
+        let reading = plate_match::reading(records, set.fem_unbuilt.as_deref());
+        let title = "The plate: error against processor time";
+        exhibits.push(chart("timing/plate-error-against-time", title, &lines(graded.iter().copied()), reading));
+        exhibits.push(plate_match::table(records, set.fem_unbuilt.as_deref()));
+        exhibits.push(Exhibit::Grid(table(&[graded.as_slice(), &equal].concat())));
+    }
+    if !equal.is_empty() {
+        let lines = lines(equal.iter().copied());
+        let title = "The plate: degrees on equal spans, tolerance of the suite";
+        exhibits.push(chart("timing/plate-degrees", title, &lines, finest(&lines)));
+    }
     exhibits.extend(tolerances(records));
     exhibits
 }
 
-/// The finite elements that ran here on one thread.
-fn measured(elements: &[Line]) -> Vec<CostPoint> {
-    let of_one_thread = elements.iter().flat_map(|line| &line.records).filter(|record| record.threads == 1);
-    let point = |record: &&BenchRecord| CostPoint {
-        label: record.label.clone(),
-        cpu_s: record.cpu_s.median,
-        error: error(record),
-        conditions: "this machine, in this run".into(),
-    };
-    of_one_thread.map(point).collect()
+fn chart(id: &str, title: &str, lines: &[Line], reading: String) -> Exhibit {
+    let first = lines.iter().flat_map(|line| &line.records).find_map(|record| record.error.as_ref());
+    let caption = format!(
+        "Half plate to 80 µs, whole runs on one thread; kinetic energy from 5 to 80 µs against {}",
+        first.map_or("", |e| e.reference.as_str())
+    );
+    let (id, title, uncertainty) = (id.to_string(), title.to_string(), first.map_or(0.0, |e| e.uncertainty));
+    Chart { id, title, lines, front: None, cost: Cost::Time, axis: AXIS, uncertainty }.plot(&caption, reading)
 }
 
-/// Every whole run, the cheapest first.
-fn table(ours: &[Line], elements: &[Line], stored: &[CostPoint]) -> Grid {
-    let row = |record: &&BenchRecord| {
-        let cells = vec![
-            record.label.clone(),
-            record.number("h_over_l0").map_or("–".into(), |h| plain(h, 3)),
-            record.threads.to_string(),
-            plain(record.cpu_s.median, 3),
-            plain(record.wall_s.median, 3),
-            format!("{} %", plain(100.0 * error(record), 3)),
-        ];
-        (record.cpu_s.median, cells)
+fn finest(lines: &[Line]) -> String {
+    let sentence = |line: &Line| {
+        let last = line.records.last()?;
+        let (value, seconds) = (pretty(100.0 * error(last), 2), plain(last.cpu_s.median, 3));
+        Some(format!("{}, h = {} l0: {value} %, {seconds} s.", line.label, plain(last.number("h_over_l0")?, 3)))
     };
-    let mut rows: Vec<(f64, Vec<String>)> =
-        ours.iter().chain(elements).flat_map(|line| &line.records).map(row).collect();
-    rows.extend(stored.iter().map(|point| {
-        let label = format!("{}, stored: {}", point.label, point.conditions);
-        let error = format!("{} %", plain(100.0 * point.error, 3));
-        (point.cpu_s, vec![label, "–".into(), "1".into(), plain(point.cpu_s, 3), "–".into(), error])
-    }));
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let head = ["run", "h/l0", "threads", "processor s", "wall s", "error of the kinetic energy"];
+    lines.iter().filter_map(sentence).collect::<Vec<_>>().join(" ")
+}
+
+/// The error of a record in a quantity.
+pub(super) fn error_in<'a>(record: &'a BenchRecord, quantity: &Quantity) -> Option<&'a AnswerError> {
+    record.errors().find(|error| error.quantity.starts_with(quantity.name))
+}
+
+/// An error or uncertainty and its unit for people.
+pub(super) fn shown(value: f64, unit: &str) -> String {
+    if unit.is_empty() { format!("{} %", plain(100.0 * value, 2)) } else { format!("{} {unit}", plain(value, 2)) }
+}
+
+/// Every whole run with all its errors, the cheapest first.
+fn table(records: &[&BenchRecord]) -> Grid {
+    let mut records = records.to_vec();
+    records.sort_by(|a, b| a.cpu_s.median.total_cmp(&b.cpu_s.median));
+    let row = |record: &&BenchRecord| {
+        let of = |quantity: &Quantity| {
+            error_in(record, quantity).map_or("–".to_string(), |error| shown(error.value, &error.unit))
+        };
+        let h = record.number("h_over_l0").map_or("–".into(), |h| plain(h, 3));
+        let mut cells = vec![record.label.clone(), h, plain(record.cpu_s.median, 3)];
+        cells.extend(QUANTITIES.iter().map(of));
+        cells
+    };
+    let name = |quantity: &Quantity| {
+        let error = records.iter().find_map(|record| error_in(record, quantity));
+        error.map_or(quantity.name.to_string(), |e| format!("{} (U {})", quantity.name, shown(e.uncertainty, &e.unit)))
+    };
+    let mut head = ["run", "h/l0", "processor s"].map(String::from).to_vec();
+    head.extend(QUANTITIES.iter().map(name));
     Grid {
-        title: "The plate: what each error took".into(),
-        head: head.map(String::from).to_vec(),
-        rows: rows.into_iter().map(|(_, cells)| cells).collect(),
-        note: "Medians of the rounds; the least processor time first.".into(),
+        title: "The plate: what each run took, and its errors".into(),
+        head,
+        rows: records.iter().map(row).collect(),
+        note: "Relative rms from 5 µs to 80 µs, of the fracture energy since t = 0 from 30 µs; of the tip rms in mm. U: uncertainty of \
+               the reference in the same norm; an error below it says nothing. Medians of the rounds."
+            .into(),
     }
 }
 
@@ -108,69 +108,6 @@ fn tolerances(records: Records) -> Option<Exhibit> {
     let reading = format!("Tolerance: {}.", found.iter().map(word).collect::<Vec<_>>().join("; "));
     let title = "The plate: tolerance of the phase field against processor time".to_string();
     let id = "timing/plate-tolerance-against-time".to_string();
-    let chart =
-        Chart { id, title, lines: &lines, front: None, fem: &[], cost: Cost::Time, axis: AXIS, uncertainty: 0.0 };
+    let chart = Chart { id, title, lines: &lines, front: None, cost: Cost::Time, axis: AXIS, uncertainty: 0.0 };
     Some(chart.plot(&caption, reading))
-}
-
-/// How many times less processor time than the finite elements the plate takes at some errors.
-pub fn against_elements(records: Records) -> Vec<Found> {
-    let of = |id: &str, threads: Option<usize>| {
-        let chosen = records.below(id).into_iter().filter(|r| threads.is_none_or(|threads| r.threads == threads));
-        lines(chosen)
-    };
-    let (ours, elements) = (of("plate/p", None), of(ELEMENTS, Some(1)));
-    let factor = |error: f64| {
-        let value = best(&elements, error)?.1 / best(&ours, error)?.1;
-        let what = format!("finite elements over fisura, plate, error of {} %", plain(100.0 * error, 2));
-        Some(Found { what, value: Spread::of([value]), target: Target::AtLeast(LESS_TIME), verified: true })
-    };
-    ERRORS.into_iter().filter_map(factor).collect()
-}
-
-/// The line that buys an error with the least time, and that time, s.
-fn best<'a>(lines: &'a [Line], error: f64) -> Option<(&'a str, f64)> {
-    let costs = lines.iter().filter_map(|l| Some((l.label.as_str(), cost_of(&l.points(Cost::Time), error)?)));
-    costs.min_by(|a, b| a.1.total_cmp(&b.1))
-}
-
-/// What our runs take at the errors of the finite elements, or the nearest that can be said.
-fn reading(lines: &[Line], fem: &[CostPoint], here: bool, unbuilt: Option<&str>) -> String {
-    let sentence = |point: &CostPoint| match best(lines, point.error) {
-        Some((label, seconds)) => format!(
-            "At the error of {} % that the finite elements bought with {} s, {label} takes {} s: {}.",
-            pretty(100.0 * point.error, 2),
-            pretty(point.cpu_s, DIGITS),
-            pretty(seconds, 3),
-            if seconds <= point.cpu_s {
-                format!("{} times less", pretty(point.cpu_s / seconds, 2))
-            } else {
-                format!("{} times more", pretty(seconds / point.cpu_s, 2))
-            }
-        ),
-        None => {
-            let all = lines.iter().flat_map(|line| line.points(Cost::Time).into_iter().map(move |p| (line, p)));
-            let least = all.min_by(|a, b| a.1.1.total_cmp(&b.1.1));
-            let least = least.map_or(String::new(), |(line, (cost, error))| {
-                format!(
-                    " the smallest error is {} % ({}, {} s).",
-                    pretty(100.0 * error, 2),
-                    line.label,
-                    pretty(cost, 3)
-                )
-            });
-            format!("No curve here crosses the finite elements' error of {} %:{least}", pretty(100.0 * point.error, 2))
-        }
-    };
-    if fem.is_empty() {
-        return "There is nothing to compare with.".into();
-    }
-    let mut sentences: Vec<String> = fem.iter().map(sentence).collect();
-    sentences.push(if here {
-        "Both ran on this machine in the same rounds; the finite elements on one thread.".into()
-    } else {
-        "The machines differ (see the legend): read the factors as orders.".into()
-    });
-    sentences.extend(unbuilt.map(|why| format!("The finite elements could not be built here: {why}.")));
-    sentences.join(" ")
 }

@@ -10,8 +10,6 @@ use crate::number::plain;
 use crate::series::SeriesSet;
 use crate::svg::slug;
 
-/// Points from which on a block is far larger than a cache.
-const LARGE: f64 = 1e6;
 /// Bytes per point that a block with fracture may have.
 const BYTES: f64 = 250.0;
 
@@ -29,7 +27,7 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
     let memory: Vec<String> = blocks.iter().filter_map(|(label, records)| weight(label, records)).collect();
     vec![
         plot(&blocks, "time", "processor time per particle-step (ns)", "ns", |r| r.ns_per_unit.median, times),
-        plot(&blocks, "memory", "memory of the model per point (bytes)", "bytes", bytes, memory),
+        plot(&blocks, "memory", "counted memory of the model per point (bytes)", "bytes", bytes, memory),
     ]
 }
 
@@ -41,22 +39,23 @@ fn bytes(record: &BenchRecord) -> f64 {
     record.memory_bytes as f64 / points(record)
 }
 
-/// How much the time per point changes between blocks larger than a cache.
+/// Ranges of points over which the time per point is compared: beyond what small caches hold, and beyond all
+/// caches.
+const RANGES: [f64; 2] = [1.5e5, 2.5e6];
+
+/// How much the time per point changes over each range.
 fn flatness(label: &str, records: &[&BenchRecord]) -> Option<String> {
-    let large: Vec<&&BenchRecord> = records.iter().filter(|r| points(r) >= LARGE).collect();
-    let (first, last) = match large.as_slice() {
-        [first, .., last] => (*first, *last),
-        _ => (records.first()?, records.last()?),
+    let last = *records.last()?;
+    let part = |least: f64| {
+        let first = *records.iter().find(|record| points(record) >= least)?;
+        let change = last.ns_per_unit.median / first.ns_per_unit.median;
+        let [ns, from, change] = [first.ns_per_unit.median, points(first), change].map(|value| plain(value, 3));
+        (points(first) < points(last)).then(|| format!("{change} times the {ns} ns at {from} points"))
     };
-    let change = last.ns_per_unit.median / first.ns_per_unit.median;
-    Some(format!(
-        "{label}: {} ns at {} points, {} ns at {} points, {} times as much.",
-        plain(first.ns_per_unit.median, 3),
-        plain(points(first), 3),
-        plain(last.ns_per_unit.median, 3),
-        plain(points(last), 3),
-        plain(change, 3)
-    ))
+    let parts: Vec<String> = RANGES.into_iter().filter_map(part).collect();
+    let [ns, count] = [last.ns_per_unit.median, points(last)].map(|value| plain(value, 3));
+    let compared = if parts.is_empty() { String::new() } else { format!(", {}", parts.join(" and ")) };
+    Some(format!("{label}: {ns} ns at {count} points{compared}."))
 }
 
 fn weight(label: &str, records: &[&BenchRecord]) -> Option<String> {
@@ -68,11 +67,13 @@ fn weight(label: &str, records: &[&BenchRecord]) -> Option<String> {
         }
         _ => String::new(),
     };
+    let peak = last.number("peak_bytes").map_or(String::new(), |peak| {
+        format!("; the process had {} at its peak, {} GB in all", plain(peak / points(last), 3), plain(peak / 1e9, 3))
+    });
     Some(format!(
-        "{label}: {} bytes per point at {} points{verdict}, {} GB in all.",
+        "{label}: {} bytes per point counted at {} points{verdict}{peak}.",
         plain(bytes(last), 3),
-        plain(points(last), 3),
-        plain(last.memory_bytes as f64 / 1e9, 3)
+        plain(points(last), 3)
     ))
 }
 
@@ -146,7 +147,8 @@ mod tests {
 
     #[test]
     fn large_blocks_are_compared_and_heavy_ones_named() {
-        let records = [record(100, 10.0, 200), record(800, 20.0, 200), record(2000, 25.0, 300)];
+        let heavy = record(2000, 25.0, 300).with("peak_bytes", 1.6e7 * 320.0);
+        let records = [record(100, 10.0, 200), record(200, 12.5, 200), record(800, 20.0, 200), heavy];
         let exhibits = exhibits(Records(&records));
         let readings: Vec<&str> = exhibits
             .iter()
@@ -155,7 +157,10 @@ mod tests {
                 Exhibit::Grid(_) => "",
             })
             .collect();
-        assert!(readings[0].contains("1.25 times as much") && readings[1].contains("missed"), "{readings:?}");
+        let both =
+            "25 ns at 16000000 points, 2 times the 12.5 ns at 160000 points and 1.25 times the 20 ns at 2560000 points";
+        assert!(readings[0].contains(both), "{readings:?}");
+        assert!(readings[1].contains("missed") && readings[1].contains("had 320 at its peak"), "{readings:?}");
         assert!(super::exhibits(Records(&[])).is_empty());
     }
 }

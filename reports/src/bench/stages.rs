@@ -113,11 +113,11 @@ fn reading_of_steps(records: Records) -> String {
         let of = |phase: &str| median(records, &format!("stages/p{p}/{phase}"));
         let kernel = of("minimal-step")?;
         Some(format!(
-            "p = {p}: an elastic step of the solver takes {} times the minimal kernel's {} ns in the total frame and {} times in \
-             the updated one.",
-            pretty(of("elastic-step")? / kernel, 2),
+            "p = {p}: an elastic step of moving points takes {} times the minimal kernel's {} ns; one of the total frame, in which \
+             points do not move, takes {} ns.",
+            pretty(of("elastic-step-updated")? / kernel, 2),
             pretty(kernel, 3),
-            pretty(of("elastic-step-updated")? / kernel, 2)
+            pretty(of("elastic-step")?, 3)
         ))
     };
     DEGREES.into_iter().filter_map(sentence).collect::<Vec<_>>().join(" ")

@@ -1,6 +1,6 @@
 //! Error against cost: processor time, particle-steps, memory; with the front of what nothing beats.
 
-use fisura_verification::bench::record::{BenchRecord, CostPoint, Spread};
+use fisura_verification::bench::record::{BenchRecord, Spread};
 use fisura_verification::output::history::Table;
 use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Floor, Scale};
 
@@ -97,7 +97,7 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
             let [name, axis, _] = cost.words();
             let id = format!("timing/work-precision-{}-{name}", slug(group));
             let title = format!("Standing wave, {group}: error against {axis}");
-            let chart = Chart { id, title, lines: &lines, front: Some(&front), fem: &[], cost, axis, uncertainty: 0.0 };
+            let chart = Chart { id, title, lines: &lines, front: Some(&front), cost, axis, uncertainty: 0.0 };
             let reading = reading(&lines, &front, cost);
             let bars = if cost == Cost::Time { "; bars: least and largest of the rounds" } else { "" };
             exhibits.push(chart.plot(&format!("2-D standing wave on rollers, one thread{bars}"), reading));
@@ -119,8 +119,6 @@ pub(super) struct Chart<'a> {
     pub title: String,
     pub lines: &'a [Line<'a>],
     pub front: Option<&'a Line<'a>>,
-    /// Stored costs of the finite elements.
-    pub fem: &'a [CostPoint],
     pub cost: Cost,
     pub axis: &'a str,
     /// Relative uncertainty of the reference.
@@ -131,17 +129,11 @@ impl Chart<'_> {
     pub(super) fn plot(&self, caption: &str, reading: String) -> Exhibit {
         let mut set = SeriesSet::default();
         let mut curves = Vec::new();
-        for line in self.lines {
-            curves.push(self.curve(&line.label, &line.records, CurveStyle::Markers, &mut set));
+        for (number, line) in self.lines.iter().enumerate() {
+            curves.push(self.curve(number, line, CurveStyle::Markers, &mut set));
         }
         if let Some(front) = self.front.filter(|front| !front.records.is_empty()) {
-            curves.push(self.curve(&front.label, &front.records, CurveStyle::Reference, &mut set));
-        }
-        if !self.fem.is_empty() {
-            let mut table = Table::new(&["cost", "error"]);
-            self.fem.iter().for_each(|point| table.push(&[point.cpu_s, point.error]));
-            let label = format!("{} ({})", self.fem[0].label, self.fem[0].conditions);
-            curves.push(self.of_table(&label, table, CurveStyle::Points, &mut set));
+            curves.push(self.curve(self.lines.len(), front, CurveStyle::Reference, &mut set));
         }
         let axis = |label: &str| Axis { label: label.into(), scale: Scale::Log, range: None };
         let quantity = self.lines.iter().flat_map(|line| &line.records).find_map(|r| r.error.as_ref());
@@ -166,9 +158,9 @@ impl Chart<'_> {
         Exhibit::Plot(Plot { id: self.id.clone(), title: self.title.clone(), caption: caption.into(), reading, svg })
     }
 
-    fn curve(&self, label: &str, records: &[&BenchRecord], style: CurveStyle, set: &mut SeriesSet) -> Curve {
+    fn curve(&self, number: usize, line: &Line, style: CurveStyle, set: &mut SeriesSet) -> Curve {
         let mut table = Table::new(&["cost", "error", "cost_min", "cost_max"]);
-        for record in records {
+        for record in &line.records {
             let Spread { median, min, max } = self.cost.of(record);
             table.push(&[median, error(record), min, max]);
         }
@@ -176,23 +168,9 @@ impl Chart<'_> {
             table.names.truncate(2);
             table.columns.truncate(2);
         }
-        self.of_table(label, table, style, set)
-    }
-
-    fn of_table(&self, label: &str, table: Table, style: CurveStyle, set: &mut SeriesSet) -> Curve {
-        let series = format!("{}-{}", self.id, slug(label));
+        let series = format!("{}-{number}", self.id);
         set.insert(series.clone(), table);
-        Curve {
-            label: label.into(),
-            series,
-            x: "cost".into(),
-            y: "error".into(),
-            x_scale: 1.0,
-            y_scale: 1.0,
-            style,
-            uncertainty_absolute: 0.0,
-            uncertainty_relative: 0.0,
-        }
+        Curve { style, ..Curve::line(&line.label, &series, ["cost", "error"]) }
     }
 }
 

@@ -150,7 +150,7 @@ pub(super) struct Page {
     pub opening: Vec<Picture>,
     pub suites: Vec<Suite>,
     pub timing: Vec<Picture>,
-    /// Error against cost of other codes, as stored.
+    /// Errors of other codes, as stored.
     pub boards: Vec<StoredBoard>,
     pub sources: Vec<Source>,
     pub deviations: Vec<Deviations>,

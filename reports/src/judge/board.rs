@@ -1,4 +1,7 @@
-//! The board: error against cost of all submissions.
+//! The board: the errors of all submissions, each beside the uncertainty of its reference.
+//!
+//! Costs are of other days and machines; they stand on the board only if all results state one, of the same
+//! processor and beside the same time of a kernel, which says that one run measured them.
 
 use fisura_verification::judge::Judged;
 use fisura_verification::output::foreign::line;
@@ -18,12 +21,14 @@ pub struct Board {
     pub key: String,
     /// Title.
     pub title: String,
-    /// The drawing; empty if no submission has both an error and a cost.
+    /// The drawing; empty if no submission has both an error and a spacing.
     pub svg: String,
     /// What the numbers say.
     pub sentence: String,
-    /// Name, verdict, error, cost.
-    pub rows: Vec<[String; 4]>,
+    /// Names of the columns.
+    pub head: Vec<&'static str>,
+    /// Name, verdict, error, uncertainty of the reference, reference, and the cost where costs compare.
+    pub rows: Vec<Vec<String>>,
 }
 
 /// A submission on the board.
@@ -31,10 +36,15 @@ struct Entry<'a> {
     name: &'a str,
     outcome: &'static str,
     error: f64,
+    /// Uncertainty of its reference; none if unknown.
+    uncertainty: Option<f64>,
+    reference: &'a str,
+    /// Spacing at the crack, mm.
+    spacing: Option<f64>,
     cost: Option<f64>,
 }
 
-/// Error against processor time, by quantity: kinetic, elastic and fracture energy over the whole curve.
+/// Errors by quantity: kinetic, elastic and fracture energy over the whole curve.
 pub fn board(judged: &[Judged]) -> Vec<Board> {
     let shown =
         [("kinetic", "kinetic energy"), ("elastic", "elastic energy"), ("fracture", "fracture energy increment")];
@@ -46,25 +56,24 @@ pub fn board(judged: &[Judged]) -> Vec<Board> {
 /// # Errors
 /// Only if the template cannot be filled.
 pub fn board_page(judged: &[Judged]) -> Result<String, minijinja::Error> {
-    let title = format!("{} results: error against cost", judged.len());
+    let title = format!("{} results and their errors", judged.len());
     fill(Page { style: STYLE, title, verdicts: Vec::new(), boards: board(judged) })
 }
 
 /// The same as Markdown beside the drawings `board-<key>.svg`.
 pub fn board_markdown(boards: &[Board]) -> String {
     let cell = |text: &str| line(text).replace('|', "\\|").replace('<', "&lt;");
-    let mut out = "# Error against cost\n".to_string();
+    let mut out = "# Errors of all results\n".to_string();
     for board in boards {
         out += &format!("\n## {}\n\n", board.title);
         if !board.svg.is_empty() {
             out += &format!("![{}](board-{}.svg)\n\n", board.title, board.key);
         }
-        out +=
-            &format!("{}\n\n| result | verdict | error | processor time |\n|---|---|---|---|\n", cell(&board.sentence));
-        board
-            .rows
-            .iter()
-            .for_each(|row| out += &format!("| {} |\n", row.each_ref().map(|text| cell(text)).join(" | ")));
+        let rule = "---|".repeat(board.head.len());
+        out += &format!("{}\n\n| {} |\n|{rule}\n", cell(&board.sentence), board.head.join(" | "));
+        let row =
+            |row: &Vec<String>| format!("| {} |\n", row.iter().map(|text| cell(text)).collect::<Vec<_>>().join(" | "));
+        board.rows.iter().for_each(|cells| out += &row(cells));
     }
     out
 }
@@ -72,45 +81,60 @@ pub fn board_markdown(boards: &[Board]) -> String {
 fn one(key: &str, words: &str, judged: &[Judged]) -> Board {
     let mut entries: Vec<Entry<'_>> = judged.iter().filter_map(|j| entry(j, words)).collect();
     entries.sort_by(|a, b| a.error.total_cmp(&b.error));
-    let rated: Vec<(&Entry<'_>, f64)> = entries.iter().filter_map(|e| Some((e, cost(judged, e)?))).collect();
-    let normalised = normalised(judged);
-    let title = format!("{words}: error against processor time");
-    let axis = if normalised { "processor time over that of a kernel step (10⁹)" } else { "processor time (s)" };
-    let rows = entries.iter().map(|e| {
-        let cost = e.cost.map_or("cost not stated".to_string(), duration);
-        [e.name.to_string(), e.outcome.to_string(), format!("{} %", plain(100.0 * e.error, 3)), cost]
-    });
-    let svg = draw(key, &title, axis, words, &rated);
-    Board { key: key.into(), title, svg, sentence: sentence(&entries, &rated, normalised), rows: rows.collect() }
+    let costs = costs_compare(judged);
+    let mut head = vec!["result", "verdict", "error", "U of the reference", "reference"];
+    head.extend(costs.then_some("processor time"));
+    let row = |e: &Entry<'_>| {
+        let mut cells =
+            vec![e.name.to_string(), e.outcome.into(), percent(e.error), e.uncertainty(), e.reference.into()];
+        cells.extend(e.cost.filter(|_| costs).map(duration));
+        cells
+    };
+    let title = format!("{words}: error against spacing");
+    let svg = draw(key, &title, words, &entries);
+    let rows = entries.iter().map(row).collect();
+    Board { key: key.into(), title, svg, sentence: sentence(&entries, costs), head, rows }
+}
+
+fn percent(value: f64) -> String {
+    format!("{} %", plain(100.0 * value, 3))
+}
+
+impl Entry<'_> {
+    fn uncertainty(&self) -> String {
+        self.uncertainty.map_or("unknown".into(), percent)
+    }
+
+    fn is_within_uncertainty(&self) -> bool {
+        self.uncertainty.is_some_and(|u| self.error <= u)
+    }
 }
 
 /// Submissions that compare the quantity over the whole curve; the reference itself has no error.
 fn entry<'a>(judged: &'a Judged, words: &str) -> Option<Entry<'a>> {
     let verdict = &judged.verdict;
     let quantity = verdict.quantities.iter().find(|q| q.quantity == words)?;
-    let error = quantity.comparisons.iter().find(|c| c.name == "whole")?.error?;
-    let reference = error < 1e-5;
-    (!reference && error.is_finite()).then(|| Entry {
+    let whole = quantity.comparisons.iter().find(|c| c.name == "whole")?;
+    let error = whole.error.filter(|error| error.is_finite() && *error >= 1e-5)?;
+    Some(Entry {
         name: &verdict.code.name,
         outcome: quantity.outcome.word(),
         error,
+        uncertainty: whole.u_ref,
+        reference: &verdict.reference.id,
+        spacing: verdict.spacing_m.map(|h| 1e3 * h),
         cost: verdict.cost.cpu_s,
     })
 }
 
-/// Whether every submission with a cost also measured a kernel, so that machines can be told apart.
-fn normalised(judged: &[Judged]) -> bool {
-    let mut costs = judged.iter().map(|j| &j.verdict.cost).filter(|c| c.cpu_s.is_some()).peekable();
-    costs.peek().is_some() && costs.all(|c| c.kernel_ns.is_some())
-}
-
-fn cost(judged: &[Judged], entry: &Entry<'_>) -> Option<f64> {
-    let cpu = entry.cost?;
-    if !normalised(judged) {
-        return Some(cpu);
-    }
-    let own = judged.iter().find(|j| j.verdict.code.name == entry.name)?;
-    Some(cpu / own.verdict.cost.kernel_ns?)
+/// Whether one run on one machine measured all costs.
+fn costs_compare(judged: &[Judged]) -> bool {
+    let of = |j: &Judged| {
+        let cost = &j.verdict.cost;
+        cost.cpu_s.and(cost.processor.clone()).zip(cost.kernel_ns.map(f64::to_bits))
+    };
+    let runs: Vec<_> = judged.iter().map(of).collect();
+    runs.first().is_some_and(Option::is_some) && runs.windows(2).all(|pair| pair[0] == pair[1])
 }
 
 /// A code at several resolutions is one line: the name up to the spacing.
@@ -118,55 +142,92 @@ fn family(name: &str) -> &str {
     name.split(", h =").next().unwrap_or(name)
 }
 
-fn draw(key: &str, title: &str, axis: &str, words: &str, rated: &[(&Entry<'_>, f64)]) -> String {
-    let mut families: Vec<&str> = rated.iter().map(|(e, _)| family(e.name)).collect();
+fn draw(key: &str, title: &str, words: &str, entries: &[Entry<'_>]) -> String {
+    let drawn: Vec<(&Entry<'_>, f64)> = entries.iter().filter_map(|e| Some((e, e.spacing?))).collect();
+    let mut families: Vec<&str> = drawn.iter().map(|(e, _)| family(e.name)).collect();
     families.sort_unstable();
     families.dedup();
     let (mut set, mut curves) = (SeriesSet::default(), Vec::new());
     for name in families {
-        let mut points: Vec<(f64, f64)> =
-            rated.iter().filter(|(e, _)| family(e.name) == name).map(|(e, cost)| (*cost, 100.0 * e.error)).collect();
+        let of_family = drawn.iter().filter(|(e, _)| family(e.name) == name);
+        let mut points: Vec<(f64, f64)> = of_family.map(|(e, h)| (*h, 100.0 * e.error)).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut table = Table::new(&["cost", "error"]);
+        let mut table = Table::new(&["spacing", "error"]);
         points.iter().for_each(|p| table.push(&[p.0, p.1]));
         let series = format!("series/{}.csv", curves.len());
-        curves.push(Curve { style: CurveStyle::Markers, ..Curve::line(name, &series, ["cost", "error"]) });
+        curves.push(Curve { style: CurveStyle::Markers, ..Curve::line(name, &series, ["spacing", "error"]) });
         set.insert(series, table);
     }
     let log = |label: String| Axis { label, scale: Scale::Log, range: None };
+    let axes = [log("spacing at the crack (mm)".into()), log(format!("error of the {words} (%)"))];
     let figure = Figure {
         id: format!("board-{key}"),
         suite: "judge".into(),
         title: title.into(),
         caption: "relative rms over the whole curve against the reference of the declared variant".into(),
         deviations: Vec::new(),
-        body: FigureBody::chart([log(axis.into()), log(format!("error of the {words} (%)"))], curves, Vec::new()),
+        body: FigureBody::chart(axes, curves, Vec::new()),
     };
-    if rated.is_empty() { String::new() } else { render_figure(&figure, &set).unwrap_or_default() }
+    if drawn.is_empty() { String::new() } else { render_figure(&figure, &set).unwrap_or_default() }
 }
 
-fn sentence(entries: &[Entry<'_>], rated: &[(&Entry<'_>, f64)], normalised: bool) -> String {
-    let Some((best, _)) = rated.first() else { return "No submission states both this quantity and its cost.".into() };
-    let told = |e: &Entry<'_>| {
-        format!("{} ({} % for {})", e.name, plain(100.0 * e.error, 2), e.cost.map_or(String::new(), duration))
-    };
-    let beaten = |(e, cost): &&(&Entry<'_>, f64)| !rated.iter().any(|(o, c)| o.error < e.error && c < cost);
-    let mut front: Vec<&(&Entry<'_>, f64)> = rated.iter().filter(beaten).collect();
-    front.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let front: Vec<String> = front.iter().map(|(e, _)| told(e)).collect();
-    let silent: Vec<String> = entries
-        .iter()
-        .filter(|e| e.cost.is_none())
-        .map(|e| format!("{} ({} %)", e.name, plain(100.0 * e.error, 2)))
-        .collect();
-    let machines =
-        if normalised { "" } else { " Costs are as stated and not normalised: not all measured a kernel beside." };
-    let silent = if silent.is_empty() { String::new() } else { format!(" Cost not stated: {}.", silent.join(", ")) };
-    let count = rated.len();
-    format!(
-        "Of {count} results with a stated cost the least error is that of {}. No other is both cheaper and more accurate \
-         than: {}.{machines}{silent}",
-        told(best),
-        front.join("; ")
-    )
+fn sentence(entries: &[Entry<'_>], costs: bool) -> String {
+    let Some(best) = entries.first() else { return "Of no result is this quantity known.".into() };
+    let (count, within) = (entries.len(), entries.iter().filter(|e| e.is_within_uncertainty()).count());
+    let mut text = format!(
+        "Of {count} results the least error is that of {} ({}, uncertainty of its reference {}).",
+        best.name,
+        percent(best.error),
+        best.uncertainty()
+    );
+    match within {
+        0 => {}
+        1 => text += " One error is within the uncertainty of its reference.",
+        n => text += &format!(" {n} errors are within the uncertainty of their reference: their order says nothing."),
+    }
+    let mut references: Vec<(&str, String)> = entries.iter().map(|e| (e.reference, e.uncertainty())).collect();
+    references.sort();
+    references.dedup();
+    if references.iter().any(|r| r.1 != references[0].1) {
+        let of = |(reference, uncertainty): &(&str, String)| {
+            let held = entries.iter().filter(|e| e.reference == *reference && e.uncertainty() == *uncertainty).count();
+            format!("{reference} ({uncertainty}, {held})")
+        };
+        let list: Vec<String> = references.iter().map(of).collect();
+        text += &format!(
+            " The references differ in uncertainty, and errors against different ones do not rank: {}.",
+            list.join(", ")
+        );
+    }
+    if !costs {
+        text += " Costs are not shown: they are of different days and machines. cargo xtask bench --family plate measures costs in one run.";
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entry(name: &'static str, error: f64, uncertainty: f64, reference: &'static str) -> Entry<'static> {
+        let (uncertainty, spacing) = (Some(uncertainty), Some(0.25));
+        Entry { name, outcome: "pass", error, uncertainty, reference, spacing, cost: None }
+    }
+
+    #[test]
+    fn references_of_different_uncertainty_are_named() {
+        let mut entries = [entry("a", 0.003, 0.004, "one"), entry("b", 0.02, 0.01, "other")];
+        let text = sentence(&entries, false);
+        for part in [
+            "Of 2 results the least error is that of a (0.3 %, uncertainty of its reference 0.4 %).",
+            "One error is within the uncertainty of its reference.",
+            "differ in uncertainty, and errors against different ones do not rank: one (0.4 %, 1), other (1 %, 1).",
+            "Costs are not shown",
+        ] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        entries[1] = entry("b", 0.02, 0.004, "one");
+        let text = sentence(&entries, true);
+        assert!(!text.contains("differ") && !text.contains("Costs"), "{text}");
+    }
 }

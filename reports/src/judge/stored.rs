@@ -43,7 +43,7 @@ pub fn board_of_the_book() -> String {
         format!("### {title}\n\n[![{title}]({file})]({file})\n\n{}\n", b.sentence)
     };
     let parts: Vec<String> = stored_boards().into_iter().map(part).collect();
-    parts.join("\n") + "\nVerdicts, errors and costs as tables: [gallery](../../gallery/judge/board.md).\n"
+    parts.join("\n") + "\nVerdicts, errors and uncertainties as tables: [gallery](../../gallery/judge/board.md).\n"
 }
 
 #[cfg(test)]

@@ -86,9 +86,9 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
                 let size = tight.iter().copied().fold(0.0, larger);
                 let error = largest(found.iter().zip(tight).map(|(a, b)| (a - b).abs() / size));
                 record.verify_at_most("energies at the end against a tolerance of 1e-10", error, limit);
-                let quantity = "difference of the energies at the end over the largest".into();
-                let reference = "this checkout with a tolerance of 1e-10".into();
-                record.error = Some(AnswerError { quantity, value: error, reference, uncertainty: 0.0 });
+                let quantity = "difference of the energies at the end over the largest";
+                let reference = "this checkout with a tolerance of 1e-10";
+                record.error = Some(AnswerError::relative(quantity, error, reference));
                 Ok(sample)
             };
             contestants.push(Contestant { record, run: Box::new(run) });

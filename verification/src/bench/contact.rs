@@ -139,10 +139,6 @@ fn base(settings: &Settings, name: &str) -> Result<Scene, BenchError> {
     Ok(scene)
 }
 
-fn error(quantity: &str, value: f64, reference: &str) -> AnswerError {
-    AnswerError { quantity: quantity.into(), value, reference: reference.into(), uncertainty: 0.0 }
-}
-
 /// The meshes that a way is run on: by spans none coarser than `least`.
 fn meshes(way: Way, all: &[usize], least: usize) -> Vec<usize> {
     let fits = |n: &usize| way.1.is_some() || *n >= least;
@@ -162,9 +158,9 @@ fn bars(settings: &Settings) -> Result<Vec<Collision>, BenchError> {
         let off = |found: f64, exact: f64| (found / exact - 1.0).abs();
         let exchange = "equal bars exchange their velocities in 2 L/c";
         let errors = vec![
-            ("rebound", error("error of the rebound velocity", off(found.rebound, 1.0), exchange)),
-            ("duration", error("error of the contact time", off(found.duration, 2.0 / wave), exchange)),
-            ("loss", error("energy lost over that at t = 0", found.loss.abs(), "an elastic impact")),
+            ("rebound", AnswerError::relative("error of the rebound velocity", off(found.rebound, 1.0), exchange)),
+            ("duration", AnswerError::relative("error of the contact time", off(found.duration, 2.0 / wave), exchange)),
+            ("loss", AnswerError::relative("energy lost over that at t = 0", found.loss.abs(), "an elastic impact")),
         ];
         let errors = Errors { errors, closure: found.closure };
         Ok((format!("contact/bars/{}/{spans}", id_of(way)), way, spans, scene, errors))
@@ -199,7 +195,10 @@ fn discs(settings: &Settings) -> Result<Vec<Collision>, BenchError> {
     runs.map(|(way, cells)| {
         let scene = discs_of(&base, way, cells);
         let found = watched(&scene)?;
-        let errors = vec![("loss", error("energy lost over that at t = 0", found.loss.abs(), "an elastic impact"))];
+        let errors = vec![(
+            "loss",
+            AnswerError::relative("energy lost over that at t = 0", found.loss.abs(), "an elastic impact"),
+        )];
         let (spans, errors) = (cells / SPANS_PER_RADIUS, Errors { errors, closure: found.closure });
         Ok((format!("contact/discs/{}/{spans}", id_of(way)), way, spans, scene, errors))
     })

@@ -2,6 +2,10 @@
 //! `convergence/gauss-axis-aligned`, by points and by spans, on one thread. The errors are those of the
 //! displacement at the points, against the exact solution; what is timed is the whole run with its
 //! preparation.
+//!
+//! Points run twice: with the Gauss points and the step of the spans, and with the best layout and step that
+//! are known for them, equally spaced 4 × 4 points and steps in proportion to h
+//! (`convergence/moving-axis-aligned`).
 
 use fisura::scene::Quadrature;
 
@@ -11,43 +15,56 @@ use super::{BenchError, Settings};
 use crate::case::Case;
 use crate::study::convergence::Meshes;
 
-/// Spans per direction, and the one that points alone need: their error falls more slowly.
+/// Spans per direction, and those that points alone need: their error falls more slowly.
 const MESHES: [usize; 4] = [12, 16, 24, 32];
-const FINE: usize = 64;
+const FINE: [usize; 2] = [48, 64];
 
 /// Times the motion on all meshes.
 ///
 /// # Errors
-/// If the case is missing, or a run breaks down.
+/// If a case is missing, or a run breaks down.
 pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
-    let path = settings.workspace.join("verification/cases/convergence/gauss-axis-aligned.toml");
-    let case = Case::load(&path, &[])?;
-    pool(1)?.install(|| Meshes::with(&case, |meshes| timed(&meshes, settings))?)
+    let load = |name: &str| {
+        let path = settings.workspace.join("verification/cases/convergence").join(name).with_extension("toml");
+        Case::load(&path, &[])
+    };
+    let same = load("gauss-axis-aligned")?;
+    let best = load("moving-axis-aligned")?;
+    pool(1)?.install(|| {
+        Meshes::with(&same, |same| {
+            Meshes::with(&best, |best| {
+                let mut contestants = contestants(same, settings, false)?;
+                contestants.extend(self::contestants(best, settings, true)?);
+                round_robin(contestants, settings.rounds(), settings.budget())
+            })
+        })??
+    })
 }
 
-fn timed(meshes: &Meshes, settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
+/// Every curve on every mesh; `best` says that points have a layout and a step of their own.
+fn contestants<'a>(meshes: Meshes<'a>, settings: &Settings, best: bool) -> Result<Vec<Contestant<'a>>, BenchError> {
     let mut contestants = Vec::new();
     for curve in meshes.curves() {
         let (degree, quadrature) = meshes.degree_and_quadrature(curve);
-        let (word, fine) = match quadrature {
-            Quadrature::Points => ("points", (!settings.quick).then_some(FINE)),
-            Quadrature::Gauss => ("spans", None),
+        if degree == 1 {
+            continue; // its error grows under refinement
+        }
+        let (word, words, fine) = match (quadrature, best) {
+            (Quadrature::Points, true) => ("equal-points", "4 × 4 equally spaced points, step ∝ h", &FINE[..]),
+            (Quadrature::Points, false) => ("points", "quadrature by points, layout and step of spans", &FINE[..]),
+            (Quadrature::Gauss, _) => ("spans", "quadrature by spans", &[][..]),
         };
         let some = if settings.quick { &MESHES[..3] } else { &MESHES[..] };
-        for cells in some.iter().copied().chain(fine) {
+        let fine = if settings.quick { &[] } else { fine };
+        for &cells in some.iter().chain(fine) {
             let first = meshes.level(curve, cells)?;
-            let (id, label) =
-                (format!("motion/p{degree}-{word}/{cells}"), format!("p = {degree}, quadrature by {word}"));
+            let (id, label) = (format!("motion/p{degree}-{word}/{cells}"), format!("p = {degree}, {words}"));
             let mut record = BenchRecord::new(id, label, first.unknowns as f64, "unknown")
                 .with("degree", degree)
                 .with("spans", cells)
                 .with("unknowns", first.unknowns);
-            record.error = Some(AnswerError {
-                quantity: "relative error of the displacement at the points".into(),
-                value: first.errors[0],
-                reference: "the exact motion".into(),
-                uncertainty: 0.0,
-            });
+            let quantity = "relative error of the displacement at the points";
+            record.error = Some(AnswerError::relative(quantity, first.errors[0], "the exact motion"));
             let run = move |record: &mut BenchRecord| {
                 let watch = Stopwatch::start();
                 let again = meshes.level(curve, cells)?;
@@ -58,5 +75,5 @@ fn timed(meshes: &Meshes, settings: &Settings) -> Result<Vec<BenchRecord>, Bench
             contestants.push(Contestant { record, run: Box::new(run) });
         }
     }
-    round_robin(contestants, settings.rounds(), settings.budget())
+    Ok(contestants)
 }

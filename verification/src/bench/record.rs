@@ -26,8 +26,6 @@ pub struct BenchSet {
     pub records: Vec<BenchRecord>,
     /// Stored ratios to other codes.
     pub peers: Vec<NamedPeer>,
-    /// What bilinear finite elements took for the plate on another machine, if they are not run here.
-    pub fem: Vec<CostPoint>,
     /// Why the finite elements were not run in this session, if they were to be.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub fem_unbuilt: Option<String>,
@@ -75,12 +73,23 @@ impl Spread {
 pub struct AnswerError {
     /// In words.
     pub quantity: String,
-    /// Relative error.
+    /// Error, relative if it has no unit.
     pub value: f64,
+    /// Unit of error and uncertainty; empty if they are relative.
+    #[serde(skip_serializing_if = "String::is_empty", default)]
+    pub unit: String,
     /// What it is measured against.
     pub reference: String,
-    /// Relative uncertainty of the reference; zero if it is exact.
+    /// Uncertainty of the reference in the norm of the error; zero if it is exact.
     pub uncertainty: f64,
+}
+
+impl AnswerError {
+    /// A relative error against a reference without uncertainty.
+    pub fn relative(quantity: &str, value: f64, reference: &str) -> Self {
+        let [quantity, reference] = [quantity, reference].map(String::from);
+        Self { quantity, value, unit: String::new(), reference, uncertainty: 0.0 }
+    }
 }
 
 /// How much of what one sample does.
@@ -119,6 +128,9 @@ pub struct BenchRecord {
     pub clock: Clock,
     /// Error of the answer, where there is a reference for it.
     pub error: Option<AnswerError>,
+    /// Errors of further quantities of the same answer.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub further_errors: Vec<AnswerError>,
     /// Work of one sample.
     pub work: Work,
     /// Heap memory of the model, bytes; zero where it was not counted.
@@ -149,6 +161,7 @@ impl BenchRecord {
             threads: 1,
             clock: Clock::Processor,
             error: None,
+            further_errors: Vec::new(),
             work: Work { amount, unit: unit.to_string() },
             memory_bytes: 0,
             verified: false,
@@ -177,6 +190,21 @@ impl BenchRecord {
     /// The same with a number that is to be at most `limit`; not-a-number fails.
     pub fn verify_at_most(&mut self, what: &str, value: f64, limit: f64) {
         self.verify(value <= limit, format!("{what}: {value:.1e}, at most {limit:.0e}"));
+    }
+
+    /// Notes the errors of an answer, the first as that of the record; without any it does not hold.
+    pub fn note_errors(&mut self, errors: Option<Vec<AnswerError>>) {
+        let mut errors = errors.unwrap_or_default().into_iter();
+        self.error = errors.next();
+        self.further_errors = errors.collect();
+        if self.error.is_none() {
+            self.verify(false, "the history does not cover the window of the comparison");
+        }
+    }
+
+    /// All errors.
+    pub fn errors(&self) -> impl Iterator<Item = &AnswerError> {
+        self.error.iter().chain(&self.further_errors)
     }
 
     /// A numeric parameter.
@@ -214,19 +242,6 @@ pub struct NamedPeer {
     pub value: f64,
     /// What to know before quoting it.
     pub remark: String,
-    /// Date and machine.
-    pub conditions: String,
-}
-
-/// A cost and the error it bought.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CostPoint {
-    /// In words.
-    pub label: String,
-    /// Processor time, s.
-    pub cpu_s: f64,
-    /// Relative error.
-    pub error: f64,
     /// Date and machine.
     pub conditions: String,
 }

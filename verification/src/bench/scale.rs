@@ -8,7 +8,9 @@
 //! | `moving` | elastic points that move through the mesh, FLIP |
 //!
 //! The cracks are as close to the pulled edges on every mesh, so that they grow after the same number of
-//! steps, and their number grows with the width. One block is in memory at a time.
+//! steps, and their number grows with the width. One block is in memory at a time. Besides the bytes of the
+//! model, which are counted, there are those of the process at its peak, with the program and what making the
+//! block ready took.
 
 use fisura::Simulation;
 use fisura::scene::{Crack, Edge, Scene, Side, Traction};
@@ -17,6 +19,7 @@ use super::block::{SPAN, cracked_scene, elastic_scene, moving_scene};
 use super::record::BenchRecord;
 use super::timing::{Stopwatch, pool};
 use super::{BenchError, Settings, advance};
+use crate::scene_run::peak_memory_mb;
 
 const DEGREE: usize = 2;
 /// Spans between neighbouring cracks, of which each is half as long, and between cracks and the pulled edge.
@@ -80,7 +83,13 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     })
 }
 
+/// Forgets the largest memory of this process so far; whether the system can.
+fn forget_peak() -> bool {
+    std::fs::write("/proc/self/clear_refs", "5").is_ok()
+}
+
 fn measure(block: &Block, cells: usize, rounds: usize) -> Result<BenchRecord, BenchError> {
+    let alone = forget_peak();
     let mut simulation = Simulation::new(&(block.scene)(cells))?;
     advance(&mut simulation, block.run_up)?;
     let extent = simulation.extent();
@@ -99,6 +108,9 @@ fn measure(block: &Block, cells: usize, rounds: usize) -> Result<BenchRecord, Be
     }
     let after = simulation.phase_field_counts();
     let [solves, iterations] = [after.solves - before.solves, after.iterations - before.iterations];
+    if let Some(peak_mb) = peak_memory_mb().filter(|_| alone) {
+        record = record.with("peak_bytes", 1e6 * peak_mb);
+    }
     let found = simulation.sample();
     let closure = found.closure.abs() / found.largest_term();
     let expected = if block.name == "cracking" { rounds * steps } else { 0 };
@@ -118,6 +130,8 @@ mod tests {
             let record = measure(block, 50, 1).unwrap();
             assert!(record.verified, "{}: {}", record.id, record.answer);
             assert_eq!(record.number("particles"), Some(1e4));
+            let peak = record.number("peak_bytes");
+            assert!(peak.is_none_or(|peak| peak > record.memory_bytes as f64), "{peak:?}");
         }
     }
 

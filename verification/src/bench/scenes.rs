@@ -7,7 +7,7 @@ use fisura::Simulation;
 use fisura::scene::{Body, Contact, Edge, Frame, Mesh, Scene, Shape, Side, Traction};
 
 use super::block::{MARGIN, SPAN, cracked_scene, elastic_scene};
-use super::plate;
+use super::plate_scene;
 use super::record::BenchRecord;
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
 use super::{BenchError, Settings, advance};
@@ -150,7 +150,7 @@ fn contestant(
 
 /// Half of the plate and all of it at h = l0, from the start; the energies of both must agree.
 fn halves(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
-    let half = plate::half(settings, 2, 1.0)?;
+    let half = plate_scene::half(settings, 2, 1.0)?;
     let whole = Case::load(&settings.plate_case("half-against-full-p2-h1"), &[])?.scenes()?;
     let whole = whole.into_iter().find(|s| s.energy_factor == 1.0);
     let whole = whole.ok_or_else(|| BenchError::other("the case half-against-full-p2-h1 has no whole plate"))?;

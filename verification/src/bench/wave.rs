@@ -214,12 +214,7 @@ impl Wave {
             }
         };
         record.verify_at_most("closure of the ledger over its largest term", closure.abs(), CLOSURE);
-        record.error = Some(AnswerError {
-            quantity: "displacement error in L2".into(),
-            value: error,
-            reference: "exact solution".into(),
-            uncertainty: 0.0,
-        });
+        record.error = Some(AnswerError::relative("displacement error in L2", error, "exact solution"));
         Ok(timed)
     }
 

@@ -25,6 +25,40 @@ fn an_elastic_scene_has_no_memory_for_a_phase_field() {
     assert!(!text.contains("phase field") && text.contains(" here, with "), "{text}");
 }
 
+/// What `check` foretells and the peak of the process that runs the scene, 10⁶ bytes.
+fn memory(scene: &str, sets: &[&str]) -> [f64; 2] {
+    let place = Place::with("s.toml", scene);
+    let sets = sets.iter().flat_map(|set| ["--set", set]).collect::<Vec<_>>();
+    let common = [&["s.toml", "--threads", "1"][..], &sets].concat();
+    let found = place.xtask(&[&["check", "--format", "json"][..], &common].concat()).with_status(0).json();
+    place.xtask(&[&["run", "--out", "out", "--quiet"][..], &common].concat()).with_status(0);
+    let summary: serde_json::Value = serde_json::from_str(&place.read("out/summary.json")).unwrap();
+    [&found["memory_mb"], &summary["peak_memory_mb"]].map(|mb| mb.as_f64().unwrap())
+}
+
+/// Within a fifth: scenes that are made ready to be checked, and larger ones, for which a coarser mesh stands.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_memory_of_a_run_is_foretold_within_a_fifth() {
+    let short = ["analysis.end_time=\"0.02 us\"", "output.frames=[]", "output.samples=2"];
+    let [small, medium, large] = ["[20, 10]", "[400, 200]", "[800, 400]"].map(|cells| format!("mesh.cells={cells}"));
+    let updated = "analysis.frame=\"updated\"";
+    let cracked = notched().replace("\"1 mm\"", "\"0.1 mm\"");
+    let cases = [
+        ("small and cracked", &*notched(), &small, None),
+        ("cracked", &cracked, &medium, None),
+        ("elastic, moving", BLOCK, &medium, Some(updated)),
+        ("cracked, 1.3e6 points", &cracked, &large, None),
+        ("elastic, 1.3e6 points", BLOCK, &large, None),
+        ("elastic, 1.3e6 moving points", BLOCK, &large, Some(updated)),
+    ];
+    for (what, scene, cells, frame) in cases {
+        let sets: Vec<&str> = short.into_iter().chain([cells.as_str()]).chain(frame).collect();
+        let [foretold, peak] = memory(scene, &sets);
+        assert!((foretold / peak - 1.0).abs() < 0.2, "{what}: {foretold} MB foretold, {peak} MB at the peak");
+    }
+}
+
 #[test]
 fn set_changes_what_is_checked() {
     let place = Place::with("block.toml", BLOCK);

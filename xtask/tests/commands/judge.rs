@@ -77,8 +77,11 @@ fn markup_in_names_stays_text() {
 fn the_board_says_what_the_numbers_say() {
     let place = place();
     let outcome = place.xtask(&["judge", "--board", "--out", "out"]).with_status(0);
-    assert!(outcome.out.contains("kinetic energy: error against processor time\n  Of "), "{outcome:?}");
-    assert!(outcome.out.contains("Cost not stated: ") && outcome.out.contains("Mandal"), "{outcome:?}");
+    assert!(outcome.out.contains("kinetic energy: error against spacing\n  Of "), "{outcome:?}");
+    assert!(
+        outcome.out.contains("Costs are not shown: ") && outcome.out.contains("The references differ"),
+        "{outcome:?}"
+    );
     assert_eq!(
         place.files("out"),
         ["board-elastic.svg", "board-fracture.svg", "board-kinetic.svg", "board.html", "board.md", "verdict.json"]

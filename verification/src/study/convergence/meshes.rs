@@ -20,6 +20,7 @@ pub(crate) struct CurveKey {
 }
 
 /// What a case solves, mesh by mesh.
+#[derive(Clone, Copy)]
 pub(crate) struct Meshes<'a> {
     pub(super) setup: &'a ConvergenceSetup,
     pub(super) problem: &'a Problem,

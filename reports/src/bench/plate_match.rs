@@ -1,0 +1,228 @@
+//! Finite elements against fisura on the plate: what the best of each takes to an error, quantity by quantity,
+//! won or lost.
+
+use fisura_verification::bench::plate_error::{QUANTITIES, Quantity};
+use fisura_verification::bench::record::Spread;
+
+use super::pareto::cost_to_reach;
+use super::plate::{ELEMENTS, EQUAL, GRADED, error_in, shown};
+use super::ratios::{Found, Target};
+use super::work_precision::lines;
+use super::{Exhibit, Grid, Records};
+use crate::number::plain;
+
+/// Errors that are compared: relative, and in mm.
+const RELATIVE: [f64; 7] = [0.1, 0.05, 0.04, 0.02, 0.01, 0.005, 0.003];
+const LENGTHS: [f64; 5] = [4.0, 2.0, 1.0, 0.5, 0.25];
+/// No error is compared below so many uncertainties of the reference.
+const UNCERTAINTIES: f64 = 2.0;
+
+/// How many times less time fisura should take at an error, where that is asked for.
+const TARGETS: [(&str, f64, f64); 10] = [
+    ("kinetic energy", 0.01, 4.0),
+    ("kinetic energy", 0.005, 8.0),
+    ("kinetic energy", 0.003, 8.0),
+    ("external work", 0.01, 4.0),
+    ("external work", 0.005, 8.0),
+    ("external work", 0.003, 8.0),
+    ("elastic energy", 0.04, 4.0),
+    ("elastic energy", 0.02, 4.0),
+    ("fracture energy", 0.04, 4.0),
+    ("fracture energy", 0.02, 4.0),
+];
+
+/// What the best way of a code is called, and its time, s.
+type Best = (String, f64);
+
+/// The best of both at one error of one quantity; none where no way reaches it.
+struct Match {
+    quantity: &'static Quantity,
+    error: f64,
+    uncertainty: f64,
+    ours: Option<Best>,
+    elements: Option<Best>,
+}
+
+impl Match {
+    /// Time of the finite elements over that of fisura, if both reach the error.
+    fn ratio(&self) -> Option<f64> {
+        Some(self.elements.as_ref()?.1 / self.ours.as_ref()?.1)
+    }
+
+    fn target(&self) -> Target {
+        let of = |(name, error, _): &&(&str, f64, f64)| *name == self.quantity.name && *error == self.error;
+        TARGETS.iter().find(of).map_or(Target::None, |target| Target::AtLeast(target.2))
+    }
+
+    fn found(&self) -> Option<Found> {
+        let error = shown(self.error, self.quantity.unit);
+        let what = format!("finite elements over fisura, plate, {} to {error}", self.quantity.name);
+        Some(Found { what, value: Spread::of([self.ratio()?]), target: self.target(), verified: true })
+    }
+
+    fn words(&self) -> String {
+        format!("{} to {}", self.quantity.name, shown(self.error, self.quantity.unit))
+    }
+}
+
+/// Every quantity at every error that the reference can tell from none.
+fn matches(records: Records) -> Vec<Match> {
+    let mut matches = Vec::new();
+    for quantity in &QUANTITIES {
+        let all = [EQUAL, GRADED, ELEMENTS].map(|id| records.below(id)).concat();
+        let Some(error) = all.iter().find_map(|record| error_in(record, quantity)) else { continue };
+        let levels = if error.unit.is_empty() { &RELATIVE[..] } else { &LENGTHS[..] };
+        let uncertainty = error.uncertainty;
+        for &error in levels.iter().filter(|level| **level >= UNCERTAINTIES * uncertainty) {
+            let ours = best(records, &[EQUAL, GRADED], quantity, error);
+            let elements = best(records, &[ELEMENTS], quantity, error);
+            matches.push(Match { quantity, error, uncertainty, ours, elements });
+        }
+    }
+    matches
+}
+
+/// The way that reaches an error in the least time.
+fn best(records: Records, ids: &[&str], quantity: &Quantity, error: f64) -> Option<Best> {
+    let lines = lines(ids.iter().flat_map(|id| records.below(id)));
+    let cost = |line: &super::work_precision::Line| {
+        let point =
+            |r: &&fisura_verification::bench::record::BenchRecord| Some((r.cpu_s.median, error_in(r, quantity)?.value));
+        let points: Vec<(f64, f64)> = line.records.iter().filter_map(point).collect();
+        Some((line.label.clone(), cost_to_reach(&points, error)?))
+    };
+    lines.iter().filter_map(cost).min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The ratios that have a target, for the table of targets.
+pub fn targets(records: Records) -> Vec<Found> {
+    matches(records).iter().filter_map(Match::found).filter(|found| found.target != Target::None).collect()
+}
+
+/// Wins and losses; where the finite elements could not be built, why.
+pub fn table(records: Records, unbuilt: Option<&str>) -> Exhibit {
+    let all = matches(records);
+    let row = |m: &Match| {
+        let (ratio, (ours, elements)) = (m.ratio()?, m.ours.as_ref().zip(m.elements.as_ref())?);
+        let way = |(label, seconds): &Best| format!("{label}: {} s", plain(*seconds, 3));
+        let [target, verdict] = match (m.target(), m.found()?.word()) {
+            (Target::AtLeast(least), word) => [format!("≥ {}", plain(least, 3)), word.to_string()],
+            _ => ["–".into(), "–".into()],
+        };
+        let outcome = if ratio >= 1.0 { "fisura ahead" } else { "fisura behind" };
+        Some(vec![
+            m.quantity.name.to_string(),
+            shown(m.error, m.quantity.unit),
+            shown(m.uncertainty, m.quantity.unit),
+            way(ours),
+            way(elements),
+            plain(ratio, 3),
+            outcome.into(),
+            target,
+            verdict,
+        ])
+    };
+    let head = ["quantity", "error", "U", "fisura", "finite elements", "ratio", "outcome", "target", "verdict"];
+    Exhibit::Grid(Grid {
+        title: "Finite elements over fisura: the best of each at equal error".into(),
+        head: head.map(String::from).to_vec(),
+        rows: all.iter().filter_map(row).collect(),
+        note: note(&all, unbuilt),
+    })
+}
+
+fn note(all: &[Match], unbuilt: Option<&str>) -> String {
+    let alone = |ours: bool| {
+        let of = |m: &&Match| m.ours.is_some() == ours && m.elements.is_some() != ours;
+        all.iter().filter(of).map(Match::words).collect::<Vec<_>>().join(", ")
+    };
+    let mut note = "Processor time of one thread on this machine, in the same rounds; times between two meshes are those of a power law. \
+                    κ: a crack on a mesh costs κ Gc, and both codes may run with Gc/κ. No error below twice the uncertainty U of the \
+                    reference is compared."
+        .to_string();
+    for (who, ours) in [("fisura", true), ("the finite elements", false)] {
+        let words = alone(ours);
+        if !words.is_empty() {
+            note += &format!(" Only {who} reached: {words}.");
+        }
+    }
+    note + &unbuilt.map_or(String::new(), |why| format!(" The finite elements could not be built here: {why}."))
+}
+
+/// Wins and losses in a sentence.
+pub fn reading(records: Records, unbuilt: Option<&str>) -> String {
+    let all = matches(records);
+    let mut ratios: Vec<(f64, String)> = all.iter().filter_map(|m| Some((m.ratio()?, m.words()))).collect();
+    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (Some(least), Some(most)) = (ratios.first(), ratios.last()) else {
+        let why = unbuilt.map_or(String::new(), |why| format!(" The finite elements could not be built here: {why}."));
+        return format!("There is no error that both codes reach.{why}");
+    };
+    let ahead = ratios.iter().filter(|(ratio, _)| *ratio >= 1.0).count();
+    format!(
+        "Of {} errors that both reach, fisura takes less processor time than the finite elements at {ahead}: {} times less at most \
+         ({}), {} times at least ({}).",
+        ratios.len(),
+        plain(most.0, 2),
+        most.1,
+        plain(least.0, 2),
+        least.1
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use fisura_verification::bench::record::{AnswerError, BenchRecord, Sample};
+
+    use super::*;
+
+    fn run(id: &str, label: &str, seconds: f64, error: f64) -> BenchRecord {
+        let mut record = BenchRecord::new(id, label, 1.0, "run");
+        record.samples = vec![Sample { wall_s: seconds, cpu_s: seconds }];
+        record.verify(true, "");
+        record.summarise();
+        let of = |name: &str, value: f64| AnswerError {
+            uncertainty: 0.004,
+            ..AnswerError::relative(&format!("{name}, relative rms"), value, "a curve")
+        };
+        record.note_errors(Some(vec![of("kinetic energy", error), of("elastic energy", 2.0 * error)]));
+        record
+    }
+
+    /// Errors that fall with the time of fisura, and with its square root for the elements.
+    fn records() -> Vec<BenchRecord> {
+        let ours = [(1.0, 0.04), (2.0, 0.02), (4.0, 0.01)];
+        let theirs = [(0.5, 0.08), (2.0, 0.04), (8.0, 0.02), (32.0, 0.01)];
+        let ours = ours.map(|(s, e)| run(&format!("plate/graded/p2/h{s}"), "fisura", s, e));
+        let theirs = theirs.map(|(s, e)| run(&format!("plate/elements/h{s}"), "elements", s, e));
+        ours.into_iter().chain(theirs).collect()
+    }
+
+    #[test]
+    fn wins_and_losses_are_told_and_nothing_below_the_reference() {
+        let records = records();
+        let Exhibit::Grid(grid) = table(Records(&records), None) else { panic!("a table") };
+        let kinetic: Vec<(&str, &str, &str)> =
+            grid.rows.iter().filter(|r| r[0] == "kinetic energy").map(|r| (&*r[1], &*r[5], &*r[6])).collect();
+        let expected =
+            [("10 %", "0.5", "fisura behind"), ("5 %", "1.28", "fisura ahead"), ("4 %", "2", "fisura ahead")];
+        assert_eq!(kinetic[..3], expected);
+        assert_eq!(kinetic[3..], [("2 %", "4", "fisura ahead"), ("1 %", "8", "fisura ahead")]);
+        assert!(grid.rows.iter().any(|r| r[0] == "elastic energy" && r[1] == "2 %" && r[8] == "met"), "{grid:?}");
+        assert!(!grid.rows.iter().any(|r| r[1] == "0.5 %"), "below twice the uncertainty");
+        assert!(reading(Records(&records), None).contains("Of 9 errors that both reach"));
+    }
+
+    #[test]
+    fn targets_are_judged_and_what_one_alone_reaches_is_said() {
+        let mut records = records();
+        let found = targets(Records(&records));
+        assert_eq!(found.len(), 3, "{found:?}");
+        assert!(found.iter().any(|f| f.what.ends_with("kinetic energy to 1 %") && f.holds() == Some(true)));
+        assert!(found.iter().any(|f| f.what.ends_with("elastic energy to 4 %") && f.holds() == Some(true)));
+        records.pop();
+        let Exhibit::Grid(grid) = table(Records(&records), Some("no cargo")) else { panic!("a table") };
+        assert!(grid.note.contains("Only fisura reached: kinetic energy to 1 %"), "{}", grid.note);
+        assert!(grid.note.ends_with("could not be built here: no cargo."), "{}", grid.note);
+    }
+}

@@ -1,0 +1,106 @@
+//! The half plate of the cases on meshes of any span.
+
+use super::mesh_toughness::kappa;
+use super::{BenchError, Settings};
+use crate::case::Case;
+use crate::case::expand::CaseScene;
+use crate::extremes::larger;
+
+/// Where the short spans begin in x and end in y for someone in a hurry, m: the crack starts at x = 50 mm and
+/// is 14.3 mm off the axis at the right edge.
+const SHORT_SPANS: [f64; 2] = [44e-3, 36e-3];
+
+/// The half plate of the cases with square spans of `h` length scales, as many Gauss points per direction as
+/// the degree but at least two, without pictures.
+///
+/// # Errors
+/// If the case is missing or wrong.
+pub fn half(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, BenchError> {
+    let cells = [400.0, 80.0].map(|n| (n / h).round());
+    let cells = format!("mesh.cells=[{}, {}]", cells[0], cells[1]);
+    let points = degree.max(2);
+    let points = format!("body.0.particles_per_cell=[{points}, {points}]");
+    let overrides = [cells, points, format!("mesh.degree={degree}"), "output.frames=[]".to_string()];
+    let case = Case::load(&settings.plate_case("half-p2-h1"), &overrides)?;
+    case.scenes()?.into_iter().next().ok_or_else(|| BenchError::input("the case of the plate has no scene"))
+}
+
+/// The same with spans of twice `h` where no crack runs.
+///
+/// # Errors
+/// As [`half`].
+pub fn graded(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, BenchError> {
+    let mut case = half(settings, degree, h)?;
+    let materials = case.scene.materials.values();
+    let span = h * materials.filter_map(|m| m.fracture.as_ref()).map(|f| f.length_scale).fold(0.0, larger);
+    let (low, high) = (case.scene.mesh.origin(), case.scene.mesh.end());
+    let parts = [
+        [(low[0], SHORT_SPANS[0], 2.0 * span), (SHORT_SPANS[0], high[0], span)],
+        [(low[1], SHORT_SPANS[1], span), (SHORT_SPANS[1], high[1], 2.0 * span)],
+    ];
+    case.scene.mesh.knots = parts.map(|parts| open_knots(degree, &parts));
+    Ok(case)
+}
+
+/// Divides Gc by what a crack costs on the mesh ([`kappa`]) with spans of `h` length scales.
+///
+/// # Errors
+/// If that is not known of the degree and the points of the scene.
+pub fn with_toughness_of_mesh(case: &mut CaseScene, h: f64) -> Result<(), BenchError> {
+    let (degree, points) = (case.scene.mesh.degree[0], case.scene.bodies[0].particles_per_cell[0]);
+    let unknown = || BenchError::input(format!("what a crack costs with p = {degree} and {points} points is unknown"));
+    let kappa = kappa(degree, points, h).ok_or_else(unknown)?;
+    let fractures = case.scene.materials.values_mut().filter_map(|material| material.fracture.as_mut());
+    fractures.for_each(|fracture| fracture.critical_energy_release_rate /= kappa);
+    Ok(())
+}
+
+/// Open knots with spans of about the given length in each part `(from, to, length)`.
+fn open_knots(degree: usize, parts: &[(f64, f64, f64)]) -> Vec<f64> {
+    let (start, end) = (parts[0].0, parts[parts.len() - 1].1);
+    let mut knots = vec![start; degree];
+    for &(from, to, length) in parts {
+        let spans = ((to - from) / length).round();
+        knots.extend((0..spans as usize).map(|i| from + (to - from) * (i as f64 / spans)));
+    }
+    knots.extend(std::iter::repeat_n(end, degree + 1));
+    knots
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_half_plate_has_spans_of_the_size_asked_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = crate::output::OutputFolder::open(folder.path(), "bench").unwrap();
+        let settings = Settings {
+            quick: true,
+            threads: 1,
+            workspace: crate::bench::own_workspace(),
+            out: &out,
+            baseline: None,
+            peer: None,
+            peer_timeout: std::time::Duration::ZERO,
+            families: vec![],
+            elements: Default::default(),
+        };
+        let case = half(&settings, 3, 2.0).unwrap();
+        let spans = case.scene.mesh.knots.each_ref().map(|knots| knots.len() - 7);
+        assert_eq!((spans, case.energy_factor, case.scene.output.frames.len()), ([200, 40], 2.0, 0));
+        let mut case = graded(&settings, 2, 1.0).unwrap();
+        with_toughness_of_mesh(&mut case, 1.0).unwrap();
+        let fracture = case.scene.materials["glass"].fracture.as_ref().unwrap();
+        assert!((fracture.critical_energy_release_rate - 3.0 / 1.12).abs() < 1e-12);
+        case.scene.mesh.degree = [4; 2];
+        assert!(with_toughness_of_mesh(&mut case, 1.0).is_err());
+        let knots = &case.scene.mesh.knots;
+        let spans = knots.each_ref().map(|knots| knots.windows(2).map(|k| k[1] - k[0]).filter(|d| *d > 0.0));
+        for ((spans, count), length) in spans.into_iter().zip([88 + 224, 64 + 8]).zip([0.1, 0.02]) {
+            let spans: Vec<f64> = spans.collect();
+            assert!((spans.iter().sum::<f64>() - length).abs() < 1e-15 && spans.len() == count);
+            assert!(spans.iter().all(|d| (d / 0.25e-3 - 1.0).abs() < 1e-9 || (d / 0.5e-3 - 1.0).abs() < 1e-9));
+        }
+    }
+}

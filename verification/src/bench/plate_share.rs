@@ -1,0 +1,81 @@
+//! The part of the phase field in a step of the plate while it cracks.
+
+use fisura::Simulation;
+use fisura::dynamics::total_frame::TotalFrame;
+use fisura::scene::Scene;
+
+use super::plate_scene::half;
+use super::record::BenchRecord;
+use super::timing::Stopwatch;
+use super::{BenchError, Settings};
+use crate::case::Case;
+
+/// Steps of the plate while it cracks, on one thread, and in each of them the part of the phase field: the
+/// same solve, from the same start with the same history, done once more and timed on its own.
+///
+/// # Errors
+/// If the case is missing, or a run breaks down.
+pub fn share(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
+    let (scene, run_up, steps) = if settings.quick {
+        (half(settings, 2, 1.0)?.scene, 400, 20)
+    } else {
+        let paper = Case::load(&settings.plate_case("paper-p2-262144"), &[])?.scenes()?;
+        let first = paper.into_iter().next().ok_or_else(|| BenchError::input("the case of the paper has no scene"))?;
+        (first.scene, 900, 100)
+    };
+    share_of(&scene, run_up, steps)
+}
+
+/// The same of a scene in the total frame, after some steps.
+fn share_of(scene: &Scene, run_up: usize, steps: usize) -> Result<Vec<BenchRecord>, BenchError> {
+    let dt = Simulation::new(scene)?.plan().step;
+    let broken = || BenchError::other("the phase field of the plate does not converge");
+    let mut frame = TotalFrame::new(scene).map_err(|_| broken())?;
+    (0..run_up).try_for_each(|_| frame.step(dt)).map_err(|_| broken())?;
+    let points = frame.lattice().count();
+    let record = |name: &str, label: &str| {
+        BenchRecord::new(format!("plate/share/{name}"), label, points as f64, "particle-step").with("particles", points)
+    };
+    let mut whole = record("step", "step of the plate with a growing crack");
+    let mut solve = record("phase-field", "its phase field: assembly and solve");
+    whole.memory_bytes = frame.bytes().iter().sum::<usize>() as u64;
+    let (mut same, mut iterations) = (true, 0);
+    for _ in 0..steps {
+        let mut before = frame.fracture.clone().ok_or_else(|| BenchError::other("the plate does not fracture"))?;
+        let watch = Stopwatch::start();
+        frame.step(dt).map_err(|_| broken())?;
+        whole.samples.push(watch.read());
+        let after = frame.fracture.as_ref().ok_or_else(|| BenchError::other("the plate does not fracture"))?;
+        before.history.clone_from(&after.history);
+        let watch = Stopwatch::start();
+        before.solve_phase_field(frame.lattice()).map_err(|_| broken())?;
+        solve.samples.push(watch.read());
+        same &= before.field.control_values() == after.field.control_values();
+        iterations += after.iterations;
+    }
+    for record in [&mut whole, &mut solve] {
+        record.verify(
+            same && iterations > 0,
+            format!("the same bits both times; {iterations} iterations in {steps} steps"),
+        );
+        record.summarise();
+    }
+    Ok(vec![whole, solve])
+}
+
+#[cfg(test)]
+mod tests {
+    use fisura::scene::{Edge, Side, Traction};
+
+    use super::*;
+    use crate::bench::block::cracked_scene;
+
+    #[test]
+    fn the_solve_of_a_step_done_once_more_gives_the_same_bits() {
+        let mut scene = cracked_scene(2, 2, 16, 0);
+        let pulled = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: None };
+        scene.bodies[0].tractions = vec![pulled(Side::Top, 4e6), pulled(Side::Bottom, -4e6)];
+        let records = share_of(&scene, 10, 5).unwrap();
+        assert!(records.iter().all(|r| r.verified && r.samples.len() == 5), "{records:?}");
+    }
+}
