@@ -7,7 +7,7 @@ use crate::output::history::Table;
 use crate::reference::{Library, ReferenceCurve, relative_rms, relative_uncertainty, rms_difference, rms_uncertainty};
 
 /// Folder of the reference.
-const REFERENCE: &str = "independent-fem";
+const REFERENCE: &str = "plate-family";
 /// End of every window, s.
 const END: f64 = 80e-6;
 /// End of the initial crack, m: the tip before anything is broken.
