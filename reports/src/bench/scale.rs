@@ -158,7 +158,7 @@ mod tests {
             })
             .collect();
         let both =
-            "25 ns at 16000000 points, 2 times the 12.5 ns at 160000 points and 1.25 times the 20 ns at 2560000 points";
+            "25 ns at 1.6e7 points, 2 times the 12.5 ns at 160000 points and 1.25 times the 20 ns at 2.56e6 points";
         assert!(readings[0].contains(both), "{readings:?}");
         assert!(readings[1].contains("missed") && readings[1].contains("had 320 at its peak"), "{readings:?}");
         assert!(super::exhibits(Records(&[])).is_empty());

@@ -150,7 +150,7 @@ mod tests {
         let references = References::of(&library).unwrap();
         let seconds = references.0[0].x.clone();
         let at = |curve: &ReferenceCurve, t: f64| curve.at(t).unwrap_or(f64::NAN);
-        let [mut ours, mut theirs] = [(); 2].map(|()| Table::new::<&str>(&[]));
+        let [mut ours, mut theirs] = [(); 2].map(|()| Table { names: Vec::new(), columns: Vec::new() });
         ours.names.push("time_s".into());
         ours.columns.push(seconds.clone());
         theirs.names.push("time_us".into());

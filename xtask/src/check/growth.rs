@@ -31,7 +31,7 @@ impl Tried {
         let mut simulation = Simulation::new(&coarse).ok()?;
         let trial = Trial::of(&coarse, &mut simulation).ok()??;
         let (points, extent) = (expected_size(&coarse).points as f64, simulation.extent());
-        let peaks_mb = program_mb.zip(peak_memory_mb()).map(|(program, peak)| [program, peak]);
+        let peaks_mb = program_mb.zip(trial.memory_mb).map(|(program, peak)| [program, peak]);
         Some(Self { points, trial, extent, peaks_mb })
     }
 

@@ -40,18 +40,6 @@ impl Trial {
     /// # Errors
     /// A breakdown within those steps.
     pub(super) fn of(scene: &Scene, simulation: &mut Simulation) -> Result<Option<Self>, Breakdown> {
-        Self::lasting(LONGEST, scene, simulation)
-    }
-
-    /// The same with one step: for what it needs, not for what it takes.
-    ///
-    /// # Errors
-    /// As [`Self::of`].
-    pub(super) fn shortest(scene: &Scene, simulation: &mut Simulation) -> Result<Option<Self>, Breakdown> {
-        Self::lasting(0.0, scene, simulation)
-    }
-
-    fn lasting(longest: f64, scene: &Scene, simulation: &mut Simulation) -> Result<Option<Self>, Breakdown> {
         let size = [0, 1].map(|d| scene.mesh.end()[d] - scene.mesh.origin()[d]);
         let start = Instant::now();
         let picture = (!scene.output.frames.is_empty()).then(|| simulation.picture(square_pixels(size, FRAME_PIXELS)));
@@ -64,11 +52,8 @@ impl Trial {
             simulation.step()?;
         }
         let (before, start) = (simulation.steps(), Instant::now());
-        while !simulation.finished() && watch::check().is_ok() {
+        while !simulation.finished() && start.elapsed().as_secs_f64() < LONGEST && watch::check().is_ok() {
             simulation.step()?;
-            if start.elapsed().as_secs_f64() >= longest {
-                break;
-            }
         }
         let (steps, steps_s) = (simulation.steps() - before, start.elapsed().as_secs_f64());
         let (picture_bytes, memory_mb) = (8 * values, peak_memory_mb());
