@@ -122,7 +122,7 @@ pub(super) struct CheckTable {
     /// Where the bounds come from, or the discretisation error.
     #[serde(default)]
     why: String,
-    /// Why the value is shown beside its reference and not judged.
+    /// Why the value is shown beside its reference and not judged, whatever bounds its set of checks gives.
     shown: Option<Words>,
     /// A documented limit, in which a value may lie that does not agree with its reference.
     limit: Option<LimitTable>,
@@ -281,9 +281,6 @@ fn accept(table: &CheckTable, item: &Item<'_>) -> Option<Accept> {
         return item.at("min")?.fail(format!("min {low} is above max {high}"), "no value lies between them");
     }
     let bounded = own || around;
-    if table.shown.is_some() && (bounded || table.limit.is_some()) {
-        return item.at("shown")?.fail("bounds of a value that is shown only", "remove shown, or the bounds and the limit");
-    }
     let computed = table.uncertainty.is_some() || table.discretisation.is_some();
     if bounded && computed {
         let remedy = "remove min, max, below and above, or write them as limit = { max = …, why = \"…\" }";

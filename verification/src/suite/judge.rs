@@ -11,7 +11,7 @@ use crate::case::expand::CaseScene;
 use crate::case::{Case, Check};
 use crate::measure::{Measured, expected};
 use crate::output::OutputFolder;
-use crate::record::{Record, Status, Timing};
+use crate::record::{Accept, Record, Status, Timing};
 use crate::reference::Library;
 use crate::study::charts;
 use crate::study::scene::{FinishedScene, describe, evaluate, run_scenes};
@@ -150,7 +150,10 @@ fn judge(mut record: Record, check: &Check, measured: Measured) -> Record {
         return failed(record, "bounds of its own beside an uncertainty, which bounds the value: write them as limit");
     }
     match &check.shown {
-        Some(why) => record.accept.why.clone_from(why),
+        Some(why) => {
+            record.accept = Accept { why: why.clone(), ..Accept::default() };
+            record.limit = None;
+        }
         None => record.decide(),
     }
     if record.value.is_none() {
