@@ -2,8 +2,8 @@
 //!
 //! [`render`] writes `samples.csv` (every sample), `figures/timing/*.svg`, `summary.md` (with links to the
 //! figures) and `bench.html` (figures inline). Everything is a pure function of `bench.json`:
-//! [`work_precision`], [`plate`](mod@plate), [`plate_match`], [`stages`], [`contact`], [`motion`], [`scale`] and
-//! [`conditions`] make the exhibits, [`ratios`] holds the targets, [`bars`] draws bars, [`page`] puts it
+//! [`work_precision`], [`plate`](mod@plate), [`plate_match`], [`stages`], [`contact`], [`motion`], [`scale`]
+//! and [`conditions`] make the exhibits, [`ratios`] holds the targets, [`bars`] draws bars, [`page`] puts it
 //! together.
 
 pub mod bars;

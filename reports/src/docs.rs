@@ -31,9 +31,12 @@ const SUITES: [(&str, &str); 9] = [
         "fracture",
         "closed forms of the phase-field model (AT2), surface energy of cracks, wave speeds, early energies of the plate",
     ),
-    ("rings", "two brittle rings in collision, against the times of the source paper; the geometry is assumed"),
+    (
+        "rings",
+        "two brittle rings in collision: momentum, balance, symmetry; the geometry is assumed, times of the source paper are shown",
+    ),
     ("stability", "critical time step, bodies that end inside a span, extreme input, units, threads, long runs"),
-    ("plate", "the cracking plate, against independent finite elements and published bands"),
+    ("plate", "the cracking plate at h = l0, against finite elements and splines extrapolated to h = 0"),
 ];
 
 /// Figures of each page of a suite, by their ids in the results.
@@ -141,9 +144,10 @@ impl Stored {
     }
 
     fn suites(&self) -> String {
-        let mut out = "| suite | what is checked | agree with a reference | hold without one | known limits | fail | shown |\n\
+        let mut out =
+            "| suite | what is checked | agree with a reference | hold without one | known limits | fail | shown |\n\
                        |---|---|---|---|---|---|---|\n"
-            .to_string();
+                .to_string();
         for (suite, what) in SUITES {
             let cases = self.of_suite(suite).unwrap_or_default();
             let sum = |count: &dyn Fn(&StoredCase) -> usize| cases.iter().map(|case| count(case)).sum::<usize>();
@@ -156,7 +160,8 @@ impl Stored {
                     words.push(format!("{count} {name}"));
                 }
             }
-            let [with, without] = [with, without].map(|words| if words.is_empty() { "–".into() } else { words.join(", ") });
+            let [with, without] =
+                [with, without].map(|words| if words.is_empty() { "–".into() } else { words.join(", ") });
             let [limits, fails, shown] = [0, 1, 2].map(|index| sum(&|case| case.others[index]));
             out.push_str(&format!("| `{suite}` | {what} | {with} | {without} | {limits} | {fails} | {shown} |\n"));
         }

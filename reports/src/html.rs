@@ -23,8 +23,8 @@ use crate::view::{self, Counts};
 
 use embed::embedded;
 use page::{
-    Case, Deviations, LimitCell, Link, Order, Orders, Page, Parameters, Picture, ReferenceCell, Row, Source,
-    Suite, Verdict,
+    Case, Deviations, LimitCell, Link, Order, Orders, Page, Parameters, Picture, ReferenceCell, Row, Source, Suite,
+    Verdict,
 };
 use size::{left_out, reduced};
 
@@ -226,10 +226,10 @@ fn row(record: &Record, name: &str) -> Row {
         reference,
         bounds: view::accepted(record, pretty),
         why: record.accept.why.clone(),
-        limit: record.limit.as_ref().map(|limit| LimitCell {
-            range: view::limit(record, pretty).unwrap_or_default(),
-            why: limit.why.clone(),
-        }),
+        limit: record
+            .limit
+            .as_ref()
+            .map(|limit| LimitCell { range: view::limit(record, pretty).unwrap_or_default(), why: limit.why.clone() }),
         message: record.message.clone().unwrap_or_default(),
     }
 }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use fisura_verification::record::{Record, ResultSet, Status};
-use quick_junit::{NonSuccessKind, Property, Report, TestCase, TestCaseStatus, TestSuite};
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use crate::number::plain;
 use crate::view::{accepted, by_suite, kind, limit, own_times, reason, value, with_unit, word};
@@ -52,7 +52,7 @@ fn case(record: &Record, time: Duration) -> TestCase {
     let mut case = TestCase::new(record.id.as_str(), status);
     case.set_classname(format!("{}.{}", record.suite, record.case));
     case.set_time(time);
-    case.add_property(Property::new("status", word(record.status)));
+    case.extra.insert("status".into(), word(record.status).into());
     case.set_system_out(message(record));
     case
 }

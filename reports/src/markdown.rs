@@ -6,8 +6,8 @@ use fisura_verification::record::{Record, ResultSet, Status};
 use crate::number::plain;
 use crate::rates::rates;
 use crate::view::{
-    Counts, accepted, broken, by_suite, comparison, environment, kind, limited, reason, reference_value, symbol,
-    value, word,
+    Counts, accepted, broken, by_suite, comparison, environment, kind, limited, reason, reference_value, symbol, value,
+    word,
 };
 
 /// Largest size in bytes; a step summary over 1 MiB is dropped whole by GitHub.

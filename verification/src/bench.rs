@@ -9,7 +9,7 @@
 //! | family | question |
 //! |---|---|
 //! | `work-precision` | what an error costs: degrees, mass, layouts and frames, one problem ([`wave`]) |
-//! | `plate` | what an error of the plate costs, for fisura and for the independent finite elements ([`plate`]) |
+//! | `plate` | what an error of the plate costs, for fisura and for finite elements ([`plate`]) |
 //! | `stages` | where the time of a step goes, beside a plain kernel ([`stages`], [`minimal`]) |
 //! | `solves` | the phase-field solver against plain ones ([`solves`]) |
 //! | `threads` | what another thread brings ([`threads`]) |

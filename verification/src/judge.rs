@@ -164,7 +164,7 @@ fn plate(
         reference: ReferenceUsed {
             id: variant.id.clone(),
             label: variant.label.clone(),
-            uncertainty: format!("{}; some 95 % covered", variant.uncertainty),
+            uncertainty: variant.uncertainty.clone(),
         },
         numerical_uncertainty: numerics.words(),
         differences,

@@ -183,8 +183,8 @@ impl Findings {
         self
     }
 
-    /// Memory of what a run keeps to write: pictures, and its state if it lasts; of a scene so many times larger
-    /// than that of the trial.
+    /// Memory of what a run keeps to write: pictures, and its state if it lasts; of a scene so many times
+    /// larger than that of the trial.
     fn add_output(&mut self, trial: &Trial, larger: f64) {
         self.memory_mb += 1e-6 * (self.frames * trial.picture_bytes) as f64;
         if self.estimated_wall_s.is_some_and(|seconds| seconds > BETWEEN_CHECKPOINTS) {

@@ -1,5 +1,5 @@
-//! Finite elements against fisura on the plate: what the best of each takes to an error, quantity by quantity,
-//! won or lost.
+//! Finite elements against fisura on the plate: what the best of each takes to an error, quantity by
+//! quantity, won or lost.
 
 use fisura_verification::bench::plate_error::{QUANTITIES, Quantity};
 use fisura_verification::bench::record::Spread;

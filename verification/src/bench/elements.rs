@@ -3,7 +3,7 @@
 //!
 //! | what | choice |
 //! |---|---|
-//! | build | `cargo build --release`, for AVX2 and FMA where this processor has them, as the solver's sweeps are |
+//! | build | `cargo build --release`, for AVX2 and FMA where this processor has them, as the solver |
 //! | mesh | graded: elements twice and four times as large where no crack runs |
 //! | step | the critical one of an element |
 //! | phase field | solved for in every third step, in between it goes on linearly |

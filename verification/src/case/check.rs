@@ -7,9 +7,9 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::{Map, Value};
 
+use super::Check;
 use super::formula::Amount;
 use super::value::{AnyAmount, Column, Factor, Id, Quantity, Time, Uncertainty, Words, identifier};
-use super::Check;
 use crate::record::{Accept, Limit, ReferenceKind, Side};
 use crate::scene::fields::Item;
 
@@ -246,7 +246,8 @@ fn limit(table: LimitTable, reason: &str, item: &Item<'_>) -> Option<Limit> {
         return item.fail("a limit without bounds", "give min, max or both");
     }
     if why.trim().is_empty() {
-        return item.fail("a limit without a cause", "add why = \"what limits the value, and where the bounds come from\"");
+        return item
+            .fail("a limit without a cause", "add why = \"what limits the value, and where the bounds come from\"");
     }
     if min.zip(max).is_some_and(|(min, max)| min > max) {
         return item.fail("min is above max", "swap the two");

@@ -13,7 +13,7 @@
 //! 1. `info`, if nothing bounds the value;
 //! 2. `fail`, if there is no finite value;
 //! 3. `pass`, if the value agrees: it lies within bounds that contain the reference, and that leave at most
-//!    [`WIDEST`] of a reference that is not zero ([`WIDEST_ON_A_SIDE`] of one that is a lower or upper bound);
+//!    [`WIDEST`] of a reference that is not zero ([`WIDEST_ON_A_SIDE`] of a lower or upper bound);
 //! 4. `known-limit`, if it lies within the documented limit;
 //! 5. `info`, if the bounds are wider than that, so that they cannot tell agreement;
 //! 6. `fail` otherwise.
@@ -28,8 +28,8 @@ use super::{Accept, Record, Reference, ReferenceKind, Side, Status};
 
 /// Uncertainty of a comparison over the reference, beyond which agreement says nothing.
 pub const WIDEST: f64 = 0.05;
-/// The same of a reference that is a lower or an upper bound. Orders of convergence are small numbers that are
-/// observed on finite meshes: a tenth of 1.
+/// The same of a reference that is a lower or an upper bound. Orders of convergence are small numbers that
+/// are observed on finite meshes: a tenth of 1.
 pub const WIDEST_ON_A_SIDE: f64 = 0.1;
 /// Bounds are typed with a few digits, and references computed: this much of the reference is round-off.
 const ROUND_OFF: f64 = 1e-9;

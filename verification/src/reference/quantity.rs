@@ -6,7 +6,7 @@ use crate::scene::units::{self, Dimension, UnitError};
 const ENERGY_PER_THICKNESS: Dimension = Dimension::FORCE;
 
 /// Quantities of curves: name, dimension of the abscissa, dimension of the ordinate.
-const QUANTITIES: [(&str, Dimension, Dimension); 16] = [
+const QUANTITIES: [(&str, Dimension, Dimension); 15] = [
     ("plate/elastic-energy", Dimension::TIME, ENERGY_PER_THICKNESS),
     ("plate/fracture-increment", Dimension::TIME, ENERGY_PER_THICKNESS),
     ("plate/kinetic-energy", Dimension::TIME, ENERGY_PER_THICKNESS),
@@ -19,7 +19,6 @@ const QUANTITIES: [(&str, Dimension, Dimension); 16] = [
     ("plate-family/external-work", Dimension::TIME, ENERGY_PER_THICKNESS),
     ("plate-family/tip-x", Dimension::TIME, Dimension::LENGTH),
     ("plate-family/tip-y", Dimension::TIME, Dimension::LENGTH),
-    ("plate/kinetic-error-against-processor-time", Dimension::TIME, Dimension::NONE),
     ("rings/fracture-energy", Dimension::TIME, Dimension::ENERGY),
     ("manufactured-bar/displacement-error-small", Dimension::NONE, Dimension::NONE),
     ("manufactured-bar/displacement-error-large", Dimension::NONE, Dimension::NONE),

@@ -7,7 +7,8 @@
 //! Σ_q w_q [(1 − c)²/(4 l0) + l0 |grad c|² + B_q c²/(4 l0)],     B_q = 4 l0 H/Gc
 //! ```
 //!
-//! with B_q so large at the broken points that c vanishes there. The cost counts the first two terms, over Gc.
+//! with B_q so large at the broken points that c vanishes there. The cost counts the first two terms, over
+//! Gc.
 
 use fisura::linear_algebra::cholesky::SparseCholesky;
 use fisura::linear_algebra::lane::Lane;

@@ -102,9 +102,7 @@ fn verdicts(base: &Check) -> Vec<bool> {
         record.decide();
         record.status
     };
-    let of_bounds = |(value, min, max, expected)| {
-        status(Record { value, ..of_accept(bounds(min, max)) }) == expected
-    };
+    let of_bounds = |(value, min, max, expected)| status(Record { value, ..of_accept(bounds(min, max)) }) == expected;
     let mut right: Vec<bool> = bounded.into_iter().map(of_bounds).collect();
     // reference 10, its uncertainty, bounds, and a limit from 20 to 30
     let limit = Limit { min: Some(20.0), max: Some(30.0), why: String::new() };

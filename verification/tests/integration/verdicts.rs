@@ -49,8 +49,7 @@ fn one(check: &str) -> Record {
 #[test]
 fn the_uncertainty_of_the_reference_bounds_the_value() {
     for (uncertainty, status) in [(2e-7, Status::Pass), (5e-8, Status::Fail)] {
-        let record =
-            one(&format!("expect = 2.51e-5\nexpect_kind = \"independent-code\"\nuncertainty = {uncertainty}"));
+        let record = one(&format!("expect = 2.51e-5\nexpect_kind = \"independent-code\"\nuncertainty = {uncertainty}"));
         assert_eq!(record.status, status, "{record:?}");
         assert!((record.uncertainty().unwrap() - 1e5 * uncertainty).abs() < 1e-12);
         assert!((record.accept.max.unwrap() - 2.51 - 1e5 * uncertainty).abs() < 1e-9, "{record:?}");
@@ -67,11 +66,11 @@ fn the_mesh_adds_its_part_of_the_uncertainty() {
 
 #[test]
 fn an_order_and_a_constant_give_the_discretisation_error() {
-    for (constant, status) in [(0.05, Status::Pass), (0.01, Status::Fail)] {
+    for (constant, status) in [(0.05, Status::Pass), (0.003, Status::Fail)] {
         let record = one(&format!("expect = 2.51e-5\ndiscretisation = \"= {constant}*2.51e-5\"\nwhy = \"order 0\""));
         let error = record.discretisation.as_ref().unwrap();
         assert!((error.value - 2.51 * constant).abs() < 1e-9, "{error:?}");
-        assert_eq!(record.status, if constant > 0.03 { Status::Pass } else { status }, "{record:?}");
+        assert_eq!(record.status, status, "{record:?}");
     }
 }
 
@@ -91,20 +90,24 @@ fn numbers_of_the_library_bring_their_uncertainty() {
 #[test]
 fn a_value_within_a_documented_limit_is_a_known_limit() {
     let limited = |limit: &str| {
-        one(&format!("expect = 3e-5\nmin = 2.99\nmax = 3.01\nwhy = \"theory\"\nlimit = {{ {limit}, why = \"a cause\" }}"))
+        one(&format!(
+            "expect = 3e-5\nmin = 2.99\nmax = 3.01\nwhy = \"theory\"\nlimit = {{ {limit}, why = \"a cause\" }}"
+        ))
     };
     let within = limited("min = 2.4, max = 2.6");
     assert!(within.status == Status::KnownLimit && within.limit.is_some(), "{within:?}");
     assert_eq!(limited("min = 2.6").status, Status::Fail);
-    let of_uncertainty =
-        one("expect = 3e-5\nuncertainty = 1e-7\nlimit = { min = 2.4, max = 2.6, why = \"a cause\" }");
+    let of_uncertainty = one("expect = 3e-5\nuncertainty = 1e-7\nlimit = { min = 2.4, max = 2.6, why = \"a cause\" }");
     assert_eq!(of_uncertainty.status, Status::KnownLimit);
 }
 
 #[test]
 fn keys_that_say_nothing_are_refused() {
     for (check, expected) in [
-        ("expect = 1.0\nuncertainty = 0.1\nmax = 1.0\nwhy = \"w\"", "bounds of its own beside those of the uncertainty"),
+        (
+            "expect = 1.0\nuncertainty = 0.1\nmax = 1.0\nwhy = \"w\"",
+            "bounds of its own beside those of the uncertainty",
+        ),
         ("bounds = \"regression\"\nwhy = \"w\"", "without bounds"),
         ("bounds = \"validation\"", "validation"),
         ("max = 1.0", "bounds without a reason"),

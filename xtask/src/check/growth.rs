@@ -1,4 +1,4 @@
-//! Memory of a scene that is too large to be made ready: measured with a coarser one, and carried on by what is
+//! Memory of a scene that is too large to be prepared: measured with a coarser one, and carried on by what is
 //! counted of both and of one that is coarser still.
 
 use fisura::Scene;

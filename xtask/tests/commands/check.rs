@@ -36,7 +36,7 @@ fn memory(scene: &str, sets: &[&str]) -> [f64; 2] {
     [&found["memory_mb"], &summary["peak_memory_mb"]].map(|mb| mb.as_f64().unwrap())
 }
 
-/// Within a fifth: scenes that are made ready to be checked, and larger ones, for which a coarser mesh stands.
+/// Within a fifth: scenes that are prepared to be checked, and larger ones, for which a coarser mesh stands.
 #[cfg(target_os = "linux")]
 #[test]
 fn the_memory_of_a_run_is_foretold_within_a_fifth() {

@@ -96,7 +96,8 @@ fn more_than_a_twentieth_of_the_reference_is_no_agreement() {
     assert_eq!(held(Accept::default(), Some(0.2), limit(2.2, 2.5)), Status::Fail);
     let missing = Record { reference: reference(2.0, Some(0.2)), ..Record::default() };
     assert_eq!(decided(missing), Status::Info);
-    let of_zero = Record { value: Some(0.1), reference: reference(0.0, None), accept: both(0.0, 0.2), ..Record::default() };
+    let of_zero =
+        Record { value: Some(0.1), reference: reference(0.0, None), accept: both(0.0, 0.2), ..Record::default() };
     assert_eq!(decided(of_zero), Status::Pass, "a fraction of zero says nothing");
 }
 
@@ -144,7 +145,10 @@ fn table() -> Vec<(Record, Status)> {
     }
     for (value, status) in [(1.9, Fail), (2.5, KnownLimit), (3.1, Fail)] {
         let (reference, limit) = (reference(1.0, None), limit(2.0, 3.0));
-        rows.push((Record { value: Some(value), reference, accept: both(0.96, 1.04), limit, ..Record::default() }, status));
+        rows.push((
+            Record { value: Some(value), reference, accept: both(0.96, 1.04), limit, ..Record::default() },
+            status,
+        ));
     }
     let excluded = Record { value: Some(1.02), reference: reference(1.0, None), ..Record::default() };
     rows.push((Record { accept: both(1.01, 1.04), ..excluded }, Fail));
