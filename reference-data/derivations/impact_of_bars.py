@@ -63,7 +63,7 @@ def impact(degree, spans, fitted, ratio=1, safety=0.3, speed=0.01):
     first = Half(degree, h, before * h, spans, total + 2 * before, speed)
     second = Half(degree, h, (before + spans + 1) * h, ratio * spans, total + 2 * before, 0.0)
     ends = [(before + spans) * h, (before + spans + 1) * h]
-    dt = safety * STEP[degree] * h  # 0.3: spans that the ends cut have a critical step of some half of that
+    dt = safety * STEP[degree] * h  # 0.3, chosen after the result: 0.5 gives 3.9 and 6.4 % for p = 2 and 3, 16 spans
     start, loss, time, forces = True, 0.0, 0.0, []
     end = h / speed + 4.0
     while time < end:
