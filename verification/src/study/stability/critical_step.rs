@@ -35,21 +35,21 @@ const SQUARES: [(&str, Mass, f64); 3] =
 /// Cut parts η of [`TABLE`].
 const PUBLISHED_CUTS: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
 
-/// `c dt/h` at those as an independent program in one dimension printed it, where that function counts.
+/// `c dt/h` at those as reference-data/derivations/bar_eigenvalues.py prints it, where that function counts.
 const TABLE: [(usize, Mass, [&str; 4]); 6] = [
-    (1, Mass::Lumped, ["0.445", "0.141", "0.045", "0.014"]),
-    (1, Mass::Consistent, ["0.104", "0.011", "0.0012", "0.0001"]),
-    (2, Mass::Lumped, ["0.944", "0.987", "0.999", ""]),
-    (2, Mass::Consistent, ["0.067", "0.0076", "0.0008", ""]),
-    (3, Mass::Lumped, ["1.14", "1.14", "1.14", "1.14"]),
-    (3, Mass::Consistent, ["0.047", "0.0055", "", ""]),
+    (1, Mass::Lumped, ["0.445168", "0.141414", "0.0447213", "0.0141421"]),
+    (1, Mass::Consistent, ["0.103581", "0.0114011", "0.0011532", "0.000115455"]),
+    (2, Mass::Lumped, ["0.944186", "0.987128", "0.99855", ""]),
+    (2, Mass::Consistent, ["0.0670296", "0.00760785", "0.000773166", ""]),
+    (3, Mass::Lumped, ["1.14429", "1.14429", "1.14429", "1.14429"]),
+    (3, Mass::Consistent, ["0.04738", "0.00551145", "", ""]),
 ];
 
 /// An entry of the table, uncertain by half a unit of its last digit; none where it is empty.
 fn printed(entry: &str) -> Option<Reference> {
     let (_, decimals) = entry.split_once('.')?;
     let uncertainty = Some(0.5 * 0.1_f64.powi(decimals.len() as i32));
-    let source = "an independent program in one dimension, as printed";
+    let source = "reference-data/derivations/bar_eigenvalues.py, as printed";
     Some(Reference { uncertainty, ..Reference::new(entry.parse().ok(), ReferenceKind::IndependentCode, source) })
 }
 

@@ -13,7 +13,7 @@ use crate::case::Case;
 use crate::case::expand::CaseScene;
 use crate::extremes::larger;
 use crate::output::history::Table;
-use crate::record::{Axis, CurveStyle, Figure, FigureBody, Scale};
+use crate::record::{Axis, CurveStyle, Figure, FigureBody, Reference, Scale};
 use crate::scene::plain::PlainScene;
 use crate::study::charts::curve;
 use crate::study::dense;
@@ -146,7 +146,9 @@ fn below(degree: usize, scene: &Scene, frequency: f64, findings: &mut Findings) 
     let energy = start.stored();
     let bound = 1.0 / (1.0 - ratio * ratio);
     let quantity = "largest elastic energy of 10000 steps over its bound";
-    findings.add(&variant, quantity, elastic / (bound * energy), theory(1.0, "the staggered energy is constant"));
+    let source = theory(1.0, "the staggered energy is constant");
+    let source = source.map(|bound| Reference { side: crate::record::Side::AtMost, ..bound });
+    findings.add(&variant, quantity, elastic / (bound * energy), source);
     findings.add(&variant, "closure of the ledger after 10000 steps over the energy", closure / energy, None);
     Ok(())
 }
