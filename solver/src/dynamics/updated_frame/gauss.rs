@@ -77,8 +77,9 @@ use crate::splines::patch::Patch;
 const INERTIA_PENALTY: f64 = 0.01;
 /// Weight ε of the penalty in the fit, for quadratics and for higher degrees.
 const FIT_PENALTY: [f64; 2] = [0.005, 0.0005];
-/// Errors of the solves for displacement, velocity and acceleration, relative to their solutions: three
-/// decades above them the errors of the study cases are still the same to two digits.
+/// Errors of the solves for displacement, velocity and acceleration, relative to their solutions. They bound
+/// the error of a smooth motion from below: with p = 3 the axis-aligned displacement stays at 4e-6 from 64
+/// spans per direction on, and goes on at order 4 with a tenth of them, which takes 5 to 11 % more time.
 const TOLERANCES: [f64; 3] = [1e-7, 1e-5, 1e-5];
 
 /// Way of a point after which the critical step is taken anew, spans: the penalty keeps it whatever the
