@@ -23,7 +23,7 @@ pub enum Basis {
     IndependentCode,
     /// Finer runs of the solver itself.
     FinerRuns,
-    /// Nothing: a property such as a balance that closes, within stated bounds.
+    /// Nothing, or zero: a property such as a balance that closes, within stated bounds.
     Invariant,
     /// An earlier result of the solver.
     Regression,
@@ -34,7 +34,7 @@ pub const BASES: [(Basis, &str); 7] = [
     (Basis::ClosedForm, "closed form"),
     (Basis::Theory, "theory"),
     (Basis::Literature, "literature"),
-    (Basis::IndependentCode, "independent code"),
+    (Basis::IndependentCode, "other program"),
     (Basis::FinerRuns, "finer runs"),
     (Basis::Invariant, "invariant"),
     (Basis::Regression, "regression"),
@@ -43,9 +43,11 @@ pub const BASES: [(Basis, &str); 7] = [
 impl Basis {
     /// That of a record.
     pub fn of(record: &Record) -> Self {
+        let zero = record.reference.as_ref().is_some_and(|reference| reference.value == Some(0.0));
         match record.reference.as_ref().map(|reference| reference.kind) {
             _ if record.is_regression() => Self::Regression,
             None => Self::Invariant,
+            Some(ReferenceKind::Exact) if zero => Self::Invariant,
             Some(ReferenceKind::Exact) => Self::ClosedForm,
             Some(ReferenceKind::Theory) => Self::Theory,
             Some(ReferenceKind::Literature) => Self::Literature,

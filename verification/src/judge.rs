@@ -141,7 +141,7 @@ fn plate(
     let failing =
         quantities.iter().any(|q| q.outcome == Outcome::Fail) || events.iter().any(|e| e.outcome == Outcome::Fail);
     if failing {
-        let off = quantities.iter().any(|q| q.outcome == Outcome::Fail);
+        let off = quantities.iter().any(|q| q.outcome == Outcome::Fail).then(|| numerics.of_elements());
         let found = slips::find(submission, &curves, variant, library, off);
         let known: Vec<String> = findings.iter().map(|f: &verdict::Finding| f.id.clone()).collect();
         findings.extend(found.into_iter().filter(|f| !known.contains(&f.id)));

@@ -110,6 +110,14 @@ impl<'a> Numerics<'a> {
         }
     }
 
+    /// What elements of the spacing are off by: root of the mean square over the energies, relative; 0 without
+    /// a spacing.
+    pub fn of_elements(&self) -> f64 {
+        let at = |name: &&str| self.study.at(&format!("{name}_whole"), self.spacing?);
+        let squares: Vec<f64> = STUDIED[..TIP_X].iter().filter_map(at).map(|error| error * error).collect();
+        (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+    }
+
     /// Of a quantity in a phase: relative, of the tip in m.
     pub fn of(&self, quantity: usize, phase: &str) -> Option<f64> {
         let name = STUDIED.get(quantity)?;

@@ -17,14 +17,18 @@ const NEAR: f64 = 0.12;
 const SHAPE: f64 = 0.20;
 /// The same for one quantity by itself.
 const ALONE: f64 = 0.06;
+/// A result that is off by no more than this times what elements of its spacing are off by may owe that to
+/// its mesh alone.
+const OFF_BY_MESH: f64 = 1.1;
 
-/// Everything that is recognised; other problems are looked at only where a whole curve is off.
+/// Everything that is recognised. Other problems are looked at only where a whole curve is off: `off` is then
+/// what elements of the spacing of the result are off by.
 pub fn find(
     submission: &Submission,
     curves: &[Option<Curve>; 6],
     variant: &Variant<'_>,
     library: &Library,
-    off: bool,
+    off: Option<f64>,
 ) -> Vec<Finding> {
     let mut found = Vec::new();
     if let Some(finding) = time_unit(curves) {
@@ -39,7 +43,7 @@ pub fn find(
     found.extend(absolute(curves[FRACTURE].as_ref(), variant.curves[FRACTURE], &found));
     if found.is_empty() {
         found.extend(load_and_plane(submission, curves, variant, library));
-        found.extend(nearer(curves, variant, library).filter(|_| off));
+        found.extend(off.and_then(|mesh| nearer(curves, variant, library, mesh)));
     }
     found
 }
@@ -230,8 +234,9 @@ fn fit_load(curves: &[Option<Curve>; 6], variant: &Variant<'_>) -> Option<(f64, 
     (scale > 0.0 && left.is_finite() && bottom > 1.0).then(|| (scale.sqrt(), left))
 }
 
-/// Another variant, or a run with a known slip, that is much nearer.
-fn nearer(curves: &[Option<Curve>; 6], variant: &Variant<'_>, library: &Library) -> Option<Finding> {
+/// Another variant, or a run with a known slip, that is much nearer; `mesh` is what elements of the spacing
+/// of the result are off by.
+fn nearer(curves: &[Option<Curve>; 6], variant: &Variant<'_>, library: &Library, mesh: f64) -> Option<Finding> {
     let ids = library.curves("plate-family/kinetic-energy").into_iter().map(|c| (c.id.clone(), c.label.clone()));
     let distance = |id: &str| -> Option<f64> {
         let distances = (KINETIC..=FRACTURE).filter_map(|q| {
@@ -251,6 +256,8 @@ fn nearer(curves: &[Option<Curve>; 6], variant: &Variant<'_>, library: &Library)
         100.0 * left,
         100.0 * own
     );
-    let id = if label.contains("l taken for l0") { "length-scale-convention" } else { "another-benchmark" };
-    (left < 0.5 * own && left < 0.1).then(|| Finding { id: id.into(), text })
+    let slip = label.contains("l taken for l0");
+    let id = if slip { "length-scale-convention" } else { "another-benchmark" };
+    let beyond_mesh = slip || own > OFF_BY_MESH * mesh;
+    (left < 0.5 * own && left < 0.1 && beyond_mesh).then(|| Finding { id: id.into(), text })
 }

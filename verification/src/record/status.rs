@@ -15,7 +15,8 @@
 //! 3. `pass`, if the value agrees: it lies within bounds that contain the reference, and that leave at most
 //!    [`WIDEST`] of a reference that is not zero ([`WIDEST_ON_A_SIDE`] of a lower or upper bound);
 //! 4. `known-limit`, if it lies within the documented limit;
-//! 5. `info`, if the bounds are wider than that, so that they cannot tell agreement;
+//! 5. `info`, if it lies within bounds that are wider than that: these cannot show agreement, only the lack
+//!    of it;
 //! 6. `fail` otherwise.
 //!
 //! Bounds that exclude their reference therefore never make a pass, and an uncertain reference makes none.
@@ -85,11 +86,10 @@ impl Record {
         let within_limit = |value| self.limit.as_ref().is_some_and(|limit| within(value, limit.min, limit.max));
         match (self.standing(), value.filter(finite)) {
             (Standing::Absent, _) if self.limit.is_none() => Status::Info,
-            (Standing::TooWide, None) if self.limit.is_none() => Status::Info,
             (_, None) => fault!("judge-passes-what-is-missing", Status::Fail => Status::Pass),
             (Standing::Decide, Some(value)) if within(value, self.accept.min, self.accept.max) => Status::Pass,
             (_, Some(value)) if within_limit(value) => Status::KnownLimit,
-            (Standing::TooWide, _) if self.limit.is_none() => Status::Info,
+            (Standing::TooWide, Some(value)) if within(value, self.accept.min, self.accept.max) => Status::Info,
             _ => fault!("judge-fails-nothing", Status::Fail => Status::KnownLimit),
         }
     }

@@ -93,9 +93,11 @@ fn more_than_a_twentieth_of_the_reference_is_no_agreement() {
     assert_eq!(held(Accept::default(), Some(0.09), None), Status::Pass);
     assert_eq!(held(Accept::default(), Some(0.2), None), Status::Info);
     assert_eq!(held(Accept::default(), Some(0.2), limit(2.0, 2.5)), Status::KnownLimit);
-    assert_eq!(held(Accept::default(), Some(0.2), limit(2.2, 2.5)), Status::Fail);
+    assert_eq!(held(Accept::default(), Some(0.2), limit(2.2, 2.5)), Status::Info);
+    assert_eq!(held(both(1.8, 2.04), None, None), Status::Fail, "outside is no agreement, however wide");
+    assert_eq!(held(both(1.8, 2.04), None, limit(2.04, 2.5)), Status::KnownLimit);
     let missing = Record { reference: reference(2.0, Some(0.2)), ..Record::default() };
-    assert_eq!(decided(missing), Status::Info);
+    assert_eq!(decided(missing), Status::Fail);
     let of_zero =
         Record { value: Some(0.1), reference: reference(0.0, None), accept: both(0.0, 0.2), ..Record::default() };
     assert_eq!(decided(of_zero), Status::Pass, "a fraction of zero says nothing");
