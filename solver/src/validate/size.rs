@@ -37,7 +37,7 @@ pub fn expected_size(scene: &Scene) -> ExpectedSize {
     let of_point = if fractures { plain + added } else { plain };
     let mechanics_bytes =
         points.saturating_mul(of_point).saturating_add(control_points.saturating_mul(BYTES_OF_CONTROL_POINT));
-    let couplings = (scene.mesh.degree.iter().map(|p| 2 * p + 1).product::<usize>() + 1) / 2;
+    let couplings = scene.mesh.degree.iter().map(|p| 2 * p + 1).product::<usize>().div_ceil(2);
     let phase_field_bytes = if fractures { control_points.saturating_mul(couplings * BYTES_OF_COUPLING) } else { 0 };
     ExpectedSize { points, control_points, mechanics_bytes, phase_field_bytes }
 }
