@@ -110,8 +110,8 @@ impl<'a> Numerics<'a> {
         }
     }
 
-    /// What elements of the spacing are off by: root of the mean square over the energies, relative; 0 without
-    /// a spacing.
+    /// What elements of the spacing are off by: root of the mean square over the energies, relative; 0
+    /// without a spacing.
     pub fn of_elements(&self) -> f64 {
         let at = |name: &&str| self.study.at(&format!("{name}_whole"), self.spacing?);
         let squares: Vec<f64> = STUDIED[..TIP_X].iter().filter_map(at).map(|error| error * error).collect();
