@@ -249,7 +249,11 @@ fn accuracy(base: &Record, new: &Record) -> (Change, Effect, String) {
         return (Change::Major, Effect::Better, format!("{} → {}", word(base.status), word(found)));
     }
     if base.status != Status::Info && new.status == Status::Info {
-        return (Change::Major, Effect::Worse, "it has lost its bounds".to_string());
+        return (
+            Change::Major,
+            Effect::Worse,
+            "it is no longer judged: its bounds are gone, or too wide to show agreement".to_string(),
+        );
     }
     if base.unit != new.unit {
         let why = format!("the unit was {:?} and is {:?}: values are not compared", base.unit, new.unit);

@@ -1,7 +1,7 @@
 //! What an error of the impact-loaded plate costs: whole runs to 80 µs, from the scene in memory to the last
 //! row of the history, in processor time of one thread. Errors are those of the kinetic, elastic and fracture
-//! energy, the work and the tip against the curves of the independent finite elements, as the cases of the
-//! suite measure them. The finite elements themselves run in the same rounds ([`elements`]).
+//! energy, the work and the tip against the reference of the plate, as the cases of the suite measure
+//! them. The finite elements themselves run in the same rounds ([`elements`]).
 //!
 //! Besides equal spans and the tolerance of the suite there is what someone in a hurry would run: spans twice
 //! as long where no crack runs (`plate_scene`), a loose tolerance of the phase field,
@@ -107,7 +107,7 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     })
 }
 
-/// Errors of a history against the curves of the finite elements.
+/// Errors of a history against the reference of the plate.
 fn against<'a>(references: &Arc<References<'a>>) -> impl Fn(&Table, f64) -> Option<Vec<AnswerError>> + use<'a> {
     let references = Arc::clone(references);
     move |history, factor| references.errors_of_history(history, factor)
