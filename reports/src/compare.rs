@@ -13,7 +13,7 @@ mod work;
 
 use std::collections::{BTreeMap, HashSet};
 
-use fisura_verification::record::{Environment, Record, Reference, ResultSet, Status};
+use fisura_verification::record::{Environment, Record, Reference, ResultSet, Status, normal_id};
 use serde::Serialize;
 
 use partners::partners;
@@ -196,7 +196,7 @@ fn one_sided(record: &Record, accuracy: Change) -> Comparison {
 
 fn both(base: &Record, new: &Record, speed: &Lookup) -> Comparison {
     let (mut accuracy, effect, mut why) = accuracy(base, new);
-    let renamed = (base.id != new.id).then(|| format!("formerly {}", base.id));
+    let renamed = (normal_id(&base.id) != new.id).then(|| format!("formerly {}", base.id));
     let reworded = (base.quantity != new.quantity).then(|| format!("it read {:?}", base.quantity));
     for note in [renamed, reworded].into_iter().flatten() {
         accuracy = accuracy.max(Change::Minor);

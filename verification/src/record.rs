@@ -4,6 +4,7 @@
 //! Everything a report shows is a pure function of that folder.
 
 mod figure;
+mod id;
 mod status;
 mod unfinished;
 
@@ -13,6 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use figure::{Axis, Curve, CurveStyle, Figure, FigureBody, Floor, Region, Scale, SlopeTriangle};
+pub use id::{LONGEST, normal_id};
 pub use status::{Discretisation, Limit, worst};
 
 /// Name of the schema written and read.

@@ -1,24 +1,25 @@
-//! Which record of the new results is held against which of the base.
+//! Which record of the new results is compared with which of the base.
 
 use std::collections::{HashMap, VecDeque};
 
-use fisura_verification::record::Record;
+use fisura_verification::record::{Record, normal_id};
 
 /// For each record of the base the place of the new one with its id, else of one that names this id among its
-/// former ones. An id that is there twice is found twice, in the same order.
+/// former ones. Ids are compared in their normal form, which those of earlier versions have not. An id that is
+/// there twice is found twice, in the same order.
 pub(super) fn partners(base: &[Record], new: &[Record]) -> Vec<Option<usize>> {
-    let mut present: HashMap<&str, VecDeque<usize>> = HashMap::new();
-    let mut former: HashMap<&str, VecDeque<usize>> = HashMap::new();
+    let mut present: HashMap<String, VecDeque<usize>> = HashMap::new();
+    let mut former: HashMap<String, VecDeque<usize>> = HashMap::new();
     for (at, record) in new.iter().enumerate() {
-        present.entry(&record.id).or_default().push_back(at);
-        record.formerly.iter().for_each(|id| former.entry(id).or_default().push_back(at));
+        present.entry(normal_id(&record.id)).or_default().push_back(at);
+        record.formerly.iter().for_each(|id| former.entry(normal_id(id)).or_default().push_back(at));
     }
     let mut taken = vec![false; new.len()];
     let mut found: Vec<Option<usize>> =
-        base.iter().map(|record| present.get_mut(record.id.as_str())?.pop_front()).collect();
+        base.iter().map(|record| present.get_mut(&normal_id(&record.id))?.pop_front()).collect();
     found.iter().flatten().for_each(|at| taken[*at] = true);
     for (record, partner) in base.iter().zip(&mut found).filter(|(_, partner)| partner.is_none()) {
-        let heirs = former.get_mut(record.id.as_str());
+        let heirs = former.get_mut(&normal_id(&record.id));
         *partner = heirs.and_then(|heirs| std::iter::from_fn(|| heirs.pop_front()).find(|at| !taken[*at]));
         partner.iter().for_each(|at| taken[*at] = true);
     }

@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use crate::case::expand::CaseScene;
 use crate::case::{Case, Check};
 use crate::measure::grid_convergence;
+use crate::record::{LONGEST, normal_id};
 use crate::reference::{Library, ReferenceBand};
 use crate::scene::suggest::nearest;
 use crate::scene::{Problem, SceneFileError};
@@ -60,7 +61,7 @@ pub struct Planned {
 }
 
 impl Planned {
-    /// Id of the record: `suite/case[/variant]/check`.
+    /// Id of the record: `suite/case[/variant]/check`, in its normal form.
     pub fn id(&self, case: &Case) -> String {
         self.with(case, &case.checks[self.check].id)
     }
@@ -72,7 +73,7 @@ impl Planned {
 
     fn with(&self, case: &Case, check: &str) -> String {
         let middle = if self.variant.is_empty() { String::new() } else { format!("{}/", self.variant) };
-        format!("{}/{}/{middle}{check}", case.suite, case.name)
+        normal_id(&format!("{}/{}/{middle}{check}", case.suite, case.name))
     }
 }
 
@@ -226,6 +227,10 @@ impl Wrong<'_> {
                     false => "give each check an id of its own, or remove what is there twice",
                 };
                 self.note(format!("check.{}.id", planned.check), format!("two records of the id {id}"), remedy);
+            }
+            if id.len() > LONGEST {
+                let message = format!("the id {id} has {} characters, and {LONGEST} are allowed", id.len());
+                self.note(format!("check.{}.id", planned.check), message, "shorten it, or the name of the variant");
             }
         }
         for planned in records {
