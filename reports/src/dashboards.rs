@@ -3,41 +3,50 @@
 //!
 //! | below `metrics/` | for |
 //! |---|---|
-//! | `deterministic/bencher.json`, `timing/bencher.json` | Bencher, adapter `json` (Bencher Metric Format) |
-//! | `…/github-action-benchmark.json` of both | github-action-benchmark, `customSmallerIsBetter` |
-//! | `deterministic/Test.xml`, `timing/Test.xml` | CDash, as `ctest` submits it |
-//! | `asv/` | `results_dir` of airspeed velocity |
+//! | `deterministic/bencher.json`, `timing/bencher.json` | Bencher, adapter `json`: every metric, with its bounds |
+//! | `…/github-action-benchmark.json` of both | github-action-benchmark, `customSmallerIsBetter`: a few series per suite |
+//! | `badge.json` | an endpoint badge of shields.io |
 
-mod asv;
 mod bencher;
-mod ctest;
 
-use fisura_verification::record::ResultSet;
+use fisura_verification::record::{ResultSet, Status};
+use serde_json::{Value, json};
 
-use crate::metrics::{Metric, deterministic, times};
+use crate::metrics::{Metric, deterministic, suites, suite_times, times};
+use crate::view::Counts;
 
-/// Name below `metrics/` and content of every file; those of asv only if the results name a commit.
-///
-/// # Errors
-/// The file that cannot be rendered and why, which has no cause in the results.
-pub fn files(set: &ResultSet) -> Result<Vec<(String, String)>, (&'static str, String)> {
-    let kinds = [("deterministic", deterministic(set)), ("timing", times(set))];
-    let json = |value: &serde_json::Value| format!("{value:#}\n");
-    let mut files = Vec::new();
-    for (kind, metrics) in &kinds {
-        files.push((format!("{kind}/bencher.json"), json(&bencher::document(metrics))));
-        files.push((format!("{kind}/github-action-benchmark.json"), json(&smaller_is_better(metrics))));
-        let xml = ctest::document(set, kind, metrics).map_err(|error| ("metrics/Test.xml", error.to_string()))?;
-        files.push((format!("{kind}/Test.xml"), xml));
+/// Name below `metrics/` and content of every file.
+pub fn files(set: &ResultSet) -> Vec<(String, String)> {
+    let kinds =
+        [("deterministic", deterministic(set), suites(set)), ("timing", times(set), suite_times(set))];
+    let json = |value: &Value| format!("{value:#}\n");
+    let mut files = vec![("badge.json".to_string(), json(&badge(set)))];
+    for (kind, all, few) in &kinds {
+        files.push((format!("{kind}/bencher.json"), json(&bencher::document(all))));
+        files.push((format!("{kind}/github-action-benchmark.json"), json(&smaller_is_better(few))));
     }
-    files.extend(asv::files(set, &kinds).into_iter().map(|(name, value)| (format!("asv/{name}"), json(&value))));
-    Ok(files)
+    files
+}
+
+/// The badge, by <https://shields.io/badges/endpoint-badge>.
+fn badge(set: &ResultSet) -> Value {
+    let counts = Counts::of(&set.records);
+    let colour = match counts.verdict() {
+        Status::Fail | Status::Error => "red",
+        Status::Pass => "green",
+        Status::KnownLimit | Status::Info => "lightgrey",
+    };
+    let message = match counts.fail + counts.error {
+        0 => format!("{} pass, {} known limits", counts.pass, counts.known_limit),
+        bad => format!("{bad} of {} fail", counts.judged()),
+    };
+    json!({ "schemaVersion": 1, "label": "verify", "message": message, "color": colour })
 }
 
 /// The list of `customSmallerIsBetter`; `range` is there only where something is accepted.
-fn smaller_is_better(metrics: &[Metric]) -> serde_json::Value {
+fn smaller_is_better(metrics: &[Metric]) -> Value {
     let entry = |metric: &Metric| {
-        let mut entry = serde_json::json!({ "name": metric.name, "unit": metric.unit, "value": metric.value });
+        let mut entry = json!({ "name": metric.name, "unit": metric.unit, "value": metric.value });
         if !metric.range.is_empty() {
             entry["range"] = metric.range.as_str().into();
         }

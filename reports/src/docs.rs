@@ -70,16 +70,16 @@ const OPEN: &str = "<!-- docs: ";
 /// Closing mark.
 const CLOSE: &str = "<!-- /docs -->";
 
-/// A document with every block written anew by `block`.
+/// A document with every block written again by `block`, which is given its name and what stands in it.
 ///
 /// # Errors
 /// In words: a block without a name that is known, or without its end.
-pub fn rewritten(document: &str, block: impl Fn(&str) -> Option<String>) -> Result<String, String> {
+pub fn rewritten(document: &str, block: impl Fn(&str, &str) -> Option<String>) -> Result<String, String> {
     let (mut out, mut rest) = (String::new(), document);
     while let Some((before, after)) = rest.split_once(OPEN) {
         let (name, after) = after.split_once(" -->\n").ok_or("a mark of a block has no end")?;
-        let (_, after) = after.split_once(CLOSE).ok_or_else(|| format!("the block {name:?} has no {CLOSE}"))?;
-        let content = block(name).ok_or_else(|| format!("no block is called {name:?}"))?;
+        let (old, after) = after.split_once(CLOSE).ok_or_else(|| format!("the block {name:?} has no {CLOSE}"))?;
+        let content = block(name, old).ok_or_else(|| format!("no block is called {name:?}"))?;
         out.push_str(&format!("{before}{OPEN}{name} -->\n{content}{CLOSE}"));
         rest = after;
     }
@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn blocks_are_written_between_their_marks_and_nothing_else_changes() {
-        let block = |name: &str| (name == "a").then(|| "new\n".to_string());
+        let block = |name: &str, _: &str| (name == "a").then(|| "new\n".to_string());
         let text = "one\n<!-- docs: a -->\nold\n<!-- /docs -->\ntwo\n<!-- docs: a -->\n<!-- /docs -->\n";
         let once = rewritten(text, block).unwrap();
         assert_eq!(once, "one\n<!-- docs: a -->\nnew\n<!-- /docs -->\ntwo\n<!-- docs: a -->\nnew\n<!-- /docs -->\n");

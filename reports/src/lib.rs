@@ -131,7 +131,7 @@ pub fn render(folder: &Path, out: &OutputFolder) -> Result<Rendered, ReportError
     files.push(write(out, "junit.xml", &junit)?);
     let metrics = metrics::render_metrics(&results).map_err(|e| failed("metrics.json", e))?;
     files.push(write(out, "metrics.json", &metrics)?);
-    for (name, content) in dashboards::files(&results).map_err(|(file, error)| failed(file, error))? {
+    for (name, content) in dashboards::files(&results) {
         files.push(write(out, &format!("metrics/{name}"), &content)?);
     }
     if broken.is_empty() { Ok(Rendered { results, files }) } else { Err(ReportError::Figures(broken)) }

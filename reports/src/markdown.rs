@@ -1,25 +1,16 @@
 //! `summary.md`: what a step summary of a CI run shows first.
 
 use fisura_verification::output::foreign::line;
-use fisura_verification::record::{Record, ResultSet, Status};
+use fisura_verification::record::ResultSet;
 
 use crate::number::plain;
-use crate::rates::rates;
-use crate::view::{
-    Counts, accepted, broken, by_suite, comparison, environment, kind, limited, reason, reference_value, symbol, value,
-    word,
-};
+use crate::view::{Counts, accepted, broken, by_suite, environment, reason, symbol, value, word};
 
-/// Largest size in bytes; a step summary over 1 MiB is dropped whole by GitHub.
-pub const LIMIT: usize = 900_000;
+/// Most failures that are listed.
+const LISTED: usize = 50;
 
-/// The summary: verdict, environment, what does not hold, then a table per suite; cut at [`LIMIT`] with a
-/// note.
+/// The summary, one screen if nothing fails: verdict, environment, what does not hold, counts of every suite.
 pub fn render_markdown(set: &ResultSet) -> String {
-    render_limited(set, LIMIT)
-}
-
-fn render_limited(set: &ResultSet, limit: usize) -> String {
     let counts = Counts::of(&set.records);
     let mut out = format!("# {} {}\n\n{}.", symbol(counts.verdict()), counts.sentence(), counts.list());
     let remarks = counts.remarks();
@@ -30,72 +21,27 @@ fn render_limited(set: &ResultSet, limit: usize) -> String {
         out.push_str(&format!(" {name}: {}.", cell(&text)));
     }
     out.push_str("\n\n");
-    let mut budget = Budget { out, limit, left_out: 0 };
     let broken = broken(set);
     if !broken.is_empty() {
-        budget.table("## Does not hold", "| | check | value | accepted | why |\n|---|---|---|---|---|", &broken, |r| {
-            let why = format!("{}. {}", r.claim.trim_end_matches('.'), reason(r));
-            [verdict(r.status), code(&r.id), cell(&value(r, plain)), accepted(r, plain), cell(&why)]
-        });
-    }
-    let limited = limited(set);
-    if !limited.is_empty() {
-        let head = "| check | value | reference | agrees within | limit | cause |\n|---|---|---|---|---|---|";
-        budget.table("## Known limits", head, &limited, |r| {
-            let cause = r.limit.as_ref().map(|limit| cell(&limit.why)).unwrap_or_default();
-            let [value, reference] = [value(r, plain), reference(r)].map(|text| cell(&text));
-            [code(&r.id), value, reference, accepted(r, plain), crate::view::limit(r, plain).unwrap_or_default(), cause]
-        });
-    }
-    for (suite, mut records) in by_suite(set).into_iter().filter(|(_, records)| !records.is_empty()) {
-        let rates = rates(&records);
-        records.sort_by_key(|r| rank(r.status));
-        let title = format!("## {}: {}", cell(suite), Counts::of(records.iter().copied()).list());
-        let head = "| | check | quantity | value | reference | accepted |\n|---|---|---|---|---|---|";
-        budget.table(&title, head, &records, |r| {
-            let [quantity, value, reference] = [&r.quantity, &value(r, plain), &reference(r)].map(|text| cell(text));
-            [verdict(r.status), code(&r.id), quantity, value, reference, accepted(r, plain)]
-        });
-        if !rates.is_empty() {
-            let title = format!("### Orders of convergence: {}", cell(suite));
-            let head = "| | problem | degree | norm | theory | observed | accepted | error on the finest mesh |\n\
-                        |---|---|---|---|---|---|---|---|";
-            budget.table(&title, head, &rates, |rate| {
-                let [degree, norm, theory, observed, band, error] = rate.cells(plain).map(|text| cell(&text));
-                let problem = code(&rate.record.case);
-                [verdict(rate.record.status), problem, degree, norm, theory, observed, band, error]
-            });
+        out.push_str("## Does not hold\n\n| | check | value | accepted | why |\n|---|---|---|---|---|\n");
+        for record in broken.iter().take(LISTED) {
+            let status = format!("{} {}", symbol(record.status), word(record.status));
+            let why = cell(&format!("{}. {}", record.claim.trim_end_matches('.'), reason(record)));
+            let (value, accepted) = (cell(&value(record, plain)), accepted(record, plain));
+            out.push_str(&format!("| {status} | {} | {value} | {accepted} | {why} |\n", code(&record.id)));
         }
-    }
-    budget.finish()
-}
-
-/// Failures first, then errors, known limits, passes, and what has no bounds.
-fn rank(status: Status) -> u8 {
-    match status {
-        Status::Fail => 0,
-        Status::Error => 1,
-        Status::KnownLimit => 2,
-        Status::Pass => 3,
-        Status::Info => 4,
-    }
-}
-
-fn verdict(status: Status) -> String {
-    format!("{} {}", symbol(status), word(status))
-}
-
-fn reference(record: &Record) -> String {
-    match &record.reference {
-        None => "none".to_string(),
-        Some(r) => {
-            let number = match reference_value(r, &record.unit, plain) {
-                none if none.is_empty() => kind(r).to_string(),
-                number => format!("{number} ({})", kind(r)),
-            };
-            comparison(record, plain).map_or(number.clone(), |words| format!("{number}; {words}"))
+        if broken.len() > LISTED {
+            out.push_str(&format!("\n{} more are in `report.html`.\n", broken.len() - LISTED));
         }
+        out.push('\n');
     }
+    out.push_str("| suite | pass | known limits | fail | errors | info |\n|---|---|---|---|---|---|\n");
+    for (suite, records) in by_suite(set).into_iter().filter(|(_, records)| !records.is_empty()) {
+        let c = Counts::of(records);
+        let row = [c.pass, c.known_limit, c.fail, c.error, c.info].map(|count| count.to_string()).join(" | ");
+        out.push_str(&format!("| {} | {row} |\n", cell(suite)));
+    }
+    out + "\n`report.html` lists every record, and the known limits with their causes.\n"
 }
 
 /// Text as itself: one line, nothing that Markdown or HTML would take for its own.
@@ -117,42 +63,6 @@ pub(crate) fn code(id: &str) -> String {
     format!("`{}`", line(id).replace('`', "'").replace('\\', "/").replace('|', "\\|"))
 }
 
-/// Output that stops growing at a limit and remembers what it left out.
-struct Budget {
-    out: String,
-    limit: usize,
-    left_out: usize,
-}
-
-impl Budget {
-    /// A table of finished cells.
-    fn table<T, const N: usize>(&mut self, title: &str, head: &str, records: &[T], row: impl Fn(&T) -> [String; N]) {
-        let top = format!("{title}\n\n{head}\n");
-        if self.out.len() + top.len() > self.limit {
-            self.left_out += records.len();
-            return;
-        }
-        self.out.push_str(&top);
-        for record in records {
-            let line = format!("| {} |\n", row(record).join(" | "));
-            if self.out.len() + line.len() > self.limit {
-                self.left_out += 1;
-            } else {
-                self.out.push_str(&line);
-            }
-        }
-        self.out.push('\n');
-    }
-
-    fn finish(mut self) -> String {
-        if self.left_out > 0 {
-            let note = format!("{} more rows are left out here; `report.html` has them all.\n", self.left_out);
-            self.out.push_str(&note);
-        }
-        self.out
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -161,11 +71,10 @@ mod tests {
     #[test]
     fn a_long_summary_is_cut_with_a_note() {
         let mut set = results();
-        set.records = std::iter::repeat_n(set.records, 50).flatten().collect();
-        let text = render_limited(&set, 4000);
-        assert!(text.len() < 4100, "{}", text.len());
-        assert!(text.ends_with("more rows are left out here; `report.html` has them all.\n"), "{text}");
-        assert!(text.contains("## Does not hold"));
+        set.records = std::iter::repeat_n(set.records, 100).flatten().collect();
+        let text = render_markdown(&set);
+        assert!(text.contains("## Does not hold") && text.contains("more are in `report.html`"), "{text}");
+        assert!(text.lines().count() < 100, "{text}");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use fisura_verification::record::{Record, ResultSet};
 use serde::Serialize;
 
 use crate::number::plain;
-use crate::view::{bounds, run_id, runs, timing};
+use crate::view::{Counts, bounds, by_suite, run_id, runs, timing};
 
 /// One number, as the "custom smaller-is-better" form of benchmark dashboards takes it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -20,6 +20,9 @@ pub struct Metric {
     pub value: f64,
     /// What is accepted, in words; empty where nothing is.
     pub range: String,
+    /// Largest value that is accepted, where the value is an error.
+    #[serde(skip)]
+    pub most: Option<f64>,
     /// Record or run.
     #[serde(skip)]
     pub subject: String,
@@ -34,7 +37,8 @@ pub struct Metric {
 impl Metric {
     fn new(subject: &str, run: &str, measure: Option<&'static str>, unit: &str, value: f64) -> Self {
         let name = measure.map_or(subject.to_string(), |measure| format!("{subject}: {measure}"));
-        Self { name, unit: unit.into(), value, range: String::new(), subject: subject.into(), run: run.into(), measure }
+        let (range, most) = (String::new(), None);
+        Self { name, unit: unit.into(), value, range, most, subject: subject.into(), run: run.into(), measure }
     }
 }
 
@@ -78,7 +82,41 @@ fn error(record: &Record) -> Option<Metric> {
         }
         None => return None,
     };
-    Some(Metric { range, ..metric })
+    let most = match reference {
+        None => record.accept.max,
+        Some(reference) => {
+            let sides = [record.accept.min, record.accept.max].into_iter().flatten();
+            sides.map(|bound| (bound - reference).abs() / reference.abs()).reduce(f64::max)
+        }
+    };
+    Some(Metric { range, most: most.filter(|most| most.is_finite() && *most > 0.0), ..metric })
+}
+
+/// Two numbers of each suite: how many records do not agree, and the mean share of the accepted error in use.
+pub fn suites(set: &ResultSet) -> Vec<Metric> {
+    let of = |(suite, records): (&str, Vec<&Record>)| {
+        let counts = Counts::of(records.iter().copied());
+        let disagree = (counts.known_limit + counts.fail + counts.error) as f64;
+        let shares: Vec<f64> =
+            records.iter().filter_map(|record| error(record)).filter_map(|m| Some(m.value.abs() / m.most?)).collect();
+        let count = Metric::new(suite, suite, Some("known limits and failures"), "records", disagree);
+        let mean = (!shares.is_empty()).then(|| shares.iter().sum::<f64>() / shares.len() as f64);
+        let share = mean.map(|mean| Metric::new(suite, suite, Some("mean share of the accepted error"), "1", mean));
+        std::iter::once(count).chain(share).collect::<Vec<_>>()
+    };
+    by_suite(set).into_iter().flat_map(of).collect()
+}
+
+/// Wall time of the runs of each suite, added up.
+pub fn suite_times(set: &ResultSet) -> Vec<Metric> {
+    let seconds = |records: &[&Record]| -> f64 {
+        let runs = runs(records.iter().copied());
+        runs.iter().map(|(_, records)| timing(records).wall_s).filter(|wall| wall.is_finite()).sum()
+    };
+    let of = |(suite, records): (&str, Vec<&Record>)| {
+        Metric::new(suite, suite, Some("wall time of its runs"), "s", seconds(&records))
+    };
+    by_suite(set).into_iter().map(of).filter(|metric| metric.value > 0.0).collect()
 }
 
 /// Counts of each run that computed something; counts that are zero are left out.

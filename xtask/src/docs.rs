@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::CommandFactory;
-use fisura_reports::docs::{Stored, rewritten};
+use fisura_reports::docs::{self, rewritten};
 use fisura_reports::judge::{board_of_the_book, stored_boards};
 use fisura_reports::read_results;
 use fisura_verification::record::ResultSet;
@@ -16,45 +16,31 @@ use crate::failure::Failure;
 use crate::report::unreadable;
 use crate::{console, folders};
 
-/// Folder of the book, and the file in it that holds what its tables show.
-const BOOK: &str = "reports/book";
-const STORED: &str = "records.json";
-/// Folder of the figures of the book.
-const FIGURES: &str = "src/figures";
+/// Folder of the pages of the book, and of their figures in it.
+const PAGES: &str = "reports/book/src";
+const FIGURES: &str = "figures";
 
-/// Stores what `from` holds, if it is given, and writes every generated part anew; names the files that
-/// changed.
+/// Writes every generated part again, those that show results only if `from` holds results; names the files
+/// that changed.
 ///
 /// # Errors
 /// Results or documents that cannot be read or written, or a block that nobody knows.
 pub fn docs(from: Option<&PathBuf>, common: &Common) -> Result<Exit, Failure> {
     let root = folders::workspace();
-    let mut changed = Vec::new();
-    let mut store = |path: PathBuf, text: String| -> Result<(), Failure> {
-        if fs::read_to_string(&path).is_ok_and(|old| old == text) {
-            return Ok(());
-        }
-        let unwritable = |error| Failure::new(Exit::BadInput, format!("{} cannot be written: {error}", path.display()));
-        fs::write(&path, text).map_err(unwritable)?;
-        changed.push(path.display().to_string());
-        Ok(())
-    };
-    if let Some(from) = from {
-        let set = read_results(from).map_err(|error| unreadable(error, from))?;
-        refuse_parts(&set, from)?;
-        let stored = Stored::of(&set);
-        for figure in &stored.figures {
-            let name = format!("{}.svg", figure.id);
-            let drawn = from.join("figures").join(&name);
-            let missing = |error| Failure::new(Exit::BadInput, format!("{}: {error}", drawn.display()));
-            let text = fs::read_to_string(&drawn).map_err(missing)?;
-            store(root.join(BOOK).join(FIGURES).join(&name), text)?;
-        }
-        let text = serde_json::to_string_pretty(&stored).unwrap_or_default() + "\n"; // plain data
-        store(root.join(BOOK).join(STORED), text)?;
+    let set = from.map(|from| read_results(from).map_err(|error| unreadable(error, from))).transpose()?;
+    let mut files = Vec::new();
+    if let (Some(from), Some(set)) = (from, &set) {
+        refuse_parts(set, from)?;
+        files = figures(&root, from)?;
     }
-    for (path, text) in anew(&root)? {
-        store(path, text)?;
+    files.extend(documents(&root, set.as_ref())?);
+    let mut changed = Vec::new();
+    for (path, text) in files {
+        if fs::read_to_string(&path).is_ok_and(|old| old == text) {
+            continue;
+        }
+        fs::write(&path, text).map_err(|error| bad(&path, format!("cannot be written: {error}")))?;
+        changed.push(path.display().to_string());
     }
     match common.format {
         Format::Json => console::json(&json!({ "files": changed })),
@@ -63,20 +49,33 @@ pub fn docs(from: Option<&PathBuf>, common: &Common) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// Numbers of an unfinished run, or of some suites only, would stand in the book as if they were all.
+fn bad(path: &Path, error: String) -> Failure {
+    Failure::new(Exit::BadInput, format!("{}: {error}", path.display()))
+}
+
+/// Numbers of an unfinished run, or of some suites only, would stand in README as if they were all.
 fn refuse_parts(set: &ResultSet, from: &Path) -> Result<(), Failure> {
-    if set.is_unfinished() || Stored::of(set).block("suite plate").is_none() {
+    if set.is_unfinished() || !docs::holds_all_suites(set) {
         let message = format!("{} does not hold all suites", from.display());
         return Err(Failure::new(Exit::BadInput, message).help("run `cargo xtask verify` to its end"));
     }
     Ok(())
 }
 
+/// The figures of the book that the results have, drawn as there.
+fn figures(root: &Path, from: &Path) -> Result<Vec<(PathBuf, String)>, Failure> {
+    let folder = root.join(PAGES).join(FIGURES);
+    let entries = fs::read_dir(&folder).map_err(|error| bad(&folder, error.to_string()))?;
+    let drawn = |path: PathBuf| {
+        let text = fs::read_to_string(from.join("figures").join(path.file_name()?)).ok()?;
+        Some((path, text))
+    };
+    Ok(entries.filter_map(|entry| drawn(entry.ok()?.path())).collect())
+}
+
 /// Every document with its generated parts as they should be, and the drawings of the board.
-fn anew(root: &Path) -> Result<Vec<(PathBuf, String)>, Failure> {
-    let bad = |path: &Path, error: String| Failure::new(Exit::BadInput, format!("{}: {error}", path.display()));
-    let stored = Stored::read(&root.join(BOOK), STORED)?;
-    let source = root.join(BOOK).join("src");
+fn documents(root: &Path, set: Option<&ResultSet>) -> Result<Vec<(PathBuf, String)>, Failure> {
+    let source = root.join(PAGES);
     let entries = fs::read_dir(&source).map_err(|error| bad(&source, error.to_string()))?;
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
@@ -84,16 +83,20 @@ fn anew(root: &Path) -> Result<Vec<(PathBuf, String)>, Failure> {
     paths.sort();
     let one = |path: PathBuf| {
         let text = fs::read_to_string(&path).map_err(|error| bad(&path, error.to_string()))?;
-        let block = |name: &str| match name {
+        let block = |name: &str, old: &str| match name {
             "commands" => Some(commands()),
             "board" => Some(board_of_the_book()),
-            _ => stored.block(name),
+            _ if docs::shows_results(name) => match set {
+                Some(set) => docs::block(set, name),
+                None => Some(old.to_string()),
+            },
+            _ => None,
         };
         let text = rewritten(&text, block).map_err(|error| bad(&path, error))?;
         Ok((path, text))
     };
-    let figures = root.join(BOOK).join(FIGURES);
-    let boards = stored_boards().into_iter().map(|board| Ok((figures.join(board.file), board.svg.to_string())));
+    let boards = stored_boards().into_iter();
+    let boards = boards.map(|board| Ok((source.join(FIGURES).join(board.file), board.svg.to_string())));
     paths.into_iter().map(one).chain(boards).collect()
 }
 
@@ -123,30 +126,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_documents_say_what_is_stored_and_what_the_command_line_offers() {
+    fn the_documents_show_what_the_command_line_offers_and_the_board() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        let documents = anew(&root).unwrap();
+        let documents = documents(&root, None).unwrap();
         for (path, text) in &documents {
             let found = fs::read_to_string(path).unwrap();
             assert!(found == *text, "{} is out of date: cargo xtask report --docs", path.display());
         }
         let all: String = documents.iter().map(|(_, text)| text.as_str()).collect();
-        for block in ["suites", "verdict", "commands", "board", "suite plate", "orders convergence"] {
+        for block in ["suites", "verdict", "commands", "board"] {
             assert!(all.contains(&format!("<!-- docs: {block} -->")), "no document has the block {block}");
         }
         assert!(commands().contains("## verify") && commands().contains("--partition <slice:K/N>"));
     }
 
     #[test]
-    fn every_figure_of_the_book_is_one_of_the_stored_results() {
-        let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(BOOK);
-        let stored = Stored::read(&book, STORED).unwrap();
-        let mut named: Vec<String> = stored.figures.iter().map(|figure| format!("{}.svg", figure.id)).collect();
-        named.extend(stored_boards().iter().map(|board| board.file.to_string()));
-        let files = fs::read_dir(book.join(FIGURES)).unwrap();
-        let mut found: Vec<String> = files.map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
-        named.sort();
-        found.sort();
-        assert_eq!(named, found);
+    fn every_figure_of_the_book_is_shown() {
+        let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(PAGES);
+        let pages = fs::read_dir(&book).unwrap().filter_map(|page| fs::read_to_string(page.unwrap().path()).ok());
+        let text: String = pages.collect();
+        for file in fs::read_dir(book.join(FIGURES)).unwrap() {
+            let name = file.unwrap().file_name().into_string().unwrap();
+            assert!(text.contains(&format!("{FIGURES}/{name}")), "no page shows {name}");
+        }
     }
 }

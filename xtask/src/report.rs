@@ -20,8 +20,7 @@ pub struct Args {
     /// Folder with results.json or bench.json; the report is written there, or to --out
     #[arg(value_name = "DIR", required_unless_present = "docs")]
     folder: Option<PathBuf>,
-    /// Write the generated parts of README and book anew, from the numbers of DIR if it is given, else from
-    /// those stored
+    /// Write the generated parts of README and book again; those that show results only if DIR is given
     #[arg(long)]
     docs: bool,
 }

@@ -1,5 +1,7 @@
 //! Bencher Metric Format: benchmarks by name, in each its measures by name with a value.
 //!
+//! `upper_value` is the largest error that the bounds of a record accept.
+//!
 //! Source: <https://bencher.dev/docs/reference/bencher-metric-format>. Names of benchmarks have at most 1024
 //! characters, names of measures 64; a measure has one unit, so that values of different units are different
 //! measures.
@@ -18,7 +20,12 @@ pub fn document(metrics: &[Metric]) -> Value {
         let name: String = metric.subject.chars().take(LONGEST_BENCHMARK).collect();
         let measure: String = measure(metric).chars().take(LONGEST_MEASURE).collect();
         let benchmark = benchmarks.entry(name).or_insert_with(|| json!({}));
-        benchmark[measure] = json!({ "value": metric.value });
+        let mut number = json!({ "value": metric.value });
+        if let Some(most) = metric.most {
+            number["lower_value"] = 0.0.into();
+            number["upper_value"] = most.into();
+        }
+        benchmark[measure] = number;
     }
     benchmarks.into()
 }

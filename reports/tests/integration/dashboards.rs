@@ -4,8 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fisura_reports::dashboards::files;
 use fisura_verification::record::ResultSet;
-use quick_xml::Reader;
-use quick_xml::events::{BytesStart, Event};
 use serde_json::{Value, json};
 
 fn named() -> ResultSet {
@@ -15,7 +13,7 @@ fn named() -> ResultSet {
 }
 
 fn rendered(set: &ResultSet) -> BTreeMap<String, String> {
-    files(set).unwrap().into_iter().collect()
+    files(set).into_iter().collect()
 }
 
 fn document(files: &BTreeMap<String, String>, name: &str) -> Value {
@@ -47,6 +45,7 @@ fn bencher_takes_the_metrics() {
         let found = document(&files, &format!("{kind}/bencher.json"));
         let errors: Vec<String> = schema.iter_errors(&found).map(|error| error.to_string()).collect();
         assert!(errors.is_empty() && !found.as_object().unwrap().is_empty(), "{kind}: {errors:?}");
+        assert_eq!(files[&format!("{kind}/bencher.json")].contains("upper_value"), kind == "deterministic");
     }
     assert!(!schema.is_valid(&json!({ "run": { "wall time": { "lower_value": 1.0 } } })), "the rules refuse something");
 }
@@ -75,159 +74,13 @@ fn github_action_benchmark_takes_the_metrics() {
     }
 }
 
-/// `app/Validators/Schemas/Test.xsd` and `common.xsd` of CDash for the elements in use: attributes that must
-/// be there, and children in their order with the least and most of each.
-type Rule = (&'static [&'static str], &'static [(&'static str, usize, usize)]);
-
-fn rule(element: &str) -> Rule {
-    const MANY: usize = usize::MAX;
-    match element {
-        "Site" => {
-            (&["BuildName", "BuildStamp", "Name"], &[("Subproject", 0, MANY), ("Labels", 0, MANY), ("Testing", 1, 1)])
-        }
-        "Testing" => (
-            &[],
-            &[
-                ("StartDateTime", 0, 1),
-                ("StartTestTime", 0, 1),
-                ("TestList", 0, 1),
-                ("Test", 0, MANY),
-                ("EndDateTime", 0, 1),
-                ("EndTestTime", 0, 1),
-                ("ElapsedMinutes", 0, 1),
-            ],
-        ),
-        "TestList" => (&[], &[("Test", 0, MANY)]),
-        "Test" => (
-            &["Status"],
-            &[
-                ("Name", 1, 1),
-                ("Path", 1, 1),
-                ("FullName", 1, 1),
-                ("FullCommandLine", 1, 1),
-                ("StartTestTime", 0, 1),
-                ("Results", 1, 1),
-                ("NamedMeasurement", 0, MANY),
-                ("Labels", 0, 1),
-            ],
-        ),
-        "Results" => (&[], &[("NamedMeasurement", 0, MANY)]),
-        "NamedMeasurement" => (&["type", "name"], &[("Value", 1, 1)]),
-        "Labels" => (&[], &[("Label", 1, MANY)]),
-        "Name" | "Path" | "FullName" | "FullCommandLine" | "StartTestTime" | "EndTestTime" | "Value" | "Label" => {
-            (&[], &[])
-        }
-        other => panic!("{other} is no element of Test.xml"),
-    }
-}
-
-/// What is wrong with a document by these rules.
-fn against_the_rules(text: &str) -> Vec<String> {
-    let mut reader = Reader::from_str(text);
-    let (mut open, mut wrong): (Vec<(String, Vec<String>)>, Vec<String>) = (Vec::new(), Vec::new());
-    let mut close = |(name, children): (String, Vec<String>), in_list: bool| {
-        let (_, expected) = if in_list { (&[][..], &[][..]) } else { rule(&name) };
-        let mut rest = children.as_slice();
-        for (child, least, most) in expected {
-            let count = rest.iter().take_while(|found| found == child).count();
-            if count < *least || count > *most {
-                wrong.push(format!("{count} {child} in {name}"));
-            }
-            rest = &rest[count..];
-        }
-        wrong.extend(rest.first().map(|child| format!("{child} in {name}")));
-    };
-    let attributes = |element: &BytesStart, in_list: bool| -> Vec<String> {
-        let (required, _) =
-            if in_list { (&[][..], &[][..]) } else { rule(std::str::from_utf8(element.name().as_ref()).unwrap()) };
-        let missing = required.iter().filter(|key| element.try_get_attribute(**key).unwrap().is_none());
-        missing.map(|key| format!("no {key}")).collect()
-    };
-    let mut missing = Vec::new();
-    loop {
-        let event = reader.read_event().unwrap();
-        match &event {
-            Event::Start(element) | Event::Empty(element) => {
-                let name = String::from_utf8(element.name().as_ref().to_vec()).unwrap();
-                let in_list = open.last().is_some_and(|(parent, _)| parent == "TestList");
-                missing.extend(attributes(element, in_list));
-                open.iter_mut().last().into_iter().for_each(|(_, children)| children.push(name.clone()));
-                open.push((name, Vec::new()));
-                if matches!(event, Event::Empty(_)) {
-                    close(open.pop().unwrap(), in_list);
-                }
-            }
-            Event::End(_) => {
-                let element = open.pop().unwrap();
-                close(element, open.last().is_some_and(|(parent, _)| parent == "TestList"));
-            }
-            Event::Eof => break,
-            _ => {}
-        }
-    }
-    wrong.extend(missing);
-    wrong
-}
-
+/// "Endpoint badge" of the documentation of shields.io: which keys must be there.
 #[test]
-fn cdash_takes_the_tests_and_their_measurements() {
-    let files = rendered(&named());
-    for kind in ["deterministic", "timing"] {
-        let text = &files[&format!("{kind}/Test.xml")];
-        assert_eq!(against_the_rules(text), Vec::<String>::new(), "{kind}");
-        assert!(text.contains("<NamedMeasurement type=\"numeric/double\""), "{text}");
-        assert_eq!(text.contains("name=\"Execution Time\""), kind == "timing", "{text}");
-        let wrong = against_the_rules(&text.replacen("<Path>.</Path>", "", 1).replacen(" Status=\"passed\"", "", 1));
-        assert_eq!(wrong, ["0 Path in Test", "no Status"], "the rules refuse something");
-    }
-}
-
-/// "Benchmark suite layout and file formats" of the developer documentation of airspeed velocity, and what
-/// `Results.load` (`asv/results.py`), `Benchmarks.load` and `Machine.load` ask for.
-#[test]
-fn asv_takes_the_results() {
-    let set = named();
-    let files = rendered(&set);
-    let of_asv: Vec<&str> = files.keys().filter_map(|name| name.strip_prefix("asv/")).collect();
-    let benchmarks = document(&files, "asv/benchmarks.json");
-    assert_eq!(benchmarks["version"], 2);
-    for (name, benchmark) in benchmarks.as_object().unwrap().iter().filter(|(name, _)| *name != "version") {
-        assert_eq!((&benchmark["name"], &benchmark["type"]), (&json!(name), &json!("track")));
-        assert!(
-            benchmark["unit"].is_string() && benchmark["params"] == json!([]) && benchmark["param_names"] == json!([])
-        );
-    }
-    let machine = of_asv.iter().find_map(|name| name.strip_suffix("/machine.json")).unwrap();
-    let about = document(&files, &format!("asv/{machine}/machine.json"));
-    assert_eq!((&about["machine"], &about["version"]), (&json!(machine), &json!(1)));
-    for kind in ["deterministic", "timing"] {
-        let results = document(&files, &format!("asv/{machine}/01234567-{kind}.json"));
-        assert_eq!((&results["version"], &results["env_name"]), (&json!(2), &json!(kind)));
-        assert_eq!(
-            (&results["commit_hash"], &results["params"]["machine"]),
-            (&json!(set.environment.commit), &json!(machine))
-        );
-        assert!(
-            results["date"].is_i64()
-                && ["python", "requirements", "env_vars", "durations"].iter().all(|key| results.get(key).is_some())
-        );
-        let columns: Vec<&str> =
-            results["result_columns"].as_array().unwrap().iter().map(|c| c.as_str().unwrap()).collect();
-        assert_eq!(columns, ["result", "params", "version"], "a prefix of what asv knows by these names");
-        for (name, row) in results["results"].as_object().unwrap() {
-            assert!(
-                row[0].as_array().is_some_and(|values| values.len() == 1 && values[0].is_number()),
-                "{name}: {row}"
-            );
-            assert_eq!((&row[1], &row[2]), (&json!([]), &benchmarks[name]["version"]), "{name}");
-        }
-    }
-    let mut nameless = set;
-    nameless.environment.commit = String::new();
-    assert!(
-        rendered(&nameless).keys().all(|name| !name.starts_with("asv/")),
-        "results of no commit have no file there"
-    );
+fn shields_takes_the_badge() {
+    let badge = document(&rendered(&named()), "badge.json");
+    assert_eq!((&badge["schemaVersion"], &badge["label"]), (&json!(1), &json!("verify")));
+    assert!(badge["message"].as_str().is_some_and(|message| message.contains("fail")), "{badge}");
+    assert_eq!(badge["color"], "red");
 }
 
 #[test]
@@ -241,7 +94,7 @@ fn what_is_deterministic_does_not_depend_on_the_clock() {
         assert_ne!(before[&format!("timing/{form}")], after[&format!("timing/{form}")]);
     }
     let counted = ["particle-steps", "phase-field iterations", "phase-field traffic", "relative error"];
-    let deterministic = &before["deterministic/github-action-benchmark.json"];
+    let deterministic = &before["deterministic/bencher.json"];
     assert!(
         counted.iter().all(|name| deterministic.contains(name)) && !deterministic.contains("wall time"),
         "{deterministic}"

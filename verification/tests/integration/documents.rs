@@ -40,9 +40,7 @@ fn anchor(heading: &str) -> String {
 fn every_link_leads_to_a_file_and_its_heading() {
     for document in with_the_book(&[
         "README.md",
-        "METHODOLOGY.md",
         "CHANGELOG.md",
-        "verification/TUTORIAL.md",
         "reports/gallery/README.md",
         "reference-data/README.md",
     ]) {
@@ -73,7 +71,7 @@ fn the_summary_of_the_book_names_every_chapter() {
 #[test]
 fn every_case_that_is_named_exists() {
     let mut naming = Vec::new();
-    for document in with_the_book(&["README.md", "METHODOLOGY.md"]) {
+    for document in with_the_book(&["README.md"]) {
         let text = read(&document);
         for word in text.split('`').skip(1).step_by(2) {
             let Some((suite, case)) = word.split_once('/') else { continue };
@@ -89,37 +87,49 @@ fn every_case_that_is_named_exists() {
             }
         }
     }
-    for document in ["discretisation", "suite-plate", "cases"].map(|chapter| format!("{BOOK}/{chapter}.md")) {
+    for document in ["discretisation", "results", "add-a-case"].map(|chapter| format!("{BOOK}/{chapter}.md")) {
         assert!(naming.contains(&document), "{document} names no case: has the spelling changed?");
     }
 }
 
 #[test]
 fn the_cases_shown_in_the_book_are_the_files() {
-    let text = read(&format!("{BOOK}/cases.md"));
+    let text = read(&format!("{BOOK}/add-a-case.md"));
     for case in ["energy/free-vibration", "convergence/kirsch-plane-strain"] {
         let file = read(&format!("verification/cases/{case}.toml"));
-        assert!(text.contains(&format!("```toml\n{file}```")), "{BOOK}/cases.md shows another {case} than its file");
+        assert!(text.contains(&format!("```toml\n{file}```")), "{BOOK}/add-a-case.md shows another {case} than its file");
     }
 }
 
 #[test]
 fn exact_solutions_and_keys_of_convergence_cases_have_their_lines() {
-    let solutions = read(&format!("{BOOK}/exact-solutions.md"));
+    let cases = read(&format!("{BOOK}/add-a-case.md"));
     for solution in fisura_verification::exact::all() {
         let row = format!("| `{}` |", solution.name);
-        assert!(solutions.lines().any(|line| line.starts_with(&row)), "exact-solutions.md has no row {row}");
+        assert!(cases.lines().any(|line| line.starts_with(&row)), "add-a-case.md has no row {row}");
     }
-    let cases = read(&format!("{BOOK}/cases.md"));
     let schema = fisura_verification::case::json_schema();
     let keys = schema["$defs"]["ConvergenceTable"]["properties"].as_object().unwrap();
     assert!(keys.len() > 10);
     for key in keys.keys() {
-        assert!(cases.contains(&format!("`{key}")) || cases.contains(&format!("\n{key} = ")), "cases.md lacks `{key}`");
+        assert!(cases.contains(&format!("`{key}")) || cases.contains(&format!("\n{key} = ")), "add-a-case.md lacks `{key}`");
     }
     let patches = schema["$defs"]["PatchFamily"]["oneOf"].as_array().unwrap();
     assert!(patches.len() > 5);
     for name in patches.iter().map(|patch| patch["const"].as_str().unwrap()) {
-        assert!(cases.contains(&format!("`{name}`")), "cases.md lacks the patch `{name}`");
+        assert!(cases.contains(&format!("`{name}`")), "add-a-case.md lacks the patch `{name}`");
+    }
+}
+
+#[test]
+fn every_key_of_a_scene_has_its_line() {
+    let page = read(&format!("{BOOK}/scenes.md"));
+    let sources = ["read.rs", "read_body.rs", "read_mesh.rs"];
+    let text: String = sources.iter().map(|name| read(&format!("verification/src/scene/{name}"))).collect();
+    let lists = text.split("fields(&[").skip(1).map(|rest| rest.split(']').next().unwrap());
+    let keys: Vec<&str> = lists.flat_map(|list| list.split('"').skip(1).step_by(2)).collect();
+    assert!(keys.len() > 50, "{keys:?}");
+    for key in keys {
+        assert!(page.contains(&format!("`{key}")) || page.contains(&format!("{{ {key} =")), "scenes.md lacks `{key}`");
     }
 }

@@ -69,9 +69,7 @@ fn three_slices_joined_are_the_whole_run() {
     assert_eq!(names(&merged), names(&whole));
     let exempt = ["metrics.json", "junit.xml", "report.html", "summary.md", "fisura.sha256", ".fisura.lock"];
     // times of a run, or when it was
-    let dated = |name: &str| {
-        name.starts_with("metrics/timing/") || name.starts_with("metrics/asv/") || name.ends_with("/Test.xml")
-    };
+    let dated = |name: &str| name.starts_with("metrics/timing/");
     let compared = |name: &str| !exempt.contains(&name) && !dated(name);
     for ((name, merged), (_, whole)) in merged.iter().zip(&whole).filter(|((name, _), _)| compared(name)) {
         if name == "results.json" {

@@ -9,7 +9,7 @@ use std::process::Command;
 #[test]
 fn judge_your_own_code_runs_as_written() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let tutorial = fs::read_to_string(root.join("verification/TUTORIAL.md")).unwrap();
+    let tutorial = fs::read_to_string(root.join("reports/book/src/tutorial.md")).unwrap();
     let (_, part) = tutorial.split_once("# Judge your own code\n").unwrap();
     let blocks = part.split("```sh\n").skip(1).map(|text| text.split("```").next().unwrap());
 
