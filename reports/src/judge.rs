@@ -1,7 +1,6 @@
-//! Verdicts on results of other codes: terminal, page, PFHub export, and the board of all submissions.
+//! Verdicts on results of other codes: terminal, page, and the board of all submissions.
 
 mod board;
-mod pfhub;
 mod stored;
 
 use fisura_verification::judge::verdict::{Comparison, Outcome, Verdict, VerdictSet};
@@ -18,7 +17,6 @@ use crate::number::{duration, plain};
 use crate::series::SeriesSet;
 
 pub use board::{Board, board, board_markdown, board_page};
-pub use pfhub::pfhub;
 pub use stored::{StoredBoard, board_of_the_book, stored_boards};
 
 const TEMPLATE: &str = include_str!("../templates/judge.html");

@@ -9,7 +9,6 @@
 
 pub mod closed_form;
 pub mod curves;
-pub mod effect;
 pub mod events;
 pub mod family;
 pub mod mapping;

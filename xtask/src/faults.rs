@@ -10,7 +10,6 @@
 mod campaign;
 mod cells;
 mod idle;
-mod judged;
 mod matrix;
 mod results;
 mod runner;
@@ -23,7 +22,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use fisura_verification::output::OutputFolder;
 use fisura_verification::suite::{Case, Selection, Tier, load_cases, select};
 
 use crate::cli::{Common, Format};
@@ -49,9 +47,6 @@ pub struct Args {
     /// Every fault on every case of the quick tier, cheap cases first, not only on those named for it
     #[arg(long)]
     matrix: bool,
-    /// Hand the curves of the plate with each fault to the judge, as CSV, instead of running cases
-    #[arg(long, conflicts_with = "matrix")]
-    judge: bool,
     /// Start no more after this time; what is done is kept, and the next run goes on from there
     #[arg(long, value_name = "SECONDS")]
     budget: Option<u64>,
@@ -68,14 +63,11 @@ pub struct Args {
 pub fn faults(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let faults = chosen(args)?;
     let folder = folders::output(common, "faults")?;
-    folder.begin(|name| name.starts_with(cells::FOLDER) || name.starts_with(judged::FOLDER))?;
+    folder.begin(|name| name.starts_with(cells::FOLDER))?;
     let program = match &args.program {
         Some(program) => program.clone(),
         None => build(common)?,
     };
-    if args.judge {
-        return judge(args, common, &faults, &folder, program);
-    }
     let cases = load_cases(&verify::cases_folder()?, &[])?;
     let cases = select(cases, &Selection { suites: Vec::new(), case_glob: None, tier: Tier::Quick });
     let store = Store::open(&folder, &cells::keys(&program, &folders::workspace(), &cases)?)?;
@@ -99,25 +91,6 @@ fn runner(args: &Args, common: &Common, program: PathBuf) -> Runner {
     let deadline = args.budget.map(|seconds| Instant::now() + Duration::from_secs(seconds));
     let threads = common.threads.map_or_else(rayon::current_num_threads, |n| usize::from(n.get()));
     Runner::new(program, threads, deadline)
-}
-
-/// `faults --judge`.
-fn judge(
-    args: &Args,
-    common: &Common,
-    faults: &[&'static Fault],
-    folder: &OutputFolder,
-    program: PathBuf,
-) -> Result<Exit, Failure> {
-    let fingerprint = cells::program_key(&program)?;
-    let runner = runner(args, common, program);
-    let report = judged::Campaign { faults, folder, runner: &runner, program: fingerprint, common }.run()?;
-    report.write(folder)?;
-    match common.format {
-        Format::Json => console::json(&report),
-        Format::Text => console::result(&report.text()),
-    }
-    Ok(if report.lacks() { Exit::CheckFailed } else { Exit::Done })
 }
 
 /// Plants the fault that the environment names, if it names one.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fisura_reports::judge::{board, board_markdown, board_page, page, pfhub, render_text};
+use fisura_reports::judge::{board, board_markdown, board_page, page, render_text};
 use fisura_verification::judge::template::template;
 use fisura_verification::judge::verdict::{Outcome, SCHEMA, VerdictSet};
 use fisura_verification::judge::{BENCHMARKS, Judged, judge as judge_one};
@@ -33,7 +33,7 @@ pub struct Args {
     against: Option<String>,
 }
 
-/// Judges submissions; writes `verdict.json`, `judge.html` and one PFHub file each.
+/// Judges submissions; writes `verdict.json` and `judge.html`.
 ///
 /// # Errors
 /// A submission that cannot be read, with file, line and column; a file that cannot be written.
@@ -78,9 +78,6 @@ fn write(args: &Args, common: &Common, judged: &[Judged], set: &VerdictSet) -> R
         }
     } else {
         folder.write("judge.html", page(judged).map_err(unfilled)?)?;
-        for (number, one) in judged.iter().enumerate() {
-            folder.write(&format!("pfhub-{}.yaml", number + 1), pfhub(one))?;
-        }
     }
     folder.finish()?;
     Ok(())
