@@ -196,7 +196,7 @@ fn one_sided(record: &Record, accuracy: Change) -> Comparison {
 
 fn both(base: &Record, new: &Record, speed: &Lookup) -> Comparison {
     let (mut accuracy, effect, mut why) = accuracy(base, new);
-    let renamed = (normal_id(&base.id) != new.id).then(|| format!("formerly {}", base.id));
+    let renamed = (normal_id(&base.id) != normal_id(&new.id)).then(|| format!("formerly {}", base.id));
     let reworded = (base.quantity != new.quantity).then(|| format!("it read {:?}", base.quantity));
     for note in [renamed, reworded].into_iter().flatten() {
         accuracy = accuracy.max(Change::Minor);

@@ -119,7 +119,7 @@ fn no_file_or_text_made_of_results_steers_a_terminal() {
     for file in &rendered.files {
         check(&file.display().to_string(), &read(folder.path(), file.to_str().unwrap()));
     }
-    assert_eq!(rendered.files.len(), 17);
+    assert_eq!(rendered.files.len(), 12);
     check("text", &render_text(&rendered.results));
     check("comparison", &render_markdown(&compare(&rendered.results, &crate::fixture::results())));
 }
