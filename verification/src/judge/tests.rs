@@ -1,4 +1,4 @@
-//! Sound results are accepted, planted slips are named, hostile folders end in words.
+//! Sound results are accepted, planted mistakes are named, hostile folders end in words.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -97,7 +97,7 @@ fn another_model_is_judged_by_its_own_reference_and_its_differences_are_named() 
     assert!(verdict.balance.unwrap().outcome == Outcome::Pass && verdict.differences.len() == 3);
 }
 
-/// A slip is recognised by its name, and the result does not pass.
+/// A mistake is recognised by its name, and the result does not pass.
 #[track_caller]
 fn recognised(folder: &Path, id: &str) -> Finding {
     let verdict = judged(folder, None).verdict;
@@ -107,7 +107,7 @@ fn recognised(folder: &Path, id: &str) -> Finding {
 }
 
 #[test]
-fn slips_planted_in_a_sound_result_are_named() {
+fn mistakes_planted_in_a_sound_result_are_named() {
     let planted: [(&str, &dyn Fn(String) -> String); 9] = [
         ("half-model-factor", &|t| t.replace(", factor = 2", "")),
         ("half-model-factor", &|t| t.replace("factor = 2", "factor = 4")),
