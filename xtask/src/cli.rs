@@ -48,7 +48,7 @@ pub enum Command {
     Bench(bench::Args),
     /// Plant known errors, one at a time, and show which checks catch each
     Faults(faults::Args),
-    /// Judge results of any code: verdict with uncertainty, named slips, errors side by side
+    /// Judge results of any code: verdict with uncertainty, common mistakes, errors side by side
     Judge(judge::Args),
     /// Run cases with the error that the environment names, for `faults`
     #[cfg(feature = "faults")]

@@ -7,13 +7,51 @@ use fisura_verification::output::OutputFolder;
 
 use crate::cli::Common;
 use crate::console;
+use crate::exit::Exit;
 use crate::failure::Failure;
+
+/// Name of the folder of the references in the workspace.
+const REFERENCES: &str = "reference-data";
 
 /// Root of the workspace as cargo tells it, else the current folder.
 pub fn workspace() -> PathBuf {
+    of_cargo().filter(|root| root.join("Cargo.toml").is_file()).unwrap_or_default()
+}
+
+/// The folder above that of the package that cargo runs.
+fn of_cargo() -> Option<PathBuf> {
     let manifest = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
-    let root = manifest.and_then(|crate_folder| crate_folder.parent().map(Path::to_path_buf));
-    root.filter(|root| root.join("Cargo.toml").is_file()).unwrap_or_default()
+    manifest.and_then(|crate_folder| crate_folder.parent().map(Path::to_path_buf))
+}
+
+/// The folder of the references, for commands that work in any folder: in the workspace that cargo tells,
+/// else in the current folder or the nearest above it, else in the nearest above this program.
+///
+/// # Errors
+/// If it is nowhere; the message says where it was looked for.
+pub fn reference_data() -> Result<PathBuf, Failure> {
+    let (cargo, here, program) = (of_cargo(), env::current_dir().ok(), env::current_exe().ok());
+    let above = |path: &Option<PathBuf>| {
+        path.iter().flat_map(|path| path.ancestors()).map(Path::to_path_buf).collect::<Vec<_>>()
+    };
+    let roots = cargo.iter().cloned().chain(above(&here)).chain(above(&program));
+    if let Some(found) = roots.map(|root| root.join(REFERENCES)).find(|folder| has_sources(folder)) {
+        return Ok(found);
+    }
+    let places = [
+        cargo.map(|root| format!("in {}, the workspace of cargo", root.display())),
+        here.map(|folder| format!("in {} and above, the current folder", folder.display())),
+        program.as_deref().and_then(Path::parent).map(|f| format!("in {} and above, the program", f.display())),
+    ];
+    let places: Vec<String> = places.into_iter().flatten().collect();
+    let message = format!("no folder {REFERENCES} with references was found: not {}", places.join("; not "));
+    Err(Failure::new(Exit::BadInput, message).help("start it with `cargo xtask`, or anywhere in the workspace of fisura"))
+}
+
+/// Whether it is a folder of references: other projects may have one of this name.
+fn has_sources(folder: &Path) -> bool {
+    let mut entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.any(|entry| entry.path().join("source.toml").is_file())
 }
 
 /// The folder of `--out`, or `target/fisura/<command>`: made if it is not there, writable, and locked for

@@ -24,8 +24,9 @@ pub struct Args {
 /// Parts of different plans or programs, emptied or edited parts, slices missing or doubled, folders that
 /// cannot be read or written.
 pub fn merge(args: &Args, common: &Common) -> Result<Exit, Failure> {
+    let references = folders::reference_data()?;
     let folder = folders::output(common, "merge")?;
-    let results = join(&args.folders, &folder, &folders::workspace().join("reference-data"), built::SOURCES)?;
+    let results = join(&args.folders, &folder, &references, built::SOURCES)?;
     if results.environment.dirty {
         console::note(common, "warning: the parts were run with uncommitted changes, the same in all of them");
     }
