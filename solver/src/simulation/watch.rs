@@ -106,7 +106,7 @@ impl Simulation {
 
     fn hold_to_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
         if let Some(name) = sample.not_finite() {
-            return Err(self.at_worst_point(format!("{name} of the history is not a finite number"), None));
+            return Err(self.at_worst_point(&format!("{name} of the history is not a finite number"), None));
         }
         if let Some(frame) = self.updated_frame() {
             frame.contact_converges(self.plan.step).map_err(|failure| self.broken(failure.into()))?;
@@ -118,7 +118,7 @@ impl Simulation {
         }
         let what = format!("the energy ledger is open by {closure:.3e} J of {:.3e} J put in so far", self.energy_in);
         if self.warned_of_step {
-            return Err(self.at_worst_point(what, None));
+            return Err(self.at_worst_point(&what, None));
         }
         if !self.warned_of_closure {
             self.warned_of_closure = true;
@@ -139,65 +139,65 @@ impl Simulation {
             return self.not_finite("numbers are not finite: the work of the loads is none");
         }
         let what = format!("elastic energy {elastic:.3e} J exceeds {GROWTH_LIMIT} times all energy put in");
-        self.at_worst_point(what, None)
+        self.at_worst_point(&what, None)
     }
 
     /// Numbers that are not finite: because a point is inverted, which has no strain, or for another reason.
     fn not_finite(&self, what: &str) -> Breakdown {
         let inverted = either!(&self.frame, body => body.inverted_point());
         let Some(InvertedPoint { point, position, determinant }) = inverted else {
-            return self.at_worst_point(what.to_string(), None);
+            return self.at_worst_point(what, None);
         };
         let what = format!("a material point is inverted, det F = {determinant:.4e}");
-        let cause = if self.step_is_too_long() { self.cause_of_growth() } else { INSIDE_OUT.to_string() };
-        Breakdown { step: self.steps, time: self.time(), place: position, point: Some(point), what, cause, scene: None }
+        Breakdown { point: Some(point), ..self.at(position, what, Some(INSIDE_OUT)) }
     }
 
     /// A step that could not be taken though the elastic energy of the last one that could is well.
     fn broken(&self, failure: Failure) -> Breakdown {
+        let (what, cause) = what_and_cause(failure, self.tolerance);
         match failure {
             Failure::Left(place) if !place.iter().all(|x| x.is_finite()) => self.not_finite(LOST),
-            Failure::Left(place) if self.is_far_outside(place) => self.at_worst_point(THROWN.to_string(), None),
-            Failure::Left(place) | Failure::Folded(place) => {
-                let left = matches!(failure, Failure::Left(_));
-                let bare = left && self.updated_frame().is_some_and(|frame| frame.patch().locate(place).is_some());
-                let torn = (BARE.to_string(), TORN.to_string());
-                let (what, cause) = if bare { torn } else { what_and_cause(failure, self.tolerance) };
-                let cause = if self.step_is_too_long() { self.cause_of_growth() } else { cause };
-                Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause, scene: None }
-            }
+            Failure::Left(place) if self.is_far_outside(place) => self.at_worst_point(THROWN, None),
+            Failure::Left(place) if self.is_on_mesh(place) => self.at(place, BARE, Some(TORN)),
             Failure::PhaseField(SolveFailure::NotFinite) => self.not_finite(NOT_FINITE),
             Failure::Unconverged(found) if !found.residual.is_finite() => self.not_finite(CONTACT_NOT_FINITE),
-            Failure::Unconverged(Unconverged { place, .. }) | Failure::TooFast(TooFast { place, .. }) => {
-                let (what, cause) = what_and_cause(failure, self.tolerance);
-                Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause, scene: None }
-            }
+            Failure::Left(place)
+            | Failure::Folded(place)
+            | Failure::Unconverged(Unconverged { place, .. })
+            | Failure::TooFast(TooFast { place, .. }) => self.at(place, what, Some(&cause)),
             Failure::PhaseField(_)
             | Failure::Spans(_)
             | Failure::SingularMass
             | Failure::NoStep
             | Failure::NoPoints(_)
-            | Failure::LostTraction { .. } => {
-                let (what, cause) = what_and_cause(failure, self.tolerance);
-                self.at_worst_point(what, Some(cause).filter(|_| !self.step_is_too_long()))
-            }
+            | Failure::LostTraction { .. } => self.at_worst_point(&what, Some(&cause)),
         }
     }
 
+    /// A breakdown at a place (m); without a cause of its own it is growth. A time step that is too long is
+    /// named beside other causes, not in their place.
+    fn at(&self, place: [f64; 2], what: impl Into<String>, cause: Option<&str>) -> Breakdown {
+        let cause = match cause {
+            None => self.cause_of_growth(),
+            Some(cause) if self.step_is_too_long() => format!("{cause}; besides, {}", self.cause_of_growth()),
+            Some(cause) => cause.to_string(),
+        };
+        let (step, time) = (self.steps, self.time());
+        Breakdown { step, time, place, point: None, what: what.into(), cause, scene: None }
+    }
+
     /// A breakdown at the point whose numbers are worst, which are added to what happened.
-    fn at_worst_point(&self, what: String, cause: Option<String>) -> Breakdown {
+    fn at_worst_point(&self, what: &str, cause: Option<&str>) -> Breakdown {
         let inspection = self.inspect();
         let worst = inspection.worst.first().filter(|point| point.position.iter().all(|x| x.is_finite()));
-        let what = worst.map_or(what.clone(), |point| format!("{what}; {} there", numbers(point)));
-        Breakdown {
-            step: self.steps,
-            time: self.time(),
-            place: worst.map_or(inspection.fastest.0, |point| point.position),
-            point: worst.map(|point| point.point),
-            what,
-            cause: cause.unwrap_or_else(|| self.cause_of_growth()),
-            scene: None,
-        }
+        let what = worst.map_or(what.to_string(), |point| format!("{what}; {} there", numbers(point)));
+        let place = worst.map_or(inspection.fastest.0, |point| point.position);
+        Breakdown { point: worst.map(|point| point.point), ..self.at(place, what, cause) }
+    }
+
+    /// Whether a position is on the mesh of the bodies that move through it.
+    fn is_on_mesh(&self, place: [f64; 2]) -> bool {
+        self.updated_frame().is_some_and(|frame| frame.patch().locate(place).is_some())
     }
 
     /// Whether a position is further out of the mesh than that is wide.
