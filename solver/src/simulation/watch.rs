@@ -22,6 +22,10 @@ const CLOSURE_LIMIT: f64 = 0.02;
 /// Closure below this fraction of the stored energy is round-off and tolerance of the phase field.
 const CLOSURE_FLOOR: f64 = 1e-6;
 
+/// Angle that material may turn by with small strains, rad: in the total frame they take this one for a
+/// strain of 0.5 %, and in the updated frame stresses do not turn with the material.
+const ROTATION_LIMIT: f64 = 0.1;
+
 /// Steps between two looks at the deformation of a body in the total frame, each a third of a step's work.
 const STEPS_BETWEEN_LOOKS: usize = 64;
 
@@ -49,7 +53,7 @@ impl Simulation {
 
     /// Warns once if the step in use exceeds the critical one at the moved positions.
     fn watch_critical_step(&mut self) {
-        if self.warned_of_step {
+        if self.warned.step {
             return;
         }
         let (step, look) = (self.plan.step, self.steps.is_multiple_of(STEPS_BETWEEN_LOOKS));
@@ -59,7 +63,7 @@ impl Simulation {
             Bodies::Total(_) => None,
         };
         let Some(critical) = critical.filter(|critical| step > *critical) else { return };
-        self.warned_of_step = true;
+        self.warned.step = true;
         self.warnings.push(format!(
             "from t = {:.4e} s on, the time step {step:.4e} s is {:.3} times the critical step {critical:.4e} s at the \
              moved positions; lower analysis.safety or the time step",
@@ -70,14 +74,27 @@ impl Simulation {
 
     /// Warns once if the boundary of a body has lost its material somewhere.
     fn watch_boundary(&mut self) {
-        if self.warned_of_boundary {
+        if self.warned.boundary {
             return;
         }
         let Some([x, y]) = self.updated_frame().and_then(|frame| frame.opened_boundary()) else { return };
-        self.warned_of_boundary = true;
+        self.warned.boundary = true;
         self.warnings.push(format!(
             "from t = {:.4e} s on, the boundary of a body is open near ({x:.6e}, {y:.6e}) m: its material there is gone, and \
              what comes to light inside has no boundary: other bodies can enter; end earlier, or refine the mesh",
+            self.time()
+        ));
+    }
+
+    fn watch_rotation(&mut self) {
+        if self.warned.rotation {
+            return;
+        }
+        let Some(([x, y], angle)) = either!(&self.frame, body => body.turned_beyond(ROTATION_LIMIT)) else { return };
+        self.warned.rotation = true;
+        self.warnings.push(format!(
+            "at t = {:.4e} s material near ({x:.6e}, {y:.6e}) m has turned by {angle:.3} rad: small strains hold up to \
+             {ROTATION_LIMIT} rad; use analysis.kinematics = \"finite\"",
             self.time()
         ));
     }
@@ -93,12 +110,13 @@ impl Simulation {
     }
 
     /// Holds a sample to its ledger: an open one is a warning, once, and a breakdown if the step is above the
-    /// critical one.
+    /// critical one. Warns once of material that has turned too far for small strains.
     ///
     /// # Errors
     /// If a number of the sample is not finite, or the ledger is open and the time step is too long to be
     /// stable, or the impulses of contact in the sample did not converge.
     pub fn watch_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
+        self.watch_rotation();
         let held = self.hold_to_ledger(sample);
         self.failed |= held.is_err();
         held
@@ -117,11 +135,11 @@ impl Simulation {
             return Ok(());
         }
         let what = format!("the energy ledger is open by {closure:.3e} J of {:.3e} J put in so far", self.energy_in);
-        if self.warned_of_step {
+        if self.warned.step {
             return Err(self.at_worst_point(&what, None));
         }
-        if !self.warned_of_closure {
-            self.warned_of_closure = true;
+        if !self.warned.closure {
+            self.warned.closure = true;
             self.warnings.push(format!(
                 "at t = {time:.4e} s {what}: the quadrature of the stress work is coarse; lower analysis.safety (0.2 \
                  leaves a sixteenth of it)"
@@ -208,7 +226,7 @@ impl Simulation {
     }
 
     fn step_is_too_long(&self) -> bool {
-        self.warned_of_step || self.plan.step > self.plan.critical
+        self.warned.step || self.plan.step > self.plan.critical
     }
 
     fn cause_of_growth(&self) -> String {
@@ -218,7 +236,7 @@ impl Simulation {
                 "the time step {:.4e} s is {ratio:.3} times the critical step {:.4e} s; use time_step = \"auto\"",
                 self.plan.step, self.plan.critical
             )
-        } else if self.warned_of_step {
+        } else if self.warned.step {
             "the time step exceeds the critical one at the moved positions; lower analysis.safety".to_string()
         } else {
             "the time step is below the critical one of the undamaged body; look for extreme loads or velocities, \

@@ -29,6 +29,7 @@ mod mapped_runs;
 mod modules;
 mod nurbs;
 mod points_and_spans;
+mod rotation;
 mod seeds;
 mod self_contact;
 mod split;
