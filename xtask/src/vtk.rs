@@ -123,6 +123,8 @@ fn points(simulation: &Simulation) -> Vec<u8> {
         ("stress xx (Pa)", 1, scalars(|p| p.stress[0])),
         ("stress yy (Pa)", 1, scalars(|p| p.stress[1])),
         ("stress xy (Pa)", 1, scalars(|p| p.stress[2])),
+        ("stress zz (Pa)", 1, scalars(|p| p.stress_out_of_plane)),
+        ("von Mises stress (Pa)", 1, scalars(PointState::von_mises)),
         ("body", 1, scalars(|p| p.body as f64)),
     ];
     if states.iter().any(|p| p.fracture.is_some()) {

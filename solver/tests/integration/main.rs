@@ -32,6 +32,7 @@ mod points_and_spans;
 mod rotation;
 mod seeds;
 mod self_contact;
+mod span_grid;
 mod split;
 mod sweep;
 mod total_finite;
