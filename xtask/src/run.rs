@@ -111,7 +111,7 @@ pub fn run_into(
     let (mut files, undrawn) = write(&run, drawings, &folder)?;
     match &vtk {
         Some(vtk) => files.extend(vtk.after(run.frames.len())),
-        None if goes_on => vtk::remove(&folder)?,
+        None if goes_on => vtk::remove(&folder, common)?,
         None => (),
     }
     if run.breakdown.is_none() {
@@ -178,7 +178,9 @@ impl Start {
         folder.check(&place.name)?;
         // those of another scene may be there, if this run wrote none until it was interrupted
         let has_files = stored.as_ref().is_some_and(|stored| stored.frame_files);
+        let earlier = if has_files { 0 } else { vtk::files_of_run(folder).len() };
         folder.begin(|name| checkpoint::is_checkpoint(name) || has_files && vtk::is_file_of_run(name))?;
+        vtk::note_removed(earlier, folder, common);
         Ok(Self { interval: args.checkpoint.0, place, stored, frame_files: args.vtk || has_files })
     }
 }
@@ -188,7 +190,7 @@ impl Start {
 fn keep_other(title: &str, name: &str, folder: &OutputFolder, common: &Common) -> Result<(), Failure> {
     let path = folder.path().join(CHECKPOINT);
     let message = format!("{} is of an interrupted run of another scene, {title:?}", path.display());
-    if folder.files().iter().any(|name| vtk::is_file_of_run(name)) {
+    if !vtk::files_of_run(folder).is_empty() {
         let failure = Failure::new(Exit::BadInput, format!("{message}, which has files for ParaView there"));
         return Err(failure.help("go on with that run, or give another folder with --out"));
     }
