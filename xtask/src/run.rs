@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::str::FromStr;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use fisura::scene::Scene;
@@ -9,9 +10,7 @@ use fisura::simulation::Simulation;
 use fisura_reports::number::{duration, plain};
 use fisura_verification::output::OutputFolder;
 use fisura_verification::scene_run::checkpoint::{self, CHECKPOINT, Place, Stored};
-use fisura_verification::scene_run::{
-    Keep, KeepError, OnFrame, Outcome, Progress, SceneRun, Summary, run_scene, run_scene_kept,
-};
+use fisura_verification::scene_run::{Keep, KeepError, OnFrame, Outcome, Progress, SceneRun, Summary, run_scene_kept};
 use indicatif::ProgressBar;
 
 use crate::cli::{Common, Format, SceneArgs};
@@ -215,10 +214,11 @@ fn simulate(
         bar.set_position(progress.step as u64);
     };
     let Start { interval, place, stored, frame_files } = start;
-    let Some(interval) = interval else {
-        return Ok(Outcome::Ended(Box::new(run_scene(scene, &mut advance, on_frame))));
+    let never = AtomicBool::new(false);
+    let interrupted = match interval {
+        Some(_) => interrupt::watch().map_err(|failure| failure.help("give --checkpoint none"))?,
+        None => &never,
     };
-    let interrupted = interrupt::watch().map_err(|failure| failure.help("give --checkpoint none"))?;
     let keep = Keep { out: folder, name: place.name, program: built::program(), interval, frame_files, interrupted };
     run_scene_kept(scene, &keep, stored, &mut advance, on_frame).map_err(|error| match error {
         KeepError::Output(error) => error.into(),
