@@ -85,7 +85,7 @@ pub enum Format {
 /// A scene file and changes to it.
 #[derive(Debug, Clone, Args)]
 pub struct SceneArgs {
-    /// Scene file
+    /// Scene file, from the current folder or from the root of the workspace
     #[arg(value_name = "SCENE.toml")]
     pub scene: PathBuf,
     /// Change a value of the scene, such as mesh.degree=3 or body.0.crack.0.half_width="0.25 mm"; entries

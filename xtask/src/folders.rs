@@ -54,6 +54,23 @@ fn has_sources(folder: &Path) -> bool {
     entries.any(|entry| entry.path().join("source.toml").is_file())
 }
 
+/// A file as it is named from the current folder or else from the root of the workspace.
+///
+/// # Errors
+/// If it is in neither; the message names both.
+pub fn find(path: &Path) -> Result<PathBuf, Failure> {
+    let places = [PathBuf::new(), workspace()];
+    if let Some(found) = places.iter().map(|place| place.join(path)).find(|found| found.exists()) {
+        return Ok(found);
+    }
+    let mut looked = vec![env::current_dir().unwrap_or_default()];
+    looked.extend(places.into_iter().filter(|place| path.is_relative() && *place != PathBuf::new()));
+    let looked: Vec<String> = looked.iter().map(|place| place.display().to_string()).collect();
+    let message = format!("there is no {}: looked in {}", path.display(), looked.join(" and "));
+    Err(Failure::new(Exit::BadInput, message)
+        .help("give the path from the current folder or from the root of the workspace"))
+}
+
 /// The folder of `--out`, or `target/fisura/<command>`: made if it is not there, writable, and locked for
 /// this process.
 ///

@@ -120,6 +120,33 @@ fn a_killed_process_leaves_a_folder_that_the_next_one_knows() {
     assert!(!fs::read_to_string(copy.path().join(MANIFEST)).unwrap().contains("# unfinished"));
 }
 
+/// What a killed process left of a file that grew is replaced, with all it holds; a file of the user is not.
+#[test]
+fn a_file_that_grows_is_read_on_the_way_and_replaced_by_the_next_process() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let out = open(path);
+    out.begin(|_| false).unwrap();
+    let mut file = out.grow("rows.csv").unwrap();
+    file.add(b"a\n1\n").unwrap();
+    file.add(b"2\n").unwrap();
+    assert_eq!(fs::read_to_string(path.join("rows.csv")).unwrap(), "a\n1\n2\n");
+    let left = killed(&out);
+    let next = open(left.path());
+    assert_eq!(next.files(), ["rows.csv"]);
+    next.begin(|_| false).unwrap();
+    assert!(!left.path().join("rows.csv").exists());
+    fs::write(left.path().join("rows.csv"), "mine").unwrap();
+    assert!(next.grow("rows.csv").is_err());
+    assert_eq!(fs::read_to_string(left.path().join("rows.csv")).unwrap(), "mine");
+
+    out.write("rows.csv", "a\n1\n2\n3\n").unwrap();
+    out.finish().unwrap();
+    drop(out);
+    fs::write(path.join("rows.csv"), "mine").unwrap();
+    assert!(open(path).begin(|_| false).is_err(), "a file that is finished has its hash");
+}
+
 #[test]
 fn names_that_lead_out_of_the_folder_are_refused() {
     let root = tempfile::tempdir().unwrap();
