@@ -45,7 +45,8 @@ pub fn reference_data() -> Result<PathBuf, Failure> {
     ];
     let places: Vec<String> = places.into_iter().flatten().collect();
     let message = format!("no folder {REFERENCES} with references was found: not {}", places.join("; not "));
-    Err(Failure::new(Exit::BadInput, message).help("start it with `cargo xtask`, or anywhere in the workspace of fisura"))
+    Err(Failure::new(Exit::BadInput, message)
+        .help("start it with `cargo xtask`, or anywhere in the workspace of fisura"))
 }
 
 /// Whether it is a folder of references: other projects may have one of this name.

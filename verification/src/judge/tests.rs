@@ -1,5 +1,7 @@
 //! Sound results are accepted, planted mistakes are named, hostile folders end in words.
 
+mod mistakes;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -248,7 +250,8 @@ fn decimal_commas_are_refused_in_every_layout() {
 #[test]
 fn decimal_commas_without_a_header_are_refused() {
     let numbered = |t: String| {
-        let columns = ["time_s", "kinetic_j", "elastic_j", "fracture_j", "external_work_j", "crack_tip_x_m", "crack_tip_y_m"];
+        let columns =
+            ["time_s", "kinetic_j", "elastic_j", "fracture_j", "external_work_j", "crack_tip_x_m", "crack_tip_y_m"];
         columns.iter().zip(1..).fold(t, |t, (name, number)| t.replace(&format!("{name:?}"), &number.to_string()))
     };
     let rows: String = (0..30).map(|i| format!("{i},5,0,0{i},1,00,2,0{i},3,5,50,196{i},20,05\n")).collect();
