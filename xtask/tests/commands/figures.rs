@@ -39,7 +39,7 @@ fn what_cannot_be_drawn_ends_with_2() {
     let place = workspace();
     place.xtask(&["verify", "--out", "results", "--suite", "energy"]).with_status(0);
     let outcome = place.xtask(&["figures", "--from", "results", "--figure", "3a"]).with_status(2);
-    outcome.complains_of(&["hold no figure 3a", "plate/paper-p2-262144"]);
+    outcome.complains_of(&["contain no figure 3a", "plate/paper-p2-262144"]);
 }
 
 #[cfg(unix)]

@@ -185,7 +185,7 @@ fn emptied_and_edited_parts_end_with_2() {
     let status = text.replace("\"status\": \"fail\"", "\"status\": \"pass\"");
     assert_ne!(status, text, "a check fails there");
     place.write("part-3/part.json", &status);
-    refused(&["part-3/part.json was changed after it was written", "run its slice again"]);
+    refused(&["part-3/part.json was changed after it was written", "run the slice again"]);
     place.write("part-3/part.json", &text);
     change(&place, "part-3/part.json", |part| part.outcomes.clear());
     refused(&["no part holds the outcome of energy/block"]);
