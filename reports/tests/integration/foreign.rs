@@ -72,8 +72,8 @@ fn links_devices_and_pipes_are_not_read() {
     let places: [(Place, &str); 4] = [
         (Box::new(move |path| symlink(&secret, path).unwrap()), "symbolic link"),
         (Box::new(|path| symlink("/dev/zero", path).unwrap()), "symbolic link"),
-        (Box::new(pipe), "no regular file"),
-        (Box::new(|path| fs::create_dir(path).unwrap()), "no regular file"),
+        (Box::new(pipe), "not a regular file"),
+        (Box::new(|path| fs::create_dir(path).unwrap()), "not a regular file"),
     ];
     for (place, words) in places {
         let folder = folder(|_| {});

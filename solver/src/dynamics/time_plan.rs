@@ -46,7 +46,7 @@ impl TimePlan {
             let asked = samples;
             samples = ((end / longest).floor() as usize).max(1);
             warnings.push(format!(
-                "{asked} samples would shorten the time step of {longest:.4e} s more than twofold; {samples} are taken"
+                "{asked} samples would shorten the time step of {longest:.4e} s more than twofold; {samples} samples are written"
             ));
         }
         let interval = end / samples as f64;

@@ -106,7 +106,7 @@ fn keys_that_say_nothing_are_refused() {
     for (check, expected) in [
         (
             "expect = 1.0\nuncertainty = 0.1\nmax = 1.0\nwhy = \"w\"",
-            "bounds of its own beside those of the uncertainty",
+            "bounds in addition to those of the uncertainty",
         ),
         ("bounds = \"regression\"\nwhy = \"w\"", "without bounds"),
         ("bounds = \"validation\"", "validation"),

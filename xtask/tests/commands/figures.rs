@@ -51,6 +51,6 @@ fn results_are_not_written_through_a_link() {
     std::os::unix::fs::symlink(place.path("mine"), place.path("drawn/results")).unwrap();
     place.write("drawn/fisura.sha256", "# fisura.manifest/1 figures\n");
     let refused = place.xtask(&["figures", "--figure", "3a", "--out", "drawn"]).with_status(2);
-    refused.complains_of(&["drawn/results is a link", "--out"]);
+    refused.complains_of(&["drawn/results is a symbolic link", "--out"]);
     assert_eq!(place.files("mine"), ["f"]);
 }

@@ -60,7 +60,7 @@ impl Program {
         let wall_s = watch.read().wall_s;
         match status {
             None => {
-                Err(self.failed(format!("it was ended after {} s; --peer-timeout gives more", self.limit.as_secs())))
+                Err(self.failed(format!("timeout: ended after {} s; --peer-timeout changes the limit", self.limit.as_secs())))
             }
             Some(status) if !status.success() => Err(self.failed(format!("it ended with {status}"))),
             Some(_) => {
