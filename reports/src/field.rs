@@ -63,7 +63,10 @@ impl Raster {
     fn new(pixels: [usize; 2], x: &[f64], y: &[f64], value: &[f64]) -> Result<Self, String> {
         let [nx, ny] = pixels;
         if nx < 2 || ny < 2 || nx.checked_mul(ny) != Some(value.len()) {
-            return Err(format!("{nx} x {ny} pixels are declared (at least 2 x 2), but the file has {} rows", value.len()));
+            return Err(format!(
+                "{nx} x {ny} pixels are declared (at least 2 x 2), but the file has {} rows",
+                value.len()
+            ));
         }
         if nx * ny > MOST[0] || nx.max(ny) > MOST[1] {
             return Err(format!("{nx} x {ny} pixels; at most {} are drawn, and {} along a side", MOST[0], MOST[1]));

@@ -78,7 +78,9 @@ impl<'a> Archive<'a> {
         match self.0 {
             Way::Out(bytes) => Ok(bytes),
             Way::In([]) => Ok(Vec::new()),
-            Way::In(rest) => Err(StateError(format!("the state belongs to another scene: {} bytes remain", rest.len()))),
+            Way::In(rest) => {
+                Err(StateError(format!("the state belongs to another scene: {} bytes remain", rest.len())))
+            }
         }
     }
 }

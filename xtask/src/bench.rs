@@ -107,11 +107,15 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
 fn other_checkout(path: &Path) -> Result<Baseline, Failure> {
     let checkout = path.canonicalize().ok().filter(|path| path.join("xtask/Cargo.toml").is_file());
     let checkout = checkout.ok_or_else(|| {
-        let failure = Failure::new(Exit::BadInput, format!("--baseline {}: this folder is not a checkout of fisura", path.display()));
+        let failure = Failure::new(
+            Exit::BadInput,
+            format!("--baseline {}: this folder is not a checkout of fisura", path.display()),
+        );
         failure.help("give a folder with another commit of this workspace, for example from `git worktree add`")
     })?;
     let program = std::env::current_exe();
-    let program = program.map_err(|e| Failure::new(Exit::BadInput, format!("the path of this program cannot be determined: {e}")))?;
+    let program = program
+        .map_err(|e| Failure::new(Exit::BadInput, format!("the path of this program cannot be determined: {e}")))?;
     Ok(Baseline { program, checkout })
 }
 
@@ -158,9 +162,8 @@ impl From<BenchError> for Failure {
             BenchError::Input(message) => Self::new(Exit::BadInput, message)
                 .help("`bench` reads verification/cases and reference-data of the workspace"),
             BenchError::Reference(error) => Self::new(Exit::BadInput, error.to_string()),
-            peer @ BenchError::Peer { .. } => Self::new(Exit::BadInput, peer.to_string()).help(
-                "the program must take a folder as its last argument and end with status 0 before the timeout",
-            ),
+            peer @ BenchError::Peer { .. } => Self::new(Exit::BadInput, peer.to_string())
+                .help("the program must take a folder as its last argument and end with status 0 before the timeout"),
         }
     }
 }

@@ -32,7 +32,10 @@ pub fn demo(common: &Common) -> Result<Exit, Failure> {
         let failure = Failure::new(Exit::BadInput, format!("the file {} does not exist", scene.display()));
         return Err(failure.help("start it with `cargo xtask` or in the root of the workspace"));
     }
-    console::note(common, "running a glass plate with a crack under tension: half of the plate, 100 mm × 20 mm, for 80 µs");
+    console::note(
+        common,
+        "running a glass plate with a crack under tension: half of the plate, 100 mm × 20 mm, for 80 µs",
+    );
     let args = run::Args {
         scene: SceneArgs { scene, set: Vec::new() },
         vtk: false,

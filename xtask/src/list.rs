@@ -43,9 +43,7 @@ pub fn list(args: &Args, common: &Common) -> Result<Exit, Failure> {
         }
     }
     if sound.is_empty() && wrong.is_empty() {
-        return Err(
-            Failure::new(Exit::NothingSelected, "no case matches").help("`cargo xtask list` lists all cases")
-        );
+        return Err(Failure::new(Exit::NothingSelected, "no case matches").help("`cargo xtask list` lists all cases"));
     }
     let cases: Vec<&Case> = sound.iter().map(|(case, _)| case).collect();
     match common.format {

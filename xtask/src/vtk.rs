@@ -70,8 +70,9 @@ impl<'a> Files<'a> {
     pub fn after(&self, frames: usize) -> Vec<String> {
         let missing = (0..frames).filter(|&n| KINDS.iter().any(|kind| !self.has(kind, n))).count();
         if missing > 0 && self.failed.is_none() {
-            let message =
-                format!("warning: {missing} of {frames} frames have no files for ParaView: they were computed without --vtk");
+            let message = format!(
+                "warning: {missing} of {frames} frames have no files for ParaView: they were computed without --vtk"
+            );
             console::note(self.common, &message);
         }
         let of_kind = |kind: &&str| {

@@ -81,7 +81,9 @@ pub fn ceilings(records: Records) -> Vec<Exhibit> {
         let degree = sweep.number("degree").unwrap_or(f64::NAN);
         let beyond = if distance < 1.0 { ", and is faster than the measured ceiling" } else { "" };
         let distance = plain(distance, 3);
-        notes.push(format!("the sweep of p = {degree} takes {distance} times the time of its ceiling ({bound}){beyond}"));
+        notes.push(format!(
+            "the sweep of p = {degree} takes {distance} times the time of its ceiling ({bound}){beyond}"
+        ));
     }
     let moving =
         records.below("ceilings/elastic-sweep/").iter().find_map(|r| r.number("bytes_per_point_of_moving_points"));

@@ -62,7 +62,14 @@ mod tests {
         };
         let records = [run("points", 1.0, 0.05), run("points", 8.0, 0.01), run("spans", 2.0, 0.01)];
         let Exhibit::Plot(plot) = exhibits(Records(&records)).remove(0) else { panic!("a plot") };
-        assert!(plot.reading.starts_with("For an error of 5 %: points, 1 s; spans, 2 s; ratio 0.5."), "{}", plot.reading);
-        assert!(plot.reading.contains("For an error of 1 %: points, 8 s; spans, 2 s; ratio 4.") && !plot.reading.contains("0.5 %:"));
+        assert!(
+            plot.reading.starts_with("For an error of 5 %: points, 1 s; spans, 2 s; ratio 0.5."),
+            "{}",
+            plot.reading
+        );
+        assert!(
+            plot.reading.contains("For an error of 1 %: points, 8 s; spans, 2 s; ratio 4.")
+                && !plot.reading.contains("0.5 %:")
+        );
     }
 }

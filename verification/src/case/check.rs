@@ -175,7 +175,8 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
         .into_iter()
         .filter(|(_, given)| given.is_some())
     {
-        item.at(key)?.fail::<()>(format!("{key} together with the keys of one check"), "see \"Adding a case\" in the book");
+        item.at(key)?
+            .fail::<()>(format!("{key} together with the keys of one check"), "see \"Adding a case\" in the book");
     }
     let mut formulas = Vec::new();
     let mut value = |key: NumberKey, amount: Option<Amount>| {

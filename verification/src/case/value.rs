@@ -189,7 +189,10 @@ fn read_column(item: &Item<'_>) -> Option<String> {
 fn uncertainty(item: &Item<'_>) -> Option<f64> {
     match any_quantity(item)? {
         value if value > 0.0 => Some(value),
-        value => item.fail(format!("{value} is not a valid uncertainty"), "give a positive number, or remove it if it is unknown"),
+        value => item.fail(
+            format!("{value} is not a valid uncertainty"),
+            "give a positive number, or remove it if it is unknown",
+        ),
     }
 }
 

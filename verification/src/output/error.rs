@@ -42,9 +42,8 @@ impl OutputError {
 
     pub(super) fn without_manifest(path: &Path) -> Self {
         let path = path.display();
-        let message = format!(
-            "the folder {path} is not empty and has no {MANIFEST}: its files were not written by this program"
-        );
+        let message =
+            format!("the folder {path} is not empty and has no {MANIFEST}: its files were not written by this program");
         Self::new(
             message,
             "give a new or empty folder with --out; if an older version of fisura wrote it, remove or move the folder",
@@ -77,9 +76,6 @@ impl OutputError {
     }
 
     pub(super) fn outside(path: &Path, name: &str) -> Self {
-        Self::new(
-            format!("{name:?} is not a valid name of a file in {}", path.display()),
-            "use plain relative names",
-        )
+        Self::new(format!("{name:?} is not a valid name of a file in {}", path.display()), "use plain relative names")
     }
 }

@@ -81,7 +81,7 @@ pub fn series_files(folder: &Path) -> Result<Vec<String>, Error> {
             let kind = entry.file_type()?;
             seen += 1;
             if seen > MOST_ENTRIES {
-                return refused("series", &format!("it holds more than {MOST_ENTRIES} files"));
+                return refused("series", &format!("it contains more than {MOST_ENTRIES} files"));
             }
             if kind.is_dir() && below.matches('/').count() < DEPTH {
                 folders.push(name);

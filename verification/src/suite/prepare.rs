@@ -153,7 +153,11 @@ impl Wrong<'_> {
         let root = &self.case.document.root;
         let name = &self.case.study;
         for key in INPUTS.into_iter().filter(|key| !reads.contains(key) && root.get(key).is_some()) {
-            self.note(key, format!("the study {name:?} does not read {key}"), "remove it, or use a study that reads it");
+            self.note(
+                key,
+                format!("the study {name:?} does not read {key}"),
+                "remove it, or use a study that reads it",
+            );
         }
         if let Some(needed) = reads.first().filter(|key| root.get(key).is_none()) {
             self.note(*needed, "missing", format!("the study {name:?} needs a [{needed}] table"));

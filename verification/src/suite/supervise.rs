@@ -84,14 +84,18 @@ impl Supervisor<'_> {
             if elapsed > self.limit.saturating_add(self.limit.max(GRACE)) {
                 watch.leave();
                 let over = self.over(elapsed);
-                return Ended::Broken(format!("{over}; it did not stop on request, was abandoned and still runs beside the next cases"));
+                return Ended::Broken(format!(
+                    "{over}; it did not stop on request, was abandoned and still runs beside the next cases"
+                ));
             }
         }
     }
 
     fn over(&self, elapsed: Duration) -> String {
         let (took, limit) = (elapsed.as_secs_f64(), self.limit.as_secs_f64());
-        format!("timeout: stopped after {took:.1} s, over the limit of {limit} s for a case; --case-timeout changes the limit")
+        format!(
+            "timeout: stopped after {took:.1} s, over the limit of {limit} s for a case; --case-timeout changes the limit"
+        )
     }
 }
 

@@ -74,7 +74,10 @@ fn the_answer_of_a_peer_is_verified_before_its_time_is_believed() {
         &format!("{count}{steps}[ $n -gt 1 ] && exit 0\n{give}").replacen("case", "for last; do :; done\ncase", 1),
     );
     let once = bench("once.sh", &["--out", "once"]).with_status(1);
-    assert!(once.out.contains("its answer differs from that of the block") && once.out.contains("result.csv"), "{once:?}");
+    assert!(
+        once.out.contains("its answer differs from that of the block") && once.out.contains("result.csv"),
+        "{once:?}"
+    );
     std::fs::remove_file(place.path("n")).unwrap();
     place.write(
         "late.sh",

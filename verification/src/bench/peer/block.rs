@@ -164,12 +164,12 @@ impl PeerBlock {
             if far.is_nan() || far > SPAN {
                 let [there, here] = [[x[row], y[row]], last.position].map(|[x, y]| format!("({x:.6e}, {y:.6e}) m"));
                 let asked = "check that the block moves and that the rows are in the order of particles.csv";
-                return Err(format!("row {} lies at {there}, ours at {here}: {asked}", row + 1));
+                return Err(format!("row {} lies at {there}, in fisura at {here}: {asked}", row + 1));
             }
             let ratio = volume[row] / last.volume;
             if ratio.is_nan() || (ratio - 1.0).abs() > VOLUME {
                 return Err(format!(
-                    "row {} has the volume {:.6e} m², ours {:.6e} m²",
+                    "row {} has the volume {:.6e} m², in fisura {:.6e} m²",
                     row + 1,
                     volume[row],
                     last.volume
