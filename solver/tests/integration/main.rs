@@ -16,7 +16,6 @@ mod critical_step;
 mod determinism;
 mod fictitious;
 mod finite;
-mod flush_cuts;
 mod folds;
 mod fragments;
 mod gauss;
