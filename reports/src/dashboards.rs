@@ -12,13 +12,12 @@ mod bencher;
 use fisura_verification::record::{ResultSet, Status};
 use serde_json::{Value, json};
 
-use crate::metrics::{Metric, deterministic, suites, suite_times, times};
+use crate::metrics::{Metric, deterministic, suite_times, suites, times};
 use crate::view::Counts;
 
 /// Name below `metrics/` and content of every file.
 pub fn files(set: &ResultSet) -> Vec<(String, String)> {
-    let kinds =
-        [("deterministic", deterministic(set), suites(set)), ("timing", times(set), suite_times(set))];
+    let kinds = [("deterministic", deterministic(set), suites(set)), ("timing", times(set), suite_times(set))];
     let json = |value: &Value| format!("{value:#}\n");
     let mut files = vec![("badge.json".to_string(), json(&badge(set)))];
     for (kind, all, few) in &kinds {

@@ -6,6 +6,8 @@ mod frame;
 pub mod state;
 mod watch;
 
+use serde::{Deserialize, Serialize};
+
 use crate::dynamics::energy::Sample;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::time_plan::TimePlan;
@@ -47,13 +49,20 @@ pub struct Simulation {
     initial: f64,
     /// Kinetic and elastic energy at t = 0 and the largest external work since, J.
     energy_in: f64,
-    warned_of_step: bool,
-    warned_of_closure: bool,
+    warned: Warned,
     /// Whether a step failed: what it left is half a step.
     failed: bool,
-    warned_of_boundary: bool,
     /// Error that phase-field solves are to reach.
     tolerance: f64,
+}
+
+/// What a run has warned of: each is told once.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+struct Warned {
+    step: bool,
+    closure: bool,
+    boundary: bool,
+    rotation: bool,
 }
 
 impl Simulation {
@@ -74,20 +83,8 @@ impl Simulation {
         frame.prepare(plan.step).map_err(not_started)?;
         let start = either!(&frame, body => body.sample(plan.step));
         let (initial, energy_in) = (start.stored(), start.kinetic + start.elastic);
-        let warned_of_step = plan.step > critical;
-        Ok(Self {
-            frame,
-            plan,
-            warnings,
-            steps: 0,
-            initial,
-            energy_in,
-            warned_of_step,
-            warned_of_closure: false,
-            failed: false,
-            warned_of_boundary: false,
-            tolerance,
-        })
+        let warned = Warned { step: plan.step > critical, ..Warned::default() };
+        Ok(Self { frame, plan, warnings, steps: 0, initial, energy_in, warned, failed: false, tolerance })
     }
 
     /// Steps and samples.

@@ -12,6 +12,7 @@ mod ground;
 mod material;
 mod mesh;
 mod points;
+mod resolution;
 mod seed;
 mod size;
 

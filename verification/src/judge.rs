@@ -3,16 +3,18 @@
 //! A submission is a folder with a `submission.toml` ([`submission`]) and files of numbers in any layout
 //! ([`table`]). The nearest reference is chosen by what the submission declares ([`family`]); each quantity
 //! is compared with it over the whole curve and by phase ([`curves`]), events by themselves ([`events`]),
-//! and common slips are looked for ([`slips`]). Every comparison error E is held against the validation
+//! and common mistakes are looked for ([`mistakes`]). Every comparison error E is held against the validation
 //! uncertainty of ASME V&V 20, U_val² = U_ref² + U_num². Nothing is extrapolated, and nothing is corrected
 //! in silence.
 
 pub mod closed_form;
 pub mod curves;
 pub mod events;
+mod exchanged;
 pub mod family;
 pub mod mapping;
-pub mod slips;
+pub mod mistakes;
+mod origin;
 pub mod submission;
 pub mod table;
 pub mod template;
@@ -141,7 +143,7 @@ fn plate(
         quantities.iter().any(|q| q.outcome == Outcome::Fail) || events.iter().any(|e| e.outcome == Outcome::Fail);
     if failing {
         let off = quantities.iter().any(|q| q.outcome == Outcome::Fail).then(|| numerics.of_elements());
-        let found = slips::find(submission, &curves, variant, library, off);
+        let found = mistakes::find(submission, &curves, variant, library, off);
         let known: Vec<String> = findings.iter().map(|f: &verdict::Finding| f.id.clone()).collect();
         findings.extend(found.into_iter().filter(|f| !known.contains(&f.id)));
     }

@@ -4,11 +4,13 @@
 //! every file that was written through it, with its hash. What is not listed, or was changed since, is the
 //! user's: it is neither removed nor replaced. A folder that holds files and no manifest is refused as a
 //! whole. No link is followed below the folder, nothing is removed recursively, and each file appears in full
-//! or not at all: it is written under a random name that did not exist before, and renamed.
+//! or not at all: it is written under a random name that did not exist before, and renamed. Only a file that
+//! grows while a command runs ([`Growing`]) can be read on the way.
 
 mod error;
 pub mod fingerprint;
 pub mod foreign;
+mod growing;
 pub mod history;
 mod lock;
 mod manifest;
@@ -26,6 +28,7 @@ use serde::Serialize;
 
 use crate::output::history::Table;
 pub use error::OutputError;
+pub use growing::Growing;
 pub use manifest::MANIFEST;
 use manifest::{Entry, Manifest};
 
@@ -142,7 +145,7 @@ impl OutputFolder {
         // Or a power failure could leave the name of an empty file.
         file.as_file().sync_all().map_err(|e| failed(&e))?;
         let file = file.persist(&path).map_err(|e| failed(&e.error))?;
-        manifest.files.insert(name.to_string(), Entry { hashes: vec![hash], seen: file.metadata().ok().map(seen) });
+        manifest.files.insert(name.to_string(), Entry::of(hash, file.metadata().ok().map(seen)));
         Ok(())
     }
 
@@ -190,7 +193,7 @@ impl OutputFolder {
         let mut manifest = self.manifest();
         let listed = manifest.append(&self.path, &[(name, &hash)]);
         listed.map_err(|e| OutputError::unwritable(&self.path.join(MANIFEST), e))?;
-        manifest.files.insert(name.to_string(), Entry { hashes: vec![hash], seen: None });
+        manifest.files.insert(name.to_string(), Entry::of(hash, None));
         Ok(())
     }
 
@@ -243,7 +246,8 @@ impl OutputFolder {
             _ => return State::Changed,
         };
         let Some(entry) = manifest.files.get(name) else { return State::Changed };
-        let ours = entry.seen.is_some_and(|last| last == seen(metadata))
+        let ours = entry.grows
+            || entry.seen.is_some_and(|last| last == seen(metadata))
             || fs::read(&path).is_ok_and(|content| entry.hashes.contains(&manifest::hash(&content)));
         if ours { State::Ours } else { State::Changed }
     }

@@ -2,7 +2,7 @@
 //!
 //! [`run_scene`] steps a [`Simulation`], samples it at every multiple of the plan's interval, and takes each
 //! frame at the nearest step. A run that breaks down keeps what was computed until then. [`run_scene_kept`]
-//! stores checkpoints on the way and goes on from one. The clock is read here and in no solver module:
+//! stores checkpoints on the way, goes on from one, and writes every row as it is sampled. The clock is read here and in no solver module:
 //! preparation, steps, samples and pictures are timed from outside.
 
 mod breakdown;
@@ -29,6 +29,8 @@ pub use breakdown::{BreakdownReport, Extremes, WorstPoint};
 use keep::Keeper;
 pub use keep::{Keep, KeepError, Outcome, run_scene_kept};
 pub use summary::{BreakdownSummary, Stages, Summary, peak_memory_mb};
+use write::Followed;
+pub use write::HISTORY;
 
 /// Pixels of a frame along its longer side.
 pub const FRAME_PIXELS: usize = 400;
@@ -90,7 +92,12 @@ pub fn frame_steps(times: &[f64], time_step: f64, steps: usize) -> (Vec<usize>, 
     found.sort_unstable();
     found.dedup();
     let missing = times.len() - found.len();
-    let warning = || format!("{missing} of {} frames fall on the step of another and are not repeated", times.len());
+    let warning = || {
+        format!(
+            "{missing} of {} frames are duplicates: they coincide with the step of another frame and are not written",
+            times.len()
+        )
+    };
     let warnings = (missing > 0).then(warning).into_iter().collect();
     (found, warnings)
 }
@@ -111,15 +118,17 @@ struct Record {
 struct Run<'a> {
     scene: &'a Scene,
     record: Record,
-    /// Warnings about frames.
+    /// Warnings about frames, and about the file that is followed.
     warnings: Vec<String>,
+    /// The history on disk, if it is written during the run.
+    followed: Option<Followed<'a>>,
     /// Since the run began or was taken up.
     start: Instant,
 }
 
 impl<'a> Run<'a> {
     fn new(scene: &'a Scene, record: Record) -> Self {
-        Self { scene, record, warnings: Vec::new(), start: Instant::now() }
+        Self { scene, record, warnings: Vec::new(), followed: None, start: Instant::now() }
     }
 
     /// Takes the steps that are left, until `stop` says after one of them that it is enough; whether it did.
@@ -133,6 +142,7 @@ impl<'a> Run<'a> {
         let plan = *simulation.plan();
         let (frames, warnings) = frame_steps(&self.scene.output.frames, plan.step, plan.steps());
         self.warnings = warnings;
+        self.follow(); // what a run that is taken up sampled before
         if simulation.steps() == 0 {
             self.sample(simulation);
             self.picture(simulation, &frames, on_frame);
@@ -169,7 +179,15 @@ impl<'a> Run<'a> {
         record.history.push(&values);
         record.largest_closure = larger(record.largest_closure, sample.closure.abs());
         record.largest_energy = larger(record.largest_energy, sample.largest_term());
+        self.follow();
         sample
+    }
+
+    /// Writes the rows that are not on disk yet, until that fails: what cannot be written is told in the end.
+    fn follow(&mut self) {
+        let Some(Err(error)) = self.followed.as_mut().map(|file| file.follow(&self.record.history)) else { return };
+        self.followed = None;
+        self.warnings.push(format!("rows of the history are not written during the run: {error}"));
     }
 
     /// A picture, if the present step is one of `frames`.

@@ -43,14 +43,15 @@ pub fn judge(args: &Args, common: &Common) -> Result<Exit, Failure> {
         console::result(&template(benchmark));
         return Ok(Exit::Done);
     }
-    let data = folders::workspace().join("reference-data");
+    let data = folders::reference_data()?;
     let library = Library::load(&data).map_err(VerifyError::from)?;
     let mut all = if args.board { submissions(&data.join("submissions"))? } else { Vec::new() };
     all.extend(args.folders.iter().cloned());
     let judged = all.iter().map(|folder| Ok(judge_one(folder, &library, &data, args.against.as_deref())?));
     let mut judged = judged.collect::<Result<Vec<Judged>, Failure>>()?;
     for one in &mut judged {
-        let shown = Path::new(&one.verdict.folder).strip_prefix(folders::workspace()).ok().map(Path::to_path_buf);
+        let root = data.parent().unwrap_or(&data);
+        let shown = Path::new(&one.verdict.folder).strip_prefix(root).ok().map(Path::to_path_buf);
         one.verdict.folder = shown.map_or(one.verdict.folder.clone(), |path| path.display().to_string());
     }
     let set = VerdictSet { schema: SCHEMA.into(), verdicts: judged.iter().map(|j| j.verdict.clone()).collect() };
@@ -87,7 +88,7 @@ fn write(args: &Args, common: &Common, judged: &[Judged], set: &VerdictSet) -> R
 fn submissions(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let missing = |e| {
         let message = format!("{} cannot be read: {e}", folder.display());
-        Failure::new(Exit::BadInput, message).help("run it in the workspace")
+        Failure::new(Exit::BadInput, message).help("restore the folder of the submissions")
     };
     let entries = fs::read_dir(folder).map_err(missing)?;
     let mut found: Vec<PathBuf> = entries.flatten().map(|e| e.path()).filter(|p| p.is_dir()).collect();

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::str::FromStr;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use fisura::scene::Scene;
@@ -9,9 +10,7 @@ use fisura::simulation::Simulation;
 use fisura_reports::number::{duration, plain};
 use fisura_verification::output::OutputFolder;
 use fisura_verification::scene_run::checkpoint::{self, CHECKPOINT, Place, Stored};
-use fisura_verification::scene_run::{
-    Keep, KeepError, OnFrame, Outcome, Progress, SceneRun, Summary, run_scene, run_scene_kept,
-};
+use fisura_verification::scene_run::{Keep, KeepError, OnFrame, Outcome, Progress, SceneRun, Summary, run_scene_kept};
 use indicatif::ProgressBar;
 
 use crate::cli::{Common, Format, SceneArgs};
@@ -111,7 +110,7 @@ pub fn run_into(
     let (mut files, undrawn) = write(&run, drawings, &folder)?;
     match &vtk {
         Some(vtk) => files.extend(vtk.after(run.frames.len())),
-        None if goes_on => vtk::remove(&folder)?,
+        None if goes_on => vtk::remove(&folder, common)?,
         None => (),
     }
     if run.breakdown.is_none() {
@@ -178,7 +177,9 @@ impl Start {
         folder.check(&place.name)?;
         // those of another scene may be there, if this run wrote none until it was interrupted
         let has_files = stored.as_ref().is_some_and(|stored| stored.frame_files);
+        let earlier = if has_files { 0 } else { vtk::files_of_run(folder).len() };
         folder.begin(|name| checkpoint::is_checkpoint(name) || has_files && vtk::is_file_of_run(name))?;
+        vtk::note_removed(earlier, folder, common);
         Ok(Self { interval: args.checkpoint.0, place, stored, frame_files: args.vtk || has_files })
     }
 }
@@ -188,7 +189,7 @@ impl Start {
 fn keep_other(title: &str, name: &str, folder: &OutputFolder, common: &Common) -> Result<(), Failure> {
     let path = folder.path().join(CHECKPOINT);
     let message = format!("{} is of an interrupted run of another scene, {title:?}", path.display());
-    if folder.files().iter().any(|name| vtk::is_file_of_run(name)) {
+    if !vtk::files_of_run(folder).is_empty() {
         let failure = Failure::new(Exit::BadInput, format!("{message}, which has files for ParaView there"));
         return Err(failure.help("go on with that run, or give another folder with --out"));
     }
@@ -213,10 +214,11 @@ fn simulate(
         bar.set_position(progress.step as u64);
     };
     let Start { interval, place, stored, frame_files } = start;
-    let Some(interval) = interval else {
-        return Ok(Outcome::Ended(Box::new(run_scene(scene, &mut advance, on_frame))));
+    let never = AtomicBool::new(false);
+    let interrupted = match interval {
+        Some(_) => interrupt::watch().map_err(|failure| failure.help("give --checkpoint none"))?,
+        None => &never,
     };
-    let interrupted = interrupt::watch().map_err(|failure| failure.help("give --checkpoint none"))?;
     let keep = Keep { out: folder, name: place.name, program: built::program(), interval, frame_files, interrupted };
     run_scene_kept(scene, &keep, stored, &mut advance, on_frame).map_err(|error| match error {
         KeepError::Output(error) => error.into(),

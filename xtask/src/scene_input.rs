@@ -3,15 +3,15 @@
 use fisura_verification::scene::SceneFile;
 
 use crate::cli::{Common, SceneArgs};
-use crate::console;
 use crate::failure::{self, Failure};
+use crate::{console, folders};
 
 /// Reads and checks a scene, shows its warnings, and gives it a title if it has none.
 ///
 /// # Errors
 /// Everything wrong with the file or the overrides.
 pub fn load(args: &SceneArgs, common: &Common) -> Result<SceneFile, Failure> {
-    let mut file = SceneFile::load(&args.scene, &args.set)?;
+    let mut file = SceneFile::load(&folders::find(&args.scene)?, &args.set)?;
     if !common.quiet {
         let graphical = console::graphical();
         let show = if graphical { console::picture } else { console::error_text };

@@ -47,7 +47,7 @@ impl<'a> Files<'a> {
     /// Writes the files of a frame, and the collections up to it.
     pub fn write(&mut self, number: usize, simulation: &Simulation) {
         if let Err(error) = KINDS.iter().try_for_each(|kind| self.write_kind(kind, number, simulation)) {
-            console::note(self.common, &format!("warning: {error}; the run goes on"));
+            console::note(self.common, &format!("warning: {error}; the run continues"));
             self.failed.get_or_insert(error);
         }
     }
@@ -70,8 +70,9 @@ impl<'a> Files<'a> {
     pub fn after(&self, frames: usize) -> Vec<String> {
         let missing = (0..frames).filter(|&n| KINDS.iter().any(|kind| !self.has(kind, n))).count();
         if missing > 0 && self.failed.is_none() {
-            let message =
-                format!("warning: {missing} of {frames} frames have no files for ParaView: taken without --vtk");
+            let message = format!(
+                "warning: {missing} of {frames} frames have no files for ParaView: they were computed without --vtk"
+            );
             console::note(self.common, &message);
         }
         let of_kind = |kind: &&str| {
@@ -92,12 +93,28 @@ pub fn is_file_of_run(name: &str) -> bool {
     KINDS.iter().any(|kind| name == collection_name(kind) || number(kind).is_some_and(|n| name == file_name(kind, n)))
 }
 
+/// Those in an output folder.
+pub fn files_of_run(folder: &OutputFolder) -> Vec<String> {
+    folder.files().into_iter().filter(|name| is_file_of_run(name)).collect()
+}
+
 /// Removes those of the part of a run that was interrupted, and had them.
 ///
 /// # Errors
 /// One that was changed, or cannot be removed.
-pub fn remove(folder: &OutputFolder) -> Result<(), OutputError> {
-    folder.files().iter().filter(|name| is_file_of_run(name)).try_for_each(|name| folder.remove(name))
+pub fn remove(folder: &OutputFolder, common: &Common) -> Result<(), OutputError> {
+    let files = files_of_run(folder);
+    files.iter().try_for_each(|name| folder.remove(name))?;
+    note_removed(files.len(), folder, common);
+    Ok(())
+}
+
+/// Says how many of an earlier run are gone.
+pub fn note_removed(count: usize, folder: &OutputFolder, common: &Common) {
+    if count > 0 {
+        let folder = folder.path().display();
+        console::note(common, &format!("{count} files for ParaView of an earlier run in {folder} are removed"));
+    }
 }
 
 fn file_name(kind: &str, number: usize) -> String {
@@ -123,6 +140,8 @@ fn points(simulation: &Simulation) -> Vec<u8> {
         ("stress xx (Pa)", 1, scalars(|p| p.stress[0])),
         ("stress yy (Pa)", 1, scalars(|p| p.stress[1])),
         ("stress xy (Pa)", 1, scalars(|p| p.stress[2])),
+        ("stress zz (Pa)", 1, scalars(|p| p.stress_out_of_plane)),
+        ("von Mises stress (Pa)", 1, scalars(PointState::von_mises)),
         ("body", 1, scalars(|p| p.body as f64)),
     ];
     if states.iter().any(|p| p.fracture.is_some()) {

@@ -6,6 +6,10 @@ use crate::scene::{Analysis, Output, Scene, TimeStep};
 
 /// Fraction of the longest step of bodies that meet that is taken: speeds change.
 const SPARE: f64 = 0.8;
+/// Relative round-off of numbers of steps.
+const ROUND_OFF: f64 = 1e-12;
+/// Part by which a given step may be shortened without a word.
+const TOLERATED: f64 = 1e-6;
 
 /// Steps and samples of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,14 +48,22 @@ impl TimePlan {
         let mut samples = output.samples.max(1);
         if end / (samples as f64) < 0.5 * longest {
             let asked = samples;
-            samples = ((end / longest).floor() as usize).max(1);
+            samples = whole(end / longest); // of a step each: one less would make it two
             warnings.push(format!(
-                "{asked} samples would shorten the time step of {longest:.4e} s more than twofold; {samples} are taken"
+                "{asked} samples would shorten the time step of {longest:.4e} s more than twofold; {samples} samples are written"
             ));
         }
         let interval = end / samples as f64;
-        let steps_per_sample = ((interval / longest) * (1.0 - 1e-12)).ceil().max(1.0) as usize;
+        let steps_per_sample = whole(interval / longest);
         let step = interval / steps_per_sample as f64;
+        if let TimeStep::Fixed(asked) = analysis.time_step
+            && step < asked * (1.0 - TOLERATED)
+        {
+            warnings.push(format!(
+                "the time step is {step:.6e} s instead of {asked:.6e} s, so that each of {samples} samples falls on a \
+                 step: {steps_per_sample} to a sample"
+            ));
+        }
         if step > critical {
             warnings.push(format!(
                 "the time step {step:.4e} s is {:.3} times the critical step {critical:.4e} s of the undamaged body: \
@@ -73,6 +85,11 @@ impl TimePlan {
     pub fn steps(&self) -> usize {
         self.samples.saturating_mul(self.steps_per_sample)
     }
+}
+
+/// The least number of steps that is not below a ratio, to round-off; at least one.
+fn whole(ratio: f64) -> usize {
+    (ratio * (1.0 - ROUND_OFF)).ceil().max(1.0) as usize
 }
 
 #[cfg(test)]
@@ -118,8 +135,21 @@ mod tests {
     #[test]
     fn more_samples_than_steps_give_fewer_rows_and_a_warning() {
         let (plan, warnings) = plan(1.0, TimeStep::Auto, 1000, 0.1);
-        assert_eq!(warnings.len(), 1);
-        assert!(plan.samples <= 12 && plan.step >= 0.04, "{plan:?}");
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        assert_eq!((plan.samples, plan.steps_per_sample), (13, 1), "12.5 steps of 0.08 s are 13, not 24");
+    }
+
+    #[test]
+    fn a_step_that_is_changed_is_told() {
+        let told = |step, samples| plan(1e-5, step, samples, 1e-7).1;
+        assert!(told(TimeStep::Fixed(5e-8), 200).is_empty(), "200 steps in 200 samples");
+        assert!(told(TimeStep::Fixed(5e-8), 100).is_empty(), "2 to each of 100 samples");
+        let changed = told(TimeStep::Fixed(7e-8), 200);
+        assert!(changed[0].contains("5.000000e-8 s instead of 7.000000e-8 s"), "{changed:?}");
+        let fewer = told(TimeStep::Fixed(7e-8), 320);
+        assert!(fewer[0].contains("143 are taken") && fewer[1].contains("6.993007e-8 s instead of"), "{fewer:?}");
+        assert_eq!(told(TimeStep::Fixed(1.0), 1).len(), 2, "beyond the end, and critical");
+        assert!(told(TimeStep::Auto, 50).is_empty() && told(TimeStep::Auto, 120).is_empty());
     }
 
     #[test]

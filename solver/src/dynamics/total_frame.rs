@@ -11,6 +11,7 @@ mod forced;
 mod inspect;
 mod observe;
 mod paint;
+mod rotation;
 mod state;
 pub(crate) mod stiffness;
 mod tangent;

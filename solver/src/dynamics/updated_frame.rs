@@ -41,6 +41,7 @@ pub(crate) mod part;
 mod parting;
 mod pieces;
 pub(crate) mod pointwise_fracture;
+mod rotation;
 mod self_contact;
 pub(crate) mod smoothing;
 mod state;

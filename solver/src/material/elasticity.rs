@@ -14,6 +14,8 @@ pub struct ElasticModuli {
     pub lambda: f64,
     /// Shear modulus.
     pub mu: f64,
+    /// Stress out of the plane over the trace of the strain in it.
+    pub out_of_plane: f64,
 }
 
 impl ElasticModuli {
@@ -21,13 +23,14 @@ impl ElasticModuli {
     pub fn new(material: &Material, plane: Plane) -> Self {
         let (young, nu) = (material.young_modulus, material.poisson_ratio);
         let mu = young / (2.0 * (1.0 + nu));
-        let lambda = match plane {
-            Plane::Strain => young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        let lambda = young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+        match plane {
+            Plane::Strain => Self { lambda, mu, out_of_plane: lambda },
             Plane::Stress => {
-                fault!("plane-stress-lambda", young * nu / (1.0 - nu * nu) => young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)))
+                let lambda = fault!("plane-stress-lambda", young * nu / (1.0 - nu * nu) => lambda);
+                Self { lambda, mu, out_of_plane: 0.0 }
             }
-        };
-        Self { lambda, mu }
+        }
     }
 
     /// Speed of dilatational plane waves at density (kg/m³), m/s.

@@ -80,6 +80,12 @@ pub fn growth([[xx, xy], [yx, yy]]: &Gradient) -> f64 {
     (1.0 + xx) * (1.0 + yy) - xy * yx
 }
 
+/// Angle by which a displacement gradient turns material, rad, counterclockwise: that of the polar
+/// decomposition of F.
+pub(crate) fn rotation([[xx, xy], [yx, yy]]: &Gradient) -> f64 {
+    (yx - xy).atan2(2.0 + xx + yy)
+}
+
 /// Symmetric part `[xx, yy, xy]`.
 #[inline(always)]
 pub fn symmetric([[xx, xy], [yx, yy]]: Gradient) -> [f64; 3] {
@@ -119,7 +125,7 @@ mod tests {
         (0..3).map(|i| (a[i] - b[i]).abs()).max_by(f64::total_cmp).unwrap() // NaN is the largest
     }
 
-    fn rotation(angle: f64) -> Matrix2<f64> {
+    fn rotation_matrix(angle: f64) -> Matrix2<f64> {
         let (s, c) = angle.sin_cos();
         Matrix2::new(c, -s, s, c)
     }
@@ -138,7 +144,7 @@ mod tests {
         for (long, short) in [(3.0_f64, 0.5_f64), (1e3, 1e-3), (1e6, 1e-5), (1e10, 1e-3)] {
             let strain = of(Matrix2::new(long, 0.0, 0.0, short));
             assert!(apart(strain, [long.ln(), short.ln(), 0.0]) < 1e-5, "{long} {short}: {strain:?}");
-            let turned = of(rotation(0.3) * Matrix2::new(long, 0.0, 0.0, 1.0));
+            let turned = of(rotation_matrix(0.3) * Matrix2::new(long, 0.0, 0.0, 1.0));
             let (s, c) = 0.3_f64.sin_cos();
             let exact = [c * c, s * s, c * s].map(|n| n * long.ln());
             assert!(apart(turned, exact) < 1e-5, "{long}: {turned:?} {exact:?}");
@@ -171,11 +177,20 @@ mod tests {
         let mut next = sequence();
         for _ in 0..200 {
             let f = Matrix2::identity() + 0.3 * Matrix2::new(next(), next(), next(), next());
-            let turn = rotation(3.0 * next());
+            let turn = rotation_matrix(3.0 * next());
             assert!(apart(of(f * turn), of(f)) <= 2e-15, "{f}");
             let [xx, yy, xy] = of(f);
             let e = turn * Matrix2::new(xx, xy, xy, yy) * turn.transpose();
             assert!(apart(of(turn * f), [e[(0, 0)], e[(1, 1)], e[(0, 1)]]) <= 2e-15, "{f}");
+        }
+    }
+
+    #[test]
+    fn the_rotation_is_that_of_the_polar_decomposition() {
+        for angle in [-3.0, -0.4, 0.0, 0.1, 2.0] {
+            let h = rotation_matrix(angle) * Matrix2::new(1.3, 0.2, 0.2, 0.6) - Matrix2::identity();
+            let found = rotation(&[[h[(0, 0)], h[(0, 1)]], [h[(1, 0)], h[(1, 1)]]]);
+            assert!((found - angle).abs() < 1e-14, "{angle}: {found}");
         }
     }
 

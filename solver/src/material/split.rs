@@ -86,7 +86,7 @@ fn scaled_hypot(a: f64, b: f64) -> f64 {
 
 #[inline(always)]
 fn spectral(moduli: &ElasticModuli, strain: [Lane; 3]) -> SplitState {
-    let ElasticModuli { lambda, mu } = *moduli;
+    let ElasticModuli { lambda, mu, .. } = *moduli;
     let (tensile, [e1, e2]) = tensile_strain(strain);
     let trace = strain[0] + strain[1];
     let (trace_plus, trace_minus) =

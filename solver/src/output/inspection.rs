@@ -29,6 +29,8 @@ pub struct PointState {
     pub strain: [f64; 3],
     /// Stress of the degraded material `[xx, yy, xy]`, Pa; Kirchhoff's with finite kinematics.
     pub stress: [f64; 3],
+    /// Stress out of the plane of the degraded material, Pa: zero in plane stress.
+    pub stress_out_of_plane: f64,
     /// What only a point of a fracturing body has.
     pub fracture: Option<PointFracture>,
 }
@@ -98,6 +100,13 @@ impl PointState {
         let vectors = motion.chain(&self.strain).chain(&self.stress);
         let fracture = self.fracture.iter().flat_map(|f| [f.history, f.phase]);
         vectors.copied().chain(fracture).all(f64::is_finite)
+    }
+
+    /// Von Mises stress, Pa.
+    pub fn von_mises(&self) -> f64 {
+        let ([xx, yy, xy], zz) = (self.stress, self.stress_out_of_plane);
+        let square = |a: f64, b: f64| (a - b) * (a - b);
+        (0.5 * (square(xx, yy) + square(yy, zz) + square(zz, xx)) + 3.0 * xy * xy).sqrt()
     }
 
     /// Larger for worse.
@@ -170,8 +179,17 @@ mod tests {
             velocity: [0.0; 2],
             strain: [strain, 0.0, 0.0],
             stress: [1.0; 3],
+            stress_out_of_plane: 0.0,
             fracture,
         }
+    }
+
+    #[test]
+    fn the_stress_of_von_mises_is_that_of_three_normal_stresses_and_shear() {
+        let of = |stress, stress_out_of_plane| PointState { stress, stress_out_of_plane, ..point(0, 0.0) }.von_mises();
+        assert_eq!(of([2.0, 0.0, 0.0], 0.0), 2.0, "uniaxial");
+        assert_eq!(of([3.0, 3.0, 0.0], 3.0), 0.0, "hydrostatic");
+        assert!((of([0.0, 0.0, 2.0], 0.0) - 12f64.sqrt()).abs() < 1e-15, "shear");
     }
 
     #[test]

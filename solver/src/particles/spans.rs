@@ -29,13 +29,23 @@ pub(crate) fn lengths_of_chords(patch: &NurbsPatch) -> [f64; 2] {
 
 /// Smallest and largest length (m) of the spans of a rectangle under the box around a shape.
 pub(crate) fn lengths_of_spans(mesh: &Mesh, shape: &Shape) -> [f64; 2] {
+    extremes(lengths_along(mesh, shape).into_iter().flatten())
+}
+
+/// Length (m) of the spans of the finest cell of a rectangle under the box around a shape: the longer one.
+pub(crate) fn finest_cell(mesh: &Mesh, shape: &Shape) -> f64 {
+    let [x, y] = lengths_along(mesh, shape).map(|lengths| extremes(lengths.into_iter())[0]);
+    larger(x, y)
+}
+
+/// Lengths (m) of the spans of a rectangle under the box around a shape, in both directions.
+fn lengths_along(mesh: &Mesh, shape: &Shape) -> [Vec<f64>; 2] {
     let (from, to) = mesh.extent(shape);
-    let lengths = (0..2).flat_map(|d| {
+    [0, 1].map(|d| {
         let tolerance = 1e-9 * (to[d] - from[d]);
-        let overlaps = move |k: &&[f64]| k[1] > k[0] && k[1] > from[d] + tolerance && k[0] < to[d] - tolerance;
-        mesh.knots[d].windows(2).filter(overlaps).map(|k| k[1] - k[0])
-    });
-    extremes(lengths)
+        let overlaps = |k: &&[f64]| k[1] > k[0] && k[1] > from[d] + tolerance && k[0] < to[d] - tolerance;
+        mesh.knots[d].windows(2).filter(overlaps).map(|k| k[1] - k[0]).collect()
+    })
 }
 
 fn extremes(lengths: impl Iterator<Item = f64>) -> [f64; 2] {

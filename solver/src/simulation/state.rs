@@ -49,23 +49,11 @@ impl Simulation {
     }
 
     fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self {
-            frame,
-            plan: _,
-            warnings,
-            steps,
-            initial,
-            energy_in,
-            warned_of_step,
-            warned_of_closure,
-            failed: _,
-            warned_of_boundary,
-            tolerance: _,
-        } = self;
+        let Self { frame, plan: _, warnings, steps, initial, energy_in, warned, failed: _, tolerance: _ } = self;
         archive.value(steps)?;
         frame.exchange(archive)?;
         archive.value(warnings)?;
         [initial, energy_in].into_iter().try_for_each(|energy| archive.value(energy))?;
-        [warned_of_step, warned_of_closure, warned_of_boundary].into_iter().try_for_each(|warned| archive.value(warned))
+        archive.value(warned)
     }
 }

@@ -22,6 +22,10 @@ const CLOSURE_LIMIT: f64 = 0.02;
 /// Closure below this fraction of the stored energy is round-off and tolerance of the phase field.
 const CLOSURE_FLOOR: f64 = 1e-6;
 
+/// Angle that material may turn by with small strains, rad: in the total frame they take this one for a
+/// strain of 0.5 %, and in the updated frame stresses do not turn with the material.
+const ROTATION_LIMIT: f64 = 0.1;
+
 /// Steps between two looks at the deformation of a body in the total frame, each a third of a step's work.
 const STEPS_BETWEEN_LOOKS: usize = 64;
 
@@ -49,7 +53,7 @@ impl Simulation {
 
     /// Warns once if the step in use exceeds the critical one at the moved positions.
     fn watch_critical_step(&mut self) {
-        if self.warned_of_step {
+        if self.warned.step {
             return;
         }
         let (step, look) = (self.plan.step, self.steps.is_multiple_of(STEPS_BETWEEN_LOOKS));
@@ -59,7 +63,7 @@ impl Simulation {
             Bodies::Total(_) => None,
         };
         let Some(critical) = critical.filter(|critical| step > *critical) else { return };
-        self.warned_of_step = true;
+        self.warned.step = true;
         self.warnings.push(format!(
             "from t = {:.4e} s on, the time step {step:.4e} s is {:.3} times the critical step {critical:.4e} s at the \
              moved positions; lower analysis.safety or the time step",
@@ -70,14 +74,27 @@ impl Simulation {
 
     /// Warns once if the boundary of a body has lost its material somewhere.
     fn watch_boundary(&mut self) {
-        if self.warned_of_boundary {
+        if self.warned.boundary {
             return;
         }
         let Some([x, y]) = self.updated_frame().and_then(|frame| frame.opened_boundary()) else { return };
-        self.warned_of_boundary = true;
+        self.warned.boundary = true;
         self.warnings.push(format!(
             "from t = {:.4e} s on, the boundary of a body is open near ({x:.6e}, {y:.6e}) m: its material there is gone, and \
              what comes to light inside has no boundary: other bodies can enter; end earlier, or refine the mesh",
+            self.time()
+        ));
+    }
+
+    fn watch_rotation(&mut self) {
+        if self.warned.rotation {
+            return;
+        }
+        let Some(([x, y], angle)) = either!(&self.frame, body => body.turned_beyond(ROTATION_LIMIT)) else { return };
+        self.warned.rotation = true;
+        self.warnings.push(format!(
+            "at t = {:.4e} s material near ({x:.6e}, {y:.6e}) m has turned by {angle:.3} rad: small strains hold up to \
+             {ROTATION_LIMIT} rad; use analysis.kinematics = \"finite\"",
             self.time()
         ));
     }
@@ -93,12 +110,13 @@ impl Simulation {
     }
 
     /// Holds a sample to its ledger: an open one is a warning, once, and a breakdown if the step is above the
-    /// critical one.
+    /// critical one. Warns once of material that has turned too far for small strains.
     ///
     /// # Errors
     /// If a number of the sample is not finite, or the ledger is open and the time step is too long to be
     /// stable, or the impulses of contact in the sample did not converge.
     pub fn watch_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
+        self.watch_rotation();
         let held = self.hold_to_ledger(sample);
         self.failed |= held.is_err();
         held
@@ -106,7 +124,7 @@ impl Simulation {
 
     fn hold_to_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
         if let Some(name) = sample.not_finite() {
-            return Err(self.at_worst_point(format!("{name} of the history is not a finite number"), None));
+            return Err(self.at_worst_point(&format!("{name} of the history is not a finite number"), None));
         }
         if let Some(frame) = self.updated_frame() {
             frame.contact_converges(self.plan.step).map_err(|failure| self.broken(failure.into()))?;
@@ -117,11 +135,11 @@ impl Simulation {
             return Ok(());
         }
         let what = format!("the energy ledger is open by {closure:.3e} J of {:.3e} J put in so far", self.energy_in);
-        if self.warned_of_step {
-            return Err(self.at_worst_point(what, None));
+        if self.warned.step {
+            return Err(self.at_worst_point(&what, None));
         }
-        if !self.warned_of_closure {
-            self.warned_of_closure = true;
+        if !self.warned.closure {
+            self.warned.closure = true;
             self.warnings.push(format!(
                 "at t = {time:.4e} s {what}: the quadrature of the stress work is coarse; lower analysis.safety (0.2 \
                  leaves a sixteenth of it)"
@@ -139,65 +157,65 @@ impl Simulation {
             return self.not_finite("numbers are not finite: the work of the loads is none");
         }
         let what = format!("elastic energy {elastic:.3e} J exceeds {GROWTH_LIMIT} times all energy put in");
-        self.at_worst_point(what, None)
+        self.at_worst_point(&what, None)
     }
 
     /// Numbers that are not finite: because a point is inverted, which has no strain, or for another reason.
     fn not_finite(&self, what: &str) -> Breakdown {
         let inverted = either!(&self.frame, body => body.inverted_point());
         let Some(InvertedPoint { point, position, determinant }) = inverted else {
-            return self.at_worst_point(what.to_string(), None);
+            return self.at_worst_point(what, None);
         };
         let what = format!("a material point is inverted, det F = {determinant:.4e}");
-        let cause = if self.step_is_too_long() { self.cause_of_growth() } else { INSIDE_OUT.to_string() };
-        Breakdown { step: self.steps, time: self.time(), place: position, point: Some(point), what, cause, scene: None }
+        Breakdown { point: Some(point), ..self.at(position, what, Some(INSIDE_OUT)) }
     }
 
     /// A step that could not be taken though the elastic energy of the last one that could is well.
     fn broken(&self, failure: Failure) -> Breakdown {
+        let (what, cause) = what_and_cause(failure, self.tolerance);
         match failure {
             Failure::Left(place) if !place.iter().all(|x| x.is_finite()) => self.not_finite(LOST),
-            Failure::Left(place) if self.is_far_outside(place) => self.at_worst_point(THROWN.to_string(), None),
-            Failure::Left(place) | Failure::Folded(place) => {
-                let left = matches!(failure, Failure::Left(_));
-                let bare = left && self.updated_frame().is_some_and(|frame| frame.patch().locate(place).is_some());
-                let torn = (BARE.to_string(), TORN.to_string());
-                let (what, cause) = if bare { torn } else { what_and_cause(failure, self.tolerance) };
-                let cause = if self.step_is_too_long() { self.cause_of_growth() } else { cause };
-                Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause, scene: None }
-            }
+            Failure::Left(place) if self.is_far_outside(place) => self.at_worst_point(THROWN, None),
+            Failure::Left(place) if self.is_on_mesh(place) => self.at(place, BARE, Some(TORN)),
             Failure::PhaseField(SolveFailure::NotFinite) => self.not_finite(NOT_FINITE),
             Failure::Unconverged(found) if !found.residual.is_finite() => self.not_finite(CONTACT_NOT_FINITE),
-            Failure::Unconverged(Unconverged { place, .. }) | Failure::TooFast(TooFast { place, .. }) => {
-                let (what, cause) = what_and_cause(failure, self.tolerance);
-                Breakdown { step: self.steps, time: self.time(), place, point: None, what, cause, scene: None }
-            }
+            Failure::Left(place)
+            | Failure::Folded(place)
+            | Failure::Unconverged(Unconverged { place, .. })
+            | Failure::TooFast(TooFast { place, .. }) => self.at(place, what, Some(&cause)),
             Failure::PhaseField(_)
             | Failure::Spans(_)
             | Failure::SingularMass
             | Failure::NoStep
             | Failure::NoPoints(_)
-            | Failure::LostTraction { .. } => {
-                let (what, cause) = what_and_cause(failure, self.tolerance);
-                self.at_worst_point(what, Some(cause).filter(|_| !self.step_is_too_long()))
-            }
+            | Failure::LostTraction { .. } => self.at_worst_point(&what, Some(&cause)),
         }
     }
 
+    /// A breakdown at a place (m); without a cause of its own it is growth. A time step that is too long is
+    /// named beside other causes, not in their place.
+    fn at(&self, place: [f64; 2], what: impl Into<String>, cause: Option<&str>) -> Breakdown {
+        let cause = match cause {
+            None => self.cause_of_growth(),
+            Some(cause) if self.step_is_too_long() => format!("{cause}; besides, {}", self.cause_of_growth()),
+            Some(cause) => cause.to_string(),
+        };
+        let (step, time) = (self.steps, self.time());
+        Breakdown { step, time, place, point: None, what: what.into(), cause, scene: None }
+    }
+
     /// A breakdown at the point whose numbers are worst, which are added to what happened.
-    fn at_worst_point(&self, what: String, cause: Option<String>) -> Breakdown {
+    fn at_worst_point(&self, what: &str, cause: Option<&str>) -> Breakdown {
         let inspection = self.inspect();
         let worst = inspection.worst.first().filter(|point| point.position.iter().all(|x| x.is_finite()));
-        let what = worst.map_or(what.clone(), |point| format!("{what}; {} there", numbers(point)));
-        Breakdown {
-            step: self.steps,
-            time: self.time(),
-            place: worst.map_or(inspection.fastest.0, |point| point.position),
-            point: worst.map(|point| point.point),
-            what,
-            cause: cause.unwrap_or_else(|| self.cause_of_growth()),
-            scene: None,
-        }
+        let what = worst.map_or(what.to_string(), |point| format!("{what}; {} there", numbers(point)));
+        let place = worst.map_or(inspection.fastest.0, |point| point.position);
+        Breakdown { point: worst.map(|point| point.point), ..self.at(place, what, cause) }
+    }
+
+    /// Whether a position is on the mesh of the bodies that move through it.
+    fn is_on_mesh(&self, place: [f64; 2]) -> bool {
+        self.updated_frame().is_some_and(|frame| frame.patch().locate(place).is_some())
     }
 
     /// Whether a position is further out of the mesh than that is wide.
@@ -208,7 +226,7 @@ impl Simulation {
     }
 
     fn step_is_too_long(&self) -> bool {
-        self.warned_of_step || self.plan.step > self.plan.critical
+        self.warned.step || self.plan.step > self.plan.critical
     }
 
     fn cause_of_growth(&self) -> String {
@@ -218,7 +236,7 @@ impl Simulation {
                 "the time step {:.4e} s is {ratio:.3} times the critical step {:.4e} s; use time_step = \"auto\"",
                 self.plan.step, self.plan.critical
             )
-        } else if self.warned_of_step {
+        } else if self.warned.step {
             "the time step exceeds the critical one at the moved positions; lower analysis.safety".to_string()
         } else {
             "the time step is below the critical one of the undamaged body; look for extreme loads or velocities, \

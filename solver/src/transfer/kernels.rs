@@ -6,7 +6,7 @@
 //! Σ V Gc ((1 − c)²/(4 l0) + l0 |grad c|²)             surface energy of the crack                E 3
 //! ```
 
-use crate::linear_algebra::extremes::smaller;
+use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::lane::Lane;
 use crate::material::degradation::BROKEN;
 use crate::material::degradation::FractureModel;
@@ -159,11 +159,44 @@ impl PointKernel for LeastStretch<'_> {
         let half_difference = xx - yy + (xx * xx + xy * xy - yx * yx - yy * yy) * 0.5;
         let shear = xy + yx + (xx * yx + xy * yy);
         let radius = (half_difference * half_difference + shear * shear).map(f64::sqrt);
-        let weight = self.phase.get(at).map_or(weight, |c| weight.zip(*c, |w, c| if c < BROKEN { 0.0 } else { w }));
+        let weight = of_intact(weight, self.phase, at);
         let squared = (mean - radius + Lane::splat(1.0)).zip(weight, |x, w| if w > 0.0 { x } else { f64::INFINITY });
         self.squared = self.squared.zip(squared, smaller);
         Stress::ZERO
     }
+}
+
+/// Largest angle by which material is turned (see [`rotation`](crate::material::hencky::rotation)).
+#[derive(Debug)]
+pub(crate) struct LargestRotation<'a> {
+    /// Phase field at the points of the strip, as in [`LeastStretch`].
+    pub phase: &'a [Lane],
+    /// Tangent of the largest of the strip, infinite from a right angle on; NaN if one is.
+    pub tangent: Lane,
+}
+
+impl PointKernel for LargestRotation<'_> {
+    const DISPLACEMENT: bool = true;
+    const PHASE: bool = false;
+    const PHASE_GRADIENT: bool = false;
+    const STRESS: bool = false;
+
+    #[inline(always)]
+    fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
+        let [xx, xy, yx, yy] = values.gradient;
+        let (sine, cosine) = (yx - xy, xx + yy + Lane::splat(2.0));
+        let tangent = sine.zip(cosine, |sine, cosine| if cosine <= 0.0 { f64::INFINITY } else { sine.abs() / cosine });
+        let weight = of_intact(weight, self.phase, at);
+        let tangent = tangent.zip(weight, |tangent, w| if w > 0.0 { tangent } else { 0.0 });
+        self.tangent = self.tangent.zip(tangent, larger);
+        Stress::ZERO
+    }
+}
+
+/// Weights of a batch, zero for broken points; `phase` is empty if all count.
+#[inline(always)]
+fn of_intact(weight: Lane, phase: &[Lane], at: usize) -> Lane {
+    phase.get(at).map_or(weight, |c| weight.zip(*c, |w, c| if c < BROKEN { 0.0 } else { w }))
 }
 
 /// Surface energy `Gc [(1 − c)²/(4 l0) + l0 |grad c|²]` (E 3) and the smallest c.

@@ -6,7 +6,7 @@ use super::findings::{Findings, side_name};
 use super::geometry::{complexity, covered_side, defect, outline};
 use super::ground::Ground;
 use super::points::Points;
-use super::seed;
+use super::{resolution, seed};
 use crate::scene::{Body, Crack, Edge, Fracture, Layout, Scene, Shape, Traction};
 use crate::splines::nurbs::{LocateError, NurbsPatch};
 use crate::splines::quadrature::MAX_POINTS;
@@ -44,7 +44,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         let placed = ground.is_sound && !body.rigid && inside_mesh(&key, body, ground, findings);
         let before = findings.errors.len();
         if placed && let Some(fracture) = fracture {
-            resolution(body, fracture, ground, findings);
+            resolution::check(body, fracture, ground, findings);
         }
         let look = Look::new(body, ground);
         for (j, traction) in body.tractions.iter().enumerate() {
@@ -170,25 +170,6 @@ fn inside_patch(key: &str, shape: &Shape, patch: &NurbsPatch, findings: &mut Fin
         return false;
     }
     true
-}
-
-/// Largest span in the body against the length scale: above it the crack is coarse, above four times it is
-/// not there.
-fn resolution(body: &Body, fracture: &Fracture, ground: &Ground<'_>, findings: &mut Findings) {
-    let [_, h] = ground.span_lengths(&body.shape);
-    let l0 = fracture.length_scale;
-    let sizes = format!("cells of h = {:.4} mm against l0 = {:.4} mm", 1e3 * h, 1e3 * l0);
-    let key = format!("material.{}.fracture.length_scale", body.material);
-    if h > 4.0 * l0 * (1.0 + TOLERANCE) {
-        let finer = if ground.mesh.geometry.is_some() { "subdivide or mesh.cells" } else { "cells" };
-        let remedy = format!(
-            "h may be at most l0, and never above 4 l0: refine mesh.{finer} {:.0} times, or raise length_scale",
-            (h / l0 - TOLERANCE).ceil()
-        );
-        findings.error(key, format!("the mesh cannot resolve a crack: {sizes}"), remedy);
-    } else if h > l0 * (1.0 + TOLERANCE) {
-        findings.warn(key, format!("the crack is resolved coarsely: {sizes}; h <= l0 is advised, l0/2 better"));
-    }
 }
 
 fn check_traction(key: &str, traction: &Traction, look: &Look<'_>, findings: &mut Findings) {

@@ -10,6 +10,18 @@ const FASTEST: f64 = 3e4;
 const SLOW: f64 = 50.0;
 /// Speeds below this are a wrong unit, m/s.
 const SLOWEST: f64 = 0.05;
+/// Common solids carry waves no faster than this, m/s (beryllium: 12.9 km/s).
+const COMMON_SPEED: f64 = 13e3;
+/// Densities outside are suspicious, kg/m³ (aerogel: 1; osmium: 22 600).
+const LIGHTEST: f64 = 1.0;
+const HEAVIEST: f64 = 25e3;
+/// Common solids are at least as dense, kg/m³. Up to [`HEAVIEST`] that is a factor of a thousand, as between
+/// units.
+const COMMON_DENSITY: f64 = 25.0;
+/// Units of density and of modulus that are in use, in SI, the largest modulus first.
+const DENSITY_UNITS: [(&str, f64); 6] =
+    [("g/m^3", 1e-3), ("kg/m^3", 1.0), ("g/cm^3", 1e3), ("g/mm^3", 1e6), ("kg/mm^3", 1e9), ("t/mm^3", 1e12)];
+const MODULUS_UNITS: [(&str, f64); 4] = [("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3), ("Pa", 1.0)];
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     for (name, material) in &scene.materials {
@@ -54,32 +66,48 @@ pub(super) fn plausible_speed(material: &Material, plane: Plane) -> Option<f64> 
     (SLOWEST..=FASTEST).contains(&speed).then_some(speed)
 }
 
+/// The wave speed and the density are possible; where they are not, a remedy says which units look mixed.
 fn wave_speed(key: &str, material: &Material, plane: Plane, findings: &mut Findings) {
-    let speed = ElasticModuli::new(material, plane).dilatational_speed(material.density);
-    let key = format!("{key}.density");
+    let (density, key) = (material.density, format!("{key}.density"));
+    let speed = ElasticModuli::new(material, plane).dilatational_speed(density);
     let implied = format!("with this density dilatational waves travel at {speed:.3e} m/s");
+    let remedy = likely_units(material, speed);
     if speed > FASTEST {
-        let plausible = |factor: f64| (SLOW..FASTEST).contains(&(speed / factor.sqrt()));
-        let looks_like = |unit: &str, factor: f64| {
-            let si = rounded(material.density * factor);
-            format!("{:e} looks like {unit}: write {si} kg/m^3", material.density)
-        };
-        let remedy = if plausible(1e12) {
-            looks_like("tonnes per cubic millimetre", 1e12)
-        } else if plausible(1e3) {
-            looks_like("grams per cubic centimetre", 1e3)
-        } else {
-            "check the units of density (kg/m^3) and young_modulus (Pa)".to_string()
-        };
         findings.error(key, format!("{implied}, faster than in any solid"), remedy);
     } else if speed < SLOWEST {
-        let remedy = "check the units of density (kg/m^3) and young_modulus (Pa), or write them: \"32 GPa\"";
         findings.error(key, format!("{implied}, slower than in any solid"), remedy);
     } else if speed < SLOW {
-        let message =
-            format!("{implied}, which is slow for a solid; if young_modulus is in MPa or GPa, write the unit");
-        findings.warn(key, message);
+        findings.warn(key, format!("{implied}, which is slow for a solid; {remedy}"));
+    } else if !(LIGHTEST..HEAVIEST).contains(&density) {
+        let than = if density < LIGHTEST { "lighter" } else { "heavier" };
+        findings.warn(key, format!("{density:e} kg/m^3 is {than} than any solid; {remedy}"));
     }
+}
+
+/// The units in which density and modulus were probably written, and what to write. The density has one unit
+/// in which it is that of a solid, and the modulus is then in the largest that leaves the speed of waves one.
+fn likely_units(material: &Material, speed: f64) -> String {
+    let (density, modulus) = (material.density, material.young_modulus);
+    let of_density = DENSITY_UNITS.iter().find(|(_, si)| (COMMON_DENSITY..HEAVIEST).contains(&(density * si)));
+    let &(density_unit, factor) = of_density.unwrap_or(&("kg/m^3", 1.0));
+    let faster = |si: f64| speed * (si / factor).sqrt();
+    let of_modulus = MODULUS_UNITS.iter().find(|(_, si)| (SLOW..COMMON_SPEED).contains(&faster(*si)));
+    let modulus_unit = of_modulus.map_or("Pa", |(unit, _)| unit);
+    let mut looks = Vec::new();
+    if density_unit != "kg/m^3" {
+        looks.push(format!("density = {density:e} like {density_unit} ({} kg/m^3)", rounded(density * factor)));
+    }
+    if modulus_unit != "Pa" {
+        looks.push(format!("young_modulus = {modulus:e} like {modulus_unit}"));
+    }
+    if looks.is_empty() {
+        return "check the units of density (kg/m^3) and young_modulus (Pa)".to_string();
+    }
+    format!(
+        "numbers without a unit are SI, and these do not look like it: {}; write the unit with every number, lengths \
+         and loads too, as in density = \"{density:e} {density_unit}\" and young_modulus = \"{modulus:e} {modulus_unit}\"",
+        looks.join(", ")
+    )
 }
 
 /// `value` to ten significant digits, to drop what a factor left in the last ones.
@@ -95,5 +123,42 @@ fn check_fracture(key: &str, fracture: &Fracture, findings: &mut Findings) {
     if !(0.0..1.0).contains(&fracture.residual_stiffness) {
         let message = format!("{} is outside [0, 1)", fracture.residual_stiffness);
         findings.error(format!("{key}.residual_stiffness"), message, "give a small fraction, such as 0 or 1e-6");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said of a density and a modulus, and whether it is an error.
+    fn said(density: f64, young_modulus: f64) -> Option<(bool, String)> {
+        let material = Material { young_modulus, poisson_ratio: 0.2, density, fracture: None };
+        let mut findings = Findings::default();
+        wave_speed("material.glass", &material, Plane::Strain, &mut findings);
+        let error = findings.errors.pop().map(|error| (true, error.message + &error.remedy));
+        error.or_else(|| findings.warnings.pop().map(|warning| (false, warning.message)))
+    }
+
+    #[test]
+    fn the_units_that_are_mixed_are_named() {
+        for (density, modulus, refused, units) in [
+            (2450e-9, 32e3, true, ["like kg/mm^3 (2450 kg/m^3)", "young_modulus = 3.2e4 like MPa"]),
+            (2450e-9, 32e9, true, ["like kg/mm^3 (2450 kg/m^3)", "\"3.2e10 Pa\""]),
+            (2450e-9, 32.0, false, ["like kg/mm^3 (2450 kg/m^3)", "young_modulus = 3.2e1 like GPa"]),
+            (7.85e-9, 210e3, true, ["like t/mm^3 (7850 kg/m^3)", "young_modulus = 2.1e5 like MPa"]),
+            (2.45e-3, 32e3, false, ["lighter than any solid", "like g/mm^3 (2450 kg/m^3)"]),
+            (2.45, 32e9, true, ["like g/cm^3 (2450 kg/m^3)", "\"2.45e0 g/cm^3\""]),
+            (2.45e6, 32e9, false, ["heavier than any solid", "like g/m^3 (2450 kg/m^3)"]),
+            (2450.0, 32e3, false, ["slow for a solid", "young_modulus = 3.2e4 like MPa"]),
+            (2450.0, 0.032, true, ["slower than in any solid", "young_modulus = 3.2e-2 like GPa"]),
+            (2450.0, 32e15, true, ["faster than in any solid", "check the units"]),
+        ] {
+            let (is_error, text) = said(density, modulus).unwrap_or_else(|| panic!("{density} and {modulus} pass"));
+            assert_eq!(is_error, refused, "{density} and {modulus}: {text}");
+            assert!(units.iter().all(|part| text.contains(part)), "{density} and {modulus}: {text}");
+        }
+        for (density, modulus) in [(2450.0, 32e9), (3500.0, 1.1e12), (30.0, 20e6), (1000.0, 10e6), (22_600.0, 560e9)] {
+            assert_eq!(said(density, modulus), None, "{density} and {modulus}");
+        }
     }
 }

@@ -193,3 +193,29 @@ fn numbers_that_are_not_finite_are_named_where_they_begin() {
         assert!(found.point.is_none_or(|point| point == worst.point && found.place == worst.position), "{text}");
     }
 }
+
+/// A time step above the critical one does not hide why a run ends: a body leaves the mesh, or is turned
+/// inside out.
+#[test]
+fn a_long_step_is_named_beside_the_cause_and_not_for_it() {
+    let mut leaving = elastic_scene(2, [0.01, 0.005], [20, 10]);
+    leaving.analysis.frame = Frame::Updated;
+    leaving.bodies[0].shape = crate::common::rectangle([0.002, 0.001], [0.008, 0.004]);
+    leaving.bodies[0].velocity = [1000.0, 0.0];
+    let mut crushed = leaving.clone();
+    crushed.analysis.kinematics = Kinematics::Finite;
+    crushed.bodies[0].velocity = [0.0; 2];
+    crushed.bodies[0].tractions = vec![
+        Traction { edge: Edge::Side(Side::Right), stress: [-2e12, 0.0], ramp: None },
+        Traction { edge: Edge::Side(Side::Left), stress: [2e12, 0.0], ramp: None },
+    ];
+    let scenes =
+        [("leaving", leaving, "the body moves out of the mesh"), ("crushed", crushed, "the body is turned inside")];
+    for (name, scene, cause) in scenes {
+        for ratio in [0.5, 1.02] {
+            let found = first_breakdown(&with_step(scene.clone(), ratio, 200), name).1;
+            assert!(found.cause.starts_with(cause), "{name}, {ratio}: {found}");
+            assert_eq!(found.cause.contains("besides, the time step"), ratio > 1.0, "{name}, {ratio}: {found}");
+        }
+    }
+}

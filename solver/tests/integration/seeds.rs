@@ -162,3 +162,29 @@ fn a_seed_that_nobody_looked_at_is_told() {
     scene.bodies[0].cracks[0].half_width = None;
     assert!(!told(&scene));
 }
+
+/// Cells of 0.25 mm to x = 6 mm, and of 2 mm beyond: eight times l0.
+#[test]
+fn long_cells_are_refused_where_a_seed_lies_and_named_elsewhere() {
+    let key = "material.glass.fracture.length_scale";
+    let graded = |crack: Option<[f64; 2]>| {
+        let mut scene = seeded(L0, [2, 2], Crack { from: [0.0, 0.005], to: [0.004, 0.005], half_width: None });
+        let ([from, to], fine) = (crack.unwrap_or_default(), (0..24).map(|i| f64::from(i) * L0));
+        let knots = [0.0; 2].into_iter().chain(fine).chain([0.006, 0.008]).chain([0.01; 3]);
+        scene.mesh.knots[0] = knots.collect();
+        let crack = Crack { from: [from, 0.0051], to: [to, 0.0051], half_width: Some(L0) };
+        scene.bodies[0].cracks = if from < to { vec![crack] } else { vec![] };
+        scene
+    };
+    for crack in [None, Some([0.0, 0.004]), Some([0.001, 0.005])] {
+        let warnings = validate(&graded(crack)).unwrap_or_else(|errors| panic!("{crack:?}: {errors:?}"));
+        assert_eq!(warnings.iter().map(|w| w.key.as_str()).collect::<Vec<_>>(), [key], "{crack:?}: {warnings:?}");
+        assert!(warnings[0].message.contains("h = 2.0000 mm"), "{crack:?}: {warnings:?}");
+    }
+    let mut coarse = graded(None);
+    coarse.mesh = Mesh::uniform([2, 2], [0.0; 2], [0.01; 2], [9; 2]);
+    for scene in [graded(Some([0.0, 0.007])), graded(Some([0.007, 0.009])), coarse] {
+        let errors = validate(&scene).unwrap_err();
+        assert_eq!(errors[0].key, key, "{errors:?}");
+    }
+}

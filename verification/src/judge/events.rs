@@ -11,8 +11,9 @@ use crate::reference::Library;
 
 /// Places at which the crack has started and has reached the right edge, m.
 const PASSED: [f64; 2] = [50.5e-3, 99.5e-3];
-/// Height of the initial crack in the benchmark, and the distance from it that counts as branched, m.
-const AXIS: f64 = 20e-3;
+/// Height of the initial crack in the benchmark, m.
+pub(super) const AXIS: f64 = 20e-3;
+/// Distance from it that counts as branched, m.
 const OFF_AXIS: f64 = 0.25e-3;
 /// Half width of the window in which a speed is fitted, s.
 const SPEED_WINDOW: f64 = 2e-6;

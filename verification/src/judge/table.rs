@@ -24,8 +24,9 @@ pub struct Curve {
 /// The curves of a submission by quantity.
 ///
 /// # Errors
-/// A file that cannot be read, a column that is not there, a word among numbers, energies that are not
-/// finite, times that do not increase: each with file, line, column and remedy.
+/// A file that cannot be read, a column that is not there, rows with more or fewer fields than the header or
+/// the first row, a word among numbers, energies that are not finite, times that do not increase: each with
+/// file, line, column and remedy.
 pub fn curves(folder: &Path, submission: &Submission) -> Result<[Option<Curve>; 6], SceneFileError> {
     let mut files: BTreeMap<&str, File> = BTreeMap::new();
     let mut out: [Option<Curve>; 6] = Default::default();
@@ -47,6 +48,8 @@ struct File {
     name: String,
     text: String,
     names: Vec<String>,
+    /// Whether a line names the columns that is no comment.
+    headed: bool,
     separator: char,
     /// Start of each line of numbers.
     rows: Vec<usize>,
@@ -68,8 +71,15 @@ impl File {
         }
         let text =
             String::from_utf8_lossy(&bytes).trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n");
-        let mut file = Self { name, text, names: Vec::new(), separator: ',', rows: Vec::new() };
+        let mut file = Self { name, text, names: Vec::new(), headed: false, separator: ',', rows: Vec::new() };
         file.find_rows(submission)?;
+        let of_file = submission.curves.iter().flatten().filter(|m| m.file == mapping.file);
+        let mut names = of_file.chain(&submission.time).filter_map(|m| match &m.column {
+            ColumnName::Named(name) => Some(name),
+            ColumnName::Numbered(_) => None,
+        });
+        let by_name = names.any(|name| file.names.contains(name));
+        file.check_rows(submission, by_name)?;
         Ok(file)
     }
 
@@ -94,7 +104,8 @@ impl File {
             if rows.is_empty() && header.is_none() {
                 self.separator = submission.separator.unwrap_or_else(|| separator_of(trimmed));
                 let words = fields(line, self.separator);
-                if words.iter().any(|w| number(w.1).is_none()) {
+                let with_commas = |w: &(usize, &str)| number(&w.1.replace(',', ".")).is_some();
+                if words.iter().any(|w| number(w.1).is_none()) && !words.iter().all(with_commas) {
                     header = Some(words.iter().map(|w| w.1.trim_matches('"').to_string()).collect::<Vec<_>>());
                     continue;
                 }
@@ -111,9 +122,71 @@ impl File {
         }
         let separator = separator_of(&comment);
         let of_comment = || fields(&comment, separator).iter().map(|w| w.1.trim_matches('"').to_string()).collect();
+        self.headed = header.is_some();
         self.names = header.unwrap_or_else(of_comment);
         self.rows = rows;
         Ok(())
+    }
+
+    fn line(&self, at: usize) -> &str {
+        self.text[at..].split('\n').next().unwrap_or("")
+    }
+
+    /// Every row has as many fields as the first, and as many as there are names: a field too many shifts
+    /// all that follow. Names in a comment may be none, and count only where a column is wanted `by_name`.
+    fn check_rows(&self, submission: &Submission, by_name: bool) -> Result<(), SceneFileError> {
+        let names = self.names.len();
+        let mut first = None;
+        for &at in &self.rows {
+            let row = fields(self.line(at), self.separator);
+            let (found, first) = (row.len(), *first.get_or_insert(row.len()));
+            let message = if (found > names && (self.headed || by_name)) || (found < names && by_name) {
+                format!("{} under {}", count(found, "field"), count(names, "name"))
+            } else if found != first {
+                format!("{} where the first row has {first}", count(found, "field"))
+            } else if !self.headed && self.is_cut_at_commas(at, &row) {
+                "numbers that are cut at their decimal commas".to_string()
+            } else {
+                continue;
+            };
+            let expected = if self.headed || by_name { names } else { first };
+            let place = row.get(expected).map_or(0, |field| field.0);
+            return Err(self.error(at, place, message, &self.remedy_for_row(&row, expected, submission)));
+        }
+        Ok(())
+    }
+
+    /// Whether every second field of a row without points reads like what stands behind a decimal comma:
+    /// digits, with a zero in front in one of them.
+    fn is_cut_at_commas(&self, at: usize, row: &[(usize, &str)]) -> bool {
+        let behind = || row.iter().skip(1).step_by(2).map(|field| field.1.as_bytes());
+        let digits = |word: &[u8]| word.first().is_some_and(u8::is_ascii_digit);
+        let padded = |word: &[u8]| word.len() > 1 && word[0] == b'0' && word[1].is_ascii_digit();
+        let pairs = self.separator == ',' && row.len() % 2 == 0 && !self.line(at).contains('.');
+        pairs && behind().all(digits) && behind().any(padded)
+    }
+
+    /// What is likely wrong with a row of another length than expected, and what would be right.
+    fn remedy_for_row(&self, row: &[(usize, &str)], expected: usize, submission: &Submission) -> String {
+        let surplus = row.get(expected..).unwrap_or_default();
+        let mark = submission.comment.chars().next().unwrap_or('#');
+        if surplus.iter().any(|field| number(field.1).is_none()) {
+            return format!("put words on lines of their own that start with {mark}, a line that is no header as well");
+        }
+        let one = surplus.len() == 1;
+        let index = "if the first column counts the rows, give it a name in the header";
+        if self.separator == ',' && !self.rows.iter().any(|at| self.line(*at).contains('.')) {
+            let likely = "no number has a point: write decimal commas as points, as commas separate the columns";
+            return if one { format!("{likely}; {index}") } else { likely.to_string() };
+        }
+        match surplus {
+            [(_, "")] => "if the rows end with a separator, end the header with one, too".into(),
+            [_] => format!("{index}; pandas writes an empty one"),
+            [] => "every row has as many numbers as the header has names; write nan for a tip that is missing, and no \
+                   spaces in names where spaces separate"
+                .into(),
+            _ => format!("give every column a name; start a line that is no header with {mark}"),
+        }
     }
 
     /// The numbers of a column, SI.
@@ -137,14 +210,12 @@ impl File {
         let mut out = Vec::with_capacity(self.rows.len());
         let mut last = f64::NEG_INFINITY;
         for &at in &self.rows {
-            let line = self.text[at..].split('\n').next().unwrap_or("");
-            let Some((column, word)) = fields(line, self.separator).into_iter().nth(index) else {
+            let Some((column, word)) = fields(self.line(at), self.separator).into_iter().nth(index) else {
                 let message = format!("no column {}, wanted by {}", index + 1, mapping.key);
                 return Err(self.error(at, 0, message, "every row has as many numbers as the header has names"));
             };
             let Some(value) = number(word) else {
-                let comma = self.separator != ',' && number(&word.replace(',', ".")).is_some();
-                let remedy = if comma { "write the decimal point as a point" } else { "comment the line out" };
+                let remedy = remedy_for_word(word.trim_matches('"'), self.separator);
                 return Err(self.error(at, column, format!("{word:?} is not a number"), remedy));
             };
             let none = value.is_nan() || mapping.missing.is_some_and(|m| (value - m).abs() <= 1e-9 * m.abs());
@@ -207,6 +278,26 @@ fn number(word: &str) -> Option<f64> {
         return Some(f64::NAN);
     }
     word.parse().ok().or_else(|| word.replace(['D', 'd'], "e").parse().ok())
+}
+
+/// What would be right in place of a word that is no number.
+fn remedy_for_word(word: &str, separator: char) -> &'static str {
+    let commas = word.contains(',');
+    let mut parts = word.split_whitespace();
+    if commas && number(&word.replace(',', ".")).is_some() {
+        "write the decimal point as a point"
+    } else if commas && number(&word.replace([',', '.'], "")).is_some() {
+        "write the decimal point as a point, and nothing between thousands"
+    } else if separator == ',' && word.contains(char::is_whitespace) && parts.all(|part| number(part).is_some()) {
+        "if spaces separate the columns, write decimal commas as points"
+    } else {
+        "comment the line out"
+    }
+}
+
+/// `1 field`, `2 fields`.
+fn count(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
 #[cfg(test)]

@@ -1,4 +1,6 @@
-//! Sound results are accepted, planted slips are named, hostile folders end in words.
+//! Sound results are accepted, planted mistakes are named, hostile folders end in words.
+
+mod mistakes;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -97,7 +99,7 @@ fn another_model_is_judged_by_its_own_reference_and_its_differences_are_named() 
     assert!(verdict.balance.unwrap().outcome == Outcome::Pass && verdict.differences.len() == 3);
 }
 
-/// A slip is recognised by its name, and the result does not pass.
+/// A mistake is recognised by its name, and the result does not pass.
 #[track_caller]
 fn recognised(folder: &Path, id: &str) -> Finding {
     let verdict = judged(folder, None).verdict;
@@ -107,7 +109,7 @@ fn recognised(folder: &Path, id: &str) -> Finding {
 }
 
 #[test]
-fn slips_planted_in_a_sound_result_are_named() {
+fn mistakes_planted_in_a_sound_result_are_named() {
     let planted: [(&str, &dyn Fn(String) -> String); 9] = [
         ("half-model-factor", &|t| t.replace(", factor = 2", "")),
         ("half-model-factor", &|t| t.replace("factor = 2", "factor = 4")),
@@ -192,7 +194,7 @@ fn what_cannot_be_read_is_told_with_place_and_remedy() {
         (rows("0,0,0,0,0,0,0\n1e-6,1,2,x,1,0,0\n"), &["history.csv:3:10", "\"x\" is not a number"]),
         (rows("0,0,0,0,0,0,0\n2e-6,1,1,1,1,0,0\n1e-6,1,1,1,1,0,0\n"), &["history.csv:4:1", "does not increase"]),
         (rows("0,0,0,0,0,0,0\n1e-6,1,1,1,1,0,0\n1e-6,1,1,1,1,0,0\n"), &["history.csv:4:1", "does not increase"]),
-        (rows("0,0,0\n1,1,1\n"), &["history.csv:2:1", "no column 5"]),
+        (rows("0,0,0\n1,1,1\n"), &["history.csv:2:1", "3 fields under 7 names"]),
         (head.to_string(), &["0 rows of numbers"]),
         ("\u{feff}a;b\n1,5;2\n3;4\n".into(), &["no column"]),
         ("\0\0".into(), &["UTF-16 or binary"]),
@@ -209,6 +211,95 @@ fn what_cannot_be_read_is_told_with_place_and_remedy() {
     assert!(refused(same, Some("1\n".repeat(33 << 20).as_bytes())).contains("longer than 64 MiB"));
     let wide: Vec<u8> = head.encode_utf16().flat_map(u16::to_le_bytes).collect();
     assert!(refused(same, Some(&[&[0xff, 0xfe], &wide[..]].concat())).contains("UTF-16"));
+}
+
+/// The sound history with every number changed.
+fn with_numbers(separator: &str, change: impl Fn(&str) -> String) -> String {
+    let text = fs::read_to_string(of(SOUND).join("history.csv")).unwrap();
+    let (head, rows) = text.split_once('\n').unwrap();
+    let row = |line: &str| line.split(',').map(&change).collect::<Vec<_>>().join(separator) + "\n";
+    format!("{}\n{}", head.replace(',', separator), rows.lines().map(row).collect::<String>())
+}
+
+#[test]
+fn decimal_commas_are_refused_in_every_layout() {
+    let same = |t: String| t;
+    let comma = |word: &str| word.replace('.', ",");
+    let quoted = |word: &str| format!("\"{}\"", word.replace('.', ","));
+    let thousands = |word: &str| if word.contains('.') { format!("1.{}", comma(word)) } else { word.to_string() };
+    let point = "write the decimal point as a point";
+    let cut = "write decimal commas as points";
+    let tables: [(String, &[&str]); 6] = [
+        (with_numbers(",", comma), &["history.csv:2:", "fields under 7 names", cut]),
+        (with_numbers(";", comma), &["history.csv:5:", "is not a number", point]),
+        (with_numbers("\t", comma), &["history.csv:5:", "is not a number", point]),
+        (with_numbers(" ", comma), &["history.csv:5:", "is not a number", point]),
+        (with_numbers(",", quoted), &["history.csv:5:", "is not a number", point]),
+        (with_numbers(";", thousands), &["history.csv:5:", "nothing between thousands"]),
+    ];
+    for (table, parts) in tables {
+        let text = refused(same, Some(table.as_bytes()));
+        assert!(parts.iter().all(|p| text.contains(p)), "{parts:?} in {text} of {}", &table[..200]);
+    }
+    // whole numbers of microseconds, of which some rows have more decimal commas than others
+    let few = "time_s,kinetic_j,elastic_j,fracture_j,external_work_j,crack_tip_x_m,crack_tip_y_m\n\
+               0,0,0,0,204183,0,50,20\n1,0,0106,0,0107,0,204,0,0213,50,1965,20\n";
+    assert!(refused(same, Some(few.as_bytes())).contains(cut));
+}
+
+#[test]
+fn decimal_commas_without_a_header_are_refused() {
+    let numbered = |t: String| {
+        let columns =
+            ["time_s", "kinetic_j", "elastic_j", "fracture_j", "external_work_j", "crack_tip_x_m", "crack_tip_y_m"];
+        columns.iter().zip(1..).fold(t, |t, (name, number)| t.replace(&format!("{name:?}"), &number.to_string()))
+    };
+    let rows: String = (0..30).map(|i| format!("{i},5,0,0{i},1,00,2,0{i},3,5,50,196{i},20,05\n")).collect();
+    let text = refused(numbered, Some(rows.as_bytes()));
+    assert!(text.contains("history.csv:1:") && text.contains("cut at their decimal commas"), "{text}");
+    let ragged = "0,0,0,0,0,50,20\n1,0,0106,0,0107,0,204,0,0213,50,1965,20\n";
+    let text = refused(numbered, Some(ragged.as_bytes()));
+    assert!(text.contains("history.csv:2:") && text.contains("write decimal commas as points"), "{text}");
+    let text = refused(numbered, Some("0;0;0;0;0,5;50;20\n1;1;1;1;1,5;50;20\n".as_bytes()));
+    assert!(text.contains("history.csv:1:9") && text.contains("write the decimal point as a point"), "{text}");
+    // step numbers with zeros in front are no decimals
+    let text = fs::read_to_string(of(SOUND).join("history.csv")).unwrap();
+    let steps: String = text.lines().skip(1).enumerate().map(|(i, line)| format!("{line},{i:05}\n")).collect();
+    let folder = changed(SOUND, numbered);
+    fs::write(folder.path().join("history.csv"), steps).unwrap();
+    assert_eq!(judged(folder.path(), None).verdict.outcome, Outcome::Pass);
+}
+
+#[test]
+fn rows_of_another_length_than_the_header_are_refused_with_the_likely_cause() {
+    let same = |t: String| t;
+    let text = fs::read_to_string(of(SOUND).join("history.csv")).unwrap();
+    let (head, rows) = text.split_once('\n').unwrap();
+    let each = |change: &dyn Fn(usize, &str) -> String| -> String {
+        rows.lines().enumerate().map(|(i, line)| change(i, line) + "\n").collect()
+    };
+    let indexed = each(&|i, line| format!("{i},{line}"));
+    let trailing = each(&|_, line| format!("{line},"));
+    let spaced = format!(" {head}\n{indexed}").replace(',', " ");
+    let refusals: [(String, &[&str]); 7] = [
+        (format!("{head}\n{indexed}"), &["history.csv:2:", "8 fields under 7 names", "counts the rows"]),
+        (spaced, &["history.csv:2:", "8 fields under 7 names", "counts the rows"]),
+        (format!("# {head}\n{indexed}"), &["history.csv:2:", "8 fields under 7 names", "counts the rows"]),
+        (format!("{head}\n{trailing}"), &["history.csv:2:", "8 fields under 7 names", "end the header with one"]),
+        (format!("{head}\n{rows}0.1,0,0,0,0,0,0,restarted\n"), &["8 fields under 7 names", "start with #"]),
+        (format!("{head}\n{rows}0.1,0,0,0,0,0,0,1,2\n"), &["9 fields under 7 names", "every column a name"]),
+        (format!("{head}\n{rows}0.1,0,0\n"), &["3 fields under 7 names", "as many numbers"]),
+    ];
+    for (table, parts) in refusals {
+        let text = refused(same, Some(table.as_bytes()));
+        assert!(parts.iter().all(|p| text.contains(p)), "{parts:?} in {text}");
+    }
+    let sound = judged(&of(SOUND), None).verdict.quantities;
+    for table in [format!(",{head}\n{indexed}"), format!("\"\",{head}\n{indexed}"), format!("{head},\n{trailing}")] {
+        let folder = changed(SOUND, same);
+        fs::write(folder.path().join("history.csv"), &table).unwrap();
+        assert_eq!(judged(folder.path(), None).verdict.quantities, sound, "{}", &table[..120]);
+    }
 }
 
 #[test]

@@ -93,7 +93,7 @@ pub struct QuantityVerdict {
     pub comparisons: Vec<Comparison>,
 }
 
-/// Something that was recognised: a slip, or what the curves say about load and plane state.
+/// Something that was recognised: a common mistake, or what the curves say about load and plane state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Finding {
     /// Stable name.
@@ -145,7 +145,7 @@ pub struct Verdict {
     pub numerical_uncertainty: String,
     /// Differences of the model that were declared and that the reference does not have.
     pub differences: Vec<String>,
-    /// Slips that were recognised, and what the curves say about load and plane state.
+    /// Common mistakes that were recognised, and what the curves say about load and plane state.
     pub findings: Vec<Finding>,
     /// What was done with the numbers.
     pub notes: Vec<String>,
@@ -182,7 +182,8 @@ impl Verdict {
             (0, 0, 0) => Outcome::Diagnostic,
         };
         if fail > 0 && self.findings.is_empty() && self.differences.is_empty() {
-            let text = "no declared difference and no known slip explains what fails: it is unexplained".to_string();
+            let text =
+                "no declared difference and no common mistake explains what fails: it is unexplained".to_string();
             self.findings.push(Finding { id: "unexplained".into(), text });
         }
         self.sentence = format!("{pass} pass, {fail} fail, {incomplete} incomplete, {diagnostic} diagnostic");

@@ -85,9 +85,19 @@ impl Table {
     /// # Errors
     /// Columns of different length.
     pub fn to_csv(&self) -> Result<Vec<u8>, csv::Error> {
+        self.csv_from(0)
+    }
+
+    /// The bytes from a row on, with the names if that is the first one.
+    ///
+    /// # Errors
+    /// Columns of different length.
+    pub fn csv_from(&self, first: usize) -> Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(&self.names)?;
-        for row in 0..self.rows() {
+        if first == 0 {
+            writer.write_record(&self.names)?;
+        }
+        for row in first..self.rows() {
             writer.write_record(self.columns.iter().map(|c| format_number(c[row])))?;
         }
         writer.into_inner().map_err(|e| e.into_error().into())

@@ -2,7 +2,8 @@
 //!
 //! While a command runs, lines are appended before the files they list are there, so a name may be listed
 //! with several hashes, and names of temporary files are listed; at the beginning and the end of a command
-//! the list is written anew, without these.
+//! the list is written anew, without these. A file that grows while a command runs is named in a comment: its
+//! hash is not known yet.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -23,6 +24,8 @@ pub const MANIFEST: &str = "fisura.sha256";
 /// Begins the first line, which ends with the command that the folder belongs to.
 const SCHEMA: &str = "# fisura.manifest/1 ";
 const UNFINISHED: &str = "# unfinished: a command is writing here, or was interrupted";
+/// Begins the line of a file that grows.
+const GROWS: &str = "# grows: ";
 
 /// What is known of a file.
 #[derive(Debug, Default)]
@@ -31,6 +34,15 @@ pub(super) struct Entry {
     pub hashes: Vec<String>,
     /// Length and time of change after this process wrote it.
     pub seen: Option<(u64, Option<SystemTime>)>,
+    /// Whether it grew when the list was written: what it holds then is ours, whatever it is.
+    pub grows: bool,
+}
+
+impl Entry {
+    /// A file of that hash, as it was seen when it was written.
+    pub(super) fn of(hash: String, seen: Option<(u64, Option<SystemTime>)>) -> Self {
+        Self { hashes: vec![hash], seen, grows: false }
+    }
 }
 
 /// The list of a folder.
@@ -82,6 +94,9 @@ fn parse(text: &str) -> Option<Manifest> {
     let mut files: BTreeMap<String, Entry> = BTreeMap::new();
     for line in lines {
         finished &= line != UNFINISHED;
+        if let Some(name) = line.strip_prefix(GROWS) {
+            files.entry(name.to_string()).or_default().grows = true;
+        }
         let Some((hash, name)) = line.split_once("  ") else { continue };
         if hash.len() == 64 && hash.bytes().all(|byte| byte.is_ascii_hexdigit()) {
             files.entry(name.to_string()).or_default().hashes.push(hash.to_string());
@@ -102,8 +117,11 @@ impl Manifest {
         let failed = |error: &dyn std::fmt::Display| OutputError::unwritable(&path, error);
         let mut text = self.head();
         for (name, entry) in &self.files {
+            if entry.grows {
+                let _ = writeln!(text, "{GROWS}{name}"); // a String takes anything
+            }
             for hash in &entry.hashes {
-                let _ = writeln!(text, "{hash}  {name}"); // a String takes anything
+                let _ = writeln!(text, "{hash}  {name}");
             }
         }
         let hash = hash(text.as_bytes());
@@ -123,11 +141,19 @@ impl Manifest {
 
     /// Adds lines of names and hashes to the list on disk.
     pub(super) fn append(&mut self, folder: &Path, lines: &[(&str, &str)]) -> IoResult<()> {
+        self.append_text(folder, &lines.iter().map(|(name, hash)| format!("{hash}  {name}\n")).collect::<String>())
+    }
+
+    /// Adds the line of a file that grows to the list on disk.
+    pub(super) fn append_growing(&mut self, folder: &Path, name: &str) -> IoResult<()> {
+        self.append_text(folder, &format!("{GROWS}{name}\n"))
+    }
+
+    fn append_text(&mut self, folder: &Path, text: &str) -> IoResult<()> {
         let mut journal = match self.journal.take() {
             Some(journal) => journal,
             None => self.open_journal(&folder.join(MANIFEST))?,
         };
-        let text: String = lines.iter().map(|(name, hash)| format!("{hash}  {name}\n")).collect();
         let end = journal.seek(SeekFrom::End(0))?;
         let written = journal.write_all(text.as_bytes()).and_then(|()| journal.sync_data());
         if written.is_err() {

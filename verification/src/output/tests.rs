@@ -79,7 +79,7 @@ fn folders_of_others_are_refused_and_stay_as_they_are() {
     let root = tempfile::tempdir().unwrap();
     open(root.path()).write("results.json", "{}").unwrap();
     let error = OutputFolder::open(root.path(), "run").unwrap_err();
-    assert!(error.message.contains("holds what `verify` wrote"), "{error:?}");
+    assert!(error.message.contains("contains the output of `verify`"), "{error:?}");
     OutputFolder::reopen(root.path()).unwrap().write("report.html", "").unwrap();
     assert_eq!(names(root.path()), ["report.html", "results.json"]);
     open(root.path()).begin(|_| false).unwrap();
@@ -118,6 +118,33 @@ fn a_killed_process_leaves_a_folder_that_the_next_one_knows() {
     next.write("checkpoint.bin", "3").unwrap();
     next.finish().unwrap();
     assert!(!fs::read_to_string(copy.path().join(MANIFEST)).unwrap().contains("# unfinished"));
+}
+
+/// What a killed process left of a file that grew is replaced, with all it holds; a file of the user is not.
+#[test]
+fn a_file_that_grows_is_read_on_the_way_and_replaced_by_the_next_process() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let out = open(path);
+    out.begin(|_| false).unwrap();
+    let mut file = out.grow("rows.csv").unwrap();
+    file.add(b"a\n1\n").unwrap();
+    file.add(b"2\n").unwrap();
+    assert_eq!(fs::read_to_string(path.join("rows.csv")).unwrap(), "a\n1\n2\n");
+    let left = killed(&out);
+    let next = open(left.path());
+    assert_eq!(next.files(), ["rows.csv"]);
+    next.begin(|_| false).unwrap();
+    assert!(!left.path().join("rows.csv").exists());
+    fs::write(left.path().join("rows.csv"), "mine").unwrap();
+    assert!(next.grow("rows.csv").is_err());
+    assert_eq!(fs::read_to_string(left.path().join("rows.csv")).unwrap(), "mine");
+
+    out.write("rows.csv", "a\n1\n2\n3\n").unwrap();
+    out.finish().unwrap();
+    drop(out);
+    fs::write(path.join("rows.csv"), "mine").unwrap();
+    assert!(open(path).begin(|_| false).is_err(), "a file that is finished has its hash");
 }
 
 #[test]

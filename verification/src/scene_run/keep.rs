@@ -9,6 +9,7 @@ use fisura::simulation::state::ResumeError;
 use thiserror::Error;
 
 use super::checkpoint::{self, CheckpointError, Stored};
+use super::write::Followed;
 use super::{OnFrame, Progress, Record, Run, SceneRun, timed};
 use crate::output::{OutputError, OutputFolder};
 
@@ -21,8 +22,8 @@ pub struct Keep<'a> {
     pub name: String,
     /// Name and version of the program: only the same one goes on with the same bits.
     pub program: String,
-    /// Wall time between checkpoints.
-    pub interval: Duration,
+    /// Wall time between checkpoints; none if there are to be none.
+    pub interval: Option<Duration>,
     /// Whether files are written at the frames; see [`Stored::frame_files`].
     pub frame_files: bool,
     /// Once this is set the run stores a checkpoint after the present step, and stops.
@@ -50,7 +51,8 @@ pub enum KeepError {
 }
 
 /// Runs a valid scene as [`run_scene`](super::run_scene) does, storing checkpoints. From a `stored` one it
-/// goes on: history and frames are then, bit by bit, those of a run that nobody disturbed.
+/// goes on: history and frames are then, bit by bit, those of a run that nobody disturbed. Every row of the
+/// history is in [`HISTORY`](super::HISTORY) as soon as it is sampled.
 ///
 /// A checkpoint that cannot be written at an interval is a warning in the summary, and tried again at the
 /// next.
@@ -67,6 +69,7 @@ pub fn run_scene_kept(
     let (record, state): (Record, Option<Vec<u8>>) =
         stored.map_or_else(Default::default, |stored| (stored.run, Some(stored.state)));
     let mut run = Run::new(scene, record);
+    run.followed = Some(Followed::new(keep.out));
     let prepared = timed(&mut run.record.stages.preparation, || match &state {
         Some(state) => Simulation::resume(scene, state),
         None => Simulation::new(scene).map_err(ResumeError::from),
@@ -112,11 +115,11 @@ impl Keeper<'_> {
     /// Stores a checkpoint if it is time or the run is interrupted; whether it is.
     fn after_step(&mut self, run: &Run<'_>, simulation: &mut Simulation) -> bool {
         let interrupted = self.keep.interrupted.load(Ordering::Relaxed);
-        if interrupted || self.stored.elapsed() >= self.keep.interval {
+        if interrupted || self.keep.interval.is_some_and(|interval| self.stored.elapsed() >= interval) {
             self.failed = self.store(run, simulation).err();
             if let Some(error) = &self.failed {
                 let step = simulation.steps();
-                self.warning = Some(format!("no checkpoint at step {step}: {error}"));
+                self.warning = Some(format!("the checkpoint at step {step} was not written: {error}"));
             }
             self.stored = Instant::now();
         }

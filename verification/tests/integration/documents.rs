@@ -38,12 +38,9 @@ fn anchor(heading: &str) -> String {
 
 #[test]
 fn every_link_leads_to_a_file_and_its_heading() {
-    for document in with_the_book(&[
-        "README.md",
-        "CHANGELOG.md",
-        "reports/gallery/README.md",
-        "reference-data/README.md",
-    ]) {
+    for document in
+        with_the_book(&["README.md", "CHANGELOG.md", "reports/gallery/README.md", "reference-data/README.md"])
+    {
         let text = read(&document);
         for link in between(&text, "](", ")").into_iter().filter(|link| !link.starts_with("http")) {
             let (name, heading) = link.split_once('#').unwrap_or((link, ""));
@@ -97,7 +94,10 @@ fn the_cases_shown_in_the_book_are_the_files() {
     let text = read(&format!("{BOOK}/add-a-case.md"));
     for case in ["energy/free-vibration", "convergence/kirsch-plane-strain"] {
         let file = read(&format!("verification/cases/{case}.toml"));
-        assert!(text.contains(&format!("```toml\n{file}```")), "{BOOK}/add-a-case.md shows another {case} than its file");
+        assert!(
+            text.contains(&format!("```toml\n{file}```")),
+            "{BOOK}/add-a-case.md shows another {case} than its file"
+        );
     }
 }
 
@@ -112,7 +112,10 @@ fn exact_solutions_and_keys_of_convergence_cases_have_their_lines() {
     let keys = schema["$defs"]["ConvergenceTable"]["properties"].as_object().unwrap();
     assert!(keys.len() > 10);
     for key in keys.keys() {
-        assert!(cases.contains(&format!("`{key}")) || cases.contains(&format!("\n{key} = ")), "add-a-case.md lacks `{key}`");
+        assert!(
+            cases.contains(&format!("`{key}")) || cases.contains(&format!("\n{key} = ")),
+            "add-a-case.md lacks `{key}`"
+        );
     }
     let patches = schema["$defs"]["PatchFamily"]["oneOf"].as_array().unwrap();
     assert!(patches.len() > 5);

@@ -1,6 +1,7 @@
 //! `judge`: verdicts on results of any code.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use super::support::Place;
 
@@ -33,6 +34,42 @@ fn a_sound_result_passes_and_leaves_page_verdict_and_export() {
     let json = place.xtask(&["judge", &submission("fisura-p2-h2"), "--format", "json", "--out", "out"]).with_status(0);
     assert_eq!(json.json(), serde_json::from_str::<serde_json::Value>(&place.read("out/verdict.json")).unwrap());
     assert_eq!(json.json()["schema"], "fisura.verdict/1");
+}
+
+#[test]
+fn the_references_are_found_from_any_folder() {
+    let sound = submission("fisura-p2-h2");
+    // above the program
+    let mut place = Place::new();
+    place.xtask(&["judge", &sound, "--out", "out"]).with_status(0);
+    // a project of somebody else that cargo runs, with a folder of the same name
+    place.write("theirs/Cargo.toml", "[package]\n");
+    place.write("reference-data/theirs/curve.csv", "x,y\n0,1\n");
+    place.manifest = Some(place.path("theirs"));
+    place.xtask_in(&place.path("theirs"), &["judge", &sound, "--out", "out"]).with_status(0);
+}
+
+#[test]
+#[cfg(unix)]
+fn the_references_are_those_of_the_current_workspace_or_missed_with_all_places() {
+    let mut place = Place::new();
+    place.write("elsewhere/deep/er/note.txt", "");
+    std::fs::create_dir(place.path("bin")).unwrap();
+    let program = place.path("bin/xtask");
+    // by another process: a file that this one has open for writing cannot be started meanwhile
+    let copied = Command::new("cp").arg(env!("CARGO_BIN_EXE_xtask")).arg(&program).status().unwrap();
+    assert!(copied.success());
+    let sound = submission("fisura-p2-h2");
+    let judge = |place: &Place| {
+        let folder = place.path("elsewhere/deep/er");
+        place.start(&program, &folder, &["judge", &sound, "--out", "out"])
+    };
+    let places = ["elsewhere/deep/er and above, the current folder", "bin and above, the program", "cargo xtask"];
+    judge(&place).with_status(2).complains_of(&places);
+    place.manifest = Some(place.path("package"));
+    judge(&place).with_status(2).complains_of(&["the workspace of cargo"]).complains_of(&places);
+    std::os::unix::fs::symlink(root().join("reference-data"), place.path("elsewhere/reference-data")).unwrap();
+    judge(&place).with_status(0);
 }
 
 #[test]

@@ -1,5 +1,9 @@
 //! `run`: files, statuses, breakdowns, the same bytes for any number of threads.
 
+use std::process::Stdio;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
 use super::support::{BLOCK, Place, notched};
 
 #[test]
@@ -110,6 +114,58 @@ fn files_go_to_the_target_folder_of_the_workspace_or_of_the_current_folder() {
     place.manifest = Some(place.path("workspace/xtask"));
     place.xtask_in(&place.path("scenes"), &["run", "block.toml"]).with_status(0);
     assert!(place.path("workspace/target/fisura/run/history.csv").is_file());
+}
+
+#[test]
+fn a_scene_is_found_from_any_folder_of_the_workspace() {
+    let mut place = Place::with("workspace/scenes/block.toml", BLOCK);
+    place.write("workspace/Cargo.toml", "[workspace]\n");
+    place.write("workspace/solver/src/lib.rs", "");
+    place.manifest = Some(place.path("workspace/xtask"));
+    let below = place.path("workspace/solver/src");
+    let out = place.path("out").display().to_string();
+    for arguments in [vec!["check", "scenes/block.toml"], vec!["run", "scenes/block.toml", "--out", &out]] {
+        place.xtask_in(&below, &arguments).with_status(0);
+    }
+    let nearer = BLOCK.replace("Block", "Nearer");
+    place.write("workspace/solver/src/scenes/block.toml", &nearer);
+    assert!(place.xtask_in(&below, &["check", "scenes/block.toml"]).with_status(0).out.contains("Nearer"));
+    for command in ["check", "run"] {
+        let absent = place.xtask_in(&below, &[command, "scenes/absent.toml"]).with_status(2);
+        let absent =
+            absent.complains_of(&["there is no scenes/absent.toml", "workspace/solver/src and ", "workspace\n"]);
+        assert_eq!(absent.out, "");
+    }
+    place.manifest = None;
+    let absent = place.xtask_in(&below, &["check", "absent.toml"]).with_status(2);
+    assert!(absent.err.contains("solver/src\n"), "one place: {absent:?}");
+}
+
+/// The rows of a run that is far from its end.
+#[test]
+fn the_history_can_be_followed() {
+    let place = Place::with("block.toml", BLOCK);
+    let long = ["--set", "analysis.end_time=\"5 ms\"", "--set", "output.samples=5000", "--set", "output.frames=[]"];
+    for checkpoint in ["none", "60"] {
+        let arguments = ["run", "block.toml", "--out", "out", "--checkpoint", checkpoint];
+        let mut command = place.command(&[&arguments[..], &long].concat());
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let rows = || std::fs::read_to_string(place.path("out/history.csv")).unwrap_or_default();
+        let clock = Instant::now();
+        while rows().lines().count() < 12 && clock.elapsed() < Duration::from_secs(60) {
+            sleep(Duration::from_millis(2));
+        }
+        let ended = child.try_wait().unwrap();
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert!(ended.is_none() && !place.path("out/summary.json").exists(), "{checkpoint}: it ended before");
+        let text = rows();
+        let whole = &text[..text.rfind('\n').unwrap() + 1];
+        assert!(whole.starts_with("time_s,") && whole.lines().count() >= 12, "{whole}");
+        assert!(whole.lines().all(|line| line.matches(',').count() == 9), "{whole}");
+    }
+    place.xtask(&["run", "block.toml", "--out", "out"]).with_status(0);
+    assert_eq!(place.read("out/history.csv").lines().count(), 1 + 11, "the part of a run is replaced");
 }
 
 #[test]

@@ -138,7 +138,12 @@ impl Place {
 
     /// Starts `xtask` in another folder.
     pub fn xtask_in(&self, folder: &Path, arguments: &[&str]) -> Outcome {
-        let output = self.command_in(folder, arguments).output().expect("the binary starts");
+        self.start(Path::new(env!("CARGO_BIN_EXE_xtask")), folder, arguments)
+    }
+
+    /// Starts a copy of the binary in another folder.
+    pub fn start(&self, program: &Path, folder: &Path, arguments: &[&str]) -> Outcome {
+        let output = self.command_of(program, folder, arguments).output().expect("the binary starts");
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
         Outcome {
             status: output.status.code().expect("an exit status, not a signal"),
@@ -151,11 +156,11 @@ impl Place {
 impl Place {
     /// `xtask` here, to be started.
     pub fn command(&self, arguments: &[&str]) -> Command {
-        self.command_in(self.folder.path(), arguments)
+        self.command_of(Path::new(env!("CARGO_BIN_EXE_xtask")), self.folder.path(), arguments)
     }
 
-    fn command_in(&self, folder: &Path, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
+    fn command_of(&self, program: &Path, folder: &Path, arguments: &[&str]) -> Command {
+        let mut command = Command::new(program);
         command.args(arguments).current_dir(folder);
         ["CARGO_MANIFEST_DIR", "COLUMNS", "LINES", "GITHUB_ACTIONS"].iter().for_each(|name| {
             command.env_remove(name);

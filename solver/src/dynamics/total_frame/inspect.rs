@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::TotalFrame;
-use crate::material::degradation::stress_at;
+use crate::material::degradation::{stress_at, stress_out_of_plane};
 use crate::output::inspection::{PointFracture, PointState};
 use crate::output::span_grid::{Corner, SpanGrid};
 
@@ -22,9 +22,21 @@ impl TotalFrame {
             let fracture = self.fracture.as_ref();
             let degraded = fracture.map(|f| (&f.model, f.phase[batch][lane]));
             let stress = stress_at(&self.moduli, strain, degraded);
+            let stress_out_of_plane = stress_out_of_plane(&self.moduli, strain, degraded);
             let fracture =
                 fracture.map(|f| PointFracture { history: f.history[batch][lane], phase: f.phase[batch][lane] });
-            f(PointState { body: 0, point, position, present, displacement, velocity, strain, stress, fracture });
+            f(PointState {
+                body: 0,
+                point,
+                position,
+                present,
+                displacement,
+                velocity,
+                strain,
+                stress,
+                stress_out_of_plane,
+                fracture,
+            });
             point += 1;
         });
     }

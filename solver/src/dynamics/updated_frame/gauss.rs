@@ -231,14 +231,9 @@ impl SpanQuadrature {
     /// # Errors
     /// If the solve does not converge.
     fn relax(&mut self, patch: &Patch, cells: &Cells, points: &mut [Point], beta: f64) -> Result<f64, SolveFailure> {
-        let mean = self.mean(points, |at| points[at].velocity);
-        let fit = PointFit { patch, cells, points, density: self.density };
-        fit.load(|point| [0, 1].map(|c| point.velocity[c] - mean[c]), &mut self.load);
-        let accuracy = self.accuracy(patch, 1);
-        self.fit.solve(&self.load, &mut self.velocity, accuracy)?;
-        let mut fitted = Vec::new();
-        fit.at_points(&self.velocity, &mut fitted);
-        let mut changes = fitted;
+        let mean = self.fit_velocity(OnPatch { patch, cells, points })?;
+        let mut changes = Vec::new();
+        PointFit { patch, cells, points, density: self.density }.at_points(&self.velocity, &mut changes);
         for (change, point) in changes.iter_mut().zip(&*points) {
             (0..2).for_each(|c| change[c] += mean[c] - point.velocity[c]);
         }
@@ -253,6 +248,29 @@ impl SpanQuadrature {
             }
         }
         Ok(loss)
+    }
+
+    /// Fits the velocity of the points less its mean, which it returns, m/s.
+    ///
+    /// # Errors
+    /// If the solve does not converge.
+    fn fit_velocity(&mut self, OnPatch { patch, cells, points }: OnPatch<'_>) -> Result<[f64; 2], SolveFailure> {
+        let mean = self.mean(points, |at| points[at].velocity);
+        let fit = PointFit { patch, cells, points, density: self.density };
+        fit.load(|point| [0, 1].map(|c| point.velocity[c] - mean[c]), &mut self.load);
+        let accuracy = self.accuracy(patch, 1);
+        self.fit.solve(&self.load, &mut self.velocity, accuracy)?;
+        Ok(mean)
+    }
+
+    /// Control values of the velocity that fits the points now, m/s; NaN if there is none.
+    pub(crate) fn fitted_velocity(&self, on: OnPatch<'_>) -> VectorField {
+        let mut copy = self.clone(); // the run goes on from its own last fit
+        let mean = copy.fit_velocity(on).unwrap_or([f64::NAN; 2]);
+        for (velocity, mean) in copy.velocity.iter_mut().zip(mean) {
+            velocity.iter_mut().enumerate().filter(|(at, _)| self.fit.takes(*at)).for_each(|(_, v)| *v += mean);
+        }
+        copy.velocity
     }
 
     /// When the solve for the derivative of that order of the displacement ends: what is left is round-off of

@@ -2,6 +2,7 @@
 //! run.
 
 use super::UpdatedFrame;
+use crate::material::degradation::stress_out_of_plane;
 use crate::output::inspection::{PointFracture, PointState};
 use crate::output::span_grid::{Corner, SpanGrid};
 use crate::particles::points::Point;
@@ -11,12 +12,24 @@ impl UpdatedFrame {
     pub(crate) fn for_each_point_state(&self, f: &mut dyn FnMut(PointState)) {
         for (field, body) in self.fields().iter().zip((0..).map(|at| self.body_of(at))) {
             for (point, carried) in field.points().iter().enumerate() {
-                let cracked = field.fracture.as_ref().map(|fracture| fracture.points[point]);
-                let fracture = cracked.map(|c| PointFracture { history: c.history, phase: c.phase });
+                let cracked = field.fracture.as_ref().map(|fracture| (&fracture.model, fracture.points[point]));
+                let fracture = cracked.map(|(_, c)| PointFracture { history: c.history, phase: c.phase });
                 let Point { position, velocity, displacement, .. } = *carried;
                 let [strain, stress] = field.strain_and_stress(carried);
-                let present = position;
-                f(PointState { body, point, position, present, displacement, velocity, strain, stress, fracture });
+                let degraded = cracked.map(|(model, c)| (model, c.phase));
+                let stress_out_of_plane = stress_out_of_plane(&field.moduli(), strain, degraded);
+                f(PointState {
+                    body,
+                    point,
+                    position,
+                    present: position,
+                    displacement,
+                    velocity,
+                    strain,
+                    stress,
+                    stress_out_of_plane,
+                    fracture,
+                });
             }
         }
     }
@@ -26,10 +39,11 @@ impl UpdatedFrame {
         let mut grid = SpanGrid::default();
         for (field, body) in self.fields().iter().zip((0..).map(|at| self.body_of(at))) {
             let spans = field.cells().cells.iter().map(|cell| cell.span);
+            let velocity = field.grid_velocity();
             grid.add(field.patch(), spans, |functions| Corner {
                 body,
                 position: functions.position,
-                velocity: field.nodes().velocity.each_ref().map(|v| functions.interpolate(v).value),
+                velocity: velocity.each_ref().map(|v| functions.interpolate(v).value),
                 phase: field.fracture.as_ref().map(|f| functions.interpolate(f.field.control_values()).value),
             });
         }

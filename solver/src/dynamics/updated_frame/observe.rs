@@ -255,7 +255,8 @@ impl DiscreteField {
 
     /// Square of the speed (infinite if it is no number) and position (m) of the fastest control point.
     fn fastest_place(&self) -> (f64, [f64; 2]) {
-        let [vx, vy] = &self.nodes.velocity;
+        let velocity = self.grid_velocity();
+        let [vx, vy] = &*velocity;
         let speed = |at: usize| {
             let speed = vx[at] * vx[at] + vy[at] * vy[at];
             (if speed.is_nan() { f64::INFINITY } else { speed }, at)

@@ -139,7 +139,7 @@ impl ElasticForces<'_> {
     #[inline(always)]
     fn walk(mut self, kx: usize, ky: usize) {
         let [x, y] = &self.patch.spaces;
-        let ElasticModuli { lambda, mu } = self.moduli;
+        let ElasticModuli { lambda, mu, .. } = self.moduli;
         for cell in self.cells {
             let local = control_values(self.field, self.grid, cell, kx, ky);
             let mut forces = [[0.0; 2]; MAX_FUNCTIONS];

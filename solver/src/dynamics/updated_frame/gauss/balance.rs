@@ -106,7 +106,7 @@ impl SpanBalance<'_> {
         window: &mut Window<'_, 2>,
         grid: ControlGrid,
     ) {
-        let ElasticModuli { lambda, mu } = self.moduli;
+        let ElasticModuli { lambda, mu, .. } = self.moduli;
         let gradients_of = |field: &VectorField| {
             let local = control_values(field.each_ref().map(|d| &d[..]), grid, cell, K, K);
             let mut gradients = [[[0.0; 2]; 2]; R];

@@ -1,5 +1,7 @@
 //! One step of a body whose spans integrate, and what is read from it.
 
+use std::borrow::Cow;
+
 use super::OnPatch;
 use crate::contact::gap_potential::GapForce;
 use crate::contact::gap_potential::arc::Outline;
@@ -7,6 +9,7 @@ use crate::dynamics::energy::Sample;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::updated_frame::field::DiscreteField;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
+use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::larger;
 
 impl DiscreteField {
@@ -128,6 +131,13 @@ impl DiscreteField {
             .map(|(point, b)| point.volume * (b[0] * point.velocity[0] + b[1] * point.velocity[1]))
             .sum();
         self.ledger.external_work += dt * self.density * power;
+    }
+
+    /// Control values of the velocity, m/s: where spans integrate, those that fit the points.
+    pub(in super::super) fn grid_velocity(&self) -> Cow<'_, VectorField> {
+        let Self { patch, cells, points, nodes, .. } = self;
+        let fitted = self.spans.as_ref().map(|spans| spans.fitted_velocity(OnPatch { patch, cells, points }));
+        fitted.map_or(Cow::Borrowed(&nodes.velocity), Cow::Owned)
     }
 
     /// Acceleration of each point, m/s², where spans integrate.

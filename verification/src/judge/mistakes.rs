@@ -1,14 +1,16 @@
-//! Common slips, recognised and named; nothing is corrected.
+//! Common mistakes, recognised and named; nothing is corrected.
 //!
-//! A slip is looked for only where something fails. Load and plane state come first: before the crack runs
-//! the body is elastic, energies go with the square of the load, and the shapes of the curves tell the
-//! plane state.
+//! A mistake is looked for only where something fails. Columns in the wrong place ([`exchanged`]) and times
+//! with another origin ([`origin`]) come first, and others are looked for in curves without them. Load and
+//! plane state are told from the time before the crack runs: the body is elastic, energies go with the
+//! square of the load, and the shapes of the curves tell the plane state.
 
 use super::family::{END, Variant};
 use super::submission::{Plane, Submission};
 use super::table::Curve;
 use super::verdict::Finding;
-use super::{FRACTURE, KINETIC, QUANTITIES, TIP_X, curves};
+use super::{FRACTURE, KINETIC, QUANTITIES, TIP_X, curves, exchanged, origin};
+use crate::output::history::format_number;
 use crate::reference::{Library, ReferenceCurve};
 
 /// Part by which a factor may be off and still be that factor.
@@ -20,6 +22,12 @@ const ALONE: f64 = 0.06;
 /// A result that is off by no more than this times what elements of its spacing are off by may owe that to
 /// its mesh alone.
 const OFF_BY_MESH: f64 = 1.1;
+
+/// Curves by quantity.
+pub(super) type Curves = [Option<Curve>; 6];
+
+/// Before the crack runs, s: the body is elastic.
+pub(super) const ELASTIC: [f64; 2] = [2e-6, 12e-6];
 
 /// Everything that is recognised. Other problems are looked at only where a whole curve is off: `off` is then
 /// what elements of the spacing of the result are off by.
@@ -34,6 +42,21 @@ pub fn find(
     if let Some(finding) = time_unit(curves) {
         return vec![finding];
     }
+    let mut right = curves.clone();
+    let origin = |curves: &Curves| origin::find(submission, curves, variant, library, off.unwrap_or(0.0));
+    let finders: [&dyn Fn(&Curves) -> Option<(Finding, Curves)>; 4] = [
+        &origin,
+        &|curves| exchanged::energies(submission, curves, variant),
+        &exchanged::tip,
+        &origin, // columns in the wrong place hide it
+    ];
+    for find in finders {
+        if let Some((finding, without)) = find(&right) {
+            found.push(finding);
+            right = without;
+        }
+    }
+    let curves = &right;
     let scales: Vec<(usize, f64, f64)> = (0..=FRACTURE)
         .filter_map(|q| Some((q, fit(curves[q].as_ref()?, variant.curves[q]?, window(q))?)))
         .map(|(q, (scale, left))| (q, scale, left))
@@ -49,14 +72,19 @@ pub fn find(
 }
 
 /// From where a quantity is compared as a whole, s.
-fn window(quantity: usize) -> [f64; 2] {
+pub(super) fn window(quantity: usize) -> [f64; 2] {
     [if quantity == FRACTURE { 30e-6 } else { 5e-6 }, END]
 }
 
 /// Result and reference at the times of the reference in a window, where the result has them.
-fn pairs(curve: &Curve, reference: &ReferenceCurve, [from, to]: [f64; 2]) -> Vec<(f64, f64)> {
+pub(super) fn pairs(curve: &Curve, reference: &ReferenceCurve, window: [f64; 2]) -> Vec<(f64, f64)> {
+    pairs_at(curve, reference, window, 0.0)
+}
+
+/// The same with the result at times that are later by `shift`, s.
+pub(super) fn pairs_at(curve: &Curve, reference: &ReferenceCurve, [from, to]: [f64; 2], shift: f64) -> Vec<(f64, f64)> {
     let rows = reference.x.iter().zip(&reference.y).filter(|(t, _)| (from..=to).contains(*t));
-    rows.filter_map(|(t, r)| Some((curves::at(curve, *t)?, *r))).collect()
+    rows.filter_map(|(t, r)| Some((curves::at(curve, *t + shift)?, *r))).collect()
 }
 
 /// The factor on the reference that is nearest to the result, and what is left, relative to the scaled
@@ -75,17 +103,35 @@ fn power_of_ten(scale: f64) -> Option<i32> {
     (power != 0.0 && (scale / 10f64.powf(power)).ln().abs() < NEAR).then_some(power as i32)
 }
 
+/// The same, also beside a factor 2 of a half model if it is one of thousands.
+fn power_of_unit(scale: f64) -> Option<i32> {
+    let beside = |factor: f64| power_of_ten(scale / factor).filter(|power| power % 3 == 0);
+    power_of_ten(scale).or_else(|| beside(0.5)).or_else(|| beside(2.0))
+}
+
 /// Factors 2 of half models and powers of ten of units, for all energies together or one by one.
 fn factors(submission: &Submission, scales: &[(usize, f64, f64)]) -> Vec<Finding> {
     let near = |scale: f64, goal: f64| scale > 0.0 && (scale / goal).ln().abs() < NEAR;
     let name = |q: usize| QUANTITIES[q].words;
     let shaped: Vec<(usize, f64)> = scales.iter().filter(|s| s.2 < SHAPE).map(|s| (s.0, s.1)).collect();
+    // what is left of a factor without its power of ten
+    let rest = |scale: f64| power_of_unit(scale).map_or(scale, |power| scale / 10f64.powi(power));
     // a factor 2 of one quantity alone may be anything: there its shape has to be that of the reference
     let alone = |q: usize| scales.iter().any(|s| s.0 == q && s.2 < ALONE);
     let mut out = Vec::new();
+    let by_thickness = |t: &f64| t.ln().abs() > NEAR && shaped.iter().all(|s| near(s.1, *t) || near(s.1, 1.0 / t));
+    let declared = submission.model.thickness.filter(|_| shaped.len() == scales.len() && scales.len() > 1);
+    if let Some(thickness) = declared.filter(by_thickness) {
+        let text = format!(
+            "all energies are off by the declared thickness of {} m: are they per thickness already, or is it not that of \
+             the plate? the benchmark wants J per metre of thickness (1 mJ/mm = 1 J/m)",
+            format_number(thickness)
+        );
+        return vec![Finding { id: "thickness".into(), text }];
+    }
     for (goal, words) in [(0.5, "half"), (2.0, "twice")] {
-        let these: Vec<&str> = shaped.iter().filter(|s| near(s.1, goal)).map(|s| name(s.0)).collect();
-        let one = shaped.iter().find(|s| near(s.1, goal)).is_some_and(|s| alone(s.0));
+        let these: Vec<&str> = shaped.iter().filter(|s| near(rest(s.1), goal)).map(|s| name(s.0)).collect();
+        let one = shaped.iter().find(|s| near(rest(s.1), goal)).is_some_and(|s| alone(s.0));
         if these.is_empty() || (these.len() == 1 && !one) {
             continue;
         }
@@ -100,24 +146,23 @@ fn factors(submission: &Submission, scales: &[(usize, f64, f64)]) -> Vec<Finding
         let text = format!("{} {words} the reference in shape and size: {model}", list(&these));
         out.push(Finding { id: "half-model-factor".into(), text });
     }
-    let powers: Vec<(usize, i32)> =
-        shaped.iter().filter(|s| s.1 > 0.0).filter_map(|s| Some((s.0, power_of_ten(s.1)?))).collect();
+    let powers: Vec<(usize, i32)> = shaped.iter().filter_map(|s| Some((s.0, power_of_unit(s.1)?))).collect();
     let mut seen: Vec<i32> = powers.iter().map(|p| p.1).collect();
     seen.sort_unstable();
     seen.dedup();
+    let beside = if out.is_empty() { "" } else { ", beside that factor 2" };
     for power in seen {
         let these: Vec<&str> = powers.iter().filter(|p| p.1 == power).map(|p| name(p.0)).collect();
         let all = these.len() == scales.len() && these.len() > 1;
-        let thickness = submission.model.thickness.filter(|t| power_of_ten(*t).is_some_and(|t| t.abs() == power.abs()));
-        if all && (power.abs() == 3 || thickness.is_some()) {
+        if all && power.abs() == 3 {
             let text = format!(
-                "all energies are 10^{power} times the reference: are they per thickness and given as of a plate of some \
+                "all energies are 10^{power} times the reference{beside}: are they per thickness and given as of a plate of some \
                  thickness, or the reverse? the benchmark wants J per metre of thickness (1 mJ/mm = 1 J/m)"
             );
             out.push(Finding { id: "thickness".into(), text });
         } else {
-            let text =
-                format!("{} 10^{power} times the reference, in the same shape: is the unit right?", list(&these));
+            let these = list(&these);
+            let text = format!("{these} 10^{power} times the reference{beside}, in the same shape: is the unit right?");
             out.push(Finding { id: "unit".into(), text });
         }
     }
@@ -200,7 +245,8 @@ fn load_and_plane(
     let traction = load * candidate.declared.traction;
     let other_plane = plane != variant.declared.plane && left < 0.6 * own;
     let other_load = (traction / declared - 1.0).abs() > 0.01;
-    if left > 0.04 || !(other_plane || other_load) {
+    let another_origin = !other_plane && origin::least(curves, variant).is_some_and(|least| least < left);
+    if left > 0.04 || another_origin || !(other_plane || other_load) {
         return None;
     }
     let word = if plane == Plane::Stress { "stress" } else { "strain" };
@@ -216,11 +262,11 @@ fn load_and_plane(
 }
 
 /// The load over that of a variant which fits all energies before onset, and what is left of them.
-fn fit_load(curves: &[Option<Curve>; 6], variant: &Variant<'_>) -> Option<(f64, f64)> {
+pub(super) fn fit_load(curves: &[Option<Curve>; 6], variant: &Variant<'_>) -> Option<(f64, f64)> {
     let (mut top, mut bottom, mut rows) = (0.0, 0.0, Vec::new());
     for quantity in KINETIC..FRACTURE {
         let (Some(curve), Some(reference)) = (&curves[quantity], variant.curves[quantity]) else { continue };
-        let pairs = pairs(curve, reference, [2e-6, 12e-6]);
+        let pairs = pairs(curve, reference, ELASTIC);
         let square = pairs.iter().map(|(_, r)| r * r).sum::<f64>();
         top += pairs.iter().map(|(y, r)| y * r).sum::<f64>() / square;
         bottom += 1.0;
@@ -234,7 +280,7 @@ fn fit_load(curves: &[Option<Curve>; 6], variant: &Variant<'_>) -> Option<(f64, 
     (scale > 0.0 && left.is_finite() && bottom > 1.0).then(|| (scale.sqrt(), left))
 }
 
-/// Another variant, or a run with a known slip, that is much nearer; `mesh` is what elements of the spacing
+/// Another variant, or a run with a known mistake, that is much nearer; `mesh` is what elements of the spacing
 /// of the result are off by.
 fn nearer(curves: &[Option<Curve>; 6], variant: &Variant<'_>, library: &Library, mesh: f64) -> Option<Finding> {
     let ids = library.curves("plate-family/kinetic-energy").into_iter().map(|c| (c.id.clone(), c.label.clone()));
@@ -256,8 +302,8 @@ fn nearer(curves: &[Option<Curve>; 6], variant: &Variant<'_>, library: &Library,
         100.0 * left,
         100.0 * own
     );
-    let slip = label.contains("l taken for l0");
-    let id = if slip { "length-scale-convention" } else { "another-benchmark" };
-    let beyond_mesh = slip || own > OFF_BY_MESH * mesh;
+    let mistake = label.contains("l taken for l0");
+    let id = if mistake { "length-scale-convention" } else { "another-benchmark" };
+    let beyond_mesh = mistake || own > OFF_BY_MESH * mesh;
     (left < 0.5 * own && left < 0.1 && beyond_mesh).then(|| Finding { id: id.into(), text })
 }
