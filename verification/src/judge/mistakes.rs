@@ -26,6 +26,9 @@ const OFF_BY_MESH: f64 = 1.1;
 /// Curves by quantity.
 pub(super) type Curves = [Option<Curve>; 6];
 
+/// Looks for a mistake in curves; gives the curves without it.
+type Finder<'a> = dyn Fn(&Curves) -> Option<(Finding, Curves)> + 'a;
+
 /// Before the crack runs, s: the body is elastic.
 pub(super) const ELASTIC: [f64; 2] = [2e-6, 12e-6];
 
@@ -44,7 +47,7 @@ pub fn find(
     }
     let mut right = curves.clone();
     let origin = |curves: &Curves| origin::find(submission, curves, variant, library, off.unwrap_or(0.0));
-    let finders: [&dyn Fn(&Curves) -> Option<(Finding, Curves)>; 4] = [
+    let finders: [&Finder<'_>; 4] = [
         &origin,
         &|curves| exchanged::energies(submission, curves, variant),
         &exchanged::tip,

@@ -162,7 +162,7 @@ impl File {
         let behind = || row.iter().skip(1).step_by(2).map(|field| field.1.as_bytes());
         let digits = |word: &[u8]| word.first().is_some_and(u8::is_ascii_digit);
         let padded = |word: &[u8]| word.len() > 1 && word[0] == b'0' && word[1].is_ascii_digit();
-        let pairs = self.separator == ',' && row.len() % 2 == 0 && !self.line(at).contains('.');
+        let pairs = self.separator == ',' && row.len().is_multiple_of(2) && !self.line(at).contains('.');
         pairs && behind().all(digits) && behind().any(padded)
     }
 
