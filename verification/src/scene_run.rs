@@ -2,7 +2,8 @@
 //!
 //! [`run_scene`] steps a [`Simulation`], samples it at every multiple of the plan's interval, and takes each
 //! frame at the nearest step. A run that breaks down keeps what was computed until then. [`run_scene_kept`]
-//! stores checkpoints on the way, goes on from one, and writes every row as it is sampled. The clock is read here and in no solver module:
+//! stores checkpoints on the way, goes on from one, and writes every row as it is sampled. The clock is read
+//! here and in no solver module:
 //! preparation, steps, samples and pictures are timed from outside.
 
 mod breakdown;
