@@ -147,10 +147,7 @@ mod tests {
         let changed = told(TimeStep::Fixed(7e-8), 200);
         assert!(changed[0].contains("5.000000e-8 s instead of 7.000000e-8 s"), "{changed:?}");
         let fewer = told(TimeStep::Fixed(7e-8), 320);
-        assert!(
-            fewer[0].contains("143 samples are written") && fewer[1].contains("6.993007e-8 s instead of"),
-            "{fewer:?}"
-        );
+        assert!(fewer[0].contains("143 are taken") && fewer[1].contains("6.993007e-8 s instead of"), "{fewer:?}");
         assert_eq!(told(TimeStep::Fixed(1.0), 1).len(), 2, "beyond the end, and critical");
         assert!(told(TimeStep::Auto, 50).is_empty() && told(TimeStep::Auto, 120).is_empty());
     }
