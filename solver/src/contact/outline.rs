@@ -5,10 +5,6 @@ use crate::scene::shape::polygon_edges;
 use crate::scene::{Body, Mesh, Shape};
 use crate::splines::quadrature::MAX_POINTS;
 
-/// Depth at which material is looked for under a segment, over its length: the middle of a chord of a circle
-/// cut in sixteen is half as far off the circle.
-const UNDER: f64 = 0.1;
-
 /// Distance between the points of a body, m: that of the smallest span.
 pub(super) fn spacing(mesh: &Mesh, body: &Body) -> f64 {
     let smallest = |d: usize| {
@@ -89,13 +85,15 @@ pub(super) fn rings(shape: &Shape, spacing: f64) -> Vec<Vec<[f64; 2]>> {
     }
 }
 
-/// Whether a segment bounds a shape: its middle lies on the boundary within a tolerance (m), and there is
-/// material under it. Where a cut ends flush with a side there is none, though both lines run there.
+/// Whether a segment bounds a shape: its middle lies on the boundary, and twice as deep as the tolerance (m)
+/// there is material, both within the tolerance. Where a cut ends flush with a side there is none, though
+/// both lines run there.
 pub(super) fn bounds(shape: &Shape, [a, b]: [[f64; 2]; 2], tolerance: f64) -> bool {
     let middle = [0, 1].map(|d| 0.5 * (a[d] + b[d]));
-    let under = [middle[0] - UNDER * (b[1] - a[1]), middle[1] + UNDER * (b[0] - a[0])];
+    let depth = 2.0 * tolerance / (b[0] - a[0]).hypot(b[1] - a[1]);
+    let beneath = [middle[0] - depth * (b[1] - a[1]), middle[1] + depth * (b[0] - a[0])];
     let on_boundary = shape.contains_within(middle, tolerance) && !shape.contains_within(middle, -tolerance);
-    on_boundary && shape.contains(under)
+    on_boundary && shape.contains_within(beneath, tolerance)
 }
 
 #[cfg(test)]
@@ -130,6 +128,20 @@ mod tests {
         ] {
             let found = bounded(&shape);
             assert!((found - length).abs() < 2.0 * SPACING, "{name}: {found} m instead of {length} m");
+        }
+    }
+
+    /// A segment of each circle has its middle on the cut, to round-off on either side of it.
+    #[test]
+    fn a_cut_through_the_middle_of_segments_keeps_them() {
+        for shift in [-1e-16, 0.0, 1e-16] {
+            let ring = Shape::Annulus { center: [0.1, shift], inner_radius: 0.03, outer_radius: 0.05 };
+            let below = rectangle([-1.0, -1.0], [1.0, 0.0]);
+            let half = Shape::Difference { of: Box::new(ring), minus: vec![below] };
+            let outer = rings(&half, SPACING)[0].clone();
+            let segments = (0..outer.len()).map(|i| [outer[i], outer[(i + 1) % outer.len()]]);
+            let kept = segments.filter(|ends| bounds(&half, *ends, 0.1 * SPACING)).count();
+            assert_eq!(kept, outer.len() / 2 + 1, "shifted by {shift}");
         }
     }
 
