@@ -3,8 +3,8 @@
 //!
 //! | below `metrics/` | for |
 //! |---|---|
-//! | `deterministic/bencher.json`, `timing/bencher.json` | Bencher, adapter `json`: every metric, with its bounds |
-//! | `…/github-action-benchmark.json` of both | github-action-benchmark, `customSmallerIsBetter`: a few series per suite |
+//! | `deterministic/bencher.json`, `timing/bencher.json` | Bencher, adapter `json`: all metrics with bounds |
+//! | `…/github-action-benchmark.json` of both | `customSmallerIsBetter`: a few series per suite |
 //! | `badge.json` | an endpoint badge of shields.io |
 
 mod bencher;

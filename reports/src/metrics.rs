@@ -3,6 +3,7 @@
 //!
 //! [`deterministic`] figures come out the same whenever one program runs the same cases; [`times`] do not.
 
+use fisura_verification::extremes::larger;
 use fisura_verification::record::{Record, ResultSet};
 use serde::Serialize;
 
@@ -86,7 +87,7 @@ fn error(record: &Record) -> Option<Metric> {
         None => record.accept.max,
         Some(reference) => {
             let sides = [record.accept.min, record.accept.max].into_iter().flatten();
-            sides.map(|bound| (bound - reference).abs() / reference.abs()).reduce(f64::max)
+            sides.map(|bound| (bound - reference).abs() / reference.abs()).reduce(larger)
         }
     };
     Some(Metric { range, most: most.filter(|most| most.is_finite() && *most > 0.0), ..metric })

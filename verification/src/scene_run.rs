@@ -2,7 +2,8 @@
 //!
 //! [`run_scene`] steps a [`Simulation`], samples it at every multiple of the plan's interval, and takes each
 //! frame at the nearest step. A run that breaks down keeps what was computed until then. [`run_scene_kept`]
-//! stores checkpoints on the way, goes on from one, and writes every row as it is sampled. The clock is read here and in no solver module:
+//! stores checkpoints on the way, goes on from one, and writes every row as it is sampled. The clock is read
+//! here and in no solver module:
 //! preparation, steps, samples and pictures are timed from outside.
 
 mod breakdown;
@@ -92,12 +93,7 @@ pub fn frame_steps(times: &[f64], time_step: f64, steps: usize) -> (Vec<usize>, 
     found.sort_unstable();
     found.dedup();
     let missing = times.len() - found.len();
-    let warning = || {
-        format!(
-            "{missing} of {} frames are duplicates: they coincide with the step of another frame and are not written",
-            times.len()
-        )
-    };
+    let warning = || format!("{missing} of {} frames fall on the step of another and are not repeated", times.len());
     let warnings = (missing > 0).then(warning).into_iter().collect();
     (found, warnings)
 }

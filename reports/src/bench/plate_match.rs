@@ -17,8 +17,8 @@ const LENGTHS: [f64; 5] = [4.0, 2.0, 1.0, 0.5, 0.25];
 /// No error is compared below so many uncertainties of the reference, to three digits.
 const UNCERTAINTIES: f64 = 1.999;
 
-/// How many times less time fisura should take at an error, where that is asked for and the reference is known
-/// well enough.
+/// How many times less time fisura should take at an error, where that is asked for and the reference is
+/// known well enough.
 const TARGETS: [(&str, f64, f64); 2] = [("kinetic energy", 0.01, 4.0), ("external work", 0.01, 4.0)];
 
 /// What the best way of a code is called, and its time, s.

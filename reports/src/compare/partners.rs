@@ -5,8 +5,8 @@ use std::collections::{HashMap, VecDeque};
 use fisura_verification::record::{Record, normal_id};
 
 /// For each record of the base the place of the new one with its id, else of one that names this id among its
-/// former ones. Ids are compared in their normal form, which those of earlier versions have not. An id that is
-/// there twice is found twice, in the same order.
+/// former ones. Ids are compared in their normal form, which those of earlier versions do not have. An id
+/// that is there twice is found twice, in the same order.
 pub(super) fn partners(base: &[Record], new: &[Record]) -> Vec<Option<usize>> {
     let mut present: HashMap<String, VecDeque<usize>> = HashMap::new();
     let mut former: HashMap<String, VecDeque<usize>> = HashMap::new();

@@ -280,7 +280,8 @@ pub(super) fn fit_load(curves: &[Option<Curve>; 6], variant: &Variant<'_>) -> Op
     (scale > 0.0 && left.is_finite() && bottom > 1.0).then(|| (scale.sqrt(), left))
 }
 
-/// Another variant, or a run with a known mistake, that is much nearer; `mesh` is what elements of the spacing
+/// Another variant, or a run with a known mistake, that is much nearer; `mesh` is what elements of the
+/// spacing
 /// of the result are off by.
 fn nearer(curves: &[Option<Curve>; 6], variant: &Variant<'_>, library: &Library, mesh: f64) -> Option<Finding> {
     let ids = library.curves("plate-family/kinetic-energy").into_iter().map(|c| (c.id.clone(), c.label.clone()));
