@@ -4,7 +4,8 @@
 //! phase field driven by the tensile part of their elastic energy, and accounts for every joule on the way.
 //! It follows Estrada (2024), *Material point method applied to dynamic brittle fracture analysis using
 //! phase-field*, Mecánica Computacional XLI, 537–546; (E n) is equation n of that paper. This crate is the
-//! physics alone: it reads no files, draws nothing and looks at no clock.
+//! physics alone: it reads and writes no files and looks at no clock. What it gives are numbers: samples,
+//! states of points, and [`output::picture`], fields on a raster that others draw.
 //!
 //! A [`Scene`] is plain data. [`validate::validate`] says what is wrong with one, by key; [`Simulation::new`]
 //! makes one ready to run; [`Simulation::step`] takes a step and [`Simulation::sample`] reads the energies.
@@ -47,14 +48,15 @@
 //! | [`particles`] | – | material points: layouts, tiles of spans, points that move |
 //! | [`transfer`] | E 3, 6, 10, 15–18 | sweeps of the total frame over points, and what they compute |
 //! | [`phase_field`] | E 9–12, 19–24 | history energy, the equation, its matrix, seeded cracks |
-//! | [`contact`] | – | boundaries, frictional impulses, rigid bodies |
+//! | [`contact`] | – | boundaries, frictional impulses, a potential of the gap, rigid bodies, crack faces |
 //! | [`output`] | – | pictures, states of points, spans that hold material |
 //! | [`dynamics`] | E 14–18 | the step in both frames, mass, loads, critical step, energy ledger |
 //! | [`validate`] | – | what is wrong with a scene |
 //! | [`simulation`] | – | the run: steps, samples, checkpoints, breakdowns |
 //!
 //! FLIP, XPIC and the other transfers of velocities are in [`dynamics::updated_frame`], as is Gauss
-//! quadrature by spans (`analysis.quadrature = "gauss"`).
+//! quadrature by spans (`analysis.quadrature = "gauss"`), fragments of bodies that are cracked through, and
+//! contact of a body with itself.
 //!
 //! Where the paper prints a slip, the module that uses the equation says so.
 //!
@@ -70,10 +72,12 @@
 //! Sums are cut by data, strip by strip and chunk by chunk, and added in a fixed order: a run gives the same
 //! bits for any number of threads.
 //!
-//! # Not modelled yet
+//! # Not modelled
 //!
-//! Contact of a body with itself, which no scene can ask for; general patches in the updated frame and the
-//! consistent mass matrix there or where a body cuts spans, which [`validate::validate`] refuses.
+//! Three dimensions, plasticity, rate effects and heat. [`validate::validate`] refuses what a scene can ask
+//! for and does not exist: general patches in the updated frame; the consistent mass there or where a body
+//! cuts spans; contact of a body with itself beside fracture, quadrature by spans, XPIC or MUSL; fragments
+//! with tractions; and with quadrature by spans fracture, tractions, small strains, driven sides, transfers.
 //!
 //! # Example
 //!

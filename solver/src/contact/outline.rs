@@ -85,6 +85,74 @@ pub(super) fn rings(shape: &Shape, spacing: f64) -> Vec<Vec<[f64; 2]>> {
     }
 }
 
-pub(super) fn is_on_boundary(shape: &Shape, position: [f64; 2], tolerance: f64) -> bool {
-    shape.contains_within(position, tolerance) && !shape.contains_within(position, -tolerance)
+/// Whether a segment bounds a shape: its middle lies on the boundary, and twice as deep as the tolerance (m)
+/// there is material, both within the tolerance. Where a cut ends flush with a side there is none, though
+/// both lines run there.
+pub(super) fn bounds(shape: &Shape, [a, b]: [[f64; 2]; 2], tolerance: f64) -> bool {
+    let middle = [0, 1].map(|d| 0.5 * (a[d] + b[d]));
+    let depth = 2.0 * tolerance / (b[0] - a[0]).hypot(b[1] - a[1]);
+    let beneath = [middle[0] - depth * (b[1] - a[1]), middle[1] + depth * (b[0] - a[0])];
+    let on_boundary = shape.contains_within(middle, tolerance) && !shape.contains_within(middle, -tolerance);
+    on_boundary && shape.contains_within(beneath, tolerance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPACING: f64 = 2.5e-3;
+
+    /// Length of the lines that bound a shape, m.
+    fn bounded(shape: &Shape) -> f64 {
+        let lines = rings(shape, SPACING);
+        let segments = lines.iter().flat_map(|ring| (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]));
+        let bounding = segments.filter(|ends| bounds(shape, *ends, 0.1 * SPACING));
+        bounding.map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1])).sum()
+    }
+
+    fn rectangle(min: [f64; 2], max: [f64; 2]) -> Shape {
+        Shape::Rectangle { min, max }
+    }
+
+    #[test]
+    fn lines_without_material_under_them_bound_nothing() {
+        let cut = |minus: Vec<Shape>| Shape::Difference { of: Box::new(rectangle([0.0; 2], [0.2; 2])), minus };
+        let notch = |left: f64, right: f64| rectangle([left, 0.09], [right, 0.11]);
+        let notched = 0.8 + 2.0 * 0.08;
+        for (name, shape, length) in [
+            ("across the side", cut(vec![notch(-0.01, 0.08)]), notched),
+            ("flush with it", cut(vec![notch(0.0, 0.08)]), notched),
+            ("in two halves", cut(vec![notch(0.0, 0.04), notch(0.04, 0.08)]), notched),
+            ("flush with three sides", cut(vec![rectangle([0.0, 0.1], [0.2; 2])]), 0.6),
+            ("a slit thinner than points stand apart", cut(vec![rectangle([0.1, 0.1], [0.15, 0.1001])]), 0.8 + 0.1002),
+        ] {
+            let found = bounded(&shape);
+            assert!((found - length).abs() < 2.0 * SPACING, "{name}: {found} m instead of {length} m");
+        }
+    }
+
+    /// A segment of each circle has its middle on the cut, to round-off on either side of it.
+    #[test]
+    fn a_cut_through_the_middle_of_segments_keeps_them() {
+        for shift in [-1e-16, 0.0, 1e-16] {
+            let ring = Shape::Annulus { center: [0.1, shift], inner_radius: 0.03, outer_radius: 0.05 };
+            let below = rectangle([-1.0, -1.0], [1.0, 0.0]);
+            let half = Shape::Difference { of: Box::new(ring), minus: vec![below] };
+            let outer = rings(&half, SPACING)[0].clone();
+            let segments = (0..outer.len()).map(|i| [outer[i], outer[(i + 1) % outer.len()]]);
+            let kept = segments.filter(|ends| bounds(&half, *ends, 0.1 * SPACING)).count();
+            assert_eq!(kept, outer.len() / 2 + 1, "shifted by {shift}");
+        }
+    }
+
+    #[test]
+    fn circles_of_any_size_bound_their_bodies() {
+        for radius in [0.1 * SPACING, SPACING, 10.0 * SPACING] {
+            let disk = Shape::Disk { center: [0.1; 2], radius };
+            let holed = Shape::Difference { of: Box::new(rectangle([0.0; 2], [0.2; 2])), minus: vec![disk.clone()] };
+            let length = perimeter(&disk);
+            assert!((bounded(&disk) / length - 1.0).abs() < 0.01, "{radius}: {} m", bounded(&disk));
+            assert!((bounded(&holed) - 0.8 - length).abs() < 0.01 * length, "{radius}: {} m", bounded(&holed));
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! The boundary of a body as segments between vertices that move with it, and distances from it.
 
 use super::displacements::Range;
-use super::outline::{is_on_boundary, perimeter, rings, spacing, without_patch};
+use super::outline::{bounds, perimeter, rings, spacing, without_patch};
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::vectors::{dot, unit};
@@ -63,7 +63,7 @@ impl Surface {
         let shape = without_patch(&body.shape, mesh);
         let mut surface = Self::default();
         for ring in rings(&shape, spacing) {
-            surface.add(&ring, |middle| is_on_boundary(&shape, middle, ON_BOUNDARY * spacing));
+            surface.add(&ring, |ends| bounds(&shape, ends, ON_BOUNDARY * spacing));
         }
         surface.join();
         surface
@@ -74,16 +74,15 @@ impl Surface {
         perimeter(&without_patch(&body.shape, mesh)) / spacing(mesh, body)
     }
 
-    /// Segments of a closed line, in order; those whose middle `keep` refuses are left out.
-    fn add(&mut self, ring: &[[f64; 2]], keep: impl Fn([f64; 2]) -> bool) {
+    /// Segments of a closed line, in order; those whose ends `keep` refuses are left out.
+    fn add(&mut self, ring: &[[f64; 2]], keep: impl Fn([[f64; 2]; 2]) -> bool) {
         let first = self.vertices.len() as u32;
         let count = ring.len() as u32;
         self.vertices.extend(ring);
         self.displacements.resize(self.vertices.len(), [0.0; 2]);
         for i in 0..count {
             let ends = [i, (i + 1) % count];
-            let [a, b] = ends.map(|v| ring[v as usize]);
-            if keep([0, 1].map(|d| 0.5 * (a[d] + b[d]))) {
+            if keep(ends.map(|v| ring[v as usize])) {
                 self.segments.push(ends.map(|v| first + v));
             }
         }

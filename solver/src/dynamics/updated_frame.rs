@@ -11,7 +11,8 @@
 //!
 //! Every body is a discrete field of its own ([`field`]), with its own mass, momentum, force and phase field
 //! on the shared patch. Bodies meet through [`crate::contact`], if the scene declares it: its impulses are
-//! part of the kick.
+//! part of the kick. A body that is cracked through becomes several fields ([`fragments`]), and so does one
+//! that may meet itself ([`self_contact`]).
 //!
 //! # The critical step
 //!

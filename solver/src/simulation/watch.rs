@@ -19,7 +19,8 @@ const GROWTH_LIMIT: f64 = 10.0;
 /// step above the critical one the end of the run: damage eats an unstable mode before its elastic energy
 /// grows.
 const CLOSURE_LIMIT: f64 = 0.02;
-/// Closure below this fraction of the stored energy is round-off and tolerance of the phase field.
+/// Closure below this fraction of the stored energy, or of its largest term, is round-off and tolerance of
+/// the phase field.
 const CLOSURE_FLOOR: f64 = 1e-6;
 
 /// Angle that material may turn by with small strains, rad: in the total frame they take this one for a
@@ -130,7 +131,8 @@ impl Simulation {
             frame.contact_converges(self.plan.step).map_err(|failure| self.broken(failure.into()))?;
         }
         let Sample { closure, time, .. } = *sample;
-        let limit = CLOSURE_LIMIT * self.energy_in + CLOSURE_FLOOR * sample.stored().abs();
+        let limit =
+            CLOSURE_LIMIT * self.energy_in + CLOSURE_FLOOR * larger(sample.stored().abs(), sample.largest_term());
         if closure.abs() <= limit {
             return Ok(());
         }

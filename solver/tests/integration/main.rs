@@ -16,6 +16,7 @@ mod critical_step;
 mod determinism;
 mod fictitious;
 mod finite;
+mod flush_cuts;
 mod folds;
 mod fragments;
 mod gauss;
