@@ -6,8 +6,6 @@ use fisura_verification::record::ResultSet;
 use crate::number::plain;
 use crate::view::{Counts, accepted, broken, by_suite, environment, reason, symbol, value, word};
 
-/// Largest size in bytes of a comparison; a step summary over 1 MiB is dropped whole by GitHub.
-pub(crate) const LIMIT: usize = 900_000;
 /// Most failures that are listed.
 const LISTED: usize = 50;
 

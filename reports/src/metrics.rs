@@ -8,7 +8,7 @@ use fisura_verification::record::{Record, ResultSet};
 use serde::Serialize;
 
 use crate::number::plain;
-use crate::view::{Counts, bounds, by_suite, run_id, runs, timing};
+use crate::view::{Counts, bounds, by_suite, runs, timing};
 
 /// One number, as the "custom smaller-is-better" form of benchmark dashboards takes it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -27,19 +27,16 @@ pub struct Metric {
     /// Record or run.
     #[serde(skip)]
     pub subject: String,
-    /// The run, which is the subject or begins its id.
-    #[serde(skip)]
-    pub run: String,
     /// What was measured, if the name of the record does not say it.
     #[serde(skip)]
     pub measure: Option<&'static str>,
 }
 
 impl Metric {
-    fn new(subject: &str, run: &str, measure: Option<&'static str>, unit: &str, value: f64) -> Self {
+    fn new(subject: &str, measure: Option<&'static str>, unit: &str, value: f64) -> Self {
         let name = measure.map_or(subject.to_string(), |measure| format!("{subject}: {measure}"));
         let (range, most) = (String::new(), None);
-        Self { name, unit: unit.into(), value, range, most, subject: subject.into(), run: run.into(), measure }
+        Self { name, unit: unit.into(), value, range, most, subject: subject.into(), measure }
     }
 }
 
@@ -56,7 +53,7 @@ pub fn times(set: &ResultSet) -> Vec<Metric> {
         let measured =
             [("wall time", "s", timing.wall_s), ("time per particle-step", "ns", timing.ns_per_particle_step)];
         let measured = measured.into_iter().filter(|m| m.2.is_finite() && m.2 > 0.0);
-        all.extend(measured.map(|(what, unit, value)| Metric::new(run, run, Some(what), unit, value)));
+        all.extend(measured.map(|(what, unit, value)| Metric::new(run, Some(what), unit, value)));
     }
     all
 }
@@ -76,10 +73,10 @@ fn error(record: &Record) -> Option<Metric> {
     let metric = match reference {
         Some(reference) => {
             let error = (value - reference).abs() / reference.abs();
-            Metric::new(&record.id, run_id(record), Some("relative error"), "relative error", error)
+            Metric::new(&record.id, Some("relative error"), "relative error", error)
         }
         None if record.accept.max.is_some() && record.accept.min.is_none() => {
-            Metric::new(&record.id, run_id(record), None, &record.unit, value)
+            Metric::new(&record.id, None, &record.unit, value)
         }
         None => return None,
     };
@@ -100,9 +97,9 @@ pub fn suites(set: &ResultSet) -> Vec<Metric> {
         let disagree = (counts.known_limit + counts.fail + counts.error) as f64;
         let shares: Vec<f64> =
             records.iter().filter_map(|record| error(record)).filter_map(|m| Some(m.value.abs() / m.most?)).collect();
-        let count = Metric::new(suite, suite, Some("known limits and failures"), "records", disagree);
+        let count = Metric::new(suite, Some("known limits and failures"), "records", disagree);
         let mean = (!shares.is_empty()).then(|| shares.iter().sum::<f64>() / shares.len() as f64);
-        let share = mean.map(|mean| Metric::new(suite, suite, Some("mean share of the accepted error"), "1", mean));
+        let share = mean.map(|mean| Metric::new(suite, Some("mean share of the accepted error"), "1", mean));
         std::iter::once(count).chain(share).collect::<Vec<_>>()
     };
     by_suite(set).into_iter().flat_map(of).collect()
@@ -115,7 +112,7 @@ pub fn suite_times(set: &ResultSet) -> Vec<Metric> {
         runs.iter().map(|(_, records)| timing(records).wall_s).filter(|wall| wall.is_finite()).sum()
     };
     let of = |(suite, records): (&str, Vec<&Record>)| {
-        Metric::new(suite, suite, Some("wall time of its runs"), "s", seconds(&records))
+        Metric::new(suite, Some("wall time of its runs"), "s", seconds(&records))
     };
     by_suite(set).into_iter().map(of).filter(|metric| metric.value > 0.0).collect()
 }
@@ -130,7 +127,7 @@ fn work(set: &ResultSet) -> impl Iterator<Item = Metric> {
             ("phase-field traffic", "bytes", work.phase_field_bytes),
         ];
         let counts = counts.into_iter().filter(|count| count.2 > 0);
-        counts.map(|(what, unit, count)| Metric::new(run, run, Some(what), unit, count as f64)).collect::<Vec<_>>()
+        counts.map(|(what, unit, count)| Metric::new(run, Some(what), unit, count as f64)).collect::<Vec<_>>()
     })
 }
 

@@ -1,9 +1,12 @@
 //! A comparison as text for a terminal and as Markdown for a step summary.
 
 use super::{Change, ComparedSets, Comparison, Effect, SpeedChange, WorkChange};
-use crate::markdown::{LIMIT, cell, code};
+use crate::markdown::{cell, code};
 use crate::number::{DIGITS, duration, grouped, plain};
 use crate::view::with_unit;
+
+/// Largest size in bytes of a comparison; a step summary over 1 MiB is dropped whole by GitHub.
+const LIMIT: usize = 900_000;
 
 /// Headings of the changes that are listed, in the order of reading.
 const LISTED: [(Change, &str); 4] =

@@ -60,10 +60,7 @@ pub fn keys(program: &Path, workspace: &Path, cases: &[Case]) -> Result<BTreeMap
 }
 
 /// Fingerprint of the planted program.
-///
-/// # Errors
-/// If it cannot be read.
-pub fn program_key(program: &Path) -> Result<String, Failure> {
+fn program_key(program: &Path) -> Result<String, Failure> {
     let unreadable = |e| Failure::new(Exit::BadInput, format!("{} cannot be read: {e}", program.display()));
     Ok(fingerprint([fs::read(program).map_err(unreadable)?]))
 }
