@@ -10,7 +10,10 @@ use crate::view::{BASES, Basis, Counts};
 /// What each suite is about, in the order of the tables.
 const SUITES: [(&str, &str); 9] = [
     ("patch", "to round-off: spline bases, constant stress, rigid motion, and half models against full ones"),
-    ("convergence", "orders against exact solutions: p + 1 in L2 and p in H1; with the lumped mass 2; with moving points at most 2"),
+    (
+        "convergence",
+        "orders against exact solutions: p + 1 in L2 and p in H1; with the lumped mass 2; with moving points at most 2",
+    ),
     ("manufactured", "the same problems with discrete loads; point layouts that lose order; frequencies of a bar"),
     ("energy", "the energy balance closes; momentum is conserved"),
     ("contact", "impact, sliding, collision, Hertz and a stack, against closed forms"),
