@@ -1,7 +1,7 @@
 //! Common mistakes, recognised and named; nothing is corrected.
 //!
-//! A mistake is looked for only where something fails. Columns in the wrong place ([`exchanged`]) and times
-//! with another origin ([`origin`]) come first, and others are looked for in curves without them. Load and
+//! A mistake is looked for only where something fails. Columns in the wrong place (`exchanged`) and times
+//! with another origin (`origin`) come first, and others are looked for in curves without them. Load and
 //! plane state are told from the time before the crack runs: the body is elastic, energies go with the
 //! square of the load, and the shapes of the curves tell the plane state.
 
