@@ -169,13 +169,14 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
         missing("quantity", "quantity = \"what is measured, in words\"");
     }
     if table.id.is_none() {
-        missing("id", &format!("id = {like:?}, by which later results are compared with earlier ones"));
+        missing("id", &format!("id = {like:?}; results are compared by this id"));
     }
     for (key, _) in [("set", &table.set), ("with", &table.with), ("variants", &table.variants)]
         .into_iter()
         .filter(|(_, given)| given.is_some())
     {
-        item.at(key)?.fail::<()>(format!("{key} beside the keys of one check"), "see \"Adding a case\" in the book");
+        item.at(key)?
+            .fail::<()>(format!("{key} together with the keys of one check"), "see \"Adding a case\" in the book");
     }
     let mut formulas = Vec::new();
     let mut value = |key: NumberKey, amount: Option<Amount>| {
@@ -261,9 +262,9 @@ fn around(table: &CheckTable, item: &Item<'_>) -> Option<Option<[f64; 2]>> {
         (None, None) => Some(None),
         (Some(below), Some(above)) if below.0 >= 0.0 && above.0 >= 0.0 => Some(Some([below.0, above.0])),
         (Some(_), Some(_)) => {
-            item.at("below")?.fail("below or above is negative", "give how far the value may lie to either side")
+            item.at("below")?.fail("below or above is negative", "give the allowed distance on each side")
         }
-        _ => item.fail("one of below and above is missing", "give both: how far from the reference value"),
+        _ => item.fail("one of below and above is missing", "give both distances from the reference value"),
     }
 }
 
@@ -285,7 +286,7 @@ fn accept(table: &CheckTable, item: &Item<'_>) -> Option<Accept> {
     let computed = table.uncertainty.is_some() || table.discretisation.is_some();
     if bounded && computed {
         let remedy = "remove min, max, below and above, or write them as limit = { max = …, why = \"…\" }";
-        return item.fail("bounds of its own beside those of the uncertainty", remedy);
+        return item.fail("bounds in addition to those of the uncertainty", remedy);
     }
     if (bounded || regression || table.discretisation.is_some()) && table.why.trim().is_empty() {
         return item.fail("bounds without a reason", "add why = \"where the bound comes from\"");
