@@ -64,7 +64,7 @@ impl NumberKey {
 #[serde(deny_unknown_fields)]
 pub(super) struct CheckTable {
     /// Last part of the id of its records, by which later results are compared with earlier ones: lower-case
-    /// words joined by dashes.
+    /// words joined by dashes. The words of `quantity`, if absent.
     id: Option<Id>,
     /// Ids it had before.
     #[serde(default)]
@@ -163,13 +163,8 @@ fn number(quantity: Option<Quantity>) -> Option<f64> {
 
 /// The check of a table; `item` is the table.
 pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
-    let like = table.quantity.as_ref().map_or("…".into(), |quantity| identifier(&quantity.0));
-    let missing = |key: &str, like: &str| item.missing::<()>(key, like);
     if table.quantity.is_none() {
-        missing("quantity", "quantity = \"what is measured, in words\"");
-    }
-    if table.id.is_none() {
-        missing("id", &format!("id = {like:?}; results are compared by this id"));
+        item.missing::<()>("quantity", "quantity = \"what is measured, in words\"");
     }
     for (key, _) in [("set", &table.set), ("with", &table.with), ("variants", &table.variants)]
         .into_iter()
@@ -205,10 +200,11 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
     let around_reference = around(&table, item);
     let accept = accept(&table, item);
     let limit = table.limit.map(|limited| limit(limited, &table.why, &item.at("limit").expect("it is read")));
+    let quantity = table.quantity?.0;
     Some(Check {
-        id: table.id?.0,
+        id: table.id.map_or_else(|| identifier(&quantity), |id| id.0),
         formerly: table.formerly.into_iter().map(|id| id.0).collect(),
-        quantity: table.quantity?.0,
+        quantity,
         unit: table.unit.unwrap_or("1".into()),
         measure: table.measure,
         column: table.column.map(|column| column.0),

@@ -28,9 +28,10 @@ fn refused(checks: &str, parts: &[&str]) {
 }
 
 #[test]
-fn every_check_declares_an_id_of_its_own() {
+fn every_check_has_an_id_of_its_own() {
     let without = "[[check]]\nquantity = \"Partition of unity, largest error\"\n";
-    refused(without, &["check.0.id", "missing", "id = \"partition-of-unity-largest-error\""]);
+    assert_eq!(case(without).unwrap().checks[0].id, "partition-of-unity-largest-error");
+    refused_by("basis", &[without; 2].concat(), &["two records with the id trial/case/p=2/partition"]);
     refused(&check("Largest error", ""), &["\"Largest error\" is not a valid id", "\"largest-error\""]);
     refused(&check("", ""), &["\"\" is not a valid id"]);
     let other = |id, variant: &str| check(id, &format!("variant = \"p={variant}\""));
