@@ -40,12 +40,12 @@ pub fn render_animation(
     (label, range): (&str, [f64; 2]),
 ) -> Result<String, FigureError> {
     let fail = |message: String| FigureError::Drawing { figure: id.to_string(), message };
-    let [(_, first), _, ..] = moments else { return Err(fail("fewer than two moments".to_string())) };
+    let [(_, first), _, ..] = moments else { return Err(fail("an animation needs at least two pictures".to_string())) };
     if moments
         .iter()
         .any(|(_, raster)| (raster.pixels, raster.low, raster.high) != (first.pixels, first.low, first.high))
     {
-        return Err(fail("its moments are pictures of different places".to_string()));
+        return Err(fail("its pictures show different regions".to_string()));
     }
     let times = moments.iter().map(|(time, _)| format!("{} µs", pretty(1e6 * time, 4)));
     let caption = format!("Moments: {}.", times.collect::<Vec<_>>().join(", "));
@@ -66,7 +66,7 @@ pub fn render_animation(
             return Ok(svg);
         }
     }
-    Err(fail(format!("{} moments do not fit into {MOST_BYTES} bytes: give fewer frames", moments.len())))
+    Err(fail(format!("{} pictures exceed {MOST_BYTES} bytes: give fewer frames", moments.len())))
 }
 
 /// A moment that shows for its part of the cycle, with its time above the frame.

@@ -186,8 +186,8 @@ fn one_sided(record: &Record, accuracy: Change) -> Comparison {
         (Change::New, false) => (Effect::Worse, format!("new, and does not hold: {}", crate::view::reason(record))),
         (Change::New, true) => (Effect::Neutral, "new".to_string()),
         _ if matches!(record.status, Status::Pass | Status::KnownLimit | Status::Fail) => {
-            let remedy = "if it has another id now, its case names this one in formerly";
-            (Effect::Worse, format!("the check is gone; {remedy}"))
+            let remedy = "if the id changed, give the former id in formerly of its case";
+            (Effect::Worse, format!("the check is missing; {remedy}"))
         }
         _ => (Effect::Neutral, "missing".to_string()),
     };
@@ -197,7 +197,7 @@ fn one_sided(record: &Record, accuracy: Change) -> Comparison {
 fn both(base: &Record, new: &Record, speed: &Lookup) -> Comparison {
     let (mut accuracy, effect, mut why) = accuracy(base, new);
     let renamed = (normal_id(&base.id) != normal_id(&new.id)).then(|| format!("formerly {}", base.id));
-    let reworded = (base.quantity != new.quantity).then(|| format!("it read {:?}", base.quantity));
+    let reworded = (base.quantity != new.quantity).then(|| format!("the quantity was {:?}", base.quantity));
     for note in [renamed, reworded].into_iter().flatten() {
         accuracy = accuracy.max(Change::Minor);
         why = if why.is_empty() { note } else { format!("{why}; {note}") };
@@ -242,7 +242,7 @@ fn accuracy(base: &Record, new: &Record) -> (Change, Effect, String) {
     };
     let found = if rank(under_base) > rank(new.status) { under_base } else { new.status };
     if rank(found) > rank(base.status) {
-        let whose = if found == new.status { "" } else { " by the bounds of the base" };
+        let whose = if found == new.status { "" } else { " with the bounds of the base" };
         return (Change::Major, Effect::Worse, format!("{} → {}{whose}", word(base.status), word(found)));
     }
     if rank(found) < rank(base.status) {
@@ -252,11 +252,11 @@ fn accuracy(base: &Record, new: &Record) -> (Change, Effect, String) {
         return (
             Change::Major,
             Effect::Worse,
-            "it is no longer judged: its bounds are gone, or too wide to show agreement".to_string(),
+            "the check no longer has a verdict: its bounds are missing or too wide to show agreement".to_string(),
         );
     }
     if base.unit != new.unit {
-        let why = format!("the unit was {:?} and is {:?}: values are not compared", base.unit, new.unit);
+        let why = format!("the unit changed from {:?} to {:?}: values are not compared", base.unit, new.unit);
         return match base.status {
             Status::Info => (Change::Minor, Effect::Neutral, why),
             _ => (Change::Major, Effect::Worse, why),
@@ -266,13 +266,13 @@ fn accuracy(base: &Record, new: &Record) -> (Change, Effect, String) {
     let rebound = bounds != bounds_of(new);
     let (change, effect, why) = match (base.value, new.value) {
         (None, None) => (Change::Unchanged, Effect::Neutral, String::new()),
-        (Some(_), None) => (Change::Minor, Effect::Neutral, "it has no value any more".to_string()),
-        (None, Some(_)) => (Change::Minor, Effect::Neutral, "it has a value now".to_string()),
+        (Some(_), None) => (Change::Minor, Effect::Neutral, "the value is missing".to_string()),
+        (None, Some(_)) => (Change::Minor, Effect::Neutral, "the value is new".to_string()),
         (Some(from), Some(to)) if bounds == [None, None] => unbounded(from, to),
         (Some(from), Some(to)) => bounded(from, to, bounds, base.reference.as_ref()),
     };
     if rebound && change < Change::Major {
-        let why = if why.is_empty() { "other bounds".to_string() } else { format!("other bounds; {why}") };
+        let why = if why.is_empty() { "bounds changed".to_string() } else { format!("bounds changed; {why}") };
         return (Change::Minor, effect, why);
     }
     (change, effect, why)
@@ -304,10 +304,10 @@ fn bounded(from: f64, to: f64, bounds: [Option<f64>; 2], reference: Option<&Refe
     let percent = |part: f64| crate::number::plain(100.0 * part, 2);
     if loss > MAJOR_ROOM * room(from) && loss > MAJOR_TOLERANCE * tolerance && room(from) > 0.0 {
         let used = percent(loss / room(from));
-        return (Change::Major, effect, format!("{used} % of the room to its bound is used up"));
+        return (Change::Major, effect, format!("the margin to the bound is smaller by {used} %"));
     }
     let towards = if loss > 0.0 { "towards" } else { "away from" };
-    (Change::Minor, effect, format!("{} % of the tolerance, {towards} the bound", percent(part)))
+    (Change::Minor, effect, format!("changed by {} % of the tolerance, {towards} the bound", percent(part)))
 }
 
 /// What the bounds allow: half the width of a band, or the distance of a single bound from the reference, or

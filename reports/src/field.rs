@@ -63,7 +63,10 @@ impl Raster {
     fn new(pixels: [usize; 2], x: &[f64], y: &[f64], value: &[f64]) -> Result<Self, String> {
         let [nx, ny] = pixels;
         if nx < 2 || ny < 2 || nx.checked_mul(ny) != Some(value.len()) {
-            return Err(format!("{nx} x {ny} pixels are declared (at least 2 x 2), {} rows are there", value.len()));
+            return Err(format!(
+                "{nx} x {ny} pixels are declared (at least 2 x 2), but the file has {} rows",
+                value.len()
+            ));
         }
         if nx * ny > MOST[0] || nx.max(ny) > MOST[1] {
             return Err(format!("{nx} x {ny} pixels; at most {} are drawn, and {} along a side", MOST[0], MOST[1]));
@@ -76,7 +79,7 @@ impl Raster {
             !((x[*i] - expected.0).abs() <= tolerance && (y[*i] - expected.1).abs() <= tolerance)
         });
         if let Some(row) = off {
-            return Err(format!("row {} at ({}, {}) is out of place", row + 1, x[row], y[row]));
+            return Err(format!("row {} at ({}, {}) is not on the grid of pixels", row + 1, x[row], y[row]));
         }
         if step[0] <= 0.0 || step[1] == 0.0 {
             return Err("the pixels do not advance in x, then in y".to_string());
@@ -178,7 +181,7 @@ pub(crate) fn render_with(
     content: impl FnOnce(Place) -> String,
 ) -> Result<String, FigureError> {
     if !is_range(range[0], range[1]) {
-        let message = format!("the colour bar cannot go from {} to {}", range[0], range[1]);
+        let message = format!("the colour bar cannot range from {} to {}", range[0], range[1]);
         return Err(FigureError::Drawing { figure: figure.id.clone(), message });
     }
     let axes = [0, 1].map(|k| AxisScale::with_range(Scale::Linear, 1e3 * raster.low[k], 1e3 * raster.high[k], 6));

@@ -50,7 +50,7 @@ pub enum FigureError {
         y: String,
     },
     /// The rows of a field do not form the raster that the figure declares.
-    #[error("figure {figure}: series {series} is no raster: {message}")]
+    #[error("figure {figure}: series {series} is not a raster: {message}")]
     Raster {
         /// Figure.
         figure: String,

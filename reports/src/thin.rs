@@ -56,7 +56,7 @@ pub fn drawable(lines: &[Vec<Point>], x: &AxisScale, y: &AxisScale, size: (f64, 
     let way: f64 = lines.iter().flat_map(|line| line.windows(2).map(length)).sum();
     if points > MOST_POINTS || way > LONGEST {
         return Err(format!(
-            "it has {points} points that stand apart, on a way of {way:.0} pixels; at most {MOST_POINTS} on {LONGEST} are drawn"
+            "it has {points} distinct points on a path of {way:.0} pixels; at most {MOST_POINTS} points on {LONGEST} pixels are drawn"
         ));
     }
     Ok(())
@@ -65,7 +65,7 @@ pub fn drawable(lines: &[Vec<Point>], x: &AxisScale, y: &AxisScale, size: (f64, 
 /// Whether so many rows can have a marker or a bar each; says why not.
 pub fn markable(rows: usize) -> Result<(), String> {
     if rows > MOST_MARKED {
-        return Err(format!("{rows} rows have a marker or a bar each; at most {MOST_MARKED} are drawn"));
+        return Err(format!("{rows} rows have markers or bars; at most {MOST_MARKED} are drawn"));
     }
     Ok(())
 }

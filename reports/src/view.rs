@@ -118,7 +118,7 @@ impl Counts {
             n => format!("; {n} are known limits"),
         };
         match self.verdict() {
-            Status::Info => "Nothing was judged".to_string(),
+            Status::Info => "No check has a verdict".to_string(),
             Status::KnownLimit => format!("No check fails{limits}"),
             Status::Pass if self.pass == 1 => format!("1 check holds{limits}"),
             Status::Pass => format!("{} checks hold{limits}", self.pass),

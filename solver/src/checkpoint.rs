@@ -67,7 +67,7 @@ impl<'a> Archive<'a> {
         if values.len() == expected {
             return Ok(());
         }
-        Err(StateError(format!("the state is of another scene: {} values stand for {expected}", values.len())))
+        Err(StateError(format!("the state belongs to another scene: {} values instead of {expected}", values.len())))
     }
 
     /// What was stored.
@@ -78,7 +78,9 @@ impl<'a> Archive<'a> {
         match self.0 {
             Way::Out(bytes) => Ok(bytes),
             Way::In([]) => Ok(Vec::new()),
-            Way::In(rest) => Err(StateError(format!("the state is of another scene: {} bytes are left", rest.len()))),
+            Way::In(rest) => {
+                Err(StateError(format!("the state belongs to another scene: {} bytes remain", rest.len())))
+            }
         }
     }
 }
@@ -115,8 +117,8 @@ mod tests {
             archive.finish()
         };
         assert!(read(&bytes, 2).is_ok());
-        assert!(read(&bytes, 3).unwrap_err().0.contains("2 values stand for 3"));
+        assert!(read(&bytes, 3).unwrap_err().0.contains("2 values instead of 3"));
         assert!(read(&bytes[..9], 2).unwrap_err().0.contains("damaged"));
-        assert!(read(&[&bytes[..], &[0]].concat(), 2).unwrap_err().0.contains("1 bytes are left"));
+        assert!(read(&[&bytes[..], &[0]].concat(), 2).unwrap_err().0.contains("1 bytes remain"));
     }
 }

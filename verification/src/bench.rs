@@ -227,7 +227,7 @@ impl<'a> Session<'a> {
         let all = self.families.len();
         if finished < all {
             let mut record = BenchRecord::new("unfinished/run", "families", all as f64, "family");
-            let answer = format!("{finished} of {all} families are measured: the run is under way, or was stopped");
+            let answer = format!("{finished} of {all} families are measured: the run is in progress or was stopped");
             record.verify(false, answer);
             records.push(record);
         }
@@ -253,7 +253,7 @@ fn named_peers(library: &Library) -> Result<Vec<NamedPeer>, BenchError> {
     let peer = |value: &ReferenceValue| {
         let (code, degree, quantity) = parts_of_name(&value.name).ok_or_else(|| {
             BenchError::input(format!(
-                "reference-data: {PEERS}: name = {:?} is not of the form code/pN/quantity",
+                "reference-data: {PEERS}: name = {:?} does not have the form code/pN/quantity",
                 value.name
             ))
         })?;

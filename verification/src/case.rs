@@ -132,7 +132,7 @@ impl Check {
     pub fn bounds_around(&self, reference: Option<&Reference>) -> Result<Option<[f64; 2]>, String> {
         let Some([below, above]) = self.around_reference else { return Ok(None) };
         let value = reference.and_then(|reference| reference.value);
-        let value = value.ok_or("there is no reference value from which below and above could count")?;
+        let value = value.ok_or("below and above need a reference value")?;
         Ok(Some([value - fault!("bounds-both-above", below => -below), value + above]))
     }
 

@@ -183,7 +183,7 @@ impl Library {
             return Ok(value.reference(factor));
         }
         let curve = self.curve(folder, name).ok_or_else(|| format!("no reference value or curve {path:?}"))?;
-        let at = at.ok_or_else(|| format!("{path:?} is a curve, and this measure has no time at which to read it"))?;
+        let at = at.ok_or_else(|| format!("{path:?} is a curve, but this measure has no time"))?;
         let outside = || format!("the curve {path:?} has no ordinate at {at:e} s");
         curve.reference_at(at, factor).ok_or_else(outside)
     }

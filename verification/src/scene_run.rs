@@ -93,7 +93,12 @@ pub fn frame_steps(times: &[f64], time_step: f64, steps: usize) -> (Vec<usize>, 
     found.sort_unstable();
     found.dedup();
     let missing = times.len() - found.len();
-    let warning = || format!("{missing} of {} frames fall on the step of another and are not repeated", times.len());
+    let warning = || {
+        format!(
+            "{missing} of {} frames are duplicates: they coincide with the step of another frame and are not written",
+            times.len()
+        )
+    };
     let warnings = (missing > 0).then(warning).into_iter().collect();
     (found, warnings)
 }

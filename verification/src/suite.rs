@@ -80,7 +80,7 @@ pub enum VerifyError {
     #[error(transparent)]
     File(#[from] OutputError),
     /// An interrupted run could be gone on with, and this one would remove what it finished.
-    #[error("{} holds {cases} finished cases of an interrupted run in partial/ that this one would not go on with", folder.display())]
+    #[error("{} contains {cases} finished cases of an interrupted run in partial/ that this run does not resume", folder.display())]
     Interrupted {
         /// Results folder.
         folder: PathBuf,

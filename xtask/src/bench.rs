@@ -20,20 +20,20 @@ use crate::{console, folders, interrupt};
 /// Arguments of `bench`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Few meshes and repetitions: under five minutes on a quiet machine
+    /// Few meshes and repetitions: under five minutes on an idle machine
     #[arg(long)]
     quick: bool,
     /// Only these families, separated by commas: work-precision, plate, stages, solves, threads, ceilings,
     /// scenes, contact, motion, scale
     #[arg(long, value_name = "FAMILY,…", value_delimiter = ',')]
     family: Vec<String>,
-    /// Time another checkout of this workspace on the same scenes as well: it is built in its own folder
+    /// Also time another checkout of this workspace on the same scenes; it is built in its own folder
     #[arg(long, value_name = "PATH")]
     baseline: Option<PathBuf>,
-    /// Time this program as well; its last argument is a folder with particles.csv and block.json
+    /// Also time this program; its last argument is a folder with particles.csv and block.json
     #[arg(long, value_name = "CMD")]
     peer: Option<String>,
-    /// Seconds that one run of the program may take
+    /// Timeout of one run of the program, in seconds
     #[arg(long, value_name = "SECONDS", default_value = "600", value_parser = clap::value_parser!(u64).range(1..))]
     peer_timeout: u64,
 }
@@ -53,7 +53,7 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
         return Err(Failure::new(Exit::BadInput, "the family peer needs a program").help("give one with --peer CMD"));
     }
     if args.family.iter().any(|name| name == "baseline") && args.baseline.is_none() {
-        let failure = Failure::new(Exit::BadInput, "the family baseline needs another checkout");
+        let failure = Failure::new(Exit::BadInput, "the family baseline needs another checkout of fisura");
         return Err(failure.help("give its folder with --baseline PATH"));
     }
     let baseline = args.baseline.as_deref().map(other_checkout).transpose()?;
@@ -77,7 +77,7 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
         if let Err(failure) = write(&session, &folder) {
             failure.show();
         }
-        let message = format!("interrupted: what is measured is in {}", folder.path().display());
+        let message = format!("interrupted: the measurements so far are in {}", folder.path().display());
         Failure::new(Exit::Interrupted, message).show();
         folder.hold()
     };
@@ -107,11 +107,15 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
 fn other_checkout(path: &Path) -> Result<Baseline, Failure> {
     let checkout = path.canonicalize().ok().filter(|path| path.join("xtask/Cargo.toml").is_file());
     let checkout = checkout.ok_or_else(|| {
-        let failure = Failure::new(Exit::BadInput, format!("--baseline {}: no checkout of fisura", path.display()));
-        failure.help("name a folder with another commit of this workspace, such as one of `git worktree add`")
+        let failure = Failure::new(
+            Exit::BadInput,
+            format!("--baseline {}: this folder is not a checkout of fisura", path.display()),
+        );
+        failure.help("give a folder with another commit of this workspace, for example from `git worktree add`")
     })?;
     let program = std::env::current_exe();
-    let program = program.map_err(|e| Failure::new(Exit::BadInput, format!("this program has no path: {e}")))?;
+    let program = program
+        .map_err(|e| Failure::new(Exit::BadInput, format!("the path of this program cannot be determined: {e}")))?;
     Ok(Baseline { program, checkout })
 }
 
@@ -156,11 +160,10 @@ impl From<BenchError> for Failure {
             BenchError::Case(error) => error.into(),
             BenchError::File(error) => error.into(),
             BenchError::Input(message) => Self::new(Exit::BadInput, message)
-                .help("verification/cases and reference-data of the workspace are read"),
+                .help("`bench` reads verification/cases and reference-data of the workspace"),
             BenchError::Reference(error) => Self::new(Exit::BadInput, error.to_string()),
-            peer @ BenchError::Peer { .. } => Self::new(Exit::BadInput, peer.to_string()).help(
-                "it must run by itself with a folder as its last argument, end with status 0 and in the time it has",
-            ),
+            peer @ BenchError::Peer { .. } => Self::new(Exit::BadInput, peer.to_string())
+                .help("the program must take a folder as its last argument and end with status 0 before the timeout"),
         }
     }
 }

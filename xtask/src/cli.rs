@@ -26,7 +26,7 @@ pub struct Cli {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Run the verification suites, write the report, and say whether every check holds
+    /// Run the verification suites, write the report, and state whether every check holds
     Verify(verify::Args),
     /// Join the results of all slices of `verify --partition`
     Merge(merge::Args),
@@ -38,7 +38,7 @@ pub enum Command {
     Demo(demo::Args),
     /// Run a scene to its end and write its history, summary and pictures
     Run(run::Args),
-    /// Validate a scene and say what will be modelled and what it will cost, without running it
+    /// Validate a scene and show its model and its cost, without running it
     Check(check::Args),
     /// Reproduce the figures of the paper, or redraw them from stored results
     Figures(figures::Args),
@@ -60,16 +60,16 @@ pub enum Command {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Common options")]
 pub struct Common {
-    /// Folder for the files that are written; `target/fisura/` and the name of the command by default
+    /// Output folder; by default `target/fisura/` and the name of the command
     #[arg(long, global = true, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Number of threads, the same results for any [default: all cores]
+    /// Number of threads; the results do not depend on it [default: all cores]
     #[arg(long, global = true, value_name = "N")]
     pub threads: Option<NonZeroU16>,
-    /// Nothing on standard error but errors: no progress, no warnings
+    /// Print only errors on standard error: no progress, no warnings
     #[arg(long, global = true)]
     pub quiet: bool,
-    /// What goes to standard output
+    /// Format of standard output
     #[arg(long, global = true, value_enum, default_value_t = Format::Text)]
     pub format: Format,
 }

@@ -20,7 +20,7 @@ pub struct Args {
     /// Results folder that is judged
     #[arg(value_name = "NEW")]
     new: PathBuf,
-    /// Slower runs are listed and do not decide the exit status: for machines whose times say little
+    /// List slower runs without an effect on the exit status, for machines with unreliable times
     #[arg(long)]
     warn_times: bool,
 }

@@ -29,7 +29,7 @@ pub fn result(text: &str) {
 pub fn json(value: &impl Serialize) {
     match serde_json::to_string_pretty(value) {
         Ok(text) => result(&(escaped(&text) + "\n")),
-        Err(error) => error_text(&format!("error: no JSON can be made of the result: {error}\n")),
+        Err(error) => error_text(&format!("error: the result cannot be written as JSON: {error}\n")),
     }
 }
 

@@ -29,10 +29,13 @@ pub struct Args {}
 pub fn demo(common: &Common) -> Result<Exit, Failure> {
     let scene = folders::workspace().join(SCENE);
     if !scene.is_file() {
-        let failure = Failure::new(Exit::BadInput, format!("there is no {}", scene.display()));
+        let failure = Failure::new(Exit::BadInput, format!("the file {} does not exist", scene.display()));
         return Err(failure.help("start it with `cargo xtask` or in the root of the workspace"));
     }
-    console::note(common, "a glass plate with a crack is pulled apart: half of it, 100 mm × 20 mm, for 80 µs");
+    console::note(
+        common,
+        "running a glass plate with a crack under tension: half of the plate, 100 mm × 20 mm, for 80 µs",
+    );
     let args = run::Args {
         scene: SceneArgs { scene, set: Vec::new() },
         vtk: false,
@@ -59,11 +62,12 @@ fn shown(folder: &Path) -> Result<String, Failure> {
     Ok(format!(
         "\ne elastic, f fracture energy (J) over 80 µs\n\n{}\n\
          the crack: {}\n\n\
-         Coarse: the spans are as long as the length scale of the phase field. Against a converged solution the\n\
-         kinetic energy is 4 % off and the elastic energy 9 %; spans a quarter as long bring both to about 1 %.\n\n\
+         The mesh is coarse: its spans are as long as the length scale of the phase field. Compared with a\n\
+         converged solution, the kinetic energy has an error of 4 % and the elastic energy of 9 %. With spans\n\
+         a quarter as long, both errors are about 1 %.\n\n\
          next:\n  \
-         cargo xtask verify --suite plate      hold this plate against independent finite elements\n  \
-         cargo xtask check {SCENE}     what a scene models and costs\n  \
+         cargo xtask verify --suite plate      compare this plate with independent finite elements\n  \
+         cargo xtask check {SCENE}     show the model and the cost of the scene\n  \
          cargo xtask run {SCENE} --set \"mesh.degree=3\"\n",
         plot(column("time_s"), &series),
         picture.display()

@@ -44,10 +44,10 @@ pub struct Args {
     /// Only these faults, separated by commas
     #[arg(long, value_name = "FAULT,…", value_delimiter = ',')]
     fault: Vec<String>,
-    /// Every fault on every case of the quick tier, cheap cases first, not only on those named for it
+    /// Run every fault on every case of the quick tier instead of only its named cases; cheap cases run first
     #[arg(long)]
     matrix: bool,
-    /// Start no more after this time; what is done is kept, and the next run goes on from there
+    /// Start no more cases after this time; finished results are stored, and the next run resumes
     #[arg(long, value_name = "SECONDS")]
     budget: Option<u64>,
     /// Use this program, built with `--features faults`, instead of building one
@@ -120,20 +120,20 @@ fn chosen(args: &Args) -> Result<Vec<&'static Fault>, Failure> {
 fn build(common: &Common) -> Result<PathBuf, Failure> {
     let workspace = folders::workspace();
     let target = workspace.join("target/faults");
-    console::note(common, "building the program in which errors can be planted");
+    console::note(common, "building the program with planted errors");
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
     let mut command = Command::new(cargo);
     command.args(["build", "--package", "xtask", "--features", "faults", "--target-dir"]);
     command.arg(&target).current_dir(if workspace.as_os_str().is_empty() { Path::new(".") } else { &workspace });
     let status = command.status();
     let bad = |message: String| {
-        Failure::new(Exit::BadInput, message).help("start it with `cargo xtask` in the workspace, with its source")
+        Failure::new(Exit::BadInput, message).help("start it with `cargo xtask` in the workspace with the sources")
     };
     match status {
         Ok(status) if status.success() => {
             Ok(target.join("debug").join(format!("xtask{}", std::env::consts::EXE_SUFFIX)))
         }
-        Ok(status) => Err(bad(format!("the program in which errors can be planted cannot be built: cargo, {status}"))),
+        Ok(status) => Err(bad(format!("the program with planted errors cannot be built: cargo, {status}"))),
         Err(error) => Err(bad(format!("cargo cannot be started: {error}"))),
     }
 }

@@ -26,16 +26,16 @@ use crate::{built, console, folders};
 /// Arguments of `figures`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The paper; Estrada (2024) is the one there is
+    /// The paper; only Estrada (2024) is available
     #[arg(long, value_name = "PAPER", default_value = "estrada2024", value_parser = ["estrada2024"])]
     paper: String,
-    /// Only these, separated by commas: 3a, 3b, 4, 5b, 6; or ids of figures in the results of --from
+    /// Only these figures, separated by commas: 3a, 3b, 4, 5b, 6; or ids of figures in the results of --from
     #[arg(long, value_name = "FIGURE,…", value_delimiter = ',')]
     figure: Vec<String>,
     /// Draw from this results folder instead of running anything
     #[arg(long, value_name = "DIR")]
     from: Option<PathBuf>,
-    /// A moving picture of each series of pictures too, from the moments that the results hold
+    /// Also write an animation of each series of pictures in the results
     #[arg(long)]
     animate: bool,
 }
@@ -55,7 +55,7 @@ pub fn figures(args: &Args, common: &Common) -> Result<Exit, Failure> {
         let (results, rendered) = run(&wanted.paper, &source, common)?;
         let exit = verdict(&results.records);
         if exit != Exit::Done {
-            console::note(common, &format!("warning: not every check holds: see {}", source.display()));
+            console::note(common, &format!("warning: some checks do not hold: see {}", source.display()));
         }
         let drawn = draw(args, &wanted, (&source, &results), &folder, common);
         return Failure::beside(exit, rendered.and(drawn));
@@ -68,7 +68,7 @@ pub fn figures(args: &Args, common: &Common) -> Result<Exit, Failure> {
 /// No link leads out of the output folder, also not to results.
 fn no_link(folder: &Path) -> Result<(), Failure> {
     if fs::symlink_metadata(folder).is_ok_and(|metadata| !metadata.is_dir()) {
-        let message = format!("{} is a link, or no folder: nothing is written through it", folder.display());
+        let message = format!("{} is a symbolic link or not a folder; nothing is written to it", folder.display());
         return Err(Failure::new(Exit::BadInput, message).help("remove it, or give another folder with --out"));
     }
     Ok(())
@@ -157,7 +157,7 @@ impl Wanted {
                 Ok(figure) => paper.push(figure),
                 Err(_) if args.from.is_some() => others.push(word.clone()),
                 Err(known) => {
-                    let help = format!("{known}; any other figure is drawn from results, with --from");
+                    let help = format!("{known}; other figures are drawn from results with --from");
                     return Err(Failure::new(Exit::BadInput, format!("unknown figure {word}")).help(help));
                 }
             }
@@ -171,7 +171,7 @@ impl Wanted {
     /// Name and figure of all that is wanted.
     fn find(&self, set: &ResultSet, source: &Path, fresh: bool) -> Result<Vec<(String, Figure)>, Failure> {
         let missing = |what: String, help: String| {
-            let message = format!("the results in {} hold no figure {what}", source.display());
+            let message = format!("the results in {} contain no figure {what}", source.display());
             Failure::new(Exit::BadInput, message).help(help)
         };
         let mut found = Vec::new();
@@ -180,9 +180,9 @@ impl Wanted {
             if parts.is_empty() {
                 let cases = figure.cases().join(", ");
                 let help = if fresh {
-                    format!("it is drawn from {cases}, which did not get that far")
+                    format!("it is drawn from {cases}, which did not finish")
                 } else {
-                    format!("it needs {cases}; leave out --from to run what is needed")
+                    format!("it needs {cases}; omit --from to run these cases")
                 };
                 return Err(missing(figure.to_string(), help));
             }
@@ -191,7 +191,7 @@ impl Wanted {
         for id in &self.others {
             let figure = set.figures.iter().find(|f| f.id == *id);
             let known = || set.figures.iter().map(|f| f.id.as_str()).collect::<Vec<_>>().join(", ");
-            let figure = figure.ok_or_else(|| missing(id.clone(), format!("it holds {}", known())))?;
+            let figure = figure.ok_or_else(|| missing(id.clone(), format!("the results contain {}", known())))?;
             found.push((id.replace('/', "-"), figure.clone()));
         }
         Ok(found)

@@ -90,7 +90,9 @@ pub fn note_without_lock(common: &Common, folder: &OutputFolder) {
         let folder = folder.path().display();
         console::note(
             common,
-            &format!("warning: the file system of {folder} has no locks: start one command there at a time"),
+            &format!(
+                "warning: the file system of {folder} does not support locks: run one command at a time in this folder"
+            ),
         );
     }
 }

@@ -19,7 +19,7 @@ use crate::verify::{cases_folder, checked_glob, library};
 /// Arguments of `list`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Only cases whose id matches, such as plate/*, with the records that each will have
+    /// Only cases whose id matches, such as plate/*, with the records of each
     #[arg(long, value_name = "GLOB")]
     case: Option<String>,
 }
@@ -43,9 +43,7 @@ pub fn list(args: &Args, common: &Common) -> Result<Exit, Failure> {
         }
     }
     if sound.is_empty() && wrong.is_empty() {
-        return Err(
-            Failure::new(Exit::NothingSelected, "no case matches").help("see `cargo xtask list` for what there is")
-        );
+        return Err(Failure::new(Exit::NothingSelected, "no case matches").help("`cargo xtask list` lists all cases"));
     }
     let cases: Vec<&Case> = sound.iter().map(|(case, _)| case).collect();
     match common.format {

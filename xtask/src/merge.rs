@@ -28,7 +28,7 @@ pub fn merge(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let folder = folders::output(common, "merge")?;
     let results = join(&args.folders, &folder, &references, built::SOURCES)?;
     if results.environment.dirty {
-        console::note(common, "warning: the parts were run with uncommitted changes, the same in all of them");
+        console::note(common, "warning: all parts were run with the same uncommitted changes");
     }
     conclude(&results, &folder, common)
 }
@@ -41,14 +41,14 @@ impl From<MergeError> for Failure {
             MergeError::Unreadable { .. } => "give the folders that `cargo xtask verify --partition slice:K/N` wrote",
             MergeError::Differs { .. } => "run all slices of one commit with the same selection, tier and changes",
             MergeError::Doubled { .. } => "give every slice once",
-            MergeError::Missing { .. } => "run the missing slices, and give all folders at once",
-            MergeError::NoOutcome(_) | MergeError::Changed { .. } => "run its slice again",
+            MergeError::Missing { .. } => "run the missing slices, and give the folders of all slices",
+            MergeError::NoOutcome(_) | MergeError::Changed { .. } => "run the slice again",
             MergeError::Itself(_) => "give another folder with --out",
-            MergeError::Unplanned(_) | MergeError::Contradicts { .. } => "run all slices again, of one plan",
+            MergeError::Unplanned(_) | MergeError::Contradicts { .. } => "run all slices again with one plan",
             MergeError::OtherProgram { .. } => {
-                "check out the commit of the parts, with the same changes, and build it anew"
+                "check out the commit of the parts with the same changes, and build it again"
             }
-            MergeError::OtherReferences => "check out the commit of the parts, with the same reference-data/",
+            MergeError::OtherReferences => "check out the commit of the parts with the same reference-data/",
         };
         Self::new(Exit::BadInput, error.to_string()).help(help)
     }

@@ -34,14 +34,13 @@ pub struct Args {
     /// Only cases whose id matches, such as plate/*
     #[arg(long, value_name = "GLOB")]
     case: Option<String>,
-    /// quick (minutes in all), or full (the same and paper resolution)
+    /// quick (a few minutes in total), or full (also the cases at paper resolution)
     #[arg(long, value_name = "TIER", default_value = "quick", value_parser = str::parse::<Tier>)]
     tier: Tier,
-    /// Only the K-th of N slices of what is selected, balanced by the estimated time of the cases; see
-    /// `merge`
+    /// Only slice K of N of the selected cases, balanced by their estimated time; see `merge`
     #[arg(long, value_name = "slice:K/N", value_parser = str::parse::<Slice>)]
     partition: Option<Slice>,
-    /// Stop a case after that many seconds: its records are errors, the others run
+    /// Timeout of a case, in seconds: its records become errors, and the other cases continue
     /// [default: ten times its estimate, at least 300]
     #[arg(long, value_name = "S", value_parser = seconds)]
     case_timeout: Option<Duration>,
@@ -58,7 +57,7 @@ pub fn remembered() -> Seconds {
 fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse::<f64>().map_err(|error| error.to_string())?;
     let duration = Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())?;
-    if duration.is_zero() { Err("no case runs in no time".to_string()) } else { Ok(duration) }
+    if duration.is_zero() { Err("the timeout must be positive".to_string()) } else { Ok(duration) }
 }
 
 /// Runs what is selected.
@@ -138,7 +137,7 @@ fn interrupted(session: &Session, options: &Options) -> Failure {
     let (finished, all) = session.finished();
     let message =
         format!("interrupted: {finished} of {all} cases are finished; their report is in {}", folder.display());
-    let help = if options.resume { "the same command goes on with the others" } else { "run it again" };
+    let help = if options.resume { "the same command continues with the remaining cases" } else { "run it again" };
     Failure::new(Exit::Interrupted, message).help(help)
 }
 
@@ -169,7 +168,7 @@ impl From<VerifyError> for Failure {
             VerifyError::Case(error) => error.into(),
             VerifyError::File(error) => error.into(),
             VerifyError::Interrupted { .. } => Self::new(Exit::BadInput, error.to_string()).help(
-                "go on with the command that was interrupted, remove partial/ if they may go, or give another folder with --out",
+                "resume with the interrupted command, remove partial/ if it is not needed, or give another folder with --out",
             ),
             other => Self::new(Exit::BadInput, other.to_string()),
         }
@@ -238,7 +237,7 @@ fn selected(args: &Args, common: &Common) -> Result<Vec<Case>, Failure> {
     let cases = select(cases, &selection);
     if cases.is_empty() {
         let message = format!("no case of the {} tier is selected", args.tier);
-        return Err(Failure::new(Exit::NothingSelected, message).help("see `cargo xtask list` for what there is"));
+        return Err(Failure::new(Exit::NothingSelected, message).help("`cargo xtask list` lists all cases"));
     }
     changed(args, cases, common)
 }

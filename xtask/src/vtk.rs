@@ -47,7 +47,7 @@ impl<'a> Files<'a> {
     /// Writes the files of a frame, and the collections up to it.
     pub fn write(&mut self, number: usize, simulation: &Simulation) {
         if let Err(error) = KINDS.iter().try_for_each(|kind| self.write_kind(kind, number, simulation)) {
-            console::note(self.common, &format!("warning: {error}; the run goes on"));
+            console::note(self.common, &format!("warning: {error}; the run continues"));
             self.failed.get_or_insert(error);
         }
     }
@@ -70,8 +70,9 @@ impl<'a> Files<'a> {
     pub fn after(&self, frames: usize) -> Vec<String> {
         let missing = (0..frames).filter(|&n| KINDS.iter().any(|kind| !self.has(kind, n))).count();
         if missing > 0 && self.failed.is_none() {
-            let message =
-                format!("warning: {missing} of {frames} frames have no files for ParaView: taken without --vtk");
+            let message = format!(
+                "warning: {missing} of {frames} frames have no files for ParaView: they were computed without --vtk"
+            );
             console::note(self.common, &message);
         }
         let of_kind = |kind: &&str| {

@@ -102,12 +102,12 @@ impl Progress for Watch<'_> {
 
     fn slow(&self, case: &Case, limit: Duration) {
         let seconds = limit.as_secs_f64();
-        self.say(&format!("{} takes more than {seconds} s, ten times as long as it should", case.id()));
+        self.say(&format!("{} takes more than {seconds} s, ten times its estimate", case.id()));
     }
 
     fn late(&self, case: &Case, limit: Duration) {
         let seconds = limit.as_secs_f64();
-        self.say(&format!("warning: {} is over its time of {seconds} s and is asked to stop", case.id()));
+        self.say(&format!("warning: {} exceeded its timeout of {seconds} s and is being stopped", case.id()));
     }
 
     fn finished(&self, case: &Case, records: &[Record]) {

@@ -38,7 +38,7 @@ pub fn threads(records: Records) -> Vec<Exhibit> {
         let (gain, best) = (pretty(gain, 3), pretty(best, 3));
         (most > 1).then(|| {
             format!(
-                "{}: {} take {gain} times less wall time with the same bits (least times: {best}).",
+                "{}: with {} the wall time falls by a factor of {gain} (least times: {best}); the results are bitwise identical.",
                 one.label,
                 count(&most)
             )
@@ -46,7 +46,7 @@ pub fn threads(records: Records) -> Vec<Exhibit> {
     };
     let reading = scenes.iter().filter_map(sentence).collect::<Vec<_>>().join(" ");
     let caption =
-        "Wall time: what else runs on the machine counts. Bars: median, whiskers: least and largest of the rounds";
+        "Wall time, affected by other load on the machine. Bars: median; whiskers: minimum and maximum of the rounds";
     let svg = render_bars(&chart);
     vec![Exhibit::Plot(Plot { id: chart.id, title: chart.title, caption: caption.into(), reading, svg })]
 }
@@ -79,21 +79,23 @@ pub fn ceilings(records: Records) -> Vec<Exhibit> {
             ),
         ]);
         let degree = sweep.number("degree").unwrap_or(f64::NAN);
-        let beyond = if distance < 1.0 { "; what is measured as the ceiling is none" } else { "" };
+        let beyond = if distance < 1.0 { ", and is faster than the measured ceiling" } else { "" };
         let distance = plain(distance, 3);
-        notes.push(format!("the sweep of p = {degree} takes {distance} times its ceiling, {bound}{beyond}"));
+        notes.push(format!(
+            "the sweep of p = {degree} takes {distance} times the time of its ceiling ({bound}){beyond}"
+        ));
     }
     let moving =
         records.below("ceilings/elastic-sweep/").iter().find_map(|r| r.number("bytes_per_point_of_moving_points"));
     if let Some(bytes) = moving {
-        notes.push(format!("moving points alone stream {bytes} bytes a step, {} ns", plain(bytes * byte, 3)));
+        notes.push(format!("moving points alone transfer {bytes} bytes per step in {} ns", plain(bytes * byte, 3)));
     }
     vec![Exhibit::Grid(Grid {
-        title: "What this machine can do on one thread".into(),
+        title: "Ceilings of this machine on one thread".into(),
         head: ["", "median", "rounds", "ceilings"].map(String::from).to_vec(),
         rows,
         note: format!(
-            "Operations and bytes are counted from the code, not by hardware, in processor time of this run: {}.",
+            "Operations and bytes are counted from the code, not with hardware counters; times are processor times of this run: {}.",
             notes.join("; ")
         ),
     })]
@@ -112,7 +114,7 @@ pub fn baseline(records: Records) -> Vec<Exhibit> {
         let theirs = records.find(&format!("{}other", ours.id.strip_suffix("this")?))?;
         let difference = |r: &BenchRecord| r.error.as_ref().map_or("–".into(), |error| pretty(error.value, 2));
         let part = ours.cpu_s.median / theirs.cpu_s.median;
-        let verdict = if ours.verified && theirs.verified { "both hold" } else { "an answer does not hold" };
+        let verdict = if ours.verified && theirs.verified { "both verified" } else { "an answer is not verified" };
         let [one, two] = [ours, theirs].map(|r| format!("{} s", plain(r.cpu_s.median, 3)));
         Some(vec![ours.label.clone(), one, two, plain(part, 3), difference(ours), difference(theirs), verdict.into()])
     };
@@ -122,14 +124,14 @@ pub fn baseline(records: Records) -> Vec<Exhibit> {
     else {
         return Vec::new();
     };
-    let head = ["scene", "this checkout", "the other", "ratio", "energies here", "energies there", "verified"];
+    let head = ["scene", "this checkout", "other checkout", "ratio", "energies, this", "energies, other", "verified"];
     vec![Exhibit::Grid(Grid {
         title: "Another checkout on the same scenes".into(),
         head: head.map(String::from).to_vec(),
         rows,
         note: format!(
-            "The other is {other}. Processor time of whole processes on all threads, in turn. Energies: largest difference at the \
-             end from a run here with a phase-field tolerance of 1e-10, over the largest energy."
+            "The other checkout is {other}. Times are processor times of whole processes on all threads, run alternately. Energies: largest \
+             difference at the end from a run of this checkout with a phase-field tolerance of 1e-10, over the largest energy."
         ),
     })]
 }
@@ -156,7 +158,7 @@ pub fn scenes(records: Records) -> Vec<Exhibit> {
             format!("{} to {}", plain(min, 3), plain(max, 3)),
             plain(bytes(record), 3),
             plain(record.number("phase_field_bytes").unwrap_or(0.0) / record.number("particles").unwrap_or(1.0), 3),
-            if record.verified { record.answer.clone() } else { format!("does NOT hold: {}", record.answer) },
+            if record.verified { record.answer.clone() } else { format!("NOT verified: {}", record.answer) },
         ]
     };
     let head = [
@@ -166,7 +168,7 @@ pub fn scenes(records: Records) -> Vec<Exhibit> {
         "ns per particle-step",
         "rounds",
         "bytes per point",
-        "of these phase field",
+        "of which phase field",
         "verified",
     ];
     let note = |frame: &str| -> Option<String> {
@@ -174,8 +176,8 @@ pub fn scenes(records: Records) -> Vec<Exhibit> {
         let (elastic, fracture) = (of("elastic")?, of("fracture")?);
         let carried = elastic.number("phase_field_bytes").unwrap_or(f64::NAN);
         Some(format!(
-            "In the {frame} frame a growing crack takes {} times the time and {} times the memory of the elastic block, which \
-             carries {carried} bytes of a phase field.",
+            "In the {frame} frame, the block with a growing crack needs {} times the time and {} times the memory of the elastic block. \
+             The elastic block stores {carried} bytes of phase field.",
             plain(fracture.ns_per_unit.median / elastic.ns_per_unit.median, 3),
             plain(bytes(fracture) / bytes(elastic), 3)
         ))
@@ -184,13 +186,13 @@ pub fn scenes(records: Records) -> Vec<Exhibit> {
     let halves = ["half-of-the-plate", "the-whole-plate"].map(|name| records.get(&format!("scenes/total/{name}")));
     if let [Some(half), Some(whole)] = halves {
         notes.push(format!(
-            "Half of the plate takes {} % of the time and {} % of the memory of the whole.",
+            "Half of the plate needs {} % of the time and {} % of the memory of the whole plate.",
             plain(100.0 * half.cpu_s.median / whole.cpu_s.median, 3),
             plain(100.0 * half.memory_bytes as f64 / whole.memory_bytes as f64, 3)
         ));
     }
     vec![Exhibit::Grid(Grid {
-        title: "Scenes by what they model".into(),
+        title: "Scenes by their models".into(),
         head: head.map(String::from).to_vec(),
         rows: all.iter().map(row).collect(),
         note: notes.join(" "),
@@ -208,13 +210,13 @@ pub fn peers(set: &BenchSet) -> Vec<Exhibit> {
             vec![record.label.clone(), plain(median, 3), range, record.answer.clone()]
         };
         let factor = theirs.ns_per_unit.median / ours.ns_per_unit.median;
-        let trust = if theirs.verified { "" } else { " Its answer is not verified: do not believe its time." };
+        let trust = if theirs.verified { "" } else { " Its answer is not verified, so its time is not valid." };
         exhibits.push(Exhibit::Grid(Grid {
-            title: "The given program on the same block".into(),
+            title: "The program of --peer on the same block".into(),
             head: ["program", "ns per particle-step", "rounds", "verified"].map(String::from).to_vec(),
             rows: vec![row(ours), row(theirs)],
             note: format!(
-                "It takes {} times our time, start and end of the program left out.{trust}",
+                "It takes {} times the time of fisura, without start and end of the program.{trust}",
                 plain(factor, 3)
             ),
         }));
@@ -234,13 +236,13 @@ pub fn peers(set: &BenchSet) -> Vec<Exhibit> {
     };
     let head = ["code", "p", "over a tuned kernel", "over a naive kernel", "over fisura, estimated", "remark"];
     exhibits.push(Exhibit::Grid(Grid {
-        title: "Named codes on an elastic block, stored ratios".into(),
+        title: "Named codes on an elastic block: stored ratios of times".into(),
         head: head.map(String::from).to_vec(),
         rows: tuned.iter().map(row).collect(),
         note: format!(
-            "Not measured in this run: {}. Kernels are those of that run. The estimate multiplies the ratio to its naive kernel by \
-             the time of the minimal kernel over an elastic step of fisura in the updated frame in this run, as if the two \
-             kernels were the same; they are alike, no more.",
+            "Not measured in this run: {}. The kernels are those of the stored run. The estimate is the ratio to the naive kernel, \
+             multiplied by the ratio of the minimal kernel to an elastic step of fisura in the updated frame in this run. It \
+             assumes that both kernels take the same time; they are only similar.",
             first.conditions
         ),
     }));

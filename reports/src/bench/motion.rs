@@ -39,7 +39,7 @@ fn at_equal_error(lines: &[Line]) -> String {
     let sentence = |&error: &f64| {
         let ((points, slow), (spans, fast)) = (best(false, error)?, best(true, error)?);
         let [percent, slow_s, fast_s, ratio] = [100.0 * error, slow, fast, slow / fast].map(|value| plain(value, 2));
-        Some(format!("To {percent} %: {points}, {slow_s} s; {spans}, {fast_s} s; {ratio} times."))
+        Some(format!("For an error of {percent} %: {points}, {slow_s} s; {spans}, {fast_s} s; ratio {ratio}."))
     };
     ERRORS.iter().filter_map(sentence).collect::<Vec<_>>().join(" ")
 }
@@ -62,7 +62,14 @@ mod tests {
         };
         let records = [run("points", 1.0, 0.05), run("points", 8.0, 0.01), run("spans", 2.0, 0.01)];
         let Exhibit::Plot(plot) = exhibits(Records(&records)).remove(0) else { panic!("a plot") };
-        assert!(plot.reading.starts_with("To 5 %: points, 1 s; spans, 2 s; 0.5 times."), "{}", plot.reading);
-        assert!(plot.reading.contains("To 1 %: points, 8 s; spans, 2 s; 4 times.") && !plot.reading.contains("0.5 %:"));
+        assert!(
+            plot.reading.starts_with("For an error of 5 %: points, 1 s; spans, 2 s; ratio 0.5."),
+            "{}",
+            plot.reading
+        );
+        assert!(
+            plot.reading.contains("For an error of 1 %: points, 8 s; spans, 2 s; ratio 4.")
+                && !plot.reading.contains("0.5 %:")
+        );
     }
 }

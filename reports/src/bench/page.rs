@@ -44,13 +44,13 @@ pub fn all_records(set: &BenchSet) -> Grid {
             format!("{} ({} to {}) per {}", plain(median, 3), plain(min, 3), plain(max, 3), record.work.unit),
             error,
             memory,
-            if record.verified { record.answer.clone() } else { format!("does NOT hold: {}", record.answer) },
+            if record.verified { record.answer.clone() } else { format!("NOT verified: {}", record.answer) },
         ]
     };
     let broken = set.records.iter().filter(|r| !r.verified).count();
     let note = match broken {
-        0 => format!("The answers of all {} records hold.", set.records.len()),
-        n => format!("The answers of {n} of {} records do NOT hold; their times mean nothing.", set.records.len()),
+        0 => format!("All {} records are verified.", set.records.len()),
+        n => format!("{n} of {} records are NOT verified; their times are not valid.", set.records.len()),
     };
     let head = ["record", "threads", "processor s", "wall s", "ns", "error", "MB", "verified"];
     Grid {
@@ -65,7 +65,7 @@ pub fn all_records(set: &BenchSet) -> Grid {
 fn conditions(set: &BenchSet) -> String {
     let e = &set.environment;
     let commit: String = e.commit.chars().take(12).collect();
-    let dirty = if e.dirty { ", with changes" } else { "" };
+    let dirty = if e.dirty { ", with uncommitted changes" } else { "" };
     let size = if set.quick { "quick" } else { "full" };
     format!("{size} run on {} with {} threads, {}; commit {commit}{dirty}; {}", e.cpu, e.threads, e.started, e.rustc)
 }

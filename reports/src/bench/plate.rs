@@ -83,11 +83,11 @@ fn table(records: &[&BenchRecord]) -> Grid {
     let mut head = ["run", "h/l0", "processor s"].map(String::from).to_vec();
     head.extend(QUANTITIES.iter().map(name));
     Grid {
-        title: "The plate: what each run took, and its errors".into(),
+        title: "The plate: time and errors of each run".into(),
         head,
         rows: records.iter().map(row).collect(),
-        note: "Relative rms from 5 µs to 80 µs, of the fracture energy since t = 0 from 30 µs; of the tip rms in mm. U: uncertainty of \
-               the reference in the same norm; an error below it says nothing. Medians of the rounds."
+        note: "Relative rms from 5 µs to 80 µs; for the increment of the fracture energy since t = 0, from 30 µs; for the crack tip, rms in \
+               mm. U: uncertainty of the reference in the same norm; an error below U is not significant. Times: medians of the rounds."
             .into(),
     }
 }

@@ -35,7 +35,12 @@ pub(super) const RATIOS: [Ratio; 25] = [
         &[(1.0, "stages/p2/minimal-step")],
         KERNEL,
     ),
-    ratio("the same, p = 3", &[(1.0, "stages/p3/elastic-step-updated")], &[(1.0, "stages/p3/minimal-step")], KERNEL),
+    ratio(
+        "elastic step over the minimal kernel, updated frame, p = 3",
+        &[(1.0, "stages/p3/elastic-step-updated")],
+        &[(1.0, "stages/p3/minimal-step")],
+        KERNEL,
+    ),
     ratio(
         "p = 3 over p = 2 per particle-step, total frame",
         &[(1.0, "stages/p3/elastic-step")],
@@ -49,7 +54,7 @@ pub(super) const RATIOS: [Ratio; 25] = [
         KERNEL,
     ),
     ratio(
-        "spectral split: its part of a step of the plate",
+        "spectral split: share of a step of the plate",
         &[
             (1.0, "stages/p2/history-sweep"),
             (-1.0, "stages/p2/history-sweep-no-split"),
@@ -60,13 +65,13 @@ pub(super) const RATIOS: [Ratio; 25] = [
         Target::AtMost(0.1),
     ),
     ratio(
-        "split and history, with the second interpolation: part of a step of the plate",
+        "split and history, with the second interpolation: share of a step of the plate",
         &[(1.0, "stages/p2/history-sweep"), (1.0, "stages/p2/stress-sweep"), (-1.0, "stages/p2/elastic-sweep")],
         &[(1.0, "plate/share/step")],
         Target::None,
     ),
     ratio(
-        "phase field: part of a step of the plate",
+        "phase field: share of a step of the plate",
         &[(1.0, "plate/share/phase-field")],
         &[(1.0, "plate/share/step")],
         Target::AtMost(0.6),
@@ -78,7 +83,7 @@ pub(super) const RATIOS: [Ratio; 25] = [
         Target::AtLeast(3.0),
     ),
     ratio(
-        "the same, p = 3",
+        "Jacobi over incomplete Cholesky, cold crack, h = l0/2, p = 3",
         &[(1.0, "solves/p3/l2/jacobi")],
         &[(1.0, "solves/p3/l2/incomplete-cholesky")],
         Target::AtLeast(9.0),
@@ -90,7 +95,7 @@ pub(super) const RATIOS: [Ratio; 25] = [
         Target::None,
     ),
     ratio(
-        "the same, p = 3",
+        "sparse Cholesky over incomplete Cholesky, h = l0/2, p = 3",
         &[(1.0, "solves/p3/l2/cholesky")],
         &[(1.0, "solves/p3/l2/incomplete-cholesky")],
         Target::None,
@@ -156,7 +161,7 @@ pub(super) const RATIOS: [Ratio; 25] = [
         Target::None,
     ),
     ratio(
-        "the same, updated frame",
+        "fracture with a frozen crack over elastic, updated frame",
         &[(1.0, "scenes/updated/elastic-with-a-frozen-crack")],
         &[(1.0, "scenes/updated/elastic")],
         Target::AtMost(1.5),
@@ -176,7 +181,7 @@ pub(super) const RATIOS: [Ratio; 25] = [
         whole: true,
     },
     Ratio {
-        what: "the same, p = 3",
+        what: "spans that integrate over points, time per step: discs with 16 spans per radius, p = 3",
         above: &[(1.0, "contact/discs/p3-spans/16/loss")],
         below: &[(1.0, "contact/discs/p3-flip/16/loss")],
         target: Target::AtMost(2.0),

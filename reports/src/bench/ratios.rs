@@ -34,7 +34,7 @@ impl Found {
     /// Verdict in words; a dash where there is no target.
     pub fn word(&self) -> &'static str {
         match (self.verified, self.holds()) {
-            (false, _) => "answer does not hold",
+            (false, _) => "not verified",
             (true, Some(true)) => "met",
             (true, Some(false)) => "missed",
             (true, None) => "–",
@@ -156,7 +156,7 @@ mod tests {
             vec![record("stages/p2/elastic-step-updated", &[1.0]), record("stages/p2/minimal-step", &[1.0])];
         assert_eq!(first(&records).holds(), Some(true));
         records[0].verified = false;
-        assert_eq!((first(&records).holds(), first(&records).word()), (Some(false), "answer does not hold"));
+        assert_eq!((first(&records).holds(), first(&records).word()), (Some(false), "not verified"));
         assert!(found(Records(&[])).is_empty());
     }
 }

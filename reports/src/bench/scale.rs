@@ -68,7 +68,11 @@ fn weight(label: &str, records: &[&BenchRecord]) -> Option<String> {
         _ => String::new(),
     };
     let peak = last.number("peak_bytes").map_or(String::new(), |peak| {
-        format!("; the process had {} at its peak, {} GB in all", plain(peak / points(last), 3), plain(peak / 1e9, 3))
+        format!(
+            "; the peak of the process is {} bytes per point, {} GB in total",
+            plain(peak / points(last), 3),
+            plain(peak / 1e9, 3)
+        )
     });
     Some(format!(
         "{label}: {} bytes per point counted at {} points{verdict}{peak}.",
@@ -160,7 +164,10 @@ mod tests {
         let both =
             "25 ns at 1.6e7 points, 2 times the 12.5 ns at 160000 points and 1.25 times the 20 ns at 2.56e6 points";
         assert!(readings[0].contains(both), "{readings:?}");
-        assert!(readings[1].contains("missed") && readings[1].contains("had 320 at its peak"), "{readings:?}");
+        assert!(
+            readings[1].contains("missed") && readings[1].contains("the process is 320 bytes per point"),
+            "{readings:?}"
+        );
         assert!(super::exhibits(Records(&[])).is_empty());
     }
 }

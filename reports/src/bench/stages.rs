@@ -84,7 +84,7 @@ fn conditions(drawn: &[&BenchRecord]) -> String {
         }
     };
     let rounds = all(drawn.iter().map(|record| record.samples.len() as f64).collect());
-    format!("{what}, one thread, processor time; bars: median of {rounds} rounds, whiskers: least and largest")
+    format!("{what}, one thread, processor time; bars: median of {rounds} rounds, whiskers: minimum and maximum")
 }
 
 fn median(records: Records, id: &str) -> Option<f64> {
@@ -97,8 +97,8 @@ fn reading_of_phases(records: Records) -> String {
         let sweeps = of("history-sweep")? + of("stress-sweep")?;
         let split = sweeps - of("history-sweep-no-split")? - of("stress-sweep-no-split")?;
         Some(format!(
-            "p = {p}: history and stress take {} ns per particle-step, {} times the elastic sweep; the spectral split is {} % of \
-             them, and assembling the whole matrix would take {} times as long as both.",
+            "p = {p}: the history and stress sweeps take {} ns per particle-step, {} times the elastic sweep. The spectral split is {} % \
+             of them. Assembly of the whole matrix takes {} times as long as both.",
             pretty(sweeps, 3),
             pretty(sweeps / of("elastic-sweep")?, 2),
             pretty(100.0 * split / sweeps, 2),
@@ -113,8 +113,8 @@ fn reading_of_steps(records: Records) -> String {
         let of = |phase: &str| median(records, &format!("stages/p{p}/{phase}"));
         let kernel = of("minimal-step")?;
         Some(format!(
-            "p = {p}: an elastic step of moving points takes {} times the minimal kernel's {} ns; one of the total frame, in which \
-             points do not move, takes {} ns.",
+            "p = {p}: an elastic step of moving points takes {} times the {} ns of the minimal kernel. An elastic step of the total frame, \
+             in which points do not move, takes {} ns.",
             pretty(of("elastic-step-updated")? / kernel, 2),
             pretty(kernel, 3),
             pretty(of("elastic-step")?, 3)
@@ -132,13 +132,13 @@ fn shares(records: Records) -> Option<Exhibit> {
         vec![name.to_string(), plain(spread.median, 3), range]
     };
     Some(Exhibit::Grid(Grid {
-        title: "A step of the plate while it cracks".into(),
+        title: "A step of the plate during crack growth".into(),
         head: ["part", "ns per particle-step", "steps"].map(String::from).to_vec(),
         rows: vec![
             row("the whole step", step.ns_per_unit),
             row("phase field: assembly and solve", field.ns_per_unit),
             vec![
-                "everything else: the difference of the medians".into(),
+                "remainder: difference of the medians".into(),
                 plain(step.ns_per_unit.median - field.ns_per_unit.median, 3),
                 "–".into(),
             ],
@@ -168,8 +168,8 @@ fn solves_of(records: Records, spans: usize) -> Option<Exhibit> {
         let (incomplete, jacobi, direct) = (of("incomplete-cholesky")?, of("jacobi")?, of("cholesky")?);
         let time = |record: &BenchRecord| record.ns_per_unit.median;
         Some(format!(
-            "p = {p}: incomplete Cholesky needs {} iterations where Jacobi needs {}, and with its factorisation is {} times as \
-             fast; the direct solver takes {} times as long as it.",
+            "p = {p}: incomplete Cholesky needs {} iterations, and Jacobi needs {}. With its factorisation, incomplete Cholesky is {} \
+             times as fast as Jacobi. The direct solver takes {} times as long as incomplete Cholesky.",
             incomplete.number("iterations")?,
             jacobi.number("iterations")?,
             pretty(time(jacobi) / time(incomplete), 2),

@@ -87,7 +87,7 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
     groups.dedup();
     let mut exhibits = Vec::new();
     for cost in Cost::ALL {
-        let front = Line { label: "front of all".into(), records: frontier(&all, cost) };
+        let front = Line { label: "front of all methods".into(), records: frontier(&all, cost) };
         for group in &groups {
             let own = all.iter().copied().filter(|r| r.parameters.get("group").and_then(|g| g.as_str()) == Some(group));
             let lines = lines(own);
@@ -99,7 +99,7 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
             let title = format!("Standing wave, {group}: error against {axis}");
             let chart = Chart { id, title, lines: &lines, front: Some(&front), cost, axis, uncertainty: 0.0 };
             let reading = reading(&lines, &front, cost);
-            let bars = if cost == Cost::Time { "; bars: least and largest of the rounds" } else { "" };
+            let bars = if cost == Cost::Time { "; bars: minimum and maximum of the rounds" } else { "" };
             exhibits.push(chart.plot(&format!("2-D standing wave on rollers, one thread{bars}"), reading));
         }
     }
@@ -182,13 +182,13 @@ const DECADES: std::ops::RangeInclusive<i32> = 1..=12;
 fn reading(lines: &[Line], front: &Line, cost: Cost) -> String {
     let mut sentences: Vec<String> = DECADES.filter_map(|k| cheapest(lines, 10f64.powi(-k), cost)).collect();
     if sentences.is_empty() {
-        sentences.push("No curve crosses a decade of error.".into());
+        sentences.push("No curve crosses a power of ten of the error.".into());
     }
     let touches = |line: &&Line| line.records.iter().any(|r| front.records.iter().any(|f| f.id == r.id));
     let touching: Vec<&str> = lines.iter().filter(touches).map(|line| line.label.as_str()).collect();
     sentences.push(match touching.as_slice() {
-        [] => "None of these curves touches the front of all ways.".into(),
-        touching => format!("On the front of all ways: {}.", touching.join("; ")),
+        [] => "None of these curves is on the front of all methods.".into(),
+        touching => format!("On the front of all methods: {}.", touching.join("; ")),
     });
     sentences.join(" ")
 }
@@ -200,8 +200,8 @@ fn cheapest(lines: &[Line], error: f64, cost: Cost) -> Option<String> {
     costs.sort_by(|a, b| a.1.total_cmp(&b.1));
     let first = costs.first()?;
     let beside = match costs.get(1) {
-        Some(next) => format!("; next {}, {} times that", next.0, pretty(next.1 / first.1, 3)),
-        None => " alone".into(),
+        Some(next) => format!("; next {}, {} times as much", next.0, pretty(next.1 / first.1, 3)),
+        None => "; no other curve reaches it".into(),
     };
     let unit = cost.words()[2];
     Some(format!("Error {}: {}, {} {unit}{beside}.", pretty(error, 1), first.0, pretty(first.1, 3)))

@@ -67,11 +67,11 @@ impl Speed {
             runs: Vec::new(),
         };
         if (&base.environment.cpu, base.environment.threads) != (&new.environment.cpu, new.environment.threads) {
-            return none("other processor or number of threads");
+            return none("the processor or the number of threads differs");
         }
         let times = measured(base, new);
         let Some(median_ratio) = median(times.iter().map(|t| t.1[1] / t.1[0])) else {
-            return none("no run that both have takes a second");
+            return none("no common run takes a second or more");
         };
         let deviations = times.iter().map(|t| (t.1[1] / t.1[0] / median_ratio).ln().abs());
         let spread = (1.4826 * median(deviations).unwrap_or(0.0)).max(LEAST_SPREAD);

@@ -92,7 +92,7 @@ pub fn render_markdown(sets: &ComparedSets) -> String {
         line(&mut out, format!("| {} | {} | {} |\n", mark(run.effect), code(&run.run), times(run)));
     }
     if left_out > 0 {
-        out.push_str(&format!("\n{left_out} more lines are left out here; `comparison.json` has them all.\n"));
+        out.push_str(&format!("\n{left_out} more lines are omitted; `comparison.json` has all lines.\n"));
     }
     out
 }
@@ -156,6 +156,6 @@ fn speed(sets: &ComparedSets) -> String {
             plain(ratio, 3),
             plain(100.0 * speed.spread.exp_m1(), 2)
         ),
-        (why, _) => format!("Speed is not compared: {}.", why.as_deref().unwrap_or("nothing was timed")),
+        (why, _) => format!("Speed is not compared: {}.", why.as_deref().unwrap_or("no times were recorded")),
     }
 }

@@ -72,8 +72,8 @@ fn links_devices_and_pipes_are_not_read() {
     let places: [(Place, &str); 4] = [
         (Box::new(move |path| symlink(&secret, path).unwrap()), "symbolic link"),
         (Box::new(|path| symlink("/dev/zero", path).unwrap()), "symbolic link"),
-        (Box::new(pipe), "no regular file"),
-        (Box::new(|path| fs::create_dir(path).unwrap()), "no regular file"),
+        (Box::new(pipe), "not a regular file"),
+        (Box::new(|path| fs::create_dir(path).unwrap()), "not a regular file"),
     ];
     for (place, words) in places {
         let folder = folder(|_| {});
@@ -141,7 +141,7 @@ fn text_is_bounded_as_figures_are() {
     render(folder.path()).unwrap();
     let page = read(folder.path(), "report.html");
     assert!(page.len() < 5_000_000 && page.len() > 1_000_000, "{} bytes", page.len());
-    assert!(page.contains("Not on this page, which stays below 5 MB:"), "the rest is named");
+    assert!(page.contains("Omitted because this page is limited to 5 MB:"), "the rest is named");
     for id in ["plate/impact/p2/branching-time", "energy/disks/momentum"] {
         assert!(page.replace("&#x2f;", "/").contains(id), "{id} does not hold, and is left out last");
     }

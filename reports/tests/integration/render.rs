@@ -197,5 +197,5 @@ fn an_empty_result_set_is_no_success() {
         fisura_reports::text::render_text(&rendered.results).trim(),
         "INFO: nothing was judged (0 pass, 0 known limits, 0 fail, 0 errors, 0 info)"
     );
-    assert!(read(folder.path(), "report.html").contains("Nothing was judged"));
+    assert!(read(folder.path(), "report.html").contains("No check has a verdict"));
 }

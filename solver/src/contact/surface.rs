@@ -145,7 +145,9 @@ impl Surface {
         archive.value(opened)?;
         let ends = segments.iter().flatten().all(|&vertex| (vertex as usize) < vertices.len());
         if !ends || displacements.len() != vertices.len() {
-            return Err(StateError("the state is of another scene: the boundary of a body is none".to_string()));
+            return Err(StateError(
+                "the state belongs to another scene: the boundary of a body is not valid".to_string(),
+            ));
         }
         self.find_neighbours();
         Ok(())

@@ -50,7 +50,7 @@ impl TimePlan {
             let asked = samples;
             samples = whole(end / longest); // of a step each: one less would make it two
             warnings.push(format!(
-                "{asked} samples would shorten the time step of {longest:.4e} s more than twofold; {samples} are taken"
+                "{asked} samples would shorten the time step of {longest:.4e} s more than twofold; {samples} samples are written"
             ));
         }
         let interval = end / samples as f64;

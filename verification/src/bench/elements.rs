@@ -141,7 +141,7 @@ fn contestant<'a>(built: &Built, history: PathBuf, run: Run, references: Arc<Ref
         let sample = program.run(&history)?;
         match Table::read(&history) {
             Ok(table) => answer(record, &table, &references),
-            Err(error) => record.verify(false, format!("it left no history: {error}")),
+            Err(error) => record.verify(false, format!("it wrote no history: {error}")),
         }
         Ok(sample)
     };

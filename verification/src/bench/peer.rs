@@ -91,14 +91,17 @@ fn theirs<'a>(block: &'a PeerBlock, program: Program, out: &'a OutputFolder) -> 
         let answer = Table::read(&out.path().join(FOLDERS[1]).join("result.csv")).map_err(|error| error.to_string());
         match answer.and_then(|answer| block.difference(&answer)) {
             Ok(difference) => {
-                let what = "positions and velocities against ours, relative rms difference";
+                let what = "positions and velocities against fisura, relative rms difference";
                 record.verify_at_most(what, difference, SAME);
             }
-            Err(reason) => record.verify(false, format!("its answer is not that of the block: {reason}")),
+            Err(reason) => record.verify(false, format!("its answer differs from that of the block: {reason}")),
         }
         let sample = Sample { wall_s: long.wall_s - short.wall_s, cpu_s: long.cpu_s - short.cpu_s };
         if record.verified && sample.cpu_s < SHORTEST {
-            let message = format!("its steps take {:.2} s, too little to be told from start and end", sample.cpu_s);
+            let message = format!(
+                "its steps take {:.2} s, too short to separate from start and end of the program",
+                sample.cpu_s
+            );
             record.verify(false, message);
         }
         Ok(sample)

@@ -48,7 +48,8 @@ pub fn graded(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, B
 /// If that is not known of the degree and the points of the scene.
 pub fn with_toughness_of_mesh(case: &mut CaseScene, h: f64) -> Result<(), BenchError> {
     let (degree, points) = (case.scene.mesh.degree[0], case.scene.bodies[0].particles_per_cell[0]);
-    let unknown = || BenchError::input(format!("what a crack costs with p = {degree} and {points} points is unknown"));
+    let unknown =
+        || BenchError::input(format!("the surface energy of a crack with p = {degree} and {points} points is unknown"));
     let kappa = kappa(degree, points, h).ok_or_else(unknown)?;
     let fractures = case.scene.materials.values_mut().filter_map(|material| material.fracture.as_mut());
     fractures.for_each(|fracture| fracture.critical_energy_release_rate /= kappa);

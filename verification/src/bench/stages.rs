@@ -89,7 +89,7 @@ fn sweeps<'a, const P: usize>(block: &'a Block) -> Result<Vec<Contestant<'a>>, B
         let grew = history.iter().zip(&block.history).all(|(new, old)| (0..8).all(|lane| new[lane] >= old[lane]));
         let mut of_history =
             record::<P>(&format!("history-sweep{suffix}"), &format!("history sweep, {name}"), block.points);
-        of_history.verify(grew && history != block.history, "H grew, and nowhere shrank");
+        of_history.verify(grew && history != block.history, "H grew and never decreased");
         let mut of_stress =
             record::<P>(&format!("stress-sweep{suffix}"), &format!("degraded stress sweep, {name}"), block.points);
         let mut at_points = block.at_points();

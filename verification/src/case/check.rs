@@ -64,7 +64,7 @@ impl NumberKey {
 #[serde(deny_unknown_fields)]
 pub(super) struct CheckTable {
     /// Last part of the id of its records, by which later results are compared with earlier ones: lower-case
-    /// words joined by dashes.
+    /// words joined by dashes. The words of `quantity`, if absent.
     id: Option<Id>,
     /// Ids it had before.
     #[serde(default)]
@@ -163,19 +163,15 @@ fn number(quantity: Option<Quantity>) -> Option<f64> {
 
 /// The check of a table; `item` is the table.
 pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
-    let like = table.quantity.as_ref().map_or("…".into(), |quantity| identifier(&quantity.0));
-    let missing = |key: &str, like: &str| item.missing::<()>(key, like);
     if table.quantity.is_none() {
-        missing("quantity", "quantity = \"what is measured, in words\"");
-    }
-    if table.id.is_none() {
-        missing("id", &format!("id = {like:?}, by which later results are compared with earlier ones"));
+        item.missing::<()>("quantity", "quantity = \"what is measured, in words\"");
     }
     for (key, _) in [("set", &table.set), ("with", &table.with), ("variants", &table.variants)]
         .into_iter()
         .filter(|(_, given)| given.is_some())
     {
-        item.at(key)?.fail::<()>(format!("{key} beside the keys of one check"), "see \"Adding a case\" in the book");
+        item.at(key)?
+            .fail::<()>(format!("{key} together with the keys of one check"), "see \"Adding a case\" in the book");
     }
     let mut formulas = Vec::new();
     let mut value = |key: NumberKey, amount: Option<Amount>| {
@@ -204,10 +200,11 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
     let around_reference = around(&table, item);
     let accept = accept(&table, item);
     let limit = table.limit.map(|limited| limit(limited, &table.why, &item.at("limit").expect("it is read")));
+    let quantity = table.quantity?.0;
     Some(Check {
-        id: table.id?.0,
+        id: table.id.map_or_else(|| identifier(&quantity), |id| id.0),
         formerly: table.formerly.into_iter().map(|id| id.0).collect(),
-        quantity: table.quantity?.0,
+        quantity,
         unit: table.unit.unwrap_or("1".into()),
         measure: table.measure,
         column: table.column.map(|column| column.0),
@@ -261,9 +258,9 @@ fn around(table: &CheckTable, item: &Item<'_>) -> Option<Option<[f64; 2]>> {
         (None, None) => Some(None),
         (Some(below), Some(above)) if below.0 >= 0.0 && above.0 >= 0.0 => Some(Some([below.0, above.0])),
         (Some(_), Some(_)) => {
-            item.at("below")?.fail("below or above is negative", "give how far the value may lie to either side")
+            item.at("below")?.fail("below or above is negative", "give the allowed distance on each side")
         }
-        _ => item.fail("one of below and above is missing", "give both: how far from the reference value"),
+        _ => item.fail("one of below and above is missing", "give both distances from the reference value"),
     }
 }
 
@@ -285,7 +282,7 @@ fn accept(table: &CheckTable, item: &Item<'_>) -> Option<Accept> {
     let computed = table.uncertainty.is_some() || table.discretisation.is_some();
     if bounded && computed {
         let remedy = "remove min, max, below and above, or write them as limit = { max = …, why = \"…\" }";
-        return item.fail("bounds of its own beside those of the uncertainty", remedy);
+        return item.fail("bounds in addition to those of the uncertainty", remedy);
     }
     if (bounded || regression || table.discretisation.is_some()) && table.why.trim().is_empty() {
         return item.fail("bounds without a reason", "add why = \"where the bound comes from\"");

@@ -129,7 +129,7 @@ impl Case {
         let value = formula.number(&mut |name| match name {
             Name::Plain(other) => self.value(other, scene, links),
             Name::Key(path) => value_of_key(scene, path),
-            Name::Of(_, columns) => Err(format!("{columns:?} is known after a run only")),
+            Name::Of(_, columns) => Err(format!("{columns:?} is known only after a run")),
         })?;
         if value.is_finite() { Ok(value) } else { Err(format!("it is {value}")) }
     }

@@ -64,7 +64,7 @@ impl FromStr for Formula {
 
     fn from_str(text: &str) -> Result<Self, String> {
         if text.len() > LONGEST {
-            return Err(format!("a formula of {} bytes; at most {LONGEST} are read", text.len()));
+            return Err(format!("the formula has {} bytes; at most {LONGEST} are allowed", text.len()));
         }
         if text.trim().is_empty() {
             return Err("no column is named".to_string());
@@ -72,7 +72,7 @@ impl FromStr for Formula {
         if text.contains('^') {
             return Err(format!("{text:?} has a ^; write pow(a, b)"));
         }
-        let expression = FlatEx::parse(text).map_err(|e| format!("{text:?} is no formula: {e}"))?;
+        let expression = FlatEx::parse(text).map_err(|e| format!("{text:?} is not a valid formula: {e}"))?;
         Ok(Self { text: text.to_string(), expression })
     }
 }

@@ -149,7 +149,7 @@ fn values(table: BTreeMap<String, AnyAmount>, item: &Item<'_>) -> Option<Vec<(St
     };
     match table.keys().find(|name| !plain(name)) {
         Some(name) => {
-            let message = format!("{name:?} is no name in a formula");
+            let message = format!("{name:?} is not a valid name in a formula");
             item.at("values")?.fail(message, "use letters, digits and underscores")
         }
         None => Some(table.into_iter().map(|(name, amount)| (name, amount.0)).collect()),

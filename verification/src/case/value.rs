@@ -169,7 +169,7 @@ fn read_id(item: &Item<'_>) -> Option<String> {
         return Some(text);
     }
     let like = if plain.is_empty() { "largest-error" } else { &plain };
-    item.fail(format!("{text:?} is no id"), format!("join lower-case words by dashes: {like:?}"))
+    item.fail(format!("{text:?} is not a valid id"), format!("join lower-case words by dashes: {like:?}"))
 }
 
 /// Words as an id.
@@ -189,7 +189,10 @@ fn read_column(item: &Item<'_>) -> Option<String> {
 fn uncertainty(item: &Item<'_>) -> Option<f64> {
     match any_quantity(item)? {
         value if value > 0.0 => Some(value),
-        value => item.fail(format!("{value} is no uncertainty"), "give a positive number, or none if it is unknown"),
+        value => item.fail(
+            format!("{value} is not a valid uncertainty"),
+            "give a positive number, or remove it if it is unknown",
+        ),
     }
 }
 

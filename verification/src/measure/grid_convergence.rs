@@ -70,7 +70,7 @@ pub fn over_meshes(estimate: Estimate, check: &Check, runs: &[Run], library: &Li
             value
         }),
         [] => combine(estimate, meshes, check.order),
-        names => Err(format!("what is measured did not happen on every mesh: not in {}", names.join(", "))),
+        names => Err(format!("the measured event did not occur on every mesh: not in {}", names.join(", "))),
     };
     let reference = match estimate {
         Estimate::Richardson | Estimate::FinestMesh => held_against(check, check.scale, library)?,
@@ -119,7 +119,7 @@ fn combine(estimate: Estimate, mut meshes: Vec<(f64, f64)>, theory: Option<f64>)
     let correction = (f1 - f2) / (ratio.powf(p) - 1.0);
     match estimate {
         Estimate::Richardson => Ok(fault!("extrapolation-backwards", f1 + correction => f1 - correction)),
-        _ if *f1 == 0.0 => Err("the value is zero, and a relative index has no meaning".into()),
+        _ if *f1 == 0.0 => Err("the value is zero, so a relative index is not defined".into()),
         _ => Ok(safety * (correction / f1).abs()),
     }
 }
@@ -128,7 +128,7 @@ fn combine(estimate: Estimate, mut meshes: Vec<(f64, f64)>, theory: Option<f64>)
 fn order([fine, coarse]: [f64; 2], [r21, r32]: [f64; 2]) -> Result<f64, String> {
     if fine == 0.0 {
         let meshes = if coarse == 0.0 { "any of the meshes" } else { "the finest meshes" };
-        return Err(format!("the value does not change between {meshes}, and has no order"));
+        return Err(format!("the value does not change between {meshes}, so it has no order"));
     }
     let ratio = coarse / fine;
     if ratio < 0.0 {
@@ -177,7 +177,7 @@ pub fn usable(check: &Check, estimate: Estimate, scenes: &[CaseScene]) -> Result
         let remedy = if needed == 2 {
             "give scene.mesh.cells two or more values"
         } else {
-            "give scene.mesh.cells three or more values; two do with order = …, the order of theory, but show none"
+            "give scene.mesh.cells three or more values; two are enough with order = …, the order of theory, but give no observed order"
         };
         return Err(("there are too few meshes", remedy));
     }

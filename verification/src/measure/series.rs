@@ -47,7 +47,7 @@ pub(super) fn value_at(check: &Check, run: &Run, increment: bool) -> Result<Opti
 /// Slope of a straight line fitted over the window, per second.
 pub(super) fn slope(check: &Check, run: &Run) -> Result<f64, String> {
     let (window, times, values) = (run.window(check)?, run.times()?, run.column(column(check)?)?);
-    fitted_slope(window.map(|i| (times[i], values[i]))).ok_or_else(|| "the window holds one sample".to_string())
+    fitted_slope(window.map(|i| (times[i], values[i]))).ok_or_else(|| "the window contains only one sample".to_string())
 }
 
 /// Slope over the power `W sigma²/(rho c_d)` that two plane waves entering over the width W carry into

@@ -42,17 +42,16 @@ impl OutputError {
 
     pub(super) fn without_manifest(path: &Path) -> Self {
         let path = path.display();
-        let message = format!(
-            "the folder {path} is not empty and has no {MANIFEST}: what it holds was not written by this program"
-        );
+        let message =
+            format!("the folder {path} is not empty and has no {MANIFEST}: its files were not written by this program");
         Self::new(
             message,
-            "give a new or empty folder with --out; if an older version of fisura wrote it, remove the folder or move it away",
+            "give a new or empty folder with --out; if an older version of fisura wrote it, remove or move the folder",
         )
     }
 
     pub(super) fn of_another_command(path: &Path, owner: &str) -> Self {
-        let message = format!("the folder {} holds what `{owner}` wrote", path.display());
+        let message = format!("the folder {} contains the output of `{owner}`", path.display());
         Self::new(message, "give another folder with --out")
     }
 
@@ -61,25 +60,22 @@ impl OutputError {
         let more = names.len().saturating_sub(3);
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
         let message = format!(
-            "the folder {} holds files that were changed since they were written: {}{more}",
+            "the folder {} contains files that were changed after they were written: {}{more}",
             path.display(),
             shown.join(", ")
         );
-        Self::new(message, "move them away or remove them if they may go, or give another folder with --out")
+        Self::new(message, "move them, remove them if they are not needed, or give another folder with --out")
     }
 
     pub(super) fn foreign(path: &Path) -> Self {
         let message = format!(
-            "{} cannot be written: what is there was not written by this program, or changed since",
+            "{} cannot be written: the existing file was not written by this program or was changed",
             path.display()
         );
-        Self::new(message, "move it away or remove it, or give another folder with --out")
+        Self::new(message, "move it, remove it, or give another folder with --out")
     }
 
     pub(super) fn outside(path: &Path, name: &str) -> Self {
-        Self::new(
-            format!("{name:?} is no name of a file to be written below {}", path.display()),
-            "use plain relative names",
-        )
+        Self::new(format!("{name:?} is not a valid name of a file in {}", path.display()), "use plain relative names")
     }
 }

@@ -37,7 +37,7 @@ pub fn is_plain(name: &str) -> bool {
 pub fn read(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, Error> {
     let refused = |why: &str| Err(Error::new(ErrorKind::InvalidInput, why.to_string()));
     if !is_plain(name) {
-        return refused("a file is named by plain names below its folder, joined by single slashes");
+        return refused("the path of a file must consist of plain names joined by single slashes");
     }
     let mut path = folder.to_path_buf();
     let mut kind = fs::metadata(folder)?.file_type();
@@ -45,12 +45,12 @@ pub fn read(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, Error> {
         path.push(part);
         kind = fs::symlink_metadata(&path)?.file_type();
         if kind.is_symlink() {
-            return refused("it is reached through a symbolic link, and these are not followed");
+            return refused("its path contains a symbolic link; symbolic links are not followed");
         }
     }
     // known before it is opened: opening a pipe waits for its writer
     if !kind.is_file() {
-        return refused("it is no regular file");
+        return refused("it is not a regular file");
     }
     let mut bytes = Vec::new();
     File::open(&path)?.take(most + 1).read_to_end(&mut bytes)?;
@@ -70,7 +70,7 @@ pub fn series_files(folder: &Path) -> Result<Vec<String>, Error> {
     let (mut names, mut seen) = (Vec::new(), 0);
     let mut folders = match fs::symlink_metadata(folder.join("series")) {
         Ok(metadata) if metadata.is_dir() => vec!["series".to_string()],
-        Ok(_) => return refused("series", "it is a link, or no folder"),
+        Ok(_) => return refused("series", "it is a symbolic link or not a folder"),
         Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
         Err(error) => return Err(error),
     };
@@ -81,14 +81,14 @@ pub fn series_files(folder: &Path) -> Result<Vec<String>, Error> {
             let kind = entry.file_type()?;
             seen += 1;
             if seen > MOST_ENTRIES {
-                return refused("series", &format!("it holds more than {MOST_ENTRIES} files"));
+                return refused("series", &format!("it contains more than {MOST_ENTRIES} files"));
             }
             if kind.is_dir() && below.matches('/').count() < DEPTH {
                 folders.push(name);
             } else if kind.is_file() && (!name.ends_with(".csv") || is_plain(&name)) {
                 names.extend(name.ends_with(".csv").then_some(name));
             } else {
-                return refused(&name, "only folders and regular files with plain names are taken over");
+                return refused(&name, "only folders and regular files with plain names are accepted");
             }
         }
     }
@@ -180,9 +180,9 @@ mod tests {
         for name in ["series/link.csv", "series/zero.csv", "out/secret.csv"] {
             assert!(words(read(&root, name, 1 << 20).unwrap_err()).contains("symbolic link"), "{name}");
         }
-        assert!(words(read(&root, "series", 9).unwrap_err()).contains("no regular file"));
+        assert!(words(read(&root, "series", 9).unwrap_err()).contains("not a regular file"));
         assert!(words(read(&root, "../secret.csv", 9).unwrap_err()).contains("plain names"));
-        assert!(words(read(Path::new("/dev"), "null", 9).unwrap_err()).contains("no regular file"));
+        assert!(words(read(Path::new("/dev"), "null", 9).unwrap_err()).contains("not a regular file"));
         assert!(words(series_files(&root).unwrap_err()).contains("regular files"));
         fs::remove_file(root.join("series/link.csv")).unwrap();
         fs::remove_file(root.join("series/zero.csv")).unwrap();

@@ -79,7 +79,7 @@ fn folders_of_others_are_refused_and_stay_as_they_are() {
     let root = tempfile::tempdir().unwrap();
     open(root.path()).write("results.json", "{}").unwrap();
     let error = OutputFolder::open(root.path(), "run").unwrap_err();
-    assert!(error.message.contains("holds what `verify` wrote"), "{error:?}");
+    assert!(error.message.contains("contains the output of `verify`"), "{error:?}");
     OutputFolder::reopen(root.path()).unwrap().write("report.html", "").unwrap();
     assert_eq!(names(root.path()), ["report.html", "results.json"]);
     open(root.path()).begin(|_| false).unwrap();

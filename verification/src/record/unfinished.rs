@@ -26,7 +26,7 @@ impl Record {
             value: Some(finished as f64),
             accept: Accept { min: Some(all as f64), why: "all that were selected".to_string(), ..Accept::default() },
             status: Status::Error,
-            message: Some(format!("{finished} of {all} cases are finished: the run is under way, or was stopped")),
+            message: Some(format!("{finished} of {all} cases are finished: the run is in progress or was stopped")),
             ..Self::default()
         }
     }

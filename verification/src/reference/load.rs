@@ -19,7 +19,7 @@ pub(super) fn library(folder: &Path) -> Result<Library, ReferenceError> {
     walk(folder, folder, &mut library)?;
     if library.sources.is_empty() {
         let remedy = "each source needs a folder with a source.toml; is this the folder of the reference data?";
-        return Err(ReferenceError::file(folder, format!("no {SOURCE} here or below"), remedy));
+        return Err(ReferenceError::file(folder, format!("no {SOURCE} in this folder or below it"), remedy));
     }
     Ok(library)
 }
@@ -37,8 +37,8 @@ fn walk(root: &Path, folder: &Path, library: &mut Library) -> Result<(), Referen
     if entries.iter().any(|path| path.file_name().is_some_and(|name| name == SOURCE)) {
         SourceReader::open(root, folder)?.read(library)?;
     } else if let Some(table) = entries.iter().find(|path| path.extension().is_some_and(|e| e == "csv")) {
-        let message = format!("numbers without provenance: no {SOURCE} beside it");
-        return Err(ReferenceError::file(table, message, "add one that says where they come from"));
+        let message = format!("provenance is missing: no {SOURCE} in the folder");
+        return Err(ReferenceError::file(table, message, "add one with the source of the numbers"));
     }
     entries.iter().filter(|path| path.is_dir()).try_for_each(|path| walk(root, path, library))
 }
@@ -64,7 +64,7 @@ impl SourceReader {
         })?;
         if file.citation.as_ref().trim().is_empty() {
             let line = line_of(&text, file.citation.span().start);
-            return Err(ReferenceError::at(&path, line, "citation", "empty", "say where the numbers come from"));
+            return Err(ReferenceError::at(&path, line, "citation", "empty", "give the source of the numbers"));
         }
         let relative = folder.strip_prefix(root).unwrap_or(folder);
         let id = relative.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/");
@@ -88,7 +88,7 @@ impl SourceReader {
             let Some(curve) = self.curve(entry)? else { continue };
             if library.curve(&curve.id, &curve.quantity).is_some() {
                 let message = format!("a second curve of {:?} under {:?}", curve.quantity, curve.id);
-                let remedy = "give each a `variant` of its own, or keep one of the columns";
+                let remedy = "give each its own `variant`, or keep one of the columns";
                 return Err(self.error(entry, "[[curve]] quantity", message, remedy));
             }
             library.curves.push(curve);
@@ -123,15 +123,20 @@ impl SourceReader {
     }
 
     fn check_new<T>(&self, entry: &Spanned<T>, key: &str, name: &str, known: bool) -> Result<(), ReferenceError> {
-        if known { Err(self.error(entry, key, format!("{name:?} is there twice"), "rename one")) } else { Ok(()) }
+        if known { Err(self.error(entry, key, format!("duplicate name {name:?}"), "rename one")) } else { Ok(()) }
     }
 
     fn value(&self, spanned: &Spanned<ValueEntry>) -> Result<ReferenceValue, ReferenceError> {
         let entry = spanned.as_ref();
         let unit = Unit::read(&entry.unit, None).map_err(self.unit_error(spanned, "[[value]] unit"))?;
         if let Some(uncertainty) = entry.uncertainty.filter(|u| !(u.is_finite() && *u > 0.0)) {
-            let message = format!("{uncertainty} is not possible");
-            return Err(self.error(spanned, "[[value]] uncertainty", message, "a positive number, or none if unknown"));
+            let message = format!("{uncertainty} is not a valid uncertainty");
+            return Err(self.error(
+                spanned,
+                "[[value]] uncertainty",
+                message,
+                "give a positive number, or remove it if it is unknown",
+            ));
         }
         let uncertainty = entry.uncertainty.map(|u| unit.to_si(u)).transpose();
         Ok(ReferenceValue {

@@ -100,10 +100,15 @@ impl SourceReader {
             ("max_gap", entry.max_gap.unwrap_or(0.0)),
         ];
         if let Some((key, value)) = parts.iter().find(|(_, v)| !v.is_finite() || *v < 0.0) {
-            return Err(self.error(spanned, key, format!("{value} is not possible"), "a finite number, at least 0"));
+            return Err(self.error(
+                spanned,
+                key,
+                format!("{value} is not a valid value"),
+                "give a finite number of at least 0",
+            ));
         }
         if entry.uncertainty_note.trim().is_empty() {
-            let remedy = "say how the uncertainty was estimated, or that none is known";
+            let remedy = "state how the uncertainty was estimated, or that it is unknown";
             return Err(self.error(spanned, "uncertainty_note", "empty", remedy));
         }
         Ok(())
@@ -119,7 +124,7 @@ impl SourceReader {
                 return Ok(None);
             }
             let message = format!("there is no file {:?} in this folder", entry.file);
-            let remedy = "add the file, or say obtained = \"picture-only\" if nobody has its numbers";
+            let remedy = "add the file, or set obtained = \"picture-only\" if its numbers are not available";
             return Err(self.error(spanned, "[[curve]] file", message, remedy));
         }
         let table = self.table(&path)?;
@@ -159,7 +164,7 @@ impl SourceReader {
             points.reverse();
         }
         if let Some(pair) = points.windows(2).find(|pair| pair[0].0 >= pair[1].0) {
-            let message = format!("{:?} goes back or stands still at {} = {:e} (SI)", entry.file, entry.x, pair[1].0);
+            let message = format!("{:?} does not increase at {} = {:e} (SI)", entry.file, entry.x, pair[1].0);
             return Err(self.error(spanned, "x", message, "sort the rows and keep one row per abscissa"));
         }
         Ok(())

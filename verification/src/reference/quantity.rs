@@ -67,7 +67,7 @@ impl<'a> Unit<'a> {
         match SI.iter().find(|s| s.0 == dimension) {
             Some((_, si)) => Ok(Self { text, si }),
             None => Err(UnitError {
-                message: format!("{text:?} is {}, which no reference quantity has", dimension.name()),
+                message: format!("{text:?} is {}, which is not a dimension of reference quantities", dimension.name()),
                 remedy: format!("use a multiple of one of {}", SI.map(|s| s.1).join(", ")),
             }),
         }

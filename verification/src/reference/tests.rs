@@ -250,7 +250,7 @@ fn what_is_wrong_is_named_with_its_place_and_remedy() {
         (format!("{good}uncertainty_x = -1.0\n"), csv, vec!["uncertainty_x", "at least 0"]),
         (good.replace("note = \"made up\"", "note = \"\""), csv, vec!["uncertainty_note", "estimated"]),
         (format!("{good}{CURVE}"), csv, vec!["line 19", "a second curve", "variant"]),
-        (good.clone(), "time_us,elastic_j_per_m\n0,1\n0,2\n", vec!["stands still", "sort"]),
+        (good.clone(), "time_us,elastic_j_per_m\n0,1\n0,2\n", vec!["does not increase", "sort"]),
         (good.clone(), "time_us,elastic_j_per_m\n0,1\n1,nan\n", vec!["line 7", "elastic_j_per_m", "number"]),
         (good.clone(), "time_us,elastic_j_per_m\n0,one\n", vec!["curve.csv", "line 2", "one"]),
         (good.clone(), "time_us,elastic_j_per_m\n", vec!["no rows", "add points"]),

@@ -125,7 +125,7 @@ impl<'a> Item<'a> {
     /// A string that says something.
     pub fn words(&self) -> Option<String> {
         let text = self.text()?;
-        if text.trim().is_empty() { self.fail("nothing but space", "write it in words") } else { Some(text) }
+        if text.trim().is_empty() { self.fail("the text is blank", "write a text") } else { Some(text) }
     }
 
     /// `true` or `false`.

@@ -14,7 +14,7 @@ const NAME: &str = "--set";
 const DEEPEST: usize = 64;
 
 fn too_deep(keys: usize) -> String {
-    format!("a path of {keys} keys, where no scene has more than {DEEPEST}")
+    format!("the path has {keys} keys; the paths of a scene have at most {DEEPEST}")
 }
 
 impl Node {

@@ -31,8 +31,8 @@ pub(super) fn mesh(item: &Item<'_>) -> Option<Mesh> {
     for key in KEYS.into_iter().filter(|key| !allowed.contains(key)) {
         if let Some(extra) = fields.get(key) {
             let what = form.map_or("a rectangle".to_string(), |form| format!("a mesh with {form}"));
-            let remedy = format!("remove it; {what} takes {}", allowed.join(", "));
-            complete = extra.fail::<()>(format!("{key} does not go with {what}"), remedy).is_some();
+            let remedy = format!("remove it; {what} uses {}", allowed.join(", "));
+            complete = extra.fail::<()>(format!("{key} cannot be used with {what}"), remedy).is_some();
         }
     }
     let degree = fields.need("degree", "degree = 2", |item| item.whole_per_direction(1, 4));

@@ -34,7 +34,7 @@ pub const CHECKPOINT: &str = "checkpoint.bin";
 
 /// Why a run cannot be taken up from a file.
 #[derive(Debug, Error)]
-#[error("{} cannot be taken up: {message}", path.display())]
+#[error("{} cannot be resumed: {message}", path.display())]
 pub struct CheckpointError {
     /// File.
     pub path: PathBuf,
@@ -44,9 +44,9 @@ pub struct CheckpointError {
     pub remedy: &'static str,
 }
 
-const BEGIN_ANEW: &str = "leave out --resume to begin anew, or give the folder of another run with --out";
-const SAME_SCENE: &str = "resume with the scene and the --set values of that run, or leave out --resume to begin anew";
-const SAME_PROGRAM: &str = "resume with the program of that run, or leave out --resume to begin anew";
+const BEGIN_ANEW: &str = "omit --resume to start again, or give the folder of another run with --out";
+const SAME_SCENE: &str = "resume with the scene and the --set values of that run, or omit --resume to start again";
+const SAME_PROGRAM: &str = "resume with the program of that run, or omit --resume to start again";
 
 /// A run at a whole step.
 #[derive(Debug, Serialize, Deserialize)]
@@ -114,13 +114,13 @@ pub fn read(path: &Path, program: &str, scene: &Scene) -> Result<Option<Stored>,
     let bytes = std::fs::read(path).map_err(|error| fail(error.to_string(), BEGIN_ANEW))?;
     let (content, sum) = bytes.split_last_chunk::<4>().unwrap_or((&[], &[0; 4]));
     if crc32fast::hash(content) != u32::from_le_bytes(*sum) {
-        return Err(fail("its check sum is wrong, so it is damaged".to_string(), BEGIN_ANEW));
+        return Err(fail("its checksum is wrong: the file is damaged".to_string(), BEGIN_ANEW));
     }
     if head.program != program {
-        return Err(fail(format!("it is of {}, and this is {program}", head.program), SAME_PROGRAM));
+        return Err(fail(format!("it was written by {}, but this program is {program}", head.program), SAME_PROGRAM));
     }
     if head.scene != scene_print(scene) {
-        return Err(fail(format!("it is of another scene, {:?}", head.title), SAME_SCENE));
+        return Err(fail(format!("it belongs to another scene, {:?}", head.title), SAME_SCENE));
     }
     let stored = postcard::from_bytes(content.get(head.length..).unwrap_or_default());
     stored.map(Some).map_err(|error| fail(error.to_string(), BEGIN_ANEW))
@@ -151,13 +151,13 @@ impl Head {
             length += line.len();
             match line.pop() {
                 Some(b'\n') => String::from_utf8(line).map_err(|e| e.to_string()),
-                _ => Err("it is no checkpoint, or not all of one".to_string()),
+                _ => Err("it is not a checkpoint, or it is incomplete".to_string()),
             }
         };
         match line()? {
             form if form == FORM => {}
-            form if form.starts_with(MAGIC) => return Err("it has the form of another version".to_string()),
-            _ => return Err("it is no checkpoint".to_string()),
+            form if form.starts_with(MAGIC) => return Err("it has the format of another version".to_string()),
+            _ => return Err("it is not a checkpoint".to_string()),
         }
         let [program, scene, title] = [line()?, line()?, line()?];
         Ok(Some(Self { program, scene, title, length }))

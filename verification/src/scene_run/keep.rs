@@ -119,7 +119,7 @@ impl Keeper<'_> {
             self.failed = self.store(run, simulation).err();
             if let Some(error) = &self.failed {
                 let step = simulation.steps();
-                self.warning = Some(format!("no checkpoint at step {step}: {error}"));
+                self.warning = Some(format!("the checkpoint at step {step} was not written: {error}"));
             }
             self.stored = Instant::now();
         }

@@ -49,7 +49,7 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
     if !right.iter().any(|right| *right)
         || of_accept(bounds(None, Some(0.0))).status_of(Some(1.0)) != Status::Fail && wrong > 0
     {
-        return Err(StudyError::Other(format!("{wrong} verdicts are wrong, and the judge would pass that")));
+        return Err(StudyError::Other(format!("{wrong} verdicts are wrong, but the judge passes this")));
     }
     findings.add("", WRONG, wrong as f64, exact(0.0));
     findings.add("", RIGHT, (right.len() - wrong) as f64, exact(right.len() as f64));

@@ -223,8 +223,7 @@ fn closure_chart(suite: &str, runs: &[RunInfo]) -> Figure {
         id: format!("{suite}-ledger-closure"),
         suite: suite.into(),
         title: "Closure of the energy ledger".into(),
-        caption: "What is left of the ledger when every named term is added up, over the largest energy of the run."
-            .into(),
+        caption: "Sum of all named terms of the ledger, over the largest energy of the run.".into(),
         deviations: Vec::new(),
         body: FigureBody::chart(axes, curves.collect(), Vec::new()),
     }

@@ -124,7 +124,7 @@ fn judge_finding(mut record: Record, check: &Check, planned: &Planned, findings:
     let mut all = findings.measurements.iter();
     let of_variant = |variant: &str| fault!("value-of-another-variant", variant == planned.variant => true);
     let found = all.find(|m| m.quantity == check.quantity && of_variant(&m.variant));
-    let Some(measurement) = found else { return failed(record, "the study did not measure this, as it should") };
+    let Some(measurement) = found else { return failed(record, "the study did not measure this quantity") };
     record.unit.clone_from(&measurement.unit);
     let reference = expected(check, 1.0).or_else(|| measurement.reference.clone());
     judge(record, check, Measured { value: measurement.value, reference, ..Measured::default() })
@@ -147,7 +147,7 @@ fn judge(mut record: Record, check: &Check, measured: Measured) -> Record {
     record.reference = measured.reference;
     record.discretisation = measured.discretisation;
     if record.uncertainty().is_some() && (record.accept.min.is_some() || record.accept.max.is_some()) {
-        return failed(record, "bounds of its own beside an uncertainty, which bounds the value: write them as limit");
+        return failed(record, "bounds in addition to those of an uncertainty: write them as limit");
     }
     match &check.shown {
         Some(why) => {
@@ -157,7 +157,7 @@ fn judge(mut record: Record, check: &Check, measured: Measured) -> Record {
         None => record.decide(),
     }
     if record.value.is_none() {
-        let otherwise = || "what is measured did not happen within the run".to_string();
+        let otherwise = || "the measured event did not occur in the run".to_string();
         record.message = Some(measured.message.unwrap_or_else(otherwise));
     }
     record

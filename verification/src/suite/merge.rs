@@ -22,7 +22,7 @@ const MOST_NAMED: usize = 100;
 #[derive(Debug, Error)]
 pub enum MergeError {
     /// A folder holds no part.
-    #[error("{} cannot be read as a part: {message}", path.display())]
+    #[error("{} is not a valid part: {message}", path.display())]
     Unreadable {
         /// `part.json` of the folder.
         path: PathBuf,
@@ -44,7 +44,7 @@ pub enum MergeError {
         there: String,
     },
     /// A slice is there twice.
-    #[error("slice {slice} is there twice, in {} and {}", first.display(), other.display())]
+    #[error("slice {slice} is a duplicate: in {} and {}", first.display(), other.display())]
     Doubled {
         /// Which.
         slice: usize,
@@ -54,7 +54,7 @@ pub enum MergeError {
         other: PathBuf,
     },
     /// Two parts hold a series of the same name.
-    #[error("{name} is another one in {} and {}", first.display(), other.display())]
+    #[error("{name} differs in {} and {}", first.display(), other.display())]
     Contradicts {
         /// Of the series.
         name: String,
@@ -64,7 +64,7 @@ pub enum MergeError {
         other: PathBuf,
     },
     /// A part is where the results are to be written.
-    #[error("{} cannot be joined into itself", .0.display())]
+    #[error("{} cannot be merged into itself", .0.display())]
     Itself(PathBuf),
     /// Slices are not there.
     #[error("of {count} slices, these are missing: {}", list(slices))]
@@ -83,13 +83,13 @@ pub enum MergeError {
         message: String,
     },
     /// A case of the plan has no outcome in the parts, or one without a record.
-    #[error("no part holds the outcome of {0}")]
+    #[error("no part contains the result of {0}")]
     NoOutcome(String),
     /// A case has two outcomes, or one that no slice was to find.
-    #[error("the parts hold an outcome of {0} beyond those of the plan")]
+    #[error("the parts contain a result of {0}, which is not in the plan")]
     Unplanned(String),
     /// The parts would be put together by another program than the one that made them.
-    #[error("this program was built from the sources {here}, the parts come from one of {parts}")]
+    #[error("this program was built from the sources {here}, but the parts come from a program of the sources {parts}")]
     OtherProgram {
         /// Fingerprint of the sources of this program.
         here: String,
@@ -97,7 +97,7 @@ pub enum MergeError {
         parts: String,
     },
     /// The figures would be drawn beside other references than those the checks used.
-    #[error("the reference data here are not those of the parts")]
+    #[error("the reference data of this workspace differ from those of the parts")]
     OtherReferences,
     /// Reference data are wrong.
     #[error(transparent)]
@@ -170,11 +170,11 @@ fn files<'a>(folders: &'a [PathBuf], parts: &'a [Part]) -> impl Iterator<Item = 
 fn content(folder: &Path, name: &str, print: &str) -> Result<Vec<u8>, MergeError> {
     let changed = |message: String| MergeError::Changed { path: folder.join(foreign::line(name).as_ref()), message };
     if !(name.starts_with("series/") && name.ends_with(".csv")) {
-        return Err(changed("a part has CSV files below series/ only".to_string()));
+        return Err(changed("a part contains only CSV files below series/".to_string()));
     }
     let bytes = foreign::read(folder, name, foreign::SERIES_BYTES).map_err(|e| changed(e.to_string()))?;
     if fingerprint([&bytes]) != print {
-        return Err(changed("its fingerprint is another one".to_string()));
+        return Err(changed("its fingerprint differs".to_string()));
     }
     Ok(bytes)
 }
@@ -207,7 +207,7 @@ fn read(folder: &Path) -> Result<Part, MergeError> {
     }
     let part: Part = serde_json::from_slice(&bytes).map_err(|e| fail(e.to_string()))?;
     if !part.is_whole() {
-        let message = "its records are not those it was sealed with".to_string();
+        let message = "its records differ from those of its seal".to_string();
         return Err(MergeError::Changed { path, message });
     }
     Ok(part)
@@ -232,7 +232,7 @@ fn check(folders: &[PathBuf], parts: &[Part]) -> Result<(), MergeError> {
     for (folder, part) in folders.iter().zip(parts) {
         let slice = part.slice.index;
         if !(1..=count).contains(&slice) {
-            let message = format!("it calls itself slice {slice} of {count}");
+            let message = format!("its slice {slice} is not between 1 and {count}");
             return Err(MergeError::Unreadable { path: folder.join(PART_FILE), message });
         }
         if let Some(first) = holders.insert(slice, folder) {

@@ -96,8 +96,8 @@ pub fn prepare(case: &Case, library: &Library) -> Result<Prepared, SceneFileErro
     }
     let scenes = case.scenes()?;
     if study.is_some() && scenes.iter().any(|of| of.scene.contact.as_ref().is_some_and(|contact| contact.fragments)) {
-        let message = format!("the study {:?} follows bodies that stay whole", case.study);
-        wrong.note("scene.contact.fragments", message, "remove it, or leave the study out");
+        let message = format!("the study {:?} supports only bodies without fragments", case.study);
+        wrong.note("scene.contact.fragments", message, "remove it, or remove the study");
         return Err(wrong.error());
     }
     let mut records = Vec::new();
@@ -153,7 +153,11 @@ impl Wrong<'_> {
         let root = &self.case.document.root;
         let name = &self.case.study;
         for key in INPUTS.into_iter().filter(|key| !reads.contains(key) && root.get(key).is_some()) {
-            self.note(key, format!("the study {name:?} does not read {key}"), "remove it, or name the study that does");
+            self.note(
+                key,
+                format!("the study {name:?} does not read {key}"),
+                "remove it, or use a study that reads it",
+            );
         }
         if let Some(needed) = reads.first().filter(|key| root.get(key).is_none()) {
             self.note(*needed, "missing", format!("the study {name:?} needs a [{needed}] table"));
@@ -175,7 +179,7 @@ impl Wrong<'_> {
             self.note(
                 format!("check.{index}.{key}"),
                 format!("{what} does not read {key:?}"),
-                format!("remove it; read are {known}"),
+                format!("remove it; known keys: {known}"),
             );
         }
     }
@@ -197,20 +201,20 @@ impl Wrong<'_> {
         let meant: Vec<&&Offer> = found.iter().filter(named).collect();
         if meant.is_empty() {
             let known = distinct(found.iter().map(|offer| offer.variant.as_str()));
-            self.note(key("variant"), "no run of this case is meant", format!("known variants: {}", known.join("; ")));
+            self.note(key("variant"), "no run of this case matches", format!("known variants: {}", known.join("; ")));
         }
         if check.around_reference.is_some() && check.expect.is_none() && !meant.iter().all(|offer| offer.held) {
             let remedy = "give min and max, or the value with expect";
-            self.note(key("below"), "there is no reference value from which below and above could count", remedy);
+            self.note(key("below"), "below and above need a reference value", remedy);
         }
         if check.expect.is_some() && check.expect_source.is_empty() && meant.iter().any(|offer| offer.held) {
-            let remedy = "remove expect, or say in expect_source what holds here instead";
-            self.note(key("expect"), "the study has a reference value of its own", remedy);
+            let remedy = "remove expect, or state in expect_source why the value differs";
+            self.note(key("expect"), "the study has its own reference value", remedy);
         }
         let given = self.case.document.root.at(&key("unit")).is_some();
         if let Some(offer) = meant.iter().find(|offer| given && offer.unit != check.unit) {
             let message = format!("the study gives this in {:?}", offer.unit);
-            self.note(key("unit"), message, format!("unit = {:?}, or leave it out", offer.unit));
+            self.note(key("unit"), message, format!("unit = {:?}, or remove it", offer.unit));
         }
         meant.iter().map(|offer| Planned { check: index, variant: offer.variant.clone(), scene: None }).collect()
     }
@@ -223,19 +227,19 @@ impl Wrong<'_> {
             let id = planned.id(case);
             if let Some(first) = seen.insert(id.clone(), planned.check) {
                 let remedy = match first == planned.check {
-                    true => "give variants names of their own, and axes values that differ",
-                    false => "give each check an id of its own, or remove what is there twice",
+                    true => "give each variant its own name, and each axis different values",
+                    false => "give each check its own id, or remove the duplicate",
                 };
-                self.note(format!("check.{}.id", planned.check), format!("two records of the id {id}"), remedy);
+                self.note(format!("check.{}.id", planned.check), format!("two records with the id {id}"), remedy);
             }
             if id.len() > LONGEST {
-                let message = format!("the id {id} has {} characters, and {LONGEST} are allowed", id.len());
+                let message = format!("the id {id} has {} characters; at most {LONGEST} are allowed", id.len());
                 self.note(format!("check.{}.id", planned.check), message, "shorten it, or the name of the variant");
             }
         }
         for planned in records {
             if let Some(id) = planned.formerly(case).into_iter().find(|id| seen.contains_key(id)) {
-                let message = format!("the former id {id} is that of a record of today");
+                let message = format!("the former id {id} is ambiguous: it is the id of a current record");
                 let key = format!("check.{}.formerly", planned.check);
                 self.note(key, message, "name in formerly only ids that are no longer in use");
             }
@@ -252,7 +256,7 @@ impl Wrong<'_> {
             let said = table.iter().filter(|(key, _)| !["id", "formerly", "why"].contains(&key.as_str()));
             let said: Vec<String> = said.map(|(key, node)| format!("{key} = {}", node.canonical())).collect();
             if let Some(first) = seen.insert(said, index) {
-                let message = format!("this says what check.{first} says");
+                let message = format!("this check is a duplicate of check.{first}");
                 self.note(format!("check.{index}"), message, "remove one of the two");
             }
         }

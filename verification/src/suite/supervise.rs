@@ -84,14 +84,18 @@ impl Supervisor<'_> {
             if elapsed > self.limit.saturating_add(self.limit.max(GRACE)) {
                 watch.leave();
                 let over = self.over(elapsed);
-                return Ended::Broken(format!("{over}, and did not end when asked to: it runs on beside what follows"));
+                return Ended::Broken(format!(
+                    "{over}; it did not stop on request, was abandoned and still runs beside the next cases"
+                ));
             }
         }
     }
 
     fn over(&self, elapsed: Duration) -> String {
         let (took, limit) = (elapsed.as_secs_f64(), self.limit.as_secs_f64());
-        format!("stopped after {took:.1} s, over the limit of {limit} s for a case; --case-timeout sets another")
+        format!(
+            "timeout: stopped after {took:.1} s, over the limit of {limit} s for a case; --case-timeout changes the limit"
+        )
     }
 }
 
@@ -144,7 +148,7 @@ mod tests {
         let Ended::Stopped(why) = run(0.05, looks) else { panic!("it stops") };
         assert!(why.contains("over the limit of 0.05 s"), "{why}");
         let message = told(run(0.05, || std::thread::sleep(Duration::from_secs(3600))));
-        assert!(message.contains("runs on beside"), "{message}");
+        assert!(message.contains("abandoned"), "{message}");
     }
 
     #[test]
@@ -161,7 +165,7 @@ mod tests {
             .unwrap();
             sender.send((own, written)).unwrap();
         };
-        assert!(told(run(0.05, work)).contains("runs on beside"));
+        assert!(told(run(0.05, work)).contains("abandoned"));
         assert_eq!(receiver.recv(), Ok((true, false)));
     }
 }

@@ -28,18 +28,19 @@ fn refused(checks: &str, parts: &[&str]) {
 }
 
 #[test]
-fn every_check_declares_an_id_of_its_own() {
+fn every_check_has_an_id_of_its_own() {
     let without = "[[check]]\nquantity = \"Partition of unity, largest error\"\n";
-    refused(without, &["check.0.id", "missing", "id = \"partition-of-unity-largest-error\""]);
-    refused(&check("Largest error", ""), &["\"Largest error\" is no id", "\"largest-error\""]);
-    refused(&check("", ""), &["\"\" is no id"]);
+    assert_eq!(case(without).unwrap().checks[0].id, "partition-of-unity-largest-error");
+    refused_by("basis", &[without; 2].concat(), &["two records with the id trial/case/p=2/partition"]);
+    refused(&check("Largest error", ""), &["\"Largest error\" is not a valid id", "\"largest-error\""]);
+    refused(&check("", ""), &["\"\" is not a valid id"]);
     let other = |id, variant: &str| check(id, &format!("variant = \"p={variant}\""));
     for twice in [
         check("unity", "") + &check("unity", ""),
         check("unity", "") + &other("unity", "2"),
         other("unity", "2") + &other("unity", "2"),
     ] {
-        refused_by("basis", &twice, &["check.1.id", "two records of the id trial/case/p=2/unity", "id of its own"]);
+        refused_by("basis", &twice, &["check.1.id", "two records with the id trial/case/p=2/unity", "its own id"]);
     }
     assert_eq!(prepared("basis", &(other("unity", "1") + &other("unity", "2"))), "");
     refused("check = []", &["there is no check"]);
@@ -51,9 +52,9 @@ fn a_former_id_is_no_id_of_today() {
     assert_eq!(case(&renamed("sum-of-the-functions")).unwrap().checks[0].formerly, ["sum-of-the-functions"]);
     for old in ["unity", "linear"] {
         let linear = quantity("linear precision, largest error", "").replace("\"q\"", "\"linear\"");
-        refused_by("basis", &(renamed(old) + &linear), &["check.0.formerly", "is that of a record of today"]);
+        refused_by("basis", &(renamed(old) + &linear), &["check.0.formerly", "is the id of a current record"]);
     }
-    refused(&renamed("Sum"), &["check.0.formerly.0", "is no id"]);
+    refused(&renamed("Sum"), &["check.0.formerly.0", "is not a valid id"]);
 }
 
 /// What `prepare` says about a case, nothing if it could run.
@@ -84,7 +85,7 @@ fn bounds_that_no_value_can_meet_or_that_count_from_nothing_are_refused() {
     refused(&check("unity", "max = 1\nwhy = \" \""), &["bounds without a reason"]);
     refused_by("basis", &with("below = 1\nabove = 2"), &["below", "no reference value", "expect"]);
     assert_eq!(prepared("basis", &with("expect = 0\nbelow = 1\nabove = 2")), "");
-    refused_by("pulse", &quantity("speed of a Rayleigh pulse over c_R", "expect = 1"), &["value of its own"]);
+    refused_by("pulse", &quantity("speed of a Rayleigh pulse over c_R", "expect = 1"), &["its own reference value"]);
 }
 
 /// A check of this quantity.
@@ -130,7 +131,7 @@ fn what_no_run_of_a_scene_has_is_refused_before_it_runs() {
         ("measure = \"slope\"\ncolumn = \"elastic_j\"\nfrom = 2\nto = 3", &["no sample lies between", "ends at"]),
         ("measure = \"slope\"\ncolumn = \"elastic_j\"\nfrom = 0.11\nto = 0.19", &["no sample lies between"]),
         ("measure = \"value-at\"\ncolumn = \"elastic_j\"\nat = 2", &["check.0.at", "outside the run"]),
-        ("measure = \"tip-passes\"\nat = 2", &["looks at a crack, and nothing fractures"]),
+        ("measure = \"tip-passes\"\nat = 2", &["needs a crack, but nothing fractures"]),
         ("measure = \"stress-in-the-middle\"", &["there are none", "scene.output.frames"]),
         ("measure = \"difference\"\ncolumn = \"elastic_j\"\nagainst = \"fine\"", &["no run of this case"]),
         ("measure = \"difference\"\ncolumn = \"elastic_j\"\nagainst = \"\"", &["no other run"]),
@@ -160,7 +161,7 @@ fn values_follow_the_scene_and_charts_name_what_is_there() {
         ("a = \"= {initial elastic_j}\"", &["after a run only"]),
         ("a = \"= 1/0\"", &["it is inf"]),
         ("a = \"= (\"", &["no formula"]),
-        ("\"a b\" = 1", &["is no name in a formula"]),
+        ("\"a b\" = 1", &["is not a valid name in a formula"]),
     ] {
         refused_by("scene", &of(&format!("[values]\n{value}\n")), parts);
     }
@@ -177,8 +178,8 @@ fn a_check_is_there_once() {
 fn runs_of_one_name_are_refused() {
     let closure = quantity("q", "measure = \"closure\"");
     let equal = SCENE.replace("cells = [8, 4]", "cells = [[8, 4], [8, 4]]");
-    refused_by("scene", &format!("{equal}\n{closure}"), &["two records of the id trial/case/cells=8x4/q", "differ"]);
+    refused_by("scene", &format!("{equal}\n{closure}"), &["two records with the id trial/case/cells=8x4/q", "differ"]);
     let variant = "[[variant]]\nname = \"fine\"\nset = { \"mesh.degree\" = 3 }\n";
     let twice = format!("{}\n{variant}{variant}{closure}", SCENE);
-    refused_by("scene", &twice, &["two records of the id trial/case/fine/q", "names of their own"]);
+    refused_by("scene", &twice, &["two records with the id trial/case/fine/q", "its own name"]);
 }

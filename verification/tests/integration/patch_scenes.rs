@@ -130,9 +130,9 @@ const BROKEN: &[Broken] = &[
     ("weights = [1, 1, 1, 1, 0.8, 1, 1, 1, 1]", "weights = [1, 1, 1, 1, -0.8, 1, 1, 1, 1]", 14, "mesh.weights.4", &["is -0.8", "above zero"]),
     ("weights = [1, 1, 1, 1, 0.8, 1, 1, 1, 1]", "weights = [1, 1, 1, 1, 1, 1, 1, 1, 0]", 14, "mesh.weights.8", &["is 0", "above zero"]),
     ("subdivide = 16", "subdivide = 0", 15, "mesh.subdivide", &["0 is out of range"]),
-    ("subdivide = 16", "cells = [4, 4]", 15, "mesh.cells", &["does not go with a mesh with control_points", "subdivide"]),
-    ("subdivide = 16", "size = [1, 1]", 15, "mesh.size", &["does not go with", "remove it"]),
-    ("subdivide = 16", "annulus = { inner_radius = 1, outer_radius = 2 }", 15, "mesh.annulus", &["does not go with a mesh with control_points"]),
+    ("subdivide = 16", "cells = [4, 4]", 15, "mesh.cells", &["cannot be used with a mesh with control_points", "subdivide"]),
+    ("subdivide = 16", "size = [1, 1]", 15, "mesh.size", &["cannot be used with", "remove it"]),
+    ("subdivide = 16", "annulus = { inner_radius = 1, outer_radius = 2 }", 15, "mesh.annulus", &["cannot be used with a mesh with control_points"]),
     ("end_time = \"10 us\"", "end_time = \"10 us\"\nframe = \"updated\"", 19, "analysis.frame", &["updated frame is not supported yet", "use frame = \\\"total\\\""]),
     ("degree = 2", "degree = [2, 3]", 7, "mesh.knots.1", &["too few", "at least 8"]),
     ("length_scale = \"10 cm\"", "length_scale = \"1 cm\"", 26, "material.glass.fracture.length_scale", &["cannot resolve", "subdivide"]),
@@ -155,9 +155,9 @@ const BROKEN_MESHES: &[(&str, usize, &str, &[&str])] = &[
     ("degree = 2\ncells = [4000, 5000]\nannulus = { inner_radius = 1, outer_radius = 2 }", 5, "mesh.cells", &["20000000 spans", "277777"]),
     ("degree = 2\nannulus = { inner_radius = 1, outer_radius = 2 }", 3, "mesh.cells", &["missing", "along the arc"]),
     ("degree = 2\ncells = [4, 4]\nannulus = { inner_radius = 1, outer = 2 }", 6, "mesh.annulus.outer", &["unknown key", "outer_radius"]),
-    ("degree = 2\nknots = [[0, 0, 0, 1, 1, 1], [0, 0, 0, 1, 1, 1]]\ncells = [4, 4]\nannulus = { inner_radius = 1, outer_radius = 2 }", 5, "mesh.knots", &["does not go with a mesh with annulus"]),
+    ("degree = 2\nknots = [[0, 0, 0, 1, 1, 1], [0, 0, 0, 1, 1, 1]]\ncells = [4, 4]\nannulus = { inner_radius = 1, outer_radius = 2 }", 5, "mesh.knots", &["cannot be used with a mesh with annulus"]),
     ("degree = 2\ncontrol_points = [[0, 0]]", 3, "mesh.knots", &["missing", "one vector per direction"]),
-    ("degree = 2\norigin = [0, 0]\nsize = [1, 1]\ncells = [8, 8]\nweights = [1]", 8, "mesh.weights", &["does not go with a rectangle"]),
+    ("degree = 2\norigin = [0, 0]\nsize = [1, 1]\ncells = [8, 8]\nweights = [1]", 8, "mesh.weights", &["cannot be used with a rectangle"]),
 ];
 
 fn look(text: &str, what: &str, line: usize, key: &str, words: &[&str], missed: &mut Vec<String>) {

@@ -134,7 +134,7 @@ const BROKEN: &[Broken] = &[
     ("size   = [0.1, 0.04]", "size = [0.1, -0.04]", 6, "mesh.size.1", &["positive"]),
     ("cells  = [400, 160]", "cells = [400, 0]", 7, "mesh.cells.1", &["0 is out of range", "100000"]),
     ("cells  = [400, 160]", "", 3, "mesh.cells", &["missing", "cells = [100, 40]"]),
-    ("cells  = [400, 160]", "weights = [1]", 7, "mesh.weights", &["does not go with a rectangle", "origin, size, cells, knots"]),
+    ("cells  = [400, 160]", "weights = [1]", 7, "mesh.weights", &["cannot be used with a rectangle", "origin, size, cells, knots"]),
     ("cells  = [400, 160]", "cells = [4, 4]\nknots = [[0, 0, 1, 1], [0, 1]]", 7, "mesh.cells", &["remove one"]),
     ("cells  = [400, 160]", "knots = [[1, 1, 0, 0], [0, 1]]", 7, "mesh.knots", &["increasing"]),
     ("cells  = [400, 160]", "cells = [4, 4]\nsubdivide = 2", 8, "mesh.subdivide", &["without knots", "more cells"]),

@@ -104,10 +104,7 @@ fn a_value_within_a_documented_limit_is_a_known_limit() {
 #[test]
 fn keys_that_say_nothing_are_refused() {
     for (check, expected) in [
-        (
-            "expect = 1.0\nuncertainty = 0.1\nmax = 1.0\nwhy = \"w\"",
-            "bounds of its own beside those of the uncertainty",
-        ),
+        ("expect = 1.0\nuncertainty = 0.1\nmax = 1.0\nwhy = \"w\"", "bounds in addition to those of the uncertainty"),
         ("bounds = \"regression\"\nwhy = \"w\"", "without bounds"),
         ("bounds = \"validation\"", "validation"),
         ("max = 1.0", "bounds without a reason"),

@@ -4,16 +4,16 @@
 const REASONS: &[(&str, &str)] = &[
     (
         "patch/spline-basis/*",
-        "an identity of the recursion of the basis, in which no error is planted: most other checks would turn red with it, and this one \
-         says where to look",
+        "an identity of the recursion of the basis, in which no error is planted: most other checks would fail with it, and this one \
+         locates it",
     ),
     (
         "stability/boundary-points/*-1-is-yes",
-        "what validation says before anything is computed; errors are planted in what computes",
+        "checks validation before the computation; errors are planted in the computation",
     ),
     (
         "stability/unloading/peaks-of-the-elastic-energy",
-        "makes sure that the load comes and goes, without which the other checks of the case say nothing",
+        "checks that the load rises and falls; the other checks of the case need this",
     ),
 ];
 

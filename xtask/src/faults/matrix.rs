@@ -96,10 +96,10 @@ impl Matrix {
     pub fn text(&self) -> String {
         let mut out = self.summary();
         for idle in self.idle.iter().filter(|idle| idle.reason.is_none()) {
-            let _ = writeln!(out, "no fault turns it red, and no reason is given: {}", idle.check);
+            let _ = writeln!(out, "passes with every fault, and no reason is given: {}", idle.check);
         }
         if self.is_incomplete() {
-            out.push_str("the matrix is not complete: the next run goes on with it\n");
+            out.push_str("the matrix is not complete: the next run resumes\n");
         }
         out
     }
@@ -109,7 +109,7 @@ impl Matrix {
         let unexplained = self.idle.iter().filter(|idle| idle.reason.is_none()).count();
         format!(
             "{} × {} cells: {} fail, {} pass, {} not applicable, {} ended without records, {} not run\n\
-             {} checks, {} of them in finished cases; no fault turns {} of these red ({} without a reason)\n",
+             {} checks, {} of them in finished cases; {} of these pass with every fault ({} without a reason)\n",
             self.faults.len(),
             self.cases.len(),
             self.count(|state| matches!(state, State::Fail(_))),
@@ -127,13 +127,13 @@ impl Matrix {
     /// Summary, suites, table of cases and faults, and list of the checks that stay green.
     pub fn markdown(&self) -> String {
         let mut out = format!("\n# Every fault on every case\n\n{}\n", self.summary());
-        out.push_str("| suite | cases | faults that turn a check of it red |\n|---|---|---|\n");
+        out.push_str("| suite | cases | faults that make a check fail |\n|---|---|---|\n");
         for (suite, (cases, faults)) in self.suites() {
             let _ = writeln!(out, "| {suite} | {cases} | {faults} |");
         }
         out.push_str(
-            "\nA number counts the records that turn red, · is a run in which all hold, ! one that ended without records, ? one \
-             that was not made; where nothing stands, the case passes no site of the fault. Columns are the faults above.\n\n| case |",
+            "\nA number counts the records that fail; · is a run in which all hold, ! a run that ended without records, ? a cell \
+             that was not run. In an empty cell the case does not execute the code of the fault. Columns are the faults above.\n\n| case |",
         );
         out.extend((1..=self.faults.len()).map(|number| format!(" {number} |")));
         let _ = writeln!(out, "\n|---|{}", "---|".repeat(self.faults.len()));
@@ -150,7 +150,7 @@ impl Matrix {
             }
             out.push('\n');
         }
-        out.push_str("\n# Checks that no fault turns red\n\n| check | why it stays |\n|---|---|\n");
+        out.push_str("\n# Checks that pass with every fault\n\n| check | reason |\n|---|---|\n");
         for Idle { check, reason } in &self.idle {
             let _ = writeln!(out, "| `{check}` | {} |", reason.unwrap_or("**no reason is given**"));
         }

@@ -98,7 +98,7 @@ impl Results {
             }
         }
         for case in &self.unsound {
-            let _ = writeln!(out, "without a fault, {case} does not hold: see `cargo xtask verify --case {case}`");
+            let _ = writeln!(out, "{case} does not hold without a fault: see `cargo xtask verify --case {case}`");
         }
         let (all, survivors) = (self.faults.len(), self.survivors().count());
         let _ = writeln!(out, "{} of {all} faults are caught", all - survivors);
@@ -108,7 +108,7 @@ impl Results {
     /// The table of faults and checks.
     fn markdown(&self) -> String {
         let mut out = String::from(
-            "# Planted errors and the checks that catch them\n\n| | fault | what is wrong | named cases | red checks |\n|---|---|---|---|---|\n",
+            "# Planted errors and the checks that catch them\n\n| | fault | what is wrong | named cases | failing checks |\n|---|---|---|---|---|\n",
         );
         for (number, fault) in self.faults.iter().enumerate() {
             let red = match fault.caught_by.as_slice() {
@@ -162,6 +162,6 @@ mod tests {
         assert!(!Results::new(&[sign], &cases, &store, true).lacking());
         store.put(None, "a/b", Ok(report(&[Status::Fail]))).unwrap();
         let unsound = Results::new(&[sign], &cases, &store, true);
-        assert!(unsound.lacking() && unsound.text().contains("without a fault, a/b does not hold"));
+        assert!(unsound.lacking() && unsound.text().contains("a/b does not hold without a fault"));
     }
 }

@@ -116,8 +116,8 @@ impl Runner {
         for (settled, (case, limit)) in cases.iter().enumerate() {
             let ending = match lines.recv_timeout(*limit) {
                 Ok(report) if report.case == *case => Ok(report),
-                Ok(report) => Err(format!("it reported {} in place of {case}", report.case)),
-                Err(RecvTimeoutError::Timeout) => Err(format!("it was not done after {} s", limit.as_secs())),
+                Ok(report) => Err(format!("it reported {} instead of {case}", report.case)),
+                Err(RecvTimeoutError::Timeout) => Err(format!("timeout: it did not finish in {} s", limit.as_secs())),
                 Err(RecvTimeoutError::Disconnected) => {
                     let status = process.0.wait().map_err(unstarted)?;
                     let mut text = String::new();

@@ -37,7 +37,7 @@ fn the_answer_of_a_peer_is_verified_before_its_time_is_believed() {
     let place = workspace();
     let silent = ["bench", "--quick", "--family", "peer", "--peer", "true", "--out", "silent"];
     let outcome = place.xtask(&silent).with_status(1);
-    let unknown = "FAIL peer/command: its answer is not that of the block";
+    let unknown = "FAIL peer/command: its answer differs from that of the block";
     assert!(outcome.out.contains(unknown) && outcome.out.contains("result.csv"), "{outcome:?}");
     assert!(place.read("silent/peer/long/particles.csv").starts_with("x,y,volume,vx,vy\n"));
     assert!(place.read("silent/peer/short/block.json").contains("\"steps\""));
@@ -59,7 +59,7 @@ fn the_answer_of_a_peer_is_verified_before_its_time_is_believed() {
     let give = format!("for last; do :; done\ncp '{}' \"$last/result.csv\"\n", place.path("answer.csv").display());
     place.write("hasty.sh", &give);
     assert!(
-        bench("hasty.sh", &["--out", "hasty"]).with_status(1).out.contains("too little to be told from start and end")
+        bench("hasty.sh", &["--out", "hasty"]).with_status(1).out.contains("too short to separate from start and end")
     );
     let steps = "case $last in */long) i=0; while [ $i -lt 1000000 ]; do i=$((i + 1)); done;; esac\n";
     place.write("patient.sh", &format!("{give}{steps}"));
@@ -74,7 +74,10 @@ fn the_answer_of_a_peer_is_verified_before_its_time_is_believed() {
         &format!("{count}{steps}[ $n -gt 1 ] && exit 0\n{give}").replacen("case", "for last; do :; done\ncase", 1),
     );
     let once = bench("once.sh", &["--out", "once"]).with_status(1);
-    assert!(once.out.contains("its answer is not that of the block") && once.out.contains("result.csv"), "{once:?}");
+    assert!(
+        once.out.contains("its answer differs from that of the block") && once.out.contains("result.csv"),
+        "{once:?}"
+    );
     std::fs::remove_file(place.path("n")).unwrap();
     place.write(
         "late.sh",

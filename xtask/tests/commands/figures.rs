@@ -39,7 +39,7 @@ fn what_cannot_be_drawn_ends_with_2() {
     let place = workspace();
     place.xtask(&["verify", "--out", "results", "--suite", "energy"]).with_status(0);
     let outcome = place.xtask(&["figures", "--from", "results", "--figure", "3a"]).with_status(2);
-    outcome.complains_of(&["hold no figure 3a", "plate/paper-p2-262144"]);
+    outcome.complains_of(&["contain no figure 3a", "plate/paper-p2-262144"]);
 }
 
 #[cfg(unix)]
@@ -51,6 +51,6 @@ fn results_are_not_written_through_a_link() {
     std::os::unix::fs::symlink(place.path("mine"), place.path("drawn/results")).unwrap();
     place.write("drawn/fisura.sha256", "# fisura.manifest/1 figures\n");
     let refused = place.xtask(&["figures", "--figure", "3a", "--out", "drawn"]).with_status(2);
-    refused.complains_of(&["drawn/results is a link", "--out"]);
+    refused.complains_of(&["drawn/results is a symbolic link", "--out"]);
     assert_eq!(place.files("mine"), ["f"]);
 }

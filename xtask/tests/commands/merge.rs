@@ -116,18 +116,18 @@ fn parts_that_do_not_belong_together_end_with_2() {
         assert!(!place.path("merged/results.json").exists());
     };
     refused(&["part-1", "part-3"], &["of 3 slices", "missing: 2", "help:"]);
-    refused(&["part-1", "part-2", "part-2", "part-3"], &["slice 2 is there twice", "part-2"]);
+    refused(&["part-1", "part-2", "part-2", "part-3"], &["slice 2 is a duplicate", "part-2"]);
     refused(&["part-1", "absent"], &["absent/part.json"]);
     place.xtask(&["merge", "part-1", "part-2", "part-3", "--out", "joined"]).with_status(1);
     place.xtask(&["merge", "part-1", "part-2", "--out", "joined"]).with_status(2);
     assert_eq!(place.files("joined"), [""; 0], "the verdict of before is not that of these parts");
     assert!(place.read("joined/fisura.sha256").contains("# unfinished"));
     let itself = ["merge", "part-1", "joined/../joined", "--out", "joined"];
-    place.xtask(&itself).with_status(2).complains_of(&["joined/../joined cannot be joined into itself", "--out"]);
+    place.xtask(&itself).with_status(2).complains_of(&["joined/../joined cannot be merged into itself", "--out"]);
     place
         .xtask(&["merge", "part-1", "part-2", "part-3", "--out", "part-2"])
         .with_status(2)
-        .complains_of(&["part-2 holds what `verify` wrote", "--out"]);
+        .complains_of(&["part-2 contains the output of `verify`", "--out"]);
 
     let other = |arguments: &[&str], words: &[&str]| {
         place.xtask(&[&["verify", "--out", "other", "--partition"][..], arguments].concat());
@@ -166,7 +166,7 @@ fn parts_of_another_commit_or_program_or_other_references_end_with_2() {
     let all: Vec<String> = (1..=3).map(|slice| format!("part-{slice}/part.json")).collect();
     let originals: Vec<String> = all.iter().map(|name| place.read(name)).collect();
     all.iter().for_each(|name| change(&place, name, |part| part.plan.sources = "feed".into()));
-    joined(&place).complains_of(&["this program was built from the sources", "feed", "build it anew"]);
+    joined(&place).complains_of(&["this program was built from the sources", "feed", "build it again"]);
     all.iter().zip(&originals).for_each(|(name, text)| place.write(name, text));
     place.write("part-2/part.json", &text);
     place.write("reference-data/nobody-1900/more.csv", "x\n1\n");
@@ -185,13 +185,13 @@ fn emptied_and_edited_parts_end_with_2() {
     let status = text.replace("\"status\": \"fail\"", "\"status\": \"pass\"");
     assert_ne!(status, text, "a check fails there");
     place.write("part-3/part.json", &status);
-    refused(&["part-3/part.json was changed after it was written", "run its slice again"]);
+    refused(&["part-3/part.json was changed after it was written", "run the slice again"]);
     place.write("part-3/part.json", &text);
     change(&place, "part-3/part.json", |part| part.outcomes.clear());
-    refused(&["no part holds the outcome of energy/block"]);
+    refused(&["no part contains the result of energy/block"]);
     place.write("part-3/part.json", &text);
     change(&place, "part-3/part.json", |part| part.outcomes[0].1.records.clear());
-    refused(&["no part holds the outcome of energy/block"]);
+    refused(&["no part contains the result of energy/block"]);
     place.write("part-3/part.json", &text);
     change(&place, "part-2/part.json", |part| part.outcomes.push(("plate/a".into(), part.outcomes[0].1.clone())));
     refused(&["an outcome of plate/a beyond those of the plan"]);
@@ -206,7 +206,7 @@ fn emptied_and_edited_parts_end_with_2() {
     let (other, name) = ("time_s,elastic_j\n0,1\n", "series/plate-a.csv");
     place.write(&format!("part-2/{name}"), other);
     change(&place, "part-2/part.json", |part| drop(part.files.insert(name.into(), fingerprint([other]))));
-    refused(&["series/plate-a.csv is another one in part-1 and part-2"]);
+    refused(&["series/plate-a.csv differs in part-1 and part-2"]);
     change(&place, "part-2/part.json", |part| drop(part.files.insert("../plate-b.csv".into(), "feed".into())));
     refused(&["below series/ only"]);
 }

@@ -145,7 +145,7 @@ mod signals {
 
     #[track_caller]
     fn is_unfinished(place: &Place, finished: usize) {
-        let words = format!("{finished} of 2 cases are finished: the run is under way, or was stopped");
+        let words = format!("{finished} of 2 cases are finished: the run is in progress or was stopped");
         for name in ["results.json", "report.html", "summary.md", "junit.xml"] {
             let text = place.read(&format!("out/{name}"));
             assert!(text.contains(&words), "{name} does not say {words:?}: {text}");
@@ -205,7 +205,7 @@ mod signals {
         let place = bench::workspace();
         let arguments = ["bench", "--quick", "--family", "ceilings", "--out", "out"];
         assert_eq!(end(start(&place, &arguments, "ceilings"), "-INT"), Some(130));
-        let words = "0 of 1 families are measured: the run is under way, or was stopped";
+        let words = "0 of 1 families are measured: the run is in progress or was stopped";
         for name in ["bench.json", "bench.html", "summary.md"] {
             assert!(place.read(&format!("out/{name}")).contains(words), "{name}");
         }

@@ -166,7 +166,7 @@ fn a_checkpoint_of_another_scene_or_damaged_is_refused_with_2() {
     let refused = |more: &[&str], parts: &[&str]| {
         assert_eq!(resumed(more).with_status(2).complains_of(parts).out, "");
     };
-    refused(&["--set", "output.samples=100"], &["checkpoint.bin cannot be taken up", "another scene", "--set"]);
+    refused(&["--set", "output.samples=100"], &["checkpoint.bin cannot be resumed", "another scene", "--set"]);
     refused(&["--checkpoint", "none"], &["--resume does not go with --checkpoint none"]);
     refused(&["--checkpoint", "soon"], &["soon", "seconds"]);
     let path = place.path("killed/checkpoint.bin");
@@ -175,10 +175,10 @@ fn a_checkpoint_of_another_scene_or_damaged_is_refused_with_2() {
     *flipped.last_mut().expect("bytes") ^= 1;
     let older = [b"fisura checkpoint 0\n", &whole[20..]].concat();
     for (bytes, part) in [
-        (&flipped[..], "check sum"),
-        (&whole[..whole.len() / 2], "check sum"),
+        (&flipped[..], "checksum"),
+        (&whole[..whole.len() / 2], "checksum"),
         (&older, "another version"),
-        (b"", "no checkpoint"),
+        (b"", "not a checkpoint"),
     ] {
         std::fs::write(&path, bytes).expect("a file");
         refused(&[], &[part, "--resume"]);

@@ -67,7 +67,9 @@ impl UpdatedFrame {
             let known = bodies.iter().all(|body| *body < count);
             let kept = points.iter().try_fold(0_usize, |sum, count| sum.checked_add(*count)) == Some(all);
             if !first || !known || !kept || points.len() != bodies.len() || points.contains(&0) {
-                return Err(StateError("the state is of another scene: its fragments are not of these bodies".into()));
+                return Err(StateError(
+                    "the state belongs to another scene: its fragments are not fragments of these bodies".into(),
+                ));
             }
             let whole = fields[..count].to_vec();
             *fields = bodies.iter().map(|body| whole[*body].clone()).collect();

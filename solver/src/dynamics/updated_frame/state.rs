@@ -40,7 +40,7 @@ impl UpdatedFrame {
 }
 
 fn too_fast(fast: TooFast) -> StateError {
-    StateError(format!("the state is of another scene: bodies move {:.3} spans in a step", fast.spans))
+    StateError(format!("the state belongs to another scene: bodies move {:.3} spans in a step", fast.spans))
 }
 
 impl DiscreteField {
@@ -51,14 +51,14 @@ impl DiscreteField {
             let inside =
                 (0..2).all(|d| spans[d].start < spans[d].end && spans[d].end <= self.whole.spaces[d].spans().len());
             if !inside {
-                return Err(StateError("the state is of another scene: a body lies outside the mesh".to_string()));
+                return Err(StateError("the state belongs to another scene: a body lies outside the mesh".to_string()));
             }
             self.occupy(&spans);
         }
         self.exchange_points(archive)?;
         if archive.is_reader() {
             self.rebuild().map_err(|OutsidePatch([x, y])| {
-                StateError(format!("the state is of another scene: a point lies at ({x:.6e}, {y:.6e}) m"))
+                StateError(format!("the state belongs to another scene: a point lies at ({x:.6e}, {y:.6e}) m"))
             })?;
         }
         if let Some(spans) = &mut self.spans {

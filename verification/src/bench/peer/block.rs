@@ -153,7 +153,7 @@ impl PeerBlock {
         let [x, y, volume, vx, vy] = COLUMNS.map(column);
         let (x, y, volume, vx, vy) = (x?, y?, volume?, vx?, vy?);
         if answer.rows() != self.after.len() {
-            return Err(format!("result.csv has {} rows, particles.csv {}", answer.rows(), self.after.len()));
+            return Err(format!("result.csv has {} rows, particles.csv has {}", answer.rows(), self.after.len()));
         }
         let time = self.steps[1] as f64 * self.step;
         let square = |a: [f64; 2]| a[0] * a[0] + a[1] * a[1];
@@ -163,13 +163,13 @@ impl PeerBlock {
             let far = square(off).sqrt();
             if far.is_nan() || far > SPAN {
                 let [there, here] = [[x[row], y[row]], last.position].map(|[x, y]| format!("({x:.6e}, {y:.6e}) m"));
-                let asked = "does it move, and are the rows in the order of particles.csv?";
-                return Err(format!("row {} lies at {there}, ours at {here}: {asked}", row + 1));
+                let asked = "check that the block moves and that the rows are in the order of particles.csv";
+                return Err(format!("row {} lies at {there}, in fisura at {here}: {asked}", row + 1));
             }
             let ratio = volume[row] / last.volume;
             if ratio.is_nan() || (ratio - 1.0).abs() > VOLUME {
                 return Err(format!(
-                    "row {} has the volume {:.6e} m², ours {:.6e} m²",
+                    "row {} has the volume {:.6e} m², in fisura {:.6e} m²",
                     row + 1,
                     volume[row],
                     last.volume
@@ -234,11 +234,11 @@ mod tests {
         let answer = block.answer();
         let refused = |table: &Table| block.difference(table).unwrap_err();
         let copy = refused(&table(&block.before));
-        assert!(copy.contains("row 1 lies at") && copy.contains("does it move"), "{copy}");
+        assert!(copy.contains("row 1 lies at") && copy.contains("that the block moves"), "{copy}");
         let reversed = changed(&answer, |table| table.columns.iter_mut().for_each(|column| column.reverse()));
         assert!(refused(&reversed).contains("in the order of particles.csv"));
         let short = changed(&answer, |table| table.columns.iter_mut().for_each(|column| column.truncate(7)));
-        assert!(refused(&short).contains("7 rows, particles.csv 1024"));
+        assert!(refused(&short).contains("7 rows, particles.csv has 1024"));
         let heavy = changed(&answer, |table| table.columns[2][3] *= 1.1);
         assert!(refused(&heavy).contains("row 4 has the volume"));
         let lost = changed(&answer, |table| table.columns[0][5] = f64::NAN);

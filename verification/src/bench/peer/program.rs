@@ -59,9 +59,8 @@ impl Program {
             Running(child).wait(self.limit).map_err(|e| self.failed(format!("it cannot be waited for: {e}")))?;
         let wall_s = watch.read().wall_s;
         match status {
-            None => {
-                Err(self.failed(format!("it was ended after {} s; --peer-timeout gives more", self.limit.as_secs())))
-            }
+            None => Err(self
+                .failed(format!("timeout: ended after {} s; --peer-timeout changes the limit", self.limit.as_secs()))),
             Some(status) if !status.success() => Err(self.failed(format!("it ended with {status}"))),
             Some(_) => {
                 let cpu = before.zip(seconds_of_children()).map(|(before, after)| after - before);

@@ -143,7 +143,7 @@ impl<'a> UnitParser<'a> {
             } else if self.eat(&["*", "\u{b7}", "\u{22c5}"]) {
                 result = result.times(self.power()?, 1);
             } else if divided {
-                return self.fail("a blank after a quotient may mean a product or a divisor");
+                return self.fail("a blank after a quotient is ambiguous: product or divisor");
             } else {
                 result = result.times(self.power()?, 1);
             }

@@ -112,7 +112,7 @@ impl Hertz {
             if body.rigid { 0.0 } else { (1.0 - material.poisson_ratio.powi(2)) / material.young_modulus }
         };
         if scene.bodies.len() != 2 || scene.analysis.plane != Plane::Strain {
-            return Err(StudyError::Other("this study takes two bodies in plane strain".into()));
+            return Err(StudyError::Other("this study needs two bodies in plane strain".into()));
         }
         let total = |part: &dyn Fn(&Body) -> f64| scene.bodies.iter().map(part).sum::<f64>();
         let points = scene.bodies[0].particles_per_cell[0] as f64;

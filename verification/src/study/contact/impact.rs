@@ -149,7 +149,7 @@ struct Collision {
 impl Bars {
     fn of(scene: &Scene) -> Result<Self, StudyError> {
         let [one, two] = scene.bodies.as_slice() else {
-            return Err(StudyError::Other("this study takes two bars".into()));
+            return Err(StudyError::Other("this study needs two bars".into()));
         };
         let material = &scene.materials[&one.material];
         let wave = ElasticModuli::new(material, scene.analysis.plane).dilatational_speed(material.density);

@@ -51,7 +51,7 @@ struct Onset {
 
 fn approach(scene: &Scene) -> Result<Onset, StudyError> {
     let [one, two] = scene.bodies.as_slice() else {
-        return Err(StudyError::Other("this study takes two blocks".into()));
+        return Err(StudyError::Other("this study needs two blocks".into()));
     };
     let (_, high) = one.shape.bounding_box();
     let (low, _) = two.shape.bounding_box();

@@ -83,7 +83,7 @@ fn look_at_bounds(wrong: &mut Wrong<'_>, index: usize, check: &Check, uncertaint
     let bounded = check.accept.min.is_some() || check.accept.max.is_some() || check.around_reference.is_some();
     if uncertainty.is_some() && bounded {
         let remedy = "write them as limit = { max = …, why = \"…\" }";
-        let message = "bounds of its own, where the reference has an uncertainty";
+        let message = "bounds in addition to those of the uncertainty of the reference";
         wrong.note(format!("check.{index}"), message, remedy);
     }
 }
@@ -101,7 +101,7 @@ fn look_at_band(wrong: &mut Wrong<'_>, index: usize, check: &Check, library: &Li
     }
     if check.around_reference.is_some() && check.expect.is_none() {
         let remedy = "add expect, or give min and max";
-        wrong.note(at("below"), "there is no reference value from which below and above could count", remedy);
+        wrong.note(at("below"), "below and above need a reference value", remedy);
     }
 }
 
@@ -115,7 +115,7 @@ fn look_at_variants(wrong: &mut Wrong<'_>, index: usize, check: &Check, scenes: 
         if let Some(name) = name.as_deref().filter(|name| !(known.contains(name) || key == "variant" && patterned)) {
             let meant = nearest(name, &known).map_or(String::new(), |near| format!("did you mean {near:?}? "));
             let remedy = format!("{meant}known variants: {}", known.join("; "));
-            wrong.note(at(key), format!("no run of this case is meant by {name:?}"), remedy);
+            wrong.note(at(key), format!("no run of this case matches {name:?}"), remedy);
         }
     }
     if check.against.is_some() && check.variant == check.against {
@@ -176,10 +176,10 @@ fn look_at_run(measure: &Measure, check: &Check, of: &CaseScene) -> Result<(), L
     let (check, fractures) = on_blank_run(of, known)?;
     if matches!(measure.looks_at, LooksAt::Tip | LooksAt::PhaseField) && !fractures {
         let remedy = "add [scene.material.NAME.fracture], or choose another measure";
-        return Err(("measure", format!("{:?} looks at a crack, and nothing fractures", measure.name), remedy.into()));
+        return Err(("measure", format!("{:?} needs a crack, but nothing fractures", measure.name), remedy.into()));
     }
     if matches!(measure.looks_at, LooksAt::Pictures | LooksAt::PhaseField) && scene.output.frames.is_empty() {
-        let message = format!("{:?} looks at pictures, and there are none", measure.name);
+        let message = format!("{:?} needs pictures, but there are none", measure.name);
         return Err(("measure", message, "add scene.output.frames".into()));
     }
     look_at_times(measure, &check, scene)
