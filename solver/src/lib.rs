@@ -76,7 +76,7 @@
 //!
 //! Three dimensions, plasticity, rate effects and heat. [`validate::validate`] refuses what a scene can ask
 //! for and does not exist: general patches in the updated frame; the consistent mass there or where a body
-//! cuts spans; contact of a body with itself beside fracture, quadrature by spans, XPIC or MUSL; fragments
+//! cuts spans; contact of a body with itself beside fracture, quadrature by spans or XPIC; fragments
 //! with tractions; and with quadrature by spans fracture, tractions, small strains, driven sides, transfers.
 //!
 //! # Example

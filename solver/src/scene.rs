@@ -129,8 +129,6 @@ pub enum Transfer {
     Pic,
     /// Fluid-implicit-particle.
     Flip,
-    /// FLIP with a second transfer before the strain update.
-    Musl,
     /// Affine particle-in-cell.
     Apic,
     /// Taylor particle-in-cell.

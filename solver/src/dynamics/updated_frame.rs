@@ -20,9 +20,8 @@
 //! obeys `u ← u + dt (v − dt ω² u)`, `v ← v − dt s ω² u` with FLIP, where 0 ≤ s ≤ 1 is what the way to the
 //! points and back (`M⁻¹` times the consistent mass) leaves of an increment. The mode is stable up to
 //! `ω dt = 2/√(2 − s)`: 1.46 for the shortest waves of quadratic splines, and √2 for what the points do not
-//! see. With quadrature by points [`UpdatedFrame::critical_step`] is √2/ω_max for every transfer but MUSL,
-//! whose limit is 2/ω_max ([`velocity_transfer`]). With finite strains ω_max is that of the stiffness without
-//! the geometric part.
+//! see. With quadrature by points [`UpdatedFrame::critical_step`] is √2/ω_max for every transfer
+//! ([`velocity_transfer`]). With finite strains ω_max is that of the stiffness without the geometric part.
 
 pub(crate) mod affine;
 pub mod assembly;

@@ -28,10 +28,6 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         let message = "several bodies, and contact, need shape functions at the moved positions";
         findings.error("analysis.frame", message, "use frame = \"updated\"");
     }
-    if scene.contact.is_some() && scene.analysis.transfer == Transfer::Musl {
-        let message = "contact with MUSL, whose points follow a filtered motion that contact does not hold back";
-        findings.error("analysis.transfer", message, "use transfer = \"flip\" or \"apic\"");
-    }
     if scene.contact.as_ref().is_some_and(|contact| contact.fragments) {
         fragments(scene, findings);
     }

@@ -319,7 +319,7 @@ fn what_the_solver_cannot_do_is_refused_by_key() {
             s.analysis.transfer = transfer;
         }
     };
-    for transfer in [Transfer::Flip, Transfer::Pic, Transfer::Musl, Transfer::Apic, Transfer::Tpic, Transfer::Xpic(5)] {
+    for transfer in [Transfer::Flip, Transfer::Pic, Transfer::Apic, Transfer::Tpic, Transfer::Xpic(5)] {
         assert!(errors(updated(transfer)).is_empty(), "{transfer:?}");
     }
     assert_eq!(errors(updated(Transfer::Xpic(0))), ["analysis.transfer"]);
@@ -390,7 +390,6 @@ fn several_bodies_need_the_updated_frame_and_room() {
         s.bodies[1].tractions = vec![Traction { edge: Edge::Side(Side::Right), stress: [1e3, 0.0], ramp: None }];
     });
     assert_eq!(pulled, ["body.1.traction"]);
-    assert_eq!(changed(|s| s.analysis.transfer = Transfer::Musl), ["analysis.transfer"]);
     assert_eq!(changed(|s| s.bodies[1].name = "left".into()), ["body.1.name"]);
     assert!(changed(|s| s.bodies[1].rigid = true).is_empty());
     assert!(changed(|s| s.contact = None).is_empty(), "bodies that do not meet");

@@ -92,7 +92,7 @@ fn flying(transfer: Transfer, kinematics: Kinematics) -> Scene {
 
 #[test]
 fn in_the_updated_frame_with_every_transfer() {
-    for transfer in [Transfer::Flip, Transfer::Pic, Transfer::Musl, Transfer::Apic, Transfer::Tpic, Transfer::Xpic(3)] {
+    for transfer in [Transfer::Flip, Transfer::Pic, Transfer::Apic, Transfer::Tpic, Transfer::Xpic(3)] {
         let kinematics = if transfer == Transfer::Pic { Kinematics::Small } else { Kinematics::Finite };
         goes_on_bit_by_bit(&format!("{transfer:?}"), &flying(transfer, kinematics));
     }

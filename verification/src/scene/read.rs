@@ -145,13 +145,7 @@ pub fn transfer(item: &Item<'_>) -> Option<Transfer> {
     if item.node.as_str() == Some("xpic") {
         return item.fail("xpic needs its order", "write transfer = { xpic = 5 }");
     }
-    item.choice(&[
-        ("pic", Transfer::Pic),
-        ("flip", Transfer::Flip),
-        ("musl", Transfer::Musl),
-        ("apic", Transfer::Apic),
-        ("tpic", Transfer::Tpic),
-    ])
+    item.choice(&[("pic", Transfer::Pic), ("flip", Transfer::Flip), ("apic", Transfer::Apic), ("tpic", Transfer::Tpic)])
 }
 
 fn default_solver() -> SolverSettings {

@@ -53,7 +53,11 @@ pub const FAULTS: &[Fault] = &[
     fault("affine-transposed", "points transfer the transpose of their velocity gradient", &["energy/spinning-disc"]),
     fault("hencky-without-half", "Hencky strain lacks its factor 1/2", &["stability/split", "convergence/hencky-wave"]),
     fault("critical-step-too-long", "2.2 instead of 2 over the highest frequency", &["stability/critical-step"]),
-    fault("stable-fraction-of-musl", "every transfer uses the step of MUSL", &["stability/critical-step"]),
+    fault(
+        "step-of-the-total-frame",
+        "the updated frame takes the step of the total frame, 2/ω_max",
+        &["stability/critical-step"],
+    ),
     fault("length-scale-doubled", "l0 is twice the value in the scene", &["fracture/homogeneous-bar"]),
     fault(
         "one-minus-k-missing",
@@ -177,7 +181,6 @@ pub const FAULTS: &[Fault] = &[
         "the gradient term in the surface energy of moving points is halved",
         &["energy/updated-frame-fracture"],
     ),
-    fault("musl-not-smoothed", "MUSL moves its points as FLIP does", &["energy/flip-and-musl"]),
     fault("norm-without-root", "an L2 error lacks its square root", &["convergence/elastostatics-square"]),
     fault("normal-of-one-body", "the contact normal is that of one body", &["contact/discs-head-on"]),
     fault("open-gap-counts-as-closed", "bodies stop before they touch", &["contact/onset"]),

@@ -133,7 +133,7 @@ fn fit(transfer: Transfer) -> Option<Fit> {
     match transfer {
         Transfer::Apic => Some(Fit::Weighted),
         Transfer::Tpic => Some(Fit::Taylor),
-        Transfer::Flip | Transfer::Pic | Transfer::Musl | Transfer::Xpic(_) => None,
+        Transfer::Flip | Transfer::Pic | Transfer::Xpic(_) => None,
     }
 }
 

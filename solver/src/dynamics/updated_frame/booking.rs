@@ -6,11 +6,11 @@ use super::grid::{EndOfStep, ImposedEnergy};
 impl DiscreteField {
     /// To be asked once the velocities for the points are known.
     pub(super) fn end_of_step(&self) -> EndOfStep {
-        let Self { nodes, velocity_transfer, .. } = self;
+        let nodes = &self.nodes;
         EndOfStep {
             kinetic: nodes.kinetic_energy(&nodes.velocity),
-            momentum: nodes.momentum(&velocity_transfer.motion),
-            not_followed: nodes.power_not_followed(&velocity_transfer.motion),
+            momentum: nodes.momentum(&nodes.velocity),
+            not_followed: nodes.power_not_followed(),
         }
     }
 

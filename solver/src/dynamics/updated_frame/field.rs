@@ -99,7 +99,7 @@ impl DiscreteField {
     /// If the phase field does not converge, or a point leaves the patch.
     pub(super) fn advance(&mut self, dt: f64) -> Result<EndOfStep, Failure> {
         self.kick(dt); // grid: v(n+1/2) = v(n−1/2) + dt a(n)
-        self.choose_velocities(); // transfer: the increment for the points, and the motion they follow
+        self.choose_velocities(); // transfer: the increment for the points
         let end_of_step = self.end_of_step();
         let left_span = self.grid_to_points(dt); // G2P: velocities, positions, strains
         if fault!("span-not-renewed", left_span => false) {
@@ -173,12 +173,12 @@ impl DiscreteField {
         }
     }
 
-    /// `v_p ← k v_p + Σ N Δv` (k the kept fraction, Δv the increment), `x_p += dt Σ N motion`, and the strain
-    /// of the motion; whether a point left its span.
+    /// `v_p ← k v_p + Σ N Δv` (k the kept fraction, Δv the increment), `x_p += dt Σ N v`, and the strain of
+    /// this motion; whether a point left its span.
     pub(super) fn grid_to_points(&mut self, dt: f64) -> bool {
-        let Self { patch, cells, points, velocity_transfer, forcing, .. } = self;
+        let Self { patch, cells, points, nodes, forcing, .. } = self;
         if let Some(forcing) = forcing {
-            forcing.before_motion(patch, cells, points, &velocity_transfer.motion);
+            forcing.before_motion(patch, cells, points, &nodes.velocity);
         }
         let motions = match self.deformation.take() {
             None => self.move_points(dt, self.cells.strips.iter().map(|_| SmallStrain).collect()),
@@ -190,15 +190,15 @@ impl DiscreteField {
             }
         };
         if let Some(mut surface) = self.surface.take() {
-            surface.follow(&self.view(), &self.velocity_transfer.motion, dt);
+            surface.follow(&self.view(), &self.nodes.velocity, dt);
             self.surface = Some(surface);
         }
-        let Self { patch, cells, nodes, points, velocity_transfer, forcing, loads, slice, .. } = self;
+        let Self { patch, cells, nodes, points, forcing, loads, slice, .. } = self;
         if let Some(slice) = slice {
-            slice.follow((patch, cells, nodes), &velocity_transfer.motion, dt);
+            slice.follow((patch, cells, nodes), &nodes.velocity, dt);
         }
         for load in loads {
-            load.move_points(patch, nodes.grid, &velocity_transfer.motion, dt);
+            load.move_points(patch, nodes.grid, &nodes.velocity, dt);
         }
         if let Some(forcing) = forcing {
             forcing.after_motion(points, self.time, dt);
@@ -220,7 +220,7 @@ impl DiscreteField {
             None => cells.strips.iter().map(|_| &mut [][..]).collect(),
         };
         let (kept_fraction, grid) = (velocity_transfer.kept_fraction, nodes.grid);
-        let motion = velocity_transfer.motion.each_ref().map(|f| &f[..]);
+        let motion = nodes.velocity.each_ref().map(|f| &f[..]);
         let increment = velocity_transfer.increment.each_ref().map(|f| &f[..]);
         let strips = cut(points, ranges()).into_par_iter().zip(cracked).zip(kinematics).zip(&cells.strips);
         strips

@@ -220,13 +220,13 @@ impl NodalFields {
         power + held.map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
     }
 
-    /// Power of the present forces on a `motion`, less [`Self::power_followed`], W/m.
-    pub(crate) fn power_not_followed(&self, motion: &VectorField) -> f64 {
+    /// Power of the present forces on the velocity, less [`Self::power_followed`], W/m.
+    pub(crate) fn power_not_followed(&self) -> f64 {
         let mut power = 0.0;
         for component in 0..2 {
             let nodes = self.force[component].iter().zip(&self.velocity[component]).zip(&self.inverse_mass);
-            for (((force, velocity), inverse), motion) in nodes.zip(&motion[component]) {
-                power += force * (motion - if *inverse > 0.0 { *velocity } else { 0.0 });
+            for ((force, velocity), _) in nodes.filter(|(_, inverse)| **inverse == 0.0) {
+                power += force * velocity;
             }
         }
         let held = self.constraints.iter().filter(|&(at, _, _)| self.inverse_mass[at] == 0.0);
@@ -246,11 +246,6 @@ impl NodalFields {
             [field[0][at], field[1][at]] = velocity(self.position(at));
         }
         field
-    }
-
-    /// Imposes the prescribed velocities on a motion of the points.
-    pub(crate) fn constrain(&self, motion: &mut VectorField) {
-        self.constraints.apply_velocity(motion);
     }
 
     /// Reaction times velocity of the driven control points, W/m.

@@ -1,7 +1,7 @@
 //! The energy ledger of the updated frame: works and transfer losses of a step.
 //!
-//! Let `v` be the velocity that leaves grid n (after the kick), `ẋ` the one the points move and strain with
-//! (v, but for MUSL), `w` the one that arrives on grid n + 1 (P2G), `w*` that velocity with the prescribed
+//! Let `v` be the velocity that leaves grid n (after the kick), `ẋ` its value at the points, which move and
+//! strain with it, `w` the one that arrives on grid n + 1 (P2G), `w*` that velocity with the prescribed
 //! components imposed, and f = f_ext − f_int. Then, for a linear elastic body, whatever the transfer, term by
 //! term,
 //!
@@ -17,8 +17,8 @@
 //!   `w` holds what the transfer gives back, affine parts included;
 //! - `power`: `dt/2 [ P(n+1) − f(n+1) · w* ]`, where
 //!   `P(n+1) = t(n+1) · ẋ_s + Σ m g · ẋ_p − Σ V sigma(n+1) : d` is the power of the new forces on the motion
-//!   the points just made; and `dt/2 [ f(n) · ẋ − f(n) · v ]` of the old ones, where v counts at control
-//!   points that follow forces only (those of negligible mass feel them and do not);
+//!   the points just made; and `dt/2 f(n) · v` of the old ones at control points of negligible mass, which
+//!   feel forces and do not follow them;
 //! - `imposed`: `1/2 Σ m (v_prescribed − w)²` where a prescribed velocity is imposed on what arrived. The
 //!   rest of that jump, `Σ m (v_prescribed − w) v_prescribed`, is work of the driven side.
 //!

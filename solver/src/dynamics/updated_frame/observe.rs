@@ -116,11 +116,6 @@ impl UpdatedFrame {
         self.fields.iter().fold(TransferLosses::default(), sum)
     }
 
-    /// Kinetic energy of the points of all bodies, J: see [`DiscreteField::point_kinetic_energy`].
-    pub fn point_kinetic_energy(&self, dt: f64) -> f64 {
-        self.fields.iter().map(|field| field.point_kinetic_energy(dt)).sum()
-    }
-
     /// Counters of the phase fields, if there are any.
     pub(crate) fn phase_field_counts(&self) -> Option<PhaseFieldCounts> {
         let counts = self.fields.iter().filter_map(|field| field.fracture.as_ref()).map(|f| f.field.counts());
@@ -207,21 +202,6 @@ impl DiscreteField {
             [p.position[0] + ahead, p.position[1]]
         });
         tips.max_by(|a, b| a[0].total_cmp(&b[0]))
-    }
-
-    /// Kinetic energy of the points as the scheme keeps it, `1/2 Σ m v_p(n − 1/2) · v_p(n + 1/2)` with FLIP
-    /// or MUSL, J; at t = 0 that of the initial velocities. `dt` is the step in use.
-    pub fn point_kinetic_energy(&self, dt: f64) -> f64 {
-        let square = |p: &Point| p.volume * (p.velocity[0] * p.velocity[0] + p.velocity[1] * p.velocity[1]);
-        let points = 0.5 * self.density * self.points.iter().map(square).sum::<f64>();
-        let nodes = &self.nodes;
-        // Σ m v_p · (S a)_p = w · M a with the velocity w that arrived.
-        let kick = |c: usize| -> f64 {
-            let product = |((m, w), a): ((&f64, &f64), &f64)| m * w * a;
-            nodes.mass.iter().zip(&nodes.arrived[c]).zip(&nodes.acceleration[c]).map(product).sum()
-        };
-        let half = if self.at_start { 0.0 } else { 0.5 * dt };
-        (points + half * (kick(0) + kick(1))) * self.thickness
     }
 
     fn inverted_point(&self) -> Option<InvertedPoint> {

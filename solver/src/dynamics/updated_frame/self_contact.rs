@@ -25,6 +25,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::field::DiscreteField;
 use super::pieces::{Pieces, spacing};
+use super::velocity_transfer::stable_fraction;
 use crate::dynamics::critical_step::highest_frequency;
 use crate::dynamics::failure::Failure;
 use joint_stiffness::JointStiffness;
@@ -104,7 +105,7 @@ pub(super) fn find_accelerations(fields: &mut [DiscreteField]) {
 
 /// Critical time step of all fields, s.
 pub(super) fn critical_step(fields: &[DiscreteField]) -> f64 {
-    let stable = fields[0].velocity_transfer.stable_fraction();
+    let stable = stable_fraction();
     stable / highest_frequency(&mut JointStiffness::new(fields, copies(fields)))
 }
 

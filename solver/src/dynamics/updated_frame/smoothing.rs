@@ -2,8 +2,7 @@
 //! `S⁺ = M⁻¹ Sᵀ m` the mass-weighted mean that P2G takes.
 //!
 //! Its eigenvalues lie between 0 and 1: it keeps what the points see and filters the rest. The lumped mass
-//! makes it a filter for all fields but the constant; that is the loss of PIC, and what XPIC corrects and
-//! MUSL balances.
+//! makes it a filter for all fields but the constant; that is the loss of PIC, and what XPIC corrects.
 
 use super::transfer::walk;
 use super::windows::{Window, control_values, scatter};

@@ -2,6 +2,7 @@
 
 use super::field::DiscreteField;
 use super::transfer::walk;
+use super::velocity_transfer::stable_fraction;
 use super::windows::{Window, control_values, scatter};
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::ControlGrid;
@@ -18,7 +19,7 @@ impl DiscreteField {
             return spans.critical_step(&self.patch);
         }
         let frequency = highest_frequency(&mut PointStiffness::new(self));
-        self.velocity_transfer.stable_fraction() / frequency
+        stable_fraction() / frequency
     }
 }
 

@@ -1,23 +1,21 @@
-//! The velocities that the grid gives the points: the transfers PIC, FLIP, MUSL, APIC, TPIC and XPIC.
+//! The velocities that the grid gives the points: the transfers PIC, FLIP, APIC, TPIC and XPIC.
 //!
 //! Let w be the velocity that arrived on the grid, `v = w + dt a` the one after the step (conditions on the
 //! sides imposed), S the interpolation to the points and `S⁺ S` the way there and back ([`Smoothing`]). A
 //! point gets `v_p ← k v_p + S Δv`, k being the kept fraction and Δv the increment, and moves and strains
-//! with `motion`:
+//! with v:
 //!
 //! ```text
-//!          k     Δv                                      motion
-//! PIC      0     v                                       v
-//! FLIP     1     v − w                                   v
-//! MUSL     1     v − w                                   w + S⁺ S (v − w), conditions imposed again
-//! APIC     0     v, and C from v (see `affine`)          v
-//! TPIC     0     v, and C from v                         v
-//! XPIC(m)  0     [Σ_{j<m} (I − S⁺ S)^j] w + (v − w)      v
+//!          k     Δv
+//! PIC      0     v
+//! FLIP     1     v − w
+//! APIC     0     v, and C from v (see `affine`)
+//! TPIC     0     v, and C from v
+//! XPIC(m)  0     [Σ_{j<m} (I − S⁺ S)^j] w + (v − w)
 //! ```
 //!
-//! MUSL's motion is what a second P2G of the new point velocities would give. Points move with it as well as
-//! strain (Sulsky et al. move them with v), so that the strain is that of the motion. XPIC(1) is PIC, and
-//! XPIC(m) tends to a FLIP without velocities the grid cannot see (Hammerquist and Nairn 2017).
+//! XPIC(1) is PIC, and XPIC(m) tends to a FLIP without velocities the grid cannot see (Hammerquist and Nairn
+//! 2017).
 //!
 //! # The critical step
 //!
@@ -27,12 +25,11 @@
 //! ```text
 //! FLIP      u ← u + dt (w − dt ω² u),   w ← w − s dt ω² u          stable up to Ω² = 4/(2 − s)
 //! others    u ← u + dt (w − dt ω² u),   w ← q w − s dt ω² u        stable up to Ω² = 2 (1 + q)/(1 + q − s)
-//! MUSL      w ← w − s dt ω² u,          u ← u + dt w               stable up to Ω² = 4/s
 //! ```
 //!
 //! with q = s for PIC, APIC and TPIC and q = 1 − (1 − s)^m ≥ s for XPIC(m). 0 ≤ s ≤ 1 is a theorem, but for
 //! TPIC, where it was measured (all eigenvalues of bodies at random offsets: real, 0 to 1). So Ω ≤ √2 is
-//! stable for all, and Ω ≤ 2 for MUSL.
+//! stable for all.
 
 use super::grid::NodalFields;
 use super::smoothing::Smoothing;
@@ -40,11 +37,14 @@ use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::scene::Transfer;
 
+/// Fraction of `1/ω_max` up to which a step is stable (see the module).
+pub(crate) fn stable_fraction() -> f64 {
+    fault!("step-of-the-total-frame", std::f64::consts::SQRT_2 => 2.0)
+}
+
 /// Velocities from the grid to the points.
 #[derive(Debug, Clone)]
 pub(crate) struct VelocityTransfer {
-    /// Velocity with which the points move and strain, m/s.
-    pub motion: VectorField,
     /// What the points add to the kept part of their velocity, m/s.
     pub increment: VectorField,
     /// Part of its own velocity that a point keeps.
@@ -55,14 +55,7 @@ pub(crate) struct VelocityTransfer {
 impl VelocityTransfer {
     /// Nothing yet.
     pub(crate) fn new(grid: ControlGrid, transfer: Transfer) -> Self {
-        let zeros = || [grid.zeros(), grid.zeros()];
-        Self { motion: zeros(), increment: zeros(), kept_fraction: 1.0, transfer }
-    }
-
-    /// Fraction of `1/ω_max` up to which the step is stable (see the module).
-    pub(crate) fn stable_fraction(&self) -> f64 {
-        let others = fault!("stable-fraction-of-musl", std::f64::consts::SQRT_2 => 2.0);
-        if self.transfer == Transfer::Musl { 2.0 } else { others }
+        Self { increment: [grid.zeros(), grid.zeros()], kept_fraction: 1.0, transfer }
     }
 
     /// The transfer.
@@ -72,20 +65,15 @@ impl VelocityTransfer {
 
     /// From the velocities on the grid before and after the step.
     pub(crate) fn update(&mut self, nodes: &NodalFields, smoothing: &Smoothing) {
-        let Self { motion, increment, kept_fraction, transfer } = self;
+        let Self { increment, kept_fraction, transfer } = self;
         let of_flip = fault!("transfer-keeps-less", 1.0 => 0.999);
-        *kept_fraction = if matches!(transfer, Transfer::Flip | Transfer::Musl) { of_flip } else { 0.0 };
-        copy(motion, &nodes.velocity);
-        copy(increment, &nodes.velocity);
+        *kept_fraction = if *transfer == Transfer::Flip { of_flip } else { 0.0 };
+        for (to, from) in increment.iter_mut().zip(&nodes.velocity) {
+            to.copy_from_slice(from);
+        }
         match *transfer {
             Transfer::Pic | Transfer::Apic | Transfer::Tpic => (),
             Transfer::Flip => add(increment, -1.0, &nodes.arrived),
-            Transfer::Musl => {
-                add(increment, -1.0, &nodes.arrived);
-                fault!("musl-not-smoothed", smoothing.apply(increment, motion) => copy(motion, increment));
-                add(motion, 1.0, &nodes.arrived);
-                nodes.constrain(motion);
-            }
             Transfer::Xpic(order) => {
                 let (mut rest, mut smooth) = (nodes.arrived.clone(), nodes.arrived.clone());
                 for _ in fault!("xpic-a-power-short", 1 => 2)..order {
@@ -97,22 +85,15 @@ impl VelocityTransfer {
         }
     }
 
-    /// The points follow `motion` and keep their velocities.
-    pub(crate) fn prescribe(&mut self, motion: &VectorField) {
-        copy(&mut self.motion, motion);
+    /// The points keep their velocities.
+    pub(crate) fn keep(&mut self) {
         self.increment.iter_mut().for_each(|component| component.fill(0.0));
         self.kept_fraction = 1.0;
     }
 
     /// Heap memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
-        8 * 4 * self.motion[0].len()
-    }
-}
-
-fn copy(to: &mut VectorField, from: &VectorField) {
-    for (to, from) in to.iter_mut().zip(from) {
-        to.copy_from_slice(from);
+        8 * 2 * self.increment[0].len()
     }
 }
 

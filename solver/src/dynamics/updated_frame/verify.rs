@@ -58,8 +58,8 @@ impl DiscreteField {
 
     fn prescribe_motion(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2], dt: f64) -> Result<(), Failure> {
         self.time += dt;
-        let field = self.nodes.at_greville_points(velocity);
-        self.velocity_transfer.prescribe(&field);
+        self.nodes.velocity = self.nodes.at_greville_points(velocity);
+        self.velocity_transfer.keep();
         if self.grid_to_points(dt) {
             self.sort()?;
         }

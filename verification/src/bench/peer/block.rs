@@ -194,7 +194,7 @@ fn table(points: &[Point]) -> Table {
 
 #[cfg(test)]
 mod tests {
-    use fisura::scene::{TimeStep, Transfer};
+    use fisura::scene::Transfer;
 
     use super::super::SAME;
     use super::*;
@@ -209,10 +209,9 @@ mod tests {
     fn other_transfers_give_the_answer_and_programs_that_do_not_compute_are_far_from_it() {
         let block = PeerBlock::new(32).unwrap();
         assert_eq!((block.after.len(), block.difference(&block.answer())), (4 * 32 * 32, Ok(0.0)));
-        for transfer in [Transfer::Apic, Transfer::Musl] {
+        for transfer in [Transfer::Apic, Transfer::Tpic] {
             let mut scene = block.scene.clone();
             scene.analysis.transfer = transfer;
-            scene.analysis.time_step = TimeStep::Fixed(block.step); // MUSL would take longer ones
             let difference = block.difference(&PeerBlock::of(scene, 32).unwrap().answer()).unwrap();
             assert!(difference > 0.0 && difference < SAME, "{transfer:?}: {difference}");
         }
