@@ -110,7 +110,7 @@ mod tests {
     fn what_runs_to_and_fro_without_end_is_refused() {
         let sway = |i: u32| (if i.is_multiple_of(2) { 0.1 } else { 0.9 }, f64::from(i) / 2e6);
         let lines = [thin((0..2_000_000).map(sway).collect(), &unit(), &unit(), SIZE)];
-        assert!(drawable(&lines, &unit(), &unit(), SIZE).unwrap_err().contains("2000000 points"));
+        assert!(drawable(&lines, &unit(), &unit(), SIZE).unwrap_err().contains("2000000 distinct points"));
         assert!(markable(5000).is_ok() && markable(5001).is_err());
     }
 }

@@ -195,7 +195,7 @@ fn an_empty_result_set_is_no_success() {
     let rendered = render(folder.path()).unwrap();
     assert_eq!(
         fisura_reports::text::render_text(&rendered.results).trim(),
-        "INFO: nothing was judged (0 pass, 0 known limits, 0 fail, 0 errors, 0 info)"
+        "INFO: no check has a verdict (0 pass, 0 known limits, 0 fail, 0 errors, 0 info)"
     );
     assert!(read(folder.path(), "report.html").contains("No check has a verdict"));
 }

@@ -140,14 +140,17 @@ mod tests {
     }
 
     #[test]
-    fn a_step_that_is_changed_is_told() {
+    fn a_step_that_is_changed_is_reported() {
         let told = |step, samples| plan(1e-5, step, samples, 1e-7).1;
         assert!(told(TimeStep::Fixed(5e-8), 200).is_empty(), "200 steps in 200 samples");
         assert!(told(TimeStep::Fixed(5e-8), 100).is_empty(), "2 to each of 100 samples");
         let changed = told(TimeStep::Fixed(7e-8), 200);
         assert!(changed[0].contains("5.000000e-8 s instead of 7.000000e-8 s"), "{changed:?}");
         let fewer = told(TimeStep::Fixed(7e-8), 320);
-        assert!(fewer[0].contains("143 are taken") && fewer[1].contains("6.993007e-8 s instead of"), "{fewer:?}");
+        assert!(
+            fewer[0].contains("143 samples are written") && fewer[1].contains("6.993007e-8 s instead of"),
+            "{fewer:?}"
+        );
         assert_eq!(told(TimeStep::Fixed(1.0), 1).len(), 2, "beyond the end, and critical");
         assert!(told(TimeStep::Auto, 50).is_empty() && told(TimeStep::Auto, 120).is_empty());
     }

@@ -189,7 +189,7 @@ mod tests {
         assert_eq!(series_files(&root).unwrap(), ["series/a.csv"]);
         assert_eq!(series_files(folder.path()).unwrap(), [""; 0]);
         symlink(root.join("series"), folder.path().join("series")).unwrap();
-        assert!(words(series_files(folder.path()).unwrap_err()).contains("series: it is a link"));
+        assert!(words(series_files(folder.path()).unwrap_err()).contains("series: it is a symbolic link"));
     }
 
     #[test]

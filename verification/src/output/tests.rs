@@ -59,7 +59,7 @@ fn a_changed_file_is_refused_before_anything_is_removed() {
     }
     fs::write(root.path().join("b.csv"), "12").unwrap();
     let error = folder.begin(|_| false).unwrap_err();
-    assert!(error.message.contains("changed since they were written: b.csv"), "{error:?}");
+    assert!(error.message.contains("changed after they were written: b.csv"), "{error:?}");
     assert!(folder.write("b.csv", "3").is_err() && folder.read("b.csv").is_none());
     assert_eq!(
         (names(root.path()), folder.read("a.csv").unwrap()),

@@ -29,7 +29,7 @@ fn refused(checks: &str, parts: &[&str]) {
 
 #[test]
 fn every_check_has_an_id_of_its_own() {
-    let without = "[[check]]\nquantity = \"Partition of unity, largest error\"\n";
+    let without = "[[check]]\nquantity = \"partition of unity, largest error\"\n";
     assert_eq!(case(without).unwrap().checks[0].id, "partition-of-unity-largest-error");
     refused_by("basis", &[without; 2].concat(), &["two records with the id trial/case/p=2/partition"]);
     refused(&check("Largest error", ""), &["\"Largest error\" is not a valid id", "\"largest-error\""]);
@@ -83,7 +83,7 @@ fn bounds_that_no_value_can_meet_or_that_count_from_nothing_are_refused() {
     refused(&with("from = 2\nto = 1"), &["to is before from"]);
     refused(&with("expect_source = \"a table\""), &["expect_source without expect"]);
     refused(&check("unity", "max = 1\nwhy = \" \""), &["bounds without a reason"]);
-    refused_by("basis", &with("below = 1\nabove = 2"), &["below", "no reference value", "expect"]);
+    refused_by("basis", &with("below = 1\nabove = 2"), &["below", "need a reference value", "expect"]);
     assert_eq!(prepared("basis", &with("expect = 0\nbelow = 1\nabove = 2")), "");
     refused_by("pulse", &quantity("speed of a Rayleigh pulse over c_R", "expect = 1"), &["its own reference value"]);
 }
@@ -137,7 +137,7 @@ fn what_no_run_of_a_scene_has_is_refused_before_it_runs() {
         ("measure = \"difference\"\ncolumn = \"elastic_j\"\nagainst = \"\"", &["no other run"]),
         ("measure = \"relative-rms\"\ncolumn = \"elastic_j\"\nreference = \"a/b\"", &["no reference curve \"a/b\""]),
         ("measure = \"closure\"\nband = \"a/b\"", &["no reference band \"a/b\"", "plate-events/"]),
-        ("measure = \"closure\"\nbelow = 1\nabove = 1\nwhy = \"w\"", &["no reference value"]),
+        ("measure = \"closure\"\nbelow = 1\nabove = 1\nwhy = \"w\"", &["need a reference value"]),
     ] {
         refused_by("scene", &of(lines), parts);
     }
@@ -158,9 +158,9 @@ fn values_follow_the_scene_and_charts_name_what_is_there() {
         ("a = \"= b\"\nb = \"= a\"", &["values.a", "depends on itself"][..]),
         ("a = \"= c\"", &["values.a", "no value \"c\""]),
         ("a = \"= {analysis.ende}\"", &["no key \"analysis.ende\""]),
-        ("a = \"= {initial elastic_j}\"", &["after a run only"]),
+        ("a = \"= {initial elastic_j}\"", &["known only after a run"]),
         ("a = \"= 1/0\"", &["it is inf"]),
-        ("a = \"= (\"", &["no formula"]),
+        ("a = \"= (\"", &["not a valid formula"]),
         ("\"a b\" = 1", &["is not a valid name in a formula"]),
     ] {
         refused_by("scene", &of(&format!("[values]\n{value}\n")), parts);
@@ -171,7 +171,11 @@ fn values_follow_the_scene_and_charts_name_what_is_there() {
 #[test]
 fn a_check_is_there_once() {
     let other = check("other", "max = 1\nwhy = \"in other words\"");
-    refused_by("basis", &(check("unity", "max = 1\nwhy = \"a reason\"") + &other), &["check.1", "check.0 says"]);
+    refused_by(
+        "basis",
+        &(check("unity", "max = 1\nwhy = \"a reason\"") + &other),
+        &["check.1", "duplicate of check.0"],
+    );
 }
 
 #[test]

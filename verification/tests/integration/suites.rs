@@ -157,7 +157,7 @@ fn two_runs_agree_and_a_clean_commit_takes_up_finished_cases() {
     let text = std::fs::read_to_string(&stored).unwrap();
     std::fs::write(&stored, text.replace("a trial", "no trial")).unwrap();
     let error = run(root.path(), clean()).unwrap_err().to_string();
-    assert!(error.contains("changed since they were written: partial/trial-a-"), "{error}");
+    assert!(error.contains("changed after they were written: partial/trial-a-"), "{error}");
     std::fs::write(&stored, &text).unwrap();
     let resumed = run(root.path(), clean()).unwrap();
     let finished: CaseOutcome = serde_json::from_str(&text).unwrap();

@@ -72,7 +72,7 @@ fn what_is_no_quantity_is_refused_with_a_remedy() {
         ("1 m/", "missing unit symbol"),
         ("1 (m", "missing ')'"),
         ("1 m)", "unexpected ')'"),
-        ("1 kg/m s", "product or a divisor"),
+        ("1 kg/m s", "ambiguous: product or divisor"),
         ("1 ((((((m))))))", "too many parentheses"),
         ("1 s", "is a time, expected a length"),
         ("1", "is a plain number, expected a length"),

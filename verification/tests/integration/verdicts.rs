@@ -109,7 +109,7 @@ fn keys_that_say_nothing_are_refused() {
         ("bounds = \"validation\"", "validation"),
         ("max = 1.0", "bounds without a reason"),
         ("expect = 1.0\ndiscretisation = 0.1", "bounds without a reason"),
-        ("expect = 1.0\nuncertainty = 0.0", "no uncertainty"),
+        ("expect = 1.0\nuncertainty = 0.0", "not a valid uncertainty"),
         ("uncertainty = 0.1", "uncertainty without expect"),
         ("expect_side = \"at-least\"", "expect_side without expect"),
         ("limit = { max = 1.0 }", "a limit without a cause"),

@@ -33,7 +33,7 @@ fn unknown_families_and_a_peer_without_a_program_end_with_2() {
 
 #[test]
 #[cfg(unix)]
-fn the_answer_of_a_peer_is_verified_before_its_time_is_believed() {
+fn the_time_of_a_peer_is_valid_only_with_its_answer() {
     let place = workspace();
     let silent = ["bench", "--quick", "--family", "peer", "--peer", "true", "--out", "silent"];
     let outcome = place.xtask(&silent).with_status(1);
@@ -41,7 +41,7 @@ fn the_answer_of_a_peer_is_verified_before_its_time_is_believed() {
     assert!(outcome.out.contains(unknown) && outcome.out.contains("result.csv"), "{outcome:?}");
     assert!(place.read("silent/peer/long/particles.csv").starts_with("x,y,volume,vx,vy\n"));
     assert!(place.read("silent/peer/short/block.json").contains("\"steps\""));
-    assert!(place.read("silent/summary.md").contains("do not believe its time"));
+    assert!(place.read("silent/summary.md").contains("its time is not valid"));
 
     let copy = "for last; do :; done\ncp \"$last/particles.csv\" \"$last/result.csv\"\n";
     place.write("copy.sh", copy);
@@ -51,7 +51,7 @@ fn the_answer_of_a_peer_is_verified_before_its_time_is_believed() {
         place.xtask(&[&["bench", "--quick", "--family", "peer", "--peer", command.as_str()], more].concat())
     };
     let copied = bench("copy.sh", &["--out", "copied"]).with_status(1);
-    assert!(copied.out.contains("not that of the block: row 1 lies at"), "{copied:?}");
+    assert!(copied.out.contains("differs from that of the block: row 1 lies at"), "{copied:?}");
 
     // our own answer in its place, from a program that takes no time, and from one that takes some
     let answer = PeerBlock::new(cells(true)).unwrap().answer();
@@ -84,7 +84,7 @@ fn the_answer_of_a_peer_is_verified_before_its_time_is_believed() {
         &format!("{count}{give}[ $n -lt 2 ] && cp \"$last/particles.csv\" \"$last/result.csv\"; true\n"),
     );
     let late = bench("late.sh", &["--out", "late"]).with_status(1);
-    assert!(late.out.contains("not that of the block: row 1 lies at"), "{late:?}");
+    assert!(late.out.contains("differs from that of the block: row 1 lies at"), "{late:?}");
     place.xtask(&["report", "target/fisura/bench", "--out", "again"]).with_status(0);
     assert_eq!(place.read("again/summary.md"), place.read("target/fisura/bench/summary.md"));
 }

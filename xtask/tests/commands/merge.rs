@@ -194,7 +194,7 @@ fn emptied_and_edited_parts_end_with_2() {
     refused(&["no part contains the result of energy/block"]);
     place.write("part-3/part.json", &text);
     change(&place, "part-2/part.json", |part| part.outcomes.push(("plate/a".into(), part.outcomes[0].1.clone())));
-    refused(&["an outcome of plate/a beyond those of the plan"]);
+    refused(&["a result of plate/a, which is not in the plan"]);
     slices(&place, &[]);
 
     let series = place.read("part-2/series/plate-b.csv");
@@ -208,7 +208,7 @@ fn emptied_and_edited_parts_end_with_2() {
     change(&place, "part-2/part.json", |part| drop(part.files.insert(name.into(), fingerprint([other]))));
     refused(&["series/plate-a.csv differs in part-1 and part-2"]);
     change(&place, "part-2/part.json", |part| drop(part.files.insert("../plate-b.csv".into(), "feed".into())));
-    refused(&["below series/ only"]);
+    refused(&["only CSV files below series/"]);
 }
 
 #[test]

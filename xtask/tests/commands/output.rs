@@ -78,7 +78,7 @@ fn files_of_the_user_stay_beside_those_of_a_command() {
         place.write(&format!("{folder}/summary.md"), "changed");
     }
     let refused = place.xtask(&["verify", "--case", "energy/*", "--out", "verify"]).with_status(2);
-    refused.complains_of(&["changed since they were written: summary.md", "--out"]);
+    refused.complains_of(&["changed after they were written: summary.md", "--out"]);
     assert_eq!(place.read("verify/summary.md"), "changed");
 }
 
@@ -96,7 +96,7 @@ fn nothing_is_written_through_a_link() {
     fs::remove_file(place.path("out/history.csv")).unwrap();
     link("history.csv");
     let refused = place.xtask(&["run", "scene.toml", "--out", "out"]).with_status(2);
-    refused.complains_of(&["changed since they were written: history.csv"]);
+    refused.complains_of(&["changed after they were written: history.csv"]);
     mine_are_there(&place, "mine", &["f"]);
 }
 

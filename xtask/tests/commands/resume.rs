@@ -140,7 +140,7 @@ fn files_for_paraview_of_another_scene_are_not_taken_for_those_of_the_run() {
     place.xtask(&[&run[..], &["--vtk", "--set", "output.samples=100"]].concat()).with_status(0);
     assert!(place.path("killed/points-0.vtu").exists() && place.path("killed/checkpoint.bin").exists());
     let resumed = place.xtask(&[&run[..], &["--vtk", "--resume"]].concat()).with_status(0);
-    assert!(resumed.err.contains("taken without --vtk"), "{resumed:?}");
+    assert!(resumed.err.contains("computed without --vtk"), "{resumed:?}");
     assert!(!place.path("killed/points-0.vtu").exists() && !place.read("killed/points.pvd").contains("points-0.vtu"));
 }
 

@@ -231,7 +231,7 @@ fn a_full_disk_ends_with_2_and_leaves_nothing_that_looks_finished() {
 fn the_demonstration_draws_energies_and_says_what_comes_next() {
     let place = Place::with("verification/scenes/plate.toml", &notched());
     let demo = place.xtask(&["demo", "--out", "out"]).with_status(0);
-    for part in ["e elastic", "│", "Coarse", "cargo xtask verify --suite plate", "phase-80us.svg"] {
+    for part in ["e elastic", "│", "coarse", "cargo xtask verify --suite plate", "phase-80us.svg"] {
         assert!(demo.out.contains(part), "{part} is missing: {demo:?}");
     }
     assert!(place.files("out").contains(&"history.csv".to_string()));

@@ -143,7 +143,7 @@ fn a_case_beyond_its_time_ends_with_3_and_the_others_are_there() {
     let endless = case("It ends", "quick", 1.0).replace("end_time = \"5 us\"", "end_time = \"100 s\"");
     place.write("verification/cases/energy/aeon.toml", &endless);
     let outcome = place.xtask(&["verify", "--case-timeout", "1", "--out", "out"]).with_status(3);
-    let outcome = outcome.complains_of(&["energy/aeon is over its time of 1 s", "/2] energy/block pass"]);
+    let outcome = outcome.complains_of(&["energy/aeon exceeded its timeout of 1 s", "/2] energy/block pass"]);
     assert!(outcome.out.contains("ERROR") && outcome.out.contains("--case-timeout"), "{outcome:?}");
     for wrong in ["0", "-1", "nan", "soon"] {
         let timeout = format!("--case-timeout={wrong}");
