@@ -7,7 +7,7 @@ use std::path::Path;
 use fisura_reports::junit::render_junit;
 use fisura_reports::markdown::render_markdown;
 use fisura_reports::metrics::render_metrics;
-use fisura_verification::record::json_schema;
+use fisura_verification::record::{ResultSet, json_schema};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use serde_json::{Value, json};
@@ -39,38 +39,13 @@ fn the_committed_schemas_are_those_of_the_types() {
     }
 }
 
-/// What editors complete and mark in a case file.
+/// A reader that follows the types takes the results, and refuses what they exclude.
 #[test]
-fn case_files_follow_their_schema_and_misspelt_ones_do_not() {
-    let schema = jsonschema::validator_for(&fisura_verification::case::json_schema()).unwrap();
-    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../verification/cases");
-    let suites = std::fs::read_dir(cases).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir());
-    let files: Vec<_> = suites.flat_map(|suite| std::fs::read_dir(suite).unwrap().map(|e| e.unwrap().path())).collect();
-    assert!(files.len() > 100);
-    for file in files {
-        let case: Value = toml::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
-        let found: Vec<String> = schema.iter_errors(&case).map(|e| format!("{}: {e}", e.instance_path())).collect();
-        assert_eq!(found, Vec::<String>::new(), "{}", file.display());
-    }
-    let sound = "claim = \"c\"\nseconds = 1\n[[check]]\nid = \"a\"\nquantity = \"q\"\nmax = \"1 mm\"\n";
-    let valid = |text: &str| schema.is_valid(&toml::from_str(text).unwrap());
-    assert!(valid(sound));
-    for (right, wrong) in
-        [("seconds", "second"), ("seconds = 1", "seconds = 0"), ("max", "mox"), ("[[check]]", "[check]")]
-    {
-        assert!(!valid(&sound.replace(right, wrong)), "{wrong}");
-    }
-    assert!(!valid(&format!("{sound}meshes = \"coarsest\"\n")));
-}
-
-#[test]
-fn results_follow_the_schema_and_others_do_not() {
-    let schema = jsonschema::validator_for(&json_schema()).unwrap();
-    let found: Vec<String> = schema.iter_errors(&results()).map(|e| e.to_string()).collect();
-    assert_eq!(found, Vec::<String>::new());
+fn results_follow_their_types_and_others_do_not() {
+    let reads = |value: &Value| serde_json::from_value::<ResultSet>(value.clone()).is_ok();
+    assert!(reads(&results()));
     type Change = fn(&mut Value);
-    let wrong: [(&str, Change); 5] = [
-        ("another schema", |r| r["schema"] = json!("fisura.results/2")),
+    let wrong: [(&str, Change); 4] = [
         ("an unknown status", |r| r["records"][0]["status"] = json!("skipped")),
         ("a value in words", |r| r["records"][0]["value"] = json!("4.02")),
         ("a reference of no kind", |r| r["records"][0]["reference"]["kind"] = json!("rumour")),
@@ -79,7 +54,7 @@ fn results_follow_the_schema_and_others_do_not() {
     for (what, change) in wrong {
         let mut value = results();
         change(&mut value);
-        assert!(!schema.is_valid(&value), "{what}");
+        assert!(!reads(&value), "{what}");
     }
 }
 

@@ -49,53 +49,6 @@ fn elastic(young_modulus: f64, poisson_ratio: f64, density: f64) -> Material {
     Material { young_modulus, poisson_ratio, density, fracture: None }
 }
 
-/// A block or disc on a rigid floor under gravity turned by an angle.
-fn incline(degree: usize, shape: Shape, slope: f64, friction: f64, cells: [usize; 2], size: [f64; 2]) -> Scene {
-    let mut scene = elastic_scene(degree, size, cells);
-    scene.materials.insert("glass".into(), elastic(1e7, 0.3, 1000.0));
-    let foot = 2.0 * size[1] / cells[1] as f64 * 1.37;
-    let floor =
-        Body { name: "floor".into(), rigid: true, ..body(rectangle([-1.0, -1.0], [size[0] + 1.0, foot]), [2, 2]) };
-    let lifted = match shape {
-        Shape::Rectangle { min, max } => rectangle([min[0], min[1] + foot], [max[0], max[1] + foot]),
-        Shape::Disk { center, radius } => Shape::Disk { center: [center[0], center[1] + foot], radius },
-        other => other,
-    };
-    scene.bodies = vec![body(lifted, [degree.max(2); 2]), floor];
-    scene.contact = Some(Contact { friction, ..Contact::default() });
-    scene.analysis.frame = Frame::Updated;
-    scene.analysis.kinematics = Kinematics::Finite;
-    scene.analysis.gravity = [10.0 * slope.sin(), -10.0 * slope.cos()];
-    scene.analysis.end_time = 0.4;
-    scene.analysis.safety = 0.5;
-    scene
-}
-
-#[test]
-fn a_sliding_block_and_a_rolling_disc_have_their_accelerations() {
-    let slope = 30_f64.to_radians();
-    let block = rectangle([0.2, 0.0], [0.6, 0.2]);
-    let disc = Shape::Disk { center: [0.4, 0.2], radius: 0.2 };
-    let slides = |friction: f64| 10.0 * (slope.sin() - friction * slope.cos());
-    let rolls = 10.0 * slope.sin() * 2.0 / 3.0;
-    for (what, shape, friction, expected) in
-        [("sliding block", block, 0.2, slides(0.2)), ("rolling disc", disc, 0.5, rolls)]
-    {
-        // FLIP loses 3 % of the rolling on this mesh, and 0.5 % on one twice as fine.
-        let mut scene = incline(2, shape, slope, friction, [100, 30], [2.0, 0.6]);
-        scene.analysis.transfer = Transfer::Apic;
-        fisura::validate::validate(&scene).unwrap();
-        let (simulation, samples) = run(&scene);
-        let field = &simulation.updated_frame().unwrap().fields()[0];
-        let acceleration = field.momentum()[0] / field.mass() / field.time();
-        assert!((acceleration - expected).abs() < 0.01 * expected, "{what}: {acceleration} instead of {expected}");
-        let friction: Vec<f64> = samples.iter().map(|s| s.contact.unwrap().friction).collect();
-        assert!(friction.is_sorted(), "{what}: friction does negative work");
-        let work = samples.last().unwrap().external_work;
-        assert!(samples.iter().all(|s| s.closure.abs() < 1e-5 * work), "{what}: the ledger is open");
-    }
-}
-
 /// Two blocks that fly into each other.
 fn blocks(contact: Option<Contact>) -> Scene {
     let mut scene = elastic_scene(2, [4.0, 0.5], [80, 10]);
