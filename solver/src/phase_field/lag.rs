@@ -8,9 +8,9 @@
 //! c = max(min(0, c_n), c_n + j min(0, c_n − c_{n−m})/m)
 //! ```
 //!
-//! Nothing heals, and a value that was solved as negative is not raised. Such a c does not solve its equation.
-//! With the residual `r = Gc/(2 l0) (K c − b)` its changes do the work `Σ ½ (r_n + r_{n+1}) · Δc`, which is a
-//! term of the energy ledger; after a solve r is zero.
+//! Nothing heals, and a value that was solved as negative is not raised. Such a c does not solve its
+//! equation. With the residual `r = Gc/(2 l0) (K c − b)` its changes do the work `Σ ½ (r_n + r_{n+1}) · Δc`,
+//! which is a term of the energy ledger; after a solve r is zero.
 
 use super::PhaseField;
 use crate::checkpoint::{Archive, StateError};
