@@ -25,6 +25,7 @@
 
 pub mod assembly;
 pub mod fracture;
+mod lag;
 mod method;
 mod state;
 
@@ -41,6 +42,7 @@ use crate::material::degradation::FractureModel;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_form};
 use crate::scene::SolverSettings;
+use lag::Lag;
 use method::Method;
 
 /// Diagonal and right-hand side of control points without material, as a fraction of the largest right-hand
@@ -84,6 +86,8 @@ pub struct PhaseField {
     /// History energy that is in the matrix.
     assembled: Vec<Lane>,
     method: Method,
+    /// If there are steps without a solve.
+    lag: Option<Box<Lag>>,
     counts: PhaseFieldCounts,
 }
 
@@ -124,6 +128,7 @@ impl PhaseField {
             tolerance: fault!("phase-tolerance-ignored", settings.phase_field_tolerance => 1e-2),
             load,
             previous: phase.clone(),
+            lag: Lag::new(settings.phase_field_interval, &phase),
             phase,
             method: Method::new(&matrix, settings.phase_field_solver, assembled.is_empty()),
             assembled,
@@ -201,13 +206,13 @@ impl PhaseField {
     /// # Errors
     /// As [`Self::solve`].
     pub(crate) fn solve_system(&mut self) -> Result<Convergence, SolveFailure> {
-        self.solve_with(TOO_MANY)
+        self.solve_with(TOO_MANY, 1.0)
     }
 
     /// Solves the system as it stands; `patience` is the number of iterations that an incomplete factor is
-    /// granted.
-    fn solve_with(&mut self, patience: usize) -> Result<Convergence, SolveFailure> {
-        self.extrapolate();
+    /// granted, and `ahead` the time since the last solve over that between the last two.
+    fn solve_with(&mut self, patience: usize, ahead: f64) -> Result<Convergence, SolveFailure> {
+        self.extrapolate(ahead);
         self.counts.solves += 1;
         let unit = self.model.diffusion().sqrt();
         let before = self.bytes_read();
@@ -240,8 +245,11 @@ impl PhaseField {
     /// As [`Self::solve`].
     pub(crate) fn initialise_system(&mut self) -> Result<Convergence, SolveFailure> {
         self.renew_preconditioner();
-        let convergence = self.solve_with(ITERATION_LIMIT)?; // from afar: says nothing of the solves to come
+        let convergence = self.solve_with(ITERATION_LIMIT, 1.0)?; // from afar: says nothing of the solves to come
         self.previous.copy_from_slice(&self.phase);
+        if let Some(lag) = &mut self.lag {
+            lag.begin(&self.phase);
+        }
         if let Some(preconditioner) = self.method.preconditioner() {
             preconditioner.forget();
         }
@@ -271,13 +279,13 @@ impl PhaseField {
     }
 
     /// Start of the next solve: linear extrapolation of the last two.
-    fn extrapolate(&mut self) {
+    fn extrapolate(&mut self, ahead: f64) {
         let grid = self.matrix.grid;
         for row in 0..grid.rows {
             for range in self.matrix.active().row(row) {
                 let range = grid.index(range.start, row)..grid.index(range.end, row);
                 for (phase, previous) in self.phase[range.clone()].iter_mut().zip(&mut self.previous[range]) {
-                    let next = 2.0 * *phase - *previous;
+                    let next = *phase + ahead * (*phase - *previous);
                     *previous = *phase;
                     *phase = next;
                 }
@@ -288,7 +296,7 @@ impl PhaseField {
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
         let vectors = self.load.len() + self.phase.len() + self.previous.len() + LANES * self.assembled.len();
-        self.matrix.bytes() + 8 * vectors + self.method.bytes()
+        self.matrix.bytes() + 8 * vectors + self.method.bytes() + self.lag.as_ref().map_or(0, |lag| lag.bytes())
     }
 }
 

@@ -200,6 +200,15 @@ pub enum PhaseFieldSolver {
     Cholesky,
 }
 
+/// Steps from one solve of the phase field to the next; samples fall on solves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PhaseFieldInterval {
+    /// That many steps; with 1 every step solves.
+    Steps(usize),
+    /// As many steps as change no control value of c by more than 0.05, at most 4.
+    Automatic,
+}
+
 /// Tolerances of the linear solvers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolverSettings {
@@ -207,6 +216,8 @@ pub struct SolverSettings {
     pub phase_field_tolerance: f64,
     /// Which solver.
     pub phase_field_solver: PhaseFieldSolver,
+    /// How often it solves: see [`crate::phase_field`].
+    pub phase_field_interval: PhaseFieldInterval,
 }
 
 /// Isotropic linear elastic material, brittle if it has a fracture table.

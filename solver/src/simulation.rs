@@ -63,6 +63,7 @@ struct Warned {
     closure: bool,
     boundary: bool,
     rotation: bool,
+    healing: bool,
 }
 
 impl Simulation {
@@ -125,7 +126,8 @@ impl Simulation {
     pub fn step(&mut self) -> Result<(), Breakdown> {
         self.steps += 1;
         // within the pool of rayon: from outside, every parallel loop would wake it and wait for it
-        let result = rayon::scope(|_| self.frame.step(self.plan.step));
+        let sampled = self.steps.is_multiple_of(self.plan.steps_per_sample);
+        let result = rayon::scope(|_| self.frame.step(self.plan.step, sampled));
         self.judge(result).inspect_err(|_| self.failed = true)
     }
 

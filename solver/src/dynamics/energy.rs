@@ -2,12 +2,13 @@
 //!
 //! ```text
 //! kinetic − stagger + elastic + fracture
-//!   = initial + external work + history work − contact loss − transfer loss + closure
+//!   = initial + external work + history work + lag work − contact loss − transfer loss + closure
 //! ```
 //!
 //! Each term is summed from its own definition; closure alone is what is left. Stagger, `dt²/8 aᵀ M a`, is
 //! the part of the kinetic energy at whole steps that velocity Verlet does not conserve. History work,
 //! `∬ 2 (1 − k) c (H − psi+)(−dc/dt)`, is what the model adds where the crack widens on remembered energy.
+//! Lag work is what the phase field takes up in steps without a solve (`phase_field/lag.rs`).
 //! The other terms are the usual ones: kinetic `½ vᵀ M v`, elastic `Σ V (g psi+ + psi−)`, fracture
 //! `Σ V Gc [(1 − c)²/(4 l0) + l0 |grad c|²]`, and as work the mean force of a step times its motion. What
 //! transfers lose is in `updated_frame/losses.rs`.
@@ -71,6 +72,8 @@ pub struct FractureSample {
     pub energy: f64,
     /// Work of the history field, J.
     pub history_work: f64,
+    /// Work of the phase field between its solves, J, if there are steps without one.
+    pub lag_work: Option<f64>,
     /// Crack tip, m, if there is a crack.
     pub crack_tip: Option<[f64; 2]>,
     /// Smallest phase field at a point.
@@ -94,6 +97,7 @@ impl FractureSample {
         Self {
             energy: self.energy + other.energy,
             history_work: self.history_work + other.history_work,
+            lag_work: self.lag_work.zip(other.lag_work).map(|(a, b)| a + b),
             crack_tip: tips.max_by(|a, b| a[0].total_cmp(&b[0])),
             min_phase: smaller(self.min_phase, other.min_phase),
             iterations: self.iterations + other.iterations,
@@ -121,6 +125,7 @@ impl Sample {
         row.extend(fracture.map(|f| ("fracture_j", f.energy)));
         row.push(("external_work_j", self.external_work));
         row.extend(fracture.map(|f| ("history_work_j", f.history_work)));
+        row.extend(fracture.and_then(|f| f.lag_work).map(|work| ("phase_field_lag_j", work)));
         row.extend(self.contact.into_iter().flat_map(|c| [("contact_loss_j", c.loss), ("friction_j", c.friction)]));
         row.extend(self.transfer_loss.map(|loss| ("transfer_loss_j", loss)));
         row.push(("closure_j", self.closure));
@@ -174,6 +179,7 @@ impl Sample {
             fracture: self.fracture.map(|f| FractureSample {
                 energy: f.energy * thickness,
                 history_work: f.history_work * thickness,
+                lag_work: f.lag_work.map(|work| work * thickness),
                 ..f
             }),
             external_work: self.external_work * thickness,
@@ -193,9 +199,9 @@ impl Sample {
 
     /// Sets closure from the stored energy at t = 0, J.
     pub fn close(&mut self, initial: f64) {
-        let history_work = self.fracture.as_ref().map_or(0.0, |f| f.history_work);
+        let of_model = self.fracture.as_ref().map_or(0.0, |f| f.history_work + f.lag_work.unwrap_or(0.0));
         let loss = self.transfer_loss.unwrap_or(0.0) + self.contact.map_or(0.0, |c| c.loss);
-        self.closure = self.stored() - initial - self.external_work - history_work + loss;
+        self.closure = self.stored() - initial - self.external_work - of_model + loss;
     }
 
     /// Largest single energy of the row, J: the scale of closure.

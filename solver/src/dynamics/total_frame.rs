@@ -89,7 +89,7 @@ impl TotalFrame {
         self.update_loads();
         if let Some(fracture) = &mut self.fracture {
             fracture.update_history(&self.lattice, self.moduli, self.kinematics, &self.displacement);
-            fracture.solve_phase_field(&self.lattice)?;
+            fracture.advance_phase_field(&self.lattice)?;
         }
         self.internal_forces();
         self.accelerate();

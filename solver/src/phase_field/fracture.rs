@@ -77,6 +77,17 @@ impl LatticeFracture {
         sweep_with(kinematics, lattice, fields, &mut kernels, None);
     }
 
+    /// c at the end of a step, from the present H or carried on.
+    ///
+    /// # Errors
+    /// If the solve does not converge.
+    pub fn advance_phase_field(&mut self, lattice: &Lattice) -> Result<(), SolveFailure> {
+        if let Some(convergence) = self.field.advance(lattice, &self.history)? {
+            self.iterations = convergence.iterations;
+        }
+        Ok(())
+    }
+
     /// c from the present H.
     ///
     /// # Errors

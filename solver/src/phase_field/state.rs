@@ -9,7 +9,7 @@ impl PhaseField {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { model: _, tolerance: _, matrix, load: _, phase, previous, assembled, method, counts } = self;
+        let Self { model: _, tolerance: _, matrix, load: _, phase, previous, assembled, method, lag, counts } = self;
         if !assembled.is_empty() {
             archive.list(matrix.values_mut())?;
         }
@@ -17,6 +17,7 @@ impl PhaseField {
         archive.list(previous)?;
         archive.list(assembled)?;
         archive.value(counts)?;
+        lag.as_mut().map_or(Ok(()), |lag| lag.exchange(archive))?;
         method.preconditioner().map_or(Ok(()), |preconditioner| preconditioner.exchange(archive, matrix))
     }
 }

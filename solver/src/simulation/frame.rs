@@ -43,9 +43,15 @@ impl Bodies {
         }
     }
 
-    pub(super) fn step(&mut self, dt: f64) -> Result<(), Failure> {
+    /// Takes a step of `dt` seconds; a phase field that is `sampled` after it is solved for.
+    pub(super) fn step(&mut self, dt: f64, sampled: bool) -> Result<(), Failure> {
         match self {
-            Self::Total(body) => Ok(body.step(dt)?),
+            Self::Total(body) => {
+                if sampled && let Some(fracture) = &mut body.fracture {
+                    fracture.field.expect_solve();
+                }
+                Ok(body.step(dt)?)
+            }
             Self::Updated(body) => body.step(dt),
         }
     }

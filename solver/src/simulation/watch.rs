@@ -27,6 +27,9 @@ const CLOSURE_FLOOR: f64 = 1e-6;
 /// strain of 0.5 %, and in the updated frame stresses do not turn with the material.
 const ROTATION_LIMIT: f64 = 0.1;
 
+/// Increase of a control value of c by a solve after steps without one that is worth a warning.
+const HEALING_LIMIT: f64 = 0.1;
+
 /// Steps between two looks at the deformation of a body in the total frame, each a third of a step's work.
 const STEPS_BETWEEN_LOOKS: usize = 64;
 
@@ -100,6 +103,21 @@ impl Simulation {
         ));
     }
 
+    /// Warns once if a solve took back much of what steps without one had carried on.
+    fn watch_healing(&mut self) {
+        let fracture = self.total_frame().and_then(|frame| frame.fracture.as_ref());
+        let Some(healing) = fracture.and_then(|fracture| fracture.field.healing()) else { return };
+        if self.warned.healing || healing <= HEALING_LIMIT {
+            return;
+        }
+        self.warned.healing = true;
+        self.warnings.push(format!(
+            "by t = {:.4e} s a solve raised the phase field by {healing:.2} where steps without a solve had carried its \
+             decrease on too far; lower solver.phase_field_interval",
+            self.time()
+        ));
+    }
+
     /// A point whose numbers are not finite makes the sum over all points so, which no fold or comparison on
     /// the way loses.
     fn is_healthy(&mut self) -> bool {
@@ -118,6 +136,7 @@ impl Simulation {
     /// stable, or the impulses of contact in the sample did not converge.
     pub fn watch_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
         self.watch_rotation();
+        self.watch_healing();
         let held = self.hold_to_ledger(sample);
         self.failed |= held.is_err();
         held

@@ -6,7 +6,8 @@ use super::material::plausible_speed;
 use crate::dynamics::body_sample::column_name;
 use crate::linear_algebra::extremes::larger;
 use crate::scene::{
-    Body, Boundary, Contact, Frame, Kinematics, Mass, Quadrature, Scene, Shape, Side, TimeStep, Transfer,
+    Body, Boundary, Contact, Frame, Kinematics, Mass, PhaseFieldInterval, Quadrature, Scene, Shape, Side, TimeStep,
+    Transfer,
 };
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
@@ -256,6 +257,10 @@ fn solver(scene: &Scene, findings: &mut Findings) {
     if !(tolerance > 1e-15 && tolerance <= 1e-2) {
         let message = format!("an error of {tolerance:e} of the phase field is outside (1e-15, 1e-2]");
         findings.error("solver.phase_field_tolerance", message, "give a number such as 1e-8");
+    }
+    if scene.analysis.frame == Frame::Updated && scene.solver.phase_field_interval != PhaseFieldInterval::Steps(1) {
+        let message = "in the updated frame the phase field is solved for in every step";
+        findings.error("solver.phase_field_interval", message, "remove the key, or use frame = \"total\"");
     }
 }
 

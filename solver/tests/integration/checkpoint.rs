@@ -65,6 +65,8 @@ fn in_the_total_frame() {
         scene.analysis.kinematics = kinematics;
         scene.analysis.end_time = 3e-6;
         goes_on_bit_by_bit("cracking", &scene);
+        scene.solver.phase_field_interval = PhaseFieldInterval::Automatic;
+        goes_on_bit_by_bit("cracking, an automatic interval", &scene);
     }
     let mut direct = notched_plate(2e7);
     direct.analysis.end_time = 1e-6;

@@ -41,6 +41,13 @@ fn fracture() {
 }
 
 #[test]
+fn fracture_with_an_automatic_interval() {
+    let mut scene = tall(notched_plate(6e6));
+    scene.solver.phase_field_interval = PhaseFieldInterval::Automatic;
+    check(&scene);
+}
+
+#[test]
 fn fracture_with_the_direct_solver() {
     let mut scene = tall(notched_plate(6e6));
     scene.solver.phase_field_solver = PhaseFieldSolver::Cholesky;

@@ -28,6 +28,7 @@ mod mapped;
 mod mapped_runs;
 mod modules;
 mod nurbs;
+mod phase_field_interval;
 mod points_and_spans;
 mod rotation;
 mod seeds;

@@ -2,7 +2,7 @@
 //! say.
 
 use fisura::scene::{
-    Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldSolver, Plane,
+    Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldInterval, PhaseFieldSolver, Plane,
     Quadrature, Scene, Shape, Side, SolverSettings, TimeStep, Transfer,
 };
 
@@ -82,7 +82,7 @@ impl PlainScene {
                 mass: self.mass,
                 gravity: [0.0; 2],
             },
-            solver: SolverSettings { phase_field_tolerance: 1e-14, phase_field_solver: PhaseFieldSolver::Cholesky },
+            solver: SolverSettings { phase_field_tolerance: 1e-14, phase_field_solver: PhaseFieldSolver::Cholesky, phase_field_interval: PhaseFieldInterval::Steps(1) },
             materials: [("material".to_string(), self.material)].into(),
             bodies: vec![body],
             contact: None,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use fisura::scene::{
-    Analysis, Boundary, Contact, Frame, Kinematics, Mass, Output, PhaseFieldSolver, Plane, Quadrature, Scene, Shape,
+    Analysis, Boundary, Contact, Frame, Kinematics, Mass, Output, PhaseFieldInterval, PhaseFieldSolver, Plane, Quadrature, Scene, Shape,
     SolverSettings, TimeStep, Transfer,
 };
 
@@ -149,15 +149,28 @@ pub fn transfer(item: &Item<'_>) -> Option<Transfer> {
 }
 
 fn default_solver() -> SolverSettings {
-    SolverSettings { phase_field_tolerance: 2e-6, phase_field_solver: PhaseFieldSolver::ConjugateGradients }
+    SolverSettings {
+        phase_field_tolerance: 2e-6,
+        phase_field_solver: PhaseFieldSolver::ConjugateGradients,
+        phase_field_interval: PhaseFieldInterval::Steps(1),
+    }
 }
 
 fn solver(item: &Item<'_>) -> Option<SolverSettings> {
     let default = default_solver();
-    let fields = item.fields(&["phase_field_tolerance", "phase_field_solver"])?;
+    let fields = item.fields(&["phase_field_tolerance", "phase_field_solver", "phase_field_interval"])?;
     let tolerance = fields.or("phase_field_tolerance", default.phase_field_tolerance, number);
     let solver = fields.or("phase_field_solver", default.phase_field_solver, Item::word);
-    Some(SolverSettings { phase_field_tolerance: tolerance?, phase_field_solver: solver? })
+    let interval = fields.or("phase_field_interval", default.phase_field_interval, |item| match item.node.as_str() {
+        Some("auto") => Some(PhaseFieldInterval::Automatic),
+        Some(_) => item.fail("unknown interval", "write a whole number of steps, or \"auto\""),
+        None => item.whole(1, 100).map(PhaseFieldInterval::Steps),
+    });
+    Some(SolverSettings {
+        phase_field_tolerance: tolerance?,
+        phase_field_solver: solver?,
+        phase_field_interval: interval?,
+    })
 }
 
 fn boundaries(item: &Item<'_>) -> Option<Vec<Boundary>> {

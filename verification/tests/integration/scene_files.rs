@@ -37,6 +37,7 @@ fn plate() -> Scene {
         solver: SolverSettings {
             phase_field_tolerance: 1e-8,
             phase_field_solver: PhaseFieldSolver::ConjugateGradients,
+            phase_field_interval: PhaseFieldInterval::Steps(1),
         },
         materials: [("glass".to_string(), glass)].into(),
         bodies: vec![Body {

@@ -191,6 +191,16 @@ pub const FAULTS: &[Fault] = &[
         &["energy/updated-frame-fracture"],
     ),
     fault(
+        "phase-field-carried-too-far",
+        "between solves the phase field falls twice as fast as between the last two",
+        &["energy/phase-field-interval"],
+    ),
+    fault(
+        "phase-lag-work-left-out",
+        "the ledger omits the work of the phase field between its solves",
+        &["energy/phase-field-interval"],
+    ),
+    fault(
         "phase-tolerance-ignored",
         "the phase field is solved to 1e-2 for any tolerance of the scene",
         &["fracture/iterative-against-direct"],

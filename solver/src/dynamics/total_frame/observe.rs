@@ -47,6 +47,7 @@ impl TotalFrame {
             FractureSample {
                 energy,
                 history_work: self.ledger.history_work,
+                lag_work: f.field.lag_work(),
                 crack_tip: f.crack_tip(&self.lattice, self.lowest_tip),
                 min_phase,
                 iterations: f.iterations,

@@ -167,6 +167,7 @@ impl DiscreteField {
         let fracture = self.fracture.as_ref().map(|f| FractureSample {
             energy: f.surface_energy,
             history_work: self.ledger.history_work,
+            lag_work: None,
             crack_tip: self.crack_tip(),
             min_phase: f.least_phase,
             iterations: f.iterations,

@@ -74,6 +74,7 @@ pub fn elastic_scene(degree: usize, size: [f64; 2], cells: [usize; 2]) -> Scene 
         solver: SolverSettings {
             phase_field_tolerance: 1e-10,
             phase_field_solver: PhaseFieldSolver::ConjugateGradients,
+            phase_field_interval: PhaseFieldInterval::Steps(1),
         },
         materials: [("glass".to_string(), glass())].into(),
         bodies: vec![body(rectangle([0.0; 2], size), [degree.max(2); 2])],

@@ -1,0 +1,32 @@
+//! Steps without a solve of the phase field.
+
+use crate::common::{notched_plate, relative_closure, run};
+use fisura::dynamics::energy::Sample;
+use fisura::scene::*;
+
+fn cracking(interval: PhaseFieldInterval) -> (usize, Vec<Sample>) {
+    let mut scene = notched_plate(4e6);
+    scene.analysis.end_time = 3.2e-6;
+    scene.solver.phase_field_interval = interval;
+    let (simulation, samples) = run(&scene);
+    (simulation.phase_field_counts().solves, samples)
+}
+
+#[test]
+fn the_ledger_closes_with_the_work_between_solves_and_is_open_without_it() {
+    let (all, every_step) = cracking(PhaseFieldInterval::Steps(1));
+    assert!(every_step.iter().all(|s| s.fracture.as_ref().unwrap().lag_work.is_none()));
+    let last = every_step.last().unwrap();
+    for interval in [PhaseFieldInterval::Steps(2), PhaseFieldInterval::Steps(3), PhaseFieldInterval::Automatic] {
+        let (solves, samples) = cracking(interval);
+        assert!(solves < 2 * all / 3, "{interval:?}: {solves} solves of {all}");
+        let closure = relative_closure(&samples);
+        assert!(closure <= 1e-3, "{interval:?}: closure {closure:e}");
+        let end = samples.last().unwrap();
+        let work = end.fracture.as_ref().unwrap().lag_work.unwrap();
+        println!("{interval:?}: {solves} of {all}, closure {closure:e}, lag {:e}", work / end.largest_term());
+        assert!(work.abs() > 3.0 * end.closure.abs(), "{interval:?}: {work:e} J is no part of closure {:e}", end.closure);
+        let apart = (end.stored() / last.stored() - 1.0).abs();
+        assert!(apart < 0.02, "{interval:?}: the stored energy is {apart:e} from that with a solve in every step");
+    }
+}
