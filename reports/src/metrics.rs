@@ -124,7 +124,6 @@ fn work(set: &ResultSet) -> impl Iterator<Item = Metric> {
         let counts = [
             ("particle-steps", "particle-steps", work.particle_steps),
             ("phase-field iterations", "iterations", work.phase_field_iterations),
-            ("phase-field traffic", "bytes", work.phase_field_bytes),
         ];
         let counts = counts.into_iter().filter(|count| count.2 > 0);
         counts.map(|(what, unit, count)| Metric::new(run, Some(what), unit, count as f64)).collect::<Vec<_>>()

@@ -8,7 +8,6 @@ pub mod active_columns;
 pub mod cholesky;
 pub mod conjugate_gradients;
 pub mod control_grid;
-pub mod counter;
 pub mod extremes;
 pub mod incomplete_cholesky;
 pub mod lane;

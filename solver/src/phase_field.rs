@@ -56,20 +56,13 @@ pub struct PhaseFieldCounts {
     pub solves: usize,
     /// Iterations in all.
     pub iterations: usize,
-    /// Passes of iterations over matrices and factors, each times its size, bytes; factorisations are not
-    /// counted, and a pass over a part counts as one over all.
-    pub bytes: u64,
 }
 
 impl PhaseFieldCounts {
     /// Of two solvers together.
     #[must_use]
     pub(crate) fn plus(self, other: Self) -> Self {
-        Self {
-            solves: self.solves + other.solves,
-            iterations: self.iterations + other.iterations,
-            bytes: self.bytes + other.bytes,
-        }
+        Self { solves: self.solves + other.solves, iterations: self.iterations + other.iterations }
     }
 }
 
@@ -187,10 +180,6 @@ impl PhaseField {
         self.counts = self.counts.plus(counts);
     }
 
-    fn bytes_read(&self) -> u64 {
-        self.matrix.bytes_read() + self.method.bytes_read()
-    }
-
     /// Solves for c with the history energy (J/m³) of every batch of points.
     ///
     /// # Errors
@@ -215,9 +204,7 @@ impl PhaseField {
         self.extrapolate(ahead);
         self.counts.solves += 1;
         let unit = self.model.diffusion().sqrt();
-        let before = self.bytes_read();
         let found = self.method.solve(&self.matrix, &self.load, &mut self.phase, unit * self.tolerance, patience);
-        self.counts.bytes += self.bytes_read() - before;
         let found = found.map_err(|failure| match failure {
             SolveFailure::NotConverged { iterations, error } => {
                 SolveFailure::NotConverged { iterations, error: error / unit }

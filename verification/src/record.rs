@@ -182,9 +182,6 @@ pub struct Work {
     /// Iterations of these solves.
     #[serde(skip_serializing_if = "is_zero", default)]
     pub phase_field_iterations: u64,
-    /// Passes of these iterations over matrices and factors, each times its size, bytes.
-    #[serde(skip_serializing_if = "is_zero", default)]
-    pub phase_field_bytes: u64,
 }
 
 fn is_zero(count: &u64) -> bool {

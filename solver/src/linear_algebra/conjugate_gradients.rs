@@ -106,11 +106,6 @@ impl ConjugateGradients {
         Ok(Convergence { iterations: spent + found.iterations, ..found })
     }
 
-    /// Bytes of matrices that iterations have read so far.
-    pub fn bytes_read(&self) -> u64 {
-        self.single.matrix.bytes_read() + self.double.as_ref().map_or(0, |double| double.matrix.bytes_read())
-    }
-
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
         8 * self.product.len() + self.single.bytes() + self.double.as_ref().map_or(0, |double| double.bytes())

@@ -59,11 +59,6 @@ impl PreconditionedSolver {
         }
     }
 
-    /// Bytes of factors, and of the matrix in single precision, that iterations have read so far.
-    pub(crate) fn bytes_read(&self) -> u64 {
-        self.workspace.bytes_read() + self.preconditioner.bytes_read()
-    }
-
     /// Heap memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
         self.workspace.bytes() + self.preconditioner.bytes()

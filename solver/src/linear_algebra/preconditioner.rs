@@ -12,7 +12,6 @@ use serde::{Deserialize, Serialize};
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::cholesky::{Factor, SparseCholesky};
-use crate::linear_algebra::counter::Counter;
 use crate::linear_algebra::incomplete_cholesky::{IncompleteCholesky, unit};
 use crate::linear_algebra::lane::Scalar;
 use crate::linear_algebra::stencil::Stencil;
@@ -39,7 +38,6 @@ pub struct Preconditioner {
     pause: Pause,
     /// Whether the matrix is assembled anew for every solve, and scaled: see [`IncompleteCholesky`].
     is_scaled: bool,
-    read: Counter,
 }
 
 #[derive(Debug, Clone)]
@@ -67,7 +65,6 @@ impl Preconditioner {
             fresh_iterations: None,
             pause: Pause { left: 0, next: FIRST_PAUSE },
             is_scaled,
-            read: Counter::default(),
         }
     }
 
@@ -82,7 +79,6 @@ impl Preconditioner {
     /// `out = (unit M)⁻¹ r` on the control points that take part in the system, for an `out` that is zero
     /// elsewhere; returns `rᵀ out`.
     pub fn apply<T: Scalar>(&self, active: &ActiveColumns, r: &[T], out: &mut [T]) -> f64 {
-        self.read.add(self.bytes());
         match &self.factor {
             PreconditionerKind::Incomplete(factor) => factor.apply(active, r, out),
             PreconditionerKind::Complete(_, factor) => {
@@ -119,7 +115,7 @@ impl Preconditioner {
             return factor.rescale(matrix);
         }
         if self.pause.left == 0 {
-            *self = Self { pause: self.pause, read: self.read.clone(), ..Self::new(matrix, self.is_scaled) };
+            *self = Self { pause: self.pause, ..Self::new(matrix, self.is_scaled) };
         } else {
             self.pause.left -= 1;
             self.renew(matrix);
@@ -182,11 +178,6 @@ impl Preconditioner {
         true
     }
 
-    /// Bytes of factors that [`Self::apply`] has read so far.
-    pub fn bytes_read(&self) -> u64 {
-        self.read.get()
-    }
-
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
         match &self.factor {
@@ -201,7 +192,7 @@ impl Preconditioner {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive, matrix: &Stencil) -> Result<(), StateError> {
-        let Self { factor, is_fresh, fresh_iterations, pause, is_scaled, read: _ } = self;
+        let Self { factor, is_fresh, fresh_iterations, pause, is_scaled } = self;
         archive.value(is_fresh)?;
         archive.value(fresh_iterations)?;
         archive.value(pause)?;

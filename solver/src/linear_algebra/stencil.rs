@@ -12,7 +12,6 @@ use rayon::prelude::*;
 
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::control_grid::ControlGrid;
-use crate::linear_algebra::counter::Counter;
 use crate::linear_algebra::lane::{LANES, Lane, Scalar, Vectorised, dispatch};
 use crate::linear_algebra::terms::{Coefficients, Terms};
 
@@ -40,7 +39,6 @@ pub struct Stencil<T = f64> {
     offsets: Vec<Offset>,
     coefficients: Vec<T>,
     active: ActiveColumns,
-    read: Counter,
 }
 
 impl Stencil {
@@ -48,15 +46,15 @@ impl Stencil {
     pub fn zeros(grid: ControlGrid, degree: [usize; 2]) -> Self {
         let offsets = half_stencil(degree);
         let coefficients = vec![0.0; offsets.len() * grid.len()];
-        Self { grid, degree, offsets, coefficients, active: ActiveColumns::all(grid), read: Counter::default() }
+        Self { grid, degree, offsets, coefficients, active: ActiveColumns::all(grid) }
     }
 
     /// A matrix of zeros of another precision.
     pub(crate) fn empty<T: Scalar>(&self) -> Stencil<T> {
-        let Self { grid, degree, offsets, coefficients, active, read: _ } = self;
+        let Self { grid, degree, offsets, coefficients, active } = self;
         let coefficients = vec![T::ZERO; coefficients.len()];
         let (offsets, active) = (offsets.clone(), active.clone());
-        Stencil { grid: *grid, degree: *degree, offsets, coefficients, active, read: Counter::default() }
+        Stencil { grid: *grid, degree: *degree, offsets, coefficients, active }
     }
 
     /// Position of a coupling in [`Self::offsets`].
@@ -110,7 +108,6 @@ impl Stencil {
         residual: &mut [T],
         copy: &mut Stencil<T>,
     ) {
-        self.read.add(self.bytes());
         if copy.active != self.active {
             copy.active = self.active.clone();
         }
@@ -159,7 +156,6 @@ impl<T: Scalar + Coefficients<T>> Stencil<T> {
     /// `out = A x` at the control points that take part, zero elsewhere; returns `xᵀ A x` for an x that is
     /// zero elsewhere, too.
     pub fn apply(&self, x: &[T], out: &mut [T]) -> f64 {
-        self.read.add(self.bytes());
         let chunk = CHUNK_ROWS * self.grid.stride;
         let parts: Vec<f64> = out
             .par_chunks_mut(chunk)
@@ -172,11 +168,6 @@ impl<T: Scalar + Coefficients<T>> Stencil<T> {
 
     fn least_chunks(&self) -> usize {
         LEAST_WORK.div_ceil(CHUNK_ROWS * self.row_length())
-    }
-
-    /// Bytes of the matrix that [`Self::apply`] has read so far.
-    pub fn bytes_read(&self) -> u64 {
-        self.read.get()
     }
 
     /// Heap memory, bytes.

@@ -111,11 +111,7 @@ impl PhaseField {
     ///
     /// # Errors
     /// As [`Self::solve`].
-    pub(crate) fn advance(
-        &mut self,
-        lattice: &Lattice,
-        history: &[Lane],
-    ) -> Result<Option<Convergence>, SolveFailure> {
+    pub(crate) fn advance(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Option<Convergence>, SolveFailure> {
         let Some(mut lag) = self.lag.take() else { return self.solve(lattice, history).map(Some) };
         self.assemble_increments(lattice, history);
         let due = lag.is_due();

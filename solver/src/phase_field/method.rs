@@ -62,14 +62,6 @@ impl Method {
         }
     }
 
-    /// Bytes of factors, and of the matrix in single precision, that iterations have read so far.
-    pub(crate) fn bytes_read(&self) -> u64 {
-        match self {
-            Self::Iterative(solver) => solver.bytes_read(),
-            Self::Direct(_) => 0,
-        }
-    }
-
     /// Heap memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
         match self {

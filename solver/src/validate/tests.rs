@@ -33,7 +33,11 @@ fn square() -> Scene {
             mass: Mass::Lumped,
             gravity: [0.0; 2],
         },
-        solver: SolverSettings { phase_field_tolerance: 1e-8, phase_field_solver: PhaseFieldSolver::Cholesky, phase_field_interval: PhaseFieldInterval::Steps(1) },
+        solver: SolverSettings {
+            phase_field_tolerance: 1e-8,
+            phase_field_solver: PhaseFieldSolver::Cholesky,
+            phase_field_interval: PhaseFieldInterval::Steps(1),
+        },
         materials: [("glass".to_string(), glass)].into(),
         bodies: vec![Body {
             name: "square".into(),

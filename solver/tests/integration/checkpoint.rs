@@ -94,9 +94,11 @@ fn flying(transfer: Transfer, kinematics: Kinematics) -> Scene {
 
 #[test]
 fn in_the_updated_frame_with_each_state_of_a_transfer() {
-    for (transfer, kinematics) in
-        [(Transfer::Flip, Kinematics::Small), (Transfer::Apic, Kinematics::Finite), (Transfer::Xpic(3), Kinematics::Finite)]
-    {
+    for (transfer, kinematics) in [
+        (Transfer::Flip, Kinematics::Small),
+        (Transfer::Apic, Kinematics::Finite),
+        (Transfer::Xpic(3), Kinematics::Finite),
+    ] {
         goes_on_bit_by_bit(&format!("{transfer:?}"), &flying(transfer, kinematics));
     }
     let mut by_spans = flying(Transfer::Flip, Kinematics::Finite);

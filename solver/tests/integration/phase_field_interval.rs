@@ -25,7 +25,11 @@ fn the_ledger_closes_with_the_work_between_solves_and_is_open_without_it() {
         let end = samples.last().unwrap();
         let work = end.fracture.as_ref().unwrap().lag_work.unwrap();
         println!("{interval:?}: {solves} of {all}, closure {closure:e}, lag {:e}", work / end.largest_term());
-        assert!(work.abs() > 3.0 * end.closure.abs(), "{interval:?}: {work:e} J is no part of closure {:e}", end.closure);
+        assert!(
+            work.abs() > 3.0 * end.closure.abs(),
+            "{interval:?}: {work:e} J is no part of closure {:e}",
+            end.closure
+        );
         let apart = (end.stored() / last.stored() - 1.0).abs();
         assert!(apart < 0.02, "{interval:?}: the stored energy is {apart:e} from that with a solve in every step");
     }

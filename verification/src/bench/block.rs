@@ -11,7 +11,8 @@ use fisura::phase_field::PhaseField;
 use fisura::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_form};
 use fisura::phase_field::fracture::LatticeFracture;
 use fisura::scene::{
-    Crack, Fracture, Frame, Material, Mesh, PhaseFieldInterval, PhaseFieldSolver, Plane, Scene, Shape, SolverSettings, Split,
+    Crack, Fracture, Frame, Material, Mesh, PhaseFieldInterval, PhaseFieldSolver, Plane, Scene, Shape, SolverSettings,
+    Split,
 };
 use fisura::splines::patch::Patch;
 use fisura::transfer::kernels::{DegradedStress, ElasticStress, HistoryUpdate};
@@ -51,8 +52,11 @@ pub fn cracked_scene(degree: usize, points: usize, cells: usize, margin: usize) 
     scene.analysis.safety = 0.8;
     scene.analysis.end_time = 1e-3;
     scene.output.samples = 1;
-    scene.solver =
-        SolverSettings { phase_field_tolerance: 2e-6, phase_field_solver: PhaseFieldSolver::ConjugateGradients, phase_field_interval: PhaseFieldInterval::Steps(1) };
+    scene.solver = SolverSettings {
+        phase_field_tolerance: 2e-6,
+        phase_field_solver: PhaseFieldSolver::ConjugateGradients,
+        phase_field_interval: PhaseFieldInterval::Steps(1),
+    };
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [size; 2] };
     scene.bodies[0].cracks = vec![Crack { from: [0.0, 0.5 * size], to: [0.5 * size; 2], half_width: None }];
     scene

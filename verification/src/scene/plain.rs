@@ -2,8 +2,8 @@
 //! say.
 
 use fisura::scene::{
-    Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldInterval, PhaseFieldSolver, Plane,
-    Quadrature, Scene, Shape, Side, SolverSettings, TimeStep, Transfer,
+    Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldInterval,
+    PhaseFieldSolver, Plane, Quadrature, Scene, Shape, Side, SolverSettings, TimeStep, Transfer,
 };
 
 /// What differs from study to study.
@@ -82,7 +82,11 @@ impl PlainScene {
                 mass: self.mass,
                 gravity: [0.0; 2],
             },
-            solver: SolverSettings { phase_field_tolerance: 1e-14, phase_field_solver: PhaseFieldSolver::Cholesky, phase_field_interval: PhaseFieldInterval::Steps(1) },
+            solver: SolverSettings {
+                phase_field_tolerance: 1e-14,
+                phase_field_solver: PhaseFieldSolver::Cholesky,
+                phase_field_interval: PhaseFieldInterval::Steps(1),
+            },
             materials: [("material".to_string(), self.material)].into(),
             bodies: vec![body],
             contact: None,

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use fisura::scene::{
-    Analysis, Boundary, Contact, Frame, Kinematics, Mass, Output, PhaseFieldInterval, PhaseFieldSolver, Plane, Quadrature, Scene, Shape,
-    SolverSettings, TimeStep, Transfer,
+    Analysis, Boundary, Contact, Frame, Kinematics, Mass, Output, PhaseFieldInterval, PhaseFieldSolver, Plane,
+    Quadrature, Scene, Shape, SolverSettings, TimeStep, Transfer,
 };
 
 use super::diagnostic::Problem;

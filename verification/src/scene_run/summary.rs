@@ -28,7 +28,7 @@ pub struct Summary {
     pub time_step_s: Option<f64>,
     /// Critical step of the undamaged body, s; absent if nothing can move.
     pub critical_step_s: Option<f64>,
-    /// Systems of the phase field, their iterations, and the bytes these read; absent without a phase field.
+    /// Systems of the phase field and their iterations; absent without a phase field.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub phase_field: Option<PhaseFieldCounts>,
     /// Wall time in all, s.

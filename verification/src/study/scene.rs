@@ -110,7 +110,6 @@ pub fn run_scenes(scenes: &[CaseScene]) -> (Vec<FinishedScene>, Option<Stopped>)
             particle_steps,
             phase_field_solves: counts.solves as u64,
             phase_field_iterations: counts.iterations as u64,
-            phase_field_bytes: counts.bytes,
         };
         finished.push(FinishedScene { case_scene: case_scene.clone(), run, work, timing });
     }

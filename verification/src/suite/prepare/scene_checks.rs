@@ -208,7 +208,14 @@ fn look_at_times(measure: &Measure, check: &Check, scene: &Scene) -> Result<(), 
 fn blank_history(scene: &Scene) -> Table {
     let moving = scene.bodies.iter().filter(|body| !body.rigid);
     let mut materials = moving.filter_map(|body| scene.materials.get(&body.material));
-    let fracture = FractureSample { energy: 0.0, history_work: 0.0, lag_work: None, crack_tip: None, min_phase: 1.0, iterations: 0 };
+    let fracture = FractureSample {
+        energy: 0.0,
+        history_work: 0.0,
+        lag_work: None,
+        crack_tip: None,
+        min_phase: 1.0,
+        iterations: 0,
+    };
     let sample = Sample {
         fracture: materials.any(|material| material.fracture.is_some()).then_some(fracture),
         contact: scene.contact.is_some().then_some(ContactSample { loss: 0.0, friction: 0.0 }),
