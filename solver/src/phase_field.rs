@@ -23,6 +23,7 @@
 //! norm of the residual over that of the right-hand side, a sum of volumes, would allow more at the crack the
 //! larger the mesh is.
 
+mod advance;
 pub mod assembly;
 pub mod fracture;
 mod lag;

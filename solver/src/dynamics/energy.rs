@@ -8,7 +8,7 @@
 //! Each term is summed from its own definition; closure alone is what is left. Stagger, `dt²/8 aᵀ M a`, is
 //! the part of the kinetic energy at whole steps that velocity Verlet does not conserve. History work,
 //! `∬ 2 (1 − k) c (H − psi+)(−dc/dt)`, is what the model adds where the crack widens on remembered energy.
-//! Lag work is what the phase field takes up in steps without a solve (`phase_field/lag.rs`).
+//! Lag work is what the phase field takes up in steps without a solve (`phase_field/advance.rs`).
 //! The other terms are the usual ones: kinetic `½ vᵀ M v`, elastic `Σ V (g psi+ + psi−)`, fracture
 //! `Σ V Gc [(1 − c)²/(4 l0) + l0 |grad c|²]`, and as work the mean force of a step times its motion. What
 //! transfers lose is in `updated_frame/losses.rs`.

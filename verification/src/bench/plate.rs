@@ -11,6 +11,7 @@
 use std::sync::Arc;
 
 use fisura::Simulation;
+use fisura::scene::PhaseFieldInterval;
 
 use super::plate_error::{References, TIGHT_TOLERANCE, difference_of_energies};
 use super::plate_scene::{graded, half, with_toughness_of_mesh};
@@ -38,25 +39,28 @@ const QUICK: usize = 2;
 const FINEST_CUBIC: f64 = 0.5;
 
 /// A way to run the plate on graded meshes: with the loose tolerance or that of the suite, with Gc or
-/// Gc/kappa.
+/// Gc/kappa, and with a solve of the phase field in every step or in every third one, as the elements have.
 #[derive(Debug, Clone, Copy)]
 struct Way {
     degree: usize,
     loose: bool,
     corrected: bool,
+    interval: usize,
 }
 
-const WAYS: [Way; 5] = [
-    Way { degree: 2, loose: true, corrected: false },
-    Way { degree: 2, loose: true, corrected: true },
-    Way { degree: 2, loose: false, corrected: true },
-    Way { degree: 3, loose: true, corrected: true },
-    Way { degree: 3, loose: false, corrected: true },
+const WAYS: [Way; 6] = [
+    Way { degree: 2, loose: true, corrected: false, interval: 3 },
+    Way { degree: 2, loose: true, corrected: true, interval: 1 },
+    Way { degree: 2, loose: true, corrected: true, interval: 3 },
+    Way { degree: 2, loose: false, corrected: true, interval: 3 },
+    Way { degree: 3, loose: true, corrected: true, interval: 3 },
+    Way { degree: 3, loose: false, corrected: true, interval: 3 },
 ];
 
 impl Way {
     fn scene(self, settings: &Settings, h: f64) -> Result<CaseScene, BenchError> {
         let mut case = graded(settings, self.degree, h)?;
+        case.scene.solver.phase_field_interval = PhaseFieldInterval::Steps(self.interval);
         if self.loose {
             case.scene.solver.phase_field_tolerance = LOOSE_TOLERANCE;
         }
@@ -69,9 +73,10 @@ impl Way {
     /// Id and label of its run of a scene.
     fn names(self, case: &CaseScene, h: f64) -> (String, String) {
         let [name, toughness] = if self.corrected { ["kappa", "Gc/κ"] } else { ["gc", "Gc"] };
-        let (degree, tolerance) = (self.degree, case.scene.solver.phase_field_tolerance);
-        let id = format!("plate/graded/p{degree}-{name}-{tolerance:e}/h{h}");
-        (id, format!("fisura, p = {degree}, graded, {toughness}, {tolerance:e}"))
+        let Self { degree, interval, .. } = self;
+        let tolerance = case.scene.solver.phase_field_tolerance;
+        let id = format!("plate/graded/p{degree}-{name}-{tolerance:e}-m{interval}/h{h}");
+        (id, format!("fisura, p = {degree}, graded, {toughness}, {tolerance:e}, m = {interval}"))
     }
 
     fn meshes(self, quick: bool) -> impl Iterator<Item = f64> {
