@@ -266,14 +266,14 @@ impl PhaseField {
         }
     }
 
-    /// Start of the next solve: linear extrapolation of the last two.
+    /// Start of the next solve: linear extrapolation of the last two, `ahead` times the time between them.
     fn extrapolate(&mut self, ahead: f64) {
         let grid = self.matrix.grid;
         for row in 0..grid.rows {
             for range in self.matrix.active().row(row) {
                 let range = grid.index(range.start, row)..grid.index(range.end, row);
                 for (phase, previous) in self.phase[range.clone()].iter_mut().zip(&mut self.previous[range]) {
-                    let next = *phase + ahead * (*phase - *previous);
+                    let next = (1.0 + ahead) * *phase - ahead * *previous;
                     *previous = *phase;
                     *phase = next;
                 }

@@ -31,10 +31,12 @@ impl PhaseField {
         self.assemble_increments(lattice, history);
         let due = lag.is_due();
         lag.since += 1;
-        let result = if due { self.solve_after(&mut lag).map(Some) } else { Ok(None) };
-        if !due {
+        let result = if due {
+            self.solve_after(&mut lag).map(Some)
+        } else {
             self.carry_on(&mut lag);
-        }
+            Ok(None)
+        };
         self.lag = Some(lag);
         result
     }

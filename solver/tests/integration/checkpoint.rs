@@ -93,12 +93,9 @@ fn flying(transfer: Transfer, kinematics: Kinematics) -> Scene {
 }
 
 #[test]
-fn in_the_updated_frame_with_each_state_of_a_transfer() {
-    for (transfer, kinematics) in [
-        (Transfer::Flip, Kinematics::Small),
-        (Transfer::Apic, Kinematics::Finite),
-        (Transfer::Xpic(3), Kinematics::Finite),
-    ] {
+fn in_the_updated_frame_with_every_transfer() {
+    for transfer in [Transfer::Flip, Transfer::Pic, Transfer::Apic, Transfer::Tpic, Transfer::Xpic(3)] {
+        let kinematics = if transfer == Transfer::Pic { Kinematics::Small } else { Kinematics::Finite };
         goes_on_bit_by_bit(&format!("{transfer:?}"), &flying(transfer, kinematics));
     }
     let mut by_spans = flying(Transfer::Flip, Kinematics::Finite);

@@ -16,21 +16,31 @@ fn cracking(interval: PhaseFieldInterval) -> (usize, Vec<Sample>) {
 fn the_ledger_closes_with_the_work_between_solves_and_is_open_without_it() {
     let (all, every_step) = cracking(PhaseFieldInterval::Steps(1));
     assert!(every_step.iter().all(|s| s.fracture.as_ref().unwrap().lag_work.is_none()));
-    let last = every_step.last().unwrap();
     for interval in [PhaseFieldInterval::Steps(2), PhaseFieldInterval::Steps(3), PhaseFieldInterval::Automatic] {
         let (solves, samples) = cracking(interval);
         assert!(solves < 2 * all / 3, "{interval:?}: {solves} solves of {all}");
         let closure = relative_closure(&samples);
-        assert!(closure <= 1e-3, "{interval:?}: closure {closure:e}");
+        assert!(closure <= 2.0 * relative_closure(&every_step), "{interval:?}: closure {closure:e}");
         let end = samples.last().unwrap();
         let work = end.fracture.as_ref().unwrap().lag_work.unwrap();
-        println!("{interval:?}: {solves} of {all}, closure {closure:e}, lag {:e}", work / end.largest_term());
         assert!(
             work.abs() > 3.0 * end.closure.abs(),
             "{interval:?}: {work:e} J is no part of closure {:e}",
             end.closure
         );
-        let apart = (end.stored() / last.stored() - 1.0).abs();
-        assert!(apart < 0.02, "{interval:?}: the stored energy is {apart:e} from that with a solve in every step");
     }
+}
+
+#[test]
+fn an_interval_that_is_too_long_warns() {
+    let warnings = |interval| {
+        let mut scene = notched_plate(4e6);
+        scene.analysis.end_time = 3.2e-6;
+        scene.output.samples = 2;
+        scene.solver.phase_field_interval = PhaseFieldInterval::Steps(interval);
+        run(&scene).0.warnings().to_vec()
+    };
+    assert_eq!(warnings(2), [""; 0]);
+    let found = warnings(20);
+    assert!(found.iter().any(|warning| warning.contains("lower solver.phase_field_interval")), "{found:?}");
 }

@@ -231,8 +231,16 @@ fn closure_chart(suite: &str, runs: &[RunInfo]) -> Figure {
 
 /// Every term of the ledger of one run.
 fn ledger(run: &RunInfo) -> Figure {
-    let terms =
-        ["kinetic_j", "elastic_j", "fracture_j", "external_work_j", "history_work_j", "transfer_loss_j", "closure_j"];
+    let terms = [
+        "kinetic_j",
+        "elastic_j",
+        "fracture_j",
+        "external_work_j",
+        "history_work_j",
+        "phase_field_lag_j",
+        "transfer_loss_j",
+        "closure_j",
+    ];
     let present = terms.into_iter().filter(|t| run.columns.iter().any(|c| c == t));
     let curves = present.map(|term| Curve::energy(&run.series, term, run.energy_factor)).collect();
     Figure {

@@ -2,7 +2,7 @@
 
 use fisura::dynamics::body_sample::BodySamples;
 use fisura::dynamics::energy::{ContactSample, FractureSample, Sample};
-use fisura::scene::{Frame, Scene};
+use fisura::scene::{Frame, PhaseFieldInterval, Scene};
 
 use super::{EVERYWHERE, Wrong, distinct, find_band, grid_convergence};
 use crate::case::Check;
@@ -211,7 +211,7 @@ fn blank_history(scene: &Scene) -> Table {
     let fracture = FractureSample {
         energy: 0.0,
         history_work: 0.0,
-        lag_work: None,
+        lag_work: (scene.solver.phase_field_interval != PhaseFieldInterval::Steps(1)).then_some(0.0),
         crack_tip: None,
         min_phase: 1.0,
         iterations: 0,
