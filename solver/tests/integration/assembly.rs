@@ -1,44 +1,17 @@
 //! Matrices of the phase field: entries against plain sums over the points, and the same bits for any thread
 //! count.
 
-use crate::common::{Random, body, graded_knots, rectangle, with_threads};
+use crate::common::plain_points::PerPoint;
+use crate::common::{body, graded_knots, rectangle, with_threads};
 use fisura::linear_algebra::extremes::larger;
-use fisura::linear_algebra::lane::Lane;
 use fisura::linear_algebra::stencil::Stencil;
 use fisura::particles::lattice::Lattice;
-use fisura::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_form};
+use fisura::phase_field::assembly::{Constant, Integrand, add_form};
 use fisura::phase_field::integrate_shape_functions;
 use fisura::scene::*;
 use fisura::splines::patch::Patch;
 
-/// A coefficient per point; spans whose first batch divides by `skip` have none.
-struct PerPoint {
-    values: Vec<Lane>,
-    skip: usize,
-}
-
-impl PerPoint {
-    fn new(lattice: &Lattice, skip: usize) -> Self {
-        let mut random = Random::new(3);
-        let mut lane = || Lane([0.0; 8].map(|_| 1.5 + random.next()));
-        Self { values: (0..lattice.batches()).map(|_| lane()).collect(), skip }
-    }
-
-    fn skips(&self, first: usize) -> bool {
-        self.skip > 0 && first.is_multiple_of(self.skip)
-    }
-}
-
-impl PointCoefficients for PerPoint {
-    fn span(&self, first: usize, weights: &[Lane], out: &mut [Lane]) -> bool {
-        for (i, weight) in weights.iter().enumerate() {
-            out[i] = self.values[first + i] * *weight;
-        }
-        !self.skips(first)
-    }
-}
-
-fn compare(mesh: &Mesh, body: &Body, skip: usize) {
+fn compare(mesh: &Mesh, body: &Body, skip: Option<usize>) {
     let name = format!("degree {:?}, {:?}, {:?}", mesh.degree, body.particles_per_cell, body.shape);
     let patch = Patch::new(mesh);
     let lattice = Lattice::new(&patch, body);
@@ -94,12 +67,12 @@ fn entries_are_sums_over_the_points() {
     for degree in 1..=4 {
         for points in [1, 2, 3, 5] {
             let body = body(rectangle([0.0; 2], [1.9, 1.8]), [points; 2]);
-            compare(&Mesh::uniform([degree; 2], [0.0; 2], [1.9, 1.8], [19, 18]), &body, 0);
+            compare(&Mesh::uniform([degree; 2], [0.0; 2], [1.9, 1.8], [19, 18]), &body, None);
         }
     }
     for (degree, points) in [([1, 4], [2, 3]), ([3, 2], [1, 4]), ([2, 3], [3, 2])] {
         let body = body(rectangle([0.013, 0.27], [1.55, 1.71]), points);
-        compare(&Mesh::uniform(degree, [0.0; 2], [1.9, 1.8], [19, 18]), &body, 0);
+        compare(&Mesh::uniform(degree, [0.0; 2], [1.9, 1.8], [19, 18]), &body, None);
     }
 }
 
@@ -108,16 +81,16 @@ fn entries_on_graded_and_repeated_knots_and_in_a_disk() {
     for degree in 2..=4 {
         let knots = [graded_knots(degree, 19, &[3, 8, 9]), graded_knots(degree, 21, &[1, 2, 3, 17])];
         let end = [knots[0][knots[0].len() - 1], knots[1][knots[1].len() - 1]];
-        compare(&Mesh { degree: [degree; 2], knots, geometry: None }, &body(rectangle([0.0; 2], end), [2, 3]), 0);
+        compare(&Mesh { degree: [degree; 2], knots, geometry: None }, &body(rectangle([0.0; 2], end), [2, 3]), None);
         let disk = Shape::Disk { center: [0.91, 0.8], radius: 0.6 };
-        compare(&Mesh::uniform([degree; 2], [0.0; 2], [1.9, 1.8], [19, 18]), &body(disk, [2; 2]), 0);
+        compare(&Mesh::uniform([degree; 2], [0.0; 2], [1.9, 1.8], [19, 18]), &body(disk, [2; 2]), None);
     }
 }
 
 #[test]
 fn spans_without_a_coefficient_are_left_out() {
     let mesh = Mesh::uniform([2; 2], [0.0; 2], [1.9, 1.8], [19, 18]);
-    compare(&mesh, &body(rectangle([0.0; 2], [1.9, 1.8]), [2; 2]), 12);
+    compare(&mesh, &body(rectangle([0.0; 2], [1.9, 1.8]), [2; 2]), Some(3));
 }
 
 #[test]
@@ -126,7 +99,7 @@ fn two_threads_give_the_bits_of_one() {
         let patch = Patch::new(&Mesh::uniform([degree; 2], [0.0; 2], [2.0, 9.7], [20, 97]));
         let lattice = Lattice::new(&patch, &body(rectangle([0.0; 2], [2.0, 9.7]), [2; 2]));
         assert!(lattice.strips() > 8, "more strips than threads");
-        let coefficients = PerPoint::new(&lattice, 0);
+        let coefficients = PerPoint::new(&lattice, None);
         let assemble = || {
             let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
             add_form(&mut matrix, &lattice, Integrand::Diffusion, &coefficients);

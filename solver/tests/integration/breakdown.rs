@@ -215,6 +215,8 @@ fn a_long_step_is_named_beside_the_cause_and_not_for_it() {
         for ratio in [0.5, 1.02] {
             let found = first_breakdown(&with_step(scene.clone(), ratio, 200), name).1;
             assert!(found.cause.starts_with(cause), "{name}, {ratio}: {found}");
+            let is_off_mesh = found.place[0] > 0.01 && found.what.contains("left the mesh");
+            assert_eq!(is_off_mesh && found.cause.contains("enlarge mesh.size"), name == "leaving", "{ratio}: {found}");
             assert_eq!(found.cause.contains("besides, the time step"), ratio > 1.0, "{name}, {ratio}: {found}");
         }
     }

@@ -1,6 +1,5 @@
 //! Finite kinematics in the updated frame: rotations, the small-strain limit, the spinning disc.
 
-use std::f64::consts::TAU;
 
 use crate::common::{unit_solid, updated_scene};
 use fisura::dynamics::updated_frame::UpdatedFrame;
@@ -22,33 +21,6 @@ fn scene(degree: usize, side: f64, cells: usize, shape: Shape, kinematics: Kinem
 
 fn block() -> Shape {
     Shape::Rectangle { min: [-0.21, 0.05], max: [0.34, 0.33] }
-}
-
-/// Largest strain after a revolution in `steps` increments, each applied exactly.
-fn strain_of_a_revolution(degree: usize, steps: usize, kinematics: Kinematics) -> f64 {
-    let mut frame = UpdatedFrame::new(&scene(degree, 1.2, 12, block(), kinematics)).unwrap();
-    let (s, c) = (TAU / steps as f64).sin_cos();
-    for _ in 0..steps {
-        frame.prescribe_motion(|[x, y]| [(c - 1.0) * x - s * y, s * x + (c - 1.0) * y], 1.0).unwrap();
-    }
-    for point in frame.fields()[0].points() {
-        let u = point.displacement;
-        assert!(u[0].hypot(u[1]) <= 1e-12, "not back by {u:?}");
-    }
-    frame.fields()[0].points().iter().flat_map(|p| p.strain).fold(0.0, |a, e| larger(a, e.abs()))
-}
-
-#[test]
-fn rotations_leave_no_hencky_strain_and_a_known_linear_one() {
-    for degree in [2, 3] {
-        let finite = strain_of_a_revolution(degree, 1000, Kinematics::Finite);
-        let small = strain_of_a_revolution(degree, 1000, Kinematics::Small);
-        // Each increment adds cos θ − 1 to both normal strains.
-        let expected = 1000.0 * (1.0 - (TAU / 1000.0).cos());
-        println!("p = {degree}: finite {finite:.1e}, small {small:.6} of {expected:.6}");
-        assert!(finite <= 1e-10, "p = {degree}: {finite:e}");
-        assert!((small - expected).abs() <= 1e-12, "p = {degree}: {small} instead of {expected}");
-    }
 }
 
 #[test]

@@ -97,18 +97,6 @@ fn terms_equal_their_definitions() {
     assert!(relative_closure(&samples) <= 1e-12, "{:e}", relative_closure(&samples));
 }
 
-/// Damage leaves only the quadrature of the stress work, which is quartered when the step is halved.
-#[test]
-fn closure_falls_with_the_square_of_the_step() {
-    let closure = |safety: f64| {
-        let mut scene = cracking(safety);
-        scene.solver.phase_field_tolerance = 1e-12;
-        relative_closure(&run(&scene).1)
-    };
-    let (coarse, fine) = (closure(0.6), closure(0.15));
-    assert!(coarse / fine > 8.0, "{coarse:e} at 0.6, {fine:e} at 0.15");
-}
-
 /// Elastic bodies close to round-off, whatever moves them.
 #[test]
 fn elastic_scenes_close_to_round_off() {

@@ -2,62 +2,16 @@
 //! itself, with knots whose spans differ by up to 100, weights from 0.1 to 10, and degrees that differ
 //! between the directions.
 
-use crate::common::plain_points::{PlainPoint, assert_close, largest, plain_points};
+use crate::common::plain_points::{PerPoint, PlainPoint, assert_close, largest, plain_points, stress_of, swept};
 use crate::common::{Random, annulus, bent_patch, body, random_patch};
 use fisura::linear_algebra::lane::Lane;
 use fisura::linear_algebra::stencil::Stencil;
 use fisura::particles::lattice::Lattice;
-use fisura::phase_field::assembly::{Integrand, PointCoefficients, add_form};
+use fisura::phase_field::assembly::{Integrand, add_form};
 use fisura::scene::*;
 use fisura::splines::nurbs::NurbsPatch;
 use fisura::splines::patch::Patch;
-use fisura::transfer::point_kernel::{Fields, PointKernel, PointValues, Stress};
-use fisura::transfer::sweep::{StripForces, sweep};
-
-/// Records what it is given and answers with a stress of its own making, per strip.
-struct Recorder {
-    values: Vec<(usize, Lane, PointValues)>,
-}
-
-impl PointKernel for Recorder {
-    const DISPLACEMENT: bool = true;
-    const PHASE: bool = true;
-    const PHASE_GRADIENT: bool = true;
-    const STRESS: bool = true;
-
-    fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
-        self.values.push((at, weight, *values));
-        let [xx, xy, yx, yy] = stress_of(values.gradient);
-        Stress { xx, xy, yx, yy }
-    }
-}
-
-/// Not symmetric, so that no mixed-up component goes unseen.
-fn stress_of(g: [Lane; 4]) -> [Lane; 4] {
-    [
-        g[0] * 2.0 + g[3] * 0.3 + g[1] * 0.7,
-        g[1] * 1.1 + g[2] * 0.6 - g[0] * 0.2,
-        g[2] * 0.8 - g[1] * 0.5 + g[3] * 0.4,
-        g[3] * 1.7 - g[0] * 0.4 + g[2] * 0.9,
-    ]
-}
-
-/// One sweep: per batch weight and values, and the assembled forces.
-fn swept(lattice: &Lattice, fields: Fields) -> (Vec<(Lane, PointValues)>, [Vec<f64>; 2]) {
-    let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| Recorder { values: Vec::new() }).collect();
-    let mut strips = StripForces::new(lattice);
-    sweep(lattice, fields, &mut kernels, Some(&mut strips));
-    let mut at_batch = vec![None; lattice.batches()];
-    for (strip, kernel) in kernels.iter().enumerate() {
-        for &(at, weight, values) in &kernel.values {
-            let batch = strip * lattice.strip_batches() + at;
-            assert!(at_batch[batch].replace((weight, values)).is_none(), "a batch is visited twice");
-        }
-    }
-    let mut forces = [lattice.grid.zeros(), lattice.grid.zeros()];
-    strips.assemble(lattice.grid.stride, &mut forces);
-    (at_batch.into_iter().map(|b| b.expect("every batch is visited")).collect(), forces)
-}
+use fisura::transfer::point_kernel::Fields;
 
 /// Round-off of sums over rational functions of weights 100 apart: 1e-13 of the largest entry.
 const ROUND_OFF: f64 = 1e-13;
@@ -71,7 +25,7 @@ fn compare(name: &str, nurbs: &NurbsPatch, counts: [usize; 2], layout: Layout) {
     assert_eq!(lattice.count(), points.len(), "{name}");
     let mut random = Random::new(7);
     let [ux, uy, phase] = [(); 3].map(|()| random.field(grid, 1.0));
-    let (seen, forces) = swept(&lattice, Fields { displacement: [&ux, &uy], phase: &phase });
+    let (seen, forces) = swept::<false>(&lattice, Fields { displacement: [&ux, &uy], phase: &phase });
 
     let [mut seen_gradient, mut gradient, mut seen_value, mut value] = [(); 4].map(|()| Vec::new());
     let [mut seen_weight, mut weight] = [(); 2].map(|()| Vec::new());
@@ -149,36 +103,11 @@ fn check_integrals(name: &str, lattice: &Lattice, points: &[PlainPoint]) {
     }
 }
 
-/// A coefficient per point; some spans have none.
-struct PerPoint {
-    values: Vec<Lane>,
-    per_span: usize,
-}
-
-impl PointCoefficients for PerPoint {
-    fn span(&self, first: usize, weights: &[Lane], out: &mut [Lane]) -> bool {
-        for (i, weight) in weights.iter().enumerate() {
-            out[i] = self.values[first + i] * *weight;
-        }
-        !self.skips(first)
-    }
-}
-
-impl PerPoint {
-    /// Every third tile, but never the first.
-    fn skips(&self, first: usize) -> bool {
-        first / self.per_span % 3 == 2
-    }
-}
-
 /// The matrix times random fields: an entry that is wrong, missing or misplaced moves the product.
 fn check_assembly(name: &str, lattice: &Lattice, points: &[PlainPoint]) {
     let grid = lattice.grid;
     let mut random = Random::new(3);
-    let coefficients = PerPoint {
-        values: (0..lattice.batches()).map(|_| Lane([0.0; 8].map(|_| 1.5 + random.next()))).collect(),
-        per_span: lattice.points_per_span(),
-    };
+    let coefficients = PerPoint::new(lattice, Some(3));
     for form in [Integrand::Mass, Integrand::Diffusion] {
         let mut matrix = Stencil::zeros(grid, lattice.degree);
         add_form(&mut matrix, lattice, form, &coefficients);
@@ -246,7 +175,7 @@ fn a_linear_displacement_is_one_strain() {
             let [x, y] = patch.control_positions();
             let linear = |a: f64, b: f64| -> Vec<f64> { x.iter().zip(&y).map(|(x, y)| a * x + b * y).collect() };
             let (ux, uy, c) = (linear(0.3, -0.7), linear(0.2, 0.5), linear(-0.4, 0.9));
-            let (seen, _) = swept(&lattice, Fields { displacement: [&ux, &uy], phase: &c });
+            let (seen, _) = swept::<false>(&lattice, Fields { displacement: [&ux, &uy], phase: &c });
             let exact = [0.3, -0.7, 0.2, 0.5, -0.4, 0.9];
             lattice.for_each_point(|batch, lane, position, _| {
                 let values = &seen[batch].1;

@@ -1,149 +1,66 @@
 //! The sweep over the lattice against a plain evaluation point by point.
 
+use crate::common::plain_points::{assert_close, largest, stress_of, swept};
 use crate::common::{Random, body, graded_knots, rectangle};
 use fisura::linear_algebra::extremes::larger;
 use fisura::linear_algebra::lane::{LANES, Lane};
 use fisura::particles::lattice::Lattice;
 use fisura::scene::*;
 use fisura::splines::patch::Patch;
-use fisura::transfer::point_kernel::{Fields, PointKernel, PointValues, Stress};
-use fisura::transfer::sweep::{StripForces, sweep};
+use fisura::transfer::point_kernel::Fields;
 
-/// Records what it is given and answers with a stress of its own making.
-struct Recorder {
-    values: Vec<PointValues>,
-    weights: Vec<Lane>,
-    order: Vec<usize>,
-}
-
-impl PointKernel for Recorder {
-    const DISPLACEMENT: bool = true;
-    const PHASE: bool = true;
-    const PHASE_GRADIENT: bool = true;
-    const STRESS: bool = true;
-    const EVERY_STEP: bool = true;
-
-    fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
-        self.values.push(*values);
-        self.weights.push(weight);
-        self.order.push(at);
-        let [xx, yy, xy] = stress_of(values.gradient);
-        Stress::symmetric([xx, yy, xy])
-    }
-}
-
-/// Not symmetric in the gradient, so that no mixed-up component goes unseen.
-fn stress_of(g: [Lane; 4]) -> [Lane; 3] {
-    [g[0] * 2.0 + g[3] * 0.3 + g[1] * 0.7, g[3] * 1.7 - g[0] * 0.4 + g[2] * 0.9, g[1] * 1.1 + g[2] * 0.6 - g[0] * 0.2]
-}
-
-struct Naive {
-    forces: [Vec<f64>; 2],
-    scale: f64,
-    gradient_error: f64,
-    phase_error: f64,
-    points: usize,
-    area: f64,
-}
-
-/// Every point by itself, through [`Patch::evaluate`] and the shape functions of its position.
-fn naive(
-    patch: &Patch,
-    lattice: &Lattice,
-    fields: Fields,
-    recorded: impl Fn(usize, usize) -> (PointValues, f64),
-) -> Naive {
-    let grid = patch.control_grid();
-    let mut result = Naive {
-        forces: [grid.zeros(), grid.zeros()],
-        scale: 0.0,
-        gradient_error: 0.0,
-        phase_error: 0.0,
-        points: 0,
-        area: 0.0,
-    };
-    let mut lost = 0.0;
-    lattice.for_each_point(|batch, lane, position, weight| {
-        let (seen, seen_weight) = recorded(batch, lane);
-        assert_eq!(seen_weight, weight);
-        let ux = patch.evaluate(fields.displacement[0], position).unwrap();
-        let uy = patch.evaluate(fields.displacement[1], position).unwrap();
-        let c = patch.evaluate(fields.phase, position).unwrap();
-        let gradient = [ux.gradient[0], ux.gradient[1], uy.gradient[0], uy.gradient[1]];
-        let seen_gradient = seen.gradient.map(|g| g[lane]);
-        for i in 0..4 {
-            result.gradient_error = larger(result.gradient_error, (gradient[i] - seen_gradient[i]).abs());
-        }
-        result.phase_error = larger(result.phase_error, (c.value - seen.phase[lane]).abs());
-        for d in 0..2 {
-            let error = (c.gradient[d] - seen.phase_gradient[d][lane]).abs();
-            result.gradient_error = larger(result.gradient_error, error);
-        }
-        result.scale = gradient.iter().fold(result.scale, |m: f64, g| larger(m, g.abs()));
-        result.points += 1;
-        let term = weight - lost; // compensated: thousands of weights must add up to the last digits
-        let area = result.area + term;
-        lost = (area - result.area) - term;
-        result.area = area;
-        let [xx, yy, xy] = stress_of(gradient.map(Lane::splat)).map(|s| s[0]);
-        let [x, y] = &patch.spaces;
-        let (i, j) = (x.find_span(position[0]).unwrap(), y.find_span(position[1]).unwrap());
-        let (sx, sy) = (x.shape_functions(i, position[0]), y.shape_functions(j, position[1]));
-        for l in 0..=y.degree() {
-            for k in 0..=x.degree() {
-                let at = grid.index(x.spans()[i].first + k, y.spans()[j].first + l);
-                let (dx, dy) = (sx.derivative[k] * sy.value[l], sx.value[k] * sy.derivative[l]);
-                result.forces[0][at] += weight * (xx * dx + xy * dy);
-                result.forces[1][at] += weight * (xy * dx + yy * dy);
-            }
-        }
-    });
-    result
-}
-
-/// Compares one sweep with the plain evaluation, to 1e-13 of the largest value; returns points and their
-/// total area.
+/// Compares one sweep with the plain evaluation point by point, to 1e-13 of the largest value; returns points
+/// and their total area.
 fn compare(mesh: &Mesh, body: &Body) -> (usize, f64) {
     let name = format!("degree {:?}, {:?}, {:?}", mesh.degree, body.particles_per_cell, body.shape);
     let patch = Patch::new(mesh);
     let lattice = Lattice::new(&patch, body);
     let mut random = Random::new(7);
-    let [ux, uy, phase] = [1.0, 1.0, 1.0].map(|scale| random.field(lattice.grid, scale));
-    let fields = Fields { displacement: [&ux, &uy], phase: &phase };
-    let recorder = || Recorder { values: Vec::new(), weights: Vec::new(), order: Vec::new() };
-    let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| recorder()).collect();
-    let mut strips = StripForces::new(&lattice);
-    for _ in 0..2 {
-        // the second sweep must not see what the first left behind
-        kernels.iter_mut().for_each(|k| *k = recorder());
-        sweep(&lattice, fields, &mut kernels, Some(&mut strips));
-    }
-    let mut at_batch = vec![None; lattice.batches()];
-    for (strip, kernel) in kernels.iter().enumerate() {
-        for (n, &at) in kernel.order.iter().enumerate() {
-            let batch = strip * lattice.strip_batches() + at;
-            assert!(at_batch[batch].replace((kernel.values[n], kernel.weights[n])).is_none(), "{name}: twice");
+    let [ux, uy, phase] = [(); 3].map(|()| random.field(lattice.grid, 1.0));
+    let (seen, forces) = swept::<true>(&lattice, Fields { displacement: [&ux, &uy], phase: &phase });
+    let mut found: [Vec<f64>; 3] = Default::default(); // gradients of the displacement, of c, and c
+    let mut expected = found.clone();
+    let mut plain = [lattice.grid.zeros(), lattice.grid.zeros()];
+    let (mut area, mut lost) = (0.0, 0.0);
+    lattice.for_each_point(|batch, lane, position, weight| {
+        let (seen_weight, values) = &seen[batch];
+        assert_eq!(seen_weight[lane], weight);
+        let [x, y, c] = [&ux, &uy, &phase].map(|field| patch.evaluate(field, position).unwrap());
+        let gradient = [x.gradient[0], x.gradient[1], y.gradient[0], y.gradient[1]];
+        found[0].extend(values.gradient.map(|g| g[lane]));
+        expected[0].extend(gradient);
+        found[1].extend(values.phase_gradient.map(|g| g[lane]));
+        expected[1].extend(c.gradient);
+        found[2].push(values.phase[lane]);
+        expected[2].push(c.value);
+        let term = weight - lost; // compensated: thousands of weights must add up to the last digits
+        lost = (area + term - area) - term;
+        area += term;
+        let [xx, xy, yx, yy] = stress_of(gradient.map(Lane::splat)).map(|s| s[0]);
+        let [x, y] = &patch.spaces;
+        let (i, j) = (x.find_span(position[0]).unwrap(), y.find_span(position[1]).unwrap());
+        let (sx, sy) = (x.shape_functions(i, position[0]), y.shape_functions(j, position[1]));
+        for l in 0..=y.degree() {
+            for k in 0..=x.degree() {
+                let at = lattice.grid.index(x.spans()[i].first + k, y.spans()[j].first + l);
+                let (dx, dy) = (sx.derivative[k] * sy.value[l], sx.value[k] * sy.derivative[l]);
+                plain[0][at] += weight * (xx * dx + xy * dy);
+                plain[1][at] += weight * (yx * dx + yy * dy);
+            }
         }
-    }
-    let mut forces = [lattice.grid.zeros(), lattice.grid.zeros()];
-    strips.assemble(lattice.grid.stride, &mut forces);
-    let plain = naive(&patch, &lattice, fields, |batch, lane| {
-        let (values, weight) = at_batch[batch].expect("every batch is visited");
-        (values, weight[lane])
     });
-    assert!(plain.gradient_error <= 1e-13 * plain.scale, "{name}: gradients {:e}", plain.gradient_error / plain.scale);
-    assert!(plain.phase_error <= 1e-13, "{name}: phase {:e}", plain.phase_error);
-    let largest = plain.forces.iter().flatten().fold(0.0, |m: f64, f| larger(m, f.abs()));
-    for component in 0..2 {
-        let mut total = 0.0;
-        for at in 0..lattice.grid.len() {
-            let (seen, expected) = (forces[component][at], plain.forces[component][at]);
+    for (what, (found, expected)) in ["gradients", "phase gradients", "phase"].iter().zip(found.iter().zip(&expected)) {
+        assert_close(&format!("{name}: {what}"), found, expected, 1e-13);
+    }
+    let largest = plain.iter().map(|plain| largest(plain)).fold(0.0, larger);
+    for (seen, expected) in forces.iter().zip(&plain) {
+        for (at, (seen, expected)) in seen.iter().zip(expected).enumerate() {
             assert!((seen - expected).abs() <= 1e-13 * largest, "{name}: force {at} is {seen} for {expected}");
-            total += seen;
         }
+        let total: f64 = seen.iter().sum();
         assert!(total.abs() <= 1e-12 * largest, "{name}: forces inside a body add up to {total}");
     }
-    (plain.points, plain.area)
+    (expected[2].len(), area)
 }
 
 fn mesh(degree: [usize; 2], size: [f64; 2], cells: [usize; 2]) -> Mesh {

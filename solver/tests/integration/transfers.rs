@@ -38,6 +38,8 @@ fn a_rigid_translation_is_exact_with_every_transfer() {
                 assert!(off <= 1e-13 * 0.58, "{what}: velocity off by {off:e}");
                 let strain = point.strain.iter().fold(0.0_f64, |a, e| larger(a, e.abs()));
                 assert!(strain <= 1e-13, "{what}: strain {strain:e}");
+                let [x, y] = [0, 1].map(|d| point.displacement[d] - velocity[d] * 1.6);
+                assert!(x.hypot(y) <= 2.5e-14, "{what}: displaced {x:e}, {y:e} m too far");
             }
             assert!(relative_closure(&samples) < 1e-13, "{what}");
             assert!(samples.last().unwrap().transfer_loss.unwrap().abs() < 1e-13 * samples[0].kinetic, "{what}");
@@ -65,18 +67,6 @@ fn eventful(transfer: Transfer, degree: usize) -> Scene {
     scene.analysis.end_time = 6.0;
     scene.output.samples = 40;
     scene
-}
-
-#[test]
-fn the_ledger_of_an_elastic_body_closes_to_round_off_with_every_transfer() {
-    for degree in 2..=3 {
-        for transfer in ALL {
-            let (simulation, samples) = run(&eventful(transfer, degree));
-            let (closure, losses) = (relative_closure(&samples), simulation.updated_frame().unwrap().transfer_losses());
-            println!("{transfer:?}, p = {degree}: closure {closure:.1e}, {losses:?} of {:.3e}", samples[0].kinetic);
-            assert!(closure <= 1e-12, "{transfer:?}, p = {degree}: closure {closure:e}");
-        }
-    }
 }
 
 /// Closure over the largest energy of a finitely strained body in a run with `fraction` of the critical step.
@@ -166,11 +156,10 @@ fn struck(transfer: Transfer, degree: usize, fraction: f64) -> bool {
 }
 
 #[test]
-fn the_critical_step_is_stable_with_every_transfer() {
+fn the_critical_step_is_stable_with_every_transfer_and_the_limit_with_flip() {
     for degree in 2..=3 {
+        assert!(!struck(Transfer::Flip, degree, 1.15), "p = {degree}: stable 15 % above the critical step");
         for transfer in ALL {
-            let limit = (1..=12).map(|i| 1.0 + 0.05 * i as f64).find(|f| !struck(transfer, degree, *f));
-            println!("{transfer:?}, p = {degree}: breaks down at {limit:?} of the critical step");
             assert!(struck(transfer, degree, 0.98), "{transfer:?}, p = {degree}: broke down below the critical step");
             let mut flying = scene(degree, [2.0, 2.0], [32, 32], [0.113, 0.517], [0.671, 1.013]);
             flying.bodies[0].velocity = [0.05, 0.03];
@@ -179,7 +168,9 @@ fn the_critical_step_is_stable_with_every_transfer() {
             flying.analysis.end_time = 12.5; // ten spans
             let (_, samples) = run(&flying);
             let end = samples.last().unwrap();
-            assert!(end.elastic <= 1e-22 * end.kinetic, "{transfer:?}, p = {degree}: noise of {:e} J", end.elastic);
+            let noise = end.elastic / end.kinetic;
+            let most = if transfer == Transfer::Flip { 1e-24 } else { 1e-22 };
+            assert!(noise <= most, "{transfer:?}, p = {degree}: noise of {noise:e} of the kinetic energy");
         }
     }
 }
