@@ -161,3 +161,10 @@ pub mod validate;
 
 pub use scene::Scene;
 pub use simulation::Simulation;
+
+#[cfg(test)]
+extern crate self as fisura;
+#[cfg(test)]
+#[allow(dead_code, unreachable_pub, reason = "shared with the tests from outside")]
+#[path = "../tests/integration/common/mod.rs"]
+mod example;

@@ -99,6 +99,7 @@ pub(super) fn bounds(shape: &Shape, [a, b]: [[f64; 2]; 2], tolerance: f64) -> bo
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::example::rectangle;
 
     const SPACING: f64 = 2.5e-3;
 
@@ -108,10 +109,6 @@ mod tests {
         let segments = lines.iter().flat_map(|ring| (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]));
         let bounding = segments.filter(|ends| bounds(shape, *ends, 0.1 * SPACING));
         bounding.map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1])).sum()
-    }
-
-    fn rectangle(min: [f64; 2], max: [f64; 2]) -> Shape {
-        Shape::Rectangle { min, max }
     }
 
     #[test]

@@ -101,39 +101,3 @@ fn pseudo_random(n: usize) -> Vec<f64> {
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    struct Chain {
-        masses: Vec<f64>,
-    }
-
-    impl StiffnessOperator for Chain {
-        fn size(&self) -> usize {
-            self.masses.len()
-        }
-        fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]) {
-            for i in 0..x.len() {
-                out[i] = x[i] / self.masses[i];
-            }
-        }
-        fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
-            let n = x.len();
-            for i in 0..n {
-                let left = if i > 0 { x[i - 1] } else { 0.0 };
-                let right = if i + 1 < n { x[i + 1] } else { 0.0 };
-                out[i] = 2.0 * x[i] - left - right;
-            }
-        }
-    }
-
-    #[test]
-    fn the_bound_of_a_spring_chain_is_above_and_within_half_a_percent() {
-        let n = 500;
-        let exact = 2.0 * (std::f64::consts::FRAC_PI_2 * n as f64 / (n as f64 + 1.0)).sin();
-        let bound = highest_frequency(&mut Chain { masses: vec![1.0; n] });
-        assert!(bound >= exact && bound <= 1.005 * exact, "{bound} against {exact}");
-    }
-}

@@ -95,7 +95,7 @@ fn whole(ratio: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Frame, Kinematics, Mass, Plane, Quadrature, Transfer};
+    use crate::example::elastic_scene;
 
     fn plan(end_time: f64, time_step: TimeStep, samples: usize, critical: f64) -> (TimePlan, Vec<String>) {
         plan_within(end_time, time_step, samples, critical, f64::INFINITY)
@@ -108,19 +108,7 @@ mod tests {
         critical: f64,
         passing: f64,
     ) -> (TimePlan, Vec<String>) {
-        let analysis = Analysis {
-            plane: Plane::Strain,
-            thickness: 1.0,
-            frame: Frame::Total,
-            kinematics: Kinematics::Small,
-            end_time,
-            time_step,
-            safety: 0.8,
-            transfer: Transfer::Flip,
-            quadrature: Quadrature::Points,
-            mass: Mass::Lumped,
-            gravity: [0.0; 2],
-        };
+        let analysis = Analysis { end_time, time_step, ..elastic_scene(1, [1.0; 2], [1; 2]).analysis };
         TimePlan::within(&analysis, &Output { samples, frames: Vec::new(), bodies: false }, critical, passing)
     }
 

@@ -106,6 +106,7 @@ fn atanh_over(q: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::example::Random;
     use crate::linear_algebra::extremes::larger;
     use nalgebra::{Matrix2, SymmetricEigen};
 
@@ -130,15 +131,6 @@ mod tests {
         Matrix2::new(c, -s, s, c)
     }
 
-    /// Numbers in [−1, 1), the same at every call.
-    fn sequence() -> impl FnMut() -> f64 {
-        let mut state = 1_u64;
-        move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        }
-    }
-
     #[test]
     fn drawn_out_material_has_a_finite_strain() {
         for (long, short) in [(3.0_f64, 0.5_f64), (1e3, 1e-3), (1e6, 1e-5), (1e10, 1e-3)] {
@@ -153,7 +145,8 @@ mod tests {
 
     #[test]
     fn it_is_the_logarithm_by_eigenvectors() {
-        let mut next = sequence();
+        let mut random = Random::new(1);
+        let mut next = || random.next();
         for _ in 0..2000 {
             let f = Matrix2::identity() + 0.45 * Matrix2::new(next(), next(), next(), next());
             assert!(f.determinant() > 0.0);
@@ -174,7 +167,8 @@ mod tests {
 
     #[test]
     fn a_rotation_before_changes_nothing_and_one_after_turns_it() {
-        let mut next = sequence();
+        let mut random = Random::new(1);
+        let mut next = || random.next();
         for _ in 0..200 {
             let f = Matrix2::identity() + 0.3 * Matrix2::new(next(), next(), next(), next());
             let turn = rotation_matrix(3.0 * next());
@@ -209,7 +203,8 @@ mod tests {
     #[test]
     fn increments_compose_the_deformation_and_have_a_rate_at_their_end() {
         let (mut h, mut f) = ([[0.0; 2]; 2], Matrix2::identity());
-        let mut next = sequence();
+        let mut random = Random::new(1);
+        let mut next = || random.next();
         for _ in 0..50 {
             let a = 0.1 * Matrix2::new(next(), next(), next(), next());
             let step = [[a[(0, 0)], a[(0, 1)]], [a[(1, 0)], a[(1, 1)]]];

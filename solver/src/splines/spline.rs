@@ -209,22 +209,13 @@ mod tests {
     }
 
     #[test]
-    fn partition_of_unity_linear_precision_and_derivatives() {
+    fn second_derivatives_are_the_slopes_of_the_first() {
         for degree in 2..=4 {
             let space = graded(degree);
-            let greville = space.greville();
             for n in 0..=1000 {
-                let x = n as f64 / 1000.0;
+                let (x, step) = (n as f64 / 1000.0, 1e-6);
                 let span = space.find_span(x).unwrap();
-                let first = space.spans()[span].first;
-                let shape = space.shape_functions(span, x);
-                assert_abs_diff_eq!(shape.value.iter().sum::<f64>(), 1.0, epsilon = 1e-13);
-                assert_abs_diff_eq!(shape.derivative.iter().sum::<f64>(), 0.0, epsilon = 1e-11);
-                let position: f64 = (0..=degree).map(|k| shape.value[k] * greville[first + k]).sum();
-                let slope: f64 = (0..=degree).map(|k| shape.derivative[k] * greville[first + k]).sum();
-                assert_abs_diff_eq!(position, x, epsilon = 1e-13);
-                assert_abs_diff_eq!(slope, 1.0, epsilon = 1e-11);
-                let (second, step) = (space.second_derivatives(span, x), 1e-6);
+                let second = space.second_derivatives(span, x);
                 let [before, beyond] = [-step, step].map(|step| space.shape_functions(span, x + step));
                 for k in 0..=degree {
                     let difference = (beyond.derivative[k] - before.derivative[k]) / (2.0 * step);

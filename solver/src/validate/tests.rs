@@ -1,60 +1,19 @@
 //! Checks that a reader of files never lets through, and the exact bounds of the others.
 
 use super::validate;
+use crate::example::{notched_plate, rectangle};
 use crate::scene::*;
 use crate::splines::nurbs::NurbsPatch;
 
 /// A fracturing square, 10 mm by 10 mm.
 fn square() -> Scene {
-    let glass = Material {
-        young_modulus: 32e9,
-        poisson_ratio: 0.2,
-        density: 2450.0,
-        fracture: Some(Fracture {
-            critical_energy_release_rate: 3.0,
-            length_scale: 0.25e-3,
-            residual_stiffness: 0.0,
-            split: Split::Spectral,
-        }),
-    };
-    Scene {
-        title: String::new(),
-        mesh: Mesh::uniform([2, 2], [0.0; 2], [0.01; 2], [40, 40]),
-        analysis: Analysis {
-            plane: Plane::Strain,
-            thickness: 1.0,
-            frame: Frame::Total,
-            kinematics: Kinematics::Small,
-            end_time: 1e-6,
-            time_step: TimeStep::Auto,
-            safety: 0.8,
-            transfer: Transfer::Flip,
-            quadrature: Quadrature::Points,
-            mass: Mass::Lumped,
-            gravity: [0.0; 2],
-        },
-        solver: SolverSettings {
-            phase_field_tolerance: 1e-8,
-            phase_field_solver: PhaseFieldSolver::Cholesky,
-            phase_field_interval: PhaseFieldInterval::Steps(1),
-        },
-        materials: [("glass".to_string(), glass)].into(),
-        bodies: vec![Body {
-            name: "square".into(),
-            material: "glass".into(),
-            shape: Shape::Rectangle { min: [0.0; 2], max: [0.01; 2] },
-            particles_per_cell: [2, 2],
-            layout: Layout::Gauss,
-            velocity: [0.0; 2],
-            angular_velocity: 0.0,
-            rigid: false,
-            tractions: vec![],
-            cracks: vec![Crack { from: [0.0, 0.005], to: [0.005, 0.005], half_width: None }],
-        }],
-        contact: None,
-        boundaries: vec![],
-        output: Output { samples: 10, frames: vec![], bodies: false },
-    }
+    let mut scene = notched_plate(0.0);
+    scene.mesh = Mesh::uniform([2, 2], [0.0; 2], [0.01; 2], [40, 40]);
+    scene.analysis.end_time = 1e-6;
+    scene.bodies[0].shape = rectangle([0.0; 2], [0.01; 2]);
+    scene.bodies[0].tractions.clear();
+    scene.bodies[0].cracks = vec![Crack { from: [0.0, 0.005], to: [0.005, 0.005], half_width: None }];
+    scene
 }
 
 fn with(change: impl FnOnce(&mut Scene)) -> Scene {
@@ -186,7 +145,7 @@ fn a_crack_does_not_leap_over_a_hole() {
 fn tractions_act_on_segments_of_their_body() {
     let segment = |ends: [[f64; 2]; 2]| {
         errors(|s| {
-            s.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [0.008, 0.01] };
+            s.bodies[0].shape = rectangle([0.0; 2], [0.008, 0.01]);
             s.bodies[0].tractions = vec![Traction { edge: Edge::Segment(ends), stress: [1e6, 0.0], ramp: None }];
         })
     };
@@ -195,7 +154,7 @@ fn tractions_act_on_segments_of_their_body() {
     assert_eq!(segment([[0.009, 0.0], [0.009, 0.01]]), ["body.0.traction.0.segment"], "in the mesh beside the body");
     assert_eq!(segment([[0.0, 0.01], [0.0081, 0.01]]), ["body.0.traction.0.segment"], "longer than the side");
     let notched = errors(|s| {
-        let notch = Shape::Rectangle { min: [0.004, -0.001], max: [0.005, 0.002] };
+        let notch = rectangle([0.004, -0.001], [0.005, 0.002]);
         s.bodies[0].shape = Shape::Difference { of: Box::new(s.bodies[0].shape.clone()), minus: vec![notch] };
         let edge = Edge::Segment([[0.0, 0.0], [0.01, 0.0]]);
         s.bodies[0].tractions = vec![Traction { edge, stress: [0.0, 1e6], ramp: None }];
@@ -262,8 +221,8 @@ fn points_and_layouts_have_bounds() {
 fn shapes_without_area_are_refused() {
     let square = |points: &[[f64; 2]]| Shape::Polygon { points: points.to_vec() };
     for shape in [
-        Shape::Rectangle { min: [0.0; 2], max: [0.01, 0.0] },
-        Shape::Rectangle { min: [0.0; 2], max: [0.01, f64::NAN] },
+        rectangle([0.0; 2], [0.01, 0.0]),
+        rectangle([0.0; 2], [0.01, f64::NAN]),
         Shape::Disk { center: [0.005; 2], radius: 0.0 },
         Shape::Annulus { center: [0.005; 2], inner_radius: 0.002, outer_radius: 0.001 },
         square(&[[0.0, 0.0], [0.01, 0.0]]),
@@ -302,7 +261,7 @@ fn gauss_quadrature_by_spans_is_refused_where_it_does_not_exist() {
         errors(move |s| {
             sound(s);
             s.contact = Some(Contact { friction: 0.1, ..Contact::default() });
-            let floor = Shape::Rectangle { min: [-1.0, -1.0], max: [2.0, 0.0] };
+            let floor = rectangle([-1.0, -1.0], [2.0, 0.0]);
             s.bodies.push(Body { name: "floor".into(), rigid: true, shape: shape(floor), ..s.bodies[0].clone() });
         })
     };
@@ -344,7 +303,7 @@ fn several_bodies_need_the_updated_frame_and_room() {
             s.contact = Some(Contact { friction: 0.3, ..Contact::default() });
             let block = |name: &str, left: f64, right: f64| Body {
                 name: name.into(),
-                shape: Shape::Rectangle { min: [left, 0.0], max: [right, 0.01] },
+                shape: rectangle([left, 0.0], [right, 0.01]),
                 tractions: vec![],
                 cracks: vec![],
                 ..s.bodies[0].clone()

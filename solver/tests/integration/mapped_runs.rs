@@ -1,7 +1,7 @@
 //! Whole runs on patches with a geometry: the same as over a rectangle where the geometry is one, the same
 //! bits for any number of threads, energies that close, and pictures and crack tips where they belong.
 
-use crate::common::{annulus, bent_patch, brittle, elastic_scene, notched_plate, patch_scene, run, with_threads};
+use crate::common::{annulus, bent_patch, brittle, elastic_scene, notched_plate, patch_scene, run};
 use fisura::dynamics::energy::Sample;
 use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
@@ -103,22 +103,7 @@ fn any_number_of_threads_gives_the_same_bits() {
     for mass in [Mass::Lumped, Mass::Consistent] {
         scene.analysis.mass = mass;
         scene.bodies[0].particles_per_cell = [3; 2];
-        let bits = |threads: usize| {
-            with_threads(threads, || {
-                let (simulation, samples) = run(&scene);
-                assert!(simulation.steps() >= 10, "{} steps", simulation.steps());
-                let rows: Vec<u64> =
-                    samples.iter().flat_map(|s| s.named_values()).map(|(_, value)| value.to_bits()).collect();
-                let field = simulation.total_frame().unwrap().displacement().concat();
-                rows.into_iter().chain(field.into_iter().map(f64::to_bits)).collect::<Vec<_>>()
-            })
-        };
-        let one = bits(1);
-        for threads in [2, 5] {
-            let other = bits(threads);
-            let differ = one.iter().zip(&other).filter(|(a, b)| a != b).count();
-            assert!(one == other, "{mass:?}, {threads} threads: {differ} of {} values differ", one.len());
-        }
+        crate::determinism::check(&scene);
     }
 }
 

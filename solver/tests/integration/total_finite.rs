@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::elastic_scene;
+use crate::common::{Random, elastic_scene};
 use fisura::Simulation;
 use fisura::dynamics::forcing::NoLoads;
 use fisura::dynamics::total_frame::TotalFrame;
@@ -108,12 +108,8 @@ fn squeezed(stretch: [f64; 2], safety: f64) -> (TotalFrame, f64) {
     let mut frame = TotalFrame::new(&scene).unwrap();
     let positions = frame.patch().control_positions();
     let squeezed = [0, 1].map(|d| positions[d].iter().map(|x| (stretch[d] - 1.0) * x).collect::<Vec<_>>());
-    let mut state = 7_u64;
-    let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    };
-    let velocity = [0, 1].map(|_| positions[0].iter().map(|_| 1e-6 * random()).collect::<Vec<_>>());
+    let mut random = Random::new(7);
+    let velocity = [0, 1].map(|_| positions[0].iter().map(|_| 1e-6 * random.next()).collect::<Vec<_>>());
     frame.start_with(squeezed, velocity).unwrap();
     let undeformed = frame.critical_step();
     let critical = frame.retake_critical_step(1e3 * undeformed, undeformed).unwrap();

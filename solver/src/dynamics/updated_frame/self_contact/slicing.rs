@@ -252,6 +252,7 @@ fn side(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::example::{body, rectangle};
     use crate::scene::{Body, Layout, Mesh, Shape};
 
     /// Points a tenth apart in a shape, with spans of two of them, and their slices.
@@ -263,18 +264,7 @@ mod tests {
             Point { position: *place, velocity, displacement, strain, stress, volume: 0.01 }
         };
         let points: Vec<Point> = places.iter().map(point).collect();
-        let body = Body {
-            name: String::new(),
-            material: String::new(),
-            shape: shape.clone(),
-            particles_per_cell: [2, 2],
-            layout: Layout::Uniform,
-            velocity: [0.0; 2],
-            angular_velocity: 0.0,
-            rigid: false,
-            tractions: vec![],
-            cracks: vec![],
-        };
+        let body = Body { layout: Layout::Uniform, ..body(shape.clone(), [2, 2]) };
         let surface = Surface::new(&Mesh::uniform([2; 2], [0.0; 2], [20.0; 2], [100; 2]), &body);
         let Slicing { of, seams, .. } = Slicing::new(&points, &surface, 0.2);
         (places, of, seams)
@@ -287,10 +277,6 @@ mod tests {
 
     fn without(of: Shape, minus: Shape) -> Shape {
         Shape::Difference { of: Box::new(of), minus: vec![minus] }
-    }
-
-    fn rectangle(min: [f64; 2], max: [f64; 2]) -> Shape {
-        Shape::Rectangle { min, max }
     }
 
     fn ring() -> Shape {
