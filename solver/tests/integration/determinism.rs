@@ -14,6 +14,7 @@ fn bits(scene: &Scene) -> Vec<u64> {
     rows.chain(fields).collect()
 }
 
+#[track_caller]
 pub fn check(scene: &Scene) {
     let one = with_threads(1, || bits(scene));
     for threads in [1, 2, 2, 5] {

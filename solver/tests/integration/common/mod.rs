@@ -178,6 +178,12 @@ pub fn relative_closure(samples: &[Sample]) -> f64 {
     largest(|s| s.closure.abs()) / largest(Sample::largest_term)
 }
 
+/// Largest closure of a sample over its own largest energy; not a number if one closure is not.
+pub fn closure_of_any_sample(samples: &[Sample]) -> f64 {
+    let closures = samples.iter().map(|s| s.closure.abs() / s.largest_term().max(1e-300));
+    closures.max_by(f64::total_cmp).expect("samples")
+}
+
 /// Runs `f` in a pool of its own.
 pub fn with_threads<T: Send>(threads: usize, f: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool").install(f)
