@@ -56,29 +56,6 @@ fn a_run_has_its_rows_its_frames_and_no_columns_of_what_it_does_not_model() {
 }
 
 #[test]
-fn a_breakdown_keeps_what_was_computed_and_is_written() {
-    let mut scene = block();
-    let critical = run_scene(&scene, &mut |_| {}, &mut |_, _| {}).summary.critical_step_s.unwrap();
-    scene.analysis.time_step = TimeStep::Fixed(1.2 * critical);
-    scene.analysis.end_time = 240.0 * critical;
-    scene.output = fisura::scene::Output { samples: 100, frames: vec![0.0], bodies: false };
-    let run = run_scene(&scene, &mut |_| {}, &mut |_, _| {});
-    let breakdown = run.breakdown.as_ref().expect("1.2 times the critical step is unstable");
-    assert!(run.history.rows() >= 2 && run.history.rows() < 101);
-    assert!(run.history.column("elastic_j").unwrap().iter().all(|e| e.is_finite()));
-    assert_eq!(run.frames.len(), 1);
-
-    let folder = tempfile::tempdir().unwrap();
-    let out = crate::output::OutputFolder::open(folder.path(), "run").unwrap();
-    assert_eq!(run.write(&out).unwrap(), ["history.csv", "summary.json", "breakdown.json"]);
-    assert_eq!(Table::read(&folder.path().join("history.csv")).unwrap(), run.history);
-    let text = std::fs::read_to_string(folder.path().join("summary.json")).unwrap();
-    let summary: Summary = serde_json::from_str(&text).unwrap();
-    assert_eq!(summary.breakdown.unwrap().step, breakdown.step);
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3 + 2, "beside manifest and lock; no temporary file");
-}
-
-#[test]
 fn frames_are_taken_at_the_nearest_step() {
     let (steps, warnings) = frame_steps(&[0.9, 0.0, 0.26, 9.0], 0.1, 10);
     assert_eq!((steps, warnings.len()), (vec![0, 3, 9, 10], 0));

@@ -120,6 +120,9 @@ fn what_no_run_of_a_scene_has_is_refused_before_it_runs() {
     let of = |lines: &str| format!("{}\n{}", SCENE, quantity("q", lines));
     for (lines, parts) in [
         ("", &["check.0.measure", "name a measure"][..]),
+        ("measure = \"closuer\"", &["unknown measure"]),
+        ("measure = \"closure\"\nvariant = \"none\"", &["no run of this case"]),
+        ("measure = \"closure\"\nmax = 1.0", &["bounds without a reason"]),
         ("measure = \"closure\"\ncolumn = \"elastic_j\"", &["does not read \"column\""]),
         ("measure = \"drift\"", &["needs column", "add column"]),
         ("measure = \"initial\"\ncolumn = \"elastic_j + elastics_j\"", &["no column \"elastics_j\"", "momentum_x"]),

@@ -50,28 +50,6 @@ fn a_run_that_breaks_down_is_an_error_with_step_and_place() {
 }
 
 #[test]
-fn a_check_that_asks_for_what_is_not_there_names_its_line() {
-    for (check, expected) in [
-        ("[[check]]\nid = \"q\"\nquantity = \"q\"\nmeasure = \"closuer\"", "unknown measure"),
-        (
-            "[[check]]\nid = \"q\"\nquantity = \"q\"\nmeasure = \"initial\"\ncolumn = \"fracture_j\"",
-            "no column \"fracture_j\"",
-        ),
-        ("[[check]]\nid = \"q\"\nquantity = \"q\"\nmeasure = \"closure\"\nvariant = \"none\"", "no run of this case"),
-        ("[[check]]\nid = \"q\"\nquantity = \"q\"\nmeasure = \"closure\"\nmax = 1.0", "bounds without a reason"),
-        (
-            "[[check]]\nid = \"q\"\nquantity = \"q\"\nmeasure = \"closure\"\nband = \"plate-events/none\"",
-            "no reference band",
-        ),
-    ] {
-        let root = tempfile::tempdir().unwrap();
-        write_case(root.path(), "wrong", SCENE, check);
-        let error = run(root.path(), Environment::default()).unwrap_err().to_string();
-        assert!(error.contains("wrong.toml:") && error.contains(expected), "{error}");
-    }
-}
-
-#[test]
 fn lists_where_a_scene_has_one_value_are_axes() {
     let root = tempfile::tempdir().unwrap();
     let axes =

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{Environment, Record, ResultSet};
+use fisura_verification::scene::SceneFile;
 use fisura_verification::suite::{Case, Options, Progress, Seconds, VerifyError, load_cases, verify};
 
 pub const SCENE: &str = r#"
@@ -95,3 +96,19 @@ pub fn run_watched(
 
 pub const CLOSURE: &str =
     "[[check]]\nid = \"closure\"\nquantity = \"closure\"\nmeasure = \"closure\"\nmax = 1e-12\nwhy = \"round-off\"";
+
+/// Asserts that scenes are refused, each on a line of its own with place, key and words; line 0 is any.
+#[track_caller]
+pub fn refused_where<'a>(scenes: impl Iterator<Item = (String, usize, &'a str, &'a [&'a str])>) {
+    let mut missed = Vec::new();
+    for (text, line, key, words) in scenes {
+        let error = SceneFile::parse("broken.toml", &text, &[]).expect_err(&text).to_string();
+        let place = if line == 0 { "broken.toml:".to_string() } else { format!("broken.toml:{line}:") };
+        let subject = if key.is_empty() { String::new() } else { format!(" {key}: ") };
+        let says = |l: &str| l.starts_with(&place) && l.contains(&subject) && words.iter().all(|w| l.contains(w));
+        if !error.lines().any(says) {
+            missed.push(format!("expected {place} {key} {words:?}, found\n{error}"));
+        }
+    }
+    assert!(missed.is_empty(), "{}", missed.join("\n\n"));
+}

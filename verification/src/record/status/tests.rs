@@ -21,21 +21,6 @@ fn decided(mut record: Record) -> Status {
     record.status
 }
 
-#[test]
-fn a_value_outside_its_bounds_or_missing_fails() {
-    for (accept, inside, outside) in [
-        (both(1.0, 2.0), [1.0, 2.0], [0.9, 2.1]),
-        (Accept { max: Some(2.0), ..Accept::default() }, [-9.0, 2.0], [2.1, f64::NAN]),
-        (Accept { min: Some(1.0), ..Accept::default() }, [1.0, 9.0], [0.9, f64::INFINITY]),
-    ] {
-        let status = |value| decided(Record { value, accept: accept.clone(), ..Record::default() });
-        assert_eq!(inside.map(|v| status(Some(v))), [Status::Pass; 2], "{accept:?}");
-        assert_eq!(outside.map(|v| status(Some(v))), [Status::Fail; 2], "{accept:?}");
-        assert_eq!(status(None), Status::Fail, "{accept:?}");
-    }
-    assert_eq!(decided(Record::default()), Status::Info);
-}
-
 /// Leaving out either uncertainty, or the sign of the error, gives another status in one of these rows.
 #[test]
 fn both_uncertainties_bound_the_value() {
@@ -130,74 +115,4 @@ fn a_bound_chosen_after_the_result_is_one_of_regression() {
     assert!(record.is_regression() && record.reference.unwrap().kind == ReferenceKind::Regression);
     assert!(!of(None, true, None).is_regression(), "without bounds");
     assert!(!of(None, false, Some(2.0)).is_regression());
-}
-
-/// Records in which every part of the judgement matters, with the status they deserve.
-fn table() -> Vec<(Record, Status)> {
-    use Status::{Fail, Info, KnownLimit, Pass};
-    let mut rows = Vec::new();
-    for (value, status) in [(0.5, Fail), (1.5, Pass), (2.5, Fail)] {
-        rows.push((Record { value: Some(value), accept: both(1.0, 2.0), ..Record::default() }, status));
-    }
-    for (value, u_ref, u_num, status) in
-        [(10.3, 0.4, None, Pass), (9.7, 0.2, None, Fail), (10.3, 0.2, Some(0.3), Pass), (10.3, 2.0, None, Info)]
-    {
-        let (reference, discretisation) = (reference(10.0, Some(u_ref)), u_num.and_then(mesh));
-        rows.push((Record { value: Some(value), reference, discretisation, ..Record::default() }, status));
-    }
-    for (value, status) in [(1.9, Fail), (2.5, KnownLimit), (3.1, Fail)] {
-        let (reference, limit) = (reference(1.0, None), limit(2.0, 3.0));
-        rows.push((
-            Record { value: Some(value), reference, accept: both(0.96, 1.04), limit, ..Record::default() },
-            status,
-        ));
-    }
-    let excluded = Record { value: Some(1.02), reference: reference(1.0, None), ..Record::default() };
-    rows.push((Record { accept: both(1.01, 1.04), ..excluded }, Fail));
-    rows
-}
-
-#[test]
-fn a_judge_that_ignores_a_part_of_the_record_is_caught() {
-    type Ignore = fn(&mut Record);
-    let wrong = |ignore: Ignore| {
-        let judged = table().into_iter().map(|(mut record, deserved)| {
-            ignore(&mut record);
-            decided(record) != deserved
-        });
-        judged.filter(|wrong| *wrong).count()
-    };
-    assert_eq!(wrong(|_| {}), 0);
-    let of_reference = |record: &mut Record, change: fn(&mut Reference)| record.reference.iter_mut().for_each(change);
-    assert!(wrong(|r| r.reference = None) > 0, "the reference");
-    let ignorant: [(&str, Ignore); 8] = [
-        ("the lower bound", |r| r.accept.min = None),
-        ("the upper bound", |r| r.accept.max = None),
-        ("the discretisation error", |r| r.discretisation = None),
-        ("the limit", |r| r.limit = None),
-        ("the lower end of the limit", |r| r.limit.iter_mut().for_each(|limit| limit.min = None)),
-        ("the upper end of the limit", |r| r.limit.iter_mut().for_each(|limit| limit.max = None)),
-        ("the value of the reference", |r| r.reference.iter_mut().for_each(|r| r.value = None)),
-        ("the uncertainty", |r| r.reference.iter_mut().for_each(|r| r.uncertainty = r.uncertainty.map(|_| 0.0))),
-    ];
-    for (what, ignore) in ignorant {
-        assert!(wrong(ignore) > 0, "a judge may ignore {what}");
-    }
-    let mut record = table().remove(3).0;
-    of_reference(&mut record, |reference| reference.side = Side::AtMost);
-    assert_eq!(decided(record), Status::Pass);
-}
-
-#[test]
-fn the_worst_status_counts() {
-    use Status::{Error, Fail, Info, KnownLimit, Pass};
-    for (statuses, expected) in [
-        (&[Fail, Pass, Info][..], Some(Fail)),
-        (&[Pass, Error, Fail], Some(Error)),
-        (&[KnownLimit, Pass, Info], Some(KnownLimit)),
-        (&[Info, Pass], Some(Pass)),
-        (&[], None),
-    ] {
-        assert_eq!(worst(statuses.iter().copied()), expected);
-    }
 }
