@@ -7,36 +7,12 @@ use std::time::{Duration, Instant};
 
 use fisura_reports::compare::{compare, render_markdown};
 use fisura_reports::text::render_text;
-use fisura_reports::{Rendered, ReportError, bundle, read_results};
+use fisura_reports::{ReportError, bundle, read_results};
 use fisura_verification::output::OutputFolder;
 use fisura_verification::output::foreign::steers;
-use fisura_verification::record::{Curve, Figure, FigureBody, ResultSet};
+use fisura_verification::record::{Figure, FigureBody, ResultSet};
 
-/// Renders results beside themselves.
-fn render(folder: &Path) -> Result<Rendered, ReportError> {
-    fisura_reports::render(folder, &OutputFolder::reopen(folder).unwrap())
-}
-
-/// The fixture with changed results.
-fn folder(edit: impl FnOnce(&mut ResultSet)) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    crate::fixture::write(folder.path());
-    let mut results = crate::fixture::results();
-    edit(&mut results);
-    fs::write(folder.path().join("results.json"), serde_json::to_string(&results).unwrap()).unwrap();
-    folder
-}
-
-fn curves(figure: &mut Figure) -> &mut Vec<Curve> {
-    match &mut figure.body {
-        FigureBody::Chart { curves, .. } => curves,
-        FigureBody::Field { .. } => panic!("a field has no curves"),
-    }
-}
-
-fn read(folder: &Path, name: &str) -> String {
-    fs::read_to_string(folder.join(name)).unwrap()
-}
+use crate::support::{changed, curves, folder, read, render};
 
 const ELSEWHERE: [&str; 6] =
     ["javascript:alert(1)", "/etc/passwd", "../secret.csv", "//host/x.csv", "C:\\secret.csv", "a/../../secret.csv"];
@@ -44,7 +20,7 @@ const ELSEWHERE: [&str; 6] =
 #[test]
 fn names_that_lead_elsewhere_are_neither_read_nor_linked() {
     for name in ELSEWHERE {
-        let folder = folder(|results| {
+        let folder = changed(|results| {
             results.records[0].series = Some(name.to_string());
             curves(&mut results.figures[0])[0].series = name.to_string();
             results.figures[2].id = name.to_string();
@@ -76,7 +52,7 @@ fn links_devices_and_pipes_are_not_read() {
         (Box::new(|path| fs::create_dir(path).unwrap()), "not a regular file"),
     ];
     for (place, words) in places {
-        let folder = folder(|_| {});
+        let folder = folder();
         let path = folder.path().join("series/plate.csv");
         fs::remove_file(&path).unwrap();
         place(&path);
@@ -95,7 +71,7 @@ const STEERING: &str = "\u{1b}]0;owned\u{7}\u{9b}2J\u{7f}\u{202e}\nPASS: all 12 
 
 #[test]
 fn no_file_or_text_made_of_results_steers_a_terminal() {
-    let folder = folder(|results| {
+    let folder = changed(|results| {
         for record in &mut results.records {
             for text in [&mut record.id, &mut record.suite, &mut record.claim, &mut record.quantity, &mut record.unit] {
                 text.push_str(STEERING);
@@ -126,7 +102,7 @@ fn no_file_or_text_made_of_results_steers_a_terminal() {
 
 #[test]
 fn text_is_bounded_as_figures_are() {
-    let folder = folder(|results| {
+    let folder = changed(|results| {
         let template = results.records[2].clone();
         results.records[0].claim = "x".repeat(1 << 20);
         for i in 0..4000 {
@@ -150,14 +126,14 @@ fn text_is_bounded_as_figures_are() {
 
 #[test]
 fn more_than_a_report_can_show_is_refused() {
-    let folder = folder(|results| results.records = vec![results.records[0].clone(); 50_001]);
+    let folder = changed(|results| results.records = vec![results.records[0].clone(); 50_001]);
     let error = read_results(folder.path()).unwrap_err().to_string();
     assert!(error.contains("50001 records") && error.contains("results.json"), "{error}");
 }
 
 #[test]
 fn a_saw_tooth_of_two_million_rows_is_drawn_in_bounded_work() {
-    let folder = folder(|_| {});
+    let folder = folder();
     let rows: String = (0..2_000_000).map(|i| format!("{}e-9,{}\n", i, i % 2)).collect();
     fs::write(folder.path().join("series/plate.csv"), format!("time_s,elastic_j\n{rows}")).unwrap();
     let start = Instant::now();
@@ -175,7 +151,7 @@ fn a_saw_tooth_of_two_million_rows_is_drawn_in_bounded_work() {
 #[test]
 fn ranges_without_digits_are_drawn_or_refused() {
     for range in [[0.0, 5e-324], [1.0, 1.0 + 1e-15], [-1e308, 1e308], [1e308, -1e308]] {
-        let folder = folder(|results| {
+        let folder = changed(|results| {
             if let FigureBody::Chart { x, y, .. } = &mut results.figures[0].body {
                 (x.range, y.range) = (Some(range), Some(range));
             }
@@ -188,7 +164,7 @@ fn ranges_without_digits_are_drawn_or_refused() {
         let svg = read(folder.path(), "figures/plate-elastic-energy.svg");
         assert!(svg.len() < 100_000 && !svg.contains("NaN") && !svg.contains("inf"), "{svg}");
     }
-    let folder = folder(|results| {
+    let folder = changed(|results| {
         if let FigureBody::Field { pixels, .. } = &mut results.figures[1].body {
             *pixels = [usize::MAX, 3];
         }
@@ -209,7 +185,7 @@ fn a_picture_whose_pixels_are_not_those_of_its_series_is_an_error_and_no_panic()
         let environment = fisura_verification::record::Environment::default();
         bundle::write((folder, figure), (&out, "drawn"), &environment, std::collections::BTreeMap::new())
     };
-    let folder = folder(|_| {});
+    let folder = folder();
     let figure = fields(&crate::fixture::results());
     assert!(write(folder.path(), &figure).is_ok());
     let edits: [Edit; 3] = [|pixels| pixels[0] = 0, |pixels| pixels[1] = 0, |pixels| *pixels = [usize::MAX; 2]];

@@ -9,4 +9,5 @@ mod foreign;
 mod forms;
 mod gallery;
 mod render;
+mod support;
 mod vtk;

@@ -1,7 +1,5 @@
 //! A pulled block, intact and notched.
 
-use fisura::scene::TimeStep;
-
 use super::*;
 use crate::scene::SceneFile;
 
