@@ -198,4 +198,5 @@ fn a_summary_fits_a_step_whatever_the_number_of_records() {
     let text = render_markdown(&set);
     assert!(text.len() <= STEP_SUMMARY, "{} bytes", text.len());
     assert!(text.contains("## Does not hold") && text.contains("more are in `report.html`"));
+    assert!(text.lines().count() < 100, "{text}");
 }

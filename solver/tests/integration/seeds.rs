@@ -101,12 +101,14 @@ fn the_largest_cells_are_told_too() {
 }
 
 #[test]
-fn a_seed_that_covers_the_body_is_refused() {
+fn a_seed_that_covers_the_body_or_nothing_is_refused() {
     let crack = |half_width| Crack { from: [0.002, 0.005], to: [0.008, 0.005], half_width: Some(half_width) };
     let errors = validate(&seeded(L0, [2, 2], crack(0.02))).unwrap_err();
     assert_eq!(errors[0].key, "body.0.crack.0.half_width");
     assert!(errors[0].message.contains("covers all of body"), "{errors:?}");
     assert!(validate(&seeded(L0, [2, 2], crack(0.0045))).is_ok());
+    let bare = validate(&seeded(L0, [2, 2], crack(5e-324))).unwrap_err();
+    assert!(bare[0].message.contains("there is no crack"), "{bare:?}");
 }
 
 /// Points on a patch with a geometry are looked at where it maps them.

@@ -110,6 +110,7 @@ const BROKEN: &[Broken] = &[
     ("{ rectangle = {", "{ square = {", 37, "body.0.shape.square", &["unknown key", "rectangle, disk"]),
     ("particles_per_cell = [2, 2]", "particles_per_cell = 0", 38, "body.0.particles_per_cell", &["between 1 and 16"]),
     ("rigid    = false", "rigid = \"no\"", 42, "body.0.rigid", &["found a string", "true or false"]),
+    ("angular_velocity = 0.0", "angular_velocity = \"159.15 Hz\"", 41, "body.0.angular_velocity", &["a frequency", "2 pi", "rad/s"]),
     ("edge   = \"bottom\"", "edge = \"below\"", 47, "body.0.traction.1.edge", &["unknown value", "\"bottom\""]),
     ("half_width = 0.125e-3", "halfwidth = 0.125e-3", 52, "body.0.crack.0.halfwidth", &["did you mean \"half_width\""]),
     ("fix  = [\"x\"]", "fix = \"x\"", 58, "boundary.0.fix", &["expected an array"]),

@@ -176,41 +176,6 @@ fn an_output_folder_that_cannot_be_written_is_refused_before_the_run() {
     assert_eq!(run.complains_of(&["output folder file/out cannot be written", "--out"]).out, "");
 }
 
-#[test]
-fn scenes_that_cannot_be_read_or_modelled_end_with_2() {
-    let place = Place::with("block.toml", BLOCK);
-    place.write("bad.toml", "[mesh");
-    std::fs::write(place.path("bytes.toml"), [0xff, 0xfe, 0x00]).unwrap();
-    place.write("wrong.toml", &BLOCK.replace("poisson_ratio = 0.2", "poisson_ratio = 0.6"));
-    place.write("folder/x", "");
-    let refused = |arguments: &[&str], parts: &[&str]| {
-        let run = place.xtask(&[&["run"], arguments, &["--out", "out"]].concat()).with_status(2);
-        assert_eq!(run.complains_of(parts).out, "");
-    };
-    refused(&["absent.toml"], &["absent.toml"]);
-    refused(&["folder"], &["folder"]);
-    refused(&["bad.toml"], &["bad.toml:1:"]);
-    refused(&["bytes.toml"], &["bytes.toml", "UTF-8"]);
-    refused(&["wrong.toml"], &["wrong.toml:", "poisson_ratio"]);
-    refused(&["block.toml", "--set", "mesh.cells"], &["no '='"]);
-    refused(&["block.toml", "--set", "mesh.cells=[1, "], &["mesh.cells", "TOML"]);
-    refused(&["block.toml", "--set", "mesh.colour=1"], &["mesh.colour", "unknown key"]);
-    refused(&["block.toml", "--threads", "0"], &["--threads"]);
-    refused(&["block.toml", "--checkpoint=-1"], &["--checkpoint", "seconds"]);
-    refused(&[], &["SCENE.toml"]);
-    assert!(!place.path("out").exists(), "nothing was written");
-}
-
-#[test]
-fn a_point_that_leaves_the_mesh_ends_with_3_and_names_it() {
-    let text = BLOCK.replace("end_time = \"5 us\"", "end_time = \"5 us\"\nframe = \"updated\"");
-    let text = text.replace("particles_per_cell", "velocity = [1000, 0]\nparticles_per_cell");
-    let place = Place::with("gone.toml", &text);
-    let run = place.xtask(&["run", "gone.toml", "--out", "out"]).with_status(3);
-    run.complains_of(&["a point left the mesh", "at step", "enlarge mesh.size", "breakdown.json"]);
-    assert!(place.path("out/breakdown.json").is_file() && place.path("out/history.csv").is_file());
-}
-
 /// Files beyond a limit cannot be written, as on a full disk.
 #[cfg(unix)]
 #[test]
