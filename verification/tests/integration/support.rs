@@ -1,5 +1,6 @@
 //! A small scene, and suites of cases with it.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -8,6 +9,7 @@ use fisura_verification::output::OutputFolder;
 use fisura_verification::record::{Environment, Record, ResultSet};
 use fisura_verification::scene::SceneFile;
 use fisura_verification::suite::{Case, Options, Progress, Seconds, VerifyError, load_cases, verify};
+use serde::Deserialize;
 
 pub const SCENE: &str = r#"
 [scene.mesh]
@@ -97,17 +99,29 @@ pub fn run_watched(
 pub const CLOSURE: &str =
     "[[check]]\nid = \"closure\"\nquantity = \"closure\"\nmeasure = \"closure\"\nmax = 1e-12\nwhy = \"round-off\"";
 
-/// Asserts that scenes are refused, each on a line of its own with place, key and words; line 0 is any.
+/// A row of `broken_scenes.toml`.
+#[derive(Deserialize)]
+pub struct Broken {
+    pub from: String,
+    pub to: String,
+    line: usize,
+    key: String,
+    words: Vec<String>,
+}
+
+/// Asserts that the scenes of a table are refused, each on a line of its own with place, key and words.
 #[track_caller]
-pub fn refused_where<'a>(scenes: impl Iterator<Item = (String, usize, &'a str, &'a [&'a str])>) {
+pub fn refused_where(table: &str, text: impl Fn(&Broken) -> String) {
+    let mut tables: BTreeMap<String, Vec<Broken>> = toml::from_str(include_str!("broken_scenes.toml")).unwrap();
     let mut missed = Vec::new();
-    for (text, line, key, words) in scenes {
-        let error = SceneFile::parse("broken.toml", &text, &[]).expect_err(&text).to_string();
-        let place = if line == 0 { "broken.toml:".to_string() } else { format!("broken.toml:{line}:") };
+    for row in tables.remove(table).unwrap() {
+        let Broken { to, line, key, words, .. } = &row;
+        let error = SceneFile::parse("broken.toml", &text(&row), &[]).expect_err(to).to_string();
+        let place = if *line == 0 { "broken.toml:".to_string() } else { format!("broken.toml:{line}:") };
         let subject = if key.is_empty() { String::new() } else { format!(" {key}: ") };
         let says = |l: &str| l.starts_with(&place) && l.contains(&subject) && words.iter().all(|w| l.contains(w));
         if !error.lines().any(says) {
-            missed.push(format!("expected {place} {key} {words:?}, found\n{error}"));
+            missed.push(format!("{to:?}: expected {place} {key} {words:?}, found\n{error}"));
         }
     }
     assert!(missed.is_empty(), "{}", missed.join("\n\n"));
