@@ -1,7 +1,7 @@
 //! Steps work in the memory of the model: what one allocates is lists with a number per strip of points, and
 //! where systems are solved or bodies meet a share of the model.
 
-use crate::common::{bent_patch, elastic_scene, notched_plate, patch_scene, pulled_plate, two_discs, with_threads};
+use crate::common::{bent_patch, driven_plate, notched_plate, patch_scene, pulled_plate, two_discs, with_threads};
 use fisura::Simulation;
 use fisura::scene::*;
 
@@ -39,12 +39,8 @@ fn a_share(name: &str, scene: &Scene, share: f64) {
 fn in_the_total_frame() {
     only_lists("elastic", &pulled_plate(1e5));
     only_lists("mapped", &patch_scene(&bent_patch(2, 10), 3));
-    let mut driven = elastic_scene(2, [0.01, 0.005], [60, 30]);
+    let mut driven = driven_plate([60, 30]);
     driven.analysis.end_time = 1e-3;
-    driven.boundaries = vec![
-        Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] },
-        Boundary { side: Side::Right, fix: [true, false], velocity: [1.0, 0.0] },
-    ];
     only_lists("driven sides", &driven);
     let mut finite = driven.clone();
     finite.analysis.kinematics = Kinematics::Finite;

@@ -1,6 +1,6 @@
 //! A time step beyond the critical one breaks down in words; one below it lasts.
 
-use crate::common::{elastic_scene, notched_plate};
+use crate::common::{driven_plate, elastic_scene, notched_plate};
 use fisura::Simulation;
 use fisura::scene::*;
 use fisura::simulation::breakdown::Breakdown;
@@ -51,12 +51,7 @@ fn beyond_the_critical_step_the_run_says_so() {
     let mut spinning = elastic_scene(2, [0.01, 0.005], [20, 10]);
     spinning.bodies[0].angular_velocity = 1e3;
     check("spinning, without loads", &with_step(spinning, 1.3, 4000));
-    let mut driven = elastic_scene(2, [0.01, 0.005], [20, 10]);
-    driven.boundaries = vec![
-        Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] },
-        Boundary { side: Side::Right, fix: [true, false], velocity: [1.0, 0.0] },
-    ];
-    check("driven", &with_step(driven, 1.3, 2000));
+    check("driven", &with_step(driven_plate([20, 10]), 1.3, 2000));
     // The unstable mode is torn apart by the phase field before its elastic energy has grown: this plate shatters
     // (fracture energy 0.019 J to 0.071 J on 0.014 J of work), and the ledger tells.
     check("fracture", &with_step(notched_plate(1e5), 1.3, 100));

@@ -1,17 +1,14 @@
-//! Bodies that meet: momentum, energy, onset, friction.
+//! Bodies that meet, and bodies that do not.
 
-use crate::common::{body, elastic_scene, rectangle, run};
+use crate::common::{body, brittle, elastic_scene, rectangle, run};
 use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
-
-fn elastic(young_modulus: f64, poisson_ratio: f64, density: f64) -> Material {
-    Material { young_modulus, poisson_ratio, density, fracture: None }
-}
 
 /// Two blocks that fly into each other.
 fn blocks(contact: Option<Contact>) -> Scene {
     let mut scene = elastic_scene(2, [4.0, 0.5], [80, 10]);
-    scene.materials.insert("glass".into(), elastic(1e4, 0.3, 1.0));
+    let material = Material { young_modulus: 1e4, poisson_ratio: 0.3, density: 1.0, fracture: None };
+    scene.materials.insert("glass".into(), material);
     let block = |name: &str, left: f64, speed: f64| Body {
         name: name.into(),
         velocity: [speed, 0.0],
@@ -43,12 +40,8 @@ fn bodies_pass_through_each_other_without_a_contact_table() {
 #[test]
 fn nodal_fields_follow_a_body_with_its_phase_field() {
     let mut scene = blocks(None);
-    scene.materials.get_mut("glass").unwrap().fracture = Some(Fracture {
-        critical_energy_release_rate: 1.0,
-        length_scale: 0.05,
-        residual_stiffness: 0.0,
-        split: Split::Spectral,
-    });
+    let fracture = Fracture { critical_energy_release_rate: 1.0, length_scale: 0.05, ..brittle() };
+    scene.materials.get_mut("glass").unwrap().fracture = Some(fracture);
     scene.bodies.truncate(1);
     scene.bodies[0].cracks = vec![Crack { from: [0.6, 0.25], to: [0.7, 0.25], half_width: None }];
     let (simulation, samples) = run(&scene);

@@ -1,7 +1,6 @@
-//! Finite kinematics in the updated frame: rotations, the small-strain limit, the spinning disc.
+//! Finite kinematics in the updated frame: memory, cracks, and the limit of small strains.
 
-
-use crate::common::{unit_solid, updated_scene};
+use crate::common::{brittle, unit_solid, updated_scene};
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
@@ -38,12 +37,8 @@ fn a_cracking_body_cracks_as_with_small_strains_and_its_ledger_is_as_open() {
     let run = |kinematics| {
         let shape = Shape::Rectangle { min: [-0.5, -0.4], max: [0.5, 0.4] };
         let mut scene = scene(2, 1.2, 24, shape, kinematics);
-        scene.materials.get_mut("solid").unwrap().fracture = Some(Fracture {
-            critical_energy_release_rate: 1e-4,
-            length_scale: 0.05,
-            residual_stiffness: 0.0,
-            split: Split::Spectral,
-        });
+        let fracture = Fracture { critical_energy_release_rate: 1e-4, length_scale: 0.05, ..brittle() };
+        scene.materials.get_mut("solid").unwrap().fracture = Some(fracture);
         let pull = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: Some(0.2) };
         scene.bodies[0].tractions = vec![pull(Side::Top, 5e-3), pull(Side::Bottom, -5e-3)];
         scene.bodies[0].cracks = vec![Crack { from: [-0.5, 0.0], to: [0.0, 0.0], half_width: None }];

@@ -10,28 +10,17 @@ fn vtk_files(place: &Place) -> Vec<String> {
     place.files("out").into_iter().filter(|name| name.ends_with(".vtu") || name.ends_with(".pvd")).collect()
 }
 
-/// Header, points, cells, names of the fields, and bytes behind the header.
+/// Points, cells and names of the fields, from the header.
 fn parse(place: &Place, name: &str) -> (usize, usize, Vec<String>) {
     let bytes = std::fs::read(place.path(&format!("out/{name}"))).expect("a file");
-    let mark = b"<AppendedData encoding=\"raw\">\n_";
-    let start = bytes.windows(mark.len()).position(|window| window == mark).expect("appended data");
-    let header = std::str::from_utf8(&bytes[..start]).expect("text");
-    let attribute = |element: &str, name: &str| -> String {
-        element.split(&format!("{name}=\"")).nth(1).expect(name).split('"').next().expect("a value").to_string()
+    let text = String::from_utf8_lossy(&bytes);
+    let values = |text: &str, name: &str| -> Vec<String> {
+        let after = text.split(&format!("{name}=\"")).skip(1);
+        after.map(|rest| rest.split('"').next().expect("a value").to_string()).collect()
     };
-    let number = |element: &str, name: &str| attribute(element, name).parse::<usize>().expect("a number");
-    let piece = header.split('<').find(|element| element.starts_with("Piece")).expect("a piece");
-    let mut end = 0;
-    let arrays: Vec<&str> = header.split('<').filter(|element| element.starts_with("DataArray")).collect();
-    for array in &arrays {
-        assert_eq!(number(array, "offset"), end, "arrays follow each other");
-        let at = start + mark.len() + end;
-        end += 8 + u64::from_le_bytes(bytes[at..at + 8].try_into().expect("eight bytes")) as usize;
-    }
-    assert!(bytes[start + mark.len() + end..].starts_with(b"\n</AppendedData>"), "nothing is left over");
-    let fields = header.split("</PointData>").next().expect("fields").split("Name=\"").skip(1);
-    let names = fields.map(|rest| rest.split('"').next().expect("a name").to_string()).collect();
-    (number(piece, "NumberOfPoints"), number(piece, "NumberOfCells"), names)
+    let number = |name: &str| values(&text, name)[0].parse().expect("a number");
+    let fields = text.split("</PointData>").next().expect("fields");
+    (number("NumberOfPoints"), number("NumberOfCells"), values(fields, " Name"))
 }
 
 #[test]

@@ -111,6 +111,16 @@ pub fn pulled_plate(stress: f64) -> Scene {
     scene
 }
 
+/// A small plate, clamped at its left side, whose right side is driven in x.
+pub fn driven_plate(cells: [usize; 2]) -> Scene {
+    let mut scene = elastic_scene(2, [0.01, 0.005], cells);
+    scene.boundaries = vec![
+        Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] },
+        Boundary { side: Side::Right, fix: [true, false], velocity: [1.0, 0.0] },
+    ];
+    scene
+}
+
 /// The plate, brittle and with a crack of 4 mm from its left side.
 pub fn notched_plate(stress: f64) -> Scene {
     let mut scene = pulled_plate(stress);
