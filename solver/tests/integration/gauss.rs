@@ -1,7 +1,6 @@
 //! Gauss quadrature by spans in the updated frame: what is conserved, and that cut spans do no harm.
 
-use crate::common::{unit_solid, updated_scene, with_threads};
-use fisura::Simulation;
+use crate::common::{run, unit_solid, updated_scene};
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
@@ -82,10 +81,7 @@ fn a_rigid_flight_strains_nothing() {
 fn points_show_the_strain_and_stress_that_spans_integrate() {
     let mut scene = flying(2, 16);
     scene.bodies[0].angular_velocity = 0.6;
-    let mut simulation = Simulation::new(&scene).unwrap();
-    while !simulation.finished() {
-        simulation.step().unwrap();
-    }
+    let (simulation, _) = run(&scene);
     let frame = simulation.updated_frame().unwrap();
     let volumes: Vec<f64> = frame.fields()[0].points().iter().map(|point| point.volume).collect();
     let mut energy = 0.0;

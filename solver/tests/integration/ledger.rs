@@ -117,11 +117,8 @@ fn the_first_step_under_a_ramp_closes() {
     let mut scene = crate::common::pulled_plate(1e6);
     scene.analysis.end_time = 1e-6;
     scene.output.samples = 1000;
-    let mut simulation = fisura::Simulation::new(&scene).unwrap();
+    let (simulation, _) = run(&scene);
     assert_eq!(simulation.plan().steps_per_sample, 1);
-    while !simulation.finished() {
-        simulation.advance_to_next_sample().unwrap();
-    }
     let open: Vec<_> = simulation.warnings().iter().filter(|warning| warning.contains("ledger")).collect();
     assert!(open.is_empty(), "{open:?}");
 }

@@ -1,7 +1,6 @@
 //! Small strains do not follow rotations: a run whose material turns says so.
 
-use crate::common::{brittle, elastic_scene, rectangle};
-use fisura::Simulation;
+use crate::common::{brittle, elastic_scene, rectangle, run};
 use fisura::scene::*;
 
 /// A free bar that turns by about `angle` (rad) as a whole.
@@ -15,10 +14,7 @@ fn spinning(frame: Frame, kinematics: Kinematics, angle: f64) -> Scene {
 
 /// Warnings of a run to its end.
 fn warnings(scene: &Scene) -> Vec<String> {
-    let mut simulation = Simulation::new(scene).unwrap();
-    while !simulation.finished() {
-        simulation.advance_to_next_sample().unwrap();
-    }
+    let (simulation, _) = run(scene);
     simulation.warnings().iter().filter(|warning| warning.contains("has turned by")).cloned().collect()
 }
 
