@@ -5,7 +5,6 @@ use std::sync::Arc;
 use crate::common::{Random, closure_of_any_sample, elastic_scene, relative_closure, run};
 use fisura::dynamics::forcing::NoLoads;
 use fisura::dynamics::total_frame::TotalFrame;
-use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
 
 /// Elastic energy (J) under the displacement `(A − I) X`.
