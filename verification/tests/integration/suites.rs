@@ -39,17 +39,6 @@ fn a_record_carries_the_ids_it_had_before() {
 }
 
 #[test]
-fn a_run_that_breaks_down_is_an_error_with_step_and_place() {
-    let root = tempfile::tempdir().unwrap();
-    let unstable = SCENE.replace("end_time = 1.0", "end_time = 100.0\ntime_step = 0.2");
-    write_case(root.path(), "unstable", &unstable, CLOSURE);
-    let results = run(root.path(), Environment::default()).unwrap();
-    assert_eq!(results.records[0].status, Status::Error);
-    let message = results.records[0].message.as_deref().unwrap();
-    assert!(message.contains("at step") && message.contains("critical step"), "{message}");
-}
-
-#[test]
 fn lists_where_a_scene_has_one_value_are_axes() {
     let root = tempfile::tempdir().unwrap();
     let axes =
