@@ -101,9 +101,7 @@ fn projectile(speed: f64, time_step: TimeStep) -> Scene {
         body(rectangle([2.0, 0.25], [2.5, 0.75]), [2; 2]),
         rigid("projectile", rectangle([0.5, 0.2], [0.50625, 0.8]), [speed, 0.0]),
     ];
-    scene.analysis.kinematics = Kinematics::Finite;
-    scene.analysis.end_time = 1.75 / speed;
-    scene.analysis.time_step = time_step;
+    scene.analysis = Analysis { kinematics: Kinematics::Finite, end_time: 1.75 / speed, time_step, ..scene.analysis };
     scene
 }
 

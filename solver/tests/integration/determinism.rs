@@ -48,9 +48,7 @@ fn in_the_total_frame() {
 fn in_the_updated_frame() {
     let mut scene = tall(notched_plate(6e6));
     scene.mesh = Mesh::uniform([2; 2], [-0.001; 2], [0.012, 0.007], [36, 84]);
-    scene.analysis.frame = Frame::Updated;
-    scene.analysis.safety = 0.5;
-    scene.analysis.end_time = 0.5e-6;
+    scene.analysis = Analysis { frame: Frame::Updated, safety: 0.5, end_time: 0.5e-6, ..scene.analysis };
     check(&scene);
 }
 

@@ -12,9 +12,7 @@ fn scene(degree: usize, side: f64, cells: usize, shape: Shape, kinematics: Kinem
     let mesh = Mesh::uniform([degree; 2], [-0.5 * side; 2], [side; 2], [cells; 2]);
     let mut scene = updated_scene(unit_solid(), mesh, shape);
     scene.bodies[0].particles_per_cell = [degree + 1; 2];
-    scene.analysis.plane = Plane::Stress;
-    scene.analysis.kinematics = kinematics;
-    scene.analysis.transfer = Transfer::Apic;
+    scene.analysis = Analysis { plane: Plane::Stress, kinematics, transfer: Transfer::Apic, ..scene.analysis };
     scene.output.samples = 200;
     scene
 }

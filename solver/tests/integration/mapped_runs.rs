@@ -150,9 +150,7 @@ fn elastic_energies_close_on_curved_patches() {
     for mass in [Mass::Lumped, Mass::Consistent] {
         for (name, patch) in [("annulus", annulus(3, 6)), ("bent", bent_patch(2, 8))] {
             let mut scene = patch_scene(&patch, 4);
-            scene.analysis.mass = mass;
-            scene.analysis.end_time = 1e-3;
-            scene.analysis.gravity = [3e3, -1e4];
+            scene.analysis = Analysis { mass, end_time: 1e-3, gravity: [3e3, -1e4], ..scene.analysis };
             let drive = |side, velocity| Boundary { side, fix: [true, true], velocity };
             scene.boundaries = vec![drive(Side::Bottom, [0.0; 2]), drive(Side::Top, [0.3, 0.4])];
             let load = Traction { edge: Edge::Side(Side::Right), stress: [1e5, -2e5], ramp: Some(1e-4) };

@@ -61,9 +61,7 @@ fn small_strains_are_the_limit() {
 fn the_ledger_closes_with_the_square_of_the_step() {
     let closure = |safety: f64| {
         let mut scene = elastic_scene(2, [0.01, 0.008], [10, 8]);
-        scene.analysis.kinematics = Kinematics::Finite;
-        scene.analysis.safety = safety;
-        scene.analysis.end_time = 8e-6;
+        scene.analysis = Analysis { kinematics: Kinematics::Finite, safety, end_time: 8e-6, ..scene.analysis };
         scene.bodies[0].velocity = [200.0, 100.0];
         scene.boundaries = vec![Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] }];
         scene.output.samples = 4;

@@ -28,9 +28,7 @@ fn a_rigid_translation_is_exact_with_every_transfer() {
             let mut scene = scene(degree, [2.0, 2.0], [16, 16], [0.313, 0.917], [0.871, 1.413]);
             scene.bodies[0].velocity = velocity;
             scene.bodies[0].layout = layout;
-            scene.analysis.transfer = transfer;
-            scene.analysis.kinematics = kinematics;
-            scene.analysis.end_time = 1.6;
+            scene.analysis = Analysis { transfer, kinematics, end_time: 1.6, ..scene.analysis };
             let what = format!("{transfer:?}, p = {degree}, {kinematics:?}, {layout:?}");
             let (simulation, samples) = run(&scene);
             for point in simulation.updated_frame().unwrap().fields()[0].points() {
@@ -62,9 +60,7 @@ fn eventful(transfer: Transfer, degree: usize) -> Scene {
         Boundary { side: Side::Left, fix: [true, false], velocity: [1.5e-3, 0.0] },
         Boundary { side: Side::Top, fix: [false, true], velocity: [0.0; 2] },
     ];
-    scene.analysis.gravity = [0.0, 0.02];
-    scene.analysis.transfer = transfer;
-    scene.analysis.end_time = 6.0;
+    scene.analysis = Analysis { gravity: [0.0, 0.02], transfer, end_time: 6.0, ..scene.analysis };
     scene.output.samples = 40;
     scene
 }
@@ -99,9 +95,7 @@ fn momentum_is_kept_to_round_off_with_every_transfer() {
         let mut scene = scene(degree, [2.0, 2.0], [32, 32], [0.413, 0.531], [1.018, 1.003]);
         scene.bodies[0].velocity = [0.3, 0.2];
         scene.bodies[0].angular_velocity = 0.3;
-        scene.analysis.kinematics = kinematics;
-        scene.analysis.transfer = transfer;
-        scene.analysis.end_time = 2.0;
+        scene.analysis = Analysis { kinematics, transfer, end_time: 2.0, ..scene.analysis };
         let (_, samples) = run(&scene);
         let first = samples[0].momentum;
         let off = |s: &Sample| (s.momentum[0] - first[0]).hypot(s.momentum[1] - first[1]);

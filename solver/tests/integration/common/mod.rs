@@ -97,9 +97,7 @@ pub fn updated_scene(material: Material, mesh: Mesh, shape: Shape) -> Scene {
     scene.bodies[0].material = "solid".into();
     scene.bodies[0].shape = shape;
     scene.mesh = mesh;
-    scene.analysis.frame = Frame::Updated;
-    scene.analysis.end_time = 1.0;
-    scene.analysis.safety = 0.5;
+    scene.analysis = Analysis { frame: Frame::Updated, end_time: 1.0, safety: 0.5, ..scene.analysis };
     scene
 }
 
