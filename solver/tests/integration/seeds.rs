@@ -111,17 +111,19 @@ fn a_seed_that_covers_the_body_or_nothing_is_refused() {
     assert!(bare[0].message.contains("there is no crack"), "{bare:?}");
 }
 
+/// A quarter annulus with so many spans, and a crack from within to without.
+fn on_ring(spans: usize, half_width: Option<f64>) -> Scene {
+    let ring = NurbsPatch::quarter_annulus(0.01, 0.02).unwrap().elevate(0).unwrap().subdivide(spans).unwrap();
+    let mut scene = seeded(L0, [2, 2], Crack { from: [0.0072, 0.0072], to: [0.0105, 0.0105], half_width });
+    scene.mesh = Mesh::of(&ring);
+    scene.bodies[0].shape = Shape::Patch;
+    scene
+}
+
 /// Points on a patch with a geometry are looked at where it maps them.
 #[test]
 fn seeds_on_a_patch_are_judged_in_metres() {
-    let ring = NurbsPatch::quarter_annulus(0.01, 0.02).unwrap().elevate(0).unwrap().subdivide(40).unwrap();
-    let crack = |half_width| Crack { from: [0.0072, 0.0072], to: [0.0105, 0.0105], half_width };
-    let with = |half_width| {
-        let mut scene = seeded(L0, [2, 2], crack(half_width));
-        scene.mesh = Mesh::of(&ring);
-        scene.bodies[0].shape = Shape::Patch;
-        scene
-    };
+    let with = |half_width| on_ring(40, half_width);
     let errors = validate(&with(Some(1e-6))).unwrap_err();
     assert_eq!(errors.len(), 1, "{errors:?}");
     assert_eq!(errors[0].key, "body.0.crack.0.half_width");
@@ -150,10 +152,7 @@ fn bodies_one_point_thick_can_be_cracked() {
 
 #[test]
 fn a_seed_that_nobody_looked_at_is_told() {
-    let ring = NurbsPatch::quarter_annulus(0.01, 0.02).unwrap().elevate(0).unwrap().subdivide(100).unwrap();
-    let mut scene = seeded(L0, [2, 2], Crack { from: [0.0072, 0.0072], to: [0.0105, 0.0105], half_width: Some(1e-9) });
-    scene.mesh = Mesh::of(&ring);
-    scene.bodies[0].shape = Shape::Patch;
+    let mut scene = on_ring(100, Some(1e-9));
     let told = |scene: &Scene| {
         let warnings = validate(scene).unwrap();
         warnings.iter().any(|w| w.key == "body.0.crack.0" && w.message.contains("too many material points"))
