@@ -1,7 +1,7 @@
 //! The forms that other programs read: the schema of `results.json`, JUnit, benchmark dashboards, step
 //! summaries.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use fisura_reports::junit::render_junit;
@@ -9,7 +9,7 @@ use fisura_reports::markdown::render_markdown;
 use fisura_reports::metrics::render_metrics;
 use fisura_verification::record::{ResultSet, json_schema};
 use quick_xml::Reader;
-use quick_xml::events::{BytesStart, Event};
+use quick_xml::events::Event;
 use serde_json::{Value, json};
 
 /// Size above which GitHub drops a step summary.
@@ -76,53 +76,45 @@ fn rules(element: &str) -> Option<(&'static [&'static str], &'static [&'static s
     })
 }
 
-/// Fails unless an element may stand where it does and has the attributes it must and may have; gives its
-/// counts.
-fn check_element(element: &BytesStart, parents: &[String]) -> String {
-    let name = String::from_utf8(element.name().as_ref().to_vec()).unwrap();
-    let (required, optional, _) = rules(&name).unwrap_or_else(|| panic!("unknown element {name}"));
-    match parents.last().and_then(|parent| rules(parent)) {
-        Some((_, _, children)) => assert!(children.contains(&name.as_str()), "{name} below {parents:?}"),
-        None => assert_eq!(name, "testsuites", "the root"),
-    }
-    let mut given = BTreeSet::new();
-    for attribute in element.attributes() {
-        let attribute = attribute.unwrap();
-        let key = String::from_utf8(attribute.key.as_ref().to_vec()).unwrap();
-        let value = String::from_utf8(attribute.value.to_vec()).unwrap();
-        assert!(required.contains(&key.as_str()) || optional.contains(&key.as_str()), "{key} of {name}");
-        match key.as_str() {
-            "time" => assert!(value.parse::<f64>().is_ok_and(|t| t >= 0.0), "{key}={value}"),
-            "tests" | "failures" | "errors" | "skipped" => assert!(value.parse::<u64>().is_ok(), "{key}={value}"),
+/// An element of a JUnit file.
+struct Element {
+    name: String,
+    parent: Option<String>,
+    attributes: BTreeMap<String, String>,
+}
+
+/// All elements of a file, in its order.
+fn elements(text: &str) -> Vec<Element> {
+    let (mut reader, mut parents, mut found) = (Reader::from_str(text), Vec::<String>::new(), Vec::new());
+    let word = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+    loop {
+        let event = reader.read_event().unwrap();
+        match &event {
+            Event::Start(element) | Event::Empty(element) => {
+                let attributes = element.attributes().map(|attribute| attribute.unwrap());
+                let attributes = attributes.map(|a| (word(a.key.as_ref()), word(&a.value))).collect();
+                let (name, parent) = (word(element.name().as_ref()), parents.last().cloned());
+                if matches!(event, Event::Start(_)) {
+                    parents.push(name.clone());
+                }
+                found.push(Element { name, parent, attributes });
+            }
+            Event::End(_) => drop(parents.pop()),
+            Event::Eof => return found,
             _ => {}
         }
-        given.insert(key);
     }
-    assert!(required.iter().all(|key| given.contains(*key)), "{name} has {given:?}");
-    name
 }
 
-fn number(element: &BytesStart, key: &str) -> usize {
-    let attribute = element.try_get_attribute(key).unwrap().unwrap();
-    String::from_utf8(attribute.value.to_vec()).unwrap().parse().unwrap()
-}
-
-fn count(name: &str, found: &mut [usize; 4]) {
-    for (at, element) in [(1, "failure"), (2, "error"), (3, "skipped")] {
-        found[at] += usize::from(name == element);
-    }
+/// Sum of an attribute over all elements of a name.
+fn sum(elements: &[Element], name: &str, key: &str) -> f64 {
+    let of_name = elements.iter().filter(|element| element.name == name);
+    of_name.map(|element| element.attributes[key].parse::<f64>().unwrap()).sum()
 }
 
 /// Wall times that a JUnit file declares for its suites and for its cases.
 fn times(text: &str) -> [f64; 2] {
-    let of = |element: &str| -> f64 {
-        let start = format!("<{element} ");
-        let starts = text.split(&start).skip(1);
-        starts
-            .map(|rest| rest.split("time=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>().unwrap())
-            .sum()
-    };
-    ["testsuite", "testcase"].map(of)
+    ["testsuite", "testcase"].map(|name| sum(&elements(text), name, "time"))
 }
 
 #[test]
@@ -147,35 +139,28 @@ fn the_time_of_a_study_is_counted_once() {
 
 #[test]
 fn junit_keeps_to_its_schema_and_counts_right() {
-    let text = render_junit(&crate::fixture::results()).unwrap();
-    let mut reader = Reader::from_str(&text);
-    let mut parents: Vec<String> = Vec::new();
-    let (mut declared, mut found) = ([0; 4], [0; 4]);
-    loop {
-        match reader.read_event().unwrap() {
-            Event::Start(element) => {
-                let name = check_element(&element, &parents);
-                if name == "testsuites" {
-                    declared[..3].copy_from_slice(&["tests", "failures", "errors"].map(|key| number(&element, key)));
-                }
-                if name == "testsuite" {
-                    declared[3] += number(&element, "skipped");
-                }
-                found[0] += usize::from(name == "testcase");
-                count(&name, &mut found);
-                parents.push(name);
+    let elements = elements(&render_junit(&crate::fixture::results()).unwrap());
+    for Element { name, parent, attributes } in &elements {
+        let (required, optional, _) = rules(name).unwrap_or_else(|| panic!("unknown element {name}"));
+        match parent.as_deref().and_then(rules) {
+            Some((_, _, children)) => assert!(children.contains(&name.as_str()), "{name} below {parent:?}"),
+            None => assert_eq!(name, "testsuites", "the root"),
+        }
+        assert!(required.iter().all(|key| attributes.contains_key(*key)), "{name} has {attributes:?}");
+        for (key, value) in attributes {
+            assert!(required.contains(&key.as_str()) || optional.contains(&key.as_str()), "{key} of {name}");
+            match key.as_str() {
+                "time" => assert!(value.parse::<f64>().is_ok_and(|t| t >= 0.0), "{key}={value}"),
+                "tests" | "failures" | "errors" | "skipped" => assert!(value.parse::<u64>().is_ok(), "{key}={value}"),
+                _ => {}
             }
-            Event::Empty(element) => {
-                let name = check_element(&element, &parents);
-                count(&name, &mut found);
-            }
-            Event::End(_) => drop(parents.pop()),
-            Event::Eof => break,
-            _ => {}
         }
     }
-    assert_eq!(declared, found);
-    assert_eq!(found, [13, 2, 1, 3], "records, failures, errors of the fixture, and what was not judged");
+    let found = ["testcase", "failure", "error", "skipped"]
+        .map(|name| elements.iter().filter(|element| element.name == name).count() as f64);
+    assert_eq!(found, [13.0, 2.0, 1.0, 3.0], "records, failures, errors of the fixture, and what was not judged");
+    let [tests, failures, errors] = ["tests", "failures", "errors"].map(|key| sum(&elements, "testsuites", key));
+    assert_eq!([tests, failures, errors, sum(&elements, "testsuite", "skipped")], found);
 }
 
 /// `customSmallerIsBetter` of github-action-benchmark.
