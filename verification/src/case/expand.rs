@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use fisura::scene::Scene;
 
-use crate::case::formula::{Amount, Name, value_of_key};
+use crate::case::formula::{Amount, Formula, Name, value_of_key};
 use crate::case::{Case, Variant};
 use crate::scene::document::{Node, Value};
 use crate::scene::{Problem, SceneFileError, check_scene, read_scene};
@@ -66,6 +66,19 @@ fn find_axes(node: &Node, path: &str, axes: &mut Vec<(String, Vec<Node>)>) {
     }
 }
 
+/// Every string below `node` that is a formula, with its key path.
+fn find_formulas(node: &Node, path: &str, formulas: &mut Vec<(String, Node)>) {
+    let join = |key: &str| if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
+    match &node.value {
+        Value::Table(table) => table.iter().for_each(|(key, child)| find_formulas(child, &join(key), formulas)),
+        Value::Array(entries) => {
+            entries.iter().enumerate().for_each(|(i, child)| find_formulas(child, &join(&i.to_string()), formulas));
+        }
+        Value::String(text) if text.starts_with('=') => formulas.push((path.to_string(), node.clone())),
+        _ => {}
+    }
+}
+
 impl Case {
     /// All scenes of the case, in order; none if it has no `[scene]`.
     ///
@@ -100,12 +113,49 @@ impl Case {
     }
 
     fn scene_of(&self, tree: Tree) -> Result<CaseScene, SceneFileError> {
+        let Tree { name, parameters, energy_factor, mut node } = tree;
         let fail = |problems: Vec<Problem>| self.document.error(&problems);
-        let scene = read_scene(&tree.node, "scene").map_err(fail)?;
-        check_scene(&scene, &tree.node, "scene").map_err(fail)?;
-        let values = self.values(&tree.node)?;
-        let Tree { name, parameters, energy_factor, .. } = tree;
+        self.put_numbers(&mut node).map_err(|problem| fail(vec![problem]))?;
+        let scene = read_scene(&node, "scene").map_err(fail)?;
+        check_scene(&scene, &node, "scene").map_err(fail)?;
+        let values = self.values(&node)?;
         Ok(CaseScene { name, parameters, scene, values, energy_factor })
+    }
+
+    /// Puts its number in place of every formula of a scene, first of those that use no other.
+    fn put_numbers(&self, scene: &mut Node) -> Result<(), Problem> {
+        let mut formulas = Vec::new();
+        find_formulas(scene, "", &mut formulas);
+        while !formulas.is_empty() {
+            let (mut later, mut wrong) = (Vec::new(), Ok(()));
+            for (path, node) in &formulas {
+                let number = self.number(path, node, scene);
+                if let Err(problem) = number.map(|number| scene.set(path, number)) {
+                    later.push((path.clone(), node.clone()));
+                    wrong = wrong.and(Err(problem));
+                }
+            }
+            if later.len() == formulas.len() {
+                return wrong;
+            }
+            formulas = later;
+        }
+        Ok(())
+    }
+
+    /// The value of a formula at a path of the scene, an integer if it is whole.
+    fn number(&self, path: &str, node: &Node, scene: &Node) -> Result<Node, Problem> {
+        let text = node.as_str().unwrap_or_default().trim_start_matches('=').trim();
+        let found = text.parse().and_then(|formula| self.evaluate(&formula, scene, self.values.len()));
+        let value = match found {
+            Ok(number) if number == number.trunc() => Value::Integer(number as i64),
+            Ok(number) => Value::Float(number),
+            Err(message) => {
+                let remedy = "give a number, or a formula of values and of other keys of the scene in braces".into();
+                return Err(Problem { key: format!("scene.{path}"), location: node.location.clone(), message, remedy });
+            }
+        };
+        Ok(Node { value, ..node.clone() })
     }
 
     /// The `[values]` in a scene.
@@ -126,6 +176,11 @@ impl Case {
             Amount::Formula(formula) => formula,
         };
         let links = links.checked_sub(1).ok_or_else(|| format!("the value {name:?} depends on itself"))?;
+        self.evaluate(formula, scene, links)
+    }
+
+    /// What a formula gives in a scene; a chain of values in it has at most `links`.
+    fn evaluate(&self, formula: &Formula, scene: &Node, links: usize) -> Result<f64, String> {
         let value = formula.number(&mut |name| match name {
             Name::Plain(other) => self.value(other, scene, links),
             Name::Key(path) => value_of_key(scene, path),
