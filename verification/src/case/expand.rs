@@ -118,11 +118,11 @@ impl Case {
         let value = match &node.value {
             Value::Table(table) => {
                 let entries = table.iter().map(|(key, child)| Ok((key.clone(), inner(key, child)?)));
-                Value::Table(entries.collect::<Result<_, _>>()?)
+                Value::Table(entries.collect::<Result<_, Problem>>()?)
             }
             Value::Array(entries) => {
                 let entries = entries.iter().enumerate().map(|(i, child)| inner(&i.to_string(), child));
-                Value::Array(entries.collect::<Result<_, _>>()?)
+                Value::Array(entries.collect::<Result<_, Problem>>()?)
             }
             Value::String(text) if text.starts_with('=') => match self.key(path, node, scene, MOST_LINKS) {
                 Ok(number) if number == number.trunc() => Value::Integer(number as i64),

@@ -42,8 +42,9 @@ pub(super) struct CaseTable {
     label: String,
     /// Energies of the run times this are those of the whole body: 2 for a half model.
     energy_factor: Option<Positive>,
-    /// What differs from the cited source.
+    /// What differs from the cited source: a list, or a table of the entries that differ from the base.
     #[serde(default)]
+    #[schemars(with = "Value")]
     deviations: Vec<String>,
     /// What is modelled, if it does not follow from the scene.
     models: Option<Vec<String>>,

@@ -89,7 +89,7 @@ pub(super) fn write_checks(document: &mut Document, path: &Path) -> Result<(), S
         false => None,
     };
     let mut expansion = Expansion { sets, problems: Vec::new() };
-    let write = |(i, check)| expansion.check(&format!("check.{i}"), check, 0);
+    let write = |(i, check): (usize, &Node)| expansion.check(&format!("check.{i}"), check, 0);
     let written: Vec<Node> = checks.iter().enumerate().flat_map(write).collect();
     if !expansion.problems.is_empty() {
         return Err(document.error(&expansion.problems));
@@ -152,8 +152,12 @@ impl Expansion {
         let sets = self.sets.take();
         let found = sets.as_ref().and_then(|sets| named(sets, SETS, name, &key, &mut self.problems));
         self.sets = sets;
-        let checks = found.iter().filter_map(Node::as_array).flatten();
-        checks.flat_map(|check| self.check(path, check, depth + 1)).collect()
+        let Some(found) = found else { return Vec::new() };
+        let Some(checks) = found.as_array() else {
+            self.note(&key, name, format!("it is {}, no list", found.kind()), format!("write [[…]] in {SETS}"));
+            return Vec::new();
+        };
+        checks.iter().flat_map(|check| self.check(path, check, depth + 1)).collect()
     }
 
     /// A check for each entry of its list, or the check itself.
