@@ -3,8 +3,8 @@
 //! A case is one TOML file `cases/<suite>/<case>.toml`. Its `[scene]` table has the form of a scene file,
 //! and may have a list where a scene has one value: a study axis. `[[variant]]` tables change several
 //! keys together. `[values]` names numbers, which formulas of checks and charts ([`formula`]) use. What
-//! several checks have in common stands once: a `[[check]]` may name a `set` of checks, and list in
-//! `variants` what differs between runs.
+//! several cases or checks have in common stands once: a case may name a `base`, a `[[check]]` a `set` of
+//! checks, and `each` lists what differs between them ([`repeat`]).
 
 mod chart;
 mod check;
@@ -215,7 +215,7 @@ pub struct Case {
     pub checks: Vec<Check>,
     /// Charts of its runs.
     pub charts: Vec<Chart>,
-    /// The file with every check written out, for places of errors.
+    /// The file with its base and every check written out, for places of errors.
     pub document: Document,
 }
 
@@ -253,8 +253,9 @@ impl Case {
 
     fn from_document(path: &Path, mut document: Document, overrides: &[String]) -> Result<Self, SceneFileError> {
         let in_scene: Vec<String> = overrides.iter().map(|o| format!("scene.{o}")).collect();
+        repeat::add_base(&mut document, path)?;
         document.apply(&in_scene)?;
-        repeat::expand(&mut document, path)?;
+        repeat::write_checks(&mut document, path)?;
         let problems = Problems::default();
         let case = read::case(&Item::new(&document.root, "", &problems), path, &document);
         let found = problems.into_inner();
@@ -264,7 +265,7 @@ impl Case {
         }
     }
 
-    /// Fingerprint of all it says: its file, the sets of checks that it names, and overrides.
+    /// Fingerprint of all it says: its file, the base and the sets of checks that it names, and overrides.
     pub fn fingerprint(&self) -> String {
         fingerprint([self.document.text(), &self.document.root.canonical()])
     }

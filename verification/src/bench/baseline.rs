@@ -18,8 +18,10 @@ use super::peer::program::Program;
 use super::record::{AnswerError, BenchRecord};
 use super::timing::{Contestant, round_robin};
 use super::{BenchError, Settings};
+use crate::case::Case;
 use crate::extremes::{larger, largest};
 use crate::output::history::Table;
+use crate::scene::typed::plain;
 
 /// Name, label, case below `verification/cases`, and settings of the scenes.
 const SCENES: [(&str, &str, &str, &[&str]); 3] = [
@@ -112,10 +114,9 @@ fn name_of(checkout: &Path) -> String {
 fn scene_of(settings: &Settings, case: &str, folder: &Path) -> Result<PathBuf, BenchError> {
     let file = settings.workspace.join("verification/cases").join(case).with_extension("toml");
     let wrong = |reason: String| BenchError::input(format!("{}: {reason}", file.display()));
-    let text = fs::read_to_string(&file).map_err(|error| wrong(error.to_string()))?;
-    let mut table: toml::Table = text.parse().map_err(|error: toml::de::Error| wrong(error.to_string()))?;
-    let scene = table.remove("scene").ok_or_else(|| wrong("it has no scene".into()))?;
-    let scene = toml::to_string(&scene).map_err(|error| wrong(error.to_string()))?;
+    let case = Case::load(&file, &[])?;
+    let scene = case.scene_node().ok_or_else(|| wrong("it has no scene".into()))?;
+    let scene = toml::to_string(&plain(scene)).map_err(|error| wrong(error.to_string()))?;
     let target = folder.join("scene.toml");
     let written = fs::create_dir_all(folder).and_then(|()| fs::write(&target, scene));
     written.map_err(|error| BenchError::input(format!("{}: {error}", target.display())))?;

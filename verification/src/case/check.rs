@@ -58,7 +58,7 @@ impl NumberKey {
     }
 }
 
-/// A check as it stands in the file, or a set of checks or one for each of some variants, which are written
+/// A check as it stands in the file, or a set of checks or one for each entry of a list, which are written
 /// out before it is read.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -132,9 +132,9 @@ pub(super) struct CheckTable {
     /// What changes in checks of the set: `with = { id-of-a-check = { max = 1 } }`.
     #[schemars(with = "Option<BTreeMap<String, Map<String, Value>>>")]
     with: Option<IgnoredAny>,
-    /// A check for each of some variants: `variants = [{ variant = "p=2", max = 1 }]`.
+    /// A check for each entry: `each = [{ variant = "p=2", max = 1 }]`.
     #[schemars(with = "Option<Vec<Map<String, Value>>>")]
-    variants: Option<IgnoredAny>,
+    each: Option<IgnoredAny>,
 }
 
 /// The word of `bounds`.
@@ -166,7 +166,7 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
     if table.quantity.is_none() {
         item.missing::<()>("quantity", "quantity = \"what is measured, in words\"");
     }
-    for (key, _) in [("set", &table.set), ("with", &table.with), ("variants", &table.variants)]
+    for (key, _) in [("set", &table.set), ("with", &table.with), ("each", &table.each)]
         .into_iter()
         .filter(|(_, given)| given.is_some())
     {

@@ -1,19 +1,22 @@
 //! From a case to the scenes it runs: study axes and variants.
 //!
 //! A list where a scene has one value is an axis; several axes span their product. Each variant changes its
-//! keys on top.
+//! keys on top. Then formulas of keys are evaluated.
 
 use std::collections::BTreeMap;
 
 use fisura::scene::Scene;
 
-use crate::case::formula::{Amount, Name, value_of_key};
+use crate::case::formula::{Amount, Formula, Name, value_of_key};
 use crate::case::{Case, Variant};
-use crate::scene::document::{Node, Value};
+use crate::scene::document::{Node, Value, join};
 use crate::scene::{Problem, SceneFileError, check_scene, read_scene};
 
 /// Most scenes of a case.
 const MOST_SCENES: usize = 100;
+
+/// Longest chain of formulas of a scene.
+const MOST_LINKS: usize = 32;
 
 /// One scene of a case.
 #[derive(Debug, Clone)]
@@ -53,7 +56,7 @@ fn depth(node: &Node) -> usize {
 fn find_axes(node: &Node, path: &str, axes: &mut Vec<(String, Vec<Node>)>) {
     if let Some(table) = node.as_table() {
         for (key, child) in table {
-            find_axes(child, &crate::scene::document::join(path, key), axes);
+            find_axes(child, &join(path, key), axes);
         }
     } else if let Some(entries) = node.as_array() {
         if entries.iter().any(|entry| entry.as_table().is_some()) {
@@ -100,12 +103,38 @@ impl Case {
     }
 
     fn scene_of(&self, tree: Tree) -> Result<CaseScene, SceneFileError> {
+        let Tree { name, parameters, energy_factor, node } = tree;
         let fail = |problems: Vec<Problem>| self.document.error(&problems);
-        let scene = read_scene(&tree.node, "scene").map_err(fail)?;
-        check_scene(&scene, &tree.node, "scene").map_err(fail)?;
-        let values = self.values(&tree.node)?;
-        let Tree { name, parameters, energy_factor, .. } = tree;
+        let node = self.with_numbers(&node, "scene", &node).map_err(|problem| fail(vec![problem]))?;
+        let scene = read_scene(&node, "scene").map_err(fail)?;
+        check_scene(&scene, &node, "scene").map_err(fail)?;
+        let values = self.values(&node)?;
         Ok(CaseScene { name, parameters, scene, values, energy_factor })
+    }
+
+    /// `node`, at `path` of the case, with numbers in place of formulas; a whole number is an integer.
+    fn with_numbers(&self, node: &Node, path: &str, scene: &Node) -> Result<Node, Problem> {
+        let inner = |key: &str, child| self.with_numbers(child, &join(path, key), scene);
+        let value = match &node.value {
+            Value::Table(table) => {
+                let entries = table.iter().map(|(key, child)| Ok((key.clone(), inner(key, child)?)));
+                Value::Table(entries.collect::<Result<_, Problem>>()?)
+            }
+            Value::Array(entries) => {
+                let entries = entries.iter().enumerate().map(|(i, child)| inner(&i.to_string(), child));
+                Value::Array(entries.collect::<Result<_, Problem>>()?)
+            }
+            Value::String(text) if text.starts_with('=') => match self.key(path, node, scene, MOST_LINKS) {
+                Ok(number) if number == number.trunc() => Value::Integer(number as i64),
+                Ok(number) => Value::Float(number),
+                Err(message) => {
+                    let remedy = "give a number, or a formula of values and of other keys of the scene in braces".into();
+                    return Err(Problem { key: path.into(), location: node.location.clone(), message, remedy });
+                }
+            },
+            _ => return Ok(node.clone()),
+        };
+        Ok(Node { value, ..node.clone() })
     }
 
     /// The `[values]` in a scene.
@@ -126,12 +155,26 @@ impl Case {
             Amount::Formula(formula) => formula,
         };
         let links = links.checked_sub(1).ok_or_else(|| format!("the value {name:?} depends on itself"))?;
+        self.evaluate(formula, scene, links)
+    }
+
+    /// What a formula gives in a scene; a chain of values and keys in it has at most `links`.
+    fn evaluate(&self, formula: &Formula, scene: &Node, links: usize) -> Result<f64, String> {
         let value = formula.number(&mut |name| match name {
             Name::Plain(other) => self.value(other, scene, links),
-            Name::Key(path) => value_of_key(scene, path),
+            Name::Key(path) => self.key(path, scene.at(path).unwrap_or(scene), scene, links),
             Name::Of(_, columns) => Err(format!("{columns:?} is known only after a run")),
         })?;
         if value.is_finite() { Ok(value) } else { Err(format!("it is {value}")) }
+    }
+
+    /// The value of a key of the scene, `node`, which may be a formula.
+    fn key(&self, path: &str, node: &Node, scene: &Node, links: usize) -> Result<f64, String> {
+        let Some(formula) = node.as_str().and_then(|text| text.strip_prefix('=')) else {
+            return value_of_key(scene, path);
+        };
+        let links = links.checked_sub(1).ok_or_else(|| format!("the key {path:?} depends on itself"))?;
+        self.evaluate(&formula.trim().parse()?, scene, links)
     }
 }
 
@@ -181,5 +224,47 @@ fn to_json(node: &Node) -> serde_json::Value {
         Value::Boolean(b) => (*b).into(),
         Value::Array(entries) => entries.iter().map(to_json).collect(),
         Value::Table(table) => table.iter().map(|(k, v)| (k.clone(), to_json(v))).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    /// The only scene of a case with this end of time.
+    fn scene(end_time: &str) -> Result<CaseScene, String> {
+        let text = format!(
+            "claim = \"c\"\nseconds = 1\n[values]\nlater = \"= 3*{{mesh.size.0}}\"\n\
+             [scene.mesh]\ndegree = 3\norigin = [0, 0]\ncells = [8, 4]\n\
+             size = [\"= {{mesh.size.1}}*{{mesh.cells.0}}/{{mesh.cells.1}}\", 0.5]\n\
+             [scene.analysis]\nend_time = {end_time}\n\
+             [scene.material.a]\nyoung_modulus = 1\npoisson_ratio = 0\ndensity = 1\n\
+             [[scene.body]]\nname = \"a\"\nmaterial = \"a\"\nparticles_per_cell = \"= {{mesh.degree}}\"\n\
+             shape = {{ rectangle = {{ min = [0, 0], max = [\"= {{mesh.size.0}}\", 0.5] }} }}\n\
+             [scene.output]\nsamples = 1\n[[check]]\nquantity = \"q\"\n"
+        );
+        let case = Case::parse(Path::new("s/c.toml"), &text, &[]).map_err(|e| e.to_string())?;
+        Ok(case.scenes().map_err(|e| e.to_string())?.remove(0))
+    }
+
+    #[test]
+    fn formulas_of_a_scene_use_its_keys_and_the_values() {
+        let found = scene("\"= later/2\"").unwrap();
+        assert_eq!((found.values["later"], found.scene.bodies[0].particles_per_cell), (3.0, [3, 3]));
+    }
+
+    #[test]
+    fn a_formula_without_a_number_is_told_with_its_place() {
+        for (end_time, message) in [
+            ("\"= {analysis.end_time}\"", "depends on itself"),
+            ("\"= {analysis.end}\"", "the scene has no key"),
+            ("\"= 1/0\"", "it is inf"),
+            ("\"= 1 +\"", "is not a valid formula"),
+        ] {
+            let told = scene(end_time).unwrap_err();
+            assert!(told.contains("c.toml:11:12: scene.analysis.end_time") && told.contains(message), "{told}");
+        }
     }
 }

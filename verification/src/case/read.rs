@@ -26,6 +26,10 @@ use crate::scene::typed;
 pub(super) struct CaseTable {
     /// One sentence that a check can refute.
     claim: Words,
+    /// The part in `bases.toml` that several cases have in common; what the case states replaces or adds to it.
+    #[schemars(with = "Option<String>")]
+    #[expect(dead_code, reason = "it is added before")]
+    base: Option<IgnoredAny>,
     /// How much a run may cost.
     #[serde(default)]
     tier: Tier,
@@ -38,12 +42,14 @@ pub(super) struct CaseTable {
     label: String,
     /// Energies of the run times this are those of the whole body: 2 for a half model.
     energy_factor: Option<Positive>,
-    /// What differs from the cited source.
+    /// What differs from the cited source: a list, or a table of the entries that differ from the base.
     #[serde(default)]
+    #[schemars(with = "Value")]
     deviations: Vec<String>,
     /// What is modelled, if it does not follow from the scene.
     models: Option<Vec<String>>,
-    /// A scene as in a scene file; a list in place of a value is an axis of the study.
+    /// A scene as in a scene file; a list in place of a value is an axis of the study, and a string that begins
+    /// with `=` a formula of other keys: `end_time = "= 2*{mesh.size.0}"`.
     #[schemars(with = "Option<Map<String, Value>>")]
     #[expect(dead_code, reason = "it is read as a scene file")]
     scene: Option<IgnoredAny>,

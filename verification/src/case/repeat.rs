@@ -1,33 +1,96 @@
-//! Checks that are written once: `set` takes the checks of a table of `check-sets.toml`, beside the folders
-//! of the suites, and `variants` lists what differs between runs.
+//! What is written once for several cases, in files beside the folders of the suites: `base` takes the part of
+//! a case in a table of `bases.toml`, `set` takes the checks of a list of `check-sets.toml`. `each` in a check
+//! lists what differs between several.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use super::value::identifier;
 use crate::scene::document::{Document, Node, Value};
 use crate::scene::suggest::nearest;
 use crate::scene::{Problem, SceneFileError};
 
-/// File of the sets, in the folder of all cases.
-pub const SETS: &str = "check-sets.toml";
+/// File of the bases.
+const BASES: &str = "bases.toml";
+/// File of the sets.
+const SETS: &str = "check-sets.toml";
+/// Most sets within each other.
+const DEEPEST: usize = 8;
 
 type Table = BTreeMap<String, Node>;
 
-/// Writes out the checks of a case at `path` one by one. An entry of `variants`, and what stands beside
-/// `set`, goes before what it is added to; `with` of a set says by id what changes in one of its checks.
+/// Adds what the base of a case at `path` states. Tables of both become one, and any other value of the case
+/// replaces that of the base; in a table over a list, keys are numbers of entries.
+///
+/// # Errors
+/// The file of the bases, if one is named and the file cannot be read; an unknown base; a list that has no
+/// such entry.
+pub(super) fn add_base(document: &mut Document, path: &Path) -> Result<(), SceneFileError> {
+    let Some(name) = document.root.get("base").cloned() else { return Ok(()) };
+    let bases = document.include(&shared(path, BASES))?;
+    let mut problems = Vec::new();
+    if let Some(mut root) = named(&bases, BASES, &name, "base", &mut problems) {
+        if let Some(Node { location, .. }) = root.get("base").cloned() {
+            let (message, remedy) = ("a base within a base".into(), "write out one of the two".into());
+            problems.push(Problem { key: "base".into(), location, message, remedy });
+        }
+        put_over(&mut root, "", &document.root, &mut problems);
+        if let Value::Table(table) = &mut root.value {
+            table.remove("base");
+        }
+        document.root = Node::new(root.value, None);
+    }
+    if problems.is_empty() { Ok(()) } else { Err(document.error(&problems)) }
+}
+
+/// Puts `over` at `path`, or its entries, if tables or lists stand at both places.
+fn put_over(root: &mut Node, path: &str, over: &Node, problems: &mut Vec<Problem>) {
+    let opens = root.at(path).is_some_and(|below| below.as_table().is_some() || below.as_array().is_some());
+    if let Some(entries) = over.as_table().filter(|_| opens) {
+        for (key, entry) in entries {
+            let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+            put_over(root, &path, entry, problems);
+        }
+    } else if let Err(message) = root.set(path, over.clone()) {
+        let remedy = format!("the case changes its base in {BASES}");
+        problems.push(Problem { key: path.into(), location: over.location.clone(), message, remedy });
+    }
+}
+
+/// A file for all suites, seen from a case at `path`.
+fn shared(path: &Path, file: &str) -> PathBuf {
+    path.parent().and_then(Path::parent).unwrap_or(Path::new("")).join(file)
+}
+
+/// What stands in a file for all suites under the name that `key` gives.
+fn named(shared: &Node, file: &str, name: &Node, key: &str, problems: &mut Vec<Problem>) -> Option<Node> {
+    let found = name.as_str().and_then(|name| shared.as_table()?.get(name));
+    if found.is_none() {
+        let known: Vec<&str> = shared.as_table().into_iter().flatten().map(|(key, _)| key.as_str()).collect();
+        let meant = name.as_str().and_then(|name| nearest(name, &known));
+        let meant = meant.map_or(String::new(), |near| format!("did you mean {near:?}? "));
+        let remedy = format!("{meant}{file} has {}", known.join(", "));
+        let message = "there is nothing of that name".into();
+        problems.push(Problem { key: key.into(), location: name.location.clone(), message, remedy });
+    }
+    found.cloned()
+}
+
+/// Writes out the checks of a case at `path` one by one. An entry of `each`, and what stands beside `set`,
+/// goes before what it is added to; `with` of a set says by id what changes in one of its checks.
 ///
 /// # Errors
 /// The file of the sets, if a set is named and the file cannot be read; an unknown set or id; lists that
 /// are none.
-pub(super) fn expand(document: &mut Document, path: &Path) -> Result<(), SceneFileError> {
+pub(super) fn write_checks(document: &mut Document, path: &Path) -> Result<(), SceneFileError> {
     let Some(Value::Array(checks)) = document.root.get("check").map(|node| node.value.clone()) else { return Ok(()) };
-    let folder = path.parent().and_then(Path::parent);
-    let sets = match folder.filter(|_| checks.iter().any(|check| check.get("set").is_some())) {
-        Some(folder) => Some(document.include(&folder.join(SETS))?),
-        None => None,
+    let sets = match checks.iter().any(|check| check.get("set").is_some()) {
+        true => Some(document.include(&shared(path, SETS))?),
+        false => None,
     };
     let mut expansion = Expansion { sets, problems: Vec::new() };
-    let written: Vec<Node> = checks.iter().enumerate().flat_map(|(i, check)| expansion.check(i, check)).collect();
+    let write = |(i, check): (usize, &Node)| expansion.check(&format!("check.{i}"), check, 0);
+    let written: Vec<Node> = checks.iter().enumerate().flat_map(write).collect();
     if !expansion.problems.is_empty() {
         return Err(document.error(&expansion.problems));
     }
@@ -46,73 +109,83 @@ struct Expansion {
 }
 
 impl Expansion {
-    fn note(&mut self, index: usize, key: &str, node: &Node, message: String, remedy: String) {
-        let key = format!("check.{index}.{key}");
-        self.problems.push(Problem { key, location: node.location.clone(), message, remedy });
+    fn note(&mut self, key: &str, node: &Node, message: String, remedy: String) {
+        self.problems.push(Problem { key: key.into(), location: node.location.clone(), message, remedy });
     }
 
-    /// The checks that an entry stands for; itself, if it is none of a set.
-    fn check(&mut self, index: usize, check: &Node) -> Vec<Node> {
+    /// The checks that an entry at `path` stands for; itself, if it names no set and has no list.
+    fn check(&mut self, path: &str, check: &Node, depth: usize) -> Vec<Node> {
         let Some(table) = check.as_table() else { return vec![check.clone()] };
         let mut beside = table.clone();
         let (Some(set), with) = (beside.remove("set"), beside.remove("with")) else {
-            return self.variants(index, check);
+            return self.each(path, check);
         };
-        let Some(mut checks) = self.set(index, &set) else { return Vec::new() };
+        let mut checks = self.set(path, &set, depth);
         for check in &mut checks {
             put(check, &beside);
         }
         let changes = with.iter().filter_map(Node::as_table).flatten();
         for (id, change) in changes {
-            let is_meant = |check: &&mut Node| check.get("id").and_then(Node::as_str) == Some(id);
-            match (checks.iter_mut().find(is_meant), change.as_table()) {
+            match (checks.iter_mut().find(|check| id_of(check).as_ref() == Some(id)), change.as_table()) {
                 (Some(check), Some(change)) => put(check, change),
-                (_, None) => self.note(index, "with", change, "expected a table".into(), "write { max = 1 }".into()),
+                (_, None) => {
+                    let remedy = "write { max = 1 }".into();
+                    self.note(&format!("{path}.with"), change, "expected a table".into(), remedy);
+                }
                 (None, _) => {
-                    let ids: Vec<&str> = checks.iter().filter_map(|check| check.get("id")?.as_str()).collect();
+                    let ids: Vec<String> = checks.iter().filter_map(id_of).collect();
                     let remedy = format!("ids of this set: {}", ids.join(", "));
-                    self.note(index, "with", change, format!("the set has no check {id:?}"), remedy);
+                    self.note(&format!("{path}.with"), change, format!("the set has no check {id:?}"), remedy);
                 }
             }
         }
-        checks.iter().flat_map(|check| self.variants(index, check)).collect()
+        checks.iter().flat_map(|check| self.each(path, check)).collect()
     }
 
-    /// The checks of a set.
-    fn set(&mut self, index: usize, name: &Node) -> Option<Vec<Node>> {
-        let sets = self.sets.as_ref().and_then(Node::as_table)?;
-        let found = name.as_str().and_then(|name| sets.get(name)).and_then(|set| set.get("check")?.as_array());
-        if found.is_none() {
-            let known: Vec<&str> = sets.keys().map(String::as_str).collect();
-            let meant = name.as_str().and_then(|name| nearest(name, &known));
-            let meant = meant.map_or(String::new(), |near| format!("did you mean {near:?}? "));
-            let remedy = format!("{meant}{SETS} has {}", known.join(", "));
-            self.note(index, "set", name, "there is no such set of checks".into(), remedy);
-            return None;
+    /// The checks of a set, which may name further sets.
+    fn set(&mut self, path: &str, name: &Node, depth: usize) -> Vec<Node> {
+        let key = format!("{path}.set");
+        if depth == DEEPEST {
+            self.note(&key, name, "the set holds itself".into(), format!("name another set of {SETS}"));
+            return Vec::new();
         }
-        found.map(<[Node]>::to_vec)
+        let sets = self.sets.take();
+        let found = sets.as_ref().and_then(|sets| named(sets, SETS, name, &key, &mut self.problems));
+        self.sets = sets;
+        let Some(found) = found else { return Vec::new() };
+        let Some(checks) = found.as_array() else {
+            self.note(&key, name, format!("it is {}, no list", found.kind()), format!("write [[…]] in {SETS}"));
+            return Vec::new();
+        };
+        checks.iter().flat_map(|check| self.check(path, check, depth + 1)).collect()
     }
 
-    /// A check for each entry of its `variants`, or the check itself.
-    fn variants(&mut self, index: usize, check: &Node) -> Vec<Node> {
-        let Some(variants) = check.get("variants").cloned() else { return vec![check.clone()] };
-        let entries = variants.as_array().filter(|entries| !entries.is_empty());
+    /// A check for each entry of its list, or the check itself.
+    fn each(&mut self, path: &str, check: &Node) -> Vec<Node> {
+        let Some(each) = check.get("each").cloned() else { return vec![check.clone()] };
+        let entries = each.as_array().filter(|entries| !entries.is_empty());
         let tables = entries.and_then(|all| all.iter().map(Node::as_table).collect::<Option<Vec<_>>>());
         let Some(tables) = tables else {
-            let remedy = "write variants = [ { variant = \"…\", max = 1 }, … ]".to_string();
-            self.note(index, "variants", &variants, "expected a list of tables".into(), remedy);
+            let remedy = "write each = [ { variant = \"…\", max = 1 }, … ]".to_string();
+            self.note(&format!("{path}.each"), &each, "expected a list of tables".into(), remedy);
             return Vec::new();
         };
         let one = |entry: &Table| {
             let mut one = check.clone();
             if let Value::Table(table) = &mut one.value {
-                table.remove("variants");
+                table.remove("each");
             }
             put(&mut one, entry);
             one
         };
         tables.into_iter().map(one).collect()
     }
+}
+
+/// The id of a check as it stands in a file.
+fn id_of(check: &Node) -> Option<String> {
+    let given = check.get("id").and_then(Node::as_str).map(String::from);
+    given.or_else(|| Some(identifier(check.get("quantity")?.as_str()?)))
 }
 
 /// Puts entries into a table, in place of those of the same key.
@@ -129,50 +202,78 @@ mod tests {
     use super::super::Case;
 
     const HEAD: &str = "claim = \"c\"\nseconds = 1\nstudy = \"basis\"\n";
-    const SETS: &str = "[ends]\n[[ends.check]]\nid = \"a\"\nquantity = \"first\"\n[[ends.check]]\nid = \"b\"\nquantity = \"second\"\nmax = 2\nwhy = \"w\"\n";
+    const SETS: &str = "[[ends]]\nquantity = \"first a\"\n[[ends]]\nid = \"b\"\nquantity = \"second\"\nmax = 2\nwhy = \"w\"\n\
+                        [[all]]\nset = \"ends\"\nunit = \"m\"\n[[all]]\neach = [{ quantity = \"c\" }, { quantity = \"d\" }]\n";
+    const BASES: &str = "[bar]\nlabel = \"bar\"\n[bar.scene.mesh]\ndegree = 2\ncells = [1, 2]\n\
+                         [[bar.scene.body]]\nname = \"one\"\n[[bar.scene.body]]\nname = \"two\"\nfrozen = true\n";
+    const CHECK: &str = "[[check]]\nquantity = \"first\"\n";
 
-    /// A case with these checks, beside a file of sets.
-    fn read(checks: &str, sets: &str) -> Result<Case, String> {
+    /// A case with this text, beside a file of sets and one of bases.
+    fn read(text: &str, sets: &str, bases: &str) -> Result<Case, String> {
         let folder = tempfile::tempdir().unwrap();
         fs::create_dir(folder.path().join("trial")).unwrap();
         fs::write(folder.path().join(super::SETS), sets).unwrap();
+        fs::write(folder.path().join(super::BASES), bases).unwrap();
         let path = folder.path().join("trial/case.toml");
-        Case::parse(&path, &format!("{HEAD}{checks}"), &[]).map_err(|e| e.to_string())
+        let overrides = ["mesh.cells=[3, 4]".to_string()];
+        let overrides = if text.contains("base") { &overrides[..] } else { &[] };
+        Case::parse(&path, &format!("{HEAD}{text}"), overrides).map_err(|e| e.to_string())
     }
 
     #[test]
     fn checks_of_a_set_stand_in_the_case_with_what_it_changes() {
-        let text = "[[check]]\nset = \"ends\"\nvariant = \"p=2\"\n[check.with]\nb = { max = 3, why = \"v\" }\n";
-        let case = read(text, SETS).unwrap();
-        let found: Vec<_> = case.checks.iter().map(|c| (c.id.as_str(), c.variant.as_deref(), c.accept.max)).collect();
-        assert_eq!(found, [("a", Some("p=2"), None), ("b", Some("p=2"), Some(3.0))]);
+        let text = "[[check]]\nset = \"all\"\nvariant = \"p=2\"\n[check.with]\n\
+                    b = { max = 3, why = \"v\" }\nfirst-a = { unit = \"s\" }\n";
+        let case = read(text, SETS, BASES).unwrap();
+        assert!(case.checks.iter().all(|check| check.variant.as_deref() == Some("p=2")));
+        let found: Vec<_> = case.checks.iter().map(|c| (c.id.as_str(), c.unit.as_str(), c.accept.max)).collect();
+        assert_eq!(found, [("first-a", "s", None), ("b", "m", Some(3.0)), ("c", "1", None), ("d", "1", None)]);
     }
 
     #[test]
-    fn a_check_with_a_list_of_variants_is_one_of_each_in_this_order() {
-        let text = "[[check]]\nid = \"a\"\nquantity = \"first\"\nwhy = \"w\"\nvariants = [\n\
+    fn a_check_with_a_list_is_one_for_each_entry_in_this_order() {
+        let text = "[[check]]\nid = \"a\"\nquantity = \"first\"\nwhy = \"w\"\neach = [\n\
                     { variant = \"q\", min = 1 },\n{ variant = \"p\", max = 2, why = \"v\" },\n]\n";
-        let case = read(text, SETS).unwrap();
+        let case = read(text, SETS, BASES).unwrap();
         let found: Vec<_> =
             case.checks.iter().map(|c| (c.variant.as_deref().unwrap(), c.accept.why.as_str())).collect();
         assert_eq!(found, [("q", "w"), ("p", "v")]);
     }
 
     #[test]
+    fn a_case_stands_over_its_base_and_an_override_over_both() {
+        let text = format!("base = \"bar\"\n[scene]\nmesh.degree = 3\nbody.1.name = \"end\"\n{CHECK}");
+        let case = read(&text, SETS, BASES).unwrap();
+        assert_eq!((case.label.as_str(), case.document.root.get("base")), ("bar", None));
+        let scene = case.scene_node().unwrap().canonical();
+        let bodies = r#"[{name = String("one")}, {frozen = Boolean(true), name = String("end")}]"#;
+        let mesh = "{cells = [Integer(3), Integer(4)], degree = Integer(3)}";
+        assert_eq!(scene, format!("{{body = {bodies}, mesh = {mesh}}}"));
+    }
+
+    #[test]
     fn what_is_wrong_is_told_with_its_place() {
-        let place = |checks: &str, sets: &str| read(checks, sets).unwrap_err();
-        let message = place("[[check]]\nset = \"end\"\n", SETS);
-        assert!(
-            message.contains("case.toml:5:7: check.0.set") && message.contains("did you mean \"ends\"?"),
-            "{message}"
-        );
-        let message = place("[[check]]\nset = \"ends\"\nwith = { c = { max = 1 } }\n", SETS);
-        assert!(message.contains("no check \"c\"") && message.contains("ids of this set: a, b"), "{message}");
-        let message = place("[[check]]\nid = \"a\"\nquantity = \"q\"\nvariants = { p = 1 }\n", SETS);
-        assert!(message.contains("expected a list of tables"), "{message}");
-        let message = place("[[check]]\nset = \"ends\"\n", &SETS.replace("max = 2", "mox = 2"));
-        assert!(message.contains("check-sets.toml:8:1") && message.contains("mox"), "{message}");
-        let message = place("[[check]]\nset = \"ends\"\n", "[ends\n");
-        assert!(message.contains("check-sets.toml:1"), "{message}");
+        let told = |text: &str, sets: &str, bases: &str, parts: &[&str]| {
+            let message = read(text, sets, bases).unwrap_err();
+            assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+        };
+        let wrong = |checks: &str, sets: &str, parts: &[&str]| told(checks, sets, BASES, parts);
+        wrong("[[check]]\nset = \"end\"\n", SETS, &["case.toml:5:7: check.0.set", "did you mean \"ends\"?"]);
+        let ids = "ids of this set: first-a, b";
+        wrong("[[check]]\nset = \"ends\"\nwith = { c = { max = 1 } }\n", SETS, &["no check \"c\"", ids]);
+        wrong("[[check]]\nquantity = \"q\"\neach = { p = 1 }\n", SETS, &["expected a list of tables"]);
+        let typing = SETS.replace("max = 2", "mox = 2");
+        wrong("[[check]]\nset = \"ends\"\n", &typing, &["check-sets.toml:6:1", "mox"]);
+        wrong("[[check]]\nset = \"ends\"\n", "[[ends\n", &["check-sets.toml:1"]);
+        wrong("[[check]]\nset = \"a\"\n", "[[a]]\nset = \"a\"\n", &["check-sets.toml:2", "the set holds itself"]);
+
+        let based = |name: &str, rest: &str| format!("base = \"{name}\"\n{rest}{CHECK}");
+        told(&based("bare", ""), SETS, BASES, &["case.toml:4:8: base", "did you mean \"bar\"?"]);
+        let typing = BASES.replace("label", "lable");
+        told(&based("bar", ""), SETS, &typing, &["bases.toml:2:1: lable", "did you mean \"label\"?"]);
+        let nested = BASES.replace("label", "base");
+        told(&based("bar", ""), SETS, &nested, &["bases.toml:2:8: base", "a base within a base"]);
+        let third = "[scene]\nbody.2.name = \"three\"\n";
+        told(&based("bar", third), SETS, BASES, &["case.toml:6", "scene.body.2", "entries count from 0: 0 to 1"]);
     }
 }

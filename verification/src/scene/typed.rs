@@ -55,7 +55,8 @@ pub fn through<'de, D: Deserializer<'de>, T>(
     })
 }
 
-fn plain(node: &Node) -> toml::Value {
+/// A value without its place.
+pub fn plain(node: &Node) -> toml::Value {
     match &node.value {
         Value::String(text) | Value::Datetime(text) => toml::Value::String(text.clone()),
         Value::Integer(i) => toml::Value::Integer(*i),
