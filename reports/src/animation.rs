@@ -39,7 +39,7 @@ pub fn render_animation(
     moments: &[Moment],
     (label, range): (&str, [f64; 2]),
 ) -> Result<String, FigureError> {
-    let fail = |message: String| FigureError::Drawing { figure: id.to_string(), message };
+    let fail = |message: String| FigureError::new(id, message);
     let [(_, first), _, ..] = moments else { return Err(fail("an animation needs at least two pictures".to_string())) };
     if moments
         .iter()

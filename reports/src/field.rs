@@ -45,11 +45,7 @@ impl Raster {
     /// Reads a series with the columns `x_m`, `y_m`, `value`.
     pub fn read(figure: &str, series: &str, pixels: [usize; 2], set: &SeriesSet) -> Result<Self, FigureError> {
         let [x, y, value] = ["x_m", "y_m", "value"].map(|name| set.column(figure, series, name));
-        Self::new(pixels, x?, y?, value?).map_err(|message| FigureError::Raster {
-            figure: figure.to_string(),
-            series: series.to_string(),
-            message,
-        })
+        Self::new(pixels, x?, y?, value?).map_err(|message| FigureError::raster(figure, series, &message))
     }
 
     /// Reads a table with the columns `x_m`, `y_m`, `value`, whose first row of pixels tells the width.
@@ -182,7 +178,7 @@ pub(crate) fn render_with(
 ) -> Result<String, FigureError> {
     if !is_range(range[0], range[1]) {
         let message = format!("the colour bar cannot range from {} to {}", range[0], range[1]);
-        return Err(FigureError::Drawing { figure: figure.id.clone(), message });
+        return Err(FigureError::new(&figure.id, message));
     }
     let axes = [0, 1].map(|k| AxisScale::with_range(Scale::Linear, 1e3 * raster.low[k], 1e3 * raster.high[k], 6));
     let none = Axis { label: String::new(), scale: Scale::Linear, range: Some(range) };

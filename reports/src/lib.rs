@@ -139,7 +139,7 @@ fn draw(figure: &Figure, series: &SeriesSet, rows: &mut usize) -> Result<(String
     *rows += series.rows(figure);
     if *rows > MOST_ROWS {
         let message = format!("this figure and those before it have more than {MOST_ROWS} rows");
-        return Err(FigureError::Drawing { figure: figure.id.clone(), message });
+        return Err(FigureError::new(&figure.id, message));
     }
     Ok((name, figure::render_figure(figure, series)?))
 }

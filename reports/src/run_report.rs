@@ -2,7 +2,7 @@
 
 use fisura_verification::extremes::larger;
 use fisura_verification::output::history::Table;
-use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Scale};
+use fisura_verification::record::{Axis, Curve, Figure, FigureBody};
 
 use crate::field::{Raster, render_field};
 use crate::figure::render_figure;
@@ -28,35 +28,14 @@ pub fn energies_svg(history: &Table, title: &str) -> Result<String, FigureError>
     let (time_scale, time_unit) = unit(largest("time_s").unwrap_or(0.0), &TIMES);
     let curves: Vec<Curve> = drawn
         .into_iter()
-        .map(|name| Curve {
-            label: name.trim_end_matches("_j").replace('_', " "),
-            series: HISTORY.to_string(),
-            x: "time_s".to_string(),
-            y: name.clone(),
-            x_scale: time_scale,
-            y_scale: energy_scale,
-            style: CurveStyle::Line,
-            uncertainty_absolute: 0.0,
-            uncertainty_relative: 0.0,
-        })
+        .map(|name| Curve { x_scale: time_scale, ..Curve::energy(HISTORY, name, energy_scale) })
         .collect();
     if curves.is_empty() {
-        return Err(FigureError::Column {
-            figure: "energies".to_string(),
-            series: HISTORY.to_string(),
-            column: "*_j".to_string(),
-            present: history.names.join(", "),
-        });
+        let present = history.names.join(", ");
+        return Err(FigureError::new("energies", format!("{HISTORY} has no column of an energy; it has {present}")));
     }
-    let axis = |label: String| Axis { label, scale: Scale::Linear, range: None };
-    let body = FigureBody::Chart {
-        x: axis(format!("time ({time_unit})")),
-        y: axis(format!("energy ({energy_unit})")),
-        curves,
-        regions: Vec::new(),
-        slopes: Vec::new(),
-        floors: Vec::new(),
-    };
+    let axes = [format!("time ({time_unit})"), format!("energy ({energy_unit})")].map(|label| Axis::linear(&label));
+    let body = FigureBody::chart(axes, curves, Vec::new());
     let mut set = SeriesSet::default();
     set.insert(HISTORY, history.clone());
     render_figure(&figure("energies", title.to_string(), body), &set)
@@ -69,8 +48,7 @@ pub fn energies_svg(history: &Table, title: &str) -> Result<String, FigureError>
 /// The table is no raster.
 pub fn phase_svg(frame: &Table, time_s: f64, title: &str) -> Result<String, FigureError> {
     let id = phase_name(time_s);
-    let fail = |message| FigureError::Raster { figure: id.clone(), series: "frame".to_string(), message };
-    let raster = Raster::from_table(frame).map_err(fail)?;
+    let raster = Raster::from_table(frame).map_err(|why| FigureError::raster(&id, "frame", &why))?;
     let (scale, word) = unit(time_s.abs(), &TIMES);
     let title = format!("{title}, phase field at {} {word}", pretty(time_s * scale, 4));
     let (label, range) = ("phase field c".to_string(), [0.0, 1.0]);

@@ -82,17 +82,9 @@ fn per(study: &Convergence, what: &str) -> String {
 
 fn drawn(study: &Convergence, curve: &Curve, norm: &Norm, against: Against, x: &str) -> record::Curve {
     let stem = if against == Against::Cost { study.timing_stem(curve) } else { study.series_stem(curve) };
-    record::Curve {
-        label: curve.name.replace('=', " = "),
-        series: format!("series/{stem}.csv"),
-        x: x.into(),
-        y: norm.column(),
-        x_scale: 1.0,
-        y_scale: 1.0,
-        style: CurveStyle::Markers,
-        uncertainty_absolute: 0.0,
-        uncertainty_relative: 0.0,
-    }
+    let (label, series) = (curve.name.replace('=', " = "), format!("series/{stem}.csv"));
+    let line = record::Curve::line(&label, &series, [x, &norm.column()]);
+    record::Curve { style: CurveStyle::Markers, ..line }
 }
 
 fn positive(level: &(f64, f64)) -> bool {
