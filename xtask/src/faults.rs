@@ -9,7 +9,6 @@
 
 mod campaign;
 mod cells;
-mod idle;
 mod matrix;
 mod results;
 mod runner;
@@ -33,7 +32,7 @@ use cells::Store;
 use matrix::Matrix;
 use results::Results;
 use runner::Runner;
-use table::{FAULTS, Fault};
+use table::{Fault, faults as all};
 
 /// Variable that names the fault to plant.
 const PLANTED: &str = "FISURA_FAULT";
@@ -105,11 +104,11 @@ pub fn plant_from_environment() -> Result<(), Failure> {
 
 fn chosen(args: &Args) -> Result<Vec<&'static Fault>, Failure> {
     if args.fault.is_empty() {
-        return Ok(FAULTS.iter().collect());
+        return Ok(all().iter().collect());
     }
     let find = |id: &String| {
-        FAULTS.iter().find(|fault| fault.id == id).ok_or_else(|| {
-            let known: Vec<&str> = FAULTS.iter().map(|fault| fault.id).collect();
+        all().iter().find(|fault| fault.id == *id).ok_or_else(|| {
+            let known: Vec<&str> = all().iter().map(|fault| fault.id.as_str()).collect();
             Failure::new(Exit::BadInput, format!("unknown fault: {id}")).help(format!("known: {}", known.join(", ")))
         })
     };
