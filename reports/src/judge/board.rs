@@ -7,9 +7,10 @@ use fisura_verification::judge::Judged;
 use fisura_verification::output::foreign::line;
 use fisura_verification::output::history::Table;
 use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Scale};
+use minijinja::Value;
 use serde::Serialize;
 
-use super::{Page, STYLE, fill};
+use super::fill;
 use crate::figure::render_figure;
 use crate::number::{duration, plain};
 use crate::series::SeriesSet;
@@ -57,7 +58,7 @@ pub fn board(judged: &[Judged]) -> Vec<Board> {
 /// Only if the template cannot be filled.
 pub fn board_page(judged: &[Judged]) -> Result<String, minijinja::Error> {
     let title = format!("{} results and their errors", judged.len());
-    fill(Page { style: STYLE, title, verdicts: Vec::new(), boards: board(judged) })
+    fill(title, Value::UNDEFINED, &board(judged))
 }
 
 /// The same as Markdown beside the drawings `board-<key>.svg`.
