@@ -155,7 +155,7 @@ pub fn read_results(folder: &Path) -> Result<ResultSet, ReportError> {
     if counts[0] > MOST[0] || counts[1] > MOST[1] {
         let ([records, figures], [most, most_figures]) = (counts, MOST);
         let message = format!("{records} records and {figures} figures; at most {most} and {most_figures} are read");
-        return Err(ReportError::Results { path: folder.join("results.json"), message });
+        return Err(ReportError::file(folder.join("results.json"), message));
     }
     Ok(set)
 }
@@ -175,11 +175,13 @@ fn read_json<T: DeserializeOwned + Serialize>(
 ) -> Result<T, ReportError> {
     let path = folder.join(name);
     let bytes = foreign::read(folder, name, foreign::DOCUMENT_BYTES);
-    let bytes = bytes.map_err(|source| ReportError::File { path: path.clone(), source })?;
-    let malformed = |e: serde_json::Error| ReportError::Results { path: path.clone(), message: e.to_string() };
+    let bytes = bytes.map_err(|e| ReportError::file(&path, e))?;
+    let malformed = |e: serde_json::Error| ReportError::file(&path, e);
     let found = serde_json::from_slice::<Named>(&bytes).map_err(malformed)?.schema;
     if found != schema {
-        return Err(ReportError::Schema { path, found: foreign::line(&found).into_owned(), expected: schema });
+        let found = foreign::line(&found);
+        let message = format!("schema {found:?} is not {schema:?}; render it with the version of fisura that wrote it");
+        return Err(ReportError::file(path, message));
     }
     let document: T = serde_json::from_slice(&bytes).map_err(malformed)?;
     let mut value = serde_json::to_value(document).map_err(malformed)?;
@@ -188,7 +190,7 @@ fn read_json<T: DeserializeOwned + Serialize>(
 }
 
 fn failed(file: &'static str, error: impl std::fmt::Display) -> ReportError {
-    ReportError::Render { file, message: error.to_string() }
+    ReportError::file(file, format!("cannot be rendered: {error}"))
 }
 
 /// Writes a file of the folder.

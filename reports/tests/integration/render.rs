@@ -177,9 +177,9 @@ fn another_schema_is_refused() {
     let folder = folder();
     change(folder.path(), |results| results.schema = "fisura.results/7".to_string());
     let error = render(folder.path()).unwrap_err();
-    assert!(matches!(&error, ReportError::Schema { found, .. } if found == "fisura.results/7"), "{error}");
+    assert!(error.to_string().contains("schema \"fisura.results/7\" is not \"fisura.results/1\""), "{error}");
     fs::write(folder.path().join("results.json"), "{\"schema\": ").unwrap();
-    assert!(matches!(render(folder.path()).unwrap_err(), ReportError::Results { .. }));
+    assert!(render(folder.path()).unwrap_err().to_string().contains("line 1 column"));
     fs::remove_file(folder.path().join("results.json")).unwrap();
     assert!(matches!(render(folder.path()).unwrap_err(), ReportError::File { .. }));
 }
