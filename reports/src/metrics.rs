@@ -72,8 +72,7 @@ fn times(set: &ResultSet) -> Vec<Metric> {
         let runs = runs(records.iter().copied());
         runs.iter().map(|(_, records)| timing(records).wall_s).filter(|wall| wall.is_finite()).sum()
     };
-    let of = |(suite, records): (&str, Vec<&Record>)| {
-        Metric::new(suite, "wall time of its runs", "s", seconds(&records))
-    };
+    let of =
+        |(suite, records): (&str, Vec<&Record>)| Metric::new(suite, "wall time of its runs", "s", seconds(&records));
     by_suite(set).into_iter().map(of).filter(|metric| metric.value > 0.0).collect()
 }

@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 
 use fisura_verification::suite::{Case, Selection, Tier, load_cases, select};
 
-use crate::cli::{Common, Format};
+use crate::cli::Common;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::{console, folders, verify};
@@ -77,10 +77,7 @@ pub fn faults(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let results = Results::new(&faults, &ids, &store, args.matrix);
     let matrix = args.matrix.then(|| Matrix::new(&faults, &ids, &store));
     results.write(&folder, matrix.as_ref())?;
-    match common.format {
-        Format::Json => console::json(&results),
-        Format::Text => console::result(&(results.text() + &matrix.as_ref().map_or(String::new(), Matrix::text))),
-    }
+    console::show(common, &results, || results.text() + &matrix.as_ref().map_or(String::new(), Matrix::text));
     let lacking = results.lacking() || matrix.is_some_and(|matrix| matrix.lacking());
     Ok(if lacking { Exit::CheckFailed } else { Exit::Done })
 }
@@ -99,7 +96,7 @@ fn runner(args: &Args, common: &Common, program: PathBuf) -> Runner {
 #[cfg(feature = "faults")]
 pub fn plant_from_environment() -> Result<(), Failure> {
     let Ok(name) = std::env::var(PLANTED) else { return Ok(()) };
-    fisura::faults::plant(&name).map_err(|message| Failure::new(Exit::BadInput, message))
+    fisura::faults::plant(&name).map_err(Failure::input)
 }
 
 fn chosen(args: &Args) -> Result<Vec<&'static Fault>, Failure> {
@@ -109,7 +106,7 @@ fn chosen(args: &Args) -> Result<Vec<&'static Fault>, Failure> {
     let find = |id: &String| {
         all().iter().find(|fault| fault.id == *id).ok_or_else(|| {
             let known: Vec<&str> = all().iter().map(|fault| fault.id.as_str()).collect();
-            Failure::new(Exit::BadInput, format!("unknown fault: {id}")).help(format!("known: {}", known.join(", ")))
+            Failure::input(format!("unknown fault: {id}")).help(format!("known: {}", known.join(", ")))
         })
     };
     args.fault.iter().map(find).collect()
@@ -125,9 +122,8 @@ fn build(common: &Common) -> Result<PathBuf, Failure> {
     command.args(["build", "--package", "xtask", "--features", "faults", "--target-dir"]);
     command.arg(&target).current_dir(if workspace.as_os_str().is_empty() { Path::new(".") } else { &workspace });
     let status = command.status();
-    let bad = |message: String| {
-        Failure::new(Exit::BadInput, message).help("start it with `cargo xtask` in the workspace with the sources")
-    };
+    let bad =
+        |message: String| Failure::input(message).help("start it with `cargo xtask` in the workspace with the sources");
     match status {
         Ok(status) if status.success() => {
             Ok(target.join("debug").join(format!("xtask{}", std::env::consts::EXE_SUFFIX)))

@@ -37,7 +37,7 @@ impl From<MergeError> for Failure {
     fn from(error: MergeError) -> Self {
         match error {
             MergeError::File(error) => error.into(),
-            MergeError::Parts { message, remedy } => Self::new(Exit::BadInput, message).help(remedy),
+            MergeError::Parts { message, remedy } => Self::input(message).help(remedy),
         }
     }
 }

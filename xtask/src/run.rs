@@ -13,7 +13,7 @@ use fisura_verification::scene_run::checkpoint::{self, CHECKPOINT, Place, Stored
 use fisura_verification::scene_run::{Keep, KeepError, OnFrame, Outcome, Progress, SceneRun, Summary, run_scene_kept};
 use indicatif::ProgressBar;
 
-use crate::cli::{Common, Format, SceneArgs};
+use crate::cli::{Common, SceneArgs};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::{built, console, folders, interrupt, pictures, progress, scene_input, vtk};
@@ -117,14 +117,11 @@ pub fn run_into(
         folder.remove(&checkpoint)?; // a run that reached its end needs none
     }
     folder.finish()?;
-    match common.format {
-        Format::Json => console::json(&run.summary),
-        Format::Text => console::result(&text(&run.summary, folder.path(), &files)),
-    }
+    console::show(common, &run.summary, || text(&run.summary, folder.path(), &files));
     match &run.breakdown {
         None => {
             if !undrawn.is_empty() {
-                return Err(Failure::new(Exit::BadInput, format!("not drawn: {}", undrawn.join("; "))));
+                return Err(Failure::input(format!("not drawn: {}", undrawn.join("; "))));
             }
             vtk.and_then(|vtk| vtk.failed).map_or(Ok(Exit::Done), |error| Err(error.into()))
         }
@@ -138,7 +135,7 @@ pub fn run_into(
 
 fn refuse(args: &Args) -> Result<(), Failure> {
     if args.resume && args.checkpoint.0.is_none() {
-        let failure = Failure::new(Exit::BadInput, "--resume does not go with --checkpoint none");
+        let failure = Failure::input("--resume does not go with --checkpoint none");
         return Err(failure.help("leave out one of the two"));
     }
     Ok(())
@@ -165,7 +162,7 @@ impl Start {
             // without one of its own, that of another scene is refused with the reason
             let path = if path.exists() { path } else { folder.path().join(CHECKPOINT) };
             stored = checkpoint::read(&path, &built::program(), scene)
-                .map_err(|error| Failure::new(Exit::BadInput, error.to_string()).help(error.remedy))?;
+                .map_err(|error| Failure::input(error.to_string()).help(error.remedy))?;
             if stored.is_none() {
                 let folder = folder.path().display();
                 console::note(common, &format!("no checkpoint in {folder}: the run begins at the start"));
@@ -190,7 +187,7 @@ fn keep_other(title: &str, name: &str, folder: &OutputFolder, common: &Common) -
     let path = folder.path().join(CHECKPOINT);
     let message = format!("{} is of an interrupted run of another scene, {title:?}", path.display());
     if !vtk::files_of_run(folder).is_empty() {
-        let failure = Failure::new(Exit::BadInput, format!("{message}, which has files for ParaView there"));
+        let failure = Failure::input(format!("{message}, which has files for ParaView there"));
         return Err(failure.help("go on with that run, or give another folder with --out"));
     }
     console::note(common, &format!("{message}: it is kept, and this run stores its own in {name}"));
@@ -222,7 +219,7 @@ fn simulate(
     let keep = Keep { out: folder, name: place.name, program: built::program(), interval, frame_files, interrupted };
     run_scene_kept(scene, &keep, stored, &mut advance, on_frame).map_err(|error| match error {
         KeepError::Output(error) => error.into(),
-        KeepError::Checkpoint(error) => Failure::new(Exit::BadInput, error.to_string()).help(error.remedy),
+        KeepError::Checkpoint(error) => Failure::input(error.to_string()).help(error.remedy),
     })
 }
 

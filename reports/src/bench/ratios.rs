@@ -25,8 +25,7 @@ struct Ratios {
     ratio: Vec<Ratio>,
 }
 
-static RATIOS: LazyLock<Ratios> =
-    LazyLock::new(|| toml::from_str(include_str!("ratios.toml")).unwrap_or_default()); // a test reads it
+static RATIOS: LazyLock<Ratios> = LazyLock::new(|| toml::from_str(include_str!("ratios.toml")).unwrap_or_default()); // a test reads it
 
 /// A bound of a ratio.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,9 +10,9 @@ use thiserror::Error;
 
 use super::part::{PART_FILE, PART_SCHEMA, Part};
 use super::{CaseOutcome, VerifyError, assemble};
-use crate::output::{OutputError, OutputFolder};
 use crate::output::fingerprint::{fingerprint, folder_fingerprint};
 use crate::output::foreign;
+use crate::output::{OutputError, OutputFolder};
 use crate::record::{Environment, ResultSet};
 use crate::reference::Library;
 

@@ -29,8 +29,7 @@ struct Table {
     idle: Vec<Idle>,
 }
 
-static TABLE: LazyLock<Table> =
-    LazyLock::new(|| toml::from_str(include_str!("table.toml")).unwrap_or_default()); // tests read it, too
+static TABLE: LazyLock<Table> = LazyLock::new(|| toml::from_str(include_str!("table.toml")).unwrap_or_default()); // tests read it, too
 
 /// All errors that can be planted.
 pub fn faults() -> &'static [Fault] {
