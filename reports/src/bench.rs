@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 
 use fisura_verification::bench::record::{BenchRecord, BenchSet, SCHEMA, Spread};
 use fisura_verification::output::OutputFolder;
-use fisura_verification::record::{Axis, Curve, Figure, FigureBody, Floor, Scale};
+use fisura_verification::record::{Axis, Curve, Figure, FigureBody, Floor};
 
 use crate::error::ReportError;
 use crate::figure::render_figure;
@@ -85,17 +85,15 @@ impl Exhibit {
 
     /// A chart of curves on two logarithmic axes.
     fn log_log(
-        [id, title, caption]: [&str; 3],
+        words: [&str; 3],
         axes: [&str; 2],
         curves: Vec<Curve>,
         floors: Vec<Floor>,
         (set, reading): (&SeriesSet, String),
     ) -> Self {
-        let [x, y] = axes.map(|label| Axis { scale: Scale::Log, ..Axis::linear(label) });
+        let [x, y] = axes.map(Axis::logarithmic);
         let body = FigureBody::Chart { x, y, curves, regions: Vec::new(), slopes: Vec::new(), floors };
-        let [id, title, caption] = [id, title, caption].map(String::from);
-        let (suite, deviations) = ("bench".to_string(), Vec::new());
-        let figure = Figure { id, suite, title, caption, deviations, body };
+        let figure = Figure::new("bench", words, body);
         let svg = render_figure(&figure, set);
         let Figure { id, title, caption, .. } = figure;
         Self::Plot(Plot { id, title, caption, reading, svg })

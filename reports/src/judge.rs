@@ -7,7 +7,7 @@ use fisura_verification::judge::verdict::{Comparison, Outcome, Verdict, VerdictS
 use fisura_verification::judge::{Judged, QUANTITIES};
 use fisura_verification::output::foreign::line;
 use fisura_verification::output::history::Table;
-use fisura_verification::record::{Curve, CurveStyle, Figure, FigureBody};
+use fisura_verification::record::{Curve, Figure, FigureBody};
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 
@@ -172,17 +172,13 @@ fn pictures(judged: &Judged, number: usize) -> Vec<String> {
         curve.t.iter().zip(&curve.y).for_each(|(t, y)| own.push(&[*t, *y]));
         set.insert("series/own.csv", own);
         let name = line(&judged.verdict.code.name).into_owned();
-        let mut result = Curve::line(&name, "series/own.csv", ["t", "y"]);
-        (result.x_scale, result.y_scale, result.style) = (1e6, scale, CurveStyle::Line);
-        let figure = Figure {
-            id: format!("judge-{number}-{}", quantity.key),
-            suite: "judge".into(),
-            title: format!("{}: {name}", quantity.words),
-            caption: "band: uncertainty of the reference".into(),
-            deviations: Vec::new(),
-            body: FigureBody::over_time(&format!("{} ({unit})", quantity.words), vec![band, result], Vec::new()),
-        };
-        out.extend(render_figure(&figure, &set).ok());
+        let line = Curve::line(&name, "series/own.csv", ["t", "y"]);
+        let result = Curve { x_scale: 1e6, y_scale: scale, ..line };
+        let (id, title) = (format!("judge-{number}-{}", quantity.key), format!("{}: {name}", quantity.words));
+        let label = format!("{} ({unit})", quantity.words);
+        let body = FigureBody::over_time(&label, vec![band, result], Vec::new());
+        let words = [id.as_str(), &title, "band: uncertainty of the reference"];
+        out.extend(render_figure(&Figure::new("judge", words, body), &set).ok());
     }
     out
 }

@@ -6,7 +6,7 @@
 use fisura_verification::judge::Judged;
 use fisura_verification::output::foreign::line;
 use fisura_verification::output::history::Table;
-use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Scale};
+use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody};
 use minijinja::Value;
 use serde::Serialize;
 
@@ -159,16 +159,10 @@ fn draw(key: &str, title: &str, words: &str, entries: &[Entry<'_>]) -> String {
         curves.push(Curve { style: CurveStyle::Markers, ..Curve::line(name, &series, ["spacing", "error"]) });
         set.insert(series, table);
     }
-    let log = |label: String| Axis { label, scale: Scale::Log, range: None };
-    let axes = [log("spacing at the crack (mm)".into()), log(format!("error of the {words} (%)"))];
-    let figure = Figure {
-        id: format!("board-{key}"),
-        suite: "judge".into(),
-        title: title.into(),
-        caption: "relative rms over the whole curve against the reference of the declared variant".into(),
-        deviations: Vec::new(),
-        body: FigureBody::chart(axes, curves, Vec::new()),
-    };
+    let axes = ["spacing at the crack (mm)", &format!("error of the {words} (%)")].map(Axis::logarithmic);
+    let caption = "relative rms over the whole curve against the reference of the declared variant";
+    let body = FigureBody::chart(axes, curves, Vec::new());
+    let figure = Figure::new("judge", [&format!("board-{key}"), title, caption], body);
     if drawn.is_empty() { String::new() } else { render_figure(&figure, &set).unwrap_or_default() }
 }
 
