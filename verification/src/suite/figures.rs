@@ -220,8 +220,9 @@ fn closure_chart(suite: &str, runs: &[RunInfo]) -> Figure {
     });
     let axes = ["time / end time", "closure / largest energy"].map(Axis::linear);
     let caption = "Sum of all named terms of the ledger, over the largest energy of the run.";
-    let words = [&format!("{suite}-ledger-closure"), "Closure of the energy ledger", caption];
-    Figure::new(suite, words, FigureBody::chart(axes, curves.collect(), Vec::new()))
+    let id = format!("{suite}-ledger-closure");
+    let body = FigureBody::chart(axes, curves.collect(), Vec::new());
+    Figure::new(suite, [&id, "Closure of the energy ledger", caption], body)
 }
 
 /// Every term of the ledger of one run.
