@@ -10,7 +10,7 @@ use fisura::simulation::Simulation;
 use fisura_reports::number::{duration, plain};
 use fisura_verification::output::OutputFolder;
 use fisura_verification::scene_run::checkpoint::{self, CHECKPOINT, Place, Stored};
-use fisura_verification::scene_run::{Keep, KeepError, OnFrame, Outcome, Progress, SceneRun, Summary, run_scene_kept};
+use fisura_verification::scene_run::{Keep, OnFrame, Outcome, Progress, SceneRun, Summary, run_scene_kept};
 use indicatif::ProgressBar;
 
 use crate::cli::{Common, SceneArgs};
@@ -161,8 +161,7 @@ impl Start {
         if args.resume {
             // without one of its own, that of another scene is refused with the reason
             let path = if path.exists() { path } else { folder.path().join(CHECKPOINT) };
-            stored = checkpoint::read(&path, &built::program(), scene)
-                .map_err(|error| Failure::input(error.to_string()).help(error.remedy))?;
+            stored = checkpoint::read(&path, &built::program(), scene)?;
             if stored.is_none() {
                 let folder = folder.path().display();
                 console::note(common, &format!("no checkpoint in {folder}: the run begins at the start"));
@@ -217,10 +216,7 @@ fn simulate(
         None => &never,
     };
     let keep = Keep { out: folder, name: place.name, program: built::program(), interval, frame_files, interrupted };
-    run_scene_kept(scene, &keep, stored, &mut advance, on_frame).map_err(|error| match error {
-        KeepError::Output(error) => error.into(),
-        KeepError::Checkpoint(error) => Failure::input(error.to_string()).help(error.remedy),
-    })
+    Ok(run_scene_kept(scene, &keep, stored, &mut advance, on_frame)?)
 }
 
 fn interrupted(at: Progress, checkpoint: &Path) -> Failure {

@@ -18,7 +18,7 @@ pub struct OutputError {
 const ELSEWHERE: &str = "give a folder that can be written with --out";
 
 impl OutputError {
-    fn new(message: String, remedy: impl Into<String>) -> Self {
+    pub(crate) fn new(message: String, remedy: impl Into<String>) -> Self {
         Self { message, remedy: remedy.into() }
     }
 
