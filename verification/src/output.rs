@@ -207,10 +207,11 @@ impl OutputFolder {
 
     /// Adds a name to the list.
     fn list(&self, manifest: &mut Manifest, name: &str) -> Result<(), OutputError> {
-        if manifest.names.insert(name.to_string()) {
-            manifest.store(&self.path).inspect_err(|_| drop(manifest.names.remove(name)))?;
+        let stored = if manifest.names.insert(name.to_string()) { manifest.store(&self.path) } else { Ok(()) };
+        if stored.is_err() {
+            manifest.names.remove(name);
         }
-        Ok(())
+        stored
     }
 
     /// Path of a file that is to be written, with the folders above it and its name in the list.
