@@ -40,7 +40,6 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use cli::{Cli, Command, Common};
-use exit::Exit;
 use failure::Failure;
 
 fn main() -> ExitCode {
