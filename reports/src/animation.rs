@@ -7,9 +7,7 @@
 
 use std::fmt::Write;
 
-use fisura_verification::record::{Figure, FigureBody};
-
-use crate::field::{Raster, markup, render_with};
+use crate::field::{Raster, figure_of, markup, render_with};
 use crate::number::pretty;
 use crate::series::FigureError;
 use crate::style::{SCALE, px};
@@ -39,7 +37,7 @@ pub fn render_animation(
     moments: &[Moment],
     (label, range): (&str, [f64; 2]),
 ) -> Result<String, FigureError> {
-    let fail = |message: String| FigureError::Drawing { figure: id.to_string(), message };
+    let fail = |message: String| FigureError::new(id, message);
     let [(_, first), _, ..] = moments else { return Err(fail("an animation needs at least two pictures".to_string())) };
     if moments
         .iter()
@@ -49,9 +47,7 @@ pub fn render_animation(
     }
     let times = moments.iter().map(|(time, _)| format!("{} µs", pretty(1e6 * time, 4)));
     let caption = format!("Moments: {}.", times.collect::<Vec<_>>().join(", "));
-    let body = FigureBody::Field { series: String::new(), pixels: first.pixels, label: label.into(), range };
-    let figure =
-        Figure { id: id.into(), suite: String::new(), title: title.into(), caption, deviations: Vec::new(), body };
+    let figure = figure_of([id, title, &caption], first.pixels, (label, range));
     for [pixels, colours] in COARSENESS {
         let svg = render_with(&figure, first, (label, range), |place| {
             let groups = moments.iter().enumerate().map(|(number, (time, raster))| {

@@ -14,7 +14,6 @@ pub mod page;
 pub mod pareto;
 pub mod plate;
 pub mod plate_match;
-mod ratio_list;
 pub mod ratios;
 pub mod scale;
 pub mod stages;
@@ -22,12 +21,15 @@ pub mod work_precision;
 
 use std::path::{Path, PathBuf};
 
-use fisura_verification::bench::record::{BenchRecord, BenchSet, SCHEMA};
+use fisura_verification::bench::record::{BenchRecord, BenchSet, SCHEMA, Spread};
 use fisura_verification::output::OutputFolder;
+use fisura_verification::record::{Axis, Curve, Figure, FigureBody, Floor};
 
 use crate::error::ReportError;
-use crate::series::FigureError;
-use crate::{read_json, write};
+use crate::figure::render_figure;
+use crate::number::plain;
+use crate::series::{FigureError, SeriesSet};
+use crate::{failed, read_json, write};
 
 /// Most records of a set.
 const MOST_RECORDS: usize = 10_000;
@@ -67,6 +69,40 @@ pub enum Exhibit {
     Plot(Plot),
     /// A table.
     Grid(Grid),
+}
+
+impl Exhibit {
+    /// A table.
+    fn grid(
+        title: &str,
+        head: &[impl ToString],
+        rows: impl IntoIterator<Item = Vec<String>>,
+        note: impl Into<String>,
+    ) -> Self {
+        let head = head.iter().map(ToString::to_string).collect();
+        Self::Grid(Grid { title: title.into(), head, rows: rows.into_iter().collect(), note: note.into() })
+    }
+
+    /// A chart of curves on two logarithmic axes.
+    fn log_log(
+        words: [&str; 3],
+        axes: [&str; 2],
+        curves: Vec<Curve>,
+        floors: Vec<Floor>,
+        (set, reading): (&SeriesSet, String),
+    ) -> Self {
+        let [x, y] = axes.map(Axis::logarithmic);
+        let body = FigureBody::Chart { x, y, curves, regions: Vec::new(), slopes: Vec::new(), floors };
+        let figure = Figure::new("bench", words, body);
+        let svg = render_figure(&figure, set);
+        let Figure { id, title, caption, .. } = figure;
+        Self::Plot(Plot { id, title, caption, reading, svg })
+    }
+}
+
+/// Least and largest value in words.
+fn range(spread: Spread) -> String {
+    format!("{} to {}", plain(spread.min, 3), plain(spread.max, 3))
 }
 
 /// A part of the report.
@@ -117,7 +153,7 @@ pub fn sections(set: &BenchSet) -> Vec<Section> {
         ("Cost of declared models", conditions::scenes(records)),
         ("Another checkout", conditions::baseline(records)),
         ("Other codes", conditions::peers(set)),
-        ("All records", vec![Exhibit::Grid(page::all_records(set))]),
+        ("All records", vec![page::all_records(set)]),
     ];
     let named = parts.into_iter().filter(|(_, exhibits)| !exhibits.is_empty());
     named.map(|(title, exhibits)| Section { title: title.into(), exhibits }).collect()
@@ -136,7 +172,7 @@ pub fn read(folder: &Path) -> Result<BenchSet, ReportError> {
     let set: BenchSet = read_json(folder, "bench.json", SCHEMA)?;
     if set.records.len() > MOST_RECORDS {
         let message = format!("{} records; at most {MOST_RECORDS} are read", set.records.len());
-        return Err(ReportError::Results { path: folder.join("bench.json"), message });
+        return Err(ReportError::file(folder.join("bench.json"), message));
     }
     Ok(set)
 }
@@ -171,8 +207,7 @@ pub fn render(folder: &Path, out: &OutputFolder) -> Result<Vec<PathBuf>, ReportE
         }
     }
     files.push(write(out, "summary.md", &page::markdown(&set, &sections))?);
-    let html = page::html(&set, &sections);
-    let html = html.map_err(|e| ReportError::Render { file: "bench.html", message: e.to_string() })?;
+    let html = page::html(&set, &sections).map_err(|e| failed("bench.html", e))?;
     files.push(write(out, "bench.html", &html)?);
     if broken.is_empty() { Ok(files) } else { Err(ReportError::Figures(broken)) }
 }

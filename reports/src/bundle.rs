@@ -91,7 +91,7 @@ pub fn redraw(folder: &Path, bundle: &Bundle) -> Result<String, ReportError> {
     let table = |file: &String| {
         series::read(folder, file, &mut left)
             .map(|table| (file.clone(), table))
-            .map_err(|message| ReportError::Results { path: folder.join(file), message })
+            .map_err(|message| ReportError::file(folder.join(file), message))
     };
     let tables = bundle.data.keys().map(table).collect::<Result<_, _>>()?;
     draw(&bundle.figure, tables).map_err(|e| ReportError::Figures(vec![e]))

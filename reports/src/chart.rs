@@ -61,7 +61,7 @@ pub fn render_chart(
     if counts[0] > MOST[0] || counts[1] > MOST[1] {
         let ([curves, marks], [most, most_marks]) = (counts, MOST);
         let message = format!("{curves} curves and {marks} marks of a kind; at most {most} and {most_marks} are drawn");
-        return Err(FigureError::Drawing { figure: figure.id.clone(), message });
+        return Err(FigureError::new(&figure.id, message));
     }
     let chart = Chart::prepare(&figure.id, axes, curves, marks, set)?;
     let labels: Vec<&str> = curves.iter().map(|c| c.label.as_str()).collect();

@@ -3,8 +3,7 @@
 use std::fmt::Write;
 
 use fisura_verification::extremes::larger;
-use fisura_verification::output::history::Table;
-use fisura_verification::record::{Axis, Figure, Scale};
+use fisura_verification::record::{Axis, Figure, FigureBody, Scale};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -45,19 +44,7 @@ impl Raster {
     /// Reads a series with the columns `x_m`, `y_m`, `value`.
     pub fn read(figure: &str, series: &str, pixels: [usize; 2], set: &SeriesSet) -> Result<Self, FigureError> {
         let [x, y, value] = ["x_m", "y_m", "value"].map(|name| set.column(figure, series, name));
-        Self::new(pixels, x?, y?, value?).map_err(|message| FigureError::Raster {
-            figure: figure.to_string(),
-            series: series.to_string(),
-            message,
-        })
-    }
-
-    /// Reads a table with the columns `x_m`, `y_m`, `value`, whose first row of pixels tells the width.
-    pub fn from_table(table: &Table) -> Result<Self, String> {
-        let column = |name: &str| table.column(name).ok_or_else(|| format!("there is no column {name:?}"));
-        let (x, y, value) = (column("x_m")?, column("y_m")?, column("value")?);
-        let width = y.iter().take_while(|v| **v == y[0]).count();
-        Self::new([width, table.rows() / width.max(1)], x, y, value)
+        Self::new(pixels, x?, y?, value?).map_err(|message| FigureError::raster(figure, series, &message))
     }
 
     fn new(pixels: [usize; 2], x: &[f64], y: &[f64], value: &[f64]) -> Result<Self, String> {
@@ -173,6 +160,20 @@ pub fn render_field(figure: &Figure, raster: &Raster, label: &str, range: [f64; 
     render_with(figure, raster, (label, range), |place| markup(place, &paths, raster.pixels))
 }
 
+/// The figure of a raster that stands in no results: id, title and caption, and the colour bar.
+pub(crate) fn figure_of(words: [&str; 3], pixels: [usize; 2], (label, range): (&str, [f64; 2])) -> Figure {
+    Figure::new("", words, FigureBody::Field { series: String::new(), pixels, label: label.into(), range })
+}
+
+/// Draws a raster that stands in no results: its id, title and caption, and the label of the colour bar with
+/// its range.
+///
+/// # Errors
+/// As [`render_field`].
+pub fn render_raster(words: [&str; 3], raster: &Raster, bar: (&str, [f64; 2])) -> Result<String, FigureError> {
+    render_field(&figure_of(words, raster.pixels, bar), raster, bar.0, bar.1)
+}
+
 /// The axes of a raster and the colour bar, with `content` in their frame.
 pub(crate) fn render_with(
     figure: &Figure,
@@ -182,7 +183,7 @@ pub(crate) fn render_with(
 ) -> Result<String, FigureError> {
     if !is_range(range[0], range[1]) {
         let message = format!("the colour bar cannot range from {} to {}", range[0], range[1]);
-        return Err(FigureError::Drawing { figure: figure.id.clone(), message });
+        return Err(FigureError::new(&figure.id, message));
     }
     let axes = [0, 1].map(|k| AxisScale::with_range(Scale::Linear, 1e3 * raster.low[k], 1e3 * raster.high[k], 6));
     let none = Axis { label: String::new(), scale: Scale::Linear, range: Some(range) };

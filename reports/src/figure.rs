@@ -27,7 +27,7 @@ pub fn render_figure(figure: &Figure, set: &SeriesSet) -> Result<String, FigureE
 /// File of a figure below the results folder: `figures/<id>.svg`.
 pub fn file_name(id: &str) -> Result<String, FigureError> {
     if !is_plain(id) {
-        return Err(FigureError::Name { figure: id.to_string() });
+        return Err(FigureError::new(id, "an id consists of names joined by single slashes"));
     }
     Ok(format!("figures/{id}.svg"))
 }

@@ -2,17 +2,16 @@
 //! links to their files.
 
 mod embed;
-mod page;
 mod size;
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use fisura_verification::output::foreign::is_plain;
-use fisura_verification::record::{Figure, FigureBody, Record, ReferenceKind, ResultSet};
-use minijinja::Environment;
+use fisura_verification::record::{Figure, FigureBody, Record, Reference, ReferenceKind, ResultSet, Status};
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
+use minijinja::{Environment, Value, context};
 
 use crate::judge::stored_boards;
 use crate::number::{duration, grouped, plain, pretty};
@@ -22,10 +21,6 @@ use crate::svg::slug;
 use crate::view::{self, Counts};
 
 use embed::embedded;
-use page::{
-    Case, Deviations, LimitCell, Link, Order, Orders, Page, Parameters, Picture, ReferenceCell, Row, Source, Suite,
-    Verdict,
-};
 use size::{left_out, reduced};
 
 const TEMPLATE: &str = include_str!("../templates/report.html");
@@ -81,24 +76,30 @@ fn fill(
     let missing =
         if records + figures == 0 { String::new() } else { format!("{records} records and {figures} figures") };
     let pictures = |figure: &Figure| picture(figure, drawings, left_out);
-    let page = Page {
-        style: format!("{STYLE}{looks}"),
-        verdict: Verdict::of(counts.verdict()),
-        sentence: counts.sentence(),
-        counts: counts.list(),
-        remarks: counts.remarks(),
+    let page = context! {
+        style => format!("{STYLE}{looks}"),
+        verdict => verdict(counts.verdict()),
+        sentence => counts.sentence(),
+        counts => counts.list(),
+        remarks => counts.remarks(),
         missing,
-        environment: view::environment(set),
-        broken: view::broken(shown).into_iter().map(|r| row(r, &r.id)).collect(),
-        limited: view::limited(shown).into_iter().map(|r| row(r, &r.id)).collect(),
-        opening: opening.iter().map(|figure| pictures(figure)).collect(),
-        suites: suites(shown, &opens, &pictures),
-        timing: timed.map(pictures).collect(),
-        boards: if shown.records.iter().any(|r| r.suite == "plate") { stored_boards() } else { Vec::new() },
-        sources: sources(&shown.records),
-        deviations: deviations(shown),
+        environment => Serde(view::environment(set)),
+        broken => view::broken(shown).into_iter().map(|r| row(r, &r.id)).collect::<Value>(),
+        limited => view::limited(shown).into_iter().map(|r| row(r, &r.id)).collect::<Value>(),
+        opening => opening.iter().map(|figure| pictures(figure)).collect::<Value>(),
+        suites => suites(shown, &opens, &pictures),
+        timing => timed.map(pictures).collect::<Value>(),
+        boards => Serde(if shown.records.iter().any(|r| r.suite == "plate") { stored_boards() } else { Vec::new() }),
+        sources => sources(&shown.records),
+        deviations => deviations(shown),
     };
-    environment.get_template("report.html")?.render(Serde(page))
+    environment.get_template("report.html")?.render(page)
+}
+
+/// A status for the template: its word, also as the name of a class, and its symbol.
+fn verdict(status: Status) -> Value {
+    let word = view::word(status);
+    context! { word, class => word.replace(' ', "-"), symbol => view::symbol(status) }
 }
 
 /// What a reader came for, as far as it is there: energies of the plate, its crack at the end, speed against
@@ -123,7 +124,7 @@ fn is_timing(figure: &Figure) -> bool {
     figure.id.starts_with("timing/")
 }
 
-fn suites(set: &ResultSet, opens: &dyn Fn(&Figure) -> bool, picture: &dyn Fn(&Figure) -> Picture) -> Vec<Suite> {
+fn suites(set: &ResultSet, opens: &dyn Fn(&Figure) -> bool, picture: &dyn Fn(&Figure) -> Value) -> Value {
     let mut figures: HashMap<&str, Vec<&Figure>> = HashMap::new();
     for figure in set.figures.iter().filter(|f| !is_timing(f) && !opens(f)) {
         figures.entry(&figure.suite).or_default().push(figure);
@@ -132,36 +133,38 @@ fn suites(set: &ResultSet, opens: &dyn Fn(&Figure) -> bool, picture: &dyn Fn(&Fi
     all.map(|(name, records)| suite(name, &records, &figures.remove(name).unwrap_or_default(), picture)).collect()
 }
 
-fn suite(name: &str, records: &[&Record], figures: &[&Figure], picture: &dyn Fn(&Figure) -> Picture) -> Suite {
+fn suite(name: &str, records: &[&Record], figures: &[&Figure], picture: &dyn Fn(&Figure) -> Value) -> Value {
     let counts = Counts::of(records.iter().copied());
     let cases = records.chunk_by(|a, b| a.case == b.case);
-    Suite {
-        anchor: format!("suite-{}", slug(name)),
-        name: name.to_string(),
-        counts: counts.list(),
-        verdict: Verdict::of(counts.verdict()),
-        orders: orders(records),
-        cases: cases.map(case).collect(),
-        figures: figures.iter().map(|figure| picture(figure)).collect(),
+    context! {
+        anchor => format!("suite-{}", slug(name)),
+        name,
+        counts => counts.list(),
+        verdict => verdict(counts.verdict()),
+        orders => orders(records),
+        cases => cases.map(case).collect::<Value>(),
+        figures => figures.iter().map(|figure| picture(figure)).collect::<Value>(),
     }
 }
 
 /// The rates of a suite, by case.
-fn orders(records: &[&Record]) -> Vec<Orders> {
-    let order = |rate: &Rate| Order {
-        anchor: format!("check-{}", slug(&rate.record.id)),
-        verdict: Verdict::of(rate.record.status),
-        cells: rate.cells(pretty),
+fn orders(records: &[&Record]) -> Value {
+    let order = |rate: &Rate| {
+        context! {
+            anchor => format!("check-{}", slug(&rate.record.id)),
+            verdict => verdict(rate.record.status),
+            cells => rate.cells(pretty).to_vec(),
+        }
     };
     let of_case = |rates: &[Rate]| {
         let first = rates[0].record;
         let id = format!("{}/{}", first.suite, first.case);
-        Orders { id, claim: first.claim.clone(), rows: rates.iter().map(order).collect() }
+        context! { id, claim => &first.claim, rows => rates.iter().map(order).collect::<Value>() }
     };
     rates(records).chunk_by(|a, b| a.record.case == b.record.case).map(of_case).collect()
 }
 
-fn case(records: &[&Record]) -> Case {
+fn case(records: &[&Record]) -> Value {
     let first = records[0];
     let counts = Counts::of(records.iter().copied());
     let id = format!("{}/{}", first.suite, first.case);
@@ -173,29 +176,28 @@ fn case(records: &[&Record]) -> Case {
         judged if counts.known_limit == 0 => format!("{} of {judged}", counts.pass),
         judged => format!("{} of {judged}, known limits {}", counts.pass, counts.known_limit),
     };
-    Case {
-        anchor: format!("case-{}", slug(&id)),
-        verdict: Verdict::of(counts.verdict()),
-        claim: first.claim.clone(),
+    context! {
+        anchor => format!("case-{}", slug(&id)),
+        verdict => verdict(counts.verdict()),
+        claim => &first.claim,
         holding,
-        tier: first.tier.clone(),
-        models: first.models.join(", "),
-        parameters: parameters(records),
-        deviations: view::deviations(records).into_iter().map(String::from).collect(),
-        series: series.iter().map(|name| link(name)).collect(),
-        time: time(records),
-        open: counts.fail + counts.error > 0,
-        rows: records.iter().map(|r| row(r, run(r))).collect(),
-        id,
+        tier => &first.tier,
+        models => first.models.join(", "),
+        parameters => parameters(records),
+        deviations => view::deviations(records).into_iter().collect::<Value>(),
+        series => series.iter().map(|name| link(name)).collect::<Value>(),
+        time => time(records),
+        open => counts.fail + counts.error > 0,
+        rows => records.iter().map(|r| row(r, run(r))).collect::<Value>(),
+        id => &id,
     }
 }
 
 /// The parameters of every run of a case.
-fn parameters(records: &[&Record]) -> Vec<Parameters> {
+fn parameters(records: &[&Record]) -> Value {
     let runs = view::runs(records.iter().copied()).into_iter();
-    let of_run =
-        |(run, records): (&str, Vec<&Record>)| Parameters { run: run.to_string(), text: view::parameters(records[0]) };
-    runs.map(of_run).filter(|p| !p.text.is_empty()).collect()
+    let texts = runs.map(|(run, records)| (run, view::parameters(records[0]))).filter(|(_, text)| !text.is_empty());
+    texts.map(|(run, text)| context! { run, text }).collect()
 }
 
 /// Measured time of a case in words: the sum over its runs, each measurement once.
@@ -210,55 +212,55 @@ fn time(records: &[&Record]) -> String {
     format!("{} of wall time{}", duration(wall), if steps > 0 { per_step() } else { String::new() })
 }
 
-fn row(record: &Record, name: &str) -> Row {
-    let reference = record.reference.as_ref().map(|r| ReferenceCell {
-        value: view::reference_value(r, &record.unit, pretty),
-        kind: view::kind(r),
-        source: r.source.clone(),
-        comparison: view::comparison(record, pretty).unwrap_or_default(),
+fn row(record: &Record, name: &str) -> Value {
+    let reference = record.reference.as_ref().map(|r| {
+        context! {
+            value => view::reference_value(r, &record.unit, pretty),
+            kind => view::kind(r),
+            source => &r.source,
+            comparison => view::comparison(record, pretty).unwrap_or_default(),
+        }
     });
-    Row {
-        anchor: format!("check-{}", slug(&record.id)),
-        name: name.to_string(),
-        verdict: Verdict::of(record.status),
-        quantity: record.quantity.clone(),
-        value: view::value(record, pretty),
+    let limit = view::limit(record, pretty).zip(record.limit.as_ref());
+    context! {
+        anchor => format!("check-{}", slug(&record.id)),
+        name,
+        verdict => verdict(record.status),
+        quantity => &record.quantity,
+        value => view::value(record, pretty),
         reference,
-        bounds: view::accepted(record, pretty),
-        why: record.accept.why.clone(),
-        limit: record
-            .limit
-            .as_ref()
-            .map(|limit| LimitCell { range: view::limit(record, pretty).unwrap_or_default(), why: limit.why.clone() }),
-        message: record.message.clone().unwrap_or_default(),
+        bounds => view::accepted(record, pretty),
+        why => &record.accept.why,
+        limit => limit.map(|(range, limit)| context! { range, why => &limit.why }),
+        message => record.message.as_deref().unwrap_or_default(),
     }
 }
 
-fn picture(figure: &Figure, drawings: &Drawings, left_out: &BTreeSet<&str>) -> Picture {
+fn picture(figure: &Figure, drawings: &Drawings, left_out: &BTreeSet<&str>) -> Value {
     let left_out = left_out.contains(figure.id.as_str());
     let (svg, error) = match drawings.get(&figure.id) {
-        _ if left_out => Default::default(),
-        Some(Ok(svg)) => (svg.clone(), String::new()),
-        Some(Err(error)) => (String::new(), error.clone()),
-        None => (String::new(), "it was not drawn".to_string()),
+        _ if left_out => ("", ""),
+        Some(Ok(svg)) => (svg.as_str(), ""),
+        Some(Err(error)) => ("", error.as_str()),
+        None => ("", "it was not drawn"),
     };
-    Picture {
-        anchor: format!("figure-{}", slug(&figure.id)),
-        kind: if matches!(figure.body, FigureBody::Field { .. }) { "field" } else { "chart" },
-        title: figure.title.clone(),
-        caption: figure.caption.clone(),
-        deviations: figure.deviations.clone(),
+    context! {
+        anchor => format!("figure-{}", slug(&figure.id)),
+        kind => if matches!(figure.body, FigureBody::Field { .. }) { "field" } else { "chart" },
+        title => &figure.title,
+        caption => &figure.caption,
+        deviations => &figure.deviations,
         svg,
         left_out,
         error,
-        file: link(&crate::figure::file_name(&figure.id).unwrap_or_default()),
-        series: names(figure).iter().map(|name| link(name)).collect(),
+        file => link(&crate::figure::file_name(&figure.id).unwrap_or_default()),
+        series => names(figure).iter().map(|name| link(name)).collect::<Value>(),
     }
 }
 
 /// A file of the folder as a link; without an address if its name is not plain, since that could lead
 /// anywhere.
-fn link(name: &str) -> Link {
+fn link(name: &str) -> Value {
     let encoded = |c: char| match c {
         '%' => "%25".into(),
         '#' => "%23".into(),
@@ -266,28 +268,31 @@ fn link(name: &str) -> Link {
         ' ' => "%20".into(),
         c => c.to_string(),
     };
-    let address = if is_plain(name) { name.chars().map(encoded).collect() } else { String::new() };
-    Link { address, text: name.strip_prefix("series/").unwrap_or(name).to_string() }
+    let address: String = if is_plain(name) { name.chars().map(encoded).collect() } else { String::new() };
+    context! { address, text => name.strip_prefix("series/").unwrap_or(name) }
 }
 
 /// What the records cite beyond closed forms and theory, each source once with the number of its checks.
-fn sources(records: &[Record]) -> Vec<Source> {
-    let mut sources: Vec<Source> = Vec::new();
+fn sources(records: &[Record]) -> Value {
+    let mut sources: Vec<(&Reference, usize)> = Vec::new();
     let mut place = HashMap::new();
     let cited = records.iter().filter_map(|r| r.reference.as_ref());
     for reference in cited.filter(|r| matches!(r.kind, ReferenceKind::Literature | ReferenceKind::IndependentCode)) {
         let at = *place.entry(&reference.source).or_insert(sources.len());
         match sources.get_mut(at) {
-            Some(source) => source.checks += 1,
-            None => sources.push(Source { text: reference.source.clone(), kind: view::kind(reference), checks: 1 }),
+            Some((_, checks)) => *checks += 1,
+            None => sources.push((reference, 1)),
         }
     }
-    sources
+    let source = |(reference, checks): (&Reference, usize)| {
+        context! { text => &reference.source, kind => view::kind(reference), checks }
+    };
+    sources.into_iter().map(source).collect()
 }
 
 /// Every deviation from a cited source, with the cases that deviate.
-fn deviations(set: &ResultSet) -> Vec<Deviations> {
-    let mut all: Vec<Deviations> = Vec::new();
+fn deviations(set: &ResultSet) -> Value {
+    let mut all: Vec<(&String, Vec<(String, String)>)> = Vec::new();
     let mut place = HashMap::new();
     let mut seen = HashSet::new();
     for (record, text) in set.records.iter().flat_map(|r| r.deviations.iter().map(move |text| (r, text))) {
@@ -298,11 +303,11 @@ fn deviations(set: &ResultSet) -> Vec<Deviations> {
         let case = (format!("case-{}", slug(&case)), case);
         let at = *place.entry(text).or_insert(all.len());
         match all.get_mut(at) {
-            Some(known) => known.cases.push(case),
-            None => all.push(Deviations { text: text.clone(), cases: vec![case] }),
+            Some((_, cases)) => cases.push(case),
+            None => all.push((text, vec![case])),
         }
     }
-    all
+    all.into_iter().map(|(text, cases)| context! { text, cases => Serde(cases) }).collect()
 }
 
 #[cfg(test)]

@@ -7,10 +7,9 @@ use fisura_verification::judge::verdict::{Comparison, Outcome, Verdict, VerdictS
 use fisura_verification::judge::{Judged, QUANTITIES};
 use fisura_verification::output::foreign::line;
 use fisura_verification::output::history::Table;
-use fisura_verification::record::{Curve, CurveStyle, Figure, FigureBody};
-use minijinja::Environment;
+use fisura_verification::record::{Curve, Figure, FigureBody};
 use minijinja::value::Serde;
-use serde::Serialize;
+use minijinja::{Environment, Value, context};
 
 use crate::figure::render_figure;
 use crate::number::{duration, plain};
@@ -107,46 +106,32 @@ fn figures(comparison: &Comparison) -> String {
     format!("{value}|E| {}{u_val} {unit}", show(error.abs()))
 }
 
-#[derive(Serialize)]
-struct Page<'a> {
-    style: &'static str,
-    title: String,
-    verdicts: Vec<Part<'a>>,
-    boards: Vec<Board>,
-}
-
-#[derive(Serialize)]
-struct Part<'a> {
-    verdict: &'a Verdict,
-    word: &'static str,
-    facts: Vec<(&'static str, String)>,
-    rows: Vec<[String; 4]>,
-    pictures: Vec<String>,
-}
-
 /// One page with every verdict and its curves over the band of the reference; complete in itself.
 ///
 /// # Errors
 /// Only if the template cannot be filled, which has no cause in the verdicts.
 pub fn page(judged: &[Judged]) -> Result<String, minijinja::Error> {
-    let parts = judged.iter().enumerate().map(|(i, one)| Part {
-        verdict: &one.verdict,
-        word: one.verdict.outcome.word(),
-        facts: facts(&one.verdict),
-        rows: rows(&one.verdict),
-        pictures: if i < MOST_DRAWN { pictures(one, i) } else { Vec::new() },
-    });
+    let part = |(i, one): (usize, &Judged)| {
+        context! {
+            verdict => Serde(&one.verdict),
+            word => one.verdict.outcome.word(),
+            facts => Serde(facts(&one.verdict)),
+            rows => Serde(rows(&one.verdict)),
+            pictures => if i < MOST_DRAWN { pictures(one, i) } else { Vec::new() },
+        }
+    };
     let title = match judged {
         [one] => format!("{}: {}", one.verdict.code.name, one.verdict.outcome.word()),
         _ => format!("{} results judged", judged.len()),
     };
-    fill(Page { style: STYLE, title, verdicts: parts.collect(), boards: Vec::new() })
+    fill(title, judged.iter().enumerate().map(part).collect(), &[])
 }
 
-fn fill(page: Page<'_>) -> Result<String, minijinja::Error> {
+fn fill(title: String, verdicts: Value, boards: &[Board]) -> Result<String, minijinja::Error> {
     let mut environment = Environment::new();
     environment.add_template("judge.html", TEMPLATE)?;
-    environment.get_template("judge.html")?.render(Serde(page))
+    let page = context! { style => STYLE, title, verdicts, boards => Serde(boards) };
+    environment.get_template("judge.html")?.render(page)
 }
 
 fn facts(verdict: &Verdict) -> Vec<(&'static str, String)> {
@@ -187,17 +172,13 @@ fn pictures(judged: &Judged, number: usize) -> Vec<String> {
         curve.t.iter().zip(&curve.y).for_each(|(t, y)| own.push(&[*t, *y]));
         set.insert("series/own.csv", own);
         let name = line(&judged.verdict.code.name).into_owned();
-        let mut result = Curve::line(&name, "series/own.csv", ["t", "y"]);
-        (result.x_scale, result.y_scale, result.style) = (1e6, scale, CurveStyle::Line);
-        let figure = Figure {
-            id: format!("judge-{number}-{}", quantity.key),
-            suite: "judge".into(),
-            title: format!("{}: {name}", quantity.words),
-            caption: "band: uncertainty of the reference".into(),
-            deviations: Vec::new(),
-            body: FigureBody::over_time(&format!("{} ({unit})", quantity.words), vec![band, result], Vec::new()),
-        };
-        out.extend(render_figure(&figure, &set).ok());
+        let line = Curve::line(&name, "series/own.csv", ["t", "y"]);
+        let result = Curve { x_scale: 1e6, y_scale: scale, ..line };
+        let (id, title) = (format!("judge-{number}-{}", quantity.key), format!("{}: {name}", quantity.words));
+        let label = format!("{} ({unit})", quantity.words);
+        let body = FigureBody::over_time(&label, vec![band, result], Vec::new());
+        let words = [id.as_str(), &title, "band: uncertainty of the reference"];
+        out.extend(render_figure(&Figure::new("judge", words, body), &set).ok());
     }
     out
 }

@@ -11,8 +11,7 @@
 //! | `report.html` | a reader with a browser | [`html`] |
 //! | `summary.md` | the step summary of a CI run | [`markdown`] |
 //! | `junit.xml` | the test view of a CI service | [`junit`] |
-//! | `metrics.json` | trend charts over commits | [`metrics`] |
-//! | `metrics/` | dashboards, in the form of each | [`dashboards`] |
+//! | `metrics/` | charts over commits | [`metrics`] |
 //!
 //! [`compare`] holds two such sets side by side, [`annotations`] marks failed checks in the view of a CI
 //! service.
@@ -40,7 +39,6 @@ pub mod bundle;
 pub mod chart;
 pub mod colour;
 pub mod compare;
-pub mod dashboards;
 pub mod docs;
 pub mod error;
 pub mod field;
@@ -97,7 +95,7 @@ pub struct Rendered {
 }
 
 /// Renders the results in `folder` to `out`, which may be the same: figures, `report.html`, `summary.md`,
-/// `junit.xml`, `metrics.json`, `metrics/`.
+/// `junit.xml`, `metrics/`.
 ///
 /// # Errors
 /// `results.json` is missing, malformed or of another schema, or a file cannot be written. Figures that
@@ -129,9 +127,7 @@ pub fn render(folder: &Path, out: &OutputFolder) -> Result<Rendered, ReportError
     files.push(write(out, "summary.md", &markdown::render_markdown(&results))?);
     let junit = junit::render_junit(&results).map_err(|e| failed("junit.xml", e))?;
     files.push(write(out, "junit.xml", &junit)?);
-    let metrics = metrics::render_metrics(&results).map_err(|e| failed("metrics.json", e))?;
-    files.push(write(out, "metrics.json", &metrics)?);
-    for (name, content) in dashboards::files(&results) {
+    for (name, content) in metrics::files(&results).map_err(|e| failed("metrics", e))? {
         files.push(write(out, &format!("metrics/{name}"), &content)?);
     }
     if broken.is_empty() { Ok(Rendered { results, files }) } else { Err(ReportError::Figures(broken)) }
@@ -143,7 +139,7 @@ fn draw(figure: &Figure, series: &SeriesSet, rows: &mut usize) -> Result<(String
     *rows += series.rows(figure);
     if *rows > MOST_ROWS {
         let message = format!("this figure and those before it have more than {MOST_ROWS} rows");
-        return Err(FigureError::Drawing { figure: figure.id.clone(), message });
+        return Err(FigureError::new(&figure.id, message));
     }
     Ok((name, figure::render_figure(figure, series)?))
 }
@@ -159,7 +155,7 @@ pub fn read_results(folder: &Path) -> Result<ResultSet, ReportError> {
     if counts[0] > MOST[0] || counts[1] > MOST[1] {
         let ([records, figures], [most, most_figures]) = (counts, MOST);
         let message = format!("{records} records and {figures} figures; at most {most} and {most_figures} are read");
-        return Err(ReportError::Results { path: folder.join("results.json"), message });
+        return Err(ReportError::file(folder.join("results.json"), message));
     }
     Ok(set)
 }
@@ -179,11 +175,13 @@ fn read_json<T: DeserializeOwned + Serialize>(
 ) -> Result<T, ReportError> {
     let path = folder.join(name);
     let bytes = foreign::read(folder, name, foreign::DOCUMENT_BYTES);
-    let bytes = bytes.map_err(|source| ReportError::File { path: path.clone(), source })?;
-    let malformed = |e: serde_json::Error| ReportError::Results { path: path.clone(), message: e.to_string() };
+    let bytes = bytes.map_err(|e| ReportError::file(&path, e))?;
+    let malformed = |e: serde_json::Error| ReportError::file(&path, e);
     let found = serde_json::from_slice::<Named>(&bytes).map_err(malformed)?.schema;
     if found != schema {
-        return Err(ReportError::Schema { path, found: foreign::line(&found).into_owned(), expected: schema });
+        let found = foreign::line(&found);
+        let message = format!("schema {found:?} is not {schema:?}; render it with the version of fisura that wrote it");
+        return Err(ReportError::file(path, message));
     }
     let document: T = serde_json::from_slice(&bytes).map_err(malformed)?;
     let mut value = serde_json::to_value(document).map_err(malformed)?;
@@ -192,7 +190,7 @@ fn read_json<T: DeserializeOwned + Serialize>(
 }
 
 fn failed(file: &'static str, error: impl std::fmt::Display) -> ReportError {
-    ReportError::Render { file, message: error.to_string() }
+    ReportError::file(file, format!("cannot be rendered: {error}"))
 }
 
 /// Writes a file of the folder.

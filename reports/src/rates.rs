@@ -8,8 +8,7 @@ use std::collections::HashMap;
 
 use fisura_verification::record::Record;
 
-use crate::number::plain;
-use crate::view::{bounds, with_unit};
+use crate::view::{bounds, shown, with_unit};
 
 /// Digits of an order.
 const ORDER_DIGITS: usize = 4;
@@ -90,12 +89,7 @@ impl Rate<'_> {
 
     /// Observed order, with the digits that its bounds need.
     fn observed(&self, show: Show) -> String {
-        let Some(value) = self.record.value else { return "none".to_string() };
-        let limits = [self.record.accept.min, self.record.accept.max];
-        let hidden =
-            |digits: usize| limits.iter().flatten().any(|b| *b != value && plain(*b, digits) == plain(value, digits));
-        let digits = (ORDER_DIGITS..17).find(|digits| !hidden(*digits)).unwrap_or(17);
-        show(value, digits)
+        self.record.value.map_or("none".to_string(), |value| shown(self.record, value, ORDER_DIGITS, show))
     }
 
     /// Accepted orders.
@@ -126,6 +120,7 @@ impl Rate<'_> {
 mod tests {
     use super::*;
     use crate::example::results;
+    use crate::number::plain;
 
     #[test]
     fn rates_are_found_by_their_words_and_matched_with_their_errors() {

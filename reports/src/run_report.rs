@@ -2,9 +2,9 @@
 
 use fisura_verification::extremes::larger;
 use fisura_verification::output::history::Table;
-use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Scale};
+use fisura_verification::record::{Axis, Curve, Figure, FigureBody};
 
-use crate::field::{Raster, render_field};
+use crate::field::{Raster, render_raster};
 use crate::figure::render_figure;
 use crate::number::{plain, pretty};
 use crate::series::{FigureError, SeriesSet};
@@ -28,54 +28,27 @@ pub fn energies_svg(history: &Table, title: &str) -> Result<String, FigureError>
     let (time_scale, time_unit) = unit(largest("time_s").unwrap_or(0.0), &TIMES);
     let curves: Vec<Curve> = drawn
         .into_iter()
-        .map(|name| Curve {
-            label: name.trim_end_matches("_j").replace('_', " "),
-            series: HISTORY.to_string(),
-            x: "time_s".to_string(),
-            y: name.clone(),
-            x_scale: time_scale,
-            y_scale: energy_scale,
-            style: CurveStyle::Line,
-            uncertainty_absolute: 0.0,
-            uncertainty_relative: 0.0,
-        })
+        .map(|name| Curve { x_scale: time_scale, ..Curve::energy(HISTORY, name, energy_scale) })
         .collect();
     if curves.is_empty() {
-        return Err(FigureError::Column {
-            figure: "energies".to_string(),
-            series: HISTORY.to_string(),
-            column: "*_j".to_string(),
-            present: history.names.join(", "),
-        });
+        let present = history.names.join(", ");
+        return Err(FigureError::new("energies", format!("{HISTORY} has no column of an energy; it has {present}")));
     }
-    let axis = |label: String| Axis { label, scale: Scale::Linear, range: None };
-    let body = FigureBody::Chart {
-        x: axis(format!("time ({time_unit})")),
-        y: axis(format!("energy ({energy_unit})")),
-        curves,
-        regions: Vec::new(),
-        slopes: Vec::new(),
-        floors: Vec::new(),
-    };
+    let axes = [format!("time ({time_unit})"), format!("energy ({energy_unit})")].map(|label| Axis::linear(&label));
+    let body = FigureBody::chart(axes, curves, Vec::new());
     let mut set = SeriesSet::default();
     set.insert(HISTORY, history.clone());
-    render_figure(&figure("energies", title.to_string(), body), &set)
+    render_figure(&Figure::new("", ["energies", title, ""], body), &set)
 }
 
-/// Draws the phase field of a frame (columns `x_m`, `y_m`, `value`, x fastest) between 0, broken, and 1,
-/// intact.
+/// Draws the phase field of a frame between 0, broken, and 1, intact.
 ///
 /// # Errors
-/// The table is no raster.
-pub fn phase_svg(frame: &Table, time_s: f64, title: &str) -> Result<String, FigureError> {
-    let id = phase_name(time_s);
-    let fail = |message| FigureError::Raster { figure: id.clone(), series: "frame".to_string(), message };
-    let raster = Raster::from_table(frame).map_err(fail)?;
+/// As [`render_raster`].
+pub fn phase_svg(frame: &Raster, time_s: f64, title: &str) -> Result<String, FigureError> {
     let (scale, word) = unit(time_s.abs(), &TIMES);
     let title = format!("{title}, phase field at {} {word}", pretty(time_s * scale, 4));
-    let (label, range) = ("phase field c".to_string(), [0.0, 1.0]);
-    let body = FigureBody::Field { series: String::new(), pixels: raster.pixels, label: label.clone(), range };
-    render_field(&figure(&id, title, body), &raster, &label, range)
+    render_raster([&phase_name(time_s), &title, ""], frame, ("phase field c", [0.0, 1.0]))
 }
 
 /// File name, without ending, of the picture of a frame: `phase-45us`. Times that differ have names that
@@ -95,11 +68,6 @@ fn unit(size: f64, units: &[(&'static str, f64)]) -> (f64, &'static str) {
     let smallest = units.last().copied().unwrap_or(basic);
     let (name, size_of_unit) = if size > 0.0 { fits.unwrap_or(smallest) } else { basic };
     ((1.0 / size_of_unit), name)
-}
-
-fn figure(id: &str, title: String, body: FigureBody) -> Figure {
-    let (caption, deviations) = (String::new(), Vec::new());
-    Figure { id: id.to_string(), suite: String::new(), title, caption, deviations, body }
 }
 
 #[cfg(test)]
@@ -137,14 +105,11 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_is_drawn_and_a_ragged_one_refused() {
-        let mut table = Table::new(&["x_m", "y_m", "value"]);
-        for i in 0..12 {
-            table.push(&[(i % 4) as f64 * 1e-3, (i / 4) as f64 * 1e-3, if i == 5 { f64::NAN } else { 0.5 }]);
-        }
-        let svg = phase_svg(&table, 45e-6, "Plate").unwrap();
+    fn a_frame_is_drawn_with_a_gap_where_there_is_no_body() {
+        let mut values = vec![0.5; 12];
+        values[5] = f64::NAN;
+        let frame = Raster { pixels: [4, 3], low: [0.0; 2], high: [4e-3, 3e-3], values };
+        let svg = phase_svg(&frame, 45e-6, "Plate").unwrap();
         assert!(svg.contains("phase field at 45 µs") && svg.contains("m0 0h4v1h-4z"), "{svg}");
-        table.push(&[0.0, 3e-3, 1.0]);
-        assert!(phase_svg(&table, 45e-6, "Plate").unwrap_err().to_string().contains("13 rows"));
     }
 }

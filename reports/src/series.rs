@@ -10,69 +10,23 @@ use thiserror::Error;
 
 /// A figure that cannot be drawn.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum FigureError {
-    /// A series file is missing or unreadable.
-    #[error("figure {figure}: series {series} cannot be read: {message}")]
-    Series {
-        /// Figure.
-        figure: String,
-        /// Series, relative to the results folder.
-        series: String,
-        /// What is wrong with it.
-        message: String,
-    },
-    /// A series lacks a column that a curve names.
-    #[error("figure {figure}: series {series} has no column {column:?}; it has {present}")]
-    Column {
-        /// Figure.
-        figure: String,
-        /// Series, relative to the results folder.
-        series: String,
-        /// Column asked for.
-        column: String,
-        /// Columns there are.
-        present: String,
-    },
-    /// A curve has no point that could be drawn on these axes.
-    #[error(
-        "figure {figure}: nothing to draw for {label:?}: columns {x} and {y} of series {series} have no drawable row"
-    )]
-    Empty {
-        /// Figure.
-        figure: String,
-        /// Legend of the curve.
-        label: String,
-        /// Series, relative to the results folder.
-        series: String,
-        /// Column of the abscissa.
-        x: String,
-        /// Column of the ordinate.
-        y: String,
-    },
+#[error("figure {figure}: {message}")]
+pub struct FigureError {
+    /// Figure.
+    pub figure: String,
+    /// Why, with the series and its column.
+    pub message: String,
+}
+
+impl FigureError {
+    pub(crate) fn new(figure: &str, message: impl Into<String>) -> Self {
+        Self { figure: figure.to_string(), message: message.into() }
+    }
+
     /// The rows of a field do not form the raster that the figure declares.
-    #[error("figure {figure}: series {series} is not a raster: {message}")]
-    Raster {
-        /// Figure.
-        figure: String,
-        /// Series, relative to the results folder.
-        series: String,
-        /// What is wrong.
-        message: String,
-    },
-    /// The identifier would leave the folder of figures.
-    #[error("figure {figure:?}: an id consists of names joined by single slashes")]
-    Name {
-        /// Figure.
-        figure: String,
-    },
-    /// The drawing library gave up.
-    #[error("figure {figure}: drawing failed: {message}")]
-    Drawing {
-        /// Figure.
-        figure: String,
-        /// Its words.
-        message: String,
-    },
+    pub(crate) fn raster(figure: &str, series: &str, message: &str) -> Self {
+        Self::new(figure, format!("series {series} is not a raster: {message}"))
+    }
 }
 
 /// Most bytes of all series of one report.
@@ -112,11 +66,7 @@ impl SeriesSet {
 
     /// The table of that name, for a figure.
     pub fn table(&self, figure: &str, series: &str) -> Result<&Table, FigureError> {
-        let fail = |message: &str| FigureError::Series {
-            figure: figure.to_string(),
-            series: series.to_string(),
-            message: message.to_string(),
-        };
+        let fail = |why: &str| FigureError::new(figure, format!("series {series} cannot be read: {why}"));
         match self.tables.get(series) {
             Some(Ok(table)) => Ok(table),
             Some(Err(message)) => Err(fail(message)),
@@ -127,11 +77,9 @@ impl SeriesSet {
     /// A column of a table, for a figure.
     pub fn column(&self, figure: &str, series: &str, column: &str) -> Result<&[f64], FigureError> {
         let table = self.table(figure, series)?;
-        table.column(column).ok_or_else(|| FigureError::Column {
-            figure: figure.to_string(),
-            series: series.to_string(),
-            column: column.to_string(),
-            present: table.names.join(", "),
+        table.column(column).ok_or_else(|| {
+            let present = table.names.join(", ");
+            FigureError::new(figure, format!("series {series} has no column {column:?}; it has {present}"))
         })
     }
 }

@@ -28,7 +28,7 @@ pub fn page(
     draw: impl FnOnce(&Page) -> Drawn<Option<String>>,
 ) -> Result<String, FigureError> {
     let canvas = Canvas::new((px(width) as u32, px(height) as u32));
-    let failed = |e: Box<dyn std::error::Error>| FigureError::Drawing { figure: figure.into(), message: e.to_string() };
+    let failed = |e: Box<dyn std::error::Error>| FigureError::new(figure, format!("drawing failed: {e}"));
     let page = Page { area: canvas.clone().into_drawing_area(), canvas: canvas.clone() };
     let below = draw(&page).map_err(failed)?.unwrap_or_default();
     let (id, body) = (slug(figure), canvas.markup());

@@ -42,13 +42,10 @@ impl Trace {
         let points: Vec<Point> = x.iter().zip(y).map(|(x, y)| (x * curve.x_scale, y * curve.y_scale)).collect();
         let fits = |value: f64, scale| value.is_finite() && (scale == Scale::Linear || value > 0.0);
         if !points.iter().any(|(x, y)| fits(*x, scales[0]) && fits(*y, scales[1])) {
-            return Err(FigureError::Empty {
-                figure: figure.to_string(),
-                label: curve.label.clone(),
-                series: curve.series.clone(),
-                x: curve.x.clone(),
-                y: curve.y.clone(),
-            });
+            let Curve { label, series, x, y, .. } = curve;
+            let message =
+                format!("nothing to draw for {label:?}: columns {x} and {y} of series {series} have no drawable row");
+            return Err(FigureError::new(figure, message));
         }
         let (absolute, relative) = (curve.uncertainty_absolute.abs(), curve.uncertainty_relative.abs());
         let uncertain = absolute.max(relative) > 0.0;

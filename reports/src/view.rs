@@ -228,14 +228,17 @@ pub fn own_times<'a>(records: &[&'a Record]) -> Vec<Timing> {
 
 /// A value with its unit: as many digits as it takes to see on which side of its bounds it lies.
 pub fn value(record: &Record, show: fn(f64, usize) -> String) -> String {
-    let Some(value) = record.value else { return "none".to_string() };
+    record.value.map_or("none".to_string(), |value| with_unit(&shown(record, value, DIGITS, show), &record.unit))
+}
+
+/// A value of a record with at least so many digits.
+pub fn shown(record: &Record, value: f64, least: usize, show: fn(f64, usize) -> String) -> String {
     let bounds = [record.accept.min, record.accept.max];
     let hidden = |digits: usize| {
         let text = plain(value, digits);
         bounds.iter().flatten().any(|b| *b != value && plain(*b, digits) == text)
     };
-    let digits = (DIGITS..17).find(|d| !hidden(*d)).unwrap_or(17);
-    with_unit(&show(value, digits), &record.unit)
+    show(value, (least..17).find(|digits| !hidden(*digits)).unwrap_or(17))
 }
 
 /// A number with its unit; `1` is no unit.

@@ -154,29 +154,13 @@ fn plate(
         all.for_each(|comparison| explained_by_difference(comparison, known));
         quantities.iter_mut().for_each(curves::conclude);
     }
-    let mut verdict = Verdict {
-        folder: folder.to_string(),
-        benchmark: submission.benchmark.clone(),
-        code: submission.code.clone(),
-        method: submission.method.clone(),
-        spacing_m: submission.spacing,
-        discretisation: submission.discretisation.clone(),
-        cost: submission.cost.clone(),
-        reference: ReferenceUsed {
-            id: variant.id.clone(),
-            label: variant.label.clone(),
-            uncertainty: variant.uncertainty.clone(),
-        },
-        numerical_uncertainty: numerics.words(),
-        differences,
-        findings,
-        notes,
-        quantities,
-        events,
-        balance,
-        outcome: Outcome::Diagnostic,
-        sentence: String::new(),
+    let reference = ReferenceUsed {
+        id: variant.id.clone(),
+        label: variant.label.clone(),
+        uncertainty: variant.uncertainty.clone(),
     };
+    let base = Verdict::of(folder, submission, reference, numerics.words());
+    let mut verdict = Verdict { differences, findings, notes, quantities, events, balance, ..base };
     verdict.conclude();
     if differs && verdict.outcome == Outcome::Pass {
         verdict.outcome = Outcome::Diagnostic; // of another model: neither right nor wrong

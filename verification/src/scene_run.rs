@@ -28,7 +28,7 @@ use crate::watch;
 
 pub use breakdown::{BreakdownReport, Extremes, WorstPoint};
 use keep::Keeper;
-pub use keep::{Keep, KeepError, Outcome, run_scene_kept};
+pub use keep::{Keep, Outcome, run_scene_kept};
 pub use summary::{BreakdownSummary, Stages, Summary, peak_memory_mb};
 use write::Followed;
 pub use write::HISTORY;

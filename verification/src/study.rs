@@ -28,6 +28,10 @@ pub mod scene;
 mod stability;
 mod vibration;
 
+use stability::{
+    boundary_points, critical_step, growth, incompressible, repeatability, split_families, units, unloading,
+};
+
 pub use offers::{Offer, Offers};
 use thiserror::Error;
 
@@ -111,65 +115,44 @@ pub const INPUTS: [&str; 7] = ["scene", "values", "variant", "energy_factor", "c
 const NOTHING: &[&str] = &[];
 const SCENES: &[&str] = &["scene", "variant"];
 
+const fn study(
+    name: &'static str,
+    reads: &'static [&'static str],
+    offers: fn(&Case, &[CaseScene]) -> Offered,
+    run: fn(&Case, &[CaseScene]) -> Result<Findings, StudyError>,
+) -> Study {
+    Study { name, reads, offers, run }
+}
+
 /// Studies other than `scene`.
 pub static STUDIES: [Study; 27] = [
-    Study { name: "basis", reads: NOTHING, offers: basis::offers, run: basis::study },
-    Study { name: "constant-stress", reads: SCENES, offers: constant_stress::offers, run: constant_stress::study },
-    Study {
-        name: "homogeneous-state",
-        reads: SCENES,
-        offers: homogeneous_state::offers,
-        run: homogeneous_state::study,
-    },
-    Study { name: "compressive-step", reads: SCENES, offers: compressive_step::offers, run: compressive_step::study },
-    Study { name: "nurbs", reads: NOTHING, offers: nurbs::offers, run: nurbs::study },
-    Study { name: "convergence", reads: &["convergence"], offers: convergence::offers, run: convergence::study },
-    Study { name: "vibration", reads: NOTHING, offers: vibration::offers, run: vibration::study },
-    Study { name: "pulse", reads: NOTHING, offers: pulse::offers, run: pulse::study },
-    Study { name: "crack-cost", reads: NOTHING, offers: crack_cost::offers, run: crack_cost::study },
-    Study { name: "crack-profile", reads: NOTHING, offers: crack_profile::offers, run: crack_profile::study },
-    Study { name: "rotation", reads: SCENES, offers: rotation::offers, run: rotation::study },
-    Study { name: "eigenfrequencies", reads: NOTHING, offers: eigenfrequencies::offers, run: eigenfrequencies::study },
-    Study { name: "linear-field", reads: NOTHING, offers: linear_field::offers, run: linear_field::study },
-    Study { name: "contact-impact", reads: SCENES, offers: contact::impact::offers, run: contact::impact::study },
-    Study { name: "contact-onset", reads: SCENES, offers: contact::onset::offers, run: contact::onset::study },
-    Study { name: "contact-hertz", reads: SCENES, offers: contact::hertz::offers, run: contact::hertz::study },
-    Study { name: "rings", reads: &["scene", "variant", "energy_factor"], offers: rings::offers, run: rings::study },
-    Study { name: "rings-sweep", reads: &["rings", "scene"], offers: rings::sweep_offers, run: rings::sweep },
-    Study {
-        name: "critical-step",
-        reads: NOTHING,
-        offers: stability::critical_step::offers,
-        run: stability::critical_step::study,
-    },
-    Study { name: "step-growth", reads: NOTHING, offers: stability::growth::offers, run: stability::growth::study },
-    Study {
-        name: "incompressible",
-        reads: NOTHING,
-        offers: stability::incompressible::offers,
-        run: stability::incompressible::study,
-    },
-    Study {
-        name: "split-families",
-        reads: NOTHING,
-        offers: stability::split_families::offers,
-        run: stability::split_families::study,
-    },
-    Study {
-        name: "boundary-points",
-        reads: NOTHING,
-        offers: stability::boundary_points::offers,
-        run: stability::boundary_points::study,
-    },
-    Study { name: "unit-systems", reads: NOTHING, offers: stability::units::offers, run: stability::units::study },
-    Study {
-        name: "repeatability",
-        reads: NOTHING,
-        offers: stability::repeatability::offers,
-        run: stability::repeatability::study,
-    },
-    Study { name: "unloading", reads: NOTHING, offers: stability::unloading::offers, run: stability::unloading::study },
-    Study { name: "judging", reads: NOTHING, offers: judging::offers, run: judging::study },
+    study("basis", NOTHING, basis::offers, basis::study),
+    study("constant-stress", SCENES, constant_stress::offers, constant_stress::study),
+    study("homogeneous-state", SCENES, homogeneous_state::offers, homogeneous_state::study),
+    study("compressive-step", SCENES, compressive_step::offers, compressive_step::study),
+    study("nurbs", NOTHING, nurbs::offers, nurbs::study),
+    study("convergence", &["convergence"], convergence::offers, convergence::study),
+    study("vibration", NOTHING, vibration::offers, vibration::study),
+    study("pulse", NOTHING, pulse::offers, pulse::study),
+    study("crack-cost", NOTHING, crack_cost::offers, crack_cost::study),
+    study("crack-profile", NOTHING, crack_profile::offers, crack_profile::study),
+    study("rotation", SCENES, rotation::offers, rotation::study),
+    study("eigenfrequencies", NOTHING, eigenfrequencies::offers, eigenfrequencies::study),
+    study("linear-field", NOTHING, linear_field::offers, linear_field::study),
+    study("contact-impact", SCENES, contact::impact::offers, contact::impact::study),
+    study("contact-onset", SCENES, contact::onset::offers, contact::onset::study),
+    study("contact-hertz", SCENES, contact::hertz::offers, contact::hertz::study),
+    study("rings", &["scene", "variant", "energy_factor"], rings::offers, rings::study),
+    study("rings-sweep", &["rings", "scene"], rings::sweep_offers, rings::sweep),
+    study("critical-step", NOTHING, critical_step::offers, critical_step::study),
+    study("step-growth", NOTHING, growth::offers, growth::study),
+    study("incompressible", NOTHING, incompressible::offers, incompressible::study),
+    study("split-families", NOTHING, split_families::offers, split_families::study),
+    study("boundary-points", NOTHING, boundary_points::offers, boundary_points::study),
+    study("unit-systems", NOTHING, units::offers, units::study),
+    study("repeatability", NOTHING, repeatability::offers, repeatability::study),
+    study("unloading", NOTHING, unloading::offers, unloading::study),
+    study("judging", NOTHING, judging::offers, judging::study),
 ];
 
 /// The study of that name.

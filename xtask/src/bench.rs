@@ -11,7 +11,7 @@ use fisura_verification::bench::{BenchError, FAMILIES, Session, Settings};
 use fisura_verification::output::OutputFolder;
 use fisura_verification::study::StudyError;
 
-use crate::cli::{Common, Format};
+use crate::cli::Common;
 use crate::environment::environment;
 use crate::exit::Exit;
 use crate::failure::Failure;
@@ -46,14 +46,14 @@ pub struct Args {
 pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let known: Vec<&str> = FAMILIES.iter().map(|(name, _)| *name).collect();
     if let Some(unknown) = args.family.iter().find(|name| !known.contains(&name.as_str())) {
-        let failure = Failure::new(Exit::BadInput, format!("unknown family: {unknown}"));
+        let failure = Failure::input(format!("unknown family: {unknown}"));
         return Err(failure.help(format!("known families: {}", known.join(", "))));
     }
     if args.family.iter().any(|name| name == "peer") && args.peer.is_none() {
-        return Err(Failure::new(Exit::BadInput, "the family peer needs a program").help("give one with --peer CMD"));
+        return Err(Failure::input("the family peer needs a program").help("give one with --peer CMD"));
     }
     if args.family.iter().any(|name| name == "baseline") && args.baseline.is_none() {
-        let failure = Failure::new(Exit::BadInput, "the family baseline needs another checkout of fisura");
+        let failure = Failure::input("the family baseline needs another checkout of fisura");
         return Err(failure.help("give its folder with --baseline PATH"));
     }
     let baseline = args.baseline.as_deref().map(other_checkout).transpose()?;
@@ -88,10 +88,7 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
         // Otherwise it stays marked as unfinished.
         written = written.and(folder.finish().map_err(Failure::from));
     }
-    match common.format {
-        Format::Json => console::json(&set),
-        Format::Text => console::result(&text(&set)),
-    }
+    console::show(common, &set, || text(&set));
     console::note(common, &format!("report: {}", folder.path().join("bench.html").display()));
     if let Err(error) = run {
         if let Err(failure) = written {
@@ -107,15 +104,11 @@ pub fn bench(args: &Args, common: &Common) -> Result<Exit, Failure> {
 fn other_checkout(path: &Path) -> Result<Baseline, Failure> {
     let checkout = path.canonicalize().ok().filter(|path| path.join("xtask/Cargo.toml").is_file());
     let checkout = checkout.ok_or_else(|| {
-        let failure = Failure::new(
-            Exit::BadInput,
-            format!("--baseline {}: this folder is not a checkout of fisura", path.display()),
-        );
+        let failure = Failure::input(format!("--baseline {}: this folder is not a checkout of fisura", path.display()));
         failure.help("give a folder with another commit of this workspace, for example from `git worktree add`")
     })?;
     let program = std::env::current_exe();
-    let program = program
-        .map_err(|e| Failure::new(Exit::BadInput, format!("the path of this program cannot be determined: {e}")))?;
+    let program = program.map_err(|e| Failure::input(format!("the path of this program cannot be determined: {e}")))?;
     Ok(Baseline { program, checkout })
 }
 
@@ -159,10 +152,11 @@ impl From<BenchError> for Failure {
             BenchError::Study(other) => Self::new(Exit::BrokeDown, other.to_string()),
             BenchError::Case(error) => error.into(),
             BenchError::File(error) => error.into(),
-            BenchError::Input(message) => Self::new(Exit::BadInput, message)
-                .help("`bench` reads verification/cases and reference-data of the workspace"),
-            BenchError::Reference(error) => Self::new(Exit::BadInput, error.to_string()),
-            peer @ BenchError::Peer { .. } => Self::new(Exit::BadInput, peer.to_string())
+            BenchError::Input(message) => {
+                Self::input(message).help("`bench` reads verification/cases and reference-data of the workspace")
+            }
+            BenchError::Reference(error) => Self::input(error.to_string()),
+            peer @ BenchError::Peer { .. } => Self::input(peer.to_string())
                 .help("the program must take a folder as its last argument and end with status 0 before the timeout"),
         }
     }

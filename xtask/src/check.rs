@@ -15,7 +15,7 @@ use fisura_verification::scene::SceneFile;
 use fisura_verification::scene_run::peak_memory_mb;
 use serde::Serialize;
 
-use crate::cli::{Common, Format, SceneArgs};
+use crate::cli::{Common, SceneArgs};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::{console, scene_input};
@@ -57,10 +57,7 @@ pub fn check(args: &Args, common: &Common) -> Result<Exit, Failure> {
         console::note(common, &format!("warning: {warning}"));
     }
     found.warnings.splice(0..0, file.warnings.iter().map(ToString::to_string));
-    match common.format {
-        Format::Json => console::json(&found),
-        Format::Text => console::result(&found.text()),
-    }
+    console::show(common, &found, || found.text());
     Ok(Exit::Done)
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use fisura_reports::compare::{compare as side_by_side, render_markdown, render_text};
 use fisura_reports::read_results;
 
-use crate::cli::{Common, Format};
+use crate::cli::Common;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::report::unreadable;
@@ -42,10 +42,7 @@ pub fn compare(args: &Args, common: &Common) -> Result<Exit, Failure> {
     folder.write("comparison.md", render_markdown(&compared))?;
     folder.write_json("comparison.json", &compared)?;
     folder.finish()?;
-    match common.format {
-        Format::Json => console::json(&compared),
-        Format::Text => console::result(&render_text(&compared)),
-    }
+    console::show(common, &compared, || render_text(&compared));
     let losses = if args.warn_times { compared.losses_besides_speed() } else { compared.major_losses };
     Ok(if losses > 0 { Exit::CheckFailed } else { Exit::Done })
 }

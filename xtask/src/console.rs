@@ -10,7 +10,7 @@ use std::process::exit;
 use fisura_verification::output::foreign;
 use serde::Serialize;
 
-use crate::cli::Common;
+use crate::cli::{Common, Format};
 use crate::exit::Exit;
 
 /// Writes a result to standard output. A reader that went away is no error.
@@ -22,6 +22,14 @@ pub fn result(text: &str) {
     {
         error_text(&format!("error: standard output cannot be written: {error}\n"));
         exit(Exit::BadInput as i32);
+    }
+}
+
+/// Writes a result to standard output in the form that is asked for.
+pub fn show(common: &Common, value: &impl Serialize, text: impl FnOnce() -> String) {
+    match common.format {
+        Format::Json => json(value),
+        Format::Text => result(&text()),
     }
 }
 

@@ -29,7 +29,7 @@ pub struct Args {}
 pub fn demo(common: &Common) -> Result<Exit, Failure> {
     let scene = folders::workspace().join(SCENE);
     if !scene.is_file() {
-        let failure = Failure::new(Exit::BadInput, format!("the file {} does not exist", scene.display()));
+        let failure = Failure::input(format!("the file {} does not exist", scene.display()));
         return Err(failure.help("start it with `cargo xtask` or in the root of the workspace"));
     }
     console::note(
@@ -54,8 +54,7 @@ pub fn demo(common: &Common) -> Result<Exit, Failure> {
 
 /// The energies over time, and the next commands.
 fn shown(folder: &Path) -> Result<String, Failure> {
-    let bad = |message: String| Failure::new(Exit::BadInput, message);
-    let history = Table::read(&folder.join("history.csv")).map_err(|error| bad(error.to_string()))?;
+    let history = Table::read(&folder.join("history.csv")).map_err(|error| Failure::input(error.to_string()))?;
     let column = |name: &str| history.column(name).unwrap_or_default();
     let series = ENERGIES.map(|(letter, name)| (letter, column(name)));
     let picture = folder.join("phase-80us.svg");

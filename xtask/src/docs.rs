@@ -10,7 +10,7 @@ use fisura_reports::read_results;
 use fisura_verification::record::ResultSet;
 use serde_json::json;
 
-use crate::cli::{Cli, Common, Format};
+use crate::cli::{Cli, Common};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::report::unreadable;
@@ -42,22 +42,21 @@ pub fn docs(from: Option<&PathBuf>, common: &Common) -> Result<Exit, Failure> {
         fs::write(&path, text).map_err(|error| bad(&path, format!("cannot be written: {error}")))?;
         changed.push(path.display().to_string());
     }
-    match common.format {
-        Format::Json => console::json(&json!({ "files": changed })),
-        Format::Text => console::result(&changed.iter().map(|file| format!("{file}\n")).collect::<String>()),
-    }
+    console::show(common, &json!({ "files": changed }), || {
+        changed.iter().map(|file| format!("{file}\n")).collect::<String>()
+    });
     Ok(Exit::Done)
 }
 
 fn bad(path: &Path, error: String) -> Failure {
-    Failure::new(Exit::BadInput, format!("{}: {error}", path.display()))
+    Failure::input(format!("{}: {error}", path.display()))
 }
 
 /// Numbers of an unfinished run, or of some suites only, would stand in README as if they were all.
 fn refuse_parts(set: &ResultSet, from: &Path) -> Result<(), Failure> {
     if set.is_unfinished() || !docs::holds_all_suites(set) {
         let message = format!("{} does not hold all suites", from.display());
-        return Err(Failure::new(Exit::BadInput, message).help("run `cargo xtask verify` to its end"));
+        return Err(Failure::input(message).help("run `cargo xtask verify` to its end"));
     }
     Ok(())
 }

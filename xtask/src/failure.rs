@@ -32,6 +32,11 @@ impl Failure {
         Self::Other { exit, message: message.into(), help: None }
     }
 
+    /// Bad arguments or bad input.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self::new(Exit::BadInput, message)
+    }
+
     /// A run of the scene in `file` that broke down, or could not start because of what the file says.
     pub fn of_run(breakdown: &Breakdown, file: &SceneFile) -> Self {
         breakdown.scene.as_ref().map_or_else(|| breakdown.into(), |error| file.error(error).into())
@@ -99,14 +104,14 @@ impl From<SceneFileError> for Failure {
 
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
-        Self::new(Exit::BadInput, error.message).help(error.remedy)
+        Self::input(error.message).help(error.remedy)
     }
 }
 
 impl From<&Breakdown> for Failure {
     fn from(breakdown: &Breakdown) -> Self {
         match &breakdown.scene {
-            Some(error) => Self::new(Exit::BadInput, error.to_string()).help(error.remedy.clone()),
+            Some(error) => Self::input(error.to_string()).help(error.remedy.clone()),
             None => Self::new(Exit::BrokeDown, breakdown.to_string()),
         }
     }
@@ -116,7 +121,7 @@ impl From<ReportError> for Failure {
     fn from(error: ReportError) -> Self {
         match error {
             ReportError::Output(error) => error.into(),
-            other => Self::new(Exit::BadInput, other.to_string()),
+            other => Self::input(other.to_string()),
         }
     }
 }
@@ -172,7 +177,7 @@ mod tests {
         let scene = "# \u{9b}2J \u{202e}\r\n[mesh]\ndegree = 7 # \u{1b}]0;owned\u{7}\n\"a\u{7f}b\" = 1\n";
         let failures = [
             SceneFile::parse("sc\u{1b}[2Jene.toml", scene, &[]).unwrap_err().into(),
-            Failure::new(Exit::BadInput, "no \u{9b}2J").help("yes \u{1b}[1A"),
+            Failure::input("no \u{9b}2J").help("yes \u{1b}[1A"),
         ];
         for failure in failures {
             let pictured = failure.render(true);
@@ -184,7 +189,7 @@ mod tests {
 
     #[test]
     fn a_verdict_is_more_than_a_file_that_cannot_be_written() {
-        let full = || Err(Failure::new(Exit::BadInput, "the disk is full"));
+        let full = || Err(Failure::input("the disk is full"));
         for verdict in [Exit::CheckFailed, Exit::BrokeDown] {
             assert_eq!(Failure::beside(verdict, full()).unwrap(), verdict);
         }
@@ -196,7 +201,7 @@ mod tests {
     fn off_a_terminal_a_finding_is_one_line() {
         let text = broken().render(false);
         assert!(text.lines().all(|line| line.starts_with("error: scene.toml:")), "{text}");
-        let text = Failure::new(Exit::BadInput, "no").help("yes").render(false);
+        let text = Failure::input("no").help("yes").render(false);
         assert_eq!(text, "error: no\n  help: yes\n");
     }
 }

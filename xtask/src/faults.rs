@@ -9,7 +9,6 @@
 
 mod campaign;
 mod cells;
-mod idle;
 mod matrix;
 mod results;
 mod runner;
@@ -24,7 +23,7 @@ use std::time::{Duration, Instant};
 
 use fisura_verification::suite::{Case, Selection, Tier, load_cases, select};
 
-use crate::cli::{Common, Format};
+use crate::cli::Common;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::{console, folders, verify};
@@ -33,7 +32,7 @@ use cells::Store;
 use matrix::Matrix;
 use results::Results;
 use runner::Runner;
-use table::{FAULTS, Fault};
+use table::{Fault, faults as all};
 
 /// Variable that names the fault to plant.
 const PLANTED: &str = "FISURA_FAULT";
@@ -78,10 +77,7 @@ pub fn faults(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let results = Results::new(&faults, &ids, &store, args.matrix);
     let matrix = args.matrix.then(|| Matrix::new(&faults, &ids, &store));
     results.write(&folder, matrix.as_ref())?;
-    match common.format {
-        Format::Json => console::json(&results),
-        Format::Text => console::result(&(results.text() + &matrix.as_ref().map_or(String::new(), Matrix::text))),
-    }
+    console::show(common, &results, || results.text() + &matrix.as_ref().map_or(String::new(), Matrix::text));
     let lacking = results.lacking() || matrix.is_some_and(|matrix| matrix.lacking());
     Ok(if lacking { Exit::CheckFailed } else { Exit::Done })
 }
@@ -100,17 +96,17 @@ fn runner(args: &Args, common: &Common, program: PathBuf) -> Runner {
 #[cfg(feature = "faults")]
 pub fn plant_from_environment() -> Result<(), Failure> {
     let Ok(name) = std::env::var(PLANTED) else { return Ok(()) };
-    fisura::faults::plant(&name).map_err(|message| Failure::new(Exit::BadInput, message))
+    fisura::faults::plant(&name).map_err(Failure::input)
 }
 
 fn chosen(args: &Args) -> Result<Vec<&'static Fault>, Failure> {
     if args.fault.is_empty() {
-        return Ok(FAULTS.iter().collect());
+        return Ok(all().iter().collect());
     }
     let find = |id: &String| {
-        FAULTS.iter().find(|fault| fault.id == id).ok_or_else(|| {
-            let known: Vec<&str> = FAULTS.iter().map(|fault| fault.id).collect();
-            Failure::new(Exit::BadInput, format!("unknown fault: {id}")).help(format!("known: {}", known.join(", ")))
+        all().iter().find(|fault| fault.id == *id).ok_or_else(|| {
+            let known: Vec<&str> = all().iter().map(|fault| fault.id.as_str()).collect();
+            Failure::input(format!("unknown fault: {id}")).help(format!("known: {}", known.join(", ")))
         })
     };
     args.fault.iter().map(find).collect()
@@ -126,9 +122,8 @@ fn build(common: &Common) -> Result<PathBuf, Failure> {
     command.args(["build", "--package", "xtask", "--features", "faults", "--target-dir"]);
     command.arg(&target).current_dir(if workspace.as_os_str().is_empty() { Path::new(".") } else { &workspace });
     let status = command.status();
-    let bad = |message: String| {
-        Failure::new(Exit::BadInput, message).help("start it with `cargo xtask` in the workspace with the sources")
-    };
+    let bad =
+        |message: String| Failure::input(message).help("start it with `cargo xtask` in the workspace with the sources");
     match status {
         Ok(status) if status.success() => {
             Ok(target.join("debug").join(format!("xtask{}", std::env::consts::EXE_SUFFIX)))

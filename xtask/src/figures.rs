@@ -15,7 +15,7 @@ use fisura_verification::record::{Figure, FigureBody, ResultSet};
 use fisura_verification::suite::{Case, Options, read_cases};
 use serde_json::json;
 
-use crate::cli::{Common, Format};
+use crate::cli::Common;
 use crate::environment::environment;
 use crate::exit::Exit;
 use crate::failure::Failure;
@@ -69,7 +69,7 @@ pub fn figures(args: &Args, common: &Common) -> Result<Exit, Failure> {
 fn no_link(folder: &Path) -> Result<(), Failure> {
     if fs::symlink_metadata(folder).is_ok_and(|metadata| !metadata.is_dir()) {
         let message = format!("{} is a symbolic link or not a folder; nothing is written to it", folder.display());
-        return Err(Failure::new(Exit::BadInput, message).help("remove it, or give another folder with --out"));
+        return Err(Failure::input(message).help("remove it, or give another folder with --out"));
     }
     Ok(())
 }
@@ -98,10 +98,7 @@ fn draw(
         }
     }
     folder.finish()?;
-    match common.format {
-        Format::Json => console::json(&json!({ "paper": args.paper, "files": files })),
-        Format::Text => console::result(&(files.join("\n") + "\n")),
-    }
+    console::show(common, &json!({ "paper": args.paper, "files": files }), || files.join("\n") + "\n");
     Ok(())
 }
 
@@ -131,7 +128,7 @@ fn time_of(word: &str) -> Option<f64> {
 }
 
 fn animate(name: &str, title: &str, source: &Path, pictures: &[(f64, &Figure)]) -> Result<String, Failure> {
-    let fail = |error: FigureError| Failure::new(Exit::BadInput, error.to_string());
+    let fail = |error: FigureError| Failure::input(error.to_string());
     let set = SeriesSet::load(source, pictures.iter().map(|(_, figure)| *figure));
     let (mut moments, mut bar) = (Vec::new(), (String::new(), [0.0, 1.0]));
     for (time, figure) in pictures {
@@ -158,7 +155,7 @@ impl Wanted {
                 Err(_) if args.from.is_some() => others.push(word.clone()),
                 Err(known) => {
                     let help = format!("{known}; other figures are drawn from results with --from");
-                    return Err(Failure::new(Exit::BadInput, format!("unknown figure {word}")).help(help));
+                    return Err(Failure::input(format!("unknown figure {word}")).help(help));
                 }
             }
         }
@@ -172,7 +169,7 @@ impl Wanted {
     fn find(&self, set: &ResultSet, source: &Path, fresh: bool) -> Result<Vec<(String, Figure)>, Failure> {
         let missing = |what: String, help: String| {
             let message = format!("the results in {} contain no figure {what}", source.display());
-            Failure::new(Exit::BadInput, message).help(help)
+            Failure::input(message).help(help)
         };
         let mut found = Vec::new();
         for figure in &self.paper {

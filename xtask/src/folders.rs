@@ -7,7 +7,6 @@ use fisura_verification::output::OutputFolder;
 
 use crate::cli::Common;
 use crate::console;
-use crate::exit::Exit;
 use crate::failure::Failure;
 
 /// Name of the folder of the references in the workspace.
@@ -45,8 +44,7 @@ pub fn reference_data() -> Result<PathBuf, Failure> {
     ];
     let places: Vec<String> = places.into_iter().flatten().collect();
     let message = format!("no folder {REFERENCES} with references was found: not {}", places.join("; not "));
-    Err(Failure::new(Exit::BadInput, message)
-        .help("start it with `cargo xtask`, or anywhere in the workspace of fisura"))
+    Err(Failure::input(message).help("start it with `cargo xtask`, or anywhere in the workspace of fisura"))
 }
 
 /// Whether it is a folder of references: other projects may have one of this name.
@@ -68,8 +66,7 @@ pub fn find(path: &Path) -> Result<PathBuf, Failure> {
     looked.extend(places.into_iter().filter(|place| path.is_relative() && *place != PathBuf::new()));
     let looked: Vec<String> = looked.iter().map(|place| place.display().to_string()).collect();
     let message = format!("there is no {}: looked in {}", path.display(), looked.join(" and "));
-    Err(Failure::new(Exit::BadInput, message)
-        .help("give the path from the current folder or from the root of the workspace"))
+    Err(Failure::input(message).help("give the path from the current folder or from the root of the workspace"))
 }
 
 /// The folder of `--out`, or `target/fisura/<command>`: made if it is not there, writable, and locked for

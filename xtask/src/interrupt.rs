@@ -31,7 +31,7 @@ pub fn watch() -> Result<&'static AtomicBool, Failure> {
         }
     };
     let set = ctrlc::set_handler(handle);
-    set.map_err(|error| Failure::new(Exit::BadInput, format!("interrupts cannot be handled: {error}")))?;
+    set.map_err(|error| Failure::input(format!("interrupts cannot be handled: {error}")))?;
     Ok(&INTERRUPTED)
 }
 

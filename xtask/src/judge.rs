@@ -10,7 +10,7 @@ use fisura_verification::judge::{BENCHMARKS, Judged, judge as judge_one};
 use fisura_verification::reference::Library;
 use fisura_verification::suite::VerifyError;
 
-use crate::cli::{Common, Format};
+use crate::cli::Common;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::{console, folders};
@@ -56,11 +56,8 @@ pub fn judge(args: &Args, common: &Common) -> Result<Exit, Failure> {
     }
     let set = VerdictSet { schema: SCHEMA.into(), verdicts: judged.iter().map(|j| j.verdict.clone()).collect() };
     write(args, common, &judged, &set)?;
-    match common.format {
-        Format::Json => console::json(&set),
-        Format::Text if args.board => console::result(&sentences(&judged)),
-        Format::Text => console::result(&render_text(&set)),
-    }
+    let text = || if args.board { sentences(&judged) } else { render_text(&set) };
+    console::show(common, &set, text);
     let holds = set.verdicts.iter().all(|v| matches!(v.outcome, Outcome::Pass | Outcome::Diagnostic));
     Ok(if args.board || holds { Exit::Done } else { Exit::CheckFailed })
 }
@@ -69,7 +66,7 @@ fn write(args: &Args, common: &Common, judged: &[Judged], set: &VerdictSet) -> R
     let folder = folders::output(common, "judge")?;
     folder.begin(|_| false)?;
     folder.write_json("verdict.json", set)?;
-    let unfilled = |error| Failure::new(Exit::BadInput, format!("the page cannot be made: {error}"));
+    let unfilled = |error| Failure::input(format!("the page cannot be made: {error}"));
     if args.board {
         folder.write("board.html", board_page(judged).map_err(unfilled)?)?;
         let boards = board(judged);
@@ -88,7 +85,7 @@ fn write(args: &Args, common: &Common, judged: &[Judged], set: &VerdictSet) -> R
 fn submissions(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let missing = |e| {
         let message = format!("{} cannot be read: {e}", folder.display());
-        Failure::new(Exit::BadInput, message).help("restore the folder of the submissions")
+        Failure::input(message).help("restore the folder of the submissions")
     };
     let entries = fs::read_dir(folder).map_err(missing)?;
     let mut found: Vec<PathBuf> = entries.flatten().map(|e| e.path()).filter(|p| p.is_dir()).collect();

@@ -40,7 +40,6 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use cli::{Cli, Command, Common};
-use exit::Exit;
 use failure::Failure;
 
 fn main() -> ExitCode {
@@ -75,7 +74,5 @@ fn main() -> ExitCode {
 fn set_threads(common: &Common) -> Result<(), Failure> {
     let threads = common.threads.map_or(0, |n| usize::from(n.get())); // 0 lets rayon decide
     let built = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-    built.map_err(|e| {
-        Failure::new(Exit::BadInput, format!("{threads} threads cannot be started: {e}")).help("give fewer --threads")
-    })
+    built.map_err(|e| Failure::input(format!("{threads} threads cannot be started: {e}")).help("give fewer --threads"))
 }

@@ -35,21 +35,9 @@ pub fn merge(args: &Args, common: &Common) -> Result<Exit, Failure> {
 
 impl From<MergeError> for Failure {
     fn from(error: MergeError) -> Self {
-        let help = match error {
-            MergeError::File(error) => return error.into(),
-            MergeError::Reference(_) => return Self::new(Exit::BadInput, error.to_string()),
-            MergeError::Unreadable { .. } => "give the folders that `cargo xtask verify --partition slice:K/N` wrote",
-            MergeError::Differs { .. } => "run all slices of one commit with the same selection, tier and changes",
-            MergeError::Doubled { .. } => "give every slice once",
-            MergeError::Missing { .. } => "run the missing slices, and give the folders of all slices",
-            MergeError::NoOutcome(_) | MergeError::Changed { .. } => "run the slice again",
-            MergeError::Itself(_) => "give another folder with --out",
-            MergeError::Unplanned(_) | MergeError::Contradicts { .. } => "run all slices again with one plan",
-            MergeError::OtherProgram { .. } => {
-                "check out the commit of the parts with the same changes, and build it again"
-            }
-            MergeError::OtherReferences => "check out the commit of the parts with the same reference-data/",
-        };
-        Self::new(Exit::BadInput, error.to_string()).help(help)
+        match error {
+            MergeError::File(error) => error.into(),
+            MergeError::Parts { message, remedy } => Self::input(message).help(remedy),
+        }
     }
 }

@@ -6,11 +6,9 @@ use fisura::output::picture::Picture;
 use fisura::scene::Scene;
 use fisura_reports::FigureError;
 use fisura_reports::animation::{Moment, render_animation};
-use fisura_reports::field::{Raster, render_field};
+use fisura_reports::field::{Raster, render_raster};
 use fisura_reports::number::pretty;
 use fisura_reports::run_report::{energies_svg, phase_name, phase_svg};
-use fisura_verification::output::history::Table;
-use fisura_verification::record::{Figure, FigureBody};
 use fisura_verification::scene_run::SceneRun;
 
 /// Part of the pixels beyond either end of the colour bar of stress: a crack tip would leave no colour for
@@ -44,7 +42,7 @@ pub fn draw(run: &SceneRun, stills: &[f64], animate: bool) -> Vec<Drawing> {
     for frame in nearest(&run.frames, stills) {
         let name = phase_name(frame.time);
         if let Some(phase) = &frame.phase {
-            drawings.push((format!("{name}.svg"), phase_svg(&table(frame, phase), frame.time, title)));
+            drawings.push((format!("{name}.svg"), phase_svg(&raster(frame, phase.clone()), frame.time, title)));
         }
         let name = name.replacen("phase", "stress", 1);
         drawings.push((format!("{name}.svg"), stress_svg(frame, &stress, &name, title)));
@@ -83,16 +81,6 @@ fn raster(frame: &Picture, values: Vec<f64>) -> Raster {
     Raster { pixels: frame.pixels, low: frame.origin, high, values }
 }
 
-/// A field of a picture in the form of a series file.
-fn table(picture: &Picture, values: &[f64]) -> Table {
-    let mut table = Table::new(&["x_m", "y_m", "value"]);
-    for (index, value) in values.iter().enumerate() {
-        let [x, y] = picture.center(index);
-        table.push(&[x, y, *value]);
-    }
-    table
-}
-
 /// Unit and range of the colour bar, common to all frames of a run.
 struct StressScale {
     unit: &'static str,
@@ -118,16 +106,7 @@ impl StressScale {
 fn stress_svg(frame: &Picture, scale: &StressScale, id: &str, title: &str) -> Result<String, FigureError> {
     let label = format!("stress σ₁ ({})", scale.unit);
     let raster = raster(frame, frame.stress.iter().map(|s| s * scale.factor).collect());
-    let body =
-        FigureBody::Field { series: String::new(), pixels: raster.pixels, label: label.clone(), range: scale.range };
-    let figure = Figure {
-        id: id.to_string(),
-        suite: String::new(),
-        title: format!("{title}, largest principal stress at {} µs", pretty(1e6 * frame.time, 4)),
-        caption: "The colour bar is common to all frames of the run; at most 0.5 % of the pixels of all frames lie beyond either end."
-            .to_string(),
-        deviations: Vec::new(),
-        body,
-    };
-    render_field(&figure, &raster, &label, scale.range)
+    let title = format!("{title}, largest principal stress at {} µs", pretty(1e6 * frame.time, 4));
+    let caption = "The colour bar is common to all frames of the run; at most 0.5 % of the pixels of all frames lie beyond either end.";
+    render_raster([id, &title, caption], &raster, (&label, scale.range))
 }

@@ -9,7 +9,7 @@ use fisura_verification::output::OutputFolder;
 use fisura_verification::output::foreign;
 use serde_json::json;
 
-use crate::cli::{Common, Format};
+use crate::cli::Common;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::{console, docs, folders};
@@ -34,12 +34,12 @@ pub fn report(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let folder = match &args.folder {
         from if args.docs => return docs::docs(from.as_ref(), common),
         Some(folder) => folder,
-        None => return Err(Failure::new(Exit::BadInput, "no folder is given")), // clap asks for one
+        None => return Err(Failure::input("no folder is given")), // clap asks for one
     };
     let of_bench = bench::is_bench(folder);
     if of_bench && folder.join("results.json").is_file() {
         let message = format!("{}: results.json and bench.json are both there", folder.display());
-        return Err(Failure::new(Exit::BadInput, message)
+        return Err(Failure::input(message)
             .help("their reports have files of the same names; give one of them a folder of its own"));
     }
     if of_bench {
@@ -56,10 +56,7 @@ pub fn report(args: &Args, common: &Common) -> Result<Exit, Failure> {
     let path = out.path();
     let rendered = if of_bench { bench::render(path, &out)? } else { render(path, &out)?.files };
     let files: Vec<String> = rendered.iter().map(|f| path.join(f).display().to_string()).collect();
-    match common.format {
-        Format::Json => console::json(&json!({ "files": files })),
-        Format::Text => console::result(&(files.join("\n") + "\n")),
-    }
+    console::show(common, &json!({ "files": files }), || files.join("\n") + "\n");
     Ok(Exit::Done)
 }
 
@@ -76,7 +73,7 @@ pub fn unreadable(error: ReportError, folder: &Path) -> Failure {
 fn copied(from: &Path, results: &str, common: &Common) -> Result<OutputFolder, Failure> {
     let fail = |name: &str, error: Error| {
         let message = format!("{} cannot be copied: {error}", from.join(name).display());
-        Failure::new(Exit::BadInput, message).help("remove it, or render the report in its folder, without --out")
+        Failure::input(message).help("remove it, or render the report in its folder, without --out")
     };
     let series = foreign::series_files(from).map_err(|error| fail("series", error))?;
     let to = folders::output(common, "report")?;

@@ -10,10 +10,10 @@ use fisura::simulation::Simulation;
 use fisura_reports::number::{duration, plain};
 use fisura_verification::output::OutputFolder;
 use fisura_verification::scene_run::checkpoint::{self, CHECKPOINT, Place, Stored};
-use fisura_verification::scene_run::{Keep, KeepError, OnFrame, Outcome, Progress, SceneRun, Summary, run_scene_kept};
+use fisura_verification::scene_run::{Keep, OnFrame, Outcome, Progress, SceneRun, Summary, run_scene_kept};
 use indicatif::ProgressBar;
 
-use crate::cli::{Common, Format, SceneArgs};
+use crate::cli::{Common, SceneArgs};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::{built, console, folders, interrupt, pictures, progress, scene_input, vtk};
@@ -117,14 +117,11 @@ pub fn run_into(
         folder.remove(&checkpoint)?; // a run that reached its end needs none
     }
     folder.finish()?;
-    match common.format {
-        Format::Json => console::json(&run.summary),
-        Format::Text => console::result(&text(&run.summary, folder.path(), &files)),
-    }
+    console::show(common, &run.summary, || text(&run.summary, folder.path(), &files));
     match &run.breakdown {
         None => {
             if !undrawn.is_empty() {
-                return Err(Failure::new(Exit::BadInput, format!("not drawn: {}", undrawn.join("; "))));
+                return Err(Failure::input(format!("not drawn: {}", undrawn.join("; "))));
             }
             vtk.and_then(|vtk| vtk.failed).map_or(Ok(Exit::Done), |error| Err(error.into()))
         }
@@ -138,7 +135,7 @@ pub fn run_into(
 
 fn refuse(args: &Args) -> Result<(), Failure> {
     if args.resume && args.checkpoint.0.is_none() {
-        let failure = Failure::new(Exit::BadInput, "--resume does not go with --checkpoint none");
+        let failure = Failure::input("--resume does not go with --checkpoint none");
         return Err(failure.help("leave out one of the two"));
     }
     Ok(())
@@ -164,8 +161,7 @@ impl Start {
         if args.resume {
             // without one of its own, that of another scene is refused with the reason
             let path = if path.exists() { path } else { folder.path().join(CHECKPOINT) };
-            stored = checkpoint::read(&path, &built::program(), scene)
-                .map_err(|error| Failure::new(Exit::BadInput, error.to_string()).help(error.remedy))?;
+            stored = checkpoint::read(&path, &built::program(), scene)?;
             if stored.is_none() {
                 let folder = folder.path().display();
                 console::note(common, &format!("no checkpoint in {folder}: the run begins at the start"));
@@ -190,7 +186,7 @@ fn keep_other(title: &str, name: &str, folder: &OutputFolder, common: &Common) -
     let path = folder.path().join(CHECKPOINT);
     let message = format!("{} is of an interrupted run of another scene, {title:?}", path.display());
     if !vtk::files_of_run(folder).is_empty() {
-        let failure = Failure::new(Exit::BadInput, format!("{message}, which has files for ParaView there"));
+        let failure = Failure::input(format!("{message}, which has files for ParaView there"));
         return Err(failure.help("go on with that run, or give another folder with --out"));
     }
     console::note(common, &format!("{message}: it is kept, and this run stores its own in {name}"));
@@ -220,10 +216,7 @@ fn simulate(
         None => &never,
     };
     let keep = Keep { out: folder, name: place.name, program: built::program(), interval, frame_files, interrupted };
-    run_scene_kept(scene, &keep, stored, &mut advance, on_frame).map_err(|error| match error {
-        KeepError::Output(error) => error.into(),
-        KeepError::Checkpoint(error) => Failure::new(Exit::BadInput, error.to_string()).help(error.remedy),
-    })
+    Ok(run_scene_kept(scene, &keep, stored, &mut advance, on_frame)?)
 }
 
 fn interrupted(at: Progress, checkpoint: &Path) -> Failure {

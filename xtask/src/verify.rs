@@ -18,7 +18,7 @@ use fisura_verification::suite::{
     Case, Malformed, Options, Seconds, Selection, Session, Tier, VerifyError, read_cases, select, worst,
 };
 
-use crate::cli::{Common, Format};
+use crate::cli::Common;
 use crate::environment::environment;
 use crate::exit::Exit;
 use crate::failure::Failure;
@@ -148,7 +148,7 @@ fn interrupted(session: &Session, options: &Options) -> Failure {
 pub fn conclude(results: &ResultSet, folder: &OutputFolder, common: &Common) -> Result<Exit, Failure> {
     let rendered = fisura_reports::render(folder.path(), folder).map(drop).map_err(Failure::from);
     let finished = folder.finish().map_err(Failure::from);
-    print(results, common);
+    console::show(common, results, || render_text(results));
     if std::env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {
         console::error_text(&render_annotations(results));
     }
@@ -167,10 +167,10 @@ impl From<VerifyError> for Failure {
         match error {
             VerifyError::Case(error) => error.into(),
             VerifyError::File(error) => error.into(),
-            VerifyError::Interrupted { .. } => Self::new(Exit::BadInput, error.to_string()).help(
+            VerifyError::Interrupted { .. } => Self::input(error.to_string()).help(
                 "resume with the interrupted command, remove partial/ if it is not needed, or give another folder with --out",
             ),
-            other => Self::new(Exit::BadInput, other.to_string()),
+            other => Self::input(other.to_string()),
         }
     }
 }
@@ -185,7 +185,7 @@ pub fn cases_folder() -> Result<PathBuf, Failure> {
         return Ok(folder);
     }
     let message = format!("there is no folder {} with case files", folder.display());
-    Err(Failure::new(Exit::BadInput, message).help("start it with `cargo xtask` or in the root of the workspace"))
+    Err(Failure::input(message).help("start it with `cargo xtask` or in the root of the workspace"))
 }
 
 /// The pattern of `--case`.
@@ -196,10 +196,7 @@ pub fn checked_glob(pattern: Option<&str>) -> Result<Option<String>, Failure> {
     let Some(pattern) = pattern else { return Ok(None) };
     match glob::Pattern::new(pattern) {
         Ok(_) => Ok(Some(pattern.to_string())),
-        Err(error) => {
-            Err(Failure::new(Exit::BadInput, format!("--case {pattern}: {error}"))
-                .help("write a pattern such as plate/*"))
-        }
+        Err(error) => Err(Failure::input(format!("--case {pattern}: {error}")).help("write a pattern such as plate/*")),
     }
 }
 
@@ -212,7 +209,6 @@ pub fn library() -> Result<Library, Failure> {
 }
 
 fn selected(args: &Args, common: &Common) -> Result<Vec<Case>, Failure> {
-    let bad = |message: String| Failure::new(Exit::BadInput, message);
     checked_glob(args.case.as_deref())?;
     let (cases, malformed) = read_cases(&cases_folder()?, &[]);
     let suites = cases.iter().map(|case| &case.suite).chain(malformed.iter().map(|file| &file.suite));
@@ -220,7 +216,9 @@ fn selected(args: &Args, common: &Common) -> Result<Vec<Case>, Failure> {
     let unknown: Vec<&str> = args.suite.iter().map(String::as_str).filter(|s| !known.contains(s)).collect();
     if !unknown.is_empty() {
         let known = known.into_iter().collect::<Vec<_>>().join(", ");
-        return Err(bad(format!("unknown suite: {}", unknown.join(", "))).help(format!("known suites: {known}")));
+        return Err(
+            Failure::input(format!("unknown suite: {}", unknown.join(", "))).help(format!("known suites: {known}"))
+        );
     }
     let selection = args.selection();
     let (meant, others): (Vec<&Malformed>, Vec<&Malformed>) =
@@ -261,13 +259,6 @@ fn changed(args: &Args, cases: Vec<Case>, common: &Common) -> Result<Vec<Case>, 
         ready.push(case);
     }
     Ok(ready)
-}
-
-fn print(results: &ResultSet, common: &Common) {
-    match common.format {
-        Format::Json => console::json(results),
-        Format::Text => console::result(&render_text(results)),
-    }
 }
 
 /// Exit status that the records deserve.

@@ -6,6 +6,7 @@ use fisura_verification::record::Scale;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::{Exhibit, Plot};
 use crate::axis::AxisScale;
 use crate::number::pretty;
 use crate::series::FigureError;
@@ -34,6 +35,14 @@ pub struct BarChart {
     pub series: Vec<String>,
     /// Rows: name, and a value for each series that has one.
     pub rows: Vec<(String, Vec<Option<Spread>>)>,
+}
+
+impl BarChart {
+    /// The chart with what it says.
+    pub fn exhibit(self, caption: impl Into<String>, reading: String) -> Exhibit {
+        let svg = render_bars(&self);
+        Exhibit::Plot(Plot { id: self.id, title: self.title, caption: caption.into(), reading, svg })
+    }
 }
 
 /// Draws the chart as SVG.

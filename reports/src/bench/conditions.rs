@@ -2,8 +2,8 @@
 
 use fisura_verification::bench::record::{BenchRecord, BenchSet, Spread};
 
-use super::bars::{BarChart, render_bars};
-use super::{Exhibit, Grid, Plot, Records};
+use super::bars::BarChart;
+use super::{Exhibit, Records, range};
 use crate::number::{plain, pretty};
 
 /// Steps with 1, 2, … threads.
@@ -47,8 +47,7 @@ pub fn threads(records: Records) -> Vec<Exhibit> {
     let reading = scenes.iter().filter_map(sentence).collect::<Vec<_>>().join(" ");
     let caption =
         "Wall time, affected by other load on the machine. Bars: median; whiskers: minimum and maximum of the rounds";
-    let svg = render_bars(&chart);
-    vec![Exhibit::Plot(Plot { id: chart.id, title: chart.title, caption: caption.into(), reading, svg })]
+    vec![chart.exhibit(caption, reading)]
 }
 
 /// Bandwidth, arithmetic, and how far the elastic sweep is from both.
@@ -63,13 +62,13 @@ pub fn ceilings(records: Records) -> Vec<Exhibit> {
         let per_point = |name: &str| sweep.number(name).unwrap_or(f64::NAN);
         let (flops, bytes) = (per_point("flops_per_point"), per_point("bytes_per_point"));
         let (by_flops, by_bytes) = (flops * flop, bytes * byte);
-        let Spread { median, min, max } = sweep.ns_per_unit;
+        let median = sweep.ns_per_unit.median;
         let bound = if by_flops > by_bytes { "arithmetic" } else { "bandwidth" };
         let distance = median / by_flops.max(by_bytes);
         rows.push(vec![
             sweep.label.clone(),
             format!("{} ns per point", plain(median, 3)),
-            format!("{} to {}", plain(min, 3), plain(max, 3)),
+            range(sweep.ns_per_unit),
             format!(
                 "{} ns by {} operations, {} ns by {} bytes",
                 plain(by_flops, 3),
@@ -90,15 +89,12 @@ pub fn ceilings(records: Records) -> Vec<Exhibit> {
     if let Some(bytes) = moving {
         notes.push(format!("moving points alone transfer {bytes} bytes per step in {} ns", plain(bytes * byte, 3)));
     }
-    vec![Exhibit::Grid(Grid {
-        title: "Ceilings of this machine on one thread".into(),
-        head: ["", "median", "rounds", "ceilings"].map(String::from).to_vec(),
-        rows,
-        note: format!(
-            "Operations and bytes are counted from the code, not with hardware counters; times are processor times of this run: {}.",
-            notes.join("; ")
-        ),
-    })]
+    let note = format!(
+        "Operations and bytes are counted from the code, not with hardware counters; times are processor times of this run: {}.",
+        notes.join("; ")
+    );
+    let head = ["", "median", "rounds", "ceilings"];
+    vec![Exhibit::grid("Ceilings of this machine on one thread", &head, rows, note)]
 }
 
 /// A ceiling as a rate.
@@ -125,15 +121,11 @@ pub fn baseline(records: Records) -> Vec<Exhibit> {
         return Vec::new();
     };
     let head = ["scene", "this checkout", "other checkout", "ratio", "energies, this", "energies, other", "verified"];
-    vec![Exhibit::Grid(Grid {
-        title: "Another checkout on the same scenes".into(),
-        head: head.map(String::from).to_vec(),
-        rows,
-        note: format!(
-            "The other checkout is {other}. Times are processor times of whole processes on all threads, run alternately. Energies: largest \
-             difference at the end from a run of this checkout with a phase-field tolerance of 1e-10, over the largest energy."
-        ),
-    })]
+    let note = format!(
+        "The other checkout is {other}. Times are processor times of whole processes on all threads, run alternately. Energies: largest \
+         difference at the end from a run of this checkout with a phase-field tolerance of 1e-10, over the largest energy."
+    );
+    vec![Exhibit::grid("Another checkout on the same scenes", &head, rows, note)]
 }
 
 /// Time and memory of scenes by what they model.
@@ -149,13 +141,12 @@ pub fn scenes(records: Records) -> Vec<Exhibit> {
         _ => String::new(),
     };
     let row = |record: &&BenchRecord| {
-        let Spread { median, min, max } = record.ns_per_unit;
         vec![
             record.label.clone(),
             text(record, "frame"),
             text(record, "models"),
-            plain(median, 3),
-            format!("{} to {}", plain(min, 3), plain(max, 3)),
+            plain(record.ns_per_unit.median, 3),
+            range(record.ns_per_unit),
             plain(bytes(record), 3),
             plain(record.number("phase_field_bytes").unwrap_or(0.0) / record.number("particles").unwrap_or(1.0), 3),
             if record.verified { record.answer.clone() } else { format!("NOT verified: {}", record.answer) },
@@ -191,12 +182,7 @@ pub fn scenes(records: Records) -> Vec<Exhibit> {
             plain(100.0 * half.memory_bytes as f64 / whole.memory_bytes as f64, 3)
         ));
     }
-    vec![Exhibit::Grid(Grid {
-        title: "Scenes by their models".into(),
-        head: head.map(String::from).to_vec(),
-        rows: all.iter().map(row).collect(),
-        note: notes.join(" "),
-    })]
+    vec![Exhibit::grid("Scenes by their models", &head, all.iter().map(row), notes.join(" "))]
 }
 
 /// Stored ratios to other codes, carried over by the kernels; and the program of the user, if it was run.
@@ -205,21 +191,17 @@ pub fn peers(set: &BenchSet) -> Vec<Exhibit> {
     let mut exhibits = Vec::new();
     if let (Some(ours), Some(theirs)) = (records.get("peer/fisura"), records.find("peer/command")) {
         let row = |record: &BenchRecord| {
-            let Spread { median, min, max } = record.ns_per_unit;
-            let range = format!("{} to {}", plain(min, 3), plain(max, 3));
-            vec![record.label.clone(), plain(median, 3), range, record.answer.clone()]
+            let ns = record.ns_per_unit;
+            vec![record.label.clone(), plain(ns.median, 3), range(ns), record.answer.clone()]
         };
         let factor = theirs.ns_per_unit.median / ours.ns_per_unit.median;
         let trust = if theirs.verified { "" } else { " Its answer is not verified, so its time is not valid." };
-        exhibits.push(Exhibit::Grid(Grid {
-            title: "The program of --peer on the same block".into(),
-            head: ["program", "ns per particle-step", "rounds", "verified"].map(String::from).to_vec(),
-            rows: vec![row(ours), row(theirs)],
-            note: format!(
-                "It takes {} times the time of fisura, without start and end of the program.{trust}",
-                plain(factor, 3)
-            ),
-        }));
+        let note = format!(
+            "It takes {} times the time of fisura, without start and end of the program.{trust}",
+            plain(factor, 3)
+        );
+        let head = ["program", "ns per particle-step", "rounds", "verified"];
+        exhibits.push(Exhibit::grid("The program of --peer on the same block", &head, [row(ours), row(theirs)], note));
     }
     let tuned: Vec<_> = set.peers.iter().filter(|p| p.quantity == "over-tuned-kernel").collect();
     let Some(first) = tuned.first() else { return exhibits };
@@ -235,17 +217,14 @@ pub fn peers(set: &BenchSet) -> Vec<Exhibit> {
         vec![peer.code.clone(), degree, plain(peer.value, 3), or_dash(naive), or_dash(estimate), peer.remark.clone()]
     };
     let head = ["code", "p", "over a tuned kernel", "over a naive kernel", "over fisura, estimated", "remark"];
-    exhibits.push(Exhibit::Grid(Grid {
-        title: "Named codes on an elastic block: stored ratios of times".into(),
-        head: head.map(String::from).to_vec(),
-        rows: tuned.iter().map(row).collect(),
-        note: format!(
-            "Not measured in this run: {}. The kernels are those of the stored run. The estimate is the ratio to the naive kernel, \
-             multiplied by the ratio of the minimal kernel to an elastic step of fisura in the updated frame in this run. It \
-             assumes that both kernels take the same time; they are only similar.",
-            first.conditions
-        ),
-    }));
+    let note = format!(
+        "Not measured in this run: {}. The kernels are those of the stored run. The estimate is the ratio to the naive kernel, \
+         multiplied by the ratio of the minimal kernel to an elastic step of fisura in the updated frame in this run. It \
+         assumes that both kernels take the same time; they are only similar.",
+        first.conditions
+    );
+    let title = "Named codes on an elastic block: stored ratios of times";
+    exhibits.push(Exhibit::grid(title, &head, tuned.iter().map(row), note));
     exhibits
 }
 

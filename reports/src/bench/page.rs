@@ -1,12 +1,11 @@
 //! The report as Markdown, as one HTML page, and its samples as CSV.
 
-use fisura_verification::bench::record::{BenchSet, Spread};
+use fisura_verification::bench::record::{BenchRecord, BenchSet};
 use fisura_verification::output::history::format_number;
-use minijinja::Environment;
 use minijinja::value::Serde;
-use serde::Serialize;
+use minijinja::{Environment, Value, context};
 
-use super::{Exhibit, Grid, Plot, Section};
+use super::{Exhibit, Grid, Plot, Section, range};
 use crate::markdown::cell;
 use crate::number::plain;
 use crate::svg::slug;
@@ -31,9 +30,9 @@ pub fn samples(set: &BenchSet) -> String {
 }
 
 /// One row per record.
-pub fn all_records(set: &BenchSet) -> Grid {
-    let row = |record: &fisura_verification::bench::record::BenchRecord| {
-        let Spread { median, min, max } = record.ns_per_unit;
+pub fn all_records(set: &BenchSet) -> Exhibit {
+    let row = |record: &BenchRecord| {
+        let ns = record.ns_per_unit;
         let error = record.error.as_ref().map_or("–".into(), |e| plain(e.value, 3));
         let memory = if record.memory_bytes == 0 { "–".into() } else { plain(record.memory_bytes as f64 / 1e6, 3) };
         vec![
@@ -41,7 +40,7 @@ pub fn all_records(set: &BenchSet) -> Grid {
             record.threads.to_string(),
             plain(record.cpu_s.median, 3),
             plain(record.wall_s.median, 3),
-            format!("{} ({} to {}) per {}", plain(median, 3), plain(min, 3), plain(max, 3), record.work.unit),
+            format!("{} ({}) per {}", plain(ns.median, 3), range(ns), record.work.unit),
             error,
             memory,
             if record.verified { record.answer.clone() } else { format!("NOT verified: {}", record.answer) },
@@ -53,12 +52,7 @@ pub fn all_records(set: &BenchSet) -> Grid {
         n => format!("{n} of {} records are NOT verified; their times are not valid.", set.records.len()),
     };
     let head = ["record", "threads", "processor s", "wall s", "ns", "error", "MB", "verified"];
-    Grid {
-        title: "Every record".into(),
-        head: head.map(String::from).to_vec(),
-        rows: set.records.iter().map(row).collect(),
-        note,
-    }
+    Exhibit::grid("Every record", &head, set.records.iter().map(row), note)
 }
 
 /// Where and when, in a line.
@@ -101,44 +95,19 @@ fn of_grid(grid: &Grid) -> String {
     format!("\n### {}\n\n{}{rule}{rows}\n{}\n", cell(&grid.title), line(&grid.head), cell(&grid.note))
 }
 
-#[derive(Serialize)]
-struct Part {
-    anchor: String,
-    title: String,
-    exhibits: Vec<Shown>,
-}
-
-/// An exhibit as the template takes it: the fields of a figure or of a table are empty.
-#[derive(Serialize)]
-struct Shown {
-    title: String,
-    svg: String,
-    error: String,
-    caption: String,
-    text: String,
-    head: Vec<String>,
-    rows: Vec<Vec<String>>,
-}
-
-fn shown(exhibit: &Exhibit) -> Shown {
+/// An exhibit as the template takes it: only a table has a head.
+fn shown(exhibit: &Exhibit) -> Value {
     match exhibit {
-        Exhibit::Plot(plot) => {
-            let (svg, error) = match &plot.svg {
-                Ok(svg) => (svg.clone(), String::new()),
-                Err(error) => (String::new(), error.to_string()),
-            };
-            let (title, caption, text) = (plot.title.clone(), plot.caption.clone(), plot.reading.clone());
-            Shown { title, svg, error, caption, text, head: vec![], rows: vec![] }
-        }
-        Exhibit::Grid(grid) => Shown {
-            title: grid.title.clone(),
-            svg: String::new(),
-            error: String::new(),
-            caption: String::new(),
-            text: grid.note.clone(),
-            head: grid.head.clone(),
-            rows: grid.rows.clone(),
+        Exhibit::Plot(plot) => context! {
+            title => &plot.title,
+            svg => plot.svg.as_deref().ok(),
+            error => plot.svg.as_ref().err().map(ToString::to_string),
+            caption => &plot.caption,
+            text => &plot.reading,
         },
+        Exhibit::Grid(grid) => {
+            context! { title => &grid.title, text => &grid.note, head => &grid.head, rows => Serde(&grid.rows) }
+        }
     }
 }
 
@@ -149,12 +118,10 @@ fn shown(exhibit: &Exhibit) -> Shown {
 pub fn html(set: &BenchSet, sections: &[Section]) -> Result<String, minijinja::Error> {
     let mut environment = Environment::new();
     environment.add_template("bench.html", TEMPLATE)?;
-    let part = |section: &Section| Part {
-        anchor: slug(&section.title),
-        title: section.title.clone(),
-        exhibits: section.exhibits.iter().map(shown).collect(),
+    let part = |section: &Section| {
+        let exhibits: Value = section.exhibits.iter().map(shown).collect();
+        context! { anchor => slug(&section.title), title => &section.title, exhibits }
     };
-    let parts: Vec<Part> = sections.iter().map(part).collect();
-    let page = minijinja::context! { conditions => conditions(set), parts => Serde(parts) };
+    let page = context! { conditions => conditions(set), parts => sections.iter().map(part).collect::<Value>() };
     environment.get_template("bench.html")?.render(page)
 }

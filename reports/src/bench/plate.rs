@@ -4,7 +4,7 @@ use fisura_verification::bench::plate_error::{QUANTITIES, Quantity};
 use fisura_verification::bench::record::{AnswerError, BenchRecord, BenchSet};
 
 use super::work_precision::{Chart, Cost, Line, error, lines};
-use super::{Exhibit, Grid, Records, plate_match};
+use super::{Exhibit, Records, plate_match};
 use crate::number::{plain, pretty};
 
 /// Ids of runs: equal spans and the tolerance of the suite, graded spans, the finite elements.
@@ -23,7 +23,7 @@ pub fn exhibits(set: &BenchSet) -> Vec<Exhibit> {
         let title = "The plate: error against processor time";
         exhibits.push(chart("timing/plate-error-against-time", title, &lines(graded.iter().copied()), reading));
         exhibits.push(plate_match::table(records, set.fem_unbuilt.as_deref()));
-        exhibits.push(Exhibit::Grid(table(&[graded.as_slice(), &equal].concat())));
+        exhibits.push(table(&[graded.as_slice(), &equal].concat()));
     }
     if !equal.is_empty() {
         let lines = lines(equal.iter().copied());
@@ -64,7 +64,7 @@ pub(super) fn shown(value: f64, unit: &str) -> String {
 }
 
 /// Every whole run with all its errors, the cheapest first.
-fn table(records: &[&BenchRecord]) -> Grid {
+fn table(records: &[&BenchRecord]) -> Exhibit {
     let mut records = records.to_vec();
     records.sort_by(|a, b| a.cpu_s.median.total_cmp(&b.cpu_s.median));
     let row = |record: &&BenchRecord| {
@@ -82,14 +82,9 @@ fn table(records: &[&BenchRecord]) -> Grid {
     };
     let mut head = ["run", "h/l0", "processor s"].map(String::from).to_vec();
     head.extend(QUANTITIES.iter().map(name));
-    Grid {
-        title: "The plate: time and errors of each run".into(),
-        head,
-        rows: records.iter().map(row).collect(),
-        note: "Relative rms from 5 µs to 80 µs; for the increment of the fracture energy since t = 0, from 30 µs; for the crack tip, rms in \
-               mm. U: uncertainty of the reference in the same norm; an error below U is not significant. Times: medians of the rounds."
-            .into(),
-    }
+    let note = "Relative rms from 5 µs to 80 µs; for the increment of the fracture energy since t = 0, from 30 µs; for the crack tip, rms in \
+                mm. U: uncertainty of the reference in the same norm; an error below U is not significant. Times: medians of the rounds.";
+    Exhibit::grid("The plate: time and errors of each run", &head, records.iter().map(row), note)
 }
 
 /// What the tolerance of the phase field does to the energies of the plate.

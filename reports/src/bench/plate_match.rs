@@ -2,13 +2,13 @@
 //! quantity, won or lost.
 
 use fisura_verification::bench::plate_error::{QUANTITIES, Quantity};
-use fisura_verification::bench::record::Spread;
+use fisura_verification::bench::record::{BenchRecord, Spread};
 
 use super::pareto::cost_to_reach;
 use super::plate::{ELEMENTS, EQUAL, GRADED, error_in, shown};
 use super::ratios::{Found, Target};
-use super::work_precision::lines;
-use super::{Exhibit, Grid, Records};
+use super::work_precision::{Line, lines};
+use super::{Exhibit, Records};
 use crate::number::plain;
 
 /// Errors that are compared: relative, and in mm.
@@ -75,9 +75,8 @@ fn matches(records: Records) -> Vec<Match> {
 /// The way that reaches an error in the least time.
 fn best(records: Records, ids: &[&str], quantity: &Quantity, error: f64) -> Option<Best> {
     let lines = lines(ids.iter().flat_map(|id| records.below(id)));
-    let cost = |line: &super::work_precision::Line| {
-        let point =
-            |r: &&fisura_verification::bench::record::BenchRecord| Some((r.cpu_s.median, error_in(r, quantity)?.value));
+    let cost = |line: &Line| {
+        let point = |r: &&BenchRecord| Some((r.cpu_s.median, error_in(r, quantity)?.value));
         let points: Vec<(f64, f64)> = line.records.iter().filter_map(point).collect();
         Some((line.label.clone(), cost_to_reach(&points, error)?))
     };
@@ -113,12 +112,8 @@ pub fn table(records: Records, unbuilt: Option<&str>) -> Exhibit {
         ])
     };
     let head = ["quantity", "error", "U", "fisura", "finite elements", "ratio", "outcome", "target", "verdict"];
-    Exhibit::Grid(Grid {
-        title: "Finite elements over fisura: the best of each at equal error".into(),
-        head: head.map(String::from).to_vec(),
-        rows: all.iter().filter_map(row).collect(),
-        note: note(&all, unbuilt),
-    })
+    let title = "Finite elements over fisura: the best of each at equal error";
+    Exhibit::grid(title, &head, all.iter().filter_map(row), note(&all, unbuilt))
 }
 
 fn note(all: &[Match], unbuilt: Option<&str>) -> String {

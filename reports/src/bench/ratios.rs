@@ -1,10 +1,31 @@
-//! The targets of speed, as ratios of times taken in one run.
+//! The targets of speed, as ratios of times taken in one run: `ratios.toml` lists them.
+
+use std::sync::LazyLock;
 
 use fisura_verification::bench::record::{BenchRecord, Spread};
+use serde::Deserialize;
 
-use super::ratio_list::{RATIOS, Ratio};
-use super::{Exhibit, Grid, Records};
+use super::{Exhibit, Records, range};
 use crate::number::plain;
+
+/// A ratio of sums of times, as the list has it.
+#[derive(Debug, Deserialize)]
+struct Ratio {
+    what: String,
+    above: Vec<String>,
+    below: Vec<String>,
+    at_most: Option<f64>,
+    at_least: Option<f64>,
+    #[serde(default)]
+    whole: bool,
+}
+
+#[derive(Debug, Default, Deserialize)]
+struct Ratios {
+    ratio: Vec<Ratio>,
+}
+
+static RATIOS: LazyLock<Ratios> = LazyLock::new(|| toml::from_str(include_str!("ratios.toml")).unwrap_or_default()); // a test reads it
 
 /// A bound of a ratio.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,15 +74,17 @@ impl Found {
 
 /// All ratios whose records are there and took any time.
 pub fn found(records: Records) -> Vec<Found> {
-    let of_records = RATIOS.iter().filter_map(|ratio| value(ratio, records));
+    let of_records = RATIOS.ratio.iter().filter_map(|ratio| value(ratio, records));
     of_records.chain(super::plate_match::targets(records)).collect()
 }
 
 fn value(ratio: &Ratio, records: Records) -> Option<Found> {
-    let terms = |terms: &[(f64, &str)]| -> Option<Vec<(f64, &BenchRecord)>> {
-        terms.iter().map(|(sign, id)| Some((*sign, records.find(id)?))).collect()
+    let term = |id: &String| match id.strip_prefix('-') {
+        Some(id) => Some((-1.0, records.find(id)?)),
+        None => Some((1.0, records.find(id)?)),
     };
-    let (above, below) = (terms(ratio.above)?, terms(ratio.below)?);
+    let terms = |ids: &[String]| ids.iter().map(term).collect::<Option<Vec<(f64, &BenchRecord)>>>();
+    let (above, below) = (terms(&ratio.above)?, terms(&ratio.below)?);
     let all = || above.iter().chain(&below).map(|(_, record)| *record);
     let rounds = above[0].1.samples.len();
     let paired = rounds > 0 && all().all(|record| record.samples.len() == rounds);
@@ -79,7 +102,12 @@ fn value(ratio: &Ratio, records: Records) -> Option<Found> {
         Spread::of([quotient(&|record| record.ns_per_unit.median)])
     };
     let verified = all().all(|record| record.verified);
-    let found = Found { what: ratio.what.into(), value, target: ratio.target, verified };
+    let target = match (ratio.at_most, ratio.at_least) {
+        (Some(limit), _) => Target::AtMost(limit),
+        (_, Some(limit)) => Target::AtLeast(limit),
+        _ => Target::None,
+    };
+    let found = Found { what: ratio.what.clone(), value, target, verified };
     [value.median, value.min, value.max].iter().all(|v| v.is_finite()).then_some(found)
 }
 
@@ -97,21 +125,11 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
             Target::AtLeast(limit) => format!("≥ {}", plain(limit, 3)),
             Target::None => "–".into(),
         };
-        let Spread { median, min, max } = ratio.value;
-        vec![
-            ratio.what.clone(),
-            plain(median, 3),
-            format!("{} to {}", plain(min, 3), plain(max, 3)),
-            target,
-            ratio.word().into(),
-        ]
+        vec![ratio.what.clone(), plain(ratio.value.median, 3), range(ratio.value), target, ratio.word().into()]
     });
-    vec![Exhibit::Grid(Grid {
-        title: "Ratios within this run".into(),
-        head: ["ratio", "median", "rounds", "target", "verdict"].map(String::from).to_vec(),
-        rows: rows.collect(),
-        note: format!("{met} of {} targets are met in this run.", judged.len()),
-    })]
+    let note = format!("{met} of {} targets are met in this run.", judged.len());
+    let head = ["ratio", "median", "rounds", "target", "verdict"];
+    vec![Exhibit::grid("Ratios within this run", &head, rows, note)]
 }
 
 #[cfg(test)]
@@ -130,6 +148,12 @@ mod tests {
 
     fn first(records: &[BenchRecord]) -> Found {
         found(Records(records)).remove(0)
+    }
+
+    #[test]
+    fn the_list_is_read() {
+        let list: Ratios = toml::from_str(include_str!("ratios.toml")).unwrap();
+        assert!(!list.ratio.is_empty() && list.ratio.iter().all(|ratio| !ratio.above.is_empty()));
     }
 
     #[test]

@@ -2,10 +2,9 @@
 
 use fisura_verification::bench::record::BenchRecord;
 use fisura_verification::output::history::Table;
-use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Scale};
+use fisura_verification::record::{Curve, CurveStyle};
 
-use super::{Exhibit, Plot, Records};
-use crate::figure::render_figure;
+use super::{Exhibit, Records};
 use crate::number::plain;
 use crate::series::SeriesSet;
 use crate::svg::slug;
@@ -96,39 +95,12 @@ fn plot(
         records.iter().for_each(|record| table.push(&[points(record), value(record)]));
         let series = format!("{id}-{}", slug(label));
         set.insert(series.clone(), table);
-        Curve {
-            label: label.to_string(),
-            series,
-            x: "points".into(),
-            y: unit.into(),
-            x_scale: 1.0,
-            y_scale: 1.0,
-            style: CurveStyle::Markers,
-            uncertainty_absolute: 0.0,
-            uncertainty_relative: 0.0,
-        }
+        Curve { style: CurveStyle::Markers, ..Curve::line(label, &series, ["points", unit]) }
     };
     let curves = blocks.iter().map(curve).collect();
-    let of = |label: &str| Axis { label: label.into(), scale: Scale::Log, range: None };
     let title = format!("Blocks from 10⁴ points: {axis}");
-    let caption = "Square blocks, p = 2 with 2 × 2 points per span, one thread".to_string();
-    let figure = Figure {
-        id: id.clone(),
-        suite: "bench".into(),
-        title: title.clone(),
-        caption: caption.clone(),
-        deviations: vec![],
-        body: FigureBody::Chart {
-            x: of("points"),
-            y: of(axis),
-            curves,
-            regions: vec![],
-            slopes: vec![],
-            floors: vec![],
-        },
-    };
-    let svg = render_figure(&figure, &set);
-    Exhibit::Plot(Plot { id, title, caption, reading: reading.join(" "), svg })
+    let caption = "Square blocks, p = 2 with 2 × 2 points per span, one thread";
+    Exhibit::log_log([&id, &title, caption], ["points", axis], curves, Vec::new(), (&set, reading.join(" ")))
 }
 
 #[cfg(test)]

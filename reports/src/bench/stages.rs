@@ -1,9 +1,9 @@
 //! Phases of the step and solvers, as bars.
 
-use fisura_verification::bench::record::{BenchRecord, Spread};
+use fisura_verification::bench::record::BenchRecord;
 
-use super::bars::{BarChart, render_bars};
-use super::{Exhibit, Grid, Plot, Records};
+use super::bars::BarChart;
+use super::{Exhibit, Records, range};
 use crate::number::{plain, pretty};
 
 /// Degrees that are drawn side by side.
@@ -63,8 +63,7 @@ fn bars(
     };
     let drawn: Vec<&BenchRecord> = names.iter().flat_map(|name| DEGREES.map(|p| of(p, name))).flatten().collect();
     let caption = conditions(&drawn);
-    let svg = render_bars(&chart);
-    Exhibit::Plot(Plot { id: chart.id, title: chart.title, caption, reading, svg })
+    chart.exhibit(caption, reading)
 }
 
 /// What the records have in common, or each value of it.
@@ -126,31 +125,22 @@ fn reading_of_steps(records: Records) -> String {
 /// The part of the phase field in a step of the plate.
 fn shares(records: Records) -> Option<Exhibit> {
     let (step, field) = (records.get("plate/share/step")?, records.get("plate/share/phase-field")?);
-    let share = field.ns_per_unit.median / step.ns_per_unit.median;
-    let row = |name: &str, spread: Spread| {
-        let range = format!("{} to {}", plain(spread.min, 3), plain(spread.max, 3));
-        vec![name.to_string(), plain(spread.median, 3), range]
-    };
-    Some(Exhibit::Grid(Grid {
-        title: "A step of the plate during crack growth".into(),
-        head: ["part", "ns per particle-step", "steps"].map(String::from).to_vec(),
-        rows: vec![
-            row("the whole step", step.ns_per_unit),
-            row("phase field: assembly and solve", field.ns_per_unit),
-            vec![
-                "remainder: difference of the medians".into(),
-                plain(step.ns_per_unit.median - field.ns_per_unit.median, 3),
-                "–".into(),
-            ],
-        ],
-        note: format!(
-            "{} points, one thread, {} steps; the phase field is {} % of the median step. {}.",
-            step.number("particles").unwrap_or(0.0),
-            step.samples.len(),
-            plain(100.0 * share, 3),
-            step.answer
-        ),
-    }))
+    let row = |name: &str, median: f64, range: String| vec![name.to_string(), plain(median, 3), range];
+    let [of_step, of_field] = [step, field].map(|record| record.ns_per_unit.median);
+    let rows = [
+        row("the whole step", of_step, range(step.ns_per_unit)),
+        row("phase field: assembly and solve", of_field, range(field.ns_per_unit)),
+        row("remainder: difference of the medians", of_step - of_field, "–".into()),
+    ];
+    let note = format!(
+        "{} points, one thread, {} steps; the phase field is {} % of the median step. {}.",
+        step.number("particles").unwrap_or(0.0),
+        step.samples.len(),
+        plain(100.0 * of_field / of_step, 3),
+        step.answer
+    );
+    let head = ["part", "ns per particle-step", "steps"];
+    Some(Exhibit::grid("A step of the plate during crack growth", &head, rows, note))
 }
 
 /// Bars of the solvers, for a length scale of one span and of two.

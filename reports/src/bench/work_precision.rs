@@ -2,11 +2,10 @@
 
 use fisura_verification::bench::record::{BenchRecord, Spread};
 use fisura_verification::output::history::Table;
-use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Floor, Scale};
+use fisura_verification::record::{Curve, CurveStyle, Floor};
 
 use super::pareto::{cost_of, front};
-use super::{Exhibit, Plot, Records};
-use crate::figure::render_figure;
+use super::{Exhibit, Records};
 use crate::number::{plain, pretty};
 use crate::series::SeriesSet;
 use crate::svg::slug;
@@ -135,27 +134,12 @@ impl Chart<'_> {
         if let Some(front) = self.front.filter(|front| !front.records.is_empty()) {
             curves.push(self.curve(self.lines.len(), front, CurveStyle::Reference, &mut set));
         }
-        let axis = |label: &str| Axis { label: label.into(), scale: Scale::Log, range: None };
         let quantity = self.lines.iter().flat_map(|line| &line.records).find_map(|r| r.error.as_ref());
         let quantity = quantity.map_or("error", |error| error.quantity.as_str());
         let floor = Floor { y: self.uncertainty, label: "uncertainty of the reference".into() };
-        let figure = Figure {
-            id: self.id.clone(),
-            suite: "bench".into(),
-            title: self.title.clone(),
-            caption: caption.into(),
-            deviations: vec![],
-            body: FigureBody::Chart {
-                x: axis(self.axis),
-                y: axis(quantity),
-                curves,
-                regions: vec![],
-                slopes: vec![],
-                floors: if self.uncertainty > 0.0 { vec![floor] } else { vec![] },
-            },
-        };
-        let svg = render_figure(&figure, &set);
-        Exhibit::Plot(Plot { id: self.id.clone(), title: self.title.clone(), caption: caption.into(), reading, svg })
+        let floors = if self.uncertainty > 0.0 { vec![floor] } else { vec![] };
+        let words = [self.id.as_str(), &self.title, caption];
+        Exhibit::log_log(words, [self.axis, quantity], curves, floors, (&set, reading))
     }
 
     fn curve(&self, number: usize, line: &Line, style: CurveStyle, set: &mut SeriesSet) -> Curve {

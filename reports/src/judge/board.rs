@@ -6,10 +6,11 @@
 use fisura_verification::judge::Judged;
 use fisura_verification::output::foreign::line;
 use fisura_verification::output::history::Table;
-use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Scale};
+use fisura_verification::record::{Axis, Curve, CurveStyle, Figure, FigureBody};
+use minijinja::Value;
 use serde::Serialize;
 
-use super::{Page, STYLE, fill};
+use super::fill;
 use crate::figure::render_figure;
 use crate::number::{duration, plain};
 use crate::series::SeriesSet;
@@ -57,7 +58,7 @@ pub fn board(judged: &[Judged]) -> Vec<Board> {
 /// Only if the template cannot be filled.
 pub fn board_page(judged: &[Judged]) -> Result<String, minijinja::Error> {
     let title = format!("{} results and their errors", judged.len());
-    fill(Page { style: STYLE, title, verdicts: Vec::new(), boards: board(judged) })
+    fill(title, Value::UNDEFINED, &board(judged))
 }
 
 /// The same as Markdown beside the drawings `board-<key>.svg`.
@@ -158,16 +159,10 @@ fn draw(key: &str, title: &str, words: &str, entries: &[Entry<'_>]) -> String {
         curves.push(Curve { style: CurveStyle::Markers, ..Curve::line(name, &series, ["spacing", "error"]) });
         set.insert(series, table);
     }
-    let log = |label: String| Axis { label, scale: Scale::Log, range: None };
-    let axes = [log("spacing at the crack (mm)".into()), log(format!("error of the {words} (%)"))];
-    let figure = Figure {
-        id: format!("board-{key}"),
-        suite: "judge".into(),
-        title: title.into(),
-        caption: "relative rms over the whole curve against the reference of the declared variant".into(),
-        deviations: Vec::new(),
-        body: FigureBody::chart(axes, curves, Vec::new()),
-    };
+    let axes = ["spacing at the crack (mm)", &format!("error of the {words} (%)")].map(Axis::logarithmic);
+    let caption = "relative rms over the whole curve against the reference of the declared variant";
+    let body = FigureBody::chart(axes, curves, Vec::new());
+    let figure = Figure::new("judge", [&format!("board-{key}"), title, caption], body);
     if drawn.is_empty() { String::new() } else { render_figure(&figure, &set).unwrap_or_default() }
 }
 

@@ -29,7 +29,6 @@ fn machine_and_markdown_reports_keep_their_form() {
     render(folder.path()).unwrap();
     assert_snapshot!("summary", read(folder.path(), "summary.md"));
     assert_snapshot!("junit", read(folder.path(), "junit.xml"));
-    assert_snapshot!("metrics", read(folder.path(), "metrics.json"));
     assert_snapshot!("text", fisura_reports::text::render_text(&crate::fixture::results()));
 }
 
@@ -149,9 +148,9 @@ fn curves_without_a_drawable_row_and_ragged_rasters_are_errors() {
 fn another_schema_is_refused() {
     let folder = changed(|results| results.schema = "fisura.results/7".to_string());
     let error = render(folder.path()).unwrap_err();
-    assert!(matches!(&error, ReportError::Schema { found, .. } if found == "fisura.results/7"), "{error}");
+    assert!(error.to_string().contains("schema \"fisura.results/7\" is not \"fisura.results/1\""), "{error}");
     fs::write(folder.path().join("results.json"), "{\"schema\": ").unwrap();
-    assert!(matches!(render(folder.path()).unwrap_err(), ReportError::Results { .. }));
+    assert!(render(folder.path()).unwrap_err().to_string().contains("line 1 column"));
     fs::remove_file(folder.path().join("results.json")).unwrap();
     assert!(matches!(render(folder.path()).unwrap_err(), ReportError::File { .. }));
 }

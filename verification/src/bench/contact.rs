@@ -114,12 +114,7 @@ fn with_errors(record: &BenchRecord, found: &Errors) -> Vec<BenchRecord> {
 fn contestant(id: &str, way: Way, spans: usize, scene: Scene) -> Result<Contestant<'static>, BenchError> {
     let prepared = Simulation::new(&scene)?;
     let (extent, steps) = (prepared.extent(), prepared.plan().steps());
-    let mut record = BenchRecord::new(id, way.label(), (extent.particles * steps) as f64, "particle-step")
-        .with("degree", way.0)
-        .with("spans", spans)
-        .with("particles", extent.particles)
-        .with("steps", steps);
-    record.memory_bytes = extent.mechanics_bytes as u64;
+    let record = BenchRecord::of_steps(id, way.label(), &extent, steps).with("degree", way.0).with("spans", spans);
     let run = move |_: &mut BenchRecord| {
         let mut simulation = Simulation::new(&scene)?;
         let watch = Stopwatch::start();

@@ -160,14 +160,10 @@ fn plate<'a>(
     let prepared = Simulation::new(&case.scene)?;
     let (extent, steps) = (prepared.extent(), prepared.plan().steps());
     drop(prepared);
-    let work = (extent.particles * steps) as f64;
-    let mut record = BenchRecord::new(id, label, work, "particle-step")
+    let record = BenchRecord::of_steps(id, label, &extent, steps)
         .with("degree", case.scene.mesh.degree[0])
         .with("h_over_l0", h)
-        .with("tolerance", case.scene.solver.phase_field_tolerance)
-        .with("particles", extent.particles)
-        .with("steps", steps);
-    record.memory_bytes = (extent.mechanics_bytes + extent.phase_field_bytes) as u64;
+        .with("tolerance", case.scene.solver.phase_field_tolerance);
     let run = move |record: &mut BenchRecord| {
         let watch = Stopwatch::start();
         let run = run_scene(&case.scene, &mut |_| {}, &mut |_, _| {});

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use fisura::simulation::Extent;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -171,6 +172,15 @@ impl BenchRecord {
             cpu_s: Spread::default(),
             ns_per_unit: Spread::default(),
         }
+    }
+
+    /// The same of steps of a scene, with its size.
+    pub fn of_steps(id: impl Into<String>, label: impl Into<String>, extent: &Extent, steps: usize) -> Self {
+        let record = Self::new(id, label, (extent.particles * steps) as f64, "particle-step");
+        Self { memory_bytes: (extent.mechanics_bytes + extent.phase_field_bytes) as u64, ..record }
+            .with("particles", extent.particles)
+            .with("steps", steps)
+            .with("phase_field_bytes", extent.phase_field_bytes)
     }
 
     /// With a parameter.

@@ -95,11 +95,7 @@ fn measure(block: &Block, cells: usize, rounds: usize) -> Result<BenchRecord, Be
     let extent = simulation.extent();
     let steps = (PARTICLE_STEPS / extent.particles).clamp(STEPS[0], STEPS[1]);
     let id = format!("scale/{}/{cells}", block.name);
-    let mut record = BenchRecord::new(id, block.label, (extent.particles * steps) as f64, "particle-step")
-        .with("particles", extent.particles)
-        .with("steps", steps)
-        .with("phase_field_bytes", extent.phase_field_bytes);
-    record.memory_bytes = (extent.mechanics_bytes + extent.phase_field_bytes) as u64;
+    let mut record = BenchRecord::of_steps(id, block.label, &extent, steps);
     let before = simulation.phase_field_counts();
     for _ in 0..rounds {
         let watch = Stopwatch::start();

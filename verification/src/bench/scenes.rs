@@ -116,12 +116,7 @@ fn contestant(
     // only by an iteration.
     let (word, to_judge) = if frame == Frame::Total { ("total", 0) } else { ("updated", STEPS) };
     let id = format!("scenes/{word}/{}", name.replace([',', ' '], "-").replace("--", "-"));
-    let mut record = BenchRecord::new(id, name, (extent.particles * STEPS) as f64, "particle-step")
-        .with("frame", word)
-        .with("particles", extent.particles)
-        .with("models", extent.models)
-        .with("phase_field_bytes", extent.phase_field_bytes);
-    record.memory_bytes = (extent.mechanics_bytes + extent.phase_field_bytes) as u64;
+    let record = BenchRecord::of_steps(id, name, &extent, STEPS).with("frame", word).with("models", extent.models);
     let run = move |record: &mut BenchRecord| {
         let before = simulation.phase_field_counts();
         let watch = Stopwatch::start();
@@ -162,12 +157,8 @@ fn halves(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
         kinetic.push(case.energy_factor * simulation.sample().kinetic);
         let extent = simulation.extent();
         let id = format!("scenes/total/{}", name.replace(' ', "-"));
-        let mut record = BenchRecord::new(id, name, (extent.particles * STEPS) as f64, "particle-step")
-            .with("frame", "total")
-            .with("particles", extent.particles)
-            .with("models", extent.models)
-            .with("phase_field_bytes", extent.phase_field_bytes);
-        record.memory_bytes = (extent.mechanics_bytes + extent.phase_field_bytes) as u64;
+        let record =
+            BenchRecord::of_steps(id, name, &extent, STEPS).with("frame", "total").with("models", extent.models);
         let run = move |_: &mut BenchRecord| {
             let watch = Stopwatch::start();
             advance(&mut simulation, STEPS)?;

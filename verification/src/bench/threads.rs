@@ -57,11 +57,9 @@ fn scaled(
         let mut simulation = pool.install(|| Simulation::new(scene))?;
         pool.install(|| advance(&mut simulation, run_up))?;
         let extent = simulation.extent();
-        let work = (extent.particles * steps) as f64;
-        let mut record = BenchRecord::new(format!("threads/{name}/{threads}"), label, work, "particle-step")
-            .with("threads", threads);
+        let id = format!("threads/{name}/{threads}");
+        let mut record = BenchRecord::of_steps(id, label, &extent, steps).with("threads", threads);
         (record.threads, record.clock) = (threads, Clock::Wall);
-        record.memory_bytes = (extent.mechanics_bytes + extent.phase_field_bytes) as u64;
         runners.push(Runner { pool, simulation, record });
     }
     for _ in 0..settings.rounds() {

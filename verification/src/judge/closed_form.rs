@@ -172,33 +172,18 @@ pub fn judge(folder: &str, submission: &Submission, curves: [Option<Curve>; 6]) 
         }
         QuantityVerdict { quantity: k.what.into(), outcome: row.outcome, comparisons: vec![row] }
     });
-    let mut verdict = Verdict {
-        folder: folder.into(),
-        benchmark: submission.benchmark.clone(),
-        code: submission.code.clone(),
-        method: submission.method.clone(),
-        spacing_m: submission.spacing,
-        discretisation: submission.discretisation.clone(),
-        cost: submission.cost.clone(),
-        reference: ReferenceUsed {
-            id: submission.benchmark.clone(),
-            label: BENCHMARKS.iter().find(|b| b.name == submission.benchmark).map_or("", |b| b.what).into(),
-            uncertainty: if decides { "a closed form" } else { "unknown: diagnostic only" }.into(),
-        },
-        numerical_uncertainty: if decides {
-            "what a sound mesh may be off by, stated with the benchmark".into()
-        } else {
-            "nothing is decided".into()
-        },
-        differences: submission.model.differences.clone(),
-        findings: Vec::new(),
-        notes: Vec::new(),
-        quantities: quantities.collect(),
-        events: Vec::new(),
-        balance: None,
-        outcome: Outcome::Diagnostic,
-        sentence: String::new(),
+    let quantities = quantities.collect();
+    let (uncertainty, numerical) = if decides {
+        ("a closed form", "what a sound mesh may be off by, stated with the benchmark")
+    } else {
+        ("unknown: diagnostic only", "nothing is decided")
     };
+    let id = submission.benchmark.clone();
+    let label = BENCHMARKS.iter().find(|b| b.name == id).map_or("", |b| b.what).into();
+    let reference = ReferenceUsed { id, label, uncertainty: uncertainty.into() };
+    let differences = submission.model.differences.clone();
+    let base = Verdict::of(folder, submission, reference, numerical);
+    let mut verdict = Verdict { differences, quantities, ..base };
     verdict.conclude();
     Ok(Judged { verdict, curves, references: Default::default() })
 }

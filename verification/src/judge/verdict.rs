@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::submission::{Code, Cost};
+use super::submission::{Code, Cost, Submission};
 
 /// Name of the schema written.
 pub const SCHEMA: &str = "fisura.verdict/1";
@@ -162,6 +162,34 @@ pub struct Verdict {
 }
 
 impl Verdict {
+    /// What a submission says of itself, with nothing compared yet.
+    pub(super) fn of(
+        folder: &str,
+        submission: &Submission,
+        reference: ReferenceUsed,
+        numerical_uncertainty: impl Into<String>,
+    ) -> Self {
+        Self {
+            folder: folder.into(),
+            benchmark: submission.benchmark.clone(),
+            code: submission.code.clone(),
+            method: submission.method.clone(),
+            spacing_m: submission.spacing,
+            discretisation: submission.discretisation.clone(),
+            cost: submission.cost.clone(),
+            reference,
+            numerical_uncertainty: numerical_uncertainty.into(),
+            differences: Vec::new(),
+            findings: Vec::new(),
+            notes: Vec::new(),
+            quantities: Vec::new(),
+            events: Vec::new(),
+            balance: None,
+            outcome: Outcome::Diagnostic,
+            sentence: String::new(),
+        }
+    }
+
     /// Every comparison.
     pub fn comparisons(&self) -> impl Iterator<Item = &Comparison> {
         self.quantities.iter().flat_map(|q| &q.comparisons).chain(&self.events)

@@ -32,6 +32,11 @@ impl Axis {
     pub fn linear(label: &str) -> Self {
         Self { label: label.into(), scale: Scale::Linear, range: None }
     }
+
+    /// The same with a logarithmic scale.
+    pub fn logarithmic(label: &str) -> Self {
+        Self { scale: Scale::Log, ..Self::linear(label) }
+    }
 }
 
 /// How a curve is drawn.
@@ -197,4 +202,12 @@ pub struct Figure {
     pub deviations: Vec<String>,
     /// Content.
     pub body: FigureBody,
+}
+
+impl Figure {
+    /// A figure that deviates from no source: suite, then id, title and caption.
+    pub fn new(suite: &str, words: [&str; 3], body: FigureBody) -> Self {
+        let [id, title, caption] = words.map(String::from);
+        Self { id, suite: suite.into(), title, caption, deviations: Vec::new(), body }
+    }
 }

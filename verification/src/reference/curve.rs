@@ -95,15 +95,12 @@ impl ReferenceCurve {
             }
         }
         let curve = Curve {
-            label: self.label.clone(),
-            series: self.series_path(),
-            x: "x".to_string(),
-            y: "y".to_string(),
             x_scale,
             y_scale,
             style: if self.x.len() > 1 { CurveStyle::Reference } else { CurveStyle::Points },
             uncertainty_absolute: self.uncertainty_absolute * y_scale,
             uncertainty_relative: self.uncertainty_relative,
+            ..Curve::line(&self.label, &self.series_path(), ["x", "y"])
         };
         (curve, table)
     }

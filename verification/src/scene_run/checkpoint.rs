@@ -8,13 +8,13 @@
 //! <its title>
 //! ```
 
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use fisura::scene::Scene;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 use super::Record;
 use crate::output::fingerprint::fingerprint;
@@ -31,18 +31,6 @@ const TITLE: usize = 200;
 
 /// Name of the file in the output folder of a run.
 pub const CHECKPOINT: &str = "checkpoint.bin";
-
-/// Why a run cannot be taken up from a file.
-#[derive(Debug, Error)]
-#[error("{} cannot be resumed: {message}", path.display())]
-pub struct CheckpointError {
-    /// File.
-    pub path: PathBuf,
-    /// Reason.
-    pub message: String,
-    /// What would be right.
-    pub remedy: &'static str,
-}
 
 const BEGIN_ANEW: &str = "omit --resume to start again, or give the folder of another run with --out";
 const SAME_SCENE: &str = "resume with the scene and the --set values of that run, or omit --resume to start again";
@@ -108,8 +96,8 @@ pub(super) fn write(
 ///
 /// # Errors
 /// A file that cannot be read, is damaged, or belongs to another scene or program.
-pub fn read(path: &Path, program: &str, scene: &Scene) -> Result<Option<Stored>, CheckpointError> {
-    let fail = |message: String, remedy| CheckpointError { path: path.to_path_buf(), message, remedy };
+pub fn read(path: &Path, program: &str, scene: &Scene) -> Result<Option<Stored>, OutputError> {
+    let fail = |message: String, remedy| unusable(path, message, remedy);
     let Some(head) = Head::read(path).map_err(|message| fail(message, BEGIN_ANEW))? else { return Ok(None) };
     let bytes = std::fs::read(path).map_err(|error| fail(error.to_string(), BEGIN_ANEW))?;
     let (content, sum) = bytes.split_last_chunk::<4>().unwrap_or((&[], &[0; 4]));
@@ -170,9 +158,12 @@ fn scene_print(scene: &Scene) -> String {
     fingerprint([format!("{scene:?}")])
 }
 
-impl CheckpointError {
-    /// A file whose content does not fit the scene after all.
-    pub(super) fn unfit(path: &Path, message: String) -> Self {
-        Self { path: path.to_path_buf(), message, remedy: BEGIN_ANEW }
-    }
+/// A checkpoint that a run cannot be taken up from.
+fn unusable(path: &Path, message: impl Display, remedy: &str) -> OutputError {
+    OutputError::new(format!("{} cannot be resumed: {message}", path.display()), remedy)
+}
+
+/// A file whose content does not fit the scene after all.
+pub(super) fn unfit(path: &Path, message: impl Display) -> OutputError {
+    unusable(path, message, BEGIN_ANEW)
 }

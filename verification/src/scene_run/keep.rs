@@ -6,9 +6,8 @@ use std::time::{Duration, Instant};
 use fisura::scene::Scene;
 use fisura::simulation::Simulation;
 use fisura::simulation::state::ResumeError;
-use thiserror::Error;
 
-use super::checkpoint::{self, CheckpointError, Stored};
+use super::checkpoint::{self, Stored};
 use super::write::Followed;
 use super::{OnFrame, Progress, Record, Run, SceneRun, timed};
 use crate::output::{OutputError, OutputFolder};
@@ -39,17 +38,6 @@ pub enum Outcome {
     Interrupted(Progress),
 }
 
-/// Why a run cannot be kept or taken up.
-#[derive(Debug, Error)]
-pub enum KeepError {
-    /// The checkpoint to go on from.
-    #[error(transparent)]
-    Checkpoint(#[from] CheckpointError),
-    /// The checkpoint to be written on interrupt.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-}
-
 /// Runs a valid scene as [`run_scene`](super::run_scene) does, storing checkpoints. From a `stored` one it
 /// goes on: history and frames are then, bit by bit, those of a run that nobody disturbed. Every row of the
 /// history is in [`HISTORY`](super::HISTORY) as soon as it is sampled.
@@ -65,7 +53,7 @@ pub fn run_scene_kept(
     stored: Option<Stored>,
     progress: &mut dyn FnMut(Progress),
     on_frame: &mut OnFrame<'_>,
-) -> Result<Outcome, KeepError> {
+) -> Result<Outcome, OutputError> {
     let (record, state): (Record, Option<Vec<u8>>) =
         stored.map_or_else(Default::default, |stored| (stored.run, Some(stored.state)));
     let mut run = Run::new(scene, record);
@@ -81,14 +69,14 @@ pub fn run_scene_kept(
             return Ok(Outcome::Ended(Box::new(run.finish(None, Some(breakdown), None))));
         }
         Err(ResumeError::State(error)) => {
-            return Err(CheckpointError::unfit(&keep.out.path().join(&keep.name), error.to_string()).into());
+            return Err(checkpoint::unfit(&keep.out.path().join(&keep.name), error));
         }
     };
     keeper.stored_time = state.is_some().then(|| simulation.time());
     let mut stop = |run: &Run<'_>, simulation: &mut Simulation| keeper.after_step(run, simulation);
     match run.advance(&mut simulation, progress, on_frame, &mut stop) {
         Ok(true) => match keeper.failed {
-            Some(error) => Err(error.into()),
+            Some(error) => Err(error),
             None => Ok(Outcome::Interrupted(Progress {
                 step: simulation.steps(),
                 steps: simulation.plan().steps(),

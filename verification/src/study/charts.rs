@@ -22,14 +22,9 @@ pub(super) fn chart(
     axes: [&str; 2],
     curves: Vec<Curve>,
 ) -> Figure {
-    Figure {
-        id: series_stem(case, name),
-        suite: case.suite.clone(),
-        title: format!("{title}, {}", case.label),
-        caption: caption.into(),
-        deviations: Vec::new(),
-        body: FigureBody::chart(axes.map(Axis::linear), curves, Vec::new()),
-    }
+    let (id, title) = (series_stem(case, name), format!("{title}, {}", case.label));
+    let body = FigureBody::chart(axes.map(Axis::linear), curves, Vec::new());
+    Figure::new(&case.suite, [&id, &title, caption], body)
 }
 
 /// The charts that a case asks for, of the runs that have a history, and their series.

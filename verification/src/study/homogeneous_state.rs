@@ -165,12 +165,7 @@ fn figure(case: &Case, stem: &str) -> Figure {
         curve("closed form", "closed_form", CurveStyle::Reference),
         curve("material points", "stress_over_peak", CurveStyle::Markers),
     ];
-    Figure {
-        id: stem.into(),
-        suite: case.suite.clone(),
-        title: "Homogeneous bar in uniaxial strain".into(),
-        caption: "Stress over its closed-form peak against strain over its closed-form peak.".into(),
-        deviations: Vec::new(),
-        body: FigureBody::chart(axes, curves, Vec::new()),
-    }
+    let caption = "Stress over its closed-form peak against strain over its closed-form peak.";
+    let words = [stem, "Homogeneous bar in uniaxial strain", caption];
+    Figure::new(&case.suite, words, FigureBody::chart(axes, curves, Vec::new()))
 }

@@ -16,7 +16,7 @@ use fisura::scene::Scene;
 use super::StudyError;
 use super::scene::series_stem;
 use crate::case::Case;
-use crate::record::{Axis, Curve, Figure, FigureBody, Reference, ReferenceKind, Scale};
+use crate::record::{Axis, Curve, Figure, FigureBody, Reference, ReferenceKind};
 
 /// The body of a scene without a phase field in the total frame.
 fn total_frame(scene: &Scene) -> Result<TotalFrame, StudyError> {
@@ -33,13 +33,6 @@ fn theory(value: f64, source: &str) -> Option<Reference> {
 
 /// A chart with logarithmic axes.
 fn logarithmic(case: &Case, name: &str, title: &str, caption: &str, axes: [&str; 2], curves: Vec<Curve>) -> Figure {
-    let axes = axes.map(|label| Axis { scale: Scale::Log, ..Axis::linear(label) });
-    Figure {
-        id: series_stem(case, name),
-        suite: case.suite.clone(),
-        title: title.into(),
-        caption: caption.into(),
-        deviations: Vec::new(),
-        body: FigureBody::chart(axes, curves, Vec::new()),
-    }
+    let body = FigureBody::chart(axes.map(Axis::logarithmic), curves, Vec::new());
+    Figure::new(&case.suite, [&series_stem(case, name), title, caption], body)
 }

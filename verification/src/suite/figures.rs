@@ -219,14 +219,10 @@ fn closure_chart(suite: &str, runs: &[RunInfo]) -> Figure {
         Curve::line(&label, &run.derived(), ["time_over_end", "closure_over_largest"])
     });
     let axes = ["time / end time", "closure / largest energy"].map(Axis::linear);
-    Figure {
-        id: format!("{suite}-ledger-closure"),
-        suite: suite.into(),
-        title: "Closure of the energy ledger".into(),
-        caption: "Sum of all named terms of the ledger, over the largest energy of the run.".into(),
-        deviations: Vec::new(),
-        body: FigureBody::chart(axes, curves.collect(), Vec::new()),
-    }
+    let caption = "Sum of all named terms of the ledger, over the largest energy of the run.";
+    let id = format!("{suite}-ledger-closure");
+    let body = FigureBody::chart(axes, curves.collect(), Vec::new());
+    Figure::new(suite, [&id, "Closure of the energy ledger", caption], body)
 }
 
 /// Every term of the ledger of one run.

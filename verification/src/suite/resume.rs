@@ -1,7 +1,6 @@
 //! Finished cases of an interrupted run, kept in `partial/` of the results folder until the run is complete.
 //!
-//! An outcome is taken up only if program, case file, overrides and reference data are the same, and nobody
-//! changed the file.
+//! An outcome is taken up only if program, case file, overrides and reference data are the same.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

@@ -61,7 +61,7 @@ impl<'a> Campaign<'a> {
     }
 
     fn stages(&self, matrix: bool) -> Vec<Stage<'a>> {
-        let is_named = |case: &&Case| self.faults.iter().any(|fault| fault.cases.contains(&case.id().as_str()));
+        let is_named = |case: &&Case| self.faults.iter().any(|fault| fault.cases.contains(&case.id()));
         let mut named: Vec<&Case> = self.cases.iter().filter(is_named).collect();
         named.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
         let mut stages = vec![Stage { what: "named cases".to_string(), cases: named, named_only: true }];
@@ -84,15 +84,15 @@ impl<'a> Campaign<'a> {
 
     /// The cells of a fault that are wanted: on sound cases that pass a site of it.
     fn planted_job(&self, fault: &'static Fault, cases: &[&Case], named_only: bool) -> Option<Job> {
-        let wanted = cases.iter().map(|case| case.id()).filter(|id| !named_only || fault.cases.contains(&id.as_str()));
+        let wanted = cases.iter().map(|case| case.id()).filter(|id| !named_only || fault.cases.contains(id));
         let limited = wanted.filter_map(|id| {
             let sound = self.store.get(None, &id).filter(|sound| sound.holds())?;
-            let missing = self.store.get(Some(fault.id), &id).is_none();
-            let passed = sound.passed.iter().any(|passed| passed == fault.id);
+            let missing = self.store.get(Some(&fault.id), &id).is_none();
+            let passed = sound.passed.contains(&fault.id);
             (missing && passed).then(|| (id, planted_limit(sound.seconds)))
         });
         let cases: Vec<_> = limited.collect();
-        (!cases.is_empty()).then_some(Job { fault: Some(fault.id), cases, set: &[] })
+        (!cases.is_empty()).then_some(Job { fault: Some(&fault.id), cases, set: &[] })
     }
 
     fn fill(&self, what: &str, jobs: Vec<Job>) -> Result<(), Failure> {

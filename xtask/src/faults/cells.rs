@@ -13,7 +13,6 @@ use fisura_verification::suite::Case;
 use serde::{Deserialize, Serialize};
 
 use super::runner::Ending;
-use crate::exit::Exit;
 use crate::failure::Failure;
 
 /// Below this folder of the output.
@@ -61,7 +60,7 @@ pub fn keys(program: &Path, workspace: &Path, cases: &[Case]) -> Result<BTreeMap
 
 /// Fingerprint of the planted program.
 fn program_key(program: &Path) -> Result<String, Failure> {
-    let unreadable = |e| Failure::new(Exit::BadInput, format!("{} cannot be read: {e}", program.display()));
+    let unreadable = |e| Failure::input(format!("{} cannot be read: {e}", program.display()));
     Ok(fingerprint([fs::read(program).map_err(unreadable)?]))
 }
 

@@ -6,8 +6,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::cells::Store;
-use super::idle;
-use super::table::{FAULTS, Fault};
+use super::table::{Fault, faults as all, reason_to_stay};
 
 /// A cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -51,26 +50,26 @@ impl Matrix {
     pub fn new(faults: &[&'static Fault], cases: &[String], store: &Store) -> Self {
         let rows: Vec<(String, Vec<State>)> = cases
             .iter()
-            .map(|case| (case.clone(), faults.iter().map(|fault| state(store, fault.id, case)).collect()))
+            .map(|case| (case.clone(), faults.iter().map(|fault| state(store, &fault.id, case)).collect()))
             .collect();
         let mut matrix = Self {
-            faults: faults.iter().map(|f| f.id).collect(),
+            faults: faults.iter().map(|f| f.id.as_str()).collect(),
             cases: rows,
             checks: 0,
             decided: 0,
             idle: Vec::new(),
         };
-        let all_planted = faults.len() == FAULTS.len();
+        let all_planted = faults.len() == all().len();
         for (case, states) in &matrix.cases {
             let Some(sound) = store.get(None, case) else { continue };
             let green: BTreeSet<String> = sound.green.iter().map(|id| check_of(id)).collect();
             matrix.checks += green.len();
             if all_planted && !states.contains(&State::NotRun) {
-                let cells = faults.iter().filter_map(|fault| store.get(Some(fault.id), case));
+                let cells = faults.iter().filter_map(|fault| store.get(Some(&fault.id), case));
                 let red: BTreeSet<String> = cells.flat_map(|cell| cell.red).map(|id| check_of(&id)).collect();
                 matrix.decided += green.len();
                 let idle = green.difference(&red);
-                matrix.idle.extend(idle.map(|check| Idle { check: check.clone(), reason: idle::reason(check) }));
+                matrix.idle.extend(idle.map(|check| Idle { check: check.clone(), reason: reason_to_stay(check) }));
             }
         }
         matrix
@@ -85,7 +84,7 @@ impl Matrix {
     /// Whether cells are to come, of all faults. With some of the faults nothing is said of checks that stay
     /// green.
     fn is_incomplete(&self) -> bool {
-        self.faults.len() == FAULTS.len() && self.count(|state| state == State::NotRun) > 0
+        self.faults.len() == all().len() && self.count(|state| state == State::NotRun) > 0
     }
 
     fn count(&self, wanted: impl Fn(State) -> bool) -> usize {
@@ -206,21 +205,21 @@ mod tests {
         let keys = cases.iter().map(|case| (case.clone(), "key".to_string())).collect();
         let folder = OutputFolder::open(&folder.path().join("out"), "faults").unwrap();
         let store = Store::open(&folder, &keys).unwrap();
-        let faults: Vec<&'static Fault> = FAULTS.iter().collect();
+        let faults: Vec<&'static Fault> = all().iter().collect();
         let report = |case: &str, status| {
             let records = vec![(format!("{case}/h=1/2/error"), status), (format!("{case}/drift"), Status::Pass)];
             Ok(Report {
                 case: case.into(),
                 seconds: 1.0,
                 records,
-                passed: vec![FAULTS[0].id.into(), FAULTS[1].id.into()],
+                passed: vec![all()[0].id.clone(), all()[1].id.clone()],
             })
         };
         for case in ["a/b", "a/c"] {
             store.put(None, case, report(case, Status::Pass)).unwrap();
-            store.put(Some(FAULTS[0].id), case, report(case, Status::Fail)).unwrap();
+            store.put(Some(&all()[0].id), case, report(case, Status::Fail)).unwrap();
         }
-        store.put(Some(FAULTS[1].id), "a/b", report("a/b", Status::Pass)).unwrap();
+        store.put(Some(&all()[1].id), "a/b", report("a/b", Status::Pass)).unwrap();
         let matrix = Matrix::new(&faults, &cases, &store);
         let row = |case: usize| &matrix.cases[case].1[..3];
         assert_eq!(row(0), [State::Fail(1), State::Pass, State::NotApplicable]);

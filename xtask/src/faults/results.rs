@@ -22,9 +22,8 @@ pub struct Results {
 /// What caught a fault.
 #[derive(Debug, Serialize)]
 pub struct Caught {
-    id: &'static str,
-    what: &'static str,
-    cases: &'static [&'static str],
+    #[serde(flatten)]
+    fault: &'static Fault,
     /// Records that fail, or are errors, with the fault alone.
     caught_by: Vec<String>,
     /// Checks that were made with it.
@@ -35,13 +34,11 @@ pub struct Caught {
 }
 
 impl Caught {
-    fn new(fault: &Fault, cases: &[String], store: &Store, all: bool) -> Self {
-        let Fault { id, what, cases: named } = *fault;
-        let mut caught = Self { id, what, cases: named, caught_by: Vec::new(), checks: 0, ended: Vec::new() };
-        let first = named.iter().map(|case| case.to_string());
-        let others = cases.iter().filter(|case| all && !named.contains(&case.as_str())).cloned();
-        for case in first.chain(others) {
-            let (Some(sound), Some(cell)) = (store.get(None, &case), store.get(Some(id), &case)) else { continue };
+    fn new(fault: &'static Fault, cases: &[String], store: &Store, all: bool) -> Self {
+        let mut caught = Self { fault, caught_by: Vec::new(), checks: 0, ended: Vec::new() };
+        let others = cases.iter().filter(|case| all && !fault.cases.contains(case));
+        for case in fault.cases.iter().chain(others) {
+            let (Some(sound), Some(cell)) = (store.get(None, case), store.get(Some(&fault.id), case)) else { continue };
             caught.checks += sound.green.len();
             caught.caught_by.extend(cell.red);
             caught.ended.extend(cell.ended.map(|why| format!("{case}: {why}")));
@@ -85,15 +82,15 @@ impl Results {
 
     /// One line per fault.
     pub fn text(&self) -> String {
-        let width = self.faults.iter().map(|fault| fault.id.len()).max().unwrap_or(0);
+        let width = self.faults.iter().map(|caught| caught.fault.id.len()).max().unwrap_or(0);
         let mut out = String::new();
-        for fault in &self.faults {
-            let verdict = match fault.caught_by.first() {
-                Some(first) => format!("caught    {:>3} of {:>3} checks: {first}", fault.caught_by.len(), fault.checks),
-                None => format!("SURVIVES    0 of {:>3} checks: {}", fault.checks, fault.cases.join(", ")),
+        for Caught { fault, caught_by, checks, ended } in &self.faults {
+            let verdict = match caught_by.first() {
+                Some(first) => format!("caught    {:>3} of {checks:>3} checks: {first}", caught_by.len()),
+                None => format!("SURVIVES    0 of {checks:>3} checks: {}", fault.cases.join(", ")),
             };
             let _ = writeln!(out, "{:width$}  {verdict}", fault.id);
-            for ending in &fault.ended {
+            for ending in ended {
                 let _ = writeln!(out, "{:width$}  ended without records: {ending}", "");
             }
         }
@@ -110,13 +107,13 @@ impl Results {
         let mut out = String::from(
             "# Planted errors and the checks that catch them\n\n| | fault | what is wrong | named cases | failing checks |\n|---|---|---|---|---|\n",
         );
-        for (number, fault) in self.faults.iter().enumerate() {
-            let red = match fault.caught_by.as_slice() {
-                [] => format!("**none** of {}", fault.checks),
+        for (number, Caught { fault, caught_by, checks, .. }) in self.faults.iter().enumerate() {
+            let red = match caught_by.as_slice() {
+                [] => format!("**none** of {checks}"),
                 all => {
                     let shown: Vec<String> = all.iter().take(2).map(|id| format!("`{id}`")).collect();
                     let more = if all.len() > 2 { ", …" } else { "" };
-                    format!("{} of {}: {}{more}", all.len(), fault.checks, shown.join(", "))
+                    format!("{} of {checks}: {}{more}", all.len(), shown.join(", "))
                 }
             };
             let cases = fault.cases.join(", ");
@@ -149,8 +146,10 @@ mod tests {
         let folder = OutputFolder::open(&folder.path().join("out"), "faults").unwrap();
         let store = Store::open(&folder, &BTreeMap::from([("a/b".into(), "key".into())])).unwrap();
         let cases = ["a/b".to_string()];
-        let sign = &Fault { id: "sign", what: "a sign", cases: &["a/b"] };
-        let root = &Fault { id: "root", what: "a root", cases: &["a/b"] };
+        let fault = |id: &str| -> &'static Fault {
+            Box::leak(Box::new(Fault { id: id.into(), what: format!("a {id}"), cases: vec!["a/b".into()] }))
+        };
+        let [sign, root] = ["sign", "root"].map(fault);
         store.put(None, "a/b", Ok(report(&[Status::Pass, Status::Info, Status::Pass]))).unwrap();
         store.put(Some("sign"), "a/b", Ok(report(&[Status::Pass, Status::Info, Status::Error]))).unwrap();
         store.put(Some("root"), "a/b", Err("exit status: 101".into())).unwrap();

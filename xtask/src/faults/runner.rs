@@ -13,7 +13,6 @@ use fisura_verification::record::Status;
 use serde::{Deserialize, Serialize};
 
 use super::PLANTED;
-use crate::exit::Exit;
 use crate::failure::Failure;
 
 /// What a process says of a case it has run, on a line of its standard output.
@@ -101,9 +100,8 @@ impl Runner {
 
     /// Runs cases in one process until it has done them all or ends before that; how many are settled.
     fn process(&self, job: &Job, cases: &[(String, Duration)], tell: Tell) -> Result<usize, Failure> {
-        let unstarted = |error: std::io::Error| {
-            Failure::new(Exit::BadInput, format!("{} cannot be started: {error}", self.program.display()))
-        };
+        let unstarted =
+            |error: std::io::Error| Failure::input(format!("{} cannot be started: {error}", self.program.display()));
         let (out, mut complaints) = (tempfile::tempdir().map_err(unstarted)?, tempfile::tempfile().map_err(unstarted)?);
         let mut command = Command::new(&self.program);
         command.arg("planted").args(cases.iter().map(|(case, _)| case)).args(["--threads", "1", "--quiet", "--out"]);

@@ -2,7 +2,7 @@
 
 use super::{Convergence, Curve, Norm, Refined, above_floor, has_times, words};
 use crate::extremes::{larger, smaller};
-use crate::record::{self, Axis, CurveStyle, Figure, FigureBody, Floor, Scale, SlopeTriangle};
+use crate::record::{self, Axis, CurveStyle, Figure, FigureBody, Floor, SlopeTriangle};
 
 /// Column of the unknowns.
 pub(super) const UNKNOWNS: &str = "unknowns";
@@ -57,7 +57,6 @@ fn figure(study: &Convergence, index: usize, against: Against, curves: &[&Curve]
         Against::Cost => (format!("timing/{name}"), per(study, "second"), "measured wall time (s)", SECONDS),
     };
     let unit = if norm.unit == "1" { String::new() } else { format!(" ({})", norm.unit) };
-    let axis = |label: String| Axis { label, scale: Scale::Log, range: None };
     let slopes = if against == Against::Cost { Vec::new() } else { triangles(study, index, against, curves) };
     Figure {
         id,
@@ -66,8 +65,8 @@ fn figure(study: &Convergence, index: usize, against: Against, curves: &[&Curve]
         caption: study.caption.clone(),
         deviations: study.deviations.clone(),
         body: FigureBody::Chart {
-            x: axis(x.to_string()),
-            y: axis(format!("{}{unit}", norm.quantity)),
+            x: Axis::logarithmic(x),
+            y: Axis::logarithmic(&format!("{}{unit}", norm.quantity)),
             curves: curves.iter().map(|curve| drawn(study, curve, norm, against, column)).collect(),
             regions: Vec::new(),
             slopes,
@@ -82,17 +81,9 @@ fn per(study: &Convergence, what: &str) -> String {
 
 fn drawn(study: &Convergence, curve: &Curve, norm: &Norm, against: Against, x: &str) -> record::Curve {
     let stem = if against == Against::Cost { study.timing_stem(curve) } else { study.series_stem(curve) };
-    record::Curve {
-        label: curve.name.replace('=', " = "),
-        series: format!("series/{stem}.csv"),
-        x: x.into(),
-        y: norm.column(),
-        x_scale: 1.0,
-        y_scale: 1.0,
-        style: CurveStyle::Markers,
-        uncertainty_absolute: 0.0,
-        uncertainty_relative: 0.0,
-    }
+    let (label, series) = (curve.name.replace('=', " = "), format!("series/{stem}.csv"));
+    let line = record::Curve::line(&label, &series, [x, &norm.column()]);
+    record::Curve { style: CurveStyle::Markers, ..line }
 }
 
 fn positive(level: &(f64, f64)) -> bool {

@@ -13,7 +13,7 @@ use crate::case::Case;
 use crate::case::expand::CaseScene;
 use crate::extremes::larger;
 use crate::output::history::Table;
-use crate::record::{Axis, CurveStyle, Figure, FigureBody, Reference, Scale};
+use crate::record::{Axis, CurveStyle, Figure, FigureBody, Reference};
 use crate::scene::plain::PlainScene;
 use crate::study::charts::curve;
 use crate::study::dense;
@@ -85,15 +85,11 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
         below(degree, &scene, frequency, &mut findings)?;
         above(degree, &scene, frequency, &mut findings)?;
     }
-    let energy = Axis { scale: Scale::Log, ..Axis::linear("elastic energy (J/m)") };
-    findings.figures.push(Figure {
-        id: series_stem(case, "energy"),
-        suite: case.suite.clone(),
-        title: "Elastic energy below and above the critical step".into(),
-        caption: "A block whose free edges cut spans, held at its left side and set in motion.".into(),
-        deviations: Vec::new(),
-        body: FigureBody::chart([Axis::linear("step"), energy], curves, Vec::new()),
-    });
+    let energy = Axis::logarithmic("elastic energy (J/m)");
+    let title = "Elastic energy below and above the critical step";
+    let caption = "A block whose free edges cut spans, held at its left side and set in motion.";
+    let body = FigureBody::chart([Axis::linear("step"), energy], curves, Vec::new());
+    findings.figures.push(Figure::new(&case.suite, [&series_stem(case, "energy"), title, caption], body));
     findings.series.push((stem, table));
     Ok(findings)
 }
