@@ -11,7 +11,8 @@
 //! | `report.html` | a reader with a browser | [`html`] |
 //! | `summary.md` | the step summary of a CI run | [`markdown`] |
 //! | `junit.xml` | the test view of a CI service | [`junit`] |
-//! | `metrics/` | charts over commits | [`metrics`] |
+//! | `metrics.json` | trend charts over commits | [`metrics`] |
+//! | `metrics/` | dashboards, in the form of each | [`dashboards`] |
 //!
 //! [`compare`] holds two such sets side by side, [`annotations`] marks failed checks in the view of a CI
 //! service.
@@ -39,6 +40,7 @@ pub mod bundle;
 pub mod chart;
 pub mod colour;
 pub mod compare;
+pub mod dashboards;
 pub mod docs;
 pub mod error;
 pub mod field;
@@ -95,7 +97,7 @@ pub struct Rendered {
 }
 
 /// Renders the results in `folder` to `out`, which may be the same: figures, `report.html`, `summary.md`,
-/// `junit.xml`, `metrics/`.
+/// `junit.xml`, `metrics.json`, `metrics/`.
 ///
 /// # Errors
 /// `results.json` is missing, malformed or of another schema, or a file cannot be written. Figures that
@@ -127,7 +129,9 @@ pub fn render(folder: &Path, out: &OutputFolder) -> Result<Rendered, ReportError
     files.push(write(out, "summary.md", &markdown::render_markdown(&results))?);
     let junit = junit::render_junit(&results).map_err(|e| failed("junit.xml", e))?;
     files.push(write(out, "junit.xml", &junit)?);
-    for (name, content) in metrics::files(&results).map_err(|e| failed("metrics", e))? {
+    let metrics = metrics::render_metrics(&results).map_err(|e| failed("metrics.json", e))?;
+    files.push(write(out, "metrics.json", &metrics)?);
+    for (name, content) in dashboards::files(&results) {
         files.push(write(out, &format!("metrics/{name}"), &content)?);
     }
     if broken.is_empty() { Ok(Rendered { results, files }) } else { Err(ReportError::Figures(broken)) }

@@ -29,6 +29,7 @@ fn machine_and_markdown_reports_keep_their_form() {
     render(folder.path()).unwrap();
     assert_snapshot!("summary", read(folder.path(), "summary.md"));
     assert_snapshot!("junit", read(folder.path(), "junit.xml"));
+    assert_snapshot!("metrics", read(folder.path(), "metrics.json"));
     assert_snapshot!("text", fisura_reports::text::render_text(&crate::fixture::results()));
 }
 

@@ -69,7 +69,7 @@ fn checks_that_hold_end_with_0_and_leave_a_report() {
     let place = workspace();
     let outcome = place.xtask(&["verify"]).with_status(0).complains_of(&["[1/1] energy/block pass"]);
     assert!(outcome.out.contains("PASS"), "{outcome:?}");
-    for name in ["results.json", "report.html", "summary.md", "junit.xml"] {
+    for name in ["results.json", "report.html", "summary.md", "junit.xml", "metrics.json"] {
         assert!(place.path("target/fisura/verify").join(name).is_file(), "{name} is missing");
     }
     let results = place.xtask(&["verify", "--suite", "energy", "--format", "json", "--quiet"]).with_status(0);
