@@ -121,7 +121,7 @@ mod tests {
             mass: Mass::Lumped,
             gravity: [0.0; 2],
         };
-        TimePlan::within(&analysis, &Output { samples, frames: Vec::new(), bodies: false }, critical, passing)
+        TimePlan::within(&analysis, &Output::rows(samples), critical, passing)
     }
 
     #[test]

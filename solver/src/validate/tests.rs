@@ -40,20 +40,13 @@ fn square() -> Scene {
         },
         materials: [("glass".to_string(), glass)].into(),
         bodies: vec![Body {
-            name: "square".into(),
-            material: "glass".into(),
-            shape: Shape::Rectangle { min: [0.0; 2], max: [0.01; 2] },
-            particles_per_cell: [2, 2],
-            layout: Layout::Gauss,
-            velocity: [0.0; 2],
-            angular_velocity: 0.0,
-            rigid: false,
-            tractions: vec![],
-            cracks: vec![Crack { from: [0.0, 0.005], to: [0.005, 0.005], half_width: None }],
+            cracks: vec![Crack::seed([0.0, 0.005], [0.005, 0.005])],
+            ..Body::at_rest("square", "glass", Shape::Rectangle { min: [0.0; 2], max: [0.01; 2] })
         }],
         contact: None,
         boundaries: vec![],
-        output: Output { samples: 10, frames: vec![], bodies: false },
+        equilibrium: false,
+        output: Output::rows(10),
     }
 }
 
@@ -151,7 +144,7 @@ fn cracks_lie_in_the_closure_of_their_body() {
         errors(|s| {
             let disk = |radius| Shape::Disk { center: [0.005; 2], radius };
             s.bodies[0].shape = Shape::Difference { of: Box::new(disk(0.005)), minus: vec![disk(0.001)] };
-            s.bodies[0].cracks[0] = Crack { from, to, half_width: None };
+            s.bodies[0].cracks[0] = Crack::seed(from, to);
         })
     };
     assert!(disk([0.0, 0.005], [0.004, 0.005]).is_empty(), "from the rim to the rim of the hole");
@@ -173,7 +166,7 @@ fn a_crack_does_not_leap_over_a_hole() {
         errors(|s| {
             let hole = Shape::Disk { center: [0.0025, 0.005], radius };
             s.bodies[0].shape = Shape::Difference { of: Box::new(s.bodies[0].shape.clone()), minus: vec![hole] };
-            s.bodies[0].cracks[0] = Crack { from: [0.0, 0.005], to: [0.01, 0.005], half_width: None };
+            s.bodies[0].cracks[0] = Crack::seed([0.0, 0.005], [0.01, 0.005]);
         })
     };
     assert_eq!(crack(0.3e-3), ["body.0.crack.0.from"], "neither end nor the middle is in the hole");
@@ -187,7 +180,11 @@ fn tractions_act_on_segments_of_their_body() {
     let segment = |ends: [[f64; 2]; 2]| {
         errors(|s| {
             s.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [0.008, 0.01] };
-            s.bodies[0].tractions = vec![Traction { edge: Edge::Segment(ends), stress: [1e6, 0.0], ramp: None }];
+            s.bodies[0].tractions = vec![Traction {
+                edge: Edge::Segment(ends),
+                load: Load::Stress([1e6, 0.0]),
+                time: TimeFactor::default(),
+            }];
         })
     };
     assert!(segment([[0.008, 0.0], [0.008, 0.01]]).is_empty(), "on the boundary");
@@ -198,7 +195,7 @@ fn tractions_act_on_segments_of_their_body() {
         let notch = Shape::Rectangle { min: [0.004, -0.001], max: [0.005, 0.002] };
         s.bodies[0].shape = Shape::Difference { of: Box::new(s.bodies[0].shape.clone()), minus: vec![notch] };
         let edge = Edge::Segment([[0.0, 0.0], [0.01, 0.0]]);
-        s.bodies[0].tractions = vec![Traction { edge, stress: [0.0, 1e6], ramp: None }];
+        s.bodies[0].tractions = vec![Traction { edge, load: Load::Stress([0.0, 1e6]), time: TimeFactor::default() }];
     });
     assert_eq!(notched, ["body.0.traction.0.segment"], "over the mouth of a notch");
 }
@@ -231,7 +228,7 @@ fn a_boundary_holds_a_body() {
         warnings(|s| {
             s.bodies[0].shape = Shape::Rectangle { min, max };
             s.bodies[0].cracks.clear();
-            s.boundaries = vec![Boundary { side, fix: [true, true], velocity: [0.0; 2] }];
+            s.boundaries = vec![Boundary::fixed(side, [true, true])];
         })
     };
     for side in [Side::Left, Side::Right, Side::Bottom, Side::Top] {
@@ -308,10 +305,7 @@ fn gauss_quadrature_by_spans_is_refused_where_it_does_not_exist() {
     };
     assert_eq!(above(|floor| floor), [""; 0]);
     assert_eq!(above(|floor| Shape::Difference { of: Box::new(floor), minus: vec![] }), key);
-    assert_eq!(
-        but(|s| s.boundaries = vec![Boundary { side: Side::Left, fix: [true, false], velocity: [1.0, 0.0] }]),
-        key
-    );
+    assert_eq!(but(|s| s.boundaries = vec![Boundary::driven(Side::Left, [true, false], [1.0, 0.0])]), key);
 }
 
 #[test]
@@ -391,7 +385,7 @@ fn several_bodies_need_the_updated_frame_and_room() {
     assert_eq!(smoothed, ["contact.self_contact"]);
     let pulled = changed(|s| {
         s.contact = Some(Contact { friction: 0.1, fragments: true, ..Contact::default() });
-        s.bodies[1].tractions = vec![Traction { edge: Edge::Side(Side::Right), stress: [1e3, 0.0], ramp: None }];
+        s.bodies[1].tractions = vec![Traction::on(Side::Right, [1e3, 0.0], TimeFactor::default())];
     });
     assert_eq!(pulled, ["body.1.traction"]);
     assert_eq!(changed(|s| s.bodies[1].name = "left".into()), ["body.1.name"]);
@@ -422,7 +416,7 @@ fn several_bodies_need_the_updated_frame_and_room() {
 /// other.
 #[test]
 fn sides_that_meet_agree_in_their_corner() {
-    let side = |side, fix, velocity| Boundary { side, fix, velocity };
+    let side = Boundary::driven;
     let both = |a: &Boundary, b: &Boundary| {
         let keys = errors(|s| s.boundaries = vec![a.clone(), b.clone()]);
         assert_eq!(keys, errors(|s| s.boundaries = vec![b.clone(), a.clone()]), "in the other order");

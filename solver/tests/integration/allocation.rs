@@ -41,10 +41,8 @@ fn in_the_total_frame() {
     only_lists("mapped", &patch_scene(&bent_patch(2, 10), 3));
     let mut driven = elastic_scene(2, [0.01, 0.005], [60, 30]);
     driven.analysis.end_time = 1e-3;
-    driven.boundaries = vec![
-        Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] },
-        Boundary { side: Side::Right, fix: [true, false], velocity: [1.0, 0.0] },
-    ];
+    driven.boundaries =
+        vec![Boundary::fixed(Side::Left, [true, true]), Boundary::driven(Side::Right, [true, false], [1.0, 0.0])];
     only_lists("driven sides", &driven);
     let mut finite = driven.clone();
     finite.analysis.kinematics = Kinematics::Finite;

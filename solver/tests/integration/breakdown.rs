@@ -29,7 +29,7 @@ fn breakdown(scene: &Scene) -> Breakdown {
 
 fn moving(degree: usize) -> Scene {
     let mut scene = elastic_scene(degree, [0.01, 0.005], [20, 10]);
-    scene.bodies[0].tractions = vec![Traction { edge: Edge::Side(Side::Right), stress: [1e6, 0.0], ramp: None }];
+    scene.bodies[0].tractions = vec![Traction::on(Side::Right, [1e6, 0.0], TimeFactor::default())];
     scene
 }
 
@@ -52,10 +52,8 @@ fn beyond_the_critical_step_the_run_says_so() {
     spinning.bodies[0].angular_velocity = 1e3;
     check("spinning, without loads", &with_step(spinning, 1.3, 4000));
     let mut driven = elastic_scene(2, [0.01, 0.005], [20, 10]);
-    driven.boundaries = vec![
-        Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] },
-        Boundary { side: Side::Right, fix: [true, false], velocity: [1.0, 0.0] },
-    ];
+    driven.boundaries =
+        vec![Boundary::fixed(Side::Left, [true, true]), Boundary::driven(Side::Right, [true, false], [1.0, 0.0])];
     check("driven", &with_step(driven, 1.3, 2000));
 }
 
@@ -108,8 +106,8 @@ fn a_body_turned_inside_out_is_named() {
             scene.materials.get_mut("glass").unwrap().fracture = fracture.clone();
             scene.bodies[0].shape = crate::common::rectangle([0.003, 0.001], [0.007, 0.004]);
             scene.bodies[0].tractions = vec![
-                Traction { edge: Edge::Side(Side::Right), stress: [-2e12, 0.0], ramp: None },
-                Traction { edge: Edge::Side(Side::Left), stress: [2e12, 0.0], ramp: None },
+                Traction::on(Side::Right, [-2e12, 0.0], TimeFactor::default()),
+                Traction::on(Side::Left, [2e12, 0.0], TimeFactor::default()),
             ];
             let name = format!("{frame:?}, {fracture:?}");
             let (simulation, found) = first_breakdown(&scene, &name);
@@ -140,7 +138,7 @@ fn no_number_that_is_not_finite_outlives_its_step() {
     for kinematics in [Kinematics::Small, Kinematics::Finite] {
         for frame in [Frame::Total, Frame::Updated] {
             for mut scene in [notched_plate(1e308), crate::common::pulled_plate(1e308)] {
-                scene.bodies[0].tractions.iter_mut().for_each(|traction| traction.ramp = None);
+                scene.bodies[0].tractions.iter_mut().for_each(|traction| traction.time = TimeFactor::default());
                 (scene.analysis.frame, scene.analysis.kinematics) = (frame, kinematics);
                 let fractures = scene.materials["glass"].fracture.is_some();
                 let name = format!("{frame:?}, {kinematics:?}, fracture: {fractures}");
@@ -172,7 +170,7 @@ fn a_critical_step_that_is_no_number_is_refused() {
 fn numbers_that_are_not_finite_are_named_where_they_begin() {
     for frame in [Frame::Total, Frame::Updated] {
         let mut scene = notched_plate(1e200);
-        scene.bodies[0].tractions[1].ramp = None;
+        scene.bodies[0].tractions[1].time = TimeFactor::default();
         scene.analysis.frame = frame;
         let mut simulation = Simulation::new(&scene).unwrap();
         let found = loop {
@@ -206,8 +204,8 @@ fn a_long_step_is_named_beside_the_cause_and_not_for_it() {
     crushed.analysis.kinematics = Kinematics::Finite;
     crushed.bodies[0].velocity = [0.0; 2];
     crushed.bodies[0].tractions = vec![
-        Traction { edge: Edge::Side(Side::Right), stress: [-2e12, 0.0], ramp: None },
-        Traction { edge: Edge::Side(Side::Left), stress: [2e12, 0.0], ramp: None },
+        Traction::on(Side::Right, [-2e12, 0.0], TimeFactor::default()),
+        Traction::on(Side::Left, [2e12, 0.0], TimeFactor::default()),
     ];
     let scenes =
         [("leaving", leaving, "the body moves out of the mesh"), ("crushed", crushed, "the body is turned inside")];

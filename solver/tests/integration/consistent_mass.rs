@@ -107,13 +107,13 @@ fn momentum_is_the_impulse_and_the_ledger_closes() {
 fn work_of_driven_sides_closes_the_ledger() {
     for degree in 1..=4 {
         let mut scene = consistent(elastic_scene(degree, [0.01, 0.005], [16, 8]), degree + 1);
-        let drive = |side, fix, velocity| Boundary { side, fix, velocity };
+        let drive = Boundary::driven;
         scene.boundaries = vec![
             drive(Side::Left, [true, false], [0.0; 2]),
             drive(Side::Right, [true, false], [0.5, 0.0]),
             drive(Side::Bottom, [false, true], [0.0; 2]),
         ];
-        scene.bodies[0].tractions = vec![Traction { edge: Edge::Side(Side::Top), stress: [2e5, 1e6], ramp: None }];
+        scene.bodies[0].tractions = vec![Traction::on(Side::Top, [2e5, 1e6], TimeFactor::default())];
         let (_, samples) = run(&scene);
         let last = samples.last().unwrap();
         assert!(closure(&samples) <= 1e-12, "degree {degree}: closure {:e}", closure(&samples));

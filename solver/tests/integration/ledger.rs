@@ -112,11 +112,11 @@ fn closure_falls_with_the_square_of_the_step() {
 /// Elastic bodies close to round-off, whatever moves them.
 #[test]
 fn elastic_scenes_close_to_round_off() {
-    let drive = |side, velocity| Boundary { side, fix: [true, false], velocity: [velocity, 0.0] };
+    let drive = |side, velocity| Boundary::driven(side, [true, false], [velocity, 0.0]);
     for degree in 1..=4 {
         let mut scene = elastic_scene(degree, [0.01, 0.005], [20, 10]);
         scene.boundaries = vec![drive(Side::Left, 0.0), drive(Side::Right, 0.5)];
-        scene.bodies[0].tractions = vec![Traction { edge: Edge::Side(Side::Top), stress: [2e5, 1e6], ramp: None }];
+        scene.bodies[0].tractions = vec![Traction::on(Side::Top, [2e5, 1e6], TimeFactor::default())];
         scene.analysis.gravity = [0.0, 1e5];
         let (_, samples) = run(&scene);
         assert!(relative_closure(&samples) <= 1e-12, "degree {degree}: {:e}", relative_closure(&samples));

@@ -24,9 +24,8 @@ fn updated(simulation: &Simulation) -> &UpdatedFrame {
 /// A clamped strip under a traction at its free end, whose margin on the mesh is two spans.
 fn cantilever(degree: usize, stress: f64) -> Scene {
     let mut scene = scene(degree, 20, [0.0, 0.002], [0.008, 0.007]);
-    scene.bodies[0].tractions =
-        vec![Traction { edge: Edge::Side(Side::Right), stress: [stress, 0.5 * stress], ramp: Some(2e-6) }];
-    scene.boundaries = vec![Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] }];
+    scene.bodies[0].tractions = vec![Traction::on(Side::Right, [stress, 0.5 * stress], TimeFactor::ramp(2e-6))];
+    scene.boundaries = vec![Boundary::fixed(Side::Left, [true, true])];
     scene.analysis.end_time = 12e-6;
     scene
 }
@@ -35,9 +34,9 @@ fn cantilever(degree: usize, stress: f64) -> Scene {
 fn notched_plate(cells: usize) -> Scene {
     let mut scene = scene(2, cells, [0.0, 0.002], [0.01, 0.008]);
     scene.materials.get_mut("solid").unwrap().fracture = Some(brittle());
-    let pull = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: Some(2e-6) };
+    let pull = |side, stress| Traction::on(side, [0.0, stress], TimeFactor::ramp(2e-6));
     scene.bodies[0].tractions = vec![pull(Side::Top, 3e6), pull(Side::Bottom, -3e6)];
-    scene.bodies[0].cracks = vec![Crack { from: [0.0, 0.005], to: [0.005, 0.005], half_width: None }];
+    scene.bodies[0].cracks = vec![Crack::seed([0.0, 0.005], [0.005, 0.005])];
     scene.analysis.safety = 0.8;
     scene.analysis.end_time = 6e-6;
     scene.output.samples = 12;
@@ -143,10 +142,8 @@ fn small_vibrations_are_those_of_the_total_frame_and_the_ledger_closes() {
 fn the_ledger_closes_in_large_motion_with_driven_and_fixed_sides() {
     let mut scene = scene(2, 20, [0.0, 0.002], [0.00813, 0.0071]);
     scene.bodies[0].velocity = [-20.0, 35.0];
-    scene.boundaries = vec![
-        Boundary { side: Side::Left, fix: [true, false], velocity: [15.0, 0.0] },
-        Boundary { side: Side::Top, fix: [false, true], velocity: [0.0; 2] },
-    ];
+    scene.boundaries =
+        vec![Boundary::driven(Side::Left, [true, false], [15.0, 0.0]), Boundary::fixed(Side::Top, [false, true])];
     scene.analysis.gravity = [0.0, 1e6];
     scene.analysis.end_time = 40e-6;
     scene.output.samples = 40;
@@ -203,7 +200,7 @@ fn a_notched_plate_cracks_as_in_the_total_frame_the_more_so_the_finer_the_mesh()
 fn a_flying_cracked_plate_closes_its_ledger() {
     let mut scene = notched_plate(40);
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0006, 0.002], max: [0.0073, 0.006] };
-    scene.bodies[0].cracks = vec![Crack { from: [0.0006, 0.004], to: [0.004, 0.004], half_width: None }];
+    scene.bodies[0].cracks = vec![Crack::seed([0.0006, 0.004], [0.004, 0.004])];
     scene.bodies[0].velocity = [100.0, 60.0];
     scene.bodies[0].tractions.clear();
     scene.analysis.end_time = 20e-6;
@@ -215,7 +212,7 @@ fn a_flying_cracked_plate_closes_its_ledger() {
 /// step.
 fn struck_block(degree: usize, fraction: f64) -> bool {
     let mut scene = scene(degree, 16, [0.00237, 0.0025], [0.0075, 0.0075]);
-    let kick = Traction { edge: Edge::Side(Side::Left), stress: [1e4, 7e3], ramp: Some(1.0) };
+    let kick = Traction::on(Side::Left, [1e4, 7e3], TimeFactor::ramp(1.0));
     scene.bodies[0].tractions = vec![kick];
     let critical = Simulation::new(&scene).unwrap().plan().critical;
     scene.analysis.time_step = TimeStep::Fixed(fraction * critical);

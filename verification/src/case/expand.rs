@@ -101,7 +101,7 @@ impl Case {
 
     fn scene_of(&self, tree: Tree) -> Result<CaseScene, SceneFileError> {
         let fail = |problems: Vec<Problem>| self.document.error(&problems);
-        let scene = read_scene(&tree.node, "scene").map_err(fail)?;
+        let scene = read_scene(&tree.node, "scene", self.document.folder()).map_err(fail)?;
         check_scene(&scene, &tree.node, "scene").map_err(fail)?;
         let values = self.values(&tree.node)?;
         let Tree { name, parameters, energy_factor, .. } = tree;

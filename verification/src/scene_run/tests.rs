@@ -61,7 +61,7 @@ fn a_breakdown_keeps_what_was_computed_and_is_written() {
     let critical = run_scene(&scene, &mut |_| {}, &mut |_, _| {}).summary.critical_step_s.unwrap();
     scene.analysis.time_step = TimeStep::Fixed(1.2 * critical);
     scene.analysis.end_time = 240.0 * critical;
-    scene.output = fisura::scene::Output { samples: 100, frames: vec![0.0], bodies: false };
+    scene.output = fisura::scene::Output { frames: vec![0.0], ..Output::rows(100) };
     let run = run_scene(&scene, &mut |_| {}, &mut |_, _| {});
     let breakdown = run.breakdown.as_ref().expect("1.2 times the critical step is unstable");
     assert!(run.history.rows() >= 2 && run.history.rows() < 101);

@@ -263,18 +263,7 @@ mod tests {
             Point { position: *place, velocity, displacement, strain, stress, volume: 0.01 }
         };
         let points: Vec<Point> = places.iter().map(point).collect();
-        let body = Body {
-            name: String::new(),
-            material: String::new(),
-            shape: shape.clone(),
-            particles_per_cell: [2, 2],
-            layout: Layout::Uniform,
-            velocity: [0.0; 2],
-            angular_velocity: 0.0,
-            rigid: false,
-            tractions: vec![],
-            cracks: vec![],
-        };
+        let body = Body { layout: Layout::Uniform, ..Body::at_rest("", "", shape.clone()) };
         let surface = Surface::new(&Mesh::uniform([2; 2], [0.0; 2], [20.0; 2], [100; 2]), &body);
         let Slicing { of, seams, .. } = Slicing::new(&points, &surface, 0.2);
         (places, of, seams)
