@@ -129,12 +129,17 @@ impl ConditionSample {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProbeSample {
     /// Name in columns.
-    pub name: String,
+    name: String,
     /// Displacement (m), velocity (m/s), stress `[xx, yy, xy]` (Pa).
-    pub values: [f64; 7],
+    values: [f64; 7],
 }
 
 impl ProbeSample {
+    /// Displacement (m), velocity (m/s), and stress `[xx, yy, xy]` (Pa) at a probe.
+    pub fn new(name: &str, values: [f64; 7]) -> Self {
+        Self { name: column_name(name), values }
+    }
+
     const QUANTITIES: [&str; 7] = ["ux_m", "uy_m", "vx_m_per_s", "vy_m_per_s", "sxx_pa", "syy_pa", "sxy_pa"];
 
     fn named_values(&self) -> impl Iterator<Item = (String, f64)> + '_ {

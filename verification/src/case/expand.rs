@@ -34,9 +34,10 @@ pub struct CaseScene {
 fn depth_of_one_value(path: &str) -> usize {
     let key = path.rsplit('.').next().unwrap_or(path);
     match key {
-        "cells" | "origin" | "size" | "particles_per_cell" | "velocity" | "gravity" | "fix" | "frames" | "min"
-        | "max" | "center" | "from" | "to" | "stress" | "weights" | "angles" => 1,
-        "knots" | "points" | "segment" | "control_points" => 2,
+        "cells" | "origin" | "size" | "particles_per_cell" | "velocity" | "displacement" | "velocity_gradient"
+        | "gravity" | "fix" | "frames" | "at" | "min" | "max" | "center" | "from" | "to" | "stress" | "weights"
+        | "angles" => 1,
+        "knots" | "points" | "segment" | "control_points" | "table" | "velocity_gradient" => 2,
         "minus" => usize::MAX,
         _ => 0,
     }

@@ -84,7 +84,7 @@ impl TotalFrame {
         let fracture = self.fracture.as_ref();
         let fracture = fracture.map(|f| (&f.model, probe.on_patch.interpolate(f.field.control_values()).value));
         let [xx, yy, xy] = stress_at(&self.moduli, strain, fracture);
-        ProbeSample { name: probe.name.clone(), values: [ux.value, uy.value, vx, vy, xx, yy, xy] }
+        ProbeSample::new(&probe.name, [ux.value, uy.value, vx, vy, xx, yy, xy])
     }
 
     fn crack_tip(&self, fracture: &LatticeFracture) -> Option<[f64; 2]> {

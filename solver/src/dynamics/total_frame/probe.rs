@@ -1,6 +1,5 @@
 //! Places of the body whose motion and stress are recorded.
 
-use crate::dynamics::body_sample::column_name;
 use crate::particles::lattice::Lattice;
 use crate::scene::Probe;
 use crate::splines::patch::{Patch, PointFunctions};
@@ -8,7 +7,7 @@ use crate::splines::patch::{Patch, PointFunctions};
 /// A place and the shape functions there.
 #[derive(Debug, Clone)]
 pub(super) struct ProbePlace {
-    /// Name in columns.
+    /// Its name.
     pub name: String,
     /// Functions with the control points of its side of a slit.
     pub functions: PointFunctions,
@@ -22,6 +21,6 @@ impl ProbePlace {
         let on_patch = patch.functions_at(probe.at)?;
         let mut functions = on_patch.clone();
         functions.lift(lattice.lift(on_patch.values[0].0, probe.at));
-        Some(Self { name: column_name(&probe.name), functions, on_patch })
+        Some(Self { name: probe.name.clone(), functions, on_patch })
     }
 }
