@@ -75,7 +75,8 @@
 //! # Not modelled
 //!
 //! Three dimensions, plasticity, rate effects and heat. [`validate::validate`] refuses what a scene can ask
-//! for and does not exist: general patches in the updated frame; the consistent mass there or where a body
+//! for and does not exist: general patches, slits, parts of sides, conditions that vary in time, probes and
+//! static starts in the updated frame; the consistent mass there or where a body
 //! cuts spans; contact of a body with itself beside fracture, quadrature by spans or XPIC; fragments
 //! with tractions; and with quadrature by spans fracture, tractions, small strains, driven sides, transfers.
 //!
@@ -89,16 +90,8 @@
 //!
 //! let glass = Material { young_modulus: 32e9, poisson_ratio: 0.2, density: 2450.0, fracture: None };
 //! let strip = Body {
-//!     name: "strip".into(),
-//!     material: "glass".into(),
-//!     shape: Shape::Rectangle { min: [0.0, 0.0], max: [8e-3, 2e-3] },
-//!     particles_per_cell: [2, 2],
-//!     layout: Layout::Gauss,
-//!     velocity: [0.0, 0.0],
-//!     angular_velocity: 0.0,
-//!     rigid: false,
-//!     tractions: vec![Traction { edge: Edge::Side(Side::Right), stress: [1e6, 0.0], ramp: Some(1e-6) }],
-//!     cracks: vec![],
+//!     tractions: vec![Traction::on(Side::Right, [1e6, 0.0], TimeFactor::ramp(1e-6))],
+//!     ..Body::at_rest("strip", "glass", Shape::Rectangle { min: [0.0, 0.0], max: [8e-3, 2e-3] })
 //! };
 //! let scene = Scene {
 //!     title: "a strip under tension".into(),
@@ -124,8 +117,9 @@
 //!     materials: [("glass".to_string(), glass)].into(),
 //!     bodies: vec![strip],
 //!     contact: None,
-//!     boundaries: vec![Boundary { side: Side::Left, fix: [true, true], velocity: [0.0, 0.0] }],
-//!     output: Output { samples: 10, frames: vec![], bodies: false },
+//!     boundaries: vec![Boundary::driven(Side::Left, [true, true], [0.0, 0.0])],
+//!     equilibrium: false,
+//!     output: Output::rows(10),
 //! };
 //!
 //! assert_eq!(fisura::validate::validate(&scene), Ok(vec![]));

@@ -88,7 +88,7 @@ pub struct PhaseField {
 impl PhaseField {
     /// Phase field on the points of `lattice`, intact until the first solve.
     pub fn new(lattice: &Lattice, model: FractureModel, settings: &SolverSettings) -> Self {
-        let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
+        let mut matrix = Stencil::zeros(lattice.patch_grid, lattice.degree);
         add_form(&mut matrix, lattice, Integrand::Mass, &Constant(1.0));
         add_form(&mut matrix, lattice, Integrand::Diffusion, &Constant(model.diffusion()));
         let mut load = integrate_shape_functions(lattice);
@@ -342,10 +342,11 @@ impl PointCoefficients for Increments<'_> {
 
 /// `Σ_p V_p N_I(x_p)` per unit thickness, m².
 pub fn integrate_shape_functions(lattice: &Lattice) -> Vec<f64> {
-    lattice.integrate(|_batch, _lane, _| {
+    let field = lattice.integrate(|_batch, _lane, _| {
         fault!("phase-load-without-volumes", 1.0 => {
             let (row, tile, b, a) = lattice.unbatch(_batch);
             1.0 / lattice.weight(row, tile, b, a)[_lane]
         })
-    })
+    });
+    lattice.onto_patch(field)
 }

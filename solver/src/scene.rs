@@ -5,12 +5,20 @@
 //! [`crate::Simulation::new`] turns a scene into a running model; [`crate::validate::validate`] says what is
 //! wrong with one, by key.
 
+mod body;
+mod condition;
 pub mod error;
+mod mesh;
 pub(crate) mod shape;
+pub mod time;
 
 use std::collections::BTreeMap;
 
-use crate::linear_algebra::extremes::{larger, smaller};
+pub use body::{Body, Crack, CrackKind, Fracture, Layout, Material, Split};
+pub use condition::{Boundary, Edge, Load, Motion, Side, Traction};
+pub use mesh::{Geometry, Mesh};
+pub use shape::Shape;
+pub use time::TimeFactor;
 
 /// One simulation.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,68 +39,10 @@ pub struct Scene {
     pub contact: Option<Contact>,
     /// Conditions on the sides of the mesh.
     pub boundaries: Vec<Boundary>,
+    /// Whether it starts from the static state under the loads and conditions at t = 0 (total frame).
+    pub equilibrium: bool,
     /// What is recorded.
     pub output: Output,
-}
-
-/// Background NURBS patch: a B-spline patch over an axis-aligned rectangle, or any other with its geometry.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Mesh {
-    /// Polynomial degree per direction, 1 to 4.
-    pub degree: [usize; 2],
-    /// Open knot vector per direction: first and last knot repeated `degree + 1` times. In metres over a
-    /// rectangle, in any unit with a geometry.
-    pub knots: [Vec<f64>; 2],
-    /// Control points and weights; absent over a rectangle, whose knots are its coordinates.
-    pub geometry: Option<Geometry>,
-}
-
-/// Geometry of a general patch, row by row, first direction fastest.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Geometry {
-    /// Control points, m.
-    pub control_points: Vec<[f64; 2]>,
-    /// Weights, all positive.
-    pub weights: Vec<f64>,
-}
-
-impl Mesh {
-    /// Open uniform knots: `cells[d]` equal spans of a rectangle with lower left corner `origin` (m) and
-    /// `size` (m).
-    pub fn uniform(degree: [usize; 2], origin: [f64; 2], size: [f64; 2], cells: [usize; 2]) -> Self {
-        let knots = [0, 1].map(|d| {
-            let interior = (0..=cells[d]).map(|i| origin[d] + size[d] * (i as f64 / cells[d] as f64));
-            let mut knots = vec![origin[d]; degree[d]];
-            knots.extend(interior);
-            knots.extend(std::iter::repeat_n(origin[d] + size[d], degree[d]));
-            knots
-        });
-        Self { degree, knots, geometry: None }
-    }
-
-    /// Lower left corner of the patch, or of the box around its control points, m.
-    pub fn origin(&self) -> [f64; 2] {
-        [0, 1].map(|d| match &self.geometry {
-            None => self.knots[d].first().copied().unwrap_or(0.0),
-            Some(geometry) => geometry.control_points.iter().map(|p| p[d]).fold(f64::INFINITY, smaller),
-        })
-    }
-
-    /// Upper right corner of the patch, or of the box around its control points, m.
-    pub fn end(&self) -> [f64; 2] {
-        [0, 1].map(|d| match &self.geometry {
-            None => self.knots[d].last().copied().unwrap_or(0.0),
-            Some(geometry) => geometry.control_points.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, larger),
-        })
-    }
-
-    /// The box around the part of a shape that lies in the box around the patch: lower left and upper right
-    /// corner, m.
-    pub fn extent(&self, shape: &Shape) -> ([f64; 2], [f64; 2]) {
-        let (low, high) = shape.bounding_box();
-        let (origin, end) = (self.origin(), self.end());
-        ([0, 1].map(|d| low[d].max(origin[d])), [0, 1].map(|d| high[d].min(end[d])))
-    }
 }
 
 /// Plane state.
@@ -220,164 +170,6 @@ pub struct SolverSettings {
     pub phase_field_interval: PhaseFieldInterval,
 }
 
-/// Isotropic linear elastic material, brittle if it has a fracture table.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Material {
-    /// Young's modulus, Pa.
-    pub young_modulus: f64,
-    /// Poisson's ratio.
-    pub poisson_ratio: f64,
-    /// Density, kg/m³.
-    pub density: f64,
-    /// Brittle fracture, if modelled.
-    pub fracture: Option<Fracture>,
-}
-
-/// Which part of the elastic energy drives and feels the phase field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Split {
-    /// Tensile part by principal strains.
-    Spectral,
-    /// All of it.
-    None,
-}
-
-/// AT2 phase field in Borden's convention.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fracture {
-    /// Critical energy release rate Gc, J/m².
-    pub critical_energy_release_rate: f64,
-    /// Length scale l0 (half the l of the d²/l form), m.
-    pub length_scale: f64,
-    /// Residual stiffness k.
-    pub residual_stiffness: f64,
-    /// Split of the elastic energy.
-    pub split: Split,
-}
-
-/// Region of the plane, in m.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
-    /// Axis-aligned rectangle.
-    Rectangle {
-        /// Lower left corner.
-        min: [f64; 2],
-        /// Upper right corner.
-        max: [f64; 2],
-    },
-    /// Disk.
-    Disk {
-        /// Centre.
-        center: [f64; 2],
-        /// Radius.
-        radius: f64,
-    },
-    /// Ring between two circles.
-    Annulus {
-        /// Centre.
-        center: [f64; 2],
-        /// Inner radius.
-        inner_radius: f64,
-        /// Outer radius.
-        outer_radius: f64,
-    },
-    /// Simple polygon.
-    Polygon {
-        /// Corners in order.
-        points: Vec<[f64; 2]>,
-    },
-    /// All of the background patch.
-    Patch,
-    /// A shape without other shapes.
-    Difference {
-        /// The shape cut from.
-        of: Box<Shape>,
-        /// The shapes cut out.
-        minus: Vec<Shape>,
-    },
-}
-
-/// Arrangement of material points in a span.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Layout {
-    /// Gauss–Legendre points with their weights as volumes.
-    Gauss,
-    /// Equally spaced points of equal volume.
-    Uniform,
-    /// Equally spaced points with Maclaurin weights as volumes.
-    Maclaurin,
-}
-
-/// Side of a rectangle, or of a patch: left and right bound its first parametric direction, bottom and top
-/// its second.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Side {
-    /// Smallest x.
-    Left,
-    /// Largest x.
-    Right,
-    /// Smallest y.
-    Bottom,
-    /// Largest y.
-    Top,
-}
-
-/// Where a traction acts.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Edge {
-    /// A side of a body that is a rectangle or the whole patch.
-    Side(Side),
-    /// A straight segment, m.
-    Segment([[f64; 2]; 2]),
-}
-
-/// Traction on an edge of a body.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Traction {
-    /// Where.
-    pub edge: Edge,
-    /// Traction vector, Pa.
-    pub stress: [f64; 2],
-    /// Time over which it rises linearly from zero, s; absent: full from t = 0.
-    pub ramp: Option<f64>,
-}
-
-/// Initial crack, seeded through the history field.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Crack {
-    /// First end, m.
-    pub from: [f64; 2],
-    /// Second end, m.
-    pub to: [f64; 2],
-    /// Half width of the initial history field, m; absent: half the length scale.
-    pub half_width: Option<f64>,
-}
-
-/// A body of one material.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Body {
-    /// Name.
-    pub name: String,
-    /// Name of its material.
-    pub material: String,
-    /// Region it fills.
-    pub shape: Shape,
-    /// Material points per span and direction.
-    pub particles_per_cell: [usize; 2],
-    /// Arrangement of the points.
-    pub layout: Layout,
-    /// Initial velocity, m/s.
-    pub velocity: [f64; 2],
-    /// Initial angular velocity about the centre of mass, rad/s.
-    pub angular_velocity: f64,
-    /// Moves with its velocity, unaffected.
-    pub rigid: bool,
-    /// Tractions.
-    pub tractions: Vec<Traction>,
-    /// Initial cracks.
-    pub cracks: Vec<Crack>,
-}
-
 /// Frictional contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
@@ -399,17 +191,6 @@ impl Default for Contact {
     }
 }
 
-/// Condition on a side of the mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Boundary {
-    /// Side of the mesh.
-    pub side: Side,
-    /// Which components are prescribed.
-    pub fix: [bool; 2],
-    /// Prescribed velocity of those components, m/s.
-    pub velocity: [f64; 2],
-}
-
 /// What is recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Output {
@@ -419,4 +200,22 @@ pub struct Output {
     pub frames: Vec<f64>,
     /// Whether the motion of every body and the forces between them are recorded (updated frame).
     pub bodies: bool,
+    /// Places whose motion and stress are recorded (total frame).
+    pub probes: Vec<Probe>,
+}
+
+impl Output {
+    /// So many rows of the history after the first, and nothing else.
+    pub fn rows(samples: usize) -> Self {
+        Self { samples, frames: Vec::new(), bodies: false, probes: Vec::new() }
+    }
+}
+
+/// A place of a body whose motion and stress are recorded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Probe {
+    /// Name in columns.
+    pub name: String,
+    /// Position at t = 0, m.
+    pub at: [f64; 2],
 }

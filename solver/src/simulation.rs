@@ -144,6 +144,7 @@ impl Simulation {
         for _ in 0..self.plan.steps_per_sample {
             self.step()?;
         }
+        either!(&mut self.frame, body => body.note_crack_start());
         let sample = self.sample();
         self.watch_ledger(&sample)?;
         Ok(sample)

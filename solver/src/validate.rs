@@ -5,16 +5,21 @@
 
 mod analysis;
 mod body;
+mod conditions;
 mod contact;
+mod cracks;
 mod findings;
 mod geometry;
 mod ground;
+mod look;
 mod material;
 mod mesh;
 mod points;
 mod resolution;
 mod seed;
 mod size;
+mod time;
+mod tractions;
 
 use crate::scene::error::{SceneError, SceneWarning};
 use crate::scene::{Frame, Scene};
@@ -32,6 +37,7 @@ pub fn validate(scene: &Scene) -> Result<Vec<SceneWarning>, Vec<SceneError>> {
     let patch = mesh::check(&scene.mesh, &mut findings);
     let ground = Ground::new(&scene.mesh, findings.errors.is_empty(), patch);
     analysis::check(scene, &ground, &mut findings);
+    conditions::check(scene, &ground, &mut findings);
     material::check(scene, &mut findings);
     body::check(scene, &ground, &mut findings);
     contact::check(scene, &ground, &mut findings);

@@ -18,6 +18,7 @@
 //! | [`mod@bench`] | speed against error |
 //! | [`judge`] | results of other codes, held against the benchmarks |
 
+pub mod arithmetic;
 pub mod bench;
 pub mod case;
 pub mod exact;

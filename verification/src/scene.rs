@@ -12,7 +12,9 @@ mod overrides;
 pub mod plain;
 pub(crate) mod read;
 mod read_body;
+mod read_file;
 mod read_mesh;
+mod read_time;
 pub mod suggest;
 pub mod typed;
 pub mod units;
@@ -60,7 +62,7 @@ impl SceneFile {
 
     fn from_document(mut document: Document, overrides: &[String]) -> Result<Self, SceneFileError> {
         document.apply(overrides)?;
-        let scene = read_scene(&document.root, "").map_err(|problems| document.error(&problems))?;
+        let scene = read_scene(&document.root, "", document.folder()).map_err(|problems| document.error(&problems))?;
         let warnings = check_scene(&scene, &document.root, "").map_err(|problems| document.error(&problems))?;
         let warnings = warnings.iter().map(|w| document.warning(w)).collect();
         Ok(Self { scene, warnings, source: document.text().to_string(), document })

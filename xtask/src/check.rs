@@ -7,7 +7,7 @@ use fisura::dynamics::time_plan::TimePlan;
 use fisura::linear_algebra::extremes::larger;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::spans::{largest_spans, smallest_span};
-use fisura::scene::{Frame, Plane, Scene};
+use fisura::scene::{Crack, Frame, Plane, Scene};
 use fisura::simulation::{Extent, Simulation};
 use fisura::validate::expected_size;
 use fisura_reports::number::{duration, plain};
@@ -28,6 +28,8 @@ use trial::{Trial, spans};
 
 /// Points or control points up to which a scene is made ready to be checked: seconds, and less than 1 GiB.
 const MOST_PREPARED: usize = 1_000_000;
+/// Distance in spans by which a slit ends behind the last knot line before its tip, for p = 1, 2, 3.
+const SLIT_ENDS: [f64; 3] = [0.20, 0.47, 0.87];
 /// Critical step over the time a dilatational wave takes to cross the smallest span, roughly.
 const CRITICAL: f64 = 0.5;
 /// Wall time after which a run stores its state, s, and how often that is in memory then: as it grows and as
@@ -110,6 +112,15 @@ struct BodyFindings {
     material: String,
     tractions: usize,
     cracks: usize,
+    /// Of each slit: where it is drawn to, m, and by how much it ends before that, m.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    slits: Vec<SlitFindings>,
+}
+
+#[derive(Debug, Serialize)]
+struct SlitFindings {
+    drawn_to_m: [f64; 2],
+    ends_before_m: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -251,8 +262,12 @@ impl Findings {
 
 impl BodyFindings {
     fn text(&self) -> String {
-        let Self { name, material, tractions, cracks } = self;
-        format!("{name} of {material}; tractions: {tractions}, cracks: {cracks}")
+        let Self { name, material, tractions, cracks, slits } = self;
+        let slits = slits.iter().map(|SlitFindings { drawn_to_m: [x, y], ends_before_m }| {
+            let [x, y, before] = [x, y, ends_before_m].map(|length| plain(1e3 * length, 4));
+            format!("; the slit to ({x}, {y}) mm ends about {before} mm before that")
+        });
+        format!("{name} of {material}; tractions: {tractions}, cracks: {cracks}{}", slits.collect::<String>())
     }
 }
 
@@ -269,8 +284,25 @@ fn bodies(scene: &Scene) -> Vec<BodyFindings> {
         material: body.material.clone(),
         tractions: body.tractions.len(),
         cracks: body.cracks.len(),
+        slits: body.cracks.iter().filter(|crack| crack.is_slit()).filter_map(|crack| slit(scene, crack)).collect(),
     };
     scene.bodies.iter().map(of).collect()
+}
+
+/// Where the second end of a slit is: functions that it does not part are not copied. `None` on a patch with
+/// a geometry, and for degrees for which the place was not measured.
+fn slit(scene: &Scene, crack: &Crack) -> Option<SlitFindings> {
+    let [from, to] = crack.segments().last()?;
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let d = usize::from(along[1].abs() > along[0].abs());
+    let behind = SLIT_ENDS.get(scene.mesh.degree[d].checked_sub(1)?).filter(|_| scene.mesh.geometry.is_none())?;
+    let knots = &scene.mesh.knots[d];
+    let inside = |knot: &f64| (knot - to[d]) * along[d] <= 1e-9 * along[d] * along[d];
+    let last = knots.iter().copied().filter(inside).min_by(|a, b| (a - to[d]).abs().total_cmp(&(b - to[d]).abs()))?;
+    let span = knots.windows(2).filter(|k| k[0] < k[1] && k[0] <= last && last <= k[1]).map(|k| k[1] - k[0]).next()?;
+    let length = along[0].hypot(along[1]);
+    let ends_before_m = ((to[d] - last).abs() + behind * span) * length / along[d].abs();
+    Some(SlitFindings { drawn_to_m: to, ends_before_m })
 }
 
 /// Materials in use.

@@ -21,6 +21,8 @@ pub struct Dynamics {
     /// Mass, kg per metre of thickness.
     mass: Vec<f64>,
     force: [Vec<f64>; 2],
+    /// Nodes of a row and of the next one, of a gap of no height, that move as one.
+    tied: Vec<[usize; 2]>,
     widths: Vec<f64>,
     inverse_widths: Vec<f64>,
     heights: Vec<f64>,
@@ -54,6 +56,7 @@ impl Dynamics {
             mobility: [mobility.clone(), mobility],
             mass,
             force: nodal(),
+            tied: Vec::new(),
             inverse_widths: mesh.widths().iter().map(|width| 1.0 / width).collect(),
             widths: mesh.widths(),
             heights: mesh.heights(),
@@ -69,6 +72,33 @@ impl Dynamics {
         let tiles = fx.par_chunks_mut(size).zip(fy.par_chunks_mut(size)).enumerate();
         tiles.for_each(|(tile, (fx, fy))| self.forces_of_tile(tile * TILE_ROWS, c, fx, fy));
         self.force = [fx, fy];
+        for force in &mut self.force {
+            for &[lower, upper] in &self.tied {
+                let sum = force[lower] + force[upper];
+                (force[lower], force[upper]) = (sum, sum);
+            }
+        }
+    }
+
+    /// Makes pairs of nodes of the two rows of a gap move as one.
+    pub fn tie(&mut self, pairs: Vec<[usize; 2]>) {
+        for &[lower, upper] in &pairs {
+            let mobility = 1.0 / (self.mass[lower] + self.mass[upper]);
+            for axis in &mut self.mobility {
+                (axis[lower], axis[upper]) = (mobility, mobility);
+            }
+        }
+        self.tied = pairs;
+    }
+
+    /// Force on a node along an axis, without tractions, N per metre of thickness.
+    pub fn force(&self, axis: usize, node: usize) -> f64 {
+        self.force[axis][node]
+    }
+
+    /// Mass of a node, kg per metre of thickness.
+    pub fn mass(&self, node: usize) -> f64 {
+        self.mass[node]
     }
 
     /// Forces on the rows of nodes from `first` on.
@@ -79,6 +109,9 @@ impl Dynamics {
         fy.fill(0.0);
         let rows = fx.len() / stride;
         for e in first.saturating_sub(1)..(first + rows).min(self.heights.len()) {
+            if self.heights[e] == 0.0 {
+                continue; // the gap of a slit
+            }
             elements.fill(self, e, c);
             for (force, [ll, lr, ul, ur]) in [(&mut *fx, elements.x()), (&mut *fy, elements.y())] {
                 if e >= first {
@@ -117,7 +150,8 @@ impl Dynamics {
     pub fn energies(&self, dt: f64, c: &[f64]) -> Energies {
         let by_row = |j: usize| {
             let (kinetic, work) = self.of_nodes(j, dt);
-            let (elastic, fracture) = if j < self.heights.len() { self.of_elements(j, c) } else { (0.0, 0.0) };
+            let solid = self.heights.get(j).is_some_and(|height| *height > 0.0);
+            let (elastic, fracture) = if solid { self.of_elements(j, c) } else { (0.0, 0.0) };
             Energies { kinetic, elastic, fracture, work }
         };
         let rows: Vec<Energies> = (0..=self.heights.len()).into_par_iter().map(by_row).collect();

@@ -5,12 +5,13 @@
 //! (Miehe et al. 2010, Borden et al. 2012); the phase field is solved for in every step by conjugate
 //! gradients with Jacobi scaling. Modules, each calling only those before it: [`mesh`], [`material`],
 //! [`element`]; [`stencil`] and [`gradients`] (linear algebra); [`phase_field`], [`dynamics`], [`crack`];
-//! [`plate`] (the run). SI units, per metre of thickness.
+//! [`plate`] and [`kalthoff`] (the runs). SI units, per metre of thickness.
 
 pub mod crack;
 pub mod dynamics;
 pub mod element;
 pub mod gradients;
+pub mod kalthoff;
 pub mod material;
 pub mod mesh;
 pub mod phase_field;

@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use clap::Parser;
 use independent_fem::crack;
+use independent_fem::kalthoff::Kalthoff;
 use independent_fem::material::Material;
 use independent_fem::mesh::{Grading, Mesh};
 use independent_fem::plate::{Plate, Sample};
@@ -70,6 +71,9 @@ struct Options {
     /// Time between samples, us
     #[arg(long, value_name = "US", default_value_t = 0.25)]
     interval_us: f64,
+    /// The elastic part of the test of Kalthoff and Winkler, with elements of --h-mm
+    #[arg(long)]
+    kalthoff: bool,
     /// Threads
     #[arg(long, value_name = "N", default_value_t = 1)]
     threads: usize,
@@ -89,7 +93,30 @@ fn main() -> ExitCode {
     }
 }
 
+/// The elastic part of the test of Kalthoff and Winkler.
+fn run_kalthoff(options: &Options) -> Result<(), Box<dyn Error>> {
+    let run = Kalthoff {
+        h: options.h_mm * 1e-3,
+        plane_stress: options.plane_stress,
+        fraction: options.fraction,
+        end: options.end_us * 1e-6,
+        interval: options.interval_us * 1e-6,
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
+    let mut file = csv::Writer::from_path(&options.out)?;
+    file.write_record(["time_us", "external_work_j_per_m", "kinetic_j_per_m", "elastic_j_per_m", "reaction_n_per_m"])?;
+    for [time, rest @ ..] in pool.install(|| run.run()) {
+        let mut row = vec![format!("{:.4}", time * 1e6)];
+        row.extend(rest.map(|value| format!("{value:.9e}")));
+        file.write_record(row)?;
+    }
+    Ok(file.flush()?)
+}
+
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    if options.kalthoff {
+        return run_kalthoff(options);
+    }
     let material = Material { toughness: options.toughness, ..Material::new(32e9, 0.2, options.plane_stress) };
     let grading = Grading { fine_from: options.fine_from_mm * 1e-3, fine_to: options.fine_mm * 1e-3 };
     let plate = Plate {

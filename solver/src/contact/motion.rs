@@ -32,14 +32,15 @@ pub struct TooFast {
 struct Moving<'a> {
     body: &'a Body,
     bounds: [[f64; 2]; 2],
-    /// Largest speed with which its boundary moves outwards by its rotation, m/s; that of a disc hardly does.
+    /// Largest speed with which its boundary moves outwards as it turns and stretches, m/s; that of a disc
+    /// that turns hardly does.
     turning: f64,
 }
 
 impl<'a> Moving<'a> {
     fn new(mesh: &Mesh, body: &'a Body) -> Self {
         let (low, high) = without_patch(&body.shape, mesh).bounding_box();
-        let turning = if body.angular_velocity == 0.0 { 0.0 } else { outward_speed(mesh, body) };
+        let turning = if body.is_translated() { 0.0 } else { outward_speed(mesh, body) };
         Self { body, bounds: [low, high], turning }
     }
 
@@ -60,7 +61,8 @@ impl<'a> Moving<'a> {
     }
 }
 
-/// Largest speed, m/s, with which the boundary of a body moves outwards as that turns about its centroid.
+/// Largest speed, m/s, with which the boundary of a body moves outwards as that turns and stretches about its
+/// centroid.
 fn outward_speed(mesh: &Mesh, body: &Body) -> f64 {
     let surface = Surface::of_segments(mesh, body, SEGMENTS);
     let center = surface.centroid();
@@ -68,7 +70,8 @@ fn outward_speed(mesh: &Mesh, body: &Body) -> f64 {
         let Center { normal, .. } = surface.center(segment);
         surface.ends(segment).map(|end| {
             let arm = [0, 1].map(|d| end[d] - center[d]);
-            body.angular_velocity * (arm[0] * normal[1] - arm[1] * normal[0])
+            let [x, y] = body.relative_velocity(arm);
+            x * normal[0] + y * normal[1]
         })
     });
     speeds.fold(0.0, larger)

@@ -1,46 +1,57 @@
-//! Conditions on the sides of the mesh: prescribed velocity components of the control points of a side.
+//! Conditions on the sides of the mesh: prescribed components of the motion of control points.
 //!
-//! End knots are repeated, so the control points of a side alone decide the field on it. The control point of
-//! a corner belongs to both sides: it has what either prescribes. Where both prescribe a component they have
-//! to agree, which [`crate::validate::validate`] demands, so the order of the sides does not count.
+//! End knots are repeated, so the control points of a side alone decide the field on it. A part of a side
+//! takes those whose functions have at least half of their integral along the side on the part. The control
+//! point of a corner belongs to both sides: it has what either prescribes. Where both prescribe a component
+//! they have to agree, which [`crate::validate::validate`] demands, so the order of the sides does not count.
 
-use crate::linear_algebra::control_grid::ControlGrid;
-use crate::scene::Boundary;
-use crate::splines::patch::control_points_on;
+use crate::scene::{Boundary, Motion};
 
-/// Control points with a prescribed velocity component.
+/// Control points with a prescribed component.
 #[derive(Debug, Clone, Default)]
 pub struct Constraints {
-    /// Per component: control point and its velocity, m/s.
-    fixed: [Vec<(usize, f64)>; 2],
+    /// Per component: control point, and number of its condition, in increasing order.
+    fixed: [Vec<(usize, usize)>; 2],
+    conditions: Vec<Boundary>,
 }
 
 impl Constraints {
-    /// Constraints of the sides of a mesh.
-    pub fn new(grid: ControlGrid, boundaries: &[Boundary]) -> Self {
-        let mut constraints = Self::default();
+    /// The conditions on a mesh, each on its `points`.
+    pub(crate) fn new(conditions: &[Boundary], points: impl Fn(&Boundary) -> Vec<usize>) -> Self {
+        let mut constraints = Self { conditions: conditions.to_vec(), ..Self::default() };
         for component in 0..2 {
             let fixed = &mut constraints.fixed[component];
-            for boundary in boundaries
-                .iter()
-                .filter(|b| b.fix[fault!("side-holds-the-other-component", component => 1 - component)])
-            {
-                fixed.extend(
-                    control_points_on(boundary.side, grid)
-                        .into_iter()
-                        .map(|at| (at, fault!("driven-side-reversed", 1.0 => -1.0) * boundary.velocity[component])),
-                );
+            for (number, condition) in conditions.iter().enumerate() {
+                if condition.fix[fault!("side-holds-the-other-component", component => 1 - component)] {
+                    fixed.extend(points(condition).into_iter().map(|at| (at, number)));
+                }
             }
-            fixed.sort_by_key(|&(at, _)| at);
+            fixed.sort_unstable();
             fixed.dedup_by_key(|&mut (at, _)| at);
         }
         constraints
     }
 
-    /// Prescribed components: control point, component, velocity.
-    pub fn iter(&self) -> impl Iterator<Item = (usize, usize, f64)> {
-        let component = |c: usize| self.fixed[c].iter().map(move |&(at, velocity)| (at, c, velocity));
+    /// The conditions.
+    pub(crate) fn conditions(&self) -> &[Boundary] {
+        &self.conditions
+    }
+
+    /// Prescribed components: control point, component, number of the condition.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+        let component = |c: usize| self.fixed[c].iter().map(move |&(at, number)| (at, c, number));
         component(0).chain(component(1))
+    }
+
+    /// Prescribed components and their velocities that never change, m/s.
+    pub(crate) fn velocities(&self) -> impl Iterator<Item = (usize, usize, f64)> {
+        self.iter().map(|(at, component, number)| {
+            let velocity = match self.conditions[number].motion {
+                Motion::Velocity(velocity) => velocity[component],
+                Motion::Displacement(_) => 0.0,
+            };
+            (at, component, fault!("driven-side-reversed", velocity => -velocity))
+        })
     }
 
     /// Control points at which a component is prescribed, in increasing order.
@@ -48,10 +59,15 @@ impl Constraints {
         self.fixed[component].iter().map(|&(at, _)| at).collect()
     }
 
-    /// Sets prescribed velocities.
-    pub(crate) fn apply_velocity(&self, velocity: &mut [Vec<f64>; 2]) {
-        for (at, component, value) in self.iter() {
-            velocity[component][at] = value;
+    /// Sets the prescribed displacements (m) and velocities (m/s) at t = 0.
+    pub(crate) fn start(&self, displacement: &mut [Vec<f64>; 2], velocity: &mut [Vec<f64>; 2]) {
+        let starts: Vec<_> = self.conditions.iter().map(Boundary::start).collect();
+        for (at, component, number) in self.iter() {
+            let [place, speed] = starts[number].map(|value| value[component]);
+            velocity[component][at] = fault!("driven-side-reversed", speed => -speed);
+            if matches!(self.conditions[number].motion, Motion::Displacement(_)) {
+                displacement[component][at] = place;
+            }
         }
     }
 

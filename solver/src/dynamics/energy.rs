@@ -17,7 +17,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::body_sample::BodySamples;
+use super::body_sample::{BodySamples, column_name};
 use crate::linear_algebra::extremes::{larger, smaller};
 
 /// Work and losses accumulated over a run, J per metre of thickness.
@@ -51,6 +51,10 @@ pub struct Sample {
     pub contact: Option<ContactSample>,
     /// Loss of the transfers in the updated frame, J.
     pub transfer_loss: Option<f64>,
+    /// Conditions with a name.
+    pub conditions: Vec<ConditionSample>,
+    /// Places that are recorded.
+    pub probes: Vec<ProbeSample>,
     /// What is left when every named term is added up, J.
     pub closure: f64,
     /// Momentum, kg m/s.
@@ -91,6 +95,58 @@ pub struct ContactSample {
     pub friction: f64,
 }
 
+/// What a condition with a name does to the body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConditionSample {
+    /// Name in columns.
+    name: String,
+    fix: [bool; 2],
+    /// Force on the body, N.
+    reaction: [f64; 2],
+    /// Work so far, J.
+    work: f64,
+}
+
+impl ConditionSample {
+    /// A condition with the components that it prescribes.
+    pub fn new(name: &str, fix: [bool; 2], reaction: [f64; 2], work: f64) -> Self {
+        Self { name: column_name(name), fix, reaction, work }
+    }
+
+    fn for_thickness(self, thickness: f64) -> Self {
+        Self { reaction: self.reaction.map(|force| force * thickness), work: self.work * thickness, ..self }
+    }
+
+    fn named_values(&self) -> impl Iterator<Item = (String, f64)> + '_ {
+        let Self { name, fix, reaction, work } = self;
+        let components = ["x", "y"].into_iter().enumerate().filter(|&(d, _)| fix[d]);
+        let forces = components.map(move |(d, component)| (format!("reaction_{name}_{component}_n"), reaction[d]));
+        forces.chain([(format!("work_{name}_j"), *work)])
+    }
+}
+
+/// Motion and stress at a place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProbeSample {
+    /// Name in columns.
+    name: String,
+    /// Displacement (m), velocity (m/s), stress `[xx, yy, xy]` (Pa).
+    values: [f64; 7],
+}
+
+impl ProbeSample {
+    /// Displacement (m), velocity (m/s), and stress `[xx, yy, xy]` (Pa) at a probe.
+    pub fn new(name: &str, values: [f64; 7]) -> Self {
+        Self { name: column_name(name), values }
+    }
+
+    const QUANTITIES: [&str; 7] = ["ux_m", "uy_m", "vx_m_per_s", "vy_m_per_s", "sxx_pa", "syy_pa", "sxy_pa"];
+
+    fn named_values(&self) -> impl Iterator<Item = (String, f64)> + '_ {
+        Self::QUANTITIES.iter().zip(self.values).map(|(quantity, value)| (format!("{}_{quantity}", self.name), value))
+    }
+}
+
 impl FractureSample {
     fn with(self, other: Self) -> Self {
         let tips = self.crack_tip.into_iter().chain(other.crack_tip);
@@ -110,6 +166,11 @@ impl Sample {
     pub fn named_values(&self) -> Vec<(Cow<'static, str>, f64)> {
         let mut row: Vec<_> =
             self.values_of_the_whole().into_iter().map(|(name, value)| (name.into(), value)).collect();
+        row.extend(
+            self.conditions.iter().flat_map(ConditionSample::named_values).map(|(name, value)| (name.into(), value)),
+        );
+        let probes = self.probes.iter().flat_map(ProbeSample::named_values);
+        row.extend(probes.map(|(name, value)| (name.into(), value)));
         row.extend(self.bodies.iter().flat_map(BodySamples::named_values).map(|(name, value)| (name.into(), value)));
         row
     }
@@ -183,6 +244,7 @@ impl Sample {
                 ..f
             }),
             external_work: self.external_work * thickness,
+            conditions: self.conditions.into_iter().map(|c| c.for_thickness(thickness)).collect(),
             contact: self.contact.map(|c| ContactSample { loss: c.loss * thickness, friction: c.friction * thickness }),
             transfer_loss: self.transfer_loss.map(|loss| loss * thickness),
             closure: self.closure * thickness,

@@ -33,6 +33,11 @@ pub enum Failure {
         /// What is lost, and where.
         lost: LostTraction,
     },
+    /// No static state was found: the largest force out of balance, of the largest nodal force.
+    NoEquilibrium(f64),
+    /// The loads of a static start accelerate a body that nothing holds: their resultant, of their
+    /// magnitudes.
+    Unbalanced(f64),
     /// Impulses of contact did not converge.
     Unconverged(Unconverged),
     /// Bodies meet that approach each other too far in a step.

@@ -1,4 +1,4 @@
-//! External loads: tractions carried by surface points, `f_I = min(time/ramp, 1) Σ_s l_s t N_I(x_s)` with the
+//! External loads: tractions carried by surface points, `f_I = factor(time) Σ_s l_s t N_I(x_s)` with the
 //! length l of a point and the traction t (E 18). Those that move are in
 //! [`updated_frame::tractions`](super::updated_frame).
 //!
@@ -7,7 +7,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::scene::{Body, Edge, Shape, Side, Traction};
+use crate::particles::lattice::Lattice;
+use crate::scene::{Body, Edge, Layout, Load, Shape, Side, TimeFactor, Traction};
 use crate::splines::nearest_span::nearest_span;
 use crate::splines::nurbs::locate::Location;
 use crate::splines::patch::{BoundaryPoint, Patch};
@@ -53,13 +54,27 @@ pub(crate) struct SurfacePoint {
     pub position: [f64; 2],
     /// Length it stands for, m.
     pub length: f64,
+    /// Outward unit normal of the body.
+    pub normal: [f64; 2],
 }
 
-/// Surface points along the edge of a traction, with the layout of the body in every span the edge crosses:
-/// the point sums over the edge then fit those over the body, which the patch test needs for equally spaced
-/// points.
+/// Parts of an arc in the length of a span, and Gauss points in each: its points need not follow the spans.
+const PARTS_OF_ARC: f64 = 2.0;
+const POINTS_OF_PART: usize = 3;
+/// Distance from an edge at which it is looked for material, of the size of the edge.
+const BESIDE: f64 = 1e-6;
+
+/// Surface points along the edge of a traction. Along a straight one they have the layout of the body in
+/// every span that it crosses: the point sums over the edge then fit those over the body, which the patch
+/// test needs for equally spaced points.
 pub(crate) fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<SurfacePoint> {
-    let [from, to] = edge_ends(body, edge);
+    match *edge {
+        Edge::Arc { center, radius, angles } => points_of_arc(patch, body, center, radius, angles),
+        Edge::Side(_) | Edge::Segment(_) => points_of_line(patch, body, edge_ends(body, edge)),
+    }
+}
+
+fn points_of_line(patch: &Patch, body: &Body, [from, to]: [[f64; 2]; 2]) -> Vec<SurfacePoint> {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = along[0].hypot(along[1]);
     let mut cuts = vec![0.0, 1.0];
@@ -72,6 +87,8 @@ pub(crate) fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<Sur
     cuts.sort_by(f64::total_cmp);
     let direction = usize::from(along[1].abs() > along[0].abs());
     let rule = Rule::new(body.layout, body.particles_per_cell[direction]);
+    let middle = [0, 1].map(|d| 0.5 * (from[d] + to[d]));
+    let normal = outward(body, middle, [along[1] / length, -along[0] / length], length);
     let mut points = Vec::new();
     for pair in cuts.windows(2) {
         for (t, weight) in rule.points.iter().zip(&rule.weights) {
@@ -79,10 +96,33 @@ pub(crate) fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<Sur
             points.push(SurfacePoint {
                 position: [from[0] + s * along[0], from[1] + s * along[1]],
                 length: weight * (pair[1] - pair[0]) * length,
+                normal,
             });
         }
     }
     points
+}
+
+fn points_of_arc(patch: &Patch, body: &Body, center: [f64; 2], radius: f64, angles: [f64; 2]) -> Vec<SurfacePoint> {
+    let swept = angles[1] - angles[0];
+    let parts = (PARTS_OF_ARC * radius * swept / patch.shortest_span()).ceil().max(1.0);
+    let rule = Rule::new(Layout::Gauss, POINTS_OF_PART);
+    let mut points = Vec::new();
+    for part in 0..parts as usize {
+        for (t, weight) in rule.points.iter().zip(&rule.weights) {
+            let (sine, cosine) = (angles[0] + swept * (part as f64 + t) / parts).sin_cos();
+            let position = [center[0] + radius * cosine, center[1] + radius * sine];
+            let normal = outward(body, position, [cosine, sine], radius);
+            points.push(SurfacePoint { position, length: weight * radius * swept / parts, normal });
+        }
+    }
+    points
+}
+
+/// A unit normal of an edge of this size (m) at a position (m) on it, turned out of the body.
+fn outward(body: &Body, position: [f64; 2], normal: [f64; 2], size: f64) -> [f64; 2] {
+    let beside = [0, 1].map(|d| position[d] + BESIDE * size * normal[d]);
+    if body.shape.contains(beside) { normal.map(|n| -n) } else { normal }
 }
 
 /// Ends of a straight edge, m; they coincide if the body has no such side.
@@ -92,6 +132,7 @@ fn edge_ends(body: &Body, edge: &Edge) -> [[f64; 2]; 2] {
             body.shape.side(fault!("traction-on-wrong-edge", *side => Side::Bottom)).unwrap_or_default()
         }
         Edge::Segment(ends) => *ends,
+        Edge::Arc { .. } => Default::default(),
     }
 }
 
@@ -126,8 +167,14 @@ pub(crate) struct Balance {
 }
 
 impl Balance {
-    /// Of the straight edge of a body.
+    /// Of an edge of a body.
     pub(crate) fn of_edge(body: &Body, edge: &Edge) -> Self {
+        if let Edge::Arc { center, radius, angles } = *edge {
+            let (half, bisector) = (0.5 * (angles[1] - angles[0]), (0.5 * (angles[0] + angles[1])).sin_cos());
+            let reach = radius * half.sin() / half; // of the centroid from the centre
+            let middle = [center[0] + reach * bisector.1, center[1] + reach * bisector.0];
+            return Self { length: 2.0 * half * radius, middle };
+        }
         let [from, to] = edge_ends(body, edge);
         Self { length: (to[0] - from[0]).hypot(to[1] - from[1]), middle: [0, 1].map(|d| 0.5 * from[d] + 0.5 * to[d]) }
     }
@@ -173,7 +220,7 @@ impl Balance {
 pub struct NodalLoad {
     /// Control point and force at full strength per unit thickness, N/m.
     pub forces: Vec<(usize, [f64; 2])>,
-    ramp: Option<f64>,
+    time: TimeFactor,
 }
 
 impl NodalLoad {
@@ -185,47 +232,56 @@ impl NodalLoad {
     /// If a part of the traction would be lost.
     pub fn new(
         patch: &Patch,
+        lattice: &Lattice,
         body: &Body,
         traction: &Traction,
         moves: impl Fn(usize) -> bool,
     ) -> Result<Self, LostTraction> {
-        let mut sums = BTreeMap::<usize, Sum>::new();
-        let mut add = |functions: &[(usize, f64)], length: f64| {
+        let mut sums = BTreeMap::<usize, [Sum; 3]>::new(); // of the length, and of the force
+        let mut add = |functions: &[(usize, f64)], place: [f64; 2], length: f64, normal: [f64; 2]| {
+            let [x, y] = traction.load.traction(normal);
             for &(index, value) in functions {
-                let sum = sums.entry(index).or_default();
-                *sum = sum.plus(value * length);
+                let sums = sums.entry(lattice.control_point(index, functions[0].0, place)).or_default();
+                for (sum, density) in sums.iter_mut().zip([1.0, x, y]) {
+                    *sum = sum.plus(density * (value * length));
+                }
             }
         };
         let balance = match (&traction.edge, &body.shape) {
             (Edge::Side(side), Shape::Patch) => {
                 let points = boundary_points(patch, body, *side);
-                points.iter().for_each(|point| add(&point.functions, point.length));
+                points.iter().for_each(|point| add(&point.functions, point.position, point.length, point.normal));
                 Balance::of_points(&points)
             }
             _ => {
-                for SurfacePoint { position, length } in surface_points(patch, body, &traction.edge) {
-                    let location = carrier(patch, position, &moves).ok_or(LostTraction::Bare(position))?;
-                    add(&patch.functions(location).values, length);
+                for SurfacePoint { position, length, normal } in surface_points(patch, body, &traction.edge) {
+                    let carries = |first, at| moves(lattice.control_point(at, first, position));
+                    let location = carrier(patch, position, carries).ok_or(LostTraction::Bare(position))?;
+                    add(&patch.functions(location).values, position, length, normal);
                 }
                 Balance::of_edge(body, &traction.edge)
             }
         };
-        let sums: Vec<_> = sums.into_iter().map(|(at, sum)| (at, sum.value())).collect();
-        let [x, y] = patch.control_positions();
-        balance.check(sums.iter().filter(|(at, _)| moves(*at)).map(|&(at, sum)| ([x[at], y[at]], sum)))?;
-        let forces = sums.into_iter().map(|(index, sum)| (index, traction.stress.map(|s| s * sum))).collect();
-        Ok(Self { forces, ramp: traction.ramp })
+        let [x, y] = patch.control_positions().map(|component| lattice.with_copies(component));
+        balance.check(sums.iter().filter(|(at, _)| moves(**at)).map(|(&at, sum)| ([x[at], y[at]], sum[0].value())))?;
+        let forces = match traction.load {
+            Load::Stress(stress) => {
+                sums.into_iter().map(|(at, [length, ..])| (at, stress.map(|s| s * length.value()))).collect()
+            }
+            Load::Pressure(_) => sums.into_iter().map(|(at, [_, x, y])| (at, [x.value(), y.value()])).collect(),
+        };
+        Ok(Self { forces, time: traction.time.clone() })
     }
 
-    /// Factor at a time: rises linearly over the ramp.
+    /// Factor at a time, s.
     pub fn factor(&self, time: f64) -> f64 {
-        fault!("ramp-forgotten", self.ramp => None).map_or(1.0, |ramp: f64| (time / ramp).clamp(0.0, 1.0))
+        self.time.value(time)
     }
 }
 
 /// Where to evaluate the shape functions of a position (m) on a straight edge, so that all of them belong to
 /// control points that can move.
-fn carrier(patch: &Patch, position: [f64; 2], moves: impl Fn(usize) -> bool) -> Option<Location> {
-    let carries = |span| patch.all_functions(span, &moves);
+fn carrier(patch: &Patch, position: [f64; 2], moves: impl Fn(usize, usize) -> bool) -> Option<Location> {
+    let carries = |span| patch.all_functions(span, |at| moves(patch.first_function(span), at));
     nearest_span(&patch.spaces, position, carries).map(|span| Location { span, parameters: position })
 }

@@ -57,6 +57,9 @@ impl MassMatrix {
     pub fn new(lattice: &Lattice, density: f64, mass: scene::Mass, held: [Vec<usize>; 2]) -> Result<Self, Failure> {
         let mut row_sums = lattice.integrate(|_, _, _| 1.0);
         row_sums.iter_mut().for_each(|m| *m *= density);
+        if let Some(sheets) = lattice.sheets() {
+            sheets.fold(&mut row_sums);
+        }
         let negligible = NEGLIGIBLE * row_sums.iter().copied().fold(0.0, larger);
         let kind = match fault!("mass-lumped", mass => scene::Mass::Lumped) {
             scene::Mass::Lumped => {
@@ -102,6 +105,18 @@ impl MassMatrix {
         match &self.kind {
             MassKind::Lumped { .. } => out.iter_mut().zip(x).zip(&self.row_sums).for_each(|((o, x), m)| *o = m * x),
             MassKind::Consistent(consistent) => drop(consistent.matrix.apply(x, out)),
+        }
+    }
+
+    /// Sum of `M x` over some control points, for one component.
+    pub(crate) fn sum_at(&self, x: &[f64], points: impl Iterator<Item = usize>) -> f64 {
+        match &self.kind {
+            MassKind::Lumped { .. } => points.map(|at| self.row_sums[at] * x[at]).sum(),
+            MassKind::Consistent(consistent) => {
+                let mut image = consistent.matrix.grid.zeros();
+                consistent.matrix.apply(x, &mut image);
+                points.map(|at| image[at]).sum()
+            }
         }
     }
 

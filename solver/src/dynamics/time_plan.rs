@@ -109,7 +109,7 @@ mod tests {
         passing: f64,
     ) -> (TimePlan, Vec<String>) {
         let analysis = Analysis { end_time, time_step, ..elastic_scene(1, [1.0; 2], [1; 2]).analysis };
-        TimePlan::within(&analysis, &Output { samples, frames: Vec::new(), bodies: false }, critical, passing)
+        TimePlan::within(&analysis, &Output::rows(samples), critical, passing)
     }
 
     #[test]

@@ -6,11 +6,14 @@
 //! scheme is converged.
 
 mod begin;
-mod driven;
+mod equilibrium;
 mod forced;
+mod held_points;
 mod inspect;
 mod observe;
 mod paint;
+mod prescribed;
+mod probe;
 mod rotation;
 mod state;
 pub(crate) mod stiffness;
@@ -34,8 +37,9 @@ use crate::splines::patch::Patch;
 use crate::transfer::sweep::StripForces;
 
 use crate::transfer::elastic_forces::elastic_forces;
-use driven::DrivenSides;
 use forced::LatticeForcing;
+use prescribed::Reactions;
+use probe::ProbePlace;
 
 /// One body in the total frame.
 #[derive(Debug, Clone)]
@@ -60,13 +64,16 @@ pub struct TotalFrame {
     strip_forces: StripForces,
     /// The phase field, if the material fractures.
     pub fracture: Option<LatticeFracture>,
-    lowest_tip: f64,
+    probes: Vec<ProbePlace>,
+    /// Where its crack begins, m, once there is one.
+    crack_start: Option<[f64; 2]>,
     elastic_energy: f64,
     ledger: Ledger,
     time: f64,
-    /// Sides that are driven, if there are any, and their power at the last whole step, W/m.
-    driven: Option<Box<DrivenSides>>,
-    driven_power: f64,
+    /// The step in use, s; zero before the first.
+    time_step: f64,
+    /// Reactions to the conditions, if one of them moves or has a name.
+    reactions: Reactions,
     /// Stiffening by finite strains at which the critical step was last taken.
     judged_stiffening: f64,
 }
@@ -77,7 +84,6 @@ impl TotalFrame {
         self.internal_forces();
         self.ledger.history_work = 0.0; // there was no step yet
         self.accelerate();
-        self.driven_power = self.power_of_driven_sides();
     }
 
     /// One time step of `dt` seconds (E 14–18).
@@ -111,6 +117,9 @@ impl TotalFrame {
                 }
             });
         }
+        if let Some(sheets) = self.lattice.sheets() {
+            sheets.spread(&mut self.displacement);
+        }
         self.time += dt;
     }
 
@@ -124,6 +133,9 @@ impl TotalFrame {
                     *v += fault!("whole-kick", 0.5 * dt => dt) * a;
                 }
             });
+        }
+        if let Some(sheets) = self.lattice.sheets() {
+            sheets.spread(&mut self.velocity);
         }
     }
 
@@ -148,13 +160,24 @@ impl TotalFrame {
         } else {
             self.elastic_energy = elastic_forces(lattice, *moduli, *kinematics, displacement, strip_forces, internal);
         }
+        if let Some(sheets) = lattice.sheets() {
+            internal.iter_mut().for_each(|component| sheets.fold(component));
+        }
     }
 
-    /// `a = M⁻¹ (f_ext − f_int)`, zero where the velocity is prescribed.
+    /// `a = M⁻¹ (f_ext − f_int)`, or what is prescribed.
     fn accelerate(&mut self) {
         self.external_minus_internal();
+        self.reactions.begin(&self.constraints, &self.acceleration);
         self.mass.divide(&mut self.acceleration);
-        self.constraints.remove(&mut self.acceleration);
+        let Self { reactions, constraints, mass, velocity, acceleration, .. } = self;
+        reactions.prescribe(constraints, [self.time, self.time_step], mass, velocity, acceleration);
+    }
+
+    /// Makes ready for steps of `dt` seconds: the accelerations at t = 0 of what is prescribed.
+    pub(crate) fn prepare(&mut self, dt: f64) {
+        self.time_step = dt;
+        self.accelerate();
     }
 
     /// `f_ext − f_int` in the room of the acceleration.
@@ -183,7 +206,7 @@ impl TotalFrame {
         }
     }
 
-    /// Work of tractions, gravity and driven sides over the last step: mean force times displacement.
+    /// Work of tractions, gravity and conditions over the last step: mean force times displacement.
     fn book_external_work(&mut self, dt: f64) {
         let velocity = &self.velocity; // half a step before self.time: between the two ends of the step
         let mut power = 0.0;
@@ -199,34 +222,7 @@ impl TotalFrame {
         if let Some(forced) = &self.forced {
             power += forced.mean_power(velocity);
         }
-        let driven = fault!("driven-work-left-out", self.power_of_driven_sides() => 0.0);
-        power += 0.5 * (self.driven_power + driven);
-        self.driven_power = driven;
-        self.ledger.external_work += dt * power;
-    }
-
-    /// Reaction times velocity of the driven control points, W/m: internal and inertial minus external force.
-    fn power_of_driven_sides(&mut self) -> f64 {
-        let Self { driven: Some(driven), mass, acceleration, internal, loads, gravity, time, .. } = self else {
-            return 0.0;
-        };
-        let DrivenSides { points, inertia, forced } = &mut **driven;
-        for component in 0..2 {
-            mass.multiply(&acceleration[component], &mut inertia[component]);
-        }
-        if let Some(loads) = &self.forced {
-            let forced = forced.get_or_insert_with(|| [self.grid.zeros(), self.grid.zeros()]);
-            forced.iter_mut().for_each(|forced| forced.fill(0.0));
-            loads.add_to(forced);
-        }
-        let mut power = 0.0;
-        for &(at, component, value) in &*points {
-            let loads = loads.iter().flat_map(|load| load.forces.iter().map(|f| (load.factor(*time), f)));
-            let applied: f64 = loads.filter(|(_, f)| f.0 == at).map(|(factor, f)| factor * f.1[component]).sum();
-            let varying = forced.as_ref().map_or(0.0, |forced| forced[component][at]);
-            let external = applied + varying + gravity[component] * mass.row_sums()[at];
-            power += value * (internal[component][at] + inertia[component][at] - external);
-        }
-        power
+        let conditions = self.reactions.work(dt);
+        self.ledger.external_work += dt * power + fault!("driven-work-left-out", conditions => 0.0);
     }
 }

@@ -6,21 +6,24 @@
 //! *strips* of fixed height. Sums are formed strip by strip, so they do not depend on the number of threads.
 //!
 //! A rectangle cuts the spans at its edges exactly; of other shapes the points of a span that lie inside are
-//! kept. On a patch with a geometry the lattice is one of parameters, in the unit of the knots, and has a
-//! [`Mapping`].
+//! kept. Slits add rows for the points that use copies of control points ([`parting`]). On a patch with a
+//! geometry the lattice is one of parameters, in the unit of the knots, and has a [`Mapping`].
 
 mod integrate;
 mod map;
 mod mapped;
+mod parting;
+mod sheets;
 mod tables;
 
 pub(crate) use mapped::{MappedPoint, Mapping};
+pub(crate) use sheets::Sheets;
 
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{LANES, Lane};
-use crate::scene::{Body, Layout, Shape};
+use crate::scene::{Body, Crack, Layout, Shape};
 use crate::splines::nurbs::locate::Location;
-use crate::splines::patch::Patch;
+use crate::splines::patch::{Patch, PointFunctions};
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::MAX_FUNCTIONS;
 use crate::splines::spline::SplineSpace;
@@ -34,8 +37,10 @@ const STRIP_ROWS: usize = 8;
 /// Material points of one body, in reference positions.
 #[derive(Debug, Clone)]
 pub struct Lattice {
-    /// Layout of the control points.
+    /// Layout of the control points, copies included.
     pub grid: ControlGrid,
+    /// Layout of the control points of the patch: those of the phase field.
+    pub patch_grid: ControlGrid,
     /// Degree in x and y.
     pub degree: [usize; 2],
     /// Points per span in x and y.
@@ -44,13 +49,17 @@ pub struct Lattice {
     pub layout: Layout,
     /// Tiles of columns.
     pub tiles: Vec<Tile>,
-    /// Rows of spans.
+    /// Rows of spans, those of sheets last.
     pub rows: Vec<Row>,
+    patch_rows: usize,
     /// What the geometry of the patch adds; absent over a rectangle.
     pub(crate) mapping: Option<Box<Mapping>>,
     /// What the product of the weights of both directions is multiplied by, per batch: 0 where there is no
     /// point, and the determinant of the Jacobian where there is a geometry; absent if it is 1 everywhere.
     factor: Option<Vec<Lane>>,
+    /// Whether a strip has points in a tile, strip by strip; absent if every one does.
+    occupied: Option<Vec<bool>>,
+    sheets: Option<Box<Sheets>>,
 }
 
 /// Shape functions and physical gradients (1/m) of a batch of points, function n = l (p + 1) + k.
@@ -110,10 +119,11 @@ impl Lattice {
         let mapped = patch.geometry.is_some();
         let [x, y] = directions(body, &patch.spaces, mapped).map(|along| along.columns());
         let degree = [0, 1].map(|d| patch.spaces[d].degree());
-        let rows = y
+        let rows: Vec<Row> = y
             .into_iter()
             .map(|c| Row {
                 first: c.first,
+                lift: 0,
                 value: c.value,
                 derivative: c.derivative,
                 weight: c.weight,
@@ -122,21 +132,79 @@ impl Lattice {
             .collect();
         let mut lattice = Self {
             grid: patch.control_grid(),
+            patch_grid: patch.control_grid(),
             degree,
             points: body.particles_per_cell,
             layout: body.layout,
             tiles: tiles(&x, degree[0] + 1),
+            patch_rows: rows.len(),
             rows,
             mapping: None,
             factor: None,
+            occupied: None,
+            sheets: None,
         };
         if let Some(geometry) = &patch.geometry {
             lattice.map_by(geometry);
         }
+        let slits: Vec<_> = body.cracks.iter().filter(|crack| crack.is_slit()).flat_map(Crack::segments).collect();
         if !fills_lattice(mapped, &body.shape) {
             lattice.keep_inside(&body.shape);
+            lattice.part(&slits, Some(&body.shape));
+        } else if !slits.is_empty() {
+            lattice.part(&slits, None);
         }
+        lattice.occupied = lattice.factor.as_ref().map(|factor| {
+            let points = lattice.points_per_span();
+            let holds = |(strip, tile): (usize, usize)| {
+                let mut first = lattice.strip_rows(strip).map(|row| lattice.batch(row, tile, 0, 0));
+                first.any(|at| factor[at..at + points].iter().any(|factor| factor.0.iter().any(|&f| f > 0.0)))
+            };
+            let tiles = lattice.tiles.len();
+            (0..lattice.strips()).flat_map(|strip| (0..tiles).map(move |tile| (strip, tile))).map(holds).collect()
+        });
         lattice
+    }
+
+    /// Copies of control points along slits.
+    pub(crate) fn sheets(&self) -> Option<&Sheets> {
+        self.sheets.as_deref()
+    }
+
+    /// Whether a strip has points in a tile.
+    #[inline(always)]
+    pub(crate) fn is_occupied(&self, strip: usize, tile: usize) -> bool {
+        self.occupied.as_ref().is_none_or(|occupied| occupied[strip * self.tiles.len() + tile])
+    }
+
+    /// A field on all control points as one on those of the patch, to which copies add.
+    pub(crate) fn onto_patch(&self, field: Vec<f64>) -> Vec<f64> {
+        match &self.sheets {
+            None => field,
+            Some(sheets) => sheets.onto_patch(self.patch_grid, field),
+        }
+    }
+
+    /// A field on the control points of the patch with its copies.
+    pub(crate) fn with_copies(&self, mut field: Vec<f64>) -> Vec<f64> {
+        if let Some(sheets) = &self.sheets {
+            sheets.extend(self.patch_grid, &mut field);
+        }
+        field
+    }
+
+    /// The control point that stands for one of the patch at a position (m), in the span whose first function
+    /// has the control point `first`.
+    pub(crate) fn control_point(&self, at: usize, first: usize, position: [f64; 2]) -> usize {
+        self.sheets.as_ref().map_or(at, |sheets| sheets.original(at + self.lift(first, position)))
+    }
+
+    /// Distance in fields of the control points of a position (m) from those of the patch, in the span whose
+    /// first function has the control point `first`.
+    pub(crate) fn lift(&self, first: usize, position: [f64; 2]) -> usize {
+        let Some(sheets) = &self.sheets else { return 0 };
+        let cell = [self.patch_grid.column_of(first), self.patch_grid.row_of(first)];
+        sheets.lift(cell, position) * self.grid.stride
     }
 
     /// Takes away the points outside a shape.
@@ -172,6 +240,11 @@ impl Lattice {
         self.rows.len().div_ceil(STRIP_ROWS)
     }
 
+    /// Number of strips of the patch; those of sheets follow.
+    pub(crate) fn patch_strips(&self) -> usize {
+        self.patch_rows.div_ceil(STRIP_ROWS)
+    }
+
     /// Rows of spans in a strip.
     pub(crate) fn strip_rows(&self, strip: usize) -> std::ops::Range<usize> {
         strip * STRIP_ROWS..((strip + 1) * STRIP_ROWS).min(self.rows.len())
@@ -181,6 +254,13 @@ impl Lattice {
     pub(crate) fn strip_control_rows(&self, strip: usize) -> std::ops::Range<usize> {
         let rows = self.strip_rows(strip);
         self.rows[rows.start].first..self.rows[rows.end - 1].first + self.degree[1] + 1
+    }
+
+    /// Control rows of the patch that a strip contributes to.
+    pub(crate) fn strip_patch_rows(&self, strip: usize) -> std::ops::Range<usize> {
+        let rows = self.strip_control_rows(strip);
+        let lift = self.rows[self.strip_rows(strip).start].lift;
+        rows.start - lift..rows.end - lift
     }
 
     /// Batch index of row of spans, tile, and point (a, b) in the span.
@@ -250,10 +330,23 @@ impl Lattice {
         [self.tiles[tile].position[a][lane], self.rows[row].position[b]]
     }
 
+    /// Shape functions at the point of a batch in a lane, with the control points of the body.
+    pub(crate) fn functions_at(&self, patch: &Patch, batch: usize, lane: usize) -> PointFunctions {
+        let mut functions = patch.functions(self.location(patch, batch, lane));
+        functions.lift(self.lift_of(batch));
+        functions
+    }
+
+    /// Distance in fields of the control points of a batch from those of the patch.
+    pub(crate) fn lift_of(&self, batch: usize) -> usize {
+        let (row, ..) = self.unbatch(batch);
+        self.rows[row].lift * self.grid.stride
+    }
+
     /// Span and parameters on `patch` of the point of a batch in a lane.
     pub fn location(&self, patch: &Patch, batch: usize, lane: usize) -> Location {
         let (row, tile, _, _) = self.unbatch(batch);
-        let first = [self.tiles[tile].first + lane, self.rows[row].first];
+        let first = [self.tiles[tile].first + lane, self.rows[row].first - self.rows[row].lift];
         let span = [0, 1].map(|d| patch.spaces[d].spans().partition_point(|span| span.first < first[d]));
         Location { span, parameters: self.parameters(batch, lane) }
     }
@@ -274,7 +367,8 @@ impl Lattice {
     /// Heap memory of what is kept per point, bytes.
     pub fn bytes(&self) -> usize {
         let mapping = self.mapping.as_ref().map_or(0, |mapping| mapping.bytes());
-        mapping + self.factor.as_ref().map_or(0, |factor| size_of::<Lane>() * factor.len())
+        let sheets = self.sheets.as_ref().map_or(0, |sheets| sheets.bytes());
+        mapping + sheets + self.factor.as_ref().map_or(0, |factor| size_of::<Lane>() * factor.len())
     }
 
     /// Number of material points.

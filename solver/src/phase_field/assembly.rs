@@ -48,13 +48,13 @@ pub fn add_form<C: PointCoefficients>(matrix: &mut Stencil, lattice: &Lattice, f
 }
 
 /// Calls `assemble` with every strip, its first control row, and the part of the matrix it contributes to;
-/// strips of one colour in parallel.
+/// strips of one colour in parallel, those of sheets one by one.
 fn for_each_strip(matrix: &mut Stencil, lattice: &Lattice, assemble: impl Fn(usize, usize, &mut [f64]) + Sync) {
     let row_length = matrix.row_length();
     for colour in 0..2 {
         let mut windows = Vec::new();
         let (mut rest, mut passed) = (matrix.coefficients_mut(), 0);
-        for strip in (colour..lattice.strips()).step_by(2) {
+        for strip in (colour..lattice.patch_strips()).step_by(2) {
             let rows = lattice.strip_control_rows(strip);
             let (_, tail) = std::mem::take(&mut rest).split_at_mut((rows.start - passed) * row_length);
             let (window, tail) = tail.split_at_mut(rows.len() * row_length);
@@ -62,6 +62,11 @@ fn for_each_strip(matrix: &mut Stencil, lattice: &Lattice, assemble: impl Fn(usi
             (rest, passed) = (tail, rows.end);
         }
         windows.into_par_iter().for_each(|(strip, first_row, window)| assemble(strip, first_row, window));
+    }
+    for strip in lattice.patch_strips()..lattice.strips() {
+        let rows = lattice.strip_patch_rows(strip);
+        let window = &mut matrix.coefficients_mut()[rows.start * row_length..rows.end * row_length];
+        assemble(strip, rows.start, window);
     }
 }
 
@@ -102,6 +107,9 @@ impl<C: PointCoefficients> AssembleLattice<'_, C> {
         for row_index in lattice.strip_rows(self.strip) {
             let row = &lattice.rows[row_index];
             for (tile_index, tile) in lattice.tiles.iter().enumerate() {
+                if !lattice.is_occupied(self.strip, tile_index) {
+                    continue;
+                }
                 for b in 0..ny {
                     for a in 0..nx {
                         weights[b * nx + a] = lattice.weight(row_index, tile_index, b, a);
@@ -158,7 +166,7 @@ impl<C: PointCoefficients> AssembleLattice<'_, C> {
         let (p, half) =
             (kx - 1, self.lattice.degree[0] + 1 + self.lattice.degree[1] * (2 * self.lattice.degree[0] + 1));
         for lower in 0..ky {
-            let control_row = row.first + lower - self.first_row;
+            let control_row = row.first - row.lift + lower - self.first_row;
             let base = control_row * half * stride + self.lattice.grid.index(tile.first, 0);
             for upper in lower..ky {
                 let mut products = [0.0; MAX_POINTS];

@@ -8,8 +8,7 @@ use crate::material::degradation::{BROKEN, FractureModel};
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::PhaseField;
-use crate::scene::shape::distance_to_segment;
-use crate::scene::{Body, Boundary, Crack, Kinematics, Scene, Side, SolverSettings};
+use crate::scene::{Body, Crack, CrackKind, Kinematics, SolverSettings};
 use crate::transfer::finite::sweep_with;
 use crate::transfer::kernels::{DegradedStress, HistoryUpdate, SurfaceEnergy};
 use crate::transfer::point_kernel::Fields;
@@ -17,6 +16,9 @@ use crate::transfer::sweep::{StripForces, sweep};
 
 /// Ratio of the largest initial history energy to Gc/(4 l0) on a seeded crack (Borden et al. 2012).
 pub(crate) const SEED_STRENGTH: f64 = 1000.0;
+
+/// Difference of two distances from the start of a crack that counts as none, of the spacing of points.
+const TIE: f64 = 1e-3;
 
 /// History and phase field of a body.
 #[derive(Debug, Clone)]
@@ -144,51 +146,16 @@ impl LatticeFracture {
         (energy, least)
     }
 
-    /// Point of largest x with c below [`BROKEN`] at heights of at least `lowest` (m), by linear
-    /// interpolation between neighbouring points along a row.
-    pub fn crack_tip(&self, lattice: &Lattice, lowest: f64) -> Option<[f64; 2]> {
-        let mut tip: Option<[f64; 2]> = None;
-        for row in 0..lattice.rows.len() {
-            for b in 0..lattice.points[1] {
-                let Some(broken) = self.rightmost_broken(lattice, row, b, lowest) else { continue };
-                if tip.is_none_or(|tip| fault!("tip-of-the-shortest-row", broken[0] > tip[0] => broken[0] < tip[0])) {
-                    tip = Some(broken);
-                }
+    /// The broken points.
+    pub(crate) fn broken_points(&self, lattice: &Lattice) -> Vec<BrokenPoint> {
+        let mut broken = Vec::new();
+        lattice.for_each_point(|batch, lane, position, area| {
+            let phase = self.phase[batch][lane];
+            if phase < BROKEN {
+                broken.push(BrokenPoint { position, phase, spacing: area.sqrt() });
             }
-        }
-        tip
-    }
-
-    fn rightmost_broken(&self, lattice: &Lattice, row: usize, b: usize, lowest: f64) -> Option<[f64; 2]> {
-        let mut next: Option<([f64; 2], f64)> = None;
-        let mut tip: Option<[f64; 2]> = None;
-        for (tile_index, tile) in lattice.tiles.iter().enumerate().rev() {
-            for lane in (0..tile.count).rev() {
-                for a in (0..lattice.points[0]).rev() {
-                    let batch = lattice.batch(row, tile_index, b, a);
-                    let (position, c) = (lattice.position(batch, lane), self.phase[batch][lane]);
-                    if lattice.weight(row, tile_index, b, a)[lane] == 0.0 || position[1] < lowest {
-                        next = None; // nothing to interpolate to
-                        continue;
-                    }
-                    if c < BROKEN {
-                        let beyond = next.filter(|(_, other)| *other >= BROKEN).map(|(place, other)| {
-                            let t = (BROKEN - c) / (other - c);
-                            [0, 1].map(|d| position[d] + t * (place[d] - position[d]))
-                        });
-                        let here = beyond.filter(|place| place[0] > position[0]).unwrap_or(position);
-                        if tip.is_none_or(|tip| here[0] > tip[0]) {
-                            tip = Some(here);
-                        }
-                        if lattice.mapping.is_none() {
-                            return tip; // positions grow along the row
-                        }
-                    }
-                    next = Some((position, c));
-                }
-            }
-        }
-        tip
+        });
+        broken
     }
 
     /// Heap memory, bytes.
@@ -198,33 +165,71 @@ impl LatticeFracture {
     }
 }
 
-/// Half width (m) of the initial history field of a crack.
-pub fn half_width(crack: &Crack, length_scale: f64) -> f64 {
-    crack.half_width.unwrap_or(0.5 * length_scale)
+/// Half width (m) of the initial history field of a crack; a slit has none.
+pub fn half_width(crack: &Crack, length_scale: f64) -> Option<f64> {
+    match crack.kind {
+        CrackKind::Seed(half_width) => Some(half_width.unwrap_or(0.5 * length_scale)),
+        CrackKind::Slit => None,
+    }
 }
 
-/// Height from which the crack tip is looked for: the middle of the body, or its foot if the body is the
-/// upper half of a symmetric one: it stands on the bottom side, a roller holds that side, and a crack lies
-/// along it.
-pub(crate) fn lowest_tip(scene: &Scene, body: &Body) -> f64 {
-    let (low, high) = scene.mesh.extent(&body.shape);
-    let at_foot = |y: f64| (y - low[1]).abs() <= 1e-9 * (high[1] - low[1]);
-    let roller = |b: &Boundary| b.side == Side::Bottom && b.fix == [false, true] && b.velocity[1] == 0.0;
-    let half = at_foot(scene.mesh.origin()[1])
-        && scene.boundaries.iter().any(roller)
-        && body.cracks.iter().any(|crack| at_foot(crack.from[1]) && at_foot(crack.to[1]));
-    if half { low[1] } else { 0.5 * (low[1] + high[1]) }
+/// A material point with c below [`BROKEN`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BrokenPoint {
+    /// Position, m.
+    pub position: [f64; 2],
+    /// Its c.
+    pub phase: f64,
+    /// Distance to its neighbours, m.
+    pub spacing: f64,
+}
+
+/// Where the crack of a body begins, m: the first point of its first initial crack; without one, the most
+/// broken point of those that are broken first.
+pub(crate) fn crack_start(body: &Body) -> Option<[f64; 2]> {
+    let first = body.cracks.first()?;
+    Some(fault!("tip-from-the-end-of-the-seed", first.points[0] => first.points[first.points.len() - 1]))
+}
+
+/// The most broken point, m.
+pub(crate) fn most_broken(broken: &[BrokenPoint]) -> Option<[f64; 2]> {
+    broken.iter().min_by(|a, b| a.phase.total_cmp(&b.phase)).map(|point| point.position)
+}
+
+/// The tip of a crack: the place at the largest distance from its start where c is [`BROKEN`], of two places
+/// the upper one. Broken points are moved outwards to it by the gradient of c, at most by their spacing.
+pub(crate) fn crack_tip(
+    start: [f64; 2],
+    broken: &[BrokenPoint],
+    gradient: impl Fn([f64; 2]) -> [f64; 2],
+) -> Option<[f64; 2]> {
+    let distance = |p: [f64; 2]| (p[0] - start[0]).hypot(p[1] - start[1]);
+    let foremost = broken.iter().max_by(|a, b| distance(a.position).total_cmp(&distance(b.position)))?;
+    let near = distance(foremost.position) - foremost.spacing;
+    let candidates = broken.iter().filter(|point| distance(point.position) >= near);
+    let tips: Vec<[f64; 2]> = candidates
+        .map(|point| {
+            let outwards = [0, 1].map(|d| (point.position[d] - start[d]) / distance(point.position));
+            let slope = gradient(point.position);
+            let ahead = (BROKEN - point.phase) / (slope[0] * outwards[0] + slope[1] * outwards[1]);
+            let ahead = if ahead >= 0.0 { ahead.min(point.spacing) } else { 0.0 };
+            [0, 1].map(|d| point.position[d] + ahead * outwards[d])
+        })
+        .collect();
+    let furthest = tips.iter().map(|tip| distance(*tip)).fold(0.0, larger);
+    let tie = furthest - TIE * foremost.spacing;
+    tips.into_iter().filter(|tip| distance(*tip) >= tie).max_by(|a, b| a[1].total_cmp(&b[1]))
 }
 
 /// Initial history energy `H0(d) = B Gc/(4 l0) (1 − d/w)` within the half width w of a crack, else zero.
 pub(crate) fn seed_energy(model: &FractureModel, body: &Body, position: [f64; 2]) -> f64 {
     let strength = SEED_STRENGTH * model.toughness / (4.0 * model.length_scale);
     let of_crack = |crack: &Crack| {
-        let half_width = half_width(crack, model.length_scale);
+        let half_width = half_width(crack, model.length_scale)?;
         let reach = fault!("seed-twice-as-wide", half_width => 2.0 * half_width);
-        strength * (1.0 - distance_to_segment(position, crack.from, crack.to) / reach)
+        Some(strength * (1.0 - crack.distance(position) / reach))
     };
-    body.cracks.iter().map(of_crack).fold(0.0, larger)
+    body.cracks.iter().filter_map(of_crack).fold(0.0, larger)
 }
 
 fn seeded_history(lattice: &Lattice, body: &Body, model: &FractureModel) -> Vec<Lane> {

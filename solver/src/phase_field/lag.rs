@@ -3,11 +3,11 @@
 use crate::checkpoint::{Archive, StateError};
 use crate::scene::PhaseFieldInterval;
 
-/// Largest change of c at a control point between two solves of the automatic interval: a twentieth of the way
-/// to a crack.
+/// Largest change of c at a control point between two solves of the automatic interval: a twentieth of the
+/// way to a crack.
 const MOST_CHANGE: f64 = 0.05;
-/// Most steps between them: in `energy/phase-field-interval` three change the fracture energy by 5e-4, and six
-/// by nine times as much.
+/// Most steps between them: in `energy/phase-field-interval` three change the fracture energy by 5e-4, and
+/// six by nine times as much.
 const MOST_STEPS: usize = 4;
 
 /// State between two solves.

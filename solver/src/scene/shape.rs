@@ -1,7 +1,49 @@
 //! Regions of the plane: which positions lie in a shape, and how far it reaches.
 
+use super::condition::Side;
 use crate::linear_algebra::extremes::{larger, smaller};
-use crate::scene::{Shape, Side};
+
+/// Region of the plane, in m.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// Axis-aligned rectangle.
+    Rectangle {
+        /// Lower left corner.
+        min: [f64; 2],
+        /// Upper right corner.
+        max: [f64; 2],
+    },
+    /// Disk.
+    Disk {
+        /// Centre.
+        center: [f64; 2],
+        /// Radius.
+        radius: f64,
+    },
+    /// Ring between two circles.
+    Annulus {
+        /// Centre.
+        center: [f64; 2],
+        /// Inner radius.
+        inner_radius: f64,
+        /// Outer radius.
+        outer_radius: f64,
+    },
+    /// Simple polygon.
+    Polygon {
+        /// Corners in order.
+        points: Vec<[f64; 2]>,
+    },
+    /// All of the background patch.
+    Patch,
+    /// A shape without other shapes.
+    Difference {
+        /// The shape cut from.
+        of: Box<Shape>,
+        /// The shapes cut out.
+        minus: Vec<Shape>,
+    },
+}
 
 impl Shape {
     /// Whether `position` (m) lies in the shape; what bounds it belongs to it, except for the edges of a

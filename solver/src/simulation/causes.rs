@@ -40,6 +40,10 @@ const UNSETTLED: &str = "bodies wedged between others, or friction too large for
                          analysis.safety, or use larger cells where they meet";
 const TOO_FAST: &str = "bodies faster than contact can follow at this time step: give analysis.time_step as much less, or \
                         lower analysis.safety";
+const NO_EQUILIBRIUM: &str = "a load beyond the strength of the body, or a seed that cuts a part off: lower the load, or \
+                              leave start.equilibrium out";
+const UNBALANCED: &str =
+    "a body that is not held: add a [[boundary]], balance the loads, or leave start.equilibrium out";
 pub(super) const BARE: &str = "a traction acts where there is no material any more";
 pub(super) const TORN: &str = "the load has torn off the points under it; lower or ramp the traction, or end earlier";
 
@@ -58,6 +62,7 @@ pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> 
         | Failure::SingularMass
         | Failure::NoStep
         | Failure::Unconverged(_) => (place, None),
+        Failure::NoEquilibrium(_) | Failure::Unbalanced(_) => (place, Some("start.equilibrium".to_string())),
     };
     let scene = key.map(|key| Box::new(SceneError { key, message: what.clone(), remedy: cause.clone() }));
     Breakdown { step: 0, time: 0.0, place, point: None, what, cause, scene }
@@ -96,6 +101,14 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
                  {MOST}"
             ),
             TOO_FAST,
+        ),
+        Failure::NoEquilibrium(residual) => (
+            format!("no static state was found: {residual:.1e} of the largest nodal force is out of balance"),
+            NO_EQUILIBRIUM,
+        ),
+        Failure::Unbalanced(resultant) => (
+            format!("the loads at t = 0 have a resultant of {resultant:.1e} of their size, and nothing holds the body"),
+            UNBALANCED,
         ),
         Failure::NoStep => ("the critical time step is not a number".to_string(), EXTREME),
         Failure::SingularMass => ("the consistent mass matrix is singular to round-off".to_string(), SINGULAR_MASS),

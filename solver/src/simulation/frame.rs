@@ -38,7 +38,10 @@ impl Bodies {
     /// Makes ready for steps of `dt` seconds.
     pub(super) fn prepare(&mut self, dt: f64) -> Result<(), Failure> {
         match self {
-            Self::Total(_) => Ok(()),
+            Self::Total(body) => {
+                body.prepare(dt);
+                Ok(())
+            }
             Self::Updated(body) => body.prepare(dt),
         }
     }

@@ -27,8 +27,8 @@ const CLOSURE_FLOOR: f64 = 1e-6;
 /// strain of 0.5 %, and in the updated frame stresses do not turn with the material.
 const ROTATION_LIMIT: f64 = 0.1;
 
-/// Increase of a control value of c by a solve after steps without one that is worth a warning: twice what the
-/// automatic interval lets c change by.
+/// Increase of a control value of c by a solve after steps without one that is worth a warning: twice what
+/// the automatic interval lets c change by.
 const HEALING_LIMIT: f64 = 0.1;
 
 /// Steps between two looks at the deformation of a body in the total frame, each a third of a step's work.
@@ -210,6 +210,8 @@ impl Simulation {
             | Failure::SingularMass
             | Failure::NoStep
             | Failure::NoPoints(_)
+            | Failure::NoEquilibrium(_)
+            | Failure::Unbalanced(_)
             | Failure::LostTraction { .. } => self.at_worst_point(&what, Some(&cause)),
         }
     }

@@ -83,6 +83,11 @@ impl Patch {
 
     /// Points along a side with a rule in every span of it.
     pub fn boundary(&self, side: Side, rule: &Rule) -> Vec<BoundaryPoint> {
+        self.boundary_cut(side, rule, &[])
+    }
+
+    /// Points along a side with a rule in every part of a span between `cuts`, in increasing order.
+    pub(crate) fn boundary_cut(&self, side: Side, rule: &Rule, cuts: &[f64]) -> Vec<BoundaryPoint> {
         let grid = self.control_grid();
         let (across, upper) = match side {
             Side::Left => (0, false),
@@ -95,11 +100,16 @@ impl Patch {
         let (fixed_span, fixed) = if upper { (ends.len() - 1, ends[ends.len() - 1].right) } else { (0, ends[0].left) };
         let sign = if upper { 1.0 } else { -1.0 };
         let mut points = Vec::new();
-        for (index, span) in self.spaces[along].spans().iter().enumerate() {
+        let parts = self.spaces[along].spans().iter().enumerate().flat_map(|(index, span)| {
+            let inner = cuts.iter().copied().filter(|x| (span.left..span.right).contains(x) && *x > span.left);
+            let ends: Vec<f64> = std::iter::once(span.left).chain(inner).chain([span.right]).collect();
+            ends.windows(2).map(|ends| (index, ends[0], ends[1] - ends[0])).collect::<Vec<_>>()
+        });
+        for (index, left, part) in parts {
             for (t, weight) in rule.points.iter().zip(&rule.weights) {
                 let (mut at, mut parameters) = ([fixed_span; 2], [fixed; 2]);
                 at[along] = index;
-                parameters[along] = span.left + t * span.length();
+                parameters[along] = left + t * part;
                 let (functions, image) = match &self.geometry {
                     None => (self.products(at, parameters), None),
                     Some(patch) => {
@@ -119,7 +129,7 @@ impl Patch {
                 points.push(BoundaryPoint {
                     position: image.map_or(parameters, |image| image.position),
                     normal: [turn * tangent[1] / speed, -turn * tangent[0] / speed],
-                    length: weight * span.length() * speed,
+                    length: weight * part * speed,
                     functions: on_grid(grid, &functions),
                 });
             }
@@ -204,6 +214,12 @@ impl Patch {
         }
     }
 
+    /// Control point of the first function that does not vanish in a span.
+    pub(crate) fn first_function(&self, span: [usize; 2]) -> usize {
+        let [column, row] = [0, 1].map(|d| self.spaces[d].spans()[span[d]].first);
+        self.control_grid().index(column, row)
+    }
+
     /// Whether something `holds` for all control points whose functions do not vanish in a span.
     pub(crate) fn all_functions(&self, span: [usize; 2], holds: impl Fn(usize) -> bool) -> bool {
         let grid = self.control_grid();
@@ -244,6 +260,11 @@ pub(crate) struct PointFunctions {
 }
 
 impl PointFunctions {
+    /// Takes control points that lie this far behind in fields.
+    pub(crate) fn lift(&mut self, distance: usize) {
+        self.values.iter_mut().for_each(|(at, _)| *at += distance);
+    }
+
     /// A field of control values.
     pub(crate) fn interpolate(&self, field: &[f64]) -> PointValue {
         let mut result = PointValue::default();

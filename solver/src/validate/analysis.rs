@@ -1,4 +1,4 @@
-//! Checks of times, step, solver, boundaries and output.
+//! Checks of times, step, solver and output.
 
 use super::findings::{Findings, side_name};
 use super::ground::Ground;
@@ -6,8 +6,7 @@ use super::material::plausible_speed;
 use crate::dynamics::body_sample::column_name;
 use crate::linear_algebra::extremes::larger;
 use crate::scene::{
-    Body, Boundary, Contact, Frame, Kinematics, Mass, PhaseFieldInterval, Quadrature, Scene, Shape, Side, TimeStep,
-    Transfer,
+    Body, Contact, Frame, Kinematics, Mass, PhaseFieldInterval, Quadrature, Scene, Shape, Side, TimeStep, Transfer,
 };
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
@@ -54,12 +53,9 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         findings.error("analysis.transfer", format!("xpic of order {order}"), remedy);
     }
     solver(scene, findings);
-    boundaries(scene, findings);
-    corners(scene, findings);
-    if ground.is_sound {
-        for (i, boundary) in scene.boundaries.iter().enumerate() {
-            held(&format!("boundary.{i}.side"), boundary, scene, findings);
-        }
+    if scene.equilibrium && analysis.frame == Frame::Updated {
+        let message = "a static start in the updated frame, which is not implemented";
+        findings.error("start.equilibrium", message, "remove it, or use frame = \"total\"");
     }
     output(scene, findings);
     if let Some(contact) = &scene.contact
@@ -128,7 +124,7 @@ fn spans_integrate(scene: &Scene, findings: &mut Findings) {
             let size = (end[0] - origin[0]).max(end[1] - origin[1]);
             let message = format!("{name}, which does not begin on the {} side", side_name(boundary.side));
             refuse(apart > TOLERANCE * size, &message, "let every body begin on the sides that are held");
-            refuse(boundary.velocity != [0.0; 2], "with a side that moves", "give it the velocity zero");
+            refuse(!boundary.is_at_rest(), "with a side that moves", "give it the velocity zero");
         }
     }
 }
@@ -224,34 +220,6 @@ fn crossings(body: &Body, scene: &Scene, ground: &Ground<'_>) -> Option<f64> {
     Some(scene.analysis.end_time * speed / smallest)
 }
 
-/// A warning unless a body reaches the side of a boundary.
-fn held(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) {
-    let (origin, end) = (scene.mesh.origin(), scene.mesh.end());
-    let (d, upper) = match boundary.side {
-        Side::Left => (0, false),
-        Side::Right => (0, true),
-        Side::Bottom => (1, false),
-        Side::Top => (1, true),
-    };
-    let tolerance = TOLERANCE * (end[d] - origin[d]);
-    if scene.mesh.geometry.is_some() {
-        return; // the sides of the patch are not those of the box around it
-    }
-    let place = if upper { end[d] } else { origin[d] };
-    let reaches = |body: &Body| {
-        let (min, max) = scene.mesh.extent(&body.shape);
-        if upper { max[d] >= place - tolerance } else { min[d] <= place + tolerance }
-    };
-    if !scene.bodies.iter().any(reaches) {
-        let (side, name) = (side_name(boundary.side), ["x", "y"][d]);
-        let message = format!(
-            "no body reaches the {side} side of the mesh, {name} = {place} m, so nothing is held there; let the mesh \
-             end where the body does, or remove the boundary"
-        );
-        findings.warn(key, message);
-    }
-}
-
 fn solver(scene: &Scene, findings: &mut Findings) {
     let tolerance = scene.solver.phase_field_tolerance;
     if !(tolerance > 1e-15 && tolerance <= 1e-2) {
@@ -261,50 +229,6 @@ fn solver(scene: &Scene, findings: &mut Findings) {
     if scene.analysis.frame == Frame::Updated && scene.solver.phase_field_interval != PhaseFieldInterval::Steps(1) {
         let message = "in the updated frame the phase field is solved for in every step";
         findings.error("solver.phase_field_interval", message, "remove the key, or use frame = \"total\"");
-    }
-}
-
-fn boundaries(scene: &Scene, findings: &mut Findings) {
-    for (i, boundary) in scene.boundaries.iter().enumerate() {
-        let key = format!("boundary.{i}");
-        if boundary.fix == [false, false] {
-            let remedy =
-                "give fix = [\"x\"], [\"y\"] or [\"x\", \"y\"], or remove the boundary (a free side needs none)";
-            findings.error(format!("{key}.fix"), "nothing is fixed", remedy);
-        }
-        findings.finite(format!("{key}.velocity"), &boundary.velocity);
-        for d in 0..2 {
-            let name = ["x", "y"][d];
-            let twice = |other: usize| scene.boundaries[other].side == boundary.side && scene.boundaries[other].fix[d];
-            if let Some(other) = (0..i).find(|other| boundary.fix[d] && twice(*other)) {
-                let side = side_name(boundary.side);
-                let message = format!("{name} is already fixed on the {side} side by boundary.{other}");
-                findings.error(format!("{key}.fix"), message, "remove one of the two");
-            }
-            if !boundary.fix[d] && boundary.velocity[d] != 0.0 {
-                let message = format!("the {name} velocity has no effect, because {name} is not in fix");
-                findings.warn(format!("{key}.velocity"), message);
-            }
-        }
-    }
-}
-
-/// Sides that meet in a corner and prescribe a component of its velocity differently.
-fn corners(scene: &Scene, findings: &mut Findings) {
-    let is_upright = |side: Side| matches!(side, Side::Left | Side::Right);
-    for (i, boundary) in scene.boundaries.iter().enumerate() {
-        for (j, other) in scene.boundaries[..i].iter().enumerate() {
-            let meet = is_upright(boundary.side) != is_upright(other.side);
-            let differ = |d: &usize| boundary.fix[*d] && other.fix[*d] && boundary.velocity[*d] != other.velocity[*d];
-            let Some(d) = (0..2).find(|d| meet && differ(d)) else { continue };
-            let (name, [here, there]) = (["x", "y"][d], [boundary, other].map(|b| (side_name(b.side), b.velocity[d])));
-            let message = format!(
-                "the corner of the {} and the {} side would move at {} m/s and at {} m/s (boundary.{j}) in {name}",
-                here.0, there.0, here.1, there.1
-            );
-            let remedy = format!("give both sides the same velocity in {name}, or leave {name} free on one of them");
-            findings.error(format!("boundary.{i}.velocity"), message, remedy);
-        }
     }
 }
 
@@ -321,6 +245,29 @@ fn output(scene: &Scene, findings: &mut Findings) {
     }
     if output.bodies {
         recorded_bodies(scene, findings);
+    }
+    probes(scene, findings);
+}
+
+/// Probes lie in the body, under names that differ as columns.
+fn probes(scene: &Scene, findings: &mut Findings) {
+    let probes = &scene.output.probes;
+    for (i, probe) in probes.iter().enumerate() {
+        let key = format!("output.probe.{i}");
+        if scene.analysis.frame == Frame::Updated {
+            let message = "a probe in the updated frame, which is not implemented";
+            findings.error(&key, message, "remove it, or use frame = \"total\"");
+        }
+        let [x, y] = probe.at;
+        if findings.finite(format!("{key}.at"), &probe.at)
+            && !scene.bodies.iter().any(|body| body.shape.contains_within(probe.at, TOLERANCE))
+        {
+            findings.error(format!("{key}.at"), format!("({x}, {y}) m lies in no body"), "give a place in a body");
+        }
+        if let Some(j) = (0..i).find(|&j| column_name(&probes[j].name) == column_name(&probe.name)) {
+            let message = format!("the column {}_ux_m would be that of output.probe.{j} too", column_name(&probe.name));
+            findings.error(format!("{key}.name"), message, "give the probes names that differ in letters or digits");
+        }
     }
 }
 

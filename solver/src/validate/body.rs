@@ -1,26 +1,15 @@
 //! Checks of bodies: shape, place in the mesh, points, resolution of the length scale, tractions, cracks.
 
-use std::cell::Cell;
-
-use super::findings::{Findings, side_name};
-use super::geometry::{complexity, covered_side, defect, outline};
+use super::findings::Findings;
+use super::geometry::{covered_side, defect, outline};
 use super::ground::Ground;
+use super::look::{Look, TOLERANCE};
 use super::points::Points;
-use super::{resolution, seed};
-use crate::scene::{Body, Crack, Edge, Fracture, Layout, Scene, Shape, Traction};
+use super::{cracks, resolution, seed, tractions};
+use crate::scene::{Body, Fracture, Layout, Scene, Shape};
 use crate::splines::nurbs::{LocateError, NurbsPatch};
 use crate::splines::quadrature::MAX_POINTS;
 
-/// Relative tolerance of "inside", of the size of the mesh or body.
-const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
-/// Intervals between the positions at which the segment of a traction is looked at.
-const SEGMENT_INTERVALS: usize = 32;
-/// Most positions at which a crack is looked at.
-const MOST_CRACK_SAMPLES: usize = 10_000;
-/// Most tests of a position against a corner or circle, over all lines of a body: a tenth of a second.
-const MOST_LOOKS: usize = 10_000_000;
-/// Such tests that cost as much as to find a position on a general patch.
-const COST_OF_LOCATING: usize = 200;
 /// Most points of the Maclaurin rule.
 const MOST_MACLAURIN: usize = 5;
 
@@ -35,6 +24,13 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         }
         findings.finite(format!("{key}.velocity"), &body.velocity);
         findings.finite(format!("{key}.angular_velocity"), &[body.angular_velocity]);
+        let gradient = format!("{key}.velocity_gradient");
+        if findings.finite(gradient.clone(), &body.velocity_gradient.concat())
+            && body.rigid
+            && body.velocity_gradient != [[0.0; 2]; 2]
+        {
+            findings.error(gradient, "a rigid body that stretches", "remove it, or the key rigid");
+        }
         points(&key, body, scene.mesh.degree, findings);
         let fracture = material(&key, body, scene, findings);
         if let Some((message, remedy)) = defect(&body.shape) {
@@ -46,12 +42,15 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         if placed && let Some(fracture) = fracture {
             resolution::check(body, fracture, ground, findings);
         }
-        let look = Look::new(body, ground);
+        let look = Look::new(body, ground, &scene.analysis);
         for (j, traction) in body.tractions.iter().enumerate() {
-            check_traction(&format!("{key}.traction.{j}"), traction, &look, findings);
+            tractions::check(&format!("{key}.traction.{j}"), traction, &look, findings);
         }
         for (j, crack) in body.cracks.iter().enumerate() {
-            check_crack(&format!("{key}.crack.{j}"), crack, fracture, &look, findings);
+            if crack.is_slit() {
+                cracks::slit(&format!("{key}.crack.{j}"), scene, findings);
+            }
+            cracks::check(&format!("{key}.crack.{j}"), crack, fracture, &look, findings);
         }
         if placed && (0..2).all(|d| has_rule(body, d)) {
             material_points(&key, body, fracture.filter(|_| findings.errors.len() == before), ground, findings);
@@ -108,9 +107,10 @@ fn material<'a>(key: &str, body: &Body, scene: &'a Scene, findings: &mut Finding
         findings.error(format!("{key}.material"), format!("unknown material {:?}", body.material), remedy);
         return None;
     };
-    if material.fracture.is_none() && !body.cracks.is_empty() {
-        let message = format!("a crack needs the phase field, but material {:?} has no fracture table", body.material);
-        let remedy = format!("add [material.{}.fracture], or remove the crack", body.material);
+    if material.fracture.is_none() && body.cracks.iter().any(|crack| !crack.is_slit()) {
+        let message =
+            format!("a seeded crack needs the phase field, but material {:?} has no fracture table", body.material);
+        let remedy = format!("add [material.{}.fracture], remove the crack, or give it as = \"slit\"", body.material);
         findings.error(format!("{key}.crack"), message, remedy);
     }
     material.fracture.as_ref().filter(|f| f.length_scale > 0.0)
@@ -170,117 +170,4 @@ fn inside_patch(key: &str, shape: &Shape, patch: &NurbsPatch, findings: &mut Fin
         return false;
     }
     true
-}
-
-fn check_traction(key: &str, traction: &Traction, look: &Look<'_>, findings: &mut Findings) {
-    let Look { body, ground, .. } = *look;
-    findings.finite(format!("{key}.stress"), &traction.stress);
-    if let Some(ramp) = traction.ramp {
-        findings.positive(format!("{key}.ramp"), ramp, "ramp = \"1 us\", or leave it out for a load from t = 0");
-    }
-    match &traction.edge {
-        Edge::Side(_) if body.shape == Shape::Patch => {}
-        _ if ground.mesh.geometry.is_some() => {
-            let remedy =
-                "give the body shape = \"patch\" and the traction edge = \"left\", \"right\", \"bottom\" or \"top\"";
-            let form = if matches!(traction.edge, Edge::Segment(_)) { "segment" } else { "edge" };
-            let message = "on a patch with control_points or annulus only its sides can be loaded";
-            findings.error(format!("{key}.{form}"), message, remedy);
-        }
-        Edge::Side(_) if matches!(body.shape, Shape::Rectangle { .. }) => {}
-        Edge::Side(side) => {
-            let message = format!("only a rectangle has a {} side", side_name(*side));
-            findings.error(format!("{key}.edge"), message, "give segment = [[x0, y0], [x1, y1]] instead");
-        }
-        Edge::Segment(ends) => {
-            let key = format!("{key}.segment");
-            if !findings.finite(key.clone(), &[ends[0], ends[1]].concat()) {
-                return;
-            }
-            if ends[0] == ends[1] {
-                findings.error(key, "a segment of zero length", "give two different ends");
-            } else if let Some([x, y]) = look.first_outside(*ends, SEGMENT_INTERVALS) {
-                let message = format!("the segment leaves body {:?}: ({x}, {y}) m lies outside", body.name);
-                findings.error(key, message, "give two ends between which every point lies on the body's boundary");
-            }
-        }
-    }
-}
-
-/// A body looked at position by position.
-struct Look<'a> {
-    body: &'a Body,
-    ground: &'a Ground<'a>,
-    tolerance: f64,
-    /// Parameters of the last position found on the patch.
-    last: Cell<Option<[f64; 2]>>,
-    /// Most positions along one line: the more lines and corners, the fewer.
-    most: usize,
-}
-
-impl<'a> Look<'a> {
-    fn new(body: &'a Body, ground: &'a Ground<'a>) -> Self {
-        let (min, max) = ground.mesh.extent(&body.shape);
-        let lines = body.cracks.len() + body.tractions.len();
-        let cost = lines * (complexity(&body.shape) + if ground.patch.is_some() { COST_OF_LOCATING } else { 0 });
-        Self {
-            body,
-            ground,
-            tolerance: TOLERANCE * (max[0] - min[0]).max(max[1] - min[1]),
-            last: Cell::new(None),
-            most: (MOST_LOOKS / cost.max(1)).clamp(2, MOST_CRACK_SAMPLES),
-        }
-    }
-
-    fn is_outside(&self, position: [f64; 2]) -> bool {
-        let off_patch = || self.ground.patch.as_ref().is_some_and(|patch| !self.is_on(patch, position));
-        !self.body.shape.contains_within(position, self.tolerance) || off_patch()
-    }
-
-    /// Whether a position (m) is on a patch; searched from the one before, which is near.
-    fn is_on(&self, patch: &NurbsPatch, position: [f64; 2]) -> bool {
-        let found = patch.locate(position, self.last.get());
-        found.map(|location| self.last.set(Some(location.parameters))).is_ok()
-    }
-
-    /// First of about `intervals + 1` equally spaced positions (m) between two ends, both included, that is
-    /// not in the closure of the body.
-    fn first_outside(&self, [from, to]: [[f64; 2]; 2], intervals: usize) -> Option<[f64; 2]> {
-        let intervals = intervals.min(self.most - 1);
-        let position = |i: usize| {
-            let t = i as f64 / intervals as f64;
-            [0, 1].map(|d| (1.0 - t) * from[d] + t * to[d])
-        };
-        (0..=intervals).map(position).find(|p| self.is_outside(*p))
-    }
-}
-
-fn check_crack(key: &str, crack: &Crack, fracture: Option<&Fracture>, look: &Look<'_>, findings: &mut Findings) {
-    if let Some(half_width) = crack.half_width {
-        let like = "half_width = \"0.125 mm\", or leave it out for l0/2";
-        findings.positive(format!("{key}.half_width"), half_width, like);
-    }
-    if !findings.finite(format!("{key}.from"), &[crack.from, crack.to].concat()) {
-        return;
-    }
-    if crack.from == crack.to {
-        return findings.error(format!("{key}.to"), "a crack of zero length", "give two different ends");
-    }
-    let ends_inside = [("from", crack.from), ("to", crack.to)].map(|(name, [x, y])| {
-        let inside = !look.is_outside([x, y]);
-        if !inside {
-            let message = format!("the end ({x}, {y}) m of the crack lies outside body {:?}", look.body.name);
-            findings.error(format!("{key}.{name}"), message, "give ends inside the body or on its boundary");
-        }
-        inside
-    });
-    let length = (crack.to[0] - crack.from[0]).hypot(crack.to[1] - crack.from[1]);
-    let finest = fracture.map_or(f64::INFINITY, |f| 0.5 * f.length_scale);
-    let intervals = ((length / finest).ceil() as usize).clamp(2, MOST_CRACK_SAMPLES - 1);
-    if ends_inside == [true, true]
-        && let Some([x, y]) = look.first_outside([crack.from, crack.to], intervals)
-    {
-        let message = format!("the crack leaves body {:?} between its ends, at ({x}, {y}) m", look.body.name);
-        findings.error(format!("{key}.from"), message, "give one crack for each part that lies inside the body");
-    }
 }

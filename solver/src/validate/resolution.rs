@@ -6,7 +6,7 @@ use super::ground::Ground;
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::particles::spans::{finest_cell, lengths_of_spans};
 use crate::phase_field::fracture::half_width;
-use crate::scene::{Body, Crack, Fracture, Mesh, Shape};
+use crate::scene::{Body, Fracture, Mesh, Shape};
 
 /// Relative tolerance of lengths.
 const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
@@ -39,9 +39,10 @@ pub(super) fn check(body: &Body, fracture: &Fracture, ground: &Ground<'_>, findi
 /// cell.
 fn span_of_cracks(body: &Body, l0: f64, mesh: &Mesh) -> f64 {
     let spans = body.cracks.iter().map(|crack| {
-        let (Crack { from, to, .. }, width) = (crack, half_width(crack, l0));
-        let min = [0, 1].map(|d| smaller(from[d], to[d]) - width);
-        let max = [0, 1].map(|d| larger(from[d], to[d]) + width);
+        let width = half_width(crack, l0).unwrap_or(0.0);
+        let ends = |d: usize| crack.points.iter().map(move |point| point[d]);
+        let min = [0, 1].map(|d| ends(d).fold(f64::INFINITY, smaller) - width);
+        let max = [0, 1].map(|d| ends(d).fold(f64::NEG_INFINITY, larger) + width);
         let [_, longest] = lengths_of_spans(mesh, &Shape::Rectangle { min, max });
         longest
     });

@@ -11,8 +11,7 @@ use super::points::{Near, Points};
 use crate::linear_algebra::extremes::larger;
 use crate::material::degradation::BROKEN;
 use crate::phase_field::fracture::{SEED_STRENGTH, half_width};
-use crate::scene::shape::distance_to_segment;
-use crate::scene::{Body, Crack, Fracture};
+use crate::scene::{Body, Fracture};
 
 /// Relative tolerance of lengths along a crack.
 const TOLERANCE: f64 = 1e-6;
@@ -29,14 +28,14 @@ const HALVINGS: usize = 64;
 /// largest span, m.
 pub(super) fn check(key: &str, body: &Body, fracture: &Fracture, points: &Points<'_>, h: f64, findings: &mut Findings) {
     let l0 = fracture.length_scale;
-    let width = |crack: &Crack| half_width(crack, l0);
-    for (j, crack) in body.cracks.iter().enumerate() {
-        let (ends, width) = ([crack.from, crack.to], width(crack));
+    let seeds = || body.cracks.iter().enumerate().filter_map(|(j, crack)| Some((j, crack, half_width(crack, l0)?)));
+    let parts = seeds().flat_map(|(j, crack, width)| crack.segments().map(move |ends| (j, ends, width)));
+    for (j, ends, width) in parts {
         let Some(near) = points.near(ends, width.min(COUNTED * l0)) else {
             unchecked(format!("{key}.crack.{j}"), findings);
             continue;
         };
-        let length = (crack.to[0] - crack.from[0]).hypot(crack.to[1] - crack.from[1]);
+        let length = (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]);
         if let Some(whole) = whole_stretch(&near, length, width, l0) {
             findings.error(
                 format!("{key}.crack.{j}.half_width"),
@@ -45,9 +44,8 @@ pub(super) fn check(key: &str, body: &Body, fracture: &Fracture, points: &Points
             );
         }
     }
-    let widest = (0..body.cracks.len()).max_by(|a, b| width(&body.cracks[*a]).total_cmp(&width(&body.cracks[*b])));
-    let spared = |x| body.cracks.iter().all(|crack| distance_to_segment(x, crack.from, crack.to) >= width(crack));
-    if let Some(widest) = widest
+    let spared = |x| seeds().all(|(_, crack, width)| crack.distance(x) >= width);
+    if let Some((widest, _, _)) = seeds().max_by(|a, b| a.2.total_cmp(&b.2))
         && !points.any(spared)
     {
         let message =

@@ -29,7 +29,7 @@ fn breakdown(scene: &Scene) -> Breakdown {
 
 fn moving(degree: usize) -> Scene {
     let mut scene = elastic_scene(degree, [0.01, 0.005], [20, 10]);
-    scene.bodies[0].tractions = vec![Traction { edge: Edge::Side(Side::Right), stress: [1e6, 0.0], ramp: None }];
+    scene.bodies[0].tractions = vec![Traction::on(Side::Right, [1e6, 0.0], TimeFactor::default())];
     scene
 }
 
@@ -81,7 +81,7 @@ fn below_the_critical_step_an_open_ledger_is_a_warning() {
 
 /// Loads no solid bears.
 fn crushing() -> Vec<Traction> {
-    let press = |side, stress| Traction { edge: Edge::Side(side), stress: [stress, 0.0], ramp: None };
+    let press = |side, stress| Traction::on(side, [stress, 0.0], TimeFactor::default());
     vec![press(Side::Right, -2e12), press(Side::Left, 2e12)]
 }
 
@@ -127,7 +127,7 @@ fn no_number_that_is_not_finite_outlives_its_step() {
     for kinematics in [Kinematics::Small, Kinematics::Finite] {
         for frame in [Frame::Total, Frame::Updated] {
             for mut scene in [notched_plate(1e308), crate::common::pulled_plate(1e308)] {
-                scene.bodies[0].tractions.iter_mut().for_each(|traction| traction.ramp = None);
+                scene.bodies[0].tractions.iter_mut().for_each(|traction| traction.time = TimeFactor::default());
                 (scene.analysis.frame, scene.analysis.kinematics) = (frame, kinematics);
                 let fractures = scene.materials["glass"].fracture.is_some();
                 let name = format!("{frame:?}, {kinematics:?}, fracture: {fractures}");
@@ -159,7 +159,7 @@ fn a_critical_step_that_is_no_number_is_refused() {
 fn numbers_that_are_not_finite_are_named_where_they_begin() {
     for frame in [Frame::Total, Frame::Updated] {
         let mut scene = notched_plate(1e200);
-        scene.bodies[0].tractions[1].ramp = None;
+        scene.bodies[0].tractions[1].time = TimeFactor::default();
         scene.analysis.frame = frame;
         let (simulation, found) = first_breakdown(&scene, &format!("{frame:?}"));
         let text = format!("{frame:?}: {found}");

@@ -48,7 +48,7 @@ fn goes_on_bit_by_bit(name: &str, scene: &Scene) {
 fn pulled_and_driven() -> Scene {
     let mut scene = driven_plate([20, 10]);
     scene.analysis.gravity = [0.0, -9.81];
-    scene.bodies[0].tractions = vec![Traction { edge: Edge::Side(Side::Top), stress: [1e5, 1e6], ramp: Some(2e-6) }];
+    scene.bodies[0].tractions = vec![Traction::on(Side::Top, [1e5, 1e6], TimeFactor::ramp(2e-6))];
     scene
 }
 
@@ -72,7 +72,7 @@ fn in_the_total_frame() {
     goes_on_bit_by_bit("cracking, direct solver", &direct);
     let mut mapped = patch_scene(&crate::common::annulus(2, 6), 3);
     mapped.analysis.end_time = 1e-3;
-    mapped.bodies[0].tractions = vec![Traction { edge: Edge::Side(Side::Right), stress: [1e6, 0.0], ramp: None }];
+    mapped.bodies[0].tractions = vec![Traction::on(Side::Right, [1e6, 0.0], TimeFactor::default())];
     goes_on_bit_by_bit("general patch", &mapped);
 }
 
@@ -146,7 +146,7 @@ fn with_contact_friction_and_rigid_bodies() {
 fn with_fragments() {
     let mut scene = elastic_scene(2, [0.016, 0.01], [64, 40]);
     scene.materials.insert("glass".into(), Material { fracture: Some(brittle()), ..glass() });
-    let crack = Crack { from: [0.008, 0.004], to: [0.008, 0.006], half_width: None };
+    let crack = Crack::seed([0.008, 0.004], [0.008, 0.006]);
     scene.bodies = vec![Body {
         cracks: vec![crack],
         angular_velocity: 2e4,

@@ -43,7 +43,7 @@ fn nodal_fields_follow_a_body_with_its_phase_field() {
     let fracture = Fracture { critical_energy_release_rate: 1.0, length_scale: 0.05, ..brittle() };
     scene.materials.get_mut("glass").unwrap().fracture = Some(fracture);
     scene.bodies.truncate(1);
-    scene.bodies[0].cracks = vec![Crack { from: [0.6, 0.25], to: [0.7, 0.25], half_width: None }];
+    scene.bodies[0].cracks = vec![Crack::seed([0.6, 0.25], [0.7, 0.25])];
     let (simulation, samples) = run(&scene);
     let field = &simulation.updated_frame().unwrap().fields()[0];
     let (part, whole) = (field.nodes().grid, simulation.updated_frame().unwrap().patch().control_grid());

@@ -57,7 +57,7 @@ fn the_bound_is_above_the_dense_frequency_and_within_two_percent() {
             let mut scene = elastic_scene(degree, [0.01, 0.008], [10, 8]);
             scene.materials.get_mut("glass").unwrap().poisson_ratio = nu;
             check(&format!("degree {degree}, nu {nu}"), &scene);
-            scene.boundaries = vec![Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] }];
+            scene.boundaries = vec![Boundary::fixed(Side::Left, [true, true])];
             check(&format!("degree {degree}, nu {nu}, clamped"), &scene);
             scene.analysis.plane = Plane::Stress;
             check(&format!("degree {degree}, nu {nu}, plane stress"), &scene);
@@ -107,10 +107,8 @@ fn the_bound_holds_for_the_consistent_mass() {
             scene.bodies[0].particles_per_cell = [degree + 1; 2];
             scene.materials.get_mut("glass").unwrap().poisson_ratio = nu;
             check(&format!("consistent, degree {degree}, nu {nu}"), &scene);
-            scene.boundaries = vec![
-                Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] },
-                Boundary { side: Side::Bottom, fix: [false, true], velocity: [0.0; 2] },
-            ];
+            scene.boundaries =
+                vec![Boundary::fixed(Side::Left, [true, true]), Boundary::fixed(Side::Bottom, [false, true])];
             check(&format!("consistent, degree {degree}, nu {nu}, held"), &scene);
         }
         for mass in [Mass::Lumped, Mass::Consistent] {
@@ -136,7 +134,7 @@ fn table_of_bars_with_consistent_mass() {
         scene.analysis.mass = Mass::Consistent;
         scene.bodies[0].particles_per_cell = [degree + 1, 2];
         scene.materials.get_mut("glass").unwrap().poisson_ratio = 0.0;
-        let fix = |side, fix| Boundary { side, fix, velocity: [0.0; 2] };
+        let fix = |side, fix| Boundary::fixed(side, fix);
         scene.boundaries = vec![fix(Side::Bottom, [false, true]), fix(Side::Top, [false, true])];
         if held {
             scene.boundaries.extend([fix(Side::Left, [true, false]), fix(Side::Right, [true, false])]);

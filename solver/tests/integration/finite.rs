@@ -38,9 +38,9 @@ fn a_cracking_body_cracks_as_with_small_strains_and_its_ledger_is_as_open() {
         let mut scene = scene(2, 1.2, 24, shape, kinematics);
         let fracture = Fracture { critical_energy_release_rate: 1e-4, length_scale: 0.05, ..brittle() };
         scene.materials.get_mut("solid").unwrap().fracture = Some(fracture);
-        let pull = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: Some(0.2) };
+        let pull = |side, stress| Traction::on(side, [0.0, stress], TimeFactor::ramp(0.2));
         scene.bodies[0].tractions = vec![pull(Side::Top, 5e-3), pull(Side::Bottom, -5e-3)];
-        scene.bodies[0].cracks = vec![Crack { from: [-0.5, 0.0], to: [0.0, 0.0], half_width: None }];
+        scene.bodies[0].cracks = vec![Crack::seed([-0.5, 0.0], [0.0, 0.0])];
         scene.analysis.end_time = 0.8;
         scene.output.samples = 8;
         let (_, samples) = run(&scene);
@@ -60,7 +60,7 @@ fn a_cracking_body_cracks_as_with_small_strains_and_its_ledger_is_as_open() {
 fn small_motions_are_those_of_small_strains() {
     let end = |kinematics| {
         let mut scene = scene(2, 1.2, 12, block(), kinematics);
-        let pull = Traction { edge: Edge::Side(Side::Right), stress: [1e-9, 2e-9], ramp: Some(0.5) };
+        let pull = Traction::on(Side::Right, [1e-9, 2e-9], TimeFactor::ramp(0.5));
         scene.bodies[0].tractions = vec![pull];
         let mut frame = UpdatedFrame::new(&scene).unwrap();
         (0..100).for_each(|_| frame.step(0.02).unwrap());

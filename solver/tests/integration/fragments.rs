@@ -8,7 +8,7 @@ use fisura::scene::*;
 fn cracked_bar() -> Scene {
     let mut scene = elastic_scene(2, [0.012, 0.003], [48, 12]);
     scene.materials.insert("glass".into(), Material { fracture: Some(brittle()), ..glass() });
-    let crack = Crack { from: [0.004, 0.0], to: [0.004, 0.002], half_width: None };
+    let crack = Crack::seed([0.004, 0.0], [0.004, 0.002]);
     scene.bodies = vec![Body { cracks: vec![crack], ..body(rectangle([0.0; 2], [0.008, 0.002]), [2, 2]) }];
     scene.analysis =
         Analysis { frame: Frame::Updated, kinematics: Kinematics::Finite, safety: 0.5, ..scene.analysis.clone() };
@@ -29,7 +29,7 @@ fn half_of_a_parted_bar_falls_freely() {
     let (gravity, end) = (2e5, 30e-6);
     scene.analysis.gravity = [gravity, 0.0];
     scene.analysis.end_time = end;
-    scene.boundaries = vec![Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] }];
+    scene.boundaries = vec![Boundary::fixed(Side::Left, [true, true])];
     fisura::validate::validate(&scene).unwrap();
     let mut simulation = Simulation::new(&scene).unwrap();
     assert_eq!(fragments(&simulation), 2);

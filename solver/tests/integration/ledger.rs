@@ -91,7 +91,7 @@ fn terms_equal_their_definitions() {
 /// side includes the inertia of all control points it is coupled to.
 #[test]
 fn elastic_scenes_close_to_round_off() {
-    let drive = |side, fix, velocity| Boundary { side, fix, velocity: [velocity, 0.0] };
+    let drive = |side, fix, velocity| Boundary::driven(side, fix, [velocity, 0.0]);
     for (degree, mass) in (1..=4).flat_map(|degree| [Mass::Lumped, Mass::Consistent].map(|mass| (degree, mass))) {
         let mut scene = elastic_scene(degree, [0.01, 0.005], [20, 10]);
         scene.analysis.mass = mass;
@@ -101,7 +101,7 @@ fn elastic_scenes_close_to_round_off() {
             drive(Side::Right, [true, false], 0.5),
             drive(Side::Bottom, [false, true], 0.0),
         ];
-        scene.bodies[0].tractions = vec![Traction { edge: Edge::Side(Side::Top), stress: [2e5, 1e6], ramp: None }];
+        scene.bodies[0].tractions = vec![Traction::on(Side::Top, [2e5, 1e6], TimeFactor::default())];
         scene.analysis.gravity = [0.0, 1e5];
         let (_, samples) = run(&scene);
         let (last, closure) = (samples.last().unwrap(), closure_of_any_sample(&samples));

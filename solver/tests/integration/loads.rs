@@ -11,7 +11,7 @@ const SIDES: [Side; 4] = [Side::Left, Side::Right, Side::Bottom, Side::Top];
 const FRAMES: [Frame; 2] = [Frame::Total, Frame::Updated];
 
 fn traction(edge: Edge, stress: [f64; 2]) -> Traction {
-    Traction { edge, stress, ramp: None }
+    Traction { edge, load: Load::Stress(stress), time: TimeFactor::default() }
 }
 
 /// A free body of `shape` on a mesh under one traction.
@@ -55,7 +55,8 @@ fn error(scene: &Scene, [from, to]: [[f64; 2]; 2]) -> f64 {
     let [fx, fy, found] = force_and_moment(scene);
     let length = (to[0] - from[0]).hypot(to[1] - from[1]);
     let middle = [0, 1].map(|d| 0.5 * (from[d] + to[d]));
-    let [tx, ty] = scene.bodies[0].tractions[0].stress.map(|s| s * length);
+    let Load::Stress(stress) = scene.bodies[0].tractions[0].load else { panic!("a traction vector") };
+    let [tx, ty] = stress.map(|s| s * length);
     let moment = middle[0] * ty - middle[1] * tx;
     let (force, arm) = (tx.hypot(ty), middle[0].hypot(middle[1]).max(length));
     ((fx - tx).hypot(fy - ty) / force).max((found - moment).abs() / (force * arm))

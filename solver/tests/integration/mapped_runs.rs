@@ -49,11 +49,9 @@ fn an_affine_patch_is_the_rectangle() {
         for knot in &mut scene.mesh.knots[0][degree + 1..inner] {
             *knot *= 0.5 + 50.0 * *knot; // spans from 0.27 mm to 0.72 mm
         }
-        scene.boundaries = vec![
-            Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] },
-            Boundary { side: Side::Right, fix: [true, false], velocity: [0.5, 0.0] },
-        ];
-        let pull = |side, stress| Traction { edge: Edge::Side(side), stress, ramp: Some(1e-6) };
+        scene.boundaries =
+            vec![Boundary::fixed(Side::Left, [true, true]), Boundary::driven(Side::Right, [true, false], [0.5, 0.0])];
+        let pull = |side, stress| Traction::on(side, stress, TimeFactor::ramp(1e-6));
         scene.bodies[0].tractions = vec![pull(Side::Top, [2e5, 1e6]), pull(Side::Bottom, [0.0, -1e6])];
         scene.analysis.gravity = [0.0, 1e5];
         scene.analysis.time_step = TimeStep::Fixed(1.5e-8 / degree as f64);
@@ -91,8 +89,8 @@ fn cracked_annulus() -> Scene {
     let glass = scene.materials.get_mut("glass").unwrap();
     glass.fracture = Some(Fracture { length_scale: 0.06, critical_energy_release_rate: 3.0, ..brittle() });
     let at = |r: f64| [r * std::f64::consts::FRAC_1_SQRT_2; 2];
-    scene.bodies[0].cracks = vec![Crack { from: at(1.0), to: at(1.5), half_width: Some(0.06) }];
-    let pull = |side, stress| Traction { edge: Edge::Side(side), stress, ramp: None };
+    scene.bodies[0].cracks = vec![Crack::wide_seed(at(1.0), at(1.5), Some(0.06))];
+    let pull = |side, stress| Traction::on(side, stress, TimeFactor::default());
     scene.bodies[0].tractions = vec![pull(Side::Bottom, [0.0, -2e5]), pull(Side::Top, [-2e5, 0.0])];
     scene.analysis.end_time = 3e-4;
     scene
@@ -151,9 +149,9 @@ fn elastic_energies_close_on_curved_patches() {
         for (name, patch) in [("annulus", annulus(3, 6)), ("bent", bent_patch(2, 8))] {
             let mut scene = patch_scene(&patch, 4);
             scene.analysis = Analysis { mass, end_time: 1e-3, gravity: [3e3, -1e4], ..scene.analysis };
-            let drive = |side, velocity| Boundary { side, fix: [true, true], velocity };
+            let drive = |side, velocity| Boundary::driven(side, [true, true], velocity);
             scene.boundaries = vec![drive(Side::Bottom, [0.0; 2]), drive(Side::Top, [0.3, 0.4])];
-            let load = Traction { edge: Edge::Side(Side::Right), stress: [1e5, -2e5], ramp: Some(1e-4) };
+            let load = Traction::on(Side::Right, [1e5, -2e5], TimeFactor::ramp(1e-4));
             scene.bodies[0].tractions = vec![load];
             let (simulation, samples) = run(&scene);
             assert!(simulation.steps() >= 30 && samples.last().unwrap().external_work > 0.0);

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use syn::visit::{self, Visit};
 
 /// The folders of the harness, lowest first.
-const OF_THE_HARNESS: [&str; 13] = [
+const OF_THE_HARNESS: [&str; 14] = [
+    "arithmetic",
     "output",
     "watch",
     "record",

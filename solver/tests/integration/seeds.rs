@@ -24,7 +24,7 @@ fn seeded(h: f64, points: [usize; 2], crack: Crack) -> Scene {
 
 /// Surface energy over Gc times the length of the crack.
 fn energy(scene: &Scene) -> f64 {
-    let Crack { from, to, .. } = scene.bodies[0].cracks[0];
+    let [from, to] = scene.bodies[0].cracks[0].points[..] else { panic!("a straight crack") };
     let frame = TotalFrame::new(scene).unwrap();
     let (energy, _) = frame.fracture.as_ref().unwrap().surface_energy(frame.lattice());
     energy / (3.0 * (to[0] - from[0]).hypot(to[1] - from[1]))
@@ -32,7 +32,7 @@ fn energy(scene: &Scene) -> f64 {
 
 /// Largest phase field on the crack.
 fn largest_phase(scene: &Scene) -> f64 {
-    let Crack { from, to, .. } = scene.bodies[0].cracks[0];
+    let [from, to] = scene.bodies[0].cracks[0].points[..] else { panic!("a straight crack") };
     let frame = TotalFrame::new(scene).unwrap();
     let field = frame.fracture.as_ref().unwrap().field.control_values();
     let at = |i: i32| {
@@ -56,8 +56,7 @@ fn a_seed_that_passes_is_a_crack_and_the_remedy_of_one_that_does_not_makes_it_on
         for (m, slope) in [0.0, 0.02, 0.3, 1.0, -0.7].into_iter().enumerate() {
             for (k, half_width) in [0.02 * h, 0.15 * h, 0.25 * h, 0.5 * h, 2.0 * h].into_iter().enumerate() {
                 let foot = 0.0037 + 5e-5 * (n + 2 * m + 3 * k) as f64;
-                let crack =
-                    Crack { from: [0.0, foot], to: [0.005, foot + 0.005 * slope], half_width: Some(half_width) };
+                let crack = Crack::wide_seed([0.0, foot], [0.005, foot + 0.005 * slope], Some(half_width));
                 let mut scene = seeded(h, [2, 2], crack);
                 let name = format!("h = {h:e}, slope {slope}, half width {half_width:e}");
                 if let Err(errors) = validate(&scene) {
@@ -71,11 +70,11 @@ fn a_seed_that_passes_is_a_crack_and_the_remedy_of_one_that_does_not_makes_it_on
                     }
                     let least = number_after(&errors[0].remedy, "at least ");
                     assert!(least > half_width);
-                    scene.bodies[0].cracks[0].half_width = Some(least);
+                    scene.bodies[0].cracks[0].kind = CrackKind::Seed(Some(least));
                     assert!(validate(&scene).is_ok(), "{name}: {:?}", validate(&scene));
-                    scene.bodies[0].cracks[0].half_width = Some(0.99 * least);
+                    scene.bodies[0].cracks[0].kind = CrackKind::Seed(Some(0.99 * least));
                     assert!(validate(&scene).is_err(), "{name}: {least} is not the least");
-                    scene.bodies[0].cracks[0].half_width = Some(least);
+                    scene.bodies[0].cracks[0].kind = CrackKind::Seed(Some(least));
                 } else {
                     sound += 1;
                 }
@@ -92,7 +91,7 @@ fn a_seed_that_passes_is_a_crack_and_the_remedy_of_one_that_does_not_makes_it_on
 /// On a line of knots the nearest points of two per span are 0.211 h away.
 #[test]
 fn the_largest_cells_are_told_too() {
-    let crack = Crack { from: [0.0, 0.005], to: [0.005, 0.005], half_width: None };
+    let crack = Crack::seed([0.0, 0.005], [0.005, 0.005]);
     let coarse = seeded(4.0 * L0, [2, 2], crack.clone());
     let error = &validate(&coarse).unwrap_err()[0];
     let most = number_after(&error.remedy, "cells of at most ");
@@ -102,7 +101,7 @@ fn the_largest_cells_are_told_too() {
 
 #[test]
 fn a_seed_that_covers_the_body_or_nothing_is_refused() {
-    let crack = |half_width| Crack { from: [0.002, 0.005], to: [0.008, 0.005], half_width: Some(half_width) };
+    let crack = |half_width| Crack::wide_seed([0.002, 0.005], [0.008, 0.005], Some(half_width));
     let errors = validate(&seeded(L0, [2, 2], crack(0.02))).unwrap_err();
     assert_eq!(errors[0].key, "body.0.crack.0.half_width");
     assert!(errors[0].message.contains("covers all of body"), "{errors:?}");
@@ -114,7 +113,7 @@ fn a_seed_that_covers_the_body_or_nothing_is_refused() {
 /// A quarter annulus with so many spans, and a crack from within to without.
 fn on_ring(spans: usize, half_width: Option<f64>) -> Scene {
     let ring = NurbsPatch::quarter_annulus(0.01, 0.02).unwrap().elevate(0).unwrap().subdivide(spans).unwrap();
-    let mut scene = seeded(L0, [2, 2], Crack { from: [0.0072, 0.0072], to: [0.0105, 0.0105], half_width });
+    let mut scene = seeded(L0, [2, 2], Crack::wide_seed([0.0072, 0.0072], [0.0105, 0.0105], half_width));
     scene.mesh = Mesh::of(&ring);
     scene.bodies[0].shape = Shape::Patch;
     scene
@@ -138,7 +137,7 @@ fn bodies_one_point_thick_can_be_cracked() {
     for [along, across] in [[0, 1], [1, 0]] {
         let place = |x: f64, y: f64| if along == 0 { [x, y] } else { [y, x] };
         for (from, to) in [(place(0.0, 0.5 * L0), place(0.005, 0.5 * L0)), (place(0.005, 0.0), place(0.005, L0))] {
-            let mut scene = seeded(L0, [2, 2], Crack { from, to, half_width: None });
+            let mut scene = seeded(L0, [2, 2], Crack::seed(from, to));
             let mut cells = [1; 2];
             cells[along] = 40;
             (scene.bodies[0].particles_per_cell[along], scene.bodies[0].particles_per_cell[across]) = (2, 1);
@@ -160,7 +159,7 @@ fn a_seed_that_nobody_looked_at_is_told() {
     scene.bodies[0].particles_per_cell = [16, 16];
     assert!(told(&scene), "2.6 million points");
     scene.bodies[0].particles_per_cell = [2, 2];
-    scene.bodies[0].cracks[0].half_width = None;
+    scene.bodies[0].cracks[0].kind = CrackKind::Seed(None);
     assert!(!told(&scene));
 }
 
@@ -169,11 +168,11 @@ fn a_seed_that_nobody_looked_at_is_told() {
 fn long_cells_are_refused_where_a_seed_lies_and_named_elsewhere() {
     let key = "material.glass.fracture.length_scale";
     let graded = |crack: Option<[f64; 2]>| {
-        let mut scene = seeded(L0, [2, 2], Crack { from: [0.0, 0.005], to: [0.004, 0.005], half_width: None });
+        let mut scene = seeded(L0, [2, 2], Crack::seed([0.0, 0.005], [0.004, 0.005]));
         let ([from, to], fine) = (crack.unwrap_or_default(), (0..24).map(|i| f64::from(i) * L0));
         let knots = [0.0; 2].into_iter().chain(fine).chain([0.006, 0.008]).chain([0.01; 3]);
         scene.mesh.knots[0] = knots.collect();
-        let crack = Crack { from: [from, 0.0051], to: [to, 0.0051], half_width: Some(L0) };
+        let crack = Crack::wide_seed([from, 0.0051], [to, 0.0051], Some(L0));
         scene.bodies[0].cracks = if from < to { vec![crack] } else { vec![] };
         scene
     };

@@ -50,9 +50,8 @@ fn beams(transfer: Transfer, kinematics: Kinematics) -> [Scene; 2] {
     let floor = Body { name: "floor".into(), rigid: true, ..body(rectangle([1.0, 0.5], [3.9, 0.949]), [2, 2]) };
     [vec![beam.clone()], vec![beam, floor]].map(|bodies| {
         let mut scene = soft(bodies);
-        scene.bodies[0].tractions =
-            vec![Traction { edge: Edge::Side(Side::Top), stress: [2e-3, -1e-3], ramp: Some(0.5) }];
-        scene.boundaries = vec![Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] }];
+        scene.bodies[0].tractions = vec![Traction::on(Side::Top, [2e-3, -1e-3], TimeFactor::ramp(0.5))];
+        scene.boundaries = vec![Boundary::fixed(Side::Left, [true, true])];
         scene.analysis = Analysis { transfer, kinematics, gravity: [0.0, -2e-3], end_time: 3.0, ..scene.analysis };
         fisura::validate::validate(&scene).unwrap();
         scene
@@ -86,7 +85,7 @@ fn parts_meet_as_bodies_do() {
     let of = |bodies: Vec<Body>| {
         let mut scene = soft(bodies);
         scene.contact.as_mut().unwrap().friction = 0.0;
-        scene.boundaries = vec![Boundary { side: Side::Bottom, fix: [true, true], velocity: [0.0; 2] }];
+        scene.boundaries = vec![Boundary::fixed(Side::Bottom, [true, true])];
         scene.analysis = Analysis { gravity: [0.0, -5e-2], end_time: 3.0, ..scene.analysis };
         fisura::validate::validate(&scene).unwrap();
         run(&scene)

@@ -20,7 +20,7 @@ fn moving(frame: Frame, kinematics: Kinematics, quadrature: Quadrature) -> Scene
 fn parted() -> Scene {
     let mut scene = moving(Frame::Updated, Kinematics::Finite, Quadrature::Points);
     scene.materials.insert("glass".into(), Material { fracture: Some(brittle()), ..glass() });
-    let crack = Crack { from: [0.004, 0.004], to: [0.004, 0.006], half_width: Some(0.25e-3) };
+    let crack = Crack::wide_seed([0.004, 0.004], [0.004, 0.006], Some(0.25e-3));
     scene.mesh = Mesh::uniform([2, 2], [0.0; 2], [0.012, 0.01], [48, 40]);
     scene.bodies[0].cracks = vec![crack];
     scene.contact = Some(Contact { friction: 0.3, fragments: true, ..Contact::default() });

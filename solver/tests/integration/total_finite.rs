@@ -63,7 +63,7 @@ fn the_ledger_closes_with_the_square_of_the_step() {
         let mut scene = elastic_scene(2, [0.01, 0.008], [10, 8]);
         scene.analysis = Analysis { kinematics: Kinematics::Finite, safety, end_time: 8e-6, ..scene.analysis };
         scene.bodies[0].velocity = [200.0, 100.0];
-        scene.boundaries = vec![Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] }];
+        scene.boundaries = vec![Boundary::fixed(Side::Left, [true, true])];
         scene.output.samples = 4;
         relative_closure(&run(&scene).1)
     };
@@ -88,7 +88,7 @@ fn a_spinning_disk_in_a_larger_mesh_keeps_running() {
 fn squeezed(stretch: [f64; 2], safety: f64) -> (TotalFrame, f64) {
     let mut scene = elastic_scene(2, [0.01, 0.008], [6, 5]);
     scene.analysis.kinematics = Kinematics::Finite;
-    let clamped = |side| Boundary { side, fix: [true, true], velocity: [0.0; 2] };
+    let clamped = |side| Boundary::fixed(side, [true, true]);
     scene.boundaries = [Side::Left, Side::Right, Side::Bottom, Side::Top].map(clamped).to_vec();
     let mut frame = TotalFrame::new(&scene).unwrap();
     let positions = frame.patch().control_positions();

@@ -16,7 +16,7 @@ fn bar(degree: usize, cells: usize, transfer: Transfer) -> Scene {
     let mesh = Mesh::uniform([degree; 2], [0.0; 2], [1.0, 2.0 * h], [cells, 2]);
     let mut scene = updated_scene(unit_solid(), mesh, rectangle([0.0; 2], [1.0, 2.0 * h]));
     scene.materials.get_mut("solid").unwrap().poisson_ratio = 0.0;
-    let hold = |side| Boundary { side, fix: [true, false], velocity: [0.0; 2] };
+    let hold = |side| Boundary::fixed(side, [true, false]);
     scene.boundaries = [Side::Left, Side::Right].map(hold).into();
     scene.analysis.transfer = transfer;
     scene

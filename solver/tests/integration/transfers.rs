@@ -55,11 +55,9 @@ fn every() -> impl Iterator<Item = (Transfer, usize, Kinematics)> {
 fn eventful(transfer: Transfer, degree: usize) -> Scene {
     let mut scene = scene(degree, [1.0, 1.0], [16, 16], [0.0, 0.2], [0.813, 0.71]);
     scene.bodies[0].velocity = [-2e-3, 3.5e-3];
-    scene.bodies[0].tractions = vec![Traction { edge: Edge::Side(Side::Right), stress: [1e-3, 2e-3], ramp: Some(1.0) }];
-    scene.boundaries = vec![
-        Boundary { side: Side::Left, fix: [true, false], velocity: [1.5e-3, 0.0] },
-        Boundary { side: Side::Top, fix: [false, true], velocity: [0.0; 2] },
-    ];
+    scene.bodies[0].tractions = vec![Traction::on(Side::Right, [1e-3, 2e-3], TimeFactor::ramp(1.0))];
+    scene.boundaries =
+        vec![Boundary::driven(Side::Left, [true, false], [1.5e-3, 0.0]), Boundary::fixed(Side::Top, [false, true])];
     scene.analysis = Analysis { gravity: [0.0, 0.02], transfer, end_time: 6.0, ..scene.analysis };
     scene.output.samples = 40;
     scene
@@ -139,7 +137,7 @@ fn angular_momentum_is_kept_by_affine_velocities_and_lost_to_the_filter_of_the_o
 /// step.
 fn struck(transfer: Transfer, degree: usize, fraction: f64) -> bool {
     let mut scene = scene(degree, [1.0, 1.0], [16, 16], [0.237, 0.25], [0.75, 0.75]);
-    let kick = Traction { edge: Edge::Side(Side::Left), stress: [1e-6, 7e-7], ramp: Some(1e6) };
+    let kick = Traction::on(Side::Left, [1e-6, 7e-7], TimeFactor::ramp(1e6));
     scene.bodies[0].tractions = vec![kick];
     scene.analysis.transfer = transfer;
     let critical = Simulation::new(&scene).unwrap().plan().critical;

@@ -24,9 +24,8 @@ fn updated(simulation: &Simulation) -> &UpdatedFrame {
 /// A clamped strip under a traction at its free end, whose margin on the mesh is two spans.
 fn cantilever(degree: usize, stress: f64) -> Scene {
     let mut scene = scene(degree, 20, [0.0, 0.002], [0.008, 0.007]);
-    scene.bodies[0].tractions =
-        vec![Traction { edge: Edge::Side(Side::Right), stress: [stress, 0.5 * stress], ramp: Some(2e-6) }];
-    scene.boundaries = vec![Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] }];
+    scene.bodies[0].tractions = vec![Traction::on(Side::Right, [stress, 0.5 * stress], TimeFactor::ramp(2e-6))];
+    scene.boundaries = vec![Boundary::fixed(Side::Left, [true, true])];
     scene.analysis.end_time = 12e-6;
     scene
 }
@@ -35,9 +34,9 @@ fn cantilever(degree: usize, stress: f64) -> Scene {
 fn notched_plate(cells: usize) -> Scene {
     let mut scene = scene(2, cells, [0.0, 0.002], [0.01, 0.008]);
     scene.materials.get_mut("solid").unwrap().fracture = Some(brittle());
-    let pull = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: Some(2e-6) };
+    let pull = |side, stress| Traction::on(side, [0.0, stress], TimeFactor::ramp(2e-6));
     scene.bodies[0].tractions = vec![pull(Side::Top, 3e6), pull(Side::Bottom, -3e6)];
-    scene.bodies[0].cracks = vec![Crack { from: [0.0, 0.005], to: [0.005, 0.005], half_width: None }];
+    scene.bodies[0].cracks = vec![Crack::seed([0.0, 0.005], [0.005, 0.005])];
     scene.analysis.safety = 0.8;
     scene.analysis.end_time = 6e-6;
     scene.output.samples = 12;

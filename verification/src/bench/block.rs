@@ -58,7 +58,7 @@ pub fn cracked_scene(degree: usize, points: usize, cells: usize, margin: usize) 
         phase_field_interval: PhaseFieldInterval::Steps(1),
     };
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [size; 2] };
-    scene.bodies[0].cracks = vec![Crack { from: [0.0, 0.5 * size], to: [0.5 * size; 2], half_width: None }];
+    scene.bodies[0].cracks = vec![Crack::seed([0.0, 0.5 * size], [0.5 * size; 2])];
     scene
 }
 
@@ -233,7 +233,7 @@ impl Block {
 
     /// The history after H grew by a hundredth of `Gc/l0` about the crack tip.
     pub fn grown_history(&self) -> Vec<Lane> {
-        let tip = self.scene.bodies[0].cracks[0].to;
+        let tip = self.scene.bodies[0].cracks[0].points[1];
         let mut history = self.history.clone();
         self.lattice.for_each_point(|batch, lane, [x, y], _| {
             if (x - tip[0]).hypot(y - tip[1]) < 6.0 * SPAN {

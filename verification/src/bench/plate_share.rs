@@ -65,7 +65,7 @@ fn share_of(scene: &Scene, run_up: usize, steps: usize) -> Result<Vec<BenchRecor
 
 #[cfg(test)]
 mod tests {
-    use fisura::scene::{Edge, Side, Traction};
+    use fisura::scene::{Side, TimeFactor, Traction};
 
     use super::*;
     use crate::bench::block::cracked_scene;
@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn the_solve_of_a_step_done_once_more_gives_the_same_bits() {
         let mut scene = cracked_scene(2, 2, 16, 0);
-        let pulled = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: None };
+        let pulled = |side, stress| Traction::on(side, [0.0, stress], TimeFactor::default());
         scene.bodies[0].tractions = vec![pulled(Side::Top, 4e6), pulled(Side::Bottom, -4e6)];
         let records = share_of(&scene, 10, 5).unwrap();
         assert!(records.iter().all(|r| r.verified && r.samples.len() == 5), "{records:?}");

@@ -13,7 +13,7 @@
 //! block ready took.
 
 use fisura::Simulation;
-use fisura::scene::{Crack, Edge, Scene, Side, Traction};
+use fisura::scene::{Crack, Scene, Side, TimeFactor, Traction};
 
 use super::block::{SPAN, cracked_scene, elastic_scene, moving_scene};
 use super::record::BenchRecord;
@@ -64,9 +64,9 @@ fn cracking(cells: usize) -> Scene {
     let height = [DEPTH, cells - DEPTH].map(|row| SPAN * row as f64);
     let starts = (PITCH / 4..cells - PITCH / 2).step_by(PITCH).map(|column| SPAN * column as f64);
     let length = SPAN * (PITCH / 2) as f64;
-    let crack = |x: f64, y: f64| Crack { from: [x, y], to: [x + length, y], half_width: None };
+    let crack = |x: f64, y: f64| Crack::seed([x, y], [x + length, y]);
     body.cracks = starts.flat_map(|x| height.map(|y| crack(x, y))).collect();
-    let pulled = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: None };
+    let pulled = |side, stress| Traction::on(side, [0.0, stress], TimeFactor::default());
     body.tractions = vec![pulled(Side::Top, PULL), pulled(Side::Bottom, -PULL)];
     scene
 }

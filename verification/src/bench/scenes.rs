@@ -4,7 +4,7 @@
 //! Blocks of equal numbers of points, p = 2 with 2 × 2 points per span, one thread.
 
 use fisura::Simulation;
-use fisura::scene::{Body, Contact, Edge, Frame, Mesh, Scene, Shape, Side, Traction};
+use fisura::scene::{Body, Contact, Frame, Mesh, Scene, Shape, Side, TimeFactor, Traction};
 
 use super::block::{MARGIN, SPAN, cracked_scene, elastic_scene};
 use super::plate_scene;
@@ -59,7 +59,7 @@ fn scenes(cells: usize, frame: Frame) -> Vec<(&'static str, Scene, Happens)> {
     let elastic = elastic_scene(DEGREE, 2, cells, margin);
     let frozen = cracked_scene(DEGREE, 2, cells, margin);
     let mut fracture = frozen.clone();
-    let pulled = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: None };
+    let pulled = |side, stress| Traction::on(side, [0.0, stress], TimeFactor::default());
     fracture.bodies[0].tractions = vec![pulled(Side::Top, 4e6), pulled(Side::Bottom, -4e6)];
     let mut scenes = vec![
         ("elastic", elastic, Happens::Motion),

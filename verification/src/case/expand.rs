@@ -37,9 +37,9 @@ pub struct CaseScene {
 fn depth_of_one_value(path: &str) -> usize {
     let key = path.rsplit('.').next().unwrap_or(path);
     match key {
-        "cells" | "origin" | "size" | "particles_per_cell" | "velocity" | "gravity" | "fix" | "frames" | "min"
-        | "max" | "center" | "from" | "to" | "stress" | "weights" | "angles" => 1,
-        "knots" | "points" | "segment" | "control_points" => 2,
+        "cells" | "origin" | "size" | "particles_per_cell" | "velocity" | "displacement" | "gravity" | "fix"
+        | "frames" | "at" | "min" | "max" | "center" | "from" | "to" | "stress" | "weights" | "angles" => 1,
+        "knots" | "points" | "segment" | "control_points" | "table" | "velocity_gradient" => 2,
         "minus" => usize::MAX,
         _ => 0,
     }
@@ -106,7 +106,7 @@ impl Case {
         let Tree { name, parameters, energy_factor, node } = tree;
         let fail = |problems: Vec<Problem>| self.document.error(&problems);
         let node = self.with_numbers(&node, "scene", &node).map_err(|problem| fail(vec![problem]))?;
-        let scene = read_scene(&node, "scene").map_err(fail)?;
+        let scene = read_scene(&node, "scene", self.document.folder()).map_err(fail)?;
         check_scene(&scene, &node, "scene").map_err(fail)?;
         let values = self.values(&node)?;
         Ok(CaseScene { name, parameters, scene, values, energy_factor })
@@ -128,7 +128,8 @@ impl Case {
                 Ok(number) if number == number.trunc() => Value::Integer(number as i64),
                 Ok(number) => Value::Float(number),
                 Err(message) => {
-                    let remedy = "give a number, or a formula of values and of other keys of the scene in braces".into();
+                    let remedy =
+                        "give a number, or a formula of values and of other keys of the scene in braces".into();
                     return Err(Problem { key: path.into(), location: node.location.clone(), message, remedy });
                 }
             },

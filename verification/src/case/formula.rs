@@ -6,74 +6,19 @@
 
 use std::str::FromStr;
 
-use exmex::{BinOp, Express, FlatEx, MakeOperators, MatchLiteral, Operator};
-
-use crate::extremes::{larger, smaller};
+use crate::arithmetic::Arithmetic;
 use crate::scene::document::Node;
 use crate::scene::units;
 
-/// Longest formula, in bytes.
-const LONGEST: usize = 1000;
-
-/// What a formula may use: no `^`, for which the parser takes `-a^2` as `(-a)^2`.
-#[derive(Debug, Clone)]
-struct Operators;
-
-impl MakeOperators<f64> for Operators {
-    fn make<'a>() -> Vec<Operator<'a, f64>> {
-        let binary = |repr, apply, prio| Operator::make_bin(repr, BinOp { apply, prio, is_commutative: false });
-        vec![
-            binary("*", |a, b| a * b, 2),
-            binary("/", |a, b| a / b, 3),
-            Operator::make_bin_unary("+", BinOp { apply: |a, b| a + b, prio: 0, is_commutative: true }, |a| a),
-            Operator::make_bin_unary("-", BinOp { apply: |a, b| a - b, prio: 1, is_commutative: false }, |a| -a),
-            binary("<", |a, b| f64::from(u8::from(a < b)), -1),
-            binary(">", |a, b| f64::from(u8::from(a > b)), -1),
-            binary("min", smaller, 4),
-            binary("max", larger, 4),
-            binary("pow", f64::powf, 4),
-            binary("hypot", f64::hypot, 4),
-            Operator::make_unary("abs", f64::abs),
-            Operator::make_unary("sqrt", f64::sqrt),
-            Operator::make_unary("sin", f64::sin),
-            Operator::make_unary("cos", f64::cos),
-            Operator::make_unary("exp", f64::exp),
-            Operator::make_unary("ln", f64::ln),
-            Operator::make_constant("PI", std::f64::consts::PI),
-        ]
-    }
-}
-
-exmex::literal_matcher_from_pattern!(Numbers, r"^([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?");
-
 /// A formula over names.
-#[derive(Debug, Clone)]
-pub struct Formula {
-    text: String,
-    expression: FlatEx<f64, Operators, Numbers>,
-}
-
-impl PartialEq for Formula {
-    fn eq(&self, other: &Self) -> bool {
-        self.text == other.text
-    }
-}
+#[derive(Debug, Clone, PartialEq)]
+pub struct Formula(Arithmetic);
 
 impl FromStr for Formula {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if text.len() > LONGEST {
-            return Err(format!("the formula has {} bytes; at most {LONGEST} are allowed", text.len()));
-        }
-        if text.trim().is_empty() {
-            return Err("no column is named".to_string());
-        }
-        if text.contains('^') {
-            return Err(format!("{text:?} has a ^; write pow(a, b)"));
-        }
-        let expression = FlatEx::parse(text).map_err(|e| format!("{text:?} is not a valid formula: {e}"))?;
-        Ok(Self { text: text.to_string(), expression })
+        text.parse().map(Self)
     }
 }
 
@@ -106,7 +51,7 @@ impl Reduction {
 impl Formula {
     /// Its names, in the order of the values that [`Self::value`] takes.
     pub fn names(&self) -> impl Iterator<Item = Name<'_>> {
-        self.expression.var_names().iter().map(|name| {
+        self.0.names().iter().map(|name| {
             let reduced = name.split_once(' ').and_then(|(word, of)| {
                 let (_, reduction) = Reduction::WORDS.into_iter().find(|(known, _)| *known == word)?;
                 Some(Name::Of(reduction, of))
@@ -117,7 +62,7 @@ impl Formula {
 
     /// Its value where the names have these.
     pub fn value(&self, values: &[f64]) -> f64 {
-        self.expression.eval(values).unwrap_or(f64::NAN)
+        self.0.value(values)
     }
 
     /// Its value where every name is a number.

@@ -2,6 +2,7 @@
 
 use fisura::fault;
 use fisura::material::elasticity::ElasticModuli;
+use fisura::scene::Load;
 use nalgebra::{DMatrix, DVector};
 
 use super::tip::fitted_slope;
@@ -58,7 +59,9 @@ pub(super) fn slope_over_plane_wave_power(check: &Check, run: &Run) -> Result<Me
     let material = &scene.materials[&body.material];
     let moduli = ElasticModuli::new(material, scene.analysis.plane);
     let (low, high) = body.shape.bounding_box();
-    let stress = body.tractions.first().ok_or("no traction")?.stress[1];
+    let Load::Stress([_, stress]) = body.tractions.first().ok_or("no traction")?.load else {
+        return Err("the first traction is a pressure".to_string());
+    };
     let impedance = material.density * moduli.dilatational_speed(material.density);
     let power = (high[0] - low[0]) * stress * stress / impedance * scene.analysis.thickness;
     let reference = Some(Reference::new(check.expect, ReferenceKind::Exact, "two plane waves: W sigma²/(rho c_d)"));

@@ -44,7 +44,7 @@ pub enum LooksAt {
 const WINDOW: &[&str] = &["from", "to"];
 
 /// All of them.
-pub static MEASURES: [Measure; 28] = [
+pub static MEASURES: [Measure; 30] = [
     on_curve("relative-rms", |q| series::against_curve("relative-rms", q.check, q.run, q.library)),
     on_curve("rms-difference", |q| series::against_curve("rms-difference", q.check, q.run, q.library)),
     of_column("value-at", &["column", "at"], &[], |q| some(series::value_at(q.check, q.run, false)?)),
@@ -75,6 +75,8 @@ pub static MEASURES: [Measure; 28] = [
     looking("axis-end", LooksAt::PhaseField, &[], |q| some(tip::end_along_axis(q.run))),
     looking("tip-speed-ratio", LooksAt::Tip, &["at"], |q| some(tip::largest_speed_before_branching(q.check, q.run)?)),
     looking("tip-exit", LooksAt::Tip, &["at"], |q| some(tip::exit_offset(q.check, q.run)?)),
+    looking("growth-time", LooksAt::Tip, &["at"], |q| some(tip::growth(q.check, q.run)?.map(|grown| grown[0]))),
+    looking("chord-angle", LooksAt::Tip, &["at"], |q| some(tip::chord_angle(q.check, q.run)?)),
     looking("branches", LooksAt::PhaseField, &["at"], |q| some(tip::branches(q.check, q.run)?)),
     looking("asymmetry", LooksAt::PhaseField, &[], |q| some(tip::asymmetry(q.run))),
 ];

@@ -26,7 +26,14 @@ fn tips(run: &Run) -> Result<Vec<[f64; 3]>, String> {
 
 /// Height of the first crack, m.
 fn axis(run: &Run) -> f64 {
-    run.scene.bodies.iter().flat_map(|b| &b.cracks).map(|c| c.to[1]).next().unwrap_or(0.0)
+    run.scene
+        .bodies
+        .iter()
+        .flat_map(|b| &b.cracks)
+        .filter_map(|c| c.points.last())
+        .map(|end| end[1])
+        .next()
+        .unwrap_or(0.0)
 }
 
 /// First time at which the tip has passed x = `at`, s.
@@ -81,6 +88,33 @@ pub(super) fn fitted_slope(points: impl Iterator<Item = (f64, f64)> + Clone) -> 
     let (top, bottom) =
         points.fold((0.0, 0.0), |(top, bottom), p| (top + (p.0 - t) * (p.1 - x), bottom + (p.0 - t) * (p.0 - t)));
     (bottom > 0.0).then(|| top / bottom)
+}
+
+/// Time (s) and place (m) at which the tip is first at the distance `at` from the end of the initial crack.
+pub(super) fn growth(check: &Check, run: &Run) -> Result<Option<[f64; 3]>, String> {
+    let goal = position(check)?;
+    let Some([from, to]) = last_segment(run) else { return Err("the scene has no initial crack".to_string()) };
+    let ahead = |[_, x, y]: [f64; 3]| (x - to[0]) * (to[0] - from[0]) + (y - to[1]) * (to[1] - from[1]) > 0.0;
+    let distance = |[_, x, y]: [f64; 3]| (x - to[0]).hypot(y - to[1]);
+    let tips = tips(run)?; // before it grows, a seed is broken behind its end
+    let Some(after) = tips.iter().position(|tip| ahead(*tip) && distance(*tip) >= goal) else { return Ok(None) };
+    let Some(before) = after.checked_sub(1).map(|n| tips[n]).filter(|tip| ahead(*tip)) else {
+        return Ok(Some(tips[after]));
+    };
+    let part = (goal - distance(before)) / (distance(tips[after]) - distance(before));
+    Ok(Some([0, 1, 2].map(|i| before[i] + part * (tips[after][i] - before[i]))))
+}
+
+/// Angle between the initial crack and the chord from its end to the tip at the distance `at`, degrees.
+pub(super) fn chord_angle(check: &Check, run: &Run) -> Result<Option<f64>, String> {
+    let (Some([_, x, y]), Some([from, to])) = (growth(check, run)?, last_segment(run)) else { return Ok(None) };
+    let ([a, b], [c, d]) = ([to[0] - from[0], to[1] - from[1]], [x - to[0], y - to[1]]);
+    Ok(Some((a * d - b * c).atan2(a * c + b * d).to_degrees().abs()))
+}
+
+/// The last straight part of the first initial crack, m.
+fn last_segment(run: &Run) -> Option<[[f64; 2]; 2]> {
+    run.scene.bodies.iter().flat_map(|body| &body.cracks).next()?.segments().last()
 }
 
 /// Distance from the axis at which the tip first passes x = `at`, m.

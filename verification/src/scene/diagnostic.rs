@@ -78,6 +78,11 @@ impl Sources {
         self.0.len() - 1
     }
 
+    /// Name of the file.
+    pub fn name(&self) -> &str {
+        &self.0[0].name
+    }
+
     /// Text of the file.
     pub fn text(&self) -> &str {
         &self.0[0].text

@@ -171,6 +171,11 @@ pub struct Document {
 }
 
 impl Document {
+    /// The folder of the file; that of the process if the text has none.
+    pub(crate) fn folder(&self) -> &Path {
+        Path::new(self.sources.name()).parent().unwrap_or(Path::new(""))
+    }
+
     /// Reads and parses a file.
     ///
     /// # Errors

@@ -4,6 +4,7 @@
 //! assembles its value with `?` at the end; one pass finds everything.
 
 use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 
 use super::diagnostic::{Location, Problem};
 use super::document::{Node, Value, join};
@@ -18,17 +19,25 @@ pub trait Words: Copy + 'static {
 
 /// Problems found so far.
 #[derive(Debug, Default)]
-pub struct Problems(RefCell<Vec<Problem>>);
+pub struct Problems {
+    found: RefCell<Vec<Problem>>,
+    folder: PathBuf,
+}
 
 impl Problems {
+    /// None yet, in a document that names files in a folder.
+    pub fn in_folder(folder: &Path) -> Self {
+        Self { folder: folder.to_path_buf(), ..Self::default() }
+    }
+
     /// Notes one.
     pub fn push(&self, problem: Problem) {
-        self.0.borrow_mut().push(problem);
+        self.found.borrow_mut().push(problem);
     }
 
     /// All of them.
     pub fn into_inner(self) -> Vec<Problem> {
-        self.0.into_inner()
+        self.found.into_inner()
     }
 }
 
@@ -46,6 +55,11 @@ impl<'a> Item<'a> {
     /// The value `node` at `path`; problems with it go to `problems`.
     pub fn new(node: &'a Node, path: &str, problems: &'a Problems) -> Self {
         Self { node, path: path.to_string(), problems }
+    }
+
+    /// The folder of files that the document names.
+    pub fn folder(&self) -> &Path {
+        &self.problems.folder
     }
 
     /// Notes a problem found elsewhere.

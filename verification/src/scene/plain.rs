@@ -53,19 +53,9 @@ impl PlainScene {
             None => Shape::Rectangle { min: self.mesh.origin(), max: self.mesh.end() },
             Some(_) => Shape::Patch,
         };
-        let body = Body {
-            name: "body".into(),
-            material: "material".into(),
-            shape,
-            particles_per_cell: [self.points; 2],
-            layout: self.layout,
-            velocity: [0.0; 2],
-            angular_velocity: 0.0,
-            rigid: false,
-            tractions: vec![],
-            cracks: vec![],
-        };
-        let boundary = |(side, fix)| Boundary { side, fix, velocity: [0.0; 2] };
+        let points = [self.points; 2];
+        let body = Body { particles_per_cell: points, layout: self.layout, ..Body::at_rest("body", "material", shape) };
+        let boundary = |(side, fix)| Boundary::fixed(side, fix);
         Scene {
             title: String::new(),
             mesh: self.mesh,
@@ -91,7 +81,8 @@ impl PlainScene {
             bodies: vec![body],
             contact: None,
             boundaries: self.held.into_iter().map(boundary).collect(),
-            output: Output { samples: 1, frames: vec![], bodies: false },
+            equilibrium: false,
+            output: Output::rows(1),
         }
     }
 }

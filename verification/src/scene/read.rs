@@ -1,10 +1,11 @@
 //! From the tree of a document to the typed scene: mesh, analysis, solver, boundaries, output.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use fisura::scene::{
-    Analysis, Boundary, Contact, Frame, Kinematics, Mass, Output, PhaseFieldInterval, PhaseFieldSolver, Plane,
-    Quadrature, Scene, Shape, SolverSettings, TimeStep, Transfer,
+    Analysis, Contact, Frame, Kinematics, Mass, Output, PhaseFieldInterval, PhaseFieldSolver, Plane, Probe, Quadrature,
+    Scene, Shape, SolverSettings, TimeStep, Transfer,
 };
 
 use super::diagnostic::Problem;
@@ -12,21 +13,22 @@ use super::document::Node;
 use super::fields::{Item, Problems};
 use super::read_body::{bodies, materials};
 use super::read_mesh::mesh;
+use super::read_time::boundaries;
 use super::units::Dimension;
 
 /// Keys of a scene.
-pub const SCENE_KEYS: [&str; 9] =
-    ["title", "mesh", "analysis", "solver", "material", "body", "contact", "boundary", "output"];
+pub const SCENE_KEYS: [&str; 10] =
+    ["title", "mesh", "analysis", "solver", "material", "body", "contact", "boundary", "start", "output"];
 
 /// Reads the scene that `node` declares: a whole document, or the `[scene]` table of a case file.
 ///
-/// `prefix` is the key path of `node` in its document, empty for a whole document. The scene is complete in
-/// form; its sense is checked by [`fisura::validate::validate`].
+/// `prefix` is the key path of `node` in its document, empty for a whole document; files that the scene names
+/// lie in `folder`. The scene is complete in form; its sense is checked by [`fisura::validate::validate`].
 ///
 /// # Errors
 /// Every unknown key, missing key, wrong type, wrong dimension and number out of range.
-pub fn read_scene(node: &Node, prefix: &str) -> Result<Scene, Vec<Problem>> {
-    let problems = Problems::default();
+pub fn read_scene(node: &Node, prefix: &str, folder: &Path) -> Result<Scene, Vec<Problem>> {
+    let problems = Problems::in_folder(folder);
     let scene = scene(&Item::new(node, prefix, &problems));
     let found = problems.into_inner();
     match scene {
@@ -52,7 +54,10 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
         Some(Contact { friction: friction?, fragments: fragments?, self_contact: self_contact?, stiffness: stiffness? })
     });
     let boundaries = fields.or("boundary", Vec::new(), boundaries);
-    let output = fields.or("output", Output { samples: 320, frames: Vec::new(), bodies: false }, output);
+    let equilibrium = fields.or("start", false, |item| {
+        item.fields(&["equilibrium"])?.need("equilibrium", "equilibrium = true", Item::flag)
+    });
+    let output = fields.or("output", Output::rows(320), output);
     let (mesh, mut bodies) = (mesh?, bodies?);
     if mesh.geometry.is_none() {
         // All of a rectangular mesh is a rectangle.
@@ -69,6 +74,7 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
         bodies,
         contact: contact?,
         boundaries: boundaries?,
+        equilibrium: equilibrium?,
         output: output?,
     })
 }
@@ -173,26 +179,18 @@ fn solver(item: &Item<'_>) -> Option<SolverSettings> {
     })
 }
 
-fn boundaries(item: &Item<'_>) -> Option<Vec<Boundary>> {
-    let read: Vec<Option<Boundary>> = item.tables()?.iter().map(boundary).collect();
-    read.into_iter().collect()
-}
-
-fn boundary(item: &Item<'_>) -> Option<Boundary> {
-    let fields = item.fields(&["side", "fix", "velocity"])?;
-    let side = fields.need("side", "side = \"left\"", Item::word);
-    let components = fields.need("fix", "fix = [\"x\"], the fixed components", |item| {
-        item.each(|component| component.choice(&[("x", 0), ("y", 1)]))
-    });
-    let velocity = fields.or("velocity", [0.0, 0.0], |item| item.vector(Dimension::VELOCITY));
-    let components = components?;
-    Some(Boundary { side: side?, fix: [0, 1].map(|d| components.contains(&d)), velocity: velocity? })
-}
-
 fn output(item: &Item<'_>) -> Option<Output> {
-    let fields = item.fields(&["samples", "frames", "bodies"])?;
+    let fields = item.fields(&["samples", "frames", "bodies", "probe"])?;
     let samples = fields.or("samples", 320, |item| item.whole(1, 100_000_000));
     let frames = fields.or("frames", Vec::new(), |item| item.each(time));
     let bodies = fields.or("bodies", false, Item::flag);
-    Some(Output { samples: samples?, frames: frames?, bodies: bodies? })
+    let probes = fields.or("probe", Vec::new(), |item| item.tables()?.iter().map(probe).collect());
+    Some(Output { samples: samples?, frames: frames?, bodies: bodies?, probes: probes? })
+}
+
+fn probe(item: &Item<'_>) -> Option<Probe> {
+    let fields = item.fields(&["name", "at"])?;
+    let name = fields.need("name", "name = \"tip\"", Item::words);
+    let at = fields.need("at", "at = [0.05, 0.02] (m), its position at t = 0", point);
+    Some(Probe { name: name?, at: at? })
 }

@@ -2,11 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use fisura::scene::{Body, Crack, Edge, Fracture, Layout, Material, Shape, Split, Traction};
+use fisura::scene::time::TimeFactor;
+use fisura::scene::{Body, Crack, CrackKind, Edge, Fracture, Layout, Load, Material, Shape, Split, Traction};
 
 use super::document::join;
 use super::fields::{Fields, Item};
 use super::read::{length, number, point, time};
+use super::read_file::rows_of_file;
+use super::read_time::factor;
 use super::units::Dimension;
 
 /// `[material.NAME]` tables by name.
@@ -80,6 +83,7 @@ fn body(item: &Item<'_>) -> Option<Body> {
         "layout",
         "velocity",
         "angular_velocity",
+        "velocity_gradient",
         "rigid",
         "traction",
         "crack",
@@ -92,6 +96,7 @@ fn body(item: &Item<'_>) -> Option<Body> {
     let layout = fields.or("layout", Layout::Gauss, Item::word);
     let velocity = fields.or("velocity", [0.0, 0.0], |item| item.vector(Dimension::VELOCITY));
     let angular_velocity = fields.or("angular_velocity", 0.0, |item| item.quantity(Dimension::RATE));
+    let gradient = fields.or("velocity_gradient", [[0.0; 2]; 2], |item| item.pair(|row| row.vector(Dimension::RATE)));
     let rigid = fields.or("rigid", false, Item::flag);
     let tractions = fields.or("traction", Vec::new(), |item| all(item, traction));
     let cracks = fields.or("crack", Vec::new(), |item| all(item, crack));
@@ -103,13 +108,14 @@ fn body(item: &Item<'_>) -> Option<Body> {
         layout: layout?,
         velocity: velocity?,
         angular_velocity: angular_velocity?,
+        velocity_gradient: gradient?,
         rigid: rigid?,
         tractions: tractions?,
         cracks: cracks?,
     })
 }
 
-const SHAPES: [&str; 5] = ["rectangle", "disk", "annulus", "polygon", "difference"];
+const SHAPES: [&str; 6] = ["rectangle", "disk", "annulus", "polygon", "file", "difference"];
 
 fn shape(item: &Item<'_>) -> Option<Shape> {
     if item.node.as_str() == Some("patch") {
@@ -119,7 +125,7 @@ fn shape(item: &Item<'_>) -> Option<Shape> {
     let given: Vec<Item<'_>> = SHAPES.iter().filter_map(|kind| fields.get(kind)).collect();
     let [inner] = given.as_slice() else {
         let message = format!("expected one shape, found {}", given.len());
-        let remedy = "give one of rectangle, disk, annulus, polygon, difference; or shape = \"patch\"";
+        let remedy = "give one of rectangle, disk, annulus, polygon, file, difference; or shape = \"patch\"";
         return item.fail(message, remedy);
     };
     match inner.path.rsplit('.').next()? {
@@ -146,13 +152,46 @@ fn shape(item: &Item<'_>) -> Option<Shape> {
             let points = inner.fields(&["points"])?.need("points", like, |item| item.each(point));
             Some(Shape::Polygon { points: points? })
         }
+        "file" => {
+            let remedy = "give a CSV file beside the scene with the corners of a polygon in order, x and y in m";
+            rows_of_file(inner, remedy).map(|points| Shape::Polygon { points })
+        }
         _ => {
             let fields = inner.fields(&["of", "minus"])?;
             let of = fields.need("of", "of = { rectangle = { ... } }, the shape cut from", shape);
-            let minus = fields.need("minus", "minus = [{ disk = { ... } }], the shapes cut out", |i| i.each(shape));
-            Some(Shape::Difference { of: Box::new(of?), minus: minus? })
+            let minus = fields.need("minus", "minus = [{ disk = { ... } }], the shapes cut out", |i| i.each(cut_out));
+            Some(Shape::Difference { of: Box::new(of?), minus: minus?.concat() })
         }
     }
+}
+
+/// A shape that is cut out: any, or a notch.
+fn cut_out(item: &Item<'_>) -> Option<Vec<Shape>> {
+    match item.at("notch") {
+        Some(given) => notch(&given),
+        None => shape(item).map(|shape| vec![shape]),
+    }
+}
+
+/// A notch along a line: a strip, which a round tip ends with a disk about the second end.
+fn notch(item: &Item<'_>) -> Option<Vec<Shape>> {
+    let fields = item.fields(&["from", "to", "width", "tip"])?;
+    let from = fields.need("from", "from = [0.0, 0.02] (m), its mouth", point);
+    let to = fields.need("to", "to = [0.05, 0.02] (m), its tip", point);
+    let width = fields.need("width", "width = \"1 mm\"", |item| item.positive(Dimension::LENGTH));
+    let round = fields.or("tip", false, |item| item.choice(&[("square", false), ("round", true)]));
+    let (from, to, width, round) = (from?, to?, width?, round?);
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = along[0].hypot(along[1]);
+    if length == 0.0 {
+        return item.fail("a notch of zero length", "give two different ends");
+    }
+    let [x, y] = along.map(|component| 0.5 * width * component / length);
+    let corners =
+        [[from[0] + y, from[1] - x], [to[0] + y, to[1] - x], [to[0] - y, to[1] + x], [from[0] - y, from[1] + x]];
+    let strip = Shape::Polygon { points: corners.to_vec() };
+    let tip = round.then_some(Shape::Disk { center: to, radius: 0.5 * width });
+    Some(std::iter::once(strip).chain(tip).collect())
 }
 
 fn center(fields: &Fields<'_>) -> Option<[f64; 2]> {
@@ -160,22 +199,66 @@ fn center(fields: &Fields<'_>) -> Option<[f64; 2]> {
 }
 
 fn traction(item: &Item<'_>) -> Option<Traction> {
-    let fields = item.fields(&["edge", "segment", "stress", "ramp"])?;
-    let edge = match (fields.get("edge"), fields.get("segment")) {
-        (Some(edge), None) => edge.word().map(Edge::Side),
-        (None, Some(segment)) => segment.pair(point).map(Edge::Segment),
-        (Some(edge), Some(_)) => edge.fail("both edge and segment are given", "remove one of the two"),
-        (None, None) => fields.need("edge", "edge = \"top\", or segment = [[x0, y0], [x1, y1]]", |_| None),
+    let fields = item.fields(&["edge", "segment", "arc", "stress", "pressure", "ramp", "time"])?;
+    let places: Vec<Item<'_>> = ["edge", "segment", "arc"].iter().filter_map(|place| fields.get(place)).collect();
+    let edge = match places.as_slice() {
+        [] => fields.need("edge", "edge = \"top\", or segment = [[x0, y0], [x1, y1]], or arc = { … }", |_| None),
+        [place] => match place.path.rsplit('.').next()? {
+            "edge" => place.word().map(Edge::Side),
+            "segment" => place.pair(point).map(Edge::Segment),
+            _ => arc(place),
+        },
+        [first, second, ..] => {
+            let names = [first, second].map(|item| item.path.rsplit('.').next().unwrap_or_default());
+            first.fail(format!("both {} and {} are given", names[0], names[1]), "remove one of the two")
+        }
     };
-    let stress = fields.need("stress", "stress = [0.0, \"1 MPa\"]", |item| item.vector(Dimension::STRESS));
-    let ramp = fields.maybe("ramp", time);
-    Some(Traction { edge: edge?, stress: stress?, ramp: ramp? })
+    let load = match (fields.get("stress"), fields.get("pressure")) {
+        (_, None) => fields
+            .need("stress", "stress = [0.0, \"1 MPa\"], or pressure = \"1 MPa\"", |i| i.vector(Dimension::STRESS))
+            .map(Load::Stress),
+        (None, Some(pressure)) => pressure.quantity(Dimension::STRESS).map(Load::Pressure),
+        (Some(_), Some(pressure)) => pressure.fail("both stress and pressure are given", "remove one of the two"),
+    };
+    let time = match (fields.get("ramp"), fields.get("time")) {
+        (Some(_), Some(time)) => time.fail("both ramp and time are given", "write time = { ramp = \"1 us\" }"),
+        (Some(ramp), None) => time(&ramp).map(TimeFactor::ramp), // the short form
+        (None, _) => fields.or("time", TimeFactor::default(), factor),
+    };
+    Some(Traction { edge: edge?, load: load?, time: time? })
+}
+
+/// An arc: angles in degrees, anticlockwise; the whole circle if they are left out.
+fn arc(item: &Item<'_>) -> Option<Edge> {
+    let fields = item.fields(&["center", "radius", "angles"])?;
+    let center = center(&fields);
+    let radius = fields.need("radius", "radius = 0.1 (m)", length);
+    let angles = fields.or("angles", [0.0, 360.0], |item| item.pair(number));
+    Some(Edge::Arc { center: center?, radius: radius?, angles: angles?.map(f64::to_radians) })
 }
 
 fn crack(item: &Item<'_>) -> Option<Crack> {
-    let fields = item.fields(&["from", "to", "half_width"])?;
-    let from = fields.need("from", "from = [0.0, 0.02] (m), the first end", point);
-    let to = fields.need("to", "to = [0.05, 0.02] (m), the second end", point);
+    let fields = item.fields(&["from", "to", "points", "as", "half_width"])?;
+    let points = match fields.get("points") {
+        Some(points) => match fields.get("from").or_else(|| fields.get("to")) {
+            Some(end) => end.fail("both points and an end are given", "remove one of the two"),
+            None => points.each(point),
+        },
+        None => {
+            let from = fields.need("from", "from = [0.0, 0.02] (m), the first end", point);
+            let to = fields.need("to", "to = [0.05, 0.02] (m), the second end", point);
+            from.zip(to).map(|(from, to)| vec![from, to])
+        }
+    };
+    let slit = fields.or("as", false, |item| item.choice(&[("seed", false), ("slit", true)]));
     let half_width = fields.maybe("half_width", length);
-    Some(Crack { from: from?, to: to?, half_width: half_width? })
+    let kind = match (slit?, half_width?) {
+        (false, half_width) => CrackKind::Seed(half_width),
+        (true, None) => CrackKind::Slit,
+        (true, Some(_)) => {
+            let given = fields.get("half_width")?;
+            return given.fail("a slit has no half width", "remove it, or use as = \"seed\"");
+        }
+    };
+    Some(Crack { points: points?, kind })
 }

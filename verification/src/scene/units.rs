@@ -184,7 +184,7 @@ pub fn parse(text: &str) -> Result<Quantity, UnitError> {
 }
 
 /// Byte length of the decimal number at the start of `text`, 0 if there is none.
-fn number_end(text: &str) -> usize {
+pub(super) fn number_end(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |mut i: usize| {
         while bytes.get(i).is_some_and(|b| b.is_ascii_digit() || *b == b'_') {

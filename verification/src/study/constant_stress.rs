@@ -9,7 +9,7 @@
 use fisura::dynamics::critical_step::StiffnessOperator;
 use fisura::dynamics::loads::{NodalLoad, boundary_points};
 use fisura::dynamics::total_frame::TotalFrame;
-use fisura::scene::{Edge, Shape, Side, Traction};
+use fisura::scene::{Shape, Side, TimeFactor, Traction};
 use nalgebra::{DMatrix, DVector};
 
 use super::{Findings, StudyError};
@@ -115,8 +115,10 @@ impl<'a> PatchTest<'a> {
                 }
                 continue;
             }
-            let traction = Traction { edge: Edge::Side(side), stress, ramp: None };
-            let load = NodalLoad::new(self.frame.patch(), body, &traction, |at| self.frame.mass().moves(at));
+            let traction = Traction::on(side, stress, TimeFactor::default());
+            let load = NodalLoad::new(self.frame.patch(), self.frame.lattice(), body, &traction, |at| {
+                self.frame.mass().moves(at)
+            });
             for (at, force) in load.expect("the sides of the body are carried by its points").forces {
                 forces[0][at] += force[0];
                 forces[1][at] += force[1];

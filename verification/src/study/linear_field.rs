@@ -114,18 +114,7 @@ fn patch(family: PatchFamily, degree: usize, spans: usize) -> Result<Patch, Stud
 }
 
 fn lattice(patch: &Patch, points: usize) -> Lattice {
-    let body = Body {
-        name: "body".into(),
-        material: "none".into(),
-        shape: fisura::scene::Shape::Patch,
-        particles_per_cell: [points; 2],
-        layout: Layout::Gauss,
-        velocity: [0.0; 2],
-        angular_velocity: 0.0,
-        rigid: false,
-        tractions: vec![],
-        cracks: vec![],
-    };
+    let body = Body { particles_per_cell: [points; 2], ..Body::at_rest("body", "none", fisura::scene::Shape::Patch) };
     Lattice::new(patch, &body)
 }
 

@@ -58,21 +58,21 @@ fn every_form_of_a_key_is_read() {
         .replace("transfer   = \"flip\"", "transfer = { xpic = 5 }")
         .replace("edge   = \"bottom\"", "segment = [[0, 0], [\"50 mm\", 0]]\nramp = \"1 us\"")
         + "[contact]\nfriction = 0.65\n";
-    let scene = read_scene(&Document::parse("forms.toml", &text).unwrap().root, "").unwrap();
+    let scene = read_scene(&Document::parse("forms.toml", &text).unwrap().root, "", Path::new("")).unwrap();
     assert_eq!(scene.mesh.knots[0], [0.0, 0.0, 0.0, 0.025, 0.1 * 0.75, 0.1, 0.1, 0.1]);
     let cut = text.replace("knots =", "subdivide = 2\nknots =");
-    let cut = read_scene(&Document::parse("cut.toml", &cut).unwrap().root, "").unwrap().mesh.knots;
+    let cut = read_scene(&Document::parse("cut.toml", &cut).unwrap().root, "", Path::new("")).unwrap().mesh.knots;
     assert_eq!(cut[0], [0.0, 0.0, 0.0, 0.0125, 0.025, 0.05, 0.1 * 0.75, 0.1 * 0.875, 0.1, 0.1, 0.1]);
     assert_eq!(cut[1], [0.0, 0.0, 0.0, 0.02, 0.04, 0.04, 0.04]);
     assert_eq!(scene.analysis.transfer, Transfer::Xpic(5));
     assert_eq!(scene.contact, Some(Contact { friction: 0.65, ..Contact::default() }));
     assert_eq!(scene.bodies[0].tractions[1].edge, Edge::Segment([[0.0, 0.0], [0.05, 0.0]]));
-    assert_eq!(scene.bodies[0].tractions[1].ramp, Some(1e-6));
+    assert_eq!(scene.bodies[0].tractions[1].time, TimeFactor::ramp(1e-6));
     let shapes = "{ difference = { of = { disk = { center = [0.05, 0.02], radius = 0.02 } }, minus = [
         { annulus = { center = [0.05, 0.02], inner_radius = 0.001, outer_radius = 0.002 } },
         { polygon = { points = [[0.04, 0.02], [0.045, 0.02], [0.04, 0.025]] } }] } }";
     let text = edited("{ rectangle = { min = [0.0, 0.0], max = [0.1, 0.04] } }", shapes);
-    let scene = read_scene(&Document::parse("shapes.toml", &text).unwrap().root, "").unwrap();
+    let scene = read_scene(&Document::parse("shapes.toml", &text).unwrap().root, "", Path::new("")).unwrap();
     assert!(matches!(&scene.bodies[0].shape, Shape::Difference { minus, .. } if minus.len() == 2));
 }
 
@@ -139,11 +139,11 @@ fn overrides_replace_and_add_values() {
     let scene = SceneFile::parse("plate.toml", PLATE, &list).unwrap().scene;
     assert_eq!(scene.mesh.degree, [3, 3]);
     assert_eq!(scene.bodies[0].cracks[0].half_width, Some(0.25e-3));
-    assert_eq!(scene.bodies[0].cracks[0].to, [0.06, 0.02]);
+    assert_eq!(scene.bodies[0].cracks[0].points[1], [0.06, 0.02]);
     assert_eq!(scene.analysis.plane, Plane::Stress);
     assert_eq!(scene.analysis.end_time, 90e-6);
     assert_eq!(scene.output.frames, [1e-6, 2e-6]);
-    assert_eq!(scene.bodies[0].tractions[1].ramp, Some(1e-6));
+    assert_eq!(scene.bodies[0].tractions[1].time, TimeFactor::ramp(1e-6));
     assert_eq!(scene.solver.phase_field_solver, PhaseFieldSolver::Cholesky);
     assert_eq!(scene.boundaries[0].velocity, [-1.0, 0.0]);
     assert_eq!(scene.title, "");
@@ -201,7 +201,7 @@ fn a_value_can_be_put_into_a_tree() {
     use fisura_verification::scene::{Node, Value};
     let mut document = Document::parse("plate.toml", PLATE).unwrap();
     document.root.set("mesh.degree", Node::new(Value::Integer(4), None)).unwrap();
-    assert_eq!(read_scene(&document.root, "").unwrap().mesh.degree, [4, 4]);
+    assert_eq!(read_scene(&document.root, "", Path::new("")).unwrap().mesh.degree, [4, 4]);
     assert!(document.root.set("title.x", Node::new(Value::Integer(4), None)).is_err());
     assert!(document.root.set("", Node::new(Value::Integer(4), None)).is_err());
 }
@@ -210,7 +210,7 @@ fn a_value_can_be_put_into_a_tree() {
 fn a_scene_inside_a_case_file_keeps_its_prefix() {
     let text = "claim = \"x\"\n[scene.mesh]\ndegree = 9\n";
     let document = Document::parse("case.toml", text).unwrap();
-    let problems = read_scene(document.root.at("scene").unwrap(), "scene").unwrap_err();
+    let problems = read_scene(document.root.at("scene").unwrap(), "scene", Path::new("")).unwrap_err();
     let error = document.error(&problems).to_string();
     assert!(error.contains("case.toml:3:10: scene.mesh.degree: 9 is out of range"), "{error}");
     assert!(error.contains("scene.analysis: missing"), "{error}");

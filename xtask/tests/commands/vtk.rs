@@ -15,7 +15,8 @@ fn parse(place: &Place, name: &str) -> (usize, usize, Vec<String>) {
     let bytes = std::fs::read(place.path(&format!("out/{name}"))).expect("a file");
     let text = String::from_utf8_lossy(&bytes);
     let values = |text: &str, name: &str| -> Vec<String> {
-        let after = text.split(&format!("{name}=\"")).skip(1);
+        let start = format!("{name}=\"");
+        let after = text.split(&start).skip(1);
         after.map(|rest| rest.split('"').next().expect("a value").to_string()).collect()
     };
     let number = |name: &str| values(&text, name)[0].parse().expect("a number");

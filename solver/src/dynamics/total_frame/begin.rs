@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use super::TotalFrame;
-use super::driven::DrivenSides;
 use super::forced::LatticeForcing;
+use super::held_points::held_points;
+use super::prescribed::Reactions;
+use super::probe::ProbePlace;
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::Ledger;
 use crate::dynamics::failure::Failure;
@@ -16,8 +18,8 @@ use crate::linear_algebra::control_grid::VectorField;
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
-use crate::phase_field::fracture::{LatticeFracture, lowest_tip};
-use crate::scene::Scene;
+use crate::phase_field::fracture::{LatticeFracture, crack_start};
+use crate::scene::{Body, Scene};
 use crate::splines::patch::Patch;
 use crate::transfer::sweep::StripForces;
 
@@ -36,7 +38,7 @@ impl TotalFrame {
             return Err(Failure::NoPoints(0));
         }
         let grid = lattice.grid;
-        let constraints = Constraints::new(grid, &scene.boundaries);
+        let constraints = Constraints::new(&scene.boundaries, |boundary| held_points(&patch, &lattice, boundary));
         let held = [0, 1].map(|component| constraints.held(component));
         let fracture = material
             .fracture
@@ -45,7 +47,7 @@ impl TotalFrame {
             .transpose()?;
         let mass = MassMatrix::new(&lattice, material.density, scene.analysis.mass, held)?;
         let load = |(number, traction)| {
-            let load = NodalLoad::new(&patch, body, traction, |at| mass.moves(at));
+            let load = NodalLoad::new(&patch, &lattice, body, traction, |at| mass.moves(at));
             load.map_err(|lost| Failure::LostTraction { body: 0, traction: number, lost })
         };
         let zeros = || [grid.zeros(), grid.zeros()];
@@ -59,7 +61,8 @@ impl TotalFrame {
             thickness: scene.analysis.thickness,
             gravity: scene.analysis.gravity,
             strip_forces: StripForces::new(&lattice),
-            lowest_tip: lowest_tip(scene, body),
+            probes: scene.output.probes.iter().filter_map(|probe| ProbePlace::new(&patch, &lattice, probe)).collect(),
+            crack_start: crack_start(body),
             displacement: zeros(),
             velocity: zeros(),
             acceleration: zeros(),
@@ -67,16 +70,20 @@ impl TotalFrame {
             elastic_energy: 0.0,
             ledger: Ledger::default(),
             time: 0.0,
-            driven: DrivenSides::new(&constraints, grid),
+            time_step: 0.0,
+            reactions: Reactions::new(&constraints),
             constraints,
-            driven_power: 0.0,
             judged_stiffening: 1.0,
             patch,
             grid,
             lattice,
             fracture,
         };
-        frame.set_initial_velocity(body.velocity, body.angular_velocity);
+        frame.set_initial_velocity(body);
+        if scene.equilibrium {
+            frame.find_equilibrium()?;
+            frame.release_phase_field()?;
+        }
         frame.begin();
         Ok(frame)
     }
@@ -108,27 +115,35 @@ impl TotalFrame {
     /// If the initial phase field does not converge.
     pub fn start_with(&mut self, displacement: VectorField, velocity: VectorField) -> Result<(), SolveFailure> {
         (self.displacement, self.velocity) = (displacement, velocity);
-        self.constraints.apply_velocity(&mut self.velocity);
+        self.constraints.start(&mut self.displacement, &mut self.velocity);
         self.ledger = Ledger::default();
         self.time = 0.0;
-        if let Some(fracture) = &mut self.fracture {
-            fracture.update_history(&self.lattice, self.moduli, self.kinematics, &self.displacement);
-            fracture.field.initialise(&self.lattice, &fracture.history)?;
-        }
+        self.release_phase_field()?;
         self.begin();
         Ok(())
     }
 
-    /// Rigid motion about the centre of mass: linear in the position, so its control values are exact.
-    fn set_initial_velocity(&mut self, velocity: [f64; 2], angular_velocity: f64) {
-        let [x, y] = self.patch.control_positions();
+    /// The phase field that belongs to the present displacement.
+    fn release_phase_field(&mut self) -> Result<(), SolveFailure> {
+        if let Some(fracture) = &mut self.fracture {
+            fracture.update_history(&self.lattice, self.moduli, self.kinematics, &self.displacement);
+            fracture.field.initialise(&self.lattice, &fracture.history)?;
+        }
+        Ok(())
+    }
+
+    /// Motion about the centre of mass: linear in the position, so its control values are exact.
+    fn set_initial_velocity(&mut self, body: &Body) {
+        let [x, y] = self.control_positions();
         let mass = self.mass.row_sums();
         let total: f64 = mass.iter().sum();
         let center = [&x, &y].map(|x| mass.iter().zip(x).map(|(m, x)| m * x).sum::<f64>() / total);
         for at in self.grid.indices() {
-            self.velocity[0][at] = velocity[0] - angular_velocity * (y[at] - center[1]);
-            self.velocity[1][at] = velocity[1] + angular_velocity * (x[at] - center[0]);
+            let relative = body.relative_velocity([x[at] - center[0], y[at] - center[1]]);
+            for d in 0..2 {
+                self.velocity[d][at] = body.velocity[d] + relative[d];
+            }
         }
-        self.constraints.apply_velocity(&mut self.velocity);
+        self.constraints.start(&mut self.displacement, &mut self.velocity);
     }
 }

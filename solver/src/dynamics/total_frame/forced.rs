@@ -52,7 +52,8 @@ impl LatticeForcing {
 
     /// Right-hand side of the phase-field equation at `time` (s), m².
     pub(crate) fn phase_load(&self, lattice: &Lattice, time: f64) -> Vec<f64> {
-        let mut load = lattice.integrate(|_, _, position| self.forcing.phase_source(position, time));
+        let mut load =
+            lattice.onto_patch(lattice.integrate(|_, _, position| self.forcing.phase_source(position, time)));
         for point in &self.boundary {
             let flux = self.forcing.phase_flux(point.position, point.normal, time);
             for &(at, value) in &point.functions {

@@ -1,6 +1,6 @@
 //! The points of a body in the total frame, one by one, and the spans they are in: for looking at a run.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::TotalFrame;
 use crate::material::degradation::{stress_at, stress_out_of_plane};
@@ -12,7 +12,7 @@ impl TotalFrame {
     pub(crate) fn for_each_point_state(&self, f: &mut dyn FnMut(PointState)) {
         let mut point = 0;
         self.lattice.for_each_point(|batch, lane, position, _| {
-            let functions = self.patch.functions(self.lattice.location(&self.patch, batch, lane));
+            let functions = self.lattice.functions_at(&self.patch, batch, lane);
             let value = |field: &Vec<f64>| functions.interpolate(field);
             let [x, y] = self.displacement.each_ref().map(value);
             let displacement = [x.value, y.value];
@@ -44,23 +44,30 @@ impl TotalFrame {
     /// The spans with points; their corners move with the body.
     pub(crate) fn span_grid(&self) -> SpanGrid {
         let mut grid = SpanGrid::default();
-        grid.add(&self.patch, self.spans_with_points(), |functions| {
-            let value = |field: &Vec<f64>| functions.interpolate(field).value;
-            let displacement = self.displacement.each_ref().map(value);
-            Corner {
-                body: 0,
-                position: [0, 1].map(|d| functions.position[d] + displacement[d]),
-                velocity: self.velocity.each_ref().map(value),
-                phase: self.fracture.as_ref().map(|f| functions.interpolate(f.field.control_values()).value),
-            }
-        });
+        for (lift, spans) in self.spans_with_points() {
+            grid.add(&self.patch, spans, |functions| {
+                let mut here = functions.clone();
+                here.lift(lift);
+                let value = |field: &Vec<f64>| here.interpolate(field).value;
+                let displacement = self.displacement.each_ref().map(value);
+                Corner {
+                    body: 0,
+                    position: [0, 1].map(|d| functions.position[d] + displacement[d]),
+                    velocity: self.velocity.each_ref().map(value),
+                    phase: self.fracture.as_ref().map(|f| functions.interpolate(f.field.control_values()).value),
+                }
+            });
+        }
         grid
     }
 
-    fn spans_with_points(&self) -> BTreeSet<[usize; 2]> {
-        let mut spans = BTreeSet::new();
+    /// The spans with points, by the distance of their control points from those of the patch: a span that a
+    /// slit cuts is there once for each side.
+    fn spans_with_points(&self) -> BTreeMap<usize, BTreeSet<[usize; 2]>> {
+        let mut spans = BTreeMap::<usize, BTreeSet<[usize; 2]>>::new();
         self.lattice.for_each_point(|batch, lane, _, _| {
-            spans.insert(self.lattice.location(&self.patch, batch, lane).span);
+            let span = self.lattice.location(&self.patch, batch, lane).span;
+            spans.entry(self.lattice.lift_of(batch)).or_default().insert(span);
         });
         spans
     }

@@ -4,17 +4,19 @@ use std::sync::Arc;
 
 use super::TotalFrame;
 use super::forced::LatticeForcing;
+use super::probe::ProbePlace;
 use crate::dynamics::constraints::Constraints;
-use crate::dynamics::energy::{FractureSample, Sample};
+use crate::dynamics::energy::{FractureSample, ProbeSample, Sample};
 use crate::dynamics::forcing::Forcing;
 use crate::dynamics::mass::MassMatrix;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::lane::Lane;
+use crate::material::degradation::stress_at;
 use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::{growth, hencky_strain, symmetric};
 use crate::output::inspection::InvertedPoint;
 use crate::particles::lattice::Lattice;
-use crate::phase_field::fracture::LatticeFracture;
+use crate::phase_field::fracture::{LatticeFracture, crack_tip, most_broken};
 use crate::scene::{Kinematics, Shape};
 use crate::splines::patch::Patch;
 
@@ -27,13 +29,18 @@ impl TotalFrame {
             if speed.is_nan() { f64::INFINITY } else { speed }
         };
         let fastest = self.grid.indices().max_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or(0);
-        (self.patch.control_positions().map(|x| x[fastest]), speed(&fastest))
+        (self.control_positions().map(|x| x[fastest]), speed(&fastest))
+    }
+
+    /// Coordinates (m) of the control points, copies included, as fields.
+    pub(super) fn control_positions(&self) -> VectorField {
+        self.patch.control_positions().map(|component| self.lattice.with_copies(component))
     }
 
     /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at
     /// zero.
     pub fn sample(&self, dt: f64) -> Sample {
-        let [x, y] = self.patch.control_positions();
+        let [x, y] = self.control_positions();
         let kinetic = self.mass.half_square(&self.velocity);
         let stagger = fault!("stagger-doubled", 0.25 => 0.5) * dt * dt * self.mass.half_square(&self.acceleration);
         let mut momenta = [self.grid.zeros(), self.grid.zeros()];
@@ -48,7 +55,7 @@ impl TotalFrame {
                 energy,
                 history_work: self.ledger.history_work,
                 lag_work: f.field.lag_work(),
-                crack_tip: f.crack_tip(&self.lattice, self.lowest_tip),
+                crack_tip: self.crack_tip(f),
                 min_phase,
                 iterations: f.iterations,
             }
@@ -60,6 +67,8 @@ impl TotalFrame {
             elastic: self.elastic_energy,
             fracture,
             external_work: self.ledger.external_work,
+            conditions: self.reactions.samples(&self.constraints),
+            probes: self.probes.iter().map(|probe| self.sampled_probe(probe)).collect(),
             momentum,
             angular_momentum: angular,
             time_step: dt,
@@ -68,11 +77,34 @@ impl TotalFrame {
         sample.for_thickness(fault!("thickness-forgotten", self.thickness => 1.0))
     }
 
+    fn sampled_probe(&self, probe: &ProbePlace) -> ProbeSample {
+        let [ux, uy] = self.displacement.each_ref().map(|u| probe.functions.interpolate(u));
+        let [vx, vy] = self.velocity.each_ref().map(|v| probe.functions.interpolate(v).value);
+        let (strain, _) = self.strain([ux.gradient, uy.gradient]);
+        let fracture = self.fracture.as_ref();
+        let fracture = fracture.map(|f| (&f.model, probe.on_patch.interpolate(f.field.control_values()).value));
+        let [xx, yy, xy] = stress_at(&self.moduli, strain, fracture);
+        ProbeSample::new(&probe.name, [ux.value, uy.value, vx, vy, xx, yy, xy])
+    }
+
+    fn crack_tip(&self, fracture: &LatticeFracture) -> Option<[f64; 2]> {
+        let phase = fracture.field.control_values();
+        let gradient = |position| self.patch.evaluate(phase, position).unwrap_or_default().gradient;
+        crack_tip(self.crack_start?, &fracture.broken_points(&self.lattice), gradient)
+    }
+
+    /// Remembers where a crack begins that was not there at the start.
+    pub(crate) fn note_crack_start(&mut self) {
+        if let (None, Some(fracture)) = (self.crack_start, &self.fracture) {
+            self.crack_start = most_broken(&fracture.broken_points(&self.lattice));
+        }
+    }
+
     /// The point that is turned inside out furthest, if one is; small strains know none.
     pub(crate) fn inverted_point(&self) -> Option<InvertedPoint> {
         let (mut worst, mut point) = (None, 0);
         self.lattice.for_each_point(|batch, lane, position, _| {
-            let functions = self.patch.functions(self.lattice.location(&self.patch, batch, lane));
+            let functions = self.lattice.functions_at(&self.patch, batch, lane);
             let [x, y] = self.displacement.each_ref().map(|u| functions.interpolate(u));
             let (_, determinant) = self.strain([x.gradient, y.gradient]);
             if determinant <= 0.0 {

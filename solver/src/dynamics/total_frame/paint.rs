@@ -25,7 +25,9 @@ fn values_at(frame: &TotalFrame, place: Location) -> [f64; 2] {
     if !frame.shape().contains(functions.position) {
         return [f64::NAN; 2];
     }
-    let [ux, uy] = frame.displacement().each_ref().map(|u| functions.interpolate(u).gradient);
+    let mut here = functions.clone();
+    here.lift(frame.lattice.lift(functions.values[0].0, functions.position));
+    let [ux, uy] = frame.displacement().each_ref().map(|u| here.interpolate(u).gradient);
     let (strain, growth) = frame.strain([ux, uy]);
     let cauchy = |fracture| largest_principal(stress_at(&frame.moduli, strain, fracture)) / growth;
     match &frame.fracture {

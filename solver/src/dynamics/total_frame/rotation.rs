@@ -19,7 +19,7 @@ impl TotalFrame {
         }
         let mut most: Option<([f64; 2], f64)> = None;
         self.lattice.for_each_point(|batch, lane, position, _| {
-            let functions = self.patch.functions(self.lattice.location(&self.patch, batch, lane));
+            let functions = self.lattice.functions_at(&self.patch, batch, lane);
             let gradient = self.displacement.each_ref().map(|u| functions.interpolate(u).gradient);
             let broken = self.fracture.as_ref().is_some_and(|fracture| fracture.phase[batch][lane] < BROKEN);
             let angle = rotation(&gradient).abs();

@@ -29,12 +29,13 @@ impl TotalFrame {
             internal,
             strip_forces: _,
             fracture,
-            lowest_tip: _,
+            probes: _,
+            crack_start,
             elastic_energy,
             ledger,
             time,
-            driven: _,
-            driven_power,
+            time_step: _,
+            reactions,
             judged_stiffening,
         } = self;
         if forced.is_some() {
@@ -49,9 +50,9 @@ impl TotalFrame {
             field.exchange(archive)?;
             archive.value(iterations)?;
         }
-        [elastic_energy, time, driven_power, judged_stiffening]
-            .into_iter()
-            .try_for_each(|value| archive.value(value))?;
+        [elastic_energy, time, judged_stiffening].into_iter().try_for_each(|value| archive.value(value))?;
+        archive.value(crack_start)?;
+        reactions.exchange(archive)?;
         archive.value(ledger)
     }
 }

@@ -31,6 +31,14 @@ impl TotalFrame {
     /// Internal forces (N/m) of the undamaged body under a displacement (m), linear in it.
     pub(crate) fn elastic_forces(&self, displacement: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
         elastic_forces(&self.lattice, self.moduli, Kinematics::Small, displacement, strips, out);
+        self.fold(out);
+    }
+
+    /// Moves forces at copies of control points to their originals.
+    pub(super) fn fold(&self, forces: &mut VectorField) {
+        if let Some(sheets) = self.lattice.sheets() {
+            forces.iter_mut().for_each(|component| sheets.fold(component));
+        }
     }
 
     /// Stiffness of the undamaged body on its free degrees of freedom.
@@ -65,6 +73,9 @@ impl LatticeStiffness<'_> {
     fn unpack(&mut self, x: &[f64]) {
         for (&(at, component), x) in self.free.iter().zip(x) {
             self.field[component][at] = *x;
+        }
+        if let Some(sheets) = self.frame.lattice.sheets() {
+            sheets.spread(&mut self.field);
         }
     }
 

@@ -60,11 +60,11 @@ impl TotalFrame {
     }
 
     /// Internal forces (N/m) under a displacement (m), with the phase field at the points as it is now.
-    fn forces_now(&self, displacement: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
+    pub(super) fn forces_now(&self, displacement: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
         let Self { lattice, moduli, kinematics, fracture, .. } = self;
         let Some(fracture) = fracture else {
             elastic_forces(lattice, *moduli, *kinematics, displacement, strips, out);
-            return;
+            return self.fold(out);
         };
         let phases = fracture.phase.chunks(lattice.strip_batches());
         let mut kernels: Vec<_> =
@@ -72,12 +72,13 @@ impl TotalFrame {
         let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
         sweep_with(*kinematics, lattice, fields, &mut kernels, Some(strips));
         strips.assemble(lattice.grid.stride, out);
+        self.fold(out);
     }
 }
 
 /// Tangent stiffness on the free degrees of freedom, by central differences of the internal forces: the
 /// geometric part is in it.
-struct Tangent<'a> {
+pub(super) struct Tangent<'a> {
     frame: &'a TotalFrame,
     undeformed: LatticeStiffness<'a>,
     shortest_span: f64,
@@ -87,7 +88,7 @@ struct Tangent<'a> {
 }
 
 impl<'a> Tangent<'a> {
-    fn new(frame: &'a TotalFrame) -> Self {
+    pub(super) fn new(frame: &'a TotalFrame) -> Self {
         let spans = frame.patch.spaces.iter().flat_map(|space| space.spans());
         let shortest_span = match &frame.patch.geometry {
             None => spans.map(|span| span.length()).fold(f64::INFINITY, smaller),
@@ -117,6 +118,9 @@ impl StiffnessOperator for Tangent<'_> {
         for (sign, forces) in [1.0, -1.0].into_iter().zip(forces.iter_mut()) {
             for (&(at, component), x) in free.iter().zip(x) {
                 displacement[component][at] = frame.displacement[component][at] + sign * probe * x;
+            }
+            if let Some(sheets) = frame.lattice.sheets() {
+                sheets.spread(displacement);
             }
             frame.forces_now(displacement, strips, forces);
         }

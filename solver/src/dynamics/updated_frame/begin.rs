@@ -19,7 +19,7 @@ use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
 use crate::particles::points::{Cells, OutsidePatch, Point};
-use crate::phase_field::fracture::lowest_tip;
+use crate::phase_field::fracture::crack_start;
 use crate::scene::{Body, Contact, Kinematics, Material, Plane, Quadrature, Scene, Transfer};
 use crate::splines::patch::Patch;
 
@@ -31,10 +31,13 @@ impl DiscreteField {
     /// not converge, or a point is not on the patch.
     pub fn new(scene: &Scene, body: &Body, whole: &Arc<Patch>) -> Result<Self, Failure> {
         let mut field = Self::at_rest(scene, body, whole)?;
-        let (center, velocity, spin) = (center_of_mass(field.points.iter()), body.velocity, body.angular_velocity);
-        let rigidly = |x: [f64; 2]| [velocity[0] - spin * (x[1] - center[1]), velocity[1] + spin * (x[0] - center[0])];
-        field.points.iter_mut().for_each(|point| point.velocity = rigidly(point.position));
-        field.take_affine_velocities(rigidly);
+        let center = center_of_mass(field.points.iter());
+        let begin = |x: [f64; 2]| {
+            let relative = body.relative_velocity([x[0] - center[0], x[1] - center[1]]);
+            [body.velocity[0] + relative[0], body.velocity[1] + relative[1]]
+        };
+        field.points.iter_mut().for_each(|point| point.velocity = begin(point.position));
+        field.take_affine_velocities(begin);
         let number = number_of(body, scene);
         field.crack_and_stress()?;
         field.begin_ledger();
@@ -104,7 +107,7 @@ impl DiscreteField {
             density: material.density,
             thickness: analysis.thickness,
             gravity: analysis.gravity,
-            lowest_tip: lowest_tip(scene, body),
+            crack_start: crack_start(body),
             elastic_energy: 0.0,
             stress_work: 0.0,
             driven_power: 0.0,

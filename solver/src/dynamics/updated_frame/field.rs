@@ -65,7 +65,7 @@ pub struct DiscreteField {
     pub(super) slice: Option<Box<Slice>>,
     /// The phase field, if the material fractures.
     pub fracture: Option<PointwiseFracture>,
-    pub(super) lowest_tip: f64,
+    pub(super) crack_start: Option<[f64; 2]>,
     pub(super) elastic_energy: f64,
     /// `Σ V sigma(n+1) : de` of the last step.
     pub(super) stress_work: f64,

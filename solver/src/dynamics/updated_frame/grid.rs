@@ -167,7 +167,7 @@ impl NodalFields {
     /// Imposes the prescribed velocities.
     pub fn impose_velocities(&mut self) -> ImposedEnergy {
         let mut energy = ImposedEnergy::default();
-        for (at, component, value) in self.constraints.iter() {
+        for (at, component, value) in self.constraints.velocities() {
             let jump = value - self.velocity[component][at];
             self.velocity[component][at] = fault!("driven-side-lags", value => 0.5 * value);
             energy.work += self.mass[at] * jump * value;
@@ -216,7 +216,7 @@ impl NodalFields {
                 power += force * velocity;
             }
         }
-        let held = self.constraints.iter().filter(|&(at, _, _)| self.inverse_mass[at] == 0.0);
+        let held = self.constraints.velocities().filter(|&(at, _, _)| self.inverse_mass[at] == 0.0);
         power + held.map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
     }
 
@@ -229,7 +229,7 @@ impl NodalFields {
                 power += force * velocity;
             }
         }
-        let held = self.constraints.iter().filter(|&(at, _, _)| self.inverse_mass[at] == 0.0);
+        let held = self.constraints.velocities().filter(|&(at, _, _)| self.inverse_mass[at] == 0.0);
         power - held.map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
     }
 
@@ -250,7 +250,7 @@ impl NodalFields {
 
     /// Reaction times velocity of the driven control points, W/m.
     pub(crate) fn power_of_driven_sides(&self) -> f64 {
-        -self.constraints.iter().map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
+        -self.constraints.velocities().map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
     }
 
     /// Control points and components whose velocity is prescribed.

@@ -14,11 +14,17 @@ use crate::material::degradation::BROKEN;
 use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::{Gradient, growth};
 use crate::output::inspection::InvertedPoint;
-use crate::particles::points::{Cells, FracturePoint, Point};
+use crate::particles::points::{Cells, Point};
 use crate::phase_field::PhaseFieldCounts;
+use crate::phase_field::fracture::{BrokenPoint, crack_tip, most_broken};
 use crate::splines::patch::Patch;
 
 impl UpdatedFrame {
+    /// Remembers where cracks begin that were not there at the start.
+    pub(crate) fn note_crack_start(&mut self) {
+        self.fields.iter_mut().for_each(DiscreteField::note_crack_start);
+    }
+
     /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at
     /// zero.
     pub fn sample(&self, dt: f64) -> Sample {
@@ -187,22 +193,30 @@ impl DiscreteField {
         }
     }
 
-    /// Point of largest x with c below [`BROKEN`] in the upper half of the body, moved along x to where c is
-    /// [`BROKEN`] by the gradient of c, at most by the distance between points.
+    /// Tip of the crack, m.
     pub fn crack_tip(&self) -> Option<[f64; 2]> {
-        let fracture = self.fracture.as_ref()?;
-        let broken = |(p, f): &(&Point, &FracturePoint)| f.phase < BROKEN && p.position[1] >= self.lowest_tip;
-        let pairs = || self.points.iter().zip(&fracture.points).filter(broken);
-        let (foremost, _) = pairs().max_by(|a, b| a.0.position[0].total_cmp(&b.0.position[0]))?;
-        let spacing = foremost.volume.sqrt();
-        let candidates = pairs().filter(|(p, _)| p.position[0] > foremost.position[0] - spacing);
-        let tips = candidates.map(|(p, f)| {
-            let c = self.patch.evaluate(fracture.field.control_values(), p.position).unwrap_or_default();
-            let ahead = (BROKEN - f.phase) / c.gradient[0];
-            let ahead = if ahead >= 0.0 { ahead.min(spacing) } else { 0.0 };
-            [p.position[0] + ahead, p.position[1]]
-        });
-        tips.max_by(|a, b| a[0].total_cmp(&b[0]))
+        let phase = self.fracture.as_ref()?.field.control_values();
+        let gradient = |position| self.patch.evaluate(phase, position).unwrap_or_default().gradient;
+        crack_tip(self.crack_start?, &self.broken_points(), gradient)
+    }
+
+    /// Remembers where a crack begins that was not there at the start.
+    pub(super) fn note_crack_start(&mut self) {
+        if self.crack_start.is_none() {
+            self.crack_start = most_broken(&self.broken_points());
+        }
+    }
+
+    fn broken_points(&self) -> Vec<BrokenPoint> {
+        let states = self.fracture.iter().flat_map(|fracture| &fracture.points);
+        let broken = self.points.iter().zip(states).filter(|(_, state)| state.phase < BROKEN);
+        broken
+            .map(|(point, state)| BrokenPoint {
+                position: point.position,
+                phase: state.phase,
+                spacing: point.volume.sqrt(),
+            })
+            .collect()
     }
 
     fn inverted_point(&self) -> Option<InvertedPoint> {

@@ -8,7 +8,7 @@ use super::velocity_transfer::VelocityTransfer;
 use crate::dynamics::constraints::Constraints;
 use crate::particles::points::{Cells, OutsidePatch, Point};
 use crate::scene::{Boundary, Side};
-use crate::splines::patch::Patch;
+use crate::splines::patch::{Patch, control_points_on};
 
 /// Spans around those with points, so that the part need not follow every step.
 const MARGIN: usize = 4;
@@ -46,7 +46,7 @@ pub(crate) fn constraints(whole: &Patch, part: &Patch, origin: [usize; 2], bound
         Side::Top => origin[1] + part.rows == whole.rows,
     };
     let boundaries: Vec<Boundary> = boundaries.iter().filter(|b| reached(b.side)).cloned().collect();
-    Constraints::new(part, &boundaries)
+    Constraints::new(&boundaries, |boundary| control_points_on(boundary.side, part))
 }
 
 impl DiscreteField {

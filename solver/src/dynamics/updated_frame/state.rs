@@ -93,7 +93,7 @@ impl DiscreteField {
             surface,
             slice,
             fracture,
-            lowest_tip: _,
+            crack_start,
             elastic_energy: _, // see exchange_sums
             stress_work: _,
             driven_power: _,
@@ -109,6 +109,7 @@ impl DiscreteField {
         }
         archive.value(time)?;
         archive.value(at_start)?;
+        archive.value(crack_start)?;
         archive.list(points)?;
         if let Some(AffineVelocities { gradients, .. }) = affine {
             archive.list(gradients)?;

@@ -1,4 +1,4 @@
-//! Tractions on surface points s that move with the body: `f_I = min(time/ramp, 1) Σ_s l_s t N_I(x_s)`.
+//! Tractions on surface points s that move with the body: `f_I = factor(time) Σ_s l_s t N_I(x_s)`.
 
 use super::grid::NodalFields;
 use crate::checkpoint::{Archive, StateError};
@@ -6,7 +6,7 @@ use crate::dynamics::loads::surface_points;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::particles::follower::Follower;
 use crate::particles::points::OutsidePatch;
-use crate::scene::{Body, Traction};
+use crate::scene::{Body, TimeFactor, Traction};
 use crate::splines::patch::Patch;
 
 /// A traction and the surface points that carry it.
@@ -14,7 +14,7 @@ use crate::splines::patch::Patch;
 pub(crate) struct SurfaceLoad {
     points: Vec<MovingSurfacePoint>,
     stress: [f64; 2],
-    ramp: Option<f64>,
+    time: TimeFactor,
     /// Power of the full traction on the points during the last motion, W/m.
     power: f64,
 }
@@ -31,7 +31,7 @@ impl SurfaceLoad {
         let points = surface_points(patch, body, &traction.edge).into_iter();
         let points =
             points.map(|p| MovingSurfacePoint { place: Follower::new(p.position), length: p.length }).collect();
-        Self { points, stress: traction.stress, ramp: traction.ramp, power: 0.0 }
+        Self { points, stress: traction.load.traction([0.0; 2]), time: traction.time.clone(), power: 0.0 }
     }
 
     /// Keeps some of the surface points, by their positions (m).
@@ -39,9 +39,9 @@ impl SurfaceLoad {
         self.points.retain(|point| keeps(point.place.position));
     }
 
-    /// Factor at a time (s): rises linearly over the ramp.
+    /// Factor at a time, s.
     pub(crate) fn factor(&self, time: f64) -> f64 {
-        fault!("ramp-forgotten", self.ramp => None).map_or(1.0, |ramp: f64| (time / ramp).clamp(0.0, 1.0))
+        self.time.value(time)
     }
 
     /// Power of the full traction on the points during the last motion, W/m.
@@ -101,7 +101,7 @@ impl SurfaceLoad {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { points, stress: _, ramp: _, power } = self;
+        let Self { points, stress: _, time: _, power } = self;
         points.iter_mut().try_for_each(|point| archive.value(&mut point.place.position))?;
         archive.value(power)
     }

@@ -26,6 +26,8 @@ pub struct Tile {
 pub struct Row {
     /// First control row.
     pub first: usize,
+    /// Rows by which that lies behind the one of the patch: not 0 in a sheet.
+    pub lift: usize,
     /// Values of the basis functions: point b, function k at `[b][k]`.
     pub value: Vec<[f64; MAX_ORDER]>,
     /// Their derivatives, 1/m or 1/unit of the knots.

@@ -74,7 +74,7 @@ fn scatter(lattice: &Lattice, [row, tile]: [usize; 2], pairs: &[Lane], first_row
     let count = (p + 1) * (q + 1);
     let mut pair = 0;
     for m in 0..count {
-        let control_row = lattice.rows[row].first + m / (p + 1) - first_row;
+        let control_row = lattice.rows[row].first - lattice.rows[row].lift + m / (p + 1) - first_row;
         let base = control_row * couplings * stride + lattice.grid.index(lattice.tiles[tile].first, 0);
         for n in m..count {
             let (columns, rows) = ((n % (p + 1)) as isize - (m % (p + 1)) as isize, n / (p + 1) - m / (p + 1));

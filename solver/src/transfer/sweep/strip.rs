@@ -62,6 +62,9 @@ impl<K: PointKernel> StripSweep<'_, K> {
         let lattice = self.lattice;
         let rows = lattice.strip_rows(self.strip);
         for tile_index in 0..lattice.tiles.len() {
+            if !lattice.is_occupied(self.strip, tile_index) {
+                continue;
+            }
             let tile = &lattice.tiles[tile_index];
             let mut loaded = lattice.rows[rows.start].first;
             let mut flushed = loaded;
@@ -72,7 +75,7 @@ impl<K: PointKernel> StripSweep<'_, K> {
                 loaded = loaded.max(row.first);
                 for control_row in loaded..row.first + ky {
                     let at = (control_row % ky) * SUMS * nx;
-                    self.load::<FMA, MAPPED>(&mut sums[at..at + SUMS * nx], tile, control_row, kx, nx);
+                    self.load::<FMA, MAPPED>(&mut sums[at..at + SUMS * nx], tile, [control_row, row.lift], kx, nx);
                 }
                 loaded = row.first + ky;
                 let at = (((row_index - rows.start) * lattice.tiles.len()) + tile_index) * nx * ny;
@@ -88,7 +91,7 @@ impl<K: PointKernel> StripSweep<'_, K> {
         &self,
         sums: &mut [Lane],
         tile: &Tile,
-        control_row: usize,
+        [control_row, lift]: [usize; 2],
         kx: usize,
         nx: usize,
     ) {
@@ -100,6 +103,7 @@ impl<K: PointKernel> StripSweep<'_, K> {
                 continue;
             }
             let slopes = !phase || K::PHASE_GRADIENT;
+            let base = if phase { base - lift * self.lattice.grid.stride } else { base };
             for a in 0..nx {
                 let (mut value, mut slope) = (Lane::ZERO, Lane::ZERO);
                 for k in 0..kx {

@@ -39,18 +39,7 @@ pub fn rectangle(min: [f64; 2], max: [f64; 2]) -> Shape {
 
 /// A body at rest of Gauss points.
 pub fn body(shape: Shape, points: [usize; 2]) -> Body {
-    Body {
-        name: "body".into(),
-        material: "glass".into(),
-        shape,
-        particles_per_cell: points,
-        layout: Layout::Gauss,
-        velocity: [0.0; 2],
-        angular_velocity: 0.0,
-        rigid: false,
-        tractions: vec![],
-        cracks: vec![],
-    }
+    Body { particles_per_cell: points, ..Body::at_rest("body", "glass", shape) }
 }
 
 /// A glass rectangle that fills its mesh from the origin to `size`, free on all sides.
@@ -80,7 +69,8 @@ pub fn elastic_scene(degree: usize, size: [f64; 2], cells: [usize; 2]) -> Scene 
         bodies: vec![body(rectangle([0.0; 2], size), [degree.max(2); 2])],
         contact: None,
         boundaries: vec![],
-        output: Output { samples: 10, frames: vec![], bodies: false },
+        equilibrium: false,
+        output: Output::rows(10),
     }
 }
 
@@ -104,7 +94,7 @@ pub fn updated_scene(material: Material, mesh: Mesh, shape: Shape) -> Scene {
 /// A plate of 10 mm by 5 mm with spans of l0, pulled open by `stress` (Pa); an elastic one.
 pub fn pulled_plate(stress: f64) -> Scene {
     let mut scene = elastic_scene(2, [0.01, 0.005], [40, 20]);
-    let pull = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: Some(1e-6) };
+    let pull = |side, stress| Traction::on(side, [0.0, stress], TimeFactor::ramp(1e-6));
     scene.bodies[0].tractions = vec![pull(Side::Top, stress), pull(Side::Bottom, -stress)];
     scene
 }
@@ -112,10 +102,8 @@ pub fn pulled_plate(stress: f64) -> Scene {
 /// A small plate, clamped at its left side, whose right side is driven in x.
 pub fn driven_plate(cells: [usize; 2]) -> Scene {
     let mut scene = elastic_scene(2, [0.01, 0.005], cells);
-    scene.boundaries = vec![
-        Boundary { side: Side::Left, fix: [true, true], velocity: [0.0; 2] },
-        Boundary { side: Side::Right, fix: [true, false], velocity: [1.0, 0.0] },
-    ];
+    scene.boundaries =
+        vec![Boundary::fixed(Side::Left, [true, true]), Boundary::driven(Side::Right, [true, false], [1.0, 0.0])];
     scene
 }
 
@@ -123,7 +111,7 @@ pub fn driven_plate(cells: [usize; 2]) -> Scene {
 pub fn notched_plate(stress: f64) -> Scene {
     let mut scene = pulled_plate(stress);
     scene.materials.get_mut("glass").unwrap().fracture = Some(brittle());
-    scene.bodies[0].cracks = vec![Crack { from: [0.0, 0.0025], to: [0.004, 0.0025], half_width: Some(0.25e-3) }];
+    scene.bodies[0].cracks = vec![Crack::wide_seed([0.0, 0.0025], [0.004, 0.0025], Some(0.25e-3))];
     scene
 }
 

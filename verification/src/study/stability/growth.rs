@@ -104,7 +104,7 @@ fn cut_block(degree: usize) -> Scene {
     .scene();
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [4.25; 2] };
     scene.bodies[0].velocity = [1e-3, 3e-4];
-    scene.boundaries = vec![Boundary { side: Side::Left, fix: [true; 2], velocity: [0.0; 2] }];
+    scene.boundaries = vec![Boundary::fixed(Side::Left, [true; 2])];
     scene
 }
 

@@ -92,7 +92,7 @@ fn square(degree: usize, spans: usize, nu: f64) -> Scene {
         degree + 1,
     )
     .scene();
-    scene.boundaries = vec![Boundary { side: Side::Bottom, fix: [true; 2], velocity: [0.0; 2] }];
+    scene.boundaries = vec![Boundary::fixed(Side::Bottom, [true; 2])];
     scene
 }
 

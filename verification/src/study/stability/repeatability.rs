@@ -6,7 +6,7 @@
 
 use fisura::Simulation;
 use fisura::scene::{
-    Boundary, Crack, Edge, Fracture, Frame, Material, Mesh, PhaseFieldSolver, Scene, Side, Split, Traction,
+    Boundary, Crack, Fracture, Frame, Material, Mesh, PhaseFieldSolver, Scene, Side, Split, TimeFactor, Traction,
 };
 
 use super::exact;
@@ -87,9 +87,9 @@ fn notched(frame: Frame) -> Scene {
     scene.analysis.frame = frame;
     scene.analysis.end_time = 0.5e-6;
     scene.output.samples = 4;
-    let pull = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: None };
+    let pull = |side, stress| Traction::on(side, [0.0, stress], TimeFactor::default());
     scene.bodies[0].tractions = vec![pull(Side::Top, 6e6), pull(Side::Bottom, -6e6)];
-    scene.bodies[0].cracks = vec![Crack { from: [0.0, 2e-3], to: [4e-3, 2e-3], half_width: None }];
+    scene.bodies[0].cracks = vec![Crack::seed([0.0, 2e-3], [4e-3, 2e-3])];
     if frame == Frame::Updated {
         // Room to move, with the body off the edges of the mesh.
         scene.mesh = Mesh::uniform([2; 2], [-1e-3; 2], [10e-3, 6e-3], [40, 60]);
@@ -135,9 +135,9 @@ fn interrupted(scene: &Scene) -> Result<Vec<u64>, StudyError> {
 fn symmetric(degree: usize) -> Scene {
     let mut scene = glass([16, 8], degree, None);
     scene.analysis.end_time = 2e-5;
-    let pull = |side, stress| Traction { edge: Edge::Side(side), stress: [stress, 0.0], ramp: None };
+    let pull = |side, stress| Traction::on(side, [stress, 0.0], TimeFactor::default());
     scene.bodies[0].tractions = vec![pull(Side::Left, -1e6), pull(Side::Right, 1e6)];
-    scene.boundaries = vec![Boundary { side: Side::Bottom, fix: [false, true], velocity: [0.0; 2] }];
+    scene.boundaries = vec![Boundary::fixed(Side::Bottom, [false, true])];
     scene
 }
 

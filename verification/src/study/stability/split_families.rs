@@ -170,6 +170,6 @@ fn block(size: f64) -> Scene {
     )
     .scene();
     scene.bodies[0].velocity = [1e-3 * size, 3e-4 * size];
-    scene.boundaries = vec![Boundary { side: Side::Left, fix: [true; 2], velocity: [0.0; 2] }];
+    scene.boundaries = vec![Boundary::fixed(Side::Left, [true; 2])];
     scene
 }

@@ -7,7 +7,7 @@
 
 use fisura::Simulation;
 use fisura::dynamics::energy::Sample;
-use fisura::scene::{Boundary, Crack, Edge, Fracture, Material, Mesh, Scene, Shape, Side, Split, Traction};
+use fisura::scene::{Boundary, Crack, Fracture, Material, Mesh, Scene, Shape, Side, Split, TimeFactor, Traction};
 
 use super::exact;
 use crate::case::Case;
@@ -134,15 +134,15 @@ fn plate(units: Units, cracked: bool) -> Scene {
     scene.analysis.thickness = THICKNESS * units.length;
     scene.analysis.end_time = if cracked { 2e-6 } else { 1e-6 };
     scene.output.samples = SAMPLES;
-    let roller = |side| Boundary { side, fix: [true, false], velocity: [0.0; 2] };
+    let roller = |side| Boundary::fixed(side, [true, false]);
     scene.boundaries = if cracked { vec![] } else { vec![roller(Side::Left), roller(Side::Right)] };
     let stress = if cracked { 8e6 } else { 1e6 } * units.stress();
-    let pull = |side, stress| Traction { edge: Edge::Side(side), stress: [0.0, stress], ramp: None };
+    let pull = |side, stress| Traction::on(side, [0.0, stress], TimeFactor::default());
     let body = &mut scene.bodies[0];
     body.tractions = vec![pull(Side::Top, stress), pull(Side::Bottom, -stress)];
     body.shape = Shape::Rectangle { min: [0.0; 2], max: [width, height] };
     if cracked {
-        body.cracks = vec![Crack { from: [0.0, 0.5 * height], to: [0.5 * width, 0.5 * height], half_width: None }];
+        body.cracks = vec![Crack::seed([0.0, 0.5 * height], [0.5 * width, 0.5 * height])];
     }
     scene
 }

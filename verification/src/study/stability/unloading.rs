@@ -123,7 +123,7 @@ fn bar(frame: Frame) -> Scene {
     scene.analysis.end_time = 40.0;
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [LENGTH, HEIGHT] };
     scene.bodies[0].velocity = [5e-3, 0.0];
-    scene.boundaries = vec![Boundary { side: Side::Left, fix: [true; 2], velocity: [0.0; 2] }];
+    scene.boundaries = vec![Boundary::fixed(Side::Left, [true; 2])];
     scene
 }
 

@@ -1,8 +1,8 @@
 //! Checks of a scene study before it runs: measures, columns, windows, references, variants.
 
 use fisura::dynamics::body_sample::BodySamples;
-use fisura::dynamics::energy::{ContactSample, FractureSample, Sample};
-use fisura::scene::{Frame, PhaseFieldInterval, Scene};
+use fisura::dynamics::energy::{ConditionSample, ContactSample, FractureSample, ProbeSample, Sample};
+use fisura::scene::{Boundary, Frame, PhaseFieldInterval, Scene};
 
 use super::{EVERYWHERE, Wrong, distinct, find_band, grid_convergence};
 use crate::case::Check;
@@ -204,6 +204,10 @@ fn look_at_times(measure: &Measure, check: &Check, scene: &Scene) -> Result<(), 
     Ok(())
 }
 
+fn blank_condition(condition: &Boundary) -> Option<ConditionSample> {
+    condition.name.as_deref().map(|name| ConditionSample::new(name, condition.fix, [0.0; 2], 0.0))
+}
+
 /// A history of one row with the columns that a scene will have; none of its numbers is known.
 fn blank_history(scene: &Scene) -> Table {
     let moving = scene.bodies.iter().filter(|body| !body.rigid);
@@ -221,6 +225,8 @@ fn blank_history(scene: &Scene) -> Table {
         contact: scene.contact.is_some().then_some(ContactSample { loss: 0.0, friction: 0.0 }),
         transfer_loss: (scene.analysis.frame == Frame::Updated).then_some(0.0),
         fragments: scene.contact.as_ref().and_then(|contact| contact.fragments.then_some(0)),
+        conditions: scene.boundaries.iter().filter_map(blank_condition).collect(),
+        probes: scene.output.probes.iter().map(|probe| ProbeSample::new(&probe.name, [0.0; 7])).collect(),
         bodies: scene.output.bodies.then(|| BodySamples::blank(scene)),
         ..Sample::default()
     };

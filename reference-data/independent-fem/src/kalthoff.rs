@@ -1,0 +1,81 @@
+//! The elastic part of the test of Kalthoff and Winkler: the upper half of a plate with a slit, driven at a
+//! part of its left edge.
+
+use crate::dynamics::Dynamics;
+use crate::material::Material;
+use crate::mesh::Mesh;
+
+/// Side of the half plate, m.
+const SIDE: f64 = 0.1;
+/// Height and length of the slit, m.
+const SLIT: [f64; 2] = [0.025, 0.05];
+/// Velocity of the driven part below the slit, m/s, and the time over which it rises, s.
+const VELOCITY: f64 = 16.5;
+const RISE: f64 = 1e-6;
+
+/// A run without a phase field.
+#[derive(Debug, Clone, Copy)]
+pub struct Kalthoff {
+    /// Element size, m.
+    pub h: f64,
+    /// Plane stress instead of plane strain.
+    pub plane_stress: bool,
+    /// Most of the critical step of an element that a step may take.
+    pub fraction: f64,
+    /// Time at the end, and between samples, s.
+    pub end: f64,
+    /// See [`Self::end`].
+    pub interval: f64,
+}
+
+/// Time (s), work of the driven part, kinetic and elastic energy of the half plate (J/m), reaction of the
+/// driven part (N/m).
+pub type Row = [f64; 5];
+
+impl Kalthoff {
+    /// Steps to the end; the rows sampled.
+    pub fn run(&self) -> Vec<Row> {
+        let material = Material { density: 8000.0, ..Material::new(190e9, 0.3, self.plane_stress) };
+        let lines = (SIDE / self.h).round() as usize;
+        let x: Vec<f64> = (0..=lines).map(|i| SIDE * i as f64 / lines as f64).collect();
+        let slit_row = (SLIT[0] / self.h).round() as usize;
+        let mut y = x.clone();
+        y.insert(slit_row, x[slit_row]); // a row of elements without height
+        let mesh = Mesh { x, y };
+        let stride = mesh.stride();
+        let mut body = Dynamics::new(&mesh, material);
+        let behind = (0..=lines).filter(|&i| mesh.x[i] >= SLIT[1] - 1e-9);
+        body.tie(behind.map(|i| [slit_row, slit_row + 1].map(|row| row * stride + i + 1)).collect());
+        body.mobility[1][1..=lines + 1].fill(0.0);
+        let driven: Vec<usize> = (0..=slit_row).map(|row| row * stride + 1).collect();
+        driven.iter().for_each(|&node| body.mobility[0][node] = 0.0);
+
+        let critical = material.critical_step(self.h);
+        let per_sample = (self.interval / (self.fraction * critical) - 1e-9).ceil() as usize;
+        let dt = self.interval / per_sample as f64;
+        let whole = mesh.nodal().iter().map(|_| 1.0).collect::<Vec<f64>>();
+        let velocity = |time: f64| VELOCITY * (time / RISE).clamp(0.0, 1.0);
+        let (mut rows, mut work, mut last) = (Vec::new(), 0.0, [0.0; 2]); // reaction and velocity of the step before
+        for n in 0..=(self.end / dt).round() as usize {
+            let time = n as f64 * dt;
+            body.evaluate(&whole);
+            let next = velocity(time + 0.5 * dt);
+            let acceleration = (next - last[1]) / if n == 0 { 0.5 * dt } else { dt };
+            let reaction: f64 =
+                driven.iter().map(|&node| body.mass(node) * acceleration - body.force(0, node)).sum();
+            work += dt * last[1] * 0.5 * (last[0] + reaction);
+            let kick = if n == 0 { 0.5 * dt } else { dt };
+            if n % per_sample == 0 {
+                let energies = body.energies(kick, &whole);
+                // the driven nodes have no mobility, so their gain is missing from the product of velocities
+                let missing: f64 = driven.iter().map(|&node| 0.5 * body.mass(node) * last[1] * (next - last[1])).sum();
+                let kinetic = if n == 0 { 0.0 } else { energies.kinetic + missing };
+                rows.push([time, work, kinetic, energies.elastic, reaction]);
+            }
+            driven.iter().for_each(|&node| body.velocity[0][node] = next);
+            body.kick(kick, dt);
+            last = [reaction, next];
+        }
+        rows
+    }
+}

@@ -1,0 +1,152 @@
+//! The static state under the loads and conditions at t = 0, with the phase field held: Newton's method, each
+//! step by conjugate gradients in the inner product of the mass.
+//!
+//! A mode of rigid motion that no condition holds stays zero: the iterates are orthogonal to it in that inner
+//! product. Loads that would accelerate it are refused.
+
+use super::TotalFrame;
+use super::tangent::Tangent;
+use crate::dynamics::critical_step::StiffnessOperator;
+use crate::dynamics::failure::Failure;
+use crate::linear_algebra::extremes::largest;
+use crate::scene::Kinematics;
+
+/// Largest force out of balance, of the largest nodal force.
+const TOLERANCE: f64 = 1e-9;
+/// Reduction of the residual by a linear solve; one of a linear body is the whole solution.
+const REDUCTION: f64 = 1e-4;
+const LINEAR_REDUCTION: f64 = 1e-11;
+/// Most steps of Newton's method, and halvings of one.
+const MOST_STEPS: usize = 50;
+const MOST_HALVINGS: usize = 10;
+/// Most iterations of a linear solve, per unknown along the longer side of the mesh.
+const MOST_ITERATIONS: usize = 20;
+/// Resultant of loads that counts as none, of the sum of their magnitudes.
+const BALANCED: f64 = 1e-9;
+
+impl TotalFrame {
+    /// Displaces the body into equilibrium.
+    ///
+    /// # Errors
+    /// Loads that would accelerate a body that nothing holds; no convergence.
+    pub(super) fn find_equilibrium(&mut self) -> Result<(), Failure> {
+        self.internal_forces(); // sets the phase field at the points
+        let linear = self.fracture.is_none() && self.kinematics == Kinematics::Small;
+        let reduction = if linear { LINEAR_REDUCTION } else { REDUCTION };
+        let (mut residual, mut scale) = self.out_of_balance();
+        self.refuse_unbalanced(&residual)?;
+        for _ in 0..MOST_STEPS {
+            let before = norm(&residual);
+            if largest(residual.iter().map(|r| r.abs())) <= TOLERANCE * scale {
+                return Ok(());
+            }
+            let change = if linear {
+                self.solve(&mut self.stiffness_operator(), &residual, reduction)?
+            } else {
+                self.solve(&mut Tangent::new(self), &residual, reduction)?
+            };
+            let mut part = 1.0;
+            self.displace(&change, part);
+            for _ in 0..MOST_HALVINGS {
+                (residual, scale) = self.out_of_balance();
+                if norm(&residual) < before {
+                    break;
+                }
+                self.displace(&change, -0.5 * part);
+                part *= 0.5;
+            }
+        }
+        Err(Failure::NoEquilibrium(largest(residual.iter().map(|r| r.abs())) / scale))
+    }
+
+    /// Adds a part of a change of the free components.
+    fn displace(&mut self, change: &[f64], part: f64) {
+        for (&(at, component), change) in self.free_components().iter().zip(change) {
+            self.displacement[component][at] += fault!("static-start-short", part => 0.99 * part) * change;
+        }
+        if let Some(sheets) = self.lattice.sheets() {
+            sheets.spread(&mut self.displacement);
+        }
+    }
+
+    /// External minus internal force at the free components, and the largest internal or external one, N/m.
+    fn out_of_balance(&mut self) -> (Vec<f64>, f64) {
+        let mut internal = [self.grid.zeros(), self.grid.zeros()];
+        self.forces_now(&self.displacement, &mut self.strip_forces(), &mut internal);
+        self.internal = internal;
+        self.external_minus_internal();
+        let residual: Vec<f64> =
+            self.free_components().iter().map(|&(at, component)| self.acceleration[component][at]).collect();
+        let inner = self.internal.iter().flatten().map(|f| f.abs());
+        let outer = self.acceleration.iter().zip(&self.internal).flat_map(|(net, f)| net.iter().zip(f));
+        let scale = largest(inner.chain(outer.map(|(net, f)| (net + f).abs())));
+        (residual, scale)
+    }
+
+    /// Refuses forces along rigid motions that no condition holds.
+    fn refuse_unbalanced(&self, residual: &[f64]) -> Result<(), Failure> {
+        let [x, y] = self.control_positions();
+        let free = self.free_components();
+        let held: Vec<_> = self.constraints.iter().map(|(at, component, _)| (at, component)).collect();
+        let mass = self.mass.row_sums();
+        let total: f64 = mass.iter().sum();
+        let center = [&x, &y].map(|x| mass.iter().zip(x).map(|(m, x)| m * x).sum::<f64>() / total);
+        let turning = |at: usize, component: usize| [center[1] - y[at], x[at] - center[0]][component];
+        let modes: [&dyn Fn(usize, usize) -> f64; 3] = [
+            &|_, component| if component == 0 { 1.0 } else { 0.0 },
+            &|_, component| if component == 1 { 1.0 } else { 0.0 },
+            &turning,
+        ];
+        for mode in modes {
+            if held.iter().any(|&(at, component)| mode(at, component) != 0.0) {
+                continue;
+            }
+            let works = || free.iter().zip(residual).map(|(&(at, component), r)| mode(at, component) * r);
+            let (sum, magnitude) = (works().sum::<f64>(), works().map(f64::abs).sum::<f64>());
+            if sum.abs() > BALANCED * magnitude {
+                return Err(Failure::Unbalanced(sum.abs() / magnitude));
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves `K x = right` for the free components to a reduction of the residual.
+    fn solve(&self, operator: &mut impl StiffnessOperator, right: &[f64], reduction: f64) -> Result<Vec<f64>, Failure> {
+        let n = right.len();
+        let (mut x, mut r, mut image) = (vec![0.0; n], right.to_vec(), vec![0.0; n]);
+        let mut z = vec![0.0; n];
+        operator.divide_by_mass(&r, &mut z);
+        let (mut p, mut square) = (z.clone(), dot(&r, &z));
+        let target = reduction * reduction * square;
+        for _ in 0..MOST_ITERATIONS * (self.grid.columns.max(self.grid.rows) + 100) {
+            if square <= target {
+                return Ok(x);
+            }
+            operator.stiffness(&p, &mut image);
+            let curvature = dot(&p, &image);
+            if !(curvature > 0.0) {
+                break; // round-off along a rigid motion, or a body that has lost its stiffness
+            }
+            let step = square / curvature;
+            for i in 0..n {
+                x[i] += step * p[i];
+                r[i] -= step * image[i];
+            }
+            operator.divide_by_mass(&r, &mut z);
+            let next = dot(&r, &z);
+            for i in 0..n {
+                p[i] = z[i] + next / square * p[i];
+            }
+            square = next;
+        }
+        if square.is_finite() { Ok(x) } else { Err(Failure::NoEquilibrium(f64::NAN)) }
+    }
+}
+
+fn norm(values: &[f64]) -> f64 {
+    dot(values, values).sqrt()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,39 @@
+//! The control points of a condition on a side, or on a part of one.
+
+use std::collections::BTreeMap;
+
+use crate::particles::lattice::Lattice;
+use crate::scene::{Boundary, Layout, Side};
+use crate::splines::patch::{Patch, control_points_on};
+use crate::splines::quadrature::Rule;
+
+/// Part of the integral of a function along a side that has to lie on the part that is held, up to round-off.
+const HELD: f64 = 0.5 - 1e-9;
+
+/// Values of functions that vanish on the side, to round-off.
+const ROUND_OFF: f64 = 1e-12;
+
+/// Control points of the side; of a part of it, or where a slit ends on it, those whose functions have at
+/// least half of their integral along the side on the part.
+pub(super) fn held_points(patch: &Patch, lattice: &Lattice, boundary: &Boundary) -> Vec<usize> {
+    if boundary.part.is_none() && lattice.sheets().is_none() {
+        return control_points_on(boundary.side, lattice.grid);
+    }
+    let along = usize::from(matches!(boundary.side, Side::Left | Side::Right));
+    let part = boundary.part.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+    let rule = Rule::new(Layout::Gauss, patch.spaces[along].degree() + 1);
+    let mut integrals = BTreeMap::<usize, [f64; 2]>::new(); // on the part, and in all
+    for point in patch.boundary_cut(boundary.side, &rule, &part) {
+        let inside = (part[0]..=part[1]).contains(&point.position[along]);
+        let inside = fault!("part-of-a-side-is-all-of-it", inside => true);
+        for &(at, value) in point.functions.iter().filter(|(_, value)| *value > ROUND_OFF) {
+            let at = lattice.control_point(at, point.functions[0].0, point.position);
+            let [on_part, all] = integrals.entry(at).or_default();
+            *all += value * point.length;
+            if inside {
+                *on_part += value * point.length;
+            }
+        }
+    }
+    integrals.into_iter().filter(|(_, [on_part, all])| *on_part >= HELD * all).map(|(at, _)| at).collect()
+}

@@ -1,0 +1,83 @@
+//! Copies of control points, so that material on both sides of a slit shares no shape function (see
+//! [`parting`](super::parting)).
+//!
+//! Copies are rows of control points behind those of the patch (a *sheet*), and the points that use them are
+//! rows of spans of the same lattice: kernels, sums and threads do not know of slits. A copy of a function
+//! that is whole is *tied* to its original. The phase field has no copies: it is continuous across a slit.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
+
+/// Column and row of a control point of the patch.
+pub(super) type FunctionIndex = [usize; 2];
+
+/// Sheets of control points behind those of the patch.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Sheets {
+    /// Control points that copy another one, and that one.
+    pub(super) ties: Vec<(usize, usize)>,
+    /// Control rows of each sheet, and the rows by which they lie behind those of the patch.
+    pub(super) rows: Vec<(Range<usize>, usize)>,
+    /// Of the spans with copies, by their first control point: positions of points (m), and the rows by which
+    /// their control points lie behind those of the patch.
+    pub(super) points: BTreeMap<FunctionIndex, Vec<([f64; 2], usize)>>,
+}
+
+impl Sheets {
+    /// Rows by which the control points of a position (m) lie behind those of the patch, in the span with
+    /// this first control point: those of the nearest point.
+    pub(crate) fn lift(&self, first: FunctionIndex, [x, y]: [f64; 2]) -> usize {
+        let Some(points) = self.points.get(&first) else { return 0 };
+        let distance = |point: &[f64; 2]| (point[0] - x).hypot(point[1] - y);
+        let nearest = points.iter().min_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0)));
+        nearest.map_or(0, |(_, lift)| *lift)
+    }
+
+    /// The control point that one copies, or itself.
+    pub(crate) fn original(&self, at: usize) -> usize {
+        self.ties.binary_search_by_key(&at, |tie| tie.0).map_or(at, |i| self.ties[i].1)
+    }
+
+    /// Moves what is at copies to their originals: forces, masses.
+    pub(crate) fn fold(&self, field: &mut [f64]) {
+        for &(copy, original) in &self.ties {
+            let value = std::mem::take(&mut field[copy]);
+            field[original] += fault!("copies-lose-their-share", value => 0.0);
+        }
+    }
+
+    /// Gives copies what is at their originals: displacements, velocities.
+    pub(crate) fn spread(&self, field: &mut VectorField) {
+        for component in field {
+            for &(copy, original) in &self.ties {
+                component[copy] = fault!("slit-without-ties", component[original] => component[copy]);
+            }
+        }
+    }
+
+    /// A field without copies: what is there belongs to the control points of the patch.
+    pub(super) fn onto_patch(&self, patch: ControlGrid, mut field: Vec<f64>) -> Vec<f64> {
+        for (rows, lift) in &self.rows {
+            for at in rows.start * patch.stride..rows.end * patch.stride {
+                field[at - lift * patch.stride] += field[at];
+            }
+        }
+        field.truncate(patch.len());
+        field
+    }
+
+    /// Adds the rows of the sheets to a field of the patch, equal to those that they copy.
+    pub(super) fn extend(&self, patch: ControlGrid, field: &mut Vec<f64>) {
+        for (rows, lift) in &self.rows {
+            let copied = (rows.start - lift) * patch.stride..(rows.end - lift) * patch.stride;
+            field.extend_from_within(copied);
+        }
+    }
+
+    /// Heap memory, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        16 * self.ties.len() + self.points.values().map(|points| 24 * points.len()).sum::<usize>()
+    }
+}

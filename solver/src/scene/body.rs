@@ -1,0 +1,155 @@
+//! Bodies of a scene, their materials and initial cracks.
+
+use super::condition::Traction;
+use super::shape::{Shape, distance_to_segment};
+use crate::linear_algebra::extremes::smaller;
+
+/// Isotropic linear elastic material, brittle if it has a fracture table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Young's modulus, Pa.
+    pub young_modulus: f64,
+    /// Poisson's ratio.
+    pub poisson_ratio: f64,
+    /// Density, kg/m³.
+    pub density: f64,
+    /// Brittle fracture, if modelled.
+    pub fracture: Option<Fracture>,
+}
+
+/// Which part of the elastic energy drives and feels the phase field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Split {
+    /// Tensile part by principal strains.
+    Spectral,
+    /// All of it.
+    None,
+}
+
+/// AT2 phase field in Borden's convention.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fracture {
+    /// Critical energy release rate Gc, J/m².
+    pub critical_energy_release_rate: f64,
+    /// Length scale l0 (half the l of the d²/l form), m.
+    pub length_scale: f64,
+    /// Residual stiffness k.
+    pub residual_stiffness: f64,
+    /// Split of the elastic energy.
+    pub split: Split,
+}
+
+/// Arrangement of material points in a span.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layout {
+    /// Gauss–Legendre points with their weights as volumes.
+    Gauss,
+    /// Equally spaced points of equal volume.
+    Uniform,
+    /// Equally spaced points with Maclaurin weights as volumes.
+    Maclaurin,
+}
+
+/// What an initial crack is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CrackKind {
+    /// An initial history field of this half width (m), by default half the length scale: material that is
+    /// broken, but transmits pressure, and shear with the spectral split.
+    Seed(Option<f64>),
+    /// A discontinuity of the displacement: nothing is transmitted across it (total frame).
+    Slit,
+}
+
+/// Initial crack.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Crack {
+    /// Corners of a polyline, m: at least the two ends.
+    pub points: Vec<[f64; 2]>,
+    /// What it is.
+    pub kind: CrackKind,
+}
+
+impl Crack {
+    /// A straight seed with the default half width.
+    pub fn seed(from: [f64; 2], to: [f64; 2]) -> Self {
+        Self::wide_seed(from, to, None)
+    }
+
+    /// A straight seed with a half width, m.
+    pub fn wide_seed(from: [f64; 2], to: [f64; 2], half_width: Option<f64>) -> Self {
+        Self { points: vec![from, to], kind: CrackKind::Seed(half_width) }
+    }
+
+    /// Whether it is a slit.
+    pub fn is_slit(&self) -> bool {
+        self.kind == CrackKind::Slit
+    }
+
+    /// Distance of a position from it, m.
+    pub(crate) fn distance(&self, position: [f64; 2]) -> f64 {
+        self.segments().map(|[from, to]| distance_to_segment(position, from, to)).fold(f64::INFINITY, smaller)
+    }
+
+    /// Its straight parts, m.
+    pub fn segments(&self) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
+        self.points.windows(2).map(|ends| [ends[0], ends[1]])
+    }
+}
+
+/// A body of one material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Name.
+    pub name: String,
+    /// Name of its material.
+    pub material: String,
+    /// Region it fills.
+    pub shape: Shape,
+    /// Material points per span and direction.
+    pub particles_per_cell: [usize; 2],
+    /// Arrangement of the points.
+    pub layout: Layout,
+    /// Initial velocity, m/s.
+    pub velocity: [f64; 2],
+    /// Initial angular velocity about the centre of mass, rad/s.
+    pub angular_velocity: f64,
+    /// Gradient of the initial velocity about the centre of mass, added to both, 1/s.
+    pub velocity_gradient: [[f64; 2]; 2],
+    /// Moves with its velocity, unaffected.
+    pub rigid: bool,
+    /// Tractions.
+    pub tractions: Vec<Traction>,
+    /// Initial cracks.
+    pub cracks: Vec<Crack>,
+}
+
+impl Body {
+    /// A deformable body at rest with 2 × 2 Gauss points per span, without loads and cracks.
+    pub fn at_rest(name: &str, material: &str, shape: Shape) -> Self {
+        Self {
+            name: name.to_string(),
+            material: material.to_string(),
+            shape,
+            particles_per_cell: [2, 2],
+            layout: Layout::Gauss,
+            velocity: [0.0; 2],
+            angular_velocity: 0.0,
+            velocity_gradient: [[0.0; 2]; 2],
+            rigid: false,
+            tractions: Vec::new(),
+            cracks: Vec::new(),
+        }
+    }
+
+    /// Whether its initial velocity is the same everywhere.
+    pub(crate) fn is_translated(&self) -> bool {
+        self.angular_velocity == 0.0 && self.velocity_gradient == [[0.0; 2]; 2]
+    }
+
+    /// Initial velocity (m/s) at an offset (m) from its centre of mass, less that of the centre.
+    pub(crate) fn relative_velocity(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [[xx, xy], [yx, yy]] = self.velocity_gradient;
+        let spin = self.angular_velocity;
+        [(xx * x + xy * y) - spin * y, (yx * x + yy * y) + spin * x]
+    }
+}

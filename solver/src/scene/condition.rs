@@ -1,0 +1,141 @@
+//! Loads of bodies, and conditions on the sides of the mesh.
+
+use super::time::TimeFactor;
+
+/// Side of a rectangle, or of a patch: left and right bound its first parametric direction, bottom and top
+/// its second.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Side {
+    /// Smallest x.
+    Left,
+    /// Largest x.
+    Right,
+    /// Smallest y.
+    Bottom,
+    /// Largest y.
+    Top,
+}
+
+/// Where a traction acts.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Edge {
+    /// A side of a body that is a rectangle or the whole patch.
+    Side(Side),
+    /// A straight segment, m.
+    Segment([[f64; 2]; 2]),
+    /// An arc of a circle.
+    Arc {
+        /// Centre, m.
+        center: [f64; 2],
+        /// Radius, m.
+        radius: f64,
+        /// Angles between which it lies, anticlockwise from the first, rad.
+        angles: [f64; 2],
+    },
+}
+
+/// What a traction is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Load {
+    /// A traction vector, Pa.
+    Stress([f64; 2]),
+    /// A pressure against the outward normal, Pa.
+    Pressure(f64),
+}
+
+impl Load {
+    /// The traction (Pa) on a boundary with this outward unit normal.
+    pub(crate) fn traction(&self, normal: [f64; 2]) -> [f64; 2] {
+        match *self {
+            Self::Stress(stress) => stress,
+            Self::Pressure(pressure) => normal.map(|n| -fault!("pressure-outwards", pressure => -pressure) * n),
+        }
+    }
+}
+
+/// Traction on an edge of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Traction {
+    /// Where.
+    pub edge: Edge,
+    /// What acts there at its full value.
+    pub load: Load,
+    /// How it varies in time.
+    pub time: TimeFactor,
+}
+
+impl Traction {
+    /// A traction vector (Pa) on a side of a body.
+    pub fn on(side: Side, stress: [f64; 2], time: TimeFactor) -> Self {
+        Self { edge: Edge::Side(side), load: Load::Stress(stress), time }
+    }
+}
+
+/// What a condition prescribes, at its full value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Motion {
+    /// Velocity, m/s.
+    Velocity([f64; 2]),
+    /// Displacement, m.
+    Displacement([f64; 2]),
+}
+
+/// Condition on a side of the mesh, or on a part of one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Boundary {
+    /// Name of its columns of reaction and work; without one it has none.
+    pub name: Option<String>,
+    /// Side of the mesh.
+    pub side: Side,
+    /// Ends of the part along the side (m, smaller first); absent: the whole side.
+    pub part: Option<[f64; 2]>,
+    /// Which components are prescribed.
+    pub fix: [bool; 2],
+    /// What they do.
+    pub motion: Motion,
+    /// How that varies in time.
+    pub time: TimeFactor,
+}
+
+impl Boundary {
+    /// A side on which components are held.
+    pub fn fixed(side: Side, fix: [bool; 2]) -> Self {
+        Self::driven(side, fix, [0.0; 2])
+    }
+
+    /// A side of which components have a velocity, m/s.
+    pub fn driven(side: Side, fix: [bool; 2], velocity: [f64; 2]) -> Self {
+        let motion = Motion::Velocity(velocity);
+        Self { name: None, side, part: None, fix, motion, time: TimeFactor::default() }
+    }
+
+    /// Whether nothing on it ever moves.
+    pub fn is_at_rest(&self) -> bool {
+        let (Motion::Velocity(value) | Motion::Displacement(value)) = self.motion;
+        value == [0.0; 2]
+    }
+
+    /// Displacement (m) and velocity (m/s) at t = 0.
+    pub(crate) fn start(&self) -> [[f64; 2]; 2] {
+        let factor = self.time.value(0.0);
+        match self.motion {
+            Motion::Velocity(velocity) => [[0.0; 2], velocity.map(|v| v * factor)],
+            Motion::Displacement(displacement) => [displacement.map(|u| u * factor), [0.0; 2]],
+        }
+    }
+
+    /// Mean velocity (m/s) over a step of `dt` seconds from `time` on.
+    pub(crate) fn mean_velocity(&self, time: f64, dt: f64) -> [f64; 2] {
+        match self.motion {
+            Motion::Velocity(velocity) => {
+                let factor = self.time.value(time + 0.5 * dt);
+                velocity.map(|v| v * factor)
+            }
+            Motion::Displacement(displacement) => {
+                let ends = fault!("displacement-lags", [time, time + dt] => [time - 3.0 * dt, time - 2.0 * dt]);
+                let change = self.time.value(ends[1]) - self.time.value(ends[0]);
+                displacement.map(|u| u * change / dt)
+            }
+        }
+    }
+}

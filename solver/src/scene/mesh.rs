@@ -1,0 +1,64 @@
+//! The background mesh of a scene.
+
+use super::shape::Shape;
+use crate::linear_algebra::extremes::{larger, smaller};
+
+/// Background NURBS patch: a B-spline patch over an axis-aligned rectangle, or any other with its geometry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    /// Polynomial degree per direction, 1 to 4.
+    pub degree: [usize; 2],
+    /// Open knot vector per direction: first and last knot repeated `degree + 1` times. In metres over a
+    /// rectangle, in any unit with a geometry.
+    pub knots: [Vec<f64>; 2],
+    /// Control points and weights; absent over a rectangle, whose knots are its coordinates.
+    pub geometry: Option<Geometry>,
+}
+
+/// Geometry of a general patch, row by row, first direction fastest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Geometry {
+    /// Control points, m.
+    pub control_points: Vec<[f64; 2]>,
+    /// Weights, all positive.
+    pub weights: Vec<f64>,
+}
+
+impl Mesh {
+    /// Open uniform knots: `cells[d]` equal spans of a rectangle with lower left corner `origin` (m) and
+    /// `size` (m).
+    pub fn uniform(degree: [usize; 2], origin: [f64; 2], size: [f64; 2], cells: [usize; 2]) -> Self {
+        let knots = [0, 1].map(|d| {
+            let interior = (0..=cells[d]).map(|i| origin[d] + size[d] * (i as f64 / cells[d] as f64));
+            let mut knots = vec![origin[d]; degree[d]];
+            knots.extend(interior);
+            knots.extend(std::iter::repeat_n(origin[d] + size[d], degree[d]));
+            knots
+        });
+        Self { degree, knots, geometry: None }
+    }
+
+    /// Lower left corner of the patch, or of the box around its control points, m.
+    pub fn origin(&self) -> [f64; 2] {
+        [0, 1].map(|d| match &self.geometry {
+            None => self.knots[d].first().copied().unwrap_or(0.0),
+            Some(geometry) => geometry.control_points.iter().map(|p| p[d]).fold(f64::INFINITY, smaller),
+        })
+    }
+
+    /// Upper right corner of the patch, or of the box around its control points, m.
+    pub fn end(&self) -> [f64; 2] {
+        [0, 1].map(|d| match &self.geometry {
+            None => self.knots[d].last().copied().unwrap_or(0.0),
+            Some(geometry) => geometry.control_points.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, larger),
+        })
+    }
+
+    /// The box around the part of a shape that lies in the box around the patch: lower left and upper right
+    /// corner, m.
+    pub fn extent(&self, shape: &Shape) -> ([f64; 2], [f64; 2]) {
+        let (low, high) = shape.bounding_box();
+        let (origin, end) = (self.origin(), self.end());
+        ([0, 1].map(|d| low[d].max(origin[d])), [0, 1].map(|d| high[d].min(end[d])))
+    }
+}

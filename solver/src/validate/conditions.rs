@@ -1,0 +1,199 @@
+//! Checks of the conditions on the sides of the mesh.
+
+use super::findings::{Findings, side_name};
+use super::ground::Ground;
+use super::time;
+use crate::dynamics::body_sample::column_name;
+use crate::scene::{Body, Boundary, Frame, Mass, Mesh, Motion, Scene, Side};
+
+/// Relative tolerance of "on the side", of the size of the mesh.
+const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
+
+pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
+    for (i, boundary) in scene.boundaries.iter().enumerate() {
+        let key = format!("boundary.{i}");
+        if boundary.fix == [false, false] {
+            let remedy =
+                "give fix = [\"x\"], [\"y\"] or [\"x\", \"y\"], or remove the boundary (a free side needs none)";
+            findings.error(format!("{key}.fix"), "nothing is fixed", remedy);
+        }
+        motion(&key, boundary, findings);
+        time::check(&key, &boundary.time, scene.analysis.end_time, findings);
+        supported(&key, boundary, scene, findings);
+        if ground.is_sound && part(&key, boundary, &scene.mesh, findings) {
+            held(&format!("{key}.side"), boundary, scene, findings);
+        }
+        for j in 0..i {
+            same_part(&key, j, [boundary, &scene.boundaries[j]], findings);
+            if ground.is_sound {
+                corner(i, j, scene, findings);
+            }
+        }
+    }
+    names(scene, findings);
+}
+
+fn value(boundary: &Boundary) -> (&'static str, [f64; 2]) {
+    match boundary.motion {
+        Motion::Velocity(value) => ("velocity", value),
+        Motion::Displacement(value) => ("displacement", value),
+    }
+}
+
+fn motion(key: &str, boundary: &Boundary, findings: &mut Findings) {
+    let (word, value) = value(boundary);
+    findings.finite(format!("{key}.{word}"), &value);
+    for d in (0..2).filter(|&d| !boundary.fix[d] && value[d] != 0.0) {
+        let name = ["x", "y"][d];
+        let message = format!("the {name} {word} has no effect, because {name} is not in fix");
+        findings.warn(format!("{key}.{word}"), message);
+    }
+}
+
+/// What the updated frame and the consistent mass do not have.
+fn supported(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) {
+    let displaced = matches!(boundary.motion, Motion::Displacement(_));
+    let varying = [
+        ("displacement", displaced),
+        ("time", !boundary.time.is_constant()),
+        ("from", boundary.part.is_some()),
+        ("name", boundary.name.is_some()),
+    ];
+    for (word, _) in varying.into_iter().filter(|(_, given)| *given) {
+        if scene.analysis.frame == Frame::Updated {
+            let message = format!("{word} of a boundary in the updated frame, which is not implemented");
+            let remedy = "use frame = \"total\", or a rigid body that pushes";
+            findings.error(format!("{key}.{word}"), message, remedy);
+        } else if scene.analysis.mass == Mass::Consistent && ["displacement", "time"].contains(&word) {
+            let message = "a boundary whose velocity changes, with the consistent mass, is not implemented";
+            findings.error(format!("{key}.{word}"), message, "use mass = \"lumped\"");
+        }
+    }
+}
+
+/// Whether the part of a side is sound: in order, on the side, of a rectangle.
+fn part(key: &str, boundary: &Boundary, mesh: &Mesh, findings: &mut Findings) -> bool {
+    let Some([from, to]) = boundary.part else { return true };
+    if mesh.geometry.is_some() {
+        let message = "a part of a side of a mesh with control_points or annulus, which is not implemented";
+        findings.error(format!("{key}.from"), message, "remove from and to");
+        return false;
+    }
+    let d = along(boundary.side);
+    let (origin, end) = (mesh.origin()[d], mesh.end()[d]);
+    let tolerance = TOLERANCE * (end - origin);
+    let (side, name) = (side_name(boundary.side), ["x", "y"][d]);
+    if !(from < to) {
+        let message = format!("the part of the {side} side goes from {name} = {from} m to {to} m");
+        findings.error(format!("{key}.to"), message, "give the smaller one as from");
+        return false;
+    }
+    if from < origin - tolerance || to > end + tolerance {
+        let message = format!("the part leaves the {side} side, which goes from {name} = {origin} m to {end} m");
+        let key = format!("{key}.{}", if from < origin - tolerance { "from" } else { "to" });
+        findings.error(key, message, "give ends on the side");
+        return false;
+    }
+    true
+}
+
+/// Direction along a side.
+fn along(side: Side) -> usize {
+    usize::from(matches!(side, Side::Left | Side::Right))
+}
+
+/// Two conditions that prescribe the same component on the same part of a side.
+fn same_part(key: &str, j: usize, [boundary, other]: [&Boundary; 2], findings: &mut Findings) {
+    let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
+    let [[a, b], [c, d]] = [boundary, other].map(|b| b.part.unwrap_or(everywhere));
+    if boundary.side != other.side || a >= d || c >= b {
+        return;
+    }
+    for (component, name) in ["x", "y"].into_iter().enumerate() {
+        if boundary.fix[component] && other.fix[component] {
+            let side = side_name(boundary.side);
+            let message = format!("{name} is already fixed on the {side} side by boundary.{j}");
+            findings.error(format!("{key}.fix"), message, "remove one of the two");
+        }
+    }
+}
+
+/// Sides that meet in a corner and prescribe a component of its motion differently.
+fn corner(i: usize, j: usize, scene: &Scene, findings: &mut Findings) {
+    let pair = [i, j].map(|n| &scene.boundaries[n]);
+    if along(pair[0].side) == along(pair[1].side) || !(0..2).all(|n| reaches(pair[n], pair[1 - n].side, &scene.mesh)) {
+        return;
+    }
+    let course = |boundary: &Boundary, d: usize| {
+        let (word, value) = value(boundary);
+        let at_rest = value[d] == 0.0;
+        (value[d], (!at_rest).then(|| (word, boundary.time.clone())))
+    };
+    let differ = |d: &usize| pair.iter().all(|b| b.fix[*d]) && course(pair[0], *d) != course(pair[1], *d);
+    let Some(d) = (0..2).find(differ) else { return };
+    let name = ["x", "y"][d];
+    let [here, there] = pair.map(|boundary| {
+        let (word, value) = value(boundary);
+        let unit = if word == "velocity" { "m/s" } else { "m" };
+        let varying = if boundary.time.is_constant() { "" } else { " times its factor" };
+        (side_name(boundary.side), format!("{} {unit}{varying}", value[d]))
+    });
+    let message = format!(
+        "the corner of the {} and the {} side would move at {} and at {} (boundary.{j}) in {name}",
+        here.0, there.0, here.1, there.1
+    );
+    let remedy = format!("give both sides the same motion in {name}, or leave {name} free on one of them");
+    findings.error(format!("boundary.{i}.{}", value(pair[0]).0), message, remedy);
+}
+
+/// Whether a condition reaches the corner at which its side meets another.
+fn reaches(boundary: &Boundary, other: Side, mesh: &Mesh) -> bool {
+    let d = along(boundary.side);
+    let (origin, end) = (mesh.origin()[d], mesh.end()[d]);
+    let tolerance = TOLERANCE * (end - origin);
+    let upper = matches!(other, Side::Right | Side::Top);
+    boundary.part.is_none_or(|[from, to]| if upper { to >= end - tolerance } else { from <= origin + tolerance })
+}
+
+/// Names of conditions are parts of columns.
+fn names(scene: &Scene, findings: &mut Findings) {
+    let named = scene.boundaries.iter().enumerate().filter_map(|(i, b)| Some((i, column_name(b.name.as_ref()?))));
+    let named: Vec<_> = named.collect();
+    for (n, (i, name)) in named.iter().enumerate() {
+        let key = format!("boundary.{i}.name");
+        if name.is_empty() {
+            findings.error(key, "an empty name", "name the condition, such as name = \"impactor\"");
+        } else if let Some((j, _)) = named[..n].iter().find(|(_, other)| other == name) {
+            let message = format!("the columns work_{name}_j would be those of boundary.{j} too");
+            findings.error(key, message, "give the conditions names that differ in letters or digits");
+        }
+    }
+}
+
+/// A warning unless a body reaches the side of a boundary.
+fn held(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) {
+    let (origin, end) = (scene.mesh.origin(), scene.mesh.end());
+    let (d, upper) = match boundary.side {
+        Side::Left => (0, false),
+        Side::Right => (0, true),
+        Side::Bottom => (1, false),
+        Side::Top => (1, true),
+    };
+    let tolerance = TOLERANCE * (end[d] - origin[d]);
+    if scene.mesh.geometry.is_some() {
+        return; // the sides of the patch are not those of the box around it
+    }
+    let place = if upper { end[d] } else { origin[d] };
+    let reaches = |body: &Body| {
+        let (min, max) = scene.mesh.extent(&body.shape);
+        if upper { max[d] >= place - tolerance } else { min[d] <= place + tolerance }
+    };
+    if !scene.bodies.iter().any(reaches) {
+        let (side, name) = (side_name(boundary.side), ["x", "y"][d]);
+        let message = format!(
+            "no body reaches the {side} side of the mesh, {name} = {place} m, so nothing is held there; let the mesh \
+             end where the body does, or remove the boundary"
+        );
+        findings.warn(key, message);
+    }
+}

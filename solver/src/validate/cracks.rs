@@ -1,0 +1,55 @@
+//! Checks of initial cracks: polylines that lie in their body.
+
+use super::findings::Findings;
+use super::look::{Look, MOST_POSITIONS};
+use crate::scene::{Crack, CrackKind, Fracture, Frame, Mass, Scene};
+
+/// A slit parts the control points of the total frame, which keep their places.
+pub(super) fn slit(key: &str, scene: &Scene, findings: &mut Findings) {
+    let key = format!("{key}.as");
+    if scene.analysis.frame == Frame::Updated {
+        let remedy = "use frame = \"total\", or cut a notch out of the shape: { difference = { of, minus } }";
+        findings.error(key.clone(), "a slit in the updated frame, which is not implemented", remedy);
+    }
+    if scene.analysis.mass == Mass::Consistent {
+        findings.error(key, "a slit with the consistent mass, which is not implemented", "use mass = \"lumped\"");
+    }
+}
+
+pub(super) fn check(key: &str, crack: &Crack, fracture: Option<&Fracture>, look: &Look<'_>, findings: &mut Findings) {
+    if let CrackKind::Seed(Some(half_width)) = crack.kind {
+        let like = "half_width = \"0.125 mm\", or leave it out for l0/2";
+        findings.positive(format!("{key}.half_width"), half_width, like);
+    }
+    // A straight crack is usually written with `from` and `to`.
+    let place = |i: usize| match crack.points.len() {
+        2 => format!("{key}.{}", ["from", "to"][i]),
+        _ => format!("{key}.points.{i}"),
+    };
+    if crack.points.len() < 2 {
+        return findings.error(key, "a crack of one point", "give at least two points");
+    }
+    if !findings.finite(place(0), &crack.points.concat()) {
+        return;
+    }
+    let mut inside = true;
+    for (i, &[x, y]) in crack.points.iter().enumerate() {
+        if i > 0 && crack.points[i - 1] == [x, y] {
+            return findings.error(place(i), "a crack of zero length", "give two different ends");
+        }
+        if look.is_outside([x, y]) {
+            let message = format!("the end ({x}, {y}) m of the crack lies outside body {:?}", look.body.name);
+            findings.error(place(i), message, "give ends inside the body or on its boundary");
+            inside = false;
+        }
+    }
+    let finest = fracture.map_or(f64::INFINITY, |f| 0.5 * f.length_scale);
+    for (i, [from, to]) in crack.segments().enumerate().filter(|_| inside) {
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let intervals = ((length / finest).ceil() as usize).clamp(2, MOST_POSITIONS - 1);
+        if let Some([x, y]) = look.first_outside([from, to], intervals) {
+            let message = format!("the crack leaves body {:?} between its ends, at ({x}, {y}) m", look.body.name);
+            findings.error(place(i), message, "give one crack for each part that lies inside the body");
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Checks of tractions: edges that lie on their body, loads that exist.
+
+use super::findings::{Findings, side_name};
+use super::look::{Look, TOLERANCE};
+use super::time;
+use crate::scene::{Edge, Load, Shape, Traction};
+
+/// Intervals between the positions at which the segment of a traction is looked at.
+const SEGMENT_INTERVALS: usize = 32;
+/// Distance from an arc at which material is looked for, of its radius.
+const INSIDE: f64 = 1e-6;
+
+pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &mut Findings) {
+    let Look { body, ground, .. } = *look;
+    match traction.load {
+        Load::Stress(stress) => drop(findings.finite(format!("{key}.stress"), &stress)),
+        Load::Pressure(pressure) => {
+            findings.finite(format!("{key}.pressure"), &[pressure]);
+            if !look.has_pressure {
+                let message = "a pressure follows the body, which is implemented for small strains in the total frame";
+                findings.error(format!("{key}.pressure"), message, "give stress = [x, y], which keeps its direction");
+            }
+        }
+    }
+    time::check(key, &traction.time, look.end_time, findings);
+    match &traction.edge {
+        Edge::Side(_) if body.shape == Shape::Patch => {}
+        _ if ground.mesh.geometry.is_some() => {
+            let remedy =
+                "give the body shape = \"patch\" and the traction edge = \"left\", \"right\", \"bottom\" or \"top\"";
+            let form = match traction.edge {
+                Edge::Side(_) => "edge",
+                Edge::Segment(_) => "segment",
+                Edge::Arc { .. } => "arc",
+            };
+            let message = "on a patch with control_points or annulus only its sides can be loaded";
+            findings.error(format!("{key}.{form}"), message, remedy);
+        }
+        Edge::Side(_) if matches!(body.shape, Shape::Rectangle { .. }) => {}
+        Edge::Side(side) => {
+            let message = format!("only a rectangle has a {} side", side_name(*side));
+            findings.error(format!("{key}.edge"), message, "give segment = [[x0, y0], [x1, y1]] instead");
+        }
+        Edge::Arc { center, radius, angles } => arc(&format!("{key}.arc"), *center, *radius, *angles, look, findings),
+        Edge::Segment(ends) => {
+            let key = format!("{key}.segment");
+            if !findings.finite(key.clone(), &[ends[0], ends[1]].concat()) {
+                return;
+            }
+            if ends[0] == ends[1] {
+                findings.error(key, "a segment of zero length", "give two different ends");
+            } else if let Some([x, y]) = look.first_outside(*ends, SEGMENT_INTERVALS) {
+                let message = format!("the segment leaves body {:?}: ({x}, {y}) m lies outside", body.name);
+                findings.error(key, message, "give two ends between which every point lies on the body's boundary");
+            }
+        }
+    }
+}
+
+/// An arc lies on the boundary of its body.
+fn arc(key: &str, center: [f64; 2], radius: f64, angles: [f64; 2], look: &Look<'_>, findings: &mut Findings) {
+    if !findings.finite(key, &[center, angles].concat())
+        || !findings.positive(format!("{key}.radius"), radius, "radius = \"10 mm\"")
+    {
+        return;
+    }
+    let swept = angles[1] - angles[0];
+    if !(swept > 0.0 && swept <= std::f64::consts::TAU * (1.0 + TOLERANCE)) {
+        let message = format!("an arc of {:.6} degrees", swept.to_degrees());
+        return findings.error(
+            format!("{key}.angles"),
+            message,
+            "give two angles that increase by at most 360 degrees",
+        );
+    }
+    let position = |i: usize, radius: f64| {
+        let (sine, cosine) = (angles[0] + swept * i as f64 / SEGMENT_INTERVALS as f64).sin_cos();
+        [center[0] + radius * cosine, center[1] + radius * sine]
+    };
+    let mut positions = (0..=SEGMENT_INTERVALS).map(|i| position(i, radius));
+    let name = &look.body.name;
+    if let Some([x, y]) = positions.find(|p| look.is_outside(*p)) {
+        let message = format!("the arc leaves body {name:?}: ({x}, {y}) m lies outside");
+        findings.error(key, message, "give an arc of which every point lies on the body's boundary");
+    } else if let Some(i) = (0..=SEGMENT_INTERVALS).find(|&i| {
+        let beside = [1.0 - INSIDE, 1.0 + INSIDE].map(|part| look.body.shape.contains(position(i, part * radius)));
+        beside == [true, true]
+    }) {
+        let [x, y] = position(i, radius);
+        let message = format!("the arc runs inside body {name:?}: there is material on both sides of ({x}, {y}) m");
+        findings.error(key, message, "give an arc of which every point lies on the body's boundary");
+    }
+}

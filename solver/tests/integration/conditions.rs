@@ -1,0 +1,102 @@
+//! Conditions on sides and on parts of them: what is prescribed happens, and its work and reaction are known.
+
+use approx::assert_relative_eq;
+use fisura::dynamics::energy::Sample;
+use fisura::linear_algebra::extremes::larger;
+use fisura::scene::time::{Course, TimeFormula};
+use fisura::scene::*;
+use fisura::validate::validate;
+
+use crate::common::{elastic_scene, relative_closure, run};
+
+/// A bar of 40 mm that does not contract, driven at its left end, with a sample at every step.
+fn driven(motion: Motion, time: TimeFactor) -> Scene {
+    let mut scene = elastic_scene(2, [0.04, 0.002], [40, 2]);
+    scene.materials.get_mut("glass").unwrap().poisson_ratio = 0.0;
+    let name = Some("Drive 1".to_string());
+    scene.boundaries = vec![Boundary { name, motion, time, ..Boundary::fixed(Side::Left, [true, false]) }];
+    scene.output.samples = 100;
+    scene.analysis.time_step = TimeStep::Fixed(5e-8);
+    assert!(validate(&scene).is_ok(), "{:?}", validate(&scene));
+    scene
+}
+
+fn column(samples: &[Sample], name: &str) -> Vec<f64> {
+    let value = |s: &Sample| s.named_values().into_iter().find(|(n, _)| n == name).expect("a column").1;
+    samples.iter().map(value).collect()
+}
+
+fn courses() -> Vec<TimeFactor> {
+    let table = Course::Table(vec![[0.0, 0.0], [1e-6, 1.0], [2e-6, -0.5]]);
+    let formula = TimeFormula::new("sin(t / 1 us)", |t| (t / 1e-6).sin());
+    let courses = [Course::Constant, Course::Ramp(2e-6), Course::Smooth(2e-6), table, Course::Formula(formula)];
+    let until = [None, Some(3e-6)];
+    courses.into_iter().flat_map(|course| until.map(|until| TimeFactor { course: course.clone(), until })).collect()
+}
+
+#[test]
+fn every_course_closes_the_ledger_and_its_reaction_is_the_rate_of_the_momentum() {
+    for time in courses() {
+        for motion in [Motion::Velocity([1.0, 0.0]), Motion::Displacement([1e-6, 0.0])] {
+            let what = format!("{motion:?} {time:?}");
+            let samples = run(&driven(motion, time.clone())).1;
+            assert!(relative_closure(&samples) < 1e-12, "{what}: closure {:e}", relative_closure(&samples));
+            let work = column(&samples, "work_drive_1_j");
+            assert_relative_eq!(work[100], samples[100].external_work, max_relative = 1e-12);
+            let reaction = column(&samples, "reaction_drive_1_x_n");
+            let impulse: f64 = reaction.windows(2).map(|pair| 5e-8 * 0.5 * (pair[0] + pair[1])).sum();
+            let largest = samples.iter().map(|s| s.momentum[0].abs()).fold(0.0, larger);
+            let change = samples[100].momentum[0] - samples[0].momentum[0];
+            assert_relative_eq!(impulse, change, epsilon = 1e-9 * largest);
+        }
+    }
+}
+
+#[test]
+fn the_side_is_where_the_course_puts_it() {
+    for (time, end) in [
+        (TimeFactor::default(), 5e-6),
+        (TimeFactor::ramp(2e-6), 4e-6),
+        (TimeFactor { course: Course::Smooth(2e-6), until: None }, 4e-6),
+        (TimeFactor { course: Course::Ramp(2e-6), until: Some(3e-6) }, 2e-6),
+    ] {
+        let moved = |motion, time| {
+            let (simulation, _) = run(&driven(motion, time));
+            let frame = simulation.total_frame().unwrap();
+            frame.patch().evaluate(&frame.displacement()[0], [0.0, 0.001]).unwrap().value
+        };
+        assert_relative_eq!(moved(Motion::Velocity([1.0, 0.0]), time.clone()), end, max_relative = 1e-3);
+        let last = if time.until.is_some() { 0.0 } else { 1e-6 };
+        assert_relative_eq!(moved(Motion::Displacement([1e-6, 0.0]), time), last, epsilon = 1e-18);
+    }
+}
+
+#[test]
+fn a_suddenly_driven_end_pushes_with_the_impedance_of_the_bar() {
+    let smooth = TimeFactor { course: Course::Smooth(2e-6), until: None };
+    let samples = run(&driven(Motion::Velocity([1.0, 0.0]), smooth)).1;
+    let force = column(&samples, "reaction_drive_1_x_n");
+    let impedance = (32e9_f64 * 2450.0).sqrt() * 0.002;
+    let mean = force[50..].iter().sum::<f64>() / 51.0;
+    assert_relative_eq!(mean, impedance, max_relative = 5e-3);
+}
+
+#[test]
+fn a_part_of_a_side_is_held_and_the_rest_is_free() {
+    for degree in [1, 2, 3] {
+        let mut scene = elastic_scene(degree, [0.01; 2], [10; 2]);
+        let lower = |part| Boundary { part, ..Boundary::driven(Side::Left, [true, false], [1.0, 0.0]) };
+        let held = |part| {
+            scene.boundaries = vec![lower(part)];
+            run(&scene).0.total_frame().unwrap().constraints().held(0)
+        };
+        let mut held = held;
+        let all = held(None);
+        assert_eq!(held(Some([0.0, 0.01])), all, "p = {degree}");
+        let (below, above) = (held(Some([0.0, 0.004])), held(Some([0.004, 0.01])));
+        assert!(below.iter().chain(&above).all(|at| all.contains(at)));
+        let twice = below.iter().filter(|at| above.contains(at)).count();
+        assert!(twice <= 1 && below.len() + above.len() - twice == all.len(), "p = {degree}: {below:?} {above:?}");
+        assert!(below.len() >= 4 && above.len() >= 6, "p = {degree}");
+    }
+}

@@ -1,0 +1,71 @@
+//! A static start: nothing moves until something changes, and unbalanced loads are refused.
+
+use approx::assert_relative_eq;
+use fisura::Simulation;
+use fisura::linear_algebra::extremes::larger;
+use fisura::scene::time::Course;
+use fisura::scene::*;
+
+use crate::common::{brittle, elastic_scene, relative_closure, run};
+
+/// A square that is pulled at its top and held at its bottom, from the static state.
+fn pulled(degree: usize, time: TimeFactor) -> Scene {
+    let mut scene = elastic_scene(degree, [0.01; 2], [12, 8]);
+    scene.bodies[0].tractions = vec![Traction::on(Side::Top, [2e5, 1e6], time)];
+    scene.boundaries = vec![Boundary::fixed(Side::Bottom, [true, true])];
+    scene.equilibrium = true;
+    scene
+}
+
+#[test]
+fn a_body_in_equilibrium_stays_at_rest() {
+    for (degree, kinematics) in [(1, Kinematics::Small), (2, Kinematics::Small), (3, Kinematics::Finite)] {
+        let mut scene = pulled(degree, TimeFactor::default());
+        scene.analysis.kinematics = kinematics;
+        let (simulation, samples) = run(&scene);
+        assert!(samples[0].elastic > 0.0);
+        // The wave that the sudden load would send has about the elastic energy as kinetic energy.
+        let moving = samples.iter().map(|s| s.kinetic).fold(0.0, larger);
+        assert!(moving < 1e-16 * samples[0].elastic, "p = {degree}: {moving:e} of {:e}", samples[0].elastic);
+        assert!(simulation.total_frame().unwrap().displacement()[1].iter().any(|u| *u > 0.0));
+    }
+}
+
+#[test]
+fn a_load_that_ends_sets_the_body_free_and_the_ledger_closes() {
+    let until = Some(1e-6);
+    let samples = run(&pulled(2, TimeFactor { course: Course::Constant, until })).1;
+    assert!(samples.last().unwrap().kinetic > 0.1 * samples[0].elastic);
+    assert!(relative_closure(&samples) < 1e-9, "{:e}", relative_closure(&samples));
+}
+
+#[test]
+fn a_brittle_body_with_a_slit_starts_from_rest() {
+    let mut scene = pulled(2, TimeFactor::default());
+    scene.bodies[0].tractions[0].load = Load::Stress([2e4, 1e5]);
+    scene.materials.get_mut("glass").unwrap().fracture = Some(Fracture { length_scale: 1e-3, ..brittle() });
+    scene.bodies[0].cracks = vec![Crack { points: vec![[0.0, 0.005], [0.004, 0.005]], kind: CrackKind::Slit }];
+    let samples = run(&scene).1;
+    let moving = samples.iter().map(|s| s.kinetic).fold(0.0, larger);
+    assert!(
+        moving < 1e-2 * samples[0].elastic,
+        "the phase field of the static state changes little: {moving:e} of {:e}",
+        samples[0].elastic
+    );
+    assert!(relative_closure(&samples) < 1e-3, "{:e}", relative_closure(&samples));
+}
+
+#[test]
+fn balanced_loads_on_a_free_body_are_static_and_others_are_refused() {
+    let mut scene = pulled(2, TimeFactor::default());
+    scene.boundaries.clear();
+    let refused = Simulation::new(&scene).unwrap_err();
+    assert!(refused.what.contains("resultant"), "{refused:?}");
+    assert_eq!(refused.scene.unwrap().key, "start.equilibrium");
+    let load = |side, stress| Traction::on(side, stress, TimeFactor::default());
+    scene.bodies[0].tractions = vec![load(Side::Top, [0.0, 1e6]), load(Side::Bottom, [0.0, -1e6])];
+    let samples = run(&scene).1;
+    let modulus = 32e9 / (1.0 - 0.2 * 0.2); // plane strain
+    assert_relative_eq!(samples[0].elastic, 0.5 * 1e12 / modulus * 1e-4, max_relative = 1e-9);
+    assert!(samples.iter().all(|s| s.kinetic < 1e-16 * samples[0].elastic));
+}

@@ -1,0 +1,115 @@
+//! Slits and narrow gaps: material on both sides shares nothing, and everything else stays as it is.
+
+use approx::assert_relative_eq;
+use fisura::Simulation;
+use fisura::linear_algebra::extremes::larger;
+use fisura::scene::*;
+use fisura::validate::validate;
+
+use crate::common::{body, elastic_scene, rectangle, relative_closure, run};
+
+fn slit(points: &[[f64; 2]]) -> Crack {
+    Crack { points: points.to_vec(), kind: CrackKind::Slit }
+}
+
+/// A square of 10 mm with a slit, whose upper part is pulled up.
+fn pulled(degree: usize, points: &[[f64; 2]]) -> Scene {
+    let mut scene = elastic_scene(degree, [0.01; 2], [12; 2]);
+    scene.bodies[0].cracks = vec![slit(points)];
+    let load = Traction::on(Side::Top, [0.0, 1e6], TimeFactor::ramp(1e-6));
+    scene.bodies[0].tractions = vec![load];
+    assert!(validate(&scene).is_ok(), "{:?}", validate(&scene));
+    scene
+}
+
+/// Largest speed of the points below a line through the middle with this slope.
+fn speed_below(simulation: &Simulation, slope: f64) -> f64 {
+    let mut most = 0.0_f64;
+    simulation.for_each_point(&mut |point| {
+        if point.position[1] < 0.005 + slope * (point.position[0] - 0.005) - 1e-6 {
+            most = larger(most, point.velocity[0].hypot(point.velocity[1]));
+        }
+    });
+    most
+}
+
+#[test]
+fn what_a_slit_cuts_off_stays_at_rest() {
+    for degree in [1, 2, 3] {
+        for slope in [0.0, 0.3, -0.77, 1.0] {
+            let end = |x: f64| [x, 0.005 + slope * (x - 0.005)];
+            let scene = pulled(degree, &[end(0.0), end(0.004), end(0.01)]);
+            let (simulation, samples) = run(&scene);
+            let what = format!("p = {degree}, slope {slope}");
+            assert_eq!(speed_below(&simulation, slope), 0.0, "{what}");
+            assert!(samples.last().unwrap().kinetic > 0.0, "{what}");
+            assert!(relative_closure(&samples) < 1e-9, "{what}: {:e}", relative_closure(&samples));
+        }
+    }
+}
+
+/// Restricted to one side of a knot line, splines are all splines there: the static state is that of a body
+/// that ends at the line.
+#[test]
+fn a_slit_on_a_knot_line_makes_two_bodies() {
+    for degree in [1, 2, 3] {
+        let mut whole = pulled(degree, &[[0.0, 0.005], [0.01, 0.005]]);
+        whole.bodies[0].tractions[0].time = TimeFactor::default();
+        whole.boundaries = vec![Boundary::fixed(Side::Right, [true, true])];
+        whole.equilibrium = true;
+        let mut upper = whole.clone();
+        upper.bodies[0].cracks.clear();
+        upper.mesh = Mesh::uniform([degree; 2], [0.0, 0.005], [0.01, 0.005], [12, 6]);
+        upper.bodies[0].shape = rectangle([0.0, 0.005], [0.01, 0.01]);
+        let [whole, alone] = [whole, upper].map(|scene| Simulation::new(&scene).unwrap().sample());
+        assert_relative_eq!(whole.elastic, alone.elastic, max_relative = 1e-9);
+    }
+}
+
+#[test]
+fn a_slit_in_a_body_at_rest_changes_no_mass_and_no_stress_beside_it() {
+    // A slit along the load does not disturb a bar in uniform tension without contraction.
+    let mut scene = elastic_scene(2, [0.01; 2], [12; 2]);
+    scene.materials.get_mut("glass").unwrap().poisson_ratio = 0.0;
+    scene.boundaries = vec![Boundary::fixed(Side::Bottom, [false, true])];
+    let load = Traction::on(Side::Top, [0.0, 1e6], TimeFactor::ramp(1e-6));
+    scene.bodies[0].tractions = vec![load];
+    let whole = run(&scene).1;
+    scene.bodies[0].cracks = vec![slit(&[[0.0047, 0.0], [0.0047, 0.0061]])];
+    let (simulation, cut) = run(&scene);
+    for (whole, cut) in whole.iter().zip(&cut) {
+        assert_relative_eq!(whole.kinetic, cut.kinetic, max_relative = 1e-9, epsilon = 1e-18);
+        assert_relative_eq!(whole.elastic, cut.elastic, max_relative = 1e-9, epsilon = 1e-18);
+    }
+    let grid = simulation.total_frame().unwrap().lattice();
+    assert!(grid.grid.rows > grid.patch_grid.rows, "there are copies");
+}
+
+#[test]
+fn a_gap_narrower_than_a_support_is_not_bridged() {
+    for degree in [1, 2, 3] {
+        let mut scene = pulled(degree, &[[0.0, 0.005], [0.01, 0.005]]);
+        scene.bodies[0].cracks.clear();
+        let gap = rectangle([-1.0, 0.005], [1.0, 0.005 + 0.01 / 12.0]);
+        scene.bodies[0] = Body {
+            shape: Shape::Difference { of: Box::new(rectangle([0.0; 2], [0.01; 2])), minus: vec![gap] },
+            ..body(Shape::Patch, [degree.max(2); 2])
+        };
+        let ends = [[0.0, 0.01], [0.01, 0.01]];
+        let load = Traction { edge: Edge::Segment(ends), load: Load::Stress([0.0, 1e6]), time: TimeFactor::ramp(1e-6) };
+        scene.bodies[0].tractions = vec![load];
+        assert_eq!(speed_below(&run(&scene).0, 0.0), 0.0, "p = {degree}");
+    }
+}
+
+#[test]
+fn a_slit_is_refused_where_it_is_not_implemented() {
+    let keys = |change: fn(&mut Scene)| {
+        let mut scene = pulled(2, &[[0.0, 0.005], [0.004, 0.005]]);
+        change(&mut scene);
+        validate(&scene).unwrap_err().into_iter().map(|e| e.key).collect::<Vec<_>>()
+    };
+    assert_eq!(keys(|s| s.analysis.frame = Frame::Updated), ["body.0.crack.0.as"]);
+    assert_eq!(keys(|s| s.bodies[0].cracks[0].points.truncate(1)), ["body.0.crack.0"]);
+    assert_eq!(keys(|s| s.bodies[0].cracks[0].points.push([0.02, 0.0])), ["body.0.crack.0.points.2"]);
+}
