@@ -4,7 +4,6 @@
 use std::fs;
 use std::path::Path;
 
-use fisura_reports::ReportError;
 use fisura_reports::bench::{is_bench, read, render, store};
 use fisura_verification::bench::record::{AnswerError, BenchRecord, BenchSet, Clock, NamedPeer, SCHEMA, Sample};
 use fisura_verification::output::OutputFolder;

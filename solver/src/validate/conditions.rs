@@ -83,7 +83,7 @@ fn part(key: &str, boundary: &Boundary, mesh: &Mesh, findings: &mut Findings) ->
     let (origin, end) = (mesh.origin()[d], mesh.end()[d]);
     let tolerance = TOLERANCE * (end - origin);
     let (side, name) = (side_name(boundary.side), ["x", "y"][d]);
-    if !(from < to) {
+    if from >= to || !(to - from).is_finite() {
         let message = format!("the part of the {side} side goes from {name} = {from} m to {to} m");
         findings.error(format!("{key}.to"), message, "give the smaller one as from");
         return false;

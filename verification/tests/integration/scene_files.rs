@@ -1,5 +1,7 @@
 //! Scene files: the example reads as written, broken ones say where and what would help, and nothing panics.
 
+use std::path::Path;
+
 use fisura::scene::*;
 use fisura_verification::scene::{Document, SceneFile, read_scene};
 
@@ -138,14 +140,14 @@ fn overrides_replace_and_add_values() {
     ]);
     let scene = SceneFile::parse("plate.toml", PLATE, &list).unwrap().scene;
     assert_eq!(scene.mesh.degree, [3, 3]);
-    assert_eq!(scene.bodies[0].cracks[0].half_width, Some(0.25e-3));
+    assert_eq!(scene.bodies[0].cracks[0].kind, CrackKind::Seed(Some(0.25e-3)));
     assert_eq!(scene.bodies[0].cracks[0].points[1], [0.06, 0.02]);
     assert_eq!(scene.analysis.plane, Plane::Stress);
     assert_eq!(scene.analysis.end_time, 90e-6);
     assert_eq!(scene.output.frames, [1e-6, 2e-6]);
     assert_eq!(scene.bodies[0].tractions[1].time, TimeFactor::ramp(1e-6));
     assert_eq!(scene.solver.phase_field_solver, PhaseFieldSolver::Cholesky);
-    assert_eq!(scene.boundaries[0].velocity, [-1.0, 0.0]);
+    assert_eq!(scene.boundaries[0].motion, Motion::Velocity([-1.0, 0.0]));
     assert_eq!(scene.title, "");
     let text = PLATE.replace("[output]", "[elsewhere]").replace("samples = 320", "").replace("frames  = ", "x = ");
     let list = overrides(&["output.samples=7", "elsewhere=0"]);

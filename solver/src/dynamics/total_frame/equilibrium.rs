@@ -124,7 +124,7 @@ impl TotalFrame {
             }
             operator.stiffness(&p, &mut image);
             let curvature = dot(&p, &image);
-            if !(curvature > 0.0) {
+            if curvature <= 0.0 || curvature.is_nan() {
                 break; // round-off along a rigid motion, or a body that has lost its stiffness
             }
             let step = square / curvature;
