@@ -1,10 +1,10 @@
 //! Folders that commands write to, and what in them belongs to the user.
 //!
 //! An [`OutputFolder`] belongs to one process at a time (`lock.rs`) and lists in its manifest (`manifest.rs`)
-//! the name of every file that was written through it. What is not listed is the user's: it is neither removed
-//! nor replaced. A folder that holds files and no manifest is refused as a whole. No link is followed below
-//! the folder, nothing is removed recursively, and each file appears in full or not at all (`whole.rs`). Only
-//! a file that grows while a command runs ([`Growing`]) can be read on the way.
+//! the name of every file that was written through it. What is not listed is the user's: it is neither
+//! removed nor replaced. A folder that holds files and no manifest is refused as a whole. No link is followed
+//! below the folder, nothing is removed recursively, and each file appears in full or not at all
+//! (`whole.rs`). Only a file that grows while a command runs ([`Growing`]) can be read on the way.
 
 mod error;
 pub mod fingerprint;

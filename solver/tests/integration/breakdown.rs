@@ -52,8 +52,8 @@ fn beyond_the_critical_step_the_run_says_so() {
     spinning.bodies[0].angular_velocity = 1e3;
     check("spinning, without loads", &with_step(spinning, 1.3, 4000));
     check("driven", &with_step(driven_plate([20, 10]), 1.3, 2000));
-    // The unstable mode is torn apart by the phase field before its elastic energy has grown: this plate shatters
-    // (fracture energy 0.019 J to 0.071 J on 0.014 J of work), and the ledger tells.
+    // The unstable mode is torn apart by the phase field before its elastic energy has grown: this plate
+    // shatters (fracture energy 0.019 J to 0.071 J on 0.014 J of work), and the ledger tells.
     check("fracture", &with_step(notched_plate(1e5), 1.3, 100));
 }
 

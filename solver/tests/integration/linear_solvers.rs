@@ -96,8 +96,8 @@ fn preconditioned(factor: &IncompleteCholesky, matrix: &Stencil, r: &[f64]) -> (
     (out.iter().map(|z| factor.unit() * f64::from(*z)).collect(), factor.unit() * product)
 }
 
-/// Banded matrices on one row of control points, where nothing falls outside the stencil, and on rows that are
-/// not coupled to each other, of which every block solves its own.
+/// Banded matrices on one row of control points, where nothing falls outside the stencil, and on rows that
+/// are not coupled to each other, of which every block solves its own.
 #[test]
 fn without_fill_the_factor_is_exact() {
     for (degree, columns, rows) in [(1, 43, 1), (2, 43, 1), (3, 43, 1), (4, 43, 1), (3, 21, 61)] {

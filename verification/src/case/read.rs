@@ -26,7 +26,8 @@ use crate::scene::typed;
 pub(super) struct CaseTable {
     /// One sentence that a check can refute.
     claim: Words,
-    /// The part in `bases.toml` that several cases have in common; what the case states replaces or adds to it.
+    /// The part in `bases.toml` that several cases have in common; what the case states replaces or adds to
+    /// it.
     #[schemars(with = "Option<String>")]
     #[expect(dead_code, reason = "it is added before")]
     base: Option<IgnoredAny>,
@@ -48,8 +49,8 @@ pub(super) struct CaseTable {
     deviations: Vec<String>,
     /// What is modelled, if it does not follow from the scene.
     models: Option<Vec<String>>,
-    /// A scene as in a scene file; a list in place of a value is an axis of the study, and a string that begins
-    /// with `=` a formula of other keys: `end_time = "= 2*{mesh.size.0}"`.
+    /// A scene as in a scene file; a list in place of a value is an axis of the study, and a string that
+    /// begins with `=` a formula of other keys: `end_time = "= 2*{mesh.size.0}"`.
     #[schemars(with = "Option<Map<String, Value>>")]
     #[expect(dead_code, reason = "it is read as a scene file")]
     scene: Option<IgnoredAny>,

@@ -1,6 +1,6 @@
-//! What is written once for several cases, in files beside the folders of the suites: `base` takes the part of
-//! a case in a table of `bases.toml`, `set` takes the checks of a list of `check-sets.toml`. `each` in a check
-//! lists what differs between several.
+//! What is written once for several cases, in files beside the folders of the suites: `base` takes the part
+//! of a case in a table of `bases.toml`, `set` takes the checks of a list of `check-sets.toml`. `each` in a
+//! check lists what differs between several.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
