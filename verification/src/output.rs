@@ -1,10 +1,11 @@
 //! Folders that commands write to, and what in them belongs to the user.
 //!
 //! An [`OutputFolder`] belongs to one process at a time (`lock.rs`) and lists in its manifest (`manifest.rs`)
-//! the name of every file that was written through it. What is not listed is the user's: it is neither
-//! removed nor replaced. A folder that holds files and no manifest is refused as a whole. No link is followed
-//! below the folder, nothing is removed recursively, and each file appears in full or not at all
-//! (`whole.rs`). Only a file that grows while a command runs ([`Growing`]) can be read on the way.
+//! every file that was written through it, with its hash. What is not listed, or was changed since, is the
+//! user's: it is neither removed nor replaced. A folder that holds files and no manifest is refused as a
+//! whole. No link is followed below the folder, nothing is removed recursively, and each file appears in full
+//! or not at all: it is written under a random name that did not exist before, and renamed. Only a file that
+//! grows while a command runs ([`Growing`]) can be read on the way.
 
 mod error;
 pub mod fingerprint;
@@ -13,12 +14,14 @@ mod growing;
 pub mod history;
 mod lock;
 mod manifest;
-mod whole;
+mod temporary;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeSet;
-use std::fs::{self, File};
-use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::fs::{self, File, Metadata};
+use std::io::{ErrorKind, Write};
+use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
@@ -27,8 +30,7 @@ use crate::output::history::Table;
 pub use error::OutputError;
 pub use growing::Growing;
 pub use manifest::MANIFEST;
-use manifest::Manifest;
-use whole::PART;
+use manifest::{Entry, Manifest};
 
 /// A folder that a command writes to: locked, and with a list of what was written.
 #[derive(Debug)]
@@ -80,7 +82,7 @@ impl OutputFolder {
         let lock = lock::take(path)?;
         let manifest = manifest::read(path)?;
         let folder = Self { path: path.to_path_buf(), manifest: Mutex::new(manifest), lock };
-        folder.remove_parts()?;
+        folder.remove_temporary_files()?;
         Ok(folder)
     }
 
@@ -96,21 +98,21 @@ impl OutputFolder {
 
     /// Names of all files that the manifest lists.
     pub fn files(&self) -> Vec<String> {
-        self.manifest().names.iter().cloned().collect()
+        self.manifest().files.keys().cloned().collect()
     }
 
     /// Marks the folder as unfinished until [`Self::finish`], and removes the files of earlier runs but those
     /// to `keep`, first those that tell a verdict.
     ///
     /// # Errors
-    /// A link or folder in place of a file, before anything is removed; a file that cannot be removed.
+    /// A file that was changed since it was written, before anything is removed; one that cannot be removed.
     pub fn begin(&self, keep: impl Fn(&str) -> bool) -> Result<(), OutputError> {
         let mut manifest = self.manifest();
-        let old: Vec<String> = manifest.names.iter().filter(|name| !keep(name)).cloned().collect();
-        let is_foreign = |name: &&String| matches!(self.state(&manifest, name), State::Foreign);
-        let foreign: Vec<&String> = old.iter().filter(is_foreign).collect();
-        if !foreign.is_empty() {
-            return Err(OutputError::replaced(&self.path, &foreign));
+        let old: Vec<String> = manifest.files.keys().filter(|name| !keep(name)).cloned().collect();
+        let is_changed = |name: &&String| matches!(self.state(&manifest, name), State::Changed);
+        let changed: Vec<&String> = old.iter().filter(is_changed).collect();
+        if !changed.is_empty() {
+            return Err(OutputError::changed(&self.path, &changed));
         }
         manifest.finished = false;
         manifest.store(&self.path)?;
@@ -121,11 +123,30 @@ impl OutputFolder {
     /// Writes a file below the folder; `name` has `/` between its parts.
     ///
     /// # Errors
-    /// A file there that is not ours, a link on the way, a name that leads out of the folder, a full disk.
+    /// A file there that is not ours or was changed, a link on the way, a name that leads out of the folder,
+    /// a full disk.
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), OutputError> {
-        let mut manifest = self.manifest(); // held to the end: one file is written at a time
-        let path = self.claim(&mut manifest, name)?;
-        whole::write(&path, content.as_ref()).map_err(|e| OutputError::unwritable(&path, e))
+        let content = content.as_ref();
+        let mut manifest = self.manifest();
+        let path = self.place(name, true)?;
+        if let State::Changed = self.state(&manifest, name) {
+            return Err(OutputError::foreign(&path));
+        }
+        let failed = |error: &dyn std::fmt::Display| OutputError::unwritable(&path, error);
+        let folder = path.parent().unwrap_or(&self.path);
+        let hash = manifest::hash(content);
+        let above = name.rsplit_once('/').map_or(String::new(), |(above, _)| format!("{above}/"));
+        let file = temporary::create(folder, |part| {
+            manifest.append(&self.path, &[(&format!("{above}{part}"), &hash), (name, &hash)])
+        });
+        let mut file = file.map_err(|e| failed(&e))?;
+        manifest.files.entry(name.to_string()).or_default().hashes.push(hash.clone());
+        file.write_all(content).map_err(|e| failed(&e))?;
+        // Or a power failure could leave the name of an empty file.
+        file.as_file().sync_all().map_err(|e| failed(&e))?;
+        let file = file.persist(&path).map_err(|e| failed(&e.error))?;
+        manifest.files.insert(name.to_string(), Entry::of(hash, file.metadata().ok().map(seen)));
+        Ok(())
     }
 
     /// Writes `value` as indented JSON with a newline at its end.
@@ -145,14 +166,15 @@ impl OutputFolder {
         self.write(name, table.to_csv().map_err(|e| OutputError::unwritable(&self.path.join(name), e))?)
     }
 
-    /// Whether a file of that name could be written: nothing is there, or what was written here.
+    /// Whether a file of that name could be written: nothing is there, or what was written here and not
+    /// changed since.
     ///
     /// # Errors
     /// If it could not.
     pub fn check(&self, name: &str) -> Result<(), OutputError> {
         let path = self.place(name, false)?;
         match self.state(&self.manifest(), name) {
-            State::Foreign => Err(OutputError::foreign(&path)),
+            State::Changed => Err(OutputError::foreign(&path)),
             State::Absent | State::Ours => Ok(()),
         }
     }
@@ -160,29 +182,34 @@ impl OutputFolder {
     /// Lists a file that a program wrote that this one started for that.
     ///
     /// # Errors
-    /// Anything but a file.
+    /// A file that cannot be read, or is none.
     pub fn adopt(&self, name: &str) -> Result<(), OutputError> {
         let path = self.place(name, false)?;
-        if !fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
+        let unreadable = |error: std::io::Error| OutputError::unwritable(&path, error);
+        if !fs::symlink_metadata(&path).map_err(unreadable)?.is_file() {
             return Err(OutputError::foreign(&path));
         }
-        self.list(&mut self.manifest(), name)
+        let hash = manifest::hash(&fs::read(&path).map_err(unreadable)?);
+        let mut manifest = self.manifest();
+        let listed = manifest.append(&self.path, &[(name, &hash)]);
+        listed.map_err(|e| OutputError::unwritable(&self.path.join(MANIFEST), e))?;
+        manifest.files.insert(name.to_string(), Entry::of(hash, None));
+        Ok(())
     }
 
-    /// Content of a file that was written here.
+    /// Content of a file that was written here and not changed since.
     pub fn read(&self, name: &str) -> Option<Vec<u8>> {
-        let ours = matches!(self.state(&self.manifest(), name), State::Ours);
-        fs::read(self.place(name, false).ok()?).ok().filter(|_| ours)
+        let manifest = self.manifest();
+        let content = fs::read(self.place(name, false).ok()?).ok()?;
+        manifest.files.get(name)?.hashes.contains(&manifest::hash(&content)).then_some(content)
     }
 
     /// Removes a file if it is there.
     ///
     /// # Errors
-    /// A file that is not ours, or that cannot be removed.
+    /// A file that is not ours or was changed, or that cannot be removed.
     pub fn remove(&self, name: &str) -> Result<(), OutputError> {
-        let mut manifest = self.manifest();
-        self.remove_from(&mut manifest, name)?;
-        manifest.store(&self.path)
+        self.remove_from(&mut self.manifest(), name)
     }
 
     /// The folder is complete: takes the mark of [`Self::begin`] away.
@@ -195,9 +222,14 @@ impl OutputFolder {
         manifest.store(&self.path)
     }
 
-    /// Keeps all other threads from writing, and so from being cut short when the process ends.
+    /// Keeps all other threads from writing, and so from being cut short when the process ends; the manifest
+    /// then lists what is there and nothing that was on its way.
     pub fn hold(&self) -> Held<'_> {
-        Held { _manifest: self.manifest() }
+        let mut manifest = self.manifest();
+        if manifest.has_journal() {
+            let _ = manifest.store(&self.path); // only shorter than what is there
+        }
+        Held { _manifest: manifest }
     }
 
     fn manifest(&self) -> MutexGuard<'_, Manifest> {
@@ -205,81 +237,69 @@ impl OutputFolder {
         self.manifest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Adds a name to the list.
-    fn list(&self, manifest: &mut Manifest, name: &str) -> Result<(), OutputError> {
-        let stored = if manifest.names.insert(name.to_string()) { manifest.store(&self.path) } else { Ok(()) };
-        if stored.is_err() {
-            manifest.names.remove(name);
-        }
-        stored
-    }
-
-    /// Path of a file that is to be written, with the folders above it and its name in the list.
-    fn claim(&self, manifest: &mut Manifest, name: &str) -> Result<PathBuf, OutputError> {
-        let path = self.place(name, true)?;
-        if let State::Foreign = self.state(manifest, name) {
-            return Err(OutputError::foreign(&path));
-        }
-        self.list(manifest, name)?;
-        Ok(path)
-    }
-
     /// What is there under a name.
     fn state(&self, manifest: &Manifest, name: &str) -> State {
-        let Ok(path) = self.place(name, false) else { return State::Foreign };
-        match fs::symlink_metadata(&path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => State::Absent,
-            Ok(metadata) if metadata.is_file() && manifest.names.contains(name) => State::Ours,
-            _ => State::Foreign,
-        }
+        let Ok(path) = self.place(name, false) else { return State::Changed };
+        let metadata = match fs::symlink_metadata(&path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return State::Absent,
+            Ok(metadata) if metadata.is_file() => metadata,
+            _ => return State::Changed,
+        };
+        let Some(entry) = manifest.files.get(name) else { return State::Changed };
+        let ours = entry.grows
+            || entry.seen.is_some_and(|last| last == seen(metadata))
+            || fs::read(&path).is_ok_and(|content| entry.hashes.contains(&manifest::hash(&content)));
+        if ours { State::Ours } else { State::Changed }
     }
 
     /// Path of a name, with the folders above it made if asked for; none of them may be a link.
     fn place(&self, name: &str, make: bool) -> Result<PathBuf, OutputError> {
-        let last = name.rsplit('/').next().unwrap_or(name);
-        if !foreign::is_plain(name) || [MANIFEST, lock::LOCK, PART].contains(&last) {
+        if [MANIFEST, lock::LOCK].contains(&name) {
             return Err(OutputError::outside(&self.path, name));
         }
-        let path = self.path.join(name);
-        for folder in self.folders_above(name) {
-            match fs::symlink_metadata(&folder) {
+        let mut path = self.path.clone();
+        let mut parts = Path::new(name).components().peekable();
+        while let Some(part) = parts.next() {
+            let Component::Normal(part) = part else { return Err(OutputError::outside(&self.path, name)) };
+            path.push(part);
+            if parts.peek().is_none() {
+                return Ok(path);
+            }
+            match fs::symlink_metadata(&path) {
                 Ok(metadata) if metadata.is_dir() => {}
-                Ok(_) => return Err(OutputError::foreign(&folder)),
-                Err(_) if make => fs::create_dir(&folder).map_err(|e| OutputError::unwritable(&folder, e))?,
+                Ok(_) => return Err(OutputError::foreign(&path)),
+                Err(_) if make => fs::create_dir(&path).map_err(|e| OutputError::unwritable(&path, e))?,
                 Err(_) => {}
             }
         }
-        Ok(path)
-    }
-
-    /// Folders between this one and a file, from the outside in.
-    fn folders_above(&self, name: &str) -> Vec<PathBuf> {
-        name.match_indices('/').map(|(end, _)| self.path.join(&name[..end])).collect()
+        Err(OutputError::outside(&self.path, name))
     }
 
     fn remove_from(&self, manifest: &mut Manifest, name: &str) -> Result<(), OutputError> {
         let path = self.path.join(name);
         match self.state(manifest, name) {
-            State::Foreign => return Err(OutputError::foreign(&path)),
+            State::Changed => return Err(OutputError::foreign(&path)),
             State::Ours => fs::remove_file(&path).map_err(|e| OutputError::unwritable(&path, e))?,
             State::Absent => {}
         }
-        manifest.names.remove(name);
-        for folder in self.folders_above(name).iter().rev() {
-            let _ = fs::remove_dir(folder); // one that holds something stays
+        manifest.files.remove(name);
+        let above: BTreeSet<&Path> = Path::new(name).ancestors().skip(1).filter(|a| *a != Path::new("")).collect();
+        for folder in above.into_iter().rev() {
+            let _ = fs::remove_dir(self.path.join(folder)); // one that holds something stays
         }
         Ok(())
     }
 
-    /// Removes what a process left that was killed in the middle of writing.
-    fn remove_parts(&self) -> Result<(), OutputError> {
-        let names = self.files();
-        let mut folders: BTreeSet<PathBuf> = names.iter().flat_map(|name| self.folders_above(name)).collect();
-        folders.insert(self.path.clone());
-        for part in folders.iter().map(|folder| folder.join(PART)) {
-            if fs::symlink_metadata(&part).is_ok_and(|metadata| metadata.is_file()) {
-                fs::remove_file(&part).map_err(|e| OutputError::unwritable(&part, e))?;
+    /// What a process left that was killed in the middle of writing.
+    fn remove_temporary_files(&self) -> Result<(), OutputError> {
+        let mut manifest = self.manifest();
+        let names: Vec<String> = manifest.files.keys().filter(|name| temporary::is_temporary(name)).cloned().collect();
+        for name in names {
+            let path = self.place(&name, false)?;
+            if fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
+                fs::remove_file(&path).map_err(|e| OutputError::unwritable(&path, e))?;
             }
+            manifest.files.remove(&name);
         }
         Ok(())
     }
@@ -287,6 +307,10 @@ impl OutputFolder {
 
 impl Drop for OutputFolder {
     fn drop(&mut self) {
+        let manifest = self.manifest.get_mut().unwrap_or_else(PoisonError::into_inner);
+        if manifest.has_journal() {
+            let _ = manifest.store(&self.path); // only shorter than what is there
+        }
         if let Some(lock) = &self.lock {
             let _ = lock.set_len(0); // nobody holds it any more
             // Closing is not enough while a process that is being started still has the file.
@@ -308,9 +332,11 @@ fn in_order_of_removal(mut names: Vec<String>) -> Vec<String> {
 enum State {
     Absent,
     Ours,
-    /// Not listed, no file, or behind a link.
-    Foreign,
+    /// Not ours, or not as it was written, or behind a link.
+    Changed,
 }
 
-#[cfg(test)]
-mod tests;
+/// Tells a file that this process wrote from one that somebody changed, without reading it.
+fn seen(metadata: Metadata) -> (u64, Option<std::time::SystemTime>) {
+    (metadata.len(), metadata.modified().ok())
+}

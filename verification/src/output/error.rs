@@ -55,16 +55,23 @@ impl OutputError {
         Self::new(message, "give another folder with --out")
     }
 
-    pub(super) fn replaced(path: &Path, names: &[&String]) -> Self {
-        let names: Vec<&str> = names.iter().map(|name| name.as_str()).collect();
-        let (path, names) = (path.display(), names.join(", "));
-        let message = format!("the folder {path} contains links or folders in place of files of this program: {names}");
+    pub(super) fn changed(path: &Path, names: &[&String]) -> Self {
+        let shown: Vec<&str> = names.iter().take(3).map(|name| name.as_str()).collect();
+        let more = names.len().saturating_sub(3);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let message = format!(
+            "the folder {} contains files that were changed after they were written: {}{more}",
+            path.display(),
+            shown.join(", ")
+        );
         Self::new(message, "move them, remove them if they are not needed, or give another folder with --out")
     }
 
     pub(super) fn foreign(path: &Path) -> Self {
-        let path = path.display();
-        let message = format!("{path} cannot be written: what is there was not written by this program");
+        let message = format!(
+            "{} cannot be written: the existing file was not written by this program or was changed",
+            path.display()
+        );
         Self::new(message, "move it, remove it, or give another folder with --out")
     }
 

@@ -1,5 +1,6 @@
 //! What is written, what stays, and who may write.
 
+use super::temporary::{PART, TEMPORARY};
 use super::*;
 
 fn open(path: &Path) -> OutputFolder {
@@ -50,16 +51,15 @@ fn only_what_was_written_here_is_removed() {
 }
 
 #[test]
-fn a_folder_in_place_of_a_file_is_refused_before_anything_is_removed() {
+fn a_changed_file_is_refused_before_anything_is_removed() {
     let root = tempfile::tempdir().unwrap();
     let folder = open(root.path());
     for name in ["a.csv", "b.csv"] {
         folder.write(name, "1").unwrap();
     }
-    fs::remove_file(root.path().join("b.csv")).unwrap();
-    fs::create_dir(root.path().join("b.csv")).unwrap();
+    fs::write(root.path().join("b.csv"), "12").unwrap();
     let error = folder.begin(|_| false).unwrap_err();
-    assert!(error.message.contains("in place of files of this program: b.csv"), "{error:?}");
+    assert!(error.message.contains("changed after they were written: b.csv"), "{error:?}");
     assert!(folder.write("b.csv", "3").is_err() && folder.read("b.csv").is_none());
     assert_eq!(
         (names(root.path()), folder.read("a.csv").unwrap()),
@@ -72,7 +72,7 @@ fn folders_of_others_are_refused_and_stay_as_they_are() {
     let root = tempfile::tempdir().unwrap();
     fs::write(root.path().join("results.json"), "{}").unwrap();
     let error = OutputFolder::open(root.path(), "verify").unwrap_err();
-    assert!(error.message.contains("is not empty and has no fisura.files"), "{error:?}");
+    assert!(error.message.contains("is not empty and has no fisura.sha256"), "{error:?}");
     assert!(OutputFolder::reopen(root.path()).is_err());
     assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1, "no lock is left");
 
@@ -103,38 +103,21 @@ fn a_killed_process_leaves_a_folder_that_the_next_one_knows() {
     folder.begin(|_| false).unwrap();
     folder.write("checkpoint.bin", "1").unwrap();
     folder.write("checkpoint.bin", "2").unwrap();
-    folder.write("series/a.csv", "1").unwrap();
     let copy = killed(&folder);
-    assert!(fs::read_to_string(copy.path().join(MANIFEST)).unwrap().contains("# unfinished"));
-    for part in [PART, "series/.fisura.part"] {
-        fs::write(copy.path().join(part), "half").unwrap();
-    }
+    let text = fs::read_to_string(copy.path().join(MANIFEST)).unwrap();
+    assert!(text.contains("# unfinished") && !fs::read_to_string(root.path().join(MANIFEST)).unwrap().is_empty());
+    let part = format!("{TEMPORARY}AbCdEf{PART}");
+    fs::write(copy.path().join(&part), "half").unwrap();
+    let hash = manifest::hash(b"whole");
+    fs::write(copy.path().join(MANIFEST), format!("{text}{hash}  {part}\n{hash}  next.csv\n{hash}  half a li"))
+        .unwrap();
     fs::write(copy.path().join(".fisura-mine.part"), "mine").unwrap();
     let next = open(copy.path());
-    assert_eq!(names(copy.path()), [".fisura-mine.part", "checkpoint.bin", "series"], "what was begun is gone");
-    assert_eq!(names(&copy.path().join("series")), ["a.csv"]);
-    assert_eq!(next.files(), ["checkpoint.bin", "series/a.csv"]);
+    assert_eq!(names(copy.path()), [".fisura-mine.part", "checkpoint.bin"], "the listed temporary file is gone");
+    assert_eq!(next.files(), ["checkpoint.bin", "next.csv"]);
     next.write("checkpoint.bin", "3").unwrap();
     next.finish().unwrap();
     assert!(!fs::read_to_string(copy.path().join(MANIFEST)).unwrap().contains("# unfinished"));
-}
-
-/// A name is listed before its file is there: who is killed in between leaves nothing that nobody knows.
-#[test]
-fn a_name_without_a_file_is_no_obstacle_and_a_list_that_was_only_begun_neither() {
-    let root = tempfile::tempdir().unwrap();
-    fs::write(root.path().join(PART), "# fisura.fil").unwrap();
-    open(root.path()).write("a.csv", "1").unwrap();
-    fs::remove_file(root.path().join("a.csv")).unwrap();
-    let folder = open(root.path());
-    assert_eq!((folder.files(), folder.read("a.csv")), (vec!["a.csv".to_string()], None));
-    folder.begin(|_| false).unwrap();
-    assert!(folder.files().is_empty());
-    for other in ["mine", "# mine\n", ""] {
-        let root = tempfile::tempdir().unwrap();
-        fs::write(root.path().join(MANIFEST), other).unwrap();
-        assert!(OutputFolder::open(root.path(), "verify").is_err(), "{other:?}");
-    }
 }
 
 /// What a killed process left of a file that grew is replaced, with all it holds; a file of the user is not.
@@ -158,7 +141,10 @@ fn a_file_that_grows_is_read_on_the_way_and_replaced_by_the_next_process() {
     assert_eq!(fs::read_to_string(left.path().join("rows.csv")).unwrap(), "mine");
 
     out.write("rows.csv", "a\n1\n2\n3\n").unwrap();
-    assert_eq!(fs::read_to_string(path.join("rows.csv")).unwrap(), "a\n1\n2\n3\n");
+    out.finish().unwrap();
+    drop(out);
+    fs::write(path.join("rows.csv"), "mine").unwrap();
+    assert!(open(path).begin(|_| false).is_err(), "a file that is finished has its hash");
 }
 
 #[test]
@@ -169,7 +155,7 @@ fn names_that_lead_out_of_the_folder_are_refused() {
         assert!(folder.write(name, "x").is_err(), "{name:?}");
     }
     assert_eq!(names(root.path()), ["out"]);
-    assert!([MANIFEST, lock::LOCK, PART, "a/.fisura.part"].iter().all(|name| folder.write(name, "x").is_err()));
+    assert!(folder.write(MANIFEST, "x").is_err() && folder.write(lock::LOCK, "x").is_err());
 }
 
 #[cfg(unix)]
@@ -212,21 +198,40 @@ fn files_have_the_permissions_of_any_new_file() {
 }
 
 #[test]
-fn files_written_at_once_are_all_listed_and_whole() {
+fn no_temporary_file_is_there_that_is_not_listed() {
     let root = tempfile::tempdir().unwrap();
     let folder = open(root.path());
     folder.begin(|_| false).unwrap();
+    let is_over = std::sync::atomic::AtomicBool::new(false);
     std::thread::scope(|scope| {
-        for thread in 0..4 {
-            let write = move |number: usize| (format!("{}/{thread}.csv", number % 7), number.to_string());
-            let folder = &folder;
-            scope.spawn(move || (0..50).map(write).for_each(|(name, text)| folder.write(&name, text).unwrap()));
+        scope.spawn(|| {
+            (0..300).for_each(|number| folder.write(&format!("{}.csv", number % 7), number.to_string()).unwrap());
+            is_over.store(true, std::sync::atomic::Ordering::Relaxed);
+        });
+        while !is_over.load(std::sync::atomic::Ordering::Relaxed) {
+            let there: Vec<String> = names(root.path()).into_iter().filter(|n| temporary::is_temporary(n)).collect();
+            let listed = fs::read_to_string(root.path().join(MANIFEST)).unwrap();
+            there.iter().for_each(|name| assert!(listed.contains(name.as_str()), "nobody would know {name}"));
         }
     });
     drop(folder.hold()); // as at an interruption
-    assert_eq!(folder.files().len(), 28);
-    assert!(folder.files().iter().all(|name| folder.read(name).is_some()), "{:?}", folder.files());
-    assert!(fs::read_to_string(root.path().join(MANIFEST)).unwrap().contains("# unfinished"));
+    let listed = fs::read_to_string(root.path().join(MANIFEST)).unwrap();
+    assert!(listed.contains("6.csv") && !listed.contains(PART) && listed.contains("# unfinished"), "{listed}");
+}
+
+#[test]
+fn a_list_that_was_only_begun_is_begun_again() {
+    for begun in ["", "# fisura.mani", "# fisura.manifest/1 ver"] {
+        let root = tempfile::tempdir().unwrap();
+        fs::write(root.path().join(MANIFEST), begun).unwrap();
+        open(root.path()).write("a.csv", "1").unwrap();
+        assert_eq!(open(root.path()).files(), ["a.csv"], "{begun:?}");
+    }
+    for other in ["mine", "# mine\n"] {
+        let root = tempfile::tempdir().unwrap();
+        fs::write(root.path().join(MANIFEST), other).unwrap();
+        assert!(OutputFolder::open(root.path(), "verify").is_err(), "{other:?}");
+    }
 }
 
 #[test]

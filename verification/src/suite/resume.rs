@@ -1,6 +1,7 @@
 //! Finished cases of an interrupted run, kept in `partial/` of the results folder until the run is complete.
 //!
-//! An outcome is taken up only if program, case file, overrides and reference data are the same.
+//! An outcome is taken up only if program, case file, overrides and reference data are the same, and nobody
+//! changed the file.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

@@ -122,6 +122,10 @@ fn two_runs_agree_and_a_clean_commit_takes_up_finished_cases() {
     assert!(unfinished.contains("0 of 2 cases are finished"), "nothing of the complete run before is left");
     let stored = root.path().join("out/partial").read_dir().unwrap().next().unwrap().unwrap().path();
     let text = std::fs::read_to_string(&stored).unwrap();
+    std::fs::write(&stored, text.replace("a trial", "no trial")).unwrap();
+    let error = run(root.path(), clean()).unwrap_err().to_string();
+    assert!(error.contains("changed after they were written: partial/trial-a-"), "{error}");
+    std::fs::write(&stored, &text).unwrap();
     let resumed = run(root.path(), clean()).unwrap();
     let finished: CaseOutcome = serde_json::from_str(&text).unwrap();
     assert_eq!(resumed.records[0].timing, finished.records[0].timing, "case a is taken up, not run again");

@@ -28,7 +28,7 @@ fn unknown_families_and_a_peer_without_a_program_end_with_2() {
     let ended = place.xtask(&arguments).with_status(2).complains_of(&words);
     assert!(ended.out.contains("FAIL unfinished/run: 1 of 2 families are measured"), "{ended:?}");
     assert!(place.read("out/bench.json").contains("\"ceilings/"), "what is measured is kept");
-    assert!(place.read("out/fisura.files").contains("# unfinished"));
+    assert!(place.read("out/fisura.sha256").contains("# unfinished"));
 }
 
 #[test]

@@ -49,7 +49,7 @@ fn results_are_not_written_through_a_link() {
     place.write("mine/f", "mine");
     std::fs::create_dir(place.path("drawn")).unwrap();
     std::os::unix::fs::symlink(place.path("mine"), place.path("drawn/results")).unwrap();
-    place.write("drawn/fisura.files", "# fisura.files/1 figures\n");
+    place.write("drawn/fisura.sha256", "# fisura.manifest/1 figures\n");
     let refused = place.xtask(&["figures", "--figure", "3a", "--out", "drawn"]).with_status(2);
     refused.complains_of(&["drawn/results is a symbolic link", "--out"]);
     assert_eq!(place.files("mine"), ["f"]);

@@ -67,7 +67,7 @@ fn three_slices_joined_are_the_whole_run() {
     let (whole, merged) = (contents(&place.path("whole")), contents(&place.path("merged")));
     let names = |all: &[(String, Vec<u8>)]| all.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
     assert_eq!(names(&merged), names(&whole));
-    let exempt = ["metrics.json", "junit.xml", "report.html", "summary.md", "fisura.files", ".fisura.lock"];
+    let exempt = ["metrics.json", "junit.xml", "report.html", "summary.md", "fisura.sha256", ".fisura.lock"];
     // times of a run, or when it was
     let dated = |name: &str| name.starts_with("metrics/timing/");
     let compared = |name: &str| !exempt.contains(&name) && !dated(name);
@@ -121,7 +121,7 @@ fn parts_that_do_not_belong_together_end_with_2() {
     place.xtask(&["merge", "part-1", "part-2", "part-3", "--out", "joined"]).with_status(1);
     place.xtask(&["merge", "part-1", "part-2", "--out", "joined"]).with_status(2);
     assert_eq!(place.files("joined"), [""; 0], "the verdict of before is not that of these parts");
-    assert!(place.read("joined/fisura.files").contains("# unfinished"));
+    assert!(place.read("joined/fisura.sha256").contains("# unfinished"));
     let itself = ["merge", "part-1", "joined/../joined", "--out", "joined"];
     place.xtask(&itself).with_status(2).complains_of(&["joined/../joined cannot be merged into itself", "--out"]);
     place

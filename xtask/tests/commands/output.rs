@@ -55,7 +55,7 @@ fn every_command_refuses_a_folder_of_the_user() {
     ];
     for command in commands {
         let outcome = place.xtask(&[command, &["--out", "mine"]].concat()).with_status(2);
-        outcome.complains_of(&["mine is not empty and has no fisura.files", "--out"]);
+        outcome.complains_of(&["mine is not empty and has no fisura.sha256", "--out"]);
         mine_are_there(&place, "mine", &FILES);
         assert_eq!(place.files("mine"), before, "{command:?}");
     }
@@ -75,7 +75,11 @@ fn files_of_the_user_stay_beside_those_of_a_command() {
         place.xtask(&command).with_status(0);
         assert_eq!(place.files(folder), before);
         mine_are_there(&place, folder, &FILES[..4]);
+        place.write(&format!("{folder}/summary.md"), "changed");
     }
+    let refused = place.xtask(&["verify", "--case", "energy/*", "--out", "verify"]).with_status(2);
+    refused.complains_of(&["changed after they were written: summary.md", "--out"]);
+    assert_eq!(place.read("verify/summary.md"), "changed");
 }
 
 #[cfg(unix)]
@@ -92,7 +96,7 @@ fn nothing_is_written_through_a_link() {
     fs::remove_file(place.path("out/history.csv")).unwrap();
     link("history.csv");
     let refused = place.xtask(&["run", "scene.toml", "--out", "out"]).with_status(2);
-    refused.complains_of(&["in place of files of this program: history.csv"]);
+    refused.complains_of(&["changed after they were written: history.csv"]);
     mine_are_there(&place, "mine", &["f"]);
 }
 
@@ -146,7 +150,7 @@ mod signals {
             let text = place.read(&format!("out/{name}"));
             assert!(text.contains(&words), "{name} does not say {words:?}: {text}");
         }
-        assert!(place.read("out/fisura.files").contains("# unfinished"));
+        assert!(place.read("out/fisura.sha256").contains("# unfinished"));
     }
 
     #[test]

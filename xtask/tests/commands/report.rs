@@ -13,7 +13,7 @@ fn a_report_is_written_beside_its_results_or_elsewhere() {
     let place = Place::with("results/results.json", RESULTS);
     place.write("results/series/timing/a.csv", "x\n1\n");
     // results of an older version have no list of what was written
-    place.xtask(&["report", "results"]).with_status(2).complains_of(&["results", "no fisura.files", "--out"]);
+    place.xtask(&["report", "results"]).with_status(2).complains_of(&["results", "no fisura.sha256", "--out"]);
     let outcome = place.xtask(&["report", "results", "--out", "copy", "--format", "json"]).with_status(0);
     assert!(outcome.json()["files"].as_array().unwrap().contains(&"copy/report.html".into()));
     let first = place.read("copy/report.html");

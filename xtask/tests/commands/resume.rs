@@ -48,7 +48,7 @@ fn a_run_killed_again_and_again_gives_the_bytes_of_an_undisturbed_one() {
         child.wait().expect("it ends");
         let finished = place.path("killed/summary.json").exists();
         let marked =
-            !place.path("killed/fisura.files").exists() || place.read("killed/fisura.files").contains("# unfinished");
+            !place.path("killed/fisura.sha256").exists() || place.read("killed/fisura.sha256").contains("# unfinished");
         assert!(finished || marked, "a part of a history looks finished");
     }
     assert!(place.path("killed/checkpoint.bin").exists(), "in {whole:?} no checkpoint was reached");

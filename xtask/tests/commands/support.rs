@@ -126,7 +126,7 @@ impl Place {
         let entries = fs::read_dir(self.path(name)).expect("a folder");
         let mut names: Vec<String> =
             entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
-        names.retain(|name| !["fisura.files", ".fisura.lock"].contains(&name.as_str()));
+        names.retain(|name| !["fisura.sha256", ".fisura.lock"].contains(&name.as_str()));
         names.sort();
         names
     }
