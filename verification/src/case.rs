@@ -4,7 +4,7 @@
 //! and may have a list where a scene has one value: a study axis. `[[variant]]` tables change several
 //! keys together. `[values]` names numbers, which formulas of checks and charts ([`formula`]) use. What
 //! several cases or checks have in common stands once: a case may name a `base`, a `[[check]]` a `set` of
-//! checks, and `each` lists what differs between them ([`repeat`]).
+//! checks, and `each` lists what differs between them (`repeat.rs`).
 
 mod chart;
 mod check;
