@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use super::body_sample::{BodySamples, column_name};
 use crate::linear_algebra::extremes::{larger, smaller};
+use crate::phase_field::fracture::CrackTip;
 
 /// Work and losses accumulated over a run, J per metre of thickness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -78,8 +79,8 @@ pub struct FractureSample {
     pub history_work: f64,
     /// Work of the phase field between its solves, J, if there are steps without one.
     pub lag_work: Option<f64>,
-    /// Crack tip, m, if there is a crack.
-    pub crack_tip: Option<[f64; 2]>,
+    /// Crack tip, if there is a crack.
+    pub crack_tip: Option<CrackTip>,
     /// Smallest phase field at a point.
     pub min_phase: f64,
     /// Iterations of the last phase-field solve.
@@ -154,7 +155,7 @@ impl FractureSample {
             energy: self.energy + other.energy,
             history_work: self.history_work + other.history_work,
             lag_work: self.lag_work.zip(other.lag_work).map(|(a, b)| a + b),
-            crack_tip: tips.max_by(|a, b| a[0].total_cmp(&b[0])),
+            crack_tip: tips.max_by(|a, b| a.distance.total_cmp(&b.distance)),
             min_phase: smaller(self.min_phase, other.min_phase),
             iterations: self.iterations + other.iterations,
         }
@@ -191,7 +192,7 @@ impl Sample {
         row.extend(self.transfer_loss.map(|loss| ("transfer_loss_j", loss)));
         row.push(("closure_j", self.closure));
         if let Some(fracture) = fracture {
-            let [x, y] = fracture.crack_tip.unwrap_or([f64::NAN; 2]);
+            let [x, y] = fracture.crack_tip.map_or([f64::NAN; 2], |tip| tip.place);
             row.extend([("crack_tip_x_m", x), ("crack_tip_y_m", y), ("min_phase_field", fracture.min_phase)]);
         }
         row.push(("momentum_x", self.momentum[0]));
@@ -209,8 +210,7 @@ impl Sample {
         columns.find(|(name, value)| !value.is_finite() && !name.starts_with("crack_tip")).map(|(name, _)| name)
     }
 
-    /// This sample with another body's: energies and momenta are added, the tip is that of the crack that is
-    /// further.
+    /// This sample with another body's: energies and momenta are added, the tip is that of the longer crack.
     #[must_use]
     pub fn with(self, other: Self) -> Self {
         let fracture = match (self.fracture, other.fracture) {

@@ -33,6 +33,8 @@ pub enum Failure {
         /// What is lost, and where.
         lost: LostTraction,
     },
+    /// The part of a side of that condition holds no control point with mass.
+    HoldsNothing(usize),
     /// No static state was found: the largest force out of balance, of the largest nodal force.
     NoEquilibrium(f64),
     /// The loads of a static start accelerate a body that nothing holds: their resultant, of their

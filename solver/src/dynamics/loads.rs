@@ -255,7 +255,9 @@ impl NodalLoad {
             }
             _ => {
                 for SurfacePoint { position, length, normal } in surface_points(patch, body, &traction.edge) {
-                    let carries = |first, at| moves(lattice.control_point(at, first, position));
+                    let carries = |first, at| {
+                        lattice.has_side(first, position) && moves(lattice.control_point(at, first, position))
+                    };
                     let location = carrier(patch, position, carries).ok_or(LostTraction::Bare(position))?;
                     add(&patch.functions(location).values, position, length, normal);
                 }

@@ -108,16 +108,17 @@ impl MassMatrix {
         }
     }
 
-    /// Sum of `M x` over some control points, for one component.
-    pub(crate) fn sum_at(&self, x: &[f64], points: impl Iterator<Item = usize>) -> f64 {
-        match &self.kind {
-            MassKind::Lumped { .. } => points.map(|at| self.row_sums[at] * x[at]).sum(),
+    /// `M x` at a control point, for one component; the lumped mass multiplies only where it is asked.
+    pub(crate) fn product<'a>(&'a self, x: &'a [f64]) -> impl Fn(usize) -> f64 + 'a {
+        let image = match &self.kind {
+            MassKind::Lumped { .. } => None,
             MassKind::Consistent(consistent) => {
                 let mut image = consistent.matrix.grid.zeros();
                 consistent.matrix.apply(x, &mut image);
-                points.map(|at| image[at]).sum()
+                Some(image)
             }
-        }
+        };
+        move |at| image.as_ref().map_or_else(|| self.row_sums[at] * x[at], |image| image[at])
     }
 
     /// `½ vᵀ M v`.

@@ -193,6 +193,17 @@ impl Lattice {
         field
     }
 
+    /// Whether the span whose first function has the control point `first` has material on the side of the
+    /// slits of a position, m.
+    pub(crate) fn has_side(&self, first: usize, position: [f64; 2]) -> bool {
+        self.sheets.as_ref().is_none_or(|sheets| sheets.has_side(self.cell(first), position))
+    }
+
+    /// Column and row of a control point of the patch.
+    fn cell(&self, at: usize) -> [usize; 2] {
+        [self.patch_grid.column_of(at), self.patch_grid.row_of(at)]
+    }
+
     /// The control point that stands for one of the patch at a position (m), in the span whose first function
     /// has the control point `first`.
     pub(crate) fn control_point(&self, at: usize, first: usize, position: [f64; 2]) -> usize {
@@ -203,8 +214,7 @@ impl Lattice {
     /// first function has the control point `first`.
     pub(crate) fn lift(&self, first: usize, position: [f64; 2]) -> usize {
         let Some(sheets) = &self.sheets else { return 0 };
-        let cell = [self.patch_grid.column_of(first), self.patch_grid.row_of(first)];
-        sheets.lift(cell, position) * self.grid.stride
+        sheets.lift(self.cell(first), position) * self.grid.stride
     }
 
     /// Takes away the points outside a shape.

@@ -3,7 +3,7 @@
 
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::extremes::{larger, smaller};
-use crate::linear_algebra::lane::Lane;
+use crate::linear_algebra::lane::{LANES, Lane};
 use crate::material::degradation::{BROKEN, FractureModel};
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
@@ -149,12 +149,14 @@ impl LatticeFracture {
     /// The broken points.
     pub(crate) fn broken_points(&self, lattice: &Lattice) -> Vec<BrokenPoint> {
         let mut broken = Vec::new();
-        lattice.for_each_point(|batch, lane, position, area| {
-            let phase = self.phase[batch][lane];
-            if phase < BROKEN {
-                broken.push(BrokenPoint { position, phase, spacing: area.sqrt() });
+        for (batch, phases) in self.phase.iter().enumerate().filter(|(_, c)| c.0.iter().any(|c| *c < BROKEN)) {
+            let (row, tile, b, a) = lattice.unbatch(batch);
+            let area = lattice.weight(row, tile, b, a);
+            for lane in (0..LANES).filter(|&lane| area[lane] > 0.0 && phases[lane] < BROKEN) {
+                let position = lattice.position(batch, lane);
+                broken.push(BrokenPoint { position, phase: phases[lane], spacing: area[lane].sqrt() });
             }
-        });
+        }
         broken
     }
 
@@ -196,29 +198,40 @@ pub(crate) fn most_broken(broken: &[BrokenPoint]) -> Option<[f64; 2]> {
     broken.iter().min_by(|a, b| a.phase.total_cmp(&b.phase)).map(|point| point.position)
 }
 
-/// The tip of a crack: the place at the largest distance from its start where c is [`BROKEN`], of two places
-/// the upper one. Broken points are moved outwards to it by the gradient of c, at most by their spacing.
+/// The tip of a crack.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CrackTip {
+    /// Where it is, m.
+    pub place: [f64; 2],
+    /// Its distance from the start of the crack, m.
+    pub distance: f64,
+}
+
+/// The place at the largest distance from the start of a crack where c is [`BROKEN`], of two places the upper
+/// one. Broken points are moved outwards to it by the gradient of c, at most by their spacing.
 pub(crate) fn crack_tip(
     start: [f64; 2],
     broken: &[BrokenPoint],
     gradient: impl Fn([f64; 2]) -> [f64; 2],
-) -> Option<[f64; 2]> {
+) -> Option<CrackTip> {
     let distance = |p: [f64; 2]| (p[0] - start[0]).hypot(p[1] - start[1]);
     let foremost = broken.iter().max_by(|a, b| distance(a.position).total_cmp(&distance(b.position)))?;
     let near = distance(foremost.position) - foremost.spacing;
-    let candidates = broken.iter().filter(|point| distance(point.position) >= near);
-    let tips: Vec<[f64; 2]> = candidates
-        .map(|point| {
-            let outwards = [0, 1].map(|d| (point.position[d] - start[d]) / distance(point.position));
-            let slope = gradient(point.position);
-            let ahead = (BROKEN - point.phase) / (slope[0] * outwards[0] + slope[1] * outwards[1]);
-            let ahead = if ahead >= 0.0 { ahead.min(point.spacing) } else { 0.0 };
-            [0, 1].map(|d| point.position[d] + ahead * outwards[d])
-        })
-        .collect();
-    let furthest = tips.iter().map(|tip| distance(*tip)).fold(0.0, larger);
-    let tie = furthest - TIE * foremost.spacing;
-    tips.into_iter().filter(|tip| distance(*tip) >= tie).max_by(|a, b| a[1].total_cmp(&b[1]))
+    let moved = |point: &BrokenPoint| {
+        let (position, from_start) = (point.position, distance(point.position));
+        if from_start == 0.0 {
+            return position; // no direction leads outwards
+        }
+        let outwards = [0, 1].map(|d| (position[d] - start[d]) / from_start);
+        let slope = gradient(position);
+        let ahead = (BROKEN - point.phase) / (slope[0] * outwards[0] + slope[1] * outwards[1]);
+        let ahead = if ahead >= 0.0 { ahead.min(point.spacing) } else { 0.0 };
+        [0, 1].map(|d| position[d] + ahead * outwards[d])
+    };
+    let tips = || broken.iter().filter(|point| distance(point.position) >= near).map(moved);
+    let tie = tips().map(distance).fold(0.0, larger) - TIE * foremost.spacing;
+    let place = tips().filter(|tip| distance(*tip) >= tie).max_by(|a, b| a[1].total_cmp(&b[1]))?;
+    Some(CrackTip { place, distance: distance(place) })
 }
 
 /// Initial history energy `H0(d) = B Gc/(4 l0) (1 − d/w)` within the half width w of a crack, else zero.
@@ -238,4 +251,24 @@ fn seeded_history(lattice: &Lattice, body: &Body, model: &FractureModel) -> Vec<
         lattice.for_each_point(|batch, lane, position, _| history[batch][lane] = seed_energy(model, body, position));
     }
     history
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_tip_is_the_place_furthest_from_the_start() {
+        let broken = |position| BrokenPoint { position, phase: 0.03, spacing: 0.1 };
+        let slope = |_| [0.0, 1.0];
+        let tip = |broken: &[BrokenPoint]| crack_tip([1.0, 1.0], broken, slope).map(|tip| tip.place);
+        assert_eq!(tip(&[]), None);
+        assert_eq!(tip(&[broken([1.0, 1.0])]), Some([1.0, 1.0]), "the start itself");
+        let moved = tip(&[broken([1.0, 1.5]), broken([1.0, 1.0])]).unwrap();
+        approx::assert_relative_eq!(moved[1], 1.52, epsilon = 1e-12);
+        assert_eq!(tip(&[broken([3.0, 1.0]), broken([1.0, -2.0])]), Some([1.0, -2.0]), "no further where c falls");
+        let level = |_| [0.0; 2];
+        let branches = [broken([2.0, 2.0]), broken([2.0, 0.0])];
+        assert_eq!(crack_tip([1.0, 1.0], &branches, level).unwrap().place, [2.0, 2.0], "of two the upper one");
+    }
 }

@@ -81,6 +81,40 @@ impl Shape {
         }
     }
 
+    /// Whether the straight step between two positions (m) in the shape leaves it on the way.
+    pub(crate) fn is_left_on(&self, step: Segment) -> bool {
+        match self {
+            Self::Rectangle { .. } | Self::Disk { .. } | Self::Patch => false, // convex, or all there is
+            Self::Annulus { center, inner_radius, .. } => {
+                distance_to_segment(*center, step[0], step[1]) < *inner_radius
+            }
+            Self::Polygon { points } => polygon_edges(points).any(|edge| cross(step, edge)),
+            Self::Difference { of, minus } => of.is_left_on(step) || minus.iter().any(|hole| hole.is_met_on(step)),
+        }
+    }
+
+    /// Whether the straight step between two positions (m) outside the shape goes through it.
+    fn is_met_on(&self, step: Segment) -> bool {
+        match self {
+            Self::Rectangle { min, max } => {
+                let corners = [*min, [max[0], min[1]], *max, [min[0], max[1]]];
+                polygon_edges(&corners).any(|edge| cross(step, edge))
+            }
+            Self::Disk { center, radius } => distance_to_segment(*center, step[0], step[1]) < *radius,
+            Self::Annulus { center, inner_radius, outer_radius } => {
+                let hole = Self::Disk { center: *center, radius: *inner_radius };
+                !step.iter().all(|end| hole.contains(*end))
+                    && distance_to_segment(*center, step[0], step[1]) < *outer_radius
+            }
+            Self::Polygon { points } => polygon_edges(points).any(|edge| cross(step, edge)),
+            Self::Patch => true,
+            Self::Difference { of, minus } => {
+                let within = |island: &Self| step.iter().all(|end| island.contains(*end)) && !island.is_left_on(step);
+                of.is_met_on(step) && !minus.iter().any(within)
+            }
+        }
+    }
+
     /// Smallest axis-aligned rectangle around the shape: lower left and upper right corner, m. That of the
     /// patch, which the shape does not know, is the whole plane; [`crate::scene::Mesh::extent`] clips it.
     pub fn bounding_box(&self) -> ([f64; 2], [f64; 2]) {
@@ -135,6 +169,17 @@ fn polygon_contains(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let crosses =
         |[[x0, y0], [x1, y1]]: &[[f64; 2]; 2]| (y0 > &y) != (y1 > &y) && x < x0 + (y - y0) / (y1 - y0) * (x1 - x0);
     polygon_edges(points).filter(crosses).count() % 2 == 1
+}
+
+/// A straight line between two positions, m.
+pub(crate) type Segment = [[f64; 2]; 2];
+
+/// Whether the step from a to b crosses a segment. A position on the line of the segment counts as one on its
+/// left, so that it has a side.
+pub(crate) fn cross([a, b]: Segment, [c, d]: Segment) -> bool {
+    let turn = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    let apart = (0..2).any(|i| a[i].max(b[i]) < c[i].min(d[i]) || c[i].max(d[i]) < a[i].min(b[i]));
+    !apart && (turn(c, d, a) >= 0.0) != (turn(c, d, b) >= 0.0) && turn(a, b, c) * turn(a, b, d) <= 0.0
 }
 
 /// Distance (m) of `position` from the segment between `from` and `to`.

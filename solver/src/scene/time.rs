@@ -8,7 +8,8 @@ use std::sync::Arc;
 pub struct TimeFactor {
     /// Its course.
     pub course: Course,
-    /// From this time on (s) the factor is zero: a load is gone, and a velocity is zero.
+    /// From this time on (s) the factor is zero: a load is gone, and a velocity is zero. Validation refuses
+    /// it for displacements.
     pub until: Option<f64>,
 }
 

@@ -40,6 +40,8 @@ const UNSETTLED: &str = "bodies wedged between others, or friction too large for
                          analysis.safety, or use larger cells where they meet";
 const TOO_FAST: &str = "bodies faster than contact can follow at this time step: give analysis.time_step as much less, or \
                         lower analysis.safety";
+const WIDEN_PART: &str = "a part shorter than the support of a function, or one that no body reaches: widen or move it, or \
+                          use smaller cells";
 const NO_EQUILIBRIUM: &str = "a load beyond the strength of the body, or a seed that cuts a part off: lower the load, or \
                               leave start.equilibrium out";
 const UNBALANCED: &str =
@@ -62,6 +64,7 @@ pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> 
         | Failure::SingularMass
         | Failure::NoStep
         | Failure::Unconverged(_) => (place, None),
+        Failure::HoldsNothing(condition) => (place, Some(format!("boundary.{condition}.from"))),
         Failure::NoEquilibrium(_) | Failure::Unbalanced(_) => (place, Some("start.equilibrium".to_string())),
     };
     let scene = key.map(|key| Box::new(SceneError { key, message: what.clone(), remedy: cause.clone() }));
@@ -102,6 +105,7 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
             ),
             TOO_FAST,
         ),
+        Failure::HoldsNothing(_) => ("the part of the side holds no control point of a body".to_string(), WIDEN_PART),
         Failure::NoEquilibrium(residual) => (
             format!("no static state was found: {residual:.1e} of the largest nodal force is out of balance"),
             NO_EQUILIBRIUM,

@@ -210,6 +210,7 @@ impl Simulation {
             | Failure::SingularMass
             | Failure::NoStep
             | Failure::NoPoints(_)
+            | Failure::HoldsNothing(_)
             | Failure::NoEquilibrium(_)
             | Failure::Unbalanced(_)
             | Failure::LostTraction { .. } => self.at_worst_point(&what, Some(&cause)),

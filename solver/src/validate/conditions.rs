@@ -19,6 +19,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         }
         motion(&key, boundary, findings);
         time::check(&key, &boundary.time, scene.analysis.end_time, findings);
+        end_of_displacement(&key, boundary, findings);
         supported(&key, boundary, scene, findings);
         if ground.is_sound && part(&key, boundary, &scene.mesh, findings) {
             held(&format!("{key}.side"), boundary, scene, findings);
@@ -47,6 +48,14 @@ fn motion(key: &str, boundary: &Boundary, findings: &mut Findings) {
         let name = ["x", "y"][d];
         let message = format!("the {name} {word} has no effect, because {name} is not in fix");
         findings.warn(format!("{key}.{word}"), message);
+    }
+}
+
+/// A displacement that ends would jump back.
+fn end_of_displacement(key: &str, boundary: &Boundary, findings: &mut Findings) {
+    if matches!(boundary.motion, Motion::Displacement(_)) && boundary.time.until.is_some() {
+        let message = "a displacement with an end would jump back to zero there";
+        findings.error(format!("{key}.time.until"), message, "remove until, or give a table that ends at 0");
     }
 }
 

@@ -1,6 +1,7 @@
 //! Conditions on sides and on parts of them: what is prescribed happens, and its work and reaction are known.
 
 use approx::assert_relative_eq;
+use fisura::Simulation;
 use fisura::dynamics::energy::Sample;
 use fisura::linear_algebra::extremes::larger;
 use fisura::scene::time::{Course, TimeFormula};
@@ -37,7 +38,8 @@ fn courses() -> Vec<TimeFactor> {
 #[test]
 fn every_course_closes_the_ledger_and_its_reaction_is_the_rate_of_the_momentum() {
     for time in courses() {
-        for motion in [Motion::Velocity([1.0, 0.0]), Motion::Displacement([1e-6, 0.0])] {
+        let displaced = time.until.is_none().then_some(Motion::Displacement([1e-6, 0.0]));
+        for motion in [Some(Motion::Velocity([1.0, 0.0])), displaced].into_iter().flatten() {
             let what = format!("{motion:?} {time:?}");
             let samples = run(&driven(motion, time.clone())).1;
             assert!(relative_closure(&samples) < 1e-12, "{what}: closure {:e}", relative_closure(&samples));
@@ -66,8 +68,9 @@ fn the_side_is_where_the_course_puts_it() {
             frame.patch().evaluate(&frame.displacement()[0], [0.0, 0.001]).unwrap().value
         };
         assert_relative_eq!(moved(Motion::Velocity([1.0, 0.0]), time.clone()), end, max_relative = 1e-3);
-        let last = if time.until.is_some() { 0.0 } else { 1e-6 };
-        assert_relative_eq!(moved(Motion::Displacement([1e-6, 0.0]), time), last, epsilon = 1e-18);
+        if time.until.is_none() {
+            assert_relative_eq!(moved(Motion::Displacement([1e-6, 0.0]), time), 1e-6, epsilon = 1e-18);
+        }
     }
 }
 
@@ -99,4 +102,44 @@ fn a_part_of_a_side_is_held_and_the_rest_is_free() {
         assert!(twice <= 1 && below.len() + above.len() - twice == all.len(), "p = {degree}: {below:?} {above:?}");
         assert!(below.len() >= 4 && above.len() >= 6, "p = {degree}");
     }
+}
+
+#[test]
+fn a_part_that_holds_nothing_is_bad_input() {
+    let mut scene = elastic_scene(2, [0.01; 2], [10; 2]);
+    let held = |from, to| Boundary { part: Some([from, to]), ..Boundary::fixed(Side::Left, [true, false]) };
+    let refused = |scene: &Scene| {
+        let breakdown = Simulation::new(scene).unwrap_err();
+        breakdown.scene.expect("an error of the scene").key
+    };
+    scene.boundaries = vec![held(0.0, 0.004), held(0.0051, 0.0052)];
+    assert_eq!(refused(&scene), "boundary.1.from", "shorter than the support of a function");
+    scene.boundaries = vec![held(0.004, 0.009)];
+    scene.bodies[0].shape = Shape::Rectangle { min: [0.0, 0.0], max: [0.01, 0.002] };
+    assert_eq!(refused(&scene), "boundary.0.from", "where no body is");
+}
+
+#[test]
+fn what_cannot_be_meant_is_refused() {
+    let keys = |change: fn(&mut Boundary)| {
+        let mut scene = driven(Motion::Velocity([1.0, 0.0]), TimeFactor::default());
+        change(&mut scene.boundaries[0]);
+        validate(&scene).unwrap_err().into_iter().map(|e| e.key).collect::<Vec<_>>()
+    };
+    assert_eq!(keys(|b| b.part = Some([0.001, 0.0])), ["boundary.0.to"]);
+    assert_eq!(keys(|b| b.part = Some([-1.0, 0.001])), ["boundary.0.from"]);
+    assert_eq!(keys(|b| b.part = Some([f64::NAN, 0.001])), ["boundary.0.to"]);
+    assert_eq!(keys(|b| b.time = TimeFactor::ramp(0.0)), ["boundary.0.time.ramp"]);
+    assert_eq!(keys(|b| b.time.until = Some(-1.0)), ["boundary.0.time.until"]);
+    assert_eq!(keys(|b| b.time.course = Course::Table(vec![[0.0, 0.0], [0.0, 1.0]])), ["boundary.0.time.table"]);
+    assert_eq!(
+        keys(|b| {
+            b.motion = Motion::Displacement([1e-6, 0.0]);
+            b.time.until = Some(1e-6);
+        }),
+        ["boundary.0.time.until"]
+    );
+    let mut twice = driven(Motion::Velocity([1.0, 0.0]), TimeFactor::default());
+    twice.boundaries.push(Boundary { part: Some([0.0, 0.001]), ..Boundary::fixed(Side::Left, [true, false]) });
+    assert_eq!(validate(&twice).unwrap_err()[0].key, "boundary.1.fix");
 }

@@ -16,7 +16,7 @@ fn a_fracturing_plate_closes_and_every_term_moves_closure() {
     let initial = Simulation::new(&scene).unwrap().sample().stored();
     let (simulation, samples) = run(&scene);
     assert!(simulation.steps() >= 150, "{} steps", simulation.steps());
-    let tip = |s: &Sample| s.fracture.as_ref().unwrap().crack_tip.unwrap()[0];
+    let tip = |s: &Sample| s.fracture.as_ref().unwrap().crack_tip.unwrap().place[0];
     let grown = tip(samples.last().unwrap()) - tip(&samples[0]);
     assert!(grown > 1e-3, "the crack grew by {grown:e} m");
     assert!(relative_closure(&samples) <= 1e-3, "closure {:e}", relative_closure(&samples));

@@ -196,3 +196,40 @@ fn a_body_without_a_point_is_bad_input() {
         assert!(validate(&scene).is_ok() && Simulation::new(&scene).is_ok(), "the remedy helps");
     }
 }
+
+/// A traction on an arc has the force and the moment of the arc; a pressure pushes against the normal, on a
+/// disk and in a hole.
+#[test]
+fn arcs_are_loaded() {
+    let (center, radius) = ([3.0, 3.1], 2.1);
+    let disk = Shape::Disk { center, radius };
+    let hole = Shape::Difference { of: Box::new(rectangle([0.0; 2], [6.0; 2])), minus: vec![disk.clone()] };
+    for (shape, inwards) in [(disk, 1.0), (hole, -1.0)] {
+        for angles in [[0.3, 0.9], [-2.0, 1.0], [0.0, std::f64::consts::TAU]] {
+            let edge = Edge::Arc { center, radius, angles };
+            let mesh = || Mesh::uniform([2; 2], [0.0; 2], [6.0; 2], [20, 20]);
+            let (swept, [sines, cosines]) = (angles[1] - angles[0], [angles.map(f64::sin), angles.map(f64::cos)]);
+            // integrals of the radial unit vector over the arc
+            let radial = [radius * (sines[1] - sines[0]), radius * (cosines[0] - cosines[1])];
+            for frame in FRAMES {
+                let scene = loaded(mesh(), shape.clone(), traction(edge.clone(), [1e6, -2e6]), frame);
+                let [fx, fy, moment] = force_and_moment(&scene);
+                let length = radius * swept;
+                let arm = [0, 1].map(|d| center[d] * length + radius * radial[d]);
+                let expected = [1e6 * length, -2e6 * length, -2e6 * arm[0] - 1e6 * arm[1]];
+                for (found, expected) in [fx, fy, moment].into_iter().zip(expected) {
+                    assert!(
+                        (found - expected).abs() <= 1e-9 * 1e7 * length,
+                        "{frame:?} {angles:?}: {found} {expected}"
+                    );
+                }
+            }
+            let load = Traction { edge, load: Load::Pressure(1e6), time: TimeFactor::default() };
+            let [fx, fy, _] = force_and_moment(&loaded(mesh(), shape.clone(), load, Frame::Total));
+            for (found, radial) in [fx, fy].into_iter().zip(radial) {
+                let expected = -1e6 * inwards * radial;
+                assert!((found - expected).abs() <= 1e-6 * 1e6 * radius, "{angles:?}: {found} {expected}");
+            }
+        }
+    }
+}

@@ -6,7 +6,7 @@ use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
 use fisura::validate::validate;
 
-use crate::common::{body, elastic_scene, rectangle, relative_closure, run};
+use crate::common::{annulus, body, elastic_scene, patch_scene, rectangle, relative_closure, run};
 
 fn slit(points: &[[f64; 2]]) -> Crack {
     Crack { points: points.to_vec(), kind: CrackKind::Slit }
@@ -99,6 +99,77 @@ fn a_gap_narrower_than_a_support_is_not_bridged() {
         let load = Traction { edge: Edge::Segment(ends), load: Load::Stress([0.0, 1e6]), time: TimeFactor::ramp(1e-6) };
         scene.bodies[0].tractions = vec![load];
         assert_eq!(speed_below(&run(&scene).0, 0.0), 0.0, "p = {degree}");
+    }
+}
+
+/// The material beyond a gap that is much thinner than the distance of points, of every kind of boundary.
+#[test]
+fn a_gap_thinner_than_the_distance_of_points_is_not_bridged() {
+    let band = |y: f64, slope: f64, width: f64| Shape::Polygon {
+        points: [[-0.01, 0.0], [0.02, 0.0], [0.02, width], [-0.01, width]]
+            .map(|[x, up]| [x, y + slope * (x - 0.005) + up])
+            .to_vec(),
+    };
+    let ring = Shape::Annulus { center: [0.005, -0.1], inner_radius: 0.105, outer_radius: 0.10502 };
+    let square = || Box::new(rectangle([0.0; 2], [0.01; 2]));
+    let gaps = [rectangle([-1.0, 0.00503], [1.0, 0.00504]), band(0.00503, 0.0, 1e-5), band(0.00503, 0.3, 1e-5), ring];
+    for (number, gap) in gaps.into_iter().enumerate() {
+        for degree in [1, 2, 3] {
+            let mut scene = pulled(degree, &[[0.0, 0.005], [0.01, 0.005]]);
+            let shape = Shape::Difference { of: square(), minus: vec![gap.clone()] };
+            scene.bodies[0].shape = shape;
+            scene.bodies[0].cracks.clear();
+            let ends = [[0.0, 0.01], [0.01, 0.01]];
+            let load = Load::Stress([0.0, 1e6]);
+            scene.bodies[0].tractions =
+                vec![Traction { edge: Edge::Segment(ends), load, time: TimeFactor::ramp(1e-6) }];
+            let (simulation, _) = run(&scene);
+            let mut most = 0.0;
+            simulation.for_each_point(&mut |point| {
+                if point.position[1] < 0.0034 {
+                    most = larger(most, point.velocity[0].hypot(point.velocity[1]));
+                }
+            });
+            assert_eq!(most, 0.0, "gap {number}, p = {degree}");
+        }
+    }
+}
+
+#[test]
+fn a_slit_parts_a_patch_with_a_geometry() {
+    for degree in [2, 3] {
+        let (sine, cosine) = 0.8_f64.sin_cos();
+        let mut scene = patch_scene(&annulus(degree, 12), degree);
+        scene.bodies[0].cracks = vec![slit(&[[cosine, sine], [2.0 * cosine, 2.0 * sine]])];
+        scene.bodies[0].tractions = vec![Traction::on(Side::Top, [1e6, 2e6], TimeFactor::ramp(1e-4))];
+        scene.analysis.end_time = 1e-3;
+        let (simulation, samples) = run(&scene);
+        let mut most = 0.0;
+        simulation.for_each_point(&mut |point| {
+            if point.position[1] < point.position[0] * 0.8_f64.tan() {
+                most = larger(most, point.velocity[0].hypot(point.velocity[1]));
+            }
+        });
+        assert_eq!(most, 0.0, "p = {degree}");
+        assert!(samples.last().unwrap().kinetic > 0.0 && relative_closure(&samples) < 1e-9, "p = {degree}");
+    }
+}
+
+/// A load beside a slit whose side has no point in the span under it goes to the next span of that side.
+#[test]
+fn a_load_stays_on_its_side_of_a_slit() {
+    for degree in [1, 2, 3] {
+        let mut scene = pulled(degree, &[[0.0, 0.0005], [0.0095, 0.01]]);
+        let ends = [[0.0, 0.01], [0.0094, 0.01]];
+        let load = Load::Stress([0.0, 1e6]);
+        scene.bodies[0].tractions = vec![Traction { edge: Edge::Segment(ends), load, time: TimeFactor::ramp(1e-6) }];
+        let mut most = 0.0;
+        run(&scene).0.for_each_point(&mut |point| {
+            if point.position[1] < point.position[0] + 0.0004 {
+                most = larger(most, point.velocity[0].hypot(point.velocity[1]));
+            }
+        });
+        assert_eq!(most, 0.0, "p = {degree}");
     }
 }
 

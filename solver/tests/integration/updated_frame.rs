@@ -132,7 +132,7 @@ fn notched_plate_in_both_frames(cells: usize) -> ([f64; 4], f64) {
     let (mut apart, mut tips_apart) = ([0.0_f64; 4], 0.0_f64);
     for (a, b) in moving.iter().zip(&fixed) {
         let energies = |s: &Sample| [s.kinetic, s.elastic, s.fracture.as_ref().unwrap().energy, s.external_work];
-        let tip = |s: &Sample| s.fracture.as_ref().unwrap().crack_tip.unwrap()[0];
+        let tip = |s: &Sample| s.fracture.as_ref().unwrap().crack_tip.unwrap().place[0];
         apart = [0, 1, 2, 3].map(|i| larger(apart[i], (energies(a)[i] - energies(b)[i]).abs()));
         tips_apart = larger(tips_apart, (tip(a) - tip(b)).abs());
     }

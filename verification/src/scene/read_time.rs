@@ -100,7 +100,7 @@ fn plain_numbers(text: &str) -> Result<String, String> {
     while let Some(start) = rest.find(|c: char| c.is_ascii_digit() || c == '.') {
         let (before, number) = rest.split_at(start);
         plain.push_str(before);
-        let in_a_name = before.chars().next_back().is_some_and(|c| c.is_alphabetic() || c == '_');
+        let in_a_name = plain.chars().next_back().is_some_and(|c| c.is_alphanumeric() || c == '_');
         let end = if in_a_name { 1 } else { units::number_end(number).max(1) };
         let after = &number[end..];
         let gap = after.len() - after.trim_start_matches(' ').len();

@@ -46,6 +46,12 @@ impl TotalFrame {
             .map(|f| LatticeFracture::new(&lattice, body, FractureModel::new(f), &scene.solver))
             .transpose()?;
         let mass = MassMatrix::new(&lattice, material.density, scene.analysis.mass, held)?;
+        if let Some(number) = constraints.conditions().iter().enumerate().position(|(number, condition)| {
+            let moves = |(at, _, of): (usize, usize, usize)| of == number && mass.moves(at);
+            condition.part.is_some() && !constraints.iter().any(moves)
+        }) {
+            return Err(Failure::HoldsNothing(number));
+        }
         let load = |(number, traction)| {
             let load = NodalLoad::new(&patch, &lattice, body, traction, |at| mass.moves(at));
             load.map_err(|lost| Failure::LostTraction { body: 0, traction: number, lost })

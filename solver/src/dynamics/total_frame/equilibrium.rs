@@ -9,17 +9,20 @@ use super::tangent::Tangent;
 use crate::dynamics::critical_step::StiffnessOperator;
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::largest;
+use crate::linear_algebra::lane::Lane;
 use crate::scene::Kinematics;
 
-/// Largest force out of balance, of the largest nodal force.
+/// Largest force out of balance, of the largest nodal force; and distance of c from 1 in an intact body.
 const TOLERANCE: f64 = 1e-9;
-/// Reduction of the residual by a linear solve; one of a linear body is the whole solution.
+/// Reduction of the residual by a linear solve, which the next step of Newton's method squares; the one of a
+/// linear body is the whole solution, beyond [`TOLERANCE`].
 const REDUCTION: f64 = 1e-4;
 const LINEAR_REDUCTION: f64 = 1e-11;
-/// Most steps of Newton's method, and halvings of one.
+/// Most steps of Newton's method, and halvings of one: it converges in a few, or not at all.
 const MOST_STEPS: usize = 50;
 const MOST_HALVINGS: usize = 10;
-/// Most iterations of a linear solve, per unknown along the longer side of the mesh.
+/// Most iterations of a linear solve, per control point along the longer side of the mesh: their number grows
+/// with that of control points across the body, and a slender one needs more.
 const MOST_ITERATIONS: usize = 20;
 /// Resultant of loads that counts as none, of the sum of their magnitudes.
 const BALANCED: f64 = 1e-9;
@@ -31,28 +34,29 @@ impl TotalFrame {
     /// Loads that would accelerate a body that nothing holds; no convergence.
     pub(super) fn find_equilibrium(&mut self) -> Result<(), Failure> {
         self.internal_forces(); // sets the phase field at the points
-        let linear = self.fracture.is_none() && self.kinematics == Kinematics::Small;
-        let reduction = if linear { LINEAR_REDUCTION } else { REDUCTION };
-        let (mut residual, mut scale) = self.out_of_balance();
-        self.refuse_unbalanced(&residual)?;
+        let intact = |c: &Lane| c.0.iter().all(|c| (c - 1.0).abs() <= TOLERANCE);
+        let is_intact = self.fracture.as_ref().is_none_or(|fracture| fracture.phase.iter().all(intact));
+        let linear = is_intact && self.kinematics == Kinematics::Small;
+        let free = self.free_components();
+        let (mut residual, mut scale) = self.out_of_balance(&free);
+        self.refuse_unbalanced(&free, &residual)?;
         for _ in 0..MOST_STEPS {
-            let before = norm(&residual);
             if largest(residual.iter().map(|r| r.abs())) <= TOLERANCE * scale {
                 return Ok(());
             }
             let change = if linear {
-                self.solve(&mut self.stiffness_operator(), &residual, reduction)?
+                self.solve(&mut self.stiffness_operator(), &residual, LINEAR_REDUCTION)?
             } else {
-                self.solve(&mut Tangent::new(self), &residual, reduction)?
+                self.solve(&mut Tangent::new(self), &residual, REDUCTION)?
             };
-            let mut part = 1.0;
-            self.displace(&change, part);
+            let (before, mut part) = (norm(&residual), 1.0);
             for _ in 0..MOST_HALVINGS {
-                (residual, scale) = self.out_of_balance();
+                self.displace(&free, &change, part);
+                (residual, scale) = self.out_of_balance(&free);
                 if norm(&residual) < before {
                     break;
                 }
-                self.displace(&change, -0.5 * part);
+                self.displace(&free, &change, -part);
                 part *= 0.5;
             }
         }
@@ -60,8 +64,8 @@ impl TotalFrame {
     }
 
     /// Adds a part of a change of the free components.
-    fn displace(&mut self, change: &[f64], part: f64) {
-        for (&(at, component), change) in self.free_components().iter().zip(change) {
+    fn displace(&mut self, free: &[(usize, usize)], change: &[f64], part: f64) {
+        for (&(at, component), change) in free.iter().zip(change) {
             self.displacement[component][at] += fault!("static-start-short", part => 0.99 * part) * change;
         }
         if let Some(sheets) = self.lattice.sheets() {
@@ -70,23 +74,20 @@ impl TotalFrame {
     }
 
     /// External minus internal force at the free components, and the largest internal or external one, N/m.
-    fn out_of_balance(&mut self) -> (Vec<f64>, f64) {
+    fn out_of_balance(&mut self, free: &[(usize, usize)]) -> (Vec<f64>, f64) {
         let mut internal = [self.grid.zeros(), self.grid.zeros()];
         self.forces_now(&self.displacement, &mut self.strip_forces(), &mut internal);
         self.internal = internal;
         self.external_minus_internal();
-        let residual: Vec<f64> =
-            self.free_components().iter().map(|&(at, component)| self.acceleration[component][at]).collect();
+        let residual = free.iter().map(|&(at, component)| self.acceleration[component][at]).collect();
         let inner = self.internal.iter().flatten().map(|f| f.abs());
         let outer = self.acceleration.iter().zip(&self.internal).flat_map(|(net, f)| net.iter().zip(f));
-        let scale = largest(inner.chain(outer.map(|(net, f)| (net + f).abs())));
-        (residual, scale)
+        (residual, largest(inner.chain(outer.map(|(net, f)| (net + f).abs()))))
     }
 
     /// Refuses forces along rigid motions that no condition holds.
-    fn refuse_unbalanced(&self, residual: &[f64]) -> Result<(), Failure> {
+    fn refuse_unbalanced(&self, free: &[(usize, usize)], residual: &[f64]) -> Result<(), Failure> {
         let [x, y] = self.control_positions();
-        let free = self.free_components();
         let held: Vec<_> = self.constraints.iter().map(|(at, component, _)| (at, component)).collect();
         let mass = self.mass.row_sums();
         let total: f64 = mass.iter().sum();

@@ -16,7 +16,7 @@ use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::{growth, hencky_strain, symmetric};
 use crate::output::inspection::InvertedPoint;
 use crate::particles::lattice::Lattice;
-use crate::phase_field::fracture::{LatticeFracture, crack_tip, most_broken};
+use crate::phase_field::fracture::{CrackTip, LatticeFracture, crack_tip, most_broken};
 use crate::scene::{Kinematics, Shape};
 use crate::splines::patch::Patch;
 
@@ -87,7 +87,7 @@ impl TotalFrame {
         ProbeSample::new(&probe.name, [ux.value, uy.value, vx, vy, xx, yy, xy])
     }
 
-    fn crack_tip(&self, fracture: &LatticeFracture) -> Option<[f64; 2]> {
+    fn crack_tip(&self, fracture: &LatticeFracture) -> Option<CrackTip> {
         let phase = fracture.field.control_values();
         let gradient = |position| self.patch.evaluate(phase, position).unwrap_or_default().gradient;
         crack_tip(self.crack_start?, &fracture.broken_points(&self.lattice), gradient)

@@ -1,7 +1,8 @@
 //! Prescribed motion in the total frame, and the reactions to it.
 //!
-//! Between two whole steps a prescribed component moves with the mean velocity w of what is prescribed, so
-//! that its displacement is exact at whole steps. Its acceleration is the one of velocity Verlet:
+//! Between two whole steps a prescribed component moves with one velocity w: the change of a prescribed
+//! displacement over the step, or a prescribed velocity in the middle of it. Its acceleration is that of
+//! velocity Verlet:
 //!
 //! ```text
 //! a_n = (w_n+1/2 − w_n−1/2)/dt,   at t = 0: a_0 = 2 (w_1/2 − v_0)/dt
@@ -74,12 +75,9 @@ impl Reactions {
             let change = self.0[number].velocity[0][component] - velocity[component][at];
             acceleration[component][at] = if dt > 0.0 { change / (part * dt) } else { 0.0 };
         }
-        for (number, reaction) in self.0.iter_mut().enumerate() {
-            for component in 0..2 {
-                let points = constraints.iter().filter(|&(_, c, n)| c == component && n == number);
-                let inertia = mass.sum_at(&acceleration[component], points.map(|(at, _, _)| at));
-                reaction.force[0][component] += fault!("reaction-without-inertia", inertia => 0.0);
-            }
+        let inertia = [0, 1].map(|component| mass.product(&acceleration[component]));
+        for (at, component, number) in constraints.iter() {
+            self.0[number].force[0][component] += fault!("reaction-without-inertia", inertia[component](at) => 0.0);
         }
     }
 

@@ -16,7 +16,7 @@ use crate::material::hencky::{Gradient, growth};
 use crate::output::inspection::InvertedPoint;
 use crate::particles::points::{Cells, Point};
 use crate::phase_field::PhaseFieldCounts;
-use crate::phase_field::fracture::{BrokenPoint, crack_tip, most_broken};
+use crate::phase_field::fracture::{BrokenPoint, CrackTip, crack_tip, most_broken};
 use crate::splines::patch::Patch;
 
 impl UpdatedFrame {
@@ -193,8 +193,8 @@ impl DiscreteField {
         }
     }
 
-    /// Tip of the crack, m.
-    pub fn crack_tip(&self) -> Option<[f64; 2]> {
+    /// Tip of the crack.
+    pub fn crack_tip(&self) -> Option<CrackTip> {
         let phase = self.fracture.as_ref()?.field.control_values();
         let gradient = |position| self.patch.evaluate(phase, position).unwrap_or_default().gradient;
         crack_tip(self.crack_start?, &self.broken_points(), gradient)

@@ -13,16 +13,16 @@ use super::{Lattice, Row, STRIP_ROWS};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::Lane;
 use crate::scene::Shape;
+use crate::scene::shape::{Segment, cross};
 
-/// Parts of a step at which it is looked for a gap.
-const BETWEEN: [f64; 3] = [0.25, 0.5, 0.75];
-
-/// A straight part of a slit, m.
-type Segment = [[f64; 2]; 2];
 /// Column and row of a point among all points of the lattice.
 type PointIndex = [usize; 2];
-/// Component of the support of a function that each of its places belongs to.
-type Components = BTreeMap<PointIndex, usize>;
+/// Columns and rows from a point to half of its neighbours; the others have it ahead of them.
+const AHEAD: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
+/// Bit of a point that exists, beside those of its neighbours ahead.
+const EXISTS: u8 = 1 << AHEAD.len();
+/// Component of a point that does not exist.
+const NONE: usize = usize::MAX;
 
 /// Points of a span that belong to the same components of all its functions.
 struct Group {
@@ -47,12 +47,13 @@ struct SheetRows {
 impl Lattice {
     /// Parts the control points along slits, and along the gaps of a shape that are narrower than a support.
     pub(super) fn part(&mut self, segments: &[Segment], shape: Option<&Shape>) {
-        let mut groups = PointGrid::new(self, segments, shape).groups();
+        let mut groups = PointGraph::new(self, segments, shape).groups();
         let sheets = choose_sheets(&mut groups);
         if sheets > 1 {
             groups.sort_by_key(|group| group.sheet);
             let windows = self.add_rows(&groups, sheets);
             self.move_points(&groups, &windows);
+            self.sheets.iter_mut().for_each(|sheets| sheets.slits = segments.to_vec());
         }
     }
 
@@ -103,16 +104,14 @@ impl Lattice {
 
     /// Moves the points of groups to the rows of their sheets, and ties the copies of whole functions.
     fn move_points(&mut self, groups: &[Group], windows: &[SheetRows]) {
+        let columns = self.span_columns();
         let mut moved = Vec::new();
-        {
-            let grid = PointGrid::new(self, &[], None);
-            for group in groups {
-                let SheetRows { taken, added, lift } = windows[group.sheet];
-                for &place in &group.places {
-                    let (batch, lane) = grid.batch(place);
-                    let (row, tile, b, a) = self.unbatch(batch);
-                    moved.push((batch, self.batch(row + added - taken, tile, b, a), lane, group.first, lift));
-                }
+        for group in groups {
+            let SheetRows { taken, added, lift } = windows[group.sheet];
+            for &place in &group.places {
+                let (batch, lane) = self.batch_of(&columns, place);
+                let (row, tile, b, a) = self.unbatch(batch);
+                moved.push((batch, self.batch(row + added - taken, tile, b, a), lane, group.first, lift));
             }
         }
         let positions: Vec<_> = moved.iter().map(|&(batch, _, lane, ..)| self.position(batch, lane)).collect();
@@ -140,6 +139,18 @@ impl Lattice {
         sheets.ties.sort_unstable();
         sheets.ties.dedup();
     }
+
+    /// Tile and lane of every column of spans.
+    fn span_columns(&self) -> Vec<(usize, usize)> {
+        self.tiles.iter().enumerate().flat_map(|(tile, t)| (0..t.count).map(move |lane| (tile, lane))).collect()
+    }
+
+    /// Batch and lane of a point.
+    fn batch_of(&self, columns: &[(usize, usize)], [i, j]: PointIndex) -> (usize, usize) {
+        let [nx, ny] = self.points;
+        let (tile, lane) = columns[i / nx];
+        (self.batch(j / ny, tile, j % ny, i % nx), lane)
+    }
 }
 
 /// Puts every group on the first sheet on which no function would belong to two components; the number of
@@ -162,155 +173,188 @@ fn choose_sheets(groups: &mut [Group]) -> usize {
     taken.len()
 }
 
-/// The points of a lattice as a grid, and the slits.
-struct PointGrid<'a> {
+/// The points of a lattice and which neighbours are joined.
+struct PointGraph<'a> {
     lattice: &'a Lattice,
     /// Tile and lane of every column of spans.
     columns: Vec<(usize, usize)>,
-    segments: &'a [Segment],
-    /// The body, if its boundary does not end on the lattice.
-    shape: Option<&'a Shape>,
+    /// Columns and rows of points.
+    size: [usize; 2],
+    /// First functions of the columns and rows of spans.
+    firsts: [Vec<usize>; 2],
+    /// Of every point, column by column: whether it exists, and to which neighbours ahead it is joined.
+    links: Vec<u8>,
 }
 
-impl<'a> PointGrid<'a> {
-    fn new(lattice: &'a Lattice, segments: &'a [Segment], shape: Option<&'a Shape>) -> Self {
-        let tiles = lattice.tiles.iter().enumerate();
-        let columns = tiles.flat_map(|(tile, t)| (0..t.count).map(move |lane| (tile, lane))).collect();
-        Self { lattice, columns, segments, shape }
+/// The component of every point in the support of a function.
+struct Components {
+    window: [Range<usize>; 2],
+    /// Column by column; [`NONE`] where there is no point.
+    labels: Vec<usize>,
+}
+
+impl Components {
+    fn index(&self, [i, j]: PointIndex) -> usize {
+        (i - self.window[0].start) * self.window[1].len() + j - self.window[1].start
     }
 
-    /// Row of spans, tile, point in the span and lane of a place.
-    fn parts(&self, [i, j]: PointIndex) -> (usize, usize, usize, usize, usize) {
-        let [nx, ny] = self.lattice.points;
-        let (tile, lane) = self.columns[i / nx];
-        (j / ny, tile, j % ny, i % nx, lane)
+    fn contains(&self, [i, j]: PointIndex) -> bool {
+        self.window[0].contains(&i) && self.window[1].contains(&j)
     }
 
-    fn batch(&self, place: PointIndex) -> (usize, usize) {
-        let (row, tile, b, a, lane) = self.parts(place);
-        (self.lattice.batch(row, tile, b, a), lane)
+    fn points(&self) -> impl Iterator<Item = PointIndex> + '_ {
+        let [columns, rows] = self.window.clone();
+        let all = columns.flat_map(move |i| rows.clone().map(move |j| [i, j]));
+        all.filter(|&point| self.labels[self.index(point)] != NONE)
     }
+}
 
-    fn position(&self, place: PointIndex) -> [f64; 2] {
-        let (batch, lane) = self.batch(place);
-        self.lattice.position(batch, lane)
-    }
-
-    fn exists(&self, place: PointIndex) -> bool {
-        let (row, tile, b, a, lane) = self.parts(place);
-        self.lattice.weight(row, tile, b, a)[lane] > 0.0
-    }
-
-    /// Whether neither a slit nor a gap lies between two places.
-    fn joined(&self, a: PointIndex, b: PointIndex) -> bool {
-        let [a, b] = [a, b].map(|place| self.position(place));
-        let between = |t: f64| [0, 1].map(|d| a[d] + t * (b[d] - a[d]));
-        let material = |shape: &Shape| BETWEEN.into_iter().all(|t| shape.contains(between(t)));
-        let cut = self.segments.iter().any(|segment| cross([a, b], *segment));
-        !fault!("slit-bridged", cut => false) && self.shape.is_none_or(material)
-    }
-
-    /// First control column of a column of spans.
-    fn first_column(&self, column: usize) -> usize {
-        let (tile, lane) = self.columns[column];
-        self.lattice.tiles[tile].first + lane
-    }
-
-    /// Places in the spans whose functions include one.
-    fn support(&self, [column, row]: FunctionIndex) -> [Range<usize>; 2] {
-        let Lattice { degree: [p, q], points: [nx, ny], ref rows, patch_rows, .. } = *self.lattice;
-        let range = |count: usize, first: &dyn Fn(usize) -> usize, at: usize, degree: usize, points: usize| {
-            let numbers: Vec<usize> = (0..count).filter(|&n| (first(n)..=first(n) + degree).contains(&at)).collect();
-            numbers.first().map_or(0..0, |low| low * points..(numbers[numbers.len() - 1] + 1) * points)
-        };
-        [
-            range(self.columns.len(), &|n| self.first_column(n), column, p, nx),
-            range(patch_rows, &|n| rows[n].first, row, q, ny),
-        ]
-    }
-
-    /// Functions of the span of a place.
-    fn functions(&self, [i, j]: PointIndex) -> impl Iterator<Item = FunctionIndex> + use<'a> {
-        let [p, q] = self.lattice.degree;
-        let [nx, ny] = self.lattice.points;
-        let (column, row) = (self.first_column(i / nx), self.lattice.rows[j / ny].first);
-        (row..=row + q).flat_map(move |row| (column..=column + p).map(move |column| [column, row]))
-    }
-
-    /// Places whose step to a neighbour is cut.
-    fn cut_places(&self) -> BTreeSet<PointIndex> {
-        let [nx, ny] = self.lattice.points;
-        let [columns, rows] = [self.columns.len() * nx, self.lattice.patch_rows * ny];
-        let mut cut = BTreeSet::new();
-        for i in 0..columns {
-            for j in 0..rows {
-                let ahead = [(i + 1, j), (i, j + 1), (i + 1, j + 1), (i + 1, j.wrapping_sub(1))];
-                for next in ahead.into_iter().filter(|&(i, j)| i < columns && j < rows).map(|(i, j)| [i, j]) {
-                    let exist = [[i, j], next].map(|place| self.exists(place));
-                    if exist != [false; 2] && !(exist == [true; 2] && self.joined([i, j], next)) {
-                        cut.extend([[i, j], next]);
-                    }
+impl<'a> PointGraph<'a> {
+    /// Neighbours are joined unless the step between them crosses one of the `slits` (m) or leaves the shape.
+    fn new(lattice: &'a Lattice, slits: &[Segment], shape: Option<&Shape>) -> Self {
+        let columns = lattice.span_columns();
+        let size = [columns.len() * lattice.points[0], lattice.patch_rows * lattice.points[1]];
+        let firsts = [
+            columns.iter().map(|&(tile, lane)| lattice.tiles[tile].first + lane).collect(),
+            lattice.rows[..lattice.patch_rows].iter().map(|row| row.first).collect(),
+        ];
+        let mut graph = Self { lattice, columns, size, firsts, links: vec![0; size[0] * size[1]] };
+        for point in graph.all() {
+            let (batch, lane) = lattice.batch_of(&graph.columns, point);
+            let (row, tile, b, a) = lattice.unbatch(batch);
+            if lattice.weight(row, tile, b, a)[lane] > 0.0 {
+                graph.links[point[0] * size[1] + point[1]] = EXISTS;
+            }
+        }
+        for point in graph.all().filter(|_| !slits.is_empty() || shape.is_some()) {
+            for (bit, next) in graph.ahead(point) {
+                let step = [point, next].map(|point| graph.position(point));
+                let cut = slits.iter().any(|slit| fault!("slit-bridged", cross(step, *slit) => false));
+                if graph.exists(point) && graph.exists(next) && !cut && !shape.is_some_and(|s| s.is_left_on(step)) {
+                    graph.links[point[0] * size[1] + point[1]] |= 1 << bit;
                 }
             }
         }
-        cut
+        graph
+    }
+
+    fn all(&self) -> impl Iterator<Item = PointIndex> + use<> {
+        let [columns, rows] = self.size;
+        (0..columns).flat_map(move |i| (0..rows).map(move |j| [i, j]))
+    }
+
+    fn links(&self, [i, j]: PointIndex) -> u8 {
+        self.links[i * self.size[1] + j]
+    }
+
+    fn exists(&self, point: PointIndex) -> bool {
+        self.links(point) & EXISTS != 0
+    }
+
+    fn position(&self, point: PointIndex) -> [f64; 2] {
+        let (batch, lane) = self.lattice.batch_of(&self.columns, point);
+        self.lattice.position(batch, lane)
+    }
+
+    /// The point a step from another one, forwards or backwards, if it is on the lattice.
+    fn step(&self, [i, j]: PointIndex, [columns, rows]: [isize; 2]) -> Option<PointIndex> {
+        let next = [i.checked_add_signed(columns)?, j.checked_add_signed(rows)?];
+        (next[0] < self.size[0] && next[1] < self.size[1]).then_some(next)
+    }
+
+    /// Neighbours ahead, each with its bit.
+    fn ahead(&self, point: PointIndex) -> impl Iterator<Item = (usize, PointIndex)> + use<> {
+        AHEAD.map(|step| self.step(point, step)).into_iter().enumerate().filter_map(|(bit, next)| Some((bit, next?)))
+    }
+
+    /// Neighbours that a point is joined to.
+    fn joined(&self, point: PointIndex) -> impl Iterator<Item = PointIndex> + '_ {
+        let linked = |bit: usize, from: PointIndex| self.links(from) & (1 << bit) != 0;
+        AHEAD.into_iter().enumerate().flat_map(move |(bit, [columns, rows])| {
+            let ahead = self.step(point, [columns, rows]).filter(|_| linked(bit, point));
+            let behind = self.step(point, [-columns, -rows]).filter(|behind| linked(bit, *behind));
+            ahead.into_iter().chain(behind)
+        })
+    }
+
+    /// First control point of the span of a point.
+    fn first(&self, point: PointIndex) -> FunctionIndex {
+        [0, 1].map(|d| self.firsts[d][point[d] / self.lattice.points[d]])
+    }
+
+    /// Functions of a span, given by its first one.
+    fn functions(&self, [column, row]: FunctionIndex) -> impl Iterator<Item = FunctionIndex> + use<> {
+        let [p, q] = self.lattice.degree;
+        (row..=row + q).flat_map(move |row| (column..=column + p).map(move |column| [column, row]))
+    }
+
+    /// Spans with a point whose step to a neighbour is cut, by their first functions.
+    fn cut_spans(&self) -> BTreeSet<FunctionIndex> {
+        let mut spans = BTreeSet::new();
+        for point in self.all() {
+            for (bit, next) in self.ahead(point) {
+                let either = self.exists(point) || self.exists(next);
+                if either && self.links(point) & (1 << bit) == 0 {
+                    spans.extend([point, next].map(|point| self.first(point)));
+                }
+            }
+        }
+        spans
+    }
+
+    /// Points in the support of a function.
+    fn support(&self, [column, row]: FunctionIndex) -> [Range<usize>; 2] {
+        let at = [column, row];
+        [0, 1].map(|d| {
+            let (firsts, points) = (&self.firsts[d], self.lattice.points[d]); // of spans, in increasing order
+            let before = |function: usize| firsts.partition_point(|first| *first < function) * points;
+            before(at[d].saturating_sub(self.lattice.degree[d]))..before(at[d] + 1)
+        })
     }
 
     /// Components of the support of a function, if there are several.
     fn components(&self, function: FunctionIndex) -> Option<Components> {
-        let [columns, rows] = self.support(function);
-        let places = rows.flat_map(|j| columns.clone().map(move |i| [i, j]));
-        let existing: BTreeSet<PointIndex> = places.filter(|&place| self.exists(place)).collect();
-        let (mut components, mut count) = (Components::new(), 0);
-        for &start in &existing {
-            if components.contains_key(&start) {
+        let window = self.support(function);
+        let mut found = Components { labels: vec![NONE; window[0].len() * window[1].len()], window };
+        let [columns, rows] = found.window.clone();
+        let mut count = 0;
+        for start in columns.flat_map(|i| rows.clone().map(move |j| [i, j])) {
+            if !self.exists(start) || found.labels[found.index(start)] != NONE {
                 continue;
             }
             let mut open = vec![start];
-            components.insert(start, count);
-            while let Some([i, j]) = open.pop() {
-                let rows = j.saturating_sub(1)..=j + 1;
-                let around = rows.flat_map(|j| (i.saturating_sub(1)..=i + 1).map(move |i| [i, j]));
-                for next in around.filter(|next| existing.contains(next)) {
-                    if !components.contains_key(&next) && self.joined([i, j], next) {
-                        components.insert(next, count);
-                        open.push(next);
-                    }
+            while let Some(point) = open.pop() {
+                let index = found.index(point);
+                if found.labels[index] == NONE {
+                    found.labels[index] = count;
+                    open.extend(self.joined(point).filter(|next| found.contains(*next)));
                 }
             }
             count += 1;
         }
-        (count > 1).then_some(components)
+        (count > 1).then_some(found)
     }
 
     /// Groups of the points in all spans that have a parted function.
     fn groups(&self) -> Vec<Group> {
         let near: BTreeSet<FunctionIndex> =
-            self.cut_places().into_iter().flat_map(|place| self.functions(place)).collect();
+            self.cut_spans().into_iter().flat_map(|first| self.functions(first)).collect();
         let parted: BTreeMap<FunctionIndex, Components> =
             near.into_iter().filter_map(|function| Some((function, self.components(function)?))).collect();
+        let points: BTreeSet<PointIndex> = parted.values().flat_map(Components::points).collect();
         let mut groups: BTreeMap<(FunctionIndex, Vec<Option<usize>>), Vec<PointIndex>> = BTreeMap::new();
-        let places: BTreeSet<PointIndex> = parted.values().flat_map(|components| components.keys().copied()).collect();
-        for place in places {
-            let of = |function: FunctionIndex| parted.get(&function).map(|components| components[&place]);
-            let key: Vec<Option<usize>> = self.functions(place).map(of).collect();
-            let [_, ny] = self.lattice.points;
-            let first = [self.first_column(place[0] / self.lattice.points[0]), self.lattice.rows[place[1] / ny].first];
-            groups.entry((first, key)).or_default().push(place);
+        for point in points {
+            let of = |function| parted.get(&function).map(|parts: &Components| parts.labels[parts.index(point)]);
+            let first = self.first(point);
+            groups.entry((first, self.functions(first).map(of).collect())).or_default().push(point);
         }
-        let group = |((first, key), places): ((FunctionIndex, Vec<Option<usize>>), Vec<PointIndex>)| {
-            let functions = self.functions(places[0]).zip(key).collect();
-            let row = places[0][1] / self.lattice.points[1];
-            Group { first, row, places, functions, sheet: 0 }
+        let group = |((first, components), places): ((FunctionIndex, Vec<_>), Vec<PointIndex>)| Group {
+            first,
+            row: places[0][1] / self.lattice.points[1],
+            functions: self.functions(first).zip(components).collect(),
+            places,
+            sheet: 0,
         };
         groups.into_iter().map(group).collect()
     }
-}
-
-/// Whether the step from a to b crosses a segment. A point on the line of the segment counts as one on its
-/// left, so that it has a side.
-fn cross([a, b]: Segment, [c, d]: Segment) -> bool {
-    let turn = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
-    let apart = (0..2).any(|i| a[i].max(b[i]) < c[i].min(d[i]) || c[i].max(d[i]) < a[i].min(b[i]));
-    !apart && (turn(c, d, a) >= 0.0) != (turn(c, d, b) >= 0.0) && turn(a, b, c) * turn(a, b, d) <= 0.0
 }

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
+use crate::scene::shape::{Segment, cross};
 
 /// Column and row of a control point of the patch.
 pub(super) type FunctionIndex = [usize; 2];
@@ -23,16 +24,28 @@ pub(crate) struct Sheets {
     /// Of the spans with copies, by their first control point: positions of points (m), and the rows by which
     /// their control points lie behind those of the patch.
     pub(super) points: BTreeMap<FunctionIndex, Vec<([f64; 2], usize)>>,
+    /// Straight parts of the slits, m.
+    pub(super) slits: Vec<Segment>,
 }
 
 impl Sheets {
     /// Rows by which the control points of a position (m) lie behind those of the patch, in the span with
-    /// this first control point: those of the nearest point.
-    pub(crate) fn lift(&self, first: FunctionIndex, [x, y]: [f64; 2]) -> usize {
+    /// this first control point: those of the nearest point on its side of the slits, if one is there.
+    pub(crate) fn lift(&self, first: FunctionIndex, position: [f64; 2]) -> usize {
         let Some(points) = self.points.get(&first) else { return 0 };
-        let distance = |point: &[f64; 2]| (point[0] - x).hypot(point[1] - y);
-        let nearest = points.iter().min_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0)));
-        nearest.map_or(0, |(_, lift)| *lift)
+        let distance = |point: &[f64; 2]| (point[0] - position[0]).hypot(point[1] - position[1]);
+        let apart = |point: &[f64; 2]| !self.on_one_side(*point, position);
+        let order = |a: &[f64; 2], b: &[f64; 2]| apart(a).cmp(&apart(b)).then(distance(a).total_cmp(&distance(b)));
+        points.iter().min_by(|a, b| order(&a.0, &b.0)).map_or(0, |(_, lift)| *lift)
+    }
+
+    /// Whether the span with this first control point has a point on the side of a position (m).
+    pub(crate) fn has_side(&self, first: FunctionIndex, position: [f64; 2]) -> bool {
+        self.points.get(&first).is_none_or(|points| points.iter().any(|point| self.on_one_side(point.0, position)))
+    }
+
+    fn on_one_side(&self, a: [f64; 2], b: [f64; 2]) -> bool {
+        !self.slits.iter().any(|slit| cross([a, b], *slit))
     }
 
     /// The control point that one copies, or itself.
