@@ -128,6 +128,9 @@ impl Simulation {
         // within the pool of rayon: from outside, every parallel loop would wake it and wait for it
         let sampled = self.steps.is_multiple_of(self.plan.steps_per_sample);
         let result = rayon::scope(|_| self.frame.step(self.plan.step, sampled));
+        if sampled {
+            either!(&mut self.frame, body => body.note_crack_start());
+        }
         self.judge(result).inspect_err(|_| self.failed = true)
     }
 
@@ -144,7 +147,6 @@ impl Simulation {
         for _ in 0..self.plan.steps_per_sample {
             self.step()?;
         }
-        either!(&mut self.frame, body => body.note_crack_start());
         let sample = self.sample();
         self.watch_ledger(&sample)?;
         Ok(sample)

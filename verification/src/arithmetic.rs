@@ -61,7 +61,7 @@ impl FromStr for Arithmetic {
             return Err(format!("the formula has {} bytes; at most {LONGEST} are allowed", text.len()));
         }
         if text.trim().is_empty() {
-            return Err("no column is named".to_string());
+            return Err("the formula is blank".to_string());
         }
         if text.contains('^') {
             return Err(format!("{text:?} has a ^; write pow(a, b)"));

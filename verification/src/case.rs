@@ -265,9 +265,10 @@ impl Case {
         }
     }
 
-    /// Fingerprint of all it says: its file, the base and the sets of checks that it names, and overrides.
+    /// Fingerprint of all it says: its file, the base and the sets of checks that it names, overrides, and
+    /// the files of numbers that its scene names.
     pub fn fingerprint(&self) -> String {
-        fingerprint([self.document.text(), &self.document.root.canonical()])
+        fingerprint([self.document.text(), &self.document.root.canonical(), &self.numbers()])
     }
 
     /// Fingerprint of what the case simulates: everything but its claim, checks, label and estimated time.
@@ -275,7 +276,15 @@ impl Case {
         let others = ["claim", "check", "label", "seconds", "tier", "deviations"];
         let entries = self.document.root.as_table().into_iter().flatten();
         let simulated = entries.filter(|(key, _)| !others.contains(&key.as_str()));
-        fingerprint(simulated.map(|(key, node)| format!("{key} = {}", node.canonical())))
+        let said = simulated.map(|(key, node)| format!("{key} = {}", node.canonical()));
+        fingerprint(said.chain(Some(self.numbers()).filter(|numbers| !numbers.is_empty())))
+    }
+
+    /// Texts of the files of numbers that the scene names; one that cannot be read has none.
+    fn numbers(&self) -> String {
+        let mut files = Vec::new();
+        self.document.root.texts_of("file", &mut files);
+        files.iter().filter_map(|file| std::fs::read_to_string(self.document.folder().join(file)).ok()).collect()
     }
 
     /// An error at a key of the file.

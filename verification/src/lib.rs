@@ -7,6 +7,7 @@
 //! | [`output`] | folders that commands write to, tables, fingerprints, files of others |
 //! | [`watch`] | progress, interrupts and panics of a case |
 //! | [`record`] | results: records, verdicts, figures |
+//! | `arithmetic` | formulas in text |
 //! | [`scene`] | scene files, units, what is wrong with a file and where |
 //! | [`mod@reference`] | reference data and their uncertainty |
 //! | [`case`] | case files: claims, checks, variants and study axes |
@@ -18,7 +19,7 @@
 //! | [`mod@bench`] | speed against error |
 //! | [`judge`] | results of other codes, held against the benchmarks |
 
-pub mod arithmetic;
+mod arithmetic;
 pub mod bench;
 pub mod case;
 pub mod exact;

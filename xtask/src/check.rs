@@ -7,7 +7,7 @@ use fisura::dynamics::time_plan::TimePlan;
 use fisura::linear_algebra::extremes::larger;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::spans::{largest_spans, smallest_span};
-use fisura::scene::{Crack, Frame, Plane, Scene};
+use fisura::scene::{Body, Crack, Frame, Plane, Scene};
 use fisura::simulation::{Extent, Simulation};
 use fisura::validate::expected_size;
 use fisura_reports::number::{duration, plain};
@@ -28,8 +28,9 @@ use trial::{Trial, spans};
 
 /// Points or control points up to which a scene is made ready to be checked: seconds, and less than 1 GiB.
 const MOST_PREPARED: usize = 1_000_000;
-/// Distance in spans by which a slit ends behind the last knot line before its tip, for p = 1, 2, 3.
-const SLIT_ENDS: [f64; 3] = [0.20, 0.47, 0.87];
+/// Distance in spans by which a slit ends behind the last knot line before its tip, for p = 1 to 4: by the
+/// static energy of a plate (`fracture/slit-tip`).
+const SLIT_ENDS: [f64; 4] = [0.24, 0.53, 0.85, 1.2];
 /// Critical step over the time a dilatational wave takes to cross the smallest span, roughly.
 const CRITICAL: f64 = 0.5;
 /// Wall time after which a run stores its state, s, and how often that is in memory then: as it grows and as
@@ -279,21 +280,24 @@ impl MaterialFindings {
 }
 
 fn bodies(scene: &Scene) -> Vec<BodyFindings> {
-    let of = |body: &fisura::scene::Body| BodyFindings {
+    let of = |body: &Body| BodyFindings {
         name: body.name.clone(),
         material: body.material.clone(),
         tractions: body.tractions.len(),
         cracks: body.cracks.len(),
-        slits: body.cracks.iter().filter(|crack| crack.is_slit()).filter_map(|crack| slit(scene, crack)).collect(),
+        slits: body.cracks.iter().filter(|c| c.is_slit()).filter_map(|crack| slit(scene, body, crack)).collect(),
     };
     scene.bodies.iter().map(of).collect()
 }
 
 /// Where the second end of a slit is: functions that it does not part are not copied. `None` on a patch with
-/// a geometry, and for degrees for which the place was not measured.
-fn slit(scene: &Scene, crack: &Crack) -> Option<SlitFindings> {
+/// a geometry, and where the slit leaves the body.
+fn slit(scene: &Scene, body: &Body, crack: &Crack) -> Option<SlitFindings> {
     let [from, to] = crack.segments().last()?;
     let along = [to[0] - from[0], to[1] - from[1]];
+    if !body.shape.contains([0, 1].map(|d| to[d] + 1e-9 * along[d])) {
+        return None;
+    }
     let d = usize::from(along[1].abs() > along[0].abs());
     let behind = SLIT_ENDS.get(scene.mesh.degree[d].checked_sub(1)?).filter(|_| scene.mesh.geometry.is_none())?;
     let knots = &scene.mesh.knots[d];

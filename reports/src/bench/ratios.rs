@@ -10,6 +10,7 @@ use crate::number::plain;
 
 /// A ratio of sums of times, as the list has it.
 #[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Ratio {
     what: String,
     above: Vec<String>,
@@ -20,12 +21,13 @@ struct Ratio {
     whole: bool,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Deserialize)]
 struct Ratios {
     ratio: Vec<Ratio>,
 }
 
-static RATIOS: LazyLock<Ratios> = LazyLock::new(|| toml::from_str(include_str!("ratios.toml")).unwrap_or_default()); // a test reads it
+static RATIOS: LazyLock<Ratios> =
+    LazyLock::new(|| toml::from_str(include_str!("ratios.toml")).expect("ratios.toml lists ratios; a test reads it"));
 
 /// A bound of a ratio.
 #[derive(Debug, Clone, Copy, PartialEq)]

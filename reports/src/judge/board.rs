@@ -37,7 +37,8 @@ struct Entry<'a> {
     name: &'a str,
     outcome: &'static str,
     error: f64,
-    /// Uncertainty of its reference; none if unknown.
+    /// Uncertainty of the comparison, and that of its reference; none if unknown.
+    comparison: Option<f64>,
     uncertainty: Option<f64>,
     reference: &'a str,
     /// Spacing at the crack, mm.
@@ -83,11 +84,12 @@ fn one(key: &str, words: &str, judged: &[Judged]) -> Board {
     let mut entries: Vec<Entry<'_>> = judged.iter().filter_map(|j| entry(j, words)).collect();
     entries.sort_by(|a, b| a.error.total_cmp(&b.error));
     let costs = costs_compare(judged);
-    let mut head = vec!["result", "verdict", "error", "U of the reference", "reference"];
+    let mut head = vec!["result", "verdict", "error", "U of the comparison", "U of the reference", "reference"];
     head.extend(costs.then_some("processor time"));
     let row = |e: &Entry<'_>| {
-        let mut cells =
-            vec![e.name.to_string(), e.outcome.into(), percent(e.error), e.uncertainty(), e.reference.into()];
+        let both = e.comparison.map_or("unknown".into(), percent);
+        let error = percent(e.error);
+        let mut cells = vec![e.name.to_string(), e.outcome.into(), error, both, e.uncertainty(), e.reference.into()];
         cells.extend(e.cost.filter(|_| costs).map(duration));
         cells
     };
@@ -121,6 +123,7 @@ fn entry<'a>(judged: &'a Judged, words: &str) -> Option<Entry<'a>> {
         name: &verdict.code.name,
         outcome: quantity.outcome.word(),
         error,
+        comparison: whole.u_val,
         uncertainty: whole.u_ref,
         reference: &verdict.reference.id,
         spacing: verdict.spacing_m.map(|h| 1e3 * h),
@@ -206,7 +209,7 @@ mod tests {
 
     fn entry(name: &'static str, error: f64, uncertainty: f64, reference: &'static str) -> Entry<'static> {
         let (uncertainty, spacing) = (Some(uncertainty), Some(0.25));
-        Entry { name, outcome: "pass", error, uncertainty, reference, spacing, cost: None }
+        Entry { name, outcome: "pass", error, comparison: uncertainty, uncertainty, reference, spacing, cost: None }
     }
 
     #[test]

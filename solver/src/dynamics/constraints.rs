@@ -13,6 +13,8 @@ pub struct Constraints {
     /// Per component: control point, and number of its condition, in increasing order.
     fixed: [Vec<(usize, usize)>; 2],
     conditions: Vec<Boundary>,
+    /// Two conditions on one side that prescribe a component of the same control point differently.
+    pub(crate) contradiction: Option<[usize; 2]>,
 }
 
 impl Constraints {
@@ -27,6 +29,12 @@ impl Constraints {
                 }
             }
             fixed.sort_unstable();
+            let differ = |[i, j]: &[usize; 2]| {
+                let pair = [*i, *j].map(|number| &conditions[number]);
+                pair[0].side == pair[1].side && pair[0].course(component) != pair[1].course(component)
+            };
+            let mut shared = fixed.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]);
+            constraints.contradiction = constraints.contradiction.or_else(|| shared.find(differ));
             fixed.dedup_by_key(|&mut (at, _)| at);
         }
         constraints

@@ -35,6 +35,8 @@ pub enum Failure {
     },
     /// The part of a side of that condition holds no control point with mass.
     HoldsNothing(usize),
+    /// Two conditions whose parts of a side share a control point and prescribe it differently.
+    Contradiction([usize; 2]),
     /// No static state was found: the largest force out of balance, of the largest nodal force.
     NoEquilibrium(f64),
     /// The loads of a static start accelerate a body that nothing holds: their resultant, of their

@@ -115,6 +115,16 @@ impl Boundary {
         value == [0.0; 2]
     }
 
+    /// What a component does: its value, whether that is a displacement, and its factor in time unless it is
+    /// at rest.
+    pub(crate) fn course(&self, component: usize) -> (f64, bool, Option<&TimeFactor>) {
+        let (value, displaces) = match self.motion {
+            Motion::Velocity(velocity) => (velocity[component], false),
+            Motion::Displacement(displacement) => (displacement[component], true),
+        };
+        if value == 0.0 { (0.0, false, None) } else { (value, displaces, Some(&self.time)) }
+    }
+
     /// Displacement (m) and velocity (m/s) at t = 0.
     pub(crate) fn start(&self) -> [[f64; 2]; 2] {
         let factor = self.time.value(0.0);

@@ -42,8 +42,10 @@ const TOO_FAST: &str = "bodies faster than contact can follow at this time step:
                         lower analysis.safety";
 const WIDEN_PART: &str = "a part shorter than the support of a function, or one that no body reaches: widen or move it, or \
                           use smaller cells";
-const NO_EQUILIBRIUM: &str = "a load beyond the strength of the body, or a seed that cuts a part off: lower the load, or \
-                              leave start.equilibrium out";
+const PART_PARTS: &str = "parts of a side that meet in a control point: leave a span between them, or give both the same \
+                          motion";
+const NO_EQUILIBRIUM: &str = "a load beyond the strength of the body, or a seed or slit that cuts a part off: lower the \
+                              load, shorten the crack, or leave start.equilibrium out";
 const UNBALANCED: &str =
     "a body that is not held: add a [[boundary]], balance the loads, or leave start.equilibrium out";
 pub(super) const BARE: &str = "a traction acts where there is no material any more";
@@ -64,6 +66,7 @@ pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> 
         | Failure::SingularMass
         | Failure::NoStep
         | Failure::Unconverged(_) => (place, None),
+        Failure::Contradiction([_, second]) => (place, Some(format!("boundary.{second}.from"))),
         Failure::HoldsNothing(condition) => (place, Some(format!("boundary.{condition}.from"))),
         Failure::NoEquilibrium(_) | Failure::Unbalanced(_) => (place, Some("start.equilibrium".to_string())),
     };
@@ -104,6 +107,10 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
                  {MOST}"
             ),
             TOO_FAST,
+        ),
+        Failure::Contradiction([first, second]) => (
+            format!("boundary.{first} and boundary.{second} prescribe the control point between them differently"),
+            PART_PARTS,
         ),
         Failure::HoldsNothing(_) => ("the part of the side holds no control point of a body".to_string(), WIDEN_PART),
         Failure::NoEquilibrium(residual) => (

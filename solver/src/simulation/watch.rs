@@ -211,6 +211,7 @@ impl Simulation {
             | Failure::NoStep
             | Failure::NoPoints(_)
             | Failure::HoldsNothing(_)
+            | Failure::Contradiction(_)
             | Failure::NoEquilibrium(_)
             | Failure::Unbalanced(_)
             | Failure::LostTraction { .. } => self.at_worst_point(&what, Some(&cause)),

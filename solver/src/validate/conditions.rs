@@ -19,7 +19,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         }
         motion(&key, boundary, findings);
         time::check(&key, &boundary.time, scene.analysis.end_time, findings);
-        end_of_displacement(&key, boundary, findings);
+        displacement_without_jump(&key, boundary, scene.equilibrium, findings);
         supported(&key, boundary, scene, findings);
         if ground.is_sound && part(&key, boundary, &scene.mesh, findings) {
             held(&format!("{key}.side"), boundary, scene, findings);
@@ -51,11 +51,20 @@ fn motion(key: &str, boundary: &Boundary, findings: &mut Findings) {
     }
 }
 
-/// A displacement that ends would jump back.
-fn end_of_displacement(key: &str, boundary: &Boundary, findings: &mut Findings) {
-    if matches!(boundary.motion, Motion::Displacement(_)) && boundary.time.until.is_some() {
+/// A displacement that jumps, at the start or where it ends, gives the body an energy that depends on the
+/// mesh and is no work.
+fn displacement_without_jump(key: &str, boundary: &Boundary, equilibrium: bool, findings: &mut Findings) {
+    let Motion::Displacement(displacement) = boundary.motion else { return };
+    if boundary.time.until.is_some() {
         let message = "a displacement with an end would jump back to zero there";
         findings.error(format!("{key}.time.until"), message, "remove until, or give a table that ends at 0");
+    }
+    let first = boundary.time.value(0.0);
+    if !equilibrium && (0..2).any(|d| boundary.fix[d] && first * displacement[d] != 0.0) {
+        let message = format!("the displacement jumps from 0 to {first} times its value at t = 0");
+        let remedy = "let its factor rise from 0, such as time = { smooth = \"1 us\" }, or solve for the start: \
+                      [start] equilibrium = true";
+        findings.error(format!("{key}.displacement"), message, remedy);
     }
 }
 
@@ -133,12 +142,7 @@ fn corner(i: usize, j: usize, scene: &Scene, findings: &mut Findings) {
     if along(pair[0].side) == along(pair[1].side) || !(0..2).all(|n| reaches(pair[n], pair[1 - n].side, &scene.mesh)) {
         return;
     }
-    let course = |boundary: &Boundary, d: usize| {
-        let (word, value) = value(boundary);
-        let at_rest = value[d] == 0.0;
-        (value[d], (!at_rest).then(|| (word, boundary.time.clone())))
-    };
-    let differ = |d: &usize| pair.iter().all(|b| b.fix[*d]) && course(pair[0], *d) != course(pair[1], *d);
+    let differ = |d: &usize| pair.iter().all(|b| b.fix[*d]) && pair[0].course(*d) != pair[1].course(*d);
     let Some(d) = (0..2).find(differ) else { return };
     let name = ["x", "y"][d];
     let [here, there] = pair.map(|boundary| {
@@ -200,8 +204,8 @@ fn held(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) 
     if !scene.bodies.iter().any(reaches) {
         let (side, name) = (side_name(boundary.side), ["x", "y"][d]);
         let message = format!(
-            "no body reaches the {side} side of the mesh, {name} = {place} m, so nothing is held there; let the mesh \
-             end where the body does, or remove the boundary"
+            "no body reaches the {side} side of the mesh, {name} = {place} m, so it holds that body loosely or \
+             not at all; let the mesh end where the body does, or remove the boundary"
         );
         findings.warn(key, message);
     }

@@ -17,7 +17,7 @@ pub(super) fn check(key: &str, factor: &TimeFactor, end: f64, findings: &mut Fin
         Course::Smooth(rise) => {
             findings.positive(format!("{key}.time.smooth"), *rise, "\"1 us\"");
         }
-        Course::Table(rows) => table(&format!("{key}.time.table"), rows, findings),
+        Course::Table(rows) => table(&format!("{key}.time"), rows, findings), // of the scene, or of a file
         Course::Formula(formula) => {
             let times = (0..=LOOKS).map(|i| end * i as f64 / LOOKS as f64);
             if let Some(time) = times.clone().find(|&time| !factor.value(time).is_finite()) {

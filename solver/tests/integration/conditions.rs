@@ -35,10 +35,15 @@ fn courses() -> Vec<TimeFactor> {
     courses.into_iter().flat_map(|course| until.map(|until| TimeFactor { course: course.clone(), until })).collect()
 }
 
+/// Whether a displacement may follow a factor.
+fn jumps_nowhere(time: &TimeFactor) -> bool {
+    time.until.is_none() && time.value(0.0) == 0.0
+}
+
 #[test]
 fn every_course_closes_the_ledger_and_its_reaction_is_the_rate_of_the_momentum() {
     for time in courses() {
-        let displaced = time.until.is_none().then_some(Motion::Displacement([1e-6, 0.0]));
+        let displaced = jumps_nowhere(&time).then_some(Motion::Displacement([1e-6, 0.0]));
         for motion in [Some(Motion::Velocity([1.0, 0.0])), displaced].into_iter().flatten() {
             let what = format!("{motion:?} {time:?}");
             let samples = run(&driven(motion, time.clone())).1;
@@ -68,7 +73,7 @@ fn the_side_is_where_the_course_puts_it() {
             frame.patch().evaluate(&frame.displacement()[0], [0.0, 0.001]).unwrap().value
         };
         assert_relative_eq!(moved(Motion::Velocity([1.0, 0.0]), time.clone()), end, max_relative = 1e-3);
-        if time.until.is_none() {
+        if jumps_nowhere(&time) {
             assert_relative_eq!(moved(Motion::Displacement([1e-6, 0.0]), time), 1e-6, epsilon = 1e-18);
         }
     }
@@ -131,15 +136,34 @@ fn what_cannot_be_meant_is_refused() {
     assert_eq!(keys(|b| b.part = Some([f64::NAN, 0.001])), ["boundary.0.to"]);
     assert_eq!(keys(|b| b.time = TimeFactor::ramp(0.0)), ["boundary.0.time.ramp"]);
     assert_eq!(keys(|b| b.time.until = Some(-1.0)), ["boundary.0.time.until"]);
-    assert_eq!(keys(|b| b.time.course = Course::Table(vec![[0.0, 0.0], [0.0, 1.0]])), ["boundary.0.time.table"]);
+    assert_eq!(keys(|b| b.time.course = Course::Table(vec![[0.0, 0.0], [0.0, 1.0]])), ["boundary.0.time"]);
     assert_eq!(
         keys(|b| {
             b.motion = Motion::Displacement([1e-6, 0.0]);
-            b.time.until = Some(1e-6);
+            b.time = TimeFactor { until: Some(1e-6), ..TimeFactor::ramp(1e-6) };
         }),
         ["boundary.0.time.until"]
     );
+    let mut jumps = driven(Motion::Velocity([1.0, 0.0]), TimeFactor::default());
+    jumps.boundaries[0].motion = Motion::Displacement([1e-6, 0.0]);
+    assert_eq!(validate(&jumps).unwrap_err()[0].key, "boundary.0.displacement", "the body is at rest and undeformed");
+    jumps.equilibrium = true;
+    assert!(validate(&jumps).is_ok());
     let mut twice = driven(Motion::Velocity([1.0, 0.0]), TimeFactor::default());
     twice.boundaries.push(Boundary { part: Some([0.0, 0.001]), ..Boundary::fixed(Side::Left, [true, false]) });
     assert_eq!(validate(&twice).unwrap_err()[0].key, "boundary.1.fix");
+}
+
+#[test]
+fn parts_that_meet_in_a_control_point_move_alike() {
+    let mut scene = elastic_scene(1, [0.01; 2], [10; 2]);
+    let part = |ends, speed| Boundary { part: Some(ends), ..Boundary::driven(Side::Left, [true, false], [speed, 0.0]) };
+    scene.boundaries = vec![part([0.0, 0.004], 1.0), part([0.004, 0.01], -1.0)];
+    assert!(validate(&scene).is_ok());
+    let breakdown = Simulation::new(&scene).unwrap_err();
+    assert_eq!(breakdown.scene.expect("an error of the scene").key, "boundary.1.from");
+    scene.boundaries[1] = part([0.005, 0.01], -1.0);
+    assert!(Simulation::new(&scene).is_ok(), "a span between them");
+    scene.boundaries[1] = part([0.004, 0.01], 1.0);
+    assert!(Simulation::new(&scene).is_ok(), "the same motion");
 }

@@ -35,6 +35,36 @@ fn frequencies(scene: &Scene) -> (f64, f64) {
     (largest.sqrt(), bound)
 }
 
+/// A chain of so many masses of 4 kg between springs of 1 N/m, held at both ends.
+struct Chain(usize);
+
+impl StiffnessOperator for Chain {
+    fn size(&self) -> usize {
+        self.0
+    }
+
+    fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
+        let at = |i: usize| x.get(i).copied().unwrap_or(0.0);
+        for i in 0..x.len() {
+            out[i] = 2.0 * x[i] - at(i.wrapping_sub(1)) - at(i + 1);
+        }
+    }
+
+    fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]) {
+        for i in 0..x.len() {
+            out[i] = x[i] / 4.0;
+        }
+    }
+}
+
+#[test]
+fn the_bound_of_a_spring_chain_is_above_and_within_half_a_percent() {
+    let n = 500;
+    let exact = (std::f64::consts::FRAC_PI_2 * n as f64 / (n as f64 + 1.0)).sin();
+    let bound = highest_frequency(&mut Chain(n));
+    assert!(bound >= exact && bound <= 1.005 * exact, "{bound} against {exact}");
+}
+
 /// The residual norm bounds the distance to *some* eigenvalue. Where modes of several corners lie within a
 /// millionth of each other, as at nu = 0, the Lanczos vector may have settled below the largest one by as
 /// much (measured: 4e-7). The tolerance is that, a thousand times less than the distance of the default

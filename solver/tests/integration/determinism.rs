@@ -3,15 +3,18 @@
 use crate::common::{horseshoe, notched_plate, pulled_plate, run, two_discs, with_threads};
 use fisura::scene::*;
 
-/// Every value of every sample, and the final displacements, as bits.
+/// Every value of every sample, and place, velocity and strain of every point at the end, as bits.
 fn bits(scene: &Scene) -> Vec<u64> {
     let (simulation, samples) = run(scene);
-    let rows = samples.iter().flat_map(|s| s.named_values()).map(|(_, value)| value.to_bits());
-    let fields: Vec<u64> = match simulation.updated_frame() {
-        Some(frame) => frame.fields()[0].points().iter().flat_map(|p| p.position).map(f64::to_bits).collect(),
-        None => simulation.total_frame().unwrap().displacement().iter().flatten().map(|u| u.to_bits()).collect(),
-    };
-    rows.chain(fields).collect()
+    assert!(simulation.steps() >= 10, "{} steps", simulation.steps());
+    let mut numbers: Vec<f64> = samples.iter().flat_map(|s| s.named_values()).map(|(_, value)| value).collect();
+    if let Some(frame) = simulation.total_frame() {
+        numbers.extend(frame.displacement().iter().chain(frame.velocity()).flatten());
+    }
+    simulation.for_each_point(&mut |point| {
+        numbers.extend(point.present.iter().chain(&point.velocity).chain(&point.strain));
+    });
+    numbers.into_iter().map(f64::to_bits).collect()
 }
 
 #[track_caller]

@@ -122,3 +122,18 @@ fn the_first_step_under_a_ramp_closes() {
     let open: Vec<_> = simulation.warnings().iter().filter(|warning| warning.contains("ledger")).collect();
     assert!(open.is_empty(), "{open:?}");
 }
+
+#[test]
+fn a_crack_in_an_intact_body_has_a_tip_whoever_takes_the_steps() {
+    let mut scene = notched_plate(8e6);
+    scene.bodies[0].cracks.clear();
+    scene.analysis.end_time = 3e-6;
+    let samples = run(&scene).1;
+    let tip = |sample: &Sample| sample.fracture.as_ref().unwrap().crack_tip;
+    assert!(tip(&samples[0]).is_none() && tip(samples.last().unwrap()).is_some());
+    let mut simulation = Simulation::new(&scene).unwrap();
+    while !simulation.finished() {
+        simulation.step().unwrap();
+    }
+    assert_eq!(tip(&simulation.sample()), tip(samples.last().unwrap()));
+}

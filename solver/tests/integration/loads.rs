@@ -233,3 +233,21 @@ fn arcs_are_loaded() {
         }
     }
 }
+
+#[test]
+fn what_has_no_meaning_inside_a_body_is_bad_input() {
+    let refused = |load, ends, cracks: Vec<Crack>| {
+        let mesh = Mesh::uniform([2; 2], [0.0; 2], [6.0; 2], [20, 20]);
+        let traction = Traction { load, ..traction(Edge::Segment(ends), [0.0; 2]) };
+        let mut scene = loaded(mesh, rectangle([0.0; 2], [6.0; 2]), traction, Frame::Total);
+        scene.bodies[0].cracks = cracks;
+        validate(&scene).err().map(|errors| errors[0].key.clone())
+    };
+    let inside = Some("body.0.traction.0.segment".to_string());
+    let (pressure, stress) = (Load::Pressure(1.0), Load::Stress([1.0, 0.0]));
+    let slit = || vec![Crack { points: vec![[0.0, 3.0], [3.0, 3.0]], kind: CrackKind::Slit }];
+    assert_eq!(refused(stress, [[0.0, 3.0], [3.0, 3.0]], slit()), inside, "a slit has two faces");
+    assert_eq!(refused(pressure, [[1.0, 0.0], [6.0, 5.0]], vec![]), inside, "no side to push");
+    assert_eq!(refused(stress, [[1.0, 0.0], [6.0, 5.0]], slit()), None, "a line of forces");
+    assert_eq!(refused(pressure, [[1.0, 0.0], [5.0, 0.0]], vec![]), None, "on the boundary");
+}

@@ -2,8 +2,10 @@
 //! not change.
 
 use approx::assert_abs_diff_eq;
-use fisura::linear_algebra::extremes::larger;
+use fisura::linear_algebra::extremes::{larger, smaller};
+use fisura::scene::Mesh;
 use fisura::splines::nurbs::{Form, LocateError, NurbsError, NurbsPatch, RationalFunctions, rational_functions};
+use fisura::splines::patch::Patch;
 use fisura::splines::spline::SplineSpace;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -137,7 +139,7 @@ proptest! {
         let patch = bent(&directions, &weights);
         for direction in 0..2 {
             let before = &patch.spaces()[direction];
-            for refined in [patch.insert_knots(direction, &new), patch.elevate(direction)] {
+            for (refined, raised) in [(patch.insert_knots(direction, &new), 0), (patch.elevate(direction), 1)] {
                 let refined = match refined {
                     Ok(refined) => refined,
                     Err(NurbsError::Degree { .. }) if before.degree() == 4 => continue,
@@ -148,8 +150,8 @@ proptest! {
                     }
                 };
                 let after = &refined.spaces()[direction];
-                let knots = if after.degree() > before.degree() { after.dimension() } else { before.dimension() + new.len() };
-                prop_assert_eq!(after.dimension(), knots);
+                prop_assert_eq!(after.degree(), before.degree() + raised);
+                prop_assert!(raised == 1 || after.dimension() == before.dimension() + new.len());
                 for parameters in places() {
                     let [before, after] = [&patch, &refined].map(|patch| position(patch, parameters));
                     for d in 0..2 {
@@ -157,6 +159,85 @@ proptest! {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn equal_weights_are_a_b_spline([x, y] in [direction(), direction()], weight in 0.1..10.0f64) {
+        let count = [&x, &y].map(|d| d.knots.len() - d.degree - 1).iter().product();
+        let fast = bent(&[x, y], &vec![weight; count]);
+        let general = fast.general();
+        prop_assert_eq!([fast.form(), general.form()], [Form::Polynomial, Form::Rational]);
+        for parameters in places() {
+            let [a, b] = [&fast, &general].map(|patch| functions(patch, parameters));
+            let h = lengths(fast.spaces(), fast.find_span(parameters).unwrap());
+            for n in 0..a.count {
+                prop_assert_eq!(a.control[n], b.control[n]);
+                assert_abs_diff_eq!(a.value[n], b.value[n], epsilon = 1e-13);
+                for d in 0..2 {
+                    assert_abs_diff_eq!(a.gradient[n][d], b.gradient[n][d], epsilon = 1e-13 / h[d]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_affine_rectangle_is_the_patch_of_the_mesh([x, y] in [direction(), direction()]) {
+        let (degree, knots) = ([x.degree, y.degree], [x.knots, y.knots]);
+        let rectangle = NurbsPatch::rectangle(degree, [&knots[0], &knots[1]], [0.0, 0.0], [1.0, 1.0]).unwrap();
+        let general = rectangle.general();
+        let patch = Patch::new(&Mesh { degree, knots, geometry: None });
+        let grid = patch.control_grid();
+        let control: Vec<f64> = (0..grid.rows * grid.columns).map(|n| (1.7 * n as f64).sin()).collect();
+        let mut field = grid.zeros();
+        grid.indices().zip(&control).for_each(|(at, value)| field[at] = *value);
+        for parameters in places() {
+            let expected = patch.evaluate(&field, parameters).unwrap();
+            let h = lengths(rectangle.spaces(), rectangle.find_span(parameters).unwrap());
+            for nurbs in [&rectangle, &general] {
+                let f = functions(nurbs, parameters);
+                let (point, place) = (nurbs.map(&f), nurbs.locate(parameters, None).unwrap());
+                let gradient = f.physical_gradients(&point);
+                assert_abs_diff_eq!(f.interpolate(&control), expected.value, epsilon = 1e-13);
+                for d in 0..2 {
+                    assert_abs_diff_eq!(point.position[d], parameters[d], epsilon = 1e-13);
+                    assert_abs_diff_eq!(point.jacobian[d][d], 1.0, epsilon = 1e-13 / h[d]);
+                    let slope = sum(&f, |n| gradient[n][d] * control[f.control[n]]);
+                    // The fast path has a Jacobian of one; the general one sums it: relative 1e-13/h more.
+                    let room = 1e-13 / h[d] * (1.0 + 1.0 / smaller(h[0], h[1]));
+                    assert_abs_diff_eq!(slope, expected.gradient[d], epsilon = room);
+                    assert_abs_diff_eq!(place.parameters[d], parameters[d], epsilon = 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn points_find_their_parameters((directions, weights) in weighted(), at in [0.0..1.0f64, 0.0..1.0f64], from in [0.0..1.0f64, 0.0..1.0f64]) {
+        let patch = bent(&directions, &weights);
+        let point = position(&patch, at);
+        for start in [None, Some(at), Some(from)] {
+            match patch.locate(point, start) {
+                Ok(place) => {
+                    prop_assert!(patch.find_span(place.parameters).is_some());
+                    let image = patch.map(&patch.shape_functions(place.span, place.parameters)).position;
+                    assert_abs_diff_eq!(image[0], point[0], epsilon = 1e-12);
+                    assert_abs_diff_eq!(image[1], point[1], epsilon = 1e-12);
+                }
+                // A fold between the Gauss points is told, never passed over.
+                Err(error) => prop_assert!(matches!(error, LocateError::Folded { .. }), "{}", error),
+            }
+        }
+    }
+
+    #[test]
+    fn points_of_a_refined_annulus_find_their_parameters(at in [0.0..1.0f64, 0.0..1.0f64], from in [0.0..1.0f64, 0.0..1.0f64], cuts in 1usize..6) {
+        let ring = NurbsPatch::quarter_annulus(1.0, 2.0).unwrap().elevate(0).unwrap().subdivide(cuts).unwrap();
+        let point = position(&ring, at);
+        for start in [None, Some(from)] {
+            let place = ring.locate(point, start).unwrap();
+            assert_abs_diff_eq!(place.parameters[0], at[0], epsilon = 1e-12);
+            assert_abs_diff_eq!(place.parameters[1], at[1], epsilon = 1e-12);
         }
     }
 }

@@ -105,9 +105,11 @@ fn a_seed_that_covers_the_body_or_nothing_is_refused() {
     let errors = validate(&seeded(L0, [2, 2], crack(0.02))).unwrap_err();
     assert_eq!(errors[0].key, "body.0.crack.0.half_width");
     assert!(errors[0].message.contains("covers all of body"), "{errors:?}");
+    assert!(errors[0].remedy.contains("smaller half width"), "{errors:?}");
     assert!(validate(&seeded(L0, [2, 2], crack(0.0045))).is_ok());
     let bare = validate(&seeded(L0, [2, 2], crack(5e-324))).unwrap_err();
     assert!(bare[0].message.contains("there is no crack"), "{bare:?}");
+    assert!(bare[0].remedy.contains("half_width of at least "), "{bare:?}");
 }
 
 /// A quarter annulus with so many spans, and a crack from within to without.

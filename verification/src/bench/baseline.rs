@@ -115,8 +115,8 @@ fn scene_of(settings: &Settings, case: &str, folder: &Path) -> Result<PathBuf, B
     let file = settings.workspace.join("verification/cases").join(case).with_extension("toml");
     let wrong = |reason: String| BenchError::input(format!("{}: {reason}", file.display()));
     let case = Case::load(&file, &[])?;
-    let scene = case.scene_node().ok_or_else(|| wrong("it has no scene".into()))?;
-    let scene = toml::to_string(&plain(scene)).map_err(|error| wrong(error.to_string()))?;
+    let scene = case.scene_with_numbers()?.ok_or_else(|| wrong("it has no scene".into()))?;
+    let scene = toml::to_string(&plain(&scene)).map_err(|error| wrong(error.to_string()))?;
     let target = folder.join("scene.toml");
     let written = fs::create_dir_all(folder).and_then(|()| fs::write(&target, scene));
     written.map_err(|error| BenchError::input(format!("{}: {error}", target.display())))?;

@@ -102,6 +102,15 @@ impl Case {
         trees.into_iter().map(|tree| self.scene_of(tree)).collect()
     }
 
+    /// The `[scene]` with numbers in place of formulas, as it stands without axes and variants.
+    ///
+    /// # Errors
+    /// A formula that has no value.
+    pub fn scene_with_numbers(&self) -> Result<Option<Node>, SceneFileError> {
+        let numbers = |scene| self.with_numbers(scene, "scene", scene);
+        self.scene_node().map(numbers).transpose().map_err(|problem| self.document.error(&[problem]))
+    }
+
     fn scene_of(&self, tree: Tree) -> Result<CaseScene, SceneFileError> {
         let Tree { name, parameters, energy_factor, node } = tree;
         let fail = |problems: Vec<Problem>| self.document.error(&problems);
@@ -125,7 +134,7 @@ impl Case {
                 Value::Array(entries.collect::<Result<_, Problem>>()?)
             }
             Value::String(text) if text.starts_with('=') => match self.key(path, node, scene, MOST_LINKS) {
-                Ok(number) if number == number.trunc() => Value::Integer(number as i64),
+                Ok(number) if number == number.trunc() && number.abs() < 1e15 => Value::Integer(number as i64),
                 Ok(number) => Value::Float(number),
                 Err(message) => {
                     let remedy =

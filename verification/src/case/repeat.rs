@@ -52,7 +52,7 @@ fn put_over(root: &mut Node, path: &str, over: &Node, problems: &mut Vec<Problem
             put_over(root, &path, entry, problems);
         }
     } else if let Err(message) = root.set(path, over.clone()) {
-        let remedy = format!("the case changes its base in {BASES}");
+        let remedy = format!("name a key that the base in {BASES} has, or write the case out without a base");
         problems.push(Problem { key: path.into(), location: over.location.clone(), message, remedy });
     }
 }
@@ -126,18 +126,17 @@ impl Expansion {
         }
         let changes = with.iter().filter_map(Node::as_table).flatten();
         for (id, change) in changes {
-            match (checks.iter_mut().find(|check| id_of(check).as_ref() == Some(id)), change.as_table()) {
-                (Some(check), Some(change)) => put(check, change),
-                (_, None) => {
-                    let remedy = "write { max = 1 }".into();
-                    self.note(&format!("{path}.with"), change, "expected a table".into(), remedy);
-                }
-                (None, _) => {
-                    let ids: Vec<String> = checks.iter().filter_map(id_of).collect();
-                    let remedy = format!("ids of this set: {}", ids.join(", "));
-                    self.note(&format!("{path}.with"), change, format!("the set has no check {id:?}"), remedy);
-                }
+            let ids: Vec<String> = checks.iter().filter_map(id_of).collect();
+            let Some(keys) = change.as_table() else {
+                let remedy = "write { max = 1 }".into();
+                self.note(&format!("{path}.with"), change, "expected a table".into(), remedy);
+                continue;
+            };
+            if !ids.contains(id) {
+                let remedy = format!("ids of this set: {}", ids.join(", "));
+                self.note(&format!("{path}.with"), change, format!("the set has no check {id:?}"), remedy);
             }
+            checks.iter_mut().filter(|check| id_of(check).as_ref() == Some(id)).for_each(|check| put(check, keys));
         }
         checks.iter().flat_map(|check| self.each(path, check)).collect()
     }

@@ -21,6 +21,8 @@ const LEAST: f64 = 0.1;
 pub(super) const EVENTS_DECIDE: f64 = 0.5;
 /// Numerical uncertainties beyond these decide nothing: relative, and of the tip in m.
 const DECIDES: [f64; 2] = [0.20, 5e-3];
+/// Numerical uncertainties beyond these show no agreement, though they may show a difference.
+const AGREES: [f64; 2] = [0.05, 1.25e-3];
 /// An increment that starts above this is none, J/m.
 const INCREMENT_STARTS: f64 = 0.02;
 /// End of the initial crack, m.
@@ -228,10 +230,13 @@ fn compare(
         (u_num, Some(output)) => Some(u_num.unwrap_or(0.0).hypot(output)),
     };
     decide(&mut out, u_ref, u_num);
-    let limit = DECIDES[usize::from(absolute)];
-    if out.u_num.is_some_and(|u| u > limit) {
-        out.outcome = Outcome::Diagnostic;
-        out.why = "the numerical uncertainty is too large to decide".into();
+    let [decides, agrees] = [DECIDES, AGREES].map(|limits| limits[usize::from(absolute)]);
+    let coarse = |limit: f64| out.u_num.is_some_and(|u| u > limit);
+    if coarse(decides) {
+        (out.outcome, out.why) = (Outcome::Diagnostic, "the numerical uncertainty is too large to decide".into());
+    } else if out.outcome == Outcome::Pass && coarse(agrees) {
+        (out.outcome, out.why) =
+            (Outcome::Diagnostic, "within a numerical uncertainty too large to show agreement".into());
     }
     Some(out)
 }

@@ -76,7 +76,7 @@ fn values(x: &Curve, y: Option<&Curve>, branching: Option<f64>) -> [Option<f64>;
     ]
 }
 
-/// Whether an event fails at a spacing over l0; the onset always does.
+/// Whether an event passes or fails at a spacing over l0; the onset always does.
 pub(super) fn decides_at(words: &str, spacing: f64) -> bool {
     spacing <= EVENTS_DECIDE * (1.0 + 1e-9) || words == EVENTS[0].words
 }
@@ -140,7 +140,7 @@ pub fn events(
             (row.outcome, row.why) = (Outcome::Diagnostic, "the tip does not reach the edge".into());
         }
         let decides = numerics.spacing().is_none_or(|h| decides_at(event.words, h));
-        if row.outcome == Outcome::Fail && !decides {
+        if matches!(row.outcome, Outcome::Pass | Outcome::Fail) && !decides {
             (row.outcome, row.why) = (Outcome::Diagnostic, "spacings above l0/2 miss such events".into());
         }
         out.push(row);

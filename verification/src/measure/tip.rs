@@ -26,14 +26,7 @@ fn tips(run: &Run) -> Result<Vec<[f64; 3]>, String> {
 
 /// Height of the first crack, m.
 fn axis(run: &Run) -> f64 {
-    run.scene
-        .bodies
-        .iter()
-        .flat_map(|b| &b.cracks)
-        .filter_map(|c| c.points.last())
-        .map(|end| end[1])
-        .next()
-        .unwrap_or(0.0)
+    last_segment(run).map_or(0.0, |[_, end]| end[1])
 }
 
 /// First time at which the tip has passed x = `at`, s.

@@ -132,6 +132,18 @@ impl Node {
         inner.map_or_else(|| path.to_string(), |inner| self.path_around(&inner, at))
     }
 
+    /// The texts that a key has anywhere below.
+    pub(crate) fn texts_of<'a>(&'a self, key: &str, texts: &mut Vec<&'a str>) {
+        match &self.value {
+            Value::Table(table) => {
+                texts.extend(table.get(key).and_then(Self::as_str));
+                table.values().for_each(|node| node.texts_of(key, texts));
+            }
+            Value::Array(array) => array.iter().for_each(|node| node.texts_of(key, texts)),
+            _ => {}
+        }
+    }
+
     /// Place of the value at `path`, or of the innermost table or array around it that exists.
     pub fn locate(&self, path: &str) -> Option<Location> {
         let mut node = self;

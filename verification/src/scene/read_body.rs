@@ -168,7 +168,7 @@ fn shape(item: &Item<'_>) -> Option<Shape> {
 /// A shape that is cut out: any, or a notch.
 fn cut_out(item: &Item<'_>) -> Option<Vec<Shape>> {
     match item.at("notch") {
-        Some(given) => notch(&given),
+        Some(given) => item.fields(&["notch"]).and_then(|_| notch(&given)),
         None => shape(item).map(|shape| vec![shape]),
     }
 }

@@ -126,7 +126,7 @@ fn what_no_run_of_a_scene_has_is_refused_before_it_runs() {
         ("measure = \"closure\"\ncolumn = \"elastic_j\"", &["does not read \"column\""]),
         ("measure = \"drift\"", &["needs column", "add column"]),
         ("measure = \"initial\"\ncolumn = \"elastic_j + elastics_j\"", &["no column \"elastics_j\"", "momentum_x"]),
-        ("measure = \"initial\"\ncolumn = \" \"", &["no column is named"]),
+        ("measure = \"initial\"\ncolumn = \" \"", &["the formula is blank"]),
         ("measure = \"initial\"\ncolumn = \"elastic_j^2\"", &["check.0.column", "write pow(a, b)"]),
         ("measure = \"initial\"\ncolumn = \"{greatest elastic_j}\"", &["no column \"greatest elastic_j\""]),
         ("measure = \"slope\"\ncolumn = \"elastic_j\"\nto = \"= 2*period\"", &["no column \"period\""]),

@@ -189,12 +189,17 @@ fn a_wrong_override_is_named() {
 }
 
 #[test]
-fn no_prefix_of_a_file_panics() {
-    let small = PLATE.replace("[400, 160]", "[8, 4]").replace("\"0.25 mm\"", "\"25 mm\"");
-    for end in (0..=small.len()).filter(|i| small.is_char_boundary(*i)) {
-        if let Err(error) = SceneFile::parse("any.toml", &small[..end], &[]) {
+fn no_prefix_or_change_of_a_file_panics() {
+    let parse = |text: &str| {
+        if let Err(error) = SceneFile::parse("any.toml", text, &[]) {
             assert!(!error.diagnostics.is_empty() && error.to_string().starts_with("any.toml:"), "{error}");
         }
+    };
+    let small = PLATE.replace("[400, 160]", "[8, 4]").replace("\"0.25 mm\"", "\"25 mm\"");
+    (0..=small.len()).for_each(|end| parse(&small[..end]));
+    let letters = ["", "\"", "[", "}", "=", "\n", "-", "9", ".", "é", "\u{0}", "e999", "#"];
+    for (at, letter) in letters.iter().cycle().take(small.len()).enumerate() {
+        parse(&format!("{}{letter}{}", &small[..at], &small[at + 1..]));
     }
 }
 

@@ -61,6 +61,20 @@ fn links_and_pipes_are_not_copied() {
 }
 
 #[test]
+fn texts_of_results_do_not_steer_the_terminal() {
+    let steering = "\\u001b]0;owned\\u0007\\u009b2J";
+    let place =
+        Place::with("results/results.json", &RESULTS.replace("\"cpu\": \"\"", &format!("\"cpu\": \"{steering}\"")));
+    for format in ["text", "json"] {
+        let outcome = place.xtask(&["report", "results", "--out", format, "--format", format]).with_status(0);
+        assert!(!(outcome.out + &outcome.err).contains(['\u{1b}', '\u{7}', '\u{9b}']));
+    }
+    place.write("foreign/results.json", &RESULTS.replace("fisura.results/1", steering));
+    let outcome = place.xtask(&["report", "foreign"]).with_status(2).complains_of(&["]0;owned", "fisura.results/1"]);
+    assert!(!outcome.err.contains(['\u{1b}', '\u{7}', '\u{9b}']), "{outcome:?}");
+}
+
+#[test]
 fn missing_or_foreign_results_end_with_2() {
     let place = Place::with("foreign/results.json", "{\"schema\": \"other/7\"}");
     place.write("broken/results.json", "{\"schema\": \"fisura.results/1\", \"records\": 3}");

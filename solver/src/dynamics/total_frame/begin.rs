@@ -39,6 +39,9 @@ impl TotalFrame {
         }
         let grid = lattice.grid;
         let constraints = Constraints::new(&scene.boundaries, |boundary| held_points(&patch, &lattice, boundary));
+        if let Some(conditions) = constraints.contradiction {
+            return Err(Failure::Contradiction(conditions));
+        }
         let held = [0, 1].map(|component| constraints.held(component));
         let fracture = material
             .fracture
