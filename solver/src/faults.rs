@@ -128,7 +128,6 @@ mod planted {
         "reaction-without-inertia",
         "part-of-a-side-is-all-of-it",
         "pressure-outwards",
-        "static-start-short",
         "slit-bridged",
         "slit-without-ties",
         "copies-lose-their-share",
