@@ -284,7 +284,8 @@ impl Case {
     fn numbers(&self) -> String {
         let mut files = Vec::new();
         self.document.root.texts_of("file", &mut files);
-        files.iter().filter_map(|file| std::fs::read_to_string(self.document.folder().join(file)).ok()).collect()
+        let text = |file: &&str| std::fs::read_to_string(self.document.folder().join(file)).ok();
+        files.iter().filter_map(text).collect::<Vec<_>>().join("\0")
     }
 
     /// An error at a key of the file.

@@ -29,7 +29,7 @@ use trial::{Trial, spans};
 /// Points or control points up to which a scene is made ready to be checked: seconds, and less than 1 GiB.
 const MOST_PREPARED: usize = 1_000_000;
 /// Distance in spans by which a slit ends behind the last knot line before its tip, for p = 1 to 4: by the
-/// static energy of a plate (`fracture/slit-tip`).
+/// static energy of a plate (`fracture/slit-tip`; p = 4 was measured once, on 80 spans).
 const SLIT_ENDS: [f64; 4] = [0.24, 0.53, 0.85, 1.2];
 /// Critical step over the time a dilatational wave takes to cross the smallest span, roughly.
 const CRITICAL: f64 = 0.5;

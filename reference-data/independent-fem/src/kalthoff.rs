@@ -61,8 +61,7 @@ impl Kalthoff {
             body.evaluate(&whole);
             let next = velocity(time + 0.5 * dt);
             let acceleration = (next - last[1]) / if n == 0 { 0.5 * dt } else { dt };
-            let reaction: f64 =
-                driven.iter().map(|&node| body.mass(node) * acceleration - body.force(0, node)).sum();
+            let reaction: f64 = driven.iter().map(|&node| body.mass(node) * acceleration - body.force(0, node)).sum();
             work += dt * last[1] * 0.5 * (last[0] + reaction);
             let kick = if n == 0 { 0.5 * dt } else { dt };
             if n % per_sample == 0 {

@@ -13,8 +13,8 @@ const ON_BOUNDARY: &str = "give an edge of which every point lies on the body's 
                            cut a notch";
 
 /// Of a body with stepped edges: measured on a ring under pressure with p = 1 to 3 and 2 × 2 to 8 × 8 points.
-const STEPPED: &str = "the points of the body end in steps along this edge: forces and energies are right, stresses within two \
-                       spans of it are not; a mesh that follows the edge has no steps";
+const STEPPED: &str = "the points of the body end in steps along this edge: the force is right, stresses within two spans of \
+                       it are not, and energies need 4 x 4 points in a span; a mesh that follows the edge has no steps";
 
 pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &mut Findings) {
     let Look { body, ground, .. } = *look;
@@ -58,33 +58,38 @@ pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &
             } else if let Some([x, y]) = look.first_outside(*ends, SEGMENT_INTERVALS) {
                 let message = format!("the segment leaves body {:?}: ({x}, {y}) m lies outside", body.name);
                 findings.error(key, message, ON_BOUNDARY);
-            } else if let Some([x, y]) = first_between(*ends, body, &traction.load) {
+            } else if let Some([x, y]) = middles(*ends).find(|&at| has_no_side(at, *ends, body, &traction.load)) {
                 let message = format!(
                     "the segment runs inside body {:?}: there is material on both sides of ({x}, {y}) m",
                     body.name
                 );
                 findings.error(key, message, ON_BOUNDARY);
-            } else if (0..2).all(|d| ends[0][d] != ends[1][d]) {
-                findings.warn(key, STEPPED.to_string());
+            } else if (0..2).all(|d| ends[0][d] != ends[1][d]) && !middles(*ends).all(|at| is_between(at, *ends, body))
+            {
+                findings.warn(key, STEPPED);
             }
         }
     }
 }
 
-/// First of the middles of equal parts of a segment at which a load has no meaning: on a slit, which has two
-/// faces, and under a pressure with material on both sides.
-fn first_between([from, to]: [[f64; 2]; 2], body: &Body, load: &Load) -> Option<[f64; 2]> {
-    let along = [to[0] - from[0], to[1] - from[1]];
-    let near = BESIDE * along[0].hypot(along[1]);
-    let middle = |i: usize| {
-        let t = (i as f64 + 0.5) / SEGMENT_INTERVALS as f64;
-        [0, 1].map(|d| from[d] + t * along[d])
-    };
-    let beside = |[x, y]: [f64; 2], part: f64| body.shape.contains([x - part * along[1], y + part * along[0]]);
-    let is_between = |place: [f64; 2]| beside(place, BESIDE) && beside(place, -BESIDE);
-    let on_slit = |place: [f64; 2]| body.cracks.iter().any(|crack| crack.is_slit() && crack.distance(place) < near);
-    let pushed = matches!(load, Load::Pressure(_));
-    (0..SEGMENT_INTERVALS).map(middle).find(|&place| is_between(place) && (pushed || on_slit(place)))
+/// Middles of equal parts of a segment, m.
+fn middles([from, to]: [[f64; 2]; 2]) -> impl Iterator<Item = [f64; 2]> {
+    let part = |i: usize| (i as f64 + 0.5) / SEGMENT_INTERVALS as f64;
+    (0..SEGMENT_INTERVALS).map(move |i| [0, 1].map(|d| from[d] + part(i) * (to[d] - from[d])))
+}
+
+/// Whether there is material on both sides of a position (m) on a segment.
+fn is_between([x, y]: [f64; 2], [from, to]: [[f64; 2]; 2], body: &Body) -> bool {
+    let beside = [0, 1].map(|d| BESIDE * (to[d] - from[d]));
+    [1.0, -1.0].iter().all(|side| body.shape.contains([x - side * beside[1], y + side * beside[0]]))
+}
+
+/// Whether a load has no meaning at a position (m) on a segment with material on both sides: a slit has two
+/// faces, and a pressure pushes to one side.
+fn has_no_side(at: [f64; 2], [from, to]: [[f64; 2]; 2], body: &Body, load: &Load) -> bool {
+    let near = BESIDE * (to[0] - from[0]).hypot(to[1] - from[1]);
+    let on_slit = || body.cracks.iter().any(|crack| crack.is_slit() && crack.distance(at) < near);
+    is_between(at, [from, to], body) && (matches!(load, Load::Pressure(_)) || on_slit())
 }
 
 /// An arc lies on the boundary of its body.
@@ -120,6 +125,6 @@ fn arc(key: &str, center: [f64; 2], radius: f64, angles: [f64; 2], look: &Look<'
         let message = format!("the arc runs inside body {name:?}: there is material on both sides of ({x}, {y}) m");
         findings.error(key, message, ON_BOUNDARY);
     } else {
-        findings.warn(key, STEPPED.to_string());
+        findings.warn(key, STEPPED);
     }
 }

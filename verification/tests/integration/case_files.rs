@@ -190,3 +190,23 @@ fn runs_of_one_name_are_refused() {
     let twice = format!("{}\n{variant}{variant}{closure}", SCENE);
     refused_by("scene", &twice, &["two records with the id trial/case/fine/q", "its own name"]);
 }
+
+#[test]
+fn the_fingerprint_of_a_case_knows_the_numbers_its_scene_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let suite = folder.path().join("energy");
+    std::fs::create_dir(&suite).unwrap();
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/cases/energy/driven-bar.toml")).unwrap();
+    let formula = "formula = \"0.5 - 0.5*cos(2*PI*t / 1 s)\"";
+    assert!(text.contains(formula));
+    let file = suite.join("driven-bar.toml");
+    std::fs::write(&file, text.replace(formula, "file = \"pulse.csv\"")).unwrap();
+    let prints = |rows: &str| {
+        std::fs::write(suite.join("pulse.csv"), rows).unwrap();
+        let case = Case::load(&file, &[]).unwrap();
+        [case.fingerprint(), case.inputs()]
+    };
+    let first = prints("0, 0\n1, 1\n");
+    assert_eq!(prints("0, 0\n1, 1\n"), first);
+    assert!(prints("0, 0\n1, 2\n").iter().zip(&first).all(|(new, old)| new != old));
+}

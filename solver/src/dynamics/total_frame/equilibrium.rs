@@ -49,15 +49,19 @@ impl TotalFrame {
             } else {
                 self.solve(&mut Tangent::new(self), &residual, REDUCTION)?
             };
-            let (before, mut part) = (norm(&residual), 1.0);
-            for _ in 0..MOST_HALVINGS {
+            let before = norm(&residual);
+            let reduces = |halvings: usize| {
+                let part = 0.5_f64.powi(halvings as i32);
                 self.displace(&free, &change, part);
                 (residual, scale) = self.out_of_balance(&free);
-                if norm(&residual) < before {
-                    break;
+                let reduced = norm(&residual) < before;
+                if !reduced {
+                    self.displace(&free, &change, -part);
                 }
-                self.displace(&free, &change, -part);
-                part *= 0.5;
+                reduced
+            };
+            if !(0..MOST_HALVINGS).any(reduces) {
+                break; // another step would be the same
             }
         }
         Err(Failure::NoEquilibrium(largest(residual.iter().map(|r| r.abs())) / scale))
