@@ -47,13 +47,15 @@ def quantities(u, stress, force=None, phase=None, history=None, source=None):
     return columns
 
 
-def write(name, columns, nu, points=POINTS):
-    """Evaluates with 30 digits in both plane states and writes 17 of them to <name>.csv."""
+def write(name, columns, nu, points=POINTS, more=lambda given: {}):
+    """Evaluates with 30 digits in both plane states and writes 17 of them to <name>.csv; `more` gives values of other
+    symbols from the moduli."""
     with open(Path(__file__).parent / f"{name}.csv", "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["plane", "x", "y", "t", *columns])
         for plane in ("strain", "stress"):
             given = moduli(plane, nu)
+            given |= more(given)
             for px, py, pt in points:
                 at = {x: sp.Rational(px), y: sp.Rational(py), t: sp.Rational(pt)}
                 # The number that Rust reads from the table is the nearest double of the decimal.

@@ -14,6 +14,7 @@ pub mod loads;
 pub(crate) mod mass;
 pub mod projection;
 pub mod statics;
+pub(crate) mod surface;
 pub mod time_plan;
 pub mod total_frame;
 pub mod updated_frame;

@@ -342,11 +342,8 @@ impl PointCoefficients for Increments<'_> {
 
 /// `Σ_p V_p N_I(x_p)` per unit thickness, m².
 pub fn integrate_shape_functions(lattice: &Lattice) -> Vec<f64> {
-    let field = lattice.integrate(|_batch, _lane, _| {
-        fault!("phase-load-without-volumes", 1.0 => {
-            let (row, tile, b, a) = lattice.unbatch(_batch);
-            1.0 / lattice.weight(row, tile, b, a)[_lane]
-        })
-    });
+    let field = lattice.integrate(
+        |_batch, _lane, _| fault!("phase-load-without-volumes", 1.0 => 1.0 / lattice.weights_of(_batch)[_lane]),
+    );
     lattice.onto_patch(field)
 }

@@ -7,6 +7,7 @@
 
 mod body;
 mod condition;
+pub(crate) mod edges;
 pub mod error;
 mod mesh;
 pub(crate) mod shape;

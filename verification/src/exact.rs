@@ -9,6 +9,7 @@ use fisura::scene::{Frame, Kinematics, Material, Plane, Side};
 pub mod axis_aligned;
 pub mod bar_wave;
 pub mod coupled;
+pub mod disc_wave;
 pub mod dual;
 pub mod elastostatics;
 pub mod kirsch;
@@ -22,10 +23,11 @@ pub mod translating_block;
 pub mod vortex;
 
 /// What every file registers.
-const REGISTERED: [&[Solution]; 9] = [
+const REGISTERED: [&[Solution]; 10] = [
     axis_aligned::SOLUTIONS,
     bar_wave::SOLUTIONS,
     coupled::SOLUTIONS,
+    disc_wave::SOLUTIONS,
     elastostatics::SOLUTIONS,
     kirsch::SOLUTIONS,
     phase_field::SOLUTIONS,
@@ -72,6 +74,8 @@ pub enum Equation {
 pub enum Held {
     /// These.
     Sides(&'static [(Side, [bool; 2])]),
+    /// Rollers on the axes x = 0 and y = 0, which bound a quarter.
+    Axes,
     /// Rollers on all sides of a rectangle, and no side of a curved patch.
     Rollers,
 }

@@ -7,8 +7,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::dynamics::surface::{SurfacePoint, edge_ends, surface_points};
 use crate::particles::lattice::Lattice;
-use crate::scene::{Body, Edge, Layout, Load, Shape, Side, TimeFactor, Traction};
+use crate::scene::{Body, Edge, Load, Shape, Side, TimeFactor, Traction};
 use crate::splines::nearest_span::nearest_span;
 use crate::splines::nurbs::locate::Location;
 use crate::splines::patch::{BoundaryPoint, Patch};
@@ -44,95 +45,6 @@ impl Sum {
 
     fn value(self) -> f64 {
         self.rounded + self.lost
-    }
-}
-
-/// Surface point of a loaded boundary.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SurfacePoint {
-    /// Position, m.
-    pub position: [f64; 2],
-    /// Length it stands for, m.
-    pub length: f64,
-    /// Outward unit normal of the body.
-    pub normal: [f64; 2],
-}
-
-/// Parts of an arc in the length of a span, and Gauss points in each: its points need not follow the spans.
-const PARTS_OF_ARC: f64 = 2.0;
-const POINTS_OF_PART: usize = 3;
-/// Distance from an edge at which it is looked for material, of the size of the edge.
-const BESIDE: f64 = 1e-6;
-
-/// Surface points along the edge of a traction. Along a straight one they have the layout of the body in
-/// every span that it crosses: the point sums over the edge then fit those over the body, which the patch
-/// test needs for equally spaced points.
-pub(crate) fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<SurfacePoint> {
-    match *edge {
-        Edge::Arc { center, radius, angles } => points_of_arc(patch, body, center, radius, angles),
-        Edge::Side(_) | Edge::Segment(_) => points_of_line(patch, body, edge_ends(body, edge)),
-    }
-}
-
-fn points_of_line(patch: &Patch, body: &Body, [from, to]: [[f64; 2]; 2]) -> Vec<SurfacePoint> {
-    let along = [to[0] - from[0], to[1] - from[1]];
-    let length = along[0].hypot(along[1]);
-    let mut cuts = vec![0.0, 1.0];
-    for d in 0..2 {
-        if along[d].abs() > 1e-12 * length {
-            let crossings = patch.spaces[d].spans().iter().map(|s| (s.left - from[d]) / along[d]);
-            cuts.extend(crossings.filter(|t| (1e-12..1.0 - 1e-12).contains(t)));
-        }
-    }
-    cuts.sort_by(f64::total_cmp);
-    let direction = usize::from(along[1].abs() > along[0].abs());
-    let rule = Rule::new(body.layout, body.particles_per_cell[direction]);
-    let middle = [0, 1].map(|d| 0.5 * (from[d] + to[d]));
-    let normal = outward(body, middle, [along[1] / length, -along[0] / length], length);
-    let mut points = Vec::new();
-    for pair in cuts.windows(2) {
-        for (t, weight) in rule.points.iter().zip(&rule.weights) {
-            let s = pair[0] + t * (pair[1] - pair[0]);
-            points.push(SurfacePoint {
-                position: [from[0] + s * along[0], from[1] + s * along[1]],
-                length: weight * (pair[1] - pair[0]) * length,
-                normal,
-            });
-        }
-    }
-    points
-}
-
-fn points_of_arc(patch: &Patch, body: &Body, center: [f64; 2], radius: f64, angles: [f64; 2]) -> Vec<SurfacePoint> {
-    let swept = angles[1] - angles[0];
-    let parts = (PARTS_OF_ARC * radius * swept / patch.shortest_span()).ceil().max(1.0);
-    let rule = Rule::new(Layout::Gauss, POINTS_OF_PART);
-    let mut points = Vec::new();
-    for part in 0..parts as usize {
-        for (t, weight) in rule.points.iter().zip(&rule.weights) {
-            let (sine, cosine) = (angles[0] + swept * (part as f64 + t) / parts).sin_cos();
-            let position = [center[0] + radius * cosine, center[1] + radius * sine];
-            let normal = outward(body, position, [cosine, sine], radius);
-            points.push(SurfacePoint { position, length: weight * radius * swept / parts, normal });
-        }
-    }
-    points
-}
-
-/// A unit normal of an edge of this size (m) at a position (m) on it, turned out of the body.
-fn outward(body: &Body, position: [f64; 2], normal: [f64; 2], size: f64) -> [f64; 2] {
-    let beside = [0, 1].map(|d| position[d] + BESIDE * size * normal[d]);
-    if body.shape.contains(beside) { normal.map(|n| -n) } else { normal }
-}
-
-/// Ends of a straight edge, m; they coincide if the body has no such side.
-fn edge_ends(body: &Body, edge: &Edge) -> [[f64; 2]; 2] {
-    match edge {
-        Edge::Side(side) => {
-            body.shape.side(fault!("traction-on-wrong-edge", *side => Side::Bottom)).unwrap_or_default()
-        }
-        Edge::Segment(ends) => *ends,
-        Edge::Arc { .. } => Default::default(),
     }
 }
 
@@ -264,7 +176,7 @@ impl NodalLoad {
                 Balance::of_edge(body, &traction.edge)
             }
         };
-        let [x, y] = patch.control_positions().map(|component| lattice.with_copies(component));
+        let [x, y] = lattice.control_positions(patch);
         balance.check(sums.iter().filter(|(at, _)| moves(**at)).map(|(&at, sum)| ([x[at], y[at]], sum[0].value())))?;
         let forces = match traction.load {
             Load::Stress(stress) => {

@@ -17,12 +17,15 @@ pub struct Projection<'a> {
 }
 
 impl<'a> Projection<'a> {
-    /// Factors the mass matrix; fields are zero at the `held` control points. `None` if the points do not
-    /// determine a field: fewer than p + 1 of them in some span, or spans without any.
+    /// Factors the mass matrix; fields are zero at the `held` control points, and at those whose functions
+    /// see no point. `None` if the points do not determine a field: fewer than p + 1 of them in some span.
     pub fn new(lattice: &'a Lattice, held: &[usize]) -> Option<Self> {
         let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
         add_form(&mut matrix, lattice, Integrand::Mass, &Constant(1.0));
-        Some(Self { lattice, factor: SparseCholesky::default().factor(&matrix, held)? })
+        let grid = lattice.grid;
+        let is_empty = |at: &usize| matrix.diagonal(grid.column_of(*at), grid.row_of(*at)) == 0.0;
+        let out: Vec<usize> = held.iter().copied().chain(grid.indices().filter(is_empty)).collect();
+        Some(Self { lattice, factor: SparseCholesky::default().factor(&matrix, &out)? })
     }
 
     /// Control values of the projection of a function of position (m).

@@ -5,10 +5,14 @@
 //! changes. Spans are handled eight at a time, one per lane of a [`Lane`] (a *tile*), and rows of spans in
 //! *strips* of fixed height. Sums are formed strip by strip, so they do not depend on the number of threads.
 //!
-//! A rectangle cuts the spans at its edges exactly; of other shapes the points of a span that lie inside are
-//! kept. Slits add rows for the points that use copies of control points ([`parting`]). On a patch with a
-//! geometry the lattice is one of parameters, in the unit of the knots, and has a [`Mapping`].
+//! A rectangle cuts the spans at its edges; a span that the boundary of another shape cuts has points of its
+//! own ([`cut`]), in batches behind those of the tables ([`cut_strips`]). Slits add rows for the points that
+//! use copies of control points ([`parting`]). On a patch with a geometry the lattice is one of parameters,
+//! in the unit of the knots, and has a [`Mapping`].
 
+mod cut;
+mod cut_batch;
+mod cut_strips;
 mod integrate;
 mod map;
 mod mapped;
@@ -16,10 +20,12 @@ mod parting;
 mod sheets;
 mod tables;
 
+pub(crate) use cut_batch::CutBatch;
+use cut_batch::CutPoint;
 pub(crate) use mapped::{MappedPoint, Mapping};
 pub(crate) use sheets::Sheets;
 
-use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::scene::{Body, Crack, Layout, Shape};
 use crate::splines::nurbs::locate::Location;
@@ -60,6 +66,8 @@ pub struct Lattice {
     /// Whether a strip has points in a tile, strip by strip; absent if every one does.
     occupied: Option<Vec<bool>>,
     sheets: Option<Box<Sheets>>,
+    /// Points of the spans that the boundary cuts.
+    cut: Vec<CutBatch>,
 }
 
 /// Shape functions and physical gradients (1/m) of a batch of points, function n = l (p + 1) + k.
@@ -101,6 +109,11 @@ pub(crate) fn fills_lattice(mapped: bool, shape: &Shape) -> bool {
     *shape == Shape::Patch || (!mapped && matches!(shape, Shape::Rectangle { .. }))
 }
 
+/// Whether the boundary of a shape, if it is no rectangle, cuts spans of a patch over a rectangle.
+pub(crate) fn cuts_spans(shape: &Shape, spaces: &[SplineSpace; 2]) -> bool {
+    !fills_lattice(false, shape) && !cut::cut_spans(shape, spaces).is_empty()
+}
+
 /// The box around a body, with its rule, along both directions. A rectangle cuts spans, unless the lattice is
 /// one of parameters.
 fn directions<'a>(body: &Body, spaces: &'a [SplineSpace; 2], mapped: bool) -> [Along<'a>; 2] {
@@ -114,10 +127,43 @@ fn directions<'a>(body: &Body, spaces: &'a [SplineSpace; 2], mapped: bool) -> [A
 }
 
 impl Lattice {
-    /// The points of `body` on `patch`.
+    /// The points of `body` on `patch`; spans that its boundary cuts have points of their own.
     pub fn new(patch: &Patch, body: &Body) -> Self {
+        let mut lattice = Self::of_tables(patch, body);
         let mapped = patch.geometry.is_some();
-        let [x, y] = directions(body, &patch.spaces, mapped).map(|along| along.columns());
+        let fills = fills_lattice(mapped, &body.shape);
+        let mut cut = Vec::new();
+        if !fills {
+            lattice.keep_inside(&body.shape);
+            if !mapped {
+                let spans = cut::cut_spans(&body.shape, &patch.spaces);
+                cut.extend(spans.into_iter().flat_map(|(span, points)| CutPoint::of_span(patch, span, points)));
+            }
+        }
+        let slits: Vec<_> = body.cracks.iter().filter(|crack| crack.is_slit()).flat_map(Crack::segments).collect();
+        if !fills || !slits.is_empty() {
+            lattice.part(&slits, Some(&body.shape).filter(|_| !fills), &mut cut);
+        }
+        if !cut.is_empty() {
+            lattice.append_cut(patch, cut);
+        }
+        lattice.find_occupied();
+        lattice
+    }
+
+    /// The points of `body` on `patch`: of a span that its boundary cuts, those of a whole one that lie
+    /// inside.
+    pub(crate) fn stepped(patch: &Patch, body: &Body) -> Self {
+        let mut lattice = Self::of_tables(patch, body);
+        if !fills_lattice(patch.geometry.is_some(), &body.shape) {
+            lattice.keep_inside(&body.shape);
+        }
+        lattice
+    }
+
+    /// Every point of the tables.
+    fn of_tables(patch: &Patch, body: &Body) -> Self {
+        let [x, y] = directions(body, &patch.spaces, patch.geometry.is_some()).map(|along| along.columns());
         let degree = [0, 1].map(|d| patch.spaces[d].degree());
         let rows: Vec<Row> = y
             .into_iter()
@@ -143,27 +189,25 @@ impl Lattice {
             factor: None,
             occupied: None,
             sheets: None,
+            cut: Vec::new(),
         };
         if let Some(geometry) = &patch.geometry {
             lattice.map_by(geometry);
         }
-        let slits: Vec<_> = body.cracks.iter().filter(|crack| crack.is_slit()).flat_map(Crack::segments).collect();
-        if !fills_lattice(mapped, &body.shape) {
-            lattice.keep_inside(&body.shape);
-            lattice.part(&slits, Some(&body.shape));
-        } else if !slits.is_empty() {
-            lattice.part(&slits, None);
-        }
-        lattice.occupied = lattice.factor.as_ref().map(|factor| {
-            let points = lattice.points_per_span();
+        lattice
+    }
+
+    /// Finds which strips have points in which tiles.
+    fn find_occupied(&mut self) {
+        self.occupied = self.factor.as_ref().map(|factor| {
+            let points = self.points_per_span();
             let holds = |(strip, tile): (usize, usize)| {
-                let mut first = lattice.strip_rows(strip).map(|row| lattice.batch(row, tile, 0, 0));
+                let mut first = self.strip_rows(strip).map(|row| self.batch(row, tile, 0, 0));
                 first.any(|at| factor[at..at + points].iter().any(|factor| factor.0.iter().any(|&f| f > 0.0)))
             };
-            let tiles = lattice.tiles.len();
-            (0..lattice.strips()).flat_map(|strip| (0..tiles).map(move |tile| (strip, tile))).map(holds).collect()
+            let tiles = self.tiles.len();
+            (0..self.table_strips()).flat_map(|strip| (0..tiles).map(move |tile| (strip, tile))).map(holds).collect()
         });
-        lattice
     }
 
     /// Copies of control points along slits.
@@ -191,6 +235,11 @@ impl Lattice {
             sheets.extend(self.patch_grid, &mut field);
         }
         field
+    }
+
+    /// Coordinates (m) of the control points, copies included.
+    pub fn control_positions(&self, patch: &Patch) -> VectorField {
+        patch.control_positions().map(|component| self.with_copies(component))
     }
 
     /// Whether the span whose first function has the control point `first` has material on the side of the
@@ -235,18 +284,13 @@ impl Lattice {
         self.points[0] * self.points[1]
     }
 
-    /// Batches (one point in each of eight spans) in the lattice; point state has this many [`Lane`]s.
-    pub fn batches(&self) -> usize {
-        self.rows.len() * self.tiles.len() * self.points_per_span()
-    }
-
     /// Batches in a full strip: point state is cut into chunks of this length.
     pub fn strip_batches(&self) -> usize {
         STRIP_ROWS * self.tiles.len() * self.points_per_span()
     }
 
-    /// Number of strips.
-    pub fn strips(&self) -> usize {
+    /// Number of strips of tables; those of cut spans follow.
+    pub(crate) fn table_strips(&self) -> usize {
         self.rows.len().div_ceil(STRIP_ROWS)
     }
 
@@ -260,14 +304,11 @@ impl Lattice {
         strip * STRIP_ROWS..((strip + 1) * STRIP_ROWS).min(self.rows.len())
     }
 
-    /// Control rows a strip contributes to.
-    pub(crate) fn strip_control_rows(&self, strip: usize) -> std::ops::Range<usize> {
-        let rows = self.strip_rows(strip);
-        self.rows[rows.start].first..self.rows[rows.end - 1].first + self.degree[1] + 1
-    }
-
     /// Control rows of the patch that a strip contributes to.
     pub(crate) fn strip_patch_rows(&self, strip: usize) -> std::ops::Range<usize> {
+        if strip >= self.table_strips() {
+            return self.cut_control_rows(strip, |_| 0);
+        }
         let rows = self.strip_control_rows(strip);
         let lift = self.rows[self.strip_rows(strip).start].lift;
         rows.start - lift..rows.end - lift
@@ -296,6 +337,15 @@ impl Lattice {
         }
     }
 
+    /// Weights (m²) of a batch; zero where there is no point.
+    pub fn weights_of(&self, batch: usize) -> Lane {
+        if let Some(cut) = self.cut_batch(batch) {
+            return cut.weight;
+        }
+        let (row, tile, b, a) = self.unbatch(batch);
+        self.weight(row, tile, b, a)
+    }
+
     /// Weights of eight control points from index `at` of a field on; 1 over a rectangle.
     #[inline(always)]
     pub fn weights(&self, at: usize) -> Lane {
@@ -303,13 +353,20 @@ impl Lattice {
     }
 
     /// Shape functions of a batch; those of lane l belong to control points l columns further than those of
-    /// lane 0.
+    /// lane 0, but for spans that the boundary cuts.
     pub fn shape_functions(&self, batch: usize) -> BatchFunctions {
-        let (row_index, tile_index, b, a) = self.unbatch(batch);
-        let (row, tile) = (&self.rows[row_index], &self.tiles[tile_index]);
         let [kx, ky] = self.degree.map(|p| p + 1);
         let mut functions =
             BatchFunctions { value: [Lane::ZERO; MAX_FUNCTIONS], gradient: [[Lane::ZERO; 2]; MAX_FUNCTIONS] };
+        if let Some(CutBatch { value: [x, y], derivative: [dx, dy], .. }) = self.cut_batch(batch) {
+            for (l, k) in (0..ky).flat_map(|l| (0..kx).map(move |k| (l, k))) {
+                functions.value[l * kx + k] = x[k] * y[l];
+                functions.gradient[l * kx + k] = [dx[k] * y[l], x[k] * dy[l]];
+            }
+            return functions;
+        }
+        let (row_index, tile_index, b, a) = self.unbatch(batch);
+        let (row, tile) = (&self.rows[row_index], &self.tiles[tile_index]);
         for l in 0..ky {
             for k in 0..kx {
                 let (n, x, dx) = (l * kx + k, tile.value[a * kx + k], tile.derivative[a * kx + k]);
@@ -326,10 +383,37 @@ impl Lattice {
         functions
     }
 
+    /// Value and gradient of a field of control values at a batch of points.
+    pub fn interpolate(&self, batch: usize, field: &[f64]) -> (Lane, [Lane; 2]) {
+        let functions = self.shape_functions(batch);
+        let kx = self.degree[0] + 1;
+        let (mut value, mut gradient) = (Lane::ZERO, [Lane::ZERO; 2]);
+        for n in 0..kx * (self.degree[1] + 1) {
+            let control = self.control_values(batch, n % kx, n / kx, field);
+            value += functions.value[n] * control;
+            for d in 0..2 {
+                gradient[d] += functions.gradient[n][d] * control;
+            }
+        }
+        (value, gradient)
+    }
+
+    /// Control values of function (k, l) of the span of each point of a batch.
+    fn control_values(&self, batch: usize, k: usize, l: usize, field: &[f64]) -> Lane {
+        if let Some(CutBatch { first: [column, row], lift, .. }) = self.cut_batch(batch) {
+            return Lane::splat(field[self.grid.index(column + k, row + lift + l)]);
+        }
+        let (row, tile, ..) = self.unbatch(batch);
+        Lane::load(field, self.grid.index(self.tiles[tile].first + k, self.rows[row].first + l))
+    }
+
     /// Position of the point of a batch in a lane, m.
     pub fn position(&self, batch: usize, lane: usize) -> [f64; 2] {
         if let Some(mapping) = &self.mapping {
             return mapping.points[batch].position.map(|x| x[lane]);
+        }
+        if let Some(cut) = self.cut_batch(batch) {
+            return cut.position.map(|x| x[lane]);
         }
         self.parameters(batch, lane)
     }
@@ -349,23 +433,31 @@ impl Lattice {
 
     /// Distance in fields of the control points of a batch from those of the patch.
     pub(crate) fn lift_of(&self, batch: usize) -> usize {
-        let (row, ..) = self.unbatch(batch);
-        self.rows[row].lift * self.grid.stride
+        let lift = self.cut_batch(batch).map_or_else(|| self.rows[self.unbatch(batch).0].lift, |cut| cut.lift);
+        lift * self.grid.stride
+    }
+
+    /// Column and row of the first function of the span of the point of a batch in a lane.
+    fn first_of(&self, batch: usize, lane: usize) -> [usize; 2] {
+        if let Some(cut) = self.cut_batch(batch) {
+            return cut.first;
+        }
+        let (row, tile, _, _) = self.unbatch(batch);
+        [self.tiles[tile].first + lane, self.rows[row].first - self.rows[row].lift]
     }
 
     /// Span and parameters on `patch` of the point of a batch in a lane.
     pub fn location(&self, patch: &Patch, batch: usize, lane: usize) -> Location {
-        let (row, tile, _, _) = self.unbatch(batch);
-        let first = [self.tiles[tile].first + lane, self.rows[row].first - self.rows[row].lift];
+        let first = self.first_of(batch, lane);
         let span = [0, 1].map(|d| patch.spaces[d].spans().partition_point(|span| span.first < first[d]));
-        Location { span, parameters: self.parameters(batch, lane) }
+        let cut = self.cut_batch(batch).map(|cut| cut.position.map(|x| x[lane]));
+        Location { span, parameters: cut.unwrap_or_else(|| self.parameters(batch, lane)) }
     }
 
     /// Every point: batch, lane, position (m) and weight (m²).
     pub fn for_each_point(&self, mut f: impl FnMut(usize, usize, [f64; 2], f64)) {
         for batch in 0..self.batches() {
-            let (row, tile, b, a) = self.unbatch(batch);
-            let weight = self.weight(row, tile, b, a);
+            let weight = self.weights_of(batch);
             for lane in 0..LANES {
                 if weight[lane] > 0.0 {
                     f(batch, lane, self.position(batch, lane), weight[lane]);
@@ -378,7 +470,8 @@ impl Lattice {
     pub fn bytes(&self) -> usize {
         let mapping = self.mapping.as_ref().map_or(0, |mapping| mapping.bytes());
         let sheets = self.sheets.as_ref().map_or(0, |sheets| sheets.bytes());
-        mapping + sheets + self.factor.as_ref().map_or(0, |factor| size_of::<Lane>() * factor.len())
+        let cut = size_of::<CutBatch>() * self.cut.len();
+        cut + mapping + sheets + self.factor.as_ref().map_or(0, |factor| size_of::<Lane>() * factor.len())
     }
 
     /// Number of material points.

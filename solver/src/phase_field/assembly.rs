@@ -2,14 +2,14 @@
 //! 19–24).
 //!
 //! Over a rectangle by sum factorisation: points of a span form a grid, so the sum over them is done first
-//! along x, for every pair of functions in x, then along y. On a patch with a geometry pair by pair
-//! (`assembly/mapped.rs`).
+//! along x, for every pair of functions in x, then along y. On a patch with a geometry, and in spans that the
+//! boundary cuts, pair by pair (`assembly/pairs.rs`).
 //!
 //! Strips are assembled in two colours: strips of one colour share no control row, and the order in which
 //! contributions meet does not depend on the number of threads.
 
 mod form;
-mod mapped;
+mod pairs;
 
 use rayon::prelude::*;
 
@@ -33,8 +33,14 @@ pub fn add_form<C: PointCoefficients>(matrix: &mut Stencil, lattice: &Lattice, f
     use ShapeFactor::{Derivative, Value};
     if lattice.mapping.is_some() {
         return for_each_strip(matrix, lattice, |strip, first_row, window| {
-            mapped::assemble(lattice, form, coefficients, strip, first_row, window);
+            pairs::assemble(lattice, form, coefficients, strip, first_row, window);
         });
+    }
+    for strip in lattice.table_strips()..lattice.strips() {
+        let rows = lattice.strip_patch_rows(strip);
+        let row_length = matrix.row_length();
+        let window = &mut matrix.coefficients_mut()[rows.start * row_length..rows.end * row_length];
+        pairs::assemble_cut(lattice, form, coefficients, strip, rows.start, window);
     }
     let products: &[[ShapeFactor; 2]] = match form {
         Integrand::Mass => &[[Value, Value]],
@@ -63,7 +69,7 @@ fn for_each_strip(matrix: &mut Stencil, lattice: &Lattice, assemble: impl Fn(usi
         }
         windows.into_par_iter().for_each(|(strip, first_row, window)| assemble(strip, first_row, window));
     }
-    for strip in lattice.patch_strips()..lattice.strips() {
+    for strip in lattice.patch_strips()..lattice.table_strips() {
         let rows = lattice.strip_patch_rows(strip);
         let window = &mut matrix.coefficients_mut()[rows.start * row_length..rows.end * row_length];
         assemble(strip, rows.start, window);

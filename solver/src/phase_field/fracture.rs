@@ -150,8 +150,7 @@ impl LatticeFracture {
     pub(crate) fn broken_points(&self, lattice: &Lattice) -> Vec<BrokenPoint> {
         let mut broken = Vec::new();
         for (batch, phases) in self.phase.iter().enumerate().filter(|(_, c)| c.0.iter().any(|c| *c < BROKEN)) {
-            let (row, tile, b, a) = lattice.unbatch(batch);
-            let area = lattice.weight(row, tile, b, a);
+            let area = lattice.weights_of(batch);
             for lane in (0..LANES).filter(|&lane| area[lane] > 0.0 && phases[lane] < BROKEN) {
                 let position = lattice.position(batch, lane);
                 broken.push(BrokenPoint { position, phase: phases[lane], spacing: area[lane].sqrt() });

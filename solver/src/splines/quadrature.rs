@@ -35,6 +35,14 @@ impl Rule {
     }
 }
 
+impl Rule {
+    /// Positions and weights between two ends.
+    pub(crate) fn between(&self, left: f64, right: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let length = right - left;
+        self.points.iter().zip(&self.weights).map(move |(t, w)| (left + t * length, w * length))
+    }
+}
+
 fn equally_spaced(weights: Vec<f64>) -> Rule {
     let n = weights.len();
     Rule { points: (0..n).map(|i| (i as f64 + 0.5) / n as f64).collect(), weights }

@@ -7,6 +7,7 @@
 //! force written once per strip. What happens at the points is a [`PointKernel`]; what it does not ask for is
 //! not interpolated.
 
+mod cut;
 mod strip;
 
 use rayon::prelude::*;

@@ -6,7 +6,8 @@ use super::ground::Ground;
 use super::look::{Look, TOLERANCE};
 use super::points::Points;
 use super::{cracks, resolution, seed, tractions};
-use crate::scene::{Body, Fracture, Layout, Scene, Shape};
+use crate::particles::lattice::cuts_spans;
+use crate::scene::{Body, Fracture, Frame, Layout, Scene, Shape};
 use crate::splines::nurbs::{LocateError, NurbsPatch};
 use crate::splines::quadrature::MAX_POINTS;
 
@@ -38,6 +39,9 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
             continue;
         }
         let placed = ground.is_sound && !body.rigid && inside_mesh(&key, body, ground, findings);
+        if placed && scene.analysis.frame == Frame::Total {
+            cut_spans(&key, body, ground, findings);
+        }
         let before = findings.errors.len();
         if placed && let Some(fracture) = fracture {
             resolution::check(body, fracture, ground, findings);
@@ -53,24 +57,42 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
             cracks::check(&format!("{key}.crack.{j}"), crack, fracture, &look, findings);
         }
         if placed && (0..2).all(|d| has_rule(body, d)) {
-            material_points(&key, body, fracture.filter(|_| findings.errors.len() == before), ground, findings);
+            let fracture = fracture.filter(|_| findings.errors.len() == before);
+            material_points(&key, body, fracture, (ground, scene.analysis.frame), findings);
         }
     }
 }
 
 /// The body has material points, and the seeds of its cracks, if they are sound, reach them.
-fn material_points(key: &str, body: &Body, fracture: Option<&Fracture>, ground: &Ground<'_>, findings: &mut Findings) {
+fn material_points(
+    key: &str,
+    body: &Body,
+    fracture: Option<&Fracture>,
+    (ground, frame): (&Ground<'_>, Frame),
+    findings: &mut Findings,
+) {
     let Some(points) = Points::new(body, ground) else {
         let seeds = (0..body.cracks.len()).filter(|_| fracture.is_some());
         return seeds.for_each(|j| seed::unchecked(format!("{key}.crack.{j}"), findings));
     };
     let [_, h] = ground.span_lengths(&body.shape);
-    if !points.exist() {
+    let has_cut_spans = frame == Frame::Total && ground.patch.is_none(); // with points of their own
+    if !has_cut_spans && !points.exist() {
         let message = format!("no material point lies in body {:?}: its cells are up to {h:.3e} m wide", body.name);
         let remedy = "use smaller cells or more particles_per_cell, or make the body larger";
         findings.error(format!("{key}.shape"), message, remedy);
     } else if let Some(fracture) = fracture {
         seed::check(key, body, fracture, &points, h, findings);
+    }
+}
+
+/// Bilinear functions of a small part of a span shorten the step, down to a twenty-fifth.
+fn cut_spans(key: &str, body: &Body, ground: &Ground<'_>, findings: &mut Findings) {
+    let Some(spaces) = ground.spaces.as_ref().filter(|_| ground.patch.is_none()) else { return };
+    if spaces.iter().any(|space| space.degree() == 1) && cuts_spans(&body.shape, spaces) {
+        let message =
+            format!("the boundary of body {:?} cuts cells, which needs splines of degree 2 or higher", body.name);
+        findings.error(format!("{key}.shape"), message, "use mesh.degree = 2, or put its edges on the edges of cells");
     }
 }
 

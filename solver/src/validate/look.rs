@@ -24,6 +24,8 @@ pub(super) struct Look<'a> {
     pub end_time: f64,
     /// Whether pressures are implemented.
     pub has_pressure: bool,
+    /// Whether the points of the body end in steps along edges that are not parallel to the mesh.
+    pub has_steps: bool,
     tolerance: f64,
     /// Parameters of the last position found on the patch.
     last: Cell<Option<[f64; 2]>>,
@@ -41,6 +43,7 @@ impl<'a> Look<'a> {
             ground,
             end_time: analysis.end_time,
             has_pressure: analysis.frame == Frame::Total && analysis.kinematics == Kinematics::Small,
+            has_steps: analysis.frame == Frame::Updated,
             tolerance: TOLERANCE * (max[0] - min[0]).max(max[1] - min[1]),
             last: Cell::new(None),
             most: (MOST_LOOKS / cost.max(1)).clamp(2, MOST_POSITIONS),

@@ -12,9 +12,8 @@ const BESIDE: f64 = 1e-6;
 const ON_BOUNDARY: &str = "give an edge of which every point lies on the body's boundary; the faces of a slit carry no load: \
                            cut a notch";
 
-/// Of a body with stepped edges: measured on a ring under pressure with p = 1 to 3 and 2 × 2 to 8 × 8 points.
-const STEPPED: &str = "the points of the body end in steps along this edge: the force is right, stresses within two spans of \
-                       it are not, and energies need 4 x 4 points in a span; a mesh that follows the edge has no steps";
+const STEPPED: &str = "in the updated frame the points of the body end in steps along this edge: the force is right, stresses \
+                       within two spans of it are not";
 
 pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &mut Findings) {
     let Look { body, ground, .. } = *look;
@@ -64,7 +63,9 @@ pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &
                     body.name
                 );
                 findings.error(key, message, ON_BOUNDARY);
-            } else if (0..2).all(|d| ends[0][d] != ends[1][d]) && !middles(*ends).all(|at| is_between(at, *ends, body))
+            } else if look.has_steps
+                && (0..2).all(|d| ends[0][d] != ends[1][d])
+                && !middles(*ends).all(|at| is_between(at, *ends, body))
             {
                 findings.warn(key, STEPPED);
             }
@@ -124,7 +125,7 @@ fn arc(key: &str, center: [f64; 2], radius: f64, angles: [f64; 2], look: &Look<'
         let [x, y] = position(i, radius);
         let message = format!("the arc runs inside body {name:?}: there is material on both sides of ({x}, {y}) m");
         findings.error(key, message, ON_BOUNDARY);
-    } else {
+    } else if look.has_steps {
         findings.warn(key, STEPPED);
     }
 }

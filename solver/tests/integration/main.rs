@@ -14,6 +14,7 @@ mod consistent_mass;
 mod contact;
 mod contact_limits;
 mod critical_step;
+mod cut;
 mod determinism;
 mod equilibrium;
 mod fictitious;

@@ -50,6 +50,11 @@ pub enum PatchFamily {
     /// The ring between the radii 0.75 and 1.25 m in the square [−1.4, 1.4]² m with equal spans that it
     /// cuts.
     Ring,
+    /// The square [0, 2]² m with equal spans, without the disc of radius 1 m about the origin, which cuts
+    /// them.
+    Holed,
+    /// The disc of radius 1 m about the origin in the square [−1.1, 1.1]² m with equal spans that it cuts.
+    Disc,
 }
 
 /// How the problem is loaded.

@@ -16,7 +16,7 @@
 //! shear vanish).
 
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Frame, Kinematics, Material, Plane, Side};
+use fisura::scene::{Frame, Kinematics, Material, Plane};
 
 use super::dual::{Jet, Scalar};
 use super::law::{self, Tensor};
@@ -34,7 +34,7 @@ pub const SOLUTIONS: &[Solution] = &[Solution {
     name: "kirsch",
     fields: |plane| Box::new(Derived(Kirsch { plane })),
     equation: Equation::Static,
-    held: Held::Sides(&[(Side::Bottom, [false, true]), (Side::Top, [true, false])]),
+    held: Held::Axes,
     end_time: 0.0,
     kinematics: Kinematics::Small,
     frames: &[Frame::Total],

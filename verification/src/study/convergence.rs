@@ -66,7 +66,7 @@ fn problem_of(case: &Case) -> Result<(&ConvergenceSetup, Problem, Norms), StudyE
     let setup = case.convergence.as_ref().ok_or_else(|| other("a [convergence] table is missing"))?;
     let problem = problem::find(setup).map_err(StudyError::Other)?;
     let norms = match setup.frame {
-        Frame::Total => Discrete::norms(&problem),
+        Frame::Total => Discrete::norms(&problem, setup.patch),
         Frame::Updated => moving::NORMS.to_vec(),
     };
     Ok((setup, problem, norms))
@@ -221,6 +221,8 @@ fn words_of_patch(family: PatchFamily) -> &'static str {
         PatchFamily::UnitSquare => "the unit square",
         PatchFamily::Block => "a block that cuts a rectangle",
         PatchFamily::Ring => "a ring cut out of a square",
+        PatchFamily::Holed => "a square with a hole that cuts spans",
+        PatchFamily::Disc => "a disc cut out of a square",
     }
 }
 

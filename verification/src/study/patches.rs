@@ -16,6 +16,10 @@ const SIZE: [f64; 2] = [1.0, 0.8];
 /// of the centre.
 const AROUND_RING: f64 = 1.4;
 
+/// Side of the square with a hole, and half that of the one about the disc, m.
+const AROUND_HOLE: f64 = 2.0;
+const AROUND_DISC: f64 = 1.1;
+
 /// Way of the block, m, and the room around it.
 const WAY: [f64; 2] = [0.675, 0.36];
 const AROUND_BLOCK: f64 = 0.06;
@@ -53,6 +57,8 @@ pub fn shifted_mesh(family: PatchFamily, degree: usize, cells: usize, offset: f6
             let origin = [1.0, ACROSS].map(|part| -AROUND_RING - h * part * offset);
             Ok(Mesh::uniform([degree; 2], origin, [2.0 * AROUND_RING; 2], [cells; 2]))
         }
+        PatchFamily::Holed => Ok(Mesh::uniform([degree; 2], [0.0; 2], [AROUND_HOLE; 2], [cells; 2])),
+        PatchFamily::Disc => Ok(Mesh::uniform([degree; 2], [-AROUND_DISC; 2], [2.0 * AROUND_DISC; 2], [cells; 2])),
         PatchFamily::Graded => {
             let mut random = Random::new(11);
             let knots = SIZE.map(|size| open(degree, &subdivided(&breaks(&mut random, size), parts)));

@@ -108,7 +108,7 @@ impl TotalFrame {
         velocity: VectorField,
         forcing: Arc<dyn Forcing>,
     ) -> Result<(), SolveFailure> {
-        let mut forced = LatticeForcing::new(forcing, &self.patch, &self.lattice);
+        let mut forced = LatticeForcing::new(forcing, &self.patch, &self.lattice, &self.shape);
         forced.update_forces(&self.lattice, 0.0);
         if let Some(fracture) = &mut self.fracture {
             fracture.field.set_load(forced.phase_load(&self.lattice, 0.0));

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use crate::dynamics::forcing::Forcing;
+use crate::dynamics::surface::{SurfacePoint, points_around};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::particles::lattice::Lattice;
-use crate::scene::Side;
+use crate::scene::{Shape, Side};
 use crate::splines::patch::{BoundaryPoint, Patch};
 use crate::splines::quadrature::Rule;
 
-/// Nodal forces of a [`Forcing`] on a body that fills the patch.
+/// Nodal forces of a [`Forcing`] on a body.
 #[derive(Debug, Clone)]
 pub(super) struct LatticeForcing {
     forcing: Arc<dyn Forcing>,
@@ -20,11 +21,22 @@ pub(super) struct LatticeForcing {
 }
 
 impl LatticeForcing {
-    /// Tractions are integrated with the points' own rule in every span of the sides.
-    pub(crate) fn new(forcing: Arc<dyn Forcing>, patch: &Patch, lattice: &Lattice) -> Self {
-        let [left, bottom] = [1, 0].map(|along| Rule::new(lattice.layout, lattice.points[along]));
-        let sides = [(Side::Left, &left), (Side::Right, &left), (Side::Bottom, &bottom), (Side::Top, &bottom)];
-        let boundary = sides.into_iter().flat_map(|(side, rule)| patch.boundary(side, rule)).collect();
+    /// Tractions on the sides of a patch are integrated with the points' own rule in every span of them.
+    pub(crate) fn new(forcing: Arc<dyn Forcing>, patch: &Patch, lattice: &Lattice, shape: &Shape) -> Self {
+        let boundary = if let Shape::Patch | Shape::Rectangle { .. } = shape {
+            let [left, bottom] = [1, 0].map(|along| Rule::new(lattice.layout, lattice.points[along]));
+            let sides = [(Side::Left, &left), (Side::Right, &left), (Side::Bottom, &bottom), (Side::Top, &bottom)];
+            sides.into_iter().flat_map(|(side, rule)| patch.boundary(side, rule)).collect()
+        } else {
+            let with_functions = |SurfacePoint { position, length, normal }| {
+                let functions = patch.functions_at(position)?.values;
+                let first = functions[0].0;
+                let on_side = |(at, value)| (lattice.control_point(at, first, position), value);
+                let functions = functions.into_iter().map(on_side).collect();
+                Some(BoundaryPoint { position, normal, length, functions })
+            };
+            points_around(patch, shape).into_iter().filter_map(with_functions).collect()
+        };
         let zeros = || [lattice.grid.zeros(), lattice.grid.zeros()];
         Self { forcing, boundary, now: zeros(), before: zeros() }
     }

@@ -33,8 +33,8 @@ impl TotalFrame {
     }
 
     /// Coordinates (m) of the control points, copies included, as fields.
-    pub(super) fn control_positions(&self) -> VectorField {
-        self.patch.control_positions().map(|component| self.lattice.with_copies(component))
+    pub fn control_positions(&self) -> VectorField {
+        self.lattice.control_positions(&self.patch)
     }
 
     /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at
@@ -199,7 +199,7 @@ impl TotalFrame {
 
     /// Right-hand side (m²) of the phase-field equation with the source and flux of a forcing at t = 0.
     pub fn phase_load(&self, forcing: Arc<dyn Forcing>) -> Vec<f64> {
-        LatticeForcing::new(forcing, &self.patch, &self.lattice).phase_load(&self.lattice, 0.0)
+        LatticeForcing::new(forcing, &self.patch, &self.lattice, &self.shape).phase_load(&self.lattice, 0.0)
     }
 
     /// Heap memory of mechanics and of the phase field, bytes.

@@ -76,7 +76,7 @@ impl DiscreteField {
     /// Sorted points at rest, on nodal fields of zeros.
     fn at_rest(scene: &Scene, body: &Body, whole: &Arc<Patch>) -> Result<Self, Failure> {
         let (material, analysis) = (&scene.materials[&body.material], &scene.analysis);
-        let mut points = Point::of_lattice(&Lattice::new(whole, body));
+        let mut points = Point::of_lattice(&Lattice::stepped(whole, body));
         if points.is_empty() {
             return Err(Failure::NoPoints(number_of(body, scene)));
         }

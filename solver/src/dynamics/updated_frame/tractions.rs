@@ -2,7 +2,7 @@
 
 use super::grid::NodalFields;
 use crate::checkpoint::{Archive, StateError};
-use crate::dynamics::loads::surface_points;
+use crate::dynamics::surface::surface_points;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::particles::follower::Follower;
 use crate::particles::points::OutsidePatch;

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::Lattice;
-use crate::linear_algebra::lane::Lane;
+use super::{CutBatch, Lattice};
+use crate::linear_algebra::lane::{LANES, Lane};
 
 impl Lattice {
     /// `Σ_p V_p f_p N_I(x_p)` of a density at the points, as a field; `density` gets batch, lane and
@@ -23,10 +23,9 @@ impl Lattice {
     ) {
         let [kx, ky] = self.degree.map(|p| p + 1);
         let of_batch = |batch: usize| {
-            let (row, tile, b, a) = self.unbatch(batch);
-            let weight = self.weight(row, tile, b, a);
+            let weight = self.weights_of(batch);
             let (mut force, mut stress) = ([Lane::ZERO; F], [[Lane::ZERO; 2]; F]);
-            for lane in (0..self.tiles[tile].count).filter(|&lane| weight[lane] > 0.0) {
+            for lane in (0..LANES).filter(|&lane| weight[lane] > 0.0) {
                 let (f, s) = density(batch, lane, self.position(batch, lane));
                 for i in 0..F {
                     force[i][lane] = f[i];
@@ -39,18 +38,25 @@ impl Lattice {
         };
         let densities: Vec<_> = (0..self.batches()).into_par_iter().map(of_batch).collect();
         for (batch, (weight, force, stress)) in densities.into_iter().enumerate() {
-            let (row_index, tile_index, _, _) = self.unbatch(batch);
-            let (row, tile) = (&self.rows[row_index], &self.tiles[tile_index]);
             let functions = self.shape_functions(batch);
             for l in 0..ky {
                 for k in 0..kx {
                     let (value, [x, y]) = (functions.value[l * kx + k], functions.gradient[l * kx + k]);
                     for i in 0..F {
                         let share = (force[i] * value + stress[i][0] * x + stress[i][1] * y) * weight;
-                        share.add_to(out[i], self.grid.index(tile.first + k, row.first + l));
+                        self.add_to_control_values(batch, k, l, share, out[i]);
                     }
                 }
             }
         }
+    }
+    /// Adds to the control values of function (k, l) of the span of each point of a batch.
+    fn add_to_control_values(&self, batch: usize, k: usize, l: usize, share: Lane, field: &mut [f64]) {
+        if let Some(CutBatch { first: [column, row], lift, .. }) = self.cut_batch(batch) {
+            field[self.grid.index(column + k, row + lift + l)] += share.sum();
+            return;
+        }
+        let (row, tile, ..) = self.unbatch(batch);
+        share.add_to(field, self.grid.index(self.tiles[tile].first + k, self.rows[row].first + l));
     }
 }

@@ -1,13 +1,16 @@
 //! Which control points a slit or a gap parts.
 //!
-//! The points in the support of a function are a graph: neighbours in the lattice are joined unless a slit or
-//! a gap of the body lies between them. Where the graph falls into components, the function is parted and has
-//! one control point for each. Points of a span that belong to the same components of all its functions are a
-//! *group*.
+//! The points in the support of a function are a graph: neighbours are joined unless a slit or a gap of the
+//! body lies between them. Where the graph falls into components, the function is parted and has one control
+//! point for each. Points of a span that belong to the same components of all its functions are a *group*. A
+//! span that the boundary cuts has its points of tables in the graph too: they join others, and belong to no
+//! group.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use super::cut_batch::CutPoint;
 use super::sheets::{FunctionIndex, Sheets};
 use super::{Lattice, Row, STRIP_ROWS};
 use crate::linear_algebra::control_grid::ControlGrid;
@@ -15,14 +18,14 @@ use crate::linear_algebra::lane::Lane;
 use crate::scene::Shape;
 use crate::scene::shape::{Segment, cross};
 
-/// Column and row of a point among all points of the lattice.
-type PointIndex = [usize; 2];
-/// Columns and rows from a point to half of its neighbours; the others have it ahead of them.
+/// Number of a point: those of tables column by column, and behind them those of cut spans.
+type PointIndex = usize;
+/// Columns and rows from a point of a table to half of its neighbours; the others have it ahead of them.
 const AHEAD: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
 /// Bit of a point that exists, beside those of its neighbours ahead.
 const EXISTS: u8 = 1 << AHEAD.len();
-/// Component of a point that does not exist.
-const NONE: usize = usize::MAX;
+/// Points of a neighbouring span that a point of a cut span may be joined to, the nearest first.
+const TRIED: usize = 4;
 
 /// Points of a span that belong to the same components of all its functions.
 struct Group {
@@ -46,13 +49,13 @@ struct SheetRows {
 
 impl Lattice {
     /// Parts the control points along slits, and along the gaps of a shape that are narrower than a support.
-    pub(super) fn part(&mut self, segments: &[Segment], shape: Option<&Shape>) {
-        let mut groups = PointGraph::new(self, segments, shape).groups();
+    pub(super) fn part(&mut self, segments: &[Segment], shape: Option<&Shape>, cut: &mut [CutPoint]) {
+        let mut groups = PointGraph::new(self, segments, shape, cut).groups();
         let sheets = choose_sheets(&mut groups);
         if sheets > 1 {
             groups.sort_by_key(|group| group.sheet);
             let windows = self.add_rows(&groups, sheets);
-            self.move_points(&groups, &windows);
+            self.move_points(&groups, &windows, cut);
             self.sheets.iter_mut().for_each(|sheets| sheets.slits = segments.to_vec());
         }
     }
@@ -94,7 +97,7 @@ impl Lattice {
     }
 
     /// Adds rows without points up to the end of a strip.
-    fn fill_strip(&mut self, copied: &mut Vec<usize>) {
+    pub(super) fn fill_strip(&mut self, copied: &mut Vec<usize>) {
         let last = self.rows.len() - 1;
         while !self.rows.len().is_multiple_of(STRIP_ROWS) {
             self.rows.push(self.rows[last].clone());
@@ -103,12 +106,17 @@ impl Lattice {
     }
 
     /// Moves the points of groups to the rows of their sheets, and ties the copies of whole functions.
-    fn move_points(&mut self, groups: &[Group], windows: &[SheetRows]) {
+    fn move_points(&mut self, groups: &[Group], windows: &[SheetRows], cut: &mut [CutPoint]) {
         let columns = self.span_columns();
+        let tables = columns.len() * self.points[0] * self.patch_rows * self.points[1];
         let mut moved = Vec::new();
         for group in groups {
             let SheetRows { taken, added, lift } = windows[group.sheet];
             for &place in &group.places {
+                if let Some(number) = place.checked_sub(tables) {
+                    cut[number].lift = lift;
+                    continue;
+                }
                 let (batch, lane) = self.batch_of(&columns, place);
                 let (row, tile, b, a) = self.unbatch(batch);
                 moved.push((batch, self.batch(row + added - taken, tile, b, a), lane, group.first, lift));
@@ -122,6 +130,10 @@ impl Lattice {
             if old != new {
                 factor[old][lane] = 0.0;
             }
+        }
+        let firsts: BTreeSet<FunctionIndex> = groups.iter().map(|group| group.first).collect();
+        for point in cut.iter().filter(|point| firsts.contains(&point.first)) {
+            sheets.points.entry(point.first).or_default().push((point.point.0, point.lift));
         }
         let mut owners = BTreeMap::new();
         for group in groups {
@@ -145,9 +157,10 @@ impl Lattice {
         self.tiles.iter().enumerate().flat_map(|(tile, t)| (0..t.count).map(move |lane| (tile, lane))).collect()
     }
 
-    /// Batch and lane of a point.
-    fn batch_of(&self, columns: &[(usize, usize)], [i, j]: PointIndex) -> (usize, usize) {
+    /// Batch and lane of a point of a table.
+    fn batch_of(&self, columns: &[(usize, usize)], point: PointIndex) -> (usize, usize) {
         let [nx, ny] = self.points;
+        let (i, j) = (point / (self.patch_rows * ny), point % (self.patch_rows * ny));
         let (tile, lane) = columns[i / nx];
         (self.batch(j / ny, tile, j % ny, i % nx), lane)
     }
@@ -178,108 +191,163 @@ struct PointGraph<'a> {
     lattice: &'a Lattice,
     /// Tile and lane of every column of spans.
     columns: Vec<(usize, usize)>,
-    /// Columns and rows of points.
+    /// Columns and rows of points of tables.
     size: [usize; 2],
     /// First functions of the columns and rows of spans.
     firsts: [Vec<usize>; 2],
-    /// Of every point, column by column: whether it exists, and to which neighbours ahead it is joined.
+    /// Of every point of a table: whether it exists, and to which neighbours ahead it is joined.
     links: Vec<u8>,
+    /// Points of the spans that the boundary cuts, and where those of a span begin and end.
+    cut: &'a [CutPoint],
+    cut_spans: BTreeMap<FunctionIndex, Range<usize>>,
+    /// What points of cut spans are joined to, both ways.
+    joined_to_cut: BTreeMap<PointIndex, Vec<PointIndex>>,
 }
 
 /// The component of every point in the support of a function.
-struct Components {
-    window: [Range<usize>; 2],
-    /// Column by column; [`NONE`] where there is no point.
-    labels: Vec<usize>,
-}
-
-impl Components {
-    fn index(&self, [i, j]: PointIndex) -> usize {
-        (i - self.window[0].start) * self.window[1].len() + j - self.window[1].start
-    }
-
-    fn contains(&self, [i, j]: PointIndex) -> bool {
-        self.window[0].contains(&i) && self.window[1].contains(&j)
-    }
-
-    fn points(&self) -> impl Iterator<Item = PointIndex> + '_ {
-        let [columns, rows] = self.window.clone();
-        let all = columns.flat_map(move |i| rows.clone().map(move |j| [i, j]));
-        all.filter(|&point| self.labels[self.index(point)] != NONE)
-    }
-}
+type Components = BTreeMap<PointIndex, usize>;
 
 impl<'a> PointGraph<'a> {
     /// Neighbours are joined unless the step between them crosses one of the `slits` (m) or leaves the shape.
-    fn new(lattice: &'a Lattice, slits: &[Segment], shape: Option<&Shape>) -> Self {
+    fn new(lattice: &'a Lattice, slits: &[Segment], shape: Option<&Shape>, cut: &'a [CutPoint]) -> Self {
         let columns = lattice.span_columns();
         let size = [columns.len() * lattice.points[0], lattice.patch_rows * lattice.points[1]];
         let firsts = [
             columns.iter().map(|&(tile, lane)| lattice.tiles[tile].first + lane).collect(),
             lattice.rows[..lattice.patch_rows].iter().map(|row| row.first).collect(),
         ];
-        let mut graph = Self { lattice, columns, size, firsts, links: vec![0; size[0] * size[1]] };
-        for point in graph.all() {
+        let mut cut_spans: BTreeMap<FunctionIndex, Range<usize>> = BTreeMap::new();
+        for (number, point) in cut.iter().enumerate() {
+            cut_spans.entry(point.first).or_insert(number..number).end = number + 1;
+        }
+        let (links, joined_to_cut) = (vec![0; size[0] * size[1]], BTreeMap::new());
+        let mut graph = Self { lattice, columns, size, firsts, links, cut, cut_spans, joined_to_cut };
+        for point in 0..graph.links.len() {
             let (batch, lane) = lattice.batch_of(&graph.columns, point);
-            let (row, tile, b, a) = lattice.unbatch(batch);
-            if lattice.weight(row, tile, b, a)[lane] > 0.0 {
-                graph.links[point[0] * size[1] + point[1]] = EXISTS;
+            if lattice.weights_of(batch)[lane] > 0.0 {
+                graph.links[point] = EXISTS;
             }
         }
-        for point in graph.all().filter(|_| !slits.is_empty() || shape.is_some()) {
+        let is_free = |step: Segment| {
+            let slit = slits.iter().any(|slit| fault!("slit-bridged", cross(step, *slit) => false));
+            !slit && !shape.is_some_and(|shape| shape.is_left_on(step))
+        };
+        for point in 0..graph.links.len() {
             for (bit, next) in graph.ahead(point) {
                 let step = [point, next].map(|point| graph.position(point));
-                let cut = slits.iter().any(|slit| fault!("slit-bridged", cross(step, *slit) => false));
-                if graph.exists(point) && graph.exists(next) && !cut && !shape.is_some_and(|s| s.is_left_on(step)) {
-                    graph.links[point[0] * size[1] + point[1]] |= 1 << bit;
+                if graph.exists(point) && graph.exists(next) && is_free(step) {
+                    graph.links[point] |= 1 << bit;
                 }
             }
         }
+        graph.join_cut_spans(is_free);
         graph
     }
 
-    fn all(&self) -> impl Iterator<Item = PointIndex> + use<> {
-        let [columns, rows] = self.size;
-        (0..columns).flat_map(move |i| (0..rows).map(move |j| [i, j]))
+    /// Joins every point of a cut span to a near one of each neighbouring span, and the points of a span to
+    /// each other, where no step between them is barred.
+    fn join_cut_spans(&mut self, is_free: impl Fn(Segment) -> bool) {
+        let tables = self.links.len();
+        for (first, range) in self.cut_spans.clone() {
+            let mut parts: Vec<usize> = range.clone().collect(); // which points are joined within the span
+            for number in range.clone() {
+                let from = self.cut[number].point.0;
+                for other in range.start..number {
+                    let [old, new] = [number, other].map(|number| parts[number - range.start]);
+                    if old != new && is_free([from, self.cut[other].point.0]) {
+                        parts.iter_mut().filter(|part| **part == old).for_each(|part| *part = new);
+                        self.join(tables + number, tables + other);
+                    }
+                }
+                for span in self.near_spans(first) {
+                    let distance = |point: &PointIndex| {
+                        let to = self.position(*point);
+                        (to[0] - from[0]).hypot(to[1] - from[1])
+                    };
+                    let mut points: Vec<(f64, PointIndex)> = self
+                        .points_of(span)
+                        .filter(|point| *point != tables + number)
+                        .map(|p| (distance(&p), p))
+                        .collect();
+                    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+                    let near = points.into_iter().take(TRIED).map(|(_, point)| point);
+                    let free = near.into_iter().find(|point| is_free([from, self.position(*point)]));
+                    if let Some(point) = free {
+                        self.join(tables + number, point);
+                    }
+                }
+            }
+        }
     }
 
-    fn links(&self, [i, j]: PointIndex) -> u8 {
-        self.links[i * self.size[1] + j]
+    fn join(&mut self, a: PointIndex, b: PointIndex) {
+        self.joined_to_cut.entry(a).or_default().push(b);
+        self.joined_to_cut.entry(b).or_default().push(a);
+    }
+
+    /// First functions of a span and of its neighbours, by the first function of the span.
+    fn near_spans(&self, first: FunctionIndex) -> Vec<FunctionIndex> {
+        let [columns, rows] = [0, 1].map(|d| {
+            let at = self.firsts[d].partition_point(|other| *other < first[d]);
+            &self.firsts[d][at.saturating_sub(1)..(at + 2).min(self.firsts[d].len())]
+        });
+        columns.iter().flat_map(|column| rows.iter().map(move |row| [*column, *row])).collect()
+    }
+
+    /// The points of a span, given by its first function.
+    fn points_of(&self, first: FunctionIndex) -> impl Iterator<Item = PointIndex> + '_ {
+        let [columns, rows] = [0, 1].map(|d| {
+            let at = self.firsts[d].partition_point(|other| *other < first[d]) * self.lattice.points[d];
+            at..at + self.lattice.points[d]
+        });
+        let of_tables = columns.flat_map(move |i| rows.clone().map(move |j| i * self.size[1] + j));
+        let cut = self.cut_spans.get(&first).cloned().unwrap_or_default();
+        of_tables.filter(|point| self.exists(*point)).chain(cut.map(|number| self.links.len() + number))
     }
 
     fn exists(&self, point: PointIndex) -> bool {
-        self.links(point) & EXISTS != 0
+        self.links[point] & EXISTS != 0
     }
 
     fn position(&self, point: PointIndex) -> [f64; 2] {
+        if let Some(number) = point.checked_sub(self.links.len()) {
+            return self.cut[number].point.0;
+        }
         let (batch, lane) = self.lattice.batch_of(&self.columns, point);
         self.lattice.position(batch, lane)
     }
 
-    /// The point a step from another one, forwards or backwards, if it is on the lattice.
-    fn step(&self, [i, j]: PointIndex, [columns, rows]: [isize; 2]) -> Option<PointIndex> {
-        let next = [i.checked_add_signed(columns)?, j.checked_add_signed(rows)?];
-        (next[0] < self.size[0] && next[1] < self.size[1]).then_some(next)
+    /// The point of a table a step from another one, forwards or backwards, if there is one.
+    fn step(&self, point: PointIndex, [columns, rows]: [isize; 2]) -> Option<PointIndex> {
+        let (i, j) = (point / self.size[1], point % self.size[1]);
+        let (i, j) = (i.checked_add_signed(columns)?, j.checked_add_signed(rows)?);
+        (i < self.size[0] && j < self.size[1]).then_some(i * self.size[1] + j)
     }
 
-    /// Neighbours ahead, each with its bit.
+    /// Neighbours ahead of a point of a table, each with its bit.
     fn ahead(&self, point: PointIndex) -> impl Iterator<Item = (usize, PointIndex)> + use<> {
         AHEAD.map(|step| self.step(point, step)).into_iter().enumerate().filter_map(|(bit, next)| Some((bit, next?)))
     }
 
-    /// Neighbours that a point is joined to.
+    /// Points that a point is joined to.
     fn joined(&self, point: PointIndex) -> impl Iterator<Item = PointIndex> + '_ {
-        let linked = |bit: usize, from: PointIndex| self.links(from) & (1 << bit) != 0;
-        AHEAD.into_iter().enumerate().flat_map(move |(bit, [columns, rows])| {
+        let linked = |bit: usize, from: PointIndex| self.links[from] & (1 << bit) != 0;
+        let steps = AHEAD.into_iter().enumerate().filter(move |_| point < self.links.len());
+        let in_tables = steps.flat_map(move |(bit, [columns, rows])| {
             let ahead = self.step(point, [columns, rows]).filter(|_| linked(bit, point));
             let behind = self.step(point, [-columns, -rows]).filter(|behind| linked(bit, *behind));
             ahead.into_iter().chain(behind)
-        })
+        });
+        in_tables.chain(self.joined_to_cut.get(&point).into_iter().flatten().copied())
     }
 
     /// First control point of the span of a point.
     fn first(&self, point: PointIndex) -> FunctionIndex {
-        [0, 1].map(|d| self.firsts[d][point[d] / self.lattice.points[d]])
+        if let Some(number) = point.checked_sub(self.links.len()) {
+            return self.cut[number].first;
+        }
+        let at = [point / self.size[1], point % self.size[1]];
+        [0, 1].map(|d| self.firsts[d][at[d] / self.lattice.points[d]])
     }
 
     /// Functions of a span, given by its first one.
@@ -288,13 +356,14 @@ impl<'a> PointGraph<'a> {
         (row..=row + q).flat_map(move |row| (column..=column + p).map(move |column| [column, row]))
     }
 
-    /// Spans with a point whose step to a neighbour is cut, by their first functions.
-    fn cut_spans(&self) -> BTreeSet<FunctionIndex> {
-        let mut spans = BTreeSet::new();
-        for point in self.all() {
+    /// Spans that the boundary cuts, or with a point whose step to a neighbour is barred, by their first
+    /// functions.
+    fn barred_spans(&self) -> BTreeSet<FunctionIndex> {
+        let mut spans: BTreeSet<FunctionIndex> = self.cut_spans.keys().copied().collect();
+        for point in 0..self.links.len() {
             for (bit, next) in self.ahead(point) {
                 let either = self.exists(point) || self.exists(next);
-                if either && self.links(point) & (1 << bit) == 0 {
+                if either && self.links[point] & (1 << bit) == 0 {
                     spans.extend([point, next].map(|point| self.first(point)));
                 }
             }
@@ -302,32 +371,29 @@ impl<'a> PointGraph<'a> {
         spans
     }
 
-    /// Points in the support of a function.
-    fn support(&self, [column, row]: FunctionIndex) -> [Range<usize>; 2] {
-        let at = [column, row];
-        [0, 1].map(|d| {
-            let (firsts, points) = (&self.firsts[d], self.lattice.points[d]); // of spans, in increasing order
-            let before = |function: usize| firsts.partition_point(|first| *first < function) * points;
-            before(at[d].saturating_sub(self.lattice.degree[d]))..before(at[d] + 1)
-        })
+    /// First functions of the spans in the support of a function.
+    fn support(&self, function: FunctionIndex) -> impl Iterator<Item = FunctionIndex> + '_ {
+        let [columns, rows] = [0, 1].map(|d| {
+            let before = |function: usize| self.firsts[d].partition_point(|first| *first < function);
+            &self.firsts[d][before(function[d].saturating_sub(self.lattice.degree[d]))..before(function[d] + 1)]
+        });
+        columns.iter().flat_map(move |column| rows.iter().map(move |row| [*column, *row]))
     }
 
     /// Components of the support of a function, if there are several.
     fn components(&self, function: FunctionIndex) -> Option<Components> {
-        let window = self.support(function);
-        let mut found = Components { labels: vec![NONE; window[0].len() * window[1].len()], window };
-        let [columns, rows] = found.window.clone();
+        let spans: BTreeSet<FunctionIndex> = self.support(function).collect();
+        let mut found = Components::new();
         let mut count = 0;
-        for start in columns.flat_map(|i| rows.clone().map(move |j| [i, j])) {
-            if !self.exists(start) || found.labels[found.index(start)] != NONE {
+        for start in spans.iter().flat_map(|span| self.points_of(*span)) {
+            if found.contains_key(&start) {
                 continue;
             }
             let mut open = vec![start];
             while let Some(point) = open.pop() {
-                let index = found.index(point);
-                if found.labels[index] == NONE {
-                    found.labels[index] = count;
-                    open.extend(self.joined(point).filter(|next| found.contains(*next)));
+                if let Entry::Vacant(entry) = found.entry(point) {
+                    entry.insert(count);
+                    open.extend(self.joined(point).filter(|next| spans.contains(&self.first(*next))));
                 }
             }
             count += 1;
@@ -338,19 +404,21 @@ impl<'a> PointGraph<'a> {
     /// Groups of the points in all spans that have a parted function.
     fn groups(&self) -> Vec<Group> {
         let near: BTreeSet<FunctionIndex> =
-            self.cut_spans().into_iter().flat_map(|first| self.functions(first)).collect();
+            self.barred_spans().into_iter().flat_map(|first| self.functions(first)).collect();
         let parted: BTreeMap<FunctionIndex, Components> =
             near.into_iter().filter_map(|function| Some((function, self.components(function)?))).collect();
-        let points: BTreeSet<PointIndex> = parted.values().flat_map(Components::points).collect();
+        let points: BTreeSet<PointIndex> = parted.values().flat_map(Components::keys).copied().collect();
         let mut groups: BTreeMap<(FunctionIndex, Vec<Option<usize>>), Vec<PointIndex>> = BTreeMap::new();
         for point in points {
-            let of = |function| parted.get(&function).map(|parts: &Components| parts.labels[parts.index(point)]);
+            let of = |function| parted.get(&function).map(|parts: &Components| parts[&point]);
             let first = self.first(point);
-            groups.entry((first, self.functions(first).map(of).collect())).or_default().push(point);
+            if point >= self.links.len() || !self.cut_spans.contains_key(&first) {
+                groups.entry((first, self.functions(first).map(of).collect())).or_default().push(point);
+            }
         }
         let group = |((first, components), places): ((FunctionIndex, Vec<_>), Vec<PointIndex>)| Group {
             first,
-            row: places[0][1] / self.lattice.points[1],
+            row: self.firsts[1].partition_point(|row| *row < first[1]),
             functions: self.functions(first).zip(components).collect(),
             places,
             sheet: 0,

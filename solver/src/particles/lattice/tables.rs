@@ -72,8 +72,7 @@ impl Along<'_> {
 
     /// Position and weight of the points between two ends.
     pub(super) fn points(&self, [left, right]: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
-        let Rule { points, weights, .. } = &self.rule;
-        points.iter().zip(weights).map(move |(t, w)| (left + t * (right - left), w * (right - left)))
+        self.rule.between(left, right)
     }
 
     /// Tables of the spans.

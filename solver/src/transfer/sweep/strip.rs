@@ -31,6 +31,9 @@ impl<K: PointKernel> Vectorised for StripSweep<'_, K> {
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let Lattice { degree: [p, q], points: [nx, ny], .. } = *self.lattice;
+        if self.strip >= self.lattice.table_strips() {
+            return self.cut_spans::<FMA>(p + 1, q + 1);
+        }
         if self.lattice.mapping.is_some() {
             return self.walk::<FMA, true>(p + 1, q + 1, nx, ny);
         }

@@ -1,7 +1,7 @@
 //! Errors against an exact field, integrated over another, finer set of points than those of the body.
 
 use fisura::fault;
-use fisura::linear_algebra::lane::Lane;
+use fisura::linear_algebra::lane::LANES;
 use fisura::particles::lattice::Lattice;
 use fisura::scene::{Body, Layout};
 use fisura::splines::patch::Patch;
@@ -65,24 +65,11 @@ impl ErrorPoints {
     /// A field of control values against an exact field, given as value and gradient at a position.
     pub fn squares(&self, field: &[f64], exact: impl Fn([f64; 2]) -> (f64, [f64; 2])) -> Squares {
         let lattice = &self.lattice;
-        let [kx, ky] = lattice.degree.map(|p| p + 1);
         let mut sums = Squares::default();
         for batch in 0..lattice.batches() {
-            let (row_index, tile_index, b, a) = lattice.unbatch(batch);
-            let (row, tile) = (&lattice.rows[row_index], &lattice.tiles[tile_index]);
-            let functions = lattice.shape_functions(batch);
-            let (mut value, mut gradient) = (Lane::ZERO, [Lane::ZERO; 2]);
-            for l in 0..ky {
-                for k in 0..kx {
-                    let control = Lane::load(field, lattice.grid.index(tile.first + k, row.first + l));
-                    value += functions.value[l * kx + k] * control;
-                    for d in 0..2 {
-                        gradient[d] += functions.gradient[l * kx + k][d] * control;
-                    }
-                }
-            }
-            let weight = lattice.weight(row_index, tile_index, b, a);
-            for lane in (0..tile.count).filter(|&lane| weight[lane] > 0.0) {
+            let (value, gradient) = lattice.interpolate(batch, field);
+            let weight = lattice.weights_of(batch);
+            for lane in (0..LANES).filter(|&lane| weight[lane] > 0.0) {
                 let (exact_value, exact_gradient) = exact(lattice.position(batch, lane));
                 let square = |x: f64| weight[lane] * x * x;
                 sums.error[0] += square(value[lane] - exact_value);

@@ -40,10 +40,13 @@ pub(super) fn find(setup: &ConvergenceSetup) -> Result<Problem, String> {
         let known: Vec<&str> = solved.chain((setup.frame == Frame::Total).then_some(PROJECTION)).collect();
         return Err(format!("no convergence study solves for {name:?} in this frame; known: {}", known.join(", ")));
     };
-    let curved = matches!(setup.patch, PatchFamily::Bent | PatchFamily::Annulus | PatchFamily::Weighted);
+    use PatchFamily::{Annulus, Bent, Disc, Holed, Weighted};
+    let curved = matches!(setup.patch, Bent | Annulus | Weighted | Holed | Disc);
     let held = match solution.held {
         _ if projected.is_some() => &[],
         Held::Sides(sides) => sides,
+        Held::Axes if setup.patch == Holed => &[(Side::Bottom, [false, true]), (Side::Left, [true, false])],
+        Held::Axes => &[(Side::Bottom, [false, true]), (Side::Top, [true, false])],
         Held::Rollers if curved => &[],
         Held::Rollers => &ROLLERS[..],
     };

@@ -12,8 +12,9 @@ use crate::scene::plain::PlainScene;
 use crate::study::StudyError;
 use crate::study::patches;
 
-/// The scene of one mesh: nothing but the exact solution loads the body, which fills the patch unless it is a
-/// ring.
+/// The scene of one mesh: nothing but the exact solution loads the body, which fills the patch unless the
+/// family
+/// says otherwise.
 pub(super) fn scene(
     setup: &ConvergenceSetup,
     problem: &Problem,
@@ -46,6 +47,12 @@ pub(super) fn scene(
             let [inner_radius, outer_radius] = RADII;
             body.shape = Shape::Annulus { center: [0.0; 2], inner_radius, outer_radius };
         }
+        PatchFamily::Holed => {
+            let (min, max) = (scene.mesh.origin(), scene.mesh.end());
+            let hole = Shape::Disk { center: [0.0; 2], radius: 1.0 };
+            body.shape = Shape::Difference { of: Box::new(Shape::Rectangle { min, max }), minus: vec![hole] };
+        }
+        PatchFamily::Disc => body.shape = Shape::Disk { center: [0.0; 2], radius: 1.0 },
         PatchFamily::Block => body.shape = Shape::Rectangle { min: [0.0; 2], max: [1.0; 2] },
         // Nothing varies across a strip, where two points will do.
         PatchFamily::Strip => body.particles_per_cell[1] = setup.points(n).min(2),

@@ -20,8 +20,9 @@ use super::errors::{ErrorPoints, Squares};
 use super::problem::{Manufactured, Problem};
 use super::scene::scene;
 use super::{OnMesh, Variant, other};
-use crate::case::convergence::{ConvergenceSetup, Loading};
+use crate::case::convergence::{ConvergenceSetup, Loading, PatchFamily};
 use crate::exact::Equation;
+use crate::extremes::larger;
 use crate::study::StudyError;
 use crate::study::orders::Level;
 
@@ -54,7 +55,11 @@ impl OnMesh for Discrete<'_> {
             }
             Equation::Static => {
                 let field = self.solve_static()?;
-                self.displacement_errors(&field, 0.0)
+                let mut errors = self.displacement_errors(&field, 0.0);
+                if self.setup.patch == PatchFamily::Holed {
+                    errors.push(self.largest_stress_error(&field));
+                }
+                errors
             }
             Equation::PhaseField => {
                 let field = self.solve_phase_field()?;
@@ -81,7 +86,11 @@ impl OnMesh for Discrete<'_> {
         let end = if dynamic { self.end_time() } else { 0.0 };
         let mut errors = Vec::new();
         if self.problem.equation != Equation::PhaseField {
-            errors.extend(self.displacement_errors(&self.project(|x| solution.displacement(x, end))?, end));
+            let best = self.project(|x| solution.displacement(x, end))?;
+            errors.extend(self.displacement_errors(&best, end));
+            if self.problem.equation == Equation::Static && self.setup.patch == PatchFamily::Holed {
+                errors.push(self.largest_stress_error(&best));
+            }
         }
         if dynamic {
             errors.push(self.velocity_error(&self.project(|x| solution.velocity(x, end))?, end));
@@ -114,8 +123,11 @@ impl<'a> Discrete<'a> {
 
     /// Names of the errors of a kind of problem, in the order of [`Level::errors`], and their order below p +
     /// 1.
-    pub fn norms(problem: &Problem) -> Vec<(&'static str, usize)> {
+    pub fn norms(problem: &Problem, patch: PatchFamily) -> Vec<(&'static str, usize)> {
         let displacement = [("displacement error in L2", 0), ("displacement error in H1", 1)];
+        if problem.equation == Equation::Static && patch == PatchFamily::Holed {
+            return [&displacement[..], &[("stress error, largest at a point", 1)]].concat();
+        }
         let phase = [("phase-field error in L2", 0), ("phase-field error in H1", 1)];
         match problem.equation {
             Equation::Projection | Equation::Static => displacement.to_vec(),
@@ -288,6 +300,19 @@ impl<'a> Discrete<'a> {
         };
         let squares: Squares = (0..2).map(component).sum();
         vec![squares.l2(), squares.h1()]
+    }
+
+    /// Largest error of a component of the stress at a material point, Pa.
+    fn largest_stress_error(&self, field: &VectorField) -> f64 {
+        let mut worst = 0.0;
+        self.frame.lattice().for_each_point(|_, _, position, _| {
+            let [xx, yy, xy] = self.frame.elastic_stress_at(field, position);
+            let exact = self.problem.solution.stress(position, 0.0);
+            for error in [xx - exact[0][0], yy - exact[1][1], xy - exact[0][1]] {
+                worst = larger(worst, error.abs());
+            }
+        });
+        worst
     }
 
     fn velocity_error(&self, field: &VectorField, time: f64) -> f64 {

@@ -21,6 +21,7 @@
 use super::map::{Folded, InverseMap};
 use crate::contact::gap_potential::arc::Arc;
 use crate::linear_algebra::extremes::smaller;
+use crate::scene::edges::BoundaryEdge;
 use crate::scene::{Layout, Mesh, Shape};
 use crate::splines::quadrature::{MAX_POINTS, Rule};
 
@@ -28,70 +29,16 @@ use crate::splines::quadrature::{MAX_POINTS, Rule};
 const CROSSING_LIMIT: usize = 60;
 const CROSSING_CLOSE: f64 = 1e-13;
 
-/// A smooth part of the boundary, by reference positions.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum BoundaryEdge {
-    /// From one corner to another, m.
-    Line([[f64; 2]; 2]),
-    /// Circle, counterclockwise if `sign` is 1, else clockwise.
-    Circle {
-        /// Centre, m.
-        center: [f64; 2],
-        /// Radius, m.
-        radius: f64,
-        /// Sense.
-        sign: f64,
-    },
-}
-
-impl BoundaryEdge {
-    /// Position (m) and its derivative at s from 0 to 1.
-    fn at(&self, s: f64) -> ([f64; 2], [f64; 2]) {
-        match self {
-            Self::Line([a, b]) => {
-                let along = [0, 1].map(|d| b[d] - a[d]);
-                ([0, 1].map(|d| a[d] + s * along[d]), along)
-            }
-            Self::Circle { center, radius, sign } => {
-                let turn = sign * std::f64::consts::TAU;
-                let (sin, cos) = (turn * s).sin_cos();
-                let position = [center[0] + radius * cos, center[1] + radius * sin];
-                (position, [-radius * turn * sin, radius * turn * cos])
-            }
-        }
-    }
-
-    fn length(&self) -> f64 {
-        match self {
-            Self::Line([a, b]) => (b[0] - a[0]).hypot(b[1] - a[1]),
-            Self::Circle { radius, .. } => std::f64::consts::TAU * radius,
-        }
-    }
-}
-
 /// The edges of a shape, the body to their left; `None` of a shape that has no rule yet.
 pub(crate) fn edges(shape: &Shape, mesh: &Mesh) -> Option<Vec<BoundaryEdge>> {
-    let polygon = |corners: &[[f64; 2]]| -> Vec<BoundaryEdge> {
-        let next = |i: usize| corners[(i + 1) % corners.len()];
-        let doubled: f64 = (0..corners.len()).map(|i| corners[i][0] * next(i)[1] - corners[i][1] * next(i)[0]).sum();
-        let line =
-            |i: usize| BoundaryEdge::Line(if doubled > 0.0 { [corners[i], next(i)] } else { [next(i), corners[i]] });
-        (0..corners.len()).map(line).collect()
-    };
-    let box_of = |low: [f64; 2], high: [f64; 2]| polygon(&[low, [high[0], low[1]], high, [low[0], high[1]]]);
-    Some(match shape {
-        Shape::Rectangle { .. } | Shape::Patch => {
-            let (low, high) = mesh.extent(shape);
-            box_of(low, high)
+    match shape {
+        Shape::Patch | Shape::Rectangle { .. } => {
+            let (min, max) = mesh.extent(shape);
+            Some(Shape::Rectangle { min, max }.edges())
         }
-        Shape::Polygon { points } => polygon(points),
-        Shape::Disk { center, radius } => vec![BoundaryEdge::Circle { center: *center, radius: *radius, sign: 1.0 }],
-        Shape::Annulus { center, inner_radius, outer_radius } => vec![
-            BoundaryEdge::Circle { center: *center, radius: *outer_radius, sign: 1.0 },
-            BoundaryEdge::Circle { center: *center, radius: *inner_radius, sign: -1.0 },
-        ],
-        Shape::Difference { .. } => return None,
-    })
+        Shape::Difference { .. } => None,
+        _ => Some(shape.edges()),
+    }
 }
 
 /// A boundary, and where it was last.

@@ -1,5 +1,5 @@
-//! Assembly on a patch with a geometry: rational functions do not factor over the directions, so the sum over
-//! the points of a span is done for every pair of functions.
+//! Assembly where points or functions do not factor over the directions, on a patch with a geometry and in
+//! spans that the boundary cuts: the sum over the points of a span is done for every pair of functions.
 
 use super::form::{Integrand, PointCoefficients};
 use crate::linear_algebra::lane::Lane;
@@ -38,7 +38,8 @@ pub(super) fn assemble<C: PointCoefficients>(
             for point in 0..span {
                 add_point(&lattice.shape_functions(first + point), form, scaled[point], count, &mut pairs);
             }
-            scatter(lattice, [row, tile], &pairs, first_row, window);
+            let first = [lattice.tiles[tile].first, lattice.rows[row].first - lattice.rows[row].lift];
+            scatter(lattice, first, &pairs, first_row, |pair, at| pair.add_to(window, at));
         }
     }
 }
@@ -66,20 +67,55 @@ fn add_point(functions: &BatchFunctions, form: Integrand, coefficient: Lane, cou
     }
 }
 
-/// Adds the pairs of a span row of a tile to the couplings of the half stencil.
-fn scatter(lattice: &Lattice, [row, tile]: [usize; 2], pairs: &[Lane], first_row: usize, window: &mut [f64]) {
+/// Adds the form of a strip of cut spans to its `window` of the matrix, which begins at control row
+/// `first_row`.
+pub(super) fn assemble_cut<C: PointCoefficients>(
+    lattice: &Lattice,
+    form: Integrand,
+    coefficients: &C,
+    strip: usize,
+    first_row: usize,
+    window: &mut [f64],
+) {
+    let span = lattice.points_per_span();
+    let mut scaled = [Lane::ZERO; MAX_POINTS * MAX_POINTS];
+    let count = (lattice.degree[0] + 1) * (lattice.degree[1] + 1);
+    let mut pairs = vec![Lane::ZERO; count * (count + 1) / 2];
+    for (number, batches) in lattice.cut_strip(strip).chunks(span).enumerate() {
+        let first = strip * lattice.strip_batches() + number * span;
+        let weights: Vec<Lane> = batches.iter().map(|batch| batch.weight).collect();
+        if !coefficients.span(first, &weights, &mut scaled[..span]) {
+            continue;
+        }
+        for (n, batch) in batches.iter().enumerate() {
+            pairs.fill(Lane::ZERO);
+            add_point(&lattice.shape_functions(first + n), form, scaled[n], count, &mut pairs);
+            scatter(lattice, batch.first, &pairs, first_row, |pair, at| window[at] += pair.sum());
+        }
+    }
+}
+
+/// Gives the pairs of a span, by the column and row of its first function, to the couplings of the half
+/// stencil.
+fn scatter(
+    lattice: &Lattice,
+    [column, row]: [usize; 2],
+    pairs: &[Lane],
+    first_row: usize,
+    mut add: impl FnMut(Lane, usize),
+) {
     let [p, q] = lattice.degree;
     let stride = lattice.grid.stride;
     let couplings = p + 1 + q * (2 * p + 1);
     let count = (p + 1) * (q + 1);
     let mut pair = 0;
     for m in 0..count {
-        let control_row = lattice.rows[row].first - lattice.rows[row].lift + m / (p + 1) - first_row;
-        let base = control_row * couplings * stride + lattice.grid.index(lattice.tiles[tile].first, 0);
+        let control_row = row + m / (p + 1) - first_row;
+        let base = control_row * couplings * stride + lattice.grid.index(column, 0);
         for n in m..count {
             let (columns, rows) = ((n % (p + 1)) as isize - (m % (p + 1)) as isize, n / (p + 1) - m / (p + 1));
             let ahead = Stencil::offset_index([p, q], columns, rows);
-            pairs[pair].add_to(window, base + ahead * stride + m % (p + 1));
+            add(pairs[pair], base + ahead * stride + m % (p + 1));
             pair += 1;
         }
     }

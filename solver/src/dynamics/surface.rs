@@ -1,0 +1,135 @@
+//! Points on the boundary of a body: along the edge of a traction, or around all of it.
+//!
+//! An edge is divided where it crosses knots, so that shape functions are smooth between two of its points'
+//! neighbours, and Gauss points integrate them.
+
+use crate::scene::edges::BoundaryEdge;
+use crate::scene::{Body, Edge, Layout, Shape};
+use crate::splines::patch::Patch;
+use crate::splines::quadrature::Rule;
+
+/// Point on the boundary of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SurfacePoint {
+    /// Position, m.
+    pub position: [f64; 2],
+    /// Length it stands for, m.
+    pub length: f64,
+    /// Outward unit normal of the body.
+    pub normal: [f64; 2],
+}
+
+/// Largest part of a circle between two divisions, and Gauss points in a part beyond the degree.
+const PART_OF_CIRCLE: f64 = 1.0 / 16.0;
+const BEYOND_DEGREE: usize = 4;
+/// Distance from an edge at which it is looked for material, of the size of the edge.
+const BESIDE: f64 = 1e-6;
+/// Distance between two divisions, of the length of an edge, that counts as none.
+const NEAR: f64 = 1e-12;
+
+/// Surface points along the edge of a traction. Along one that is parallel to knots they have the layout of
+/// the body in every span that it crosses: the point sums over the edge then fit those over the body, which
+/// the patch test needs for equally spaced points.
+pub(crate) fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<SurfacePoint> {
+    let (curve, part) = match *edge {
+        Edge::Arc { center, radius, angles } => {
+            let circle = BoundaryEdge::Circle { center, radius, sign: 1.0 };
+            (circle, angles.map(|angle| angle / std::f64::consts::TAU))
+        }
+        Edge::Side(_) | Edge::Segment(_) => (BoundaryEdge::Line(edge_ends(body, edge)), [0.0, 1.0]),
+    };
+    let rule = match &curve {
+        BoundaryEdge::Line([a, b]) if (0..2).any(|d| a[d] == b[d]) => {
+            let direction = usize::from((b[1] - a[1]).abs() > (b[0] - a[0]).abs());
+            Rule::new(body.layout, body.particles_per_cell[direction])
+        }
+        _ => smooth_rule(patch),
+    };
+    points_between(&divisions(patch, &curve, part), &curve, &rule, &body.shape).collect()
+}
+
+/// Points around a shape: along every part of its edges with the shape on one side only.
+pub(crate) fn points_around(patch: &Patch, shape: &Shape) -> Vec<SurfacePoint> {
+    let (edges, rule) = (shape.edges(), smooth_rule(patch));
+    let mut points = Vec::new();
+    for (number, edge) in edges.iter().enumerate() {
+        let mut places = divisions(patch, edge, [0.0, 1.0]);
+        let others = edges.iter().enumerate().filter(|(other, _)| *other != number);
+        places.extend(others.flat_map(|(_, other)| edge.meets(other)).map(|place| edge.place_of(place)));
+        places.sort_by(f64::total_cmp);
+        let bounds = |pair: &&[f64]| {
+            let sides = beside(edge, 0.5 * (pair[0] + pair[1])).map(|place| shape.contains(place));
+            sides[0] != sides[1]
+        };
+        for pair in places.windows(2).filter(bounds) {
+            points.extend(points_between(pair, edge, &rule, shape));
+        }
+    }
+    points
+}
+
+/// Gauss points for products of shape functions along any line.
+fn smooth_rule(patch: &Patch) -> Rule {
+    let degree = patch.spaces.iter().map(|space| space.degree()).max().unwrap_or(1);
+    Rule::new(Layout::Gauss, degree + BEYOND_DEGREE)
+}
+
+/// Ends of a part of an edge (s), and where it crosses knots between them.
+fn divisions(patch: &Patch, edge: &BoundaryEdge, [from, to]: [f64; 2]) -> Vec<f64> {
+    let mut places = vec![from, to];
+    let [low, high] = edge.bounding_box();
+    for d in 0..2 {
+        let knots = patch.spaces[d].spans().iter().map(|span| span.left);
+        let crossed = knots.filter(|knot| low[d] < *knot && *knot < high[d]);
+        places.extend(crossed.flat_map(|knot| edge.places(d, knot)));
+    }
+    if let BoundaryEdge::Circle { .. } = edge {
+        let parts = ((to - from) / PART_OF_CIRCLE).ceil();
+        places.extend((1..parts as usize).map(|part| from + (to - from) * part as f64 / parts));
+        places[2..].iter_mut().for_each(|s| *s += (from - *s).ceil()); // whole turns
+    }
+    places.retain(|s| (from + NEAR..to - NEAR).contains(s) || *s == from || *s == to);
+    places.sort_by(f64::total_cmp);
+    places
+}
+
+/// Points of a rule in every part of an edge between two divisions.
+fn points_between<'a>(
+    places: &'a [f64],
+    edge: &'a BoundaryEdge,
+    rule: &'a Rule,
+    shape: &'a Shape,
+) -> impl Iterator<Item = SurfacePoint> + 'a {
+    let parts = places.windows(2).filter(|pair| pair[1] > pair[0]);
+    parts.flat_map(move |pair| {
+        let [inner, _] = beside(edge, 0.5 * (pair[0] + pair[1]));
+        let side = if shape.contains(inner) { 1.0 } else { -1.0 };
+        rule.points.iter().zip(&rule.weights).map(move |(t, weight)| {
+            let (position, tangent) = edge.at(pair[0] + t * (pair[1] - pair[0]));
+            let speed = tangent[0].hypot(tangent[1]);
+            let normal = [side * tangent[1] / speed, -side * tangent[0] / speed];
+            SurfacePoint { position, length: weight * (pair[1] - pair[0]) * speed, normal }
+        })
+    })
+}
+
+/// Positions (m) to the left and to the right of a place on an edge.
+fn beside(edge: &BoundaryEdge, s: f64) -> [[f64; 2]; 2] {
+    let (position, tangent) = edge.at(s);
+    let size = match edge {
+        BoundaryEdge::Line(_) => 1.0,
+        BoundaryEdge::Circle { .. } => 1.0 / std::f64::consts::TAU, // the radius
+    };
+    [BESIDE, -BESIDE].map(|reach| [position[0] - reach * size * tangent[1], position[1] + reach * size * tangent[0]])
+}
+
+/// Ends of a straight edge, m; they coincide if the body has no such side.
+pub(crate) fn edge_ends(body: &Body, edge: &Edge) -> [[f64; 2]; 2] {
+    match edge {
+        Edge::Side(side) => {
+            body.shape.side(fault!("traction-on-wrong-edge", *side => crate::scene::Side::Bottom)).unwrap_or_default()
+        }
+        Edge::Segment(ends) => *ends,
+        Edge::Arc { .. } => Default::default(),
+    }
+}

@@ -1,0 +1,206 @@
+//! The smooth edges that bound a shape, and where they meet knots and each other.
+
+use super::Shape;
+use super::shape::Segment;
+
+/// Distance within which two places count as one, of the size of what they lie on.
+const NEAR: f64 = 1e-12;
+
+/// A smooth part of the boundary of a shape, with the shape to its left.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum BoundaryEdge {
+    /// From one corner to another, m.
+    Line(Segment),
+    /// Circle, counterclockwise if `sign` is 1, else clockwise.
+    Circle {
+        /// Centre, m.
+        center: [f64; 2],
+        /// Radius, m.
+        radius: f64,
+        /// Sense.
+        sign: f64,
+    },
+}
+
+impl Shape {
+    /// Its edges: those of a difference are all of its shapes', also where they bound nothing. The patch,
+    /// which the shape does not know, has none.
+    pub(crate) fn edges(&self) -> Vec<BoundaryEdge> {
+        let circle =
+            |center: &[f64; 2], radius: &f64, sign| BoundaryEdge::Circle { center: *center, radius: *radius, sign };
+        match self {
+            Self::Rectangle { min, max } => of_polygon(&[*min, [max[0], min[1]], *max, [min[0], max[1]]]),
+            Self::Polygon { points } => of_polygon(points),
+            Self::Disk { center, radius } => vec![circle(center, radius, 1.0)],
+            Self::Annulus { center, inner_radius, outer_radius } => {
+                vec![circle(center, outer_radius, 1.0), circle(center, inner_radius, -1.0)]
+            }
+            Self::Patch => Vec::new(),
+            Self::Difference { of, minus } => of
+                .edges()
+                .into_iter()
+                .chain(minus.iter().flat_map(|hole| hole.edges()).map(BoundaryEdge::turned))
+                .collect(),
+        }
+    }
+}
+
+fn of_polygon(corners: &[[f64; 2]]) -> Vec<BoundaryEdge> {
+    let edge = |i: usize| [corners[i], corners[(i + 1) % corners.len()]];
+    let doubled: f64 = (0..corners.len()).map(edge).map(|[a, b]| a[0] * b[1] - a[1] * b[0]).sum();
+    let along = |[a, b]: Segment| BoundaryEdge::Line(if doubled > 0.0 { [a, b] } else { [b, a] });
+    (0..corners.len()).map(edge).map(along).collect()
+}
+
+impl BoundaryEdge {
+    /// The same with the shape on its other side.
+    fn turned(self) -> Self {
+        match self {
+            Self::Line([a, b]) => Self::Line([b, a]),
+            Self::Circle { center, radius, sign } => Self::Circle { center, radius, sign: -sign },
+        }
+    }
+
+    /// Position (m) and its derivative at s from 0 to 1.
+    pub(crate) fn at(&self, s: f64) -> ([f64; 2], [f64; 2]) {
+        match self {
+            Self::Line([a, b]) => {
+                let along = [0, 1].map(|d| b[d] - a[d]);
+                ([0, 1].map(|d| a[d] + s * along[d]), along)
+            }
+            Self::Circle { center, radius, sign } => {
+                let turn = sign * std::f64::consts::TAU;
+                let (sin, cos) = (turn * s).sin_cos();
+                let position = [center[0] + radius * cos, center[1] + radius * sin];
+                (position, [-radius * turn * sin, radius * turn * cos])
+            }
+        }
+    }
+
+    /// Its length, m.
+    pub(crate) fn length(&self) -> f64 {
+        match self {
+            Self::Line([a, b]) => (b[0] - a[0]).hypot(b[1] - a[1]),
+            Self::Circle { radius, .. } => std::f64::consts::TAU * radius,
+        }
+    }
+
+    /// Smallest box around it, m.
+    pub(crate) fn bounding_box(&self) -> [[f64; 2]; 2] {
+        match self {
+            Self::Line([a, b]) => [[0, 1].map(|d| a[d].min(b[d])), [0, 1].map(|d| a[d].max(b[d]))],
+            Self::Circle { center, radius, .. } => [center.map(|c| c - radius), center.map(|c| c + radius)],
+        }
+    }
+
+    /// Where coordinate `d` has a value (m): the other coordinate, m.
+    pub(crate) fn crossings(&self, d: usize, value: f64) -> impl Iterator<Item = f64> + use<> {
+        let found = match self {
+            Self::Line([a, b]) => {
+                let crosses = (a[d] < value) != (b[d] < value);
+                let t = (value - a[d]) / (b[d] - a[d]);
+                [crosses.then(|| a[1 - d] + t * (b[1 - d] - a[1 - d])), None]
+            }
+            Self::Circle { center, radius, .. } => {
+                let square = radius * radius - (value - center[d]) * (value - center[d]);
+                let half = (square > 0.0).then(|| square.sqrt());
+                [half.map(|half| center[1 - d] - half), half.map(|half| center[1 - d] + half)]
+            }
+        };
+        found.into_iter().flatten()
+    }
+
+    /// Where a position (m) on it is: s from 0 to 1.
+    pub(crate) fn place_of(&self, [x, y]: [f64; 2]) -> f64 {
+        match self {
+            Self::Line([a, b]) => {
+                let along = [b[0] - a[0], b[1] - a[1]];
+                if along[0].abs() >= along[1].abs() { (x - a[0]) / along[0] } else { (y - a[1]) / along[1] }
+            }
+            Self::Circle { center, sign, .. } => {
+                (sign * (y - center[1]).atan2(x - center[0]) / std::f64::consts::TAU).rem_euclid(1.0)
+            }
+        }
+    }
+
+    /// Where coordinate `d` has a value (m): s from 0 to 1.
+    pub(crate) fn places(&self, d: usize, value: f64) -> impl Iterator<Item = f64> {
+        let position = move |other: f64| if d == 0 { [value, other] } else { [other, value] };
+        self.crossings(d, value).map(move |other| self.place_of(position(other)))
+    }
+
+    /// Where coordinate `d` is extreme, or the edge ends: its value there, m.
+    pub(crate) fn ends(&self, d: usize) -> [f64; 2] {
+        let [low, high] = self.bounding_box();
+        [low[d], high[d]]
+    }
+
+    /// Where it meets another edge, m.
+    pub(crate) fn meets(&self, other: &Self) -> Vec<[f64; 2]> {
+        match (self, other) {
+            (Self::Line(a), Self::Line(b)) => lines_meet(*a, *b).into_iter().collect(),
+            (Self::Line(line), Self::Circle { center, radius, .. })
+            | (Self::Circle { center, radius, .. }, Self::Line(line)) => line_meets_circle(*line, *center, *radius),
+            (Self::Circle { center: a, radius: r, .. }, Self::Circle { center: b, radius: s, .. }) => {
+                circles_meet((*a, *r), (*b, *s))
+            }
+        }
+    }
+}
+
+fn lines_meet([a, b]: Segment, [c, d]: Segment) -> Option<[f64; 2]> {
+    let cross = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - u[1] * v[0];
+    let from = |p: [f64; 2], q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
+    let (along, other, apart) = (from(a, b), from(c, d), from(a, c));
+    let determinant = cross(along, other);
+    let [s, t] = [cross(apart, other) / determinant, cross(apart, along) / determinant];
+    let on = -NEAR..=1.0 + NEAR; // also false for parallel lines, where s and t are not numbers or infinite
+    (on.contains(&s) && on.contains(&t)).then(|| [0, 1].map(|i| a[i] + s * along[i]))
+}
+
+fn line_meets_circle([a, b]: Segment, center: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let square = along[0] * along[0] + along[1] * along[1];
+    let foot = ((center[0] - a[0]) * along[0] + (center[1] - a[1]) * along[1]) / square;
+    let at = |t: f64| [0, 1].map(|d| a[d] + t * along[d]);
+    let [x, y] = at(foot);
+    let beside = (x - center[0]) * (x - center[0]) + (y - center[1]) * (y - center[1]);
+    let half = ((radius * radius - beside) / square).sqrt(); // not a number if they do not meet
+    let on = -NEAR..=1.0 + NEAR;
+    [foot - half, foot + half].into_iter().filter(|t| on.contains(t)).map(at).collect()
+}
+
+fn circles_meet((a, r): ([f64; 2], f64), (b, s): ([f64; 2], f64)) -> Vec<[f64; 2]> {
+    let apart = [b[0] - a[0], b[1] - a[1]];
+    let square = apart[0] * apart[0] + apart[1] * apart[1];
+    let along = 0.5 * (1.0 + (r * r - s * s) / square);
+    let half = (r * r / square - along * along).sqrt(); // not a number if they do not meet
+    let place = |side: f64| [a[0] + along * apart[0] - side * apart[1], a[1] + along * apart[1] + side * apart[0]];
+    [half, -half].into_iter().filter(|side| side.is_finite()).map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_meet_where_they_should() {
+        let circle = |center, radius| BoundaryEdge::Circle { center, radius, sign: 1.0 };
+        let line = |a, b| BoundaryEdge::Line([a, b]);
+        let near = |found: Vec<[f64; 2]>, exact: &[[f64; 2]]| {
+            assert_eq!(found.len(), exact.len(), "{found:?}");
+            for wanted in exact {
+                let hit = found.iter().any(|p| (p[0] - wanted[0]).hypot(p[1] - wanted[1]) < 1e-12);
+                assert!(hit, "{found:?} without {wanted:?}");
+            }
+        };
+        near(line([0.0, 0.0], [2.0, 2.0]).meets(&line([0.0, 2.0], [2.0, 0.0])), &[[1.0, 1.0]]);
+        near(line([0.0, 0.0], [2.0, 2.0]).meets(&line([1.0, 0.0], [3.0, 2.0])), &[]);
+        near(line([0.0, 0.0], [0.4, 0.4]).meets(&line([0.0, 2.0], [2.0, 0.0])), &[]);
+        near(line([-2.0, 0.6], [2.0, 0.6]).meets(&circle([0.0; 2], 1.0)), &[[-0.8, 0.6], [0.8, 0.6]]);
+        near(circle([0.0; 2], 1.0).meets(&line([0.0, 0.6], [2.0, 0.6])), &[[0.8, 0.6]]);
+        near(circle([0.0; 2], 1.0).meets(&circle([1.2, 0.0], 1.0)), &[[0.6, 0.8], [0.6, -0.8]]);
+        near(circle([0.0; 2], 1.0).meets(&circle([3.0, 0.0], 1.0)), &[]);
+        near(circle([0.0; 2], 1.0).meets(&circle([0.0; 2], 0.5)), &[]);
+    }
+}
