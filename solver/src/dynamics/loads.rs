@@ -166,12 +166,11 @@ impl NodalLoad {
                 Balance::of_points(&points)
             }
             _ => {
-                for SurfacePoint { position, length, normal } in surface_points(patch, body, &traction.edge) {
-                    let carries = |first, at| {
-                        lattice.has_side(first, position) && moves(lattice.control_point(at, first, position))
-                    };
+                for SurfacePoint { position, length, normal, inner } in surface_points(patch, body, &traction.edge) {
+                    let carries =
+                        |first, at| lattice.has_side(first, inner) && moves(lattice.control_point(at, first, inner));
                     let location = carrier(patch, position, carries).ok_or(LostTraction::Bare(position))?;
-                    add(&patch.functions(location).values, position, length, normal);
+                    add(&patch.functions(location).values, inner, length, normal);
                 }
                 Balance::of_edge(body, &traction.edge)
             }

@@ -18,8 +18,12 @@ pub struct Projection<'a> {
 
 impl<'a> Projection<'a> {
     /// Factors the mass matrix; fields are zero at the `held` control points, and at those whose functions
-    /// see no point. `None` if the points do not determine a field: fewer than p + 1 of them in some span.
+    /// see no point. `None` if the points do not determine a field, as with fewer than p + 1 of them in some
+    /// span, or where control points have copies.
     pub fn new(lattice: &'a Lattice, held: &[usize]) -> Option<Self> {
+        if lattice.sheets().is_some() {
+            return None;
+        }
         let mut matrix = Stencil::zeros(lattice.grid, lattice.degree);
         add_form(&mut matrix, lattice, Integrand::Mass, &Constant(1.0));
         let grid = lattice.grid;

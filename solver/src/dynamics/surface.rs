@@ -17,6 +17,8 @@ pub(crate) struct SurfacePoint {
     pub length: f64,
     /// Outward unit normal of the body.
     pub normal: [f64; 2],
+    /// Position just inside the body, m: a position on a face of a narrow gap has no side.
+    pub inner: [f64; 2],
 }
 
 /// Largest part of a circle between two divisions, and Gauss points in a part beyond the degree.
@@ -27,9 +29,9 @@ const BESIDE: f64 = 1e-6;
 /// Distance between two divisions, of the length of an edge, that counts as none.
 const NEAR: f64 = 1e-12;
 
-/// Surface points along the edge of a traction. Along one that is parallel to knots they have the layout of
-/// the body in every span that it crosses: the point sums over the edge then fit those over the body, which
-/// the patch test needs for equally spaced points.
+/// Surface points along the edge of a traction. Along one beside whole spans they have the layout of the body
+/// in every span: the point sums over the edge then fit those over the body, which the patch test needs for
+/// equally spaced points.
 pub(crate) fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<SurfacePoint> {
     let (curve, part) = match *edge {
         Edge::Arc { center, radius, angles } => {
@@ -39,7 +41,7 @@ pub(crate) fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<Sur
         Edge::Side(_) | Edge::Segment(_) => (BoundaryEdge::Line(edge_ends(body, edge)), [0.0, 1.0]),
     };
     let rule = match &curve {
-        BoundaryEdge::Line([a, b]) if (0..2).any(|d| a[d] == b[d]) => {
+        BoundaryEdge::Line([a, b]) if fits_points(patch, body, [*a, *b]) => {
             let direction = usize::from((b[1] - a[1]).abs() > (b[0] - a[0]).abs());
             Rule::new(body.layout, body.particles_per_cell[direction])
         }
@@ -48,14 +50,24 @@ pub(crate) fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<Sur
     points_between(&divisions(patch, &curve, part), &curve, &rule, &body.shape).collect()
 }
 
-/// Points around a shape: along every part of its edges with the shape on one side only.
+/// Whether the points of the body beside a straight edge are those of whole spans, or of spans that a
+/// rectangle cuts.
+fn fits_points(patch: &Patch, body: &Body, [a, b]: [[f64; 2]; 2]) -> bool {
+    let Some(d) = (0..2).find(|&d| a[d] == b[d]) else { return false };
+    let near = NEAR.sqrt() * patch.shortest_span();
+    let on_knot =
+        |x: f64| patch.spaces[d].spans().iter().any(|s| (s.left - x).abs() < near || (s.right - x).abs() < near);
+    matches!(body.shape, Shape::Rectangle { .. } | Shape::Patch) || on_knot(a[d])
+}
+
+/// Points around a shape: along every part of its edges with the shape on one side only. Edges that coincide
+/// count twice.
 pub(crate) fn points_around(patch: &Patch, shape: &Shape) -> Vec<SurfacePoint> {
     let (edges, rule) = (shape.edges(), smooth_rule(patch));
     let mut points = Vec::new();
-    for (number, edge) in edges.iter().enumerate() {
+    for edge in &edges {
         let mut places = divisions(patch, edge, [0.0, 1.0]);
-        let others = edges.iter().enumerate().filter(|(other, _)| *other != number);
-        places.extend(others.flat_map(|(_, other)| edge.meets(other)).map(|place| edge.place_of(place)));
+        places.extend(edge.places_met(&edges, [0.0, 1.0]));
         places.sort_by(f64::total_cmp);
         let bounds = |pair: &&[f64]| {
             let sides = beside(edge, 0.5 * (pair[0] + pair[1])).map(|place| shape.contains(place));
@@ -80,7 +92,8 @@ fn divisions(patch: &Patch, edge: &BoundaryEdge, [from, to]: [f64; 2]) -> Vec<f6
     let [low, high] = edge.bounding_box();
     for d in 0..2 {
         let knots = patch.spaces[d].spans().iter().map(|span| span.left);
-        let crossed = knots.filter(|knot| low[d] < *knot && *knot < high[d]);
+        let end = fault!("boundary-undivided-at-knots", high[d] => low[d]);
+        let crossed = knots.filter(|knot| low[d] < *knot && *knot < end);
         places.extend(crossed.flat_map(|knot| edge.places(d, knot)));
     }
     if let BoundaryEdge::Circle { .. } = edge {
@@ -103,12 +116,15 @@ fn points_between<'a>(
     let parts = places.windows(2).filter(|pair| pair[1] > pair[0]);
     parts.flat_map(move |pair| {
         let [inner, _] = beside(edge, 0.5 * (pair[0] + pair[1]));
-        let side = if shape.contains(inner) { 1.0 } else { -1.0 };
+        let inwards = if shape.contains(inner) { 1.0 } else { -1.0 };
+        let side = fault!("normals-to-the-right-of-an-edge", inwards => 1.0);
         rule.points.iter().zip(&rule.weights).map(move |(t, weight)| {
             let (position, tangent) = edge.at(pair[0] + t * (pair[1] - pair[0]));
             let speed = tangent[0].hypot(tangent[1]);
             let normal = [side * tangent[1] / speed, -side * tangent[0] / speed];
-            SurfacePoint { position, length: weight * (pair[1] - pair[0]) * speed, normal }
+            let length = weight * (pair[1] - pair[0]) * speed;
+            let inner = [0, 1].map(|d| position[d] - BESIDE * length * normal[d]);
+            SurfacePoint { position, length, normal, inner }
         })
     })
 }

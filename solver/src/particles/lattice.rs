@@ -13,6 +13,7 @@
 mod cut;
 mod cut_batch;
 mod cut_strips;
+mod gaps;
 mod integrate;
 mod map;
 mod mapped;
@@ -21,7 +22,7 @@ mod sheets;
 mod tables;
 
 pub(crate) use cut_batch::CutBatch;
-use cut_batch::CutPoint;
+use cut_batch::{CutPoint, first_function};
 pub(crate) use mapped::{MappedPoint, Mapping};
 pub(crate) use sheets::Sheets;
 
@@ -33,6 +34,7 @@ use crate::splines::patch::{Patch, PointFunctions};
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::MAX_FUNCTIONS;
 use crate::splines::spline::SplineSpace;
+use gaps::Gaps;
 use tables::{Along, tiles};
 pub(crate) use tables::{Row, Tile};
 
@@ -91,7 +93,8 @@ pub(crate) struct AxisPoint {
 }
 
 /// Coordinates of the points of `body` along both directions of a patch with these spaces; parameters if they
-/// are `mapped`. Unless [`fills_lattice`], the points are those of all pairs that lie in the shape.
+/// are `mapped`. Unless [`fills_lattice`], the points are those of all pairs
+/// that lie in the shape, but for spans that its boundary cuts.
 pub(crate) fn point_axes(body: &Body, spaces: &[SplineSpace; 2], mapped: bool) -> [Vec<AxisPoint>; 2] {
     let axis = |along: Along<'_>| {
         let mut points = Vec::new();
@@ -111,7 +114,8 @@ pub(crate) fn fills_lattice(mapped: bool, shape: &Shape) -> bool {
 
 /// Whether the boundary of a shape, if it is no rectangle, cuts spans of a patch over a rectangle.
 pub(crate) fn cuts_spans(shape: &Shape, spaces: &[SplineSpace; 2]) -> bool {
-    !fills_lattice(false, shape) && !cut::cut_spans(shape, spaces).is_empty()
+    let edges = cut::edges_in_spans(shape, spaces);
+    !fills_lattice(false, shape) && cut::cut_spans(shape, &edges, spaces, 1).next().is_some()
 }
 
 /// The box around a body, with its rule, along both directions. A rectangle cuts spans, unless the lattice is
@@ -133,16 +137,25 @@ impl Lattice {
         let mapped = patch.geometry.is_some();
         let fills = fills_lattice(mapped, &body.shape);
         let mut cut = Vec::new();
+        let mut gaps = Gaps::None;
         if !fills {
             lattice.keep_inside(&body.shape);
+            gaps = Gaps::Of(&body.shape);
             if !mapped {
-                let spans = cut::cut_spans(&body.shape, &patch.spaces);
-                cut.extend(spans.into_iter().flat_map(|(span, points)| CutPoint::of_span(patch, span, points)));
+                let edges = cut::edges_in_spans(&body.shape, &patch.spaces);
+                let most = body.particles_per_cell[0].max(body.particles_per_cell[1]);
+                let spans = cut::cut_spans(&body.shape, &edges, &patch.spaces, most);
+                cut.extend(spans.flat_map(|(span, points)| CutPoint::of_span(patch, span, points)));
+                gaps = Gaps::Between(
+                    edges.into_iter().map(|(span, edges)| (first_function(patch, span), edges)).collect(),
+                );
             }
         }
         let slits: Vec<_> = body.cracks.iter().filter(|crack| crack.is_slit()).flat_map(Crack::segments).collect();
         if !fills || !slits.is_empty() {
-            lattice.part(&slits, Some(&body.shape).filter(|_| !fills), &mut cut);
+            lattice.part(&slits, &gaps, &mut cut);
+            let shape = (!fills).then(|| body.shape.clone());
+            lattice.sheets.iter_mut().for_each(|sheets| (sheets.slits, sheets.shape) = (slits.clone(), shape.clone()));
         }
         if !cut.is_empty() {
             lattice.append_cut(patch, cut);

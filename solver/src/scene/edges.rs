@@ -1,7 +1,7 @@
 //! The smooth edges that bound a shape, and where they meet knots and each other.
 
 use super::Shape;
-use super::shape::Segment;
+use super::shape::{Segment, cross};
 
 /// Distance within which two places count as one, of the size of what they lie on.
 const NEAR: f64 = 1e-12;
@@ -133,6 +133,23 @@ impl BoundaryEdge {
     pub(crate) fn ends(&self, d: usize) -> [f64; 2] {
         let [low, high] = self.bounding_box();
         [low[d], high[d]]
+    }
+
+    /// Where it meets others, between two of its places, and these (s), in order.
+    pub(crate) fn places_met(&self, others: &[Self], [from, to]: [f64; 2]) -> Vec<f64> {
+        let met = others.iter().flat_map(|other| self.meets(other)).map(|place| self.place_of(place));
+        let turned = met.map(|s| if let Self::Circle { .. } = self { s + (from - s).ceil() } else { s });
+        let mut places: Vec<f64> = turned.filter(|s| from < *s && *s < to).chain([from, to]).collect();
+        places.sort_by(f64::total_cmp);
+        places
+    }
+
+    /// Whether a straight step (m) crosses it.
+    pub(crate) fn is_crossed(&self, step: Segment) -> bool {
+        match self {
+            Self::Line(line) => cross(step, *line),
+            Self::Circle { center, radius, .. } => !line_meets_circle(step, *center, *radius).is_empty(),
+        }
     }
 
     /// Where it meets another edge, m.

@@ -71,13 +71,14 @@ fn material_points(
     (ground, frame): (&Ground<'_>, Frame),
     findings: &mut Findings,
 ) {
-    let Some(points) = Points::new(body, ground) else {
+    let has_cut_spans = frame == Frame::Total && ground.patch.is_none(); // with points of their own
+    let points = Points::new(body, ground).filter(|points| !has_cut_spans || points.exist());
+    let Some(points) = points else {
         let seeds = (0..body.cracks.len()).filter(|_| fracture.is_some());
         return seeds.for_each(|j| seed::unchecked(format!("{key}.crack.{j}"), findings));
     };
     let [_, h] = ground.span_lengths(&body.shape);
-    let has_cut_spans = frame == Frame::Total && ground.patch.is_none(); // with points of their own
-    if !has_cut_spans && !points.exist() {
+    if !points.exist() {
         let message = format!("no material point lies in body {:?}: its cells are up to {h:.3e} m wide", body.name);
         let remedy = "use smaller cells or more particles_per_cell, or make the body larger";
         findings.error(format!("{key}.shape"), message, remedy);

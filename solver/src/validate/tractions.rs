@@ -1,8 +1,11 @@
 //! Checks of tractions: edges that lie on their body, loads that exist.
 
+use std::f64::consts::TAU;
+
 use super::findings::{Findings, side_name};
 use super::look::{Look, TOLERANCE};
 use super::time;
+use crate::scene::edges::BoundaryEdge;
 use crate::scene::{Body, Edge, Load, Shape, Traction};
 
 /// Intervals between the positions at which the segment of a traction is looked at.
@@ -54,7 +57,10 @@ pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &
             }
             if ends[0] == ends[1] {
                 findings.error(key, "a segment of zero length", "give two different ends");
-            } else if let Some([x, y]) = look.first_outside(*ends, SEGMENT_INTERVALS) {
+            } else if let Some([x, y]) = look.first_outside(*ends, SEGMENT_INTERVALS).or_else(|| {
+                let line = BoundaryEdge::Line(*ends);
+                middles_of_parts(&line, [0.0, 1.0], body).find(|at| look.is_outside(*at))
+            }) {
                 let message = format!("the segment leaves body {:?}: ({x}, {y}) m lies outside", body.name);
                 findings.error(key, message, ON_BOUNDARY);
             } else if let Some([x, y]) = middles(*ends).find(|&at| has_no_side(at, *ends, body, &traction.load)) {
@@ -71,6 +77,14 @@ pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &
             }
         }
     }
+}
+
+/// Middles of the parts (m) into which the edges of a body divide an edge between two places.
+fn middles_of_parts(edge: &BoundaryEdge, part: [f64; 2], body: &Body) -> impl Iterator<Item = [f64; 2]> {
+    let places = edge.places_met(&body.shape.edges(), part);
+    let parts: Vec<[f64; 2]> = places.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+    let wide = parts.into_iter().filter(|pair| pair[1] - pair[0] > TOLERANCE);
+    wide.map(|pair| edge.at(0.5 * (pair[0] + pair[1])).0)
 }
 
 /// Middles of equal parts of a segment, m.
@@ -101,7 +115,7 @@ fn arc(key: &str, center: [f64; 2], radius: f64, angles: [f64; 2], look: &Look<'
         return;
     }
     let swept = angles[1] - angles[0];
-    if !(swept > 0.0 && swept <= std::f64::consts::TAU * (1.0 + TOLERANCE)) {
+    if !(swept > 0.0 && swept <= TAU * (1.0 + TOLERANCE)) {
         let message = format!("an arc of {:.6} degrees", swept.to_degrees());
         return findings.error(
             format!("{key}.angles"),
@@ -113,7 +127,9 @@ fn arc(key: &str, center: [f64; 2], radius: f64, angles: [f64; 2], look: &Look<'
         let (sine, cosine) = (angles[0] + swept * i as f64 / SEGMENT_INTERVALS as f64).sin_cos();
         [center[0] + radius * cosine, center[1] + radius * sine]
     };
-    let mut positions = (0..=SEGMENT_INTERVALS).map(|i| position(i, radius));
+    let (circle, part) = (BoundaryEdge::Circle { center, radius, sign: 1.0 }, angles.map(|angle| angle / TAU));
+    let parts = middles_of_parts(&circle, part, look.body);
+    let mut positions = (0..=SEGMENT_INTERVALS).map(|i| position(i, radius)).chain(parts);
     let name = &look.body.name;
     if let Some([x, y]) = positions.find(|p| look.is_outside(*p)) {
         let message = format!("the arc leaves body {name:?}: ({x}, {y}) m lies outside");

@@ -178,3 +178,75 @@ fn a_cracking_disc_closes_its_ledger_and_gives_the_same_bits_on_any_number_of_th
     assert!(finer < 0.4 * closure && closure < 1e-3, "{finer:e} after {closure:e}");
     assert!(last.fracture.as_ref().unwrap().min_phase < 0.5, "{last:?}");
 }
+
+/// A slot of a fiftieth of a span, within a span, parts a plate in two: a pressure on one of its faces
+/// moves that side alone.
+#[test]
+fn a_pressure_on_a_face_of_a_narrow_slot_moves_its_own_side() {
+    for degree in [2, 3] {
+        let h = 0.01 / 16.0;
+        let [left, right] = [7.9 * h, 7.92 * h];
+        let slotted = Shape::Difference {
+            of: Box::new(rectangle([0.0; 2], [0.01; 2])),
+            minus: vec![rectangle([left, -1.0], [right, 1.0])],
+        };
+        for (x, moves) in [(left, [true, false]), (right, [false, true])] {
+            let mut scene = free_body(degree, slotted.clone());
+            let edge = Edge::Segment([[x, 0.001], [x, 0.009]]);
+            scene.bodies[0].tractions = vec![Traction { edge, load: Load::Pressure(1e6), time: TimeFactor::default() }];
+            scene.analysis.end_time = 1e-6;
+            let simulation = run(&scene).0;
+            let mut fastest = [0.0_f64; 2];
+            simulation.for_each_point(&mut |point| {
+                let side = &mut fastest[usize::from(point.position[0] > left)];
+                *side = larger(*side, point.velocity[0].abs());
+            });
+            assert_eq!(fastest.map(|speed| speed > 0.0), moves, "p = {degree}, face at {x}: {fastest:?}");
+        }
+    }
+}
+
+/// Functions of a pointed tip just beyond a knot are alike to round-off.
+#[test]
+fn a_tip_just_beyond_a_knot_has_a_phase_field() {
+    let h = 0.01 / 16.0;
+    for solver in [PhaseFieldSolver::ConjugateGradients, PhaseFieldSolver::Cholesky] {
+        for (degree, beyond) in [2, 3, 4].into_iter().flat_map(|p| [1e-2, 1e-3, 1e-4].map(|beyond| (p, beyond))) {
+            let tip = (10.0 + beyond) * h;
+            let points = vec![[3.3 * h, 8.2 * h], [tip - 2.0 * h, 6.2 * h], [tip, 8.2 * h], [tip - 2.0 * h, 10.2 * h]];
+            let mut scene = free_body(degree, Shape::Polygon { points });
+            scene.materials.get_mut("glass").unwrap().fracture =
+                Some(Fracture { length_scale: 0.5e-3, ..crate::common::brittle() });
+            scene.solver.phase_field_solver = solver;
+            let frame = TotalFrame::new(&scene);
+            assert!(frame.is_ok(), "p = {degree}, {beyond:e}, {solver:?}: {:?}", frame.err());
+        }
+    }
+}
+
+#[test]
+fn a_segment_or_arc_across_the_narrow_mouth_of_a_notch_is_refused() {
+    use fisura::validate::validate;
+    let plate = |notch: [f64; 2]| Shape::Difference {
+        of: Box::new(rectangle([0.0; 2], [0.01; 2])),
+        minus: vec![rectangle([notch[0], -1.0], [notch[1], 0.002])],
+    };
+    let refused = |shape: Shape, edge: Edge| {
+        let mut scene = free_body(2, shape);
+        scene.bodies[0].tractions =
+            vec![Traction { edge, load: Load::Stress([0.0, 1e6]), time: TimeFactor::default() }];
+        validate(&scene).err().map(|errors| errors[0].message.clone())
+    };
+    for (x, width) in [(0.0070131, 1e-4), (0.0033, 5e-6), (0.005, 3e-5)] {
+        let whole = refused(plate([x, x + width]), Edge::Segment([[0.0; 2], [0.01, 0.0]]));
+        assert!(whole.is_some_and(|message| message.contains("lies outside")), "{x} {width}");
+        assert_eq!(refused(plate([x, x + width]), Edge::Segment([[0.0; 2], [x, 0.0]])), None);
+    }
+    let (center, radius) = ([0.005; 2], 0.004);
+    let disk = Shape::Difference {
+        of: Box::new(Shape::Disk { center, radius }),
+        minus: vec![rectangle([0.0049, 0.0], [0.00491, 0.002])],
+    };
+    let circle = Edge::Arc { center, radius, angles: [-1.0, std::f64::consts::TAU - 1.0] };
+    assert!(refused(disk, circle).is_some_and(|message| message.contains("lies outside")));
+}

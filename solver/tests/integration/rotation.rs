@@ -43,3 +43,12 @@ fn the_place_that_turns_is_named() {
     let place: Vec<f64> = place.split(", ").map(|x| x.parse().unwrap()).collect();
     assert!(scene.bodies[0].shape.contains([place[0], place[1]]), "{found:?}");
 }
+
+/// Spans at a stepped edge may hold one point, which does not turn.
+#[test]
+fn a_disc_that_flies_straight_has_not_turned() {
+    let mut scene = spinning(Frame::Updated, Kinematics::Small, 0.0);
+    scene.bodies[0].shape = Shape::Disk { center: [0.0098, 0.0101], radius: 0.0043 };
+    scene.bodies[0].velocity = [3.0, 1.7];
+    assert_eq!(warnings(&scene), Vec::<String>::new());
+}

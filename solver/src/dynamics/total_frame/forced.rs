@@ -9,6 +9,7 @@ use crate::particles::lattice::Lattice;
 use crate::scene::{Shape, Side};
 use crate::splines::patch::{BoundaryPoint, Patch};
 use crate::splines::quadrature::Rule;
+use crate::splines::spline::ROUND_OFF;
 
 /// Nodal forces of a [`Forcing`] on a body.
 #[derive(Debug, Clone)]
@@ -23,15 +24,22 @@ pub(super) struct LatticeForcing {
 impl LatticeForcing {
     /// Tractions on the sides of a patch are integrated with the points' own rule in every span of them.
     pub(crate) fn new(forcing: Arc<dyn Forcing>, patch: &Patch, lattice: &Lattice, shape: &Shape) -> Self {
-        let boundary = if let Shape::Patch | Shape::Rectangle { .. } = shape {
+        let fills = match shape {
+            Shape::Rectangle { min, max } => {
+                let (low, high) = patch.bounding_box();
+                (0..2).all(|d| (min[d] - low[d]).abs().max((max[d] - high[d]).abs()) <= ROUND_OFF * (high[d] - low[d]))
+            }
+            shape => *shape == Shape::Patch,
+        };
+        let boundary = if fills {
             let [left, bottom] = [1, 0].map(|along| Rule::new(lattice.layout, lattice.points[along]));
             let sides = [(Side::Left, &left), (Side::Right, &left), (Side::Bottom, &bottom), (Side::Top, &bottom)];
             sides.into_iter().flat_map(|(side, rule)| patch.boundary(side, rule)).collect()
         } else {
-            let with_functions = |SurfacePoint { position, length, normal }| {
+            let with_functions = |SurfacePoint { position, length, normal, inner }| {
                 let functions = patch.functions_at(position)?.values;
                 let first = functions[0].0;
-                let on_side = |(at, value)| (lattice.control_point(at, first, position), value);
+                let on_side = |(at, value)| (lattice.control_point(at, first, inner), value);
                 let functions = functions.into_iter().map(on_side).collect();
                 Some(BoundaryPoint { position, normal, length, functions })
             };
@@ -64,15 +72,14 @@ impl LatticeForcing {
 
     /// Right-hand side of the phase-field equation at `time` (s), m².
     pub(crate) fn phase_load(&self, lattice: &Lattice, time: f64) -> Vec<f64> {
-        let mut load =
-            lattice.onto_patch(lattice.integrate(|_, _, position| self.forcing.phase_source(position, time)));
+        let mut load = lattice.integrate(|_, _, position| self.forcing.phase_source(position, time));
         for point in &self.boundary {
             let flux = self.forcing.phase_flux(point.position, point.normal, time);
             for &(at, value) in &point.functions {
                 load[at] += value * point.length * flux;
             }
         }
-        load
+        lattice.onto_patch(load)
     }
 
     pub(crate) fn add_to(&self, forces: &mut VectorField) {

@@ -40,7 +40,12 @@ impl TotalFrame {
     /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at
     /// zero.
     pub fn sample(&self, dt: f64) -> Sample {
-        let [x, y] = self.control_positions();
+        let mut positions = self.control_positions();
+        if self.kinematics == Kinematics::Finite {
+            let moved = positions.iter_mut().zip(&self.displacement);
+            moved.for_each(|(x, u)| x.iter_mut().zip(u).for_each(|(x, u)| *x += u));
+        }
+        let [x, y] = positions;
         let kinetic = self.mass.half_square(&self.velocity);
         let stagger = fault!("stagger-doubled", 0.25 => 0.5) * dt * dt * self.mass.half_square(&self.acceleration);
         let mut momenta = [self.grid.zeros(), self.grid.zeros()];

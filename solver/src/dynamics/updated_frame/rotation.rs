@@ -22,7 +22,8 @@ impl DiscreteField {
             return None;
         }
         let broken = |at: usize| self.fracture.as_ref().is_some_and(|fracture| fracture.points[at].phase < BROKEN);
-        let intact = self.cells.cells.iter().filter(|cell| !cell.points.clone().any(broken));
+        let several = self.cells.cells.iter().filter(|cell| cell.points.len() > 1);
+        let intact = several.filter(|cell| !cell.points.clone().any(broken));
         let turned = intact.map(|cell| turned(&self.points[cell.points.clone()]));
         turned.max_by(|a, b| a.1.total_cmp(&b.1))
     }

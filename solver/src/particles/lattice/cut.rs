@@ -1,18 +1,18 @@
 //! Quadrature over the part of a span inside a shape.
 //!
 //! A span is divided along one direction wherever an edge of the shape begins, ends, turns back, meets
-//! another edge or leaves the span. Between two such places every line across meets the same edges, so Gauss points
-//! along and across integrate over the part inside (Saye 2015, *High-order quadrature methods for implicitly
-//! defined surfaces and volumes in hyperrectangles*, SIAM Journal on Scientific Computing 37): polynomials
-//! up to degree 2 p in x and in y exactly between straight edges, to 1e-10 beside arcs. All weights are
-//! positive. A span in which an arc turns much is quartered first.
+//! another edge or leaves the span. Between two such places every line across meets the same edges, so Gauss
+//! points along and across integrate over the part inside (Saye 2015, *High-order quadrature methods for
+//! implicitly defined surfaces and volumes in hyperrectangles*, SIAM Journal on Scientific Computing 37):
+//! polynomials up to degree 2 p in x and in y exactly between straight edges, to 1e-10 beside arcs. All
+//! weights are positive. A span in which an arc turns much is quartered first.
 
 use std::collections::BTreeMap;
 
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::scene::edges::BoundaryEdge;
 use crate::scene::{Layout, Shape};
-use crate::splines::quadrature::Rule;
+use crate::splines::quadrature::{MAX_POINTS, Rule};
 use crate::splines::spline::SplineSpace;
 
 /// Parts of a span smaller than this are none, and all but this are all; edges this near to a knot, of the
@@ -33,28 +33,23 @@ pub(super) type WeightedPoint = ([f64; 2], f64);
 /// A shape and the rules to integrate over it.
 struct Cutter<'a> {
     shape: &'a Shape,
-    edges: Vec<BoundaryEdge>,
     across: Rule,
     /// Between straight edges, and beside arcs.
     along: [Rule; 2],
 }
 
-/// The points of all spans, by column and row, that the boundary of a shape cuts.
-pub(super) fn cut_spans(shape: &Shape, spaces: &[SplineSpace; 2]) -> BTreeMap<[usize; 2], Vec<WeightedPoint>> {
-    let degree = spaces[0].degree().max(spaces[1].degree());
-    let rule = |points| Rule::new(Layout::Gauss, points);
-    let cutter = Cutter {
-        shape,
-        edges: shape.edges(),
-        across: rule(degree + 1),
-        along: [rule(2 * degree + 1), rule(2 * degree + 4)],
-    };
-    let corners = |[i, j]: [usize; 2]| {
-        let spans = [&spaces[0].spans()[i], &spaces[1].spans()[j]];
-        [spans.map(|span| span.left), spans.map(|span| span.right)]
-    };
-    let mut crossed: BTreeMap<[usize; 2], Vec<&BoundaryEdge>> = BTreeMap::new();
-    for edge in &cutter.edges {
+/// Edges of a shape by column and row of the spans that they run through.
+pub(super) type EdgesInSpans = BTreeMap<[usize; 2], Vec<BoundaryEdge>>;
+
+fn corners(spaces: &[SplineSpace; 2], [i, j]: [usize; 2]) -> Corners {
+    let spans = [&spaces[0].spans()[i], &spaces[1].spans()[j]];
+    [spans.map(|span| span.left), spans.map(|span| span.right)]
+}
+
+/// The edges of a shape in the spans that they run through.
+pub(super) fn edges_in_spans(shape: &Shape, spaces: &[SplineSpace; 2]) -> EdgesInSpans {
+    let mut found = EdgesInSpans::new();
+    for edge in shape.edges() {
         let [low, high] = edge.bounding_box();
         let reached = |d: usize| {
             let spans = spaces[d].spans();
@@ -62,19 +57,32 @@ pub(super) fn cut_spans(shape: &Shape, spaces: &[SplineSpace; 2]) -> BTreeMap<[u
             first..spans.partition_point(|span| span.left <= high[d]).max(first)
         };
         for span in reached(1).flat_map(|j| reached(0).map(move |i| [i, j])) {
-            if crosses(edge, corners(span)) {
-                crossed.entry(span).or_default().push(edge);
+            if crosses(&edge, corners(spaces, span)) {
+                found.entry(span).or_default().push(edge.clone());
             }
         }
     }
-    let cut = |(span, edges): ([usize; 2], Vec<&BoundaryEdge>)| {
-        let [low, high] = corners(span);
+    found
+}
+
+/// The points of all spans, by column and row, that the boundary of a shape cuts: at least so many across.
+pub(super) fn cut_spans<'a>(
+    shape: &'a Shape,
+    edges: &'a EdgesInSpans,
+    spaces: &'a [SplineSpace; 2],
+    points: usize,
+) -> impl Iterator<Item = ([usize; 2], Vec<WeightedPoint>)> + 'a {
+    let across = spaces.iter().map(|space| space.degree() + 1).chain([points]).max().unwrap_or(points);
+    let rule = |points: usize| Rule::new(Layout::Gauss, points.min(MAX_POINTS));
+    let along = [2 * across - 1, 2 * across + 2].map(rule);
+    let cutter = Cutter { shape, across: rule(across), along };
+    edges.iter().filter_map(move |(span, edges)| {
+        let [low, high] = corners(spaces, *span);
         let mut points = Vec::new();
-        cutter.add([low, high], &edges, 0, &mut points);
+        cutter.add([low, high], &edges.iter().collect::<Vec<_>>(), 0, &mut points);
         let part = points.iter().map(|point| point.1).sum::<f64>() / ((high[0] - low[0]) * (high[1] - low[1]));
-        (part > SLIVER && part < 1.0 - SLIVER).then_some((span, points))
-    };
-    crossed.into_iter().filter_map(cut).collect()
+        (part > SLIVER && part < 1.0 - SLIVER).then_some((*span, points))
+    })
 }
 
 /// Whether an edge runs through the inside of a box.
@@ -157,7 +165,8 @@ impl Cutter<'_> {
         let mut breaks = vec![low[outer], high[outer]];
         for (n, edge) in edges.iter().enumerate() {
             breaks.extend(edge.ends(outer));
-            breaks.extend([low[inner], high[inner]].into_iter().flat_map(|side| edge.crossings(inner, side)));
+            let sides = fault!("cut-spans-undivided", [low[inner], high[inner]] => [f64::INFINITY; 2]);
+            breaks.extend(sides.into_iter().flat_map(|side| edge.crossings(inner, side)));
             breaks.extend(edges[..n].iter().flat_map(|other| edge.meets(other)).map(|place| place[outer]));
         }
         breaks.retain(|x| (low[outer]..=high[outer]).contains(x));
@@ -185,10 +194,14 @@ mod tests {
     use crate::scene::Mesh;
     use crate::splines::patch::Patch;
 
+    fn all(shape: &Shape, spaces: &[SplineSpace; 2]) -> BTreeMap<[usize; 2], Vec<WeightedPoint>> {
+        cut_spans(shape, &edges_in_spans(shape, spaces), spaces, 1).collect()
+    }
+
     /// `∫ x^a y^b` over a shape on a mesh: spans inside by their middles.
     fn moment(shape: &Shape, degree: usize, [a, b]: [i32; 2]) -> f64 {
         let patch = Patch::new(&Mesh::uniform([degree; 2], [-1.5, -1.4], [3.0, 2.8], [13, 11]));
-        let cut = cut_spans(shape, &patch.spaces);
+        let cut = all(shape, &patch.spaces);
         let rule = Rule::new(Layout::Gauss, degree + 1);
         let mut sum = 0.0;
         for (i, x) in patch.spaces[0].spans().iter().enumerate() {
@@ -250,17 +263,17 @@ mod tests {
     fn edges_on_knots_and_shapes_that_overlap_cut_nothing_they_do_not_bound() {
         let spaces = Patch::new(&Mesh::uniform([2; 2], [0.0; 2], [1.0; 2], [10, 10])).spaces;
         let block = Shape::Rectangle { min: [0.1 + 0.2, 0.2], max: [0.7, 0.8] };
-        assert!(cut_spans(&block, &spaces).is_empty(), "0.1 + 0.2 is on the knot at 0.3");
+        assert!(all(&block, &spaces).is_empty(), "0.1 + 0.2 is on the knot at 0.3");
         let outside = Shape::Disk { center: [0.95, 0.95], radius: 0.14 };
         let trimmed = Shape::Difference { of: Box::new(block), minus: vec![outside] };
-        assert!(cut_spans(&trimmed, &spaces).is_empty(), "a disk beyond the corner takes nothing away");
+        assert!(all(&trimmed, &spaces).is_empty(), "a disk beyond the corner takes nothing away");
         let two = Shape::Difference {
             of: Box::new(Shape::Disk { center: [0.5, 0.5], radius: 0.4 }),
             minus: vec![Shape::Disk { center: [0.7, 0.5], radius: 0.3 }],
         };
-        let area: f64 = cut_spans(&two, &spaces).values().flatten().map(|point| point.1).sum();
+        let area: f64 = all(&two, &spaces).values().flatten().map(|point| point.1).sum();
         let whole = spaces[0].spans().iter().flat_map(|x| spaces[1].spans().iter().map(move |y| [x, y]));
-        let cut = cut_spans(&two, &spaces);
+        let cut = all(&two, &spaces);
         let inside = whole.enumerate().filter(|(n, [x, y])| {
             let middle = [0.5 * (x.left + x.right), 0.5 * (y.left + y.right)];
             !cut.contains_key(&[n / 10, n % 10]) && two.contains(middle)

@@ -26,6 +26,11 @@ impl Lattice {
         self.table_strips() + self.cut.len().div_ceil(self.strip_batches())
     }
 
+    /// Whether the boundary cuts spans.
+    pub(crate) fn has_cut_spans(&self) -> bool {
+        !self.cut.is_empty()
+    }
+
     /// A batch of a span that the boundary cuts.
     #[inline(always)]
     pub(crate) fn cut_batch(&self, batch: usize) -> Option<&CutBatch> {

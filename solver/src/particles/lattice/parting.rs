@@ -11,11 +11,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::cut_batch::CutPoint;
+use super::gaps::Gaps;
 use super::sheets::{FunctionIndex, Sheets};
 use super::{Lattice, Row, STRIP_ROWS};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::Lane;
-use crate::scene::Shape;
 use crate::scene::shape::{Segment, cross};
 
 /// Number of a point: those of tables column by column, and behind them those of cut spans.
@@ -48,15 +48,15 @@ struct SheetRows {
 }
 
 impl Lattice {
-    /// Parts the control points along slits, and along the gaps of a shape that are narrower than a support.
-    pub(super) fn part(&mut self, segments: &[Segment], shape: Option<&Shape>, cut: &mut [CutPoint]) {
-        let mut groups = PointGraph::new(self, segments, shape, cut).groups();
+    /// Parts the control points along slits (m), and along gaps of the shape that are narrower than a
+    /// support.
+    pub(super) fn part(&mut self, slits: &[Segment], gaps: &Gaps<'_>, cut: &mut [CutPoint]) {
+        let mut groups = PointGraph::new(self, slits, gaps, cut).groups();
         let sheets = choose_sheets(&mut groups);
         if sheets > 1 {
             groups.sort_by_key(|group| group.sheet);
             let windows = self.add_rows(&groups, sheets);
             self.move_points(&groups, &windows, cut);
-            self.sheets.iter_mut().for_each(|sheets| sheets.slits = segments.to_vec());
         }
     }
 
@@ -208,8 +208,8 @@ struct PointGraph<'a> {
 type Components = BTreeMap<PointIndex, usize>;
 
 impl<'a> PointGraph<'a> {
-    /// Neighbours are joined unless the step between them crosses one of the `slits` (m) or leaves the shape.
-    fn new(lattice: &'a Lattice, slits: &[Segment], shape: Option<&Shape>, cut: &'a [CutPoint]) -> Self {
+    /// Neighbours are joined unless the step between them crosses one of the `slits` (m) or a gap.
+    fn new(lattice: &'a Lattice, slits: &[Segment], gaps: &Gaps<'_>, cut: &'a [CutPoint]) -> Self {
         let columns = lattice.span_columns();
         let size = [columns.len() * lattice.points[0], lattice.patch_rows * lattice.points[1]];
         let firsts = [
@@ -228,14 +228,14 @@ impl<'a> PointGraph<'a> {
                 graph.links[point] = EXISTS;
             }
         }
-        let is_free = |step: Segment| {
+        let is_free = |graph: &Self, points: [PointIndex; 2]| {
+            let step = points.map(|point| graph.position(point));
             let slit = slits.iter().any(|slit| fault!("slit-bridged", cross(step, *slit) => false));
-            !slit && !shape.is_some_and(|shape| shape.is_left_on(step))
+            !slit && !gaps.bar(step, points.map(|point| graph.first(point)))
         };
         for point in 0..graph.links.len() {
             for (bit, next) in graph.ahead(point) {
-                let step = [point, next].map(|point| graph.position(point));
-                if graph.exists(point) && graph.exists(next) && is_free(step) {
+                if graph.exists(point) && graph.exists(next) && is_free(&graph, [point, next]) {
                     graph.links[point] |= 1 << bit;
                 }
             }
@@ -246,38 +246,43 @@ impl<'a> PointGraph<'a> {
 
     /// Joins every point of a cut span to a near one of each neighbouring span, and the points of a span to
     /// each other, where no step between them is barred.
-    fn join_cut_spans(&mut self, is_free: impl Fn(Segment) -> bool) {
+    fn join_cut_spans(&mut self, is_free: impl Fn(&Self, [PointIndex; 2]) -> bool) {
         let tables = self.links.len();
         for (first, range) in self.cut_spans.clone() {
             let mut parts: Vec<usize> = range.clone().collect(); // which points are joined within the span
             for number in range.clone() {
-                let from = self.cut[number].point.0;
                 for other in range.start..number {
                     let [old, new] = [number, other].map(|number| parts[number - range.start]);
-                    if old != new && is_free([from, self.cut[other].point.0]) {
+                    if old != new && is_free(self, [tables + number, tables + other]) {
                         parts.iter_mut().filter(|part| **part == old).for_each(|part| *part = new);
                         self.join(tables + number, tables + other);
                     }
                 }
                 for span in self.near_spans(first) {
-                    let distance = |point: &PointIndex| {
-                        let to = self.position(*point);
-                        (to[0] - from[0]).hypot(to[1] - from[1])
-                    };
-                    let mut points: Vec<(f64, PointIndex)> = self
-                        .points_of(span)
-                        .filter(|point| *point != tables + number)
-                        .map(|p| (distance(&p), p))
-                        .collect();
-                    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-                    let near = points.into_iter().take(TRIED).map(|(_, point)| point);
-                    let free = near.into_iter().find(|point| is_free([from, self.position(*point)]));
+                    let near = self.nearest_of(span, tables + number).into_iter().flatten();
+                    let free = near.map(|(_, point)| point).find(|point| is_free(self, [tables + number, *point]));
                     if let Some(point) = free {
                         self.join(tables + number, point);
                     }
                 }
             }
         }
+    }
+
+    /// Points of a span with their distances (m) from another point, the nearest first.
+    fn nearest_of(&self, span: FunctionIndex, from: PointIndex) -> [Option<(f64, PointIndex)>; TRIED] {
+        let [x, y] = self.position(from);
+        let mut nearest = [None; TRIED];
+        for point in self.points_of(span).filter(|point| *point != from) {
+            let to = self.position(point);
+            let mut next = Some(((to[0] - x).hypot(to[1] - y), point));
+            for place in &mut nearest {
+                if place.is_none_or(|(distance, _)| next.is_some_and(|(other, _)| other < distance)) {
+                    std::mem::swap(place, &mut next);
+                }
+            }
+        }
+        nearest
     }
 
     fn join(&mut self, a: PointIndex, b: PointIndex) {

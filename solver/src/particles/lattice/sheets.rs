@@ -2,13 +2,15 @@
 //! [`parting`](super::parting)).
 //!
 //! Copies are rows of control points behind those of the patch (a *sheet*), and the points that use them are
-//! rows of spans of the same lattice: kernels, sums and threads do not know of slits. A copy of a function
-//! that is whole is *tied* to its original. The phase field has no copies: it is continuous across a slit.
+//! rows of spans of the same lattice, or batches of cut spans: kernels and threads do not know of slits. A
+//! copy of a function that is whole is *tied* to its original. The phase field has no copies: it is
+//! continuous across a slit.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
+use crate::scene::Shape;
 use crate::scene::shape::{Segment, cross};
 
 /// Column and row of a control point of the patch.
@@ -26,11 +28,13 @@ pub(crate) struct Sheets {
     pub(super) points: BTreeMap<FunctionIndex, Vec<([f64; 2], usize)>>,
     /// Straight parts of the slits, m.
     pub(super) slits: Vec<Segment>,
+    /// The shape, if it may have gaps.
+    pub(super) shape: Option<Shape>,
 }
 
 impl Sheets {
     /// Rows by which the control points of a position (m) lie behind those of the patch, in the span with
-    /// this first control point: those of the nearest point on its side of the slits, if one is there.
+    /// this first control point: those of the nearest point on its side of slits and gaps, if one is there.
     pub(crate) fn lift(&self, first: FunctionIndex, position: [f64; 2]) -> usize {
         let Some(points) = self.points.get(&first) else { return 0 };
         let distance = |point: &[f64; 2]| (point[0] - position[0]).hypot(point[1] - position[1]);
@@ -45,7 +49,8 @@ impl Sheets {
     }
 
     fn on_one_side(&self, a: [f64; 2], b: [f64; 2]) -> bool {
-        !self.slits.iter().any(|slit| cross([a, b], *slit))
+        let in_gap = self.shape.as_ref().is_some_and(|shape| shape.is_left_on([a, b]));
+        !in_gap && !self.slits.iter().any(|slit| cross([a, b], *slit))
     }
 
     /// The control point that one copies, or itself.

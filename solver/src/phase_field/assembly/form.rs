@@ -13,8 +13,8 @@ pub enum Integrand {
 
 /// Coefficients of the points of a strip, batch by batch from the start of the strip.
 pub trait PointCoefficients: Sync {
-    /// Coefficient times weight of the `batches` of one span row of a tile, beginning at batch `first` of the
-    /// whole lattice; `false` if they are all zero.
+    /// Coefficient times weight of as many batches as one span row of a tile has, beginning at batch `first`
+    /// of the whole lattice; `false` if they are all zero.
     fn span(&self, first: usize, weights: &[Lane], out: &mut [Lane]) -> bool;
 }
 

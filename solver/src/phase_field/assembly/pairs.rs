@@ -87,10 +87,15 @@ pub(super) fn assemble_cut<C: PointCoefficients>(
         if !coefficients.span(first, &weights, &mut scaled[..span]) {
             continue;
         }
+        pairs.fill(Lane::ZERO);
         for (n, batch) in batches.iter().enumerate() {
-            pairs.fill(Lane::ZERO);
             add_point(&lattice.shape_functions(first + n), form, scaled[n], count, &mut pairs);
-            scatter(lattice, batch.first, &pairs, first_row, |pair, at| window[at] += pair.sum());
+            if batches.get(n + 1).is_none_or(|next| next.first != batch.first) {
+                scatter(lattice, batch.first, &pairs, first_row, |pair, at| {
+                    window[at] += fault!("cut-phase-field-of-one-point", pair.sum() => pair[0]);
+                });
+                pairs.fill(Lane::ZERO);
+            }
         }
     }
 }

@@ -73,7 +73,8 @@ fn add_forces<const FMA: bool>(
         for (component, [sx, sy]) in force.components.iter_mut().zip(weighted) {
             let (in_x, in_y) = (sx * y[l], sy * dy[l]);
             for k in 0..kx {
-                component[base + l * stride + k] += (in_x * dx[k]).add_product::<FMA>(in_y, x[k]).sum();
+                let force = (in_x * dx[k]).add_product::<FMA>(in_y, x[k]);
+                component[base + l * stride + k] += fault!("cut-forces-of-one-point", force.sum() => force[0]);
             }
         }
     }

@@ -13,8 +13,7 @@ use crate::study::StudyError;
 use crate::study::patches;
 
 /// The scene of one mesh: nothing but the exact solution loads the body, which fills the patch unless the
-/// family
-/// says otherwise.
+/// family says otherwise.
 pub(super) fn scene(
     setup: &ConvergenceSetup,
     problem: &Problem,
