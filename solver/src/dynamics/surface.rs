@@ -1,7 +1,7 @@
 //! Points on the boundary of a body: along the edge of a traction, or around all of it.
 //!
-//! An edge is divided where it crosses knots, so that shape functions are smooth between two of its points'
-//! neighbours, and Gauss points integrate them.
+//! An edge is divided where it crosses knots: shape functions are smooth on every part, and Gauss points
+//! integrate them.
 
 use crate::scene::edges::BoundaryEdge;
 use crate::scene::{Body, Edge, Layout, Shape};

@@ -73,7 +73,7 @@ pub(super) fn cut_spans<'a>(
     points: usize,
 ) -> impl Iterator<Item = ([usize; 2], Vec<WeightedPoint>)> + 'a {
     let across = spaces.iter().map(|space| space.degree() + 1).chain([points]).max().unwrap_or(points);
-    let rule = |points: usize| Rule::new(Layout::Gauss, points.min(MAX_POINTS));
+    let rule = |count: usize| Rule::new(Layout::Gauss, count.min(MAX_POINTS));
     let along = [2 * across - 1, 2 * across + 2].map(rule);
     let cutter = Cutter { shape, across: rule(across), along };
     edges.iter().filter_map(move |(span, edges)| {
