@@ -10,32 +10,32 @@
 //! use copies of control points ([`parting`]). On a patch with a geometry the lattice is one of parameters,
 //! in the unit of the knots, and has a [`Mapping`].
 
+mod build;
 mod cut;
 mod cut_batch;
 mod cut_strips;
+mod evaluate;
 mod gaps;
 mod integrate;
 mod map;
 mod mapped;
 mod parting;
+mod point_graph;
 mod sheets;
 mod tables;
 
 pub(crate) use cut_batch::CutBatch;
-use cut_batch::{CutPoint, first_function};
 pub(crate) use mapped::{MappedPoint, Mapping};
 pub(crate) use sheets::Sheets;
 
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::lane::{LANES, Lane};
-use crate::scene::{Body, Crack, Layout, Shape};
-use crate::splines::nurbs::locate::Location;
-use crate::splines::patch::{Patch, PointFunctions};
+use crate::scene::{Body, Layout, Shape};
+use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::MAX_FUNCTIONS;
 use crate::splines::spline::SplineSpace;
-use gaps::Gaps;
-use tables::{Along, tiles};
+use tables::Along;
 pub(crate) use tables::{Row, Tile};
 
 /// Rows of spans in a strip; at least the highest degree, so that only neighbouring strips share control
@@ -93,8 +93,8 @@ pub(crate) struct AxisPoint {
 }
 
 /// Coordinates of the points of `body` along both directions of a patch with these spaces; parameters if they
-/// are `mapped`. Unless [`fills_lattice`], the points are those of all pairs
-/// that lie in the shape, but for spans that its boundary cuts.
+/// are `mapped`. Unless [`fills_lattice`], the points are those of all pairs that lie in the shape, but for
+/// spans that its boundary cuts.
 pub(crate) fn point_axes(body: &Body, spaces: &[SplineSpace; 2], mapped: bool) -> [Vec<AxisPoint>; 2] {
     let axis = |along: Along<'_>| {
         let mut points = Vec::new();
@@ -131,98 +131,6 @@ fn directions<'a>(body: &Body, spaces: &'a [SplineSpace; 2], mapped: bool) -> [A
 }
 
 impl Lattice {
-    /// The points of `body` on `patch`; spans that its boundary cuts have points of their own.
-    pub fn new(patch: &Patch, body: &Body) -> Self {
-        let mut lattice = Self::of_tables(patch, body);
-        let mapped = patch.geometry.is_some();
-        let fills = fills_lattice(mapped, &body.shape);
-        let mut cut = Vec::new();
-        let mut gaps = Gaps::None;
-        if !fills {
-            lattice.keep_inside(&body.shape);
-            gaps = Gaps::Of(&body.shape);
-            if !mapped {
-                let edges = cut::edges_in_spans(&body.shape, &patch.spaces);
-                let most = body.particles_per_cell[0].max(body.particles_per_cell[1]);
-                let spans = cut::cut_spans(&body.shape, &edges, &patch.spaces, most);
-                cut.extend(spans.flat_map(|(span, points)| CutPoint::of_span(patch, span, points)));
-                gaps = Gaps::Between(
-                    edges.into_iter().map(|(span, edges)| (first_function(patch, span), edges)).collect(),
-                );
-            }
-        }
-        let slits: Vec<_> = body.cracks.iter().filter(|crack| crack.is_slit()).flat_map(Crack::segments).collect();
-        if !fills || !slits.is_empty() {
-            lattice.part(&slits, &gaps, &mut cut);
-            let shape = (!fills).then(|| body.shape.clone());
-            lattice.sheets.iter_mut().for_each(|sheets| (sheets.slits, sheets.shape) = (slits.clone(), shape.clone()));
-        }
-        if !cut.is_empty() {
-            lattice.append_cut(patch, cut);
-        }
-        lattice.find_occupied();
-        lattice
-    }
-
-    /// The points of `body` on `patch`: of a span that its boundary cuts, those of a whole one that lie
-    /// inside.
-    pub(crate) fn stepped(patch: &Patch, body: &Body) -> Self {
-        let mut lattice = Self::of_tables(patch, body);
-        if !fills_lattice(patch.geometry.is_some(), &body.shape) {
-            lattice.keep_inside(&body.shape);
-        }
-        lattice
-    }
-
-    /// Every point of the tables.
-    fn of_tables(patch: &Patch, body: &Body) -> Self {
-        let [x, y] = directions(body, &patch.spaces, patch.geometry.is_some()).map(|along| along.columns());
-        let degree = [0, 1].map(|d| patch.spaces[d].degree());
-        let rows: Vec<Row> = y
-            .into_iter()
-            .map(|c| Row {
-                first: c.first,
-                lift: 0,
-                value: c.value,
-                derivative: c.derivative,
-                weight: c.weight,
-                position: c.position,
-            })
-            .collect();
-        let mut lattice = Self {
-            grid: patch.control_grid(),
-            patch_grid: patch.control_grid(),
-            degree,
-            points: body.particles_per_cell,
-            layout: body.layout,
-            tiles: tiles(&x, degree[0] + 1),
-            patch_rows: rows.len(),
-            rows,
-            mapping: None,
-            factor: None,
-            occupied: None,
-            sheets: None,
-            cut: Vec::new(),
-        };
-        if let Some(geometry) = &patch.geometry {
-            lattice.map_by(geometry);
-        }
-        lattice
-    }
-
-    /// Finds which strips have points in which tiles.
-    fn find_occupied(&mut self) {
-        self.occupied = self.factor.as_ref().map(|factor| {
-            let points = self.points_per_span();
-            let holds = |(strip, tile): (usize, usize)| {
-                let mut first = self.strip_rows(strip).map(|row| self.batch(row, tile, 0, 0));
-                first.any(|at| factor[at..at + points].iter().any(|factor| factor.0.iter().any(|&f| f > 0.0)))
-            };
-            let tiles = self.tiles.len();
-            (0..self.table_strips()).flat_map(|strip| (0..tiles).map(move |tile| (strip, tile))).map(holds).collect()
-        });
-    }
-
     /// Copies of control points along slits.
     pub(crate) fn sheets(&self) -> Option<&Sheets> {
         self.sheets.as_deref()
@@ -277,19 +185,6 @@ impl Lattice {
     pub(crate) fn lift(&self, first: usize, position: [f64; 2]) -> usize {
         let Some(sheets) = &self.sheets else { return 0 };
         sheets.lift(self.cell(first), position) * self.grid.stride
-    }
-
-    /// Takes away the points outside a shape.
-    fn keep_inside(&mut self, shape: &Shape) {
-        let mut factor = self.factor.take().unwrap_or_else(|| vec![Lane::splat(1.0); self.batches()]);
-        for (batch, factor) in factor.iter_mut().enumerate() {
-            for lane in 0..LANES {
-                if !shape.contains(self.position(batch, lane)) {
-                    factor[lane] = 0.0;
-                }
-            }
-        }
-        self.factor = Some(factor);
     }
 
     /// Points in a span.
@@ -363,108 +258,6 @@ impl Lattice {
     #[inline(always)]
     pub fn weights(&self, at: usize) -> Lane {
         self.mapping.as_ref().map_or(Lane::splat(1.0), |mapping| Lane::load(&mapping.weights, at))
-    }
-
-    /// Shape functions of a batch; those of lane l belong to control points l columns further than those of
-    /// lane 0, but for spans that the boundary cuts.
-    pub fn shape_functions(&self, batch: usize) -> BatchFunctions {
-        let [kx, ky] = self.degree.map(|p| p + 1);
-        let mut functions =
-            BatchFunctions { value: [Lane::ZERO; MAX_FUNCTIONS], gradient: [[Lane::ZERO; 2]; MAX_FUNCTIONS] };
-        if let Some(CutBatch { value: [x, y], derivative: [dx, dy], .. }) = self.cut_batch(batch) {
-            for (l, k) in (0..ky).flat_map(|l| (0..kx).map(move |k| (l, k))) {
-                functions.value[l * kx + k] = x[k] * y[l];
-                functions.gradient[l * kx + k] = [dx[k] * y[l], x[k] * dy[l]];
-            }
-            return functions;
-        }
-        let (row_index, tile_index, b, a) = self.unbatch(batch);
-        let (row, tile) = (&self.rows[row_index], &self.tiles[tile_index]);
-        for l in 0..ky {
-            for k in 0..kx {
-                let (n, x, dx) = (l * kx + k, tile.value[a * kx + k], tile.derivative[a * kx + k]);
-                functions.value[n] = x * row.value[b][l];
-                functions.gradient[n] = [dx * row.value[b][l], x * row.derivative[b][l]];
-                if let Some(mapping) = &self.mapping {
-                    let weight = Lane::load(&mapping.weights, self.grid.index(tile.first + k, row.first + l));
-                    let [u, v] = functions.gradient[n].map(|g| g * weight);
-                    let rational = mapping.points[batch].field(functions.value[n] * weight, [u, v]);
-                    (functions.value[n], functions.gradient[n]) = rational;
-                }
-            }
-        }
-        functions
-    }
-
-    /// Value and gradient of a field of control values at a batch of points.
-    pub fn interpolate(&self, batch: usize, field: &[f64]) -> (Lane, [Lane; 2]) {
-        let functions = self.shape_functions(batch);
-        let kx = self.degree[0] + 1;
-        let (mut value, mut gradient) = (Lane::ZERO, [Lane::ZERO; 2]);
-        for n in 0..kx * (self.degree[1] + 1) {
-            let control = self.control_values(batch, n % kx, n / kx, field);
-            value += functions.value[n] * control;
-            for d in 0..2 {
-                gradient[d] += functions.gradient[n][d] * control;
-            }
-        }
-        (value, gradient)
-    }
-
-    /// Control values of function (k, l) of the span of each point of a batch.
-    fn control_values(&self, batch: usize, k: usize, l: usize, field: &[f64]) -> Lane {
-        if let Some(CutBatch { first: [column, row], lift, .. }) = self.cut_batch(batch) {
-            return Lane::splat(field[self.grid.index(column + k, row + lift + l)]);
-        }
-        let (row, tile, ..) = self.unbatch(batch);
-        Lane::load(field, self.grid.index(self.tiles[tile].first + k, self.rows[row].first + l))
-    }
-
-    /// Position of the point of a batch in a lane, m.
-    pub fn position(&self, batch: usize, lane: usize) -> [f64; 2] {
-        if let Some(mapping) = &self.mapping {
-            return mapping.points[batch].position.map(|x| x[lane]);
-        }
-        if let Some(cut) = self.cut_batch(batch) {
-            return cut.position.map(|x| x[lane]);
-        }
-        self.parameters(batch, lane)
-    }
-
-    /// Parameters of the point of a batch in a lane; its position (m) over a rectangle.
-    fn parameters(&self, batch: usize, lane: usize) -> [f64; 2] {
-        let (row, tile, b, a) = self.unbatch(batch);
-        [self.tiles[tile].position[a][lane], self.rows[row].position[b]]
-    }
-
-    /// Shape functions at the point of a batch in a lane, with the control points of the body.
-    pub(crate) fn functions_at(&self, patch: &Patch, batch: usize, lane: usize) -> PointFunctions {
-        let mut functions = patch.functions(self.location(patch, batch, lane));
-        functions.lift(self.lift_of(batch));
-        functions
-    }
-
-    /// Distance in fields of the control points of a batch from those of the patch.
-    pub(crate) fn lift_of(&self, batch: usize) -> usize {
-        let lift = self.cut_batch(batch).map_or_else(|| self.rows[self.unbatch(batch).0].lift, |cut| cut.lift);
-        lift * self.grid.stride
-    }
-
-    /// Column and row of the first function of the span of the point of a batch in a lane.
-    fn first_of(&self, batch: usize, lane: usize) -> [usize; 2] {
-        if let Some(cut) = self.cut_batch(batch) {
-            return cut.first;
-        }
-        let (row, tile, _, _) = self.unbatch(batch);
-        [self.tiles[tile].first + lane, self.rows[row].first - self.rows[row].lift]
-    }
-
-    /// Span and parameters on `patch` of the point of a batch in a lane.
-    pub fn location(&self, patch: &Patch, batch: usize, lane: usize) -> Location {
-        let first = self.first_of(batch, lane);
-        let span = [0, 1].map(|d| patch.spaces[d].spans().partition_point(|span| span.first < first[d]));
-        let cut = self.cut_batch(batch).map(|cut| cut.position.map(|x| x[lane]));
-        Location { span, parameters: cut.unwrap_or_else(|| self.parameters(batch, lane)) }
     }
 
     /// Every point: batch, lane, position (m) and weight (m²).

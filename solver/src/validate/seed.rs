@@ -55,9 +55,9 @@ pub(super) fn check(key: &str, body: &Body, fracture: &Fracture, points: &Points
     }
 }
 
-/// Says that nobody looked whether a seed breaks its body: there are too many points.
+/// Says that it was not checked whether a seed breaks its body.
 pub(super) fn unchecked(key: String, findings: &mut Findings) {
-    let message = "too many material points to check that the seed reaches those along its crack: see that the fracture \
+    let message = "it was not checked that the seed reaches the material points along its crack: see that the fracture \
                    energy begins at about the toughness times the length of the crack";
     findings.warn(key, message);
 }

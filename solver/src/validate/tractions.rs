@@ -55,15 +55,17 @@ pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &
             if !findings.finite(key.clone(), &[ends[0], ends[1]].concat()) {
                 return;
             }
+            let parts = || middles_of_parts(BoundaryEdge::Line(*ends), [0.0, 1.0], body);
             if ends[0] == ends[1] {
                 findings.error(key, "a segment of zero length", "give two different ends");
-            } else if let Some([x, y]) = look.first_outside(*ends, SEGMENT_INTERVALS).or_else(|| {
-                let line = BoundaryEdge::Line(*ends);
-                middles_of_parts(&line, [0.0, 1.0], body).find(|at| look.is_outside(*at))
-            }) {
+            } else if let Some([x, y]) =
+                look.first_outside(*ends, SEGMENT_INTERVALS).or_else(|| parts().find(|at| look.is_outside(*at)))
+            {
                 let message = format!("the segment leaves body {:?}: ({x}, {y}) m lies outside", body.name);
                 findings.error(key, message, ON_BOUNDARY);
-            } else if let Some([x, y]) = middles(*ends).find(|&at| has_no_side(at, *ends, body, &traction.load)) {
+            } else if let Some([x, y]) =
+                middles(*ends).chain(parts()).find(|&at| has_no_side(at, *ends, body, &traction.load))
+            {
                 let message = format!(
                     "the segment runs inside body {:?}: there is material on both sides of ({x}, {y}) m",
                     body.name
@@ -80,11 +82,11 @@ pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &
 }
 
 /// Middles of the parts (m) into which the edges of a body divide an edge between two places.
-fn middles_of_parts(edge: &BoundaryEdge, part: [f64; 2], body: &Body) -> impl Iterator<Item = [f64; 2]> {
+fn middles_of_parts(edge: BoundaryEdge, part: [f64; 2], body: &Body) -> impl Iterator<Item = [f64; 2]> {
     let places = edge.places_met(&body.shape.edges(), part);
     let parts: Vec<[f64; 2]> = places.windows(2).map(|pair| [pair[0], pair[1]]).collect();
     let wide = parts.into_iter().filter(|pair| pair[1] - pair[0] > TOLERANCE);
-    wide.map(|pair| edge.at(0.5 * (pair[0] + pair[1])).0)
+    wide.map(move |pair| edge.at(0.5 * (pair[0] + pair[1])).0)
 }
 
 /// Middles of equal parts of a segment, m.
@@ -128,7 +130,7 @@ fn arc(key: &str, center: [f64; 2], radius: f64, angles: [f64; 2], look: &Look<'
         [center[0] + radius * cosine, center[1] + radius * sine]
     };
     let (circle, part) = (BoundaryEdge::Circle { center, radius, sign: 1.0 }, angles.map(|angle| angle / TAU));
-    let parts = middles_of_parts(&circle, part, look.body);
+    let parts = middles_of_parts(circle, part, look.body);
     let mut positions = (0..=SEGMENT_INTERVALS).map(|i| position(i, radius)).chain(parts);
     let name = &look.body.name;
     if let Some([x, y]) = positions.find(|p| look.is_outside(*p)) {

@@ -16,11 +16,9 @@
 //! and the displacement or the traction on the boundary, and non-zero displacement, velocity and history at t
 //! = 0. c lies in (0.45, 0.95).
 
-use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Fracture, Frame, Kinematics, Material, Plane, Split};
 
 use super::dual::{Field, Jet, Scalar};
-use super::law::{self, Tensor};
 use super::motion::{Derived, Motion, displacement_gradient};
 use super::{Equation, Held, Solution, unit_material};
 
@@ -64,10 +62,6 @@ impl Motion for Coupled {
         let u = x + (x * 1.7 + y * 0.9 + 0.3).sin() * 0.15;
         let v = y + (x * 1.1 - y * 1.4 + 0.5).cos() * 0.12;
         [alpha * u, beta * v]
-    }
-
-    fn stress(&self, gradient: Tensor) -> Tensor {
-        law::linear(&ElasticModuli::new(&self.material(), self.plane), gradient)
     }
 
     fn phase(&self, [x, y, t]: [Jet; 3]) -> Jet {

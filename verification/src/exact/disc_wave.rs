@@ -14,7 +14,6 @@ use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane};
 
 use super::dual::{Jet, Scalar};
-use super::law::{self, Tensor};
 use super::motion::{Derived, Motion};
 use super::{Equation, Held, Solution, unit_material};
 
@@ -92,9 +91,5 @@ impl Motion for DiscWave {
         let scale = radial(first) * (t * (speed * first) + 0.7).sin() * 0.10
             + radial(second) * (t * (speed * second)).cos() * 0.05;
         [x * scale, y * scale]
-    }
-
-    fn stress(&self, gradient: Tensor) -> Tensor {
-        law::linear(&ElasticModuli::new(&self.material(), self.plane), gradient)
     }
 }

@@ -10,11 +10,9 @@
 //! Boundary conditions: the displacement, or the traction sigma n, neither of which vanishes anywhere in
 //! particular.
 
-use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane, Side};
 
 use super::dual::{Jet, Scalar};
-use super::law::{self, Tensor};
 use super::motion::{Derived, Motion};
 use super::{Equation, Held, Solution, unit_material};
 
@@ -51,9 +49,5 @@ impl Motion for Elastostatics {
             (x * 1.3 + 0.4).sin() * (y * 0.9 - 0.3).cos() * 0.10 + (x * 0.5 - y * 0.4).exp() * 0.03,
             (x * 0.8 - 0.2).cos() * (y * 1.7 + 0.6).sin() * 0.08 + (y * 0.6 - x * 0.3).exp() * 0.02,
         ]
-    }
-
-    fn stress(&self, gradient: Tensor) -> Tensor {
-        law::linear(&ElasticModuli::new(&self.material(), self.plane), gradient)
     }
 }

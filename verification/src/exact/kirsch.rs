@@ -19,7 +19,6 @@ use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane};
 
 use super::dual::{Jet, Scalar};
-use super::law::{self, Tensor};
 use super::motion::{Derived, Motion};
 use super::{Equation, Held, Solution, unit_material};
 
@@ -76,9 +75,5 @@ impl Motion for Kirsch {
             (far * cos * (kappa + 1.0) + near * (cos * (1.0 + kappa) + cos3) - nearest * cos3) * scale,
             (far * sin * (kappa - 3.0) + near * (sin * (1.0 - kappa) + sin3) - nearest * sin3) * scale,
         ]
-    }
-
-    fn stress(&self, gradient: Tensor) -> Tensor {
-        law::linear(&ElasticModuli::new(&self.material(), self.plane), gradient)
     }
 }

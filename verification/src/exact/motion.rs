@@ -8,10 +8,11 @@
 //! ```
 
 use fisura::material::degradation::FractureModel;
+use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Material, Plane};
 
 use super::dual::{Dual, Field, Jet, Scalar};
-use super::law::Tensor;
+use super::law::{self, Tensor};
 use super::{ExactPhase, ExactSolution};
 
 /// Index of time among the directions of differentiation.
@@ -28,8 +29,10 @@ pub trait Motion: Send + Sync {
     fn plane(&self) -> Plane;
     /// Displacement, m, of x (m), y (m), t (s).
     fn displacement(&self, variables: [Jet; 3]) -> [Jet; 2];
-    /// Intact first Piola–Kirchhoff stress, Pa, from the displacement gradient.
-    fn stress(&self, gradient: Tensor) -> Tensor;
+    /// Intact first Piola–Kirchhoff stress, Pa, from the displacement gradient; linear elasticity if not given.
+    fn stress(&self, gradient: Tensor) -> Tensor {
+        law::linear(&ElasticModuli::new(&self.material(), self.plane()), gradient)
+    }
     /// Phase field; 1 where none is modelled.
     fn phase(&self, _variables: [Jet; 3]) -> Jet {
         Jet::constant(1.0)

@@ -15,11 +15,9 @@
 use std::f64::consts::PI;
 
 use fisura::material::degradation::FractureModel;
-use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Fracture, Frame, Kinematics, Material, Plane, Split};
 
 use super::dual::{Jet, Scalar};
-use super::law::{self, Tensor};
 use super::motion::{Derived, Motion};
 use super::{Equation, Held, Solution, unit_material};
 
@@ -75,10 +73,6 @@ impl Motion for PhaseField {
 
     fn displacement(&self, _variables: [Jet; 3]) -> [Jet; 2] {
         [Jet::constant(0.0); 2]
-    }
-
-    fn stress(&self, gradient: Tensor) -> Tensor {
-        law::linear(&ElasticModuli::new(&self.material(), self.plane), gradient)
     }
 
     fn phase(&self, [x, y, _]: [Jet; 3]) -> Jet {

@@ -20,7 +20,6 @@ use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane};
 
 use super::dual::{Jet, Scalar};
-use super::law::{self, Tensor};
 use super::motion::{Derived, Motion};
 use super::{Equation, Held, Solution, unit_material};
 
@@ -79,9 +78,5 @@ impl Motion for StandingWave {
             [px.sin() * py.cos() * amplitude * k[1], -(px.cos() * py.sin() * amplitude * k[0])]
         };
         [dilatational[0] + shear[0], dilatational[1] + shear[1]]
-    }
-
-    fn stress(&self, gradient: Tensor) -> Tensor {
-        law::linear(&ElasticModuli::new(&self.material(), self.plane), gradient)
     }
 }

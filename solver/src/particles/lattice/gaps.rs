@@ -24,10 +24,9 @@ impl Gaps<'_> {
             Self::None => false,
             Self::Of(shape) => shape.is_left_on(step),
             Self::Between(edges) => {
-                let mut spans = vec![a, [a[0], b[1]], [b[0], a[1]], b];
-                spans.dedup();
-                let near = spans.iter().filter_map(|span| edges.get(span)).flatten();
-                near.into_iter().any(|edge| edge.is_crossed(step))
+                let spans = [a, [a[0], b[1]], [b[0], a[1]], b];
+                let spans = if a == b { &spans[..1] } else { &spans };
+                spans.iter().filter_map(|span| edges.get(span)).flatten().any(|edge| edge.is_crossed(step))
             }
         }
     }

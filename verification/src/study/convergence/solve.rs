@@ -55,11 +55,7 @@ impl OnMesh for Discrete<'_> {
             }
             Equation::Static => {
                 let field = self.solve_static()?;
-                let mut errors = self.displacement_errors(&field, 0.0);
-                if self.setup.patch == PatchFamily::Holed {
-                    errors.push(self.largest_stress_error(&field));
-                }
-                errors
+                self.static_errors(&field)
             }
             Equation::PhaseField => {
                 let field = self.solve_phase_field()?;
@@ -87,10 +83,10 @@ impl OnMesh for Discrete<'_> {
         let mut errors = Vec::new();
         if self.problem.equation != Equation::PhaseField {
             let best = self.project(|x| solution.displacement(x, end))?;
-            errors.extend(self.displacement_errors(&best, end));
-            if self.problem.equation == Equation::Static && self.setup.patch == PatchFamily::Holed {
-                errors.push(self.largest_stress_error(&best));
-            }
+            errors.extend(match self.problem.equation {
+                Equation::Static => self.static_errors(&best),
+                _ => self.displacement_errors(&best, end),
+            });
         }
         if dynamic {
             errors.push(self.velocity_error(&self.project(|x| solution.velocity(x, end))?, end));
@@ -300,6 +296,15 @@ impl<'a> Discrete<'a> {
         };
         let squares: Squares = (0..2).map(component).sum();
         vec![squares.l2(), squares.h1()]
+    }
+
+    /// Errors of a static displacement, and around a hole of its stress.
+    fn static_errors(&self, field: &VectorField) -> Vec<f64> {
+        let mut errors = self.displacement_errors(field, 0.0);
+        if self.setup.patch == PatchFamily::Holed {
+            errors.push(self.largest_stress_error(field));
+        }
+        errors
     }
 
     /// Largest error of a component of the stress at a material point, Pa.

@@ -1,0 +1,116 @@
+//! How a lattice is made: tables, spans that the boundary cuts, and copies along slits and gaps.
+
+use super::cut_batch::{CutPoint, first_function};
+use super::gaps::Gaps;
+use super::tables::{Row, tiles};
+use super::{Lattice, cut, directions, fills_lattice};
+use crate::linear_algebra::lane::{LANES, Lane};
+use crate::scene::{Body, Crack, Shape};
+use crate::splines::patch::Patch;
+
+impl Lattice {
+    /// The points of `body` on `patch`; spans that its boundary cuts have points of their own.
+    pub fn new(patch: &Patch, body: &Body) -> Self {
+        let mut lattice = Self::of_tables(patch, body);
+        let mapped = patch.geometry.is_some();
+        let fills = fills_lattice(mapped, &body.shape);
+        let mut cut = Vec::new();
+        let mut gaps = Gaps::None;
+        if !fills {
+            lattice.keep_inside(&body.shape);
+            gaps = Gaps::Of(&body.shape);
+            if !mapped {
+                let edges = cut::edges_in_spans(&body.shape, &patch.spaces);
+                let most = body.particles_per_cell[0].max(body.particles_per_cell[1]);
+                let spans = cut::cut_spans(&body.shape, &edges, &patch.spaces, most);
+                cut.extend(spans.flat_map(|(span, points)| CutPoint::of_span(patch, span, points)));
+                gaps = Gaps::Between(
+                    edges.into_iter().map(|(span, edges)| (first_function(patch, span), edges)).collect(),
+                );
+            }
+        }
+        let slits: Vec<_> = body.cracks.iter().filter(|crack| crack.is_slit()).flat_map(Crack::segments).collect();
+        if !fills || !slits.is_empty() {
+            lattice.part(&slits, &gaps, &mut cut);
+            let shape = (!fills).then(|| body.shape.clone());
+            lattice.sheets.iter_mut().for_each(|sheets| (sheets.slits, sheets.shape) = (slits.clone(), shape.clone()));
+        }
+        if !cut.is_empty() {
+            lattice.append_cut(patch, cut);
+        }
+        lattice.find_occupied();
+        lattice
+    }
+
+    /// The points of `body` on `patch`: of a span that its boundary cuts, those of a whole one that lie
+    /// inside.
+    pub(crate) fn stepped(patch: &Patch, body: &Body) -> Self {
+        let mut lattice = Self::of_tables(patch, body);
+        if !fills_lattice(patch.geometry.is_some(), &body.shape) {
+            lattice.keep_inside(&body.shape);
+        }
+        lattice
+    }
+
+    /// Every point of the tables.
+    fn of_tables(patch: &Patch, body: &Body) -> Self {
+        let [x, y] = directions(body, &patch.spaces, patch.geometry.is_some()).map(|along| along.columns());
+        let degree = [0, 1].map(|d| patch.spaces[d].degree());
+        let rows: Vec<Row> = y
+            .into_iter()
+            .map(|c| Row {
+                first: c.first,
+                lift: 0,
+                value: c.value,
+                derivative: c.derivative,
+                weight: c.weight,
+                position: c.position,
+            })
+            .collect();
+        let mut lattice = Self {
+            grid: patch.control_grid(),
+            patch_grid: patch.control_grid(),
+            degree,
+            points: body.particles_per_cell,
+            layout: body.layout,
+            tiles: tiles(&x, degree[0] + 1),
+            patch_rows: rows.len(),
+            rows,
+            mapping: None,
+            factor: None,
+            occupied: None,
+            sheets: None,
+            cut: Vec::new(),
+        };
+        if let Some(geometry) = &patch.geometry {
+            lattice.map_by(geometry);
+        }
+        lattice
+    }
+
+    /// Finds which strips have points in which tiles.
+    fn find_occupied(&mut self) {
+        self.occupied = self.factor.as_ref().map(|factor| {
+            let points = self.points_per_span();
+            let holds = |(strip, tile): (usize, usize)| {
+                let mut first = self.strip_rows(strip).map(|row| self.batch(row, tile, 0, 0));
+                first.any(|at| factor[at..at + points].iter().any(|factor| factor.0.iter().any(|&f| f > 0.0)))
+            };
+            let tiles = self.tiles.len();
+            (0..self.table_strips()).flat_map(|strip| (0..tiles).map(move |tile| (strip, tile))).map(holds).collect()
+        });
+    }
+
+    /// Takes away the points outside a shape.
+    fn keep_inside(&mut self, shape: &Shape) {
+        let mut factor = self.factor.take().unwrap_or_else(|| vec![Lane::splat(1.0); self.batches()]);
+        for (batch, factor) in factor.iter_mut().enumerate() {
+            for lane in 0..LANES {
+                if !shape.contains(self.position(batch, lane)) {
+                    factor[lane] = 0.0;
+                }
+            }
+        }
+        self.factor = Some(factor);
+    }
+}
