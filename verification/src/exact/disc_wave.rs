@@ -7,8 +7,8 @@
 //! (lam* + 2 mu) k R J0(k R) = 2 mu J1(k R)      for k1 and k2, its first two roots: σ_rr(R) = 0
 //! ```
 //!
-//! (Love 1944, *A treatise on the mathematical theory of elasticity*, article 200.) E = 1 Pa, nu = 0.3, rho
-//! = 1 kg/m³; k1 = 2.05 and k2 = 5.39 in plane stress.
+//! The script `reference-data/derivations/disc_wave.py` shows that body force and traction vanish. E = 1
+//! Pa, nu = 0.3, rho = 1 kg/m³; k1 = 2.05 and k2 = 5.39 in plane stress.
 
 use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane};
