@@ -29,7 +29,8 @@ pub trait Motion: Send + Sync {
     fn plane(&self) -> Plane;
     /// Displacement, m, of x (m), y (m), t (s).
     fn displacement(&self, variables: [Jet; 3]) -> [Jet; 2];
-    /// Intact first Piola–Kirchhoff stress, Pa, from the displacement gradient; linear elasticity if not given.
+    /// Intact first Piola–Kirchhoff stress, Pa, from the displacement gradient; that of linear elasticity if
+    /// not given.
     fn stress(&self, gradient: Tensor) -> Tensor {
         law::linear(&ElasticModuli::new(&self.material(), self.plane()), gradient)
     }
