@@ -8,6 +8,7 @@ mod body;
 mod conditions;
 mod contact;
 mod cracks;
+mod edge_conditions;
 mod findings;
 mod geometry;
 mod ground;

@@ -31,7 +31,7 @@ impl Constraints {
             fixed.sort_unstable();
             let differ = |[i, j]: &[usize; 2]| {
                 let pair = [*i, *j].map(|number| &conditions[number]);
-                pair[0].side == pair[1].side && pair[0].course(component) != pair[1].course(component)
+                pair[0].side == pair[1].side && pair[0].prescribed.course(component) != pair[1].prescribed.course(component)
             };
             let mut shared = fixed.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]);
             constraints.contradiction = constraints.contradiction.or_else(|| shared.find(differ));
@@ -54,7 +54,7 @@ impl Constraints {
     /// Prescribed components and their velocities that never change, m/s.
     pub(crate) fn velocities(&self) -> impl Iterator<Item = (usize, usize, f64)> {
         self.iter().map(|(at, component, number)| {
-            let velocity = match self.conditions[number].motion {
+            let velocity = match self.conditions[number].prescribed.motion {
                 Motion::Velocity(velocity) => velocity[component],
                 Motion::Displacement(_) => 0.0,
             };
@@ -69,11 +69,11 @@ impl Constraints {
 
     /// Sets the prescribed displacements (m) and velocities (m/s) at t = 0.
     pub(crate) fn start(&self, displacement: &mut [Vec<f64>; 2], velocity: &mut [Vec<f64>; 2]) {
-        let starts: Vec<_> = self.conditions.iter().map(Boundary::start).collect();
+        let starts: Vec<_> = self.conditions.iter().map(|condition| condition.prescribed.start()).collect();
         for (at, component, number) in self.iter() {
             let [place, speed] = starts[number].map(|value| value[component]);
             velocity[component][at] = fault!("driven-side-reversed", speed => -speed);
-            if matches!(self.conditions[number].motion, Motion::Displacement(_)) {
+            if self.conditions[number].prescribed.is_displacement() {
                 displacement[component][at] = place;
             }
         }

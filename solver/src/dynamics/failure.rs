@@ -35,6 +35,15 @@ pub enum Failure {
     },
     /// The part of a side of that condition holds no control point with mass.
     HoldsNothing(usize),
+    /// There is no material at a place (m) on the edge of that condition of the body.
+    LostCondition {
+        /// Number of the condition.
+        condition: usize,
+        /// Place, m.
+        place: [f64; 2],
+    },
+    /// What that condition of the body prescribes is prescribed already.
+    HeldTwice(usize),
     /// Two conditions whose parts of a side share a control point and prescribe it differently.
     Contradiction([usize; 2]),
     /// No static state was found: the largest force out of balance, of the largest nodal force.

@@ -150,10 +150,10 @@ impl NodalLoad {
         moves: impl Fn(usize) -> bool,
     ) -> Result<Self, LostTraction> {
         let mut sums = BTreeMap::<usize, [Sum; 3]>::new(); // of the length, and of the force
-        let mut add = |functions: &[(usize, f64)], place: [f64; 2], length: f64, normal: [f64; 2]| {
+        let mut add = |functions: Vec<(usize, f64)>, length: f64, normal: [f64; 2]| {
             let [x, y] = traction.load.traction(normal);
-            for &(index, value) in functions {
-                let sums = sums.entry(lattice.control_point(index, functions[0].0, place)).or_default();
+            for (at, value) in functions {
+                let sums = sums.entry(at).or_default();
                 for (sum, density) in sums.iter_mut().zip([1.0, x, y]) {
                     *sum = sum.plus(density * (value * length));
                 }
@@ -162,15 +162,15 @@ impl NodalLoad {
         let balance = match (&traction.edge, &body.shape) {
             (Edge::Side(side), Shape::Patch) => {
                 let points = boundary_points(patch, body, *side);
-                points.iter().for_each(|point| add(&point.functions, point.position, point.length, point.normal));
+                for BoundaryPoint { functions, position, length, normal } in &points {
+                    add(on_side(lattice, functions, *position), *length, *normal);
+                }
                 Balance::of_points(&points)
             }
             _ => {
-                for SurfacePoint { position, length, normal, inner } in surface_points(patch, body, &traction.edge) {
-                    let carries =
-                        |first, at| lattice.has_side(first, inner) && moves(lattice.control_point(at, first, inner));
-                    let location = carrier(patch, position, carries).ok_or(LostTraction::Bare(position))?;
-                    add(&patch.functions(location).values, inner, length, normal);
+                for point in surface_points(patch, body, &traction.edge) {
+                    let functions = functions_of_material(patch, lattice, &point, &moves);
+                    add(functions.ok_or(LostTraction::Bare(point.position))?, point.length, point.normal);
                 }
                 Balance::of_edge(body, &traction.edge)
             }
@@ -190,6 +190,26 @@ impl NodalLoad {
     pub fn factor(&self, time: f64) -> f64 {
         self.time.value(time)
     }
+}
+
+/// Control points and values of functions on the side of the slits of a position, m.
+fn on_side(lattice: &Lattice, functions: &[(usize, f64)], place: [f64; 2]) -> Vec<(usize, f64)> {
+    functions.iter().map(|&(at, value)| (lattice.control_point(at, functions[0].0, place), value)).collect()
+}
+
+/// Control points of the material at a surface point, and values of their functions there; `None` if there
+/// is no material within a span of it.
+pub(crate) fn functions_of_material(
+    patch: &Patch,
+    lattice: &Lattice,
+    point: &SurfacePoint,
+    moves: impl Fn(usize) -> bool,
+) -> Option<Vec<(usize, f64)>> {
+    let carries = |first, at| {
+        lattice.has_side(first, point.inner) && moves(lattice.control_point(at, first, point.inner))
+    };
+    let location = carrier(patch, point.position, carries)?;
+    Some(on_side(lattice, &patch.functions(location).values, point.inner))
 }
 
 /// Where to evaluate the shape functions of a position (m) on a straight edge, so that all of them belong to

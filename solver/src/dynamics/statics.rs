@@ -26,7 +26,7 @@ pub struct StaticSolver<'a> {
 impl<'a> StaticSolver<'a> {
     /// Factors the stiffness, plus `shift` (1/s²) times the mass, on the components that no boundary holds;
     /// `None` if it is not positive definite: the body is not held against rigid motions by boundaries or a
-    /// shift, or has too few points.
+    /// shift, or has too few points. Conditions on edges of the body are not known to it.
     pub fn new(frame: &'a TotalFrame, shift: f64) -> Option<Self> {
         let free = frame.free_components();
         let grid = frame.lattice().grid;

@@ -15,6 +15,8 @@ pub(crate) struct SurfacePoint {
     pub position: [f64; 2],
     /// Length it stands for, m.
     pub length: f64,
+    /// Distance along its curve, m.
+    pub along: f64,
     /// Outward unit normal of the body.
     pub normal: [f64; 2],
     /// Position just inside the body, m: a position on a face of a narrow gap has no side.
@@ -33,13 +35,7 @@ const NEAR: f64 = 1e-12;
 /// in every span: the point sums over the edge then fit those over the body, which the patch test needs for
 /// equally spaced points.
 pub(crate) fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<SurfacePoint> {
-    let (curve, part) = match *edge {
-        Edge::Arc { center, radius, angles } => {
-            let circle = BoundaryEdge::Circle { center, radius, sign: 1.0 };
-            (circle, angles.map(|angle| angle / std::f64::consts::TAU))
-        }
-        Edge::Side(_) | Edge::Segment(_) => (BoundaryEdge::Line(edge_ends(body, edge)), [0.0, 1.0]),
-    };
+    let (curve, part) = curve_of(body, edge);
     let rule = match &curve {
         BoundaryEdge::Line([a, b]) if fits_points(patch, body, [*a, *b]) => {
             let direction = usize::from((b[1] - a[1]).abs() > (b[0] - a[0]).abs());
@@ -48,6 +44,27 @@ pub(crate) fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<Sur
         _ => smooth_rule(patch),
     };
     points_between(&divisions(patch, &curve, part), &curve, &rule, &body.shape).collect()
+}
+
+/// The curve of an edge of a body, and the part of it, s.
+pub(crate) fn curve_of(body: &Body, edge: &Edge) -> (BoundaryEdge, [f64; 2]) {
+    match *edge {
+        Edge::Arc { center, radius, angles } => {
+            let circle = BoundaryEdge::Circle { center, radius, sign: 1.0 };
+            (circle, angles.map(|angle| angle / std::f64::consts::TAU))
+        }
+        Edge::Side(_) | Edge::Segment(_) => (BoundaryEdge::Line(edge_ends(body, edge)), [0.0, 1.0]),
+    }
+}
+
+/// Gauss points along an edge of a body, part by part: those of a part are in one
+/// span, and their distances are from the end of the edge.
+pub(crate) fn smooth_parts(patch: &Patch, body: &Body, edge: &Edge) -> Vec<Vec<SurfacePoint>> {
+    let ((curve, part), rule) = (curve_of(body, edge), smooth_rule(patch));
+    let places = divisions(patch, &curve, part);
+    let from_the_end = |point: SurfacePoint| SurfacePoint { along: point.along - places[0] * curve.length(), ..point };
+    let points = |pair| points_between(pair, &curve, &rule, &body.shape).map(from_the_end).collect();
+    places.windows(2).map(points).collect()
 }
 
 /// Whether the points of the body beside a straight edge are those of whole spans, or of spans that a
@@ -119,12 +136,13 @@ fn points_between<'a>(
         let inwards = if shape.contains(inner) { 1.0 } else { -1.0 };
         let side = fault!("normals-to-the-right-of-an-edge", inwards => 1.0);
         rule.points.iter().zip(&rule.weights).map(move |(t, weight)| {
-            let (position, tangent) = edge.at(pair[0] + t * (pair[1] - pair[0]));
+            let s = pair[0] + t * (pair[1] - pair[0]);
+            let (position, tangent) = edge.at(s);
             let speed = tangent[0].hypot(tangent[1]);
             let normal = [side * tangent[1] / speed, -side * tangent[0] / speed];
             let length = weight * (pair[1] - pair[0]) * speed;
             let inner = [0, 1].map(|d| position[d] - BESIDE * length * normal[d]);
-            SurfacePoint { position, length, normal, inner }
+            SurfacePoint { position, length, along: s * speed, normal, inner }
         })
     })
 }

@@ -6,6 +6,7 @@
 //! scheme is converged.
 
 mod begin;
+mod edge_conditions;
 mod equilibrium;
 mod forced;
 mod held_points;
@@ -37,6 +38,7 @@ use crate::splines::patch::Patch;
 use crate::transfer::sweep::StripForces;
 
 use crate::transfer::elastic_forces::elastic_forces;
+use edge_conditions::EdgeConditions;
 use forced::LatticeForcing;
 use prescribed::Reactions;
 use probe::ProbePlace;
@@ -56,6 +58,8 @@ pub struct TotalFrame {
     /// Loads that vary in space, if there are any.
     forced: Option<Box<LatticeForcing>>,
     constraints: Constraints,
+    /// Conditions on edges that are not sides of the mesh, if there are any.
+    edges: Option<Box<EdgeConditions>>,
     mass: MassMatrix,
     displacement: VectorField,
     velocity: VectorField,
@@ -170,8 +174,12 @@ impl TotalFrame {
         self.external_minus_internal();
         self.reactions.begin(&self.constraints, &self.acceleration);
         self.mass.divide(&mut self.acceleration);
-        let Self { reactions, constraints, mass, velocity, acceleration, .. } = self;
-        reactions.prescribe(constraints, [self.time, self.time_step], mass, velocity, acceleration);
+        let Self { reactions, constraints, edges, mass, velocity, acceleration, .. } = self;
+        let step = [self.time, self.time_step];
+        reactions.prescribe(constraints, step, mass, velocity, acceleration);
+        if let Some(edges) = edges {
+            edges.enforce(step, velocity, acceleration, reactions);
+        }
     }
 
     /// Makes ready for steps of `dt` seconds: the accelerations at t = 0 of what is prescribed.
@@ -222,7 +230,8 @@ impl TotalFrame {
         if let Some(forced) = &self.forced {
             power += forced.mean_power(velocity);
         }
-        let conditions = self.reactions.work(dt);
+        let edges = self.edges.as_mut().map_or(0.0, |edges| edges.work(dt));
+        let conditions = self.reactions.work(dt) + edges;
         self.ledger.external_work += dt * power + fault!("driven-work-left-out", conditions => 0.0);
     }
 }

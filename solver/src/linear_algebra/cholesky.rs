@@ -1,4 +1,4 @@
-//! Sparse Cholesky factorisation of a stencil matrix by faer: for the consistent mass, and the reference of
+//! Sparse Cholesky factorisation by faer: for the consistent mass, conditions on edges, and the reference of
 //! the iterative solver.
 //!
 //! The symbolic factorisation is done once and reused as long as the pattern stays. All of it on one thread:
@@ -9,7 +9,7 @@ use std::sync::Arc;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, factorize_symbolic_cholesky};
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
-use faer::{Conj, Mat, Par, Side};
+use faer::{ColMut, Conj, Par, Side};
 
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::stencil::Stencil;
@@ -20,12 +20,54 @@ pub struct SparseCholesky {
     symbolic: Option<Arc<SymbolicCholesky<usize>>>,
 }
 
-/// A factored matrix.
+/// A symmetric positive definite matrix, factored.
+#[derive(Debug, Clone)]
+pub(crate) struct LowerFactor {
+    symbolic: Arc<SymbolicCholesky<usize>>,
+    values: Vec<f64>,
+}
+
+impl LowerFactor {
+    /// Factors a matrix, of which the entries on and below the diagonal are given, with the symbolic
+    /// factorisation of its pattern if that is known. `None` if it is not positive definite.
+    pub(crate) fn new(
+        lower: &SparseColMat<usize, f64>,
+        symbolic: Option<Arc<SymbolicCholesky<usize>>>,
+    ) -> Option<Self> {
+        let analyse = || factorize_symbolic_cholesky(lower.symbolic(), Side::Lower, Default::default(), Default::default());
+        let symbolic = match symbolic {
+            Some(symbolic) => symbolic,
+            None => Arc::new(analyse().ok()?),
+        };
+        let (threads, regularization) = (Par::Seq, Default::default());
+        let mut values = vec![0.0; symbolic.len_val()];
+        let mut room = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(threads, Default::default()));
+        let room = MemStack::new(&mut room);
+        let lower = lower.as_ref();
+        symbolic
+            .factorize_numeric_llt(&mut values, lower, Side::Lower, regularization, threads, room, Default::default())
+            .ok()?;
+        Some(Self { symbolic, values })
+    }
+
+    /// Solves `A x = b` in place.
+    pub(crate) fn solve(&self, x: &mut [f64]) {
+        let threads = Par::Seq;
+        let mut room = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(1, threads));
+        LltRef::<usize, f64>::new(&self.symbolic, &self.values).solve_in_place_with_conj(
+            Conj::No,
+            ColMut::from_slice_mut(x).as_mat_mut(),
+            threads,
+            MemStack::new(&mut room),
+        );
+    }
+}
+
+/// A factored stencil matrix.
 #[derive(Debug, Clone)]
 pub struct Factor {
     grid: ControlGrid,
-    symbolic: Arc<SymbolicCholesky<usize>>,
-    values: Vec<f64>,
+    lower: LowerFactor,
     /// Index in a field of each unknown.
     indices: Vec<usize>,
     held: Vec<bool>,
@@ -39,22 +81,9 @@ impl SparseCholesky {
         held.iter().for_each(|&at| is_held[at] = true);
         let indices: Vec<usize> = matrix.grid.indices().collect();
         let held: Vec<bool> = indices.iter().map(|&at| is_held[at]).collect();
-        let lower = lower_triangle(matrix, &held);
-        if self.symbolic.is_none() {
-            let (pattern, settings) = (lower.symbolic(), Default::default());
-            let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, Default::default(), settings).ok()?;
-            self.symbolic = Some(Arc::new(symbolic));
-        }
-        let symbolic = self.symbolic.clone()?;
-        let (threads, regularization) = (Par::Seq, Default::default());
-        let mut values = vec![0.0; symbolic.len_val()];
-        let mut room = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(threads, Default::default()));
-        let room = MemStack::new(&mut room);
-        let lower = lower.as_ref();
-        symbolic
-            .factorize_numeric_llt(&mut values, lower, Side::Lower, regularization, threads, room, Default::default())
-            .ok()?;
-        Some(Factor { grid: matrix.grid, symbolic, values, indices, held })
+        let lower = LowerFactor::new(&lower_triangle(matrix, &held), self.symbolic.clone())?;
+        self.symbolic = Some(lower.symbolic.clone());
+        Some(Factor { grid: matrix.grid, lower, indices, held })
     }
 
     /// Solves `A x = b`; `None` if the matrix is not positive definite.
@@ -68,17 +97,10 @@ impl Factor {
     /// Solves `A x = b` for fields; held entries of x become zero.
     pub fn solve(&self, b: &[f64], x: &mut [f64]) {
         let value = |i: usize| if self.held[i] { 0.0 } else { b[self.indices[i]] };
-        let mut solution = Mat::from_fn(self.indices.len(), 1, |i, _| value(i));
-        let threads = Par::Seq;
-        let mut room = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(1, threads));
-        LltRef::<usize, f64>::new(&self.symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            solution.as_mut(),
-            threads,
-            MemStack::new(&mut room),
-        );
-        for (i, &index) in self.indices.iter().enumerate() {
-            x[index] = solution[(i, 0)];
+        let mut solution: Vec<f64> = (0..self.indices.len()).map(value).collect();
+        self.lower.solve(&mut solution);
+        for (&index, value) in self.indices.iter().zip(solution) {
+            x[index] = value;
         }
     }
 
@@ -89,7 +111,7 @@ impl Factor {
 
     /// Heap memory of the factor, bytes; that of the pattern, which factors share, is left out.
     pub fn bytes(&self) -> usize {
-        8 * self.values.len()
+        8 * self.lower.values.len()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Bodies of a scene, their materials and initial cracks.
 
-use super::condition::Traction;
+use super::condition::{EdgeCondition, Traction};
 use super::shape::{Shape, distance_to_segment};
 use crate::linear_algebra::extremes::smaller;
 
@@ -119,6 +119,8 @@ pub struct Body {
     pub rigid: bool,
     /// Tractions.
     pub tractions: Vec<Traction>,
+    /// Conditions on its edges.
+    pub conditions: Vec<EdgeCondition>,
     /// Initial cracks.
     pub cracks: Vec<Crack>,
 }
@@ -137,6 +139,7 @@ impl Body {
             velocity_gradient: [[0.0; 2]; 2],
             rigid: false,
             tractions: Vec::new(),
+            conditions: Vec::new(),
             cracks: Vec::new(),
         }
     }

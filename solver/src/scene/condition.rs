@@ -1,4 +1,4 @@
-//! Loads of bodies, and conditions on the sides of the mesh.
+//! Loads of bodies, and conditions on the sides of the mesh and on edges of bodies.
 
 use super::time::TimeFactor;
 
@@ -16,10 +16,10 @@ pub enum Side {
     Top,
 }
 
-/// Where a traction acts.
+/// Where a traction or a condition acts.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Edge {
-    /// A side of a body that is a rectangle or the whole patch.
+    /// A side of a body that is a rectangle, or of the whole patch.
     Side(Side),
     /// A straight segment, m.
     Segment([[f64; 2]; 2]),
@@ -80,58 +80,48 @@ pub enum Motion {
     Displacement([f64; 2]),
 }
 
-/// Condition on a side of the mesh, or on a part of one.
+/// A prescribed motion, and how it varies in time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Boundary {
-    /// Name of its columns of reaction and work; without one it has none.
-    pub name: Option<String>,
-    /// Side of the mesh.
-    pub side: Side,
-    /// Ends of the part along the side (m, smaller first); absent: the whole side.
-    pub part: Option<[f64; 2]>,
-    /// Which components are prescribed.
-    pub fix: [bool; 2],
-    /// What they do.
+pub struct Prescribed {
+    /// What is prescribed.
     pub motion: Motion,
     /// How that varies in time.
     pub time: TimeFactor,
 }
 
-impl Boundary {
-    /// A side on which components are held.
-    pub fn fixed(side: Side, fix: [bool; 2]) -> Self {
-        Self::driven(side, fix, [0.0; 2])
+impl Prescribed {
+    /// A velocity that never changes, m/s.
+    pub fn velocity(velocity: [f64; 2]) -> Self {
+        Self { motion: Motion::Velocity(velocity), time: TimeFactor::default() }
     }
 
-    /// A side of which components have a velocity, m/s.
-    pub fn driven(side: Side, fix: [bool; 2], velocity: [f64; 2]) -> Self {
-        let motion = Motion::Velocity(velocity);
-        Self { name: None, side, part: None, fix, motion, time: TimeFactor::default() }
-    }
-
-    /// Whether nothing on it ever moves.
-    pub fn is_at_rest(&self) -> bool {
+    /// Its value: m/s, or m.
+    pub(crate) fn value(&self) -> [f64; 2] {
         let (Motion::Velocity(value) | Motion::Displacement(value)) = self.motion;
-        value == [0.0; 2]
+        value
+    }
+
+    /// Whether it is a displacement.
+    pub fn is_displacement(&self) -> bool {
+        matches!(self.motion, Motion::Displacement(_))
+    }
+
+    /// Whether nothing ever moves.
+    pub fn is_at_rest(&self) -> bool {
+        self.value() == [0.0; 2]
     }
 
     /// What a component does: its value, whether that is a displacement, and its factor in time unless it is
     /// at rest.
     pub(crate) fn course(&self, component: usize) -> (f64, bool, Option<&TimeFactor>) {
-        let (value, displaces) = match self.motion {
-            Motion::Velocity(velocity) => (velocity[component], false),
-            Motion::Displacement(displacement) => (displacement[component], true),
-        };
-        if value == 0.0 { (0.0, false, None) } else { (value, displaces, Some(&self.time)) }
+        let value = self.value()[component];
+        if value == 0.0 { (0.0, false, None) } else { (value, self.is_displacement(), Some(&self.time)) }
     }
 
     /// Displacement (m) and velocity (m/s) at t = 0.
     pub(crate) fn start(&self) -> [[f64; 2]; 2] {
-        let factor = self.time.value(0.0);
-        match self.motion {
-            Motion::Velocity(velocity) => [[0.0; 2], velocity.map(|v| v * factor)],
-            Motion::Displacement(displacement) => [displacement.map(|u| u * factor), [0.0; 2]],
-        }
+        let value = self.value().map(|value| value * self.time.value(0.0));
+        if self.is_displacement() { [value, [0.0; 2]] } else { [[0.0; 2], value] }
     }
 
     /// Mean velocity (m/s) over a step of `dt` seconds from `time` on.
@@ -146,6 +136,70 @@ impl Boundary {
                 let change = self.time.value(ends[1]) - self.time.value(ends[0]);
                 displacement.map(|u| u * change / dt)
             }
+        }
+    }
+}
+
+/// Condition on a side of the mesh, or on a part of one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Boundary {
+    /// Name of its columns of reaction and work; without one it has none.
+    pub name: Option<String>,
+    /// Side of the mesh.
+    pub side: Side,
+    /// Ends of the part along the side (m, smaller first); absent: the whole side.
+    pub part: Option<[f64; 2]>,
+    /// Which components are prescribed.
+    pub fix: [bool; 2],
+    /// What they do.
+    pub prescribed: Prescribed,
+}
+
+impl Boundary {
+    /// A side on which components are held.
+    pub fn fixed(side: Side, fix: [bool; 2]) -> Self {
+        Self::driven(side, fix, [0.0; 2])
+    }
+
+    /// A side of which components have a velocity, m/s.
+    pub fn driven(side: Side, fix: [bool; 2], velocity: [f64; 2]) -> Self {
+        Self { name: None, side, part: None, fix, prescribed: Prescribed::velocity(velocity) }
+    }
+}
+
+/// What a condition prescribes of the motion of an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hold {
+    /// Components along x and y.
+    Components([bool; 2]),
+    /// The component along the normal of the edge as it was at t = 0: a roller.
+    Normal,
+}
+
+/// Condition on an edge of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EdgeCondition {
+    /// Name of its columns of reaction and work; without one it has none.
+    pub name: Option<String>,
+    /// Where.
+    pub edge: Edge,
+    /// Which components are prescribed.
+    pub hold: Hold,
+    /// What they do.
+    pub prescribed: Prescribed,
+}
+
+impl EdgeCondition {
+    /// An edge of which components are held.
+    pub fn fixed(edge: Edge, hold: Hold) -> Self {
+        Self { name: None, edge, hold, prescribed: Prescribed::velocity([0.0; 2]) }
+    }
+
+    /// The components of its reaction.
+    pub fn components(&self) -> [bool; 2] {
+        match self.hold {
+            Hold::Components(components) => components,
+            Hold::Normal => [true; 2],
         }
     }
 }

@@ -42,6 +42,7 @@ const TOO_FAST: &str = "bodies faster than contact can follow at this time step:
                         lower analysis.safety";
 const WIDEN_PART: &str = "a part shorter than the support of a function, or one that no body reaches: widen or move it, or \
                           use smaller cells";
+const HELD_TWICE: &str = "another condition, or a side of the mesh, that prescribes it there: remove one of the two";
 const PART_PARTS: &str = "parts of a side that meet in a control point: leave a span between them, or give both the same \
                           motion";
 const NO_EQUILIBRIUM: &str = "a load beyond the strength of the body, or a seed or slit that cuts a part off: lower the \
@@ -66,6 +67,8 @@ pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> 
         | Failure::SingularMass
         | Failure::NoStep
         | Failure::Unconverged(_) => (place, None),
+        Failure::LostCondition { condition, place } => (place, Some(format!("body.0.condition.{condition}"))),
+        Failure::HeldTwice(condition) => (place, Some(format!("body.0.condition.{condition}.fix"))),
         Failure::Contradiction([_, second]) => (place, Some(format!("boundary.{second}.from"))),
         Failure::HoldsNothing(condition) => (place, Some(format!("boundary.{condition}.from"))),
         Failure::NoEquilibrium(_) | Failure::Unbalanced(_) => (place, Some("start.equilibrium".to_string())),
@@ -111,6 +114,14 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
         Failure::Contradiction([first, second]) => (
             format!("boundary.{first} and boundary.{second} prescribe the control point between them differently"),
             PART_PARTS,
+        ),
+        Failure::LostCondition { place: [x, y], .. } => (
+            format!("there is no material point within a cell of ({x:.6e}, {y:.6e}) m, where the condition acts"),
+            CARRY_TRACTION,
+        ),
+        Failure::HeldTwice(_) => (
+            "a component of the motion along this edge is prescribed already".to_string(),
+            HELD_TWICE,
         ),
         Failure::HoldsNothing(_) => ("the part of the side holds no control point of a body".to_string(), WIDEN_PART),
         Failure::NoEquilibrium(residual) => (

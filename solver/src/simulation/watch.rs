@@ -212,6 +212,8 @@ impl Simulation {
             | Failure::NoPoints(_)
             | Failure::HoldsNothing(_)
             | Failure::Contradiction(_)
+            | Failure::LostCondition { .. }
+            | Failure::HeldTwice(_)
             | Failure::NoEquilibrium(_)
             | Failure::Unbalanced(_)
             | Failure::LostTraction { .. } => self.at_worst_point(&what, Some(&cause)),

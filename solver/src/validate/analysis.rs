@@ -124,7 +124,7 @@ fn spans_integrate(scene: &Scene, findings: &mut Findings) {
             let size = (end[0] - origin[0]).max(end[1] - origin[1]);
             let message = format!("{name}, which does not begin on the {} side", side_name(boundary.side));
             refuse(apart > TOLERANCE * size, &message, "let every body begin on the sides that are held");
-            refuse(!boundary.is_at_rest(), "with a side that moves", "give it the velocity zero");
+            refuse(!boundary.prescribed.is_at_rest(), "with a side that moves", "give it the velocity zero");
         }
     }
 }

@@ -5,7 +5,7 @@ use super::geometry::{covered_side, defect, outline};
 use super::ground::Ground;
 use super::look::{Look, TOLERANCE};
 use super::points::Points;
-use super::{cracks, resolution, seed, tractions};
+use super::{cracks, edge_conditions, resolution, seed, tractions};
 use crate::particles::lattice::cuts_spans;
 use crate::scene::{Body, Fracture, Frame, Layout, Scene, Shape};
 use crate::splines::nurbs::{LocateError, NurbsPatch};
@@ -50,6 +50,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         for (j, traction) in body.tractions.iter().enumerate() {
             tractions::check(&format!("{key}.traction.{j}"), traction, &look, findings);
         }
+        edge_conditions::check(&key, scene, &look, findings);
         for (j, crack) in body.cracks.iter().enumerate() {
             if crack.is_slit() {
                 cracks::slit(&format!("{key}.crack.{j}"), scene, findings);

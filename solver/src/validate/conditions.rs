@@ -1,10 +1,10 @@
-//! Checks of the conditions on the sides of the mesh.
+//! Checks of the conditions on the sides of the mesh, and of names and motions of all conditions.
 
 use super::findings::{Findings, side_name};
 use super::ground::Ground;
 use super::time;
 use crate::dynamics::body_sample::column_name;
-use crate::scene::{Body, Boundary, Frame, Mass, Mesh, Motion, Scene, Side};
+use crate::scene::{Body, Boundary, Frame, Mass, Mesh, Prescribed, Scene, Side};
 
 /// Relative tolerance of "on the side", of the size of the mesh.
 const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
@@ -17,9 +17,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
                 "give fix = [\"x\"], [\"y\"] or [\"x\", \"y\"], or remove the boundary (a free side needs none)";
             findings.error(format!("{key}.fix"), "nothing is fixed", remedy);
         }
-        motion(&key, boundary, findings);
-        time::check(&key, &boundary.time, scene.analysis.end_time, findings);
-        displacement_without_jump(&key, boundary, scene.equilibrium, findings);
+        motion(&key, &boundary.prescribed, boundary.fix, scene, findings);
         supported(&key, boundary, scene, findings);
         if ground.is_sound && part(&key, boundary, &scene.mesh, findings) {
             held(&format!("{key}.side"), boundary, scene, findings);
@@ -34,17 +32,17 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     names(scene, findings);
 }
 
-fn value(boundary: &Boundary) -> (&'static str, [f64; 2]) {
-    match boundary.motion {
-        Motion::Velocity(value) => ("velocity", value),
-        Motion::Displacement(value) => ("displacement", value),
-    }
+fn word(prescribed: &Prescribed) -> &'static str {
+    if prescribed.is_displacement() { "displacement" } else { "velocity" }
 }
 
-fn motion(key: &str, boundary: &Boundary, findings: &mut Findings) {
-    let (word, value) = value(boundary);
+/// What a condition prescribes of some components.
+pub(super) fn motion(key: &str, prescribed: &Prescribed, fix: [bool; 2], scene: &Scene, findings: &mut Findings) {
+    let (word, value) = (word(prescribed), prescribed.value());
     findings.finite(format!("{key}.{word}"), &value);
-    for d in (0..2).filter(|&d| !boundary.fix[d] && value[d] != 0.0) {
+    time::check(key, &prescribed.time, scene.analysis.end_time, findings);
+    without_jump(key, prescribed, fix, scene.equilibrium, findings);
+    for d in (0..2).filter(|&d| !fix[d] && value[d] != 0.0) {
         let name = ["x", "y"][d];
         let message = format!("the {name} {word} has no effect, because {name} is not in fix");
         findings.warn(format!("{key}.{word}"), message);
@@ -53,14 +51,16 @@ fn motion(key: &str, boundary: &Boundary, findings: &mut Findings) {
 
 /// A displacement that jumps, at the start or where it ends, gives the body an energy that depends on the
 /// mesh and is no work.
-fn displacement_without_jump(key: &str, boundary: &Boundary, equilibrium: bool, findings: &mut Findings) {
-    let Motion::Displacement(displacement) = boundary.motion else { return };
-    if boundary.time.until.is_some() {
+fn without_jump(key: &str, prescribed: &Prescribed, fix: [bool; 2], equilibrium: bool, findings: &mut Findings) {
+    if !prescribed.is_displacement() {
+        return;
+    }
+    if prescribed.time.until.is_some() {
         let message = "a displacement with an end would jump back to zero there";
         findings.error(format!("{key}.time.until"), message, "remove until, or give a table that ends at 0");
     }
-    let first = boundary.time.value(0.0);
-    if !equilibrium && (0..2).any(|d| boundary.fix[d] && first * displacement[d] != 0.0) {
+    let first = prescribed.time.value(0.0);
+    if !equilibrium && (0..2).any(|d| fix[d] && first * prescribed.value()[d] != 0.0) {
         let message = format!("the displacement jumps from 0 to {first} times its value at t = 0");
         let remedy = "let its factor rise from 0, such as time = { smooth = \"1 us\" }, or solve for the start: \
                       [start] equilibrium = true";
@@ -70,10 +70,9 @@ fn displacement_without_jump(key: &str, boundary: &Boundary, equilibrium: bool, 
 
 /// What the updated frame and the consistent mass do not have.
 fn supported(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) {
-    let displaced = matches!(boundary.motion, Motion::Displacement(_));
     let varying = [
-        ("displacement", displaced),
-        ("time", !boundary.time.is_constant()),
+        ("displacement", boundary.prescribed.is_displacement()),
+        ("time", !boundary.prescribed.time.is_constant()),
         ("from", boundary.part.is_some()),
         ("name", boundary.name.is_some()),
     ];
@@ -142,21 +141,20 @@ fn corner(i: usize, j: usize, scene: &Scene, findings: &mut Findings) {
     if along(pair[0].side) == along(pair[1].side) || !(0..2).all(|n| reaches(pair[n], pair[1 - n].side, &scene.mesh)) {
         return;
     }
-    let differ = |d: &usize| pair.iter().all(|b| b.fix[*d]) && pair[0].course(*d) != pair[1].course(*d);
+    let differ = |d: &usize| pair.iter().all(|b| b.fix[*d]) && pair[0].prescribed.course(*d) != pair[1].prescribed.course(*d);
     let Some(d) = (0..2).find(differ) else { return };
     let name = ["x", "y"][d];
     let [here, there] = pair.map(|boundary| {
-        let (word, value) = value(boundary);
-        let unit = if word == "velocity" { "m/s" } else { "m" };
-        let varying = if boundary.time.is_constant() { "" } else { " times its factor" };
-        (side_name(boundary.side), format!("{} {unit}{varying}", value[d]))
+        let unit = if boundary.prescribed.is_displacement() { "m" } else { "m/s" };
+        let varying = if boundary.prescribed.time.is_constant() { "" } else { " times its factor" };
+        (side_name(boundary.side), format!("{} {unit}{varying}", boundary.prescribed.value()[d]))
     });
     let message = format!(
         "the corner of the {} and the {} side would move at {} and at {} (boundary.{j}) in {name}",
         here.0, there.0, here.1, there.1
     );
     let remedy = format!("give both sides the same motion in {name}, or leave {name} free on one of them");
-    findings.error(format!("boundary.{i}.{}", value(pair[0]).0), message, remedy);
+    findings.error(format!("boundary.{i}.{}", word(&pair[0].prescribed)), message, remedy);
 }
 
 /// Whether a condition reaches the corner at which its side meets another.
@@ -170,15 +168,20 @@ fn reaches(boundary: &Boundary, other: Side, mesh: &Mesh) -> bool {
 
 /// Names of conditions are parts of columns.
 fn names(scene: &Scene, findings: &mut Findings) {
-    let named = scene.boundaries.iter().enumerate().filter_map(|(i, b)| Some((i, column_name(b.name.as_ref()?))));
+    let sides = scene.boundaries.iter().enumerate().map(|(i, b)| (format!("boundary.{i}"), &b.name));
+    let edges = scene.bodies.iter().enumerate().flat_map(|(i, body)| {
+        let conditions = body.conditions.iter().enumerate();
+        conditions.map(move |(j, condition)| (format!("body.{i}.condition.{j}"), &condition.name))
+    });
+    let named = sides.chain(edges).filter_map(|(key, name)| Some((key, column_name(name.as_ref()?))));
     let named: Vec<_> = named.collect();
-    for (n, (i, name)) in named.iter().enumerate() {
-        let key = format!("boundary.{i}.name");
+    for (n, (key, name)) in named.iter().enumerate() {
+        let of_name = format!("{key}.name");
         if name.is_empty() {
-            findings.error(key, "an empty name", "name the condition, such as name = \"impactor\"");
-        } else if let Some((j, _)) = named[..n].iter().find(|(_, other)| other == name) {
-            let message = format!("the columns work_{name}_j would be those of boundary.{j} too");
-            findings.error(key, message, "give the conditions names that differ in letters or digits");
+            findings.error(of_name, "an empty name", "name the condition, such as name = \"impactor\"");
+        } else if let Some((other, _)) = named[..n].iter().find(|(_, other)| other == name) {
+            let message = format!("the columns work_{name}_j would be those of {other} too");
+            findings.error(of_name, message, "give the conditions names that differ in letters or digits");
         }
     }
 }

@@ -36,7 +36,7 @@ pub(super) struct Look<'a> {
 impl<'a> Look<'a> {
     pub(super) fn new(body: &'a Body, ground: &'a Ground<'a>, analysis: &Analysis) -> Self {
         let (min, max) = ground.mesh.extent(&body.shape);
-        let lines = body.cracks.len() + body.tractions.len();
+        let lines = body.cracks.len() + body.tractions.len() + body.conditions.len();
         let cost = lines * (complexity(&body.shape) + if ground.patch.is_some() { COST_OF_LOCATING } else { 0 });
         Self {
             body,

@@ -1,4 +1,4 @@
-//! Checks of tractions: edges that lie on their body, loads that exist.
+//! Checks of tractions, and of the edges of loads and conditions: they lie on their body.
 
 use std::f64::consts::TAU;
 
@@ -19,7 +19,6 @@ const STEPPED: &str = "in the updated frame the points of the body end in steps 
                        within two spans of it are not";
 
 pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &mut Findings) {
-    let Look { body, ground, .. } = *look;
     match traction.load {
         Load::Stress(stress) => drop(findings.finite(format!("{key}.stress"), &stress)),
         Load::Pressure(pressure) => {
@@ -31,12 +30,19 @@ pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &
         }
     }
     time::check(key, &traction.time, look.end_time, findings);
-    match &traction.edge {
+    edge(key, &traction.edge, matches!(traction.load, Load::Pressure(_)), look, findings);
+}
+
+/// An edge lies on the boundary of its body. What acts there needs a side if it has no meaning between
+/// material on both sides.
+pub(super) fn edge(key: &str, edge: &Edge, needs_side: bool, look: &Look<'_>, findings: &mut Findings) {
+    let Look { body, ground, .. } = *look;
+    match edge {
         Edge::Side(_) if body.shape == Shape::Patch => {}
         _ if ground.mesh.geometry.is_some() => {
             let remedy =
-                "give the body shape = \"patch\" and the traction edge = \"left\", \"right\", \"bottom\" or \"top\"";
-            let form = match traction.edge {
+                "give the body shape = \"patch\" and edge = \"left\", \"right\", \"bottom\" or \"top\"";
+            let form = match edge {
                 Edge::Side(_) => "edge",
                 Edge::Segment(_) => "segment",
                 Edge::Arc { .. } => "arc",
@@ -64,7 +70,7 @@ pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &
                 let message = format!("the segment leaves body {:?}: ({x}, {y}) m lies outside", body.name);
                 findings.error(key, message, ON_BOUNDARY);
             } else if let Some([x, y]) =
-                middles(*ends).chain(parts()).find(|&at| has_no_side(at, *ends, body, &traction.load))
+                middles(*ends).chain(parts()).find(|&at| has_no_side(at, *ends, body, needs_side))
             {
                 let message = format!(
                     "the segment runs inside body {:?}: there is material on both sides of ({x}, {y}) m",
@@ -101,12 +107,12 @@ fn is_between([x, y]: [f64; 2], [from, to]: [[f64; 2]; 2], body: &Body) -> bool 
     [1.0, -1.0].iter().all(|side| body.shape.contains([x - side * beside[1], y + side * beside[0]]))
 }
 
-/// Whether a load has no meaning at a position (m) on a segment with material on both sides: a slit has two
-/// faces, and a pressure pushes to one side.
-fn has_no_side(at: [f64; 2], [from, to]: [[f64; 2]; 2], body: &Body, load: &Load) -> bool {
+/// Whether what acts at a position (m) on a segment has no meaning: it needs a side, or the segment is on a
+/// slit, which has two faces.
+fn has_no_side(at: [f64; 2], [from, to]: [[f64; 2]; 2], body: &Body, needs_side: bool) -> bool {
     let near = BESIDE * (to[0] - from[0]).hypot(to[1] - from[1]);
     let on_slit = || body.cracks.iter().any(|crack| crack.is_slit() && crack.distance(at) < near);
-    is_between(at, [from, to], body) && (matches!(load, Load::Pressure(_)) || on_slit())
+    is_between(at, [from, to], body) && (needs_side || on_slit())
 }
 
 /// An arc lies on the boundary of its body.

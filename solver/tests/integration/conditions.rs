@@ -15,7 +15,7 @@ fn driven(motion: Motion, time: TimeFactor) -> Scene {
     let mut scene = elastic_scene(2, [0.04, 0.002], [40, 2]);
     scene.materials.get_mut("glass").unwrap().poisson_ratio = 0.0;
     let name = Some("Drive 1".to_string());
-    scene.boundaries = vec![Boundary { name, motion, time, ..Boundary::fixed(Side::Left, [true, false]) }];
+    scene.boundaries = vec![Boundary { name, prescribed: Prescribed { motion, time }, ..Boundary::fixed(Side::Left, [true, false]) }];
     scene.output.samples = 100;
     scene.analysis.time_step = TimeStep::Fixed(5e-8);
     assert!(validate(&scene).is_ok(), "{:?}", validate(&scene));
@@ -134,18 +134,18 @@ fn what_cannot_be_meant_is_refused() {
     assert_eq!(keys(|b| b.part = Some([0.001, 0.0])), ["boundary.0.to"]);
     assert_eq!(keys(|b| b.part = Some([-1.0, 0.001])), ["boundary.0.from"]);
     assert_eq!(keys(|b| b.part = Some([f64::NAN, 0.001])), ["boundary.0.to"]);
-    assert_eq!(keys(|b| b.time = TimeFactor::ramp(0.0)), ["boundary.0.time.ramp"]);
-    assert_eq!(keys(|b| b.time.until = Some(-1.0)), ["boundary.0.time.until"]);
-    assert_eq!(keys(|b| b.time.course = Course::Table(vec![[0.0, 0.0], [0.0, 1.0]])), ["boundary.0.time"]);
+    assert_eq!(keys(|b| b.prescribed.time = TimeFactor::ramp(0.0)), ["boundary.0.time.ramp"]);
+    assert_eq!(keys(|b| b.prescribed.time.until = Some(-1.0)), ["boundary.0.time.until"]);
+    assert_eq!(keys(|b| b.prescribed.time.course = Course::Table(vec![[0.0, 0.0], [0.0, 1.0]])), ["boundary.0.time"]);
     assert_eq!(
         keys(|b| {
-            b.motion = Motion::Displacement([1e-6, 0.0]);
-            b.time = TimeFactor { until: Some(1e-6), ..TimeFactor::ramp(1e-6) };
+            b.prescribed.motion = Motion::Displacement([1e-6, 0.0]);
+            b.prescribed.time = TimeFactor { until: Some(1e-6), ..TimeFactor::ramp(1e-6) };
         }),
         ["boundary.0.time.until"]
     );
     let mut jumps = driven(Motion::Velocity([1.0, 0.0]), TimeFactor::default());
-    jumps.boundaries[0].motion = Motion::Displacement([1e-6, 0.0]);
+    jumps.boundaries[0].prescribed.motion = Motion::Displacement([1e-6, 0.0]);
     assert_eq!(validate(&jumps).unwrap_err()[0].key, "boundary.0.displacement", "the body is at rest and undeformed");
     jumps.equilibrium = true;
     assert!(validate(&jumps).is_ok());

@@ -15,6 +15,7 @@ mod contact;
 mod contact_limits;
 mod critical_step;
 mod cut;
+mod edge_conditions;
 mod determinism;
 mod equilibrium;
 mod fictitious;

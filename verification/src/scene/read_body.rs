@@ -9,7 +9,7 @@ use super::document::join;
 use super::fields::{Fields, Item};
 use super::read::{length, number, point, time};
 use super::read_file::rows_of_file;
-use super::read_time::factor;
+use super::read_time::{edge_condition, factor};
 use super::units::Dimension;
 
 /// `[material.NAME]` tables by name.
@@ -86,6 +86,7 @@ fn body(item: &Item<'_>) -> Option<Body> {
         "velocity_gradient",
         "rigid",
         "traction",
+        "condition",
         "crack",
     ])?;
     let name = fields.need("name", "name = \"plate\"", Item::text);
@@ -99,6 +100,7 @@ fn body(item: &Item<'_>) -> Option<Body> {
     let gradient = fields.or("velocity_gradient", [[0.0; 2]; 2], |item| item.pair(|row| row.vector(Dimension::RATE)));
     let rigid = fields.or("rigid", false, Item::flag);
     let tractions = fields.or("traction", Vec::new(), |item| all(item, traction));
+    let conditions = fields.or("condition", Vec::new(), |item| all(item, edge_condition));
     let cracks = fields.or("crack", Vec::new(), |item| all(item, crack));
     Some(Body {
         name: name?,
@@ -111,6 +113,7 @@ fn body(item: &Item<'_>) -> Option<Body> {
         velocity_gradient: gradient?,
         rigid: rigid?,
         tractions: tractions?,
+        conditions: conditions?,
         cracks: cracks?,
     })
 }
@@ -200,19 +203,7 @@ fn center(fields: &Fields<'_>) -> Option<[f64; 2]> {
 
 fn traction(item: &Item<'_>) -> Option<Traction> {
     let fields = item.fields(&["edge", "segment", "arc", "stress", "pressure", "ramp", "time"])?;
-    let places: Vec<Item<'_>> = ["edge", "segment", "arc"].iter().filter_map(|place| fields.get(place)).collect();
-    let edge = match places.as_slice() {
-        [] => fields.need("edge", "edge = \"top\", or segment = [[x0, y0], [x1, y1]], or arc = { … }", |_| None),
-        [place] => match place.path.rsplit('.').next()? {
-            "edge" => place.word().map(Edge::Side),
-            "segment" => place.pair(point).map(Edge::Segment),
-            _ => arc(place),
-        },
-        [first, second, ..] => {
-            let names = [first, second].map(|item| item.path.rsplit('.').next().unwrap_or_default());
-            first.fail(format!("both {} and {} are given", names[0], names[1]), "remove one of the two")
-        }
-    };
+    let edge = edge(&fields);
     let load = match (fields.get("stress"), fields.get("pressure")) {
         (_, None) => fields
             .need("stress", "stress = [0.0, \"1 MPa\"], or pressure = \"1 MPa\"", |i| i.vector(Dimension::STRESS))
@@ -226,6 +217,23 @@ fn traction(item: &Item<'_>) -> Option<Traction> {
         (None, _) => fields.or("time", TimeFactor::default(), factor),
     };
     Some(Traction { edge: edge?, load: load?, time: time? })
+}
+
+/// Where a load or a condition acts: one of edge, segment and arc.
+pub(super) fn edge(fields: &Fields<'_>) -> Option<Edge> {
+    let places: Vec<Item<'_>> = ["edge", "segment", "arc"].iter().filter_map(|place| fields.get(place)).collect();
+    match places.as_slice() {
+        [] => fields.need("edge", "edge = \"top\", or segment = [[x0, y0], [x1, y1]], or arc = { … }", |_| None),
+        [place] => match place.path.rsplit('.').next()? {
+            "edge" => place.word().map(Edge::Side),
+            "segment" => place.pair(point).map(Edge::Segment),
+            _ => arc(place),
+        },
+        [first, second, ..] => {
+            let names = [first, second].map(|item| item.path.rsplit('.').next().unwrap_or_default());
+            first.fail(format!("both {} and {} are given", names[0], names[1]), "remove one of the two")
+        }
+    }
 }
 
 /// An arc: angles in degrees, anticlockwise; the whole circle if they are left out.

@@ -1,10 +1,12 @@
-//! From the tree of a document to factors over time, and what they act on: conditions on sides.
+//! From the tree of a document to factors over time, and to conditions.
 
 use fisura::scene::time::{Course, TimeFactor, TimeFormula};
-use fisura::scene::{Boundary, Motion};
+use fisura::scene::{Boundary, EdgeCondition, Hold, Motion, Prescribed};
 
 use super::fields::Item;
+use super::fields::Fields;
 use super::read::{length, number, time};
+use super::read_body::edge;
 use super::read_file::rows_of_file;
 use super::units::{self, Dimension};
 use crate::arithmetic::Arithmetic;
@@ -30,6 +32,35 @@ fn boundary(item: &Item<'_>) -> Option<Boundary> {
     let components = fields.need("fix", "fix = [\"x\"], the fixed components", |item| {
         item.each(|component| component.choice(&[("x", 0), ("y", 1)]))
     });
+    let prescribed = prescribed(&fields);
+    let components = components?;
+    let fix = [0, 1].map(|d| components.contains(&d));
+    Some(Boundary { name: name?, side: side?, part: part?, fix, prescribed: prescribed? })
+}
+
+/// `[[body.condition]]`.
+pub(super) fn edge_condition(item: &Item<'_>) -> Option<EdgeCondition> {
+    let fields = item.fields(&["name", "edge", "segment", "arc", "fix", "velocity", "displacement", "time"])?;
+    let name = fields.maybe("name", Item::words);
+    let edge = edge(&fields);
+    let hold = fields.need("fix", "fix = [\"x\"], the fixed components, or fix = [\"normal\"]", hold);
+    let prescribed = prescribed(&fields);
+    Some(EdgeCondition { name: name?, edge: edge?, hold: hold?, prescribed: prescribed? })
+}
+
+fn hold(item: &Item<'_>) -> Option<Hold> {
+    let components = item.each(|component| component.choice(&[("x", Some(0)), ("y", Some(1)), ("normal", None)]))?;
+    match components.as_slice() {
+        [None] => Some(Hold::Normal),
+        given if given.contains(&None) => {
+            item.fail("the normal beside other components", "give fix = [\"normal\"], or fix = [\"x\", \"y\"]")
+        }
+        given => Some(Hold::Components([0, 1].map(|d| given.contains(&Some(d))))),
+    }
+}
+
+/// What a condition prescribes, and when: at rest if nothing is given.
+fn prescribed(fields: &Fields<'_>) -> Option<Prescribed> {
     let velocity = fields.maybe("velocity", |item| item.vector(Dimension::VELOCITY));
     let displacement = fields.maybe("displacement", |item| item.vector(Dimension::LENGTH));
     let time = fields.or("time", TimeFactor::default(), factor);
@@ -41,9 +72,7 @@ fn boundary(item: &Item<'_>) -> Option<Boundary> {
         (None, Some(displacement)) => Motion::Displacement(displacement),
         (velocity, None) => Motion::Velocity(velocity.unwrap_or_default()),
     };
-    let components = components?;
-    let fix = [0, 1].map(|d| components.contains(&d));
-    Some(Boundary { name: name?, side: side?, part: part?, fix, motion, time: time? })
+    Some(Prescribed { motion, time: time? })
 }
 
 /// A factor over time: `{ ramp = "1 us", until = "5 us" }`.

@@ -147,7 +147,7 @@ fn overrides_replace_and_add_values() {
     assert_eq!(scene.output.frames, [1e-6, 2e-6]);
     assert_eq!(scene.bodies[0].tractions[1].time, TimeFactor::ramp(1e-6));
     assert_eq!(scene.solver.phase_field_solver, PhaseFieldSolver::Cholesky);
-    assert_eq!(scene.boundaries[0].motion, Motion::Velocity([-1.0, 0.0]));
+    assert_eq!(scene.boundaries[0].prescribed.motion, Motion::Velocity([-1.0, 0.0]));
     assert_eq!(scene.title, "");
     let text = PLATE.replace("[output]", "[elsewhere]").replace("samples = 320", "").replace("frames  = ", "x = ");
     let list = overrides(&["output.samples=7", "elsewhere=0"]);

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::TotalFrame;
+use super::edge_conditions::EdgeConditions;
 use super::forced::LatticeForcing;
 use super::held_points::held_points;
 use super::prescribed::Reactions;
@@ -60,9 +61,11 @@ impl TotalFrame {
             load.map_err(|lost| Failure::LostTraction { body: 0, traction: number, lost })
         };
         let zeros = || [grid.zeros(), grid.zeros()];
+        let edges = EdgeConditions::new(&patch, &lattice, body, &mass, &constraints)?;
         let mut frame = Self {
             loads: body.tractions.iter().enumerate().map(load).collect::<Result<_, _>>()?,
             forced: None,
+            edges,
             mass,
             moduli: ElasticModuli::new(material, scene.analysis.plane),
             kinematics: scene.analysis.kinematics,
@@ -124,7 +127,7 @@ impl TotalFrame {
     /// If the initial phase field does not converge.
     pub fn start_with(&mut self, displacement: VectorField, velocity: VectorField) -> Result<(), SolveFailure> {
         (self.displacement, self.velocity) = (displacement, velocity);
-        self.constraints.start(&mut self.displacement, &mut self.velocity);
+        self.start_conditions();
         self.ledger = Ledger::default();
         self.time = 0.0;
         self.release_phase_field()?;
@@ -153,6 +156,17 @@ impl TotalFrame {
                 self.velocity[d][at] = body.velocity[d] + relative[d];
             }
         }
+        self.start_conditions();
+    }
+
+    /// Sets what conditions prescribe at t = 0.
+    fn start_conditions(&mut self) {
         self.constraints.start(&mut self.displacement, &mut self.velocity);
+        let Some(edges) = &self.edges else { return };
+        edges.start(&mut self.displacement, &mut self.velocity);
+        if let Some(sheets) = self.lattice.sheets() {
+            sheets.spread(&mut self.displacement);
+            sheets.spread(&mut self.velocity);
+        }
     }
 }

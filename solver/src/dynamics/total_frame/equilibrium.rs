@@ -22,8 +22,8 @@ const LINEAR_REDUCTION: f64 = 1e-11;
 const MOST_STEPS: usize = 50;
 const MOST_HALVINGS: usize = 10;
 /// Most iterations of a linear solve, per control point along the longer side of the mesh: their number grows
-/// with that of control points across the body, and a slender one needs more.
-const MOST_ITERATIONS: usize = 20;
+/// with that of control points across the body; slender ones, and quartics that are cut, need more.
+const MOST_ITERATIONS: usize = 60;
 /// Resultant of loads that counts as none, of the sum of their magnitudes.
 const BALANCED: f64 = 1e-9;
 
@@ -83,6 +83,9 @@ impl TotalFrame {
         self.forces_now(&self.displacement, &mut self.strip_forces(), &mut internal);
         self.internal = internal;
         self.external_minus_internal();
+        if let Some(edges) = &self.edges {
+            edges.project_forces(&mut self.acceleration);
+        }
         let residual = free.iter().map(|&(at, component)| self.acceleration[component][at]).collect();
         let inner = self.internal.iter().flatten().map(|f| f.abs());
         let outer = self.acceleration.iter().zip(&self.internal).flat_map(|(net, f)| net.iter().zip(f));
@@ -103,7 +106,8 @@ impl TotalFrame {
             &turning,
         ];
         for mode in modes {
-            if held.iter().any(|&(at, component)| mode(at, component) != 0.0) {
+            let by_sides = held.iter().any(|&(at, component)| mode(at, component) != 0.0);
+            if by_sides || self.edges.as_ref().is_some_and(|edges| edges.restrain(mode)) {
                 continue;
             }
             let works = || free.iter().zip(residual).map(|(&(at, component), r)| mode(at, component) * r);

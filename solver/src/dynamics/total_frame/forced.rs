@@ -36,7 +36,7 @@ impl LatticeForcing {
             let sides = [(Side::Left, &left), (Side::Right, &left), (Side::Bottom, &bottom), (Side::Top, &bottom)];
             sides.into_iter().flat_map(|(side, rule)| patch.boundary(side, rule)).collect()
         } else {
-            let with_functions = |SurfacePoint { position, length, normal, inner }| {
+            let with_functions = |SurfacePoint { position, length, normal, inner, .. }| {
                 let functions = patch.functions_at(position)?.values;
                 let first = functions[0].0;
                 let on_side = |(at, value)| (lattice.control_point(at, first, inner), value);

@@ -6,7 +6,7 @@ use super::TotalFrame;
 use super::forced::LatticeForcing;
 use super::probe::ProbePlace;
 use crate::dynamics::constraints::Constraints;
-use crate::dynamics::energy::{FractureSample, ProbeSample, Sample};
+use crate::dynamics::energy::{ConditionSample, FractureSample, ProbeSample, Sample};
 use crate::dynamics::forcing::Forcing;
 use crate::dynamics::mass::MassMatrix;
 use crate::linear_algebra::control_grid::VectorField;
@@ -72,7 +72,7 @@ impl TotalFrame {
             elastic: self.elastic_energy,
             fracture,
             external_work: self.ledger.external_work,
-            conditions: self.reactions.samples(&self.constraints),
+            conditions: self.condition_samples(),
             probes: self.probes.iter().map(|probe| self.sampled_probe(probe)).collect(),
             momentum,
             angular_momentum: angular,
@@ -80,6 +80,11 @@ impl TotalFrame {
             ..Sample::default()
         };
         sample.for_thickness(fault!("thickness-forgotten", self.thickness => 1.0))
+    }
+
+    fn condition_samples(&self) -> Vec<ConditionSample> {
+        let edges = self.edges.iter().flat_map(|edges| edges.samples());
+        self.reactions.samples(&self.constraints).into_iter().chain(edges).collect()
     }
 
     fn sampled_probe(&self, probe: &ProbePlace) -> ProbeSample {

@@ -29,14 +29,50 @@ pub(super) struct Reaction {
     work: f64,
 }
 
-/// A reaction for every condition; empty if none of them moves or has a name.
+impl Reaction {
+    /// Goes on to another whole step, at which there is no force yet.
+    pub(super) fn begin(&mut self) {
+        self.force = [[0.0; 2], self.force[0]];
+    }
+
+    /// Goes on to another step, with a velocity, m/s.
+    pub(super) fn drive(&mut self, velocity: [f64; 2]) {
+        self.velocity = [velocity, self.velocity[0]];
+    }
+
+    /// Velocity in the step to come, m/s.
+    pub(super) fn next_velocity(&self) -> [f64; 2] {
+        self.velocity[0]
+    }
+
+    /// Adds a component of a force at the present whole step, N/m.
+    pub(super) fn add(&mut self, component: usize, force: f64) {
+        self.force[0][component] += force;
+    }
+
+    /// Books the work over the last step of `dt` seconds, J/m.
+    pub(super) fn book(&mut self, dt: f64) -> f64 {
+        let ([now, before], [_, last]) = (self.force, self.velocity);
+        let power = [0, 1].map(|d| 0.5 * (before[d] + now[d]) * last[d]);
+        let added = dt * (power[0] + power[1]);
+        self.work += added;
+        added
+    }
+
+    /// What it is now, for a thickness of a metre.
+    pub(super) fn sample(&self, name: &str, components: [bool; 2]) -> ConditionSample {
+        ConditionSample::new(name, components, self.force[0], self.work)
+    }
+}
+
+/// A reaction for every condition on the sides of the mesh; empty if none of them moves or has a name.
 #[derive(Debug, Clone)]
 pub(super) struct Reactions(Vec<Reaction>);
 
 impl Reactions {
     pub(super) fn new(constraints: &Constraints) -> Self {
         let conditions = constraints.conditions();
-        let wanted = conditions.iter().any(|c| c.name.is_some() || !c.is_at_rest());
+        let wanted = conditions.iter().any(|c| c.name.is_some() || !c.prescribed.is_at_rest());
         Self(vec![Reaction::default(); if wanted { conditions.len() } else { 0 }])
     }
 
@@ -46,7 +82,7 @@ impl Reactions {
             return;
         }
         for reaction in &mut self.0 {
-            reaction.force = [[0.0; 2], reaction.force[0]];
+            reaction.begin();
         }
         for (at, component, number) in constraints.iter() {
             self.0[number].force[0][component] -= net[component][at];
@@ -67,12 +103,12 @@ impl Reactions {
             return constraints.remove(acceleration);
         }
         for (reaction, condition) in self.0.iter_mut().zip(constraints.conditions()) {
-            let next = condition.mean_velocity(time, dt);
-            reaction.velocity = [fault!("driven-side-lags", next => next.map(|v| 0.5 * v)), reaction.velocity[0]];
+            let next = condition.prescribed.mean_velocity(time, dt);
+            reaction.drive(fault!("driven-side-lags", next => next.map(|v| 0.5 * v)));
         }
         let part = if time == 0.0 { 0.5 } else { 1.0 }; // of a step, since the velocity at hand
         for (at, component, number) in constraints.iter() {
-            let change = self.0[number].velocity[0][component] - velocity[component][at];
+            let change = self.0[number].next_velocity()[component] - velocity[component][at];
             acceleration[component][at] = if dt > 0.0 { change / (part * dt) } else { 0.0 };
         }
         let inertia = [0, 1].map(|component| mass.product(&acceleration[component]));
@@ -83,21 +119,20 @@ impl Reactions {
 
     /// Work (J/m) of the prescribed motion over the last step of `dt` seconds.
     pub(super) fn work(&mut self, dt: f64) -> f64 {
-        let mut sum = 0.0;
-        for Reaction { force: [now, before], velocity: [_, last], work } in &mut self.0 {
-            let power = [0, 1].map(|d| 0.5 * (before[d] + now[d]) * last[d]);
-            let added = dt * (power[0] + power[1]);
-            *work += added;
-            sum += added;
+        self.0.iter_mut().map(|reaction| reaction.book(dt)).sum()
+    }
+
+    /// Adds a component of a force (N/m) to the reaction to a condition.
+    pub(super) fn add(&mut self, number: usize, component: usize, force: f64) {
+        if let Some(reaction) = self.0.get_mut(number) {
+            reaction.add(component, force);
         }
-        sum
     }
 
     /// Reaction and work of every condition with a name, for a thickness of a metre.
     pub(super) fn samples(&self, constraints: &Constraints) -> Vec<ConditionSample> {
         let sample = |(reaction, condition): (&Reaction, &Boundary)| {
-            let name = condition.name.as_deref()?;
-            Some(ConditionSample::new(name, condition.fix, reaction.force[0], reaction.work))
+            Some(reaction.sample(condition.name.as_deref()?, condition.fix))
         };
         self.0.iter().zip(constraints.conditions()).filter_map(sample).collect()
     }

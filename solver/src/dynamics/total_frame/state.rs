@@ -22,6 +22,7 @@ impl TotalFrame {
             loads: _,
             forced,
             constraints: _,
+            edges,
             mass: _,
             displacement,
             velocity,
@@ -53,6 +54,7 @@ impl TotalFrame {
         [elastic_energy, time, judged_stiffening].into_iter().try_for_each(|value| archive.value(value))?;
         archive.value(crack_start)?;
         reactions.exchange(archive)?;
+        edges.as_mut().map_or(Ok(()), |edges| edges.exchange(archive))?;
         archive.value(ledger)
     }
 }

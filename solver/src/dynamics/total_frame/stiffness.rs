@@ -79,6 +79,15 @@ impl LatticeStiffness<'_> {
         }
     }
 
+    /// Forces on the free degrees of freedom, without what conditions on edges carry: what they would leave
+    /// to round-off grows from iteration to iteration (Gould, Hribar and Nocedal 2001).
+    pub(super) fn pack_forces(&self, forces: &mut VectorField, out: &mut [f64]) {
+        if let Some(edges) = &self.frame.edges {
+            edges.project_forces(forces);
+        }
+        self.pack(forces, out);
+    }
+
     fn pack(&self, field: &VectorField, out: &mut [f64]) {
         for (&(at, component), out) in self.free.iter().zip(out) {
             *out = field[component][at];
@@ -93,14 +102,19 @@ impl StiffnessOperator for LatticeStiffness<'_> {
 
     fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
         self.unpack(x);
-        self.frame.elastic_forces(&self.field, &mut self.strips, &mut self.image);
-        self.pack(&self.image, out);
+        let mut image = std::mem::take(&mut self.image);
+        self.frame.elastic_forces(&self.field, &mut self.strips, &mut image);
+        self.pack_forces(&mut image, out);
+        self.image = image;
     }
 
     fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]) {
         self.unpack(x);
         let mut quotient = self.field.clone();
         self.frame.mass.divide(&mut quotient);
+        if let Some(edges) = &self.frame.edges {
+            edges.project(&mut quotient);
+        }
         self.pack(&quotient, out);
     }
 }

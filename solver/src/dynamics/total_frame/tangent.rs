@@ -124,9 +124,11 @@ impl StiffnessOperator for Tangent<'_> {
             }
             frame.forces_now(displacement, strips, forces);
         }
-        for (&(at, component), out) in free.iter().zip(out) {
-            *out = (forces[0][component][at] - forces[1][component][at]) / (2.0 * probe);
+        let [ahead, back] = forces;
+        for (ahead, back) in ahead.iter_mut().zip(back) {
+            ahead.iter_mut().zip(back).for_each(|(ahead, back)| *ahead = (*ahead - *back) / (2.0 * probe));
         }
+        undeformed.pack_forces(ahead, out);
     }
 
     fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]) {

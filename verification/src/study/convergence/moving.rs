@@ -177,7 +177,10 @@ fn broken(failure: Failure) -> StudyError {
         Failure::NoStep => other("the critical time step is not a number"),
         Failure::Left([x, y]) => other(format!("a point left the mesh at ({x}, {y})")),
         Failure::NoPoints(_) => other("the body contains no material point"),
-        Failure::HoldsNothing(_) | Failure::Contradiction(_) => other("conditions hold nothing, or contradict"),
+        Failure::HoldsNothing(_)
+        | Failure::Contradiction(_)
+        | Failure::LostCondition { .. }
+        | Failure::HeldTwice(_) => other("conditions hold nothing, or contradict"),
         Failure::NoEquilibrium(_) | Failure::Unbalanced(_) => other("there is no static state"),
         Failure::LostTraction { .. } => other("a part of a traction would not act"),
         Failure::Unconverged(_) | Failure::TooFast(_) => other("contact cannot follow the bodies"),
