@@ -203,12 +203,14 @@ pub struct Output {
     pub bodies: bool,
     /// Places whose motion and stress are recorded (total frame).
     pub probes: Vec<Probe>,
+    /// J-integrals about the tip of a crack (total frame).
+    pub j_integrals: Vec<JIntegral>,
 }
 
 impl Output {
     /// So many rows of the history after the first, and nothing else.
     pub fn rows(samples: usize) -> Self {
-        Self { samples, frames: Vec::new(), bodies: false, probes: Vec::new() }
+        Self { samples, frames: Vec::new(), bodies: false, probes: Vec::new(), j_integrals: Vec::new() }
     }
 }
 
@@ -219,4 +221,35 @@ pub struct Probe {
     pub name: String,
     /// Position at t = 0, m.
     pub at: [f64; 2],
+}
+
+/// A J-integral about the tip of a crack.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JIntegral {
+    /// Name in its column, if there are several.
+    pub name: Option<String>,
+    /// Radius of its domain, m.
+    pub radius: f64,
+    /// Where the tip is (m), if it does not move; absent: the tip of the crack.
+    pub at: Option<[f64; 2]>,
+    /// Angle of the direction in which the crack goes, rad; absent: that of the end of the first crack.
+    pub angle: Option<f64>,
+}
+
+impl JIntegral {
+    /// Where the tip is at t = 0 (m), and the unit vector along the crack; `None` if neither it nor a crack
+    /// of its body says so.
+    pub(crate) fn tip_and_axis(&self, body: &Body) -> Option<([f64; 2], [f64; 2])> {
+        let last = body.cracks.first().and_then(|crack| crack.segments().last());
+        let tip = self.at.or(last.map(|[_, to]| to))?;
+        let axis = match (self.angle, last) {
+            (Some(angle), _) => [angle.cos(), angle.sin()],
+            (None, Some([from, to])) => {
+                let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+                [0, 1].map(|d| (to[d] - from[d]) / length)
+            }
+            (None, None) => return None,
+        };
+        Some((tip, axis))
+    }
 }

@@ -15,6 +15,7 @@ mod ground;
 mod look;
 mod material;
 mod mesh;
+mod output;
 mod points;
 mod resolution;
 mod seed;

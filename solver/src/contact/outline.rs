@@ -18,6 +18,7 @@ pub(super) fn spacing(mesh: &Mesh, body: &Body) -> f64 {
 pub(super) fn without_patch(shape: &Shape, mesh: &Mesh) -> Shape {
     match shape {
         Shape::Patch => Shape::Rectangle { min: mesh.origin(), max: mesh.end() },
+        Shape::Union(shapes) => Shape::Union(shapes.iter().map(|shape| without_patch(shape, mesh)).collect()),
         Shape::Difference { of, minus } => {
             let minus = minus.iter().map(|hole| without_patch(hole, mesh)).collect();
             Shape::Difference { of: Box::new(without_patch(of, mesh)), minus }
@@ -35,6 +36,7 @@ pub(super) fn perimeter(shape: &Shape) -> f64 {
         Shape::Annulus { inner_radius, outer_radius, .. } => circle(*inner_radius) + circle(*outer_radius),
         Shape::Polygon { points } => polygon_edges(points).map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1])).sum(),
         Shape::Patch => 0.0, // see without_patch
+        Shape::Union(shapes) => shapes.iter().map(perimeter).sum(),
         Shape::Difference { of, minus } => perimeter(of) + minus.iter().map(perimeter).sum::<f64>(),
     }
 }
@@ -75,6 +77,7 @@ pub(super) fn rings(shape: &Shape, spacing: f64) -> Vec<Vec<[f64; 2]>> {
         }
         Shape::Polygon { points } => vec![polygon(points)],
         Shape::Patch => Vec::new(), // see without_patch
+        Shape::Union(shapes) => shapes.iter().flat_map(|shape| rings(shape, spacing)).collect(),
         Shape::Difference { of, minus } => {
             let holes = minus.iter().flat_map(|hole| rings(hole, spacing)).map(|mut line| {
                 line.reverse();

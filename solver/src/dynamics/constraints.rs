@@ -31,7 +31,8 @@ impl Constraints {
             fixed.sort_unstable();
             let differ = |[i, j]: &[usize; 2]| {
                 let pair = [*i, *j].map(|number| &conditions[number]);
-                pair[0].side == pair[1].side && pair[0].prescribed.course(component) != pair[1].prescribed.course(component)
+                pair[0].side == pair[1].side
+                    && pair[0].prescribed.course(component) != pair[1].prescribed.course(component)
             };
             let mut shared = fixed.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]);
             constraints.contradiction = constraints.contradiction.or_else(|| shared.find(differ));

@@ -56,6 +56,8 @@ pub struct Sample {
     pub conditions: Vec<ConditionSample>,
     /// Places that are recorded.
     pub probes: Vec<ProbeSample>,
+    /// J-integrals by their columns, J/m².
+    pub j_integrals: Vec<(String, f64)>,
     /// What is left when every named term is added up, J.
     pub closure: f64,
     /// Momentum, kg m/s.
@@ -170,6 +172,7 @@ impl Sample {
         row.extend(
             self.conditions.iter().flat_map(ConditionSample::named_values).map(|(name, value)| (name.into(), value)),
         );
+        row.extend(self.j_integrals.iter().map(|(name, value)| (name.clone().into(), *value)));
         let probes = self.probes.iter().flat_map(ProbeSample::named_values);
         row.extend(probes.map(|(name, value)| (name.into(), value)));
         row.extend(self.bodies.iter().flat_map(BodySamples::named_values).map(|(name, value)| (name.into(), value)));

@@ -205,9 +205,8 @@ pub(crate) fn functions_of_material(
     point: &SurfacePoint,
     moves: impl Fn(usize) -> bool,
 ) -> Option<Vec<(usize, f64)>> {
-    let carries = |first, at| {
-        lattice.has_side(first, point.inner) && moves(lattice.control_point(at, first, point.inner))
-    };
+    let carries =
+        |first, at| lattice.has_side(first, point.inner) && moves(lattice.control_point(at, first, point.inner));
     let location = carrier(patch, point.position, carries)?;
     Some(on_side(lattice, &patch.functions(location).values, point.inner))
 }

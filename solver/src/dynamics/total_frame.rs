@@ -11,6 +11,7 @@ mod equilibrium;
 mod forced;
 mod held_points;
 mod inspect;
+pub mod j_integral;
 mod observe;
 mod paint;
 mod prescribed;
@@ -40,6 +41,7 @@ use crate::transfer::sweep::StripForces;
 use crate::transfer::elastic_forces::elastic_forces;
 use edge_conditions::EdgeConditions;
 use forced::LatticeForcing;
+use j_integral::Domain;
 use prescribed::Reactions;
 use probe::ProbePlace;
 
@@ -69,6 +71,10 @@ pub struct TotalFrame {
     /// The phase field, if the material fractures.
     pub fracture: Option<LatticeFracture>,
     probes: Vec<ProbePlace>,
+    /// J-integrals.
+    domains: Vec<Domain>,
+    /// kg/m³.
+    density: f64,
     /// Where its crack begins, m, once there is one.
     crack_start: Option<[f64; 2]>,
     elastic_energy: f64,

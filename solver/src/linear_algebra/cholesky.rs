@@ -34,7 +34,8 @@ impl LowerFactor {
         lower: &SparseColMat<usize, f64>,
         symbolic: Option<Arc<SymbolicCholesky<usize>>>,
     ) -> Option<Self> {
-        let analyse = || factorize_symbolic_cholesky(lower.symbolic(), Side::Lower, Default::default(), Default::default());
+        let analyse =
+            || factorize_symbolic_cholesky(lower.symbolic(), Side::Lower, Default::default(), Default::default());
         let symbolic = match symbolic {
             Some(symbolic) => symbolic,
             None => Arc::new(analyse().ok()?),

@@ -23,7 +23,8 @@ pub(crate) enum BoundaryEdge {
 }
 
 impl Shape {
-    /// Its edges: those of a difference are all of its shapes', also where they bound nothing. The patch,
+    /// Its edges: those of a union or difference are all of its shapes', also where they bound
+    /// nothing. The patch,
     /// which the shape does not know, has none.
     pub(crate) fn edges(&self) -> Vec<BoundaryEdge> {
         let circle =
@@ -36,6 +37,7 @@ impl Shape {
                 vec![circle(center, outer_radius, 1.0), circle(center, inner_radius, -1.0)]
             }
             Self::Patch => Vec::new(),
+            Self::Union(shapes) => shapes.iter().flat_map(Self::edges).collect(),
             Self::Difference { of, minus } => of
                 .edges()
                 .into_iter()

@@ -1,6 +1,7 @@
 //! Regions of the plane: which positions lie in a shape, and how far it reaches.
 
 use super::condition::Side;
+use super::edges::BoundaryEdge;
 use crate::linear_algebra::extremes::{larger, smaller};
 
 /// Region of the plane, in m.
@@ -36,6 +37,8 @@ pub enum Shape {
     },
     /// All of the background patch.
     Patch,
+    /// All of some shapes.
+    Union(Vec<Shape>),
     /// A shape without other shapes.
     Difference {
         /// The shape cut from.
@@ -75,6 +78,7 @@ impl Shape {
                 }
             }
             Self::Patch => true,
+            Self::Union(shapes) => shapes.iter().any(|shape| shape.contains_within(position, margin)),
             Self::Difference { of, minus } => {
                 of.contains_within(position, margin) && !minus.iter().any(|s| s.contains_within(position, -margin))
             }
@@ -89,6 +93,11 @@ impl Shape {
                 distance_to_segment(*center, step[0], step[1]) < *inner_radius
             }
             Self::Polygon { points } => polygon_edges(points).any(|edge| cross(step, edge)),
+            Self::Union(_) => {
+                let line = BoundaryEdge::Line(step);
+                let places = line.places_met(&self.edges(), [0.0, 1.0]);
+                places.windows(2).any(|pair| !self.contains(line.at(0.5 * (pair[0] + pair[1])).0))
+            }
             Self::Difference { of, minus } => of.is_left_on(step) || minus.iter().any(|hole| hole.is_met_on(step)),
         }
     }
@@ -108,6 +117,7 @@ impl Shape {
             }
             Self::Polygon { points } => polygon_edges(points).any(|edge| cross(step, edge)),
             Self::Patch => true,
+            Self::Union(shapes) => shapes.iter().any(|shape| shape.is_met_on(step)),
             Self::Difference { of, minus } => {
                 let within = |island: &Self| step.iter().all(|end| island.contains(*end)) && !island.is_left_on(step);
                 of.is_met_on(step) && !minus.iter().any(within)
@@ -129,7 +139,21 @@ impl Shape {
                 })
             }
             Self::Patch => ([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]),
+            Self::Union(shapes) => {
+                shapes.iter().map(Self::bounding_box).fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |all, one| {
+                    ([0, 1].map(|d| smaller(all.0[d], one.0[d])), [0, 1].map(|d| larger(all.1[d], one.1[d])))
+                })
+            }
             Self::Difference { of, minus } => minus.iter().fold(of.bounding_box(), cut),
+        }
+    }
+
+    /// Whether no edge of its shapes runs through its inside: a union has such edges.
+    pub(crate) fn all_edges_bound(&self) -> bool {
+        match self {
+            Self::Union(_) => false,
+            Self::Difference { of, minus } => of.all_edges_bound() && minus.iter().all(Self::all_edges_bound),
+            _ => true,
         }
     }
 

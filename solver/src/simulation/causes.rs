@@ -119,10 +119,9 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
             format!("there is no material point within a cell of ({x:.6e}, {y:.6e}) m, where the condition acts"),
             CARRY_TRACTION,
         ),
-        Failure::HeldTwice(_) => (
-            "a component of the motion along this edge is prescribed already".to_string(),
-            HELD_TWICE,
-        ),
+        Failure::HeldTwice(_) => {
+            ("a component of the motion along this edge is prescribed already".to_string(), HELD_TWICE)
+        }
         Failure::HoldsNothing(_) => ("the part of the side holds no control point of a body".to_string(), WIDEN_PART),
         Failure::NoEquilibrium(residual) => (
             format!("no static state was found: {residual:.1e} of the largest nodal force is out of balance"),

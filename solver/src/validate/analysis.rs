@@ -3,7 +3,7 @@
 use super::findings::{Findings, side_name};
 use super::ground::Ground;
 use super::material::plausible_speed;
-use crate::dynamics::body_sample::column_name;
+use super::output;
 use crate::linear_algebra::extremes::larger;
 use crate::scene::{
     Body, Contact, Frame, Kinematics, Mass, PhaseFieldInterval, Quadrature, Scene, Shape, Side, TimeStep, Transfer,
@@ -13,8 +13,6 @@ use crate::splines::spline::SplineSpace;
 
 /// Most steps of a run.
 pub(super) const MOST_STEPS: f64 = 1e9;
-/// Most bodies whose columns are recorded.
-const MOST_RECORDED: usize = 64;
 /// Highest order of XPIC: each costs a transfer to the points and back per step.
 const HIGHEST_XPIC: usize = 100;
 /// Relative tolerance of "on the side", of the size of the mesh.
@@ -57,7 +55,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         let message = "a static start in the updated frame, which is not implemented";
         findings.error("start.equilibrium", message, "remove it, or use frame = \"total\"");
     }
-    output(scene, findings);
+    output::check(scene, findings);
     if let Some(contact) = &scene.contact
         && !(contact.friction >= 0.0 && contact.friction.is_finite())
     {
@@ -105,7 +103,8 @@ fn spans_integrate(scene: &Scene, findings: &mut Findings) {
     refuse(repeated, "with a repeated inner knot", "give every inner knot once");
     for body in &scene.bodies {
         let name = format!("for body {:?}", body.name);
-        refuse(matches!(body.shape, Shape::Difference { .. }), &format!("{name}, a difference"), "use another shape");
+        let combined = matches!(body.shape, Shape::Union(_) | Shape::Difference { .. });
+        refuse(combined, &format!("{name}, a union or difference"), "use another shape");
     }
     for body in scene.bodies.iter().filter(|body| !body.rigid) {
         let name = format!("for body {:?}", body.name);
@@ -229,62 +228,5 @@ fn solver(scene: &Scene, findings: &mut Findings) {
     if scene.analysis.frame == Frame::Updated && scene.solver.phase_field_interval != PhaseFieldInterval::Steps(1) {
         let message = "in the updated frame the phase field is solved for in every step";
         findings.error("solver.phase_field_interval", message, "remove the key, or use frame = \"total\"");
-    }
-}
-
-fn output(scene: &Scene, findings: &mut Findings) {
-    let (output, end) = (&scene.output, scene.analysis.end_time);
-    if output.samples == 0 {
-        findings.error("output.samples", "no samples", "give at least 1");
-    }
-    for (i, time) in output.frames.iter().enumerate() {
-        if !(*time >= 0.0 && *time <= end * (1.0 + 1e-9)) {
-            let message = format!("a frame at {time:e} s is outside the simulated time, 0 to {end:e} s");
-            findings.error(format!("output.frames.{i}"), message, "remove it, or raise analysis.end_time");
-        }
-    }
-    if output.bodies {
-        recorded_bodies(scene, findings);
-    }
-    probes(scene, findings);
-}
-
-/// Probes lie in the body, under names that differ as columns.
-fn probes(scene: &Scene, findings: &mut Findings) {
-    let probes = &scene.output.probes;
-    for (i, probe) in probes.iter().enumerate() {
-        let key = format!("output.probe.{i}");
-        if scene.analysis.frame == Frame::Updated {
-            let message = "a probe in the updated frame, which is not implemented";
-            findings.error(&key, message, "remove it, or use frame = \"total\"");
-        }
-        let [x, y] = probe.at;
-        if findings.finite(format!("{key}.at"), &probe.at)
-            && !scene.bodies.iter().any(|body| body.shape.contains_within(probe.at, TOLERANCE))
-        {
-            findings.error(format!("{key}.at"), format!("({x}, {y}) m lies in no body"), "give a place in a body");
-        }
-        if let Some(j) = (0..i).find(|&j| column_name(&probes[j].name) == column_name(&probe.name)) {
-            let message = format!("the column {}_ux_m would be that of output.probe.{j} too", column_name(&probe.name));
-            findings.error(format!("{key}.name"), message, "give the probes names that differ in letters or digits");
-        }
-    }
-}
-
-/// Bodies can be recorded one by one in the updated frame, under names that differ as columns.
-fn recorded_bodies(scene: &Scene, findings: &mut Findings) {
-    if scene.analysis.frame != Frame::Updated {
-        let message = "bodies are recorded one by one in the updated frame only";
-        findings.error("output.bodies", message, "remove it, or use analysis.frame = \"updated\"");
-    }
-    if scene.bodies.len() > MOST_RECORDED {
-        let message = format!("{} bodies; at most {MOST_RECORDED} are recorded one by one", scene.bodies.len());
-        findings.error("output.bodies", message, "remove it");
-    }
-    let mut names: Vec<String> = scene.bodies.iter().map(|body| column_name(&body.name)).collect();
-    names.sort_unstable();
-    if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-        let message = format!("two bodies would have the columns {}_x_m", twice[0]);
-        findings.error("output.bodies", message, "give the bodies names that differ in letters or digits");
     }
 }

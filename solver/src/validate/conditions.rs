@@ -141,7 +141,8 @@ fn corner(i: usize, j: usize, scene: &Scene, findings: &mut Findings) {
     if along(pair[0].side) == along(pair[1].side) || !(0..2).all(|n| reaches(pair[n], pair[1 - n].side, &scene.mesh)) {
         return;
     }
-    let differ = |d: &usize| pair.iter().all(|b| b.fix[*d]) && pair[0].prescribed.course(*d) != pair[1].prescribed.course(*d);
+    let differ =
+        |d: &usize| pair.iter().all(|b| b.fix[*d]) && pair[0].prescribed.course(*d) != pair[1].prescribed.course(*d);
     let Some(d) = (0..2).find(differ) else { return };
     let name = ["x", "y"][d];
     let [here, there] = pair.map(|boundary| {

@@ -42,11 +42,17 @@ fn supported(key: &str, scene: &Scene, look: &Look<'_>, findings: &mut Findings)
     let (message, remedy) = if look.body.rigid {
         ("a condition on a rigid body, which moves with its velocity", "remove the condition, or rigid = true")
     } else if scene.analysis.frame == Frame::Updated {
-        ("a condition on a body in the updated frame, which is not implemented", "use frame = \"total\", or a rigid body that pushes")
+        (
+            "a condition on a body in the updated frame, which is not implemented",
+            "use frame = \"total\", or a rigid body that pushes",
+        )
     } else if scene.analysis.mass == Mass::Consistent {
         ("a condition on a body with the consistent mass, which is not implemented", "use mass = \"lumped\"")
     } else if look.body.shape == Shape::Patch || scene.mesh.geometry.is_some() {
-        ("a condition on a body on a patch, whose edges are the sides of the mesh", "use [[boundary]] with side = \"left\"")
+        (
+            "a condition on a body on a patch, whose edges are the sides of the mesh",
+            "use [[boundary]] with side = \"left\"",
+        )
     } else {
         return true;
     };

@@ -41,6 +41,8 @@ pub(crate) fn defect(shape: &Shape) -> Option<(String, &'static str)> {
             (!sound).then(|| ("a polygon without area".into(), "give the corners in order, not all on one line"))
         }
         Shape::Patch => None,
+        Shape::Union(shapes) if shapes.is_empty() => Some(("a union of no shapes".into(), "give its shapes")),
+        Shape::Union(shapes) => shapes.iter().find_map(defect),
         Shape::Difference { of, minus } => defect(of).or_else(|| minus.iter().find_map(defect)),
     }
 }
@@ -50,6 +52,7 @@ pub(crate) fn complexity(shape: &Shape) -> usize {
     match shape {
         Shape::Rectangle { .. } | Shape::Disk { .. } | Shape::Annulus { .. } | Shape::Patch => 1,
         Shape::Polygon { points } => points.len(),
+        Shape::Union(shapes) => shapes.iter().map(complexity).sum(),
         Shape::Difference { of, minus } => complexity(of) + minus.iter().map(complexity).sum::<usize>(),
     }
 }
@@ -83,6 +86,7 @@ pub(crate) fn outline(shape: &Shape) -> Vec<[f64; 2]> {
         Shape::Annulus { center, inner_radius, outer_radius } => {
             circle(*center, *inner_radius).chain(circle(*center, *outer_radius)).collect()
         }
+        Shape::Union(shapes) => shapes.iter().flat_map(outline).collect(),
         Shape::Difference { of, .. } => outline(of),
     }
 }
@@ -105,6 +109,7 @@ pub(crate) fn covered_side(shape: &Shape, patch: &NurbsPatch) -> Option<[f64; 2]
 /// Whether a shape is the whole patch, less what is cut out of it.
 fn is_patch(shape: &Shape) -> bool {
     match shape {
+        Shape::Union(shapes) => shapes.iter().any(is_patch),
         Shape::Difference { of, .. } => is_patch(of),
         _ => *shape == Shape::Patch,
     }

@@ -40,8 +40,7 @@ pub(super) fn edge(key: &str, edge: &Edge, needs_side: bool, look: &Look<'_>, fi
     match edge {
         Edge::Side(_) if body.shape == Shape::Patch => {}
         _ if ground.mesh.geometry.is_some() => {
-            let remedy =
-                "give the body shape = \"patch\" and edge = \"left\", \"right\", \"bottom\" or \"top\"";
+            let remedy = "give the body shape = \"patch\" and edge = \"left\", \"right\", \"bottom\" or \"top\"";
             let form = match edge {
                 Edge::Side(_) => "edge",
                 Edge::Segment(_) => "segment",

@@ -55,6 +55,11 @@ fn pulled_and_driven() -> Scene {
 #[test]
 fn in_the_total_frame() {
     goes_on_bit_by_bit("elastic, driven", &pulled_and_driven());
+    let mut held = pulled_and_driven();
+    let hold = Hold::Components([false, true]);
+    let edge = EdgeCondition::fixed(Edge::Side(Side::Bottom), hold);
+    held.bodies[0].conditions = vec![EdgeCondition { name: Some("base".to_string()), ..edge }];
+    goes_on_bit_by_bit("held at an edge", &held);
     let mut consistent = pulled_and_driven();
     consistent.analysis.mass = Mass::Consistent;
     goes_on_bit_by_bit("consistent mass", &consistent);

@@ -15,7 +15,8 @@ fn driven(motion: Motion, time: TimeFactor) -> Scene {
     let mut scene = elastic_scene(2, [0.04, 0.002], [40, 2]);
     scene.materials.get_mut("glass").unwrap().poisson_ratio = 0.0;
     let name = Some("Drive 1".to_string());
-    scene.boundaries = vec![Boundary { name, prescribed: Prescribed { motion, time }, ..Boundary::fixed(Side::Left, [true, false]) }];
+    scene.boundaries =
+        vec![Boundary { name, prescribed: Prescribed { motion, time }, ..Boundary::fixed(Side::Left, [true, false]) }];
     scene.output.samples = 100;
     scene.analysis.time_step = TimeStep::Fixed(5e-8);
     assert!(validate(&scene).is_ok(), "{:?}", validate(&scene));

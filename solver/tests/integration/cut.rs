@@ -26,6 +26,11 @@ fn random_bodies(random: &mut Random) -> Vec<Shape> {
         Shape::Disk { center: disk, radius: 0.0039 },
         Shape::Annulus { center: ring, inner_radius: 0.0017, outer_radius: 0.0041 },
         Shape::Polygon { points: (0..5).map(corner).collect() },
+        Shape::Union(vec![
+            Shape::Disk { center: [hole[0] - 0.001, hole[1]], radius: 0.0031 },
+            rectangle([0.001, hole[1] - 0.001], [hole[0], hole[1] + 0.0012]),
+            rectangle([hole[0], hole[1] - 0.001], [0.0091, hole[1] + 0.0012]),
+        ]),
         Shape::Difference {
             of: Box::new(rectangle([0.0; 2], [0.01; 2])),
             minus: vec![

@@ -56,9 +56,8 @@ fn rollers_at_any_angle_carry_a_uniform_stress() {
             let moving = samples.iter().map(|s| s.kinetic).fold(0.0, larger);
             assert!(moving < 1e-12 * exact, "{what}: {moving:e}");
             let (force, (sin, cos)) = (2e6 * 0.0043, angle.sin_cos());
-            let reactions = ["base", "side"].map(|name| {
-                ["x", "y"].map(|d| column(&samples, &format!("reaction_{name}_{d}_n"))[4])
-            });
+            let reactions =
+                ["base", "side"].map(|name| ["x", "y"].map(|d| column(&samples, &format!("reaction_{name}_{d}_n"))[4]));
             assert_relative_eq!(reactions[0][0], force * cos, epsilon = 1e-6 * force);
             assert_relative_eq!(reactions[0][1], force * sin, epsilon = 1e-6 * force);
             assert_relative_eq!(reactions[1][0].hypot(reactions[1][1]), 0.0, epsilon = 1e-6 * force);
@@ -71,7 +70,10 @@ fn driven(on_side: bool, from: f64) -> Scene {
     let mut scene = elastic_scene(2, [0.024, 0.002], [48, 4]);
     scene.materials.get_mut("glass").unwrap().poisson_ratio = 0.0;
     scene.bodies[0].shape = rectangle([from, 0.0], [from + 0.02, 0.002]);
-    let prescribed = Prescribed { motion: Motion::Velocity([1.0, 0.0]), time: TimeFactor { course: Course::Smooth(2e-6), until: None } };
+    let prescribed = Prescribed {
+        motion: Motion::Velocity([1.0, 0.0]),
+        time: TimeFactor { course: Course::Smooth(2e-6), until: None },
+    };
     if on_side {
         let side = Boundary::fixed(Side::Left, [true, false]);
         scene.boundaries = vec![Boundary { name: Some("end".to_string()), prescribed, ..side }];
@@ -99,6 +101,33 @@ fn a_driven_end_beside_the_mesh_is_one_on_its_side() {
     }
 }
 
+#[test]
+fn a_driven_end_at_any_angle_pushes_with_the_impedance_of_the_bar() {
+    for (angle, hold) in [(0.2, Hold::Normal), (2.1, Hold::Components([true, true])), (1.3, Hold::Normal)] {
+        let (sin, cos) = f64::sin_cos(angle);
+        let mut scene = elastic_scene(2, [0.02; 2], [40; 2]);
+        scene.materials.get_mut("glass").unwrap().poisson_ratio = 0.0;
+        let corners: Vec<_> = turned([0.018, 0.003], angle, 0.0).iter().map(|[x, y]| [x + 0.005, y + 0.005]).collect();
+        scene.bodies[0].shape = Shape::Polygon { points: corners.clone() };
+        scene.bodies[0].particles_per_cell = [3, 3];
+        let motion = Motion::Velocity([2.0 * cos, 2.0 * sin]);
+        let prescribed = Prescribed { motion, time: TimeFactor { course: Course::Smooth(2e-6), until: None } };
+        let end = Edge::Segment([corners[3], corners[0]]);
+        scene.bodies[0].conditions = vec![EdgeCondition { prescribed, ..named("end", end, hold) }];
+        scene.analysis.end_time = 4e-6;
+        scene.output.samples = 40;
+        let samples = run(&scene).1;
+        assert!(relative_closure(&samples) < 1e-11, "closure {:e}", relative_closure(&samples));
+        let [x, y] = ["x", "y"].map(|d| column(&samples, &format!("reaction_end_{d}_n")));
+        let glass = &scene.materials["glass"];
+        let exact = 2.0 * (glass.young_modulus * glass.density).sqrt() * 0.003;
+        assert_relative_eq!(x[40] * cos + y[40] * sin, exact, max_relative = 0.01);
+        assert_relative_eq!(x[40] * sin - y[40] * cos, 0.0, epsilon = 0.01 * exact);
+        let work = column(&samples, "work_end_j");
+        assert_relative_eq!(work[40], samples[40].external_work, max_relative = 1e-12);
+    }
+}
+
 /// Bodies at random places with the edges on which they are held.
 fn random_bodies(random: &mut Random) -> Vec<(Shape, Vec<Edge>)> {
     let mut number = |size: f64| size * random.next();
@@ -118,7 +147,7 @@ fn random_bodies(random: &mut Random) -> Vec<(Shape, Vec<Edge>)> {
 #[test]
 fn conditions_do_not_shorten_the_step() {
     let mut random = Random::new(7);
-    for _ in 0..12 {
+    for _ in 0..4 {
         for (shape, edges) in random_bodies(&mut random) {
             for degree in [2, 3] {
                 for hold in [Hold::Components([true, true]), Hold::Normal] {
@@ -129,7 +158,7 @@ fn conditions_do_not_shorten_the_step() {
                     let condition = |edge: &Edge| EdgeCondition::fixed(edge.clone(), hold);
                     scene.bodies[0].conditions = edges.iter().map(condition).collect();
                     let held = TotalFrame::new(&scene).unwrap_or_else(|e| panic!("{scene:?}: {e:?}")).critical_step();
-                    assert!(held >= 0.998 * free, "p = {degree}, {hold:?}: {held:e} of {free:e} s, {shape:?}");
+                    assert!(held >= 0.999 * free, "p = {degree}, {hold:?}: {held:e} of {free:e} s, {shape:?}");
                 }
             }
         }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use fisura::scene::{
-    Analysis, Contact, Frame, Kinematics, Mass, Output, PhaseFieldInterval, PhaseFieldSolver, Plane, Probe, Quadrature,
-    Scene, Shape, SolverSettings, TimeStep, Transfer,
+    Analysis, Contact, Frame, JIntegral, Kinematics, Mass, Output, PhaseFieldInterval, PhaseFieldSolver, Plane, Probe,
+    Quadrature, Scene, Shape, SolverSettings, TimeStep, Transfer,
 };
 
 use super::diagnostic::Problem;
@@ -180,12 +180,22 @@ fn solver(item: &Item<'_>) -> Option<SolverSettings> {
 }
 
 fn output(item: &Item<'_>) -> Option<Output> {
-    let fields = item.fields(&["samples", "frames", "bodies", "probe"])?;
+    let fields = item.fields(&["samples", "frames", "bodies", "probe", "j_integral"])?;
     let samples = fields.or("samples", 320, |item| item.whole(1, 100_000_000));
     let frames = fields.or("frames", Vec::new(), |item| item.each(time));
     let bodies = fields.or("bodies", false, Item::flag);
     let probes = fields.or("probe", Vec::new(), |item| item.tables()?.iter().map(probe).collect());
-    Some(Output { samples: samples?, frames: frames?, bodies: bodies?, probes: probes? })
+    let j_integrals = fields.or("j_integral", Vec::new(), |item| item.tables()?.iter().map(j_integral).collect());
+    Some(Output { samples: samples?, frames: frames?, bodies: bodies?, probes: probes?, j_integrals: j_integrals? })
+}
+
+fn j_integral(item: &Item<'_>) -> Option<JIntegral> {
+    let fields = item.fields(&["name", "radius", "at", "angle"])?;
+    let name = fields.maybe("name", Item::words);
+    let radius = fields.need("radius", "radius = \"5 mm\", that of its domain", length);
+    let at = fields.maybe("at", point);
+    let angle = fields.maybe("angle", number);
+    Some(JIntegral { name: name?, radius: radius?, at: at?, angle: angle?.map(f64::to_radians) })
 }
 
 fn probe(item: &Item<'_>) -> Option<Probe> {

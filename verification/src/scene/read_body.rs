@@ -118,7 +118,7 @@ fn body(item: &Item<'_>) -> Option<Body> {
     })
 }
 
-const SHAPES: [&str; 6] = ["rectangle", "disk", "annulus", "polygon", "file", "difference"];
+const SHAPES: [&str; 7] = ["rectangle", "disk", "annulus", "polygon", "file", "union", "difference"];
 
 fn shape(item: &Item<'_>) -> Option<Shape> {
     if item.node.as_str() == Some("patch") {
@@ -128,7 +128,7 @@ fn shape(item: &Item<'_>) -> Option<Shape> {
     let given: Vec<Item<'_>> = SHAPES.iter().filter_map(|kind| fields.get(kind)).collect();
     let [inner] = given.as_slice() else {
         let message = format!("expected one shape, found {}", given.len());
-        let remedy = "give one of rectangle, disk, annulus, polygon, file, difference; or shape = \"patch\"";
+        let remedy = "give one of rectangle, disk, annulus, polygon, file, union, difference; or shape = \"patch\"";
         return item.fail(message, remedy);
     };
     match inner.path.rsplit('.').next()? {
@@ -159,6 +159,7 @@ fn shape(item: &Item<'_>) -> Option<Shape> {
             let remedy = "give a CSV file beside the scene with the corners of a polygon in order, x and y in m";
             rows_of_file(inner, remedy).map(|points| Shape::Polygon { points })
         }
+        "union" => inner.each(shape).map(Shape::Union),
         _ => {
             let fields = inner.fields(&["of", "minus"])?;
             let of = fields.need("of", "of = { rectangle = { ... } }, the shape cut from", shape);

@@ -3,8 +3,8 @@
 use fisura::scene::time::{Course, TimeFactor, TimeFormula};
 use fisura::scene::{Boundary, EdgeCondition, Hold, Motion, Prescribed};
 
-use super::fields::Item;
 use super::fields::Fields;
+use super::fields::Item;
 use super::read::{length, number, time};
 use super::read_body::edge;
 use super::read_file::rows_of_file;

@@ -112,11 +112,14 @@ impl EdgeConditions {
     pub(super) fn start(&self, displacement: &mut VectorField, velocity: &mut VectorField) {
         let starts: Vec<_> = self.conditions.iter().map(|condition| condition.prescribed.start()).collect();
         for (derivative, field) in [displacement, velocity].into_iter().enumerate() {
-            let skipped = |moment: &Moment| {
-                derivative == 0 && !self.conditions[moment.condition].prescribed.is_displacement()
-            };
+            let skipped =
+                |moment: &Moment| derivative == 0 && !self.conditions[moment.condition].prescribed.is_displacement();
             let excess = |moment: &Moment| {
-                if skipped(moment) { 0.0 } else { moment.of(field) - moment.translated(starts[moment.condition][derivative]) }
+                if skipped(moment) {
+                    0.0
+                } else {
+                    moment.of(field) - moment.translated(starts[moment.condition][derivative])
+                }
             };
             let multipliers = self.multipliers(self.moments.iter().map(excess).collect());
             self.yield_to(&multipliers, field);
@@ -139,13 +142,15 @@ impl EdgeConditions {
         let part = if time == 0.0 { 0.5 } else { 1.0 }; // of a step, since the velocity at hand
         let excess = |moment: &Moment| {
             let next = moment.translated(self.reactions[moment.condition].next_velocity());
-            let prescribed = if dt > 0.0 { (next - moment.of(velocity)) / (part * dt) } else { 0.0 };
+            let now = fault!("edge-speed-forgotten", moment.of(velocity) => next);
+            let prescribed = if dt > 0.0 { (next - now) / (part * dt) } else { 0.0 };
             moment.of(acceleration) - prescribed
         };
         let multipliers = self.multipliers(self.moments.iter().map(excess).collect());
         self.yield_to(&multipliers, acceleration);
         for (moment, multiplier) in self.moments.iter().zip(&multipliers) {
-            let force = moment.total.map(|total| -fault!("edge-reaction-reversed", multiplier * total => -multiplier * total));
+            let force =
+                moment.total.map(|total| -fault!("edge-reaction-reversed", multiplier * total => -multiplier * total));
             (0..2).for_each(|d| self.reactions[moment.condition].add(d, force[d]));
         }
         for &(row, number, component, share) in &self.held {
@@ -190,7 +195,9 @@ impl EdgeConditions {
     /// Reaction and work of every condition with a name, for a thickness of a metre.
     pub(super) fn samples(&self) -> impl Iterator<Item = ConditionSample> + '_ {
         let named = self.reactions.iter().zip(&self.conditions);
-        named.filter_map(|(reaction, condition)| Some(reaction.sample(condition.name.as_deref()?, condition.components())))
+        named.filter_map(|(reaction, condition)| {
+            Some(reaction.sample(condition.name.as_deref()?, condition.components()))
+        })
     }
 
     /// Stores or takes up what steps change.
@@ -287,10 +294,11 @@ fn multiplier_space(patch: &Patch, parts: &[Vec<SurfacePoint>]) -> SplineSpace {
         };
         larger(span(0), span(1))
     };
+    let wanted_spans = fault!("edge-multipliers-too-few", PART => 40.0);
     let (mut knots, mut end, mut since, mut wanted) = (Vec::new(), 0.0, 0.0, 0.0);
     let total: f64 = parts.iter().map(length).sum();
     for part in parts.iter().filter(|part| !part.is_empty()) {
-        (end, since, wanted) = (end + length(part), since + length(part), larger(wanted, PART * size(part)));
+        (end, since, wanted) = (end + length(part), since + length(part), larger(wanted, wanted_spans * size(part)));
         if since >= wanted && total - end >= wanted {
             knots.push(end);
             (since, wanted) = (0.0, 0.0);

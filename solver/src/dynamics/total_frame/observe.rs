@@ -74,6 +74,7 @@ impl TotalFrame {
             external_work: self.ledger.external_work,
             conditions: self.condition_samples(),
             probes: self.probes.iter().map(|probe| self.sampled_probe(probe)).collect(),
+            j_integrals: self.j_integrals(),
             momentum,
             angular_momentum: angular,
             time_step: dt,
@@ -97,7 +98,7 @@ impl TotalFrame {
         ProbeSample::new(&probe.name, [ux.value, uy.value, vx, vy, xx, yy, xy])
     }
 
-    fn crack_tip(&self, fracture: &LatticeFracture) -> Option<CrackTip> {
+    pub(super) fn crack_tip(&self, fracture: &LatticeFracture) -> Option<CrackTip> {
         let phase = fracture.field.control_values();
         let gradient = |position| self.patch.evaluate(phase, position).unwrap_or_default().gradient;
         crack_tip(self.crack_start?, &fracture.broken_points(&self.lattice), gradient)

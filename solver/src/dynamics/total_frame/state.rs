@@ -31,6 +31,8 @@ impl TotalFrame {
             strip_forces: _,
             fracture,
             probes: _,
+            domains: _,
+            density: _,
             crack_start,
             elastic_energy,
             ledger,

@@ -24,9 +24,10 @@ impl Lattice {
                 let most = body.particles_per_cell[0].max(body.particles_per_cell[1]);
                 let spans = cut::cut_spans(&body.shape, &edges, &patch.spaces, most);
                 cut.extend(spans.flat_map(|(span, points)| CutPoint::of_span(patch, span, points)));
-                gaps = Gaps::Between(
-                    edges.into_iter().map(|(span, edges)| (first_function(patch, span), edges)).collect(),
-                );
+                if body.shape.all_edges_bound() {
+                    let of_function = |(span, edges)| (first_function(patch, span), edges);
+                    gaps = Gaps::Between(edges.into_iter().map(of_function).collect());
+                }
             }
         }
         let slits: Vec<_> = body.cracks.iter().filter(|crack| crack.is_slit()).flat_map(Crack::segments).collect();

@@ -2,7 +2,8 @@
 
 use fisura::dynamics::body_sample::BodySamples;
 use fisura::dynamics::energy::{ConditionSample, ContactSample, FractureSample, ProbeSample, Sample};
-use fisura::scene::{Boundary, Frame, PhaseFieldInterval, Scene};
+use fisura::dynamics::total_frame::j_integral::column;
+use fisura::scene::{Frame, PhaseFieldInterval, Scene};
 
 use super::{EVERYWHERE, Wrong, distinct, find_band, grid_convergence};
 use crate::case::Check;
@@ -204,8 +205,12 @@ fn look_at_times(measure: &Measure, check: &Check, scene: &Scene) -> Result<(), 
     Ok(())
 }
 
-fn blank_condition(condition: &Boundary) -> Option<ConditionSample> {
-    condition.name.as_deref().map(|name| ConditionSample::new(name, condition.fix, [0.0; 2], 0.0))
+fn blank_conditions(scene: &Scene) -> Vec<ConditionSample> {
+    let sides = scene.boundaries.iter().map(|boundary| (&boundary.name, boundary.fix));
+    let edges = scene.bodies.iter().flat_map(|body| &body.conditions);
+    let edges = edges.map(|condition| (&condition.name, condition.components()));
+    let named = sides.chain(edges).filter_map(|(name, fix)| Some((name.as_deref()?, fix)));
+    named.map(|(name, fix)| ConditionSample::new(name, fix, [0.0; 2], 0.0)).collect()
 }
 
 /// A history of one row with the columns that a scene will have; none of its numbers is known.
@@ -225,8 +230,9 @@ fn blank_history(scene: &Scene) -> Table {
         contact: scene.contact.is_some().then_some(ContactSample { loss: 0.0, friction: 0.0 }),
         transfer_loss: (scene.analysis.frame == Frame::Updated).then_some(0.0),
         fragments: scene.contact.as_ref().and_then(|contact| contact.fragments.then_some(0)),
-        conditions: scene.boundaries.iter().filter_map(blank_condition).collect(),
+        conditions: blank_conditions(scene),
         probes: scene.output.probes.iter().map(|probe| ProbeSample::new(&probe.name, [0.0; 7])).collect(),
+        j_integrals: scene.output.j_integrals.iter().map(|j| (column(j), f64::NAN)).collect(),
         bodies: scene.output.bodies.then(|| BodySamples::blank(scene)),
         ..Sample::default()
     };

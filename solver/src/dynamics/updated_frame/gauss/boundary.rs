@@ -36,7 +36,7 @@ pub(crate) fn edges(shape: &Shape, mesh: &Mesh) -> Option<Vec<BoundaryEdge>> {
             let (min, max) = mesh.extent(shape);
             Some(Shape::Rectangle { min, max }.edges())
         }
-        Shape::Difference { .. } => None,
+        Shape::Union(_) | Shape::Difference { .. } => None,
         _ => Some(shape.edges()),
     }
 }

@@ -1,0 +1,102 @@
+//! Checks of what is recorded: samples, frames, probes, bodies, J-integrals.
+
+use super::findings::Findings;
+use crate::dynamics::body_sample::column_name;
+use crate::dynamics::total_frame::j_integral::column;
+use crate::scene::{Frame, JIntegral, Kinematics, Scene};
+
+/// Most bodies whose columns are recorded.
+const MOST_RECORDED: usize = 64;
+/// Relative tolerance of "in a body".
+const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
+
+pub(super) fn check(scene: &Scene, findings: &mut Findings) {
+    let (output, end) = (&scene.output, scene.analysis.end_time);
+    if output.samples == 0 {
+        findings.error("output.samples", "no samples", "give at least 1");
+    }
+    for (i, time) in output.frames.iter().enumerate() {
+        if !(*time >= 0.0 && *time <= end * (1.0 + 1e-9)) {
+            let message = format!("a frame at {time:e} s is outside the simulated time, 0 to {end:e} s");
+            findings.error(format!("output.frames.{i}"), message, "remove it, or raise analysis.end_time");
+        }
+    }
+    if output.bodies {
+        recorded_bodies(scene, findings);
+    }
+    probes(scene, findings);
+    for (i, integral) in scene.output.j_integrals.iter().enumerate() {
+        j_integral(i, integral, scene, findings);
+    }
+}
+
+/// A J-integral knows its tip and direction, and its domain lies in the body.
+fn j_integral(i: usize, integral: &JIntegral, scene: &Scene, findings: &mut Findings) {
+    let key = format!("output.j_integral.{i}");
+    if scene.analysis.frame == Frame::Updated || scene.analysis.kinematics == Kinematics::Finite {
+        let message = "a J-integral is implemented for small strains in the total frame";
+        findings.error(&key, message, "remove it, or use frame = \"total\" and kinematics = \"small\"");
+    }
+    if let Some(j) = (0..i).find(|&j| column(&scene.output.j_integrals[j]) == column(integral)) {
+        let message = format!("the column {} would be that of output.j_integral.{j} too", column(integral));
+        findings.error(format!("{key}.name"), message, "give them names that differ in letters or digits");
+    }
+    let places = integral.at.into_iter().flatten().chain(integral.angle);
+    let is_sound = findings.positive(format!("{key}.radius"), integral.radius, "radius = \"5 mm\"")
+        && findings.finite(&key, &places.collect::<Vec<_>>());
+    let Some(body) = scene.bodies.first().filter(|_| is_sound) else { return };
+    let Some((tip, _)) = integral.tip_and_axis(body) else {
+        let remedy = "give at = [x, y] and angle = 0.0 (degrees), or a [[body.crack]]";
+        return findings.error(key, "neither it nor a crack says where the tip is and where the crack goes", remedy);
+    };
+    let (low, high) = scene.mesh.extent(&body.shape);
+    if (0..2).any(|d| tip[d] - integral.radius < low[d] || tip[d] + integral.radius > high[d]) {
+        let message = format!("the circle about the tip ({}, {}) m leaves the body", tip[0], tip[1]);
+        findings.error(format!("{key}.radius"), message, "give a smaller radius");
+    }
+    let fracture = scene.materials.get(&body.material).and_then(|material| material.fracture.as_ref());
+    if let Some(l0) = fracture.map(|fracture| fracture.length_scale).filter(|l0| integral.radius < 8.0 * l0) {
+        let message = format!("half of the radius is less than 4 l0 = {} m: the process zone counts in part", 4.0 * l0);
+        findings.warn(format!("{key}.radius"), message);
+    }
+}
+
+/// Probes lie in the body, under names that differ as columns.
+fn probes(scene: &Scene, findings: &mut Findings) {
+    let probes = &scene.output.probes;
+    for (i, probe) in probes.iter().enumerate() {
+        let key = format!("output.probe.{i}");
+        if scene.analysis.frame == Frame::Updated {
+            let message = "a probe in the updated frame, which is not implemented";
+            findings.error(&key, message, "remove it, or use frame = \"total\"");
+        }
+        let [x, y] = probe.at;
+        if findings.finite(format!("{key}.at"), &probe.at)
+            && !scene.bodies.iter().any(|body| body.shape.contains_within(probe.at, TOLERANCE))
+        {
+            findings.error(format!("{key}.at"), format!("({x}, {y}) m lies in no body"), "give a place in a body");
+        }
+        if let Some(j) = (0..i).find(|&j| column_name(&probes[j].name) == column_name(&probe.name)) {
+            let message = format!("the column {}_ux_m would be that of output.probe.{j} too", column_name(&probe.name));
+            findings.error(format!("{key}.name"), message, "give the probes names that differ in letters or digits");
+        }
+    }
+}
+
+/// Bodies can be recorded one by one in the updated frame, under names that differ as columns.
+fn recorded_bodies(scene: &Scene, findings: &mut Findings) {
+    if scene.analysis.frame != Frame::Updated {
+        let message = "bodies are recorded one by one in the updated frame only";
+        findings.error("output.bodies", message, "remove it, or use analysis.frame = \"updated\"");
+    }
+    if scene.bodies.len() > MOST_RECORDED {
+        let message = format!("{} bodies; at most {MOST_RECORDED} are recorded one by one", scene.bodies.len());
+        findings.error("output.bodies", message, "remove it");
+    }
+    let mut names: Vec<String> = scene.bodies.iter().map(|body| column_name(&body.name)).collect();
+    names.sort_unstable();
+    if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+        let message = format!("two bodies would have the columns {}_x_m", twice[0]);
+        findings.error("output.bodies", message, "give the bodies names that differ in letters or digits");
+    }
+}

@@ -1,0 +1,70 @@
+//! The J-integral of a crack that runs is what its surface costs.
+
+use fisura::scene::*;
+use fisura::validate::validate;
+
+use crate::common::{brittle, elastic_scene, rectangle, run};
+
+fn column(sample: &fisura::dynamics::energy::Sample, name: &str) -> f64 {
+    sample.named_values().into_iter().find(|(n, _)| n == name).expect("a column").1
+}
+
+/// A strip whose grips are displaced in both components; the crack starts from a slit.
+fn strip(displacement: f64) -> Scene {
+    let mut scene = elastic_scene(2, [0.028, 0.008], [224, 64]);
+    scene.analysis.plane = Plane::Stress;
+    scene.analysis.end_time = 14e-6;
+    scene.solver.phase_field_tolerance = 1e-3;
+    scene.equilibrium = true;
+    let fracture = Fracture { critical_energy_release_rate: 3.0, length_scale: 1.25e-4, ..brittle() };
+    scene.materials.get_mut("glass").unwrap().fracture = Some(fracture);
+    let body = &mut scene.bodies[0];
+    body.shape = rectangle([0.0; 2], [0.028, 0.008]);
+    body.cracks = vec![Crack { points: vec![[0.0, 0.004], [0.006, 0.004]], kind: CrackKind::Slit }];
+    let grip = |side, u| {
+        let motion = Motion::Displacement([0.0, u]);
+        let prescribed = Prescribed { motion, time: TimeFactor::default() };
+        Boundary { prescribed, ..Boundary::fixed(side, [true, true]) }
+    };
+    scene.boundaries = vec![grip(Side::Top, displacement), grip(Side::Bottom, -displacement)];
+    scene.output.samples = 70;
+    scene.output.j_integrals = vec![JIntegral { name: None, radius: 2e-3, at: None, angle: None }];
+    scene
+}
+
+/// Ratio of the mean J to the surface energy per length, less the history work.
+fn ratio(scene: &Scene) -> f64 {
+    let samples = run(scene).1;
+    let dissipated = |sample| column(sample, "fracture_j") - column(sample, "history_work_j");
+    let (first, last) = (&samples[25], &samples[65]);
+    let length = column(last, "crack_tip_x_m") - column(first, "crack_tip_x_m");
+    assert!(length > 5e-3, "the crack runs {length} m");
+    let supply = (dissipated(last) - dissipated(first)) / length;
+    samples[25..=65].iter().map(|sample| column(sample, "j_integral_j_per_m2")).sum::<f64>() / 41.0 / supply
+}
+
+/// To 3 %: the domain moves with a tip that is found to a part of a span, and the crack speeds up and down.
+#[test]
+fn a_running_crack_has_the_j_integral_that_its_surface_costs() {
+    for displacement in [0.8e-6, 1.0e-6] {
+        let found = ratio(&strip(displacement));
+        assert!((found - 1.0).abs() < 0.03, "{displacement:e} m: J is {found} of the supply");
+    }
+}
+
+#[test]
+fn what_a_j_integral_does_not_know_is_refused() {
+    let keys = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = strip(1e-6);
+        change(&mut scene);
+        validate(&scene).unwrap_err().into_iter().map(|error| error.key).collect::<Vec<_>>()
+    };
+    let key = |word: &str| format!("output.j_integral.0{word}");
+    assert_eq!(keys(&|s| s.output.j_integrals[0].radius = 0.0), [key(".radius")]);
+    assert_eq!(keys(&|s| s.output.j_integrals[0].radius = 5e-3), [key(".radius")]);
+    assert_eq!(keys(&|s| s.output.j_integrals[0].at = Some([f64::NAN, 0.0])), [key("")]);
+    assert_eq!(keys(&|s| s.analysis.kinematics = Kinematics::Finite), [key("")]);
+    assert_eq!(keys(&|s| s.bodies[0].cracks.clear()), [key("")]);
+    let twice = keys(&|s| s.output.j_integrals.push(s.output.j_integrals[0].clone()));
+    assert_eq!(twice, ["output.j_integral.1.name"]);
+}
