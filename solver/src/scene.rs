@@ -11,6 +11,7 @@ pub(crate) mod edges;
 pub mod error;
 mod mesh;
 pub(crate) mod shape;
+mod steps;
 pub mod time;
 
 use std::collections::BTreeMap;

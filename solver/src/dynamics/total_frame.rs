@@ -6,12 +6,13 @@
 //! scheme is converged.
 
 mod begin;
+pub mod domain;
 mod edge_conditions;
 mod equilibrium;
 mod forced;
 mod held_points;
 mod inspect;
-pub mod j_integral;
+mod j_integral;
 mod observe;
 mod paint;
 mod prescribed;
@@ -39,9 +40,9 @@ use crate::splines::patch::Patch;
 use crate::transfer::sweep::StripForces;
 
 use crate::transfer::elastic_forces::elastic_forces;
+use domain::Domain;
 use edge_conditions::EdgeConditions;
 use forced::LatticeForcing;
-use j_integral::Domain;
 use prescribed::Reactions;
 use probe::ProbePlace;
 

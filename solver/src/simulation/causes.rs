@@ -22,7 +22,8 @@ const SINGULAR_MASS: &str = "weights or sizes of cells too different for the mas
 const ENLARGE_MESH: &str = "the body moves out of the mesh; enlarge mesh.size or move mesh.origin so that it holds the \
                             whole motion, or end earlier";
 
-const ADD_POINTS: &str = "use smaller cells or more particles_per_cell, so that a point lies inside the body";
+const ADD_POINTS: &str =
+    "use smaller cells or more particles_per_cell, so that a point lies inside the body, or cut less out of it";
 const CARRY_TRACTION: &str = "use smaller cells or more particles_per_cell there, or let the edge follow the body";
 pub(super) const INSIDE_OUT: &str = "the body is turned inside out there: look for extreme loads or velocities, refine the mesh there, \
                           or halve the safety factor";
@@ -42,7 +43,8 @@ const TOO_FAST: &str = "bodies faster than contact can follow at this time step:
                         lower analysis.safety";
 const WIDEN_PART: &str = "a part shorter than the support of a function, or one that no body reaches: widen or move it, or \
                           use smaller cells";
-const HELD_TWICE: &str = "another condition, or a side of the mesh, that prescribes it there: remove one of the two";
+const HELD_TWICE: &str = "conditions on parts shorter than two cells, which join into one, or a side of the mesh that prescribes the same motion: \
+                          join the parts, or remove one of the two";
 const PART_PARTS: &str = "parts of a side that meet in a control point: leave a span between them, or give both the same \
                           motion";
 const NO_EQUILIBRIUM: &str = "a load beyond the strength of the body, or a seed or slit that cuts a part off: lower the \
@@ -119,9 +121,10 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
             format!("there is no material point within a cell of ({x:.6e}, {y:.6e}) m, where the condition acts"),
             CARRY_TRACTION,
         ),
-        Failure::HeldTwice(_) => {
-            ("a component of the motion along this edge is prescribed already".to_string(), HELD_TWICE)
-        }
+        Failure::HeldTwice(_) => (
+            "what is prescribed along this edge follows from what is prescribed beside it or on it".to_string(),
+            HELD_TWICE,
+        ),
         Failure::HoldsNothing(_) => ("the part of the side holds no control point of a body".to_string(), WIDEN_PART),
         Failure::NoEquilibrium(residual) => (
             format!("no static state was found: {residual:.1e} of the largest nodal force is out of balance"),

@@ -55,7 +55,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         let message = "a static start in the updated frame, which is not implemented";
         findings.error("start.equilibrium", message, "remove it, or use frame = \"total\"");
     }
-    output::check(scene, findings);
+    output::check(scene, ground, findings);
     if let Some(contact) = &scene.contact
         && !(contact.friction >= 0.0 && contact.friction.is_finite())
     {

@@ -1,7 +1,7 @@
 //! Checks of bodies: shape, place in the mesh, points, resolution of the length scale, tractions, cracks.
 
 use super::findings::Findings;
-use super::geometry::{covered_side, defect, outline};
+use super::geometry::{covered_side, cut_nowhere, defect, outline};
 use super::ground::Ground;
 use super::look::{Look, TOLERANCE};
 use super::points::Points;
@@ -37,6 +37,12 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         if let Some((message, remedy)) = defect(&body.shape) {
             findings.error(format!("{key}.shape"), message, remedy);
             continue;
+        }
+        if let Some(hole) = cut_nowhere(&body.shape) {
+            let (min, max) = hole.bounding_box();
+            let message =
+                format!("a shape from {min:?} m to {max:?} m that is cut out does not reach the shape it is cut from");
+            findings.warn(format!("{key}.shape"), message);
         }
         let placed = ground.is_sound && !body.rigid && inside_mesh(&key, body, ground, findings);
         if placed && scene.analysis.frame == Frame::Total {

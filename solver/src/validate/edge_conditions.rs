@@ -6,10 +6,8 @@ use super::look::Look;
 use super::tractions;
 use crate::dynamics::surface::curve_of;
 use crate::scene::edges::BoundaryEdge;
-use crate::scene::{Body, Edge, EdgeCondition, Frame, Hold, Mass, Scene, Shape};
+use crate::scene::{Body, Boundary, Edge, EdgeCondition, Frame, Hold, Mass, Mesh, Scene, Shape, Side};
 
-/// Positions along an edge at which it is compared with another.
-const POSITIONS: usize = 33;
 /// Distance within which two edges are one, of the size of an edge.
 const NEAR: f64 = 1e-9;
 
@@ -34,7 +32,29 @@ pub(super) fn check(key: &str, scene: &Scene, look: &Look<'_>, findings: &mut Fi
             let message = format!("this motion is prescribed on a part of this edge by condition.{i} too");
             findings.error(format!("{key}.fix"), message, "remove one of the two");
         }
+        for (i, boundary) in scene.boundaries.iter().enumerate() {
+            let side = EdgeCondition {
+                edge: part_of_side(boundary, &scene.mesh),
+                hold: Hold::Components(boundary.fix),
+                ..condition.clone()
+            };
+            if prescribe_the_same([condition, &side], body) {
+                let message = format!("this motion is prescribed on a part of this edge by boundary.{i} too");
+                findings.error(format!("{key}.fix"), message, "remove one of the two");
+            }
+        }
     }
+}
+
+/// The part of a side of the mesh on which a condition acts.
+fn part_of_side(boundary: &Boundary, mesh: &Mesh) -> Edge {
+    let (min, max) = (mesh.origin(), mesh.end());
+    let [mut a, mut b] = Shape::Rectangle { min, max }.side(boundary.side).unwrap_or_default();
+    if let Some([from, to]) = boundary.part {
+        let along = usize::from(matches!(boundary.side, Side::Left | Side::Right));
+        (a[along], b[along]) = (from, to);
+    }
+    Edge::Segment([a, b])
 }
 
 /// What the updated frame, patches and the consistent mass do not have.
@@ -69,17 +89,25 @@ fn prescribe_the_same(pair: [&EdgeCondition; 2], body: &Body) -> bool {
     shared && [[pair[0], pair[1]], [pair[1], pair[0]]].iter().any(|[a, b]| overlap(&a.edge, &b.edge, body))
 }
 
-/// Whether a position along an edge is on another.
+/// Whether two edges share more than places.
 fn overlap(edge: &Edge, other: &Edge, body: &Body) -> bool {
     let ((curve, [from, to]), other) = (curve_of(body, edge), curve_of(body, other));
-    let place = |i: usize| from + (i as f64 + 0.5) / POSITIONS as f64 * (to - from);
-    (0..POSITIONS).any(|i| lies_on(curve.at(place(i)).0, &other))
+    let ends = other.1.map(|end| place_on(&curve, from, other.0.at(end).0));
+    let mut places: Vec<f64> = ends.into_iter().filter(|s| (from..=to).contains(s)).chain([from, to]).collect();
+    places.sort_by(f64::total_cmp);
+    let parts = places.windows(2).filter(|pair| pair[1] - pair[0] > NEAR * (to - from));
+    parts.into_iter().any(|pair| lies_on(curve.at(0.5 * (pair[0] + pair[1])).0, &other))
+}
+
+/// Where a position (m) is on a curve, from one of its places on.
+fn place_on(curve: &BoundaryEdge, from: f64, position: [f64; 2]) -> f64 {
+    let place = curve.place_of(position);
+    if let BoundaryEdge::Circle { .. } = curve { place + (from - place).ceil() } else { place }
 }
 
 /// Whether a position (m) is on a part of a curve.
 fn lies_on(position: [f64; 2], (curve, [from, to]): &(BoundaryEdge, [f64; 2])) -> bool {
-    let place = curve.place_of(position);
-    let turned = if let BoundaryEdge::Circle { .. } = curve { place + (from - place).ceil() } else { place };
+    let place = place_on(curve, *from, position);
     let [x, y] = curve.at(place).0;
-    (*from..=*to).contains(&turned) && (position[0] - x).hypot(position[1] - y) <= NEAR * curve.length()
+    (*from..=*to).contains(&place) && (position[0] - x).hypot(position[1] - y) <= NEAR * curve.length()
 }

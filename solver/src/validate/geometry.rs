@@ -47,6 +47,13 @@ pub(crate) fn defect(shape: &Shape) -> Option<(String, &'static str)> {
     }
 }
 
+/// A shape that is cut out of another one that it does not reach.
+pub(crate) fn cut_nowhere(shape: &Shape) -> Option<&Shape> {
+    let Shape::Difference { of, minus } = shape else { return None };
+    let reaches = |a: &Shape, b: &Shape| outline(a).into_iter().any(|place| b.contains(place));
+    minus.iter().find(|hole| **of != Shape::Patch && !reaches(hole, of) && !reaches(of, hole))
+}
+
 /// Corners and circles of a shape: what a test of a position against it costs.
 pub(crate) fn complexity(shape: &Shape) -> usize {
     match shape {

@@ -1,16 +1,20 @@
 //! Checks of what is recorded: samples, frames, probes, bodies, J-integrals.
 
 use super::findings::Findings;
+use super::ground::Ground;
 use crate::dynamics::body_sample::column_name;
-use crate::dynamics::total_frame::j_integral::column;
+use crate::dynamics::total_frame::domain::column;
+use crate::linear_algebra::extremes::larger;
 use crate::scene::{Frame, JIntegral, Kinematics, Scene};
 
 /// Most bodies whose columns are recorded.
 const MOST_RECORDED: usize = 64;
+/// Least radius of the domain of a J-integral, in spans.
+const LEAST_SPANS: f64 = 4.0;
 /// Relative tolerance of "in a body".
 const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
 
-pub(super) fn check(scene: &Scene, findings: &mut Findings) {
+pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     let (output, end) = (&scene.output, scene.analysis.end_time);
     if output.samples == 0 {
         findings.error("output.samples", "no samples", "give at least 1");
@@ -26,16 +30,23 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     }
     probes(scene, findings);
     for (i, integral) in scene.output.j_integrals.iter().enumerate() {
-        j_integral(i, integral, scene, findings);
+        j_integral(i, integral, scene, ground, findings);
     }
 }
 
 /// A J-integral knows its tip and direction, and its domain lies in the body.
-fn j_integral(i: usize, integral: &JIntegral, scene: &Scene, findings: &mut Findings) {
+fn j_integral(i: usize, integral: &JIntegral, scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     let key = format!("output.j_integral.{i}");
-    if scene.analysis.frame == Frame::Updated || scene.analysis.kinematics == Kinematics::Finite {
-        let message = "a J-integral is implemented for small strains in the total frame";
-        findings.error(&key, message, "remove it, or use frame = \"total\" and kinematics = \"small\"");
+    if scene.analysis.frame == Frame::Updated
+        || scene.analysis.kinematics == Kinematics::Finite
+        || scene.mesh.geometry.is_some()
+    {
+        let message = "a J-integral is implemented for small strains in the total frame, on a rectangular mesh";
+        findings.error(
+            &key,
+            message,
+            "remove it, or use frame = \"total\", kinematics = \"small\" and a mesh of size and cells",
+        );
     }
     if let Some(j) = (0..i).find(|&j| column(&scene.output.j_integrals[j]) == column(integral)) {
         let message = format!("the column {} would be that of output.j_integral.{j} too", column(integral));
@@ -52,7 +63,18 @@ fn j_integral(i: usize, integral: &JIntegral, scene: &Scene, findings: &mut Find
     let (low, high) = scene.mesh.extent(&body.shape);
     if (0..2).any(|d| tip[d] - integral.radius < low[d] || tip[d] + integral.radius > high[d]) {
         let message = format!("the circle about the tip ({}, {}) m leaves the body", tip[0], tip[1]);
-        findings.error(format!("{key}.radius"), message, "give a smaller radius");
+        let remedy = "give a smaller radius; the last point of the crack is its tip";
+        findings.error(format!("{key}.radius"), message, remedy);
+    }
+    let span = |d: usize| {
+        let space = &ground.spaces.as_ref()?[d];
+        space.find_span(tip[d]).map(|span| space.spans()[span].length())
+    };
+    let span = (0..2).filter_map(span).fold(0.0, larger);
+    if integral.radius < LEAST_SPANS * span {
+        let message = format!("a radius of {:.2} cells", integral.radius / span);
+        let remedy = format!("give at least {LEAST_SPANS} cells, {} m, or use smaller cells", LEAST_SPANS * span);
+        findings.error(format!("{key}.radius"), message, remedy);
     }
     let fracture = scene.materials.get(&body.material).and_then(|material| material.fracture.as_ref());
     if let Some(l0) = fracture.map(|fracture| fracture.length_scale).filter(|l0| integral.radius < 8.0 * l0) {

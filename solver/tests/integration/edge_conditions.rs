@@ -2,6 +2,7 @@
 
 use approx::assert_relative_eq;
 use fisura::dynamics::energy::Sample;
+use fisura::dynamics::failure::Failure;
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::linear_algebra::extremes::larger;
 use fisura::scene::time::Course;
@@ -163,4 +164,49 @@ fn conditions_do_not_shorten_the_step() {
             }
         }
     }
+}
+
+/// The left edge of a square on a mesh of 13 spans, held in parts that touch.
+fn held_in_parts(degree: usize, parts: &[[f64; 2]]) -> Scene {
+    let mut scene = pressed(degree, 0.0, 0.0);
+    let corners = turned([0.0061, 0.0043], 0.0, 0.0);
+    let at = |s: f64| [0, 1].map(|d| corners[3][d] + (corners[0][d] - corners[3][d]) * s);
+    let part = |[a, b]: &[f64; 2]| EdgeCondition::fixed(Edge::Segment([at(*a), at(*b)]), Hold::Components([true; 2]));
+    scene.bodies[0].conditions = parts.iter().map(part).collect();
+    scene
+}
+
+#[test]
+fn parts_too_short_to_be_independent_are_refused() {
+    let starts = |degree, parts: &[[f64; 2]]| TotalFrame::new(&held_in_parts(degree, parts)).map(|_| ());
+    let of_spans = |length: f64| length / 5.59;
+    for degree in [2, 3, 4] {
+        assert!(starts(degree, &[[0.0, 0.5], [0.5, 1.0]]).is_ok(), "p = {degree}: 2.8 spans each");
+        assert!(starts(degree, &[[0.5, 0.5 + of_spans(1e-3)]]).is_ok(), "p = {degree}: a thousandth of a span");
+    }
+    let short = [[0.5 - of_spans(0.3), 0.5], [0.5, 0.5 + of_spans(0.3)]];
+    assert!(matches!(starts(2, &short), Err(Failure::HeldTwice(_))), "0.3 spans each");
+}
+
+#[test]
+fn what_is_prescribed_twice_is_refused() {
+    let keys = |scene: &Scene| {
+        let errors = validate(scene).err().unwrap_or_default();
+        errors.into_iter().map(|error| error.key).collect::<Vec<_>>()
+    };
+    assert_eq!(keys(&held_in_parts(2, &[[0.0, 0.5], [0.5, 1.0]])), [""; 0]);
+    assert_eq!(keys(&held_in_parts(2, &[[0.0, 0.5], [0.4999, 1.0]])), ["body.0.condition.1.fix"]);
+    let mut scene = driven(false, 0.0);
+    assert_eq!(keys(&scene), [""; 0]);
+    scene.boundaries = vec![Boundary { part: Some([0.0, 1e-4]), ..Boundary::fixed(Side::Left, [true, false]) }];
+    assert_eq!(keys(&scene), ["body.0.condition.0.fix"]);
+    scene.boundaries[0].fix = [false, true];
+    assert_eq!(keys(&scene), [""; 0]);
+    let arc = |angles| EdgeCondition::fixed(Edge::Arc { center: [0.005; 2], radius: 0.004, angles }, Hold::Normal);
+    let mut disc = elastic_scene(2, [0.01; 2], [13; 2]);
+    disc.bodies[0].shape = Shape::Disk { center: [0.005; 2], radius: 0.004 };
+    disc.bodies[0].conditions = vec![arc([0.0, 2.0]), arc([2.0, 4.0])];
+    assert_eq!(keys(&disc), [""; 0]);
+    disc.bodies[0].conditions.push(arc([-0.1, 0.001]));
+    assert_eq!(keys(&disc), ["body.0.condition.2.fix"]);
 }

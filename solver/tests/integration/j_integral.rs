@@ -62,9 +62,24 @@ fn what_a_j_integral_does_not_know_is_refused() {
     let key = |word: &str| format!("output.j_integral.0{word}");
     assert_eq!(keys(&|s| s.output.j_integrals[0].radius = 0.0), [key(".radius")]);
     assert_eq!(keys(&|s| s.output.j_integrals[0].radius = 5e-3), [key(".radius")]);
+    assert_eq!(keys(&|s| s.output.j_integrals[0].radius = 3e-4), [key(".radius")]);
     assert_eq!(keys(&|s| s.output.j_integrals[0].at = Some([f64::NAN, 0.0])), [key("")]);
     assert_eq!(keys(&|s| s.analysis.kinematics = Kinematics::Finite), [key("")]);
     assert_eq!(keys(&|s| s.bodies[0].cracks.clear()), [key("")]);
     let twice = keys(&|s| s.output.j_integrals.push(s.output.j_integrals[0].clone()));
     assert_eq!(twice, ["output.j_integral.1.name"]);
+}
+
+#[test]
+fn a_hole_in_the_domain_leaves_no_j_integral() {
+    let mut scene = strip(1e-6);
+    scene.analysis.end_time = 1e-7;
+    scene.output.samples = 1;
+    let value = |scene: &Scene| column(&run(scene).1[0], "j_integral_j_per_m2");
+    assert!(value(&scene) > 0.0);
+    let hole = Shape::Disk { center: [0.008, 0.0045], radius: 5e-4 };
+    scene.bodies[0].shape = Shape::Difference { of: Box::new(scene.bodies[0].shape.clone()), minus: vec![hole] };
+    assert!(value(&scene).is_nan());
+    scene.output.j_integrals[0].radius = 1.2e-3;
+    assert!(value(&scene) > 0.0);
 }

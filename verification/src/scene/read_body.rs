@@ -169,11 +169,12 @@ fn shape(item: &Item<'_>) -> Option<Shape> {
     }
 }
 
-/// A shape that is cut out: any, or a notch.
+/// Shapes that are cut out: any, or a notch.
 fn cut_out(item: &Item<'_>) -> Option<Vec<Shape>> {
-    match item.at("notch") {
-        Some(given) => item.fields(&["notch"]).and_then(|_| notch(&given)),
-        None => shape(item).map(|shape| vec![shape]),
+    match (item.at("notch"), item.at("union")) {
+        (Some(given), _) => item.fields(&["notch"]).and_then(|_| notch(&given)),
+        (None, Some(given)) => item.fields(&["union"]).and_then(|_| given.each(cut_out)).map(|shapes| shapes.concat()),
+        (None, None) => shape(item).map(|shape| vec![shape]),
     }
 }
 

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::TotalFrame;
+use super::domain::Domain;
 use super::edge_conditions::EdgeConditions;
 use super::forced::LatticeForcing;
 use super::held_points::held_points;
-use super::j_integral::Domain;
 use super::prescribed::Reactions;
 use super::probe::ProbePlace;
 use crate::dynamics::constraints::Constraints;
@@ -75,7 +75,7 @@ impl TotalFrame {
             gravity: scene.analysis.gravity,
             strip_forces: StripForces::new(&lattice),
             probes: scene.output.probes.iter().filter_map(|probe| ProbePlace::new(&patch, &lattice, probe)).collect(),
-            domains: scene.output.j_integrals.iter().filter_map(|j| Domain::new(body, j)).collect(),
+            domains: Domain::all(&patch, body, &scene.output.j_integrals),
             density: material.density,
             crack_start: crack_start(body),
             displacement: zeros(),

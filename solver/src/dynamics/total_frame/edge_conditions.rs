@@ -6,7 +6,8 @@
 //!
 //! ```text
 //! ∫ μ_r (v·e − w·e) dΓ = 0,   e = x, y or the normal of the edge as it was at t = 0
-//! M a = f_ext − f_int − Bᵀ λ,   B_rI = ∫ μ_r N_I e dΓ,   (B M⁻¹ Bᵀ) λ = B M⁻¹ (f_ext − f_int) − B a_prescribed
+//! M a = f_ext − f_int − Bᵀ λ,   B_rI = ∫ μ_r N_I e dΓ
+//! (B M⁻¹ Bᵀ) λ = B M⁻¹ (f_ext − f_int) − B a_prescribed
 //! ```
 //!
 //! The multipliers remove directions from the operator and add no stiffness, so the critical step is never
@@ -36,6 +37,8 @@ use crate::splines::spline::SplineSpace;
 const PART: f64 = 2.0;
 /// Yield of a multiplier at control points that can move, of that at all of them, that counts as none.
 const YIELDS: f64 = 1e-9;
+/// Least part of the compliance of a multiplier that the others do not have.
+const INDEPENDENT: f64 = 1e-9;
 /// Part of a rigid motion that a condition may see by round-off.
 const ROUND_OFF: f64 = 1e-9;
 
@@ -105,6 +108,9 @@ impl EdgeConditions {
         let factor = compliance(&moments, &inverse).and_then(|lower| LowerFactor::new(&lower, None));
         let reactions = vec![Reaction::default(); conditions.len()];
         let factor = factor.ok_or(Failure::HeldTwice(last))?;
+        if let Some(moment) = dependent(&moments, &inverse, &factor) {
+            return Err(Failure::HeldTwice(moment.condition));
+        }
         Ok(Some(Box::new(Self { conditions, moments, inverse, held, factor, reactions })))
     }
 
@@ -283,7 +289,7 @@ fn moments_of(
     Ok(shares.into_iter().zip(totals).map(moment).collect())
 }
 
-/// Splines along an edge for multipliers.
+/// Splines along an edge for multipliers; linear on an edge that is shorter than a part.
 fn multiplier_space(patch: &Patch, parts: &[Vec<SurfacePoint>]) -> SplineSpace {
     let degree = patch.spaces.iter().map(|space| space.degree()).max().unwrap_or(1);
     let length = |part: &Vec<SurfacePoint>| part.iter().map(|point| point.length).sum::<f64>();
@@ -304,8 +310,24 @@ fn multiplier_space(patch: &Patch, parts: &[Vec<SurfacePoint>]) -> SplineSpace {
             (since, wanted) = (0.0, 0.0);
         }
     }
-    let degree = (degree - 1).max(1);
+    let is_short = total < PART * parts.iter().filter(|part| !part.is_empty()).map(size).fold(0.0, larger);
+    let degree = if is_short { 1 } else { (degree - 1).max(1) };
     SplineSpace::new(degree, &[vec![0.0; degree + 1], knots, vec![total; degree + 1]].concat())
+}
+
+/// A moment that nearly follows from the others: what is left of its own compliance beside them, `1/(S⁻¹)_rr`
+/// of `S_rr` for `S = B M⁻¹ Bᵀ`, is less than [`INDEPENDENT`].
+fn dependent<'a>(moments: &'a [Moment], inverse: &[Vec<f64>], factor: &LowerFactor) -> Option<&'a Moment> {
+    (0..moments.len())
+        .map(|row| {
+            let mut unit = vec![0.0; moments.len()];
+            unit[row] = 1.0;
+            factor.solve(&mut unit);
+            let own: f64 =
+                moments[row].shares.iter().zip(&inverse[row]).map(|((.., share), m)| share * share * m).sum();
+            (1.0 / (unit[row] * own), &moments[row])
+        })
+        .find_map(|(part, moment)| (part < INDEPENDENT).then_some(moment))
 }
 
 /// The lower triangle of `B M⁻¹ Bᵀ`.

@@ -10,45 +10,16 @@
 //! and lie along axis 1.
 
 use super::TotalFrame;
-use crate::dynamics::body_sample::column_name;
+use super::domain::Domain;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::lane::Lane;
 use crate::material::split::split;
-use crate::scene::{Body, JIntegral};
 
 /// Part of the radius within which q is 1.
 const PLATEAU: f64 = 0.5;
 
-/// A J-integral, with its axis.
-#[derive(Debug, Clone)]
-pub(super) struct Domain {
-    /// Name of its column.
-    column: String,
-    radius: f64,
-    /// Where the tip is if it does not move, or before there is a crack, m.
-    tip: [f64; 2],
-    moves: bool,
-    /// Unit vector along the crack.
-    axis: [f64; 2],
-}
-
-impl Domain {
-    /// `None` if the scene does not say where the tip is, or where the crack goes.
-    pub(super) fn new(body: &Body, integral: &JIntegral) -> Option<Self> {
-        let (tip, axis) = integral.tip_and_axis(body)?;
-        let column = column(integral);
-        Some(Self { column, radius: integral.radius, tip, moves: integral.at.is_none(), axis })
-    }
-}
-
-/// Column of the history, J/m².
-pub fn column(integral: &JIntegral) -> String {
-    let name = integral.name.as_ref().map_or(String::new(), |name| format!("{}_", column_name(name)));
-    format!("{name}j_integral_j_per_m2")
-}
-
 impl TotalFrame {
-    /// Every J-integral with its column; not a number where the domain leaves the body.
+    /// Every J-integral with its column; not a number where the boundary of the body enters the domain.
     pub(super) fn j_integrals(&self) -> Vec<(String, f64)> {
         if self.domains.is_empty() {
             return Vec::new();
@@ -64,8 +35,8 @@ impl TotalFrame {
         let Domain { radius, axis: [ax, ay], .. } = *domain;
         let moving = self.fracture.as_ref().filter(|_| domain.moves).and_then(|fracture| self.crack_tip(fracture));
         let tip = moving.map_or(domain.tip, |tip| tip.place);
-        let (low, high) = self.shape.bounding_box();
-        if (0..2).any(|d| tip[d] - radius < low[d] || tip[d] + radius > high[d]) {
+        let reaches = |place: &[f64; 2]| (place[0] - tip[0]).hypot(place[1] - tip[1]) < radius;
+        if !self.shape.contains(tip) || domain.boundary.iter().any(reaches) {
             return f64::NAN;
         }
         let density = self.density;

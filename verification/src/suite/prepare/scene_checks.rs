@@ -2,7 +2,7 @@
 
 use fisura::dynamics::body_sample::BodySamples;
 use fisura::dynamics::energy::{ConditionSample, ContactSample, FractureSample, ProbeSample, Sample};
-use fisura::dynamics::total_frame::j_integral::column;
+use fisura::dynamics::total_frame::domain::column;
 use fisura::scene::{Frame, PhaseFieldInterval, Scene};
 
 use super::{EVERYWHERE, Wrong, distinct, find_band, grid_convergence};

@@ -1,0 +1,47 @@
+//! Domains of J-integrals.
+
+use std::sync::Arc;
+
+use crate::dynamics::body_sample::column_name;
+use crate::dynamics::surface::points_around;
+use crate::scene::{Body, JIntegral, Shape};
+use crate::splines::patch::Patch;
+
+/// A J-integral, with its axis.
+#[derive(Debug, Clone)]
+pub(super) struct Domain {
+    /// Name of its column.
+    pub column: String,
+    /// Radius, m.
+    pub radius: f64,
+    /// Where the tip is if it does not move, or before there is a crack, m.
+    pub tip: [f64; 2],
+    /// Whether it is the tip of a crack that runs.
+    pub moves: bool,
+    /// Unit vector along the crack.
+    pub axis: [f64; 2],
+    /// Positions along the boundary of the body, m.
+    pub boundary: Arc<Vec<[f64; 2]>>,
+}
+
+impl Domain {
+    /// Those of a scene, as far as it says where the tip is, and where the crack goes.
+    pub(super) fn all(patch: &Patch, body: &Body, integrals: &[JIntegral]) -> Vec<Self> {
+        let (min, max) = patch.bounding_box();
+        let shape = if body.shape == Shape::Patch { &Shape::Rectangle { min, max } } else { &body.shape };
+        let places = || points_around(patch, shape).into_iter().map(|point| point.position).collect();
+        let boundary = if integrals.is_empty() { Arc::default() } else { Arc::new(places()) };
+        let domain = |integral: &JIntegral| {
+            let (tip, axis) = integral.tip_and_axis(body)?;
+            let (column, boundary) = (column(integral), Arc::clone(&boundary));
+            Some(Self { column, radius: integral.radius, tip, moves: integral.at.is_none(), axis, boundary })
+        };
+        integrals.iter().filter_map(domain).collect()
+    }
+}
+
+/// Column of the history, J/m².
+pub fn column(integral: &JIntegral) -> String {
+    let name = integral.name.as_ref().map_or(String::new(), |name| format!("{}_", column_name(name)));
+    format!("{name}j_integral_j_per_m2")
+}
