@@ -42,6 +42,9 @@ const INDEPENDENT: f64 = 1e-9;
 /// Part of a rigid motion that a condition may see by round-off.
 const ROUND_OFF: f64 = 1e-9;
 
+/// A prescribed direction from the normal of an edge.
+type Direction = fn([f64; 2]) -> [f64; 2];
+
 /// A moment of the motion of an edge, and its multiplier.
 #[derive(Debug, Clone)]
 struct Moment {
@@ -253,14 +256,14 @@ fn moments_of(
 ) -> Result<Vec<Moment>, Failure> {
     let parts = smooth_parts(patch, body, &condition.edge);
     let space = multiplier_space(patch, &parts);
-    let frames: &[fn([f64; 2]) -> [f64; 2]] = match condition.hold {
+    let directions: &[Direction] = match condition.hold {
         Hold::Components([true, true]) => &[|_| [1.0, 0.0], |_| [0.0, 1.0]],
         Hold::Components([true, false]) => &[|_| [1.0, 0.0]],
         Hold::Components([false, true]) => &[|_| [0.0, 1.0]],
         Hold::Components([false, false]) => &[],
         Hold::Normal => &[|normal| normal],
     };
-    let mut shares = vec![BTreeMap::<(usize, usize), f64>::new(); frames.len() * space.dimension()];
+    let mut shares = vec![BTreeMap::<(usize, usize), f64>::new(); directions.len() * space.dimension()];
     let mut totals = vec![[0.0; 2]; shares.len()];
     for point in parts.iter().flatten() {
         let moves = |at| mass.moves(at);
@@ -270,7 +273,7 @@ fn moments_of(
         let multipliers = space.shape_functions(span, point.along).value;
         for (k, multiplier) in multipliers[..=space.degree()].iter().enumerate() {
             let row = space.spans()[span].first + k;
-            for (set, along) in frames.iter().enumerate() {
+            for (set, along) in directions.iter().enumerate() {
                 let (row, direction) = (set * space.dimension() + row, along(point.normal));
                 for component in (0..2).filter(|&d| direction[d] != 0.0) {
                     let weight = multiplier * point.length * direction[component];
