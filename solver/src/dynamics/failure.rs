@@ -42,7 +42,7 @@ pub enum Failure {
         /// Place, m.
         place: [f64; 2],
     },
-    /// What that condition of the body prescribes is prescribed already.
+    /// What that condition of the body prescribes follows from what others prescribe.
     HeldTwice(usize),
     /// Two conditions whose parts of a side share a control point and prescribe it differently.
     Contradiction([usize; 2]),

@@ -57,8 +57,8 @@ pub(crate) fn curve_of(body: &Body, edge: &Edge) -> (BoundaryEdge, [f64; 2]) {
     }
 }
 
-/// Gauss points along an edge of a body, part by part: those of a part are in one
-/// span, and their distances are from the end of the edge.
+/// Gauss points along an edge of a body, part by part: those of a part are in one span, and their distances
+/// are from the first end of the edge.
 pub(crate) fn smooth_parts(patch: &Patch, body: &Body, edge: &Edge) -> Vec<Vec<SurfacePoint>> {
     let ((curve, part), rule) = (curve_of(body, edge), smooth_rule(patch));
     let places = divisions(patch, &curve, part);
@@ -116,7 +116,7 @@ fn divisions(patch: &Patch, edge: &BoundaryEdge, [from, to]: [f64; 2]) -> Vec<f6
     if let BoundaryEdge::Circle { .. } = edge {
         let parts = ((to - from) / PART_OF_CIRCLE).ceil();
         places.extend((1..parts as usize).map(|part| from + (to - from) * part as f64 / parts));
-        places[2..].iter_mut().for_each(|s| *s += (from - *s).ceil()); // whole turns
+        places[2..].iter_mut().for_each(|s| *s = edge.place_after(from, *s));
     }
     places.retain(|s| (from + NEAR..to - NEAR).contains(s) || *s == from || *s == to);
     places.sort_by(f64::total_cmp);

@@ -125,6 +125,11 @@ impl BoundaryEdge {
         }
     }
 
+    /// The same place s, on a circle in the first turn from another place on.
+    pub(crate) fn place_after(&self, from: f64, s: f64) -> f64 {
+        if let Self::Circle { .. } = self { s + (from - s).ceil() } else { s }
+    }
+
     /// Where coordinate `d` has a value (m): s from 0 to 1.
     pub(crate) fn places(&self, d: usize, value: f64) -> impl Iterator<Item = f64> {
         let position = move |other: f64| if d == 0 { [value, other] } else { [other, value] };
@@ -140,7 +145,7 @@ impl BoundaryEdge {
     /// Where it meets others, between two of its places, and these (s), in order.
     pub(crate) fn places_met(&self, others: &[Self], [from, to]: [f64; 2]) -> Vec<f64> {
         let met = others.iter().flat_map(|other| self.meets(other)).map(|place| self.place_of(place));
-        let turned = met.map(|s| if let Self::Circle { .. } = self { s + (from - s).ceil() } else { s });
+        let turned = met.map(|s| self.place_after(from, s));
         let mut places: Vec<f64> = turned.filter(|s| from < *s && *s < to).chain([from, to]).collect();
         places.sort_by(f64::total_cmp);
         places

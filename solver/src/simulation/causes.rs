@@ -126,6 +126,9 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
             HELD_TWICE,
         ),
         Failure::HoldsNothing(_) => ("the part of the side holds no control point of a body".to_string(), WIDEN_PART),
+        Failure::NoEquilibrium(residual) if residual.is_nan() => {
+            ("no static state was found: the displacements are not numbers".to_string(), NO_EQUILIBRIUM)
+        }
         Failure::NoEquilibrium(residual) => (
             format!("no static state was found: {residual:.1e} of the largest nodal force is out of balance"),
             NO_EQUILIBRIUM,

@@ -6,9 +6,9 @@ use super::look::Look;
 use super::tractions;
 use crate::dynamics::surface::curve_of;
 use crate::scene::edges::BoundaryEdge;
-use crate::scene::{Body, Boundary, Edge, EdgeCondition, Frame, Hold, Mass, Mesh, Scene, Shape, Side};
+use crate::scene::{Body, Boundary, EdgeCondition, Frame, Hold, Mass, Mesh, Prescribed, Scene, Shape, Side};
 
-/// Distance within which two edges are one, of the size of an edge.
+/// Distance within which two places are one, of the size of an edge.
 const NEAR: f64 = 1e-9;
 
 pub(super) fn check(key: &str, scene: &Scene, look: &Look<'_>, findings: &mut Findings) {
@@ -28,33 +28,90 @@ pub(super) fn check(key: &str, scene: &Scene, look: &Look<'_>, findings: &mut Fi
         if findings.errors.len() > before {
             continue;
         }
-        if let Some(i) = (0..j).find(|&i| prescribe_the_same([condition, &body.conditions[i]], body)) {
-            let message = format!("this motion is prescribed on a part of this edge by condition.{i} too");
-            findings.error(format!("{key}.fix"), message, "remove one of the two");
-        }
-        for (i, boundary) in scene.boundaries.iter().enumerate() {
-            let side = EdgeCondition {
-                edge: part_of_side(boundary, &scene.mesh),
-                hold: Hold::Components(boundary.fix),
-                ..condition.clone()
-            };
-            if prescribe_the_same([condition, &side], body) {
-                let message = format!("this motion is prescribed on a part of this edge by boundary.{i} too");
+        let here = Held::on_edge(j, condition, body);
+        let sides = scene.boundaries.iter().enumerate().map(|(i, boundary)| Held::on_side(i, boundary, &scene.mesh));
+        let edges = body.conditions[..j].iter().enumerate().map(|(i, other)| Held::on_edge(i, other, body));
+        for there in sides.chain(edges) {
+            if here.shares_component_with(&there) && (here.overlaps(&there) || there.overlaps(&here)) {
+                let message = format!("this motion is prescribed on a part of this edge by {} too", there.who);
                 findings.error(format!("{key}.fix"), message, "remove one of the two");
+            } else if let (Some(d), true) = (here.contradicts(&there), here.meets(&there) || there.meets(&here)) {
+                let message = format!("the end of this edge moves otherwise in {} by {}", ["x", "y"][d], there.who);
+                let remedy = "give both the same motion, or leave a gap of a cell between them";
+                findings.error(format!("{key}.fix"), message, remedy);
             }
         }
     }
 }
 
-/// The part of a side of the mesh on which a condition acts.
-fn part_of_side(boundary: &Boundary, mesh: &Mesh) -> Edge {
-    let (min, max) = (mesh.origin(), mesh.end());
-    let [mut a, mut b] = Shape::Rectangle { min, max }.side(boundary.side).unwrap_or_default();
-    if let Some([from, to]) = boundary.part {
-        let along = usize::from(matches!(boundary.side, Side::Left | Side::Right));
-        (a[along], b[along]) = (from, to);
+/// What is prescribed on a part of a curve, and by whom.
+struct Held<'a> {
+    who: String,
+    curve: BoundaryEdge,
+    part: [f64; 2],
+    hold: Hold,
+    prescribed: &'a Prescribed,
+}
+
+impl<'a> Held<'a> {
+    fn on_edge(i: usize, EdgeCondition { edge, hold, prescribed, .. }: &'a EdgeCondition, body: &Body) -> Self {
+        let (curve, part) = curve_of(body, edge);
+        Self { who: format!("condition.{i}"), curve, part, hold: *hold, prescribed }
     }
-    Edge::Segment([a, b])
+
+    fn on_side(i: usize, boundary: &'a Boundary, mesh: &Mesh) -> Self {
+        let (min, max) = (mesh.origin(), mesh.end());
+        let [mut a, mut b] = Shape::Rectangle { min, max }.side(boundary.side).unwrap_or_default();
+        if let Some([from, to]) = boundary.part {
+            let along = usize::from(matches!(boundary.side, Side::Left | Side::Right));
+            (a[along], b[along]) = (from, to);
+        }
+        Self {
+            who: format!("boundary.{i}"),
+            curve: BoundaryEdge::Line([a, b]),
+            part: [0.0, 1.0],
+            hold: Hold::Components(boundary.fix),
+            prescribed: &boundary.prescribed,
+        }
+    }
+
+    fn shares_component_with(&self, other: &Self) -> bool {
+        match [self.hold, other.hold] {
+            [Hold::Components(a), Hold::Components(b)] => (0..2).any(|d| a[d] && b[d]),
+            _ => true,
+        }
+    }
+
+    /// A component to which both give different motions.
+    fn contradicts(&self, other: &Self) -> Option<usize> {
+        let [Hold::Components(a), Hold::Components(b)] = [self.hold, other.hold] else { return None };
+        (0..2).find(|&d| a[d] && b[d] && self.prescribed.course(d) != other.prescribed.course(d))
+    }
+
+    /// Whether an end of it is on the other.
+    fn meets(&self, other: &Self) -> bool {
+        self.part.iter().any(|end| other.holds(self.curve.at(*end).0))
+    }
+
+    /// Whether more than places of it are on the other.
+    fn overlaps(&self, other: &Self) -> bool {
+        let [from, to] = self.part;
+        let ends = other.part.map(|end| self.curve.place_of(other.curve.at(end).0));
+        let ends = ends.into_iter().map(|place| self.curve.place_after(from, place));
+        let mut places: Vec<f64> = ends.filter(|s| (from..=to).contains(s)).chain([from, to]).collect();
+        places.sort_by(f64::total_cmp);
+        let mut parts = places.windows(2).filter(|pair| pair[1] - pair[0] > NEAR * (to - from));
+        parts.any(|pair| other.holds(self.curve.at(0.5 * (pair[0] + pair[1])).0))
+    }
+
+    /// Whether a position (m) is on it.
+    fn holds(&self, position: [f64; 2]) -> bool {
+        let [from, to] = self.part;
+        let place = self.curve.place_after(from, self.curve.place_of(position));
+        let [x, y] = self.curve.at(place).0;
+        (from - NEAR..=to + NEAR).contains(&place)
+            && (position[0] - x).hypot(position[1] - y) <= NEAR * self.curve.length()
+    }
 }
 
 /// What the updated frame, patches and the consistent mass do not have.
@@ -78,36 +135,4 @@ fn supported(key: &str, scene: &Scene, look: &Look<'_>, findings: &mut Findings)
     };
     findings.error(key, message, remedy);
     false
-}
-
-/// Whether two conditions prescribe a component on a part that their edges share.
-fn prescribe_the_same(pair: [&EdgeCondition; 2], body: &Body) -> bool {
-    let shared = match pair.map(|condition| condition.hold) {
-        [Hold::Components(a), Hold::Components(b)] => (0..2).any(|d| a[d] && b[d]),
-        _ => true,
-    };
-    shared && [[pair[0], pair[1]], [pair[1], pair[0]]].iter().any(|[a, b]| overlap(&a.edge, &b.edge, body))
-}
-
-/// Whether two edges share more than places.
-fn overlap(edge: &Edge, other: &Edge, body: &Body) -> bool {
-    let ((curve, [from, to]), other) = (curve_of(body, edge), curve_of(body, other));
-    let ends = other.1.map(|end| place_on(&curve, from, other.0.at(end).0));
-    let mut places: Vec<f64> = ends.into_iter().filter(|s| (from..=to).contains(s)).chain([from, to]).collect();
-    places.sort_by(f64::total_cmp);
-    let parts = places.windows(2).filter(|pair| pair[1] - pair[0] > NEAR * (to - from));
-    parts.into_iter().any(|pair| lies_on(curve.at(0.5 * (pair[0] + pair[1])).0, &other))
-}
-
-/// Where a position (m) is on a curve, from one of its places on.
-fn place_on(curve: &BoundaryEdge, from: f64, position: [f64; 2]) -> f64 {
-    let place = curve.place_of(position);
-    if let BoundaryEdge::Circle { .. } = curve { place + (from - place).ceil() } else { place }
-}
-
-/// Whether a position (m) is on a part of a curve.
-fn lies_on(position: [f64; 2], (curve, [from, to]): &(BoundaryEdge, [f64; 2])) -> bool {
-    let place = place_on(curve, *from, position);
-    let [x, y] = curve.at(place).0;
-    (*from..=*to).contains(&place) && (position[0] - x).hypot(position[1] - y) <= NEAR * curve.length()
 }

@@ -51,7 +51,12 @@ pub(crate) fn defect(shape: &Shape) -> Option<(String, &'static str)> {
 pub(crate) fn cut_nowhere(shape: &Shape) -> Option<&Shape> {
     let Shape::Difference { of, minus } = shape else { return None };
     let reaches = |a: &Shape, b: &Shape| outline(a).into_iter().any(|place| b.contains(place));
-    minus.iter().find(|hole| **of != Shape::Patch && !reaches(hole, of) && !reaches(of, hole))
+    let crosses = |a: &Shape, b: &Shape| {
+        let edges = b.edges();
+        a.edges().iter().any(|edge| edges.iter().any(|other| !edge.meets(other).is_empty()))
+    };
+    let misses = |hole: &&Shape| !reaches(hole, of) && !reaches(of, hole) && !crosses(hole, of);
+    minus.iter().find(|hole| **of != Shape::Patch && misses(hole))
 }
 
 /// Corners and circles of a shape: what a test of a position against it costs.
@@ -147,5 +152,15 @@ mod tests {
         assert!(x.hypot(y) <= 2.0);
         let [x, y] = covered_side(&around_hole, &ring).expect("the opening is still covered");
         assert!(x.hypot(y) > 1.0 && y.abs() < 1e-2, "not the side of the hole: ({x}, {y})");
+    }
+
+    #[test]
+    fn a_cut_that_misses_is_found() {
+        let disk = |x, y, radius| Shape::Disk { center: [x, y], radius };
+        let plate = || Box::new(Shape::Rectangle { min: [0.0; 2], max: [1.0; 2] });
+        let cut = |hole| cut_nowhere(&Shape::Difference { of: plate(), minus: vec![hole] }).is_some();
+        assert!(cut(disk(2.0, 0.5, 0.9)) && cut(disk(-1.0, -1.0, 1.4)), "beside it");
+        let strip = Shape::Rectangle { min: [0.5, -1e3], max: [0.5001, 1e3] };
+        assert!(!cut(disk(0.5, 0.5, 1e-3)) && !cut(disk(0.5, 0.5, 9.0)) && !cut(disk(2.0, 0.5, 1.01)) && !cut(strip));
     }
 }

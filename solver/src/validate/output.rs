@@ -1,11 +1,13 @@
 //! Checks of what is recorded: samples, frames, probes, bodies, J-integrals.
 
 use super::findings::Findings;
+use super::geometry::defect;
 use super::ground::Ground;
 use crate::dynamics::body_sample::column_name;
-use crate::dynamics::total_frame::domain::column;
+use crate::dynamics::total_frame::domain::{Domain, column};
 use crate::linear_algebra::extremes::larger;
-use crate::scene::{Frame, JIntegral, Kinematics, Scene};
+use crate::scene::{Body, Frame, JIntegral, Kinematics, Scene};
+use crate::splines::patch::Patch;
 
 /// Most bodies whose columns are recorded.
 const MOST_RECORDED: usize = 64;
@@ -60,12 +62,8 @@ fn j_integral(i: usize, integral: &JIntegral, scene: &Scene, ground: &Ground<'_>
         let remedy = "give at = [x, y] and angle = 0.0 (degrees), or a [[body.crack]]";
         return findings.error(key, "neither it nor a crack says where the tip is and where the crack goes", remedy);
     };
-    let (low, high) = scene.mesh.extent(&body.shape);
-    if (0..2).any(|d| tip[d] - integral.radius < low[d] || tip[d] + integral.radius > high[d]) {
-        let message = format!("the circle about the tip ({}, {}) m leaves the body", tip[0], tip[1]);
-        let remedy = "give a smaller radius; the last point of the crack is its tip";
-        findings.error(format!("{key}.radius"), message, remedy);
-    }
+    let fracture = scene.materials.get(&body.material).and_then(|material| material.fracture.as_ref());
+    filled(&key, integral, tip, (scene, body, fracture.is_some()), ground, findings);
     let span = |d: usize| {
         let space = &ground.spaces.as_ref()?[d];
         space.find_span(tip[d]).map(|span| space.spans()[span].length())
@@ -76,10 +74,34 @@ fn j_integral(i: usize, integral: &JIntegral, scene: &Scene, ground: &Ground<'_>
         let remedy = format!("give at least {LEAST_SPANS} cells, {} m, or use smaller cells", LEAST_SPANS * span);
         findings.error(format!("{key}.radius"), message, remedy);
     }
-    let fracture = scene.materials.get(&body.material).and_then(|material| material.fracture.as_ref());
     if let Some(l0) = fracture.map(|fracture| fracture.length_scale).filter(|l0| integral.radius < 8.0 * l0) {
         let message = format!("half of the radius is less than 4 l0 = {} m: the process zone counts in part", 4.0 * l0);
         findings.warn(format!("{key}.radius"), message);
+    }
+}
+
+/// The body fills the domain; about a tip that runs it may do so later.
+fn filled(
+    key: &str,
+    integral: &JIntegral,
+    tip: [f64; 2],
+    (scene, body, fractures): (&Scene, &Body, bool),
+    ground: &Ground<'_>,
+    findings: &mut Findings,
+) {
+    if !ground.is_sound || ground.patch.is_some() || defect(&body.shape).is_some() {
+        return;
+    }
+    let domains = Domain::all(&Patch::new(&scene.mesh), body, std::slice::from_ref(integral));
+    if domains.iter().all(|domain| domain.is_filled(tip, &body.shape)) {
+        return;
+    }
+    let key = format!("{key}.radius");
+    let message = format!("the boundary of the body enters the circle about the tip ({}, {}) m", tip[0], tip[1]);
+    if fractures && integral.at.is_none() {
+        findings.warn(key, format!("{message}: J is not a number until the crack is a radius away from it"));
+    } else {
+        findings.error(key, message, "give a smaller radius; the last point of the crack is its tip");
     }
 }
 

@@ -204,6 +204,13 @@ fn what_is_prescribed_twice_is_refused() {
     assert_eq!(keys(&scene), ["body.0.condition.0.fix"]);
     scene.boundaries[0].fix = [false, true];
     assert_eq!(keys(&scene), [""; 0]);
+    scene.boundaries = vec![Boundary::fixed(Side::Bottom, [true, false])];
+    assert_eq!(keys(&scene), ["body.0.condition.0.fix"], "the corner would be driven and held");
+    scene.boundaries[0].prescribed = scene.bodies[0].conditions[0].prescribed.clone();
+    assert_eq!(keys(&scene), [""; 0]);
+    let mut apart = held_in_parts(2, &[[0.0, 0.5], [0.5, 1.0]]);
+    apart.bodies[0].conditions[1].prescribed = Prescribed::velocity([0.0, 1.0]);
+    assert_eq!(keys(&apart), ["body.0.condition.1.fix"], "parts that meet and move apart");
     let arc = |angles| EdgeCondition::fixed(Edge::Arc { center: [0.005; 2], radius: 0.004, angles }, Hold::Normal);
     let mut disc = elastic_scene(2, [0.01; 2], [13; 2]);
     disc.bodies[0].shape = Shape::Disk { center: [0.005; 2], radius: 0.004 };

@@ -61,9 +61,18 @@ fn what_a_j_integral_does_not_know_is_refused() {
     };
     let key = |word: &str| format!("output.j_integral.0{word}");
     assert_eq!(keys(&|s| s.output.j_integrals[0].radius = 0.0), [key(".radius")]);
-    assert_eq!(keys(&|s| s.output.j_integrals[0].radius = 5e-3), [key(".radius")]);
+    let fixed = |s: &mut Scene, radius| {
+        s.output.j_integrals[0].at = Some([6e-3, 4e-3]);
+        s.output.j_integrals[0].radius = radius;
+    };
+    assert_eq!(keys(&|s| fixed(s, 5e-3)), [key(".radius")]);
+    let mut running = strip(1e-6);
+    running.output.j_integrals[0].radius = 5e-3;
+    let warnings = validate(&running).unwrap();
+    assert!(warnings.iter().any(|warning| warning.message.contains("not a number until")), "{warnings:?}");
     assert_eq!(keys(&|s| s.output.j_integrals[0].radius = 3e-4), [key(".radius")]);
     assert_eq!(keys(&|s| s.output.j_integrals[0].at = Some([f64::NAN, 0.0])), [key("")]);
+    assert_eq!(keys(&|s| s.output.j_integrals[0].at = Some([1.0, 0.0])), [key(".radius")]);
     assert_eq!(keys(&|s| s.analysis.kinematics = Kinematics::Finite), [key("")]);
     assert_eq!(keys(&|s| s.bodies[0].cracks.clear()), [key("")]);
     let twice = keys(&|s| s.output.j_integrals.push(s.output.j_integrals[0].clone()));

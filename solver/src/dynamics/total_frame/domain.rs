@@ -9,7 +9,7 @@ use crate::splines::patch::Patch;
 
 /// A J-integral, with its axis.
 #[derive(Debug, Clone)]
-pub(super) struct Domain {
+pub(crate) struct Domain {
     /// Name of its column.
     pub column: String,
     /// Radius, m.
@@ -26,7 +26,7 @@ pub(super) struct Domain {
 
 impl Domain {
     /// Those of a scene, as far as it says where the tip is, and where the crack goes.
-    pub(super) fn all(patch: &Patch, body: &Body, integrals: &[JIntegral]) -> Vec<Self> {
+    pub(crate) fn all(patch: &Patch, body: &Body, integrals: &[JIntegral]) -> Vec<Self> {
         let (min, max) = patch.bounding_box();
         let shape = if body.shape == Shape::Patch { &Shape::Rectangle { min, max } } else { &body.shape };
         let places = || points_around(patch, shape).into_iter().map(|point| point.position).collect();
@@ -37,6 +37,12 @@ impl Domain {
             Some(Self { column, radius: integral.radius, tip, moves: integral.at.is_none(), axis, boundary })
         };
         integrals.iter().filter_map(domain).collect()
+    }
+
+    /// Whether the body fills it about a tip, m.
+    pub(crate) fn is_filled(&self, tip: [f64; 2], shape: &Shape) -> bool {
+        let reaches = |place: &[f64; 2]| (place[0] - tip[0]).hypot(place[1] - tip[1]) < self.radius;
+        shape.contains(tip) && !self.boundary.iter().any(reaches)
     }
 }
 

@@ -35,8 +35,7 @@ impl TotalFrame {
         let Domain { radius, axis: [ax, ay], .. } = *domain;
         let moving = self.fracture.as_ref().filter(|_| domain.moves).and_then(|fracture| self.crack_tip(fracture));
         let tip = moving.map_or(domain.tip, |tip| tip.place);
-        let reaches = |place: &[f64; 2]| (place[0] - tip[0]).hypot(place[1] - tip[1]) < radius;
-        if !self.shape.contains(tip) || domain.boundary.iter().any(reaches) {
+        if !domain.is_filled(tip, &self.shape) {
             return f64::NAN;
         }
         let density = self.density;
