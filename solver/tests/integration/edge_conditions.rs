@@ -42,6 +42,7 @@ fn pressed(degree: usize, angle: f64, offset: f64) -> Scene {
     scene
 }
 
+/// To what the static start leaves: 1e-9 of the largest nodal force.
 #[test]
 fn rollers_at_any_angle_carry_a_uniform_stress() {
     for degree in [2, 3, 4] {
@@ -89,6 +90,8 @@ fn driven(on_side: bool, from: f64) -> Scene {
     scene
 }
 
+/// Exactly where the end is on the side; else to 2 %: the mesh ends otherwise, and the lumped mass disperses
+/// the wave by 0.8 % at 0.5 mm.
 #[test]
 fn a_driven_end_beside_the_mesh_is_one_on_its_side() {
     let reference = column(&run(&driven(true, 0.0)).1, "reaction_end_x_n");
@@ -104,6 +107,7 @@ fn a_driven_end_beside_the_mesh_is_one_on_its_side() {
     }
 }
 
+/// To 1 %: the case `energy/driven-edge` has 0.3 % at 40 degrees and the orders.
 #[test]
 fn a_driven_end_at_any_angle_pushes_with_the_impedance_of_the_bar() {
     for (angle, hold) in [(0.2, Hold::Normal), (2.1, Hold::Components([true, true])), (1.3, Hold::Normal)] {
@@ -147,6 +151,7 @@ fn random_bodies(random: &mut Random) -> Vec<(Shape, Vec<Edge>)> {
     ]
 }
 
+/// To 0.1 %: the estimate of the step has an error of 0.25 %, most of which is the same for both.
 #[test]
 fn conditions_do_not_shorten_the_step() {
     let mut random = Random::new(7);
