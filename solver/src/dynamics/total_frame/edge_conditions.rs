@@ -269,7 +269,7 @@ fn moments_of(
         let moves = |at| mass.moves(at);
         let lost = Failure::LostCondition { condition: number, place: point.position };
         let functions = functions_of_material(patch, lattice, point, moves).ok_or(lost)?;
-        let Some(span) = space.find_span(point.along) else { continue };
+        let span = space.find_span(point.along).ok_or(lost)?;
         let multipliers = space.shape_functions(span, point.along).value;
         for (k, multiplier) in multipliers[..=space.degree()].iter().enumerate() {
             let row = space.spans()[span].first + k;
