@@ -25,9 +25,12 @@
 
 mod advance;
 pub mod assembly;
+mod awake;
+mod bounds;
 pub mod fracture;
 mod lag;
 mod method;
+mod minimise;
 mod state;
 
 use serde::{Deserialize, Serialize};
@@ -43,6 +46,7 @@ use crate::material::degradation::FractureModel;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_form};
 use crate::scene::SolverSettings;
+use bounds::Bounds;
 use lag::Lag;
 use method::Method;
 
@@ -88,6 +92,8 @@ pub struct PhaseField {
     method: Method,
     /// If there are steps without a solve.
     lag: Option<Box<Lag>>,
+    /// If the model has a threshold.
+    bounds: Option<Box<Bounds>>,
     counts: PhaseFieldCounts,
 }
 
@@ -95,15 +101,18 @@ impl PhaseField {
     /// Phase field on the points of `lattice`, intact until the first solve.
     pub fn new(lattice: &Lattice, model: FractureModel, settings: &SolverSettings) -> Self {
         let mut matrix = Stencil::zeros(lattice.patch_grid, lattice.degree);
-        add_form(&mut matrix, lattice, Integrand::Mass, &Constant(1.0));
+        add_form(&mut matrix, lattice, Integrand::Mass, &Constant(model.source()));
         add_form(&mut matrix, lattice, Integrand::Diffusion, &Constant(model.diffusion()));
         let mut load = integrate_shape_functions(lattice);
+        load.iter_mut().for_each(|load| *load *= model.source());
         isolate_empty(&mut matrix, &mut load);
         if lattice.has_cut_spans() {
             separate_small(&mut matrix);
         }
-        let assembled = vec![Lane::ZERO; lattice.batches()];
-        Self::intact(matrix, load, assembled, model, settings)
+        let assembled = vec![Lane::splat(model.threshold().unwrap_or(0.0)); lattice.batches()];
+        let mut field = Self::intact(matrix, load, assembled, model, settings);
+        field.bounds = model.threshold().map(|threshold| Bounds::new(threshold, lattice));
+        field
     }
 
     /// Phase field whose system is assembled anew at every step (see [`Self::system_mut`]), intact until the
@@ -132,8 +141,13 @@ impl PhaseField {
             load,
             previous: phase.clone(),
             lag: Lag::new(settings.phase_field_interval, &phase),
+            bounds: None,
             phase,
-            method: Method::new(&matrix, settings.phase_field_solver, assembled.is_empty()),
+            method: Method::new(
+                &matrix,
+                settings.phase_field_solver,
+                assembled.is_empty() || model.threshold().is_some(),
+            ),
             assembled,
             matrix,
             counts: PhaseFieldCounts::default(),
@@ -195,7 +209,12 @@ impl PhaseField {
     /// If the tolerance is not reached, or the system has no solution; errors are in the norm of the
     /// tolerance.
     pub fn solve(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Convergence, SolveFailure> {
-        self.assemble_increments(lattice, history);
+        if let Some(mut bounds) = self.bounds.take() {
+            let result = self.minimise(&mut bounds, lattice, history);
+            self.bounds = Some(bounds);
+            return result;
+        }
+        self.assemble_increments(lattice, history, |_| true);
         self.solve_system()
     }
 
@@ -211,6 +230,11 @@ impl PhaseField {
     /// granted, and `ahead` the time since the last solve over that between the last two.
     fn solve_with(&mut self, patience: usize, ahead: f64) -> Result<Convergence, SolveFailure> {
         self.extrapolate(ahead);
+        self.solve_from_here(patience)
+    }
+
+    /// Solves the system as it stands from the present c.
+    fn solve_from_here(&mut self, patience: usize) -> Result<Convergence, SolveFailure> {
         self.counts.solves += 1;
         let unit = self.model.diffusion().sqrt();
         let found = self.method.solve(&self.matrix, &self.load, &mut self.phase, unit * self.tolerance, patience);
@@ -231,7 +255,10 @@ impl PhaseField {
     /// # Errors
     /// As [`Self::solve`].
     pub fn initialise(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Convergence, SolveFailure> {
-        self.assemble_increments(lattice, history);
+        if self.bounds.is_some() {
+            return self.solve(lattice, history);
+        }
+        self.assemble_increments(lattice, history, |_| true);
         self.initialise_system()
     }
 
@@ -260,17 +287,26 @@ impl PhaseField {
         }
     }
 
-    /// Adds what the history energy grew by.
-    fn assemble_increments(&mut self, lattice: &Lattice, history: &[Lane]) {
+    /// Adds what the history energy changed by in some of the cells.
+    fn assemble_increments(&mut self, lattice: &Lattice, history: &[Lane], takes: impl Fn(usize) -> bool + Sync) {
         let reaction = self.model.reaction_per_energy();
         let threshold = fault!("small-growth-never-assembled", 0.01 * self.tolerance => 0.1) / reaction;
-        let increments = Increments { history, assembled: &self.assembled, reaction, threshold };
-        add_form(&mut self.matrix, lattice, Integrand::Mass, &increments);
         let span = lattice.points_per_span();
-        for (assembled, history) in self.assembled.chunks_mut(span).zip(history.chunks(span)) {
-            if grew(assembled, history, threshold) {
+        let takes =
+            |cell: usize, assembled: &[Lane], history: &[Lane]| takes(cell) && changed(assembled, history, threshold);
+        let increments = Increments { history, assembled: &self.assembled, reaction, takes: &takes };
+        add_form(&mut self.matrix, lattice, Integrand::Mass, &increments);
+        for (cell, (assembled, history)) in self.assembled.chunks_mut(span).zip(history.chunks(span)).enumerate() {
+            if takes(cell, assembled, history) {
                 assembled.copy_from_slice(history);
             }
+        }
+    }
+
+    /// Gives c = 0 to control points as their upper bound.
+    pub(crate) fn break_at(&mut self, control_points: &[usize]) {
+        for &at in control_points {
+            (self.phase[at], self.previous[at]) = (0.0, 0.0);
         }
     }
 
@@ -292,7 +328,11 @@ impl PhaseField {
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
         let vectors = self.load.len() + self.phase.len() + self.previous.len() + LANES * self.assembled.len();
-        self.matrix.bytes() + 8 * vectors + self.method.bytes() + self.lag.as_ref().map_or(0, |lag| lag.bytes())
+        self.matrix.bytes()
+            + 8 * vectors
+            + self.method.bytes()
+            + self.lag.as_ref().map_or(0, |lag| lag.bytes())
+            + self.bounds.as_ref().map_or(0, |bounds| bounds.bytes())
     }
 }
 
@@ -324,29 +364,30 @@ fn is_finite(matrix: &Stencil) -> bool {
     matrix.coefficients().iter().all(|value| value.is_finite())
 }
 
-/// Whether the history energy of a span row of a tile grew beyond the threshold.
+/// Whether the energy of a span row of a tile changed by more than the threshold.
 #[inline(always)]
-fn grew(assembled: &[Lane], history: &[Lane], threshold: f64) -> bool {
+fn changed(assembled: &[Lane], history: &[Lane], threshold: f64) -> bool {
     let mut most = Lane::ZERO;
     for (assembled, history) in assembled.iter().zip(history) {
-        most = (*history - *assembled).at_least(most);
+        most = (*history - *assembled).at_least(*assembled - *history).at_least(most);
     }
-    most.0.iter().any(|&growth| growth > threshold)
+    most.0.iter().any(|&change| change > threshold)
 }
 
-struct Increments<'a> {
+struct Increments<'a, F> {
     history: &'a [Lane],
     assembled: &'a [Lane],
     reaction: f64,
-    threshold: f64,
+    /// Whether a cell with these energies, assembled and now, is to be added.
+    takes: &'a F,
 }
 
-impl PointCoefficients for Increments<'_> {
+impl<F: Fn(usize, &[Lane], &[Lane]) -> bool + Sync> PointCoefficients for Increments<'_, F> {
     #[inline(always)]
     fn span(&self, first: usize, weights: &[Lane], out: &mut [Lane]) -> bool {
         let range = first..first + weights.len();
         let (history, assembled) = (&self.history[range.clone()], &self.assembled[range]);
-        if !grew(assembled, history, self.threshold) {
+        if !(self.takes)(first / weights.len(), assembled, history) {
             return false;
         }
         for i in 0..weights.len() {

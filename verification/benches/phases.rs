@@ -11,8 +11,7 @@ use criterion::{BatchSize, Bencher, BenchmarkId, Criterion, Throughput, criterio
 use fisura::Simulation;
 use fisura::dynamics::critical_step::highest_frequency;
 use fisura::linear_algebra::incomplete_cholesky::IncompleteCholesky;
-use fisura::material::split::EnergySplit;
-use fisura::scene::Contact;
+use fisura::scene::{Contact, Split};
 use fisura::transfer::sweep::StripForces;
 use fisura_verification::bench::block::{Block, DENSITY, SPAN, elastic_scene};
 use fisura_verification::bench::minimal::Minimal;
@@ -59,7 +58,7 @@ fn sweeps(criterion: &mut Criterion, square: &Block) {
     assert!(square.force_imbalance(&strips) <= BALANCED, "total force");
     phase(criterion, "elastic_sweep", square, || square.elastic_sweep(&mut strips));
 
-    let split = EnergySplit::Spectral;
+    let split = Split::Spectral;
     let mut history = square.history.clone();
     square.history_sweep(split, &mut history);
     assert!(history.iter().zip(&square.history).all(|(new, old)| (0..8).all(|l| new[l] >= old[l])), "H only grows");

@@ -2,16 +2,17 @@
 //!
 //! ```text
 //! kinetic − stagger + elastic + fracture
-//!   = initial + external work + history work + lag work − contact loss − transfer loss + closure
+//!   = initial + external work + history work + residual work − contact loss − transfer loss + closure
 //! ```
 //!
 //! Each term is summed from its own definition; closure alone is what is left. Stagger, `dt²/8 aᵀ M a`, is
-//! the part of the kinetic energy at whole steps that velocity Verlet does not conserve. History work,
-//! `∬ 2 (1 − k) c (H − psi+)(−dc/dt)`, is what the model adds where the crack widens on remembered energy.
-//! Lag work is what the phase field takes up in steps without a solve (`phase_field/advance.rs`).
-//! The other terms are the usual ones: kinetic `½ vᵀ M v`, elastic `Σ V (g psi+ + psi−)`, fracture
-//! `Σ V Gc [(1 − c)²/(4 l0) + l0 |grad c|²]`, and as work the mean force of a step times its motion. What
-//! transfers lose is in `updated_frame/losses.rs`.
+//! the part of the kinetic energy at whole steps that velocity Verlet does not conserve. History work, `∬ 2
+//! (1 − k) c (H − psi+)(−dc/dt)`, is what the model adds where the crack widens on remembered energy; with a
+//! driving energy other than psi+ it is the work of the difference. Residual work is what the phase field
+//! takes up in steps without a solve (`phase_field/advance.rs`), or at its bounds
+//! (`phase_field/minimise.rs`). The other terms are the usual ones: kinetic `½ vᵀ M v`, elastic `Σ V (g psi+
+//! + psi−)`, fracture that of the surface (`material/degradation.rs`), and as work the mean force of a step
+//! times its motion. What transfers lose is in `updated_frame/losses.rs`.
 
 use std::borrow::Cow;
 
@@ -77,10 +78,9 @@ pub struct Sample {
 pub struct FractureSample {
     /// Surface energy of the crack, J.
     pub energy: f64,
-    /// Work of the history field, J.
-    pub history_work: f64,
-    /// Work of the phase field between its solves, J, if there are steps without one.
-    pub lag_work: Option<f64>,
+    /// What the phase field adds to the energy of the body, by the names of columns, J: work of the energy
+    /// that drives beyond psi+; of its residual.
+    pub works: Vec<(&'static str, f64)>,
     /// Crack tip, if there is a crack.
     pub crack_tip: Option<CrackTip>,
     /// Smallest phase field at a point.
@@ -155,8 +155,7 @@ impl FractureSample {
         let tips = self.crack_tip.into_iter().chain(other.crack_tip);
         Self {
             energy: self.energy + other.energy,
-            history_work: self.history_work + other.history_work,
-            lag_work: self.lag_work.zip(other.lag_work).map(|(a, b)| a + b),
+            works: self.works.iter().zip(other.works).map(|((name, a), (_, b))| (*name, a + b)).collect(),
             crack_tip: tips.max_by(|a, b| a.distance.total_cmp(&b.distance)),
             min_phase: smaller(self.min_phase, other.min_phase),
             iterations: self.iterations + other.iterations,
@@ -189,8 +188,7 @@ impl Sample {
         let fracture = self.fracture.as_ref();
         row.extend(fracture.map(|f| ("fracture_j", f.energy)));
         row.push(("external_work_j", self.external_work));
-        row.extend(fracture.map(|f| ("history_work_j", f.history_work)));
-        row.extend(fracture.and_then(|f| f.lag_work).map(|work| ("phase_field_lag_j", work)));
+        row.extend(fracture.iter().flat_map(|f| f.works.iter().copied()));
         row.extend(self.contact.into_iter().flat_map(|c| [("contact_loss_j", c.loss), ("friction_j", c.friction)]));
         row.extend(self.transfer_loss.map(|loss| ("transfer_loss_j", loss)));
         row.push(("closure_j", self.closure));
@@ -242,8 +240,7 @@ impl Sample {
             elastic: self.elastic * thickness,
             fracture: self.fracture.map(|f| FractureSample {
                 energy: f.energy * thickness,
-                history_work: f.history_work * thickness,
-                lag_work: f.lag_work.map(|work| work * thickness),
+                works: f.works.into_iter().map(|(name, work)| (name, work * thickness)).collect(),
                 ..f
             }),
             external_work: self.external_work * thickness,
@@ -264,7 +261,7 @@ impl Sample {
 
     /// Sets closure from the stored energy at t = 0, J.
     pub fn close(&mut self, initial: f64) {
-        let of_model = self.fracture.as_ref().map_or(0.0, |f| f.history_work + f.lag_work.unwrap_or(0.0));
+        let of_model = self.fracture.as_ref().map_or(0.0, |f| f.works.iter().map(|(_, work)| work).sum::<f64>());
         let loss = self.transfer_loss.unwrap_or(0.0) + self.contact.map_or(0.0, |c| c.loss);
         self.closure = self.stored() - initial - self.external_work - of_model + loss;
     }

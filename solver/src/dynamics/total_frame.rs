@@ -105,7 +105,8 @@ impl TotalFrame {
         self.predict(dt);
         self.update_loads();
         if let Some(fracture) = &mut self.fracture {
-            fracture.update_history(&self.lattice, self.moduli, self.kinematics, &self.displacement);
+            let Self { lattice, moduli, kinematics, displacement, strip_forces, .. } = self;
+            fracture.update_history(lattice, *moduli, *kinematics, displacement, strip_forces);
             fracture.advance_phase_field(&self.lattice)?;
         }
         self.internal_forces();

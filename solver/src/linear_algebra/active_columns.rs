@@ -12,28 +12,43 @@ pub struct ActiveColumns {
     ranges: Vec<Range<usize>>,
     /// Number of the first range of each row, and of all.
     starts: Vec<usize>,
+    /// Indices in a field of control points within the ranges that do not take part, in order.
+    left_out: Vec<usize>,
 }
 
 impl ActiveColumns {
     /// All control points.
     pub fn all(grid: ControlGrid) -> Self {
-        Self { ranges: vec![0..grid.columns; grid.rows], starts: (0..=grid.rows).collect() }
+        Self { ranges: vec![0..grid.columns; grid.rows], starts: (0..=grid.rows).collect(), left_out: Vec::new() }
+    }
+
+    /// Those with these indices in a field, which come in order, without those of short gaps.
+    pub(crate) fn exactly(grid: ControlGrid, indices: impl Iterator<Item = usize>) -> Self {
+        let mut active = Self { ranges: Vec::new(), starts: vec![0], left_out: Vec::new() };
+        for at in indices {
+            let (column, row) = (grid.column_of(at), grid.row_of(at));
+            active.end_rows(row);
+            match active.ranges[active.starts[row]..].last_mut() {
+                Some(last) if column < last.end + LANES => {
+                    active.left_out.extend(grid.index(last.end, row)..at);
+                    last.end = column + 1;
+                }
+                _ => active.ranges.push(column..column + 1),
+            }
+        }
+        active.end_rows(grid.rows);
+        active
+    }
+
+    /// Ends all rows before this one.
+    fn end_rows(&mut self, row: usize) {
+        self.starts.resize(row + 1, self.ranges.len());
     }
 
     /// Those that are marked in a field.
     pub(crate) fn marked(grid: ControlGrid, marks: &[bool]) -> Self {
-        let mut active = Self { ranges: Vec::new(), starts: vec![0] };
-        for row in 0..grid.rows {
-            let first = active.ranges.len();
-            for column in (0..grid.columns).filter(|&column| marks[grid.index(column, row)]) {
-                match active.ranges[first..].last_mut() {
-                    Some(last) if column < last.end + LANES => last.end = column + 1,
-                    _ => active.ranges.push(column..column + 1),
-                }
-            }
-            active.starts.push(active.ranges.len());
-        }
-        active
+        let active = Self::exactly(grid, grid.indices().filter(|&at| marks[at]));
+        Self { left_out: Vec::new(), ..active }
     }
 
     /// The ranges of a row.
@@ -42,16 +57,44 @@ impl ActiveColumns {
         &self.ranges[self.starts[row]..self.starts[row + 1]]
     }
 
-    /// Sets a field to zero outside.
-    pub(crate) fn clear_outside<T: Scalar>(&self, grid: ControlGrid, field: &mut [T]) {
-        for (row, values) in field.chunks_mut(grid.stride).enumerate() {
+    /// Whether there are any in some rows.
+    pub(crate) fn any_in(&self, rows: Range<usize>) -> bool {
+        self.starts[rows.start] < self.starts[rows.end]
+    }
+
+    /// Sets rows of a field, from row `first` on, to zero outside.
+    pub(crate) fn clear_outside<T: Scalar>(&self, grid: ControlGrid, rows: &mut [T], first: usize) {
+        for (row, values) in rows.chunks_mut(grid.stride).enumerate() {
             let mut end = 0;
-            for range in self.row(row) {
+            for range in self.row(first + row) {
                 values[end..grid.index(range.start, 0)].fill(T::ZERO);
                 end = grid.index(range.end, 0);
             }
             values[end..].fill(T::ZERO);
         }
+        self.clear_left_out(rows, first * grid.stride);
+    }
+
+    /// Sets a field to zero where they are.
+    pub(crate) fn clear_inside<T: Scalar>(&self, grid: ControlGrid, field: &mut [T]) {
+        for row in 0..grid.rows {
+            let ranges = self.row(row).iter();
+            ranges.for_each(|range| field[grid.index(range.start, row)..grid.index(range.end, row)].fill(T::ZERO));
+        }
+    }
+
+    /// Sets to zero what lies within the ranges and does not take part, in a part of a field that begins at
+    /// index `first`.
+    pub(crate) fn clear_left_out<T: Scalar>(&self, part: &mut [T], first: usize) {
+        let [from, to] = [first, first + part.len()].map(|end| self.left_out.partition_point(|&at| at < end));
+        self.left_out[from..to].iter().for_each(|at| part[at - first] = T::ZERO);
+    }
+
+    /// Control points that do not take part.
+    pub(crate) fn others(&self, grid: ControlGrid) -> Vec<usize> {
+        let mut takes_part = vec![1.0; grid.len()];
+        self.clear_outside(grid, &mut takes_part, 0);
+        grid.indices().filter(|&at| takes_part[at] == 0.0).collect()
     }
 }
 
@@ -71,7 +114,7 @@ mod tests {
         assert_eq!(active.row(1), []);
         assert_eq!(active.row(2), std::slice::from_ref(&(3..5)));
         let mut field = vec![1.0; grid.len()];
-        active.clear_outside(grid, &mut field);
+        active.clear_outside(grid, &mut field, 0);
         assert_eq!(field.iter().sum::<f64>(), 9.0);
         let inside = [(0, 0), (3, 0), (5, 0), (39, 0), (3, 2), (4, 2)];
         assert!(inside.into_iter().all(|(column, row)| field[grid.index(column, row)] == 1.0));

@@ -33,8 +33,6 @@ const DIGITS: f64 = 1e-4;
 /// Iterations after which single precision is not trusted: a matrix so far from its factor may have lost its
 /// small eigenvalues when it was rounded.
 const TRUSTED: usize = 40;
-/// Numbers that a thread adds at a time.
-const PARALLEL: usize = 4096;
 
 /// Outcome of a solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -147,19 +145,32 @@ impl<T: Scalar + Coefficients<T>> Workspace<T> {
 
     fn solve(&mut self, system: &System, x: &mut [f64], product: &mut [f64]) -> Result<Convergence, SolveFailure> {
         let &System { matrix, preconditioner, b, .. } = system;
-        let clear = |field: &mut [T]| matrix.active().clear_outside(matrix.grid, field);
-        let Self { preconditioned, direction, image, .. } = self;
-        [preconditioned, direction, image].into_iter().for_each(|field| clear(field));
+        self.take_part(matrix);
         let mut iterations = 0;
         loop {
             matrix.residual(preconditioner.unit(), b, x, product, &mut self.residual, &mut self.matrix);
-            self.correction.fill(T::ZERO);
+            matrix.active().clear_inside(matrix.grid, &mut self.correction);
             let corrected = self.correct(system, &mut iterations);
-            add(x, &self.correction);
+            self.add_to(x);
             if let Some(error) = corrected? {
                 return Ok(Convergence { iterations, error });
             }
         }
+    }
+
+    /// Leaves the vectors zero where no control point takes part now.
+    fn take_part(&mut self, matrix: &Stencil) {
+        let Self { matrix: copy, correction, residual, preconditioned, direction, image } = self;
+        if copy.active() != matrix.active() {
+            let fields = [correction, residual, preconditioned, direction, image];
+            fields.into_iter().for_each(|field| copy.active().clear_inside(matrix.grid, field));
+        }
+    }
+
+    /// Whether a control point of a chunk takes part.
+    fn is_active(&self, chunk: usize) -> bool {
+        let first = chunk * CHUNK_ROWS;
+        self.matrix.active().any_in(first..(first + CHUNK_ROWS).min(self.matrix.grid.rows))
     }
 
     /// Finds a correction, and counts its iterations; returns the error that is left, or none if the
@@ -207,17 +218,32 @@ impl<T: Scalar + Coefficients<T>> Workspace<T> {
     /// `d ← z + beta d`.
     fn turn(&mut self, beta: T) {
         let chunk = CHUNK_ROWS * self.matrix.grid.stride;
-        let chunks = self.direction.par_chunks_mut(chunk).zip(self.preconditioned.par_chunks(chunk));
-        chunks.for_each(|(direction, preconditioned)| dispatch(Turn { direction, preconditioned, beta }));
+        let mut direction = std::mem::take(&mut self.direction);
+        let chunks = direction.par_chunks_mut(chunk).zip(self.preconditioned.par_chunks(chunk)).enumerate();
+        let active = chunks.filter(|(index, _)| self.is_active(*index));
+        active.for_each(|(_, (direction, preconditioned))| dispatch(Turn { direction, preconditioned, beta }));
+        self.direction = direction;
     }
 
     /// `e += alpha d`, `r −= alpha A d`.
     fn advance(&mut self, alpha: T) {
         let chunk = CHUNK_ROWS * self.matrix.grid.stride;
-        let correction = self.correction.par_chunks_mut(chunk).zip(self.direction.par_chunks(chunk));
-        let residual = self.residual.par_chunks_mut(chunk).zip(self.image.par_chunks(chunk));
-        correction.zip(residual).for_each(|((correction, direction), (residual, image))| {
+        let [mut correction, mut residual] = [&mut self.correction, &mut self.residual].map(std::mem::take);
+        let corrections = correction.par_chunks_mut(chunk).zip(self.direction.par_chunks(chunk));
+        let residuals = residual.par_chunks_mut(chunk).zip(self.image.par_chunks(chunk));
+        let active = corrections.zip(residuals).enumerate().filter(|(index, _)| self.is_active(*index));
+        active.for_each(|(_, ((correction, direction), (residual, image)))| {
             dispatch(Advance { correction, direction, residual, image, alpha });
+        });
+        (self.correction, self.residual) = (correction, residual);
+    }
+
+    /// `x += e`.
+    fn add_to(&self, x: &mut [f64]) {
+        let chunk = CHUNK_ROWS * self.matrix.grid.stride;
+        let chunks = x.par_chunks_mut(chunk).zip(self.correction.par_chunks(chunk)).enumerate();
+        chunks.filter(|(index, _)| self.is_active(*index)).for_each(|(_, (x, correction))| {
+            x.iter_mut().zip(correction).for_each(|(x, e)| *x += (*e).into());
         });
     }
 
@@ -265,13 +291,6 @@ impl<T: Scalar> Vectorised for Advance<'_, T> {
             *r = add_product::<FMA, _>(*r, -self.alpha, *image);
         }
     }
-}
-
-/// `x += e`.
-fn add<T: Scalar>(x: &mut [f64], correction: &[T]) {
-    x.par_chunks_mut(PARALLEL).zip(correction.par_chunks(PARALLEL)).for_each(|(x, correction)| {
-        x.iter_mut().zip(correction).for_each(|(x, e)| *x += (*e).into());
-    });
 }
 
 /// Square of the energy norm of the error that is left, from the decreases so far.

@@ -67,7 +67,6 @@ impl IncompleteCholesky {
         let factor = vec![0.0; matrix.coefficients().len()];
         let scale = scaled.then(|| vec![0.0; matrix.grid.len()]);
         let mut factor = Self { grid: matrix.grid, offsets, updates, factor, shift: 0.0, scale, unit: 1.0 };
-        factor.rescale(matrix);
         factor.refactor(matrix);
         factor
     }
@@ -75,9 +74,8 @@ impl IncompleteCholesky {
     /// Factors `matrix` again in the same memory.
     pub fn refactor(&mut self, matrix: &Stencil) {
         let block = BLOCK_ROWS * matrix.row_length();
-        if self.scale.is_none() {
-            self.unit = unit(matrix);
-        }
+        self.unit = unit(matrix);
+        self.rescale_on(&ActiveColumns::all(self.grid), matrix); // neighbours of those that take part, too
         let Self { offsets, updates, factor, scale, unit, .. } = self;
         let shifts = factor.par_chunks_mut(block).enumerate().map(|(index, factor)| {
             let (first, scale) = (index * BLOCK_ROWS, scale.as_deref());
@@ -94,11 +92,20 @@ impl IncompleteCholesky {
 
     /// Takes the scale from the diagonal of `matrix`, if there is one to take.
     pub(crate) fn rescale(&mut self, matrix: &Stencil) {
+        if self.scale.is_some() {
+            self.unit = unit(matrix);
+            self.rescale_on(matrix.active(), matrix);
+        }
+    }
+
+    fn rescale_on(&mut self, active: &ActiveColumns, matrix: &Stencil) {
         let Some(scale) = &mut self.scale else { return };
-        self.unit = unit(matrix);
         for (row, scale) in scale.chunks_mut(self.grid.stride).enumerate() {
-            for (scale, diagonal) in scale.iter_mut().zip(matrix.row(row, 0)) {
-                *scale = if *diagonal > 0.0 { 1.0 / (self.unit * diagonal).sqrt() as f32 } else { 0.0 };
+            for range in active.row(row) {
+                let range = self.grid.index(range.start, 0)..self.grid.index(range.end, 0);
+                for (scale, diagonal) in scale[range.clone()].iter_mut().zip(&matrix.row(row, 0)[range]) {
+                    *scale = if *diagonal > 0.0 { 1.0 / (self.unit * diagonal).sqrt() as f32 } else { 0.0 };
+                }
             }
         }
     }
@@ -175,10 +182,15 @@ impl IncompleteCholesky {
     }
 }
 
-/// The power of two that brings the largest diagonal entry next to one; one for a matrix without any.
+/// The power of two that brings the largest diagonal entry of a control point that takes part next to one;
+/// one for a matrix without any.
 pub(crate) fn unit(matrix: &Stencil) -> f64 {
-    let rows = (0..matrix.grid.rows).flat_map(|row| matrix.row(row, 0));
-    let largest = rows.copied().fold(0.0, larger);
+    let grid = matrix.grid;
+    let active = |row: usize| matrix.active().row(row).iter().map(move |range| (row, range));
+    let diagonals = (0..grid.rows)
+        .flat_map(active)
+        .flat_map(|(row, range)| &matrix.row(row, 0)[grid.index(range.start, 0)..grid.index(range.end, 0)]);
+    let largest = diagonals.copied().fold(0.0, larger);
     if largest > 0.0 && largest.is_finite() { (-largest.log2().round()).exp2() } else { 1.0 }
 }
 

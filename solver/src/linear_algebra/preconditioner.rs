@@ -80,14 +80,18 @@ impl Preconditioner {
     /// elsewhere; returns `rᵀ out`.
     pub fn apply<T: Scalar>(&self, active: &ActiveColumns, r: &[T], out: &mut [T]) -> f64 {
         match &self.factor {
-            PreconditionerKind::Incomplete(factor) => factor.apply(active, r, out),
+            PreconditionerKind::Incomplete(factor) => {
+                let product = factor.apply(active, r, out); // r is zero where out is not to be
+                active.clear_left_out(out, 0);
+                product
+            }
             PreconditionerKind::Complete(_, factor) => {
                 let (factor, unit) = factor.as_ref().expect("it is made before the solve");
                 let right: Vec<f64> = r.iter().map(|r| (*r).into() / unit).collect();
                 let mut solution = vec![0.0; out.len()];
                 factor.solve(&right, &mut solution);
                 out.iter_mut().zip(solution).for_each(|(out, solution)| *out = T::of(solution));
-                active.clear_outside(factor.grid(), out);
+                active.clear_outside(factor.grid(), out, 0);
                 r.iter().zip(out).map(|(r, out)| (*r).into() * (*out).into()).sum()
             }
         }
@@ -215,12 +219,8 @@ impl Preconditioner {
 /// there is none.
 fn complete(cholesky: &mut SparseCholesky, matrix: &Stencil) -> Option<(Factor, f64)> {
     let grid = matrix.grid;
-    let mut takes_part = vec![false; grid.len()];
-    for row in 0..grid.rows {
-        for column in matrix.active().row(row).iter().cloned().flatten() {
-            takes_part[grid.index(column, row)] = matrix.diagonal(column, row) != 0.0;
-        }
-    }
-    let others: Vec<usize> = grid.indices().filter(|&at| !takes_part[at]).collect();
+    let empty = |at: &usize| matrix.diagonal(grid.column_of(*at), grid.row_of(*at)) == 0.0;
+    let mut others = matrix.active().others(grid);
+    others.extend(grid.indices().filter(empty));
     cholesky.factor(matrix, &others).map(|factor| (factor, unit(matrix)))
 }

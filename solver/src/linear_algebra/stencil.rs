@@ -97,8 +97,8 @@ impl Stencil {
         self.coefficients[at] = value;
     }
 
-    /// `unit (b − A x)` at the control points that take part, zero elsewhere, and a copy of `unit A`, both in
-    /// the precision of iterations; `image` is `A x`.
+    /// `unit (b − A x)` at the control points that take part, in a field that is zero elsewhere, and a copy
+    /// of `unit A`, both in the precision of iterations; `image` is `A x`.
     pub(crate) fn residual<T: Scalar>(
         &self,
         unit: f64,
@@ -113,17 +113,32 @@ impl Stencil {
         }
         let chunk = CHUNK_ROWS * self.grid.stride;
         let rows = image.par_chunks_mut(chunk).zip(residual.par_chunks_mut(chunk)).zip(b.par_chunks(chunk));
-        let coefficients = CHUNK_ROWS * self.row_length();
+        let length = self.row_length();
+        let coefficients = CHUNK_ROWS * length;
         rows.zip(self.coefficients.par_chunks(coefficients))
             .zip(copy.coefficients.par_chunks_mut(coefficients))
             .with_min_len(self.least_chunks())
             .enumerate()
+            .filter(|(index, _)| self.active.any_in(index * CHUNK_ROWS..((index + 1) * CHUNK_ROWS).min(self.grid.rows)))
             .for_each(|(index, ((((image, residual), b), coefficients), copy))| {
                 dispatch(ApplyRows { matrix: self, x, out: image, first_row: index * CHUNK_ROWS });
-                dispatch(Rounded { unit, values: coefficients, subtract: None, out: copy });
+                for (local, (values, copy)) in coefficients.chunks(length).zip(copy.chunks_mut(length)).enumerate() {
+                    let row = self.active.row(index * CHUNK_ROWS + local);
+                    let (Some(first), Some(last)) = (row.first(), row.last()) else { continue };
+                    let used = self.grid.index(first.start, 0)..self.grid.index(last.end, 0);
+                    for (values, copy) in values.chunks(self.grid.stride).zip(copy.chunks_mut(self.grid.stride)) {
+                        let (values, out) = (&values[used.clone()], &mut copy[used.clone()]);
+                        dispatch(Rounded { unit, values, subtract: None, out });
+                    }
+                }
                 dispatch(Rounded { unit, values: b, subtract: Some(image), out: residual });
             });
-        self.active.clear_outside(self.grid, residual);
+        for (index, residual) in residual.chunks_mut(chunk).enumerate() {
+            let first = index * CHUNK_ROWS;
+            if self.active.any_in(first..(first + CHUNK_ROWS).min(self.grid.rows)) {
+                self.active.clear_outside(self.grid, residual, first);
+            }
+        }
     }
 }
 
@@ -261,6 +276,7 @@ impl<T: Scalar + Coefficients<T>> Vectorised for ApplyRows<'_, T> {
             }
             total += product.sum().into();
         }
+        matrix.active.clear_left_out(self.out, self.first_row * grid.stride);
         total
     }
 }

@@ -1,16 +1,32 @@
-//! Constants of the phase field (E 7, E 11), and how it degrades the material.
+//! Constants of the phase field (E 7, E 11), and how it degrades the material. With d = 1 − c the surface
+//! energy per volume is
+//!
+//! ```text
+//! AT2    Gc [d²/(4 l0) + l0 |grad c|²]                                              E 3
+//! AT1    3/4 Gc [d/(4 l0) + l0 |grad c|²]                                           Pham et al. 2011
+//! ```
+//!
+//! Gc for a crack in each. Where H drives, c minimises the energy with `g H`, on control values between zero
+//! and those of the step before with AT1, and with H as the largest so far with AT2:
+//!
+//! ```text
+//! (4 l0 (1 − k) H/Gc + 1) c − 4 l0² lap c = 1                                       AT2, E 11
+//! 4 l0 (1 − k) H/Gc c − 3 l0² lap c = 3/8                                           AT1
+//! ```
 
 use super::elasticity::ElasticModuli;
-use super::split::{EnergySplit, split};
+use super::split::split;
 use crate::linear_algebra::lane::Lane;
-use crate::scene::{Fracture, Split};
+use crate::scene::{CrackModel, Fracture, Split};
 
 /// Phase field below which a point counts as broken.
 pub const BROKEN: f64 = 0.05;
 
-/// Constants of the AT2 phase field in Borden's convention.
+/// Constants of the phase field in Borden's convention.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FractureModel {
+    /// Surface energy.
+    pub surface: CrackModel,
     /// Critical energy release rate Gc, J/m².
     pub toughness: f64,
     /// Length scale l0, m.
@@ -18,7 +34,7 @@ pub struct FractureModel {
     /// Residual stiffness k.
     pub residual_stiffness: f64,
     /// Split.
-    pub split: EnergySplit,
+    pub split: Split,
 }
 
 impl FractureModel {
@@ -28,10 +44,8 @@ impl FractureModel {
             toughness: fracture.critical_energy_release_rate,
             length_scale: fault!("length-scale-doubled", fracture.length_scale => 2.0 * fracture.length_scale),
             residual_stiffness: fracture.residual_stiffness,
-            split: match fracture.split {
-                Split::Spectral => EnergySplit::Spectral,
-                Split::None => EnergySplit::Whole,
-            },
+            surface: fracture.model,
+            split: fracture.split,
         }
     }
 
@@ -49,9 +63,67 @@ impl FractureModel {
         4.0 * self.length_scale * (1.0 - k) / self.toughness
     }
 
-    /// Coefficient of the gradient term, `4 l0²`, m².
+    /// Coefficient of the gradient term, `4 l0²` or `3 l0²`, m².
     pub fn diffusion(&self) -> f64 {
-        fault!("phase-gradient-halved", 4.0 => 2.0) * self.length_scale * self.length_scale
+        let factor = match self.surface {
+            CrackModel::At2 => fault!("phase-gradient-halved", 4.0 => 2.0),
+            CrackModel::At1 => fault!("at1-gradient-of-at2", 3.0 => 4.0),
+        };
+        factor * self.length_scale * self.length_scale
+    }
+
+    /// Right-hand side of the phase-field equation.
+    pub fn source(&self) -> f64 {
+        match self.surface {
+            CrackModel::At2 => 1.0,
+            CrackModel::At1 => 0.375,
+        }
+    }
+
+    /// Driving energy up to which material stays intact, `3 Gc/(32 l0 (1 − k))` with AT1, J/m³; none if
+    /// damage begins with the first load.
+    pub fn threshold(&self) -> Option<f64> {
+        (self.surface == CrackModel::At1).then(|| self.source() / self.reaction_per_energy())
+    }
+
+    /// Energy density of the intact body up to which nothing is driven to the threshold, with a margin for
+    /// the step that crosses it, J/m³.
+    pub(crate) fn screening_level(&self, moduli: &ElasticModuli) -> Option<f64> {
+        let least_share = match self.split {
+            Split::Rankine => moduli.young / (moduli.lambda + 2.0 * moduli.mu),
+            _ => 1.0,
+        };
+        self.threshold().map(|threshold| 0.5 * least_share * threshold)
+    }
+
+    /// Column of the work of what drives beyond psi+: of the history, or of another driving energy. None
+    /// where psi+ itself drives.
+    pub(crate) fn driving_work(&self) -> Option<&'static str> {
+        match (self.surface, self.split) {
+            (_, Split::Rankine) | (CrackModel::At1, Split::StarConvex(_)) => Some("driving_work_j"),
+            (CrackModel::At2, _) => Some("history_work_j"),
+            (CrackModel::At1, _) => None,
+        }
+    }
+
+    /// Columns of the work that the phase field does; `skips` if there are steps without a solve.
+    pub fn columns_of_work(&self, skips: bool) -> Vec<&'static str> {
+        let of_bounds = self.threshold().map(|_| "phase_field_bounds_j");
+        let of_residual = of_bounds.or(skips.then_some("phase_field_lag_j"));
+        self.driving_work().into_iter().chain(of_residual).collect()
+    }
+
+    /// Surface energy per volume, J/m³.
+    #[inline(always)]
+    pub fn surface_energy(&self, phase: Lane, [gx, gy]: [Lane; 2]) -> Lane {
+        let Self { toughness, length_scale, .. } = *self;
+        let broken = Lane::splat(1.0) - phase;
+        let (local, unit) = match self.surface {
+            CrackModel::At2 => (broken * broken, toughness),
+            CrackModel::At1 => (broken, 0.75 * toughness),
+        };
+        local * (unit / (fault!("surface-energy-doubled", 4.0 => 2.0) * length_scale))
+            + (gx * gx + gy * gy) * (unit * length_scale)
     }
 }
 
@@ -75,9 +147,15 @@ pub(crate) fn stress_out_of_plane(
     fracture: Option<(&FractureModel, f64)>,
 ) -> f64 {
     let trace = xx + yy;
-    let degraded = fracture.filter(|(model, _)| model.split == EnergySplit::Whole || trace > 0.0);
-    let degradation = degraded.map_or(1.0, |(model, phase)| model.degradation(Lane::splat(phase))[0]);
-    degradation * moduli.out_of_plane * trace
+    let Some((model, phase)) = fracture else { return moduli.out_of_plane * trace };
+    let degradation = model.degradation(Lane::splat(phase))[0];
+    let spared = match model.split {
+        Split::Spectral if trace <= 0.0 => moduli.out_of_plane,
+        Split::VolumetricDeviatoric if moduli.out_of_plane > 0.0 => moduli.volumetric,
+        Split::StarConvex(gamma) if moduli.out_of_plane > 0.0 => (1.0 + gamma) * moduli.volumetric,
+        _ => 0.0,
+    };
+    (degradation * (moduli.out_of_plane * trace - spared * trace.min(0.0))) + spared * trace.min(0.0)
 }
 
 /// Largest principal value of a plane symmetric tensor `[xx, yy, xy]`.
@@ -97,8 +175,9 @@ mod tests {
         let material = Material { young_modulus: 32e9, poisson_ratio: 0.2, density: 2450.0, fracture: None };
         let [strain_state, stress_state] =
             [Plane::Strain, Plane::Stress].map(|plane| ElasticModuli::new(&material, plane));
-        for split in [EnergySplit::Spectral, EnergySplit::Whole] {
-            let model = FractureModel { toughness: 3.0, length_scale: 1e-3, residual_stiffness: 0.0, split };
+        for split in [Split::Spectral, Split::None] {
+            let (surface, residual_stiffness) = (CrackModel::At2, 0.0);
+            let model = FractureModel { surface, toughness: 3.0, length_scale: 1e-3, residual_stiffness, split };
             for (strain, phase) in [([1e-3, 2e-4, 3e-4], 0.4), ([-1e-3, 2e-4, 3e-4], 0.4), ([1e-3, -2e-4, 0.0], 1.0)] {
                 let fracture = Some((&model, phase));
                 let found = stress_out_of_plane(&strain_state, strain, fracture);
@@ -106,7 +185,7 @@ mod tests {
                     let ElasticModuli { lambda, mu, .. } = strain_state;
                     let (mean, g) = (0.5 * (strain[0] + strain[1]), phase * phase);
                     let radius = (0.5 * (strain[0] - strain[1])).hypot(strain[2]);
-                    let weighted = |x: f64| if x > 0.0 || split == EnergySplit::Whole { g * x * x } else { x * x };
+                    let weighted = |x: f64| if x > 0.0 || split == Split::None { g * x * x } else { x * x };
                     let principal = [mean + radius, mean - radius, across].map(weighted);
                     0.5 * lambda * weighted(2.0 * mean + across) + mu * principal.iter().sum::<f64>()
                 };

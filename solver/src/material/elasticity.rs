@@ -16,6 +16,11 @@ pub struct ElasticModuli {
     pub mu: f64,
     /// Stress out of the plane over the trace of the strain in it.
     pub out_of_plane: f64,
+    /// Twice the energy of the change of volume over the square of that trace: the bulk modulus in plane
+    /// strain; in plane stress times `((1 − 2 nu)/(1 − nu))²`, since the body becomes thinner as it is drawn.
+    pub volumetric: f64,
+    /// Young's modulus.
+    pub young: f64,
 }
 
 impl ElasticModuli {
@@ -25,10 +30,11 @@ impl ElasticModuli {
         let mu = young / (2.0 * (1.0 + nu));
         let lambda = young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
         match plane {
-            Plane::Strain => Self { lambda, mu, out_of_plane: lambda },
+            Plane::Strain => Self { lambda, mu, out_of_plane: lambda, volumetric: lambda + mu / 1.5, young },
             Plane::Stress => {
                 let lambda = fault!("plane-stress-lambda", young * nu / (1.0 - nu * nu) => lambda);
-                Self { lambda, mu, out_of_plane: 0.0 }
+                let volumetric = young * (1.0 - 2.0 * nu) / (3.0 * (1.0 - nu) * (1.0 - nu));
+                Self { lambda, mu, out_of_plane: 0.0, volumetric, young }
             }
         }
     }

@@ -1,30 +1,29 @@
-//! Spectral split of the elastic energy (E 4–6), without eigenvectors:
+//! Splits of the elastic energy (E 4–6) into a part that drives fracture and is degraded, and the rest:
 //!
 //! ```text
-//! psi± = lam*/2 ⟨tr e⟩±² + mu tr[(e±)²],      sigma = g(c) dpsi+/de + dpsi−/de
+//! sigma = g(c) dpsi+/de + dpsi−/de,          ⟨a⟩± = (a ± |a|)/2
+//! spectral                 psi± = lam*/2 ⟨tr e⟩±² + mu tr[(e±)²]                    Miehe et al. 2010
+//! volumetric-deviatoric    psi+ = K*/2 ⟨tr e⟩+² + psi_dev,  psi− = K*/2 ⟨tr e⟩−²    Amor et al. 2009
+//! star-convex              psi+ = K*/2 (⟨tr e⟩+² − γ ⟨tr e⟩−²) + psi_dev            Vicentini et al. 2024
+//! rankine                  psi+ = psi, driven by ⟨sigma_1⟩²/(2 E) instead of psi+   Wu 2017
+//! none                     psi+ = psi
 //! ```
 //!
-//! with `⟨a⟩± = (a ± |a|)/2`, and lam* of [`elasticity`](super::elasticity). The degradation g(c) is in
+//! with lam* and K* of [`elasticity`](super::elasticity), and psi_dev what is left of the intact energy psi.
+//! In plane stress the strain across the plane is that of the intact material. The degradation g(c) is in
 //! [`degradation`](super::degradation).
 //!
-//! With `m = (exx + eyy)/2` and `r = hypot((exx − eyy)/2, exy)` the principal strains are `m ± r`, and the
-//! tensile part is `e+ = a (e − b I)` with (a, b) = (1, 0) where both are tensile, (0, ·) where both are
-//! compressive and `(e1/(2 r), e2)` between, where `2 r ≥ max(|e1|, |e2|)`: nothing is ever divided by a
-//! small number, so equal and nearly equal principal strains need no special care. The hypotenuse is scaled,
-//! so squares do not underflow. A strain that is not a number has energies and stresses that are none: the
-//! energy of a body tells that one of its points has lost its numbers.
+//! The spectral split needs no eigenvectors. With `m = (exx + eyy)/2` and `r = hypot((exx − eyy)/2, exy)` the
+//! principal strains are `m ± r`, and the tensile part is `e+ = a (e − b I)` with (a, b) = (1, 0) where both
+//! are tensile, (0, ·) where both are compressive and `(e1/(2 r), e2)` between, where `2 r ≥ max(|e1|,
+//! |e2|)`: nothing is ever divided by a small number, so equal and nearly equal principal strains need no
+//! special care. The hypotenuse is scaled, so squares do not underflow. A strain that is not a number has
+//! energies and stresses that are none: the energy of a body tells that one of its points has lost its
+//! numbers.
 
 use crate::linear_algebra::lane::Lane;
 use crate::material::elasticity::ElasticModuli;
-
-/// Which part of the energy the phase field degrades.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum EnergySplit {
-    /// The tensile part in principal strains.
-    Spectral,
-    /// All of it.
-    Whole,
-}
+use crate::scene::Split;
 
 /// Energies and stresses of a batch of points: intact values of both parts.
 #[derive(Debug, Clone, Copy)]
@@ -55,11 +54,26 @@ impl SplitState {
 
 /// Splits the strain `[exx, eyy, exy]` (tensor shear).
 #[inline(always)]
-pub fn split(moduli: &ElasticModuli, split: EnergySplit, strain: [Lane; 3]) -> SplitState {
+pub fn split(moduli: &ElasticModuli, split: Split, strain: [Lane; 3]) -> SplitState {
     match split {
-        EnergySplit::Spectral => spectral(moduli, strain),
-        EnergySplit::Whole => whole(moduli, strain),
+        Split::Spectral => spectral(moduli, strain),
+        Split::VolumetricDeviatoric => volumetric(moduli, 0.0, strain),
+        Split::StarConvex(gamma) => volumetric(moduli, gamma, strain),
+        Split::Rankine | Split::None => whole(moduli, strain),
     }
+}
+
+/// Energy density (J/m³) that drives fracture at a strain `[exx, eyy, exy]`: psi+, or that of the largest
+/// principal stress.
+#[inline(always)]
+pub fn driving_energy(moduli: &ElasticModuli, law: Split, strain: [Lane; 3]) -> Lane {
+    if law != Split::Rankine {
+        return split(moduli, law, strain).energy_plus;
+    }
+    let [xx, yy, xy] = moduli.stress(strain);
+    let radius = ((xx - yy) * 0.5).zip(xy, scaled_hypot);
+    let largest = ((xx + yy) * 0.5 + radius).at_least(Lane::ZERO);
+    largest * largest * (fault!("rankine-modulus", 0.5 => 1.0) / moduli.young)
 }
 
 /// The tensile part `e+` of a strain and both principal strains, largest first.
@@ -103,6 +117,25 @@ fn spectral(moduli: &ElasticModuli, strain: [Lane; 3]) -> SplitState {
         energy_minus: trace_minus * trace_minus * (0.5 * lambda) + minus * mu,
         stress_plus: stress(trace_plus, tensile),
         stress_minus: stress(trace_minus, compressive),
+    }
+}
+
+/// Volumetric-deviatoric for gamma = 0, else star-convex.
+#[inline(always)]
+fn volumetric(moduli: &ElasticModuli, gamma: f64, strain: [Lane; 3]) -> SplitState {
+    let bulk = moduli.volumetric;
+    let trace = strain[0] + strain[1];
+    let compression = trace.at_most(Lane::ZERO);
+    let energy = moduli.energy(strain);
+    let stress = moduli.stress(strain);
+    let star = fault!("star-convex-sign", 1.0 + gamma => 1.0 - gamma);
+    let energy_minus = compression * compression * (0.5 * star * bulk);
+    let pressure = compression * (star * bulk);
+    SplitState {
+        energy_plus: energy - energy_minus,
+        energy_minus,
+        stress_plus: [stress[0] - pressure, stress[1] - pressure, stress[2]],
+        stress_minus: [pressure, pressure, Lane::ZERO],
     }
 }
 

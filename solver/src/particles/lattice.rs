@@ -11,6 +11,7 @@
 //! in the unit of the knots, and has a [`Mapping`].
 
 mod build;
+mod cells;
 mod cut;
 mod cut_batch;
 mod cut_strips;

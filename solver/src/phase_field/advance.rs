@@ -28,7 +28,7 @@ impl PhaseField {
     /// As [`Self::solve`].
     pub(crate) fn advance(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Option<Convergence>, SolveFailure> {
         let Some(mut lag) = self.lag.take() else { return self.solve(lattice, history).map(Some) };
-        self.assemble_increments(lattice, history);
+        self.assemble_increments(lattice, history, |_| true);
         let due = lag.is_due();
         lag.since += 1;
         let result = if due {
@@ -48,9 +48,11 @@ impl PhaseField {
         }
     }
 
-    /// Work of the changes of c between solves, J/m, if there are steps without a solve.
-    pub(crate) fn lag_work(&self) -> Option<f64> {
-        self.lag.as_ref().map(|lag| lag.work)
+    /// Work of the changes of c on the residual of its equation, J/m: on the bounds, if there are any;
+    /// between solves, if there are steps without one.
+    pub(crate) fn residual_work(&self) -> Option<f64> {
+        let of_bounds = self.bounds.as_ref().map(|bounds| bounds.work);
+        of_bounds.or_else(|| self.lag.as_ref().map(|lag| lag.work))
     }
 
     /// Largest increase of a control value by a solve so far, if there are steps without one.

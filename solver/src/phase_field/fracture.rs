@@ -1,6 +1,8 @@
 //! Fracture of one body in the total frame: history energy, phase field, and what is measured of them; the
 //! seed of a crack in either frame, `H0 = B Gc/(4 l0) (1 − d/w)` at the distance d < w from it.
 
+use std::collections::BTreeSet;
+
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::lane::{LANES, Lane};
@@ -8,24 +10,32 @@ use crate::material::degradation::{BROKEN, FractureModel};
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::PhaseField;
+use crate::phase_field::awake::Awake;
 use crate::scene::{Body, Crack, CrackKind, Kinematics, SolverSettings};
+use crate::splines::patch::Patch;
+use crate::transfer::elastic_forces::elastic_sweep;
 use crate::transfer::finite::sweep_with;
-use crate::transfer::kernels::{DegradedStress, HistoryUpdate, SurfaceEnergy};
+use crate::transfer::kernels::{DegradedStress, HistoryUpdate, ScreenedStress, SurfaceEnergy};
 use crate::transfer::point_kernel::Fields;
 use crate::transfer::sweep::{StripForces, sweep};
 
 /// Ratio of the largest initial history energy to Gc/(4 l0) on a seeded crack (Borden et al. 2012).
 pub(crate) const SEED_STRENGTH: f64 = 1000.0;
 
+/// Distance of the places on a seed at which functions are looked at, of the shortest span; and value of one
+/// that vanishes there.
+const SEED_STEP: f64 = 0.05;
+const VANISHING: f64 = 1e-9;
+
 /// Difference of two distances from the start of a crack that counts as none, of the spacing of points.
 const TIE: f64 = 1e-3;
 
-/// History and phase field of a body.
+/// History, or present driving energy, and phase field of a body.
 #[derive(Debug, Clone)]
 pub struct LatticeFracture {
     /// Constants.
     pub model: FractureModel,
-    /// History energy H at the points, J/m³.
+    /// Driving energy H at the points, J/m³: the largest so far, or with a threshold the present one.
     pub history: Vec<Lane>,
     /// Phase field at the points.
     pub phase: Vec<Lane>,
@@ -35,6 +45,9 @@ pub struct LatticeFracture {
     pub field: PhaseField,
     /// Iterations of the last solve.
     pub iterations: usize,
+    /// Energy of the intact body (J/m), if its forces were summed since the last sweep of the degraded
+    /// stress.
+    pub intact_energy: Option<f64>,
 }
 
 /// Sums over the points, J per metre of thickness.
@@ -52,6 +65,7 @@ impl LatticeFracture {
     /// # Errors
     /// If the initial solve does not converge.
     pub fn new(
+        patch: &Patch,
         lattice: &Lattice,
         body: &Body,
         model: FractureModel,
@@ -60,22 +74,47 @@ impl LatticeFracture {
         let history = seeded_history(lattice, body, &model);
         let zeros = vec![Lane::ZERO; lattice.batches()];
         let mut field = PhaseField::new(lattice, model, settings);
+        if model.threshold().is_some() {
+            field.break_at(&functions_on_seeds(patch, body));
+        }
         let convergence = field.initialise(lattice, &history)?;
-        Ok(Self { model, history, phase: zeros.clone(), excess: zeros, field, iterations: convergence.iterations })
+        let iterations = convergence.iterations;
+        let (phase, excess) = (zeros.clone(), zeros);
+        Ok(Self { model, history, phase, excess, field, iterations, intact_energy: None })
     }
 
-    /// H from the present displacement.
+    /// H from the present displacement; with a threshold also the forces of the intact body, to which those
+    /// of the damage will be added.
     pub fn update_history(
         &mut self,
         lattice: &Lattice,
         moduli: ElasticModuli,
         kinematics: Kinematics,
         displacement: &[Vec<f64>; 2],
+        forces: &mut StripForces,
     ) {
         let model = self.model;
-        let strips = self.history.chunks_mut(lattice.strip_batches());
-        let mut kernels: Vec<_> = strips.map(|history| HistoryUpdate { moduli, model, history }).collect();
         let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
+        let (chunk, span) = (lattice.strip_batches(), lattice.points_per_span());
+        let cells_of_strip = chunk / span;
+        if let (Some(level), Some((awake, phase))) = (model.screening_level(&moduli), self.field.awake_mut()) {
+            let mut reached = vec![false; lattice.cells()];
+            let strips = reached.chunks_mut(cells_of_strip);
+            let kernel =
+                |reached| ScreenedStress { moduli, level, span, reached, most: Lane::ZERO, energy: Lane::ZERO };
+            let mut kernels: Vec<_> = strips.map(kernel).collect();
+            sweep_with(kinematics, lattice, fields, &mut kernels, Some(forces));
+            self.intact_energy = Some(kernels.iter().map(|k| k.energy.sum()).sum());
+            let before = awake.computed().to_vec();
+            awake.choose(lattice, &reached, phase);
+            let left = before.iter().zip(awake.computed()).map(|(before, now)| *before && !now);
+            let left = self.history.chunks_mut(span).zip(left).filter(|(_, left)| *left);
+            left.for_each(|(drive, _)| drive.fill(Lane::ZERO)); // below the level, and not known
+        }
+        let mut cells = self.field.awake().map_or(&[][..], Awake::computed).chunks(cells_of_strip);
+        let strips = self.history.chunks_mut(chunk);
+        let kernel = |history| HistoryUpdate { cells: cells.next().unwrap_or_default(), moduli, model, history };
+        let mut kernels: Vec<_> = strips.map(kernel).collect();
         sweep_with(kinematics, lattice, fields, &mut kernels, None);
     }
 
@@ -110,11 +149,21 @@ impl LatticeFracture {
         forces: &mut StripForces,
     ) -> StressSums {
         let model = self.model;
+        let fields = Fields { displacement, phase: self.field.control_values() };
         let chunk = lattice.strip_batches();
+        let awake = self.field.awake();
+        let swept = self.intact_energy.take();
+        let sweep = || elastic_sweep(lattice, moduli, kinematics, fields, forces);
+        let intact = awake.map_or(0.0, |_| swept.unwrap_or_else(sweep));
+        // excess is work where c changes: it has to be known before c does
+        let knows_excess = model.driving_work().is_some();
+        let visited = awake.map(|awake| if knows_excess { awake.computed() } else { awake.damaged() });
+        let mut cells = visited.unwrap_or_default().chunks(chunk / lattice.points_per_span());
         let states = self.phase.chunks_mut(chunk).zip(self.excess.chunks_mut(chunk));
         let mut kernels: Vec<_> = states
             .zip(self.history.chunks(chunk))
             .map(|((phase, excess), history)| DegradedStress {
+                cells: cells.next().unwrap_or_default(),
                 moduli,
                 model,
                 history,
@@ -124,14 +173,21 @@ impl LatticeFracture {
                 history_work: Lane::ZERO,
             })
             .collect();
-        let fields = Fields { displacement, phase: self.field.control_values() };
         sweep_with(kinematics, lattice, fields, &mut kernels, Some(forces));
         let history_work: f64 = kernels.iter().map(|k| k.history_work.sum()).sum();
         StressSums {
-            elastic_energy: kernels.iter().map(|k| k.energy.sum()).sum(),
+            elastic_energy: intact + kernels.iter().map(|k| k.energy.sum()).sum::<f64>(),
             history_work: (1.0 - model.residual_stiffness)
                 * fault!("history-work-halved", history_work => 0.5 * history_work),
         }
+    }
+
+    /// What the phase field adds to the energy of the body, given the work of the history field, by the names
+    /// of columns, J/m.
+    pub(crate) fn works(&self, history_work: f64) -> Vec<(&'static str, f64)> {
+        let residual = self.field.residual_work();
+        let values = self.model.driving_work().map(|_| history_work).into_iter().chain(residual);
+        self.model.columns_of_work(residual.is_some()).into_iter().zip(values).collect()
     }
 
     /// Surface energy per unit thickness (J/m) and smallest c at a point.
@@ -244,9 +300,24 @@ pub(crate) fn seed_energy(model: &FractureModel, body: &Body, position: [f64; 2]
     body.cracks.iter().filter_map(of_crack).fold(0.0, larger)
 }
 
+/// Control points whose functions do not vanish on the seeds of a body.
+fn functions_on_seeds(patch: &Patch, body: &Body) -> Vec<usize> {
+    let step = SEED_STEP * patch.shortest_span();
+    let mut found = BTreeSet::new();
+    for [from, to] in body.cracks.iter().filter(|crack| !crack.is_slit()).flat_map(Crack::segments) {
+        let steps = ((to[0] - from[0]).hypot(to[1] - from[1]) / step).ceil();
+        for n in 0..=steps as usize {
+            let place = [0, 1].map(|d| from[d] + (to[d] - from[d]) * (n as f64 / steps).min(1.0));
+            let functions = patch.functions_at(place).into_iter().flat_map(|functions| functions.values);
+            found.extend(functions.filter(|(_, value)| *value > VANISHING).map(|(at, _)| at));
+        }
+    }
+    found.into_iter().collect()
+}
+
 fn seeded_history(lattice: &Lattice, body: &Body, model: &FractureModel) -> Vec<Lane> {
     let mut history = vec![Lane::ZERO; lattice.batches()];
-    if !body.cracks.is_empty() {
+    if !body.cracks.is_empty() && model.threshold().is_none() {
         lattice.for_each_point(|batch, lane, position, _| history[batch][lane] = seed_energy(model, body, position));
     }
     history

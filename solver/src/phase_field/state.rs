@@ -9,7 +9,8 @@ impl PhaseField {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { model: _, tolerance: _, matrix, load: _, phase, previous, assembled, method, lag, counts } = self;
+        let Self { model: _, tolerance: _, matrix, load: _, phase, previous, assembled, method, lag, bounds, counts } =
+            self;
         if !assembled.is_empty() {
             archive.list(matrix.values_mut())?;
         }
@@ -17,6 +18,7 @@ impl PhaseField {
         archive.list(previous)?;
         archive.list(assembled)?;
         archive.value(counts)?;
+        bounds.as_mut().map_or(Ok(()), |bounds| bounds.exchange(archive))?;
         lag.as_mut().map_or(Ok(()), |lag| lag.exchange(archive))?;
         method.preconditioner().map_or(Ok(()), |preconditioner| preconditioner.exchange(archive, matrix))
     }

@@ -18,17 +18,34 @@ pub struct Material {
 }
 
 /// Which part of the elastic energy drives and feels the phase field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Split {
-    /// Tensile part by principal strains.
+    /// Tensile part by principal strains (Miehe et al. 2010).
     Spectral,
+    /// Expansion and distortion (Amor et al. 2009).
+    VolumetricDeviatoric,
+    /// As before, with this part of the energy of compression taken off what drives (Vicentini et al. 2024).
+    StarConvex(f64),
+    /// Driven by the largest principal stress; all of the energy is degraded (Wu 2017).
+    Rankine,
     /// All of it.
     None,
 }
 
-/// AT2 phase field in Borden's convention.
+/// Which surface energy a crack has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CrackModel {
+    /// Quadratic in the damage: it begins to grow with the first load (Bourdin et al. 2000).
+    At2,
+    /// Linear in the damage: elastic up to a threshold (Pham et al. 2011).
+    At1,
+}
+
+/// Phase field in Borden's convention.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fracture {
+    /// Surface energy.
+    pub model: CrackModel,
     /// Critical energy release rate Gc, J/m².
     pub critical_energy_release_rate: f64,
     /// Length scale l0 (half the l of the d²/l form), m.
@@ -53,8 +70,9 @@ pub enum Layout {
 /// What an initial crack is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CrackKind {
-    /// An initial history field of this half width (m), by default half the length scale: material that is
-    /// broken, but transmits pressure, and shear with the spectral split.
+    /// Material that is broken, but transmits pressure, and shear with the spectral split. With AT2 an
+    /// initial history field of this half width (m), by default half the length scale; with a threshold the
+    /// bound c = 0 on the line.
     Seed(Option<f64>),
     /// A discontinuity of the displacement: nothing is transmitted across it (total frame).
     Slit,

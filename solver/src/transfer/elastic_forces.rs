@@ -19,9 +19,21 @@ pub(crate) fn elastic_forces(
     strips: &mut StripForces,
     out: &mut VectorField,
 ) -> f64 {
-    let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| ElasticStress { moduli, energy: Lane::ZERO }).collect();
     let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
-    sweep_with(kinematics, lattice, fields, &mut kernels, Some(strips));
+    let energy = elastic_sweep(lattice, moduli, kinematics, fields, strips);
     strips.assemble(lattice.grid.stride, out);
+    energy
+}
+
+/// Forces (N/m) of the elastic stress, strip by strip; returns the elastic energy, J/m.
+pub(crate) fn elastic_sweep(
+    lattice: &Lattice,
+    moduli: ElasticModuli,
+    kinematics: Kinematics,
+    fields: Fields,
+    strips: &mut StripForces,
+) -> f64 {
+    let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| ElasticStress { moduli, energy: Lane::ZERO }).collect();
+    sweep_with(kinematics, lattice, fields, &mut kernels, Some(strips));
     kernels.iter().map(|k| k.energy.sum()).sum()
 }

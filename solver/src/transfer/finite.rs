@@ -21,6 +21,15 @@ impl<K: PointKernel> PointKernel for OnHenckyStrain<'_, K> {
     const STRESS: bool = K::STRESS;
 
     #[inline(always)]
+    fn skips(&self, cell: usize) -> bool {
+        self.0.skips(cell)
+    }
+
+    fn adds(&self) -> bool {
+        self.0.adds()
+    }
+
+    #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
         // Where there is no point, control points without mass may fly anywhere: no strain there.
         let [xx, xy, yx, yy] =

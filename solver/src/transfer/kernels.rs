@@ -11,7 +11,7 @@ use crate::linear_algebra::lane::Lane;
 use crate::material::degradation::BROKEN;
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
-use crate::material::split::split;
+use crate::material::split::{driving_energy, split};
 use crate::transfer::point_kernel::{PointKernel, PointValues, Stress};
 
 /// Linear strain `[exx, eyy, exy]` of a displacement gradient.
@@ -44,9 +44,11 @@ impl PointKernel for ElasticStress {
     }
 }
 
-/// History energy `H ← max(H, psi+)` (E 10).
+/// History energy `H ← max(H, psi+)` (E 10), or the present `max(0, psi+)`.
 #[derive(Debug)]
 pub struct HistoryUpdate<'a> {
+    /// Cells of the strip to visit; empty if it is all.
+    pub cells: &'a [bool],
     /// Moduli.
     pub moduli: ElasticModuli,
     /// Fracture constants.
@@ -63,10 +65,15 @@ impl PointKernel for HistoryUpdate<'_> {
     const EVERY_STEP: bool = true;
 
     #[inline(always)]
+    fn skips(&self, cell: usize) -> bool {
+        !self.cells.is_empty() && !self.cells[cell]
+    }
+
+    #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
-        let state = split(&self.moduli, self.model.split, strain(values.gradient));
-        let old = self.history[at];
-        self.history[at] = fault!("history-forgets", state.energy_plus.at_least(old) => state.energy_plus);
+        let energy = driving_energy(&self.moduli, self.model.split, strain(values.gradient));
+        let least = if self.model.threshold().is_none() { self.history[at] } else { Lane::ZERO };
+        self.history[at] = fault!("history-forgets", energy.at_least(least) => energy);
         Stress::ZERO
     }
 }
@@ -74,6 +81,9 @@ impl PointKernel for HistoryUpdate<'_> {
 /// Degraded stress (E 6), elastic energy, and the work of the history field over the step.
 #[derive(Debug)]
 pub struct DegradedStress<'a> {
+    /// Cells of the strip to visit, where the stress is added to that of the intact body; empty if it is all
+    /// there is.
+    pub cells: &'a [bool],
     /// Moduli.
     pub moduli: ElasticModuli,
     /// Fracture constants.
@@ -98,17 +108,73 @@ impl PointKernel for DegradedStress<'_> {
     const EVERY_STEP: bool = true;
 
     #[inline(always)]
+    fn skips(&self, cell: usize) -> bool {
+        !self.cells.is_empty() && !self.cells[cell]
+    }
+
+    fn adds(&self) -> bool {
+        !self.cells.is_empty()
+    }
+
+    #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
-        let state = split(&self.moduli, self.model.split, strain(values.gradient));
+        let strain = strain(values.gradient);
+        let state = split(&self.moduli, self.model.split, strain);
         let c = values.phase;
         let excess = c * (self.history[at] - state.energy_plus);
         let change = (excess + self.excess[at]) * (self.phase[at] - c);
         self.history_work = self.history_work.add_product::<FMA>(weight, change);
         self.excess[at] = excess;
         self.phase[at] = c;
-        let (energy, stress) = state.degraded::<FMA>(self.model.degradation(c));
+        let (mut energy, mut stress) = state.degraded::<FMA>(self.model.degradation(c));
+        if self.adds() {
+            energy = energy - self.moduli.energy(strain);
+            let intact = self.moduli.stress(strain);
+            for i in 0..3 {
+                stress[i] = stress[i] - intact[i];
+            }
+        }
         self.energy = self.energy.add_product::<FMA>(weight, energy);
         Stress::symmetric(stress)
+    }
+}
+
+/// Stress and energy of an intact body, and the cells whose energy density reaches a level.
+#[derive(Debug)]
+pub(crate) struct ScreenedStress<'a> {
+    /// Moduli.
+    pub moduli: ElasticModuli,
+    /// J/m³.
+    pub level: f64,
+    /// Batches in a cell.
+    pub span: usize,
+    /// Whether a cell of the strip reaches it.
+    pub reached: &'a mut [bool],
+    /// Largest energy density in the present cell, J/m³.
+    pub most: Lane,
+    /// Elastic energy of the strip per unit thickness, J/m.
+    pub energy: Lane,
+}
+
+impl PointKernel for ScreenedStress<'_> {
+    const DISPLACEMENT: bool = true;
+    const PHASE: bool = false;
+    const PHASE_GRADIENT: bool = false;
+    const STRESS: bool = true;
+    const EVERY_STEP: bool = true;
+
+    #[inline(always)]
+    fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
+        let strain = strain(values.gradient);
+        let energy = self.moduli.energy(strain);
+        self.energy = self.energy.add_product::<FMA>(weight, energy);
+        let here = energy.zip(weight, |energy, weight| if weight > 0.0 { energy } else { 0.0 });
+        self.most = here.at_least(self.most);
+        if (at + 1).is_multiple_of(self.span) {
+            self.reached[at / self.span] = self.most.0.iter().any(|&energy| energy >= self.level);
+            self.most = Lane::ZERO;
+        }
+        Stress::symmetric(self.moduli.stress(strain))
     }
 }
 
@@ -218,11 +284,7 @@ impl PointKernel for SurfaceEnergy {
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, _at: usize, weight: Lane, values: &PointValues) -> Stress {
-        let FractureModel { toughness, length_scale, .. } = self.model;
-        let broken = Lane::splat(1.0) - values.phase;
-        let [gx, gy] = values.phase_gradient;
-        let density = broken * broken * (toughness / (fault!("surface-energy-doubled", 4.0 => 2.0) * length_scale))
-            + (gx * gx + gy * gy) * (toughness * length_scale);
+        let density = self.model.surface_energy(values.phase, values.phase_gradient);
         self.energy = self.energy.add_product::<FMA>(weight, density);
         let exists = values.phase.zip(weight, |c, w| if w > 0.0 { c } else { f64::INFINITY });
         self.least = self.least.zip(exists, smaller);

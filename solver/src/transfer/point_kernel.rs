@@ -51,6 +51,17 @@ pub trait PointKernel: Send {
     /// Whether it runs in every step, and is compiled for each of the usual degrees.
     const EVERY_STEP: bool = false;
 
+    /// Whether a cell of the strip, or all those of its tile, need no visit.
+    #[inline(always)]
+    fn skips(&self, _cell: usize) -> bool {
+        false
+    }
+
+    /// Whether forces are added to those of the sweep before.
+    fn adds(&self) -> bool {
+        false
+    }
+
     /// One batch: `at` counts batches from the start of the strip, `weight` is in m² and zero where there is
     /// no point.
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress;

@@ -66,7 +66,9 @@ pub fn sweep<K: PointKernel>(lattice: &Lattice, fields: Fields, kernels: &mut [K
     match forces {
         Some(forces) if K::STRESS => {
             kernels.par_iter_mut().zip(&mut forces.strips).enumerate().for_each(|(strip, (kernel, force))| {
-                force.components.iter_mut().for_each(|c| c.fill(0.0));
+                if !kernel.adds() {
+                    force.components.iter_mut().for_each(|c| c.fill(0.0));
+                }
                 dispatch(StripSweep { lattice, fields, strip, kernel, force: Some(force) });
             });
         }

@@ -6,7 +6,8 @@ use super::material::plausible_speed;
 use super::output;
 use crate::linear_algebra::extremes::larger;
 use crate::scene::{
-    Body, Contact, Frame, Kinematics, Mass, PhaseFieldInterval, Quadrature, Scene, Shape, Side, TimeStep, Transfer,
+    Body, Contact, CrackModel, Frame, Kinematics, Mass, PhaseFieldInterval, Quadrature, Scene, Shape, Side, TimeStep,
+    Transfer,
 };
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
@@ -225,8 +226,12 @@ fn solver(scene: &Scene, findings: &mut Findings) {
         let message = format!("an error of {tolerance:e} of the phase field is outside (1e-15, 1e-2]");
         findings.error("solver.phase_field_tolerance", message, "give a number such as 1e-8");
     }
-    if scene.analysis.frame == Frame::Updated && scene.solver.phase_field_interval != PhaseFieldInterval::Steps(1) {
-        let message = "in the updated frame the phase field is solved for in every step";
-        findings.error("solver.phase_field_interval", message, "remove the key, or use frame = \"total\"");
+    if scene.solver.phase_field_interval == PhaseFieldInterval::Steps(1) {
+        return;
+    }
+    let bounded = scene.materials.values().filter_map(|m| m.fracture.as_ref()).any(|f| f.model == CrackModel::At1);
+    if scene.analysis.frame == Frame::Updated || bounded {
+        let message = "in the updated frame, and with model = \"at1\", the phase field is solved for in every step";
+        findings.error("solver.phase_field_interval", message, "remove the key, or use at2 in the total frame");
     }
 }

@@ -7,7 +7,7 @@ use super::look::{Look, TOLERANCE};
 use super::points::Points;
 use super::{cracks, edge_conditions, resolution, seed, tractions};
 use crate::particles::lattice::cuts_spans;
-use crate::scene::{Body, Fracture, Frame, Layout, Scene, Shape};
+use crate::scene::{Body, CrackModel, Fracture, Frame, Layout, Scene, Shape};
 use crate::splines::nurbs::{LocateError, NurbsPatch};
 use crate::splines::quadrature::MAX_POINTS;
 
@@ -89,7 +89,7 @@ fn material_points(
         let message = format!("no material point lies in body {:?}: its cells are up to {h:.3e} m wide", body.name);
         let remedy = "use smaller cells or more particles_per_cell, or make the body larger";
         findings.error(format!("{key}.shape"), message, remedy);
-    } else if let Some(fracture) = fracture {
+    } else if let Some(fracture) = fracture.filter(|fracture| fracture.model == CrackModel::At2) {
         seed::check(key, body, fracture, &points, h, findings);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::findings::Findings;
 use crate::material::elasticity::ElasticModuli;
-use crate::scene::{Fracture, Material, Plane, Scene};
+use crate::scene::{CrackModel, Fracture, Frame, Material, Plane, Scene, Split};
 
 /// No solid carries waves faster than this, m/s (diamond: 18 km/s).
 const FASTEST: f64 = 3e4;
@@ -34,7 +34,9 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
             wave_speed(&key, material, scene.analysis.plane, findings);
         }
         if let Some(fracture) = &material.fracture {
-            check_fracture(&format!("{key}.fracture"), fracture, findings);
+            let key = format!("{key}.fracture");
+            check_fracture(&key, fracture, findings);
+            model(&key, fracture, scene.analysis.frame, findings);
         }
         if !scene.bodies.iter().any(|b| b.material == *name) {
             findings.warn(key, "no body is made of this material; remove it, or correct body.material");
@@ -123,6 +125,20 @@ fn check_fracture(key: &str, fracture: &Fracture, findings: &mut Findings) {
     if !(0.0..1.0).contains(&fracture.residual_stiffness) {
         let message = format!("{} is outside [0, 1)", fracture.residual_stiffness);
         findings.error(format!("{key}.residual_stiffness"), message, "give a small fraction, such as 0 or 1e-6");
+    }
+}
+
+/// What surface energies and splits combine with.
+fn model(key: &str, fracture: &Fracture, frame: Frame, findings: &mut Findings) {
+    if fracture.model == CrackModel::At1 && frame == Frame::Updated {
+        let message = "at1 bounds the phase field on control points, which the updated frame changes in every step";
+        findings.error(format!("{key}.model"), message, "use frame = \"total\", or model = \"at2\"");
+    }
+    if let Split::StarConvex(gamma) = fracture.split
+        && !(gamma >= 0.0 && gamma.is_finite())
+    {
+        let remedy = "give a number such as 3.0; 0 is the volumetric-deviatoric split";
+        findings.error(format!("{key}.split.star-convex"), format!("{gamma} is not zero or more"), remedy);
     }
 }
 

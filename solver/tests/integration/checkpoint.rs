@@ -2,7 +2,7 @@
 //! alone.
 
 use crate::common::{
-    body, brittle, driven_plate, elastic_scene, glass, horseshoe, notched_plate, patch_scene, rectangle,
+    body, brittle, driven_plate, elastic_scene, glass, horseshoe, make_at1, notched_plate, patch_scene, rectangle,
 };
 use fisura::Simulation;
 use fisura::scene::*;
@@ -70,6 +70,11 @@ fn in_the_total_frame() {
         goes_on_bit_by_bit("cracking", &scene);
         scene.solver.phase_field_interval = PhaseFieldInterval::Automatic;
         goes_on_bit_by_bit("cracking, an automatic interval", &scene);
+        scene.solver.phase_field_interval = PhaseFieldInterval::Steps(1);
+        for split in [Split::Spectral, Split::StarConvex(2.0)] {
+            make_at1(&mut scene, split);
+            goes_on_bit_by_bit("cracking, with a threshold", &scene);
+        }
     }
     let mut direct = notched_plate(2e7);
     direct.analysis.end_time = 1e-6;

@@ -1,6 +1,6 @@
 //! The same bits for any number of threads, and for every repetition.
 
-use crate::common::{horseshoe, notched_plate, pulled_plate, run, two_discs, with_threads};
+use crate::common::{horseshoe, make_at1, notched_plate, pulled_plate, run, two_discs, with_threads};
 use fisura::scene::*;
 
 /// Every value of every sample, and place, velocity and strain of every point at the end, as bits.
@@ -41,6 +41,11 @@ fn in_the_total_frame() {
     let mut interval = tall(notched_plate(6e6));
     interval.solver.phase_field_interval = PhaseFieldInterval::Automatic;
     check(&interval);
+    for split in [Split::Spectral, Split::Rankine] {
+        let mut threshold = tall(notched_plate(6e6));
+        make_at1(&mut threshold, split);
+        check(&threshold);
+    }
     let mut direct = tall(notched_plate(6e6));
     direct.solver.phase_field_solver = PhaseFieldSolver::Cholesky;
     direct.analysis.end_time = 0.3e-6;

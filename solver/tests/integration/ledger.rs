@@ -31,7 +31,7 @@ fn a_fracturing_plate_closes_and_every_term_moves_closure() {
         ("elastic", 1.0, |s, by| s.elastic += by),
         ("fracture", 1.0, |s, by| s.fracture.as_mut().unwrap().energy += by),
         ("external work", -1.0, |s, by| s.external_work += by),
-        ("history work", -1.0, |s, by| s.fracture.as_mut().unwrap().history_work += by),
+        ("history work", -1.0, |s, by| s.fracture.as_mut().unwrap().works[0].1 += by),
         ("transfer loss", 1.0, |s, by| s.transfer_loss = Some(by)),
     ];
     let mut same = last.clone();
@@ -50,7 +50,7 @@ fn a_fracturing_plate_closes_and_every_term_moves_closure() {
     assert!((moved_start.closure - last.closure + change).abs() <= 1e-13 * scale);
 
     let mut forgotten = last.clone();
-    let work = std::mem::take(&mut fracture(&mut forgotten).history_work);
+    let work = std::mem::take(&mut fracture(&mut forgotten).works[0].1);
     forgotten.close(initial);
     assert!((forgotten.closure - last.closure - work).abs() <= 1e-13 * scale);
     assert!(work > 0.0 && work > 10.0 * last.closure.abs(), "history work {work:e} J is no part of closure");

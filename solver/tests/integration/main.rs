@@ -3,6 +3,7 @@
 mod absent_physics;
 mod allocation;
 mod assembly;
+mod at1;
 mod bodies;
 mod boundary_points;
 mod breakdown;

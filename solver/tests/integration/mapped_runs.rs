@@ -29,7 +29,7 @@ fn difference(a: &Scene, b: &Scene) -> [f64; 2] {
     let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, |m: f64, x| larger(m, x.abs()));
     let displacement = largest(&mut a.iter().zip(&b).map(|(a, b)| a - b)) / largest(&mut a.iter().copied());
     let terms = |s: &Sample| {
-        let fracture = s.fracture.as_ref().map_or(0.0, |f| f.energy + f.history_work);
+        let fracture = s.fracture.as_ref().map_or(0.0, |f| f.energy + f.works[0].1);
         [s.kinetic, s.elastic, s.external_work, fracture]
     };
     let scale = rows.iter().map(Sample::largest_term).fold(0.0, larger);

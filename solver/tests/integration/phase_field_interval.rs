@@ -15,14 +15,14 @@ fn cracking(interval: PhaseFieldInterval) -> (usize, Vec<Sample>) {
 #[test]
 fn the_ledger_closes_with_the_work_between_solves_and_is_open_without_it() {
     let (all, every_step) = cracking(PhaseFieldInterval::Steps(1));
-    assert!(every_step.iter().all(|s| s.fracture.as_ref().unwrap().lag_work.is_none()));
+    assert!(every_step.iter().all(|s| s.fracture.as_ref().unwrap().works.len() == 1));
     for interval in [PhaseFieldInterval::Steps(2), PhaseFieldInterval::Steps(3), PhaseFieldInterval::Automatic] {
         let (solves, samples) = cracking(interval);
         assert!(solves < 2 * all / 3, "{interval:?}: {solves} solves of {all}");
         let closure = relative_closure(&samples);
         assert!(closure <= 1e-3 && closure <= 2.0 * relative_closure(&every_step), "{interval:?}: closure {closure:e}");
         let end = samples.last().unwrap();
-        let work = end.fracture.as_ref().unwrap().lag_work.unwrap();
+        let work = end.fracture.as_ref().unwrap().works[1].1;
         assert!(
             work.abs() > 3.0 * end.closure.abs(),
             "{interval:?}: {work:e} J is no part of closure {:e}",

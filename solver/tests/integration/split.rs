@@ -1,10 +1,12 @@
-//! The spectral split against eigenvectors, on random strains and where eigenvalues coincide or vanish.
+//! The spectral split against eigenvectors, on random strains and where eigenvalues coincide or vanish; every
+//! split against the slopes of its energies, turned frames, and closed forms of strength.
 
-use crate::common::moduli;
+use crate::common::{glass, moduli};
 use fisura::linear_algebra::extremes::larger;
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::elasticity::ElasticModuli;
-use fisura::material::split::{EnergySplit, SplitState, split, tensile_strain};
+use fisura::material::split::{SplitState, driving_energy, split, tensile_strain};
+use fisura::scene::{Material, Plane, Split};
 use nalgebra::{Matrix2, SymmetricEigen};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -15,13 +17,27 @@ fn tensile(strain: Strain) -> Strain {
     tensile_strain(strain.map(Lane::splat)).0.map(|e| e[3])
 }
 
-fn state(moduli: &ElasticModuli, strain: Strain) -> SplitState {
-    split(moduli, EnergySplit::Spectral, strain.map(Lane::splat))
+const SPLITS: [Split; 6] = [
+    Split::Spectral,
+    Split::VolumetricDeviatoric,
+    Split::StarConvex(0.5),
+    Split::StarConvex(4.0),
+    Split::Rankine,
+    Split::None,
+];
+
+fn state(moduli: &ElasticModuli, law: Split, strain: Strain) -> SplitState {
+    split(moduli, law, strain.map(Lane::splat))
 }
 
-fn energies(moduli: &ElasticModuli, strain: Strain) -> [f64; 2] {
-    let state = state(moduli, strain);
+fn energies(moduli: &ElasticModuli, law: Split, strain: Strain) -> [f64; 2] {
+    let state = state(moduli, law, strain);
     [state.energy_plus[0], state.energy_minus[0]]
+}
+
+/// Glass of another Poisson ratio.
+fn moduli_in(plane: Plane, poisson_ratio: f64) -> ElasticModuli {
+    ElasticModuli::new(&Material { poisson_ratio, ..glass() }, plane)
 }
 
 /// Norm of the tensor.
@@ -64,7 +80,7 @@ fn check(strain: Strain) {
     let overlap = product(unit(plus), unit(minus_part)).abs();
     assert!(overlap <= 1e-14, "{strain:?}: e+:e- = {overlap:e}");
     let moduli = moduli();
-    let state = state(&moduli, strain);
+    let state = state(&moduli, Split::Spectral, strain);
     let whole = moduli.energy(strain.map(Lane::splat))[0];
     let sum = state.energy_plus[0] + state.energy_minus[0];
     let rounding = 4e-15 * scale * scale + 1e-320; // squares near the smallest number are coarse
@@ -148,15 +164,99 @@ proptest! {
     fn stresses_are_the_slopes_of_the_energies(
         xx in -1.0f64..1.0, yy in -1.0f64..1.0, xy in -1.0f64..1.0, dxx in -1.0f64..1.0, dyy in -1.0f64..1.0, dxy in -1.0f64..1.0
     ) {
-        let moduli = moduli();
         let (strain, direction, step) = ([xx, yy, xy], [dxx, dyy, dxy], 1e-8);
         let moved = |s: f64| [xx + s * dxx, yy + s * dyy, xy + s * dxy];
-        let (ahead, behind) = (energies(&moduli, moved(step)), energies(&moduli, moved(-step)));
-        let state = state(&moduli, strain);
-        for (i, stress) in [state.stress_plus, state.stress_minus].into_iter().enumerate() {
-            let slope = (ahead[i] - behind[i]) / (2.0 * step);
-            let power = product(stress.map(|s| s[0]), direction);
-            prop_assert!((slope - power).abs() <= 1e-7 * moduli.mu * 4.0, "{slope} for {power}");
+        for (law, plane) in SPLITS.into_iter().flat_map(|law| [(law, Plane::Strain), (law, Plane::Stress)]) {
+            let moduli = moduli_in(plane, 0.3);
+            let (ahead, behind) = (energies(&moduli, law, moved(step)), energies(&moduli, law, moved(-step)));
+            let state = state(&moduli, law, strain);
+            for (i, stress) in [state.stress_plus, state.stress_minus].into_iter().enumerate() {
+                let slope = (ahead[i] - behind[i]) / (2.0 * step);
+                let power = product(stress.map(|s| s[0]), direction);
+                let scale = if let Split::StarConvex(gamma) = law { 1.0 + gamma } else { 1.0 };
+                prop_assert!((slope - power).abs() <= 4e-7 * scale * moduli.mu, "{law:?}: {slope} for {power}");
+            }
+            let sum = state.energy_plus[0] + state.energy_minus[0];
+            let whole = moduli.energy(strain.map(Lane::splat))[0];
+            prop_assert!((sum - whole).abs() <= 1e-14 * moduli.mu, "{law:?}: {sum} for {whole}");
+        }
+    }
+
+    /// Energies do not depend on the frame, and stresses turn with it.
+    #[test]
+    fn splits_turn_with_the_frame(e1 in -1.0f64..1.0, e2 in -1.0f64..1.0, angle in 0.0f64..3.1) {
+        for law in SPLITS {
+            let moduli = moduli();
+            let [here, there] = [0.0, angle].map(|angle| state(&moduli, law, turned(e1, e2, angle)));
+            let turn = |[xx, yy, _]: [Lane; 3]| turned(xx[0], yy[0], angle);
+            for (a, b) in [(here.stress_plus, there.stress_plus), (here.stress_minus, there.stress_minus)] {
+                let gap = norm(minus(turn(a), b.map(|s| s[0])));
+                prop_assert!(gap <= 1e-13 * moduli.mu, "{law:?}: {gap:e}");
+            }
+            let drive = |angle: f64| driving_energy(&moduli, law, turned(e1, e2, angle).map(Lane::splat))[0];
+            prop_assert!((drive(0.0) - drive(angle)).abs() <= 1e-13 * moduli.mu, "{law:?}");
+        }
+    }
+}
+
+/// Uniaxial stress of one Pa along x, as a strain.
+fn uniaxial(plane: Plane, nu: f64) -> Strain {
+    let young = glass().young_modulus;
+    match plane {
+        Plane::Strain => [(1.0 - nu * nu) / young, -nu * (1.0 + nu) / young, 0.0],
+        Plane::Stress => [1.0 / young, -nu / young, 0.0],
+    }
+}
+
+#[test]
+fn strength_in_compression_over_that_in_tension() {
+    let ratio = |law: Split, plane: Plane, nu: f64| {
+        let moduli = moduli_in(plane, nu);
+        let drive = |sign: f64| driving_energy(&moduli, law, uniaxial(plane, nu).map(|e| Lane::splat(sign * e)))[0];
+        let stress = moduli.stress(uniaxial(plane, nu).map(Lane::splat));
+        assert!((stress[0][0] - 1.0).abs() < 1e-12 && stress[1][0].abs() < 1e-12, "it is uniaxial");
+        (drive(1.0) / drive(-1.0)).sqrt()
+    };
+    for nu in [0.05, 0.2, 0.3, 0.45] {
+        let close = |found: f64, exact: f64| assert!((found / exact - 1.0).abs() < 1e-9, "{nu}: {found} for {exact}");
+        close(ratio(Split::Spectral, Plane::Stress, nu), (1.0 + nu - nu * nu).sqrt() / nu);
+        for gamma in [0.0, 0.5, 1.0] {
+            let law = if gamma == 0.0 { Split::VolumetricDeviatoric } else { Split::StarConvex(gamma) };
+            // psi is (1 - nu^2) or 1, the change of volume (1 + nu)^2 (1 - 2 nu)/3 or (1 - 2 nu)/3, of s^2/(2
+            // E)
+            let of_volume = (1.0 + gamma) * (1.0 - 2.0 * nu) / 3.0;
+            let strain = 1.0 / (1.0 - of_volume * (1.0 + nu) / (1.0 - nu));
+            close(ratio(law, Plane::Strain, nu), strain.sqrt());
+            close(ratio(law, Plane::Stress, nu), (1.0 / (1.0 - of_volume)).sqrt());
+        }
+        for plane in [Plane::Strain, Plane::Stress] {
+            assert_eq!(ratio(Split::Rankine, plane, nu), f64::INFINITY);
+            close(ratio(Split::None, plane, nu), 1.0);
+        }
+    }
+    for (law, plane, nu, value) in [
+        (Split::Spectral, Plane::Stress, 0.2, 5.39),
+        (Split::Spectral, Plane::Stress, 0.3, 3.67),
+        (Split::Spectral, Plane::Strain, 0.2, 4.36),
+        (Split::Spectral, Plane::Strain, 0.3, 2.60),
+        (Split::VolumetricDeviatoric, Plane::Strain, 0.2, 1.195),
+    ] {
+        let found = ratio(law, plane, nu);
+        assert!((found - value).abs() < 0.006, "{law:?}, {plane:?}, {nu}: {found}");
+    }
+}
+
+/// What drives in uniaxial tension is `s²/(2 E)` for a largest principal stress s, whatever acts across it.
+#[test]
+fn rankine_is_driven_by_the_largest_principal_stress() {
+    for (plane, nu) in [(Plane::Strain, 0.2), (Plane::Stress, 0.3), (Plane::Strain, -0.2)] {
+        let moduli = moduli_in(plane, nu);
+        for (e1, e2, angle) in [(1e-3, 2e-4, 0.3), (1e-3, -2e-3, 1.0), (3e-4, -1e-4, 2.0), (-1e-4, -2e-3, 0.7)] {
+            let [xx, yy, xy] = moduli.stress(turned(e1, e2, angle).map(Lane::splat)).map(|s| s[0]);
+            let largest = SymmetricEigen::new(Matrix2::new(xx, xy, xy, yy)).eigenvalues.max().max(0.0);
+            let drive = driving_energy(&moduli, Split::Rankine, turned(e1, e2, angle).map(Lane::splat))[0];
+            let exact = largest * largest / (2.0 * glass().young_modulus);
+            assert!((drive - exact).abs() <= 1e-12 * exact, "{drive} for {exact}");
         }
     }
 }
@@ -164,11 +264,11 @@ proptest! {
 /// A point that has lost its numbers makes the energy of its body none, whichever component lost them.
 #[test]
 fn what_is_not_a_number_has_no_energy_and_no_stress() {
-    for law in [EnergySplit::Spectral, EnergySplit::Whole] {
+    for law in SPLITS {
         for (component, base) in [0, 1, 2].into_iter().flat_map(|c| [-1e-3, 0.0, 1e-3].map(|base| (c, base))) {
             let mut strain = [base, -0.5 * base, 0.3 * base];
             strain[component] = f64::NAN;
-            let state = split(&moduli(), law, strain.map(Lane::splat));
+            let state = state(&moduli(), law, strain);
             let energy = state.energy_plus[0] + state.energy_minus[0];
             assert!(energy.is_nan(), "{law:?}, {strain:?}: energy {energy}");
             let stress: f64 = state.stress_plus.iter().chain(&state.stress_minus).map(|s| s[0]).sum();

@@ -5,14 +5,13 @@ use fisura::linear_algebra::lane::Lane;
 use fisura::linear_algebra::stencil::Stencil;
 use fisura::material::degradation::FractureModel;
 use fisura::material::elasticity::ElasticModuli;
-use fisura::material::split::EnergySplit;
 use fisura::particles::lattice::Lattice;
 use fisura::phase_field::PhaseField;
 use fisura::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_form};
 use fisura::phase_field::fracture::LatticeFracture;
 use fisura::scene::{
-    Crack, Fracture, Frame, Material, Mesh, PhaseFieldInterval, PhaseFieldSolver, Plane, Scene, Shape, SolverSettings,
-    Split,
+    Crack, CrackModel, Fracture, Frame, Material, Mesh, PhaseFieldInterval, PhaseFieldSolver, Plane, Scene, Shape,
+    SolverSettings, Split,
 };
 use fisura::splines::patch::Patch;
 use fisura::transfer::kernels::{DegradedStress, ElasticStress, HistoryUpdate};
@@ -35,6 +34,7 @@ pub const MARGIN: usize = 4;
 /// uniform.
 pub fn cracked_scene(degree: usize, points: usize, cells: usize, margin: usize) -> Scene {
     let fracture = Fracture {
+        model: CrackModel::At2,
         critical_energy_release_rate: 3.0,
         length_scale: SPAN,
         residual_stiffness: 0.0,
@@ -125,7 +125,7 @@ impl Block {
             displacement[0][at] = 1e-7 * (0.37 * n as f64).sin();
             displacement[1][at] = 1e-7 * (0.23 * n as f64).cos();
         }
-        let fracturing = LatticeFracture::new(&lattice, &scene.bodies[0], model, &scene.solver);
+        let fracturing = LatticeFracture::new(&patch, &lattice, &scene.bodies[0], model, &scene.solver);
         let history = fracturing.map_err(|_| BenchError::other("the first phase field does not converge"))?.history;
         let (degree, points) = (lattice.degree[0], lattice.points[0]);
         let (name, count) = (format!("p{degree}_{points}x{points}"), lattice.count());
@@ -144,10 +144,10 @@ impl Block {
     }
 
     /// `H ← max(H, psi+)` with a split.
-    pub fn history_sweep(&self, split: EnergySplit, history: &mut [Lane]) {
+    pub fn history_sweep(&self, split: Split, history: &mut [Lane]) {
         let (moduli, model) = (self.moduli, FractureModel { split, ..self.model });
         let chunks = history.chunks_mut(self.lattice.strip_batches());
-        let mut kernels: Vec<_> = chunks.map(|history| HistoryUpdate { moduli, model, history }).collect();
+        let mut kernels: Vec<_> = chunks.map(|history| HistoryUpdate { cells: &[], moduli, model, history }).collect();
         sweep(&self.lattice, self.fields(&[]), &mut kernels, None);
     }
 
@@ -155,7 +155,7 @@ impl Block {
     /// there.
     pub fn degraded_sweep(
         &self,
-        split: EnergySplit,
+        split: Split,
         phase: &[f64],
         history: &[Lane],
         at_points: &mut [Vec<Lane>; 2],
@@ -167,6 +167,7 @@ impl Block {
         let states = phases.chunks_mut(chunk).zip(excess.chunks_mut(chunk)).zip(history.chunks(chunk));
         let mut kernels: Vec<_> = states
             .map(|((phase, excess), history)| DegradedStress {
+                cells: &[],
                 moduli: self.moduli,
                 model,
                 history,

@@ -8,7 +8,7 @@ use std::hint::black_box;
 use fisura::Simulation;
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::linear_algebra::incomplete_cholesky::IncompleteCholesky;
-use fisura::material::split::EnergySplit;
+use fisura::scene::Split;
 use fisura::transfer::sweep::StripForces;
 
 use super::block::{Block, elastic_scene};
@@ -82,8 +82,8 @@ fn sweeps<'a, const P: usize>(block: &'a Block) -> Result<Vec<Contestant<'a>>, B
     contestants.push(Contestant::short(elastic, move || block.elastic_sweep(&mut own)));
 
     let phase = block.phase_field()?;
-    for (split, name) in [(EnergySplit::Spectral, "spectral split"), (EnergySplit::Whole, "no split")] {
-        let suffix = if split == EnergySplit::Spectral { "" } else { "-no-split" };
+    for (split, name) in [(Split::Spectral, "spectral split"), (Split::None, "no split")] {
+        let suffix = if split == Split::Spectral { "" } else { "-no-split" };
         let mut history = block.history.clone();
         block.history_sweep(split, &mut history);
         let grew = history.iter().zip(&block.history).all(|(new, old)| (0..8).all(|lane| new[lane] >= old[lane]));

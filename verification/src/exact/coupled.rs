@@ -16,7 +16,7 @@
 //! and the displacement or the traction on the boundary, and non-zero displacement, velocity and history at t
 //! = 0. c lies in (0.45, 0.95).
 
-use fisura::scene::{Fracture, Frame, Kinematics, Material, Plane, Split};
+use fisura::scene::{CrackModel, Fracture, Frame, Kinematics, Material, Plane, Split};
 
 use super::dual::{Field, Jet, Scalar};
 use super::motion::{Derived, Motion, displacement_gradient};
@@ -44,6 +44,7 @@ pub struct Coupled {
 impl Motion for Coupled {
     fn material(&self) -> Material {
         let fracture = Fracture {
+            model: CrackModel::At2,
             critical_energy_release_rate: 0.02,
             length_scale: 0.1,
             residual_stiffness: 0.0,

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use fisura::scene::time::TimeFactor;
-use fisura::scene::{Body, Crack, CrackKind, Edge, Fracture, Layout, Load, Material, Shape, Split, Traction};
+use fisura::scene::{
+    Body, Crack, CrackKind, CrackModel, Edge, Fracture, Layout, Load, Material, Shape, Split, Traction,
+};
 
 use super::document::join;
 use super::fields::{Fields, Item};
@@ -48,19 +50,31 @@ fn material(item: &Item<'_>) -> Option<Material> {
 }
 
 fn fracture(item: &Item<'_>) -> Option<Fracture> {
-    let fields = item.fields(&["critical_energy_release_rate", "length_scale", "residual_stiffness", "split"])?;
+    let fields =
+        item.fields(&["model", "critical_energy_release_rate", "length_scale", "residual_stiffness", "split"])?;
+    let model = fields.or("model", CrackModel::At2, Item::word);
     let rate = fields.need("critical_energy_release_rate", "critical_energy_release_rate = \"3 J/m^2\"", |item| {
         item.quantity(Dimension::ENERGY_PER_AREA)
     });
     let scale = fields.need("length_scale", "length_scale = \"0.25 mm\"", length);
     let residual = fields.or("residual_stiffness", 0.0, number);
-    let split = fields.or("split", Split::Spectral, Item::word);
+    let split = fields.or("split", Split::Spectral, split);
     Some(Fracture {
+        model: model?,
         critical_energy_release_rate: rate?,
         length_scale: scale?,
         residual_stiffness: residual?,
         split: split?,
     })
+}
+
+/// A word, or `{ star-convex = GAMMA }`.
+fn split(item: &Item<'_>) -> Option<Split> {
+    if item.node.as_table().is_none() {
+        return item.word();
+    }
+    let fields = item.fields(&["star-convex"])?;
+    fields.need("star-convex", "split = { star-convex = 3.0 }", number).map(Split::StarConvex)
 }
 
 /// `[[body]]` tables in order.

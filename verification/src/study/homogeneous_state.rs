@@ -79,7 +79,15 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
     let mut points = Points {
         lattice: &lattice,
         moduli,
-        fracture: LatticeFracture { model, history, phase: zeros.clone(), excess: zeros, field, iterations: 0 },
+        fracture: LatticeFracture {
+            model,
+            history,
+            phase: zeros.clone(),
+            excess: zeros,
+            field,
+            iterations: 0,
+            intact_energy: None,
+        },
         forces: StripForces::new(&lattice),
         greville: patch.spaces[0].greville(),
         height: high[1] - low[1],
@@ -136,7 +144,7 @@ impl Points<'_> {
         for at in grid.indices() {
             displacement[0][at] = strain * self.greville[grid.column_of(at)];
         }
-        fracture.update_history(lattice, *moduli, Kinematics::Small, &displacement);
+        fracture.update_history(lattice, *moduli, Kinematics::Small, &displacement, forces);
         let solved = fracture.solve_phase_field(lattice);
         solved.map_err(|failure| StudyError::Other(format!("the phase-field solve {failure}")))?;
         fracture.degraded_forces(lattice, *moduli, Kinematics::Small, [&displacement[0], &displacement[1]], forces);

@@ -48,7 +48,7 @@ impl TotalFrame {
         let fracture = material
             .fracture
             .as_ref()
-            .map(|f| LatticeFracture::new(&lattice, body, FractureModel::new(f), &scene.solver))
+            .map(|f| LatticeFracture::new(&patch, &lattice, body, FractureModel::new(f), &scene.solver))
             .transpose()?;
         let mass = MassMatrix::new(&lattice, material.density, scene.analysis.mass, held)?;
         if let Some(number) = constraints.conditions().iter().enumerate().position(|(number, condition)| {
@@ -141,7 +141,9 @@ impl TotalFrame {
     /// The phase field that belongs to the present displacement.
     fn release_phase_field(&mut self) -> Result<(), SolveFailure> {
         if let Some(fracture) = &mut self.fracture {
-            fracture.update_history(&self.lattice, self.moduli, self.kinematics, &self.displacement);
+            fracture.field.wake_everything();
+            let Self { lattice, moduli, kinematics, displacement, strip_forces, .. } = self;
+            fracture.update_history(lattice, *moduli, *kinematics, displacement, strip_forces);
             fracture.field.initialise(&self.lattice, &fracture.history)?;
         }
         Ok(())

@@ -58,8 +58,7 @@ impl TotalFrame {
             let (energy, min_phase) = f.surface_energy(&self.lattice);
             FractureSample {
                 energy,
-                history_work: self.ledger.history_work,
-                lag_work: f.field.lag_work(),
+                works: f.works(self.ledger.history_work),
                 crack_tip: self.crack_tip(f),
                 min_phase,
                 iterations: f.iterations,

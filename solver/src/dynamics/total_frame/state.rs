@@ -48,7 +48,9 @@ impl TotalFrame {
         for field in [displacement, velocity, internal, acceleration].into_iter().take(stored) {
             field.iter_mut().try_for_each(|component| archive.list(component))?;
         }
-        if let Some(LatticeFracture { model: _, history, phase, excess, field, iterations }) = fracture {
+        if let Some(LatticeFracture { model: _, history, phase, excess, field, iterations, intact_energy: _ }) =
+            fracture
+        {
             [history, phase, excess].into_iter().try_for_each(|values| archive.list(values))?;
             field.exchange(archive)?;
             archive.value(iterations)?;

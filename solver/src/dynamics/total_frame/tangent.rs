@@ -7,9 +7,8 @@ use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::{largest, smaller};
 use crate::linear_algebra::lane::Lane;
-use crate::material::split::EnergySplit;
 use crate::particles::spans::lengths_of_chords;
-use crate::scene::Kinematics;
+use crate::scene::{Kinematics, Split};
 use crate::transfer::elastic_forces::elastic_forces;
 use crate::transfer::finite::sweep_with;
 use crate::transfer::kernels::{HeldPhaseStress, LeastStretch};
@@ -47,7 +46,8 @@ impl TotalFrame {
     /// out: they may be crushed to nothing.
     fn stiffening(&self) -> f64 {
         let lattice = &self.lattice;
-        let degraded = self.fracture.as_ref().filter(|fracture| fracture.model.split == EnergySplit::Whole);
+        let degraded =
+            self.fracture.as_ref().filter(|fracture| matches!(fracture.model.split, Split::None | Split::Rankine));
         let phase = degraded.map_or(&[][..], |fracture| &fracture.phase);
         let mut phases = phase.chunks(lattice.strip_batches());
         let mut kernel = |_| LeastStretch { phase: phases.next().unwrap_or_default(), squared: Lane::splat(1.0) };

@@ -172,8 +172,7 @@ impl DiscreteField {
         }
         let fracture = self.fracture.as_ref().map(|f| FractureSample {
             energy: f.surface_energy,
-            history_work: self.ledger.history_work,
-            lag_work: None,
+            works: f.model.driving_work().map(|name| (name, self.ledger.history_work)).into_iter().collect(),
             crack_tip: self.crack_tip(),
             min_phase: f.least_phase,
             iterations: f.iterations,

@@ -175,7 +175,7 @@ impl Vectorised for UpdateHistory<'_> {
     fn run<const FMA: bool>(self) {
         for (points, fracture) in self.points.chunks(LANES).zip(self.fracture.chunks_mut(LANES)) {
             let strain = each!(i in [0, 1, 2] => gather(points, |p| p.strain[i]));
-            let energy = split::split(self.moduli, self.model.split, strain).energy_plus;
+            let energy = split::driving_energy(self.moduli, self.model.split, strain);
             for (lane, point) in fracture.iter_mut().enumerate() {
                 let grows = fault!("history-forgets", energy[lane] > point.history => true);
                 point.history = if grows { energy[lane] } else { point.history };

@@ -13,6 +13,9 @@ impl<K: PointKernel> StripSweep<'_, K> {
         let Self { lattice, fields, strip, kernel, mut force } = self;
         let grid = lattice.grid;
         for (at, batch) in lattice.cut_strip(strip).iter().enumerate() {
+            if kernel.skips(at / lattice.points_per_span()) {
+                continue;
+            }
             let CutBatch { first: [column, row], lift, weight, value: [_, y], derivative: [_, dy], .. } = batch;
             let mut point =
                 PointValues { gradient: [Lane::ZERO; 4], phase: Lane::ZERO, phase_gradient: [Lane::ZERO; 2] };

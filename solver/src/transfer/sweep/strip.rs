@@ -65,7 +65,7 @@ impl<K: PointKernel> StripSweep<'_, K> {
         let lattice = self.lattice;
         let rows = lattice.strip_rows(self.strip);
         for tile_index in 0..lattice.tiles.len() {
-            if !lattice.is_occupied(self.strip, tile_index) {
+            if !lattice.is_occupied(self.strip, tile_index) || self.kernel.skips(tile_index) {
                 continue;
             }
             let tile = &lattice.tiles[tile_index];

@@ -18,11 +18,24 @@ pub fn glass() -> Material {
 
 pub fn brittle() -> Fracture {
     Fracture {
+        model: CrackModel::At2,
         critical_energy_release_rate: 3.0,
         length_scale: 0.25e-3,
         residual_stiffness: 0.0,
         split: Split::Spectral,
     }
+}
+
+/// Fracture with a threshold.
+pub fn at1(split: Split) -> Fracture {
+    Fracture { model: CrackModel::At1, split, ..brittle() }
+}
+
+/// Gives the material of a scene a threshold, and its seeds the bound.
+pub fn make_at1(scene: &mut Scene, split: Split) {
+    scene.materials.get_mut("glass").unwrap().fracture = Some(at1(split));
+    let seeds = scene.bodies[0].cracks.iter_mut().filter(|crack| crack.kind != CrackKind::Slit);
+    seeds.for_each(|crack| crack.kind = CrackKind::Seed(None));
 }
 
 pub fn moduli() -> ElasticModuli {

@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::elasticity::ElasticModuli;
-use fisura::material::split::{EnergySplit, split, tensile_strain};
+use fisura::material::split::{split, tensile_strain};
+use fisura::scene::Split;
 
 use super::named;
 use crate::exact::{ExactSolution, kirsch, phase_field, standing_wave, vortex};
@@ -71,7 +72,7 @@ fn the_coupled_solution_is_in_growing_tension() {
                 let strain = [xx, yy, 0.5 * (xy + yx)].map(Lane::splat);
                 let (_, [_, smaller]) = tensile_strain(strain);
                 assert!(smaller.0[0] > 0.05, "{place:?} {time}: smaller principal strain {}", smaller.0[0]);
-                let state = split(&moduli, EnergySplit::Spectral, strain);
+                let state = split(&moduli, Split::Spectral, strain);
                 let history = phase.history(place, time);
                 assert!((state.energy_plus.0[0] - history).abs() < 1e-15 && state.energy_minus.0[0] == 0.0);
                 assert!(history > last, "{place:?} {time}: psi+ does not grow");

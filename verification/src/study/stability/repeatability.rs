@@ -6,7 +6,8 @@
 
 use fisura::Simulation;
 use fisura::scene::{
-    Boundary, Crack, Fracture, Frame, Material, Mesh, PhaseFieldSolver, Scene, Side, Split, TimeFactor, Traction,
+    Boundary, Crack, CrackModel, Fracture, Frame, Material, Mesh, PhaseFieldSolver, Scene, Side, Split, TimeFactor,
+    Traction,
 };
 
 use super::exact;
@@ -76,6 +77,7 @@ fn glass(cells: [usize; 2], degree: usize, fracture: Option<Fracture>) -> Scene 
 /// A plate with a crack, pulled apart.
 fn notched(frame: Frame) -> Scene {
     let fracture = Fracture {
+        model: CrackModel::At2,
         critical_energy_release_rate: 3.0,
         length_scale: 0.25e-3,
         residual_stiffness: 0.0,

@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::hencky::hencky_strain;
 use fisura::material::split::tensile_strain;
-use fisura::scene::{Boundary, Fracture, Material, Mesh, Scene, Side, Split};
+use fisura::scene::{Boundary, CrackModel, Fracture, Material, Mesh, Scene, Side, Split};
 
 use super::{exact, logarithmic, total_frame};
 use crate::case::Case;
@@ -158,6 +158,7 @@ fn scaled_runs() -> Result<(Table, f64), StudyError> {
 /// crack.
 fn block(size: f64) -> Scene {
     let fracture = Fracture {
+        model: CrackModel::At2,
         critical_energy_release_rate: 1e12,
         length_scale: 0.25,
         residual_stiffness: 0.0,

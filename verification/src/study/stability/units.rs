@@ -7,7 +7,9 @@
 
 use fisura::Simulation;
 use fisura::dynamics::energy::Sample;
-use fisura::scene::{Boundary, Crack, Fracture, Material, Mesh, Scene, Shape, Side, Split, TimeFactor, Traction};
+use fisura::scene::{
+    Boundary, Crack, CrackModel, Fracture, Material, Mesh, Scene, Shape, Side, Split, TimeFactor, Traction,
+};
 
 use super::exact;
 use crate::case::Case;
@@ -119,6 +121,7 @@ fn run(scene: &Scene) -> Result<Vec<Sample>, StudyError> {
 fn plate(units: Units, cracked: bool) -> Scene {
     let [width, height] = [4e-3, 8e-3].map(|x| x * units.length);
     let fracture = cracked.then_some(Fracture {
+        model: CrackModel::At2,
         critical_energy_release_rate: 3.0 * units.energy() / units.length.powi(2),
         length_scale: 0.25e-3 * units.length,
         residual_stiffness: 0.0,

@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use fisura::Simulation;
-use fisura::scene::{Boundary, Fracture, Frame, Material, Mesh, Scene, Shape, Side, Split};
+use fisura::scene::{Boundary, CrackModel, Fracture, Frame, Material, Mesh, Scene, Shape, Side, Split};
 
 use super::exact;
 use crate::case::Case;
@@ -108,6 +108,7 @@ fn largest_fall(before: &Histories, now: &Histories) -> f64 {
 /// A bar held at its left side and set in motion along x; strained to about a tenth of its strength.
 fn bar(frame: Frame) -> Scene {
     let fracture = Fracture {
+        model: CrackModel::At2,
         critical_energy_release_rate: 1e-2,
         length_scale: 0.25,
         residual_stiffness: 0.0,

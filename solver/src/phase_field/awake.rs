@@ -1,0 +1,149 @@
+//! Where the phase field of a model with a threshold may change.
+//!
+//! Where c is 1 and the driving energy below the threshold, the residual of the phase-field equation keeps c
+//! at its bound: nothing happens. A cell is awake where it is damaged or driven beyond the threshold. Control
+//! points whose functions it sees are candidates: their values may change. Their rows of the matrix need the
+//! cells that see one of them, and no others.
+//!
+//! The driving energy is computed in tiles with such cells and in those around them. A tile enters in time:
+//! from half of the threshold on, in all of its energy.
+
+use crate::linear_algebra::active_columns::ActiveColumns;
+use crate::linear_algebra::lane::Lane;
+use crate::particles::lattice::Lattice;
+
+/// Cells and control points that take part.
+#[derive(Debug, Clone)]
+pub(crate) struct Awake {
+    /// Driving energy up to which material stays intact, J/m³.
+    threshold: f64,
+    /// Whether everything takes part in the coming solve.
+    pub(super) everything: bool,
+    /// Cells of which the driving energy is computed.
+    computed: Vec<bool>,
+    /// Cells whose energy is in the matrix; and all those of their tiles.
+    assembled: Vec<bool>,
+    damaged: Vec<bool>,
+    /// Control points whose value may change, in order, and as marks.
+    pub(super) candidates: Vec<usize>,
+    is_candidate: Vec<bool>,
+}
+
+impl Awake {
+    /// Everything is awake, until the first solve.
+    pub(super) fn new(threshold: f64, lattice: &Lattice) -> Self {
+        let (cells, control_points) = (lattice.cells(), lattice.patch_grid.len());
+        Self {
+            threshold,
+            everything: true,
+            computed: vec![true; cells],
+            assembled: vec![true; cells],
+            damaged: vec![true; cells],
+            candidates: Vec::new(),
+            is_candidate: vec![false; control_points],
+        }
+    }
+
+    /// Chooses the cells to compute: tiles where a cell is `driven` or c below 1, and those around them.
+    /// Spans that a boundary or a slit cuts are always computed.
+    pub(crate) fn choose(&mut self, lattice: &Lattice, driven: &[bool], phase: &[f64]) {
+        let tiles = lattice.tiles.len();
+        let tables = lattice.patch_strips();
+        let mut near = vec![false; tables * tiles];
+        for strip in 0..tables {
+            for tile in 0..tiles {
+                let cells = || lattice.strip_rows(strip).map(|row| row * tiles + tile);
+                let damaged = |cell| self.computed[cell] && is_damaged(lattice, cell, phase);
+                if cells().any(|cell| driven[cell]) || cells().any(damaged) {
+                    for around in strip.saturating_sub(1)..(strip + 2).min(tables) {
+                        near[around * tiles..][tile.saturating_sub(1)..(tile + 2).min(tiles)].fill(true);
+                    }
+                }
+            }
+        }
+        let everything = self.everything;
+        for (cell, computed) in self.computed.iter_mut().enumerate() {
+            let (row, tile) = (cell / tiles, cell % tiles);
+            *computed = everything || lattice.patch_strip_of(row).is_none_or(|strip| near[strip * tiles + tile]);
+        }
+    }
+
+    /// Cells of which the driving energy is computed.
+    pub(crate) fn computed(&self) -> &[bool] {
+        &self.computed
+    }
+
+    /// Cells where c may be below 1, by tiles.
+    pub(crate) fn damaged(&self) -> &[bool] {
+        &self.damaged
+    }
+
+    /// Whether the energy of a cell is in the matrix.
+    pub(super) fn is_assembled(&self, cell: usize) -> bool {
+        self.assembled[cell]
+    }
+
+    /// The candidates as part of the matrix.
+    pub(super) fn active(&self, lattice: &Lattice) -> ActiveColumns {
+        ActiveColumns::exactly(lattice.patch_grid, self.candidates.iter().copied())
+    }
+
+    /// Forgets the candidates.
+    pub(super) fn sleep(&mut self) {
+        [&mut self.is_candidate, &mut self.assembled, &mut self.damaged]
+            .into_iter()
+            .for_each(|marks| marks.fill(false));
+        self.candidates.clear();
+    }
+
+    /// Finds the candidates at the present c; whether there are more than before.
+    pub(super) fn wake(&mut self, lattice: &Lattice, drive: &[Lane], phase: &[f64]) -> bool {
+        let span = lattice.points_per_span();
+        let cells = || (0..self.computed.len()).filter(|&cell| self.computed[cell]);
+        let is_awake = |cell: usize| {
+            let drive = &drive[cell * span..(cell + 1) * span];
+            self.everything
+                || drive.iter().any(|energy| energy.0.iter().any(|&energy| energy > self.threshold))
+                || is_damaged(lattice, cell, phase)
+        };
+        let (mut more, mut is_candidate) = (false, self.is_candidate.clone());
+        for cell in cells().filter(|&cell| is_awake(cell)) {
+            for row in lattice.functions_of_cell(cell) {
+                more |= is_candidate[row.clone()].contains(&false);
+                is_candidate[row].fill(true);
+            }
+        }
+        if more {
+            let near = |cell: usize| lattice.functions_of_cell(cell).any(|row| is_candidate[row].contains(&true));
+            self.assembled = self.computed.iter().enumerate().map(|(cell, computed)| *computed && near(cell)).collect();
+            self.candidates = lattice.patch_grid.indices().filter(|&at| is_candidate[at]).collect();
+            self.is_candidate = is_candidate;
+            self.spread_over_tiles(lattice);
+        }
+        more
+    }
+
+    /// Marks all cells of the tiles in which one is assembled.
+    fn spread_over_tiles(&mut self, lattice: &Lattice) {
+        self.damaged.copy_from_slice(&self.assembled);
+        let tiles = lattice.tiles.len();
+        for strip in 0..lattice.table_strips() {
+            for tile in 0..tiles {
+                let cells = lattice.strip_rows(strip).map(|row| row * tiles + tile);
+                if cells.clone().any(|cell| self.assembled[cell]) {
+                    cells.for_each(|cell| self.damaged[cell] = true);
+                }
+            }
+        }
+    }
+
+    /// Heap memory, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        8 * self.candidates.len() + 3 * self.computed.len() + self.is_candidate.len()
+    }
+}
+
+/// Whether c is below 1 at a function of a cell.
+fn is_damaged(lattice: &Lattice, cell: usize, phase: &[f64]) -> bool {
+    lattice.functions_of_cell(cell).any(|row| phase[row].iter().any(|&c| c < 1.0))
+}
