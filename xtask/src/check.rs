@@ -7,7 +7,7 @@ use fisura::dynamics::time_plan::TimePlan;
 use fisura::linear_algebra::extremes::larger;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::spans::{largest_spans, smallest_span};
-use fisura::scene::{Body, Crack, Frame, Plane, Scene};
+use fisura::scene::{Body, Crack, CrackModel, Fracture, Frame, Material, Plane, Scene, Split};
 use fisura::simulation::{Extent, Simulation};
 use fisura::validate::expected_size;
 use fisura_reports::number::{duration, plain};
@@ -131,6 +131,12 @@ struct MaterialFindings {
     /// Length scale over the largest span; absent without fracture.
     #[serde(skip_serializing_if = "Option::is_none")]
     length_scale_over_span: Option<f64>,
+    /// Surface energy and split; absent without fracture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fracture: Option<String>,
+    /// Largest stress of a uniform bar, Pa, to some percent; absent without fracture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tensile_strength_pa: Option<f64>,
 }
 
 impl Findings {
@@ -275,7 +281,40 @@ impl BodyFindings {
 impl MaterialFindings {
     fn text(&self, name: &str) -> String {
         let ratio = self.length_scale_over_span.map(|r| format!(", l0/h {}", plain(r, 4))).unwrap_or_default();
-        format!("{name}; wave speed {} m/s{ratio}", plain(self.wave_speed_m_per_s, 5))
+        let strength = self.tensile_strength_pa.map(|s| format!(", tensile strength about {} MPa", plain(1e-6 * s, 3)));
+        let fracture = self.fracture.iter().map(|words| format!("; {words}{}", strength.clone().unwrap_or_default()));
+        let fracture: String = fracture.collect();
+        format!("{name}; wave speed {} m/s{ratio}{fracture}", plain(self.wave_speed_m_per_s, 5))
+    }
+}
+
+/// Surface energy and split in words.
+fn words(fracture: &Fracture) -> String {
+    let model = match fracture.model {
+        CrackModel::At2 => "AT2",
+        CrackModel::At1 => "AT1",
+    };
+    match fracture.split {
+        Split::Spectral => format!("{model}, spectral split"),
+        Split::VolumetricDeviatoric => format!("{model}, volumetric-deviatoric split"),
+        Split::StarConvex(gamma) => format!("{model}, star-convex split with {gamma}"),
+        Split::Rankine => format!("{model}, driven by the largest principal stress"),
+        Split::None => format!("{model}, no split"),
+    }
+}
+
+/// Largest stress of a uniform bar (Pa), as if all of its energy drove: `9/16 √(E Gc/(6 l0))`, or with AT1
+/// `√(3 E Gc/(16 l0))`; in plane strain E is over 1 − nu², unless the largest principal stress drives.
+fn strength(material: &Material, fracture: &Fracture, plane: Plane) -> f64 {
+    let Material { young_modulus, poisson_ratio, .. } = *material;
+    let modulus = match plane {
+        Plane::Strain if fracture.split != Split::Rankine => young_modulus / (1.0 - poisson_ratio * poisson_ratio),
+        _ => young_modulus,
+    };
+    let unit = modulus * fracture.critical_energy_release_rate / fracture.length_scale;
+    match fracture.model {
+        CrackModel::At2 => 9.0 / 16.0 * (unit / 6.0).sqrt(),
+        CrackModel::At1 => (3.0 * unit / 16.0).sqrt(),
     }
 }
 
@@ -317,6 +356,8 @@ fn materials(scene: &Scene, span: f64) -> BTreeMap<String, MaterialFindings> {
         let findings = MaterialFindings {
             wave_speed_m_per_s: moduli.dilatational_speed(material.density),
             length_scale_over_span: material.fracture.as_ref().map(|f| f.length_scale / span),
+            fracture: material.fracture.as_ref().map(words),
+            tensile_strength_pa: material.fracture.as_ref().map(|f| strength(material, f, scene.analysis.plane)),
         };
         (name.clone(), findings)
     })

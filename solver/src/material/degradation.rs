@@ -76,7 +76,7 @@ impl FractureModel {
     pub fn source(&self) -> f64 {
         match self.surface {
             CrackModel::At2 => 1.0,
-            CrackModel::At1 => 0.375,
+            CrackModel::At1 => fault!("at1-source-doubled", 0.375 => 0.75),
         }
     }
 
@@ -93,7 +93,7 @@ impl FractureModel {
             Split::Rankine => moduli.young / (moduli.lambda + 2.0 * moduli.mu),
             _ => 1.0,
         };
-        self.threshold().map(|threshold| 0.5 * least_share * threshold)
+        self.threshold().map(|threshold| fault!("tiles-enter-late", 0.5 => 5.0) * least_share * threshold)
     }
 
     /// Column of the work of what drives beyond psi+: of the history, or of another driving energy. None
@@ -120,7 +120,7 @@ impl FractureModel {
         let broken = Lane::splat(1.0) - phase;
         let (local, unit) = match self.surface {
             CrackModel::At2 => (broken * broken, toughness),
-            CrackModel::At1 => (broken, 0.75 * toughness),
+            CrackModel::At1 => (broken, fault!("at1-surface-unscaled", 0.75 => 1.0) * toughness),
         };
         local * (unit / (fault!("surface-energy-doubled", 4.0 => 2.0) * length_scale))
             + (gx * gx + gy * gy) * (unit * length_scale)

@@ -33,7 +33,9 @@ impl ElasticModuli {
             Plane::Strain => Self { lambda, mu, out_of_plane: lambda, volumetric: lambda + mu / 1.5, young },
             Plane::Stress => {
                 let lambda = fault!("plane-stress-lambda", young * nu / (1.0 - nu * nu) => lambda);
-                let volumetric = young * (1.0 - 2.0 * nu) / (3.0 * (1.0 - nu) * (1.0 - nu));
+                let thinner = (1.0 - 2.0 * nu) / ((1.0 - nu) * (1.0 - nu));
+                let part = fault!("volumetric-modulus-of-plane-strain", thinner => 1.0 / (1.0 - 2.0 * nu));
+                let volumetric = young * part / 3.0;
                 Self { lambda, mu, out_of_plane: 0.0, volumetric, young }
             }
         }

@@ -72,7 +72,8 @@ pub fn driving_energy(moduli: &ElasticModuli, law: Split, strain: [Lane; 3]) -> 
     }
     let [xx, yy, xy] = moduli.stress(strain);
     let radius = ((xx - yy) * 0.5).zip(xy, scaled_hypot);
-    let largest = ((xx + yy) * 0.5 + radius).at_least(Lane::ZERO);
+    let largest =
+        ((xx + yy) * 0.5 + fault!("rankine-smallest-stress", radius => Lane::ZERO - radius)).at_least(Lane::ZERO);
     largest * largest * (fault!("rankine-modulus", 0.5 => 1.0) / moduli.young)
 }
 
@@ -129,7 +130,8 @@ fn volumetric(moduli: &ElasticModuli, gamma: f64, strain: [Lane; 3]) -> SplitSta
     let energy = moduli.energy(strain);
     let stress = moduli.stress(strain);
     let star = fault!("star-convex-sign", 1.0 + gamma => 1.0 - gamma);
-    let energy_minus = compression * compression * (0.5 * star * bulk);
+    let half = fault!("volumetric-energy-halved", 0.5 => 0.25);
+    let energy_minus = compression * compression * (half * star * bulk);
     let pressure = compression * (star * bulk);
     SplitState {
         energy_plus: energy - energy_minus,

@@ -75,7 +75,7 @@ impl LatticeFracture {
         let zeros = vec![Lane::ZERO; lattice.batches()];
         let mut field = PhaseField::new(lattice, model, settings);
         if model.threshold().is_some() {
-            field.break_at(&functions_on_seeds(patch, body));
+            field.break_at(&fault!("at1-seed-forgotten", functions_on_seeds(patch, body) => Vec::new()));
         }
         let convergence = field.initialise(lattice, &history)?;
         let iterations = convergence.iterations;

@@ -76,7 +76,7 @@ impl PhaseField {
         for (&at, residual) in awake.candidates.iter().zip(&residual) {
             work += 0.5 * (residual + bounds.residual[at]) * (self.phase[at] - self.previous[at]);
         }
-        bounds.work += fault!("work-of-bounds-left-out", unit * work => 0.0);
+        bounds.work += unit * work;
         bounds.held.iter().for_each(|&at| bounds.residual[at] = 0.0);
         awake.candidates.iter().zip(residual).for_each(|(&at, residual)| bounds.residual[at] = residual);
         bounds.held.clone_from(&awake.candidates);
@@ -102,8 +102,7 @@ impl PhaseField {
             let mut released = 0.0;
             for (((&at, r), free), diagonal) in candidates.iter().zip(&residual).zip(&mut free).zip(&diagonal) {
                 let c = self.phase[at];
-                let held =
-                    (c >= self.previous[at] && *r <= 0.0) || fault!("zero-not-a-bound", c <= 0.0 && *r >= 0.0 => false);
+                let held = (c >= self.previous[at] && *r <= 0.0) || (c <= 0.0 && *r >= 0.0);
                 if !held && !*free {
                     released += r * r / diagonal;
                 }

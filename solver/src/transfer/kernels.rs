@@ -129,7 +129,7 @@ impl PointKernel for DegradedStress<'_> {
         let (mut energy, mut stress) = state.degraded::<FMA>(self.model.degradation(c));
         if self.adds() {
             energy = energy - self.moduli.energy(strain);
-            let intact = self.moduli.stress(strain);
+            let intact = self.moduli.stress(fault!("intact-stress-left-in", strain => [Lane::ZERO; 3]));
             for i in 0..3 {
                 stress[i] = stress[i] - intact[i];
             }

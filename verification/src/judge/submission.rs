@@ -299,7 +299,8 @@ fn model(item: &Item<'_>) -> Option<Model> {
     ];
     let crack = fields
         .need("crack", "crack = \"seeded\", \"phase-field\", \"slit\" or \"unknown\"", |item| item.choice(&cracks));
-    let splits = ["spectral", "none", "volumetric-deviatoric", "rankine", "other", "unknown"].map(|w| (w, w));
+    let splits =
+        ["spectral", "none", "volumetric-deviatoric", "star-convex", "rankine", "other", "unknown"].map(|w| (w, w));
     let split = fields.need("split", "split = \"spectral\"", |item| item.choice(&splits));
     let models = ["AT2", "AT1", "PF-CZM", "other", "unknown"].map(|w| (w, w));
     let phase_field = fields.or("phase_field", "AT2", |item| item.choice(&models));

@@ -35,7 +35,7 @@ const PLATE: &str = r##"
 plane    = "strain"                 # "stress", "unknown"
 traction = "1 MPa"                  # on each loaded edge, held from t = 0; or "unknown"
 crack    = "seeded"                 # by a history field; "phase-field" (prescribed), "slit" (free faces), "unknown"
-split    = "spectral"               # "none", "volumetric-deviatoric", "rankine", "other", "unknown"
+split    = "spectral"               # "none", "volumetric-deviatoric", "star-convex", "rankine", "other", "unknown"
 # phase_field        = "AT2"        # "AT1", "PF-CZM", "other", "unknown"
 # length_scale       = "0.25 mm"
 # convention         = "l0"         # Borden; "l" if your model has Gc/2 (d²/l + l |grad d|²), where l = 2 l0

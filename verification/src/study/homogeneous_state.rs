@@ -1,21 +1,23 @@
-//! The homogeneous state of AT2 against its closed form.
+//! The homogeneous state of AT2 and AT1 against their closed forms.
 //!
-//! A body under uniform uniaxial strain e has psi+ = M e²/2 everywhere, so the phase field is the constant
-//! `c = 1/(1 + 2 l0 M e²/Gc)` and the stress `c² M e`, with M = lam + 2 mu. The stress peaks at
-//! `e = sqrt(Gc/(6 l0 M))`, where c = 3/4 and sigma = (9/16) sqrt(M Gc/(6 l0)). Constants are in the space
-//! and the same sums stand on both sides, so the discrete solution is exact for every degree and layout. The
-//! displacement is imposed on the control points; strain, split, history and degraded stress are those of the
-//! solver's own sweeps, and the stress is the reaction on the right side over its height. The closed form
-//! takes its numbers from the scene, not from the solver. (The reaction of equally spaced points is exact for
-//! p up to 2 only; see the patch test.)
+//! A body under uniform uniaxial strain e has psi+ = M e²/2 everywhere, with M = lam + 2 mu; rankine is
+//! driven by H = (M e)²/(2 E). The phase field is constant and the stress `c² M e`. With AT2 `c = 1/(1 + 4 l0
+//! H/Gc)`: the stress peaks at `H = Gc/(12 l0)`, where c = 3/4. With AT1 the body is elastic up to `H = 3
+//! Gc/(32 l0)`, where the stress peaks, and c is that over H beyond. Constants are in the space and the same
+//! sums stand on both sides, so the discrete solution is exact for every degree and layout. The displacement
+//! is imposed on the control points; strain, split, history and degraded stress are those of the solver's own
+//! sweeps, and the stress is the reaction on the right side over its height. The closed form takes its
+//! numbers from the scene, not from the solver. (The reaction of equally spaced points is exact for p up to 2
+//! only; see the patch test.)
 
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::degradation::FractureModel;
 use fisura::material::elasticity::ElasticModuli;
+use fisura::material::split::driving_energy;
 use fisura::particles::lattice::Lattice;
 use fisura::phase_field::PhaseField;
 use fisura::phase_field::fracture::LatticeFracture;
-use fisura::scene::{Fracture, Kinematics, Material, Plane, Side};
+use fisura::scene::{CrackModel, Fracture, Kinematics, Material, Plane, Scene, Side, Split};
 use fisura::splines::patch::Patch;
 use fisura::splines::patch::control_points_on;
 use fisura::transfer::sweep::StripForces;
@@ -23,17 +25,18 @@ use fisura::transfer::sweep::StripForces;
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::case::expand::CaseScene;
-use crate::extremes::{larger, largest};
+use crate::extremes::{larger, largest, smaller};
 use crate::output::history::Table;
 use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind};
 
 /// Strains looked at, over the strain at the peak.
 const STRAINS: usize = 40;
 const FURTHEST: f64 = 4.0;
+const STRENGTHS: &str = "tensile over compressive strength, largest difference from closed form";
 
 pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
     let held = &["strain at the peak over closed form", "stress at the peak over closed form"];
-    let bare = &["phase field, largest error", "stress, largest error over the peak stress"];
+    let bare = &["phase field, largest error", "stress, largest error over the peak stress", STRENGTHS];
     Ok(super::Offers::of_scenes(scenes, held, bare))
 }
 
@@ -46,8 +49,15 @@ pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, Study
         findings.add(&scene.name, "stress, largest error over the peak stress", stress, None);
         let (peak_strain, peak_stress) = peak(&table);
         let exact = |what: &str| Some(Reference::new(Some(1.0), ReferenceKind::Exact, what));
-        findings.add(&scene.name, "strain at the peak over closed form", peak_strain, exact("sqrt(Gc/(6 l0 M))"));
-        let source = exact("(9/16) sqrt(M Gc/(6 l0))");
+        findings.add(
+            &scene.name,
+            "strain at the peak over closed form",
+            peak_strain,
+            exact("H = Gc/(12 l0), or with AT1 3 Gc/(32 l0)"),
+        );
+        let strengths = strengths(&scene.scene)?;
+        findings.add(&scene.name, STRENGTHS, strengths, None);
+        let source = exact("9/16, or with AT1 all, of M times that strain");
         findings.add(&scene.name, "stress at the peak over closed form", peak_stress, source);
         if findings.series.is_empty() {
             let stem = format!("{}-{}", case.suite, case.name);
@@ -62,14 +72,21 @@ pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, Study
 fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
     let scene = &case_scene.scene;
     let body = &scene.bodies[0];
-    let material = &scene.materials[&body.material];
-    let fracture =
-        material.fracture.as_ref().ok_or_else(|| StudyError::Other("the material has no fracture".into()))?;
+    let (material, fracture) = constants(scene)?;
     let model = FractureModel::new(fracture);
     let moduli = ElasticModuli::new(material, scene.analysis.plane);
     let modulus = uniaxial_modulus(material, scene.analysis.plane);
-    let strength = fracture.critical_energy_release_rate / (6.0 * fracture.length_scale); // J/m³
-    let (peak_strain, peak_stress) = ((strength / modulus).sqrt(), 9.0 / 16.0 * (modulus * strength).sqrt());
+    let drive = match fracture.split {
+        Split::Rankine => modulus * modulus / material.young_modulus,
+        _ => modulus,
+    };
+    let unit = fracture.critical_energy_release_rate / fracture.length_scale; // J/m³
+    let (at_peak, part) = match fracture.model {
+        CrackModel::At2 => (unit / 12.0, 9.0 / 16.0),
+        CrackModel::At1 => (3.0 * unit / 32.0, 1.0),
+    };
+    let peak_strain = (2.0 * at_peak / drive).sqrt();
+    let peak_stress = part * modulus * peak_strain;
     let patch = Patch::new(&scene.mesh);
     let lattice = Lattice::new(&patch, body);
     let (low, high) = body.shape.bounding_box();
@@ -97,7 +114,7 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
     for step in 0..=STRAINS {
         let strain = FURTHEST * peak_strain * step as f64 / STRAINS as f64;
         let (phase, stress) = points.strained_by(strain)?;
-        let exact = closed_form(fracture, modulus, strain);
+        let exact = closed_form(fracture, 0.5 * drive * strain * strain);
         worst = phase.into_iter().map(|c| (c - exact).abs()).fold(worst, larger);
         let k = fracture.residual_stiffness;
         let degraded = (1.0 - k) * exact * exact + k;
@@ -106,11 +123,51 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
     Ok((table, worst))
 }
 
-/// `c = 1/(1 + (1 − k) 2 l0 M e²/Gc)`.
-fn closed_form(fracture: &Fracture, modulus: f64, strain: f64) -> f64 {
+/// `c = 1/(1 + 4 l0 (1 − k) H/Gc)`, or with AT1 `3 Gc/(32 l0 (1 − k) H)` and at most 1.
+fn closed_form(fracture: &Fracture, energy: f64) -> f64 {
     let Fracture { critical_energy_release_rate, length_scale, residual_stiffness, .. } = fracture;
-    let energy = 0.5 * modulus * strain * strain;
-    1.0 / (1.0 + 4.0 * length_scale * (1.0 - residual_stiffness) * energy / critical_energy_release_rate)
+    let reaction = 4.0 * length_scale * (1.0 - residual_stiffness) * energy / critical_energy_release_rate;
+    match fracture.model {
+        CrackModel::At2 => 1.0 / (1.0 + reaction),
+        CrackModel::At1 => smaller(1.0, 0.375 / reaction),
+    }
+}
+
+/// Tensile over compressive strength in uniaxial stress, as its difference from the closed form of the split:
+/// the root of what drives in compression over what drives in tension.
+fn strengths(scene: &Scene) -> Result<f64, StudyError> {
+    let (material, fracture) = constants(scene)?;
+    let nu = material.poisson_ratio;
+    // Strains over s/E under a stress s; energies over s²/(2 E): of all, and of a change of volume e, K e²/2.
+    let ([along, across], lame, whole, volume) = match scene.analysis.plane {
+        Plane::Strain => (
+            [1.0 - nu * nu, -nu * (1.0 + nu)],
+            nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+            1.0 - nu * nu,
+            (1.0 + nu) * (1.0 + nu) * (1.0 - 2.0 * nu) / 3.0,
+        ),
+        Plane::Stress => ([1.0, -nu], nu / (1.0 - nu * nu), 1.0, (1.0 - 2.0 * nu) / 3.0),
+    };
+    let (shear, trace) = (1.0 / (1.0 + nu), along + across);
+    let [compressive, tensile] = match fracture.split {
+        Split::Spectral => [shear * across * across, lame * trace * trace + shear * along * along],
+        Split::VolumetricDeviatoric => [whole - volume, whole],
+        Split::StarConvex(gamma) => [whole - (1.0 + gamma) * volume, whole],
+        Split::Rankine => [0.0, 1.0],
+        Split::None => [whole, whole],
+    };
+    let moduli = ElasticModuli::new(material, scene.analysis.plane);
+    let drive = |sign: f64| {
+        let strain = [along, across, 0.0].map(|e| Lane::splat(sign * e));
+        driving_energy(&moduli, fracture.split, strain)[0]
+    };
+    Ok(((drive(-1.0) / drive(1.0)).sqrt() - (compressive / tensile).sqrt()).abs())
+}
+
+fn constants(scene: &Scene) -> Result<(&Material, &Fracture), StudyError> {
+    let material = &scene.materials[&scene.bodies[0].material];
+    let fracture = material.fracture.as_ref();
+    Ok((material, fracture.ok_or_else(|| StudyError::Other("the material has no fracture".into()))?))
 }
 
 /// Stress over strain in uniaxial strain, Pa: `E (1 − nu)/((1 + nu)(1 − 2 nu))`, and `E/(1 − nu²)` in plane
