@@ -9,6 +9,9 @@
 //! drop it). The history energy H only grows, and so does K: only spans whose H grew since the last solve are
 //! added (delta assembly). An increment too small to move c by a hundredth of the tolerance anywhere waits.
 //!
+//! AT1 has other coefficients (`material/degradation.rs`), and bounds in place of a history
+//! (`phase_field/minimise.rs`).
+//!
 //! # The tolerance
 //!
 //! A solve ends when its error e in c is, in the energy norm of the equation over the diffusion `4 l0²`,
