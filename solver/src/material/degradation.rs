@@ -16,6 +16,7 @@
 
 use super::elasticity::ElasticModuli;
 use super::split::split;
+use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::Lane;
 use crate::scene::{CrackModel, Fracture, Split};
 
@@ -94,6 +95,15 @@ impl FractureModel {
             _ => 1.0,
         };
         self.threshold().map(|threshold| fault!("tiles-enter-late", 0.5 => 5.0) * least_share * threshold)
+    }
+
+    /// By how much damage raises a squared frequency of the body at most. Compression of broken material has
+    /// the star-convex energy `(1 + γ) K*/2 e²`, that of intact material at least `(lam* + mu)/2 e²`.
+    pub(crate) fn stiffening(&self, moduli: &ElasticModuli) -> f64 {
+        match self.split {
+            Split::StarConvex(gamma) => larger(1.0, (1.0 + gamma) * moduli.volumetric / (moduli.lambda + moduli.mu)),
+            _ => 1.0,
+        }
     }
 
     /// Column of the work of what drives beyond psi+: of the history, or of another driving energy. None

@@ -178,6 +178,24 @@ fn the_ledger_closes_with_the_square_of_the_step() {
     }
 }
 
+/// Broken material resists compression more than intact material does, and the step follows it: a cracked
+/// strip under a fast push stays in balance.
+#[test]
+fn the_step_of_the_star_convex_split_is_that_of_broken_material() {
+    let [plain, stiff] = [0.0, 8.0].map(|gamma| Simulation::new(&cracking(Split::StarConvex(gamma), 4e6)).unwrap());
+    let moduli = stiff.total_frame().unwrap().moduli();
+    let ratio = (9.0 * moduli.volumetric / (moduli.lambda + moduli.mu)).sqrt();
+    let steps = [plain, stiff].map(|simulation| simulation.total_frame().unwrap().critical_step());
+    assert!((steps[0] / steps[1] / ratio - 1.0).abs() < 1e-9, "{steps:?} for {ratio}");
+    for model in [CrackModel::At2, CrackModel::At1] {
+        let mut scene = cracking(Split::StarConvex(8.0), -6e6);
+        scene.materials.get_mut("glass").unwrap().fracture.as_mut().unwrap().model = model;
+        let (_, samples) = run(&scene);
+        let closure = relative_closure(&samples);
+        assert!(closure < 2e-3, "{model:?}: closure {closure:e}");
+    }
+}
+
 #[test]
 fn an_unloaded_body_stays_intact_and_a_seed_as_it_is() {
     let mut scene = seeded_strip(2, 2.0, 0.0);

@@ -10,10 +10,11 @@ use crate::transfer::elastic_forces::elastic_forces;
 use crate::transfer::sweep::StripForces;
 
 impl TotalFrame {
-    /// Critical time step of the undamaged body, s; infinite if nothing can move.
+    /// Critical time step of the body, undamaged or broken, s; infinite if nothing can move.
     pub fn critical_step(&self) -> f64 {
         let frequency = highest_frequency(&mut self.stiffness_operator());
-        fault!("critical-step-too-long", 2.0 => 2.2) / frequency
+        let stiffening = self.fracture.as_ref().map_or(1.0, |fracture| fracture.model.stiffening(&self.moduli));
+        fault!("critical-step-too-long", 2.0 => 2.2) / frequency / stiffening.sqrt()
     }
 
     /// Control point and component of every degree of freedom that can move.
