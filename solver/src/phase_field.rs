@@ -31,6 +31,7 @@ pub mod assembly;
 mod awake;
 mod bounds;
 pub mod fracture;
+mod increments;
 mod lag;
 mod method;
 mod minimise;
@@ -47,9 +48,10 @@ use crate::linear_algebra::preconditioner::TOO_MANY;
 use crate::linear_algebra::stencil::Stencil;
 use crate::material::degradation::FractureModel;
 use crate::particles::lattice::Lattice;
-use crate::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_form};
+use crate::phase_field::assembly::{Constant, Integrand, add_form};
 use crate::scene::SolverSettings;
 use bounds::Bounds;
+use increments::{Increments, changed};
 use lag::Lag;
 use method::Method;
 
@@ -306,13 +308,6 @@ impl PhaseField {
         }
     }
 
-    /// Gives c = 0 to control points as their upper bound.
-    pub(crate) fn break_at(&mut self, control_points: &[usize]) {
-        for &at in control_points {
-            (self.phase[at], self.previous[at]) = (0.0, 0.0);
-        }
-    }
-
     /// Start of the next solve: linear extrapolation of the last two, `ahead` times the time between them.
     fn extrapolate(&mut self, ahead: f64) {
         let grid = self.matrix.grid;
@@ -365,39 +360,6 @@ fn separate_small(matrix: &mut Stencil) {
 /// Whether all coefficients are finite.
 fn is_finite(matrix: &Stencil) -> bool {
     matrix.coefficients().iter().all(|value| value.is_finite())
-}
-
-/// Whether the energy of a span row of a tile changed by more than the threshold.
-#[inline(always)]
-fn changed(assembled: &[Lane], history: &[Lane], threshold: f64) -> bool {
-    let mut most = Lane::ZERO;
-    for (assembled, history) in assembled.iter().zip(history) {
-        most = (*history - *assembled).at_least(*assembled - *history).at_least(most);
-    }
-    most.0.iter().any(|&change| change > threshold)
-}
-
-struct Increments<'a, F> {
-    history: &'a [Lane],
-    assembled: &'a [Lane],
-    reaction: f64,
-    /// Whether a cell with these energies, assembled and now, is to be added.
-    takes: &'a F,
-}
-
-impl<F: Fn(usize, &[Lane], &[Lane]) -> bool + Sync> PointCoefficients for Increments<'_, F> {
-    #[inline(always)]
-    fn span(&self, first: usize, weights: &[Lane], out: &mut [Lane]) -> bool {
-        let range = first..first + weights.len();
-        let (history, assembled) = (&self.history[range.clone()], &self.assembled[range]);
-        if !(self.takes)(first / weights.len(), assembled, history) {
-            return false;
-        }
-        for i in 0..weights.len() {
-            out[i] = (history[i] - assembled[i]) * weights[i] * self.reaction;
-        }
-        true
-    }
 }
 
 /// `Σ_p V_p N_I(x_p)` per unit thickness, m².

@@ -222,5 +222,7 @@ fn complete(cholesky: &mut SparseCholesky, matrix: &Stencil) -> Option<(Factor, 
     let empty = |at: &usize| matrix.diagonal(grid.column_of(*at), grid.row_of(*at)) == 0.0;
     let mut others = matrix.active().others(grid);
     others.extend(grid.indices().filter(empty));
+    others.sort_unstable();
+    others.dedup();
     cholesky.factor(matrix, &others).map(|factor| (factor, unit(matrix)))
 }

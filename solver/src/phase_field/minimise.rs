@@ -24,6 +24,9 @@ use crate::particles::lattice::Lattice;
 /// Most sets of held values, and most halvings of a step.
 const MOST_SETS: usize = 200;
 const MOST_HALVINGS: usize = 20;
+/// Distance of a value from a bound that counts as none: a few roundings of values up to 1. A free value so
+/// close to its bound would stop every step.
+const AT_BOUND: f64 = 1e-14;
 
 impl PhaseField {
     /// Where c may change, if the model has a threshold.
@@ -40,6 +43,13 @@ impl PhaseField {
     pub(crate) fn wake_everything(&mut self) {
         if let Some(bounds) = &mut self.bounds {
             bounds.awake.everything = true;
+        }
+    }
+
+    /// Gives c = 0 to control points as their upper bound.
+    pub(crate) fn break_at(&mut self, control_points: &[usize]) {
+        for &at in control_points {
+            (self.phase[at], self.previous[at]) = (0.0, 0.0);
         }
     }
 
@@ -102,7 +112,7 @@ impl PhaseField {
             let mut released = 0.0;
             for (((&at, r), free), diagonal) in candidates.iter().zip(&residual).zip(&mut free).zip(&diagonal) {
                 let c = self.phase[at];
-                let held = (c >= self.previous[at] && *r <= 0.0) || (c <= 0.0 && *r >= 0.0);
+                let held = (c >= self.previous[at] - AT_BOUND && *r <= 0.0) || (c <= AT_BOUND && *r >= 0.0);
                 if !held && !*free {
                     released += r * r / diagonal;
                 }
@@ -117,13 +127,14 @@ impl PhaseField {
             let convergence = self.solve_from_here(ITERATION_LIMIT)?;
             total = Convergence { iterations: total.iterations + convergence.iterations, ..convergence };
             self.matrix.restrict(active.clone());
-            settled = self.put_on_bounds(candidates, &diagonal, &from, &mut residual, image)? <= enough;
+            let Some(left) = self.put_on_bounds(candidates, &diagonal, &from, &mut residual, image) else { break };
+            settled = left <= enough;
         }
         Err(SolveFailure::NotConverged { iterations: total.iterations, error: total.error })
     }
 
     /// Projects c onto its bounds, and halves the way from the last c until the energy does not rise. The
-    /// square of what was projected, in the norm of the energy.
+    /// square of what was projected, in the norm of the energy; none if it always rises.
     fn put_on_bounds(
         &mut self,
         candidates: &[usize],
@@ -131,7 +142,7 @@ impl PhaseField {
         from: &[f64],
         residual: &mut Vec<f64>,
         image: &mut [f64],
-    ) -> Result<f64, SolveFailure> {
+    ) -> Option<f64> {
         let found: Vec<f64> = candidates.iter().map(|&at| self.phase[at]).collect();
         for halvings in 0..MOST_HALVINGS {
             let part = 0.5_f64.powi(halvings as i32);
@@ -146,12 +157,12 @@ impl PhaseField {
             let steps = candidates.iter().zip(from).map(|(&at, from)| self.phase[at] - from);
             let rises = steps.zip(residual.iter().zip(&now)).map(|(step, (r, now))| 0.5 * (r + now) * step);
             let (rise, scale) = rises.fold((0.0, 0.0), |(sum, scale), rise| (sum + rise, scale + rise.abs()));
-            if rise <= f64::EPSILON * scale {
+            if rise <= f64::EPSILON * candidates.len() as f64 * scale {
                 *residual = now;
-                return Ok(left);
+                return Some(left);
             }
         }
-        Err(SolveFailure::NotPositiveDefinite)
+        None
     }
 
     /// `K c − b` at the candidates; `image` is room for `K c`.

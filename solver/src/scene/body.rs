@@ -24,7 +24,7 @@ pub enum Split {
     Spectral,
     /// Expansion and distortion (Amor et al. 2009).
     VolumetricDeviatoric,
-    /// As before, with this part of the energy of compression taken off what drives (Vicentini et al. 2024).
+    /// Expansion and distortion, less this times the energy of compression (Vicentini et al. 2024).
     StarConvex(f64),
     /// Driven by the largest principal stress; all of the energy is degraded (Wu 2017).
     Rankine,

@@ -2,6 +2,7 @@
 //! refused.
 
 use fisura::Simulation;
+use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::linear_algebra::lane::Lane;
 use fisura::linear_algebra::stencil::Stencil;
 use fisura::material::degradation::FractureModel;
@@ -187,6 +188,13 @@ fn the_step_of_the_star_convex_split_is_that_of_broken_material() {
     let ratio = (9.0 * moduli.volumetric / (moduli.lambda + moduli.mu)).sqrt();
     let steps = [plain, stiff].map(|simulation| simulation.total_frame().unwrap().critical_step());
     assert!((steps[0] / steps[1] / ratio - 1.0).abs() < 1e-9, "{steps:?} for {ratio}");
+    let [plain, stiff] = [0.0, 8.0].map(|gamma| {
+        let mut scene = cracking(Split::StarConvex(gamma), 4e6);
+        scene.analysis.frame = Frame::Updated;
+        scene.materials.get_mut("glass").unwrap().fracture.as_mut().unwrap().model = CrackModel::At2;
+        UpdatedFrame::new(&scene).unwrap().critical_step()
+    });
+    assert!((plain / stiff / ratio - 1.0).abs() < 1e-9, "{plain} and {stiff} in the updated frame, for {ratio}");
     for model in [CrackModel::At2, CrackModel::At1] {
         let mut scene = cracking(Split::StarConvex(8.0), -6e6);
         scene.materials.get_mut("glass").unwrap().fracture.as_mut().unwrap().model = model;
