@@ -7,12 +7,14 @@
 pub mod body_sample;
 pub(crate) mod constraints;
 pub mod critical_step;
+pub(crate) mod edge_moments;
 pub mod energy;
 pub mod failure;
 pub mod forcing;
 pub mod loads;
 pub(crate) mod mass;
 pub mod projection;
+pub(crate) mod reaction;
 pub mod statics;
 pub(crate) mod surface;
 pub mod time_plan;

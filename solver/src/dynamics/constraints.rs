@@ -5,7 +5,7 @@
 //! point of a corner belongs to both sides: it has what either prescribes. Where both prescribe a component
 //! they have to agree, which [`crate::validate::validate`] demands, so the order of the sides does not count.
 
-use crate::scene::{Boundary, Motion};
+use crate::scene::Boundary;
 
 /// Control points with a prescribed component.
 #[derive(Debug, Clone, Default)]
@@ -50,17 +50,6 @@ impl Constraints {
     pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, usize, usize)> {
         let component = |c: usize| self.fixed[c].iter().map(move |&(at, number)| (at, c, number));
         component(0).chain(component(1))
-    }
-
-    /// Prescribed components and their velocities that never change, m/s.
-    pub(crate) fn velocities(&self) -> impl Iterator<Item = (usize, usize, f64)> {
-        self.iter().map(|(at, component, number)| {
-            let velocity = match self.conditions[number].prescribed.motion {
-                Motion::Velocity(velocity) => velocity[component],
-                Motion::Displacement(_) => 0.0,
-            };
-            (at, component, fault!("driven-side-reversed", velocity => -velocity))
-        })
     }
 
     /// Control points at which a component is prescribed, in increasing order.

@@ -225,6 +225,7 @@ impl Sample {
             fracture,
             external_work: self.external_work + other.external_work,
             transfer_loss: self.transfer_loss.zip(other.transfer_loss).map(|(a, b)| a + b),
+            conditions: joined(self.conditions, other.conditions),
             momentum: [0, 1].map(|d| self.momentum[d] + other.momentum[d]),
             angular_momentum: self.angular_momentum + other.angular_momentum,
             ..self
@@ -271,4 +272,18 @@ impl Sample {
         let fracture = self.fracture.as_ref().map_or(0.0, |f| f.energy);
         [self.kinetic, self.elastic, fracture, self.external_work].into_iter().map(f64::abs).fold(0.0, larger)
     }
+}
+
+/// What conditions do to two bodies: those with one name are one condition.
+fn joined(mut one: Vec<ConditionSample>, other: Vec<ConditionSample>) -> Vec<ConditionSample> {
+    for ConditionSample { name, fix, reaction, work } in other {
+        match one.iter_mut().find(|sample| sample.name == name) {
+            Some(sample) => {
+                sample.reaction = [0, 1].map(|d| sample.reaction[d] + reaction[d]);
+                sample.work += work;
+            }
+            None => one.push(ConditionSample { name, fix, reaction, work }),
+        }
+    }
+    one
 }

@@ -31,6 +31,8 @@ mod booking;
 pub mod fictitious;
 pub mod field;
 mod fragments;
+mod held_edges;
+pub(crate) mod held_sides;
 pub(crate) mod gauss;
 pub mod grid;
 mod inspect;
@@ -128,6 +130,7 @@ impl UpdatedFrame {
     /// # Errors
     /// If bodies are about to meet that approach each other too far in a step.
     pub fn prepare(&mut self, dt: f64) -> Result<(), Failure> {
+        self.fields.iter_mut().for_each(|field| field.prepare(dt));
         let Some(contact) = &mut self.contact else { return Ok(()) };
         self.fields.iter_mut().for_each(|field| field.expect_motion(dt));
         contact.set_step(dt);
@@ -149,6 +152,7 @@ impl UpdatedFrame {
             for push in contact.act(&views(fields), kick)? {
                 fields[push.body].add_acceleration(push.at, push.acceleration);
             }
+            fields.iter_mut().for_each(DiscreteField::hold_pushed);
         }
         if are_joined(fields) {
             self_contact::step(fields, dt)?;

@@ -4,7 +4,9 @@ use super::findings::{Findings, side_name};
 use super::ground::Ground;
 use super::time;
 use crate::dynamics::body_sample::column_name;
-use crate::scene::{Body, Boundary, Frame, Mass, Mesh, Prescribed, Scene, Side};
+use crate::dynamics::updated_frame::held_sides::lies_on;
+use crate::scene::{Body, Boundary, Frame, Mass, Mesh, Prescribed, Quadrature, Scene, Side};
+use crate::splines::patch::Patch;
 
 /// Relative tolerance of "on the side", of the size of the mesh.
 const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
@@ -68,7 +70,7 @@ fn without_jump(key: &str, prescribed: &Prescribed, fix: [bool; 2], equilibrium:
     }
 }
 
-/// What the updated frame and the consistent mass do not have.
+/// What spans that integrate, bodies that meet themselves and the consistent mass do not have.
 fn supported(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) {
     let varying = [
         ("displacement", boundary.prescribed.is_displacement()),
@@ -77,10 +79,9 @@ fn supported(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findi
         ("name", boundary.name.is_some()),
     ];
     for (word, _) in varying.into_iter().filter(|(_, given)| *given) {
-        if scene.analysis.frame == Frame::Updated {
-            let message = format!("{word} of a boundary in the updated frame, which is not implemented");
-            let remedy = "use frame = \"total\", or a rigid body that pushes";
-            findings.error(format!("{key}.{word}"), message, remedy);
+        if scene.analysis.frame == Frame::Updated && scene.analysis.quadrature == Quadrature::Gauss {
+            let message = format!("{word} of a boundary with quadrature = \"gauss\", which is not implemented");
+            findings.error(format!("{key}.{word}"), message, "use quadrature = \"points\", or a rigid body that pushes");
         } else if scene.analysis.mass == Mass::Consistent && ["displacement", "time"].contains(&word) {
             let message = "a boundary whose velocity changes, with the consistent mass, is not implemented";
             findings.error(format!("{key}.{word}"), message, "use mass = \"lumped\"");
@@ -205,7 +206,15 @@ fn held(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) 
         let (min, max) = scene.mesh.extent(&body.shape);
         if upper { max[d] >= place - tolerance } else { min[d] <= place + tolerance }
     };
-    if !scene.bodies.iter().any(reaches) {
+    let patch = (scene.analysis.frame == Frame::Updated).then(|| Patch::new(&scene.mesh));
+    if patch.is_some_and(|patch| !scene.bodies.iter().any(|body| lies_on(&patch, body, boundary))) {
+        let message = format!(
+            "no body lies on the {} side of the mesh at t = 0, so nothing is held there; a [[body.condition]] holds an \
+             edge wherever it is",
+            side_name(boundary.side)
+        );
+        findings.warn(key, message);
+    } else if !scene.bodies.iter().any(reaches) {
         let (side, name) = (side_name(boundary.side), ["x", "y"][d]);
         let message = format!(
             "no body reaches the {side} side of the mesh, {name} = {place} m, so it holds that body loosely or \

@@ -7,8 +7,9 @@ use super::ground::Ground;
 use crate::contact::Surface;
 use crate::contact::motion::longest_step;
 use crate::contact::surface::Center;
+use crate::dynamics::updated_frame::held_sides::is_fixed;
 use crate::linear_algebra::extremes::larger;
-use crate::scene::{Body, Frame, Quadrature, Scene, Shape, TimeStep, Transfer};
+use crate::scene::{Body, Boundary, Frame, Quadrature, Scene, Shape, TimeStep, Transfer};
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
 const TOLERANCE: f64 = 1e-3;
@@ -81,6 +82,15 @@ fn self_contact(scene: &Scene, findings: &mut Findings) {
     if scene.analysis.quadrature == Quadrature::Gauss {
         let remedy = "use analysis.quadrature = \"points\", or remove the key";
         findings.error(key, "bodies whose spans integrate do not meet themselves", remedy);
+    }
+    let follows = |boundary: &Boundary| scene.analysis.frame == Frame::Updated && !is_fixed(boundary);
+    if let Some(i) = scene.boundaries.iter().position(follows) {
+        let message = "bodies that meet themselves do not follow sides that move, slide off, have a name or are parts";
+        findings.error(format!("boundary.{i}"), message, "hold all of the side at rest, or remove contact.self_contact");
+    }
+    if let Some(i) = scene.bodies.iter().position(|body| !body.conditions.is_empty()) {
+        let message = "bodies that meet themselves do not follow conditions on their edges";
+        findings.error(format!("body.{i}.condition"), message, "remove the conditions, or contact.self_contact");
     }
     if let Transfer::Xpic(_) = scene.analysis.transfer {
         let remedy = "use analysis.transfer = \"flip\", \"pic\", \"apic\" or \"tpic\", or remove the key";

@@ -91,7 +91,7 @@ impl MovingBlock {
     /// [`Self::points_to_grid`] left is used up.
     pub fn grid(&mut self, dt: f64) {
         self.nodes.divide_by_mass();
-        self.nodes.impose_velocities();
+        self.nodes.stop();
         self.nodes.accelerate();
         self.nodes.kick(dt);
     }

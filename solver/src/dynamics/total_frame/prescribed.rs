@@ -9,61 +9,13 @@
 //! R = M a − f_ext + f_int,   work of a step = dt w · (R_n + R_n+1)/2
 //! ```
 
-use serde::{Deserialize, Serialize};
-
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::mass::MassMatrix;
+use crate::dynamics::reaction::Reaction;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::scene::Boundary;
-
-/// What a condition does to the body.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Reaction {
-    /// Force on the body at the present whole step, and at the one before, N/m.
-    force: [[f64; 2]; 2],
-    /// Velocity in the step to come, and in the last one, m/s.
-    velocity: [[f64; 2]; 2],
-    /// Work so far, J/m.
-    work: f64,
-}
-
-impl Reaction {
-    /// Goes on to another whole step, at which there is no force yet.
-    pub(super) fn begin(&mut self) {
-        self.force = [[0.0; 2], self.force[0]];
-    }
-
-    /// Goes on to another step, with a velocity, m/s.
-    pub(super) fn drive(&mut self, velocity: [f64; 2]) {
-        self.velocity = [velocity, self.velocity[0]];
-    }
-
-    /// Velocity in the step to come, m/s.
-    pub(super) fn next_velocity(&self) -> [f64; 2] {
-        self.velocity[0]
-    }
-
-    /// Adds a component of a force at the present whole step, N/m.
-    pub(super) fn add(&mut self, component: usize, force: f64) {
-        self.force[0][component] += force;
-    }
-
-    /// Books the work over the last step of `dt` seconds, J/m.
-    pub(super) fn book(&mut self, dt: f64) -> f64 {
-        let ([now, before], [_, last]) = (self.force, self.velocity);
-        let power = [0, 1].map(|d| 0.5 * (before[d] + now[d]) * last[d]);
-        let added = dt * (power[0] + power[1]);
-        self.work += added;
-        added
-    }
-
-    /// What it is now, for a thickness of a metre.
-    pub(super) fn sample(&self, name: &str, components: [bool; 2]) -> ConditionSample {
-        ConditionSample::new(name, components, self.force[0], self.work)
-    }
-}
 
 /// A reaction for every condition on the sides of the mesh; empty if none of them moves or has a name.
 #[derive(Debug, Clone)]
@@ -85,7 +37,7 @@ impl Reactions {
             reaction.begin();
         }
         for (at, component, number) in constraints.iter() {
-            self.0[number].force[0][component] -= net[component][at];
+            self.0[number].add(component, -net[component][at]);
         }
     }
 
@@ -113,7 +65,7 @@ impl Reactions {
         }
         let inertia = [0, 1].map(|component| mass.product(&acceleration[component]));
         for (at, component, number) in constraints.iter() {
-            self.0[number].force[0][component] += fault!("reaction-without-inertia", inertia[component](at) => 0.0);
+            self.0[number].add(component, fault!("reaction-without-inertia", inertia[component](at) => 0.0));
         }
     }
 

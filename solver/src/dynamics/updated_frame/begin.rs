@@ -6,6 +6,8 @@ use super::affine::{AffineVelocities, Fit};
 use super::field::DiscreteField;
 use super::gauss::SpanQuadrature;
 use super::grid::NodalFields;
+use super::held_edges::HeldEdges;
+use super::held_sides::{self, HeldSide};
 use super::losses::TransferLosses;
 use super::part;
 use super::pointwise_fracture::PointwiseFracture;
@@ -20,7 +22,7 @@ use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
 use crate::particles::points::{Cells, OutsidePatch, Point};
 use crate::phase_field::fracture::crack_start;
-use crate::scene::{Body, Contact, Kinematics, Material, Plane, Quadrature, Scene, Transfer};
+use crate::scene::{Body, Boundary, Contact, Kinematics, Material, Plane, Quadrature, Scene, Transfer};
 use crate::splines::patch::Patch;
 
 impl DiscreteField {
@@ -85,9 +87,18 @@ impl DiscreteField {
         let mut cells = Cells::default();
         cells.sort(&patch, &mut points)?;
         let crack = |f| PointwiseFracture::new(&patch, body, FractureModel::new(f), &scene.solver, &points);
-        let nodes = NodalFields::new(&patch, part::constraints(whole, &patch, origin, &scene.boundaries));
-        let moduli = ElasticModuli::new(material, analysis.plane);
         let by_spans = analysis.quadrature == Quadrature::Gauss;
+        let fixed = |boundary: &&Boundary| by_spans || held_sides::is_fixed(boundary);
+        let (fixed, moving): (Vec<_>, Vec<_>) = scene.boundaries.iter().partition(fixed);
+        let side = |&boundary| match by_spans {
+            true => Some(HeldSide::whole(boundary)),
+            false => HeldSide::with_material(whole, body, boundary),
+        };
+        let sides: Vec<_> = fixed.iter().filter_map(side).collect();
+        let nodes = NodalFields::new(&patch, held_sides::constraints(whole, &patch, origin, &sides));
+        let moving = moving.into_iter().map(|boundary| held_sides::as_edge(whole, boundary));
+        let edges = HeldEdges::new(whole, body, moving.chain(body.conditions.iter().cloned()));
+        let moduli = ElasticModuli::new(material, analysis.plane);
         let spans =
             by_spans.then(|| SpanQuadrature::new((&scene.mesh, &body.shape), &patch, &nodes, moduli, material.density));
         let finite = analysis.kinematics == Kinematics::Finite && !by_spans;
@@ -110,14 +121,14 @@ impl DiscreteField {
             crack_start: crack_start(body),
             elastic_energy: 0.0,
             stress_work: 0.0,
-            driven_power: 0.0,
             ledger: Ledger::default(),
             losses: TransferLosses::default(),
             time: 0.0,
             at_start: true,
             travelled: 0.0,
             whole: Arc::clone(whole),
-            boundaries: scene.boundaries.clone(),
+            sides,
+            edges,
             patch,
             origin,
             points,

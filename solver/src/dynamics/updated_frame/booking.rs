@@ -20,14 +20,13 @@ impl DiscreteField {
         let traction_at = |time: f64| self.loads.iter().map(|load| load.factor(time) * load.power()).sum::<f64>();
         let [before, now] = [self.time - dt, self.time].map(traction_at);
         let [forced_before, forced_now] = self.forcing.as_ref().map_or([0.0; 2], |forcing| forcing.powers());
-        let driven = self.nodes.power_of_driven_sides();
+        let driven = self.edges.as_mut().map_or(0.0, |edges| edges.work(dt));
         let on_points = now + forced_now + weight - self.stress_work / dt;
         self.losses.kinetic += end_of_step.kinetic - self.nodes.kinetic_energy(&self.nodes.arrived);
         self.losses.power += 0.5 * dt * (end_of_step.not_followed + on_points - self.nodes.power_followed());
         self.losses.imposed += fault!("loss-forgotten", imposed.loss => 0.0);
         self.ledger.external_work += imposed.work + dt * weight + 0.5 * dt * (before + now);
-        self.ledger.external_work += 0.5 * dt * (forced_before + forced_now + self.driven_power + driven);
+        self.ledger.external_work += driven + 0.5 * dt * (forced_before + forced_now);
         self.ledger.transfer_loss = self.losses.sum();
-        self.driven_power = driven;
     }
 }

@@ -10,6 +10,8 @@ use rayon::prelude::*;
 use super::affine::AffineVelocities;
 use super::gauss::{self, SpanQuadrature};
 use super::grid::{EndOfStep, ImposedEnergy, NodalFields};
+use super::held_edges::HeldEdges;
+use super::held_sides::{HeldSide, constraints};
 use super::losses::TransferLosses;
 use super::pointwise_fracture::PointwiseFracture;
 use super::self_contact::slice::Slice;
@@ -29,7 +31,6 @@ use crate::linear_algebra::lane::dispatch;
 use crate::material::elasticity::ElasticModuli;
 use crate::material::hencky::Gradient;
 use crate::particles::points::{Cells, OutsidePatch, Point};
-use crate::scene::Boundary;
 use crate::splines::patch::Patch;
 
 /// One body in the updated frame.
@@ -39,7 +40,10 @@ pub struct DiscreteField {
     /// The part of the patch the nodal fields cover, and its first control column and row.
     pub(super) patch: Patch,
     pub(super) origin: [usize; 2],
-    pub(super) boundaries: Vec<Boundary>,
+    /// Sides that hold it at rest.
+    pub(super) sides: Vec<HeldSide>,
+    /// Conditions on edges that move with it.
+    pub(super) edges: Option<Box<HeldEdges>>,
     pub(super) moduli: ElasticModuli,
     /// Logarithmic change of volume over that of area: less than 1 in plane stress, where the thickness
     /// follows.
@@ -69,7 +73,6 @@ pub struct DiscreteField {
     pub(super) elastic_energy: f64,
     /// `Σ V sigma(n+1) : de` of the last step.
     pub(super) stress_work: f64,
-    pub(super) driven_power: f64,
     pub(super) ledger: Ledger,
     pub(super) losses: TransferLosses,
     pub(super) time: f64,
@@ -101,10 +104,11 @@ impl DiscreteField {
         self.kick(dt); // grid: v(n+1/2) = v(n−1/2) + dt a(n)
         self.choose_velocities(); // transfer: the increment for the points
         let end_of_step = self.end_of_step();
-        let left_span = self.grid_to_points(dt); // G2P: velocities, positions, strains
+        let left_span = self.grid_to_points(dt)?; // G2P: velocities, positions, strains
         if fault!("span-not-renewed", left_span => false) {
             self.sort()?;
         }
+        self.hold_sides();
         self.crack_and_stress()?; // points: psi+, H, phase field, stress at n + 1
         self.points_to_grid(); // P2G: mass, velocity, internal forces at x(n+1)
         self.attach_loads()?;
@@ -114,6 +118,9 @@ impl DiscreteField {
 
     /// Accelerations of the forces, and what the step adds to the ledger.
     pub(super) fn respond_and_book(&mut self, dt: f64, end_of_step: &EndOfStep) {
+        if let Some(edges) = &mut self.edges {
+            edges.go_on([self.time, dt]);
+        }
         let imposed = self.apply_boundary();
         self.accelerate();
         self.book(dt, end_of_step, imposed);
@@ -121,7 +128,7 @@ impl DiscreteField {
 
     /// Length of the coming kick, s: half a step at the start, where the points carry v(0).
     pub(crate) fn kick_length(&self, dt: f64) -> f64 {
-        if self.at_start { 0.5 * dt } else { dt }
+        kick(dt, self.at_start)
     }
 
     fn kick(&mut self, dt: f64) {
@@ -165,6 +172,15 @@ impl DiscreteField {
         }
     }
 
+    /// Lets the reactions on its edges answer to accelerations that were added.
+    pub(super) fn hold_pushed(&mut self) {
+        let (nodes, at_start) = (&mut self.nodes, self.at_start);
+        if let Some(edges) = &mut self.edges {
+            let kick = kick(edges.step(), at_start);
+            self.ledger.external_work += edges.hold_pushed(&mut nodes.acceleration, kick);
+        }
+    }
+
     fn choose_velocities(&mut self) {
         let Self { patch, cells, points, nodes, velocity_transfer, affine, density, .. } = self;
         velocity_transfer.update(nodes, &Smoothing { patch, cells, points, density: *density, mass: &nodes.mass });
@@ -175,7 +191,7 @@ impl DiscreteField {
 
     /// `v_p ← k v_p + Σ N Δv` (k the kept fraction, Δv the increment), `x_p += dt Σ N v`, and the strain of
     /// this motion; whether a point left its span.
-    pub(super) fn grid_to_points(&mut self, dt: f64) -> bool {
+    pub(super) fn grid_to_points(&mut self, dt: f64) -> Result<bool, OutsidePatch> {
         let Self { patch, cells, points, nodes, forcing, .. } = self;
         if let Some(forcing) = forcing {
             forcing.before_motion(patch, cells, points, &nodes.velocity);
@@ -193,13 +209,18 @@ impl DiscreteField {
             surface.follow(&self.view(), &self.nodes.velocity, dt);
             self.surface = Some(surface);
         }
-        let Self { patch, cells, nodes, points, forcing, loads, slice, .. } = self;
+        let Self { patch, cells, nodes, points, forcing, loads, edges, sides, slice, .. } = self;
         if let Some(slice) = slice {
             slice.follow((patch, cells, nodes), &nodes.velocity, dt);
         }
         for load in loads {
             load.move_points(patch, nodes.grid, &nodes.velocity, dt);
         }
+        if let Some(edges) = edges {
+            edges.move_points(patch, nodes, dt);
+        }
+        let mut sides = sides.iter_mut().filter(|side| side.slides());
+        sides.try_for_each(|side| side.follow(patch, nodes, dt))?;
         if let Some(forcing) = forcing {
             forcing.after_motion(points, self.time, dt);
         }
@@ -207,7 +228,7 @@ impl DiscreteField {
         self.travelled += dt * (2.0 * fastest).sqrt();
         self.elastic_energy = motions.iter().map(|m| m.elastic_energy).sum();
         self.stress_work = motions.iter().map(|m| m.stress_work).sum();
-        motions.iter().any(|m| m.left_span)
+        Ok(motions.iter().any(|m| m.left_span))
     }
 
     /// Velocity, position and strain of the points; `kinematics` for each strip.
@@ -263,9 +284,11 @@ impl DiscreteField {
         Ok(())
     }
 
-    /// Finds spans for the surface points of loads, by the masses of the grid.
+    /// Finds spans for the surface points of loads and conditions, by the masses of the grid.
     pub(super) fn attach_loads(&mut self) -> Result<(), OutsidePatch> {
-        self.loads.iter_mut().try_for_each(|load| load.attach(&self.patch, &self.nodes))
+        let Self { patch, nodes, loads, edges, .. } = self;
+        loads.iter_mut().try_for_each(|load| load.attach(patch, nodes))?;
+        edges.iter_mut().try_for_each(|edges| edges.attach(patch, nodes))
     }
 
     /// History, phase field and degraded stress; an elastic body has its stress from G2P.
@@ -298,6 +321,13 @@ impl DiscreteField {
         nodes.divide_by_mass();
     }
 
+    /// Lets the sides hold what they hold where the material is now.
+    fn hold_sides(&mut self) {
+        if self.sides.iter().any(HeldSide::slides) {
+            self.nodes.hold(constraints(&self.whole, &self.patch, self.origin, &self.sides));
+        }
+    }
+
     /// Gravity, tractions and other loads.
     pub(super) fn add_external_forces(&mut self) {
         let Self { patch, cells, points, nodes, .. } = self;
@@ -311,12 +341,25 @@ impl DiscreteField {
         }
     }
 
+    /// Imposes the prescribed velocities.
     fn apply_boundary(&mut self) -> ImposedEnergy {
-        self.nodes.impose_velocities()
+        let Self { patch, nodes, edges, .. } = self;
+        let fixed = nodes.stop();
+        edges.as_mut().map_or(fixed, |edges| edges.impose(patch, nodes).plus(fixed))
     }
 
     fn accelerate(&mut self) {
         self.nodes.accelerate();
+        if let Some(edges) = &mut self.edges {
+            edges.accelerate(&mut self.nodes.acceleration, kick(edges.step(), self.at_start));
+        }
+    }
+
+    /// Accelerations at t = 0 that lead to what is prescribed for a step of `dt` seconds.
+    pub(super) fn prepare(&mut self, dt: f64) {
+        let Some(edges) = self.edges.as_mut().filter(|_| self.at_start) else { return };
+        edges.go_on([self.time, dt]);
+        self.accelerate();
     }
 
     /// Rebuilds the grid where no step leads to it, for points that stay where they are.
@@ -335,7 +378,6 @@ impl DiscreteField {
     pub(super) fn accelerate_freely(&mut self) {
         self.apply_boundary();
         self.accelerate();
-        self.driven_power = self.nodes.power_of_driven_sides();
     }
 
     /// Velocity gradients of a velocity field (m/s), where the transfer carries them.
@@ -351,4 +393,9 @@ impl DiscreteField {
         let spans = if self.spans.is_some() { gauss::WAY_BETWEEN_STEPS } else { 0.25 };
         self.travelled >= spans * self.patch.shortest_span()
     }
+}
+
+/// Length of a kick of a step of `dt` seconds, s: half of it at the start, where the points carry v(0).
+fn kick(dt: f64, at_start: bool) -> f64 {
+    if at_start { 0.5 * dt } else { dt }
 }

@@ -10,6 +10,7 @@
 //! ([`TransferLosses::partition`](super::losses::TransferLosses)).
 
 use super::field::DiscreteField;
+use super::held_sides::constraints;
 use super::part::spans_around;
 use super::pieces::{Pieces, SEPARATED, spacing};
 use crate::contact::crack_faces::{Faces, Place};
@@ -58,11 +59,17 @@ impl DiscreteField {
     /// The fragment of one piece, with an empty ledger.
     fn fragment(&self, pieces: &Pieces, piece: u32, dt: f64) -> Result<Self, Failure> {
         let mut part = self.piece(pieces, piece)?;
+        let own = |place| pieces.at(place) == piece;
+        part.sides.iter_mut().for_each(|side| side.keep(own));
+        part.edges.iter_mut().for_each(|edges| edges.keep(piece == 0, own));
+        part.nodes.hold(constraints(&part.whole, &part.patch, part.origin, &part.sides));
         if let Some(fracture) = &mut part.fracture {
             fracture.field.forget_counts();
         }
         part.crack_and_stress()?;
-        part.find_accelerations();
+        part.points_to_grid();
+        part.attach_loads()?;
+        part.respond();
         part.travelled = f64::INFINITY; // its critical step is another
         if let Some(surface) = &self.surface {
             let place = |(at, point): (usize, &Point)| Place {
@@ -72,7 +79,7 @@ impl DiscreteField {
             };
             let places: Vec<Place> = self.points.iter().enumerate().map(place).collect();
             let faces = Faces::new(&places, spacing(&self.points));
-            part.surface = Some(surface.of_fragment(|place| pieces.at(place) == piece, &faces));
+            part.surface = Some(surface.of_fragment(own, &faces));
             part.expect_motion(dt);
         }
         Ok(part)

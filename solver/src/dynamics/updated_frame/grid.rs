@@ -32,7 +32,7 @@ pub struct NodalFields {
     pub force: VectorField,
     /// a(n), m/s²; zero where the velocity is prescribed or the mass negligible.
     pub acceleration: VectorField,
-    /// Prescribed velocities.
+    /// What the sides hold.
     constraints: Constraints,
     fixed: BTreeSet<(usize, usize)>,
 }
@@ -73,10 +73,17 @@ pub(super) struct EndOfStep {
 /// Energies of imposing the conditions on the sides, J/m.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ImposedEnergy {
-    /// Impulse times prescribed velocity: work of the driven sides.
+    /// Impulse times prescribed velocity.
     pub work: f64,
     /// `1/2 Σ m (v_prescribed − v)²`: what the impact costs.
     pub loss: f64,
+}
+
+impl ImposedEnergy {
+    /// Both together.
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self { work: self.work + other.work, loss: self.loss + other.loss }
+    }
 }
 
 impl NodalFields {
@@ -96,6 +103,12 @@ impl NodalFields {
             fixed: constraints.iter().map(|(at, component, _)| (at, component)).collect(),
             constraints,
         }
+    }
+
+    /// Lets the sides hold other control points.
+    pub(super) fn hold(&mut self, constraints: Constraints) {
+        self.fixed = constraints.iter().map(|(at, component, _)| (at, component)).collect();
+        self.constraints = constraints;
     }
 
     /// Empties what the points add to; [`Self::arrived`] then takes their momentum.
@@ -164,16 +177,14 @@ impl NodalFields {
         }
     }
 
-    /// Imposes the prescribed velocities.
-    pub fn impose_velocities(&mut self) -> ImposedEnergy {
-        let mut energy = ImposedEnergy::default();
-        for (at, component, value) in self.constraints.velocities() {
-            let jump = value - self.velocity[component][at];
-            self.velocity[component][at] = fault!("driven-side-lags", value => 0.5 * value);
-            energy.work += self.mass[at] * jump * value;
-            energy.loss += 0.5 * self.mass[at] * jump * jump;
+    /// Stops what the sides hold.
+    pub fn stop(&mut self) -> ImposedEnergy {
+        let mut loss = 0.0;
+        for (at, component, _) in self.constraints.iter() {
+            let velocity = std::mem::take(&mut self.velocity[component][at]);
+            loss += 0.5 * self.mass[at] * velocity * velocity;
         }
-        energy
+        ImposedEnergy { work: 0.0, loss }
     }
 
     /// `a = M⁻¹ f`, zero where the velocity is prescribed.
@@ -206,8 +217,7 @@ impl NodalFields {
         [0, 1].map(|c| self.mass.iter().zip(&velocity[c]).map(|(m, v)| m * v).sum())
     }
 
-    /// Power of the present forces on the present velocities at control points that follow them: those that
-    /// accelerate, and those that are held or driven, W/m.
+    /// Power of the present forces on the present velocities at control points that accelerate, W/m.
     pub(crate) fn power_followed(&self) -> f64 {
         let mut power = 0.0;
         for component in 0..2 {
@@ -216,8 +226,7 @@ impl NodalFields {
                 power += force * velocity;
             }
         }
-        let held = self.constraints.velocities().filter(|&(at, _, _)| self.inverse_mass[at] == 0.0);
-        power + held.map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
+        power
     }
 
     /// Power of the present forces on the velocity, less [`Self::power_followed`], W/m.
@@ -229,8 +238,7 @@ impl NodalFields {
                 power += force * velocity;
             }
         }
-        let held = self.constraints.velocities().filter(|&(at, _, _)| self.inverse_mass[at] == 0.0);
-        power - held.map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
+        power
     }
 
     /// Position of a control point, m.
@@ -246,11 +254,6 @@ impl NodalFields {
             [field[0][at], field[1][at]] = velocity(self.position(at));
         }
         field
-    }
-
-    /// Reaction times velocity of the driven control points, W/m.
-    pub(crate) fn power_of_driven_sides(&self) -> f64 {
-        -self.constraints.velocities().map(|(at, component, value)| self.force[component][at] * value).sum::<f64>()
     }
 
     /// Control points and components whose velocity is prescribed.

@@ -158,6 +158,11 @@ impl DiscreteField {
             return sample;
         }
         let nodes = &self.nodes;
+        let mut acceleration = Cow::Borrowed(acceleration);
+        let conditions = self.edges.as_ref().map(|edges| {
+            let forces = edges.hold(acceleration.to_mut(), self.kick_length(edges.step()));
+            edges.samples(&forces)
+        });
         let half = if self.at_start { 0.0 } else { fault!("half-step-velocity", 0.5 * dt => 0.0) };
         let (mut kinetic, mut stagger, mut momentum, mut angular) = (0.0, 0.0, [0.0; 2], 0.0);
         for at in nodes.grid.indices() {
@@ -184,6 +189,7 @@ impl DiscreteField {
             elastic: self.elastic_energy,
             fracture,
             external_work: self.ledger.external_work,
+            conditions: conditions.unwrap_or_default(),
             transfer_loss: Some(self.ledger.transfer_loss),
             momentum,
             angular_momentum: angular,
@@ -304,7 +310,8 @@ impl DiscreteField {
         let surface = self.surface.as_ref().map_or(0, |surface| surface.bytes());
         let spans = self.spans.as_ref().map_or(0, |spans| spans.bytes());
         let slice = self.slice.as_ref().map_or(0, |slice| slice.bytes());
-        let points = points + affine + deformation + forcing + surface + spans + slice;
+        let edges = self.edges.as_ref().map_or(0, |edges| edges.bytes());
+        let points = points + edges + affine + deformation + forcing + surface + spans + slice;
         [
             points + self.nodes.bytes() + self.velocity_transfer.bytes() + loads,
             self.fracture.as_ref().map_or(0, |f| f.bytes()),

@@ -4,11 +4,10 @@ use std::ops::Range;
 
 use super::field::DiscreteField;
 use super::grid::NodalFields;
+use super::held_sides::constraints;
 use super::velocity_transfer::VelocityTransfer;
-use crate::dynamics::constraints::Constraints;
 use crate::particles::points::{Cells, OutsidePatch, Point};
-use crate::scene::{Boundary, Side};
-use crate::splines::patch::{Patch, control_points_on};
+use crate::splines::patch::Patch;
 
 /// Spans around those with points, so that the part need not follow every step.
 const MARGIN: usize = 4;
@@ -36,19 +35,6 @@ pub(crate) fn origin(whole: &Patch, spans: &[Range<usize>; 2]) -> [usize; 2] {
     [0, 1].map(|d| whole.spaces[d].spans()[spans[d].start].first)
 }
 
-/// Conditions on those sides of the patch that a part reaches.
-pub(crate) fn constraints(whole: &Patch, part: &Patch, origin: [usize; 2], boundaries: &[Boundary]) -> Constraints {
-    let (whole, part) = (whole.control_grid(), part.control_grid());
-    let reached = |side: Side| match side {
-        Side::Left => origin[0] == 0,
-        Side::Right => origin[0] + part.columns == whole.columns,
-        Side::Bottom => origin[1] == 0,
-        Side::Top => origin[1] + part.rows == whole.rows,
-    };
-    let boundaries: Vec<Boundary> = boundaries.iter().filter(|b| reached(b.side)).cloned().collect();
-    Constraints::new(&boundaries, |boundary| control_points_on(boundary.side, part))
-}
-
 impl DiscreteField {
     /// Moves the part of the patch to where the points are, and sorts them. Nodal fields are rebuilt at every
     /// step; the phase field moves with the part.
@@ -73,7 +59,7 @@ impl DiscreteField {
     /// Makes some spans of the patch the part; the points are to be sorted anew.
     pub(super) fn occupy(&mut self, spans: &[Range<usize>; 2]) {
         let (patch, origin) = (self.whole.part(spans), origin(&self.whole, spans));
-        let constraints = constraints(&self.whole, &patch, origin, &self.boundaries);
+        let constraints = constraints(&self.whole, &patch, origin, &self.sides);
         let shift = [0, 1].map(|d| origin[d] as isize - self.origin[d] as isize);
         self.nodes = NodalFields::new(&patch, constraints);
         if let Some(spans) = &mut self.spans {

@@ -76,7 +76,8 @@ impl DiscreteField {
             whole: _,
             patch: _,
             origin: _,
-            boundaries: _,
+            sides,
+            edges,
             moduli: _,
             thickening: _,
             density: _,
@@ -96,7 +97,6 @@ impl DiscreteField {
             crack_start,
             elastic_energy: _, // see exchange_sums
             stress_work: _,
-            driven_power: _,
             ledger: _,
             losses: _,
             spans: _,
@@ -118,6 +118,8 @@ impl DiscreteField {
             archive.list(gradients)?;
         }
         loads.iter_mut().try_for_each(|load| load.exchange(archive))?;
+        sides.iter_mut().try_for_each(|side| side.exchange(archive))?;
+        edges.iter_mut().try_for_each(|edges| edges.exchange(archive))?;
         if let Some(surface) = surface {
             surface.exchange(archive)?;
         }
@@ -141,8 +143,8 @@ impl DiscreteField {
     }
 
     fn exchange_sums(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { elastic_energy, stress_work, driven_power, ledger, losses, travelled, .. } = self;
-        [elastic_energy, stress_work, driven_power, travelled].into_iter().try_for_each(|sum| archive.value(sum))?;
+        let Self { elastic_energy, stress_work, ledger, losses, travelled, .. } = self;
+        [elastic_energy, stress_work, travelled].into_iter().try_for_each(|sum| archive.value(sum))?;
         archive.value(ledger)?;
         archive.value(losses)
     }

@@ -2,9 +2,9 @@
 
 use super::grid::NodalFields;
 use crate::checkpoint::{Archive, StateError};
-use crate::dynamics::surface::surface_points;
+use crate::dynamics::surface::{SurfacePoint, surface_points};
 use crate::linear_algebra::control_grid::ControlGrid;
-use crate::particles::follower::Follower;
+use crate::particles::follower::EdgePlace;
 use crate::particles::points::OutsidePatch;
 use crate::scene::{Body, TimeFactor, Traction};
 use crate::splines::patch::Patch;
@@ -21,7 +21,7 @@ pub(crate) struct SurfaceLoad {
 
 #[derive(Debug, Clone, Copy)]
 struct MovingSurfacePoint {
-    place: Follower,
+    place: EdgePlace,
     length: f64,
 }
 
@@ -29,14 +29,14 @@ impl SurfaceLoad {
     /// The surface points of a traction at t = 0.
     pub(crate) fn new(patch: &Patch, body: &Body, traction: &Traction) -> Self {
         let points = surface_points(patch, body, &traction.edge).into_iter();
-        let points =
-            points.map(|p| MovingSurfacePoint { place: Follower::new(p.position), length: p.length }).collect();
+        let place = |p: SurfacePoint| MovingSurfacePoint { place: EdgePlace::new(patch, body, &p), length: p.length };
+        let points = points.map(place).collect();
         Self { points, stress: traction.load.traction([0.0; 2]), time: traction.time.clone(), power: 0.0 }
     }
 
     /// Keeps some of the surface points, by their positions (m).
     pub(crate) fn keep(&mut self, keeps: impl Fn([f64; 2]) -> bool) {
-        self.points.retain(|point| keeps(point.place.position));
+        self.points.retain(|point| keeps(point.place.position()));
     }
 
     /// Factor at a time, s.
@@ -91,7 +91,9 @@ impl SurfaceLoad {
     pub(crate) fn move_points(&mut self, patch: &Patch, grid: ControlGrid, velocity: &[Vec<f64>; 2], dt: f64) {
         self.power = 0.0;
         for point in &mut self.points {
-            let v = point.place.follow(patch, grid, velocity, dt);
+            let mut v = [0.0; 2];
+            point.place.for_each_function(patch, grid, |at, n| v = [0, 1].map(|c| v[c] + n * velocity[c][at]));
+            point.place.follow(patch, grid, velocity, dt);
             self.power += point.length * (self.stress[0] * v[0] + self.stress[1] * v[1]);
         }
     }
@@ -102,7 +104,7 @@ impl SurfaceLoad {
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
         let Self { points, stress: _, time: _, power } = self;
-        points.iter_mut().try_for_each(|point| archive.value(&mut point.place.position))?;
+        points.iter_mut().try_for_each(|point| point.place.exchange(archive))?;
         archive.value(power)
     }
 

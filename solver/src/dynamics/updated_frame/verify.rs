@@ -60,7 +60,7 @@ impl DiscreteField {
         self.time += dt;
         self.nodes.velocity = self.nodes.at_greville_points(velocity);
         self.velocity_transfer.keep();
-        if self.grid_to_points(dt) {
+        if self.grid_to_points(dt)? {
             self.sort()?;
         }
         self.crack_and_stress()?;

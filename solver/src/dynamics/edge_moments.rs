@@ -1,0 +1,217 @@
+//! Lagrange multipliers along edges of a body, and the moments of its motion that they prescribe.
+//!
+//! A multiplier is a spline μ along the edge, of the degree of the body's splines less one, over parts at
+//! least [`PART`] spans long. The moments of the motion with each of them are those of the prescribed one,
+//! at every step and to round-off:
+//!
+//! ```text
+//! ∫ μ_r (v·e − w·e) dΓ = 0,   e = x, y or the normal of the edge as it was at t = 0
+//! M a = f_ext − f_int − Bᵀ λ,   B_rI = ∫ μ_r N_I e dΓ
+//! (B M⁻¹ Bᵀ) λ = B M⁻¹ (f_ext − f_int) − B a_prescribed
+//! ```
+//!
+//! The multipliers remove directions from the operator and add no stiffness, so the critical step is never
+//! shorter than that of the free body. They do work on what moves only: there is no energy of a penalty.
+
+use std::collections::BTreeMap;
+
+use faer::sparse::{SparseColMat, Triplet};
+
+use crate::dynamics::surface::SurfacePoint;
+use crate::linear_algebra::cholesky::LowerFactor;
+use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::extremes::larger;
+use crate::scene::Hold;
+use crate::splines::patch::Patch;
+use crate::splines::spline::SplineSpace;
+
+/// Least length of a part of an edge over which multipliers are polynomials, in spans.
+const PART: f64 = 2.0;
+/// A prescribed direction from the normal of an edge.
+type Direction = fn([f64; 2]) -> [f64; 2];
+
+/// A moment of the motion of an edge, and its multiplier.
+#[derive(Debug, Clone)]
+pub(in crate::dynamics) struct Moment {
+    /// Number of its condition.
+    pub(in crate::dynamics) condition: usize,
+    /// Control point and component, and its share, m.
+    pub(in crate::dynamics) shares: Vec<(usize, usize, f64)>,
+    /// Shares of the components in all: those of a translation, m.
+    pub(in crate::dynamics) total: [f64; 2],
+}
+
+/// Moments, and the multipliers that prescribe them on a body with a lumped mass.
+#[derive(Debug, Clone)]
+pub(in crate::dynamics) struct Multipliers {
+    pub(in crate::dynamics) moments: Vec<Moment>,
+    /// Inverse mass of the shares of every moment, m/kg; zero where a side of the mesh prescribes.
+    pub(in crate::dynamics) inverse: Vec<Vec<f64>>,
+    factor: LowerFactor,
+}
+
+impl Multipliers {
+    /// A part of the compliance of every multiplier, its `softness`, is added to it. `None` if the moments are
+    /// not independent.
+    pub(in crate::dynamics) fn new(moments: Vec<Moment>, inverse: Vec<Vec<f64>>, softness: f64) -> Option<Self> {
+        let factor = compliance(&moments, &inverse, softness).and_then(|lower| LowerFactor::new(&lower, None))?;
+        Some(Self { moments, inverse, factor })
+    }
+
+    /// λ of an excess of every moment.
+    pub(in crate::dynamics) fn of_excess(&self, excess: impl Fn(&Moment) -> f64) -> Vec<f64> {
+        let mut multipliers: Vec<f64> = self.moments.iter().map(excess).collect();
+        self.factor.solve(&mut multipliers);
+        multipliers
+    }
+
+    /// `field ← field − M⁻¹ Bᵀ λ`.
+    pub(in crate::dynamics) fn yield_to(&self, multipliers: &[f64], field: &mut VectorField) {
+        for ((moment, inverse), multiplier) in self.moments.iter().zip(&self.inverse).zip(multipliers) {
+            for (&(at, component, share), inverse) in moment.shares.iter().zip(inverse) {
+                field[component][at] -= multiplier * share * inverse;
+            }
+        }
+    }
+
+    /// Takes from accelerations or displacements what the conditions do not allow.
+    pub(in crate::dynamics) fn project(&self, field: &mut VectorField) {
+        let multipliers = self.of_excess(|moment| moment.of(field));
+        self.yield_to(&multipliers, field);
+    }
+
+    /// Takes the part that the multipliers carry from forces, N/m.
+    pub(in crate::dynamics) fn project_forces(&self, forces: &mut VectorField) {
+        let yielded = |(moment, inverse): (&Moment, &Vec<f64>)| {
+            let shares = moment.shares.iter().zip(inverse);
+            shares.map(|(&(at, component, share), inverse)| share * inverse * forces[component][at]).sum()
+        };
+        let mut multipliers: Vec<f64> = self.moments.iter().zip(&self.inverse).map(yielded).collect();
+        self.factor.solve(&mut multipliers);
+        for (moment, multiplier) in self.moments.iter().zip(multipliers) {
+            for &(at, component, share) in &moment.shares {
+                forces[component][at] -= multiplier * share;
+            }
+        }
+    }
+
+    /// A moment that nearly follows from the others: what is left of its own compliance beside them,
+    /// `1/(S⁻¹)_rr` of `S_rr` for `S = B M⁻¹ Bᵀ`, is less than `least`.
+    pub(in crate::dynamics) fn dependent(&self, least: f64) -> Option<&Moment> {
+        (0..self.moments.len())
+            .map(|row| {
+                let mut unit = vec![0.0; self.moments.len()];
+                unit[row] = 1.0;
+                self.factor.solve(&mut unit);
+                let shares = self.moments[row].shares.iter().zip(&self.inverse[row]);
+                let own: f64 = shares.map(|((.., share), m)| share * share * m).sum();
+                (1.0 / (unit[row] * own), &self.moments[row])
+            })
+            .find_map(|(part, moment)| (part < least).then_some(moment))
+    }
+}
+
+impl Moment {
+    /// Its value for a field.
+    pub(in crate::dynamics) fn of(&self, field: &VectorField) -> f64 {
+        self.shares.iter().map(|&(at, component, share)| share * field[component][at]).sum()
+    }
+
+    /// Its value for a translation.
+    pub(in crate::dynamics) fn translated(&self, value: [f64; 2]) -> f64 {
+        self.total[0] * value[0] + self.total[1] * value[1]
+    }
+}
+
+/// The moments of a condition, from the points of its edge with the control points and values of the functions
+/// there.
+///
+/// # Errors
+/// The position (m) of a point that is not on the edge.
+pub(in crate::dynamics) fn moments_of(
+    condition: usize,
+    hold: Hold,
+    space: &SplineSpace,
+    points: impl Iterator<Item = (SurfacePoint, Vec<(usize, f64)>)>,
+) -> Result<Vec<Moment>, [f64; 2]> {
+    let directions: &[Direction] = match hold {
+        Hold::Components([true, true]) => &[|_| [1.0, 0.0], |_| [0.0, 1.0]],
+        Hold::Components([true, false]) => &[|_| [1.0, 0.0]],
+        Hold::Components([false, true]) => &[|_| [0.0, 1.0]],
+        Hold::Components([false, false]) => &[],
+        Hold::Normal => &[|normal| normal],
+    };
+    let mut shares = vec![BTreeMap::<(usize, usize), f64>::new(); directions.len() * space.dimension()];
+    let mut totals = vec![[0.0; 2]; shares.len()];
+    for (point, functions) in points {
+        let span = space.find_span(point.along).ok_or(point.position)?;
+        let multipliers = space.shape_functions(span, point.along).value;
+        for (k, multiplier) in multipliers[..=space.degree()].iter().enumerate() {
+            let row = space.spans()[span].first + k;
+            for (set, along) in directions.iter().enumerate() {
+                let (row, direction) = (set * space.dimension() + row, along(point.normal));
+                for component in (0..2).filter(|&d| direction[d] != 0.0) {
+                    let weight = multiplier * point.length * direction[component];
+                    totals[row][component] += weight;
+                    for &(at, value) in &functions {
+                        *shares[row].entry((at, component)).or_default() += weight * value;
+                    }
+                }
+            }
+        }
+    }
+    let moment = |(shares, total): (BTreeMap<(usize, usize), f64>, [f64; 2])| {
+        let shares = shares.into_iter().map(|((at, component), share)| (at, component, share)).collect();
+        Moment { condition, shares, total }
+    };
+    Ok(shares.into_iter().zip(totals).map(moment).collect())
+}
+
+/// Splines along an edge for multipliers; linear on an edge that is shorter than a part.
+pub(in crate::dynamics) fn multiplier_space(patch: &Patch, parts: &[Vec<SurfacePoint>]) -> SplineSpace {
+    let degree = patch.spaces.iter().map(|space| space.degree()).max().unwrap_or(1);
+    let length = |part: &Vec<SurfacePoint>| part.iter().map(|point| point.length).sum::<f64>();
+    let size = |part: &Vec<SurfacePoint>| {
+        let span = |d: usize| {
+            let space = &patch.spaces[d];
+            space.find_span(part[0].position[d]).map_or(0.0, |span| space.spans()[span].length())
+        };
+        larger(span(0), span(1))
+    };
+    let wanted_spans = fault!("edge-multipliers-too-few", PART => 40.0);
+    let (mut knots, mut end, mut since, mut wanted) = (Vec::new(), 0.0, 0.0, 0.0);
+    let total: f64 = parts.iter().map(length).sum();
+    for part in parts.iter().filter(|part| !part.is_empty()) {
+        (end, since, wanted) = (end + length(part), since + length(part), larger(wanted, wanted_spans * size(part)));
+        if since >= wanted && total - end >= wanted {
+            knots.push(end);
+            (since, wanted) = (0.0, 0.0);
+        }
+    }
+    let is_short = total < PART * parts.iter().filter(|part| !part.is_empty()).map(size).fold(0.0, larger);
+    let degree = if is_short { 1 } else { (degree - 1).max(1) };
+    SplineSpace::new(degree, &[vec![0.0; degree + 1], knots, vec![total; degree + 1]].concat())
+}
+
+/// The lower triangle of `B M⁻¹ Bᵀ`.
+fn compliance(moments: &[Moment], inverse: &[Vec<f64>], softness: f64) -> Option<SparseColMat<usize, f64>> {
+    let mut touching = BTreeMap::<(usize, usize), Vec<(usize, f64, f64)>>::new();
+    for (row, (moment, inverse)) in moments.iter().zip(inverse).enumerate() {
+        for (&(at, component, share), inverse) in moment.shares.iter().zip(inverse) {
+            touching.entry((at, component)).or_default().push((row, share, share * inverse));
+        }
+    }
+    let mut entries = BTreeMap::<(usize, usize), f64>::new();
+    for rows in touching.values() {
+        for &(column, share, _) in rows {
+            for &(row, _, yielded) in rows.iter().filter(|(row, ..)| *row >= column) {
+                *entries.entry((column, row)).or_default() += share * yielded;
+            }
+        }
+    }
+    for row in 0..moments.len() {
+        entries.entry((row, row)).and_modify(|own| *own *= 1.0 + softness);
+    }
+    let triplets: Vec<_> = entries.into_iter().map(|((column, row), value)| Triplet::new(row, column, value)).collect();
+    SparseColMat::try_new_from_triplets(moments.len(), moments.len(), &triplets).ok()
+}

@@ -1,0 +1,216 @@
+//! Conditions in the updated frame on material that moves: edges of bodies, and what lies at t = 0 on a side
+//! of the mesh that is driven, that has a course in time, or of which only a part is held.
+//!
+//! Points of an edge move with the body. At every whole step the multipliers along it
+//! ([`edge_moments`](crate::dynamics::edge_moments)) act on the present grid: first the velocity that arrived is made that of the
+//! last step, as on the sides of the mesh, then the accelerations lead to that of the next one:
+//!
+//! ```text
+//! v ← v − M⁻¹ Bᵀ S⁻¹ (B v − B w_n−1/2),     a ← a − M⁻¹ Bᵀ S⁻¹ (B a − B (w_n+1/2 − w_n−1/2)/dt)
+//! ```
+//!
+//! The first is an impact. It does the work `−λ·B w` and costs `½ λ·(B v − B w)`.
+
+use super::grid::{ImposedEnergy, NodalFields};
+use crate::checkpoint::{Archive, StateError};
+use crate::dynamics::edge_moments::{Moment, Multipliers, moments_of, multiplier_space};
+use crate::dynamics::energy::ConditionSample;
+use crate::dynamics::reaction::Reaction;
+use crate::dynamics::surface::{SurfacePoint, smooth_parts};
+use crate::linear_algebra::control_grid::VectorField;
+use crate::particles::follower::EdgePlace;
+use crate::particles::points::OutsidePatch;
+use crate::scene::{Body, EdgeCondition};
+use crate::splines::patch::Patch;
+use crate::splines::spline::SplineSpace;
+
+/// Yield of a multiplier at control points that can move, of that at all of them, that counts as none.
+const YIELDS: f64 = 1e-9;
+
+/// Part of the compliance of a multiplier that is added to it, so that moments which nearly follow from others
+/// do no harm.
+const SOFTNESS: f64 = 1e-10;
+
+/// Conditions on the edges of a body in the updated frame.
+#[derive(Debug, Clone)]
+pub(super) struct HeldEdges {
+    edges: Vec<HeldEdge>,
+    /// On the present grid; `None` if nothing there can yield.
+    multipliers: Option<Multipliers>,
+    /// Length of the steps, s; zero before the first one.
+    step: f64,
+}
+
+/// A condition, and the points of its edge.
+#[derive(Debug, Clone)]
+struct HeldEdge {
+    condition: EdgeCondition,
+    space: SplineSpace,
+    points: Vec<(EdgePlace, SurfacePoint)>,
+    reaction: Reaction,
+}
+
+impl HeldEdges {
+    /// Some conditions on a body, where its material lies on their edges; absent if it lies on none.
+    pub(super) fn new(patch: &Patch, body: &Body, conditions: impl Iterator<Item = EdgeCondition>) -> Option<Box<Self>> {
+        let edge = |condition: EdgeCondition| {
+            let parts = smooth_parts(patch, body, &condition.edge);
+            let on_material = parts.iter().flatten().filter(|point| body.shape.contains(point.inner));
+            let points: Vec<_> = on_material.map(|point| (EdgePlace::new(patch, body, point), *point)).collect();
+            let reaction = Reaction::at_start(condition.prescribed.start()[1]);
+            (!points.is_empty()).then(|| HeldEdge { space: multiplier_space(patch, &parts), condition, points, reaction })
+        };
+        let edges: Vec<_> = conditions.filter_map(edge).collect();
+        (!edges.is_empty()).then(|| Box::new(Self { edges, multipliers: None, step: 0.0 }))
+    }
+
+    /// Keeps some of the points, by their positions (m); the work so far stays with who `keeps_work`.
+    pub(super) fn keep(&mut self, keeps_work: bool, keeps: impl Fn([f64; 2]) -> bool) {
+        for edge in &mut self.edges {
+            edge.points.retain(|(place, _)| keeps(place.position()));
+            if !keeps_work {
+                edge.reaction.forget_work();
+            }
+        }
+    }
+
+    /// Chooses the span of every point anew.
+    ///
+    /// # Errors
+    /// A point with no material within one span of it.
+    pub(super) fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), OutsidePatch> {
+        let mut places = self.edges.iter_mut().flat_map(|edge| &mut edge.points);
+        places.try_for_each(|(place, _)| place.attach(patch, &nodes.inverse_mass))
+    }
+
+    /// Moves the points with the grid over `dt` seconds.
+    pub(super) fn move_points(&mut self, patch: &Patch, nodes: &NodalFields, dt: f64) {
+        for (place, _) in self.edges.iter_mut().flat_map(|edge| &mut edge.points) {
+            place.follow(patch, nodes.grid, &nodes.velocity, dt);
+        }
+    }
+
+    /// Length of the steps, s; zero before the first one.
+    pub(super) fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Goes on to a whole step at `time`, to be followed by a step of `dt` seconds.
+    pub(super) fn go_on(&mut self, [time, dt]: [f64; 2]) {
+        self.step = dt;
+        for HeldEdge { condition, reaction, .. } in &mut self.edges {
+            reaction.begin();
+            reaction.drive(condition.prescribed.mean_velocity(time, dt));
+        }
+    }
+
+    /// Takes the multipliers of the present grid, and imposes on the velocities there what the last step
+    /// prescribed.
+    pub(super) fn impose(&mut self, patch: &Patch, nodes: &mut NodalFields) -> ImposedEnergy {
+        self.multipliers = self.on_grid(patch, nodes);
+        let Self { edges, multipliers: Some(multipliers), .. } = self else { return ImposedEnergy::default() };
+        let last = |moment: &Moment| moment.translated(edges[moment.condition].reaction.last_velocity());
+        let impulses = multipliers.of_excess(|moment| moment.of(&nodes.velocity) - last(moment));
+        let mut energy = ImposedEnergy::default();
+        let mut sums = vec![[0.0; 2]; edges.len()];
+        for (moment, impulse) in multipliers.moments.iter().zip(&impulses) {
+            energy.loss += 0.5 * impulse * (moment.of(&nodes.velocity) - last(moment));
+            (0..2).for_each(|d| sums[moment.condition][d] -= impulse * moment.total[d]);
+        }
+        multipliers.yield_to(&impulses, &mut nodes.velocity);
+        energy.work = edges.iter_mut().zip(sums).map(|(edge, sum)| edge.reaction.strike(sum)).sum();
+        energy
+    }
+
+    /// Makes accelerations (m/s²) those that lead to the velocities of the step to come, of which `kick` is the
+    /// length as velocities see it, s. The forces of the conditions on the body, N/m.
+    pub(super) fn hold(&self, acceleration: &mut VectorField, kick: f64) -> Vec<[f64; 2]> {
+        let mut forces = vec![[0.0; 2]; self.edges.len()];
+        let Some(multipliers) = &self.multipliers else { return forces };
+        let change = |moment: &Moment| {
+            let reaction = &self.edges[moment.condition].reaction;
+            let [next, last] = [reaction.next_velocity(), reaction.last_velocity()];
+            moment.translated([0, 1].map(|d| if kick > 0.0 { (next[d] - last[d]) / kick } else { 0.0 }))
+        };
+        let values = multipliers.of_excess(|moment| moment.of(acceleration) - change(moment));
+        multipliers.yield_to(&values, acceleration);
+        for (moment, value) in multipliers.moments.iter().zip(values) {
+            (0..2).for_each(|d| forces[moment.condition][d] -= value * moment.total[d]);
+        }
+        forces
+    }
+
+    /// Does so for the forces at the present whole step, which the reactions are.
+    pub(super) fn accelerate(&mut self, acceleration: &mut VectorField, kick: f64) {
+        let forces = self.hold(acceleration, kick);
+        for (edge, force) in self.edges.iter_mut().zip(forces) {
+            edge.reaction.set(force);
+        }
+    }
+
+    /// Does so for accelerations that were added; the work of the conditions in the kick, J/m.
+    pub(super) fn hold_pushed(&mut self, acceleration: &mut VectorField, kick: f64) -> f64 {
+        let forces = self.hold(acceleration, kick);
+        let works = self.edges.iter_mut().zip(forces).map(|(edge, force)| edge.reaction.push(force.map(|f| f * kick)));
+        works.sum()
+    }
+
+    /// Work (J/m) of the prescribed motion over the last step of `dt` seconds, without that of impacts.
+    pub(super) fn work(&mut self, dt: f64) -> f64 {
+        self.edges.iter_mut().map(|edge| edge.reaction.book(dt)).sum()
+    }
+
+    /// Reaction and work of every condition with a name, with forces (N/m) beside the reactions, for a
+    /// thickness of a metre.
+    pub(super) fn samples(&self, forces: &[[f64; 2]]) -> Vec<ConditionSample> {
+        let named = |(HeldEdge { condition, reaction, .. }, force): (&HeldEdge, &[f64; 2])| {
+            let mut reaction = *reaction;
+            (0..2).for_each(|d| reaction.add(d, force[d]));
+            Some(reaction.sample(condition.name.as_deref()?, condition.components()))
+        };
+        self.edges.iter().zip(forces).filter_map(named).collect()
+    }
+
+    /// Stores or takes up what steps change.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(super) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        archive.value(&mut self.step)?;
+        for edge in &mut self.edges {
+            archive.value(&mut edge.reaction)?;
+            edge.points.iter_mut().try_for_each(|(place, _)| place.exchange(archive))?;
+        }
+        Ok(())
+    }
+
+    /// Heap memory, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        self.edges.iter().map(|edge| edge.points.len() * size_of::<(EdgePlace, SurfacePoint)>()).sum()
+    }
+
+    /// The multipliers that can move something on the present grid.
+    fn on_grid(&self, patch: &Patch, nodes: &NodalFields) -> Option<Multipliers> {
+        let mut moments = Vec::new();
+        for (number, edge) in self.edges.iter().enumerate() {
+            let functions = |place: &EdgePlace| {
+                let mut values = Vec::new();
+                place.for_each_continued(patch, nodes.grid, |at, n| values.push((at, n)));
+                values
+            };
+            let points = edge.points.iter().map(|(place, point)| (*point, functions(place)));
+            moments.extend(moments_of(number, edge.condition.hold, &edge.space, points).into_iter().flatten());
+        }
+        let inverse = |moment: &Moment| -> Option<Vec<f64>> {
+            let free = |(at, component)| if nodes.fixed().contains(&(at, component)) { 0.0 } else { 1.0 };
+            let of = |&(at, component, _): &(usize, usize, f64)| free((at, component)) * nodes.inverse_mass[at];
+            let inverse: Vec<f64> = moment.shares.iter().map(of).collect();
+            let yields = moment.shares.iter().zip(&inverse).map(|((.., share), m)| share * share * m).sum::<f64>();
+            let all = moment.shares.iter().map(|&(at, _, share)| share * share * nodes.inverse_mass[at]).sum::<f64>();
+            (yields > YIELDS * all).then_some(inverse)
+        };
+        let yielding = moments.into_iter().filter_map(|moment| inverse(&moment).map(|inverse| (moment, inverse)));
+        let (moments, inverse): (Vec<_>, Vec<_>) = yielding.unzip();
+        if moments.is_empty() { None } else { Multipliers::new(moments, inverse, SOFTNESS) }
+    }
+}
