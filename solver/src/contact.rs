@@ -58,6 +58,10 @@ pub use view::BodyView;
 
 /// Cosine of the angle between outward normals above which boundaries do not face each other.
 const FACING: f64 = -0.5;
+/// Cosine up to which a place on one boundary that is inside the other body is held back by the face there: the
+/// flanks of a wedge of half angle 3° or more. Beside a right corner that is pressed in the faces of the corner
+/// do not meet the face beneath.
+const CUTTING: f64 = -0.05;
 /// Depth in spans from which on a slice of a body is not inside another, but on the far side of it.
 const FAR_SIDE: f64 = 0.5;
 /// Gap up to which a constraint is looked at, in spans, unless more could close in a step.
@@ -159,10 +163,13 @@ impl ContactSolver {
             for &segment in &segments[own] {
                 let Center { position, normal, displacement } = surfaces[own].center(segment);
                 let Some(nearest) = surfaces[other].nearest(position, &segments[other], reach) else { continue };
-                if dot(normal, nearest.normal) > FACING {
+                let cosine = dot(normal, nearest.normal);
+                let is_cutting = cosine > FACING;
+                if is_cutting && (cosine > fault!("flanks-not-met", CUTTING => FACING) || nearest.distance >= 0.0) {
                     continue;
                 }
-                let halfway = [0, 1].map(|d| sign * (normal[d] - nearest.normal[d]));
+                let own_normal = if is_cutting { [0.0; 2] } else { normal };
+                let halfway = [0, 1].map(|d| sign * (own_normal[d] - nearest.normal[d]));
                 let along = fault!("normal-of-one-body", halfway => if own == 0 { normal } else { nearest.normal });
                 let Some(normal) = unit(along) else { continue };
                 let closing = sign * dot([0, 1].map(|d| displacement[d] - nearest.displacement[d]), normal);

@@ -75,13 +75,14 @@ pub enum Kinematics {
 }
 
 /// Velocity transfer between points and grid in the updated frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Transfer {
     /// Particle-in-cell.
     Pic,
     /// Fluid-implicit-particle.
     Flip,
-    /// Affine particle-in-cell.
+    /// Affine particle-in-cell: it conserves angular momentum.
+    #[default]
     Apic,
     /// Taylor particle-in-cell.
     Tpic,

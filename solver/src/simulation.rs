@@ -19,7 +19,7 @@ use crate::output::picture::Picture;
 use crate::output::raster::Raster;
 use crate::output::span_grid::SpanGrid;
 use crate::phase_field::PhaseFieldCounts;
-use crate::scene::Scene;
+use crate::scene::{Scene, TimeStep};
 use crate::simulation::breakdown::Breakdown;
 use frame::{Bodies, either};
 
@@ -43,6 +43,10 @@ pub struct Extent {
 pub struct Simulation {
     frame: Bodies,
     plan: TimePlan,
+    /// Equal parts in which a planned step is taken, so that it stays below the critical one.
+    parts: usize,
+    /// Whether the scene leaves the time step to the program.
+    is_automatic: bool,
     warnings: Vec<String>,
     steps: usize,
     /// Stored energy at t = 0, J.
@@ -85,7 +89,9 @@ impl Simulation {
         let start = either!(&frame, body => body.sample(plan.step));
         let (initial, energy_in) = (start.stored(), start.kinetic + start.elastic);
         let warned = Warned { step: plan.step > critical, ..Warned::default() };
-        Ok(Self { frame, plan, warnings, steps: 0, initial, energy_in, warned, failed: false, tolerance })
+        let (parts, is_automatic) = (1, scene.analysis.time_step == TimeStep::Auto);
+        let (steps, failed) = (0, false);
+        Ok(Self { frame, plan, parts, is_automatic, warnings, steps, initial, energy_in, warned, failed, tolerance })
     }
 
     /// Steps and samples.
@@ -127,11 +133,18 @@ impl Simulation {
         self.steps += 1;
         // within the pool of rayon: from outside, every parallel loop would wake it and wait for it
         let sampled = self.steps.is_multiple_of(self.plan.steps_per_sample);
-        let result = rayon::scope(|_| self.frame.step(self.plan.step, sampled));
+        let (part, last) = (self.part_of_step(), self.parts - 1);
+        let result =
+            rayon::scope(|_| (0..=last).try_for_each(|number| self.frame.step(part, sampled && number == last)));
         if sampled {
             either!(&mut self.frame, body => body.note_crack_start());
         }
         self.judge(result).inspect_err(|_| self.failed = true)
+    }
+
+    /// Length of the steps that are taken now, s.
+    fn part_of_step(&self) -> f64 {
+        self.plan.step / self.parts as f64
     }
 
     /// Time, s.
@@ -154,7 +167,7 @@ impl Simulation {
 
     /// Energies, momenta and crack tip now, with closure.
     pub fn sample(&self) -> Sample {
-        let mut sample = either!(&self.frame, body => body.sample(self.plan.step));
+        let mut sample = either!(&self.frame, body => body.sample(self.part_of_step()));
         sample.time = self.time();
         sample.close(self.initial);
         sample

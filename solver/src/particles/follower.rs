@@ -141,7 +141,8 @@ impl EdgePlace {
             (0..2).for_each(|c| (0..2).for_each(|d| gradient[c][d] += velocity[c][at] * slope[d]));
         });
         self.root.follow(patch, grid, velocity, dt);
-        self.arm = [0, 1].map(|c| self.arm[c] + dt * dot(gradient[c], self.arm));
+        let stretched = [0, 1].map(|c| self.arm[c] + dt * dot(gradient[c], self.arm));
+        self.arm = fault!("edge-on-a-rigid-arm", stretched => self.arm);
     }
 
     /// Stores or takes up where it is.

@@ -49,8 +49,21 @@ impl Simulation {
     }
 
     fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { frame, plan: _, warnings, steps, initial, energy_in, warned, failed: _, tolerance: _ } = self;
+        let Self {
+            frame,
+            plan: _,
+            parts,
+            is_automatic: _,
+            warnings,
+            steps,
+            initial,
+            energy_in,
+            warned,
+            failed: _,
+            tolerance: _,
+        } = self;
         archive.value(steps)?;
+        archive.value(parts)?;
         frame.exchange(archive)?;
         archive.value(warnings)?;
         [initial, energy_in].into_iter().try_for_each(|energy| archive.value(energy))?;

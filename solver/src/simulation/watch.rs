@@ -23,6 +23,15 @@ const CLOSURE_LIMIT: f64 = 0.02;
 /// the phase field.
 const CLOSURE_FLOOR: f64 = 1e-6;
 
+/// Part of the critical step at the moved positions that an automatic step may be: it is taken again where points
+/// have moved a quarter of a span.
+const SPARE: f64 = 0.95;
+/// Parts of a step beyond which the critical step has collapsed.
+const MOST_PARTS: f64 = 64.0;
+
+/// Part of the largest energy of a run that transfers, or contact without friction, may take without a word.
+const LOSS_LIMIT: f64 = 0.05;
+
 /// Angle that material may turn by with small strains, rad: in the total frame they take this one for a
 /// strain of 0.5 %, and in the updated frame stresses do not turn with the material.
 const ROTATION_LIMIT: f64 = 0.1;
@@ -56,7 +65,8 @@ impl Simulation {
         }
     }
 
-    /// Warns once if the step in use exceeds the critical one at the moved positions.
+    /// Keeps an automatic step of moving bodies below the critical one at their positions, by parts of it; warns
+    /// once if any other step exceeds that.
     fn watch_critical_step(&mut self) {
         if self.warned.step {
             return;
@@ -67,6 +77,13 @@ impl Simulation {
             Bodies::Total(frame) if look => frame.retake_critical_step(step, self.plan.critical),
             Bodies::Total(_) => None,
         };
+        if let (true, Some(critical), Bodies::Updated(_)) = (self.is_automatic, critical, &self.frame) {
+            let parts = (step / (SPARE * critical)).ceil();
+            if parts <= MOST_PARTS {
+                self.parts = parts.max(1.0) as usize;
+                return;
+            }
+        }
         let Some(critical) = critical.filter(|critical| step > *critical) else { return };
         self.warned.step = true;
         self.warnings.push(format!(
@@ -119,6 +136,28 @@ impl Simulation {
         ));
     }
 
+    /// Warns at the end of what the transfers and contact took, if that is much.
+    fn watch_losses(&mut self, sample: &Sample) {
+        if !self.finished() {
+            return;
+        }
+        let largest = larger(self.energy_in, sample.largest_term());
+        let by_contact = sample.contact.map_or(0.0, |contact| contact.loss - contact.friction);
+        let losses = [
+            ("transfers between points and grid", "transfer_loss_j", sample.transfer_loss.unwrap_or(0.0)),
+            ("contact without friction", "contact_loss_j less friction_j", by_contact),
+        ];
+        for (who, column, loss) in losses {
+            if loss > LOSS_LIMIT * largest {
+                self.warnings.push(format!(
+                    "{who} took {loss:.3e} J ({column}), {:.0} % of the largest energy of the run: motion that varies \
+                     over one or two spans is damped; refine the mesh, or use quadrature = \"gauss\" for elastic bodies",
+                    100.0 * loss / largest
+                ));
+            }
+        }
+    }
+
     /// A point whose numbers are not finite makes the sum over all points so, which no fold or comparison on
     /// the way loses.
     fn is_healthy(&mut self) -> bool {
@@ -138,6 +177,7 @@ impl Simulation {
     pub fn watch_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
         self.watch_rotation();
         self.watch_healing();
+        self.watch_losses(sample);
         let held = self.hold_to_ledger(sample);
         self.failed |= held.is_err();
         held
@@ -148,7 +188,7 @@ impl Simulation {
             return Err(self.at_worst_point(&format!("{name} of the history is not a finite number"), None));
         }
         if let Some(frame) = self.updated_frame() {
-            frame.contact_converges(self.plan.step).map_err(|failure| self.broken(failure.into()))?;
+            frame.contact_converges(self.part_of_step()).map_err(|failure| self.broken(failure.into()))?;
         }
         let Sample { closure, time, .. } = *sample;
         let limit =

@@ -34,7 +34,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         findings.error("analysis.safety", message, "give a number above 0 and at most 1, such as 0.8");
     }
     findings.finite("analysis.gravity", &analysis.gravity);
-    if analysis.frame == Frame::Total && analysis.transfer != Transfer::Flip {
+    if analysis.frame == Frame::Total && analysis.transfer != Transfer::default() {
         let message = "has no effect with frame = \"total\", where the grid keeps its velocity; remove it, or use \
                        frame = \"updated\"";
         findings.warn("analysis.transfer", message);
@@ -95,7 +95,7 @@ fn spans_integrate(scene: &Scene, findings: &mut Findings) {
         "use frame = \"updated\"",
     );
     refuse(analysis.kinematics == Kinematics::Small, "with small strains", "use kinematics = \"finite\"");
-    refuse(analysis.transfer != Transfer::Flip, "with a transfer, of which it has none", "leave transfer out");
+    refuse(analysis.transfer != Transfer::default(), "with a transfer, of which it has none", "leave transfer out");
     refuse(scene.mesh.degree[0] != scene.mesh.degree[1], "with two degrees", "give the same degree twice");
     let repeated = (0..2).any(|d| {
         let (knots, ends) = (&scene.mesh.knots[d], scene.mesh.degree[d] + 1);

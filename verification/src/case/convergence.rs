@@ -218,7 +218,7 @@ pub(super) fn setup(table: ConvergenceTable, item: &Item<'_>) -> Option<Converge
         problem: table.problem,
         plane: table.plane.0,
         frame: table.frame.0,
-        transfers: transfers.unwrap_or(vec![Transfer::Flip]),
+        transfers: transfers.unwrap_or(vec![Transfer::default()]),
         quadratures: quadratures.unwrap_or(vec![Quadrature::Points]),
         offsets: table.offsets.map_or(vec![0.0], |all| all.0.iter().map(|offset| offset.0).collect()),
         patch: table.patch,

@@ -67,7 +67,7 @@ impl PlainScene {
                 end_time: 1.0,
                 time_step: TimeStep::Auto,
                 safety: 0.5,
-                transfer: Transfer::Flip,
+                transfer: Transfer::default(),
                 quadrature: Quadrature::Points,
                 mass: self.mass,
                 gravity: [0.0; 2],

@@ -123,7 +123,7 @@ fn analysis(item: &Item<'_>) -> Option<Analysis> {
         _ => time(item).map(TimeStep::Fixed),
     });
     let safety = fields.or("safety", 0.8, number);
-    let transfer = fields.or("transfer", Transfer::Flip, transfer);
+    let transfer = fields.or("transfer", Transfer::default(), transfer);
     let quadrature = fields.or("quadrature", Quadrature::Points, Item::word);
     let mass = fields.or("mass", Mass::Lumped, Item::word);
     let gravity = fields.or("gravity", [0.0, 0.0], |item| item.vector(Dimension::ACCELERATION));

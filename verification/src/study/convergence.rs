@@ -126,7 +126,7 @@ struct Variant {
 
 impl Variant {
     /// In the total frame there is one.
-    const PLAIN: Self = Self { transfer: Transfer::Flip, quadrature: Quadrature::Points, offset: 0.0 };
+    const PLAIN: Self = Self { transfer: Transfer::Apic, quadrature: Quadrature::Points, offset: 0.0 };
 }
 
 /// Name of a curve: the degree, with points, transfer, quadrature or offset where these vary.

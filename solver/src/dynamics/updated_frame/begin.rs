@@ -125,6 +125,7 @@ impl DiscreteField {
             losses: TransferLosses::default(),
             time: 0.0,
             at_start: true,
+            last_step: 0.0,
             travelled: 0.0,
             whole: Arc::clone(whole),
             sides,

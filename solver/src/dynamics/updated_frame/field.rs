@@ -78,6 +78,8 @@ pub struct DiscreteField {
     pub(super) time: f64,
     /// No step was taken yet: the points carry v(0).
     pub(super) at_start: bool,
+    /// Length of the last step, s.
+    pub(super) last_step: f64,
     /// Bound of the distance any point moved since the critical step was taken, m.
     pub(super) travelled: f64,
 }
@@ -126,14 +128,20 @@ impl DiscreteField {
         self.book(dt, end_of_step, imposed);
     }
 
-    /// Length of the coming kick, s: half a step at the start, where the points carry v(0).
+    /// Length of the coming kick of a step of `dt` seconds, s: from the middle of the last step to that of the
+    /// coming one, or half a step at the start, where the points carry v(0).
     pub(crate) fn kick_length(&self, dt: f64) -> f64 {
-        kick(dt, self.at_start)
+        if self.at_start { 0.5 * dt } else { 0.5 * (self.last_step + dt) }
     }
 
     fn kick(&mut self, dt: f64) {
         self.nodes.kick(self.kick_length(dt));
+        if !self.at_start && dt != self.last_step {
+            let squares = self.last_step * self.last_step - dt * dt;
+            self.losses.step -= 0.25 * squares * self.nodes.kinetic_energy(&self.nodes.acceleration);
+        }
         self.at_start = false;
+        self.last_step = dt;
         self.time += dt;
     }
 
@@ -174,11 +182,10 @@ impl DiscreteField {
 
     /// Lets the reactions on its edges answer to accelerations that were added.
     pub(super) fn hold_pushed(&mut self) {
-        let (nodes, at_start) = (&mut self.nodes, self.at_start);
-        if let Some(edges) = &mut self.edges {
-            let kick = kick(edges.step(), at_start);
-            self.ledger.external_work += edges.hold_pushed(&mut nodes.acceleration, kick);
-        }
+        let Some(mut edges) = self.edges.take() else { return };
+        let kick = self.kick_length(edges.step());
+        self.ledger.external_work += edges.hold_pushed(&mut self.nodes.acceleration, kick);
+        self.edges = Some(edges);
     }
 
     fn choose_velocities(&mut self) {
@@ -350,8 +357,10 @@ impl DiscreteField {
 
     fn accelerate(&mut self) {
         self.nodes.accelerate();
+        let step = self.edges.as_ref().map_or(0.0, |edges| edges.step());
+        let kick = self.kick_length(step);
         if let Some(edges) = &mut self.edges {
-            edges.accelerate(&mut self.nodes.acceleration, kick(edges.step(), self.at_start));
+            edges.accelerate(&mut self.nodes.acceleration, kick);
         }
     }
 
@@ -393,9 +402,4 @@ impl DiscreteField {
         let spans = if self.spans.is_some() { gauss::WAY_BETWEEN_STEPS } else { 0.25 };
         self.travelled >= spans * self.patch.shortest_span()
     }
-}
-
-/// Length of a kick of a step of `dt` seconds, s: half of it at the start, where the points carry v(0).
-fn kick(dt: f64, at_start: bool) -> f64 {
-    if at_start { 0.5 * dt } else { dt }
 }

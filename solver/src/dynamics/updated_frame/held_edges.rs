@@ -29,7 +29,7 @@ const YIELDS: f64 = 1e-9;
 
 /// Part of the compliance of a multiplier that is added to it, so that moments which nearly follow from others
 /// do no harm.
-const SOFTNESS: f64 = 1e-10;
+const SOFTNESS: f64 = 1e-13;
 
 /// Conditions on the edges of a body in the updated frame.
 #[derive(Debug, Clone)]
@@ -114,7 +114,8 @@ impl HeldEdges {
         let mut energy = ImposedEnergy::default();
         let mut sums = vec![[0.0; 2]; edges.len()];
         for (moment, impulse) in multipliers.moments.iter().zip(&impulses) {
-            energy.loss += 0.5 * impulse * (moment.of(&nodes.velocity) - last(moment));
+            let arrived_too_fast = moment.of(&nodes.velocity) - last(moment);
+            energy.loss += fault!("held-edge-impact-free", 0.5 => 0.0) * impulse * arrived_too_fast;
             (0..2).for_each(|d| sums[moment.condition][d] -= impulse * moment.total[d]);
         }
         multipliers.yield_to(&impulses, &mut nodes.velocity);
@@ -130,7 +131,8 @@ impl HeldEdges {
         let change = |moment: &Moment| {
             let reaction = &self.edges[moment.condition].reaction;
             let [next, last] = [reaction.next_velocity(), reaction.last_velocity()];
-            moment.translated([0, 1].map(|d| if kick > 0.0 { (next[d] - last[d]) / kick } else { 0.0 }))
+            let begun = fault!("held-edge-without-course", kick > 0.0 => false);
+            moment.translated([0, 1].map(|d| if begun { (next[d] - last[d]) / kick } else { 0.0 }))
         };
         let values = multipliers.of_excess(|moment| moment.of(acceleration) - change(moment));
         multipliers.yield_to(&values, acceleration);
@@ -157,7 +159,7 @@ impl HeldEdges {
 
     /// Work (J/m) of the prescribed motion over the last step of `dt` seconds, without that of impacts.
     pub(super) fn work(&mut self, dt: f64) -> f64 {
-        self.edges.iter_mut().map(|edge| edge.reaction.book(dt)).sum()
+        fault!("held-edge-works-twice", 1.0 => 2.0) * self.edges.iter_mut().map(|edge| edge.reaction.book(dt)).sum::<f64>()
     }
 
     /// Reaction and work of every condition with a name, with forces (N/m) beside the reactions, for a

@@ -27,7 +27,9 @@ impl HeldSide {
     /// The side where a body lies on it at t = 0, if it does.
     pub(super) fn with_material(patch: &Patch, body: &Body, boundary: &Boundary) -> Option<Self> {
         let material = material_on(patch, body, boundary);
-        (!material.is_empty()).then(|| Self { boundary: boundary.clone(), material: Some(material) })
+        let is_held = fault!("side-holds-across-a-gap", !material.is_empty() => true);
+        let material = fault!("side-holds-across-a-gap", Some(material) => None);
+        is_held.then(|| Self { boundary: boundary.clone(), material })
     }
 
     /// Holds all of the side from now on.

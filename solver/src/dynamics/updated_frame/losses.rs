@@ -39,7 +39,8 @@
 //! It swings with the period of a span where a body moves on as a whole, and grows where a crack opens and
 //! stretches the gradient of c across it. What then remains is the stress-work quadrature, O(dt²), as in the
 //! total frame. Where a body falls into fragments its stored energy changes at once, by `partition`: see
-//! [`super::fragments`]. With Gauss quadrature by spans there is `relaxation`: see [`super::gauss`].
+//! [`super::fragments`]. Where steps change from dt to dt', the stagger `dt²/8 aᵀ M a` does too: that is
+//! `step`. With Gauss quadrature by spans there is `relaxation`: see [`super::gauss`].
 
 use serde::{Deserialize, Serialize};
 
@@ -59,12 +60,14 @@ pub struct TransferLosses {
     pub phase_field: f64,
     /// Loss where bodies fell into fragments ([`fragments`](super::fragments)).
     pub partition: f64,
+    /// Change of the stagger where the length of the steps changes.
+    pub step: f64,
 }
 
 impl TransferLosses {
     /// All of it.
     pub fn sum(&self) -> f64 {
-        self.kinetic + self.power + self.imposed + self.relaxation + self.phase_field + self.partition
+        self.kinetic + self.power + self.imposed + self.relaxation + self.phase_field + self.partition + self.step
     }
 
     pub(super) fn plus(self, other: Self) -> Self {
@@ -75,6 +78,7 @@ impl TransferLosses {
             relaxation: self.relaxation + other.relaxation,
             phase_field: self.phase_field + other.phase_field,
             partition: self.partition + other.partition,
+            step: self.step + other.step,
         }
     }
 
@@ -86,6 +90,7 @@ impl TransferLosses {
             relaxation: factor * self.relaxation,
             phase_field: factor * self.phase_field,
             partition: factor * self.partition,
+            step: factor * self.step,
         }
     }
 }

@@ -28,6 +28,7 @@ impl UpdatedFrame {
     /// Energies, momenta and crack tip at the present whole step; `dt` is the step in use. Closure is left at
     /// zero.
     pub fn sample(&self, dt: f64) -> Sample {
+        let dt = self.fields[0].last_step().unwrap_or(dt);
         let mut accelerations: Vec<_> =
             self.fields.iter().map(|field| Cow::Borrowed(&field.nodes.acceleration)).collect();
         let contact = self.contact.as_ref().map(|contact| {
@@ -273,6 +274,11 @@ impl DiscreteField {
     /// Time, s.
     pub fn time(&self) -> f64 {
         self.time
+    }
+
+    /// Length of the last step, s, if there was one.
+    fn last_step(&self) -> Option<f64> {
+        (!self.at_start).then_some(self.last_step)
     }
 
     /// Material points, sorted by span.

@@ -102,6 +102,7 @@ impl DiscreteField {
             spans: _,
             time,
             at_start,
+            last_step,
             travelled: _,
         } = self;
         if forcing.is_some() {
@@ -109,6 +110,7 @@ impl DiscreteField {
         }
         archive.value(time)?;
         archive.value(at_start)?;
+        archive.value(last_step)?;
         archive.value(crack_start)?;
         archive.list(points)?;
         if let Some(AffineVelocities { gradients, .. }) = affine {

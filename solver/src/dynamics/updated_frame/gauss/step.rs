@@ -27,6 +27,7 @@ impl DiscreteField {
         self.drift_points(dt); // x_p(n+1) = x_p(n) + dt v_p(n+1/2)
         self.time += dt;
         self.at_start = false;
+        self.last_step = dt;
         let after = self.renewed(before); // b_p(n+1)
         self.book_work(0.5 * dt, &after); // dt/2 Σ m b(n+1) · v(n+1/2)
         self.sort()?;
