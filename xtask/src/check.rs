@@ -7,7 +7,7 @@ use fisura::dynamics::time_plan::TimePlan;
 use fisura::linear_algebra::extremes::larger;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::spans::{largest_spans, smallest_span};
-use fisura::scene::{Body, Crack, CrackModel, Fracture, Frame, Material, Plane, Scene, Split};
+use fisura::scene::{Body, Crack, CrackModel, Fracture, Frame, Material, Plane, Scene, Split, Transfer};
 use fisura::simulation::{Extent, Simulation};
 use fisura::validate::expected_size;
 use fisura_reports::number::{duration, plain};
@@ -83,6 +83,9 @@ struct Findings {
     models: Vec<String>,
     plane: &'static str,
     frame: &'static str,
+    /// Of the updated frame, and what it keeps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    transfer: Option<String>,
     bodies: Vec<BodyFindings>,
     materials: BTreeMap<String, MaterialFindings>,
     degree: [usize; 2],
@@ -214,6 +217,7 @@ impl Findings {
             models: extent.models.clone(),
             plane: if scene.analysis.plane == Plane::Strain { "strain" } else { "stress" },
             frame: if scene.analysis.frame == Frame::Total { "total" } else { "updated" },
+            transfer: (scene.analysis.frame == Frame::Updated).then(|| transfer(scene.analysis.transfer)),
             bodies: bodies(scene),
             materials: materials(scene, span_m[0].max(span_m[1])),
             degree: scene.mesh.degree,
@@ -245,6 +249,7 @@ impl Findings {
             ("title", self.title.clone()),
             ("models", format!("{}; plane {}, {} frame", self.models.join(", "), self.plane, self.frame)),
         ];
+        rows.extend(self.transfer.iter().map(|transfer| ("transfer", transfer.clone())));
         rows.extend(self.bodies.iter().map(|body| ("body", body.text())));
         rows.extend(self.materials.iter().map(|(name, material)| ("material", material.text(name))));
         let [hx, hy] = self.span_m.map(|h| plain(1e3 * h, 5));
@@ -285,6 +290,17 @@ impl MaterialFindings {
         let fracture = self.fracture.iter().map(|words| format!("; {words}{}", strength.clone().unwrap_or_default()));
         let fracture: String = fracture.collect();
         format!("{name}; wave speed {} m/s{ratio}{fracture}", plain(self.wave_speed_m_per_s, 5))
+    }
+}
+
+/// A transfer in words, with what it loses.
+fn transfer(transfer: Transfer) -> String {
+    match transfer {
+        Transfer::Apic => "apic, the default: keeps angular momentum, damps motion that varies over a span".into(),
+        Transfer::Tpic => "tpic: nearly keeps angular momentum, damps motion that varies over a span".into(),
+        Transfer::Flip => "flip: loses spin as a body turns, and keeps velocities that the mesh cannot see".into(),
+        Transfer::Pic => "pic: damps all motion and keeps no spin".into(),
+        Transfer::Xpic(order) => format!("xpic of order {order}: loses spin as a body turns"),
     }
 }
 
