@@ -58,9 +58,9 @@ pub use view::BodyView;
 
 /// Cosine of the angle between outward normals above which boundaries do not face each other.
 const FACING: f64 = -0.5;
-/// Cosine up to which a place on one boundary that is inside the other body is held back by the face there: the
-/// flanks of a wedge of half angle 3° or more. Beside a right corner that is pressed in the faces of the corner
-/// do not meet the face beneath.
+/// Cosine up to which a place on one boundary that is inside the other body is held back by the face there:
+/// the flanks of a wedge of half angle 3° or more. Beside a right corner that is pressed in the faces of the
+/// corner do not meet the face beneath.
 const CUTTING: f64 = -0.05;
 /// Depth in spans from which on a slice of a body is not inside another, but on the far side of it.
 const FAR_SIDE: f64 = 0.5;

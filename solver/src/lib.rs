@@ -104,7 +104,7 @@
 //!         end_time: 4e-6,
 //!         time_step: TimeStep::Auto,
 //!         safety: 0.8,
-//!         transfer: Transfer::Flip,
+//!         transfer: Transfer::default(),
 //!         quadrature: Quadrature::Points,
 //!         mass: Mass::Lumped,
 //!         gravity: [0.0, 0.0],

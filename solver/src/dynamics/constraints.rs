@@ -62,7 +62,7 @@ impl Constraints {
         let starts: Vec<_> = self.conditions.iter().map(|condition| condition.prescribed.start()).collect();
         for (at, component, number) in self.iter() {
             let [place, speed] = starts[number].map(|value| value[component]);
-            velocity[component][at] = fault!("driven-side-reversed", speed => -speed);
+            velocity[component][at] = speed;
             if self.conditions[number].prescribed.is_displacement() {
                 displacement[component][at] = place;
             }

@@ -51,8 +51,8 @@ pub(in crate::dynamics) struct Multipliers {
 }
 
 impl Multipliers {
-    /// A part of the compliance of every multiplier, its `softness`, is added to it. `None` if the moments are
-    /// not independent.
+    /// A part of the compliance of every multiplier, its `softness`, is added to it. `None` if the moments
+    /// are not independent.
     pub(in crate::dynamics) fn new(moments: Vec<Moment>, inverse: Vec<Vec<f64>>, softness: f64) -> Option<Self> {
         let factor = compliance(&moments, &inverse, softness).and_then(|lower| LowerFactor::new(&lower, None))?;
         Some(Self { moments, inverse, factor })
@@ -123,8 +123,8 @@ impl Moment {
     }
 }
 
-/// The moments of a condition, from the points of its edge with the control points and values of the functions
-/// there.
+/// The moments of a condition, from the points of its edge with the control points and values of the
+/// functions there.
 ///
 /// # Errors
 /// The position (m) of a point that is not on the edge.

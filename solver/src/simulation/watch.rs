@@ -23,8 +23,8 @@ const CLOSURE_LIMIT: f64 = 0.02;
 /// the phase field.
 const CLOSURE_FLOOR: f64 = 1e-6;
 
-/// Part of the critical step at the moved positions that an automatic step may be: it is taken again where points
-/// have moved a quarter of a span.
+/// Part of the critical step at the moved positions that an automatic step may be: it is taken again where
+/// points have moved a quarter of a span.
 const SPARE: f64 = 0.95;
 /// Parts of a step beyond which the critical step has collapsed.
 const MOST_PARTS: f64 = 64.0;
@@ -65,8 +65,8 @@ impl Simulation {
         }
     }
 
-    /// Keeps an automatic step of moving bodies below the critical one at their positions, by parts of it; warns
-    /// once if any other step exceeds that.
+    /// Keeps an automatic step of moving bodies below the critical one at their positions, by parts of it;
+    /// warns once if any other step exceeds that.
     fn watch_critical_step(&mut self) {
         if self.warned.step {
             return;
@@ -80,7 +80,7 @@ impl Simulation {
         if let (true, Some(critical), Bodies::Updated(_)) = (self.is_automatic, critical, &self.frame) {
             let parts = (step / (SPARE * critical)).ceil();
             if parts <= MOST_PARTS {
-                self.parts = parts.max(1.0) as usize;
+                self.parts = larger(parts, 1.0) as usize;
                 return;
             }
         }

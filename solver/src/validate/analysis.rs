@@ -34,7 +34,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         findings.error("analysis.safety", message, "give a number above 0 and at most 1, such as 0.8");
     }
     findings.finite("analysis.gravity", &analysis.gravity);
-    if analysis.frame == Frame::Total && analysis.transfer != Transfer::default() {
+    if analysis.frame == Frame::Total && ![Transfer::Apic, Transfer::Flip].contains(&analysis.transfer) {
         let message = "has no effect with frame = \"total\", where the grid keeps its velocity; remove it, or use \
                        frame = \"updated\"";
         findings.warn("analysis.transfer", message);

@@ -81,7 +81,11 @@ fn supported(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findi
     for (word, _) in varying.into_iter().filter(|(_, given)| *given) {
         if scene.analysis.frame == Frame::Updated && scene.analysis.quadrature == Quadrature::Gauss {
             let message = format!("{word} of a boundary with quadrature = \"gauss\", which is not implemented");
-            findings.error(format!("{key}.{word}"), message, "use quadrature = \"points\", or a rigid body that pushes");
+            findings.error(
+                format!("{key}.{word}"),
+                message,
+                "use quadrature = \"points\", or a rigid body that pushes",
+            );
         } else if scene.analysis.mass == Mass::Consistent && ["displacement", "time"].contains(&word) {
             let message = "a boundary whose velocity changes, with the consistent mass, is not implemented";
             findings.error(format!("{key}.{word}"), message, "use mass = \"lumped\"");

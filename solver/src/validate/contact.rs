@@ -86,7 +86,11 @@ fn self_contact(scene: &Scene, findings: &mut Findings) {
     let follows = |boundary: &Boundary| scene.analysis.frame == Frame::Updated && !is_fixed(boundary);
     if let Some(i) = scene.boundaries.iter().position(follows) {
         let message = "bodies that meet themselves do not follow sides that move, slide off, have a name or are parts";
-        findings.error(format!("boundary.{i}"), message, "hold all of the side at rest, or remove contact.self_contact");
+        findings.error(
+            format!("boundary.{i}"),
+            message,
+            "hold all of the side at rest, or remove contact.self_contact",
+        );
     }
     if let Some(i) = scene.bodies.iter().position(|body| !body.conditions.is_empty()) {
         let message = "bodies that meet themselves do not follow conditions on their edges";

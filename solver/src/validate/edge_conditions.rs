@@ -6,7 +6,9 @@ use super::look::Look;
 use super::tractions;
 use crate::dynamics::surface::curve_of;
 use crate::scene::edges::BoundaryEdge;
-use crate::scene::{Body, Boundary, EdgeCondition, Frame, Hold, Mass, Mesh, Prescribed, Quadrature, Scene, Shape, Side};
+use crate::scene::{
+    Body, Boundary, EdgeCondition, Frame, Hold, Mass, Mesh, Prescribed, Quadrature, Scene, Shape, Side,
+};
 
 /// Distance within which two places are one, of the size of an edge.
 const NEAR: f64 = 1e-9;

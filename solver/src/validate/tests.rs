@@ -257,7 +257,7 @@ fn gauss_quadrature_by_spans_is_refused_where_it_does_not_exist() {
     };
     assert_eq!(but(|s| s.analysis.kinematics = Kinematics::Small), key);
     assert_eq!(but(|s| s.analysis.frame = Frame::Total), key);
-    assert_eq!(but(|s| s.analysis.transfer = Transfer::Apic), key);
+    assert_eq!(but(|s| s.analysis.transfer = Transfer::Flip), key);
     assert_eq!(but(|s| s.mesh.knots[0][4] = s.mesh.knots[0][3]), key);
     assert_eq!(but(|s| s.contact = Some(Contact { friction: 0.1, ..Contact::default() })), [""; 0]);
     assert_eq!(but(|s| s.contact = Some(Contact::default())), [""; 0]);
@@ -276,7 +276,8 @@ fn gauss_quadrature_by_spans_is_refused_where_it_does_not_exist() {
 
 #[test]
 fn what_the_solver_cannot_do_is_refused_by_key() {
-    assert_eq!(warnings(|s| s.analysis.transfer = Transfer::Apic), ["analysis.transfer"]);
+    assert_eq!(warnings(|s| s.analysis.transfer = Transfer::Tpic), ["analysis.transfer"]);
+    assert!(warnings(|s| s.analysis.transfer = Transfer::Flip).is_empty(), "scenes of the total frame say so");
     let updated = |transfer| {
         move |s: &mut Scene| {
             s.analysis.frame = Frame::Updated;

@@ -106,7 +106,7 @@ fn in_the_updated_frame_with_every_transfer() {
         let kinematics = if transfer == Transfer::Pic { Kinematics::Small } else { Kinematics::Finite };
         goes_on_bit_by_bit(&format!("{transfer:?}"), &flying(transfer, kinematics));
     }
-    let mut by_spans = flying(Transfer::Flip, Kinematics::Finite);
+    let mut by_spans = flying(Transfer::Apic, Kinematics::Finite);
     by_spans.analysis.quadrature = Quadrature::Gauss;
     by_spans.bodies[0].tractions.clear();
     by_spans.bodies[0].cracks.clear();

@@ -53,7 +53,7 @@ fn every() -> impl Iterator<Item = (Transfer, usize, Kinematics)> {
 
 /// Every condition at once: a driven side, a fixed one, gravity, a traction, and a flight that meets them.
 fn eventful(transfer: Transfer, degree: usize) -> Scene {
-    let mut scene = scene(degree, [1.0, 1.0], [16, 16], [0.0, 0.2], [0.813, 0.71]);
+    let mut scene = scene(degree, [1.0, 1.0], [16, 16], [0.0, 0.49], [0.813, 1.0]);
     scene.bodies[0].velocity = [-2e-3, 3.5e-3];
     scene.bodies[0].tractions = vec![Traction::on(Side::Right, [1e-3, 2e-3], TimeFactor::ramp(1.0))];
     scene.boundaries =

@@ -1,5 +1,7 @@
 //! The updated frame: what must hold exactly, and how far it agrees with the total frame.
 
+use std::collections::BTreeSet;
+
 use crate::common::{brittle, glass, rectangle, relative_closure, run, updated_scene};
 use fisura::dynamics::energy::Sample;
 use fisura::dynamics::updated_frame::UpdatedFrame;
@@ -37,6 +39,7 @@ fn notched_plate(cells: usize) -> Scene {
     let pull = |side, stress| Traction::on(side, [0.0, stress], TimeFactor::ramp(2e-6));
     scene.bodies[0].tractions = vec![pull(Side::Top, 3e6), pull(Side::Bottom, -3e6)];
     scene.bodies[0].cracks = vec![Crack::seed([0.0, 0.005], [0.005, 0.005])];
+    scene.analysis.transfer = Transfer::Flip;
     scene.analysis.safety = 0.8;
     scene.analysis.end_time = 6e-6;
     scene.output.samples = 12;
@@ -174,12 +177,31 @@ fn a_critical_step_that_falls_below_the_step_in_use_is_a_warning_once_with_its_t
     scene.bodies[0].velocity = [100.0, 0.0];
     scene.analysis.safety = 1.0;
     scene.analysis.end_time = 10e-6; // with p = 1 and cut spans the critical step collapses
+    let automatic = Simulation::new(&scene).unwrap();
+    scene.analysis.time_step = TimeStep::Fixed(automatic.plan().step);
     let mut simulation = Simulation::new(&scene).unwrap();
     assert!(simulation.warnings().is_empty(), "{:?}", simulation.warnings());
     while !simulation.finished() && simulation.step().is_ok() {}
     let warnings = simulation.warnings();
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert!(warnings[0].starts_with("from t = ") && warnings[0].contains("times the critical step"), "{warnings:?}");
+}
+
+#[test]
+fn an_automatic_step_follows_the_critical_one() {
+    let mut scene = scene(2, 16, [0.00125, 0.005], [0.005, 0.00875]);
+    scene.bodies[0].velocity = [100.0, 30.0];
+    scene.analysis.safety = 0.93;
+    scene.analysis.end_time = 20e-6;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let mut steps = BTreeSet::new();
+    while !simulation.finished() {
+        let sample = simulation.advance_to_next_sample().unwrap();
+        steps.insert((simulation.plan().step / sample.time_step).round() as usize);
+        assert!(sample.closure.abs() <= 1e-9 * sample.kinetic, "closure {:e}", sample.closure);
+    }
+    assert!(steps.len() > 1, "the step is divided on the way: {steps:?}");
+    assert!(simulation.warnings().iter().all(|warning| !warning.contains("critical")), "{:?}", simulation.warnings());
 }
 
 #[test]

@@ -11,7 +11,7 @@ use fisura::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_
 use fisura::phase_field::fracture::LatticeFracture;
 use fisura::scene::{
     Crack, CrackModel, Fracture, Frame, Material, Mesh, PhaseFieldInterval, PhaseFieldSolver, Plane, Scene, Shape,
-    SolverSettings, Split,
+    SolverSettings, Split, Transfer,
 };
 use fisura::splines::patch::Patch;
 use fisura::transfer::kernels::{DegradedStress, ElasticStress, HistoryUpdate};
@@ -74,7 +74,7 @@ pub fn elastic_scene(degree: usize, points: usize, cells: usize, margin: usize) 
 /// Elastic points that move through a mesh which reaches [`MARGIN`] spans beyond them.
 pub fn moving_scene(degree: usize, points: usize, cells: usize) -> Scene {
     let mut scene = elastic_scene(degree, points, cells, MARGIN);
-    scene.analysis.frame = Frame::Updated;
+    (scene.analysis.frame, scene.analysis.transfer) = (Frame::Updated, Transfer::Flip);
     scene
 }
 

@@ -9,7 +9,7 @@ use fisura::dynamics::updated_frame::windows::{cut, scatter};
 use fisura::linear_algebra::lane::dispatch;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::points::{Cells, Point};
-use fisura::scene::{Frame, Scene};
+use fisura::scene::{Frame, Scene, Transfer};
 use fisura::splines::patch::Patch;
 use rayon::prelude::*;
 
@@ -29,7 +29,7 @@ pub struct MovingBlock {
 /// The elastic block of [`elastic_scene`] in the updated frame (FLIP).
 pub fn moving_scene(degree: usize, points: usize, cells: usize) -> Scene {
     let mut scene = elastic_scene(degree, points, cells, degree);
-    scene.analysis.frame = Frame::Updated;
+    (scene.analysis.frame, scene.analysis.transfer) = (Frame::Updated, Transfer::Flip);
     scene
 }
 

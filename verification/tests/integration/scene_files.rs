@@ -51,6 +51,7 @@ fn what_is_left_out_takes_its_default() {
     expected.boundaries.clear();
     expected.output.frames.clear();
     expected.solver.phase_field_tolerance = 2e-6;
+    expected.analysis.transfer = Transfer::Apic;
     assert_eq!(scene, expected);
 }
 

@@ -128,8 +128,8 @@ impl DiscreteField {
         self.book(dt, end_of_step, imposed);
     }
 
-    /// Length of the coming kick of a step of `dt` seconds, s: from the middle of the last step to that of the
-    /// coming one, or half a step at the start, where the points carry v(0).
+    /// Length of the coming kick of a step of `dt` seconds, s: from the middle of the last step to that of
+    /// the coming one, or half a step at the start, where the points carry v(0).
     pub(crate) fn kick_length(&self, dt: f64) -> f64 {
         if self.at_start { 0.5 * dt } else { 0.5 * (self.last_step + dt) }
     }

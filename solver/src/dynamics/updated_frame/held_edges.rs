@@ -2,8 +2,9 @@
 //! of the mesh that is driven, that has a course in time, or of which only a part is held.
 //!
 //! Points of an edge move with the body. At every whole step the multipliers along it
-//! ([`edge_moments`](crate::dynamics::edge_moments)) act on the present grid: first the velocity that arrived is made that of the
-//! last step, as on the sides of the mesh, then the accelerations lead to that of the next one:
+//! ([`edge_moments`](crate::dynamics::edge_moments)) act on the present grid: first the velocity that arrived
+//! is made that of the last step, as on the sides of the mesh, then the accelerations lead to that of the
+//! next one:
 //!
 //! ```text
 //! v ← v − M⁻¹ Bᵀ S⁻¹ (B v − B w_n−1/2),     a ← a − M⁻¹ Bᵀ S⁻¹ (B a − B (w_n+1/2 − w_n−1/2)/dt)
@@ -11,6 +12,7 @@
 //!
 //! The first is an impact. It does the work `−λ·B w` and costs `½ λ·(B v − B w)`.
 
+use super::carried_place::CarriedPlace;
 use super::grid::{ImposedEnergy, NodalFields};
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::edge_moments::{Moment, Multipliers, moments_of, multiplier_space};
@@ -18,7 +20,6 @@ use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::reaction::Reaction;
 use crate::dynamics::surface::{SurfacePoint, smooth_parts};
 use crate::linear_algebra::control_grid::VectorField;
-use crate::particles::follower::EdgePlace;
 use crate::particles::points::OutsidePatch;
 use crate::scene::{Body, EdgeCondition};
 use crate::splines::patch::Patch;
@@ -27,8 +28,8 @@ use crate::splines::spline::SplineSpace;
 /// Yield of a multiplier at control points that can move, of that at all of them, that counts as none.
 const YIELDS: f64 = 1e-9;
 
-/// Part of the compliance of a multiplier that is added to it, so that moments which nearly follow from others
-/// do no harm.
+/// Part of the compliance of a multiplier that is added to it, so that moments which nearly follow from
+/// others do no harm.
 const SOFTNESS: f64 = 1e-13;
 
 /// Conditions on the edges of a body in the updated frame.
@@ -46,19 +47,28 @@ pub(super) struct HeldEdges {
 struct HeldEdge {
     condition: EdgeCondition,
     space: SplineSpace,
-    points: Vec<(EdgePlace, SurfacePoint)>,
+    points: Vec<(CarriedPlace, SurfacePoint)>,
     reaction: Reaction,
 }
 
 impl HeldEdges {
     /// Some conditions on a body, where its material lies on their edges; absent if it lies on none.
-    pub(super) fn new(patch: &Patch, body: &Body, conditions: impl Iterator<Item = EdgeCondition>) -> Option<Box<Self>> {
+    pub(super) fn new(
+        patch: &Patch,
+        body: &Body,
+        conditions: impl Iterator<Item = EdgeCondition>,
+    ) -> Option<Box<Self>> {
         let edge = |condition: EdgeCondition| {
             let parts = smooth_parts(patch, body, &condition.edge);
             let on_material = parts.iter().flatten().filter(|point| body.shape.contains(point.inner));
-            let points: Vec<_> = on_material.map(|point| (EdgePlace::new(patch, body, point), *point)).collect();
+            let points: Vec<_> = on_material.map(|point| (CarriedPlace::new(patch, body, point), *point)).collect();
             let reaction = Reaction::at_start(condition.prescribed.start()[1]);
-            (!points.is_empty()).then(|| HeldEdge { space: multiplier_space(patch, &parts), condition, points, reaction })
+            (!points.is_empty()).then(|| HeldEdge {
+                space: multiplier_space(patch, &parts),
+                condition,
+                points,
+                reaction,
+            })
         };
         let edges: Vec<_> = conditions.filter_map(edge).collect();
         (!edges.is_empty()).then(|| Box::new(Self { edges, multipliers: None, step: 0.0 }))
@@ -123,8 +133,8 @@ impl HeldEdges {
         energy
     }
 
-    /// Makes accelerations (m/s²) those that lead to the velocities of the step to come, of which `kick` is the
-    /// length as velocities see it, s. The forces of the conditions on the body, N/m.
+    /// Makes accelerations (m/s²) those that lead to the velocities of the step to come, of which `kick` is
+    /// the length as velocities see it, s. The forces of the conditions on the body, N/m.
     pub(super) fn hold(&self, acceleration: &mut VectorField, kick: f64) -> Vec<[f64; 2]> {
         let mut forces = vec![[0.0; 2]; self.edges.len()];
         let Some(multipliers) = &self.multipliers else { return forces };
@@ -159,7 +169,8 @@ impl HeldEdges {
 
     /// Work (J/m) of the prescribed motion over the last step of `dt` seconds, without that of impacts.
     pub(super) fn work(&mut self, dt: f64) -> f64 {
-        fault!("held-edge-works-twice", 1.0 => 2.0) * self.edges.iter_mut().map(|edge| edge.reaction.book(dt)).sum::<f64>()
+        fault!("held-edge-works-twice", 1.0 => 2.0)
+            * self.edges.iter_mut().map(|edge| edge.reaction.book(dt)).sum::<f64>()
     }
 
     /// Reaction and work of every condition with a name, with forces (N/m) beside the reactions, for a
@@ -188,14 +199,14 @@ impl HeldEdges {
 
     /// Heap memory, bytes.
     pub(super) fn bytes(&self) -> usize {
-        self.edges.iter().map(|edge| edge.points.len() * size_of::<(EdgePlace, SurfacePoint)>()).sum()
+        self.edges.iter().map(|edge| edge.points.len() * size_of::<(CarriedPlace, SurfacePoint)>()).sum()
     }
 
     /// The multipliers that can move something on the present grid.
     fn on_grid(&self, patch: &Patch, nodes: &NodalFields) -> Option<Multipliers> {
         let mut moments = Vec::new();
         for (number, edge) in self.edges.iter().enumerate() {
-            let functions = |place: &EdgePlace| {
+            let functions = |place: &CarriedPlace| {
                 let mut values = Vec::new();
                 place.for_each_continued(patch, nodes.grid, |at, n| values.push((at, n)));
                 values

@@ -1,10 +1,10 @@
 //! Tractions on surface points s that move with the body: `f_I = factor(time) Σ_s l_s t N_I(x_s)`.
 
+use super::carried_place::CarriedPlace;
 use super::grid::NodalFields;
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::surface::{SurfacePoint, surface_points};
 use crate::linear_algebra::control_grid::ControlGrid;
-use crate::particles::follower::EdgePlace;
 use crate::particles::points::OutsidePatch;
 use crate::scene::{Body, TimeFactor, Traction};
 use crate::splines::patch::Patch;
@@ -21,7 +21,7 @@ pub(crate) struct SurfaceLoad {
 
 #[derive(Debug, Clone, Copy)]
 struct MovingSurfacePoint {
-    place: EdgePlace,
+    place: CarriedPlace,
     length: f64,
 }
 
@@ -29,7 +29,8 @@ impl SurfaceLoad {
     /// The surface points of a traction at t = 0.
     pub(crate) fn new(patch: &Patch, body: &Body, traction: &Traction) -> Self {
         let points = surface_points(patch, body, &traction.edge).into_iter();
-        let place = |p: SurfacePoint| MovingSurfacePoint { place: EdgePlace::new(patch, body, &p), length: p.length };
+        let place =
+            |p: SurfacePoint| MovingSurfacePoint { place: CarriedPlace::new(patch, body, &p), length: p.length };
         let points = points.map(place).collect();
         Self { points, stress: traction.load.traction([0.0; 2]), time: traction.time.clone(), power: 0.0 }
     }

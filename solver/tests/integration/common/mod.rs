@@ -68,7 +68,7 @@ pub fn elastic_scene(degree: usize, size: [f64; 2], cells: [usize; 2]) -> Scene 
             end_time: 5e-6,
             time_step: TimeStep::Auto,
             safety: 0.8,
-            transfer: Transfer::Flip,
+            transfer: Transfer::default(),
             quadrature: Quadrature::Points,
             mass: Mass::Lumped,
             gravity: [0.0; 2],

@@ -17,7 +17,7 @@ use fisura::Simulation;
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::points::Point;
-use fisura::scene::{Frame, Plane, Scene};
+use fisura::scene::{Frame, Plane, Scene, Transfer};
 use serde_json::json;
 
 use super::super::BenchError;
@@ -63,7 +63,7 @@ impl PeerBlock {
     /// If it cannot be started, or a step cannot be taken.
     pub fn new(cells: usize) -> Result<Self, BenchError> {
         let mut scene = elastic_scene(DEGREE, POINTS, cells, MARGIN);
-        scene.analysis.frame = Frame::Updated;
+        (scene.analysis.frame, scene.analysis.transfer) = (Frame::Updated, Transfer::Flip);
         scene.bodies[0].angular_velocity = 0.0;
         Self::of(scene, cells)
     }
@@ -194,7 +194,6 @@ fn table(points: &[Point]) -> Table {
 
 #[cfg(test)]
 mod tests {
-    use fisura::scene::Transfer;
 
     use super::super::SAME;
     use super::*;

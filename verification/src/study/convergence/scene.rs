@@ -1,6 +1,6 @@
 //! The scene of one mesh of a convergence study.
 
-use fisura::scene::{Frame, Scene, Shape};
+use fisura::scene::{Frame, Quadrature, Scene, Shape};
 use fisura::validate::validate;
 
 use super::problem::Problem;
@@ -37,8 +37,10 @@ pub(super) fn scene(
     let mut scene = plain.scene();
     scene.analysis.kinematics = problem.kinematics;
     if setup.frame == Frame::Updated {
-        (scene.analysis.frame, scene.analysis.transfer) = (Frame::Updated, transfer);
-        scene.analysis.quadrature = quadrature;
+        (scene.analysis.frame, scene.analysis.quadrature) = (Frame::Updated, quadrature);
+        if quadrature == Quadrature::Points {
+            scene.analysis.transfer = transfer;
+        }
     }
     let body = &mut scene.bodies[0];
     match setup.patch {
