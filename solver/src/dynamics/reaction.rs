@@ -54,11 +54,9 @@ impl Reaction {
         self.force[0] = force;
     }
 
-    /// Books the work (J/m) of an impulse (N s/m) with the velocity of the last step.
-    pub(in crate::dynamics) fn strike(&mut self, impulse: [f64; 2]) -> f64 {
-        let added = dot(impulse, self.velocity[1]);
-        self.work += added;
-        added
+    /// Adds work that was found elsewhere, J/m.
+    pub(in crate::dynamics) fn add_work(&mut self, work: f64) {
+        self.work += work;
     }
 
     /// Books the work (J/m) of an impulse (N s/m) with the velocity of the step to come.

@@ -112,6 +112,12 @@ fn in_the_updated_frame_with_every_transfer() {
     by_spans.bodies[0].cracks.clear();
     by_spans.materials.get_mut("glass").unwrap().fracture = None;
     goes_on_bit_by_bit("Gauss quadrature by spans", &by_spans);
+    let mut driven = flying(Transfer::Apic, Kinematics::Finite);
+    let prescribed = Prescribed { motion: Motion::Velocity([150.0, 60.0]), time: TimeFactor::default() };
+    let hold = Hold::Components([true, true]);
+    let name = Some("grip".into());
+    driven.bodies[0].conditions = vec![EdgeCondition { name, edge: Edge::Side(Side::Left), hold, prescribed }];
+    goes_on_bit_by_bit("an edge that is driven", &driven);
     let mut far = flying(Transfer::Flip, Kinematics::Small);
     far.bodies[0].tractions.clear();
     (far.bodies[0].velocity, far.analysis.end_time) = ([900.0, 100.0], 4e-6); // the part follows the body

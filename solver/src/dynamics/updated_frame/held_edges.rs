@@ -20,6 +20,7 @@ use crate::dynamics::energy::ConditionSample;
 use crate::dynamics::reaction::Reaction;
 use crate::dynamics::surface::{SurfacePoint, smooth_parts};
 use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::vectors::dot;
 use crate::particles::points::OutsidePatch;
 use crate::scene::{Body, EdgeCondition};
 use crate::splines::patch::Patch;
@@ -49,6 +50,8 @@ struct HeldEdge {
     space: SplineSpace,
     points: Vec<(CarriedPlace, SurfacePoint)>,
     reaction: Reaction,
+    /// Work of the impact at the present whole step, J/m.
+    struck: f64,
 }
 
 impl HeldEdges {
@@ -68,6 +71,7 @@ impl HeldEdges {
                 condition,
                 points,
                 reaction,
+                struck: 0.0,
             })
         };
         let edges: Vec<_> = conditions.filter_map(edge).collect();
@@ -129,7 +133,10 @@ impl HeldEdges {
             (0..2).for_each(|d| sums[moment.condition][d] -= impulse * moment.total[d]);
         }
         multipliers.yield_to(&impulses, &mut nodes.velocity);
-        energy.work = edges.iter_mut().zip(sums).map(|(edge, sum)| edge.reaction.strike(sum)).sum();
+        for (edge, sum) in edges.iter_mut().zip(sums) {
+            edge.struck = dot(sum, edge.reaction.last_velocity());
+            energy.work += edge.struck;
+        }
         energy
     }
 
@@ -167,10 +174,14 @@ impl HeldEdges {
         works.sum()
     }
 
-    /// Work (J/m) of the prescribed motion over the last step of `dt` seconds, without that of impacts.
+    /// Books the works of the last step of `dt` seconds; the work (J/m) of the prescribed motion in it, without
+    /// that of impacts.
     pub(super) fn work(&mut self, dt: f64) -> f64 {
-        fault!("held-edge-works-twice", 1.0 => 2.0)
-            * self.edges.iter_mut().map(|edge| edge.reaction.book(dt)).sum::<f64>()
+        let book = |edge: &mut HeldEdge| {
+            edge.reaction.add_work(edge.struck);
+            edge.reaction.book(dt)
+        };
+        fault!("held-edge-works-twice", 1.0 => 2.0) * self.edges.iter_mut().map(book).sum::<f64>()
     }
 
     /// Reaction and work of every condition with a name, with forces (N/m) beside the reactions, for a
