@@ -8,8 +8,8 @@ use fisura::scene::*;
 /// Steps before counting, and those that count.
 const BEFORE: usize = 20;
 const COUNTED: usize = 20;
-/// Bytes of lists with a number per strip: some ten strips, some ten lists, and those of the velocity gradients
-/// of APIC.
+/// Bytes of lists with a number per strip: some ten strips, some ten lists, and those of the velocity
+/// gradients of APIC.
 const LISTS: u64 = 6144;
 
 /// Bytes a step allocates, on one thread, and bytes of the model.

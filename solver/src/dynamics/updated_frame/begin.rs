@@ -66,12 +66,13 @@ impl DiscreteField {
         }
     }
 
-    /// Finds the first spans for the surface points of loads.
+    /// Finds the first spans for the surface points of loads and conditions.
     fn attach_first(&mut self, body: usize) -> Result<(), Failure> {
         for (traction, load) in self.loads.iter_mut().enumerate() {
             let bare = |OutsidePatch(place)| Failure::LostTraction { body, traction, lost: LostTraction::Bare(place) };
             load.attach(&self.patch, &self.nodes).map_err(bare)?;
         }
+        self.attach_loads()?;
         Ok(())
     }
 

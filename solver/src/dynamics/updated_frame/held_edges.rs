@@ -174,8 +174,8 @@ impl HeldEdges {
         works.sum()
     }
 
-    /// Books the works of the last step of `dt` seconds; the work (J/m) of the prescribed motion in it, without
-    /// that of impacts.
+    /// Books the works of the last step of `dt` seconds; the work (J/m) of the prescribed motion in it,
+    /// without that of impacts.
     pub(super) fn work(&mut self, dt: f64) -> f64 {
         let book = |edge: &mut HeldEdge| {
             edge.reaction.add_work(edge.struck);
