@@ -27,6 +27,9 @@ use crate::splines::spline::SplineSpace;
 
 /// Least length of a part of an edge over which multipliers are polynomials, in spans.
 const PART: f64 = 2.0;
+/// Yield of a multiplier at control points that can move, of that at all of them, that counts as none.
+const YIELDS: f64 = 1e-9;
+
 /// A prescribed direction from the normal of an edge.
 type Direction = fn([f64; 2]) -> [f64; 2];
 
@@ -115,6 +118,14 @@ impl Moment {
     /// Its value for a field.
     pub(in crate::dynamics) fn of(&self, field: &VectorField) -> f64 {
         self.shares.iter().map(|&(at, component, share)| share * field[component][at]).sum()
+    }
+
+    /// Whether its multiplier can move something: `inverse` (m/kg) is that of its shares, zero where
+    /// something else prescribes, `of` the inverse mass of any control point.
+    pub(in crate::dynamics) fn yields(&self, inverse: &[f64], of: impl Fn(usize) -> f64) -> bool {
+        let yielding: f64 = self.shares.iter().zip(inverse).map(|((.., share), m)| share * share * m).sum();
+        let all: f64 = self.shares.iter().map(|&(at, _, share)| share * share * of(at)).sum();
+        yielding > YIELDS * all
     }
 
     /// Its value for a translation.

@@ -29,6 +29,7 @@ mod begin;
 mod bodies;
 mod booking;
 mod carried_place;
+mod conditions;
 pub mod fictitious;
 pub mod field;
 mod fragments;
@@ -153,7 +154,7 @@ impl UpdatedFrame {
             for push in contact.act(&views(fields), kick)? {
                 fields[push.body].add_acceleration(push.at, push.acceleration);
             }
-            fields.iter_mut().for_each(DiscreteField::hold_pushed);
+            fields.iter_mut().for_each(|field| field.hold_pushed(dt));
         }
         if are_joined(fields) {
             self_contact::step(fields, dt)?;

@@ -118,6 +118,12 @@ fn in_the_updated_frame_with_every_transfer() {
     let name = Some("grip".into());
     driven.bodies[0].conditions = vec![EdgeCondition { name, edge: Edge::Side(Side::Left), hold, prescribed }];
     goes_on_bit_by_bit("an edge that is driven", &driven);
+    let mut sliding = flying(Transfer::Apic, Kinematics::Finite);
+    sliding.mesh = Mesh::uniform([2, 2], [-0.003, 0.0], [0.020, 0.012], [80, 48]);
+    (sliding.bodies[0].velocity, sliding.bodies[0].angular_velocity) = ([900.0, 0.0], 0.0);
+    sliding.analysis.end_time = 4e-6;
+    sliding.boundaries = vec![Boundary::fixed(Side::Bottom, [false, true])];
+    goes_on_bit_by_bit("a side that a body slides along", &sliding);
     let mut far = flying(Transfer::Flip, Kinematics::Small);
     far.bodies[0].tractions.clear();
     (far.bodies[0].velocity, far.analysis.end_time) = ([900.0, 100.0], 4e-6); // the part follows the body

@@ -18,8 +18,6 @@ use crate::particles::lattice::Lattice;
 use crate::scene::{Body, EdgeCondition};
 use crate::splines::patch::Patch;
 
-/// Yield of a multiplier at control points that can move, of that at all of them, that counts as none.
-const YIELDS: f64 = 1e-9;
 /// Least part of the compliance of a multiplier that the others do not have.
 const INDEPENDENT: f64 = 1e-9;
 /// Part of a rigid motion that a condition may see by round-off.
@@ -75,9 +73,7 @@ impl EdgeConditions {
                 None => 1.0 / mass.row_sums()[at],
             };
             let inverses: Vec<f64> = moment.shares.iter().map(of).collect();
-            let yields = moment.shares.iter().zip(&inverses).map(|((.., share), m)| share * share * m).sum::<f64>();
-            let square = |&(at, _, share): &(usize, usize, f64)| share * share / mass.row_sums()[at];
-            if yields <= YIELDS * moment.shares.iter().map(square).sum::<f64>() {
+            if !moment.yields(&inverses, |at| 1.0 / mass.row_sums()[at]) {
                 return Err(Failure::HeldTwice(moment.condition));
             }
             inverse.push(inverses);

@@ -72,8 +72,7 @@ impl DiscreteField {
             let bare = |OutsidePatch(place)| Failure::LostTraction { body, traction, lost: LostTraction::Bare(place) };
             load.attach(&self.patch, &self.nodes).map_err(bare)?;
         }
-        self.attach_loads()?;
-        Ok(())
+        self.attach_loads()
     }
 
     /// Sorted points at rest, on nodal fields of zeros.
@@ -98,7 +97,7 @@ impl DiscreteField {
         let sides: Vec<_> = fixed.iter().filter_map(side).collect();
         let nodes = NodalFields::new(&patch, held_sides::constraints(whole, &patch, origin, &sides));
         let moving = moving.into_iter().map(|boundary| held_sides::as_edge(whole, boundary));
-        let edges = HeldEdges::new(whole, body, moving.chain(body.conditions.iter().cloned()));
+        let edges = HeldEdges::new(whole, body, body.conditions.iter().cloned().chain(moving));
         let moduli = ElasticModuli::new(material, analysis.plane);
         let spans =
             by_spans.then(|| SpanQuadrature::new((&scene.mesh, &body.shape), &patch, &nodes, moduli, material.density));

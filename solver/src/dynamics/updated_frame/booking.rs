@@ -29,4 +29,13 @@ impl DiscreteField {
         self.ledger.external_work += driven + 0.5 * dt * (forced_before + forced_now);
         self.ledger.transfer_loss = self.losses.sum();
     }
+
+    /// Books the change of the stagger `dt²/8 aᵀ M a` where a step of `dt` seconds follows one of another
+    /// length; `half_square` is `1/2 aᵀ M a`.
+    pub(super) fn book_change_of_step(&mut self, dt: f64, half_square: impl FnOnce(&Self) -> f64) {
+        if !self.at_start && dt != self.last_step {
+            let squares = self.last_step * self.last_step - dt * dt;
+            self.losses.step -= 0.25 * squares * half_square(self);
+        }
+    }
 }

@@ -9,9 +9,9 @@ use rayon::prelude::*;
 
 use super::affine::AffineVelocities;
 use super::gauss::{self, SpanQuadrature};
-use super::grid::{EndOfStep, ImposedEnergy, NodalFields};
+use super::grid::{EndOfStep, NodalFields};
 use super::held_edges::HeldEdges;
-use super::held_sides::{HeldSide, constraints};
+use super::held_sides::HeldSide;
 use super::losses::TransferLosses;
 use super::pointwise_fracture::PointwiseFracture;
 use super::self_contact::slice::Slice;
@@ -110,7 +110,6 @@ impl DiscreteField {
         if fault!("span-not-renewed", left_span => false) {
             self.sort()?;
         }
-        self.hold_sides();
         self.crack_and_stress()?; // points: psi+, H, phase field, stress at n + 1
         self.points_to_grid(); // P2G: mass, velocity, internal forces at x(n+1)
         self.attach_loads()?;
@@ -136,10 +135,7 @@ impl DiscreteField {
 
     fn kick(&mut self, dt: f64) {
         self.nodes.kick(self.kick_length(dt));
-        if !self.at_start && dt != self.last_step {
-            let squares = self.last_step * self.last_step - dt * dt;
-            self.losses.step -= 0.25 * squares * self.nodes.kinetic_energy(&self.nodes.acceleration);
-        }
+        self.book_change_of_step(dt, |field| field.nodes.kinetic_energy(&field.nodes.acceleration));
         self.at_start = false;
         self.last_step = dt;
         self.time += dt;
@@ -180,14 +176,6 @@ impl DiscreteField {
         }
     }
 
-    /// Lets the reactions on its edges answer to accelerations that were added.
-    pub(super) fn hold_pushed(&mut self) {
-        let Some(mut edges) = self.edges.take() else { return };
-        let kick = self.kick_length(edges.step());
-        self.ledger.external_work += edges.hold_pushed(&mut self.nodes.acceleration, kick);
-        self.edges = Some(edges);
-    }
-
     fn choose_velocities(&mut self) {
         let Self { patch, cells, points, nodes, velocity_transfer, affine, density, .. } = self;
         velocity_transfer.update(nodes, &Smoothing { patch, cells, points, density: *density, mass: &nodes.mass });
@@ -226,8 +214,7 @@ impl DiscreteField {
         if let Some(edges) = edges {
             edges.move_points(patch, nodes, dt);
         }
-        let mut sides = sides.iter_mut().filter(|side| side.slides());
-        sides.try_for_each(|side| side.follow(patch, nodes, dt))?;
+        let slid = sides.iter_mut().map(|side| side.follow(patch, nodes, dt)).collect::<Result<Vec<_>, _>>()?;
         if let Some(forcing) = forcing {
             forcing.after_motion(points, self.time, dt);
         }
@@ -235,6 +222,9 @@ impl DiscreteField {
         self.travelled += dt * (2.0 * fastest).sqrt();
         self.elastic_energy = motions.iter().map(|m| m.elastic_energy).sum();
         self.stress_work = motions.iter().map(|m| m.stress_work).sum();
+        if slid.contains(&true) {
+            self.hold_sides();
+        }
         Ok(motions.iter().any(|m| m.left_span))
     }
 
@@ -292,7 +282,10 @@ impl DiscreteField {
     }
 
     /// Finds spans for the surface points of loads and conditions, by the masses of the grid.
-    pub(super) fn attach_loads(&mut self) -> Result<(), OutsidePatch> {
+    ///
+    /// # Errors
+    /// If one has lost its material, or conditions are not independent.
+    pub(super) fn attach_loads(&mut self) -> Result<(), Failure> {
         let Self { patch, nodes, loads, edges, .. } = self;
         loads.iter_mut().try_for_each(|load| load.attach(patch, nodes))?;
         edges.iter_mut().try_for_each(|edges| edges.attach(patch, nodes))
@@ -328,13 +321,6 @@ impl DiscreteField {
         nodes.divide_by_mass();
     }
 
-    /// Lets the sides hold what they hold where the material is now.
-    fn hold_sides(&mut self) {
-        if self.sides.iter().any(HeldSide::slides) {
-            self.nodes.hold(constraints(&self.whole, &self.patch, self.origin, &self.sides));
-        }
-    }
-
     /// Gravity, tractions and other loads.
     pub(super) fn add_external_forces(&mut self) {
         let Self { patch, cells, points, nodes, .. } = self;
@@ -348,33 +334,15 @@ impl DiscreteField {
         }
     }
 
-    /// Imposes the prescribed velocities.
-    fn apply_boundary(&mut self) -> ImposedEnergy {
-        let Self { patch, nodes, edges, .. } = self;
-        let fixed = nodes.stop();
-        edges.as_mut().map_or(fixed, |edges| edges.impose(patch, nodes).plus(fixed))
-    }
-
-    fn accelerate(&mut self) {
-        self.nodes.accelerate();
-        let step = self.edges.as_ref().map_or(0.0, |edges| edges.step());
-        let kick = self.kick_length(step);
-        if let Some(edges) = &mut self.edges {
-            edges.accelerate(&mut self.nodes.acceleration, kick);
-        }
-    }
-
-    /// Accelerations at t = 0 that lead to what is prescribed for a step of `dt` seconds.
-    pub(super) fn prepare(&mut self, dt: f64) {
-        let Some(edges) = self.edges.as_mut().filter(|_| self.at_start) else { return };
-        edges.go_on([self.time, dt]);
-        self.accelerate();
-    }
-
-    /// Rebuilds the grid where no step leads to it, for points that stay where they are.
-    pub(super) fn find_accelerations(&mut self) {
+    /// Rebuilds the grid where no step leads to it.
+    ///
+    /// # Errors
+    /// A load or a condition that has lost its material.
+    pub(super) fn rebuild_grid(&mut self) -> Result<(), Failure> {
         self.points_to_grid();
+        self.attach_loads()?;
         self.respond();
+        Ok(())
     }
 
     /// Accelerations on a grid that has its masses and internal forces, where no step leads to them.

@@ -10,7 +10,6 @@
 //! ([`TransferLosses::partition`](super::losses::TransferLosses)).
 
 use super::field::DiscreteField;
-use super::held_sides::constraints;
 use super::part::spans_around;
 use super::pieces::{Pieces, SEPARATED, spacing};
 use crate::contact::crack_faces::{Faces, Place};
@@ -62,14 +61,12 @@ impl DiscreteField {
         let own = |place| pieces.at(place) == piece;
         part.sides.iter_mut().for_each(|side| side.keep(own));
         part.edges.iter_mut().for_each(|edges| edges.keep(piece == 0, own));
-        part.nodes.hold(constraints(&part.whole, &part.patch, part.origin, &part.sides));
+        part.hold_sides();
         if let Some(fracture) = &mut part.fracture {
             fracture.field.forget_counts();
         }
         part.crack_and_stress()?;
-        part.points_to_grid();
-        part.attach_loads()?;
-        part.respond();
+        part.rebuild_grid()?;
         part.travelled = f64::INFINITY; // its critical step is another
         if let Some(surface) = &self.surface {
             let place = |(at, point): (usize, &Point)| Place {

@@ -17,17 +17,14 @@ use super::grid::{ImposedEnergy, NodalFields};
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::edge_moments::{Moment, Multipliers, moments_of, multiplier_space};
 use crate::dynamics::energy::ConditionSample;
+use crate::dynamics::failure::Failure;
 use crate::dynamics::reaction::Reaction;
 use crate::dynamics::surface::{SurfacePoint, smooth_parts};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::vectors::dot;
-use crate::particles::points::OutsidePatch;
 use crate::scene::{Body, EdgeCondition};
 use crate::splines::patch::Patch;
 use crate::splines::spline::SplineSpace;
-
-/// Yield of a multiplier at control points that can move, of that at all of them, that counts as none.
-const YIELDS: f64 = 1e-9;
 
 /// Part of the compliance of a multiplier that is added to it, so that moments which nearly follow from
 /// others do no harm.
@@ -88,13 +85,15 @@ impl HeldEdges {
         }
     }
 
-    /// Chooses the span of every point anew.
+    /// Chooses the span of every point anew, and takes the multipliers of the present grid.
     ///
     /// # Errors
-    /// A point with no material within one span of it.
-    pub(super) fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), OutsidePatch> {
+    /// A point with no material within one span of it, or conditions that are not independent.
+    pub(super) fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), Failure> {
         let mut places = self.edges.iter_mut().flat_map(|edge| &mut edge.points);
-        places.try_for_each(|(place, _)| place.attach(patch, &nodes.inverse_mass))
+        places.try_for_each(|(place, _)| place.attach(patch, &nodes.inverse_mass))?;
+        self.multipliers = self.on_grid(patch, nodes)?;
+        Ok(())
     }
 
     /// Moves the points with the grid over `dt` seconds.
@@ -118,10 +117,8 @@ impl HeldEdges {
         }
     }
 
-    /// Takes the multipliers of the present grid, and imposes on the velocities there what the last step
-    /// prescribed.
-    pub(super) fn impose(&mut self, patch: &Patch, nodes: &mut NodalFields) -> ImposedEnergy {
-        self.multipliers = self.on_grid(patch, nodes);
+    /// Imposes on the velocities of the grid what the last step prescribed.
+    pub(super) fn impose(&mut self, nodes: &mut NodalFields) -> ImposedEnergy {
         let Self { edges, multipliers: Some(multipliers), .. } = self else { return ImposedEnergy::default() };
         let last = |moment: &Moment| moment.translated(edges[moment.condition].reaction.last_velocity());
         let impulses = multipliers.of_excess(|moment| moment.of(&nodes.velocity) - last(moment));
@@ -214,7 +211,10 @@ impl HeldEdges {
     }
 
     /// The multipliers that can move something on the present grid.
-    fn on_grid(&self, patch: &Patch, nodes: &NodalFields) -> Option<Multipliers> {
+    ///
+    /// # Errors
+    /// Conditions that are not independent.
+    fn on_grid(&self, patch: &Patch, nodes: &NodalFields) -> Result<Option<Multipliers>, Failure> {
         let mut moments = Vec::new();
         for (number, edge) in self.edges.iter().enumerate() {
             let functions = |place: &CarriedPlace| {
@@ -223,18 +223,18 @@ impl HeldEdges {
                 values
             };
             let points = edge.points.iter().map(|(place, point)| (*point, functions(place)));
-            moments.extend(moments_of(number, edge.condition.hold, &edge.space, points).into_iter().flatten());
+            let lost = |place| Failure::LostCondition { condition: number, place };
+            moments.extend(moments_of(number, edge.condition.hold, &edge.space, points).map_err(lost)?);
         }
         let inverse = |moment: &Moment| -> Option<Vec<f64>> {
             let free = |(at, component)| if nodes.fixed().contains(&(at, component)) { 0.0 } else { 1.0 };
             let of = |&(at, component, _): &(usize, usize, f64)| free((at, component)) * nodes.inverse_mass[at];
             let inverse: Vec<f64> = moment.shares.iter().map(of).collect();
-            let yields = moment.shares.iter().zip(&inverse).map(|((.., share), m)| share * share * m).sum::<f64>();
-            let all = moment.shares.iter().map(|&(at, _, share)| share * share * nodes.inverse_mass[at]).sum::<f64>();
-            (yields > YIELDS * all).then_some(inverse)
+            moment.yields(&inverse, |at| nodes.inverse_mass[at]).then_some(inverse)
         };
         let yielding = moments.into_iter().filter_map(|moment| inverse(&moment).map(|inverse| (moment, inverse)));
-        let (moments, inverse): (Vec<_>, Vec<_>) = yielding.unzip();
-        if moments.is_empty() { None } else { Multipliers::new(moments, inverse, SOFTNESS) }
+        let (moments, inverse): (Vec<Moment>, Vec<_>) = yielding.unzip();
+        let Some(last) = moments.last().map(|moment| moment.condition) else { return Ok(None) };
+        Multipliers::new(moments, inverse, SOFTNESS).map(Some).ok_or(Failure::HeldTwice(last))
     }
 }

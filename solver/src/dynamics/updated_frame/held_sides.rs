@@ -42,21 +42,27 @@ impl HeldSide {
         self.material.iter_mut().for_each(|places| places.retain(|place| keeps(place.position)));
     }
 
-    /// Whether the material may slide along the side.
-    pub(super) fn slides(&self) -> bool {
-        self.boundary.fix != [true; 2] && self.material.is_some()
-    }
-
-    /// Chooses the spans of the places anew, and moves them with the grid over `dt` seconds.
+    /// Moves material that may slide along the side with the grid over `dt` seconds; whether some of it went
+    /// on to other control points.
     ///
     /// # Errors
     /// A place with no material within one span of it.
-    pub(super) fn follow(&mut self, patch: &Patch, nodes: &NodalFields, dt: f64) -> Result<(), OutsidePatch> {
-        for place in self.material.iter_mut().flatten() {
+    pub(super) fn follow(&mut self, patch: &Patch, nodes: &NodalFields, dt: f64) -> Result<bool, OutsidePatch> {
+        let along = self.along();
+        let mut went_on = false;
+        for place in self.material.iter_mut().flatten().filter(|_| self.boundary.fix != [true; 2]) {
+            let reached = |place: &Follower| patch.spaces[along].first_function(place.position[along]);
+            let before = reached(place);
             place.attach(patch, &nodes.inverse_mass)?;
             place.follow(patch, nodes.grid, &nodes.velocity, dt);
+            went_on |= reached(place) != before;
         }
-        Ok(())
+        Ok(went_on)
+    }
+
+    /// Direction along the side.
+    fn along(&self) -> usize {
+        usize::from(matches!(self.boundary.side, Side::Left | Side::Right))
     }
 
     /// Control points that are held on a part of the patch.
@@ -64,7 +70,7 @@ impl HeldSide {
         let (grid, side) = (part.control_grid(), self.boundary.side);
         let all = control_points_on(side, grid);
         let Some(places) = &self.material else { return all };
-        let along = usize::from(matches!(side, Side::Left | Side::Right));
+        let along = self.along();
         let space = &part.spaces[along];
         let mut reached = vec![false; all.len()];
         for first in places.iter().filter_map(|place| space.first_function(place.position[along])) {

@@ -24,7 +24,7 @@ mod slicing;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::field::DiscreteField;
-use super::held_sides::{HeldSide, constraints};
+use super::held_sides::HeldSide;
 use super::pieces::{Pieces, spacing};
 use super::velocity_transfer::stable_fraction;
 use crate::dynamics::critical_step::highest_frequency;
@@ -53,7 +53,7 @@ impl DiscreteField {
             let belongs = |place| slicing.at(place).unwrap_or_else(|| pieces.at(place)) == piece;
             part.loads.iter_mut().for_each(|load| load.keep(belongs));
             part.sides.iter_mut().for_each(HeldSide::forget_material);
-            part.nodes.hold(constraints(&part.whole, &part.patch, part.origin, &part.sides));
+            part.hold_sides();
             part.surface = Some(surface.part(body, spacing(&self.points), belongs));
             part.points_to_grid();
             part.attach_loads()?;

@@ -7,7 +7,7 @@ use super::gauss::OnPatch;
 use super::{UpdatedFrame, are_joined, find_gaps, self_contact, views};
 use crate::checkpoint::{Archive, StateError};
 use crate::contact::motion::TooFast;
-use crate::particles::points::OutsidePatch;
+use crate::dynamics::failure::Failure;
 
 impl UpdatedFrame {
     /// Stores or takes up what steps change.
@@ -57,8 +57,8 @@ impl DiscreteField {
         }
         self.exchange_points(archive)?;
         if archive.is_reader() {
-            self.rebuild().map_err(|OutsidePatch([x, y])| {
-                StateError(format!("the state belongs to another scene: a point lies at ({x:.6e}, {y:.6e}) m"))
+            self.rebuild().map_err(|failure| {
+                StateError(format!("the state belongs to another scene: its grid cannot be rebuilt ({failure:?})"))
             })?;
         }
         if let Some(spans) = &mut self.spans {
@@ -135,13 +135,11 @@ impl DiscreteField {
     }
 
     /// Order of the points, spans of the surface points, nodal fields.
-    fn rebuild(&mut self) -> Result<(), OutsidePatch> {
+    fn rebuild(&mut self) -> Result<(), Failure> {
         // They are sorted already: the order of all else stays.
         self.cells.sort(&self.patch, &mut self.points)?;
-        self.points_to_grid();
-        self.attach_loads()?;
-        self.respond();
-        Ok(())
+        self.hold_sides();
+        self.rebuild_grid()
     }
 
     fn exchange_sums(&mut self, archive: &mut Archive) -> Result<(), StateError> {

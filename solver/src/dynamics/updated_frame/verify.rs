@@ -48,12 +48,14 @@ impl DiscreteField {
             point.velocity = velocity(point.reference());
         }
         self.take_affine_velocities(velocity);
-        self.find_accelerations();
+        self.points_to_grid();
+        self.respond();
     }
 
     fn apply_forcing(&mut self, forcing: Arc<dyn Forcing>) {
         self.forcing = Some(PointForcing::new(forcing, self.deformation.is_some(), &self.points, self.time));
-        self.find_accelerations();
+        self.points_to_grid();
+        self.respond();
     }
 
     fn prescribe_motion(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2], dt: f64) -> Result<(), Failure> {
@@ -64,9 +66,7 @@ impl DiscreteField {
             self.sort()?;
         }
         self.crack_and_stress()?;
-        self.points_to_grid();
-        self.attach_loads()?;
-        self.respond();
+        self.rebuild_grid()?;
         self.respond_with_spans()?;
         Ok(())
     }

@@ -11,6 +11,7 @@ use crate::dynamics::updated_frame::field::DiscreteField;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::larger;
+use crate::linear_algebra::vectors::dot;
 
 impl DiscreteField {
     /// One time step of `dt` seconds but for its last solve, which contact comes before (see [the
@@ -22,6 +23,7 @@ impl DiscreteField {
         self.relax_velocities(dt).map_err(Failure::Spans)?; // v_p(n−1/2) towards the velocity of the grid
         let before = self.body_forces();
         let kick = self.kick_length(dt);
+        self.book_change_of_step(dt, Self::half_square_of_accelerations);
         self.kick_points(kick, &before); // v_p(n+1/2) = v_p(n−1/2) + dt [a(x_p) − s + b_p]
         self.book_work(0.5 * dt, &before); // dt/2 Σ m b(n) · v(n+1/2)
         self.drift_points(dt); // x_p(n+1) = x_p(n) + dt v_p(n+1/2)
@@ -146,6 +148,13 @@ impl DiscreteField {
         let spans = self.spans.as_ref()?;
         let sum = |(a, b): (&[f64; 2], [f64; 2])| [a[0] + b[0], a[1] + b[1]];
         Some(spans.point_acceleration.iter().zip(self.body_forces()).map(sum).collect())
+    }
+
+    /// `1/2 Σ m_p a_p²`, N²/kg.
+    fn half_square_of_accelerations(&self) -> f64 {
+        let accelerations = self.point_accelerations().unwrap_or_default();
+        let squares = self.points.iter().zip(accelerations).map(|(point, a)| point.volume * dot(a, a));
+        0.5 * self.density * squares.sum::<f64>()
     }
 
     /// Energies and momenta of the points at the present whole step; `dt` is the step in use.
