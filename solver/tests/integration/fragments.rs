@@ -51,6 +51,32 @@ fn half_of_a_parted_bar_falls_freely() {
     assert!(sample.closure.abs() < 1e-3 * sample.largest_term(), "{:e} of {sample:?}", sample.closure);
 }
 
+/// A grip goes on with the fragment that its edge is on, and its column has all of the work.
+#[test]
+fn a_grip_holds_the_fragment_that_its_edge_is_on() {
+    let mut scene = cracked_bar();
+    scene.analysis.end_time = 30e-6;
+    scene.boundaries = vec![Boundary::fixed(Side::Left, [true, true])];
+    scene.bodies[0].conditions = vec![EdgeCondition {
+        name: Some("grip".into()),
+        edge: Edge::Side(Side::Right),
+        hold: Hold::Components([true, true]),
+        prescribed: Prescribed::velocity([0.1, 0.0]), // 1 MPa, a third of the strength
+    }];
+    let (simulation, samples) = run(&scene);
+    assert_eq!(fragments(&simulation), 2);
+    let fields = simulation.updated_frame().unwrap().fields();
+    let moved = [0, 1].map(|half| {
+        let points = fields[half].points();
+        points.iter().map(|point| point.displacement[0]).sum::<f64>() / points.len() as f64
+    });
+    // A sudden start makes the half swing by a twentieth of the way.
+    assert!(moved[0].abs() < 1e-8 && (moved[1] - 3e-6).abs() < 3e-7, "{moved:?} m");
+    let last = samples.last().unwrap();
+    let work = last.named_values().into_iter().find(|(name, _)| name == "work_grip_j").unwrap().1;
+    assert!((work - last.external_work).abs() <= 1e-9 * last.largest_term(), "{work:e} of {last:?}");
+}
+
 /// Without the key the body is one, and what the crack does not carry the common velocity field does.
 #[test]
 fn fragments_are_asked_for() {

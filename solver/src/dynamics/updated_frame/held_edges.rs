@@ -119,6 +119,7 @@ impl HeldEdges {
 
     /// Imposes on the velocities of the grid what the last step prescribed.
     pub(super) fn impose(&mut self, nodes: &mut NodalFields) -> ImposedEnergy {
+        self.edges.iter_mut().for_each(|edge| edge.struck = 0.0);
         let Self { edges, multipliers: Some(multipliers), .. } = self else { return ImposedEnergy::default() };
         let last = |moment: &Moment| moment.translated(edges[moment.condition].reaction.last_velocity());
         let impulses = multipliers.of_excess(|moment| moment.of(&nodes.velocity) - last(moment));
