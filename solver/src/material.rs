@@ -4,6 +4,7 @@
 //! Symbols: e strain, sigma stress (Pa), psi+ and psi− energy densities (J/m³), F deformation gradient, g(c)
 //! degradation. Calls [`linear_algebra`](crate::linear_algebra) and [`scene`](crate::scene).
 
+pub mod cohesive;
 pub mod degradation;
 pub mod elasticity;
 pub mod hencky;

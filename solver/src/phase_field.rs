@@ -10,7 +10,7 @@
 //! added (delta assembly). An increment too small to move c by a hundredth of the tolerance anywhere waits.
 //!
 //! AT1 has other coefficients (`material/degradation.rs`), and bounds in place of a history
-//! (`phase_field/minimise.rs`).
+//! (`phase_field/minimise.rs`). With a cohesive crack the equation is not linear (`phase_field/tangent.rs`).
 //!
 //! # The tolerance
 //!
@@ -36,6 +36,7 @@ mod lag;
 mod method;
 mod minimise;
 mod state;
+mod tangent;
 
 use serde::{Deserialize, Serialize};
 
@@ -114,9 +115,10 @@ impl PhaseField {
         if lattice.has_cut_spans() {
             separate_small(&mut matrix);
         }
-        let assembled = vec![Lane::splat(model.threshold().unwrap_or(0.0)); lattice.batches()];
+        let at_rest = model.threshold().map_or(0.0, |_| model.source() / model.reaction_per_energy());
+        let assembled = vec![Lane::splat(at_rest); lattice.batches()];
         let mut field = Self::intact(matrix, load, assembled, model, settings);
-        field.bounds = model.threshold().map(|threshold| Bounds::new(threshold, lattice));
+        field.bounds = model.threshold().map(|threshold| Bounds::new(threshold, lattice, &model, &field.load));
         field
     }
 
@@ -219,7 +221,7 @@ impl PhaseField {
             self.bounds = Some(bounds);
             return result;
         }
-        self.assemble_increments(lattice, history, |_| true);
+        self.assemble_history(lattice, history);
         self.solve_system()
     }
 
@@ -263,7 +265,7 @@ impl PhaseField {
         if self.bounds.is_some() {
             return self.solve(lattice, history);
         }
-        self.assemble_increments(lattice, history, |_| true);
+        self.assemble_history(lattice, history);
         self.initialise_system()
     }
 
@@ -292,10 +294,25 @@ impl PhaseField {
         }
     }
 
-    /// Adds what the history energy changed by in some of the cells.
-    fn assemble_increments(&mut self, lattice: &Lattice, history: &[Lane], takes: impl Fn(usize) -> bool + Sync) {
+    /// Change of an energy that moves c by a hundredth of the tolerance, J/m³.
+    fn negligible(&self) -> f64 {
+        fault!("small-growth-never-assembled", 0.01 * self.tolerance => 0.1) / self.model.reaction_per_energy()
+    }
+
+    /// Adds what the history energy changed by.
+    fn assemble_history(&mut self, lattice: &Lattice, history: &[Lane]) {
+        self.assemble_increments(lattice, history, self.negligible(), |_| true);
+    }
+
+    /// Adds what the energies of some of the cells changed by, where it is more than `threshold` (J/m³).
+    fn assemble_increments(
+        &mut self,
+        lattice: &Lattice,
+        history: &[Lane],
+        threshold: f64,
+        takes: impl Fn(usize) -> bool + Sync,
+    ) {
         let reaction = self.model.reaction_per_energy();
-        let threshold = fault!("small-growth-never-assembled", 0.01 * self.tolerance => 0.1) / reaction;
         let span = lattice.points_per_span();
         let takes =
             |cell: usize, assembled: &[Lane], history: &[Lane]| takes(cell) && changed(assembled, history, threshold);

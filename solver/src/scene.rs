@@ -16,7 +16,7 @@ pub mod time;
 
 use std::collections::BTreeMap;
 
-pub use body::{Body, Crack, CrackKind, CrackModel, Fracture, Layout, Material, Split};
+pub use body::{Body, Crack, CrackKind, CrackModel, Fracture, Layout, Material, Softening, Split};
 pub use condition::{Boundary, Edge, EdgeCondition, Hold, Load, Motion, Prescribed, Side, Traction};
 pub use mesh::{Geometry, Mesh};
 pub use shape::Shape;

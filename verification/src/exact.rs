@@ -3,11 +3,13 @@
 //! A solution states its displacement (and phase field) and its stress law; velocity, stress, body force and
 //! source follow by differentiation ([`motion`], [`dual`]). The problem it solves stands beside it in its
 //! file, as a [`Solution`]; a new file is known to studies and tests by its line in the list below.
+//! [`cohesive`] is the law of a crack in one dimension, without a problem of its own.
 
 use fisura::scene::{Frame, Kinematics, Material, Plane, Side};
 
 pub mod axis_aligned;
 pub mod bar_wave;
+pub mod cohesive;
 pub mod coupled;
 pub mod disc_wave;
 pub mod dual;

@@ -25,6 +25,7 @@ mod random;
 mod rings;
 mod rotation;
 pub mod scene;
+mod softening_bar;
 mod stability;
 mod vibration;
 
@@ -125,10 +126,11 @@ const fn study(
 }
 
 /// Studies other than `scene`.
-pub static STUDIES: [Study; 27] = [
+pub static STUDIES: [Study; 28] = [
     study("basis", NOTHING, basis::offers, basis::study),
     study("constant-stress", SCENES, constant_stress::offers, constant_stress::study),
     study("homogeneous-state", SCENES, homogeneous_state::offers, homogeneous_state::study),
+    study("softening-bar", SCENES, softening_bar::offers, softening_bar::study),
     study("compressive-step", SCENES, compressive_step::offers, compressive_step::study),
     study("nurbs", NOTHING, nurbs::offers, nurbs::study),
     study("convergence", &["convergence"], convergence::offers, convergence::study),

@@ -308,8 +308,9 @@ fn transfer(transfer: Transfer) -> String {
 /// Surface energy and split in words.
 fn words(fracture: &Fracture) -> String {
     let model = match fracture.model {
-        CrackModel::At2 => "AT2",
-        CrackModel::At1 => "AT1",
+        CrackModel::At2 => "AT2".to_string(),
+        CrackModel::At1 => "AT1".to_string(),
+        CrackModel::PfCzm { softening, .. } => format!("PF-CZM with {} softening", format!("{softening:?}").to_lowercase()),
     };
     match fracture.split {
         Split::Spectral => format!("{model}, spectral split"),
@@ -320,8 +321,9 @@ fn words(fracture: &Fracture) -> String {
     }
 }
 
-/// Largest stress of a uniform bar (Pa), as if all of its energy drove: `9/16 √(E Gc/(6 l0))`, or with AT1
-/// `√(3 E Gc/(16 l0))`; in plane strain E is over 1 − nu², unless the largest principal stress drives.
+/// Largest stress of a uniform bar (Pa), as if all of its energy drove: `9/16 √(E Gc/(6 l0))`, with AT1 `√(3 E
+/// Gc/(16 l0))`, with a cohesive crack `ft √(E/E0)` for Young's modulus E0; in plane strain E is over 1 − nu²,
+/// unless the largest principal stress drives.
 fn strength(material: &Material, fracture: &Fracture, plane: Plane) -> f64 {
     let Material { young_modulus, poisson_ratio, .. } = *material;
     let modulus = match plane {
@@ -332,6 +334,7 @@ fn strength(material: &Material, fracture: &Fracture, plane: Plane) -> f64 {
     match fracture.model {
         CrackModel::At2 => 9.0 / 16.0 * (unit / 6.0).sqrt(),
         CrackModel::At1 => (3.0 * unit / 16.0).sqrt(),
+        CrackModel::PfCzm { tensile_strength, .. } => tensile_strength * (modulus / young_modulus).sqrt(),
     }
 }
 

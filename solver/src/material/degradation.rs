@@ -4,30 +4,47 @@
 //! ```text
 //! AT2    Gc [d²/(4 l0) + l0 |grad c|²]                                              E 3
 //! AT1    3/4 Gc [d/(4 l0) + l0 |grad c|²]                                           Pham et al. 2011
+//! PF-CZM 2/π Gc [(2 d − d²)/(4 l0) + l0 |grad c|²]                                  Wu 2017
 //! ```
 //!
-//! Gc for a crack in each. Where H drives, c minimises the energy with `g H`, on control values between zero
-//! and those of the step before with AT1, and with H as the largest so far with AT2:
+//! Gc for a crack in each. Where H drives, c minimises the energy with `g H`: with AT2 for the largest H so
+//! far, with the others on control values between zero and those of the step before. With s = g'/2, which is
+//! c unless the crack is [cohesive](super::cohesive),
 //!
 //! ```text
 //! (4 l0 (1 − k) H/Gc + 1) c − 4 l0² lap c = 1                                       AT2, E 11
 //! 4 l0 (1 − k) H/Gc c − 3 l0² lap c = 3/8                                           AT1
+//! 4 l0 (1 − k) H/Gc s(c) − 8/π l0² lap c = 2/π c                                    PF-CZM
 //! ```
 
+use std::f64::consts::FRAC_2_PI;
+
+use super::cohesive::Cohesive;
 use super::elasticity::ElasticModuli;
 use super::split::split;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::Lane;
-use crate::scene::{CrackModel, Fracture, Split};
+use crate::scene::{CrackModel, Material, Split};
 
 /// Phase field below which a point counts as broken.
 pub const BROKEN: f64 = 0.05;
 
+/// Surface energy and degradation of a crack.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CrackLaw {
+    /// Quadratic in the damage.
+    At2,
+    /// Linear in the damage.
+    At1,
+    /// With a tensile strength, and stresses that fall with the opening.
+    Cohesive(Cohesive),
+}
+
 /// Constants of the phase field in Borden's convention.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FractureModel {
-    /// Surface energy.
-    pub surface: CrackModel,
+    /// Surface energy and degradation.
+    pub law: CrackLaw,
     /// Critical energy release rate Gc, J/m².
     pub toughness: f64,
     /// Length scale l0, m.
@@ -39,52 +56,81 @@ pub struct FractureModel {
 }
 
 impl FractureModel {
-    /// Constants from a scene.
-    pub fn new(fracture: &Fracture) -> Self {
-        Self {
+    /// Constants of a material, if it is brittle.
+    pub fn of(material: &Material) -> Option<Self> {
+        let fracture = material.fracture.as_ref()?;
+        let law = match fracture.model {
+            CrackModel::At2 => CrackLaw::At2,
+            CrackModel::At1 => CrackLaw::At1,
+            CrackModel::PfCzm { softening, .. } => {
+                CrackLaw::Cohesive(Cohesive::new(softening, fracture.brittleness(material.young_modulus)?))
+            }
+        };
+        Some(Self {
             toughness: fracture.critical_energy_release_rate,
             length_scale: fault!("length-scale-doubled", fracture.length_scale => 2.0 * fracture.length_scale),
             residual_stiffness: fracture.residual_stiffness,
-            surface: fracture.model,
+            law,
             split: fracture.split,
-        }
+        })
     }
 
-    /// Degradation `g(c) = (1 − k) c² + k` (E 7). It is taken as it stands for the small negative c that
-    /// splines produce beside a jump of the history field: clipping would break the energy balance.
+    /// Degradation `(1 − k) g(c) + k`, with g = c² (E 7) unless the crack is cohesive. It is taken as it
+    /// stands for the small negative c that splines produce beside a jump of the history field: clipping
+    /// would break the energy balance.
     #[inline(always)]
     pub fn degradation(&self, phase: Lane) -> Lane {
         let k = self.residual_stiffness;
-        fault!("degradation-linear", phase * phase => phase).map(|c2| (1.0 - k) * c2 + k)
+        let whole = match self.law {
+            CrackLaw::Cohesive(law) => law.degradation(phase),
+            _ => fault!("degradation-linear", phase * phase => phase),
+        };
+        whole.map(|g| (1.0 - k) * g + k)
     }
 
-    /// Coefficient of c in the phase-field equation per unit of history energy: `4 l0 (1 − k)/Gc`, m³/J.
+    /// `s = g'/2`, the derivative of the degradation over 2 (1 − k).
+    #[inline(always)]
+    pub fn half_slope(&self, phase: Lane) -> Lane {
+        match self.law {
+            CrackLaw::Cohesive(law) => law.slope(phase) * fault!("cohesive-slope-doubled", 0.5 => 1.0),
+            _ => phase,
+        }
+    }
+
+    /// Coefficient of s in the phase-field equation per unit of history energy: `4 l0 (1 − k)/Gc`, m³/J.
     pub fn reaction_per_energy(&self) -> f64 {
         let k = fault!("one-minus-k-missing", self.residual_stiffness => 0.0);
         4.0 * self.length_scale * (1.0 - k) / self.toughness
     }
 
-    /// Coefficient of the gradient term, `4 l0²` or `3 l0²`, m².
+    /// Coefficient of the gradient term, m².
     pub fn diffusion(&self) -> f64 {
-        let factor = match self.surface {
-            CrackModel::At2 => fault!("phase-gradient-halved", 4.0 => 2.0),
-            CrackModel::At1 => fault!("at1-gradient-of-at2", 3.0 => 4.0),
+        let factor = match self.law {
+            CrackLaw::At2 => fault!("phase-gradient-halved", 4.0 => 2.0),
+            CrackLaw::At1 => fault!("at1-gradient-of-at2", 3.0 => 4.0),
+            CrackLaw::Cohesive(_) => fault!("cohesive-gradient-halved", 4.0 => 2.0) * FRAC_2_PI,
         };
         factor * self.length_scale * self.length_scale
     }
 
-    /// Right-hand side of the phase-field equation.
+    /// Right-hand side of the phase-field equation of intact material.
     pub fn source(&self) -> f64 {
-        match self.surface {
-            CrackModel::At2 => 1.0,
-            CrackModel::At1 => fault!("at1-source-doubled", 0.375 => 0.75),
+        match self.law {
+            CrackLaw::At2 => 1.0,
+            CrackLaw::At1 => fault!("at1-source-doubled", 0.375 => 0.75),
+            CrackLaw::Cohesive(_) => fault!("cohesive-source-halved", FRAC_2_PI => 0.5 * FRAC_2_PI),
         }
     }
 
-    /// Driving energy up to which material stays intact, `3 Gc/(32 l0 (1 − k))` with AT1, J/m³; none if
-    /// damage begins with the first load.
+    /// Driving energy up to which material stays intact, J/m³: `3 Gc/(32 l0 (1 − k))` with AT1, `ft²/(2 E (1
+    /// − k))` with a cohesive crack; none if damage begins with the first load.
     pub fn threshold(&self) -> Option<f64> {
-        (self.surface == CrackModel::At1).then(|| self.source() / self.reaction_per_energy())
+        let slope = match self.law {
+            CrackLaw::At2 => return None,
+            CrackLaw::At1 => 1.0,
+            CrackLaw::Cohesive(law) => 0.5 * law.a1(),
+        };
+        Some(self.source() / (slope * self.reaction_per_energy()))
     }
 
     /// Energy density of the intact body up to which nothing is driven to the threshold, with a margin for
@@ -109,10 +155,10 @@ impl FractureModel {
     /// Column of the work of what drives beyond psi+: of the history, or of another driving energy. None
     /// where psi+ itself drives.
     pub(crate) fn driving_work(&self) -> Option<&'static str> {
-        match (self.surface, self.split) {
-            (_, Split::Rankine) | (CrackModel::At1, Split::StarConvex(_)) => Some("driving_work_j"),
-            (CrackModel::At2, _) => Some("history_work_j"),
-            (CrackModel::At1, _) => None,
+        match (self.law, self.split) {
+            (CrackLaw::At2, split) if split != Split::Rankine => Some("history_work_j"),
+            (_, Split::Rankine | Split::StarConvex(_)) => Some("driving_work_j"),
+            _ => None,
         }
     }
 
@@ -128,9 +174,12 @@ impl FractureModel {
     pub fn surface_energy(&self, phase: Lane, [gx, gy]: [Lane; 2]) -> Lane {
         let Self { toughness, length_scale, .. } = *self;
         let broken = Lane::splat(1.0) - phase;
-        let (local, unit) = match self.surface {
-            CrackModel::At2 => (broken * broken, toughness),
-            CrackModel::At1 => (broken, fault!("at1-surface-unscaled", 0.75 => 1.0) * toughness),
+        let (local, unit) = match self.law {
+            CrackLaw::At2 => (broken * broken, toughness),
+            CrackLaw::At1 => (broken, fault!("at1-surface-unscaled", 0.75 => 1.0) * toughness),
+            CrackLaw::Cohesive(_) => {
+                (broken * (fault!("cohesive-surface-linear", phase => Lane::ZERO) + Lane::splat(1.0)), FRAC_2_PI * toughness)
+            }
         };
         local * (unit / (fault!("surface-energy-doubled", 4.0 => 2.0) * length_scale))
             + (gx * gx + gy * gy) * (unit * length_scale)
@@ -176,7 +225,7 @@ pub(crate) fn largest_principal([xx, yy, xy]: [f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Material, Plane};
+    use crate::scene::Plane;
 
     /// The derivative of the energy by the strain across the plane: of g(c) psi+ + psi− with the principal
     /// strains of the plane and a third one.
@@ -186,8 +235,8 @@ mod tests {
         let [strain_state, stress_state] =
             [Plane::Strain, Plane::Stress].map(|plane| ElasticModuli::new(&material, plane));
         for split in [Split::Spectral, Split::None] {
-            let (surface, residual_stiffness) = (CrackModel::At2, 0.0);
-            let model = FractureModel { surface, toughness: 3.0, length_scale: 1e-3, residual_stiffness, split };
+            let (law, residual_stiffness) = (CrackLaw::At2, 0.0);
+            let model = FractureModel { law, toughness: 3.0, length_scale: 1e-3, residual_stiffness, split };
             for (strain, phase) in [([1e-3, 2e-4, 3e-4], 0.4), ([-1e-3, 2e-4, 3e-4], 0.4), ([1e-3, -2e-4, 0.0], 1.0)] {
                 let fracture = Some((&model, phase));
                 let found = stress_out_of_plane(&strain_state, strain, fracture);

@@ -28,7 +28,7 @@ impl PhaseField {
     /// As [`Self::solve`].
     pub(crate) fn advance(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Option<Convergence>, SolveFailure> {
         let Some(mut lag) = self.lag.take() else { return self.solve(lattice, history).map(Some) };
-        self.assemble_increments(lattice, history, |_| true);
+        self.assemble_history(lattice, history);
         let due = lag.is_due();
         lag.since += 1;
         let result = if due {

@@ -39,7 +39,7 @@ pub struct LatticeFracture {
     pub history: Vec<Lane>,
     /// Phase field at the points.
     pub phase: Vec<Lane>,
-    /// `c (H − psi+)` at the points, J/m³.
+    /// `s (H − psi+)` at the points with `s = g'/2`, J/m³.
     pub excess: Vec<Lane>,
     /// Phase field on the control points.
     pub field: PhaseField,
@@ -138,7 +138,7 @@ impl LatticeFracture {
         Ok(())
     }
 
-    /// Degraded stress at the points and its nodal forces; keeps c and `c (H − psi+)` for the history work of
+    /// Degraded stress at the points and its nodal forces; keeps c and `s (H − psi+)` for the history work of
     /// the next step.
     pub fn degraded_forces(
         &mut self,

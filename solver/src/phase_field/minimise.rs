@@ -4,7 +4,8 @@
 //! By projected Newton (Bertsekas 1982): values that rest on a bound are held, the others solved for, and
 //! what leaves the bounds is put back on them. A step that does not lower the energy is halved, so the held
 //! values cannot return to what they were. With `r = K c − b`, a value rests on its upper bound where r ≤ 0,
-//! and on zero where r ≥ 0. Energies are in the norm of the tolerance.
+//! and on zero where r ≥ 0. Energies are in the norm of the tolerance. Where the equation is not linear, K and
+//! b are those at the present c, and the method ends when its step is within the tolerance.
 //!
 //! # Its work
 //!
@@ -14,6 +15,7 @@
 use super::PhaseField;
 use super::awake::Awake;
 use super::bounds::Bounds;
+use super::tangent::Tangent;
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::conjugate_gradients::{Convergence, SolveFailure};
 use crate::linear_algebra::extremes::{larger, smaller};
@@ -24,9 +26,43 @@ use crate::particles::lattice::Lattice;
 /// Most sets of held values, and most halvings of a step.
 const MOST_SETS: usize = 200;
 const MOST_HALVINGS: usize = 20;
+/// Largest change of a value by a step of Newton's method: between two stationary states lies one that is not
+/// the least.
+const MOST_CHANGE: f64 = 0.2;
+/// Square of a step of Newton's method that is the last one, of the tolerance: what it leaves is far smaller.
+const STEP_IN_TOLERANCE: f64 = 0.1;
+/// What is lost of a residual in its sum, of the diagonal.
+const ROUNDING: f64 = 10.0 * f64::EPSILON;
 /// Distance of a value from a bound that counts as none: a few roundings of values up to 1. A free value so
 /// close to its bound would stop every step.
 const AT_BOUND: f64 = 1e-14;
+
+/// What is assembled in the cells that are awake.
+struct Equation<'a> {
+    lattice: &'a Lattice,
+    drive: &'a [Lane],
+    awake: &'a Awake,
+    tangent: Option<&'a mut Tangent>,
+}
+
+impl Equation<'_> {
+    /// Assembles K and b.
+    fn assemble(&mut self, field: &mut PhaseField) {
+        if self.tangent.is_none() {
+            let negligible = field.negligible();
+            let awake = self.awake;
+            field.assemble_increments(self.lattice, self.drive, negligible, |cell| awake.is_assembled(cell));
+        }
+        self.linearise(field);
+    }
+
+    /// Assembles K and b anew at another c, if they depend on it.
+    fn linearise(&mut self, field: &mut PhaseField) {
+        if let Some(tangent) = &mut self.tangent {
+            field.linearise(tangent, self.lattice, self.drive, self.awake);
+        }
+    }
+}
 
 impl PhaseField {
     /// Where c may change, if the model has a threshold.
@@ -63,7 +99,7 @@ impl PhaseField {
         lattice: &Lattice,
         drive: &[Lane],
     ) -> Result<Convergence, SolveFailure> {
-        let Bounds { awake, image, .. } = bounds;
+        let Bounds { awake, image, tangent, .. } = bounds;
         awake.sleep();
         awake.wake(lattice, drive, &self.phase);
         self.matrix.restrict(awake.active(lattice));
@@ -73,8 +109,9 @@ impl PhaseField {
         }
         let mut total = Convergence { iterations: 0, error: 0.0 };
         let residual = loop {
-            self.assemble_increments(lattice, drive, |cell| awake.is_assembled(cell));
-            let (convergence, residual) = self.minimise_on(&awake.candidates, awake.active(lattice), image)?;
+            let mut equation = Equation { lattice, drive, awake, tangent: tangent.as_deref_mut() };
+            equation.assemble(self);
+            let (convergence, residual) = self.minimise_on(&mut equation, image)?;
             total = Convergence { iterations: total.iterations + convergence.iterations, ..convergence };
             if !awake.wake(lattice, drive, &self.phase) {
                 break residual;
@@ -96,10 +133,10 @@ impl PhaseField {
     /// The least energy with the candidates that there are, and the residual of each.
     fn minimise_on(
         &mut self,
-        candidates: &[usize],
-        active: ActiveColumns,
+        equation: &mut Equation,
         image: &mut [f64],
     ) -> Result<(Convergence, Vec<f64>), SolveFailure> {
+        let (candidates, active) = (&equation.awake.candidates[..], equation.awake.active(equation.lattice));
         let grid = self.matrix.grid;
         let enough = self.model.diffusion() * self.tolerance * self.tolerance;
         let mut total = Convergence { iterations: 0, error: 0.0 };
@@ -127,25 +164,29 @@ impl PhaseField {
             let convergence = self.solve_from_here(ITERATION_LIMIT)?;
             total = Convergence { iterations: total.iterations + convergence.iterations, ..convergence };
             self.matrix.restrict(active.clone());
-            let Some(left) = self.put_on_bounds(candidates, &diagonal, &from, &mut residual, image) else { break };
+            let Some(left) = self.put_on_bounds(equation, &diagonal, &from, &mut residual, image) else { break };
             settled = left <= enough;
         }
         Err(SolveFailure::NotConverged { iterations: total.iterations, error: total.error })
     }
 
     /// Projects c onto its bounds, and halves the way from the last c until the energy does not rise. The
-    /// square of what was projected, in the norm of the energy; none if it always rises.
+    /// square of what was projected, and of the step where the equation is not linear, in the norm of the
+    /// energy; none if it always rises.
     fn put_on_bounds(
         &mut self,
-        candidates: &[usize],
+        equation: &mut Equation,
         diagonal: &[f64],
         from: &[f64],
         residual: &mut Vec<f64>,
         image: &mut [f64],
     ) -> Option<f64> {
+        let candidates = &equation.awake.candidates[..];
         let found: Vec<f64> = candidates.iter().map(|&at| self.phase[at]).collect();
+        let furthest = from.iter().zip(&found).map(|(from, found)| (found - from).abs()).fold(0.0, larger);
+        let whole = if equation.tangent.is_some() { smaller(1.0, MOST_CHANGE / furthest) } else { 1.0 };
         for halvings in 0..MOST_HALVINGS {
-            let part = 0.5_f64.powi(halvings as i32);
+            let part = whole * 0.5_f64.powi(halvings as i32);
             let mut left = 0.0;
             for ((&at, diagonal), (from, found)) in candidates.iter().zip(diagonal).zip(from.iter().zip(&found)) {
                 let wanted = from + part * (found - from);
@@ -153,11 +194,16 @@ impl PhaseField {
                 left += (wanted - c) * (wanted - c) * diagonal;
                 self.phase[at] = c;
             }
+            equation.linearise(self);
             let now = self.residual(candidates, image);
-            let steps = candidates.iter().zip(from).map(|(&at, from)| self.phase[at] - from);
-            let rises = steps.zip(residual.iter().zip(&now)).map(|(step, (r, now))| 0.5 * (r + now) * step);
+            let steps = || candidates.iter().zip(from).map(|(&at, from)| self.phase[at] - from);
+            let rises = steps().zip(residual.iter().zip(&now)).map(|(step, (r, now))| 0.5 * (r + now) * step);
             let (rise, scale) = rises.fold((0.0, 0.0), |(sum, scale), rise| (sum + rise, scale + rise.abs()));
-            if rise <= f64::EPSILON * candidates.len() as f64 * scale {
+            let noise: f64 = steps().zip(diagonal).map(|(step, diagonal)| ROUNDING * diagonal * step.abs()).sum();
+            if equation.tangent.is_some() {
+                left += STEP_IN_TOLERANCE * steps().zip(&*residual).map(|(step, r)| (r * step).abs()).sum::<f64>();
+            }
+            if rise <= f64::EPSILON * candidates.len() as f64 * scale + noise {
                 *residual = now;
                 return Some(left);
             }

@@ -1,5 +1,7 @@
 //! Bodies of a scene, their materials and initial cracks.
 
+use std::f64::consts::FRAC_2_PI;
+
 use super::condition::{EdgeCondition, Traction};
 use super::shape::{Shape, distance_to_segment};
 use crate::linear_algebra::extremes::smaller;
@@ -32,13 +34,47 @@ pub enum Split {
     None,
 }
 
-/// Which surface energy a crack has.
+/// How the stress across a cohesive crack falls with its opening.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Softening {
+    /// Linearly.
+    Linear,
+    /// Exponentially.
+    Exponential,
+    /// As in concrete (Cornelissen et al. 1986).
+    Cornelissen,
+}
+
+/// Which surface energy a crack has, and how it degrades the material.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CrackModel {
     /// Quadratic in the damage: it begins to grow with the first load (Bourdin et al. 2000).
     At2,
     /// Linear in the damage: elastic up to a threshold (Pham et al. 2011).
     At1,
+    /// Cohesive: elastic up to a tensile strength that does not depend on the length scale (Wu 2017).
+    PfCzm {
+        /// Tensile strength, Pa.
+        tensile_strength: f64,
+        /// What follows it.
+        softening: Softening,
+    },
+}
+
+impl CrackModel {
+    /// Whether material is elastic up to a threshold.
+    pub fn has_threshold(self) -> bool {
+        self != Self::At2
+    }
+
+    /// Its word in scenes.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::At2 => "at2",
+            Self::At1 => "at1",
+            Self::PfCzm { .. } => "pf-czm",
+        }
+    }
 }
 
 /// Phase field in Borden's convention.
@@ -54,6 +90,15 @@ pub struct Fracture {
     pub residual_stiffness: f64,
     /// Split of the elastic energy.
     pub split: Split,
+}
+
+impl Fracture {
+    /// a1 of a cohesive crack, `2 E Gc/(π l0 ft²)` with Young's modulus E (Pa); none of the other models.
+    pub fn brittleness(&self, young_modulus: f64) -> Option<f64> {
+        let CrackModel::PfCzm { tensile_strength, .. } = self.model else { return None };
+        let length = young_modulus * self.critical_energy_release_rate / (tensile_strength * tensile_strength);
+        Some(fault!("cohesive-length-doubled", FRAC_2_PI => 2.0 * FRAC_2_PI) * length / self.length_scale)
+    }
 }
 
 /// Arrangement of material points in a span.

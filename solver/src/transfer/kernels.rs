@@ -92,7 +92,7 @@ pub struct DegradedStress<'a> {
     pub history: &'a [Lane],
     /// Phase field at the points: at the last step, then at this one.
     pub phase: &'a mut [Lane],
-    /// `c (H − psi+)` at the points: at the last step, then at this one, J/m³.
+    /// `s (H − psi+)` at the points: at the last step, then at this one, J/m³.
     pub excess: &'a mut [Lane],
     /// Elastic energy per unit thickness, J/m.
     pub energy: Lane,
@@ -121,7 +121,7 @@ impl PointKernel for DegradedStress<'_> {
         let strain = strain(values.gradient);
         let state = split(&self.moduli, self.model.split, strain);
         let c = values.phase;
-        let excess = c * (self.history[at] - state.energy_plus);
+        let excess = self.model.half_slope(c) * (self.history[at] - state.energy_plus);
         let change = (excess + self.excess[at]) * (self.phase[at] - c);
         self.history_work = self.history_work.add_product::<FMA>(weight, change);
         self.excess[at] = excess;

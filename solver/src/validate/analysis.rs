@@ -6,7 +6,7 @@ use super::material::plausible_speed;
 use super::output;
 use crate::linear_algebra::extremes::larger;
 use crate::scene::{
-    Body, Contact, CrackModel, Frame, Kinematics, Mass, PhaseFieldInterval, Quadrature, Scene, Shape, Side, TimeStep,
+    Body, Contact, Frame, Kinematics, Mass, PhaseFieldInterval, Quadrature, Scene, Shape, Side, TimeStep,
     Transfer,
 };
 use crate::splines::quadrature::Rule;
@@ -229,9 +229,9 @@ fn solver(scene: &Scene, findings: &mut Findings) {
     if scene.solver.phase_field_interval == PhaseFieldInterval::Steps(1) {
         return;
     }
-    let bounded = scene.materials.values().filter_map(|m| m.fracture.as_ref()).any(|f| f.model == CrackModel::At1);
+    let bounded = scene.materials.values().filter_map(|m| m.fracture.as_ref()).any(|f| f.model.has_threshold());
     if scene.analysis.frame == Frame::Updated || bounded {
-        let message = "in the updated frame, and with model = \"at1\", the phase field is solved for in every step";
+        let message = "in the updated frame, and with at1 or pf-czm, the phase field is solved for in every step";
         findings.error("solver.phase_field_interval", message, "remove the key, or use at2 in the total frame");
     }
 }

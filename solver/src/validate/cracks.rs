@@ -2,7 +2,7 @@
 
 use super::findings::Findings;
 use super::look::{Look, MOST_POSITIONS};
-use crate::scene::{Crack, CrackKind, CrackModel, Fracture, Frame, Mass, Scene};
+use crate::scene::{Crack, CrackKind, Fracture, Frame, Mass, Scene};
 
 /// A slit parts the control points of the total frame, which keep their places.
 pub(super) fn slit(key: &str, scene: &Scene, findings: &mut Findings) {
@@ -18,8 +18,9 @@ pub(super) fn slit(key: &str, scene: &Scene, findings: &mut Findings) {
 
 pub(super) fn check(key: &str, crack: &Crack, fracture: Option<&Fracture>, look: &Look<'_>, findings: &mut Findings) {
     if let CrackKind::Seed(Some(half_width)) = crack.kind {
-        if fracture.is_some_and(|fracture| fracture.model == CrackModel::At1) {
-            let message = "a seed of at1 is the bound c = 0 on its line: it has no initial history field";
+        if let Some(model) = fracture.map(|fracture| fracture.model).filter(|model| model.has_threshold()) {
+            let word = model.word();
+            let message = format!("a seed of {word} is the bound c = 0 on its line: it has no initial history field");
             findings.error(format!("{key}.half_width"), message, "leave the key out, or use model = \"at2\"");
         }
         let like = "half_width = \"0.125 mm\", or leave it out for l0/2";

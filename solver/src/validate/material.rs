@@ -1,9 +1,12 @@
 //! Checks of materials: ranges of the constants, and whether the wave speed they imply is possible.
 
 use super::findings::Findings;
+use crate::material::cohesive::Cohesive;
 use crate::material::elasticity::ElasticModuli;
 use crate::scene::{CrackModel, Fracture, Frame, Material, Plane, Scene, Split};
 
+/// Least a1 of a cohesive crack: below, the stress of a bar is largest beyond its onset.
+const LEAST_BRITTLENESS: f64 = 1.5;
 /// No solid carries waves faster than this, m/s (diamond: 18 km/s).
 const FASTEST: f64 = 3e4;
 /// Speeds below this are suspicious, m/s.
@@ -37,6 +40,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
             let key = format!("{key}.fracture");
             check_fracture(&key, fracture, findings);
             model(&key, fracture, scene.analysis.frame, findings);
+            cohesive(&key, fracture, material.young_modulus, findings);
         }
         if !scene.bodies.iter().any(|b| b.material == *name) {
             findings.warn(key, "no body is made of this material; remove it, or correct body.material");
@@ -130,8 +134,10 @@ fn check_fracture(key: &str, fracture: &Fracture, findings: &mut Findings) {
 
 /// What surface energies and splits combine with.
 fn model(key: &str, fracture: &Fracture, frame: Frame, findings: &mut Findings) {
-    if fracture.model == CrackModel::At1 && frame == Frame::Updated {
-        let message = "at1 bounds the phase field on control points, which the updated frame changes in every step";
+    if fracture.model.has_threshold() && frame == Frame::Updated {
+        let word = fracture.model.word();
+        let message =
+            format!("{word} bounds the phase field on control points, which the updated frame changes in every step");
         findings.error(format!("{key}.model"), message, "use frame = \"total\", or model = \"at2\"");
     }
     if let Split::StarConvex(gamma) = fracture.split
@@ -139,6 +145,30 @@ fn model(key: &str, fracture: &Fracture, frame: Frame, findings: &mut Findings) 
     {
         let remedy = "give a number such as 3.0; 0 is the volumetric-deviatoric split";
         findings.error(format!("{key}.split.star-convex"), format!("{gamma} is not zero or more"), remedy);
+    }
+}
+
+/// A cohesive crack is elastic up to its strength if l0 is short enough, and stable beyond if it is shorter.
+fn cohesive(key: &str, fracture: &Fracture, young_modulus: f64, findings: &mut Findings) {
+    let CrackModel::PfCzm { tensile_strength, softening } = fracture.model else { return };
+    let like = "tensile_strength = \"3 MPa\"";
+    if !findings.positive(format!("{key}.tensile_strength"), tensile_strength, like) {
+        return;
+    }
+    let Some(a1) = fracture.brittleness(young_modulus).filter(|a1| a1.is_finite() && *a1 > 0.0) else { return };
+    let longest = |a1_at_least: f64| fracture.length_scale * a1 / a1_at_least;
+    let law = Cohesive::new(softening, a1);
+    if a1 < LEAST_BRITTLENESS {
+        let message = format!("l0 is {} m, but the strength is reached only up to 4/(3 pi) E Gc/ft^2", fracture.length_scale);
+        let remedy = format!("give l0 of at most {:.4e} m, or a lower tensile_strength", longest(LEAST_BRITTLENESS));
+        findings.error(format!("{key}.length_scale"), message, remedy);
+    } else if a1 < law.stable_from() {
+        let (needed, longest) = (law.stable_from(), longest(law.stable_from()));
+        let message = format!(
+            "a1 = 2 E Gc/(pi l0 ft^2) is {a1:.3}, below {needed:.3}: where the strength is reached over a region, its \
+             damage jumps; with l0 of at most {longest:.4e} m it grows"
+        );
+        findings.warn(format!("{key}.length_scale"), message);
     }
 }
 

@@ -8,6 +8,7 @@ mod bodies;
 mod boundary_points;
 mod breakdown;
 mod checkpoint;
+mod cohesive;
 mod comments;
 mod common;
 mod conditions;

@@ -118,8 +118,7 @@ impl Block {
         let lattice = Lattice::new(&patch, &scene.bodies[0]);
         let material = &scene.materials[&scene.bodies[0].material];
         let moduli = ElasticModuli::new(material, Plane::Strain);
-        let fracture = material.fracture.as_ref().ok_or_else(|| BenchError::other("the block does not fracture"))?;
-        let model = FractureModel::new(fracture);
+        let model = FractureModel::of(material).ok_or_else(|| BenchError::other("the block does not fracture"))?;
         let mut displacement = [lattice.grid.zeros(), lattice.grid.zeros()];
         for (n, at) in lattice.grid.indices().enumerate() {
             displacement[0][at] = 1e-7 * (0.37 * n as f64).sin();

@@ -136,8 +136,7 @@ impl<M: Motion> ExactPhase for Derived<M> {
     fn source(&self, position: [f64; 2], time: f64) -> f64 {
         let variables = Jet::variables(position, time);
         let Dual { value: Field { value: phase, .. }, gradient: [x, y, _] } = self.0.phase(variables);
-        let Some(fracture) = self.0.material().fracture else { return phase };
-        let model = FractureModel::new(&fracture);
+        let Some(model) = FractureModel::of(&self.0.material()) else { return phase };
         let reaction = model.reaction_per_energy() * self.0.history(variables) + 1.0;
         reaction * phase - model.diffusion() * (x.gradient[0] + y.gradient[1])
     }

@@ -91,6 +91,7 @@ impl Motion for PhaseField {
 
     fn history(&self, [x, y, _]: [Jet; 3]) -> f64 {
         let reaction = y * (x * 3.0).sin() + 2.0;
-        reaction.value.value / FractureModel::new(&FRACTURE).reaction_per_energy()
+        let model = FractureModel::of(&self.material());
+        model.map_or(f64::NAN, |model| reaction.value.value / model.reaction_per_energy())
     }
 }

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use fisura::scene::time::TimeFactor;
 use fisura::scene::{
-    Body, Crack, CrackKind, CrackModel, Edge, Fracture, Layout, Load, Material, Shape, Split, Traction,
+    Body, Crack, CrackKind, CrackModel, Edge, Fracture, Layout, Load, Material, Shape, Softening, Split,
+    Traction,
 };
 
 use super::document::join;
@@ -50,9 +51,16 @@ fn material(item: &Item<'_>) -> Option<Material> {
 }
 
 fn fracture(item: &Item<'_>) -> Option<Fracture> {
-    let fields =
-        item.fields(&["model", "critical_energy_release_rate", "length_scale", "residual_stiffness", "split"])?;
-    let model = fields.or("model", CrackModel::At2, Item::word);
+    let fields = item.fields(&[
+        "model",
+        "tensile_strength",
+        "softening",
+        "critical_energy_release_rate",
+        "length_scale",
+        "residual_stiffness",
+        "split",
+    ])?;
+    let model = model(&fields);
     let rate = fields.need("critical_energy_release_rate", "critical_energy_release_rate = \"3 J/m^2\"", |item| {
         item.quantity(Dimension::ENERGY_PER_AREA)
     });
@@ -66,6 +74,23 @@ fn fracture(item: &Item<'_>) -> Option<Fracture> {
         residual_stiffness: residual?,
         split: split?,
     })
+}
+
+/// The model, and what belongs to a cohesive crack.
+fn model(fields: &Fields<'_>) -> Option<CrackModel> {
+    let model = fields.or("model", Some(CrackModel::At2), |item| {
+        item.choice(&[("at2", Some(CrackModel::At2)), ("at1", Some(CrackModel::At1)), ("pf-czm", None)])
+    })?;
+    let Some(model) = model else {
+        let strength = |item: &Item<'_>| item.quantity(Dimension::STRESS);
+        let strength = fields.need("tensile_strength", "tensile_strength = \"3 MPa\"", strength);
+        let softening = fields.or("softening", Softening::Linear, Item::word);
+        return Some(CrackModel::PfCzm { tensile_strength: strength?, softening: softening? });
+    };
+    if let Some(given) = ["tensile_strength", "softening"].iter().find_map(|key| fields.get(key)) {
+        return given.fail(format!("{} has no such key", model.word()), "remove it, or use model = \"pf-czm\"");
+    }
+    Some(model)
 }
 
 /// A word, or `{ star-convex = GAMMA }`.

@@ -1,6 +1,6 @@
 //! The words that scene and case files have for the choices of a scene.
 
-use fisura::scene::{CrackModel, Frame, Kinematics, Layout, Mass, PhaseFieldSolver, Plane, Quadrature, Side, Split};
+use fisura::scene::{Frame, Kinematics, Layout, Mass, PhaseFieldSolver, Plane, Quadrature, Side, Softening, Split};
 
 use super::fields::Words;
 
@@ -29,8 +29,9 @@ impl Words for Layout {
         &[("gauss", Self::Gauss), ("uniform", Self::Uniform), ("maclaurin", Self::Maclaurin)];
 }
 
-impl Words for CrackModel {
-    const WORDS: &'static [(&'static str, Self)] = &[("at2", Self::At2), ("at1", Self::At1)];
+impl Words for Softening {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("linear", Self::Linear), ("exponential", Self::Exponential), ("cornelissen", Self::Cornelissen)];
 }
 
 impl Words for Split {

@@ -1,14 +1,17 @@
-//! The homogeneous state of AT2 and AT1 against their closed forms.
+//! The homogeneous state of AT2, AT1 and a cohesive crack against their closed forms.
 //!
 //! A body under uniform uniaxial strain e has psi+ = M e²/2 everywhere, with M = lam + 2 mu; rankine is
 //! driven by H = (M e)²/(2 E). The phase field is constant and the stress `c² M e`. With AT2 `c = 1/(1 + 4 l0
 //! H/Gc)`: the stress peaks at `H = Gc/(12 l0)`, where c = 3/4. With AT1 the body is elastic up to `H = 3
-//! Gc/(32 l0)`, where the stress peaks, and c is that over H beyond. Constants are in the space and the same
+//! Gc/(32 l0)`, where the stress peaks, and c is that over H beyond. With a cohesive crack the stress peaks at
+//! `H = ft²/(2 E)`, and beyond c is the root of `4 l0 H/Gc g'(c)/2 = 2/π c`. Constants are in the space and the same
 //! sums stand on both sides, so the discrete solution is exact for every degree and layout. The displacement
 //! is imposed on the control points; strain, split, history and degraded stress are those of the solver's own
 //! sweeps, and the stress is the reaction on the right side over its height. The closed form takes its
 //! numbers from the scene, not from the solver. (The reaction of equally spaced points is exact for p up to 2
 //! only; see the patch test.)
+
+use std::f64::consts::FRAC_2_PI;
 
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::degradation::FractureModel;
@@ -25,6 +28,7 @@ use fisura::transfer::sweep::StripForces;
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::case::expand::CaseScene;
+use crate::exact::cohesive::CohesiveLaw;
 use crate::extremes::{larger, largest, smaller};
 use crate::output::history::Table;
 use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind};
@@ -53,11 +57,11 @@ pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, Study
             &scene.name,
             "strain at the peak over closed form",
             peak_strain,
-            exact("H = Gc/(12 l0), or with AT1 3 Gc/(32 l0)"),
+            exact("H = Gc/(12 l0), with AT1 3 Gc/(32 l0), with a cohesive crack ft^2/(2 E)"),
         );
         let strengths = strengths(&scene.scene)?;
         findings.add(&scene.name, STRENGTHS, strengths, None);
-        let source = exact("9/16, or with AT1 all, of M times that strain");
+        let source = exact("9/16 of M times that strain with AT2, else all");
         findings.add(&scene.name, "stress at the peak over closed form", peak_stress, source);
         if findings.series.is_empty() {
             let stem = format!("{}-{}", case.suite, case.name);
@@ -73,7 +77,7 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
     let scene = &case_scene.scene;
     let body = &scene.bodies[0];
     let (material, fracture) = constants(scene)?;
-    let model = FractureModel::new(fracture);
+    let model = FractureModel::of(material).ok_or_else(brittle)?;
     let moduli = ElasticModuli::new(material, scene.analysis.plane);
     let modulus = uniaxial_modulus(material, scene.analysis.plane);
     let drive = match fracture.split {
@@ -84,6 +88,9 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
     let (at_peak, part) = match fracture.model {
         CrackModel::At2 => (unit / 12.0, 9.0 / 16.0),
         CrackModel::At1 => (3.0 * unit / 32.0, 1.0),
+        CrackModel::PfCzm { tensile_strength, .. } => {
+            (0.5 * tensile_strength * tensile_strength / material.young_modulus, 1.0)
+        }
     };
     let peak_strain = (2.0 * at_peak / drive).sqrt();
     let peak_stress = part * modulus * peak_strain;
@@ -114,22 +121,37 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
     for step in 0..=STRAINS {
         let strain = FURTHEST * peak_strain * step as f64 / STRAINS as f64;
         let (phase, stress) = points.strained_by(strain)?;
-        let exact = closed_form(fracture, 0.5 * drive * strain * strain);
+        let exact = closed_form(material, fracture, 0.5 * drive * strain * strain);
         worst = phase.into_iter().map(|c| (c - exact).abs()).fold(worst, larger);
         let k = fracture.residual_stiffness;
-        let degraded = (1.0 - k) * exact * exact + k;
+        let whole = match CohesiveLaw::of(material) {
+            Some(law) => law.degradation(exact)[0],
+            None => exact * exact,
+        };
+        let degraded = (1.0 - k) * whole + k;
         table.push(&[strain / peak_strain, stress / peak_stress, degraded * modulus * strain / peak_stress]);
     }
     Ok((table, worst))
 }
 
-/// `c = 1/(1 + 4 l0 (1 − k) H/Gc)`, or with AT1 `3 Gc/(32 l0 (1 − k) H)` and at most 1.
-fn closed_form(fracture: &Fracture, energy: f64) -> f64 {
+/// `c = 1/(1 + 4 l0 (1 − k) H/Gc)`, or with AT1 `3 Gc/(32 l0 (1 − k) H)` and at most 1; with a cohesive crack
+/// the largest root below 1, by bisection from there on.
+fn closed_form(material: &Material, fracture: &Fracture, energy: f64) -> f64 {
     let Fracture { critical_energy_release_rate, length_scale, residual_stiffness, .. } = fracture;
     let reaction = 4.0 * length_scale * (1.0 - residual_stiffness) * energy / critical_energy_release_rate;
     match fracture.model {
         CrackModel::At2 => 1.0 / (1.0 + reaction),
         CrackModel::At1 => smaller(1.0, 0.375 / reaction),
+        CrackModel::PfCzm { .. } => {
+            let Some(law) = CohesiveLaw::of(material) else { return f64::NAN };
+            let rises = |c: f64| 0.5 * reaction * law.degradation(c)[1] > FRAC_2_PI * c;
+            let (mut low, mut high) = (0.0, 1.0);
+            while rises(1.0) && high - low > 1e-15 {
+                let middle = 0.5 * (low + high);
+                if rises(middle) { high = middle } else { low = middle }
+            }
+            high
+        }
     }
 }
 
@@ -164,10 +186,13 @@ fn strengths(scene: &Scene) -> Result<f64, StudyError> {
     Ok(((drive(-1.0) / drive(1.0)).sqrt() - (compressive / tensile).sqrt()).abs())
 }
 
+fn brittle() -> StudyError {
+    StudyError::Other("the material has no fracture".into())
+}
+
 fn constants(scene: &Scene) -> Result<(&Material, &Fracture), StudyError> {
     let material = &scene.materials[&scene.bodies[0].material];
-    let fracture = material.fracture.as_ref();
-    Ok((material, fracture.ok_or_else(|| StudyError::Other("the material has no fracture".into()))?))
+    Ok((material, material.fracture.as_ref().ok_or_else(brittle)?))
 }
 
 /// Stress over strain in uniaxial strain, Pa: `E (1 − nu)/((1 + nu)(1 − 2 nu))`, and `E/(1 − nu²)` in plane

@@ -45,10 +45,8 @@ impl TotalFrame {
             return Err(Failure::Contradiction(conditions));
         }
         let held = [0, 1].map(|component| constraints.held(component));
-        let fracture = material
-            .fracture
-            .as_ref()
-            .map(|f| LatticeFracture::new(&patch, &lattice, body, FractureModel::new(f), &scene.solver))
+        let fracture = FractureModel::of(material)
+            .map(|model| LatticeFracture::new(&patch, &lattice, body, model, &scene.solver))
             .transpose()?;
         let mass = MassMatrix::new(&lattice, material.density, scene.analysis.mass, held)?;
         if let Some(number) = constraints.conditions().iter().enumerate().position(|(number, condition)| {

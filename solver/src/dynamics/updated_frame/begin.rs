@@ -86,7 +86,7 @@ impl DiscreteField {
         let (patch, origin) = (whole.part(&spans), part::origin(whole, &spans));
         let mut cells = Cells::default();
         cells.sort(&patch, &mut points)?;
-        let crack = |f| PointwiseFracture::new(&patch, body, FractureModel::new(f), &scene.solver, &points);
+        let crack = |model| PointwiseFracture::new(&patch, body, model, &scene.solver, &points);
         let by_spans = analysis.quadrature == Quadrature::Gauss;
         let fixed = |boundary: &&Boundary| by_spans || held_sides::is_fixed(boundary);
         let (fixed, moving): (Vec<_>, Vec<_>) = scene.boundaries.iter().partition(fixed);
@@ -103,7 +103,7 @@ impl DiscreteField {
             by_spans.then(|| SpanQuadrature::new((&scene.mesh, &body.shape), &patch, &nodes, moduli, material.density));
         let finite = analysis.kinematics == Kinematics::Finite && !by_spans;
         Ok(Self {
-            fracture: material.fracture.as_ref().map(crack),
+            fracture: FractureModel::of(material).map(crack),
             spans: spans.flatten().map(Box::new),
             nodes,
             velocity_transfer: VelocityTransfer::new(patch.control_grid(), analysis.transfer),

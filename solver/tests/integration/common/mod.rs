@@ -43,7 +43,7 @@ pub fn moduli() -> ElasticModuli {
 }
 
 pub fn fracture_model() -> FractureModel {
-    FractureModel::new(&brittle())
+    FractureModel::of(&Material { fracture: Some(brittle()), ..glass() }).unwrap()
 }
 
 pub fn rectangle(min: [f64; 2], max: [f64; 2]) -> Shape {

@@ -94,8 +94,8 @@ fn the_stress_follows_from_the_gradient() {
 
 /// g(c) of the solver, 1 without a phase field.
 fn degradation(solution: &dyn ExactSolution, place: [f64; 2], time: f64) -> f64 {
-    let (Some(phase), Some(fracture)) = (solution.phase(), solution.material().fracture) else { return 1.0 };
-    FractureModel::new(&fracture).degradation(Lane::splat(phase.value(place, time))).0[0]
+    let (Some(phase), Some(model)) = (solution.phase(), FractureModel::of(&solution.material())) else { return 1.0 };
+    model.degradation(Lane::splat(phase.value(place, time))).0[0]
 }
 
 fn linear(moduli: &ElasticModuli, [[xx, xy], [yx, yy]]: [[f64; 2]; 2]) -> Matrix2<f64> {

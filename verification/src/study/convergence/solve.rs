@@ -148,12 +148,12 @@ impl<'a> Discrete<'a> {
     }
 
     fn manufactured(&self) -> Arc<Manufactured> {
-        let fracture = self.problem.solution.material().fracture;
+        let model = FractureModel::of(&self.problem.solution.material());
         Arc::new(Manufactured {
             solution: self.problem.solution.clone(),
             loading: self.setup.loading,
             moved: false,
-            diffusion: fracture.map_or(0.0, |f| FractureModel::new(&f).diffusion()),
+            diffusion: model.map_or(0.0, |model| model.diffusion()),
         })
     }
 
@@ -229,9 +229,8 @@ impl<'a> Discrete<'a> {
 
     fn solve_phase_field(&self) -> Result<Vec<f64>, StudyError> {
         let phase = self.problem.solution.phase().ok_or_else(|| other("the solution has no phase field"))?;
-        let fracture = self.problem.solution.material().fracture;
-        let fracture = fracture.ok_or_else(|| other("the material has no fracture"))?;
-        let model = FractureModel::new(&fracture);
+        let model = FractureModel::of(&self.problem.solution.material());
+        let model = model.ok_or_else(|| other("the material has no fracture"))?;
         let lattice = self.frame.lattice();
         let mut history = vec![Lane::ZERO; lattice.batches()];
         lattice.for_each_point(|batch, lane, x, _| history[batch][lane] = phase.history(x, 0.0));

@@ -4,7 +4,7 @@ use fisura::dynamics::body_sample::BodySamples;
 use fisura::dynamics::energy::{ConditionSample, ContactSample, FractureSample, ProbeSample, Sample};
 use fisura::dynamics::total_frame::domain::column;
 use fisura::material::degradation::FractureModel;
-use fisura::scene::{Fracture, Frame, PhaseFieldInterval, Scene};
+use fisura::scene::{Frame, PhaseFieldInterval, Scene};
 
 use super::{EVERYWHERE, Wrong, distinct, find_band, grid_convergence};
 use crate::case::Check;
@@ -219,15 +219,15 @@ fn blank_history(scene: &Scene) -> Table {
     let moving = scene.bodies.iter().filter(|body| !body.rigid);
     let mut materials = moving.filter_map(|body| scene.materials.get(&body.material));
     let lags = scene.solver.phase_field_interval != PhaseFieldInterval::Steps(1);
-    let fracture = |fracture: &Fracture| FractureSample {
+    let fracture = |model: FractureModel| FractureSample {
         energy: 0.0,
-        works: FractureModel::new(fracture).columns_of_work(lags).into_iter().map(|name| (name, 0.0)).collect(),
+        works: model.columns_of_work(lags).into_iter().map(|name| (name, 0.0)).collect(),
         crack_tip: None,
         min_phase: 1.0,
         iterations: 0,
     };
     let sample = Sample {
-        fracture: materials.find_map(|material| material.fracture.as_ref()).map(fracture),
+        fracture: materials.find_map(FractureModel::of).map(fracture),
         contact: scene.contact.is_some().then_some(ContactSample { loss: 0.0, friction: 0.0 }),
         transfer_loss: (scene.analysis.frame == Frame::Updated).then_some(0.0),
         fragments: scene.contact.as_ref().and_then(|contact| contact.fragments.then_some(0)),

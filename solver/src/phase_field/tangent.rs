@@ -1,0 +1,69 @@
+//! Newton's method for a phase field whose equation is not linear in c. With a cohesive crack the residual
+//! and its derivative are
+//!
+//! ```text
+//! r_I(c)  = Σ_p V_p N_I [4 l0 (1 − k) H/Gc s(c) − 2/π c] + 8/π l0² Σ_p V_p grad N_I · grad c
+//! K_IJ(c) = Σ_p V_p N_I N_J [4 l0 (1 − k) H/Gc s'(c) − 2/π] + …
+//! ```
+//!
+//! `− 2/π c²` is concave. Where the bracket of K is small or negative, a part of `2/π` stands for it: K stays
+//! positive definite, and the step is one down the energy. The load is chosen so that `K c − b` is r at the
+//! present c.
+
+use super::PhaseField;
+use super::awake::Awake;
+use crate::linear_algebra::lane::Lane;
+use crate::material::cohesive::Cohesive;
+use crate::particles::lattice::Lattice;
+
+/// Least bracket of K, of `2/π`.
+const LEAST: f64 = 1e-3;
+/// Change of the bracket that is left out of K, of `2/π`. It costs iterations, not accuracy.
+const STALE: f64 = 0.01;
+
+/// State of the linearisation.
+#[derive(Debug, Clone)]
+pub(super) struct Tangent {
+    law: Cohesive,
+    /// Right-hand side of the intact body.
+    rest: Vec<f64>,
+    /// Energies at the points that would give the brackets with a quadratic degradation, J/m³.
+    energies: Vec<Lane>,
+}
+
+impl Tangent {
+    /// Of a body with this right-hand side.
+    pub(super) fn new(law: Cohesive, rest: &[f64], batches: usize) -> Box<Self> {
+        Box::new(Self { law, rest: rest.to_vec(), energies: vec![Lane::ZERO; batches] })
+    }
+
+    /// Heap memory, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        8 * self.rest.len() + size_of::<Lane>() * self.energies.len()
+    }
+}
+
+impl PhaseField {
+    /// Assembles K and b at the present c in the cells that are awake.
+    pub(super) fn linearise(&mut self, tangent: &mut Tangent, lattice: &Lattice, drive: &[Lane], awake: &Awake) {
+        let (reaction, source) = (self.model.reaction_per_energy(), self.model.source());
+        let span = lattice.points_per_span();
+        let control_values = lattice.with_copies(self.phase.clone());
+        let cells: Vec<usize> = (0..lattice.cells()).filter(|&cell| awake.is_assembled(cell)).collect();
+        let batches = || cells.iter().flat_map(|cell| cell * span..(cell + 1) * span);
+        let phase: Vec<Lane> = batches().map(|batch| lattice.interpolate(batch, &control_values).0).collect();
+        for (batch, c) in batches().zip(&phase) {
+            let bracket = tangent.law.curvature(*c) * drive[batch] * (0.5 * reaction) - Lane::splat(source);
+            tangent.energies[batch] = bracket.at_least(Lane::splat(LEAST * source)) * (1.0 / reaction);
+        }
+        self.assemble_increments(lattice, &tangent.energies, STALE * source / reaction, |cell| awake.is_assembled(cell));
+        let mut load = lattice.grid.zeros();
+        for (batch, c) in batches().zip(&phase) {
+            let local = self.model.half_slope(*c) * drive[batch] * reaction - *c * source;
+            let density = self.assembled[batch] * *c * reaction - local - Lane::splat(source);
+            lattice.add_density(batch, density, &mut load);
+        }
+        self.load = lattice.onto_patch(load);
+        self.load.iter_mut().zip(&tangent.rest).for_each(|(load, rest)| *load += rest);
+    }
+}

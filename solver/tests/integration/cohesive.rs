@@ -1,0 +1,203 @@
+//! Cohesive cracks: strength, stability at the onset, where damage is the least energy, the ledger, what is
+//! refused.
+
+use fisura::Simulation;
+use fisura::linear_algebra::lane::Lane;
+use fisura::material::degradation::FractureModel;
+use fisura::material::elasticity::ElasticModuli;
+use fisura::material::split::driving_energy;
+use fisura::particles::lattice::Lattice;
+use fisura::phase_field::PhaseField;
+use fisura::scene::*;
+use fisura::splines::patch::Patch;
+use fisura::validate::validate;
+
+use crate::at1::cost_on_a_line;
+use crate::common::{brittle, elastic_scene, notched_plate, relative_closure, run};
+
+const L0: f64 = 0.25e-3;
+const SOFTENINGS: [Softening; 3] = [Softening::Linear, Softening::Exponential, Softening::Cornelissen];
+
+/// Makes a scene cohesive, with seeds by the bound; a1 = 4.35 at 7.5 MPa.
+fn make_cohesive(scene: &mut Scene, tensile_strength: f64, softening: Softening, split: Split) {
+    let model = CrackModel::PfCzm { tensile_strength, softening };
+    scene.materials.get_mut("glass").unwrap().fracture = Some(Fracture { model, split, ..brittle() });
+    let seeds = scene.bodies[0].cracks.iter_mut().filter(|crack| crack.kind != CrackKind::Slit);
+    seeds.for_each(|crack| crack.kind = CrackKind::Seed(None));
+}
+
+fn cracking(softening: Softening, split: Split) -> Scene {
+    let mut scene = notched_plate(4e6);
+    make_cohesive(&mut scene, 7.5e6, softening, split);
+    scene.analysis.end_time = 8e-6;
+    scene
+}
+
+fn surface_energy(scene: &Scene) -> f64 {
+    Simulation::new(scene).expect("the scene starts").sample().fracture.unwrap().energy
+}
+
+/// In the limit d = 1 − sin(|x|/b), which costs Gc.
+#[test]
+fn a_seed_costs_what_it_costs_on_a_line_and_in_the_limit_gc() {
+    for (degree, place) in [(1, 0.0), (1, 0.4), (2, 0.0), (2, 0.5), (3, 0.0), (3, 0.3), (4, 0.5)] {
+        let cost = |spans_of_l0: f64| {
+            let h = L0 / spans_of_l0;
+            let columns = (24.0 * spans_of_l0) as usize;
+            let size = [columns as f64 * h, 4.0 * h];
+            let mut scene = elastic_scene(degree, size, [columns, 4]);
+            let x = ((columns / 2) as f64 + place) * h;
+            scene.bodies[0].cracks = vec![Crack::seed([x, 0.0], [x, size[1]])];
+            make_cohesive(&mut scene, 7.5e6, Softening::Linear, Split::Rankine);
+            scene.bodies[0].particles_per_cell = [degree + 1; 2];
+            let cost = surface_energy(&scene) / (3.0 * size[1]);
+            let on_line = cost_on_a_line(degree, &scene.mesh.knots[0], x, std::f64::consts::FRAC_1_PI, 2.0);
+            assert!((cost - on_line).abs() < 1e-6, "p = {degree}, {spans_of_l0}, {place}: {cost} and {on_line}");
+            cost - 1.0
+        };
+        let costs = [4.0, 8.0].map(cost);
+        let order = (costs[0] / costs[1]).log2();
+        let expected = if (degree, place) == (1, 0.0) { 2.0 } else { 1.0 };
+        assert!((order - expected).abs() < 0.1 && costs[1] > 0.0, "p = {degree}, {place}: {costs:?}, order {order}");
+    }
+}
+
+/// c of a body under the same driving energy everywhere, of its threshold, step by step.
+fn uniform_phase(softening: Softening, strength: f64, loads: &[f64]) -> Vec<f64> {
+    let mut scene = elastic_scene(2, [4e-3, 1e-3], [8, 2]);
+    scene.solver.phase_field_tolerance = 1e-12;
+    make_cohesive(&mut scene, strength, softening, Split::Rankine);
+    let model = FractureModel::of(&scene.materials["glass"]).unwrap();
+    let lattice = Lattice::new(&Patch::new(&scene.mesh), &scene.bodies[0]);
+    let mut field = PhaseField::new(&lattice, model, &scene.solver);
+    let threshold = model.threshold().unwrap();
+    let step = |load: &f64| {
+        field.solve(&lattice, &vec![Lane::splat(load * threshold); lattice.batches()]).expect("solved");
+        let values = lattice.patch_grid.indices().map(|at| field.control_values()[at]);
+        let (low, high) = values.fold((1.0_f64, 0.0_f64), |(low, high), c| (low.min(c), high.max(c)));
+        assert!(high - low < 1e-9, "{softening:?} under {load} is not uniform: {low} to {high}");
+        low
+    };
+    loads.iter().map(step).collect()
+}
+
+/// The least a1 of a stable onset is where a driving energy of 1.001 times the threshold changes from a small
+/// damage to a large one.
+#[test]
+fn a_uniform_state_jumps_at_its_onset_below_the_least_brittleness() {
+    for softening in SOFTENINGS {
+        let strength = |a1: f64| (std::f64::consts::FRAC_2_PI * 32e9 * 3.0 / (L0 * a1)).sqrt();
+        let law = fisura::material::cohesive::Cohesive::new(softening, 1.0);
+        let jump = |a1: f64| 1.0 - uniform_phase(softening, strength(a1), &[0.5, 0.999, 1.001])[2];
+        let least = law.stable_from();
+        let [below, above] = [0.9, 1.1].map(|factor| jump(factor * least));
+        assert!(below > 0.05 && above < 0.005, "{softening:?}: damage {below} below a1 = {least}, {above} above");
+        let intact = uniform_phase(softening, strength(1.1 * least), &[0.5, 0.999, 0.3]);
+        assert!(intact.iter().all(|c| *c == 1.0), "{intact:?}");
+    }
+}
+
+/// Where c is free its equation holds; where it rests on what it was, the residual holds it there.
+#[test]
+fn damage_is_the_least_energy_between_its_bounds() {
+    for (softening, split, degree) in [
+        (Softening::Linear, Split::Rankine, 2),
+        (Softening::Exponential, Split::Spectral, 3),
+        (Softening::Cornelissen, Split::StarConvex(2.0), 2),
+    ] {
+        let mut scene = cracking(softening, split);
+        scene.mesh = Mesh::uniform([degree; 2], [0.0; 2], [0.01, 0.005], [48, 24]);
+        let (simulation, samples) = run(&scene);
+        let frame = simulation.total_frame().unwrap();
+        let (fracture, lattice) = (frame.fracture.as_ref().unwrap(), frame.lattice());
+        let model = fracture.model;
+        let c = fracture.field.control_values();
+        let mut residual = vec![0.0; lattice.patch_grid.zeros().len()];
+        let moduli = ElasticModuli::new(&scene.materials["glass"], Plane::Strain);
+        let b = 2.0 * L0;
+        lattice.for_each_point(|batch, lane, _, weight| {
+            let [x, y] = frame.displacement().each_ref().map(|u| lattice.interpolate(batch, u).1);
+            let strain = [x[0], y[1], (x[1] + y[0]) * 0.5];
+            let drive = driving_energy(&moduli, split, strain).at_least(Lane::ZERO)[lane];
+            let (phase, slope) = lattice.interpolate(batch, c);
+            let step = 1e-6;
+            let g = |c: f64| model.degradation(Lane::splat(c))[0];
+            let d_g = (g(phase[lane] + step) - g(phase[lane] - step)) / (2.0 * step);
+            let surface = 3.0 / std::f64::consts::PI; // Gc/π
+            let functions = frame.lattice().shape_functions(batch);
+            let grid = lattice.patch_grid;
+            let first = c_index(lattice, batch, lane);
+            for n in 0..(degree + 1) * (degree + 1) {
+                let at = grid.index(first[0] + n % (degree + 1), first[1] + n / (degree + 1));
+                let gradient = functions.gradient[n];
+                residual[at] += weight
+                    * (functions.value[n][lane] * (d_g * drive - 2.0 * surface * phase[lane] / b)
+                        + 2.0 * surface * b * (gradient[0][lane] * slope[0][lane] + gradient[1][lane] * slope[1][lane]));
+            }
+        });
+        let volume = (0.01 / 48.0) * (0.005 / 24.0) * 3.0 / b; // of a function, in the unit of the residual
+        let (mut damaged, mut free, mut between) = (0, 0, 0);
+        for at in lattice.patch_grid.indices() {
+            let r = residual[at] / volume;
+            assert!((0.0..=1.0).contains(&c[at]), "c = {}", c[at]);
+            assert!(r < 1e-5 || c[at] == 0.0, "{softening:?}: residual {r:e} where c = {}", c[at]);
+            damaged += usize::from(c[at] < 1.0);
+            free += usize::from(r.abs() < 1e-5);
+            between += usize::from(c[at] < 0.98 && c[at] > 0.02 && r.abs() < 1e-5);
+        }
+        assert!(damaged > 100 && free > 20 && between > 3, "{softening:?}: {damaged} damaged, {free} free, {between}");
+        let energy = |at: usize| samples[at].fracture.as_ref().unwrap().energy;
+        assert!(energy(samples.len() - 1) > 1.2 * energy(0), "{softening:?}: it cracks");
+    }
+}
+
+/// Column and row of the first function at a point.
+fn c_index(lattice: &Lattice, batch: usize, lane: usize) -> [usize; 2] {
+    let (row, tile, ..) = lattice.unbatch(batch);
+    [lattice.tiles[tile].first + lane, lattice.rows[row].first]
+}
+
+#[test]
+fn the_ledger_closes_with_the_square_of_the_step() {
+    for (softening, split) in [
+        (Softening::Linear, Split::Rankine),
+        (Softening::Cornelissen, Split::Spectral),
+        (Softening::Exponential, Split::StarConvex(3.0)),
+    ] {
+        let closure = |safety: f64| {
+            let mut scene = cracking(softening, split);
+            scene.analysis.safety = safety;
+            let (_, samples) = run(&scene);
+            let end = samples.last().unwrap().fracture.clone().unwrap();
+            assert!(end.energy > 1.2 * samples[0].fracture.as_ref().unwrap().energy, "{split:?}: it cracks");
+            let columns: Vec<_> = end.works.iter().map(|(name, _)| *name).collect();
+            let expected = ["driving_work_j", "phase_field_bounds_j"];
+            assert_eq!(columns, expected[usize::from(split == Split::Spectral)..], "{split:?}");
+            relative_closure(&samples)
+        };
+        let [coarse, fine] = [0.8, 0.4].map(closure);
+        assert!(coarse < 5e-4 && fine < 0.4 * coarse, "{split:?}: {coarse:e}, {fine:e} with half the step");
+    }
+}
+
+#[test]
+fn what_does_not_combine_is_refused() {
+    let found = |strength: f64, change: fn(&mut Scene)| {
+        let mut scene = cracking(Softening::Linear, Split::Rankine);
+        make_cohesive(&mut scene, strength, Softening::Linear, Split::Rankine);
+        change(&mut scene);
+        let checked = validate(&scene);
+        let warned = checked.as_ref().map(|warnings| warnings.iter().any(|w| w.message.contains("jumps")));
+        (checked.as_ref().err().map_or_else(Vec::new, |e| e.iter().map(|e| e.key.clone()).collect()), warned.unwrap_or(false))
+    };
+    assert_eq!(found(7.5e6, |_| ()), (vec![], false));
+    assert_eq!(found(12e6, |_| ()), (vec![], true), "a1 = 1.70");
+    assert_eq!(found(13e6, |_| ()).0, ["material.glass.fracture.length_scale"], "a1 = 1.45");
+    assert_eq!(found(-1.0, |_| ()).0, ["material.glass.fracture.tensile_strength"]);
+    let updated = |scene: &mut Scene| scene.analysis.frame = Frame::Updated;
+    assert_eq!(found(7.5e6, updated).0, ["material.glass.fracture.model"]);
+    let interval = |s: &mut Scene| s.solver.phase_field_interval = PhaseFieldInterval::Steps(3);
+    assert_eq!(found(7.5e6, interval).0, ["solver.phase_field_interval"]);
+    let wide = |s: &mut Scene| s.bodies[0].cracks[0].kind = CrackKind::Seed(Some(1e-4));
+    assert_eq!(found(7.5e6, wide).0, ["body.0.crack.0.half_width"]);
+}

@@ -1,0 +1,186 @@
+//! A cohesive crack in a bar that is pulled apart slowly, against its law of softening (Wu 2017).
+//!
+//! The stress s of a slender bar is the same everywhere, and its length grows by u. With the phase field c of
+//! the solver s = E u/∫ 1/g dx, which drives by H = s²/(2 E g²): both are solved for in turn until s stays. The
+//! opening is w = u − s L/E. The law is that of the [localised solution](crate::exact::cohesive). Near the
+//! middle d falls by |x|/b; a stress that belongs to d* nearer to 1 than 2 h/b is not resolved by spans.
+
+use fisura::linear_algebra::lane::{LANES, Lane};
+use fisura::material::degradation::FractureModel;
+use fisura::particles::lattice::Lattice;
+use fisura::phase_field::PhaseField;
+use fisura::scene::{CrackModel, Fracture, Material};
+use fisura::splines::patch::Patch;
+
+use super::{Findings, Offered, Offers, StudyError};
+use crate::case::Case;
+use crate::case::expand::CaseScene;
+use crate::exact::cohesive::CohesiveLaw;
+use crate::extremes::{larger, largest};
+use crate::output::history::Table;
+use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind};
+
+const STRENGTH: &str = "largest stress over the strength";
+const ERROR: &str = "stress, largest difference from the law over the strength, where spans resolve it";
+const ENERGY: &str = "surface energy of the broken bar over Gc";
+
+/// Number of elongations: damage that an iteration makes too large stays, so they are small. Every so many
+/// are a row.
+const STEPS: usize = 400;
+const ROW: usize = 4;
+/// By how much the middle is driven more, so that the crack has a place: half of that of the strength.
+const IMPERFECTION: f64 = 0.01;
+/// Least opening at which stresses are compared, of Gc/ft.
+const OPEN: f64 = 0.02;
+/// Change of the stress that ends the iterations, over the strength; and most of them.
+const SETTLED: f64 = 1e-6;
+const MOST_ITERATIONS: usize = 3000;
+
+pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> Offered {
+    Ok(Offers::of_scenes(scenes, &[STRENGTH, ENERGY], &[ERROR]))
+}
+
+pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
+    let mut findings = Findings::default();
+    for scene in scenes {
+        let bar = Bar::new(scene)?;
+        let Pulled { table, strength, energy } = bar.pull()?;
+        let [openings, stresses, law] = [0, 1, 2].map(|column| table.columns[column].iter().copied());
+        let exact = |what: &str| Some(Reference::new(Some(1.0), ReferenceKind::Exact, what));
+        findings.add(&scene.name, STRENGTH, strength, exact("the tensile strength"));
+        let resolved = bar.law.stress(1.0 - bar.span / bar.fracture.length_scale);
+        let rows = openings.zip(stresses.zip(law)).filter(|(opening, (_, law))| *opening > OPEN && *law > resolved);
+        findings.add(&scene.name, ERROR, largest(rows.map(|(_, (found, law))| (found - law).abs())), None);
+        findings.add(&scene.name, ENERGY, energy, exact("a cohesive crack in the limit of small spans"));
+        let stem = format!("{}-{}-{}", case.suite, case.name, findings.series.len());
+        if findings.series.is_empty() {
+            findings.figures.push(figure(case, &stem));
+        }
+        findings.series.push((stem, table));
+    }
+    Ok(findings)
+}
+
+/// A bar along x.
+struct Bar<'a> {
+    scene: &'a CaseScene,
+    material: &'a Material,
+    fracture: &'a Fracture,
+    strength: f64,
+    law: CohesiveLaw,
+    length: f64,
+    height: f64,
+    span: f64,
+}
+
+/// What is found.
+struct Pulled {
+    /// Opening over Gc/ft, stress and law over ft.
+    table: Table,
+    /// Largest stress over ft.
+    strength: f64,
+    /// Surface energy at the end, over Gc.
+    energy: f64,
+}
+
+impl<'a> Bar<'a> {
+    fn new(scene: &'a CaseScene) -> Result<Self, StudyError> {
+        let body = &scene.scene.bodies[0];
+        let material = &scene.scene.materials[&body.material];
+        let other = |message: &str| StudyError::Other(message.into());
+        let fracture = material.fracture.as_ref().ok_or_else(|| other("the material has no fracture"))?;
+        let CrackModel::PfCzm { tensile_strength, .. } = fracture.model else {
+            return Err(other("the study is of model = \"pf-czm\""));
+        };
+        let law = CohesiveLaw::of(material).ok_or_else(|| other("the material has no fracture"))?;
+        let (low, high) = body.shape.bounding_box();
+        let [length, height] = [0, 1].map(|d| high[d] - low[d]);
+        let span = scene.scene.mesh.knots[0][1] - scene.scene.mesh.knots[0][0];
+        Ok(Self { scene, material, fracture, strength: tensile_strength, law, length, height, span })
+    }
+
+    fn pull(&self) -> Result<Pulled, StudyError> {
+        let scene = &self.scene.scene;
+        let lattice = Lattice::new(&Patch::new(&scene.mesh), &scene.bodies[0]);
+        let model = FractureModel::of(self.material);
+        let model = model.ok_or_else(|| StudyError::Other("the material has no fracture".into()))?;
+        let mut field = PhaseField::new(&lattice, model, &scene.solver);
+        let mut history = vec![Lane::ZERO; lattice.batches()];
+        let unit = self.fracture.critical_energy_release_rate / self.strength;
+        let curve = self.law.softening();
+        let mut table = Table::new(&["opening_over_unit", "stress_over_strength", "law"]);
+        let elastic = self.strength * self.length / self.material.young_modulus;
+        let mut strength = 0.0;
+        for step in 0..=STEPS {
+            let part = step as f64 / STEPS as f64;
+            let elongation = 0.97 * elastic + (self.law.furthest() * unit - 0.97 * elastic) * part * part;
+            let mut stress = f64::NAN;
+            for _ in 0..MOST_ITERATIONS {
+                let before = stress;
+                stress = self.material.young_modulus * elongation / self.compliance(&lattice, &field, &model);
+                if (stress - before).abs() <= SETTLED * self.strength {
+                    break;
+                }
+                self.drive(&lattice, &field, &model, stress, &mut history);
+                field.solve(&lattice, &history).map_err(|error| StudyError::Other(error.to_string()))?;
+            }
+            strength = larger(strength, stress / self.strength);
+            let opening = (elongation - stress * self.length / self.material.young_modulus) / unit;
+            if step % ROW == 0 {
+                table.push(&[opening, stress / self.strength, interpolated(&curve, opening)]);
+            }
+        }
+        let mut energy = 0.0;
+        lattice.for_each_point(|batch, lane, _, weight| {
+            let (phase, slope) = lattice.interpolate(batch, field.control_values());
+            energy += weight * model.surface_energy(phase, slope)[lane];
+        });
+        energy /= self.fracture.critical_energy_release_rate * self.height;
+        Ok(Pulled { table, strength, energy })
+    }
+
+    /// ∫ 1/g dx, m.
+    fn compliance(&self, lattice: &Lattice, field: &PhaseField, model: &FractureModel) -> f64 {
+        let mut sum = 0.0;
+        for batch in 0..lattice.batches() {
+            let g = model.degradation(lattice.interpolate(batch, field.control_values()).0);
+            let weight = lattice.weights_of(batch);
+            sum += (0..LANES).filter(|&lane| weight[lane] > 0.0).map(|lane| weight[lane] / g[lane]).sum::<f64>();
+        }
+        sum / self.height
+    }
+
+    fn drive(&self, lattice: &Lattice, field: &PhaseField, model: &FractureModel, stress: f64, history: &mut [Lane]) {
+        let at_rest = 0.5 * stress * stress / self.material.young_modulus;
+        lattice.for_each_point(|batch, lane, [x, _], _| {
+            let g = model.degradation(lattice.interpolate(batch, field.control_values()).0)[lane];
+            let from_middle = (x - 0.5 * self.length) / (2.0 * self.fracture.length_scale);
+            history[batch][lane] = at_rest / (g * g) * (1.0 + IMPERFECTION * (-from_middle * from_middle).exp());
+        });
+    }
+}
+
+/// Stress over ft at an opening.
+fn interpolated(curve: &[[f64; 2]], opening: f64) -> f64 {
+    let at = curve.partition_point(|[w, _]| *w < opening);
+    match (at.checked_sub(1).and_then(|below| curve.get(below)), curve.get(at)) {
+        (Some([w0, s0]), Some([w1, s1])) => s0 + (s1 - s0) * (opening - w0) / (w1 - w0),
+        (None, _) => 1.0,
+        (_, None) => larger(0.0, curve[curve.len() - 1][1]),
+    }
+}
+
+fn figure(case: &Case, stem: &str) -> Figure {
+    let curve = |label: &str, column: &str, style| Curve {
+        style,
+        ..Curve::line(label, &format!("series/{stem}.csv"), ["opening_over_unit", column])
+    };
+    let axes = ["opening over Gc/ft", "stress over ft"].map(Axis::linear);
+    let curves = vec![
+        curve("law of softening", "law", CurveStyle::Reference),
+        curve("phase field", "stress_over_strength", CurveStyle::Markers),
+    ];
+    let caption = "Stress over the strength against the opening of a cohesive crack in a slender bar.";
+    let words = [stem, "Cohesive crack in a bar", caption];
+    Figure::new(&case.suite, words, FigureBody::chart(axes, curves, Vec::new()))
+}
