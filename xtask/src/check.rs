@@ -310,7 +310,9 @@ fn words(fracture: &Fracture) -> String {
     let model = match fracture.model {
         CrackModel::At2 => "AT2".to_string(),
         CrackModel::At1 => "AT1".to_string(),
-        CrackModel::PfCzm { softening, .. } => format!("PF-CZM with {} softening", format!("{softening:?}").to_lowercase()),
+        CrackModel::PfCzm { softening, .. } => {
+            format!("PF-CZM with {} softening", format!("{softening:?}").to_lowercase())
+        }
     };
     match fracture.split {
         Split::Spectral => format!("{model}, spectral split"),

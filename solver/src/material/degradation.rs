@@ -177,9 +177,10 @@ impl FractureModel {
         let (local, unit) = match self.law {
             CrackLaw::At2 => (broken * broken, toughness),
             CrackLaw::At1 => (broken, fault!("at1-surface-unscaled", 0.75 => 1.0) * toughness),
-            CrackLaw::Cohesive(_) => {
-                (broken * (fault!("cohesive-surface-linear", phase => Lane::ZERO) + Lane::splat(1.0)), FRAC_2_PI * toughness)
-            }
+            CrackLaw::Cohesive(_) => (
+                broken * (fault!("cohesive-surface-linear", phase => Lane::ZERO) + Lane::splat(1.0)),
+                FRAC_2_PI * toughness,
+            ),
         };
         local * (unit / (fault!("surface-energy-doubled", 4.0 => 2.0) * length_scale))
             + (gx * gx + gy * gy) * (unit * length_scale)

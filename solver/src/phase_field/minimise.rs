@@ -29,8 +29,9 @@ const MOST_HALVINGS: usize = 20;
 /// Largest change of a value by a step of Newton's method: between two stationary states lies one that is not
 /// the least.
 const MOST_CHANGE: f64 = 0.2;
-/// Square of a step of Newton's method that is the last one, of the tolerance: what it leaves is far smaller.
-const STEP_IN_TOLERANCE: f64 = 0.1;
+/// Tolerance over the last step of Newton's method, squared. A step leaves its square, and what is stale of K, a
+/// thousandth, of it.
+const STEP_IN_TOLERANCE: f64 = 1e-3;
 /// What is lost of a residual in its sum, of the diagonal.
 const ROUNDING: f64 = 10.0 * f64::EPSILON;
 /// Distance of a value from a bound that counts as none: a few roundings of values up to 1. A free value so

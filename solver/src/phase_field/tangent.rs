@@ -10,6 +10,8 @@
 //! positive definite, and the step is one down the energy. The load is chosen so that `K c − b` is r at the
 //! present c.
 
+use rayon::prelude::*;
+
 use super::PhaseField;
 use super::awake::Awake;
 use crate::linear_algebra::lane::Lane;
@@ -19,7 +21,7 @@ use crate::particles::lattice::Lattice;
 /// Least bracket of K, of `2/π`.
 const LEAST: f64 = 1e-3;
 /// Change of the bracket that is left out of K, of `2/π`. It costs iterations, not accuracy.
-const STALE: f64 = 0.01;
+const STALE: f64 = 1e-3;
 
 /// State of the linearisation.
 #[derive(Debug, Clone)]
@@ -50,18 +52,24 @@ impl PhaseField {
         let span = lattice.points_per_span();
         let control_values = lattice.with_copies(self.phase.clone());
         let cells: Vec<usize> = (0..lattice.cells()).filter(|&cell| awake.is_assembled(cell)).collect();
-        let batches = || cells.iter().flat_map(|cell| cell * span..(cell + 1) * span);
-        let phase: Vec<Lane> = batches().map(|batch| lattice.interpolate(batch, &control_values).0).collect();
-        for (batch, c) in batches().zip(&phase) {
-            let bracket = tangent.law.curvature(*c) * drive[batch] * (0.5 * reaction) - Lane::splat(source);
-            tangent.energies[batch] = bracket.at_least(Lane::splat(LEAST * source)) * (1.0 / reaction);
+        let batches: Vec<usize> = cells.iter().flat_map(|cell| cell * span..(cell + 1) * span).collect();
+        let of_batch = |batch: &usize| {
+            let c = lattice.value(*batch, &control_values);
+            let force = drive[*batch] * reaction;
+            let bracket = tangent.law.curvature(c) * force * 0.5 - Lane::splat(source);
+            let local = self.model.half_slope(c) * force - c * source;
+            (c, local, bracket.at_least(Lane::splat(LEAST * source)) * (1.0 / reaction))
+        };
+        let states: Vec<_> = batches.par_iter().with_min_len(64).map(of_batch).collect();
+        for (batch, (_, _, energy)) in batches.iter().zip(&states) {
+            tangent.energies[*batch] = *energy;
         }
-        self.assemble_increments(lattice, &tangent.energies, STALE * source / reaction, |cell| awake.is_assembled(cell));
+        self.assemble_increments(lattice, &tangent.energies, STALE * source / reaction, |cell| {
+            awake.is_assembled(cell)
+        });
         let mut load = lattice.grid.zeros();
-        for (batch, c) in batches().zip(&phase) {
-            let local = self.model.half_slope(*c) * drive[batch] * reaction - *c * source;
-            let density = self.assembled[batch] * *c * reaction - local - Lane::splat(source);
-            lattice.add_density(batch, density, &mut load);
+        for (batch, (c, local, _)) in batches.into_iter().zip(states) {
+            lattice.add_density(batch, self.assembled[batch] * c * reaction - local - Lane::splat(source), &mut load);
         }
         self.load = lattice.onto_patch(load);
         self.load.iter_mut().zip(&tangent.rest).for_each(|(load, rest)| *load += rest);

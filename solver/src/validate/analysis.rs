@@ -6,8 +6,7 @@ use super::material::plausible_speed;
 use super::output;
 use crate::linear_algebra::extremes::larger;
 use crate::scene::{
-    Body, Contact, Frame, Kinematics, Mass, PhaseFieldInterval, Quadrature, Scene, Shape, Side, TimeStep,
-    Transfer,
+    Body, Contact, Frame, Kinematics, Mass, PhaseFieldInterval, Quadrature, Scene, Shape, Side, TimeStep, Transfer,
 };
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;

@@ -159,7 +159,8 @@ fn cohesive(key: &str, fracture: &Fracture, young_modulus: f64, findings: &mut F
     let longest = |a1_at_least: f64| fracture.length_scale * a1 / a1_at_least;
     let law = Cohesive::new(softening, a1);
     if a1 < LEAST_BRITTLENESS {
-        let message = format!("l0 is {} m, but the strength is reached only up to 4/(3 pi) E Gc/ft^2", fracture.length_scale);
+        let message =
+            format!("l0 is {} m, but the strength is reached only up to 4/(3 pi) E Gc/ft^2", fracture.length_scale);
         let remedy = format!("give l0 of at most {:.4e} m, or a lower tensile_strength", longest(LEAST_BRITTLENESS));
         findings.error(format!("{key}.length_scale"), message, remedy);
     } else if a1 < law.stable_from() {

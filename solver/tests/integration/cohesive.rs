@@ -132,7 +132,10 @@ fn damage_is_the_least_energy_between_its_bounds() {
                 let gradient = functions.gradient[n];
                 residual[at] += weight
                     * (functions.value[n][lane] * (d_g * drive - 2.0 * surface * phase[lane] / b)
-                        + 2.0 * surface * b * (gradient[0][lane] * slope[0][lane] + gradient[1][lane] * slope[1][lane]));
+                        + 2.0
+                            * surface
+                            * b
+                            * (gradient[0][lane] * slope[0][lane] + gradient[1][lane] * slope[1][lane]));
             }
         });
         let volume = (0.01 / 48.0) * (0.005 / 24.0) * 3.0 / b; // of a function, in the unit of the residual
@@ -188,7 +191,10 @@ fn what_does_not_combine_is_refused() {
         change(&mut scene);
         let checked = validate(&scene);
         let warned = checked.as_ref().map(|warnings| warnings.iter().any(|w| w.message.contains("jumps")));
-        (checked.as_ref().err().map_or_else(Vec::new, |e| e.iter().map(|e| e.key.clone()).collect()), warned.unwrap_or(false))
+        (
+            checked.as_ref().err().map_or_else(Vec::new, |e| e.iter().map(|e| e.key.clone()).collect()),
+            warned.unwrap_or(false),
+        )
     };
     assert_eq!(found(7.5e6, |_| ()), (vec![], false));
     assert_eq!(found(12e6, |_| ()), (vec![], true), "a1 = 1.70");

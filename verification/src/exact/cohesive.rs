@@ -86,7 +86,9 @@ impl CohesiveLaw {
             let opening = 8.0 / (PI * a1) * squared.sqrt() * (0..INTEGRAL).map(integrand).sum::<f64>();
             [opening, squared.sqrt()]
         };
-        (0..CURVE).map(|n| if n == 0 { [0.0, 1.0] } else { of(1.0 - (1.0 - n as f64 / CURVE as f64).powi(2)) }).collect()
+        (0..CURVE)
+            .map(|n| if n == 0 { [0.0, 1.0] } else { of(1.0 - (1.0 - n as f64 / CURVE as f64).powi(2)) })
+            .collect()
     }
 }
 

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use fisura::scene::time::TimeFactor;
 use fisura::scene::{
-    Body, Crack, CrackKind, CrackModel, Edge, Fracture, Layout, Load, Material, Shape, Softening, Split,
-    Traction,
+    Body, Crack, CrackKind, CrackModel, Edge, Fracture, Layout, Load, Material, Shape, Softening, Split, Traction,
 };
 
 use super::document::join;

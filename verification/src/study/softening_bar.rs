@@ -95,7 +95,7 @@ impl<'a> Bar<'a> {
         let law = CohesiveLaw::of(material).ok_or_else(|| other("the material has no fracture"))?;
         let (low, high) = body.shape.bounding_box();
         let [length, height] = [0, 1].map(|d| high[d] - low[d]);
-        let span = scene.scene.mesh.knots[0][1] - scene.scene.mesh.knots[0][0];
+        let span = largest(scene.scene.mesh.knots[0].windows(2).map(|ends| ends[1] - ends[0]));
         Ok(Self { scene, material, fracture, strength: tensile_strength, law, length, height, span })
     }
 

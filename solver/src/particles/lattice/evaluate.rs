@@ -38,6 +38,30 @@ impl Lattice {
         functions
     }
 
+    /// Calls `f` with every function (k, l) of the span of a batch and its values.
+    #[inline(always)]
+    pub(super) fn for_each_value(&self, batch: usize, mut f: impl FnMut(usize, usize, Lane)) {
+        let [kx, ky] = self.degree.map(|p| p + 1);
+        let functions = || (0..ky).flat_map(move |l| (0..kx).map(move |k| (k, l)));
+        if let Some(CutBatch { value: [x, y], .. }) = self.cut_batch(batch) {
+            functions().for_each(|(k, l)| f(k, l, x[k] * y[l]));
+        } else if self.mapping.is_some() {
+            let values = self.shape_functions(batch).value;
+            functions().for_each(|(k, l)| f(k, l, values[l * kx + k]));
+        } else {
+            let (row, tile, b, a) = self.unbatch(batch);
+            let (x, y) = (&self.tiles[tile].value[a * kx..], &self.rows[row].value[b]);
+            functions().for_each(|(k, l)| f(k, l, x[k] * y[l]));
+        }
+    }
+
+    /// Values of a field of control values at a batch of points.
+    pub(crate) fn value(&self, batch: usize, field: &[f64]) -> Lane {
+        let mut sum = Lane::ZERO;
+        self.for_each_value(batch, |k, l, value| sum += value * self.control_values(batch, k, l, field));
+        sum
+    }
+
     /// Value and gradient of a field of control values at a batch of points.
     pub fn interpolate(&self, batch: usize, field: &[f64]) -> (Lane, [Lane; 2]) {
         let functions = self.shape_functions(batch);

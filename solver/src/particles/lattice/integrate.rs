@@ -53,11 +53,8 @@ impl Lattice {
 
     /// Adds `V_p f_p N_I(x_p)` of a density at the points of a batch to a field.
     pub(crate) fn add_density(&self, batch: usize, density: Lane, field: &mut [f64]) {
-        let (functions, weighted) = (self.shape_functions(batch), density * self.weights_of(batch));
-        let [kx, ky] = self.degree.map(|p| p + 1);
-        for (l, k) in (0..ky).flat_map(|l| (0..kx).map(move |k| (l, k))) {
-            self.add_to_control_values(batch, k, l, weighted * functions.value[l * kx + k], field);
-        }
+        let weighted = density * self.weights_of(batch);
+        self.for_each_value(batch, |k, l, value| self.add_to_control_values(batch, k, l, weighted * value, field));
     }
 
     /// Adds to the control values of function (k, l) of the span of each point of a batch.
