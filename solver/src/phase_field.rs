@@ -10,7 +10,7 @@
 //! added (delta assembly). An increment too small to move c by a hundredth of the tolerance anywhere waits.
 //!
 //! AT1 has other coefficients (`material/degradation.rs`), and bounds in place of a history
-//! (`phase_field/minimise.rs`). With a cohesive crack the equation is not linear (`phase_field/tangent.rs`).
+//! (`phase_field/minimise.rs`). With a cohesive crack the equation is not linear (`phase_field/newton.rs`).
 //!
 //! # The tolerance
 //!
@@ -35,8 +35,8 @@ mod increments;
 mod lag;
 mod method;
 mod minimise;
+mod newton;
 mod state;
-mod tangent;
 
 use serde::{Deserialize, Serialize};
 

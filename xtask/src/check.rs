@@ -323,9 +323,9 @@ fn words(fracture: &Fracture) -> String {
     }
 }
 
-/// Largest stress of a uniform bar (Pa), as if all of its energy drove: `9/16 √(E Gc/(6 l0))`, with AT1 `√(3 E
-/// Gc/(16 l0))`, with a cohesive crack `ft √(E/E0)` for Young's modulus E0; in plane strain E is over 1 − nu²,
-/// unless the largest principal stress drives.
+/// Largest stress of a uniform bar (Pa), as if all of its energy drove: `9/16 √(E Gc/(6 l0))`, with AT1 `√(3
+/// E Gc/(16 l0))`, with a cohesive crack `ft √(E/E0)` for Young's modulus E0; in plane strain E is over 1 −
+/// nu², unless the largest principal stress drives.
 fn strength(material: &Material, fracture: &Fracture, plane: Plane) -> f64 {
     let Material { young_modulus, poisson_ratio, .. } = *material;
     let modulus = match plane {

@@ -1,8 +1,9 @@
 //! State of the bounds of the phase field: see [`minimise`](super::minimise).
 
 use super::awake::Awake;
-use super::tangent::Tangent;
 use crate::checkpoint::{Archive, StateError};
+use crate::linear_algebra::lane::Lane;
+use crate::material::cohesive::Cohesive;
 use crate::material::degradation::{CrackLaw, FractureModel};
 use crate::particles::lattice::Lattice;
 
@@ -19,7 +20,30 @@ pub(super) struct Bounds {
     /// Room for `K c`.
     pub(super) image: Vec<f64>,
     /// If the equation is not linear.
-    pub(super) tangent: Option<Box<Tangent>>,
+    pub(super) linearised: Option<Box<Linearised>>,
+}
+
+/// What an equation that is not linear in c is linearised with: see [`newton`](super::newton).
+#[derive(Debug, Clone)]
+pub(super) struct Linearised {
+    pub(super) law: Cohesive,
+    /// Right-hand side of the intact body.
+    pub(super) rest: Vec<f64>,
+    /// Energies at the points that would give the brackets of K with a quadratic degradation, J/m³.
+    pub(super) energies: Vec<Lane>,
+    /// Whether the brackets of K are kept positive.
+    pub(super) convex: bool,
+}
+
+impl Linearised {
+    fn new(law: Cohesive, rest: &[f64], batches: usize) -> Box<Self> {
+        Box::new(Self { law, rest: rest.to_vec(), energies: vec![Lane::ZERO; batches], convex: false })
+    }
+
+    /// Heap memory, bytes.
+    fn bytes(&self) -> usize {
+        8 * self.rest.len() + size_of::<Lane>() * self.energies.len()
+    }
 }
 
 impl Bounds {
@@ -32,8 +56,8 @@ impl Bounds {
             work: 0.0,
             held: Vec::new(),
             image: zeros(),
-            tangent: match model.law {
-                CrackLaw::Cohesive(law) => Some(Tangent::new(law, load, lattice.batches())),
+            linearised: match model.law {
+                CrackLaw::Cohesive(law) => Some(Linearised::new(law, load, lattice.batches())),
                 _ => None,
             },
         })
@@ -44,7 +68,7 @@ impl Bounds {
     /// # Errors
     /// Bytes of another scene.
     pub(super) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { awake: _, residual, work, held, image: _, tangent: _ } = self;
+        let Self { awake: _, residual, work, held, image: _, linearised: _ } = self;
         archive.list(residual)?;
         *held = (0..residual.len()).filter(|&at| residual[at] != 0.0).collect();
         archive.value(work)
@@ -52,7 +76,7 @@ impl Bounds {
 
     /// Heap memory, bytes.
     pub(super) fn bytes(&self) -> usize {
-        let tangent = self.tangent.as_ref().map_or(0, |tangent| tangent.bytes());
-        8 * (2 * self.residual.len() + self.held.len()) + self.awake.bytes() + tangent
+        let linearised = self.linearised.as_ref().map_or(0, |linearised| linearised.bytes());
+        8 * (2 * self.residual.len() + self.held.len()) + self.awake.bytes() + linearised
     }
 }

@@ -4,8 +4,8 @@
 //! By projected Newton (Bertsekas 1982): values that rest on a bound are held, the others solved for, and
 //! what leaves the bounds is put back on them. A step that does not lower the energy is halved, so the held
 //! values cannot return to what they were. With `r = K c − b`, a value rests on its upper bound where r ≤ 0,
-//! and on zero where r ≥ 0. Energies are in the norm of the tolerance. Where the equation is not linear, K and
-//! b are those at the present c, and the method ends when its step is within the tolerance.
+//! and on zero where r ≥ 0. Energies are in the norm of the tolerance. Where the equation is not linear, K
+//! and b are those at the present c, and the method ends when its step is within the tolerance.
 //!
 //! # Its work
 //!
@@ -14,8 +14,7 @@
 
 use super::PhaseField;
 use super::awake::Awake;
-use super::bounds::Bounds;
-use super::tangent::Tangent;
+use super::bounds::{Bounds, Linearised};
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::conjugate_gradients::{Convergence, SolveFailure};
 use crate::linear_algebra::extremes::{larger, smaller};
@@ -26,11 +25,11 @@ use crate::particles::lattice::Lattice;
 /// Most sets of held values, and most halvings of a step.
 const MOST_SETS: usize = 200;
 const MOST_HALVINGS: usize = 20;
-/// Largest change of a value by a step of Newton's method: between two stationary states lies one that is not
-/// the least.
+/// Largest change of a value by a step of Newton's method: between two stationary states lies one that is
+/// not the least.
 const MOST_CHANGE: f64 = 0.2;
-/// Tolerance over the last step of Newton's method, squared. A step leaves its square, and what is stale of K, a
-/// thousandth, of it.
+/// Tolerance over the last step of Newton's method, squared. A step leaves its square, and what is stale of
+/// K, a thousandth, of it.
 const STEP_IN_TOLERANCE: f64 = 1e-3;
 /// What is lost of a residual in its sum, of the diagonal.
 const ROUNDING: f64 = 10.0 * f64::EPSILON;
@@ -43,24 +42,25 @@ struct Equation<'a> {
     lattice: &'a Lattice,
     drive: &'a [Lane],
     awake: &'a Awake,
-    tangent: Option<&'a mut Tangent>,
+    linearised: Option<&'a mut Linearised>,
 }
 
 impl Equation<'_> {
     /// Assembles K and b.
     fn assemble(&mut self, field: &mut PhaseField) {
-        if self.tangent.is_none() {
+        if self.linearised.is_none() {
             let negligible = field.negligible();
             let awake = self.awake;
             field.assemble_increments(self.lattice, self.drive, negligible, |cell| awake.is_assembled(cell));
         }
-        self.linearise(field);
+        self.linearise(field, false);
     }
 
-    /// Assembles K and b anew at another c, if they depend on it.
-    fn linearise(&mut self, field: &mut PhaseField) {
-        if let Some(tangent) = &mut self.tangent {
-            field.linearise(tangent, self.lattice, self.drive, self.awake);
+    /// Assembles K and b anew at another c, if they depend on it; K positive definite if `convex`.
+    fn linearise(&mut self, field: &mut PhaseField, convex: bool) {
+        if let Some(linearised) = &mut self.linearised {
+            linearised.convex = convex;
+            field.linearise(linearised, self.lattice, self.drive, self.awake);
         }
     }
 }
@@ -100,7 +100,7 @@ impl PhaseField {
         lattice: &Lattice,
         drive: &[Lane],
     ) -> Result<Convergence, SolveFailure> {
-        let Bounds { awake, image, tangent, .. } = bounds;
+        let Bounds { awake, image, linearised, .. } = bounds;
         awake.sleep();
         awake.wake(lattice, drive, &self.phase);
         self.matrix.restrict(awake.active(lattice));
@@ -110,7 +110,7 @@ impl PhaseField {
         }
         let mut total = Convergence { iterations: 0, error: 0.0 };
         let residual = loop {
-            let mut equation = Equation { lattice, drive, awake, tangent: tangent.as_deref_mut() };
+            let mut equation = Equation { lattice, drive, awake, linearised: linearised.as_deref_mut() };
             equation.assemble(self);
             let (convergence, residual) = self.minimise_on(&mut equation, image)?;
             total = Convergence { iterations: total.iterations + convergence.iterations, ..convergence };
@@ -160,12 +160,28 @@ impl PhaseField {
                 return Ok((total, residual));
             }
             let from: Vec<f64> = candidates.iter().map(|&at| self.phase[at]).collect();
-            let free = candidates.iter().zip(&free).filter(|(_, free)| **free).map(|(at, _)| *at);
-            self.matrix.restrict(ActiveColumns::exactly(grid, free));
-            let convergence = self.solve_from_here(ITERATION_LIMIT)?;
-            total = Convergence { iterations: total.iterations + convergence.iterations, ..convergence };
-            self.matrix.restrict(active.clone());
-            let Some(left) = self.put_on_bounds(equation, &diagonal, &from, &mut residual, image) else { break };
+            let is_free = candidates.iter().zip(&free).filter(|(_, free)| **free).map(|(at, _)| *at);
+            let free_columns = ActiveColumns::exactly(grid, is_free);
+            let left = loop {
+                self.matrix.restrict(free_columns.clone());
+                let solved = self.solve_from_here(ITERATION_LIMIT);
+                self.matrix.restrict(active.clone());
+                let can_be_safer = equation.linearised.as_ref().is_some_and(|linearised| !linearised.convex);
+                let left = match solved {
+                    Ok(convergence) => {
+                        total = Convergence { iterations: total.iterations + convergence.iterations, ..convergence };
+                        self.put_on_bounds(equation, &diagonal, &from, &mut residual, image)
+                    }
+                    Err(_) if can_be_safer => None,
+                    Err(failure) => return Err(failure),
+                };
+                if left.is_some() || !can_be_safer {
+                    break left;
+                }
+                candidates.iter().zip(&from).for_each(|(&at, from)| self.phase[at] = *from);
+                equation.linearise(self, true);
+            };
+            let Some(left) = left else { break };
             settled = left <= enough;
         }
         Err(SolveFailure::NotConverged { iterations: total.iterations, error: total.error })
@@ -185,7 +201,7 @@ impl PhaseField {
         let candidates = &equation.awake.candidates[..];
         let found: Vec<f64> = candidates.iter().map(|&at| self.phase[at]).collect();
         let furthest = from.iter().zip(&found).map(|(from, found)| (found - from).abs()).fold(0.0, larger);
-        let whole = if equation.tangent.is_some() { smaller(1.0, MOST_CHANGE / furthest) } else { 1.0 };
+        let whole = if equation.linearised.is_some() { smaller(1.0, MOST_CHANGE / furthest) } else { 1.0 };
         for halvings in 0..MOST_HALVINGS {
             let part = whole * 0.5_f64.powi(halvings as i32);
             let mut left = 0.0;
@@ -195,13 +211,13 @@ impl PhaseField {
                 left += (wanted - c) * (wanted - c) * diagonal;
                 self.phase[at] = c;
             }
-            equation.linearise(self);
+            equation.linearise(self, false);
             let now = self.residual(candidates, image);
             let steps = || candidates.iter().zip(from).map(|(&at, from)| self.phase[at] - from);
             let rises = steps().zip(residual.iter().zip(&now)).map(|(step, (r, now))| 0.5 * (r + now) * step);
             let (rise, scale) = rises.fold((0.0, 0.0), |(sum, scale), rise| (sum + rise, scale + rise.abs()));
             let noise: f64 = steps().zip(diagonal).map(|(step, diagonal)| ROUNDING * diagonal * step.abs()).sum();
-            if equation.tangent.is_some() {
+            if equation.linearised.is_some() {
                 left += STEP_IN_TOLERANCE * steps().zip(&*residual).map(|(step, r)| (r * step).abs()).sum::<f64>();
             }
             if rise <= f64::EPSILON * candidates.len() as f64 * scale + noise {

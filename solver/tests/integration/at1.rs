@@ -15,7 +15,9 @@ use fisura::splines::spline::SplineSpace;
 use fisura::validate::validate;
 use nalgebra::{DMatrix, DVector};
 
-use crate::common::{annulus, at1, elastic_scene, make_at1, notched_plate, patch_scene, relative_closure, run};
+use crate::common::{
+    annulus, at1, elastic_scene, make_at1, make_cohesive, notched_plate, patch_scene, relative_closure, run,
+};
 
 const L0: f64 = 0.25e-3;
 
@@ -47,8 +49,8 @@ fn cost(scene: &Scene) -> f64 {
     sample.fracture.unwrap().energy / (3.0 * length * scene.analysis.thickness)
 }
 
-/// The same on a line, with dense matrices: least energy `unit ∫ (m d + (1 − m) d²)/b + b d'²` of splines with
-/// d = 1 for the functions that do not vanish at x, d between zero and one; b = 2 l0.
+/// The same on a line, with dense matrices: least energy `unit ∫ (m d + (1 − m) d²)/b + b d'²` of splines
+/// with d = 1 for the functions that do not vanish at x, d between zero and one; b = 2 l0.
 pub fn cost_on_a_line(degree: usize, knots: &[f64], x: f64, unit: f64, m: f64) -> f64 {
     let space = SplineSpace::new(degree, knots);
     let (n, b) = (space.dimension(), 2.0 * L0);
@@ -243,15 +245,30 @@ fn every_body_of_the_total_frame_can_have_a_threshold() {
     for (name, scene) in [("slit", slit), ("cut", cut), ("finite", finite), ("graded", graded), ("inclined", inclined)]
     {
         assert_eq!(validate(&scene).err(), None, "{name}");
-        let (_, samples) = run(&scene);
-        let energy = |sample: usize| samples[sample].fracture.as_ref().unwrap().energy;
-        assert!(energy(samples.len() - 1) > energy(0) + 1e-3, "{name}: {} to {}", energy(0), energy(samples.len() - 1));
-        let closure = relative_closure(&samples);
-        assert!(closure < 5e-4, "{name}: closure {closure:e}");
+        let mut cohesive = scene.clone();
+        make_cohesive(&mut cohesive, 7.5e6, Softening::Cornelissen, Split::Rankine);
+        if let Some(slit) = scene.bodies[0].cracks.first().filter(|crack| crack.is_slit()) {
+            cohesive.bodies[0].cracks = vec![slit.clone()];
+        }
+        for scene in [scene, cohesive] {
+            let (_, samples) = run(&scene);
+            let energy = |sample: usize| samples[sample].fracture.as_ref().unwrap().energy;
+            assert!(
+                energy(samples.len() - 1) > energy(0) + 1e-3,
+                "{name}: {} to {}",
+                energy(0),
+                energy(samples.len() - 1)
+            );
+            let closure = relative_closure(&samples);
+            assert!(closure < 5e-4, "{name}: closure {closure:e}");
+        }
     }
     let mut ring = patch_scene(&annulus(2, 12), 3);
     ring.materials.get_mut("glass").unwrap().fracture = Some(Fracture { length_scale: 0.3, ..at1(Split::Spectral) });
     ring.analysis.end_time = 1e-4;
+    assert!(run(&ring).1.iter().all(|s| s.fracture.as_ref().unwrap().min_phase > 1.0 - 1e-12));
+    let cracked = &mut ring.materials.get_mut("glass").unwrap().fracture.as_mut().unwrap().model;
+    *cracked = CrackModel::PfCzm { tensile_strength: 1e3, softening: Softening::Linear };
     assert!(run(&ring).1.iter().all(|s| s.fracture.as_ref().unwrap().min_phase > 1.0 - 1e-12));
 
     let mut direct = plate.clone();

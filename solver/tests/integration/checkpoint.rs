@@ -2,7 +2,8 @@
 //! alone.
 
 use crate::common::{
-    body, brittle, driven_plate, elastic_scene, glass, horseshoe, make_at1, notched_plate, patch_scene, rectangle,
+    body, brittle, driven_plate, elastic_scene, glass, horseshoe, make_at1, make_cohesive, notched_plate, patch_scene,
+    rectangle,
 };
 use fisura::Simulation;
 use fisura::scene::*;
@@ -75,6 +76,8 @@ fn in_the_total_frame() {
             make_at1(&mut scene, split);
             goes_on_bit_by_bit("cracking, with a threshold", &scene);
         }
+        make_cohesive(&mut scene, 7.5e6, Softening::Exponential, Split::Rankine);
+        goes_on_bit_by_bit("cracking, cohesive", &scene);
     }
     let mut direct = notched_plate(2e7);
     direct.analysis.end_time = 1e-6;

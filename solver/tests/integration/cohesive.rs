@@ -2,6 +2,7 @@
 //! refused.
 
 use fisura::Simulation;
+use fisura::linear_algebra::extremes::{larger, smaller};
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::degradation::FractureModel;
 use fisura::material::elasticity::ElasticModuli;
@@ -13,18 +14,10 @@ use fisura::splines::patch::Patch;
 use fisura::validate::validate;
 
 use crate::at1::cost_on_a_line;
-use crate::common::{brittle, elastic_scene, notched_plate, relative_closure, run};
+use crate::common::{elastic_scene, make_cohesive, notched_plate, relative_closure, run};
 
 const L0: f64 = 0.25e-3;
 const SOFTENINGS: [Softening; 3] = [Softening::Linear, Softening::Exponential, Softening::Cornelissen];
-
-/// Makes a scene cohesive, with seeds by the bound; a1 = 4.35 at 7.5 MPa.
-fn make_cohesive(scene: &mut Scene, tensile_strength: f64, softening: Softening, split: Split) {
-    let model = CrackModel::PfCzm { tensile_strength, softening };
-    scene.materials.get_mut("glass").unwrap().fracture = Some(Fracture { model, split, ..brittle() });
-    let seeds = scene.bodies[0].cracks.iter_mut().filter(|crack| crack.kind != CrackKind::Slit);
-    seeds.for_each(|crack| crack.kind = CrackKind::Seed(None));
-}
 
 fn cracking(softening: Softening, split: Split) -> Scene {
     let mut scene = notched_plate(4e6);
@@ -74,7 +67,7 @@ fn uniform_phase(softening: Softening, strength: f64, loads: &[f64]) -> Vec<f64>
     let step = |load: &f64| {
         field.solve(&lattice, &vec![Lane::splat(load * threshold); lattice.batches()]).expect("solved");
         let values = lattice.patch_grid.indices().map(|at| field.control_values()[at]);
-        let (low, high) = values.fold((1.0_f64, 0.0_f64), |(low, high), c| (low.min(c), high.max(c)));
+        let (low, high) = values.fold((1.0, 0.0), |(low, high), c| (smaller(low, c), larger(high, c)));
         assert!(high - low < 1e-9, "{softening:?} under {load} is not uniform: {low} to {high}");
         low
     };

@@ -1,6 +1,6 @@
 //! The same bits for any number of threads, and for every repetition.
 
-use crate::common::{horseshoe, make_at1, notched_plate, pulled_plate, run, two_discs, with_threads};
+use crate::common::{horseshoe, make_at1, make_cohesive, notched_plate, pulled_plate, run, two_discs, with_threads};
 use fisura::scene::*;
 
 /// Every value of every sample, and place, velocity and strain of every point at the end, as bits.
@@ -46,6 +46,9 @@ fn in_the_total_frame() {
         make_at1(&mut threshold, split);
         check(&threshold);
     }
+    let mut cohesive = tall(notched_plate(6e6));
+    make_cohesive(&mut cohesive, 7.5e6, Softening::Linear, Split::Rankine);
+    check(&cohesive);
     let mut direct = tall(notched_plate(6e6));
     direct.solver.phase_field_solver = PhaseFieldSolver::Cholesky;
     direct.analysis.end_time = 0.3e-6;

@@ -53,7 +53,8 @@ impl CohesiveLaw {
         [1.0 / compliance, -slope / (compliance * compliance)]
     }
 
-    /// Opening at which nothing is transmitted any more, over Gc/ft; with exponential softening next to nothing.
+    /// Opening at which nothing is transmitted any more, over Gc/ft; with exponential softening next to
+    /// nothing.
     pub fn furthest(&self) -> f64 {
         match self.a[1] {
             a2 if a2 < 0.0 => 2.0,

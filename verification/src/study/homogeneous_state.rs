@@ -3,13 +3,13 @@
 //! A body under uniform uniaxial strain e has psi+ = M e²/2 everywhere, with M = lam + 2 mu; rankine is
 //! driven by H = (M e)²/(2 E). The phase field is constant and the stress `c² M e`. With AT2 `c = 1/(1 + 4 l0
 //! H/Gc)`: the stress peaks at `H = Gc/(12 l0)`, where c = 3/4. With AT1 the body is elastic up to `H = 3
-//! Gc/(32 l0)`, where the stress peaks, and c is that over H beyond. With a cohesive crack the stress peaks at
-//! `H = ft²/(2 E)`, and beyond c is the root of `4 l0 H/Gc g'(c)/2 = 2/π c`. Constants are in the space and the same
-//! sums stand on both sides, so the discrete solution is exact for every degree and layout. The displacement
-//! is imposed on the control points; strain, split, history and degraded stress are those of the solver's own
-//! sweeps, and the stress is the reaction on the right side over its height. The closed form takes its
-//! numbers from the scene, not from the solver. (The reaction of equally spaced points is exact for p up to 2
-//! only; see the patch test.)
+//! Gc/(32 l0)`, where the stress peaks, and c is that over H beyond. With a cohesive crack the stress peaks
+//! at `H = ft²/(2 E)`, and beyond c is the root of `4 l0 H/Gc g'(c)/2 = 2/π c`. Constants are in the space
+//! and the same sums stand on both sides, so the discrete solution is exact for every degree and layout. The
+//! displacement is imposed on the control points; strain, split, history and degraded stress are those of the
+//! solver's own sweeps, and the stress is the reaction on the right side over its height. The closed form
+//! takes its numbers from the scene, not from the solver. (The reaction of equally spaced points is exact for
+//! p up to 2 only; see the patch test.)
 
 use std::f64::consts::FRAC_2_PI;
 

@@ -1,9 +1,9 @@
 //! A cohesive crack in a bar that is pulled apart slowly, against its law of softening (Wu 2017).
 //!
 //! The stress s of a slender bar is the same everywhere, and its length grows by u. With the phase field c of
-//! the solver s = E u/∫ 1/g dx, which drives by H = s²/(2 E g²): both are solved for in turn until s stays. The
-//! opening is w = u − s L/E. The law is that of the [localised solution](crate::exact::cohesive). Near the
-//! middle d falls by |x|/b; a stress that belongs to d* nearer to 1 than 2 h/b is not resolved by spans.
+//! the solver s = E u/∫ 1/g dx, which drives by H = s²/(2 E g²): both are solved for in turn until s stays.
+//! The opening is w = u − s L/E. The law is that of the [localised solution](crate::exact::cohesive). Near
+//! the middle d falls by |x|/b; a stress that belongs to d* nearer to 1 than 2 h/b is not resolved by spans.
 
 use fisura::linear_algebra::lane::{LANES, Lane};
 use fisura::material::degradation::FractureModel;

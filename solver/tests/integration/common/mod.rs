@@ -33,7 +33,17 @@ pub fn at1(split: Split) -> Fracture {
 
 /// Gives the material of a scene a threshold, and its seeds the bound.
 pub fn make_at1(scene: &mut Scene, split: Split) {
-    scene.materials.get_mut("glass").unwrap().fracture = Some(at1(split));
+    make_bounded(scene, at1(split));
+}
+
+/// Makes the cracks of a scene cohesive, and its seeds bounds; a1 = 4.35 at 7.5 MPa.
+pub fn make_cohesive(scene: &mut Scene, tensile_strength: f64, softening: Softening, split: Split) {
+    let model = CrackModel::PfCzm { tensile_strength, softening };
+    make_bounded(scene, Fracture { model, split, ..brittle() });
+}
+
+fn make_bounded(scene: &mut Scene, fracture: Fracture) {
+    scene.materials.get_mut("glass").unwrap().fracture = Some(fracture);
     let seeds = scene.bodies[0].cracks.iter_mut().filter(|crack| crack.kind != CrackKind::Slit);
     seeds.for_each(|crack| crack.kind = CrackKind::Seed(None));
 }

@@ -6,16 +6,16 @@
 //! K_IJ(c) = Σ_p V_p N_I N_J [4 l0 (1 − k) H/Gc s'(c) − 2/π] + …
 //! ```
 //!
-//! `− 2/π c²` is concave. Where the bracket of K is small or negative, a part of `2/π` stands for it: K stays
-//! positive definite, and the step is one down the energy. The load is chosen so that `K c − b` is r at the
-//! present c.
+//! `− 2/π c²` is concave, and K need not be positive definite. Where it is not, or its step does not lower
+//! the energy, a part of `2/π` stands for each bracket that is small or negative. The load is chosen so that
+//! `K c − b` is r at the present c.
 
 use rayon::prelude::*;
 
 use super::PhaseField;
 use super::awake::Awake;
+use super::bounds::Linearised;
 use crate::linear_algebra::lane::Lane;
-use crate::material::cohesive::Cohesive;
 use crate::particles::lattice::Lattice;
 
 /// Least bracket of K, of `2/π`.
@@ -23,32 +23,11 @@ const LEAST: f64 = 1e-3;
 /// Change of the bracket that is left out of K, of `2/π`. It costs iterations, not accuracy.
 const STALE: f64 = 1e-3;
 
-/// State of the linearisation.
-#[derive(Debug, Clone)]
-pub(super) struct Tangent {
-    law: Cohesive,
-    /// Right-hand side of the intact body.
-    rest: Vec<f64>,
-    /// Energies at the points that would give the brackets with a quadratic degradation, J/m³.
-    energies: Vec<Lane>,
-}
-
-impl Tangent {
-    /// Of a body with this right-hand side.
-    pub(super) fn new(law: Cohesive, rest: &[f64], batches: usize) -> Box<Self> {
-        Box::new(Self { law, rest: rest.to_vec(), energies: vec![Lane::ZERO; batches] })
-    }
-
-    /// Heap memory, bytes.
-    pub(super) fn bytes(&self) -> usize {
-        8 * self.rest.len() + size_of::<Lane>() * self.energies.len()
-    }
-}
-
 impl PhaseField {
     /// Assembles K and b at the present c in the cells that are awake.
-    pub(super) fn linearise(&mut self, tangent: &mut Tangent, lattice: &Lattice, drive: &[Lane], awake: &Awake) {
+    pub(super) fn linearise(&mut self, linearised: &mut Linearised, lattice: &Lattice, drive: &[Lane], awake: &Awake) {
         let (reaction, source) = (self.model.reaction_per_energy(), self.model.source());
+        let least = if linearised.convex { LEAST * source } else { f64::NEG_INFINITY };
         let span = lattice.points_per_span();
         let control_values = lattice.with_copies(self.phase.clone());
         let cells: Vec<usize> = (0..lattice.cells()).filter(|&cell| awake.is_assembled(cell)).collect();
@@ -56,15 +35,15 @@ impl PhaseField {
         let of_batch = |batch: &usize| {
             let c = lattice.value(*batch, &control_values);
             let force = drive[*batch] * reaction;
-            let bracket = tangent.law.curvature(c) * force * 0.5 - Lane::splat(source);
+            let bracket = linearised.law.curvature(c) * force * 0.5 - Lane::splat(source);
             let local = self.model.half_slope(c) * force - c * source;
-            (c, local, bracket.at_least(Lane::splat(LEAST * source)) * (1.0 / reaction))
+            (c, local, bracket.at_least(Lane::splat(least)) * (1.0 / reaction))
         };
         let states: Vec<_> = batches.par_iter().with_min_len(64).map(of_batch).collect();
         for (batch, (_, _, energy)) in batches.iter().zip(&states) {
-            tangent.energies[*batch] = *energy;
+            linearised.energies[*batch] = *energy;
         }
-        self.assemble_increments(lattice, &tangent.energies, STALE * source / reaction, |cell| {
+        self.assemble_increments(lattice, &linearised.energies, STALE * source / reaction, |cell| {
             awake.is_assembled(cell)
         });
         let mut load = lattice.grid.zeros();
@@ -72,6 +51,6 @@ impl PhaseField {
             lattice.add_density(batch, self.assembled[batch] * c * reaction - local - Lane::splat(source), &mut load);
         }
         self.load = lattice.onto_patch(load);
-        self.load.iter_mut().zip(&tangent.rest).for_each(|(load, rest)| *load += rest);
+        self.load.iter_mut().zip(&linearised.rest).for_each(|(load, rest)| *load += rest);
     }
 }
