@@ -19,7 +19,7 @@ const SUITES: [(&str, &str); 9] = [
     ("contact", "impact, sliding, collision, Hertz and a stack, against closed forms"),
     (
         "fracture",
-        "closed forms of the phase-field models (AT2, AT1), surface energy of cracks, wave speeds, early energies of the plate",
+        "closed forms of the phase-field models (AT2, AT1, PF-CZM), surface energy of cracks, wave speeds, early energies of the plate",
     ),
     (
         "rings",

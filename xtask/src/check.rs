@@ -311,7 +311,7 @@ fn words(fracture: &Fracture) -> String {
         CrackModel::At2 => "AT2".to_string(),
         CrackModel::At1 => "AT1".to_string(),
         CrackModel::PfCzm { softening, .. } => {
-            format!("PF-CZM with {} softening", format!("{softening:?}").to_lowercase())
+            format!("PF-CZM with {} softening", softening.word())
         }
     };
     match fracture.split {

@@ -13,6 +13,7 @@ use crate::scene::Softening;
 /// Constants of the degradation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cohesive {
+    /// p: 2 or 5/2.
     power: f64,
     /// a1, a1 a2 and a1 a2 a3.
     series: [f64; 3],
@@ -69,7 +70,7 @@ impl Cohesive {
     fn powers(&self, phase: Lane) -> [Lane; 3] {
         let c = phase.at_least(Lane::ZERO);
         let p = self.power;
-        let scale = if p == 2.0 { Lane::splat(1.0) } else { c.map(|c| c.powf(p - 2.0)) };
+        let scale = if p == 2.0 { Lane::splat(1.0) } else { c.map(f64::sqrt) };
         [scale * c * c, scale * c * p, scale * (p * (p - 1.0))]
     }
 

@@ -77,7 +77,7 @@ impl FractureModel {
 
     /// Degradation `(1 − k) g(c) + k`, with g = c² (E 7) unless the crack is cohesive. It is taken as it
     /// stands for the small negative c that splines produce beside a jump of the history field: clipping
-    /// would break the energy balance.
+    /// would break the energy balance. With bounds there is no such c.
     #[inline(always)]
     pub fn degradation(&self, phase: Lane) -> Lane {
         let k = self.residual_stiffness;

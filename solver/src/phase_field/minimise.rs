@@ -27,9 +27,9 @@ const MOST_SETS: usize = 200;
 const MOST_HALVINGS: usize = 20;
 /// Largest change of a value by a step of Newton's method: between two stationary states lies one that is
 /// not the least.
-const MOST_CHANGE: f64 = 0.2;
-/// Tolerance over the last step of Newton's method, squared. A step leaves its square, and what is stale of
-/// K, a thousandth, of it.
+const MOST_CHANGE: f64 = 0.05;
+/// Tolerance over the last step of Newton's method, squared. A whole step with the second derivative leaves
+/// its square, and what is stale of K, a thousandth, of it. Any other step has to be within the tolerance.
 const STEP_IN_TOLERANCE: f64 = 1e-3;
 /// What is lost of a residual in its sum, of the diagonal.
 const ROUNDING: f64 = 10.0 * f64::EPSILON;
@@ -105,8 +105,10 @@ impl PhaseField {
         awake.wake(lattice, drive, &self.phase);
         self.matrix.restrict(awake.active(lattice));
         self.extrapolate(1.0); // `previous` is now c of the step before: the upper bound
+        let reach = if linearised.is_some() { MOST_CHANGE } else { 1.0 };
         for &at in &awake.candidates {
-            self.phase[at] = larger(smaller(self.phase[at], self.previous[at]), 0.0);
+            let least = larger(self.previous[at] - reach, 0.0);
+            self.phase[at] = larger(smaller(self.phase[at], self.previous[at]), least);
         }
         let mut total = Convergence { iterations: 0, error: 0.0 };
         let residual = loop {
@@ -145,8 +147,8 @@ impl PhaseField {
         let mut settled = false;
         self.matrix.restrict(active.clone());
         let mut residual = self.residual(candidates, image);
-        let diagonal: Vec<f64> = candidates.iter().map(|&at| self.diagonal(at)).collect();
         for _ in 0..MOST_SETS {
+            let diagonal: Vec<f64> = candidates.iter().map(|&at| self.diagonal(at)).collect();
             let mut released = 0.0;
             for (((&at, r), free), diagonal) in candidates.iter().zip(&residual).zip(&mut free).zip(&diagonal) {
                 let c = self.phase[at];
@@ -160,13 +162,17 @@ impl PhaseField {
                 return Ok((total, residual));
             }
             let from: Vec<f64> = candidates.iter().map(|&at| self.phase[at]).collect();
-            let is_free = candidates.iter().zip(&free).filter(|(_, free)| **free).map(|(at, _)| *at);
-            let free_columns = ActiveColumns::exactly(grid, is_free);
+            let free_columns = ActiveColumns::exactly(grid, free_among(candidates, &free));
             let left = loop {
                 self.matrix.restrict(free_columns.clone());
-                let solved = self.solve_from_here(ITERATION_LIMIT);
-                self.matrix.restrict(active.clone());
                 let can_be_safer = equation.linearised.as_ref().is_some_and(|linearised| !linearised.convex);
+                let solved =
+                    if can_be_safer && free_among(candidates, &free).any(|at| self.diagonal(at) <= f64::MIN_POSITIVE) {
+                        Err(SolveFailure::NotPositiveDefinite)
+                    } else {
+                        self.solve_from_here(ITERATION_LIMIT)
+                    };
+                self.matrix.restrict(active.clone());
                 let left = match solved {
                     Ok(convergence) => {
                         total = Convergence { iterations: total.iterations + convergence.iterations, ..convergence };
@@ -200,10 +206,12 @@ impl PhaseField {
     ) -> Option<f64> {
         let candidates = &equation.awake.candidates[..];
         let found: Vec<f64> = candidates.iter().map(|&at| self.phase[at]).collect();
+        let convex = equation.linearised.as_ref().map(|linearised| linearised.convex);
         let furthest = from.iter().zip(&found).map(|(from, found)| (found - from).abs()).fold(0.0, larger);
-        let whole = if equation.linearised.is_some() { smaller(1.0, MOST_CHANGE / furthest) } else { 1.0 };
+        let whole = if convex.is_some() { smaller(1.0, MOST_CHANGE / furthest) } else { 1.0 };
         for halvings in 0..MOST_HALVINGS {
             let part = whole * 0.5_f64.powi(halvings as i32);
+            let accuracy = convex.map(|convex| if convex || part < 1.0 { part.recip() } else { STEP_IN_TOLERANCE });
             let mut left = 0.0;
             for ((&at, diagonal), (from, found)) in candidates.iter().zip(diagonal).zip(from.iter().zip(&found)) {
                 let wanted = from + part * (found - from);
@@ -217,8 +225,8 @@ impl PhaseField {
             let rises = steps().zip(residual.iter().zip(&now)).map(|(step, (r, now))| 0.5 * (r + now) * step);
             let (rise, scale) = rises.fold((0.0, 0.0), |(sum, scale), rise| (sum + rise, scale + rise.abs()));
             let noise: f64 = steps().zip(diagonal).map(|(step, diagonal)| ROUNDING * diagonal * step.abs()).sum();
-            if equation.linearised.is_some() {
-                left += STEP_IN_TOLERANCE * steps().zip(&*residual).map(|(step, r)| (r * step).abs()).sum::<f64>();
+            if let Some(accuracy) = accuracy {
+                left += accuracy * steps().zip(&*residual).map(|(step, r)| (r * step).abs()).sum::<f64>();
             }
             if rise <= f64::EPSILON * candidates.len() as f64 * scale + noise {
                 *residual = now;
@@ -238,4 +246,9 @@ impl PhaseField {
         let grid = self.matrix.grid;
         larger(self.matrix.diagonal(grid.column_of(at), grid.row_of(at)), f64::MIN_POSITIVE)
     }
+}
+
+/// The candidates that are free.
+fn free_among<'a>(candidates: &'a [usize], free: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
+    candidates.iter().zip(free).filter(|(_, free)| **free).map(|(at, _)| *at)
 }

@@ -45,6 +45,17 @@ pub enum Softening {
     Cornelissen,
 }
 
+impl Softening {
+    /// Its word in scenes.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Exponential => "exponential",
+            Self::Cornelissen => "cornelissen",
+        }
+    }
+}
+
 /// Which surface energy a crack has, and how it degrades the material.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CrackModel {

@@ -5,8 +5,10 @@ use crate::material::cohesive::Cohesive;
 use crate::material::elasticity::ElasticModuli;
 use crate::scene::{CrackModel, Fracture, Frame, Material, Plane, Scene, Split};
 
-/// Least a1 of a cohesive crack: below, the stress of a bar is largest beyond its onset.
+/// Least a1 of a cohesive crack (Wu 2017): with linear softening g is convex from there on.
 const LEAST_BRITTLENESS: f64 = 1.5;
+/// An a1 beyond belongs to a number without its unit: process zones are not ten thousand times as long as l0.
+const MOST_BRITTLENESS: f64 = 1e5;
 /// No solid carries waves faster than this, m/s (diamond: 18 km/s).
 const FASTEST: f64 = 3e4;
 /// Speeds below this are suspicious, m/s.
@@ -155,12 +157,24 @@ fn cohesive(key: &str, fracture: &Fracture, young_modulus: f64, findings: &mut F
     if !findings.positive(format!("{key}.tensile_strength"), tensile_strength, like) {
         return;
     }
-    let Some(a1) = fracture.brittleness(young_modulus).filter(|a1| a1.is_finite() && *a1 > 0.0) else { return };
+    let positive = |value: f64| value > 0.0 && value.is_finite();
+    if ![young_modulus, fracture.critical_energy_release_rate, fracture.length_scale].into_iter().all(positive) {
+        return; // each has an error of its own
+    }
+    let Some(a1) = fracture.brittleness(young_modulus) else { return };
+    if !a1.is_finite() || a1 > MOST_BRITTLENESS {
+        let message = format!("{tensile_strength:e} Pa is next to no strength: a1 = 2 E Gc/(pi l0 ft^2) is {a1:.3e}");
+        findings.error(
+            format!("{key}.tensile_strength"),
+            message,
+            "write the unit, as in tensile_strength = \"3 MPa\"",
+        );
+        return;
+    }
     let longest = |a1_at_least: f64| fracture.length_scale * a1 / a1_at_least;
     let law = Cohesive::new(softening, a1);
     if a1 < LEAST_BRITTLENESS {
-        let message =
-            format!("l0 is {} m, but the strength is reached only up to 4/(3 pi) E Gc/ft^2", fracture.length_scale);
+        let message = format!("l0 is {} m, longer than 4/(3 pi) E Gc/ft^2", fracture.length_scale);
         let remedy = format!("give l0 of at most {:.4e} m, or a lower tensile_strength", longest(LEAST_BRITTLENESS));
         findings.error(format!("{key}.length_scale"), message, remedy);
     } else if a1 < law.stable_from() {

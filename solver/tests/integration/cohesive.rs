@@ -92,7 +92,7 @@ fn a_uniform_state_jumps_at_its_onset_below_the_least_brittleness() {
 
 /// Where c is free its equation holds; where it rests on what it was, the residual holds it there.
 #[test]
-fn damage_is_the_least_energy_between_its_bounds() {
+fn damage_is_stationary_between_its_bounds() {
     for (softening, split, degree) in [
         (Softening::Linear, Split::Rankine, 2),
         (Softening::Exponential, Split::Spectral, 3),
@@ -192,6 +192,10 @@ fn what_does_not_combine_is_refused() {
     assert_eq!(found(7.5e6, |_| ()), (vec![], false));
     assert_eq!(found(12e6, |_| ()), (vec![], true), "a1 = 1.70");
     assert_eq!(found(13e6, |_| ()).0, ["material.glass.fracture.length_scale"], "a1 = 1.45");
+    assert_eq!(found(3.0, |_| ()).0, ["material.glass.fracture.tensile_strength"], "a unit forgotten");
+    assert_eq!(found(1e-170, |_| ()).0, ["material.glass.fracture.tensile_strength"]);
+    assert_eq!(found(1e170, |_| ()).0, ["material.glass.fracture.length_scale"]);
+    assert_eq!(found(f64::NAN, |_| ()).0, ["material.glass.fracture.tensile_strength"]);
     assert_eq!(found(-1.0, |_| ()).0, ["material.glass.fracture.tensile_strength"]);
     let updated = |scene: &mut Scene| scene.analysis.frame = Frame::Updated;
     assert_eq!(found(7.5e6, updated).0, ["material.glass.fracture.model"]);

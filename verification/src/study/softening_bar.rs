@@ -115,7 +115,10 @@ impl<'a> Bar<'a> {
             let part = step as f64 / STEPS as f64;
             let elongation = 0.97 * elastic + (self.law.furthest() * unit - 0.97 * elastic) * part * part;
             let mut stress = f64::NAN;
-            for _ in 0..MOST_ITERATIONS {
+            for iteration in 0.. {
+                if iteration == MOST_ITERATIONS {
+                    return Err(StudyError::Other("the stress of the bar does not settle".into()));
+                }
                 let before = stress;
                 stress = self.material.young_modulus * elongation / self.compliance(&lattice, &field, &model);
                 if (stress - before).abs() <= SETTLED * self.strength {
