@@ -97,6 +97,15 @@ impl FractureModel {
         }
     }
 
+    /// The derivative of s.
+    #[inline(always)]
+    pub fn half_curvature(&self, phase: Lane) -> Lane {
+        match self.law {
+            CrackLaw::Cohesive(law) => law.curvature(phase) * 0.5,
+            _ => Lane::splat(1.0),
+        }
+    }
+
     /// Coefficient of s in the phase-field equation per unit of history energy: `4 l0 (1 − k)/Gc`, m³/J.
     pub fn reaction_per_energy(&self) -> f64 {
         let k = fault!("one-minus-k-missing", self.residual_stiffness => 0.0);

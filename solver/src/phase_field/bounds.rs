@@ -3,7 +3,6 @@
 use super::awake::Awake;
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::lane::Lane;
-use crate::material::cohesive::Cohesive;
 use crate::material::degradation::{CrackLaw, FractureModel};
 use crate::particles::lattice::Lattice;
 
@@ -26,7 +25,6 @@ pub(super) struct Bounds {
 /// What an equation that is not linear in c is linearised with: see [`newton`](super::newton).
 #[derive(Debug, Clone)]
 pub(super) struct Linearised {
-    pub(super) law: Cohesive,
     /// Right-hand side of the intact body.
     pub(super) rest: Vec<f64>,
     /// Energies at the points that would give the brackets of K with a quadratic degradation, J/m³.
@@ -36,8 +34,8 @@ pub(super) struct Linearised {
 }
 
 impl Linearised {
-    fn new(law: Cohesive, rest: &[f64], batches: usize) -> Box<Self> {
-        Box::new(Self { law, rest: rest.to_vec(), energies: vec![Lane::ZERO; batches], convex: false })
+    fn new(rest: &[f64], batches: usize) -> Box<Self> {
+        Box::new(Self { rest: rest.to_vec(), energies: vec![Lane::ZERO; batches], convex: false })
     }
 
     /// Heap memory, bytes.
@@ -56,10 +54,7 @@ impl Bounds {
             work: 0.0,
             held: Vec::new(),
             image: zeros(),
-            linearised: match model.law {
-                CrackLaw::Cohesive(law) => Some(Linearised::new(law, load, lattice.batches())),
-                _ => None,
-            },
+            linearised: matches!(model.law, CrackLaw::Cohesive(_)).then(|| Linearised::new(load, lattice.batches())),
         })
     }
 

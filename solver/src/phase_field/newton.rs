@@ -35,7 +35,7 @@ impl PhaseField {
         let of_batch = |batch: &usize| {
             let c = lattice.value(*batch, &control_values);
             let force = drive[*batch] * reaction;
-            let bracket = linearised.law.curvature(c) * force * 0.5 - Lane::splat(source);
+            let bracket = self.model.half_curvature(c) * force - Lane::splat(source);
             let local = self.model.half_slope(c) * force - c * source;
             (c, local, bracket.at_least(Lane::splat(least)) * (1.0 / reaction))
         };

@@ -47,7 +47,7 @@ pub enum Softening {
 
 impl Softening {
     /// Its word in scenes.
-    pub fn word(self) -> &'static str {
+    pub const fn word(self) -> &'static str {
         match self {
             Self::Linear => "linear",
             Self::Exponential => "exponential",
@@ -79,7 +79,7 @@ impl CrackModel {
     }
 
     /// Its word in scenes.
-    pub fn word(self) -> &'static str {
+    pub const fn word(self) -> &'static str {
         match self {
             Self::At2 => "at2",
             Self::At1 => "at1",

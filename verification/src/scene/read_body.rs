@@ -77,9 +77,9 @@ fn fracture(item: &Item<'_>) -> Option<Fracture> {
 
 /// The model, and what belongs to a cohesive crack.
 fn model(fields: &Fields<'_>) -> Option<CrackModel> {
-    let model = fields.or("model", Some(CrackModel::At2), |item| {
-        item.choice(&[("at2", Some(CrackModel::At2)), ("at1", Some(CrackModel::At1)), ("pf-czm", None)])
-    })?;
+    let plain = |model: CrackModel| (model.word(), Some(model));
+    let words = [plain(CrackModel::At2), plain(CrackModel::At1), ("pf-czm", None)];
+    let model = fields.or("model", Some(CrackModel::At2), |item| item.choice(&words))?;
     let Some(model) = model else {
         let strength = |item: &Item<'_>| item.quantity(Dimension::STRESS);
         let strength = fields.need("tensile_strength", "tensile_strength = \"3 MPa\"", strength);

@@ -30,8 +30,11 @@ impl Words for Layout {
 }
 
 impl Words for Softening {
-    const WORDS: &'static [(&'static str, Self)] =
-        &[("linear", Self::Linear), ("exponential", Self::Exponential), ("cornelissen", Self::Cornelissen)];
+    const WORDS: &'static [(&'static str, Self)] = &[
+        (Self::Linear.word(), Self::Linear),
+        (Self::Exponential.word(), Self::Exponential),
+        (Self::Cornelissen.word(), Self::Cornelissen),
+    ];
 }
 
 impl Words for Split {

@@ -25,13 +25,14 @@ use fisura::splines::patch::Patch;
 use fisura::splines::patch::control_points_on;
 use fisura::transfer::sweep::StripForces;
 
+use super::charts::curve;
 use super::{Findings, StudyError};
 use crate::case::Case;
 use crate::case::expand::CaseScene;
 use crate::exact::cohesive::CohesiveLaw;
 use crate::extremes::{larger, largest, smaller};
 use crate::output::history::Table;
-use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind};
+use crate::record::{Axis, CurveStyle, Figure, FigureBody, Reference, ReferenceKind};
 
 /// Strains looked at, over the strain at the peak.
 const STRAINS: usize = 40;
@@ -246,14 +247,11 @@ fn peak(table: &Table) -> (f64, f64) {
 }
 
 fn figure(case: &Case, stem: &str) -> Figure {
-    let curve = |label: &str, column: &str, style| Curve {
-        style,
-        ..Curve::line(label, &format!("series/{stem}.csv"), ["strain_over_peak", column])
-    };
+    let columns = |column| ["strain_over_peak", column];
     let axes = ["strain / strain at the peak", "stress / peak stress"].map(Axis::linear);
     let curves = vec![
-        curve("closed form", "closed_form", CurveStyle::Reference),
-        curve("material points", "stress_over_peak", CurveStyle::Markers),
+        curve("closed form", stem, columns("closed_form"), CurveStyle::Reference),
+        curve("material points", stem, columns("stress_over_peak"), CurveStyle::Markers),
     ];
     let caption = "Stress over its closed-form peak against strain over its closed-form peak.";
     let words = [stem, "Homogeneous bar in uniaxial strain", caption];

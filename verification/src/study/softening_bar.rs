@@ -5,20 +5,22 @@
 //! The opening is w = u − s L/E. The law is that of the [localised solution](crate::exact::cohesive). Near
 //! the middle d falls by |x|/b; a stress that belongs to d* nearer to 1 than 2 h/b is not resolved by spans.
 
-use fisura::linear_algebra::lane::{LANES, Lane};
+use fisura::linear_algebra::lane::Lane;
 use fisura::material::degradation::FractureModel;
 use fisura::particles::lattice::Lattice;
 use fisura::phase_field::PhaseField;
 use fisura::scene::{CrackModel, Fracture, Material};
 use fisura::splines::patch::Patch;
 
+use super::charts::{chart, curve};
+use super::scene::series_stem;
 use super::{Findings, Offered, Offers, StudyError};
 use crate::case::Case;
 use crate::case::expand::CaseScene;
 use crate::exact::cohesive::CohesiveLaw;
 use crate::extremes::{larger, largest};
 use crate::output::history::Table;
-use crate::record::{Axis, Curve, CurveStyle, Figure, FigureBody, Reference, ReferenceKind};
+use crate::record::{CurveStyle, Figure, Reference, ReferenceKind};
 
 const STRENGTH: &str = "largest stress over the strength";
 const ERROR: &str = "stress, largest difference from the law over the strength, where spans resolve it";
@@ -52,11 +54,11 @@ pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, Study
         let rows = openings.zip(stresses.zip(law)).filter(|(opening, (_, law))| *opening > OPEN && *law > resolved);
         findings.add(&scene.name, ERROR, largest(rows.map(|(_, (found, law))| (found - law).abs())), None);
         findings.add(&scene.name, ENERGY, energy, exact("a cohesive crack in the limit of small spans"));
-        let stem = format!("{}-{}-{}", case.suite, case.name, findings.series.len());
         if findings.series.is_empty() {
+            let stem = series_stem(case, "bar");
             findings.figures.push(figure(case, &stem));
+            findings.series.push((stem, table));
         }
-        findings.series.push((stem, table));
     }
     Ok(findings)
 }
@@ -105,9 +107,9 @@ impl<'a> Bar<'a> {
         let model = FractureModel::of(self.material);
         let model = model.ok_or_else(|| StudyError::Other("the material has no fracture".into()))?;
         let mut field = PhaseField::new(&lattice, model, &scene.solver);
-        let mut history = vec![Lane::ZERO; lattice.batches()];
+        let drive = self.drive(&lattice);
         let unit = self.fracture.critical_energy_release_rate / self.strength;
-        let curve = self.law.softening();
+        let law = self.law.softening();
         let mut table = Table::new(&["opening_over_unit", "stress_over_strength", "law"]);
         let elastic = self.strength * self.length / self.material.young_modulus;
         let mut strength = 0.0;
@@ -120,17 +122,22 @@ impl<'a> Bar<'a> {
                     return Err(StudyError::Other("the stress of the bar does not settle".into()));
                 }
                 let before = stress;
-                stress = self.material.young_modulus * elongation / self.compliance(&lattice, &field, &model);
+                let kept = |batch| model.degradation(lattice.interpolate(batch, field.control_values()).0);
+                let kept: Vec<Lane> = (0..lattice.batches()).map(kept).collect();
+                stress = self.material.young_modulus * elongation / self.compliance(&lattice, &kept);
                 if (stress - before).abs() <= SETTLED * self.strength {
                     break;
                 }
-                self.drive(&lattice, &field, &model, stress, &mut history);
+                let at_rest = 0.5 * stress * stress / self.material.young_modulus;
+                let history =
+                    drive.iter().zip(&kept).map(|(drive, g)| drive.zip(*g, |drive, g| drive * at_rest / (g * g)));
+                let history: Vec<Lane> = history.collect();
                 field.solve(&lattice, &history).map_err(|error| StudyError::Other(error.to_string()))?;
             }
             strength = larger(strength, stress / self.strength);
             let opening = (elongation - stress * self.length / self.material.young_modulus) / unit;
             if step % ROW == 0 {
-                table.push(&[opening, stress / self.strength, interpolated(&curve, opening)]);
+                table.push(&[opening, stress / self.strength, interpolated(&law, opening)]);
             }
         }
         let mut energy = 0.0;
@@ -142,24 +149,20 @@ impl<'a> Bar<'a> {
         Ok(Pulled { table, strength, energy })
     }
 
-    /// ∫ 1/g dx, m.
-    fn compliance(&self, lattice: &Lattice, field: &PhaseField, model: &FractureModel) -> f64 {
-        let mut sum = 0.0;
-        for batch in 0..lattice.batches() {
-            let g = model.degradation(lattice.interpolate(batch, field.control_values()).0);
-            let weight = lattice.weights_of(batch);
-            sum += (0..LANES).filter(|&lane| weight[lane] > 0.0).map(|lane| weight[lane] / g[lane]).sum::<f64>();
-        }
-        sum / self.height
+    /// ∫ 1/g dx (m) of a degradation g at the points.
+    fn compliance(&self, lattice: &Lattice, kept: &[Lane]) -> f64 {
+        let of = |(batch, g): (usize, &Lane)| lattice.weights_of(batch).zip(*g, |weight, g| weight / g).sum();
+        kept.iter().enumerate().map(of).sum::<f64>() / self.height
     }
 
-    fn drive(&self, lattice: &Lattice, field: &PhaseField, model: &FractureModel, stress: f64, history: &mut [Lane]) {
-        let at_rest = 0.5 * stress * stress / self.material.young_modulus;
+    /// What the driving energy of every point is multiplied by.
+    fn drive(&self, lattice: &Lattice) -> Vec<Lane> {
+        let mut drive = vec![Lane::splat(1.0); lattice.batches()];
         lattice.for_each_point(|batch, lane, [x, _], _| {
-            let g = model.degradation(lattice.interpolate(batch, field.control_values()).0)[lane];
             let from_middle = (x - 0.5 * self.length) / (2.0 * self.fracture.length_scale);
-            history[batch][lane] = at_rest / (g * g) * (1.0 + IMPERFECTION * (-from_middle * from_middle).exp());
+            drive[batch][lane] += IMPERFECTION * (-from_middle * from_middle).exp();
         });
+        drive
     }
 }
 
@@ -174,16 +177,12 @@ fn interpolated(curve: &[[f64; 2]], opening: f64) -> f64 {
 }
 
 fn figure(case: &Case, stem: &str) -> Figure {
-    let curve = |label: &str, column: &str, style| Curve {
-        style,
-        ..Curve::line(label, &format!("series/{stem}.csv"), ["opening_over_unit", column])
-    };
-    let axes = ["opening over Gc/ft", "stress over ft"].map(Axis::linear);
+    let columns = |column| ["opening_over_unit", column];
     let curves = vec![
-        curve("law of softening", "law", CurveStyle::Reference),
-        curve("phase field", "stress_over_strength", CurveStyle::Markers),
+        curve("law of softening", stem, columns("law"), CurveStyle::Reference),
+        curve("phase field", stem, columns("stress_over_strength"), CurveStyle::Markers),
     ];
     let caption = "Stress over the strength against the opening of a cohesive crack in a slender bar.";
-    let words = [stem, "Cohesive crack in a bar", caption];
-    Figure::new(&case.suite, words, FigureBody::chart(axes, curves, Vec::new()))
+    let axes = ["opening over Gc/ft", "stress over ft"];
+    chart(case, "bar", "Cohesive crack in a bar", caption, axes, curves)
 }
