@@ -122,8 +122,7 @@ impl<'a> Bar<'a> {
                     return Err(StudyError::Other("the stress of the bar does not settle".into()));
                 }
                 let before = stress;
-                let kept = |batch| model.degradation(lattice.interpolate(batch, field.control_values()).0);
-                let kept: Vec<Lane> = (0..lattice.batches()).map(kept).collect();
+                let kept = degradation(&lattice, &field, &model);
                 stress = self.material.young_modulus * elongation / self.compliance(&lattice, &kept);
                 if (stress - before).abs() <= SETTLED * self.strength {
                     break;
@@ -157,13 +156,22 @@ impl<'a> Bar<'a> {
 
     /// What the driving energy of every point is multiplied by.
     fn drive(&self, lattice: &Lattice) -> Vec<Lane> {
-        let mut drive = vec![Lane::splat(1.0); lattice.batches()];
+        let mut drive = vec![Lane::ZERO; lattice.batches()];
         lattice.for_each_point(|batch, lane, [x, _], _| {
             let from_middle = (x - 0.5 * self.length) / (2.0 * self.fracture.length_scale);
-            drive[batch][lane] += IMPERFECTION * (-from_middle * from_middle).exp();
+            drive[batch][lane] = 1.0 + IMPERFECTION * (-from_middle * from_middle).exp();
         });
         drive
     }
+}
+
+/// g at the points, 1 where a batch has none.
+fn degradation(lattice: &Lattice, field: &PhaseField, model: &FractureModel) -> Vec<Lane> {
+    let of_batch = |batch| {
+        let g = model.degradation(lattice.interpolate(batch, field.control_values()).0);
+        g.zip(lattice.weights_of(batch), |g, weight| if weight > 0.0 { g } else { 1.0 })
+    };
+    (0..lattice.batches()).map(of_batch).collect()
 }
 
 /// Stress over ft at an opening.
