@@ -8,7 +8,7 @@ use crate::text::render_text;
 use crate::view::{BASES, Basis, Counts};
 
 /// What each suite is about, in the order of the tables.
-const SUITES: [(&str, &str); 9] = [
+const SUITES: [(&str, &str); 10] = [
     ("patch", "to round-off: spline bases, constant stress, rigid motion, and half models against full ones"),
     (
         "convergence",
@@ -26,6 +26,10 @@ const SUITES: [(&str, &str); 9] = [
         "two brittle rings in collision: momentum, balance, symmetry; the geometry is assumed, times of the source paper are shown",
     ),
     ("stability", "critical time step, bodies that end inside a span, extreme input, units, threads, long runs"),
+    (
+        "benchmarks",
+        "the test of Kalthoff and Winkler, elastic and with a crack in shear (AT1), against finite elements extrapolated to h = 0",
+    ),
     ("plate", "the cracking plate at h = l0, against finite elements and splines extrapolated to h = 0"),
 ];
 

@@ -12,6 +12,7 @@ pub mod curves;
 pub mod events;
 mod exchanged;
 pub mod family;
+mod kalthoff;
 pub mod mapping;
 pub mod mistakes;
 mod origin;
@@ -75,8 +76,9 @@ pub struct Benchmark {
 }
 
 /// All benchmarks.
-pub const BENCHMARKS: [Benchmark; 7] = [
+pub const BENCHMARKS: [Benchmark; 8] = [
     Benchmark { name: "plate", what: "impact-loaded plate and its family: a crack that runs and branches" },
+    Benchmark { name: "kalthoff", what: "test of Kalthoff and Winkler, elastic or with an AT1 crack in shear" },
     Benchmark { name: "patch-bar", what: "bar under uniform tension at rest, closed form" },
     Benchmark { name: "homogeneous-bar", what: "uniform damage under growing strain, closed form" },
     Benchmark { name: "seeded-crack", what: "fracture energy of a crack made by a history field, closed form" },
@@ -108,8 +110,10 @@ pub fn judge(folder: &Path, library: &Library, data: &Path, against: Option<&str
     let submission = Submission::load(folder)?;
     let curves = table::curves(folder, &submission)?;
     let name = folder.display().to_string();
-    if submission.benchmark != "plate" {
-        return closed_form::judge(&name, &submission, curves);
+    match submission.benchmark.as_str() {
+        "plate" => {}
+        "kalthoff" => return kalthoff::judge(&name, &submission, curves, library),
+        _ => return closed_form::judge(&name, &submission, curves),
     }
     if curves.iter().all(Option::is_none) {
         let remedy = "add [curves] with time and kinetic, elastic, work, fracture, tip_x or tip_y";

@@ -57,3 +57,27 @@ pub fn branches(mesh: &Mesh, c: &[f64], i: usize, whole: bool) -> usize {
     }
     count
 }
+
+/// The place farthest from `start` where c is 0.05: on the sides of elements that it passes. m.
+pub fn farthest(mesh: &Mesh, c: &[f64], start: [f64; 2]) -> Option<[f64; 2]> {
+    let distance = |p: &[f64; 2]| (p[0] - start[0]).hypot(p[1] - start[1]);
+    let at = |i: usize, j: usize| (row(c, j, mesh.stride())[i + 1], [mesh.x[i], mesh.y[j]]);
+    let crossing = |(inner, p): (f64, [f64; 2]), (outer, q): (f64, [f64; 2])| {
+        let part = (BROKEN - inner) / (outer - inner);
+        [0, 1].map(|d| p[d] + part * (q[d] - p[d]))
+    };
+    let mut found = Vec::new();
+    for (j, i) in (0..mesh.y.len()).flat_map(|j| (0..mesh.x.len()).map(move |i| (j, i))) {
+        let here = at(i, j);
+        let next = [(i + 1 < mesh.x.len()).then(|| at(i + 1, j)), (j + 1 < mesh.y.len()).then(|| at(i, j + 1))];
+        for next in next.into_iter().flatten() {
+            match [here.0 < BROKEN, next.0 < BROKEN] {
+                [true, false] => found.push(crossing(here, next)),
+                [false, true] => found.push(crossing(next, here)),
+                [true, true] => found.extend([here.1, next.1]),
+                [false, false] => {}
+            }
+        }
+    }
+    found.into_iter().max_by(|a, b| distance(a).total_cmp(&distance(b)))
+}

@@ -192,9 +192,7 @@ impl Dynamics {
             for (point, (strain, c)) in strains.into_iter().zip(element::interpolate(c)).enumerate() {
                 let (slope_x, slope_y) = (along[point / 2], up[point % 2]);
                 elastic += weight * (m.degradation(c) * m.tensile_energy(strain) + m.compressive_energy(strain));
-                let density = (1.0 - c) * (1.0 - c) / (4.0 * m.length_scale)
-                    + m.length_scale * (slope_x * slope_x + slope_y * slope_y);
-                fracture += weight * m.toughness * density;
+                fracture += weight * m.crack_density(c, slope_x * slope_x + slope_y * slope_y);
             }
         }
         (elastic, fracture)

@@ -1,9 +1,12 @@
-//! The elastic part of the test of Kalthoff and Winkler: the upper half of a plate with a slit, driven at a
-//! part of its left edge.
+//! The test of Kalthoff and Winkler: the upper half of a plate with a slit, driven at a part of its left
+//! edge.
 
+use crate::crack;
 use crate::dynamics::Dynamics;
+use crate::gradients::Stop;
 use crate::material::Material;
 use crate::mesh::Mesh;
+use crate::phase_field::PhaseField;
 
 /// Side of the half plate, m.
 const SIDE: f64 = 0.1;
@@ -13,36 +16,50 @@ const SLIT: [f64; 2] = [0.025, 0.05];
 const VELOCITY: f64 = 16.5;
 const RISE: f64 = 1e-6;
 
-/// A run without a phase field.
+/// A run.
 #[derive(Debug, Clone, Copy)]
 pub struct Kalthoff {
     /// Element size, m.
     pub h: f64,
-    /// Plane stress instead of plane strain.
-    pub plane_stress: bool,
+    /// What the plate is made of.
+    pub material: Material,
+    /// Residual of the phase field over its right-hand side; without one the plate does not crack.
+    pub tolerance: Option<f64>,
     /// Most of the critical step of an element that a step may take.
     pub fraction: f64,
     /// Time at the end, and between samples, s.
     pub end: f64,
     /// See [`Self::end`].
     pub interval: f64,
+    /// Threads.
+    pub threads: usize,
 }
 
-/// Time (s), work of the driven part, kinetic and elastic energy of the half plate (J/m), reaction of the
-/// driven part (N/m).
-pub type Row = [f64; 5];
+/// Time (s), work of the driven part, kinetic, elastic and fracture energy of the half plate (J/m), reaction
+/// of the driven part (N/m), place of the tip (m; not a number before there is one).
+pub type Row = [f64; 8];
+
+/// Steel of the test; plane strain or plane stress.
+pub fn steel(plane_stress: bool) -> Material {
+    Material { density: 8000.0, ..Material::new(190e9, 0.3, plane_stress) }
+}
 
 impl Kalthoff {
     /// Steps to the end; the rows sampled.
     pub fn run(&self) -> Vec<Row> {
-        let material = Material { density: 8000.0, ..Material::new(190e9, 0.3, self.plane_stress) };
+        let material = self.material;
         let lines = (SIDE / self.h).round() as usize;
         let x: Vec<f64> = (0..=lines).map(|i| SIDE * i as f64 / lines as f64).collect();
         let slit_row = (SLIT[0] / self.h).round() as usize;
+        let whole = Mesh { y: x.clone(), x: x.clone() };
         let mut y = x.clone();
         y.insert(slit_row, x[slit_row]); // a row of elements without height
         let mesh = Mesh { x, y };
         let stride = mesh.stride();
+        let mut field = PhaseField::new(&whole, material, self.threads);
+        field.gap = Some(slit_row);
+        // c has one row of nodes along the slit; the displacements have two
+        let both = |c: &[f64]| [&c[..(slit_row + 1) * stride], &c[slit_row * stride..]].concat();
         let mut body = Dynamics::new(&mesh, material);
         let behind = (0..=lines).filter(|&i| mesh.x[i] >= SLIT[1] - 1e-9);
         body.tie(behind.map(|i| [slit_row, slit_row + 1].map(|row| row * stride + i + 1)).collect());
@@ -53,23 +70,29 @@ impl Kalthoff {
         let critical = material.critical_step(self.h);
         let per_sample = (self.interval / (self.fraction * critical) - 1e-9).ceil() as usize;
         let dt = self.interval / per_sample as f64;
-        let whole = mesh.nodal().iter().map(|_| 1.0).collect::<Vec<f64>>();
+        let mut c = both(&field.c);
         let velocity = |time: f64| VELOCITY * (time / RISE).clamp(0.0, 1.0);
         let (mut rows, mut work, mut last) = (Vec::new(), 0.0, [0.0; 2]); // reaction and velocity of the step before
         for n in 0..=(self.end / dt).round() as usize {
             let time = n as f64 * dt;
-            body.evaluate(&whole);
+            if let Some(tolerance) = self.tolerance.filter(|_| n > 0) {
+                field.remember(&body.displacement[0], &body.displacement[1]);
+                field.solve(Stop { tolerance, tiles: true, most: 2000 });
+                c = both(&field.c);
+            }
+            body.evaluate(&c);
             let next = velocity(time + 0.5 * dt);
             let acceleration = (next - last[1]) / if n == 0 { 0.5 * dt } else { dt };
             let reaction: f64 = driven.iter().map(|&node| body.mass(node) * acceleration - body.force(0, node)).sum();
             work += dt * last[1] * 0.5 * (last[0] + reaction);
             let kick = if n == 0 { 0.5 * dt } else { dt };
             if n % per_sample == 0 {
-                let energies = body.energies(kick, &whole);
+                let energies = body.energies(kick, &c);
                 // the driven nodes have no mobility, so their gain is missing from the product of velocities
                 let missing: f64 = driven.iter().map(|&node| 0.5 * body.mass(node) * last[1] * (next - last[1])).sum();
                 let kinetic = if n == 0 { 0.0 } else { energies.kinetic + missing };
-                rows.push([time, work, kinetic, energies.elastic, reaction]);
+                let [tip_x, tip_y] = crack::farthest(&whole, &field.c, [SLIT[1], SLIT[0]]).unwrap_or([f64::NAN; 2]);
+                rows.push([time, work, kinetic, energies.elastic, energies.fracture, reaction, tip_x, tip_y]);
             }
             driven.iter().for_each(|&node| body.velocity[0][node] = next);
             body.kick(kick, dt);

@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use clap::Parser;
 use independent_fem::crack;
-use independent_fem::kalthoff::Kalthoff;
-use independent_fem::material::Material;
+use independent_fem::kalthoff::{self, Kalthoff};
+use independent_fem::material::{Material, Surface};
 use independent_fem::mesh::{Grading, Mesh};
 use independent_fem::plate::{Plate, Sample};
 
@@ -40,6 +40,12 @@ struct Options {
     /// No phase field
     #[arg(long)]
     frozen: bool,
+    /// AT1 instead of AT2
+    #[arg(long, conflicts_with = "every")]
+    at1: bool,
+    /// Length scale l0 of Borden et al., mm; half of the length b of the AT1 literature
+    #[arg(long, value_name = "MM", default_value_t = 0.25)]
+    length_scale_mm: f64,
     /// Plane stress instead of plane strain
     #[arg(long)]
     plane_stress: bool,
@@ -71,7 +77,7 @@ struct Options {
     /// Time between samples, us
     #[arg(long, value_name = "US", default_value_t = 0.25)]
     interval_us: f64,
-    /// The elastic part of the test of Kalthoff and Winkler, with elements of --h-mm
+    /// The test of Kalthoff and Winkler, with elements of --h-mm; elastic with --frozen
     #[arg(long)]
     kalthoff: bool,
     /// Threads
@@ -93,21 +99,31 @@ fn main() -> ExitCode {
     }
 }
 
-/// The elastic part of the test of Kalthoff and Winkler.
+/// The material with what the options say of its cracks.
+fn cracking(options: &Options, material: Material) -> Material {
+    let surface = if options.at1 { Surface::At1 } else { Surface::At2 };
+    Material { toughness: options.toughness, length_scale: options.length_scale_mm * 1e-3, surface, ..material }
+}
+
+/// The test of Kalthoff and Winkler.
 fn run_kalthoff(options: &Options) -> Result<(), Box<dyn Error>> {
     let run = Kalthoff {
         h: options.h_mm * 1e-3,
-        plane_stress: options.plane_stress,
+        material: cracking(options, kalthoff::steel(options.plane_stress)),
+        tolerance: (!options.frozen).then_some(options.tolerance),
         fraction: options.fraction,
         end: options.end_us * 1e-6,
         interval: options.interval_us * 1e-6,
+        threads: options.threads,
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
     let mut file = csv::Writer::from_path(&options.out)?;
-    file.write_record(["time_us", "external_work_j_per_m", "kinetic_j_per_m", "elastic_j_per_m", "reaction_n_per_m"])?;
-    for [time, rest @ ..] in pool.install(|| run.run()) {
+    let energies = ["external_work_j_per_m", "kinetic_j_per_m", "elastic_j_per_m", "fracture_j_per_m"];
+    file.write_record(["time_us"].iter().chain(&energies).chain(&["reaction_n_per_m", "tip_x_mm", "tip_y_mm"]))?;
+    for [time, rest @ .., tip_x, tip_y] in pool.install(|| run.run()) {
         let mut row = vec![format!("{:.4}", time * 1e6)];
         row.extend(rest.map(|value| format!("{value:.9e}")));
+        row.extend([tip_x, tip_y].map(|x| if x.is_finite() { format!("{:.5}", x * 1e3) } else { "nan".to_string() }));
         file.write_record(row)?;
     }
     Ok(file.flush()?)
@@ -117,7 +133,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     if options.kalthoff {
         return run_kalthoff(options);
     }
-    let material = Material { toughness: options.toughness, ..Material::new(32e9, 0.2, options.plane_stress) };
+    let material = cracking(options, Material::new(32e9, 0.2, options.plane_stress));
     let grading = Grading { fine_from: options.fine_from_mm * 1e-3, fine_to: options.fine_mm * 1e-3 };
     let plate = Plate {
         h: options.h_mm * 1e-3,

@@ -1,5 +1,14 @@
-//! Linear elasticity with the spectral split of Miehe et al., degraded by an AT2 phase field in Borden's
-//! convention.
+//! Linear elasticity with the spectral split of Miehe et al., degraded by an AT2 or AT1 phase field; l0 is
+//! the length scale of Borden et al. (2012), b = 2 l0 that of the AT1 literature.
+
+/// Energy of a crack per area, over Gc.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Surface {
+    /// (1 − c)²/(4 l0) + l0 |grad c|², driven by the largest tensile energy so far.
+    At2,
+    /// 3/8 [(1 − c)/b + b |grad c|²], driven by the present tensile energy; c never rises.
+    At1,
+}
 
 /// What the plate is made of, SI units.
 #[derive(Debug, Clone, Copy)]
@@ -16,6 +25,8 @@ pub struct Material {
     pub length_scale: f64,
     /// Residual stiffness k.
     pub residual: f64,
+    /// Energy of a crack.
+    pub surface: Surface,
 }
 
 impl Material {
@@ -24,7 +35,15 @@ impl Material {
         let mu = young / (2.0 * (1.0 + poisson));
         let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
         let lambda = if plane_stress { 2.0 * lambda * mu / (lambda + 2.0 * mu) } else { lambda };
-        Self { lambda, mu, density: 2450.0, toughness: 3.0, length_scale: 0.25e-3, residual: 0.0 }
+        Self {
+            lambda,
+            mu,
+            density: 2450.0,
+            toughness: 3.0,
+            length_scale: 0.25e-3,
+            residual: 0.0,
+            surface: Surface::At2,
+        }
     }
 
     /// Speed of dilatational waves, m/s.
@@ -48,6 +67,27 @@ impl Material {
     /// Compressive energy psi−, J/m³.
     pub fn compressive_energy(&self, [exx, eyy, gxy]: [f64; 3]) -> f64 {
         self.tensile_energy([-exx, -eyy, -gxy])
+    }
+
+    /// Energy of a crack per volume where the square of the slope of c is `slope`, J/m³.
+    pub fn crack_density(&self, c: f64, slope: f64) -> f64 {
+        let (l0, b) = (self.length_scale, 2.0 * self.length_scale);
+        self.toughness
+            * match self.surface {
+                Surface::At2 => (1.0 - c) * (1.0 - c) / (4.0 * l0) + l0 * slope,
+                Surface::At1 => 0.375 * ((1.0 - c) / b + b * slope),
+            }
+    }
+
+    /// Local term, factor of the driving energy H and diffusion of the equation
+    /// `(local + factor H) c − diffusion div grad c = 1`.
+    pub fn crack_equation(&self) -> [f64; 3] {
+        let (l0, b) = (self.length_scale, 2.0 * self.length_scale);
+        let drive = (1.0 - self.residual) / self.toughness;
+        match self.surface {
+            Surface::At2 => [1.0, 4.0 * l0 * drive, 4.0 * l0 * l0],
+            Surface::At1 => [0.0, 16.0 / 3.0 * b * drive, 2.0 * b * b],
+        }
     }
 
     /// g(c) = (1 − k) c² + k.

@@ -1,11 +1,12 @@
-//! The phase-field equation `[4 l0 (1 − k) H / Gc + 1] c − 4 l0² div grad c = 1`, its history field and its
-//! solution.
+//! The phase-field equation `(local + factor H) c − diffusion div grad c = 1`: what drives it and its
+//! solution, without bounds (AT2) or below the last field (AT1).
 
 use rayon::prelude::*;
 
+use crate::bounded;
 use crate::element::{self, Gauss, HIGH, LOW};
 use crate::gradients::{ConjugateGradients, Stop};
-use crate::material::{Material, larger};
+use crate::material::{Material, Surface, larger};
 use crate::mesh::Mesh;
 use crate::stencil::{Stencil, TILE_ROWS, row};
 
@@ -17,8 +18,12 @@ pub struct PhaseField {
     previous: Vec<f64>,
     /// c between two solves.
     between: Vec<f64>,
-    /// History at the Gauss points: per row of elements, four rows of numbers. J/m³.
+    /// What drives the crack at the Gauss points: per row of elements, four rows of numbers. J/m³.
     pub history: Vec<f64>,
+    /// AT1: what c may not exceed, besides its last value.
+    pub bound: Vec<f64>,
+    /// The row of elements without height among those of the displacements, if there is one; c has none.
+    pub gap: Option<usize>,
     /// Lumped volumes, m².
     volumes: Vec<f64>,
     /// Added to the diagonal of the lowest row of nodes, where c is to be zero.
@@ -53,6 +58,8 @@ impl PhaseField {
         Self {
             previous: c.clone(),
             between: c.clone(),
+            bound: c.clone(),
+            gap: None,
             c,
             history: vec![0.0; mesh.rows() * 4 * stride],
             volumes: mesh.volumes(),
@@ -69,12 +76,16 @@ impl PhaseField {
         }
     }
 
-    /// Raises the history to the tensile energy of the displacements.
+    /// Takes the tensile energy of the displacements, or the largest so far (AT2).
     pub fn remember(&mut self, ux: &[f64], uy: &[f64]) {
-        let (stride, material) = (self.stride, self.material);
+        let (stride, material, gap) = (self.stride, self.material, self.gap);
+        if material.surface == Surface::At1 {
+            self.history.fill(0.0);
+        }
         let (inverse_widths, heights) = (&self.inverse_widths[..stride], &self.heights);
         self.history.par_chunks_mut(4 * stride).enumerate().for_each(|(j, history)| {
-            let lower_upper = |u| [&row(u, j, stride)[..stride], &row(u, j + 1, stride)[..stride]];
+            let lower = if gap.is_some_and(|gap| j >= gap) { j + 1 } else { j };
+            let lower_upper = |u| [&row(u, lower, stride)[..stride], &row(u, lower + 1, stride)[..stride]];
             let ([xl, xu], [yl, yu]) = (lower_upper(ux), lower_upper(uy));
             let inverse_height = 1.0 / heights[j];
             let (first, second) = history.split_at_mut(2 * stride);
@@ -91,9 +102,33 @@ impl PhaseField {
         });
     }
 
-    /// Solves for c from the history, starting from an extrapolation in time; gives the iterations.
+    /// Solves for c from what drives it; gives the iterations.
     pub fn solve(&mut self, stop: Stop) -> usize {
         self.assemble();
+        match self.material.surface {
+            Surface::At2 => self.solve_freely(stop),
+            Surface::At1 => self.solve_below(stop.tolerance),
+        }
+    }
+
+    /// The least energy below the last field, and the bound becomes what was found.
+    fn solve_below(&mut self, tolerance: f64) -> usize {
+        self.matrix.scale_to_unit_diagonal();
+        let scale = &self.matrix.scale;
+        let unscaled = |(value, scale): (&f64, &f64)| value * scale;
+        let scaled = |(value, scale): (&f64, &f64)| if *scale > 0.0 { value / scale } else { 0.0 }; // guards
+        let bound: Vec<f64> = self.bound.iter().zip(scale).map(scaled).collect();
+        self.scaled.copy_from_slice(&bound);
+        self.right = self.volumes.iter().zip(scale).map(unscaled).collect();
+        let iterations = bounded::solve(&self.matrix, self.stride, &self.right, &bound, &mut self.scaled, tolerance);
+        let found = self.scaled.iter().zip(scale).map(unscaled);
+        self.c.iter_mut().zip(found).for_each(|(c, found)| *c = found);
+        self.bound.copy_from_slice(&self.c);
+        iterations
+    }
+
+    /// The solution without bounds, from an extrapolation in time.
+    fn solve_freely(&mut self, stop: Stop) -> usize {
         self.matrix.diagonal[1..self.stride - 1].iter_mut().for_each(|d| *d += self.penalty);
         self.matrix.scale_to_unit_diagonal();
         let stride = self.stride;
@@ -148,9 +183,7 @@ impl PhaseField {
     /// Tile of node rows by tile: what the rows of elements above and below each give.
     fn assemble(&mut self) {
         let stride = self.stride;
-        let m = &self.material;
-        let factor = 4.0 * m.length_scale * (1.0 - m.residual) / m.toughness;
-        let diffusion = 4.0 * m.length_scale * m.length_scale;
+        let equation = self.material.crack_equation();
         let (widths, heights, history) = ([&self.widths, &self.inverse_widths], &self.heights, &self.history);
         let matrix = &mut self.matrix;
         let size = TILE_ROWS * stride;
@@ -167,13 +200,13 @@ impl PhaseField {
             let mut elements = ElementRow::new(stride);
             let mut below = ElementRow::new(stride);
             if let Some(e) = first.checked_sub(1) {
-                below.fill(row(history, e, 4 * stride), widths, heights[e], [factor, diffusion]);
+                below.fill(row(history, e, 4 * stride), widths, heights[e], equation);
             }
             for k in 0..rows {
                 match heights.get(first + k) {
                     Some(height) => {
                         let history = row(history, first + k, 4 * stride);
-                        elements.fill(history, widths, *height, [factor, diffusion]);
+                        elements.fill(history, widths, *height, equation);
                     }
                     None => elements = ElementRow::new(stride), // above the body
                 }
@@ -195,7 +228,8 @@ impl ElementRow {
     }
 
     /// Matrices from the history at four Gauss points per element.
-    fn fill(&mut self, history: &[f64], [widths, inverse]: [&Vec<f64>; 2], height: f64, [factor, diffusion]: [f64; 2]) {
+    fn fill(&mut self, history: &[f64], [widths, inverse]: [&Vec<f64>; 2], height: f64, equation: [f64; 3]) {
+        let [local, factor, diffusion] = equation;
         let n = widths.len();
         let (widths, inverse) = (&widths[..n], &inverse[..n]);
         let inverse_height = 1.0 / height;
@@ -204,7 +238,7 @@ impl ElementRow {
         let [ll, lr, ul, ur, lower, upper, left, right, across] = self.0.each_mut().map(|values| &mut values[..n]);
         for i in 1..n - 2 {
             let volume = 0.25 * widths[i] * height;
-            let reaction = [h0[i], h1[i], h2[i], h3[i]].map(|h| volume * (1.0 + factor * h));
+            let reaction = [h0[i], h1[i], h2[i], h3[i]].map(|h| volume * (local + factor * h));
             let matrix =
                 element_matrix(reaction, diffusion * height * inverse[i], diffusion * widths[i] * inverse_height);
             [ll[i], lr[i], ul[i], ur[i]] = matrix.corners;

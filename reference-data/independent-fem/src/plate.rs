@@ -4,7 +4,7 @@ use crate::crack::{self, Crack};
 use crate::dynamics::{Dynamics, Energies};
 use crate::element::{HIGH, LOW};
 use crate::gradients::Stop;
-use crate::material::Material;
+use crate::material::{Material, Surface};
 use crate::mesh::{CRACK, Grading, Mesh};
 use crate::phase_field::PhaseField;
 
@@ -137,8 +137,13 @@ impl Plate {
         }
     }
 
-    /// History B Gc/(4 l0) (1 − d/l0) at the distance d ≤ l0 from the crack.
+    /// AT1: c = 0 on the crack. AT2: history B Gc/(4 l0) (1 − d/l0) at the distance d ≤ l0 from it.
     fn seed(&self, mesh: &Mesh, field: &mut PhaseField) {
+        if self.material.surface == Surface::At1 {
+            let axis = if self.whole { mesh.rows() / 2 } else { 0 };
+            let nodes = (0..mesh.x.len()).filter(|&i| mesh.x[i] <= CRACK + 1e-9);
+            return nodes.for_each(|i| field.bound[axis * mesh.stride() + i + 1] = 0.0);
+        }
         let (stride, l0) = (mesh.stride(), self.material.length_scale);
         for j in 0..mesh.rows() {
             for point in 0..4 {

@@ -9,21 +9,24 @@ use fisura::Simulation;
 use fisura::scene::*;
 use fisura::simulation::state::ResumeError;
 
-/// Runs `scene`; from checkpoints after some of its steps the rest is run again. The last states are compared
+/// Steps that are run again from a checkpoint; from the one in the middle, the run is continued to its end.
+const FEW: usize = 10;
+
+/// Runs `scene`, and parts of it again from checkpoints after some of its steps. The last states are compared
 /// byte by byte, and so are all samples on the way.
 #[track_caller]
 fn goes_on_bit_by_bit(name: &str, scene: &Scene) {
     fisura::validate::validate(scene).unwrap_or_else(|errors| panic!("{name}: {errors:?}"));
     let mut undisturbed = Simulation::new(scene).unwrap();
-    let rest = |simulation: &mut Simulation| {
+    let rest = |simulation: &mut Simulation, most: usize| {
         let mut samples = Vec::new();
-        while !simulation.finished() {
+        while !simulation.finished() && samples.len() < most {
             simulation.step().unwrap_or_else(|b| panic!("{name}: {b}"));
             samples.push(format!("{:?}", simulation.sample()));
         }
         (samples, simulation.checkpoint().unwrap())
     };
-    let (samples, end) = rest(&mut undisturbed);
+    let (samples, end) = rest(&mut undisturbed, usize::MAX);
     let steps = samples.len();
     assert!(steps >= 20, "{name}: {steps} steps are hardly a run");
 
@@ -34,12 +37,15 @@ fn goes_on_bit_by_bit(name: &str, scene: &Scene) {
             let mut resumed = Simulation::resume(scene, &state).unwrap_or_else(|e| panic!("{name}, step {step}: {e}"));
             assert_eq!(resumed.steps(), step);
             assert_eq!(resumed.checkpoint().unwrap(), state, "{name}: the state of step {step} is not taken up whole");
-            let (again, last) = rest(&mut resumed);
+            let (again, last) = rest(&mut resumed, if step == steps / 2 { usize::MAX } else { FEW });
             let first = again.iter().zip(&samples[step..]).position(|(a, b)| a != b);
             assert_eq!(first, None, "{name}: from step {step} on, this step differs first");
-            assert!(last == end, "{name}: the states at the end differ, from step {step} on");
-            assert_eq!(resumed.warnings(), undisturbed.warnings());
-            assert_eq!(format!("{:?}", resumed.picture([40, 20])), format!("{:?}", undisturbed.picture([40, 20])));
+            if resumed.finished() {
+                assert!(last == end, "{name}: the states at the end differ, from step {step} on");
+                assert_eq!(resumed.warnings(), undisturbed.warnings());
+                let picture = |of: &Simulation| format!("{:?}", of.picture([40, 20]));
+                assert_eq!(picture(&resumed), picture(&undisturbed));
+            }
         }
         simulation.step().unwrap();
     }

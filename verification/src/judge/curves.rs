@@ -11,19 +11,19 @@ use crate::reference::{ReferenceCurve, relative_rms, relative_uncertainty, rms_d
 /// Part of a window that has to be covered.
 const COVERED: f64 = 0.95;
 /// Widest interval between rows that is interpolated across, s.
-const WIDEST: f64 = 2e-6;
+pub(super) const WIDEST: f64 = 2e-6;
 /// Safety factor on what bilinear elements of the same spacing are off by.
-const SAFETY: f64 = 1.25;
+pub(super) const SAFETY: f64 = 1.25;
 /// In a phase, at least this part of the uncertainty over the whole curve: small figures of one mesh may be
 /// chance.
 const LEAST: f64 = 0.1;
 /// Events are decided on meshes up to this spacing over l0; bilinear elements of l0 miss several.
 pub(super) const EVENTS_DECIDE: f64 = 0.5;
 /// Numerical uncertainties beyond these decide nothing: relative, and of the tip in m.
-const DECIDES: [f64; 2] = [0.20, 5e-3];
+pub(super) const DECIDES: [f64; 2] = [0.20, 5e-3];
 /// Numerical uncertainties beyond these show no agreement, though they may show a difference: 5 %, as for the
 /// status of a record, and the same part of what decides for the tip.
-const AGREES: [f64; 2] = [0.05, 1.25e-3];
+pub(super) const AGREES: [f64; 2] = [0.05, 1.25e-3];
 /// An increment that starts above this is none, J/m.
 const INCREMENT_STARTS: f64 = 0.02;
 /// End of the initial crack, m.

@@ -202,12 +202,12 @@ fn read(root: &Item<'_>, document: &Document) -> Option<Submission> {
     let names: Vec<(&str, &str)> = super::BENCHMARKS.iter().map(|b| (b.name, b.name)).collect();
     let benchmark = fields.need("benchmark", "benchmark = \"plate\"", |item| item.choice(&names));
     let code = fields.need("code", "[code] with a name", code);
-    let model = fields.get("model").map(|item| model(&item));
-    let plain = |benchmark: Option<&str>| benchmark.is_some_and(|name| name != "plate");
-    let model = match (model, plain(benchmark)) {
-        (Some(model), _) => model,
-        (None, true) => Some(Model::default()),
-        (None, false) => fields.need("model", "[model] with plane, traction, crack and split", model_of),
+    let model = match benchmark {
+        Some("plate") | None => {
+            fields.need("model", "[model] with plane, traction, crack and split", |item| model(item, true))
+        }
+        Some("kalthoff") => fields.need("model", "[model] with plane and phase_field", |item| model(item, false)),
+        Some(_) => fields.get("model").map_or(Some(Model::default()), |item| model(&item, false)),
     };
     let rest = fields.get("discretisation").map_or(Some(Default::default()), |item| discretisation(&item));
     let cost = fields.get("cost").map_or(Some(Cost::default()), |item| cost(&item));
@@ -233,10 +233,6 @@ fn read(root: &Item<'_>, document: &Document) -> Option<Submission> {
         values: values?,
         document: document.clone(),
     })
-}
-
-fn model_of(item: &Item<'_>) -> Option<Model> {
-    model(item)
 }
 
 fn texts(fields: &Fields<'_>, key: &str) -> Option<Vec<String>> {
@@ -283,13 +279,17 @@ const MODEL: [&str; 11] = [
     "differences",
 ];
 
-fn model(item: &Item<'_>) -> Option<Model> {
+/// The model; of the plate all that its variants differ in is asked for.
+fn model(item: &Item<'_>, plate: bool) -> Option<Model> {
     let fields = item.fields(&MODEL)?;
+    let asked = |key: &str| plate || fields.get(key).is_some();
     let planes = [("strain", Plane::Strain), ("stress", Plane::Stress), ("unknown", Plane::Unknown)];
     let plane = fields.need("plane", "plane = \"strain\", \"stress\" or \"unknown\"", |item| item.choice(&planes));
     let unknown = |item: &Item<'_>| item.node.as_str() == Some("unknown");
-    let traction = fields.need("traction", "traction = \"1 MPa\", or \"unknown\"", |item| {
-        if unknown(item) { Some(None) } else { item.positive(Dimension::STRESS).map(Some) }
+    let traction = asked("traction").then(|| {
+        fields.need("traction", "traction = \"1 MPa\", or \"unknown\"", |item| {
+            if unknown(item) { Some(None) } else { item.positive(Dimension::STRESS).map(Some) }
+        })
     });
     let cracks = [
         ("seeded", Crack::Seeded),
@@ -297,12 +297,14 @@ fn model(item: &Item<'_>) -> Option<Model> {
         ("slit", Crack::Slit),
         ("unknown", Crack::Unknown),
     ];
-    let crack = fields
-        .need("crack", "crack = \"seeded\", \"phase-field\", \"slit\" or \"unknown\"", |item| item.choice(&cracks));
+    let crack = asked("crack").then(|| {
+        fields
+            .need("crack", "crack = \"seeded\", \"phase-field\", \"slit\" or \"unknown\"", |item| item.choice(&cracks))
+    });
     let splits =
         ["spectral", "none", "volumetric-deviatoric", "star-convex", "rankine", "other", "unknown"].map(|w| (w, w));
-    let split = fields.need("split", "split = \"spectral\"", |item| item.choice(&splits));
-    let models = ["AT2", "AT1", "PF-CZM", "other", "unknown"].map(|w| (w, w));
+    let split = asked("split").then(|| fields.need("split", "split = \"spectral\"", |item| item.choice(&splits)));
+    let models = ["AT2", "AT1", "PF-CZM", "none", "other", "unknown"].map(|w| (w, w));
     let phase_field = fields.or("phase_field", "AT2", |item| item.choice(&models));
     let length = fields.maybe("length_scale", |item| item.positive(Dimension::LENGTH));
     let convention = fields.or("convention", 1.0, |item| item.choice(&[("l0", 1.0), ("l", 0.5)]));
@@ -313,9 +315,9 @@ fn model(item: &Item<'_>) -> Option<Model> {
     let convention = convention?;
     Some(Model {
         plane: plane?,
-        traction: traction?,
-        crack: crack?,
-        split: split?.into(),
+        traction: traction.unwrap_or(Some(None))?,
+        crack: crack.unwrap_or(Some(Crack::Slit))?,
+        split: split.unwrap_or(Some("spectral"))?.into(),
         phase_field: phase_field?.into(),
         length_scale: length?.map(|l| l * convention),
         residual_stiffness: k?,

@@ -36,14 +36,27 @@ plane    = "strain"                 # "stress", "unknown"
 traction = "1 MPa"                  # on each loaded edge, held from t = 0; or "unknown"
 crack    = "seeded"                 # by a history field; "phase-field" (prescribed), "slit" (free faces), "unknown"
 split    = "spectral"               # "none", "volumetric-deviatoric", "star-convex", "rankine", "other", "unknown"
-# phase_field        = "AT2"        # "AT1", "PF-CZM", "other", "unknown"
+# phase_field        = "AT2"        # "AT1", "PF-CZM", "none", "other", "unknown"
 # length_scale       = "0.25 mm"
 # convention         = "l0"         # Borden; "l" if your model has Gc/2 (d²/l + l |grad d|²), where l = 2 l0
 # residual_stiffness = 0.0
 # part               = "half"       # if only the upper half was computed; then give factor = 2 below
 # thickness          = "1 m"        # needed if energies are given in J instead of J/m
 # differences        = ["what else differs from the benchmark"]
+"##;
 
+const KALTHOFF: &str = r##"
+[model]
+plane       = "strain"              # "stress", "unknown"
+phase_field = "AT1"                 # "none" for the elastic test; others have no reference
+# split        = "spectral"
+# length_scale = "0.75 mm"          # of Borden et al.: half of b = 1.5 mm
+# thickness    = "1 m"              # needed if energies are given in J instead of J/m
+# differences  = ["what else differs from the benchmark"]
+# Energies are of the half plate: give factor = 0.5 below if you computed the whole one.
+"##;
+
+const CURVES: &str = r##"
 # [uncertainty]                     # numerical uncertainty from your own mesh study: relative rms over the run
 # kinetic  = 0.02
 # elastic  = 0.05
@@ -69,8 +82,10 @@ tip_y    = { file = "history.csv", column = "tip_y", unit = "mm" }
 /// The template for a benchmark.
 pub fn template(benchmark: &str) -> String {
     let head = HEAD.replace('@', benchmark);
-    if benchmark == "plate" {
-        return head + PLATE;
+    match benchmark {
+        "plate" => return head + PLATE + CURVES,
+        "kalthoff" => return head + KALTHOFF + CURVES,
+        _ => {}
     }
     let rows = values(benchmark).into_iter().map(|k| {
         let (what, unit) = (k.what, k.unit);

@@ -165,6 +165,9 @@ pub fn usable(check: &Check, estimate: Estimate, scenes: &[CaseScene]) -> Result
     let alike = |pair: &[CaseScene]| {
         let mut scene = pair[1].scene.clone();
         scene.mesh.knots.clone_from(&pair[0].scene.mesh.knots);
+        if scene.mesh.geometry.is_some() && pair[0].scene.mesh.geometry.is_some() {
+            scene.mesh.geometry.clone_from(&pair[0].scene.mesh.geometry); // refined with the knots
+        }
         scene == pair[0].scene && pair[1].energy_factor == pair[0].energy_factor
     };
     if !scenes.windows(2).all(alike) {

@@ -73,10 +73,7 @@ fn every_case_that_is_named_exists() {
         for word in text.split('`').skip(1).step_by(2) {
             let Some((suite, case)) = word.split_once('/') else { continue };
             let plain = case.chars().all(|c| c.is_ascii_alphanumeric() || c == '-') && !case.is_empty();
-            if ["contact", "convergence", "energy", "fracture", "manufactured", "patch", "plate", "rings", "stability"]
-                .contains(&suite)
-                && plain
-            {
+            if root().join("verification/cases").join(suite).is_dir() && plain {
                 let file = root().join(format!("verification/cases/{suite}/{case}.toml"));
                 let quantity = text.contains(&format!("`{word}` quantity"));
                 assert!(file.exists() || quantity, "{document} names the case {word}");
