@@ -48,10 +48,8 @@ fn ratio(scene: &Scene) -> f64 {
 /// To 3 %: the domain moves with a tip that is found to a part of a span, and the crack speeds up and down.
 #[test]
 fn a_running_crack_has_the_j_integral_that_its_surface_costs() {
-    for displacement in [0.8e-6, 1.0e-6] {
-        let found = ratio(&strip(displacement));
-        assert!((found - 1.0).abs() < 0.03, "{displacement:e} m: J is {found} of the supply");
-    }
+    let found = ratio(&strip(1.0e-6));
+    assert!((found - 1.0).abs() < 0.03, "J is {found} of the supply");
 }
 
 #[test]
