@@ -202,12 +202,14 @@ fn read(root: &Item<'_>, document: &Document) -> Option<Submission> {
     let names: Vec<(&str, &str)> = super::BENCHMARKS.iter().map(|b| (b.name, b.name)).collect();
     let benchmark = fields.need("benchmark", "benchmark = \"plate\"", |item| item.choice(&names));
     let code = fields.need("code", "[code] with a name", code);
-    let model = match benchmark {
-        Some("plate") | None => {
-            fields.need("model", "[model] with plane, traction, crack and split", |item| model(item, true))
-        }
-        Some("kalthoff") => fields.need("model", "[model] with plane and phase_field", |item| model(item, false)),
-        Some(_) => fields.get("model").map_or(Some(Model::default()), |item| model(&item, false)),
+    let needed: &[&str] = match benchmark {
+        Some("plate") => &["traction", "crack", "split"],
+        Some("kalthoff") => &["phase_field"],
+        _ => &[],
+    };
+    let model = match needed {
+        [] => fields.get("model").map_or(Some(Model::default()), |item| model(&item, needed)),
+        _ => fields.need("model", &format!("[model] with plane, {}", needed.join(", ")), |item| model(item, needed)),
     };
     let rest = fields.get("discretisation").map_or(Some(Default::default()), |item| discretisation(&item));
     let cost = fields.get("cost").map_or(Some(Cost::default()), |item| cost(&item));
@@ -279,10 +281,10 @@ const MODEL: [&str; 11] = [
     "differences",
 ];
 
-/// The model; of the plate all that its variants differ in is asked for.
-fn model(item: &Item<'_>, plate: bool) -> Option<Model> {
+/// The model, of which some keys are `needed`: what the variants of the benchmark differ in.
+fn model(item: &Item<'_>, needed: &[&str]) -> Option<Model> {
     let fields = item.fields(&MODEL)?;
-    let asked = |key: &str| plate || fields.get(key).is_some();
+    let asked = |key: &str| needed.contains(&key) || fields.get(key).is_some();
     let planes = [("strain", Plane::Strain), ("stress", Plane::Stress), ("unknown", Plane::Unknown)];
     let plane = fields.need("plane", "plane = \"strain\", \"stress\" or \"unknown\"", |item| item.choice(&planes));
     let unknown = |item: &Item<'_>| item.node.as_str() == Some("unknown");
@@ -305,7 +307,8 @@ fn model(item: &Item<'_>, plate: bool) -> Option<Model> {
         ["spectral", "none", "volumetric-deviatoric", "star-convex", "rankine", "other", "unknown"].map(|w| (w, w));
     let split = asked("split").then(|| fields.need("split", "split = \"spectral\"", |item| item.choice(&splits)));
     let models = ["AT2", "AT1", "PF-CZM", "none", "other", "unknown"].map(|w| (w, w));
-    let phase_field = fields.or("phase_field", "AT2", |item| item.choice(&models));
+    let phase_field = asked("phase_field")
+        .then(|| fields.need("phase_field", "phase_field = \"AT1\", \"AT2\", …", |item| item.choice(&models)));
     let length = fields.maybe("length_scale", |item| item.positive(Dimension::LENGTH));
     let convention = fields.or("convention", 1.0, |item| item.choice(&[("l0", 1.0), ("l", 0.5)]));
     let k = fields.or("residual_stiffness", 0.0, |item| item.quantity(Dimension::NONE));
@@ -318,7 +321,7 @@ fn model(item: &Item<'_>, plate: bool) -> Option<Model> {
         traction: traction.unwrap_or(Some(None))?,
         crack: crack.unwrap_or(Some(Crack::Slit))?,
         split: split.unwrap_or(Some("spectral"))?.into(),
-        phase_field: phase_field?.into(),
+        phase_field: phase_field.unwrap_or(Some("AT2"))?.into(),
         length_scale: length?.map(|l| l * convention),
         residual_stiffness: k?,
         half: half?,
