@@ -28,7 +28,7 @@ const SUITES: [(&str, &str); 10] = [
     ("stability", "critical time step, bodies that end inside a span, extreme input, units, threads, long runs"),
     (
         "benchmarks",
-        "the test of Kalthoff and Winkler, elastic and with a crack in shear (AT1), against finite elements extrapolated to h = 0",
+        "the test of Kalthoff and Winkler, elastic and with a crack in shear (AT1), against finite elements extrapolated to h = 0; a pressurised ring against one dimension",
     ),
     ("plate", "the cracking plate at h = l0, against finite elements and splines extrapolated to h = 0"),
 ];

@@ -166,6 +166,10 @@ fn plate(
     let base = Verdict::of(folder, submission, reference, numerics.words());
     let mut verdict = Verdict { differences, findings, notes, quantities, events, balance, ..base };
     verdict.conclude();
+    if verdict.outcome == Outcome::Fail && verdict.findings.is_empty() && verdict.differences.is_empty() {
+        let text = "no declared difference and no common mistake explains what fails: it is unexplained".into();
+        verdict.findings.push(verdict::Finding { id: "unexplained".into(), text });
+    }
     if differs && verdict.outcome == Outcome::Pass {
         verdict.outcome = Outcome::Diagnostic; // of another model: neither right nor wrong
     }

@@ -22,7 +22,7 @@ use crate::reference::Library;
 
 use table::Question;
 pub use table::{LooksAt, MEASURES, Measure, find};
-pub use tip::fitted_speed;
+pub use tip::{chord, fitted_speed, grown};
 
 /// A finished run of a scene, as measures see it.
 #[derive(Debug, Clone, Copy)]

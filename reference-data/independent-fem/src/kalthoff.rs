@@ -31,7 +31,7 @@ pub struct Kalthoff {
     pub end: f64,
     /// See [`Self::end`].
     pub interval: f64,
-    /// Threads.
+    /// Threads of the solves for the phase field.
     pub threads: usize,
 }
 

@@ -79,10 +79,9 @@ fn scenes(cells: usize, frame: Frame) -> Vec<(&'static str, Scene, Happens)> {
     let mut scenes = vec![
         ("elastic", elastic, Happens::Motion),
         ("elastic with a frozen crack", frozen, Happens::NothingGrows),
-        ("fracture", fracture, Happens::CrackGrows),
+        ("fracture", fracture.clone(), Happens::CrackGrows),
     ];
     if frame == Frame::Total {
-        let fracture = scenes[2].1.clone();
         scenes.extend(MODELS.map(|(name, model, split)| {
             let mut scene = fracture.clone();
             let cracks = scene.materials.values_mut().filter_map(|material| material.fracture.as_mut());

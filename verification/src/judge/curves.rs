@@ -232,6 +232,12 @@ fn compare(
     };
     decide(&mut out, u_ref, u_num);
     let [decides, agrees] = [DECIDES, AGREES].map(|limits| limits[usize::from(absolute)]);
+    doubt(&mut out, [decides, agrees]);
+    Some(out)
+}
+
+/// Takes a verdict back where the numerical uncertainty exceeds what decides, or what shows agreement.
+pub(super) fn doubt(out: &mut Comparison, [decides, agrees]: [f64; 2]) {
     let coarse = |limit: f64| out.u_num.is_some_and(|u| u > limit);
     if coarse(decides) {
         (out.outcome, out.why) = (Outcome::Diagnostic, "the numerical uncertainty is too large to decide".into());
@@ -239,7 +245,6 @@ fn compare(
         (out.outcome, out.why) =
             (Outcome::Diagnostic, "within a numerical uncertainty too large to show agreement".into());
     }
-    Some(out)
 }
 
 /// |E| against U_val; a value that is missing is incomplete.

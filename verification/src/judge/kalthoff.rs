@@ -1,18 +1,19 @@
 //! The test of Kalthoff and Winkler: energies at two times, and times and angles at which the crack has a
 //! length, against bilinear elements extrapolated to h = 0 (`reference-data/kalthoff`).
 
-use super::curves::{self, AGREES, DECIDES, SAFETY, WIDEST, decide};
+use super::curves::{self, AGREES, DECIDES, SAFETY, WIDEST, decide, doubt};
 use super::submission::{Plane, Submission};
 use super::table::Curve;
-use super::verdict::{Comparison, Outcome, QuantityVerdict, ReferenceUsed, Verdict};
-use super::{Judged, QUANTITIES, TIP_X, TIP_Y};
+use super::verdict::{Comparison, QuantityVerdict, ReferenceUsed, Verdict};
+use super::{Judged, QUANTITIES, TIP_X, TIP_Y, balance, explained_by_difference};
+use crate::measure::{chord, grown};
 use crate::reference::{Library, ReferenceValue};
 use crate::scene::SceneFileError;
 
 /// Folder of the reference.
 const FOLDER: &str = "kalthoff";
-/// Tip of the slit, m.
-const TIP: [f64; 2] = [50e-3, 25e-3];
+/// Ends of the slit, m.
+const SLIT: [[f64; 2]; 2] = [[0.0, 25e-3], [50e-3, 25e-3]];
 /// Spacing of the finest elements, whose distance from the limit is the uncertainty of the reference, m.
 const FINEST: f64 = 0.125e-3;
 /// l0 of the cracked reference, half of b, m.
@@ -20,8 +21,16 @@ const LENGTH_SCALE: f64 = 0.75e-3;
 /// Times of energies, µs, and lengths of the crack, mm, of which the reference has some.
 const TIMES: [u32; 3] = [20, 30, 45];
 const LENGTHS: [u32; 4] = [5, 15, 25, 35];
-/// Speed of the crack, by which an uncertain tip is an uncertain time, m/s.
-const SPEED: f64 = 1850.0;
+/// Speed of the crack of the reference from 15 to 35 mm, by which an uncertain tip is an uncertain time, m/s.
+const SPEED: f64 = 1870.0;
+
+/// A submission and the reference that it is held against.
+struct Comparer<'a> {
+    submission: &'a Submission,
+    library: &'a Library,
+    /// `at1/plane-strain`, …
+    variant: String,
+}
 
 /// Judges the curves of a submission.
 ///
@@ -39,66 +48,28 @@ pub fn judge(
     }
     let (mut notes, mut findings) = (Vec::new(), Vec::new());
     curves::prepare(submission, &mut curves, &mut notes, &mut findings);
-    let elastic = submission.model.phase_field == "none";
-    let plane = if submission.model.plane == Plane::Stress { "plane-stress" } else { "plane-strain" };
     if submission.model.plane == Plane::Unknown {
         notes.push("the plane state is unknown; plane strain is assumed".into());
     }
-    let variant = format!("{}/{plane}", if elastic { "elastic" } else { "at1" });
-    let missing = || submission.key_error("benchmark", format!("no reference {variant}"), "restore reference-data");
-    let of = |name: String| library.value(FOLDER, &format!("{variant}/{name}"));
-    let mut quantities = Vec::new();
-    let mut take = |words: String, unit: &str, value: Option<f64>, reference: &ReferenceValue, u_num: Option<f64>| {
-        let mut row = Comparison { name: words.clone(), unit: unit.into(), value, ..Comparison::default() };
-        row.reference = Some(reference.value);
-        row.error = value.map(|value| value - reference.value);
-        decide(&mut row, reference.uncertainty.unwrap_or(0.0), u_num);
-        let coarse = |limit: f64| u_num.is_some_and(|u| u > limit * reference.value.abs());
-        if value.is_none() {
-            row.why = "not given, not reached, or between rows more than 2 µs apart".into();
-        } else if coarse(DECIDES[0]) || row.outcome == Outcome::Pass && coarse(AGREES[0]) {
-            row.outcome = Outcome::Diagnostic;
-            row.why = "the numerical uncertainty is too large to decide".into();
-        }
-        quantities.push(QuantityVerdict { quantity: words, outcome: row.outcome, comparisons: vec![row] });
+    let cracks = if submission.model.phase_field == "none" { "elastic" } else { "at1" };
+    let plane = if submission.model.plane == Plane::Stress { "plane-stress" } else { "plane-strain" };
+    let comparer = Comparer { submission, library, variant: format!("{cracks}/{plane}") };
+    let mut quantities = comparer.energies(&curves);
+    quantities.extend(comparer.path(&curves));
+    let Some(source) = library.source(FOLDER).filter(|_| !quantities.is_empty()) else {
+        let message = format!("no reference {FOLDER}/{}", comparer.variant);
+        return Err(submission.key_error("benchmark", message, "restore reference-data"));
     };
-    // The error of elements is in proportion to their size.
-    let of_elements =
-        |reference: &ReferenceValue| Some(SAFETY * reference.uncertainty? * submission.spacing.map(|h| h / FINEST)?);
-    for (k, quantity) in QUANTITIES[..TIP_X].iter().enumerate() {
-        for time in TIMES {
-            let Some(reference) = of(format!("{}-{time}-us", quantity.reference)) else { continue };
-            let value = curves[k].as_ref().and_then(|curve| near(curve, f64::from(time) * 1e-6));
-            let u_num = submission.stated[k].map(|u| u * reference.value.abs()).or_else(|| of_elements(reference));
-            take(format!("{} at {time} µs", quantity.words), "J/m", value, reference, u_num);
-        }
-    }
-    for length in LENGTHS {
-        let metres = f64::from(length) * 1e-3;
-        let grown = curves[TIP_X].as_ref().zip(curves[TIP_Y].as_ref()).and_then(|(x, y)| grown(x, y, metres));
-        let uncertain = submission.stated[TIP_X].map(|u| [u / SPEED, (u / metres).atan().to_degrees()]);
-        let asked = [("time", "s", "time at which the crack is"), ("angle", "degree", "angle of the crack at")];
-        for (i, (name, unit, words)) in asked.into_iter().enumerate() {
-            let Some(reference) = of(format!("{name}-at-{length}-mm")) else { continue };
-            let u_num = uncertain.map(|u| u[i]).or_else(|| of_elements(reference));
-            let of = if i == 0 { " long" } else { "" };
-            take(format!("{words} {length} mm{of}"), unit, grown.map(|g| g[i]), reference, u_num);
-        }
-    }
-    if quantities.is_empty() {
-        return Err(missing());
-    }
     let differences = differences(submission);
     if !differences.is_empty() {
-        for verdict in quantities.iter_mut().filter(|verdict| verdict.outcome == Outcome::Fail) {
-            verdict.outcome = Outcome::Diagnostic;
-            verdict.comparisons.iter_mut().for_each(|row| row.outcome = Outcome::Diagnostic);
+        for verdict in &mut quantities {
+            verdict.comparisons.iter_mut().for_each(|row| explained_by_difference(row, true));
+            verdict.outcome = verdict.comparisons[0].outcome;
         }
     }
-    let source = library.source(FOLDER);
     let reference = ReferenceUsed {
-        id: format!("{FOLDER}/{variant}"),
-        label: source.map_or_else(String::new, |source| source.citation.clone()),
+        id: format!("{FOLDER}/{}", comparer.variant),
+        label: source.citation.clone(),
         uncertainty: "distance of the finest of three meshes from the limit h to 0".into(),
     };
     let numerical = match (submission.stated.iter().any(Option::is_some), submission.spacing) {
@@ -107,9 +78,84 @@ pub fn judge(
         (false, None) => "unknown: neither stated nor to be had from a spacing",
     };
     let base = Verdict::of(folder, submission, reference, numerical);
-    let mut verdict = Verdict { differences, findings, notes, quantities, ..base };
+    let mut verdict = Verdict { differences, findings, notes, quantities, balance: balance(&curves), ..base };
     verdict.conclude();
     Ok(Judged { verdict, curves, references: Default::default() })
+}
+
+impl Comparer<'_> {
+    /// Energies and work at the times of the reference.
+    fn energies(&self, curves: &[Option<Curve>; 6]) -> Vec<QuantityVerdict> {
+        let mut found = Vec::new();
+        for (k, quantity) in QUANTITIES[..TIP_X].iter().enumerate() {
+            for time in TIMES {
+                let Some(reference) = self.reference(&format!("{}-{time}-us", quantity.reference)) else { continue };
+                let value = curves[k].as_ref().and_then(|curve| near(curve, f64::from(time) * 1e-6));
+                let stated = self.submission.stated[k].map(|part| part * reference.value.abs());
+                found.push(self.compared(format!("{} at {time} µs", quantity.words), "J/m", value, reference, stated));
+            }
+        }
+        found
+    }
+
+    /// Times at which the crack has a length, and the angles of its chord with the slit.
+    fn path(&self, curves: &[Option<Curve>; 6]) -> Vec<QuantityVerdict> {
+        let tips = curves[TIP_X].as_ref().zip(curves[TIP_Y].as_ref());
+        let rows = |(x, y): (&Curve, &Curve)| -> Vec<[f64; 3]> {
+            let rows = x.t.iter().zip(x.y.iter().zip(&y.y)).map(|(t, (x, y))| [*t, *x, *y]);
+            rows.filter(|row| row[2].is_finite()).collect()
+        };
+        let rows = tips.map(rows).unwrap_or_default();
+        let mut found = Vec::new();
+        for length in LENGTHS {
+            let metres = f64::from(length) * 1e-3;
+            let tip = grown(&rows, SLIT, metres).filter(|tip| tips.is_some_and(|(x, _)| near(x, tip[0]).is_some()));
+            let stated = self.submission.stated[TIP_X];
+            if let Some(reference) = self.reference(&format!("time-at-{length}-mm")) {
+                let words = format!("time at which the crack is {length} mm long");
+                found.push(self.compared(words, "s", tip.map(|tip| tip[0]), reference, stated.map(|u| u / SPEED)));
+            }
+            if let Some(reference) = self.reference(&format!("angle-at-{length}-mm")) {
+                let angle = tip.map(|[_, x, y]| chord(SLIT, [x, y]));
+                let stated = stated.map(|u| (u / metres).atan().to_degrees());
+                found.push(self.compared(
+                    format!("angle of the crack at {length} mm"),
+                    "degree",
+                    angle,
+                    reference,
+                    stated,
+                ));
+            }
+        }
+        found
+    }
+
+    fn reference(&self, name: &str) -> Option<&ReferenceValue> {
+        self.library.value(FOLDER, &format!("{}/{name}", self.variant))
+    }
+
+    /// A value against its reference; without a `stated` uncertainty with that of elements of the spacing, in
+    /// proportion to their size.
+    fn compared(
+        &self,
+        words: String,
+        unit: &str,
+        value: Option<f64>,
+        reference: &ReferenceValue,
+        stated: Option<f64>,
+    ) -> QuantityVerdict {
+        let mut row = Comparison { name: words.clone(), unit: unit.into(), value, ..Comparison::default() };
+        row.reference = Some(reference.value);
+        row.error = value.map(|value| value - reference.value);
+        let u_ref = reference.uncertainty.unwrap_or(0.0);
+        let of_elements = self.submission.spacing.map(|spacing| SAFETY * u_ref * spacing / FINEST);
+        decide(&mut row, u_ref, stated.or(of_elements));
+        match value {
+            Some(_) => doubt(&mut row, [DECIDES[0], AGREES[0]].map(|part| part * reference.value.abs())),
+            None => row.why = "not given, not reached, or between rows more than 2 µs apart".into(),
+        }
+        QuantityVerdict { quantity: words, outcome: row.outcome, comparisons: vec![row] }
+    }
 }
 
 /// What the declared model has that the reference has not.
@@ -133,20 +179,4 @@ fn near(curve: &Curve, t: f64) -> Option<f64> {
     let next = curve.t.partition_point(|row| *row < t);
     let close = next > 0 && next < curve.t.len() && curve.t[next] - curve.t[next - 1] <= WIDEST * (1.0 + 1e-9);
     curves::at(curve, t).filter(|_| close)
-}
-
-/// Time (s) at which the tip has first been at the distance `length` from that of the slit, ahead of it, and
-/// the angle of the chord with the slit (degrees).
-fn grown(x: &Curve, y: &Curve, length: f64) -> Option<[f64; 2]> {
-    let tips = x.t.iter().zip(x.y.iter().zip(&y.y)).map(|(t, (x, y))| [*t, x - TIP[0], y - TIP[1]]);
-    let tips: Vec<[f64; 3]> = tips.filter(|tip| tip[1] > 0.0 && tip[2].is_finite()).collect();
-    let distance = |tip: &[f64; 3]| tip[1].hypot(tip[2]);
-    let after = tips.iter().position(|tip| distance(tip) >= length)?;
-    let [before, tip] = [tips[after.checked_sub(1)?], tips[after]];
-    if tip[0] - before[0] > WIDEST * (1.0 + 1e-9) {
-        return None;
-    }
-    let part = (length - distance(&before)) / (distance(&tip) - distance(&before));
-    let [time, x, y] = [0, 1, 2].map(|k| before[k] + part * (tip[k] - before[k]));
-    Some([time, y.atan2(x).to_degrees()])
 }

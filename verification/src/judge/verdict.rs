@@ -209,11 +209,6 @@ impl Verdict {
             (0, 0, 1..) => Outcome::Incomplete,
             (0, 0, 0) => Outcome::Diagnostic,
         };
-        if fail > 0 && self.findings.is_empty() && self.differences.is_empty() {
-            let text =
-                "no declared difference and no common mistake explains what fails: it is unexplained".to_string();
-            self.findings.push(Finding { id: "unexplained".into(), text });
-        }
         self.sentence = format!("{pass} pass, {fail} fail, {incomplete} incomplete, {diagnostic} diagnostic");
     }
 }

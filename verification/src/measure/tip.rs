@@ -83,26 +83,36 @@ pub(super) fn fitted_slope(points: impl Iterator<Item = (f64, f64)> + Clone) -> 
     (bottom > 0.0).then(|| top / bottom)
 }
 
-/// Time (s) and place (m) at which the tip is first at the distance `at` from the end of the initial crack.
-pub(super) fn growth(check: &Check, run: &Run) -> Result<Option<[f64; 3]>, String> {
-    let goal = position(check)?;
-    let Some([from, to]) = last_segment(run) else { return Err("the scene has no initial crack".to_string()) };
+/// Time (s) and place (m) at which a tip, given by rows of these, is first at the distance `goal` from the end
+/// of the `initial` crack and ahead of it; before it grows, a seed is broken behind its end.
+pub fn grown(tips: &[[f64; 3]], [from, to]: [[f64; 2]; 2], goal: f64) -> Option<[f64; 3]> {
     let ahead = |[_, x, y]: [f64; 3]| (x - to[0]) * (to[0] - from[0]) + (y - to[1]) * (to[1] - from[1]) > 0.0;
     let distance = |[_, x, y]: [f64; 3]| (x - to[0]).hypot(y - to[1]);
-    let tips = tips(run)?; // before it grows, a seed is broken behind its end
-    let Some(after) = tips.iter().position(|tip| ahead(*tip) && distance(*tip) >= goal) else { return Ok(None) };
+    let after = tips.iter().position(|tip| ahead(*tip) && distance(*tip) >= goal)?;
     let Some(before) = after.checked_sub(1).map(|n| tips[n]).filter(|tip| ahead(*tip)) else {
-        return Ok(Some(tips[after]));
+        return Some(tips[after]);
     };
     let part = (goal - distance(before)) / (distance(tips[after]) - distance(before));
-    Ok(Some([0, 1, 2].map(|i| before[i] + part * (tips[after][i] - before[i]))))
+    Some([0, 1, 2].map(|i| before[i] + part * (tips[after][i] - before[i])))
+}
+
+/// Angle between the `initial` crack and the chord from its end to a place, degrees.
+pub fn chord([from, to]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> f64 {
+    let ([a, b], [c, d]) = ([to[0] - from[0], to[1] - from[1]], [x - to[0], y - to[1]]);
+    (a * d - b * c).atan2(a * c + b * d).to_degrees().abs()
+}
+
+/// When (s) and where (m) the tip of a run is first at the distance `at` from the end of the initial crack.
+pub(super) fn growth(check: &Check, run: &Run) -> Result<Option<[f64; 3]>, String> {
+    let goal = position(check)?;
+    let initial = last_segment(run).ok_or("the scene has no initial crack")?;
+    Ok(grown(&tips(run)?, initial, goal))
 }
 
 /// Angle between the initial crack and the chord from its end to the tip at the distance `at`, degrees.
 pub(super) fn chord_angle(check: &Check, run: &Run) -> Result<Option<f64>, String> {
-    let (Some([_, x, y]), Some([from, to])) = (growth(check, run)?, last_segment(run)) else { return Ok(None) };
-    let ([a, b], [c, d]) = ([to[0] - from[0], to[1] - from[1]], [x - to[0], y - to[1]]);
-    Ok(Some((a * d - b * c).atan2(a * c + b * d).to_degrees().abs()))
+    let place = growth(check, run)?.zip(last_segment(run));
+    Ok(place.map(|([_, x, y], initial)| chord(initial, [x, y])))
 }
 
 /// The last straight part of the first initial crack, m.
