@@ -83,8 +83,9 @@ pub(super) fn fitted_slope(points: impl Iterator<Item = (f64, f64)> + Clone) -> 
     (bottom > 0.0).then(|| top / bottom)
 }
 
-/// Time (s) and place (m) at which a tip, given by rows of these, is first at the distance `goal` from the end
-/// of the `initial` crack and ahead of it; before it grows, a seed is broken behind its end.
+/// Time (s) and place (m) at which a tip, given by rows of these, is first at the distance `goal` from the
+/// end of the last straight part of the initial crack and ahead of it. Before it grows, a seed is broken
+/// behind its end.
 pub fn grown(tips: &[[f64; 3]], [from, to]: [[f64; 2]; 2], goal: f64) -> Option<[f64; 3]> {
     let ahead = |[_, x, y]: [f64; 3]| (x - to[0]) * (to[0] - from[0]) + (y - to[1]) * (to[1] - from[1]) > 0.0;
     let distance = |[_, x, y]: [f64; 3]| (x - to[0]).hypot(y - to[1]);
@@ -96,7 +97,7 @@ pub fn grown(tips: &[[f64; 3]], [from, to]: [[f64; 2]; 2], goal: f64) -> Option<
     Some([0, 1, 2].map(|i| before[i] + part * (tips[after][i] - before[i])))
 }
 
-/// Angle between the `initial` crack and the chord from its end to a place, degrees.
+/// Angle between the last straight part of a crack and the chord from its end to a place, degrees.
 pub fn chord([from, to]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> f64 {
     let ([a, b], [c, d]) = ([to[0] - from[0], to[1] - from[1]], [x - to[0], y - to[1]]);
     (a * d - b * c).atan2(a * c + b * d).to_degrees().abs()
