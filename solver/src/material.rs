@@ -1,5 +1,5 @@
 //! The material at a point: elasticity, its energy split into what drives cracks and the rest, finite strain,
-//! degradation.
+//! degradation, random toughness.
 //!
 //! Symbols: e strain, sigma stress (Pa), psi+ and psi− energy densities (J/m³), F deformation gradient, g(c)
 //! degradation. Calls [`linear_algebra`](crate::linear_algebra) and [`scene`](crate::scene).
@@ -8,4 +8,5 @@ pub mod cohesive;
 pub mod degradation;
 pub mod elasticity;
 pub mod hencky;
+pub mod random_field;
 pub mod split;

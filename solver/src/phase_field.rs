@@ -49,8 +49,8 @@ use crate::linear_algebra::preconditioner::TOO_MANY;
 use crate::linear_algebra::stencil::Stencil;
 use crate::material::degradation::FractureModel;
 use crate::particles::lattice::Lattice;
-use crate::phase_field::assembly::{Constant, Integrand, add_form};
-use crate::scene::SolverSettings;
+use crate::phase_field::assembly::{Integrand, Scaled, add_form};
+use crate::scene::{Anisotropy, SolverSettings};
 use bounds::Bounds;
 use increments::{Increments, changed};
 use lag::Lag;
@@ -106,10 +106,29 @@ pub struct PhaseField {
 impl PhaseField {
     /// Phase field on the points of `lattice`, intact until the first solve.
     pub fn new(lattice: &Lattice, model: FractureModel, settings: &SolverSettings) -> Self {
+        Self::with_toughness(lattice, model, None, settings)
+    }
+
+    /// As [`Self::new`]; with values of Gc over its mean at the points, unless it is the same everywhere.
+    pub(crate) fn with_toughness(
+        lattice: &Lattice,
+        model: FractureModel,
+        relative: Option<&[Lane]>,
+        settings: &SolverSettings,
+    ) -> Self {
         let mut matrix = Stencil::zeros(lattice.patch_grid, lattice.degree);
-        add_form(&mut matrix, lattice, Integrand::Mass, &Constant(model.source()));
-        add_form(&mut matrix, lattice, Integrand::Diffusion, &Constant(model.diffusion()));
-        let mut load = integrate_shape_functions(lattice);
+        let diffusion = match model.gradient {
+            Anisotropy::NONE => Integrand::Diffusion,
+            tensor => Integrand::Anisotropic(tensor),
+        };
+        let everywhere = vec![Lane::splat(1.0); lattice.batches()];
+        let toughness = relative.unwrap_or(&everywhere);
+        // with a threshold, the driving energies will take the place of the local term
+        let local = if model.threshold().is_some() { &everywhere } else { toughness };
+        add_form(&mut matrix, lattice, Integrand::Mass, &Scaled(local, model.source()));
+        let gradients = fault!("gradient-of-mean-toughness", toughness => &everywhere);
+        add_form(&mut matrix, lattice, diffusion, &Scaled(gradients, model.diffusion()));
+        let mut load = integrate_with(lattice, |batch, lane| toughness[batch][lane]);
         load.iter_mut().for_each(|load| *load *= model.source());
         isolate_empty(&mut matrix, &mut load);
         if lattice.has_cut_spans() {
@@ -118,7 +137,8 @@ impl PhaseField {
         let at_rest = model.threshold().map_or(0.0, |_| model.source() / model.reaction_per_energy());
         let assembled = vec![Lane::splat(at_rest); lattice.batches()];
         let mut field = Self::intact(matrix, load, assembled, model, settings);
-        field.bounds = model.threshold().map(|threshold| Bounds::new(threshold, lattice, &model, &field.load));
+        let bounds = |threshold| Bounds::new(threshold, lattice, relative, &model, &field.load);
+        field.bounds = model.threshold().map(bounds);
         field
     }
 
@@ -187,6 +207,9 @@ impl PhaseField {
 
     /// Replaces the right-hand side: `Σ_p V_p s_p N_I(x_p)` with a manufactured source s.
     pub fn set_load(&mut self, load: Vec<f64>) {
+        if let Some(linearised) = self.bounds.as_mut().and_then(|bounds| bounds.linearised.as_mut()) {
+            linearised.rest.clone_from(&load);
+        }
         self.load = load;
     }
 
@@ -381,8 +404,14 @@ fn is_finite(matrix: &Stencil) -> bool {
 
 /// `Σ_p V_p N_I(x_p)` per unit thickness, m².
 pub fn integrate_shape_functions(lattice: &Lattice) -> Vec<f64> {
-    let field = lattice.integrate(
-        |_batch, _lane, _| fault!("phase-load-without-volumes", 1.0 => 1.0 / lattice.weights_of(_batch)[_lane]),
-    );
-    lattice.onto_patch(field)
+    integrate_with(lattice, |_, _| 1.0)
+}
+
+/// `Σ_p V_p f_p N_I(x_p)` per unit thickness, m² times the unit of f, which is given by batch and lane.
+fn integrate_with(lattice: &Lattice, value: impl Fn(usize, usize) -> f64 + Sync) -> Vec<f64> {
+    let of_point = |batch: usize, lane: usize, _| {
+        let value = value(batch, lane);
+        fault!("phase-load-without-volumes", value => value / lattice.weights_of(batch)[lane])
+    };
+    lattice.onto_patch(lattice.integrate(of_point))
 }

@@ -13,6 +13,7 @@ mod mesh;
 pub(crate) mod shape;
 mod steps;
 pub mod time;
+mod toughness;
 
 use std::collections::BTreeMap;
 
@@ -21,6 +22,7 @@ pub use condition::{Boundary, Edge, EdgeCondition, Hold, Load, Motion, Prescribe
 pub use mesh::{Geometry, Mesh};
 pub use shape::Shape;
 pub use time::TimeFactor;
+pub use toughness::{Anisotropy, RandomToughness};
 
 /// One simulation.
 #[derive(Debug, Clone, PartialEq)]
@@ -203,6 +205,8 @@ pub struct Output {
     pub frames: Vec<f64>,
     /// Whether the motion of every body and the forces between them are recorded (updated frame).
     pub bodies: bool,
+    /// Whether the parts are counted into which cracks divide a body (total frame).
+    pub fragments: bool,
     /// Places whose motion and stress are recorded (total frame).
     pub probes: Vec<Probe>,
     /// J-integrals about the tip of a crack (total frame).
@@ -212,7 +216,14 @@ pub struct Output {
 impl Output {
     /// So many rows of the history after the first, and nothing else.
     pub fn rows(samples: usize) -> Self {
-        Self { samples, frames: Vec::new(), bodies: false, probes: Vec::new(), j_integrals: Vec::new() }
+        Self {
+            samples,
+            frames: Vec::new(),
+            bodies: false,
+            fragments: false,
+            probes: Vec::new(),
+            j_integrals: Vec::new(),
+        }
     }
 }
 

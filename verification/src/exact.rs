@@ -14,6 +14,7 @@ pub mod coupled;
 pub mod disc_wave;
 pub mod dual;
 pub mod elastostatics;
+pub mod fracture;
 pub mod kirsch;
 pub mod law;
 pub mod motion;
@@ -129,13 +130,14 @@ pub trait ExactSolution: Send + Sync {
     }
 }
 
-/// A phase field that solves `[4 l0 (1 − k) H/Gc + 1] c − 4 l0² Δc = s` exactly.
+/// A phase field that solves the equation of its model ([`fracture`]) exactly, with AT2 `[4 l0 (1 − k) H/Gc
+/// + 1] c − 4 l0² Δc = s`.
 pub trait ExactPhase: Sync {
     /// Phase field.
     fn value(&self, position: [f64; 2], time: f64) -> f64;
     /// Its gradient, 1/m.
     fn gradient(&self, position: [f64; 2], time: f64) -> [f64; 2];
-    /// History energy H, J/m³.
+    /// Driving energy H, J/m³.
     fn history(&self, position: [f64; 2], time: f64) -> f64;
     /// Source s.
     fn source(&self, position: [f64; 2], time: f64) -> f64;

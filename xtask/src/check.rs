@@ -314,13 +314,21 @@ fn words(fracture: &Fracture) -> String {
             format!("PF-CZM with {} softening", softening.word())
         }
     };
-    match fracture.split {
+    let split = match fracture.split {
         Split::Spectral => format!("{model}, spectral split"),
         Split::VolumetricDeviatoric => format!("{model}, volumetric-deviatoric split"),
         Split::StarConvex(gamma) => format!("{model}, star-convex split with {gamma}"),
         Split::Rankine => format!("{model}, driven by the largest principal stress"),
         Split::None => format!("{model}, no split"),
-    }
+    };
+    let anisotropy = fracture.anisotropy.map(|anisotropy| {
+        let [xx, yy, _] = anisotropy.components();
+        format!(", Gc times {:.3} along x and {:.3} along y", yy.sqrt(), xx.sqrt())
+    });
+    let random = fracture.random.map(|random| {
+        format!(", Gc random (Weibull, modulus {}, correlation {:e} m)", random.modulus, random.correlation)
+    });
+    [Some(split), anisotropy, random].into_iter().flatten().collect()
 }
 
 /// Largest stress of a uniform bar (Pa), as if all of its energy drove: `9/16 √(E Gc/(6 l0))`, with AT1 `√(3

@@ -31,12 +31,14 @@ pub trait Forcing: Debug + Send + Sync {
         [0.0; 2]
     }
 
-    /// Right-hand side of the phase-field equation; 1 where nothing is manufactured.
+    /// Right-hand side of the phase-field equation, that of intact material where nothing is manufactured: 1
+    /// with AT2, 3/8 with AT1. With PF-CZM it is 2/π, and `2/π (1 − c)` is on the left.
     fn phase_source(&self, _position: [f64; 2], _time: f64) -> f64 {
         1.0
     }
 
-    /// `4 l0² grad c · n` (m) on the boundary of the patch with outward `normal`.
+    /// `D grad c · n` (m) on the boundary of the patch with outward `normal`, D the coefficient of the gradient
+    /// term.
     fn phase_flux(&self, _position: [f64; 2], _normal: [f64; 2], _time: f64) -> f64 {
         0.0
     }

@@ -10,6 +10,7 @@ pub mod domain;
 mod edge_conditions;
 mod equilibrium;
 mod forced;
+mod fragments;
 mod held_points;
 mod inspect;
 mod j_integral;
@@ -78,6 +79,8 @@ pub struct TotalFrame {
     density: f64,
     /// Where its crack begins, m, once there is one.
     crack_start: Option<[f64; 2]>,
+    /// Whether samples have the number of fragments.
+    counts_fragments: bool,
     elastic_energy: f64,
     ledger: Ledger,
     time: f64,

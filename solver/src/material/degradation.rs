@@ -7,7 +7,8 @@
 //! PF-CZM 2/π Gc [(2 d − d²)/(4 l0) + l0 |grad c|²]                                  Wu 2017
 //! ```
 //!
-//! Gc for a crack in each. Where H drives, c minimises the energy with `g H`: with AT2 for the largest H so
+//! Gc for a crack in each. An anisotropic material has `grad c · A grad c` for `|grad c|²`, and a crack with
+//! the unit normal n costs `Gc sqrt(n · A n)`. Where H drives, c minimises the energy with `g H`: with AT2 for the largest H so
 //! far, with the others on control values between zero and those of the step before. With s = g'/2, which is
 //! c unless the crack is [cohesive](super::cohesive),
 //!
@@ -24,7 +25,7 @@ use super::elasticity::ElasticModuli;
 use super::split::split;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::Lane;
-use crate::scene::{CrackModel, Material, Split};
+use crate::scene::{Anisotropy, CrackModel, Material, Split};
 
 /// Phase field below which a point counts as broken.
 pub const BROKEN: f64 = 0.05;
@@ -53,6 +54,8 @@ pub struct FractureModel {
     pub residual_stiffness: f64,
     /// Split.
     pub split: Split,
+    /// Tensor A of the gradient term, `[xx, yy, xy]`.
+    pub gradient: [f64; 3],
 }
 
 impl FractureModel {
@@ -72,6 +75,7 @@ impl FractureModel {
             residual_stiffness: fracture.residual_stiffness,
             law,
             split: fracture.split,
+            gradient: fracture.anisotropy.map_or(Anisotropy::NONE, |anisotropy| anisotropy.components()),
         })
     }
 
@@ -142,14 +146,14 @@ impl FractureModel {
         Some(self.source() / (slope * self.reaction_per_energy()))
     }
 
-    /// Energy density of the intact body up to which nothing is driven to the threshold, with a margin for
-    /// the step that crosses it, J/m³.
-    pub(crate) fn screening_level(&self, moduli: &ElasticModuli) -> Option<f64> {
+    /// Energy density of the intact body up to which nothing is driven to a threshold (J/m³), with a margin
+    /// for the step that crosses it, J/m³.
+    pub(crate) fn screening_level(&self, moduli: &ElasticModuli, threshold: f64) -> f64 {
         let least_share = match self.split {
             Split::Rankine => moduli.young / (moduli.lambda + 2.0 * moduli.mu),
             _ => 1.0,
         };
-        self.threshold().map(|threshold| fault!("tiles-enter-late", 0.5 => 5.0) * least_share * threshold)
+        fault!("tiles-enter-late", 0.5 => 5.0) * least_share * threshold
     }
 
     /// By how much damage raises a squared frequency of the body at most. Compression of broken material has
@@ -178,10 +182,10 @@ impl FractureModel {
         self.driving_work().into_iter().chain(of_residual).collect()
     }
 
-    /// Surface energy per volume, J/m³.
+    /// Surface energy per volume, J/m³, with the mean of Gc.
     #[inline(always)]
     pub fn surface_energy(&self, phase: Lane, [gx, gy]: [Lane; 2]) -> Lane {
-        let Self { toughness, length_scale, .. } = *self;
+        let Self { toughness, length_scale, gradient: [xx, yy, xy], .. } = *self;
         let broken = Lane::splat(1.0) - phase;
         let (local, unit) = match self.law {
             CrackLaw::At2 => (broken * broken, toughness),
@@ -192,7 +196,7 @@ impl FractureModel {
             ),
         };
         local * (unit / (fault!("surface-energy-doubled", 4.0 => 2.0) * length_scale))
-            + (gx * gx + gy * gy) * (unit * length_scale)
+            + (gx * gx * xx + gy * gy * yy + gx * gy * (2.0 * xy)) * (unit * length_scale)
     }
 }
 
@@ -246,7 +250,8 @@ mod tests {
             [Plane::Strain, Plane::Stress].map(|plane| ElasticModuli::new(&material, plane));
         for split in [Split::Spectral, Split::None] {
             let (law, residual_stiffness) = (CrackLaw::At2, 0.0);
-            let model = FractureModel { law, toughness: 3.0, length_scale: 1e-3, residual_stiffness, split };
+            let gradient = Anisotropy::NONE;
+            let model = FractureModel { law, toughness: 3.0, length_scale: 1e-3, residual_stiffness, split, gradient };
             for (strain, phase) in [([1e-3, 2e-4, 3e-4], 0.4), ([-1e-3, 2e-4, 3e-4], 0.4), ([1e-3, -2e-4, 0.0], 1.0)] {
                 let fracture = Some((&model, phase));
                 let found = stress_out_of_plane(&strain_state, strain, fracture);

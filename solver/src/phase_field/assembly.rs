@@ -1,9 +1,9 @@
-//! Matrices `Σ_p f_p N_I N_J` and `Σ_p f_p grad N_I · grad N_J` from the material points of a lattice (E
+//! Matrices `Σ_p f_p N_I N_J` and `Σ_p f_p grad N_I · A grad N_J` from the material points of a lattice (E
 //! 19–24).
 //!
 //! Over a rectangle by sum factorisation: points of a span form a grid, so the sum over them is done first
-//! along x, for every pair of functions in x, then along y. On a patch with a geometry, and in spans that the
-//! boundary cuts, pair by pair (`assembly/pairs.rs`).
+//! along x, for every pair of functions in x, then along y. On a patch with a geometry, in spans that the
+//! boundary cuts and with a tensor A, pair by pair (`assembly/pairs.rs`).
 //!
 //! Strips are assembled in two colours: strips of one colour share no control row, and the order in which
 //! contributions meet does not depend on the number of threads.
@@ -13,6 +13,7 @@ mod pairs;
 
 use rayon::prelude::*;
 
+pub(crate) use form::Scaled;
 pub use form::{Constant, Integrand, PointCoefficients};
 
 use crate::linear_algebra::lane::{Lane, Vectorised, dispatch};
@@ -31,8 +32,9 @@ enum ShapeFactor {
 /// Adds `Σ_p f_p N_I N_J` or `Σ_p f_p grad N_I · grad N_J` to `matrix`.
 pub fn add_form<C: PointCoefficients>(matrix: &mut Stencil, lattice: &Lattice, form: Integrand, coefficients: &C) {
     use ShapeFactor::{Derivative, Value};
-    if lattice.mapping.is_some() {
-        return for_each_strip(matrix, lattice, |strip, first_row, window| {
+    let by_pairs = lattice.mapping.is_some() || matches!(form, Integrand::Anisotropic(_));
+    if by_pairs {
+        for_each_strip(matrix, lattice, |strip, first_row, window| {
             pairs::assemble(lattice, form, coefficients, strip, first_row, window);
         });
     }
@@ -43,8 +45,10 @@ pub fn add_form<C: PointCoefficients>(matrix: &mut Stencil, lattice: &Lattice, f
         pairs::assemble_cut(lattice, form, coefficients, strip, rows.start, window);
     }
     let products: &[[ShapeFactor; 2]] = match form {
+        _ if by_pairs => &[],
         Integrand::Mass => &[[Value, Value]],
         Integrand::Diffusion => &[[Derivative, Value], [Value, Derivative]],
+        Integrand::Anisotropic(_) => &[],
     };
     for &factors in products {
         for_each_strip(matrix, lattice, |strip, first_row, window| {

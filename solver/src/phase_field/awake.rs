@@ -9,14 +9,15 @@
 //! from half of the threshold on, in all of its energy.
 
 use crate::linear_algebra::active_columns::ActiveColumns;
+use crate::linear_algebra::extremes::smaller;
 use crate::linear_algebra::lane::Lane;
 use crate::particles::lattice::Lattice;
 
 /// Cells and control points that take part.
 #[derive(Debug, Clone)]
 pub(crate) struct Awake {
-    /// Driving energy up to which material stays intact, J/m³.
-    threshold: f64,
+    /// Driving energy up to which material stays intact, J/m³: of every cell, or the same for all.
+    threshold: Vec<f64>,
     /// Whether everything takes part in the coming solve.
     pub(super) everything: bool,
     /// Cells of which the driving energy is computed.
@@ -30,11 +31,14 @@ pub(crate) struct Awake {
 }
 
 impl Awake {
-    /// Everything is awake, until the first solve.
-    pub(super) fn new(threshold: f64, lattice: &Lattice) -> Self {
+    /// Everything is awake, until the first solve; `relative` are values of Gc over its mean at the points.
+    pub(super) fn new(threshold: f64, lattice: &Lattice, relative: Option<&[Lane]>) -> Self {
         let (cells, control_points) = (lattice.cells(), lattice.patch_grid.len());
+        let least =
+            |cell: &[Lane]| threshold * cell.iter().flat_map(|relative| relative.0).fold(f64::INFINITY, smaller);
+        let of_cells = |relative: &[Lane]| relative.chunks(lattice.points_per_span()).map(least).collect();
         Self {
-            threshold,
+            threshold: relative.map_or_else(|| vec![threshold], of_cells),
             everything: true,
             computed: vec![true; cells],
             assembled: vec![true; cells],
@@ -66,6 +70,11 @@ impl Awake {
             let (row, tile) = (cell / tiles, cell % tiles);
             *computed = everything || lattice.patch_strip_of(row).is_none_or(|strip| near[strip * tiles + tile]);
         }
+    }
+
+    /// Smallest driving energy up to which material stays intact, J/m³.
+    pub(crate) fn least_threshold(&self) -> f64 {
+        self.threshold.iter().copied().fold(f64::INFINITY, smaller)
     }
 
     /// Cells of which the driving energy is computed.
@@ -102,8 +111,9 @@ impl Awake {
         let cells = || (0..self.computed.len()).filter(|&cell| self.computed[cell]);
         let is_awake = |cell: usize| {
             let drive = &drive[cell * span..(cell + 1) * span];
+            let threshold = self.threshold[if self.threshold.len() > 1 { cell } else { 0 }];
             self.everything
-                || drive.iter().any(|energy| energy.0.iter().any(|&energy| energy > self.threshold))
+                || drive.iter().any(|energy| energy.0.iter().any(|&energy| energy > threshold))
                 || is_damaged(lattice, cell, phase)
         };
         let (mut more, mut is_candidate) = (false, self.is_candidate.clone());
@@ -139,7 +149,7 @@ impl Awake {
 
     /// Heap memory, bytes.
     pub(super) fn bytes(&self) -> usize {
-        8 * self.candidates.len() + 3 * self.computed.len() + self.is_candidate.len()
+        8 * (self.candidates.len() + self.threshold.len()) + 3 * self.computed.len() + self.is_candidate.len()
     }
 }
 

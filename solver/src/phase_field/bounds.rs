@@ -45,11 +45,17 @@ impl Linearised {
 }
 
 impl Bounds {
-    /// Of an intact body with this right-hand side.
-    pub(super) fn new(threshold: f64, lattice: &Lattice, model: &FractureModel, load: &[f64]) -> Box<Self> {
+    /// Of an intact body with this right-hand side, and values of Gc over its mean at the points.
+    pub(super) fn new(
+        threshold: f64,
+        lattice: &Lattice,
+        relative: Option<&[Lane]>,
+        model: &FractureModel,
+        load: &[f64],
+    ) -> Box<Self> {
         let zeros = || lattice.patch_grid.zeros();
         Box::new(Self {
-            awake: Awake::new(threshold, lattice),
+            awake: Awake::new(threshold, lattice, relative),
             residual: zeros(),
             work: 0.0,
             held: Vec::new(),

@@ -8,10 +8,11 @@ use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::material::degradation::{BROKEN, FractureModel};
 use crate::material::elasticity::ElasticModuli;
+use crate::material::random_field::RandomField;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::PhaseField;
 use crate::phase_field::awake::Awake;
-use crate::scene::{Body, Crack, CrackKind, Kinematics, SolverSettings};
+use crate::scene::{Body, Crack, CrackKind, Kinematics, RandomToughness, SolverSettings};
 use crate::splines::patch::Patch;
 use crate::transfer::elastic_forces::elastic_sweep;
 use crate::transfer::finite::sweep_with;
@@ -43,6 +44,8 @@ pub struct LatticeFracture {
     pub excess: Vec<Lane>,
     /// Phase field on the control points.
     pub field: PhaseField,
+    /// Gc over its mean at the points, where it is random.
+    pub relative: Option<Vec<Lane>>,
     /// Iterations of the last solve.
     pub iterations: usize,
     /// Energy of the intact body (J/m), if its forces were summed since the last sweep of the degraded
@@ -69,18 +72,20 @@ impl LatticeFracture {
         lattice: &Lattice,
         body: &Body,
         model: FractureModel,
+        random: Option<RandomToughness>,
         settings: &SolverSettings,
     ) -> Result<Self, SolveFailure> {
-        let history = seeded_history(lattice, body, &model);
+        let relative = random.map(|random| RandomField::new(random).at_points(lattice));
+        let history = seeded_history(lattice, body, &model, relative.as_deref());
         let zeros = vec![Lane::ZERO; lattice.batches()];
-        let mut field = PhaseField::new(lattice, model, settings);
+        let mut field = PhaseField::with_toughness(lattice, model, relative.as_deref(), settings);
         if model.threshold().is_some() {
             field.break_at(&fault!("at1-seed-forgotten", functions_on_seeds(patch, body) => Vec::new()));
         }
         let convergence = field.initialise(lattice, &history)?;
         let iterations = convergence.iterations;
         let (phase, excess) = (zeros.clone(), zeros);
-        Ok(Self { model, history, phase, excess, field, iterations, intact_energy: None })
+        Ok(Self { model, history, phase, excess, field, relative, iterations, intact_energy: None })
     }
 
     /// H from the present displacement; with a threshold also the forces of the intact body, to which those
@@ -97,7 +102,8 @@ impl LatticeFracture {
         let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
         let (chunk, span) = (lattice.strip_batches(), lattice.points_per_span());
         let cells_of_strip = chunk / span;
-        if let (Some(level), Some((awake, phase))) = (model.screening_level(&moduli), self.field.awake_mut()) {
+        if let Some((awake, phase)) = self.field.awake_mut() {
+            let level = model.screening_level(&moduli, awake.least_threshold());
             let mut reached = vec![false; lattice.cells()];
             let strips = reached.chunks_mut(cells_of_strip);
             let kernel =
@@ -193,8 +199,15 @@ impl LatticeFracture {
     /// Surface energy per unit thickness (J/m) and smallest c at a point.
     pub fn surface_energy(&self, lattice: &Lattice) -> (f64, f64) {
         let model = self.model;
-        let start = || SurfaceEnergy { model, energy: Lane::ZERO, least: Lane::splat(f64::INFINITY) };
-        let mut kernels: Vec<_> = (0..lattice.strips()).map(|_| start()).collect();
+        let relative = self.relative.as_deref().unwrap_or_default();
+        let mut strips = relative.chunks(lattice.strip_batches());
+        let mut kernel = |_| SurfaceEnergy {
+            model,
+            relative: strips.next().unwrap_or_default(),
+            energy: Lane::ZERO,
+            least: Lane::splat(f64::INFINITY),
+        };
+        let mut kernels: Vec<_> = (0..lattice.strips()).map(&mut kernel).collect();
         let fields = Fields { displacement: [&[], &[]], phase: self.field.control_values() };
         sweep(lattice, fields, &mut kernels, None);
         let energy = kernels.iter().map(|k| k.energy.sum()).sum();
@@ -217,7 +230,8 @@ impl LatticeFracture {
 
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
-        let lanes = self.history.len() + self.phase.len() + self.excess.len();
+        let relative = self.relative.as_ref().map_or(0, Vec::len);
+        let lanes = self.history.len() + self.phase.len() + self.excess.len() + relative;
         lanes * size_of::<Lane>() + self.field.bytes()
     }
 }
@@ -315,10 +329,14 @@ fn functions_on_seeds(patch: &Patch, body: &Body) -> Vec<usize> {
     found.into_iter().collect()
 }
 
-fn seeded_history(lattice: &Lattice, body: &Body, model: &FractureModel) -> Vec<Lane> {
+/// H0 at the points, with the Gc that is there.
+fn seeded_history(lattice: &Lattice, body: &Body, model: &FractureModel, relative: Option<&[Lane]>) -> Vec<Lane> {
     let mut history = vec![Lane::ZERO; lattice.batches()];
     if !body.cracks.is_empty() && model.threshold().is_none() {
-        lattice.for_each_point(|batch, lane, position, _| history[batch][lane] = seed_energy(model, body, position));
+        lattice.for_each_point(|batch, lane, position, _| {
+            let relative = relative.map_or(1.0, |relative| relative[batch][lane]);
+            history[batch][lane] = relative * seed_energy(model, body, position);
+        });
     }
     history
 }

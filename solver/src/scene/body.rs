@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_2_PI;
 
 use super::condition::{EdgeCondition, Traction};
 use super::shape::{Shape, distance_to_segment};
+use super::toughness::{Anisotropy, RandomToughness};
 use crate::linear_algebra::extremes::smaller;
 
 /// Isotropic linear elastic material, brittle if it has a fracture table.
@@ -101,9 +102,31 @@ pub struct Fracture {
     pub residual_stiffness: f64,
     /// Split of the elastic energy.
     pub split: Split,
+    /// How Gc depends on the direction of a crack, if it does.
+    pub anisotropy: Option<Anisotropy>,
+    /// How Gc varies from place to place about its mean, if it does.
+    pub random: Option<RandomToughness>,
 }
 
 impl Fracture {
+    /// AT2 with a critical energy release rate (J/m²), a length scale (m) and the spectral split.
+    pub const fn at2(critical_energy_release_rate: f64, length_scale: f64) -> Self {
+        Self {
+            model: CrackModel::At2,
+            critical_energy_release_rate,
+            length_scale,
+            residual_stiffness: 0.0,
+            split: Split::Spectral,
+            anisotropy: None,
+            random: None,
+        }
+    }
+
+    /// Length scale in the direction in which it is shortest, m: of a crack that costs least.
+    pub fn shortest_length(&self) -> f64 {
+        self.length_scale * self.anisotropy.map_or(1.0, |anisotropy| anisotropy.smallest().sqrt())
+    }
+
     /// a1 of a cohesive crack, `2 E Gc/(π l0 ft²)` with Young's modulus E (Pa); none of the other models.
     pub fn brittleness(&self, young_modulus: f64) -> Option<f64> {
         let CrackModel::PfCzm { tensile_strength, .. } = self.model else { return None };

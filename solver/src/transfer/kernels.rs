@@ -267,24 +267,29 @@ fn of_intact(weight: Lane, phase: &[Lane], at: usize) -> Lane {
 
 /// Surface energy `Gc [(1 − c)²/(4 l0) + l0 |grad c|²]` (E 3) and the smallest c.
 #[derive(Debug)]
-pub(crate) struct SurfaceEnergy {
+pub(crate) struct SurfaceEnergy<'a> {
     /// Fracture constants.
     pub model: FractureModel,
+    /// Gc over its mean at the points of the strip; empty if it is the same everywhere.
+    pub relative: &'a [Lane],
     /// Surface energy per unit thickness, J/m.
     pub energy: Lane,
     /// Smallest c at a point.
     pub least: Lane,
 }
 
-impl PointKernel for SurfaceEnergy {
+impl PointKernel for SurfaceEnergy<'_> {
     const DISPLACEMENT: bool = false;
     const PHASE: bool = true;
     const PHASE_GRADIENT: bool = true;
     const STRESS: bool = false;
 
     #[inline(always)]
-    fn points<const FMA: bool>(&mut self, _at: usize, weight: Lane, values: &PointValues) -> Stress {
-        let density = self.model.surface_energy(values.phase, values.phase_gradient);
+    fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
+        let mut density = self.model.surface_energy(values.phase, values.phase_gradient);
+        if let Some(relative) = self.relative.get(at) {
+            density = density * *relative;
+        }
         self.energy = self.energy.add_product::<FMA>(weight, density);
         let exists = values.phase.zip(weight, |c, w| if w > 0.0 { c } else { f64::INFINITY });
         self.least = self.least.zip(exists, smaller);

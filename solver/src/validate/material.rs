@@ -9,6 +9,10 @@ use crate::scene::{CrackModel, Fracture, Frame, Material, Plane, Scene, Split};
 const LEAST_BRITTLENESS: f64 = 1.5;
 /// An a1 beyond belongs to a number without its unit: process zones are not ten thousand times as long as l0.
 const MOST_BRITTLENESS: f64 = 1e5;
+/// What two entries of a symmetric tensor may differ by, of themselves.
+const SYMMETRY: f64 = 1e-12;
+/// Least modulus of Weibull: the median is then half of the mean by far.
+const LEAST_MODULUS: f64 = 0.5;
 /// No solid carries waves faster than this, m/s (diamond: 18 km/s).
 const FASTEST: f64 = 3e4;
 /// Speeds below this are suspicious, m/s.
@@ -43,6 +47,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
             check_fracture(&key, fracture, findings);
             model(&key, fracture, scene.analysis.frame, findings);
             cohesive(&key, fracture, material.young_modulus, findings);
+            varying_toughness(&key, fracture, scene.analysis.frame, findings);
         }
         if !scene.bodies.iter().any(|b| b.material == *name) {
             findings.warn(key, "no body is made of this material; remove it, or correct body.material");
@@ -147,6 +152,39 @@ fn model(key: &str, fracture: &Fracture, frame: Frame, findings: &mut Findings) 
     {
         let remedy = "give a number such as 3.0; 0 is the volumetric-deviatoric split";
         findings.error(format!("{key}.split.star-convex"), format!("{gamma} is not zero or more"), remedy);
+    }
+}
+
+/// A toughness that depends on direction or place belongs to the total frame; it stays positive.
+fn varying_toughness(key: &str, fracture: &Fracture, frame: Frame, findings: &mut Findings) {
+    if let Some(anisotropy) = fracture.anisotropy {
+        let [[xx, xy], [yx, yy]] = anisotropy.tensor;
+        let key = format!("{key}.anisotropy.tensor");
+        if findings.finite(key.clone(), &[xx, xy, yx, yy, anisotropy.angle]) {
+            if (xy - yx).abs() > SYMMETRY * (xy.abs() + yx.abs()) {
+                findings.error(key, format!("{xy} and {yx} differ"), "give a symmetric tensor");
+            } else if anisotropy.smallest() <= SYMMETRY * (xx.abs() + yy.abs()) {
+                let message = "the tensor is not positive definite: cracks of some direction would cost nothing";
+                findings.error(key, message, "give positive principal values, such as [[1.0, 0.0], [0.0, 4.0]]");
+            }
+        }
+    }
+    if let Some(random) = fracture.random {
+        let key = |name: &str| format!("{key}.random.{name}");
+        findings.positive(key("correlation"), random.correlation, "correlation = \"1 mm\"");
+        if findings.positive(key("modulus"), random.modulus, "modulus = 2.0") && random.modulus < LEAST_MODULUS {
+            let message = format!("with {} most of the material has next to no toughness", random.modulus);
+            findings.error(key("modulus"), message, format!("give at least {LEAST_MODULUS}"));
+        }
+        if matches!(fracture.model, CrackModel::PfCzm { .. }) {
+            let message = "with pf-czm the softening would change with the toughness from place to place";
+            findings.error(key("field"), message, "use model = \"at1\" or \"at2\"");
+        }
+    }
+    let given = [("anisotropy", fracture.anisotropy.is_some()), ("random", fracture.random.is_some())];
+    for (name, _) in given.into_iter().filter(|(_, given)| *given && frame == Frame::Updated) {
+        let message = "in the updated frame Gc is the same in every direction and at every place";
+        findings.error(format!("{key}.{name}"), message, "use frame = \"total\", or remove the key");
     }
 }
 

@@ -30,6 +30,10 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     if output.bodies {
         recorded_bodies(scene, findings);
     }
+    if output.fragments && !counts_fragments(scene) {
+        let message = "only the cracks of a body in the total frame divide it into parts that are counted here";
+        findings.error("output.fragments", message, "use frame = \"total\" and a fracture table, or contact.fragments");
+    }
     probes(scene, findings);
     for (i, integral) in scene.output.j_integrals.iter().enumerate() {
         j_integral(i, integral, scene, ground, findings);
@@ -106,6 +110,12 @@ fn filled(
 }
 
 /// Probes lie in the body, under names that differ as columns.
+fn counts_fragments(scene: &Scene) -> bool {
+    let is_brittle =
+        |body: &Body| scene.materials.get(&body.material).is_some_and(|material| material.fracture.is_some());
+    scene.analysis.frame == Frame::Total && scene.bodies.iter().any(is_brittle)
+}
+
 fn probes(scene: &Scene, findings: &mut Findings) {
     let probes = &scene.output.probes;
     for (i, probe) in probes.iter().enumerate() {

@@ -14,7 +14,12 @@ const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
 /// An error for cells above four times the length scale at the initial cracks of a body, or everywhere if it
 /// has none; a warning for such cells elsewhere, and for cells above the length scale.
 pub(super) fn check(body: &Body, fracture: &Fracture, ground: &Ground<'_>, findings: &mut Findings) {
-    let ([_, longest], l0) = (ground.span_lengths(&body.shape), fracture.length_scale);
+    let ([_, longest], l0) = (ground.span_lengths(&body.shape), fracture.shortest_length());
+    if let Some(random) = fracture.random.filter(|random| random.correlation < longest) {
+        let message = format!("{:.4e} m is shorter than the largest cell, {longest:.4e} m", random.correlation);
+        let remedy = "give at least the length of a cell: the points of one cell cannot differ by more";
+        findings.error(format!("material.{}.fracture.random.correlation", body.material), message, remedy);
+    }
     let needed = if ground.patch.is_some() { longest } else { span_of_cracks(body, l0, ground.mesh) };
     let exceeds = |h: f64, times: f64| h > times * l0 * (1.0 + TOLERANCE);
     let sizes = |h: f64| format!("cells of h = {:.4} mm against l0 = {:.4} mm", 1e3 * h, 1e3 * l0);

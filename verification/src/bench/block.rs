@@ -10,8 +10,8 @@ use fisura::phase_field::PhaseField;
 use fisura::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_form};
 use fisura::phase_field::fracture::LatticeFracture;
 use fisura::scene::{
-    Crack, CrackModel, Fracture, Frame, Material, Mesh, PhaseFieldInterval, PhaseFieldSolver, Plane, Scene, Shape,
-    SolverSettings, Split, Transfer,
+    Crack, Fracture, Frame, Material, Mesh, PhaseFieldInterval, PhaseFieldSolver, Plane, Scene, Shape, SolverSettings,
+    Split, Transfer,
 };
 use fisura::splines::patch::Patch;
 use fisura::transfer::kernels::{DegradedStress, ElasticStress, HistoryUpdate};
@@ -33,13 +33,7 @@ pub const MARGIN: usize = 4;
 /// middle. On all sides the mesh reaches `margin` spans beyond it; from p on, all functions on the body are
 /// uniform.
 pub fn cracked_scene(degree: usize, points: usize, cells: usize, margin: usize) -> Scene {
-    let fracture = Fracture {
-        model: CrackModel::At2,
-        critical_energy_release_rate: 3.0,
-        length_scale: SPAN,
-        residual_stiffness: 0.0,
-        split: Split::Spectral,
-    };
+    let fracture = Fracture::at2(3.0, SPAN);
     let glass = Material { young_modulus: 32e9, poisson_ratio: 0.2, density: DENSITY, fracture: Some(fracture) };
     let size = SPAN * cells as f64;
     let edge = SPAN * margin as f64;
@@ -124,7 +118,7 @@ impl Block {
             displacement[0][at] = 1e-7 * (0.37 * n as f64).sin();
             displacement[1][at] = 1e-7 * (0.23 * n as f64).cos();
         }
-        let fracturing = LatticeFracture::new(&patch, &lattice, &scene.bodies[0], model, &scene.solver);
+        let fracturing = LatticeFracture::new(&patch, &lattice, &scene.bodies[0], model, None, &scene.solver);
         let history = fracturing.map_err(|_| BenchError::other("the first phase field does not converge"))?.history;
         let (degree, points) = (lattice.degree[0], lattice.points[0]);
         let (name, count) = (format!("p{degree}_{points}x{points}"), lattice.count());

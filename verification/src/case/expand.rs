@@ -39,7 +39,7 @@ fn depth_of_one_value(path: &str) -> usize {
     match key {
         "cells" | "origin" | "size" | "particles_per_cell" | "velocity" | "displacement" | "gravity" | "fix"
         | "frames" | "at" | "min" | "max" | "center" | "from" | "to" | "stress" | "weights" | "angles" => 1,
-        "knots" | "points" | "segment" | "control_points" | "table" | "velocity_gradient" => 2,
+        "knots" | "points" | "segment" | "control_points" | "table" | "velocity_gradient" | "tensor" => 2,
         "minus" => usize::MAX,
         _ => 0,
     }

@@ -4,7 +4,7 @@
 //! grad u, v, a        derivatives of u(x, y, t)
 //! P                   the stress law on grad u (degraded where a phase field is modelled)
 //! b  = rho a − Div P
-//! s  = [4 l0 (1 − k) H/Gc + 1] c − 4 l0² Δc
+//! s                   the phase-field equation ([`fracture`])
 //! ```
 
 use fisura::material::degradation::FractureModel;
@@ -13,7 +13,7 @@ use fisura::scene::{Material, Plane};
 
 use super::dual::{Dual, Field, Jet, Scalar};
 use super::law::{self, Tensor};
-use super::{ExactPhase, ExactSolution};
+use super::{ExactPhase, ExactSolution, fracture};
 
 /// Index of time among the directions of differentiation.
 const TIME: usize = 2;
@@ -60,12 +60,11 @@ impl<M: Motion> Derived<M> {
     }
 
     fn degraded_stress(&self, displacement: [Jet; 2], variables: [Jet; 3]) -> Tensor {
-        let stress = self.0.stress(displacement.map(|u| [u.gradient[0], u.gradient[1]]));
-        let Some(fracture) = self.0.material().fracture else { return stress };
-        let phase = self.0.phase(variables).value;
-        let k = fracture.residual_stiffness;
-        let degradation = phase * phase * (1.0 - k) + k;
-        stress.map(|row| row.map(|component| component * degradation))
+        let gradient = displacement.map(|u| [u.gradient[0], u.gradient[1]]);
+        let material = self.0.material();
+        let Some(model) = &material.fracture else { return self.0.stress(gradient) };
+        let g = fracture::degradation(&material, model, self.0.phase(variables).value);
+        fracture::degraded_stress(&ElasticModuli::new(&material, self.0.plane()), model.split, gradient, g)
     }
 }
 
@@ -136,9 +135,11 @@ impl<M: Motion> ExactPhase for Derived<M> {
     fn source(&self, position: [f64; 2], time: f64) -> f64 {
         let variables = Jet::variables(position, time);
         let Dual { value: Field { value: phase, .. }, gradient: [x, y, _] } = self.0.phase(variables);
-        let Some(model) = FractureModel::of(&self.0.material()) else { return phase };
-        let reaction = model.reaction_per_energy() * self.0.history(variables) + 1.0;
-        reaction * phase - model.diffusion() * (x.gradient[0] + y.gradient[1])
+        let material = self.0.material();
+        let (Some(law), Some(model)) = (&material.fracture, FractureModel::of(&material)) else { return phase };
+        let coefficient = model.reaction_per_energy() * self.0.history(variables);
+        let reaction = fracture::reaction(&material, law, phase, coefficient);
+        reaction - model.diffusion() * (x.gradient[0] + y.gradient[1])
     }
 }
 

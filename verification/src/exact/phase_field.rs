@@ -15,7 +15,7 @@
 use std::f64::consts::PI;
 
 use fisura::material::degradation::FractureModel;
-use fisura::scene::{CrackModel, Fracture, Frame, Kinematics, Material, Plane, Split};
+use fisura::scene::{Fracture, Frame, Kinematics, Material, Plane};
 
 use super::dual::{Jet, Scalar};
 use super::motion::{Derived, Motion};
@@ -24,13 +24,7 @@ use super::{Equation, Held, Solution, unit_material};
 /// Size of the rectangle, m.
 pub const SIZE: [f64; 2] = [1.0, 0.8];
 
-const FRACTURE: Fracture = Fracture {
-    model: CrackModel::At2,
-    critical_energy_release_rate: 1.0,
-    length_scale: 0.1,
-    residual_stiffness: 0.01,
-    split: Split::Spectral,
-};
+const FRACTURE: Fracture = Fracture { residual_stiffness: 0.01, ..Fracture::at2(1.0, 0.1) };
 
 /// What this file registers.
 pub const SOLUTIONS: &[Solution] = &[

@@ -2,7 +2,7 @@
 
 use super::QUANTITIES;
 use crate::output::foreign;
-use crate::scene::fields::Item;
+use crate::scene::fields::{Fields, Item};
 use crate::scene::units::{self, Dimension};
 use crate::scene::{Location, Value};
 
@@ -13,6 +13,8 @@ pub enum ColumnName {
     Named(String),
     /// By its number, from 1.
     Numbered(usize),
+    /// By the first of these names that is in the header, if one is.
+    AnyOf(&'static [&'static str]),
 }
 
 /// A column mapped to a quantity.
@@ -41,10 +43,26 @@ pub struct Mapping {
 /// Column of the time, and columns by quantity.
 type Curves = (Option<Mapping>, [Option<Mapping>; 6]);
 
+/// Names of energies in files of postprocessors of MOOSE: those of its users, raccoon among them.
+const OF_MOOSE: [(&str, &[&str]); 4] = [
+    ("kinetic", &["kinetic_energy", "KE"]),
+    ("elastic", &["strain_energy", "elastic_energy", "SE"]),
+    ("work", &["external_work", "EW"]),
+    ("fracture", &["fracture_energy", "FE"]),
+];
+
 /// Reads `[curves]`; energies in J are divided by the thickness.
 pub(super) fn curves(item: &Item<'_>, thickness: Option<f64>) -> Option<Curves> {
-    let known: Vec<&str> = std::iter::once("time").chain(QUANTITIES.iter().map(|q| q.key)).collect();
+    let quantities = QUANTITIES.iter().map(|q| q.key);
+    let known: Vec<&str> =
+        ["time", "format", "file", "time_unit", "energy_unit"].into_iter().chain(quantities).collect();
     let fields = item.fields(&known)?;
+    if fields.get("format").is_some() {
+        return of_moose(&fields, thickness);
+    }
+    if let Some(given) = ["file", "time_unit", "energy_unit"].iter().find_map(|key| fields.get(key)) {
+        return given.fail("this key belongs to a format", "add format = \"moose\", or give it with every curve");
+    }
     let time = fields.need("time", "time = { column = \"t\", unit = \"us\" }", |item| mapping(item, "time", None));
     let curves = QUANTITIES.map(|q| fields.maybe(q.key, |item| mapping(item, q.key, thickness)));
     let curves: Vec<Option<Mapping>> = curves.into_iter().collect::<Option<_>>()?;
@@ -57,18 +75,8 @@ fn mapping(item: &Item<'_>, key: &str, thickness: Option<f64>) -> Option<Mapping
     known.extend(key.starts_with("tip").then_some("missing"));
     known.extend((key == "fracture").then_some("form"));
     let fields = item.fields(&known)?;
-    let file = if key == "time" {
-        Some(String::new())
-    } else {
-        fields.need("file", "file = \"energies.csv\"", |item| {
-            let name = item.words()?;
-            if foreign::is_plain(&name) {
-                Some(name)
-            } else {
-                item.fail("it leads out of the folder", "name a file in the folder of submission.toml")
-            }
-        })
-    };
+    let file =
+        if key == "time" { Some(String::new()) } else { fields.need("file", "file = \"energies.csv\"", file_name) };
     let column = fields.need("column", "column = \"name\", or its number from 1", |item| match &item.node.value {
         Value::Integer(_) => item.whole(1, 10_000).map(ColumnName::Numbered),
         _ => item.words().map(ColumnName::Named),
@@ -90,6 +98,44 @@ fn mapping(item: &Item<'_>, key: &str, thickness: Option<f64>) -> Option<Mapping
         missing: missing?,
         increment: increment?,
     })
+}
+
+/// Curves from a file of postprocessors, which has no units; single curves may be given beside it.
+fn of_moose(fields: &Fields<'_>, thickness: Option<f64>) -> Option<Curves> {
+    fields.need("format", "format = \"moose\"", |item| item.choice(&[("moose", ())]))?;
+    let file = fields.need("file", "file = \"out.csv\"", file_name);
+    let seconds = fields.need("time_unit", "time_unit = \"us\"", |item| unit(item, "time", None));
+    let joules = fields
+        .need("energy_unit", "energy_unit = \"N\" (mJ per mm), or \"J/m\"", |item| unit(item, "kinetic", thickness));
+    let (file, seconds, joules) = (file?, seconds?, joules?);
+    let place = fields.get("file")?;
+    let column = |names: &'static [&'static str], scale: f64| Mapping {
+        key: place.path.clone(),
+        location: place.node.location.clone(),
+        file: file.clone(),
+        column: ColumnName::AnyOf(names),
+        scale,
+        offset: 0.0,
+        factor: 1.0,
+        missing: None,
+        increment: false,
+    };
+    let curve = |q: &super::Quantity| {
+        let given = fields.maybe(q.key, |item| mapping(item, q.key, thickness))?;
+        let found = OF_MOOSE.iter().find(|(key, _)| *key == q.key);
+        Some(given.or_else(|| found.map(|(_, names)| column(names, joules))))
+    };
+    let curves: Vec<Option<Mapping>> = QUANTITIES.iter().map(curve).collect::<Option<_>>()?;
+    Some((Some(column(&["time"], seconds)), curves.try_into().ok()?))
+}
+
+/// A file in the folder of the submission.
+fn file_name(item: &Item<'_>) -> Option<String> {
+    let name = item.words()?;
+    if foreign::is_plain(&name) {
+        return Some(name);
+    }
+    item.fail("it leads out of the folder", "name a file in the folder of submission.toml")
 }
 
 /// SI over the unit: an energy per metre of thickness, or an energy over the thickness.

@@ -36,9 +36,23 @@ pub fn curves(folder: &Path, submission: &Submission) -> Result<[Option<Curve>; 
             files.insert(&mapping.file, File::open(folder, mapping, submission)?);
         }
         let file = &files[mapping.file.as_str()];
+        if let ColumnName::AnyOf(names) = mapping.column
+            && !names.iter().any(|name| file.has(name))
+        {
+            continue;
+        }
         let t = file.column(time, submission, true, true)?;
         let y = file.column(mapping, submission, false, index < 4)?;
         out[index] = Some(Curve { t, y });
+    }
+    if let Some(Mapping { column: ColumnName::AnyOf(_), .. }) = submission.time
+        && let Some((mapping, file)) =
+            submission.curves.iter().flatten().find_map(|m| Some((m, files.get(m.file.as_str())?)))
+        && out.iter().all(Option::is_none)
+    {
+        let message = format!("{} has none of the columns kinetic_energy, strain_energy, external_work", file.name);
+        let remedy = format!("give curves by the names that it has: {}", file.names.join(", "));
+        return Err(submission.error(mapping, message, remedy));
     }
     Ok(out)
 }
@@ -76,11 +90,19 @@ impl File {
         let of_file = submission.curves.iter().flatten().filter(|m| m.file == mapping.file);
         let mut names = of_file.chain(&submission.time).filter_map(|m| match &m.column {
             ColumnName::Named(name) => Some(name),
-            ColumnName::Numbered(_) => None,
+            ColumnName::Numbered(_) | ColumnName::AnyOf(_) => None,
         });
         let by_name = names.any(|name| file.names.contains(name));
         file.check_rows(submission, by_name)?;
         Ok(file)
+    }
+
+    fn position(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|n| n == name)
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.position(name).is_some()
     }
 
     /// Header, separator and lines of numbers. Without a header, the last comment before the numbers names
@@ -199,7 +221,11 @@ impl File {
     ) -> Result<Vec<f64>, SceneFileError> {
         let index = match &mapping.column {
             ColumnName::Numbered(number) => number - 1,
-            ColumnName::Named(name) => self.names.iter().position(|n| n == name).ok_or_else(|| {
+            ColumnName::AnyOf(names) => names.iter().find_map(|name| self.position(name)).ok_or_else(|| {
+                let (message, remedy) = (format!("{} has no column {:?}", self.name, names[0]), "name it in the file");
+                submission.error(mapping, message, remedy)
+            })?,
+            ColumnName::Named(name) => self.position(name).ok_or_else(|| {
                 let known: Vec<&str> = self.names.iter().map(String::as_str).collect();
                 let meant = crate::scene::suggest::nearest(name, &known);
                 let meant = meant.map_or(String::new(), |n| format!("did you mean {n:?}? "));

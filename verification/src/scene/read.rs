@@ -180,13 +180,15 @@ fn solver(item: &Item<'_>) -> Option<SolverSettings> {
 }
 
 fn output(item: &Item<'_>) -> Option<Output> {
-    let fields = item.fields(&["samples", "frames", "bodies", "probe", "j_integral"])?;
+    let fields = item.fields(&["samples", "frames", "bodies", "fragments", "probe", "j_integral"])?;
     let samples = fields.or("samples", 320, |item| item.whole(1, 100_000_000));
     let frames = fields.or("frames", Vec::new(), |item| item.each(time));
     let bodies = fields.or("bodies", false, Item::flag);
+    let fragments = fields.or("fragments", false, Item::flag);
     let probes = fields.or("probe", Vec::new(), |item| item.tables()?.iter().map(probe).collect());
     let j_integrals = fields.or("j_integral", Vec::new(), |item| item.tables()?.iter().map(j_integral).collect());
-    Some(Output { samples: samples?, frames: frames?, bodies: bodies?, probes: probes?, j_integrals: j_integrals? })
+    let (probes, j_integrals) = (probes?, j_integrals?);
+    Some(Output { samples: samples?, frames: frames?, bodies: bodies?, fragments: fragments?, probes, j_integrals })
 }
 
 fn j_integral(item: &Item<'_>) -> Option<JIntegral> {

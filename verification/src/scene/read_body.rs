@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use fisura::scene::time::TimeFactor;
 use fisura::scene::{
-    Body, Crack, CrackKind, CrackModel, Edge, Fracture, Layout, Load, Material, Shape, Softening, Split, Traction,
+    Anisotropy, Body, Crack, CrackKind, CrackModel, Edge, Fracture, Layout, Load, Material, RandomToughness, Shape,
+    Softening, Split, Traction,
 };
 
 use super::document::join;
@@ -58,6 +59,8 @@ fn fracture(item: &Item<'_>) -> Option<Fracture> {
         "length_scale",
         "residual_stiffness",
         "split",
+        "anisotropy",
+        "random",
     ])?;
     let model = model(&fields);
     let rate = fields.need("critical_energy_release_rate", "critical_energy_release_rate = \"3 J/m^2\"", |item| {
@@ -66,12 +69,16 @@ fn fracture(item: &Item<'_>) -> Option<Fracture> {
     let scale = fields.need("length_scale", "length_scale = \"0.25 mm\"", length);
     let residual = fields.or("residual_stiffness", 0.0, number);
     let split = fields.or("split", Split::Spectral, split);
+    let anisotropy = fields.maybe("anisotropy", anisotropy);
+    let random = fields.maybe("random", random);
     Some(Fracture {
         model: model?,
         critical_energy_release_rate: rate?,
         length_scale: scale?,
         residual_stiffness: residual?,
         split: split?,
+        anisotropy: anisotropy?,
+        random: random?,
     })
 }
 
@@ -99,6 +106,28 @@ fn split(item: &Item<'_>) -> Option<Split> {
     }
     let fields = item.fields(&["star-convex"])?;
     fields.need("star-convex", "split = { star-convex = 3.0 }", number).map(Split::StarConvex)
+}
+
+/// `{ tensor = [[1.0, 0.0], [0.0, 4.0]], angle = 30 }`, the angle in degrees.
+fn anisotropy(item: &Item<'_>) -> Option<Anisotropy> {
+    let fields = item.fields(&["tensor", "angle"])?;
+    let row = |row: &Item<'_>| row.vector(Dimension::NONE);
+    let tensor = fields.need("tensor", "tensor = [[1.0, 0.0], [0.0, 4.0]]", |item| item.pair(row));
+    let angle = fields.or("angle", 0.0, number);
+    Some(Anisotropy { tensor: tensor?, angle: angle?.to_radians() })
+}
+
+/// `{ field = "toughness", distribution = "weibull", modulus = 2.0, correlation = "1 mm", seed = 1 }`.
+fn random(item: &Item<'_>) -> Option<RandomToughness> {
+    let fields = item.fields(&["field", "distribution", "modulus", "correlation", "seed"])?;
+    let word =
+        |key: &str, only: &str| fields.need(key, &format!("{key} = \"{only}\""), |item| item.choice(&[(only, ())]));
+    let (field, distribution) = (word("field", "toughness"), word("distribution", "weibull"));
+    let modulus = fields.need("modulus", "modulus = 2.0", number);
+    let correlation = fields.need("correlation", "correlation = \"1 mm\"", length);
+    let seed = fields.or("seed", 1, |item| item.whole(0, 1 << 32));
+    field.and(distribution)?;
+    Some(RandomToughness { modulus: modulus?, correlation: correlation?, seed: seed? as u64 })
 }
 
 /// `[[body]]` tables in order.

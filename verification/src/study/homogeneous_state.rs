@@ -112,6 +112,7 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
             field,
             iterations: 0,
             intact_energy: None,
+            relative: None,
         },
         forces: StripForces::new(&lattice),
         greville: patch.spaces[0].greville(),

@@ -46,7 +46,10 @@ impl TotalFrame {
         }
         let held = [0, 1].map(|component| constraints.held(component));
         let fracture = FractureModel::of(material)
-            .map(|model| LatticeFracture::new(&patch, &lattice, body, model, &scene.solver))
+            .map(|model| {
+                let random = material.fracture.as_ref().and_then(|fracture| fracture.random);
+                LatticeFracture::new(&patch, &lattice, body, model, random, &scene.solver)
+            })
             .transpose()?;
         let mass = MassMatrix::new(&lattice, material.density, scene.analysis.mass, held)?;
         if let Some(number) = constraints.conditions().iter().enumerate().position(|(number, condition)| {
@@ -76,6 +79,7 @@ impl TotalFrame {
             domains: Domain::all(&patch, body, &scene.output.j_integrals),
             density: material.density,
             crack_start: crack_start(body),
+            counts_fragments: scene.output.fragments,
             displacement: zeros(),
             velocity: zeros(),
             acceleration: zeros(),

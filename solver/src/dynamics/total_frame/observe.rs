@@ -74,6 +74,7 @@ impl TotalFrame {
             conditions: self.condition_samples(),
             probes: self.probes.iter().map(|probe| self.sampled_probe(probe)).collect(),
             j_integrals: self.j_integrals(),
+            fragments: self.fragments(),
             momentum,
             angular_momentum: angular,
             time_step: dt,

@@ -13,6 +13,7 @@ impl TotalFrame {
         let Self {
             patch: _,
             grid: _,
+            counts_fragments: _,
             lattice: _,
             moduli: _,
             kinematics: _,
@@ -48,8 +49,16 @@ impl TotalFrame {
         for field in [displacement, velocity, internal, acceleration].into_iter().take(stored) {
             field.iter_mut().try_for_each(|component| archive.list(component))?;
         }
-        if let Some(LatticeFracture { model: _, history, phase, excess, field, iterations, intact_energy: _ }) =
-            fracture
+        if let Some(LatticeFracture {
+            model: _,
+            history,
+            phase,
+            excess,
+            field,
+            iterations,
+            intact_energy: _,
+            relative: _,
+        }) = fracture
         {
             [history, phase, excess].into_iter().try_for_each(|values| archive.list(values))?;
             field.exchange(archive)?;

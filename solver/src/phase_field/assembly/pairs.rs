@@ -51,6 +51,11 @@ fn add_point(functions: &BatchFunctions, form: Integrand, coefficient: Lane, cou
         scaled[n] = match form {
             Integrand::Mass => [functions.value[n] * coefficient, Lane::ZERO],
             Integrand::Diffusion => functions.gradient[n].map(|g| g * coefficient),
+            Integrand::Anisotropic([xx, yy, xy]) => {
+                let [x, y] = functions.gradient[n].map(|g| g * coefficient);
+                let xy = fault!("tensor-without-its-mixed-term", xy => 0.0);
+                [x * xx + y * xy, x * xy + y * yy]
+            }
         };
     }
     let mut pair = 0;
@@ -58,7 +63,7 @@ fn add_point(functions: &BatchFunctions, form: Integrand, coefficient: Lane, cou
         for n in m..count {
             pairs[pair] += match form {
                 Integrand::Mass => functions.value[m] * scaled[n][0],
-                Integrand::Diffusion => {
+                Integrand::Diffusion | Integrand::Anisotropic(_) => {
                     functions.gradient[m][0] * scaled[n][0] + functions.gradient[m][1] * scaled[n][1]
                 }
             };

@@ -17,13 +17,7 @@ pub fn glass() -> Material {
 }
 
 pub fn brittle() -> Fracture {
-    Fracture {
-        model: CrackModel::At2,
-        critical_energy_release_rate: 3.0,
-        length_scale: 0.25e-3,
-        residual_stiffness: 0.0,
-        split: Split::Spectral,
-    }
+    Fracture::at2(3.0, 0.25e-3)
 }
 
 /// Fracture with a threshold.

@@ -63,7 +63,7 @@ pub(super) fn find(setup: &ConvergenceSetup) -> Result<Problem, String> {
 pub(super) struct Manufactured {
     pub solution: Arc<dyn ExactSolution>,
     pub loading: Loading,
-    /// `4 l0²` (m²), where there is a phase field.
+    /// Coefficient of the gradient term (m²), where there is a phase field.
     pub diffusion: f64,
     /// Whether gradients are those at the moved points, on which Kirchhoff's stress works.
     pub moved: bool,

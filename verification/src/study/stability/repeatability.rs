@@ -6,8 +6,7 @@
 
 use fisura::Simulation;
 use fisura::scene::{
-    Boundary, Crack, CrackModel, Fracture, Frame, Material, Mesh, PhaseFieldSolver, Scene, Side, Split, TimeFactor,
-    Traction,
+    Boundary, Crack, Fracture, Frame, Material, Mesh, PhaseFieldSolver, Scene, Side, TimeFactor, Traction,
 };
 
 use super::exact;
@@ -76,13 +75,7 @@ fn glass(cells: [usize; 2], degree: usize, fracture: Option<Fracture>) -> Scene 
 
 /// A plate with a crack, pulled apart.
 fn notched(frame: Frame) -> Scene {
-    let fracture = Fracture {
-        model: CrackModel::At2,
-        critical_energy_release_rate: 3.0,
-        length_scale: 0.25e-3,
-        residual_stiffness: 0.0,
-        split: Split::Spectral,
-    };
+    let fracture = Fracture::at2(3.0, 0.25e-3);
     let mut scene = glass([32, 40], 2, Some(fracture));
     scene.solver.phase_field_solver = PhaseFieldSolver::ConjugateGradients;
     scene.solver.phase_field_tolerance = 1e-8;

@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::hencky::hencky_strain;
 use fisura::material::split::tensile_strain;
-use fisura::scene::{Boundary, CrackModel, Fracture, Material, Mesh, Scene, Side, Split};
+use fisura::scene::{Boundary, Fracture, Material, Mesh, Scene, Side};
 
 use super::{exact, logarithmic, total_frame};
 use crate::case::Case;
@@ -157,13 +157,7 @@ fn scaled_runs() -> Result<(Table, f64), StudyError> {
 /// A block held at its left side whose speed strains it by about `size` times 1e-3; it is far too tough to
 /// crack.
 fn block(size: f64) -> Scene {
-    let fracture = Fracture {
-        model: CrackModel::At2,
-        critical_energy_release_rate: 1e12,
-        length_scale: 0.25,
-        residual_stiffness: 0.0,
-        split: Split::Spectral,
-    };
+    let fracture = Fracture::at2(1e12, 0.25);
     let mut scene = PlainScene::free(
         Mesh::uniform([2; 2], [0.0; 2], [2.0, 1.0], [8, 4]),
         Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0, fracture: Some(fracture) },

@@ -7,9 +7,7 @@
 
 use fisura::Simulation;
 use fisura::dynamics::energy::Sample;
-use fisura::scene::{
-    Boundary, Crack, CrackModel, Fracture, Material, Mesh, Scene, Shape, Side, Split, TimeFactor, Traction,
-};
+use fisura::scene::{Boundary, Crack, Fracture, Material, Mesh, Scene, Shape, Side, TimeFactor, Traction};
 
 use super::exact;
 use crate::case::Case;
@@ -120,13 +118,8 @@ fn run(scene: &Scene) -> Result<Vec<Sample>, StudyError> {
 /// microsecond; or with a crack, by 8 MPa for two.
 fn plate(units: Units, cracked: bool) -> Scene {
     let [width, height] = [4e-3, 8e-3].map(|x| x * units.length);
-    let fracture = cracked.then_some(Fracture {
-        model: CrackModel::At2,
-        critical_energy_release_rate: 3.0 * units.energy() / units.length.powi(2),
-        length_scale: 0.25e-3 * units.length,
-        residual_stiffness: 0.0,
-        split: Split::Spectral,
-    });
+    let fracture =
+        cracked.then_some(Fracture::at2(3.0 * units.energy() / units.length.powi(2), 0.25e-3 * units.length));
     let material = Material {
         young_modulus: 32e9 * units.stress(),
         poisson_ratio: 0.2,

@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use fisura::Simulation;
-use fisura::scene::{Boundary, CrackModel, Fracture, Frame, Material, Mesh, Scene, Shape, Side, Split};
+use fisura::scene::{Boundary, Fracture, Frame, Material, Mesh, Scene, Shape, Side};
 
 use super::exact;
 use crate::case::Case;
@@ -107,13 +107,7 @@ fn largest_fall(before: &Histories, now: &Histories) -> f64 {
 
 /// A bar held at its left side and set in motion along x; strained to about a tenth of its strength.
 fn bar(frame: Frame) -> Scene {
-    let fracture = Fracture {
-        model: CrackModel::At2,
-        critical_energy_release_rate: 1e-2,
-        length_scale: 0.25,
-        residual_stiffness: 0.0,
-        split: Split::Spectral,
-    };
+    let fracture = Fracture::at2(1e-2, 0.25);
     let mut scene = PlainScene::free(
         Mesh::uniform([2; 2], [0.0; 2], [2.5, HEIGHT], [20, 4]),
         Material { young_modulus: 1.0, poisson_ratio: 0.2, density: 1.0, fracture: Some(fracture) },
