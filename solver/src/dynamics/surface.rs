@@ -120,6 +120,7 @@ fn divisions(patch: &Patch, edge: &BoundaryEdge, [from, to]: [f64; 2]) -> Vec<f6
     }
     places.retain(|s| (from + NEAR..to - NEAR).contains(s) || *s == from || *s == to);
     places.sort_by(f64::total_cmp);
+    places.dedup_by(|next, place| *next - *place < NEAR); // a corner of spans is crossed once
     places
 }
 
@@ -165,5 +166,28 @@ pub(crate) fn edge_ends(body: &Body, edge: &Edge) -> [[f64; 2]; 2] {
         }
         Edge::Segment(ends) => *ends,
         Edge::Arc { .. } => Default::default(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Mesh;
+
+    /// Circles through corners of spans, at which both directions cross a knot: round-off leaves no part
+    /// there.
+    #[test]
+    fn a_corner_of_spans_is_crossed_once() {
+        for (radius, corners) in [(5.0, 12), (13.0, 12), (25.0, 20), (10.0, 12)] {
+            for origin in [[-30.0, -30.0], [-29.0, -31.0]] {
+                let patch = Patch::new(&Mesh::uniform([2, 2], origin, [60.0, 60.0], [60, 60]));
+                let circle = BoundaryEdge::Circle { center: [0.0; 2], radius, sign: 1.0 };
+                let places = divisions(&patch, &circle, [0.0, 1.0]);
+                assert!(places.windows(2).all(|pair| pair[1] - pair[0] > 1e-6), "radius {radius}");
+                let is_whole = |x: f64| (x - x.round()).abs() < 1e-9;
+                let at_corner = places.iter().filter(|s| circle.at(**s).0.iter().all(|x| is_whole(*x)));
+                assert_eq!(at_corner.count(), corners + 1, "radius {radius}: the start is the end");
+            }
+        }
     }
 }

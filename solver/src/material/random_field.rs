@@ -88,6 +88,7 @@ fn scrambled(bits: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear_algebra::extremes::larger;
 
     fn field(modulus: f64, seed: u64) -> RandomField {
         RandomField::new(RandomToughness { modulus, correlation: 1.0, seed })
@@ -109,7 +110,7 @@ mod tests {
             let unit = libm::tgamma(1.0 + 1.0 / modulus);
             let distance =
                 |(k, r): (usize, &f64)| (1.0 - (-(r * unit).powf(modulus)).exp() - (k as f64 + 0.5) / n).abs();
-            let largest = values.iter().enumerate().map(distance).fold(0.0, f64::max);
+            let largest = values.iter().enumerate().map(distance).fold(0.0, larger);
             assert!(largest < 1.95 / n.sqrt(), "modulus {modulus}, seed {seed}: {largest}");
         }
     }

@@ -427,3 +427,27 @@ fn weights_and_knots_beyond_what_sums_can_hold_are_refused() {
     assert_eq!(stretched(1e300), ["mesh.knots.0"]);
     assert_eq!(stretched(1e-300), ["mesh.knots.0"]);
 }
+
+#[test]
+fn toughness_varies_in_the_total_frame_with_models_that_know_it() {
+    let random = |modulus: f64| RandomToughness { modulus, correlation: 1e-3, seed: 1 };
+    let with = |change: &dyn Fn(&mut Fracture)| errors(|s| change(glass(s).fracture.as_mut().unwrap()));
+    let tensor = |tensor: [[f64; 2]; 2]| Some(Anisotropy { tensor, angle: 0.3 });
+    assert!(with(&|f| f.random = Some(random(2.0))).is_empty());
+    assert!(with(&|f| f.anisotropy = tensor([[1.0, 0.0], [0.0, 4.0]])).is_empty());
+    let key = |name: &str| [format!("material.glass.fracture.{name}")];
+    assert_eq!(with(&|f| f.random = Some(random(f64::NAN))), key("random.modulus"));
+    assert_eq!(with(&|f| f.anisotropy = tensor([[1.0, f64::NAN], [f64::NAN, 1.0]])), key("anisotropy.tensor"));
+    assert_eq!(with(&|f| f.anisotropy = tensor([[0.01, 0.0], [0.0, 1.0]])), key("length_scale"), "l0/10 for h = l0");
+    let cohesive = CrackModel::PfCzm { tensile_strength: 3e6, softening: Softening::Linear };
+    assert_eq!(with(&|f| (f.model, f.random) = (cohesive, Some(random(2.0)))), key("random.field"));
+    let moving = errors(|s| {
+        (s.analysis.frame, s.analysis.kinematics) = (Frame::Updated, Kinematics::Finite);
+        glass(s).fracture.as_mut().unwrap().random = Some(random(2.0));
+    });
+    assert_eq!(moving, key("random"));
+    assert_eq!(
+        errors(|s| (glass(s).fracture, s.bodies[0].cracks, s.output.fragments) = (None, vec![], true)),
+        ["output.fragments"]
+    );
+}

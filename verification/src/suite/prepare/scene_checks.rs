@@ -230,7 +230,8 @@ fn blank_history(scene: &Scene) -> Table {
         fracture: materials.find_map(FractureModel::of).map(fracture),
         contact: scene.contact.is_some().then_some(ContactSample { loss: 0.0, friction: 0.0 }),
         transfer_loss: (scene.analysis.frame == Frame::Updated).then_some(0.0),
-        fragments: scene.contact.as_ref().and_then(|contact| contact.fragments.then_some(0)),
+        fragments: (scene.output.fragments || scene.contact.as_ref().is_some_and(|contact| contact.fragments))
+            .then_some(0),
         conditions: blank_conditions(scene),
         probes: scene.output.probes.iter().map(|probe| ProbeSample::new(&probe.name, [0.0; 7])).collect(),
         j_integrals: scene.output.j_integrals.iter().map(|j| (column(j), f64::NAN)).collect(),
