@@ -173,7 +173,7 @@ fn every_committed_case_is_sound_and_ids_are_unique() {
     let quick = Selection { suites: vec!["plate".into()], case_glob: None, tier: Tier::Quick };
     let full = Selection { tier: Tier::Full, ..quick.clone() };
     assert_eq!(select(cases.clone(), &quick).len(), 1);
-    assert_eq!(select(cases, &full).len(), 15);
+    assert_eq!(select(cases, &full).len(), 16);
 }
 
 #[test]
