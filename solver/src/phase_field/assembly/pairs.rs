@@ -53,8 +53,8 @@ fn add_point(functions: &BatchFunctions, form: Integrand, coefficient: Lane, cou
             Integrand::Diffusion => functions.gradient[n].map(|g| g * coefficient),
             Integrand::Anisotropic([xx, yy, xy]) => {
                 let [x, y] = functions.gradient[n].map(|g| g * coefficient);
-                let xy = fault!("tensor-without-its-mixed-term", xy => 0.0);
-                [x * xx + y * xy, x * xy + y * yy]
+                let mixed = fault!("tensor-without-its-mixed-term", xy => 0.0);
+                [x * xx + y * mixed, x * mixed + y * yy]
             }
         };
     }
