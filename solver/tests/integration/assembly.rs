@@ -17,7 +17,7 @@ fn compare(mesh: &Mesh, body: &Body, skip: Option<usize>) {
     let lattice = Lattice::new(&patch, body);
     let grid = lattice.grid;
     let coefficients = PerPoint::new(&lattice, skip);
-    for form in [Integrand::Mass, Integrand::Diffusion] {
+    for form in [Integrand::Mass, Integrand::Diffusion, Integrand::Anisotropic([1.3, 0.7, -0.4])] {
         let mut matrix = Stencil::zeros(grid, lattice.degree);
         add_form(&mut matrix, &lattice, form, &coefficients);
         let mut expected = vec![0.0; matrix.coefficients().len()];
@@ -46,6 +46,11 @@ fn compare(mesh: &Mesh, body: &Body, skip: Option<usize>) {
                         Integrand::Diffusion => {
                             x.derivative[i] * y.value[j] * x.derivative[l] * y.value[m]
                                 + x.value[i] * y.derivative[j] * x.value[l] * y.derivative[m]
+                        }
+                        Integrand::Anisotropic([xx, yy, xy]) => {
+                            let [ax, ay] = [x.derivative[i] * y.value[j], x.value[i] * y.derivative[j]];
+                            let [bx, by] = [x.derivative[l] * y.value[m], x.value[l] * y.derivative[m]];
+                            ax * (xx * bx + xy * by) + ay * (xy * bx + yy * by)
                         }
                     };
                     let coupling = Stencil::offset_index(lattice.degree, l as isize - i as isize, offset_rows);

@@ -108,7 +108,7 @@ fn check_assembly(name: &str, lattice: &Lattice, points: &[PlainPoint]) {
     let grid = lattice.grid;
     let mut random = Random::new(3);
     let coefficients = PerPoint::new(lattice, Some(3));
-    for form in [Integrand::Mass, Integrand::Diffusion] {
+    for form in [Integrand::Mass, Integrand::Diffusion, Integrand::Anisotropic([1.3, 0.7, -0.4])] {
         let mut matrix = Stencil::zeros(grid, lattice.degree);
         add_form(&mut matrix, lattice, form, &coefficients);
         let field = random.field(grid, 1.0);
@@ -125,6 +125,10 @@ fn check_assembly(name: &str, lattice: &Lattice, points: &[PlainPoint]) {
                     * match form {
                         Integrand::Mass => function * value,
                         Integrand::Diffusion => p.gradients[n][0] * gradient[0] + p.gradients[n][1] * gradient[1],
+                        Integrand::Anisotropic([xx, yy, xy]) => {
+                            let [x, y] = gradient;
+                            p.gradients[n][0] * (xx * x + xy * y) + p.gradients[n][1] * (xy * x + yy * y)
+                        }
                     };
             }
         }
