@@ -37,8 +37,8 @@ pub trait Forcing: Debug + Send + Sync {
         1.0
     }
 
-    /// `D grad c · n` (m) on the boundary of the patch with outward `normal`, D the coefficient of the gradient
-    /// term.
+    /// `D grad c · n` (m) on the boundary of the patch with outward `normal`; D is the coefficient of the
+    /// gradient term.
     fn phase_flux(&self, _position: [f64; 2], _normal: [f64; 2], _time: f64) -> f64 {
         0.0
     }

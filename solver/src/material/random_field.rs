@@ -11,8 +11,6 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-use crate::linear_algebra::lane::Lane;
-use crate::particles::lattice::Lattice;
 use crate::scene::RandomToughness;
 
 /// Corners per correlation length.
@@ -43,13 +41,6 @@ impl RandomField {
             -(0.5 * libm::erfc(normal * FRAC_1_SQRT_2)).ln()
         };
         exceeded.powf(self.random.modulus.recip()) * self.scale
-    }
-
-    /// Toughness over its mean at the points of a lattice; 1 where there is none.
-    pub(crate) fn at_points(&self, lattice: &Lattice) -> Vec<Lane> {
-        let mut relative = vec![Lane::splat(1.0); lattice.batches()];
-        lattice.for_each_point(|batch, lane, place, _| relative[batch][lane] = self.at(place));
-        relative
     }
 
     /// g.

@@ -75,7 +75,7 @@ impl LatticeFracture {
         random: Option<RandomToughness>,
         settings: &SolverSettings,
     ) -> Result<Self, SolveFailure> {
-        let relative = random.map(|random| RandomField::new(random).at_points(lattice));
+        let relative = random.map(|random| relative_toughness(lattice, random));
         let history = seeded_history(lattice, body, &model, relative.as_deref());
         let zeros = vec![Lane::ZERO; lattice.batches()];
         let mut field = PhaseField::with_toughness(lattice, model, relative.as_deref(), settings);
@@ -327,6 +327,14 @@ fn functions_on_seeds(patch: &Patch, body: &Body) -> Vec<usize> {
         }
     }
     found.into_iter().collect()
+}
+
+/// Gc over its mean at the points; 1 where there is none.
+fn relative_toughness(lattice: &Lattice, random: RandomToughness) -> Vec<Lane> {
+    let field = RandomField::new(random);
+    let mut relative = vec![Lane::splat(1.0); lattice.batches()];
+    lattice.for_each_point(|batch, lane, place, _| relative[batch][lane] = field.at(place));
+    relative
 }
 
 /// H0 at the points, with the Gc that is there.

@@ -1,7 +1,7 @@
 //! Fragments: connected parts of a body that are not cracked.
 //!
-//! A span is whole where the mean of c over its points is at least 1/2, and hangs together with whole spans on
-//! its four sides. Parts smaller than the square of 2 l0 are debris and do not count.
+//! A span is whole where the mean of c over its points is at least 1/2, and hangs together with whole spans
+//! on its four sides. Parts smaller than the square of 2 l0 are debris and do not count.
 
 use std::collections::BTreeMap;
 
