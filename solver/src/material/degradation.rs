@@ -8,9 +8,9 @@
 //! ```
 //!
 //! Gc for a crack in each. An anisotropic material has `grad c · A grad c` for `|grad c|²`, and a crack with
-//! the unit normal n costs `Gc sqrt(n · A n)`. Where H drives, c minimises the energy with `g H`: with AT2 for
-//! the largest H so far, with the others on control values between zero and those of the step before. With s
-//! = g'/2, which is c unless the crack is [cohesive](super::cohesive),
+//! the unit normal n costs `Gc sqrt(n · A n)`. Where H drives, c minimises the energy with `g H`: with AT2
+//! for the largest H so far, with the others on control values between zero and those of the step before.
+//! With s = g'/2, which is c unless the crack is [cohesive](super::cohesive),
 //!
 //! ```text
 //! (4 l0 (1 − k) H/Gc + 1) c − 4 l0² lap c = 1                                       AT2, E 11

@@ -18,8 +18,8 @@
 //!
 //! In tension both principal strains are positive, so `psi− = 0`. With AT2, psi+ grows strictly in time
 //! everywhere, hence H = psi+. Squeezed means α/2 and −2 β − 0.05 for α and β: everywhere one principal
-//! strain is positive, the other negative, and so is the trace. So every split is smooth, and a wrong term of one
-//! shows. A change of sign would make it rough, and orders of convergence would fall without a bug.
+//! strain is positive, the other negative, and so is the trace. So every split is smooth, and a wrong term of
+//! one shows. A change of sign would make it rough, and orders of convergence would fall without a bug.
 //!
 //! With a threshold c falls strictly in time and stays below 1: no bound is active, and the equation holds.
 //!
