@@ -24,11 +24,13 @@ impl TotalFrame {
     pub(super) fn fragments(&self) -> Option<usize> {
         let fracture = self.fracture.as_ref().filter(|_| self.counts_fragments)?;
         let control_values = self.lattice.with_copies(fracture.field.control_values().to_vec());
+        let number = |d: usize, first: usize| self.patch.spaces[d].spans().partition_point(|span| span.first < first);
         let mut spans: BTreeMap<[usize; 2], Content> = BTreeMap::new();
         for batch in 0..self.lattice.batches() {
             let (area, phase) = (self.lattice.weights_of(batch), self.lattice.value(batch, &control_values));
             for lane in (0..area.0.len()).filter(|&lane| area[lane] > 0.0) {
-                let content = spans.entry(self.lattice.span_of(batch, lane)).or_default();
+                let [column, row] = self.lattice.span_of(batch, lane);
+                let content = spans.entry([number(0, column), number(1, row)]).or_default();
                 content.area += area[lane];
                 content.phase += area[lane] * phase[lane];
             }

@@ -16,7 +16,7 @@ impl Lattice {
         (row < self.patch_rows).then_some(row / STRIP_ROWS)
     }
 
-    /// Column and row of the span of a point, counted by the first control point of the patch that it sees.
+    /// The first control point of the patch that a point sees, by column and row: that of its span.
     pub(crate) fn span_of(&self, batch: usize, lane: usize) -> [usize; 2] {
         if let Some(cut) = self.cut_batch(batch) {
             return cut.first;
