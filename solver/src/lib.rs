@@ -54,9 +54,8 @@
 //! | [`validate`] | – | what is wrong with a scene |
 //! | [`simulation`] | – | the run: steps, samples, checkpoints, breakdowns |
 //!
-//! FLIP, XPIC and the other transfers of velocities are in [`dynamics::updated_frame`], as is Gauss
-//! quadrature by spans (`analysis.quadrature = "gauss"`), fragments of bodies that are cracked through, and
-//! contact of a body with itself.
+//! FLIP, XPIC and the other transfers of velocities are in [`dynamics::updated_frame`], as are
+//! fragments of bodies that are cracked through, and contact of a body with itself.
 //!
 //! Where the paper prints a slip, the module that uses the equation says so.
 //!
@@ -105,7 +104,6 @@
 //!         time_step: TimeStep::Auto,
 //!         safety: 0.8,
 //!         transfer: Transfer::default(),
-//!         quadrature: Quadrature::Points,
 //!         mass: Mass::Lumped,
 //!         gravity: [0.0, 0.0],
 //!     },

@@ -92,15 +92,6 @@ pub enum Transfer {
     Xpic(usize),
 }
 
-/// What integrates forces and inertia in the updated frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quadrature {
-    /// The material points.
-    Points,
-    /// Gauss points of the part of each span that the body fills.
-    Gauss,
-}
-
 /// Mass matrix of the control points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mass {
@@ -138,8 +129,6 @@ pub struct Analysis {
     pub safety: f64,
     /// Transfer of the updated frame.
     pub transfer: Transfer,
-    /// Quadrature of the updated frame.
-    pub quadrature: Quadrature,
     /// Mass matrix.
     pub mass: Mass,
     /// Gravity, m/s².
@@ -184,7 +173,7 @@ pub struct Contact {
     pub fragments: bool,
     /// Whether a body may meet itself.
     pub self_contact: bool,
-    /// Stiffness of the boundaries of bodies whose spans integrate, over that of a span.
+    /// Stiffness of the boundaries of bodies in the total frame, over that of a span.
     pub stiffness: f64,
 }
 

@@ -8,6 +8,7 @@ mod watch;
 
 use serde::{Deserialize, Serialize};
 
+use crate::contact::impulse::ContactForce;
 use crate::dynamics::energy::Sample;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::time_plan::TimePlan;
@@ -114,9 +115,9 @@ impl Simulation {
         self.steps >= self.plan.steps()
     }
 
-    /// The body of a scene in the total frame, for verification.
+    /// The first body of a scene in the total frame, for verification.
     pub fn total_frame(&self) -> Option<&TotalFrame> {
-        if let Bodies::Total(frame) = &self.frame { Some(frame) } else { None }
+        if let Bodies::Total(bodies) = &self.frame { bodies.bodies().first() } else { None }
     }
 
     /// The body of a scene in the updated frame, for verification.
@@ -173,6 +174,17 @@ impl Simulation {
         sample
     }
 
+    /// Forces of contact now.
+    pub fn contact_forces(&self) -> Vec<ContactForce> {
+        either!(&self.frame, body => body.contact_forces(self.part_of_step()))
+    }
+
+    /// Mass (kg) and momentum (kg m/s) of every body that deforms, or fragment, with the velocities of half a
+    /// step before.
+    pub fn momenta(&self) -> Vec<(f64, [f64; 2])> {
+        either!(&self.frame, body => body.momenta(self.part_of_step()))
+    }
+
     /// Phase-field counters; all zero where none is modelled.
     pub fn phase_field_counts(&self) -> PhaseFieldCounts {
         self.frame.phase_field_counts().unwrap_or_default()
@@ -184,7 +196,7 @@ impl Simulation {
         if self.frame.phase_field_counts().is_some() {
             models.push("phase field".to_string());
         }
-        if self.updated_frame().is_some_and(|frame| frame.has_contact()) {
+        if either!(&self.frame, body => body.has_contact()) {
             models.push("contact".to_string());
         }
         let [mechanics_bytes, phase_field_bytes] = either!(&self.frame, body => body.bytes());

@@ -7,7 +7,7 @@ use fisura::dynamics::time_plan::TimePlan;
 use fisura::linear_algebra::extremes::larger;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::spans::{largest_spans, smallest_span};
-use fisura::scene::{Body, Crack, CrackModel, Fracture, Frame, Material, Plane, Quadrature, Scene, Split, Transfer};
+use fisura::scene::{Body, Crack, CrackModel, Fracture, Frame, Material, Plane, Scene, Split, Transfer};
 use fisura::simulation::{Extent, Simulation};
 use fisura::validate::expected_size;
 use fisura_reports::number::{duration, plain};
@@ -212,7 +212,7 @@ impl Findings {
 
     fn of(scene: &Scene, extent: &Extent, plan: &TimePlan, warnings: &[String]) -> Self {
         let span_m = largest_spans(&scene.mesh);
-        let by_points = scene.analysis.frame == Frame::Updated && scene.analysis.quadrature == Quadrature::Points;
+        let by_points = scene.analysis.frame == Frame::Updated;
         Self {
             title: scene.title.clone(),
             models: extent.models.clone(),

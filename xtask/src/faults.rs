@@ -96,20 +96,26 @@ fn runner(args: &Args, common: &Common, program: PathBuf) -> Runner {
 #[cfg(feature = "faults")]
 pub fn plant_from_environment() -> Result<(), Failure> {
     let Ok(name) = std::env::var(PLANTED) else { return Ok(()) };
-    fisura::faults::plant(&name).map_err(Failure::input)
+    fisura::faults::plant(known(&name)?.id.clone());
+    Ok(())
+}
+
+/// The fault of a name.
+///
+/// # Errors
+/// If no fault has it.
+fn known(id: &str) -> Result<&'static Fault, Failure> {
+    all().iter().find(|fault| fault.id == id).ok_or_else(|| {
+        let known: Vec<&str> = all().iter().map(|fault| fault.id.as_str()).collect();
+        Failure::input(format!("unknown fault: {id}")).help(format!("known: {}", known.join(", ")))
+    })
 }
 
 fn chosen(args: &Args) -> Result<Vec<&'static Fault>, Failure> {
     if args.fault.is_empty() {
         return Ok(all().iter().collect());
     }
-    let find = |id: &String| {
-        all().iter().find(|fault| fault.id == *id).ok_or_else(|| {
-            let known: Vec<&str> = all().iter().map(|fault| fault.id.as_str()).collect();
-            Failure::input(format!("unknown fault: {id}")).help(format!("known: {}", known.join(", ")))
-        })
-    };
-    args.fault.iter().map(find).collect()
+    args.fault.iter().map(|id| known(id)).collect()
 }
 
 /// Builds the program in which errors can be planted.

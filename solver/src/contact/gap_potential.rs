@@ -1,13 +1,13 @@
-//! Contact by a potential of the gap, for bodies whose spans integrate.
+//! Contact by a potential of the gap, for bodies in the total frame.
 //!
 //! Where the boundary of a body lies at a depth d inside another one, that costs energy,
 //!
 //! ```text
-//! E = Σ_(a, b) 1/2 ∫_(∂a) κ/2 d_b(x)² ds,      κ = α min(ρ c²)/h,
+//! E = Σ_(a, b) 1/2 ∫_(∂a) κ/2 d_b(x)² dS,      κ = α min(ρ c²)/h,
 //! ```
 //!
-//! the sum over both orders of every pair, so that neither body is the master of the other. d_b(x) is the
-//! distance to the nearest place y on the boundary of b; the force on a at x and its opposite on b at y act
+//! the sum over both orders of every pair, so that neither body is the master of the other, with lengths dS at
+//! t = 0. d_b(x) is the distance to the nearest place y on the boundary of b; the force on a at x and its opposite on b at y act
 //! along the line through both. They keep momentum and angular momentum, and what the potential takes while
 //! bodies approach it gives back while they part: contact loses nothing, and no force acts before the gap is
 //! closed. The price is a depth of p/κ under a pressure p: a strain times h/α, with the stiffness α over that
@@ -17,8 +17,8 @@
 //! of their own; they work on the others with their own velocity V, `−(F(n) · V(n) + F(n+1) · V(n+1)) dt/2`
 //! with the forces F on them.
 //!
-//! The boundaries are the cubics through the places and tangents that the inverse of the motion gives
-//! ([`arc`]), with four Gauss points each. Wriggers 2006, *Computational contact mechanics*, section 6.3, has
+//! The boundaries are the cubics through places and tangents that the displacement moves ([`arc`]), with four
+//! Gauss points each. Both are linear in the control values, so the forces are the exact derivatives of E. Wriggers 2006, *Computational contact mechanics*, section 6.3, has
 //! the penalty method; Puso & Laursen 2004, *A mortar segment-to-segment contact method for large deformation
 //! solid mechanics*, the reason to integrate over boundaries instead of looking at their nodes.
 
@@ -44,6 +44,8 @@ pub(crate) struct GapForce {
     pub bodies: [usize; 2],
     /// Where it acts on each, m.
     pub places: [[f64; 2]; 2],
+    /// The same as the number of the arc and t on it: they move with the material.
+    pub labels: [(usize, f64); 2],
     /// Force on b, N/m.
     pub force: [f64; 2],
     /// Force of friction on b, N/m; it acts on both bodies where the other does on b.
@@ -152,6 +154,7 @@ impl GapPotential {
                 self.forces.push(GapForce {
                     bodies: [a, b],
                     places: [place.position, nearest.position],
+                    labels: [(number, self.rule.points[point]), nearest.label],
                     force: out.map(|out| -pressure * out),
                     friction,
                 });
@@ -167,7 +170,7 @@ impl GapPotential {
             body.checked_sub(first).map_or(0.0, |rigid| -dot(force, velocity(&self.rigid[rigid])))
         };
         let of_pair = |pair: &GapForce| {
-            let GapForce { bodies: [a, b], places: [x, y], force, friction } = *pair;
+            let GapForce { bodies: [a, b], places: [x, y], labels: _, force, friction } = *pair;
             let friction = friction.unwrap_or_default();
             on(a, x, force.map(|f| -f)) + on(b, y, force) + on(a, y, friction.map(|f| -f)) + on(b, y, friction)
         };
@@ -182,7 +185,7 @@ impl GapPotential {
     /// The same as forces on the body of the higher number.
     pub(crate) fn contact_forces(&self) -> Vec<ContactForce> {
         let ordered = |pair: &GapForce| {
-            let GapForce { bodies: [a, b], places, force, friction } = *pair;
+            let GapForce { bodies: [a, b], places, labels: _, force, friction } = *pair;
             let position = [0, 1].map(|d| 0.5 * (places[0][d] + places[1][d]));
             let force = friction.map_or(force, |friction| [0, 1].map(|d| force[d] + friction[d]));
             if a < b {

@@ -226,6 +226,9 @@ impl Sample {
             external_work: self.external_work + other.external_work,
             transfer_loss: self.transfer_loss.zip(other.transfer_loss).map(|(a, b)| a + b),
             conditions: joined(self.conditions, other.conditions),
+            probes: self.probes.into_iter().chain(other.probes).collect(),
+            j_integrals: self.j_integrals.into_iter().chain(other.j_integrals).collect(),
+            fragments: self.fragments.zip(other.fragments).map(|(a, b)| a + b).or(self.fragments).or(other.fragments),
             momentum: [0, 1].map(|d| self.momentum[d] + other.momentum[d]),
             angular_momentum: self.angular_momentum + other.angular_momentum,
             ..self

@@ -3,7 +3,6 @@
 use super::loads::LostTraction;
 use crate::contact::impulse::Unconverged;
 use crate::contact::motion::TooFast;
-use crate::dynamics::updated_frame::gauss::map::Folded;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::particles::points::OutsidePatch;
 
@@ -12,10 +11,6 @@ use crate::particles::points::OutsidePatch;
 pub enum Failure {
     /// The phase field could not be solved for.
     PhaseField(SolveFailure),
-    /// The quadrature by spans found no displacement, acceleration or velocity.
-    Spans(SolveFailure),
-    /// The displacement of a body whose spans integrate has no inverse at its boundary near this place, m.
-    Folded([f64; 2]),
     /// A point left the patch, m.
     Left([f64; 2]),
     /// The consistent mass matrix is singular to round-off.
@@ -57,15 +52,20 @@ pub enum Failure {
     TooFast(TooFast),
 }
 
-impl From<SolveFailure> for Failure {
-    fn from(failure: SolveFailure) -> Self {
-        Self::PhaseField(failure)
+impl Failure {
+    /// The same of a body of this number, where it is that of the first one.
+    pub(crate) fn of_body(self, number: usize) -> Self {
+        match self {
+            Self::NoPoints(_) => Self::NoPoints(number),
+            Self::LostTraction { body: _, traction, lost } => Self::LostTraction { body: number, traction, lost },
+            other => other,
+        }
     }
 }
 
-impl From<Folded> for Failure {
-    fn from(Folded(place): Folded) -> Self {
-        Self::Folded(place)
+impl From<SolveFailure> for Failure {
+    fn from(failure: SolveFailure) -> Self {
+        Self::PhaseField(failure)
     }
 }
 

@@ -12,7 +12,7 @@ use crate::particles::lattice::Lattice;
 use crate::scene::{Body, Edge, Load, Shape, Side, TimeFactor, Traction};
 use crate::splines::nearest_span::nearest_span;
 use crate::splines::nurbs::locate::Location;
-use crate::splines::patch::{BoundaryPoint, Patch};
+use crate::splines::patch::{BoundaryPoint, Patch, PointFunctions};
 use crate::splines::quadrature::Rule;
 
 /// Largest error of the force and moment of nodal loads, of those of their edge.
@@ -205,10 +205,22 @@ pub(crate) fn functions_of_material(
     point: &SurfacePoint,
     moves: impl Fn(usize) -> bool,
 ) -> Option<Vec<(usize, f64)>> {
+    Some(material_at(patch, lattice, point, moves)?.values)
+}
+
+/// The same with the gradients of the functions.
+pub(crate) fn material_at(
+    patch: &Patch,
+    lattice: &Lattice,
+    point: &SurfacePoint,
+    moves: impl Fn(usize) -> bool,
+) -> Option<PointFunctions> {
     let carries =
         |first, at| lattice.has_side(first, point.inner) && moves(lattice.control_point(at, first, point.inner));
-    let location = carrier(patch, point.position, carries)?;
-    Some(on_side(lattice, &patch.functions(location).values, point.inner))
+    let mut functions = patch.functions(carrier(patch, point.position, carries)?);
+    let first = functions.values[0].0;
+    functions.values.iter_mut().for_each(|(at, _)| *at = lattice.control_point(*at, first, point.inner));
+    Some(functions)
 }
 
 /// Where to evaluate the shape functions of a position (m) on a straight edge, so that all of them belong to

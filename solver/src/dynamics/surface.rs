@@ -80,21 +80,41 @@ fn fits_points(patch: &Patch, body: &Body, [a, b]: [[f64; 2]; 2]) -> bool {
 /// Points around a shape: along every part of its edges with the shape on one side only. Edges that coincide
 /// count twice.
 pub(crate) fn points_around(patch: &Patch, shape: &Shape) -> Vec<SurfacePoint> {
-    let (edges, rule) = (shape.edges(), smooth_rule(patch));
+    let rule = smooth_rule(patch);
     let mut points = Vec::new();
-    for edge in &edges {
-        let mut places = divisions(patch, edge, [0.0, 1.0]);
-        places.extend(edge.places_met(&edges, [0.0, 1.0]));
-        places.sort_by(f64::total_cmp);
-        let bounds = |pair: &&[f64]| {
-            let sides = beside(edge, 0.5 * (pair[0] + pair[1])).map(|place| shape.contains(place));
-            sides[0] != sides[1]
-        };
-        for pair in places.windows(2).filter(bounds) {
-            points.extend(points_between(pair, edge, &rule, shape));
-        }
+    for (edge, part) in bounding_parts(shape) {
+        points.extend(points_between(&divisions(patch, &edge, part), &edge, &rule, shape));
     }
     points
+}
+
+/// The parts (s) of the edges of a shape that have it on one side only.
+pub(crate) fn bounding_parts(shape: &Shape) -> Vec<(BoundaryEdge, [f64; 2])> {
+    let edges = shape.edges();
+    let mut parts = Vec::<(BoundaryEdge, [f64; 2])>::new();
+    for edge in &edges {
+        let places = edge.places_met(&edges, [0.0, 1.0]);
+        let first = parts.len();
+        for pair in places.windows(2).filter(|pair| pair[1] - pair[0] > NEAR) {
+            let [left, right] = beside(edge, 0.5 * (pair[0] + pair[1])).map(|place| shape.contains(place));
+            match parts[first..].last_mut() {
+                _ if left == right => (),
+                Some((_, part)) if part[1] == pair[0] => part[1] = pair[1],
+                _ => parts.push((edge.clone(), [pair[0], pair[1]])),
+            }
+        }
+    }
+    parts
+}
+
+/// The surface point at s on an edge that bounds a shape on its left, of no length, and the derivative of its
+/// position by s, m. It sees the material beside the edge at another s, since a corner has no side.
+pub(crate) fn place_on(edge: &BoundaryEdge, s: f64, beside_at: f64) -> (SurfacePoint, [f64; 2]) {
+    let (position, tangent) = edge.at(s);
+    let speed = tangent[0].hypot(tangent[1]);
+    let [inner, _] = beside(edge, s + BESIDE * (beside_at - s));
+    let normal = [tangent[1] / speed, -tangent[0] / speed];
+    (SurfacePoint { position, length: 0.0, along: s * speed, normal, inner }, tangent)
 }
 
 /// Gauss points for products of shape functions along any line.

@@ -6,6 +6,9 @@
 //! scheme is converged.
 
 mod begin;
+pub mod bodies;
+mod boundary;
+mod contact;
 pub mod domain;
 mod edge_conditions;
 mod equilibrium;
@@ -41,6 +44,7 @@ use crate::splines::patch::Patch;
 use crate::transfer::sweep::StripForces;
 
 use crate::transfer::elastic_forces::elastic_forces;
+use boundary::MaterialBoundary;
 use domain::Domain;
 use edge_conditions::EdgeConditions;
 use forced::LatticeForcing;
@@ -64,6 +68,8 @@ pub struct TotalFrame {
     constraints: Constraints,
     /// Conditions on edges that are not sides of the mesh, if there are any.
     edges: Option<Box<EdgeConditions>>,
+    /// The boundary, if it may meet others.
+    boundary: Option<Box<MaterialBoundary>>,
     mass: MassMatrix,
     displacement: VectorField,
     velocity: VectorField,
@@ -105,6 +111,13 @@ impl TotalFrame {
     /// # Errors
     /// If the phase field cannot be solved for.
     pub fn step(&mut self, dt: f64) -> Result<(), SolveFailure> {
+        self.find_internal_forces(dt)?;
+        self.find_motion(dt);
+        Ok(())
+    }
+
+    /// The first part of a step: positions, phase field and internal forces at its end.
+    fn find_internal_forces(&mut self, dt: f64) -> Result<(), SolveFailure> {
         self.predict(dt);
         self.update_loads();
         if let Some(fracture) = &mut self.fracture {
@@ -113,10 +126,14 @@ impl TotalFrame {
             fracture.advance_phase_field(&self.lattice)?;
         }
         self.internal_forces();
+        Ok(())
+    }
+
+    /// The other part: accelerations and velocities at its end.
+    fn find_motion(&mut self, dt: f64) {
         self.accelerate();
         self.book_external_work(dt);
         self.correct(dt);
-        Ok(())
     }
 
     /// `v ← v + dt/2 a`, `u ← u + dt v`, t ← t + dt.

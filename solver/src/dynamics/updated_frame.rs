@@ -1,6 +1,5 @@
 //! Explicit dynamics in the updated frame: points carry everything, the grid is rebuilt at every step (lumped
-//! mass). With `quadrature = "gauss"` spans integrate instead of points: the matrix of mass is not lumped,
-//! and the critical step is `2/ω_max`; see [`gauss`].
+//! mass).
 //!
 //! Between two whole steps n and n + 1 the shape functions are those at the positions x(n). The scheme is
 //! velocity Verlet written as one full kick on the rebuilt grid; no acceleration outlives its grid. What the
@@ -20,7 +19,7 @@
 //! obeys `u ← u + dt (v − dt ω² u)`, `v ← v − dt s ω² u` with FLIP, where 0 ≤ s ≤ 1 is what the way to the
 //! points and back (`M⁻¹` times the consistent mass) leaves of an increment. The mode is stable up to
 //! `ω dt = 2/√(2 − s)`: 1.46 for the shortest waves of quadratic splines, and √2 for what the points do not
-//! see. With quadrature by points [`UpdatedFrame::critical_step`] is √2/ω_max for every transfer
+//! see. [`UpdatedFrame::critical_step`] is √2/ω_max for every transfer
 //! ([`velocity_transfer`]). With finite strains ω_max is that of the stiffness without the geometric part.
 
 pub(crate) mod affine;
@@ -33,7 +32,6 @@ mod conditions;
 pub mod fictitious;
 pub mod field;
 mod fragments;
-pub(crate) mod gauss;
 pub mod grid;
 mod held_edges;
 pub(crate) mod held_sides;
@@ -60,19 +58,15 @@ pub mod windows;
 
 use std::sync::Arc;
 
-use crate::contact::gap_potential::GapPotential;
-use crate::contact::gap_potential::arc::Outline;
 use crate::contact::impulse::Kick;
-use crate::contact::motion::TooFast;
 use crate::contact::{BodyView, ContactSolver};
 use crate::dynamics::body_sample;
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::smaller;
-use crate::scene::{Quadrature, Scene};
+use crate::scene::Scene;
 use crate::splines::patch::Patch;
 use field::DiscreteField;
 use fragments::Fragments;
-use gauss::contact::rigid_outline;
 
 /// The bodies of a scene in the updated frame.
 #[derive(Debug, Clone)]
@@ -82,8 +76,6 @@ pub struct UpdatedFrame {
     /// Number of the body that each field is of, is a fragment of or a slice of.
     bodies: Vec<usize>,
     contact: Option<ContactSolver>,
-    /// Contact of bodies whose spans integrate.
-    gap_potential: Option<GapPotential>,
     /// If bodies may fall into fragments.
     fragments: Option<Fragments>,
     thickness: f64,
@@ -107,18 +99,12 @@ impl UpdatedFrame {
             fields.extend(slices.unwrap_or_else(|| vec![whole]));
             bodies.resize(fields.len(), number);
         }
-        let by_spans = scene.analysis.quadrature == Quadrature::Gauss;
-        let contact = if by_spans { None } else { ContactSolver::new(scene, &patch) };
-        let gap_potential = scene.contact.as_ref().filter(|_| by_spans).map(|contact| {
-            let rigid = scene.bodies.iter().filter(|body| body.rigid);
-            let outlines = rigid.filter_map(|body| rigid_outline(&scene.mesh, body, &patch)).collect();
-            GapPotential::new(patch.shortest_span(), contact.friction, outlines)
-        });
+        let contact = ContactSolver::new(scene, &patch);
         let recorded = scene.output.bodies.then(|| body_sample::names(scene));
         let parts = scene.contact.as_ref().is_some_and(|contact| contact.fragments);
         let fragments = parts.then(Fragments::default);
         let thickness = scene.analysis.thickness;
-        let mut frame = Self { patch, fields, bodies, contact, gap_potential, fragments, thickness, recorded };
+        let mut frame = Self { patch, fields, bodies, contact, fragments, thickness, recorded };
         frame.join_slices();
         frame.part_at_start()?;
         if let Some(contact) = &mut frame.contact {
@@ -167,22 +153,6 @@ impl UpdatedFrame {
             contact.move_rigid(fields[0].time());
             contact.find(&views(fields))?;
         }
-        self.push_apart(dt)?;
-        self.fields.iter_mut().try_for_each(DiscreteField::accelerate_with_spans)
-    }
-
-    /// Adds the forces of the gap potential to those of the spans, `dt` seconds after the last ones.
-    fn push_apart(&mut self, dt: f64) -> Result<(), Failure> {
-        let Self { fields, gap_potential: Some(potential), .. } = self else { return Ok(()) };
-        find_gaps(potential, fields, dt)?;
-        for pair in potential.forces() {
-            for (side, body) in pair.bodies.into_iter().enumerate() {
-                // Rigid bodies, which are counted after the fields, feel nothing.
-                if let Some(field) = fields.get_mut(body) {
-                    field.push(pair, side);
-                }
-            }
-        }
         Ok(())
     }
 
@@ -220,12 +190,6 @@ impl UpdatedFrame {
         self.fields.iter_mut().for_each(|field| field.travelled = 0.0);
         Some(self.critical_step())
     }
-}
-
-/// Finds the forces between the boundaries of bodies whose spans integrate, `dt` seconds after the last ones.
-fn find_gaps(potential: &mut GapPotential, fields: &[DiscreteField], dt: f64) -> Result<(), TooFast> {
-    let outlines: Vec<Outline> = fields.iter().filter_map(DiscreteField::outline).collect();
-    potential.find(outlines, fields[0].time(), dt)
 }
 
 /// Whether some fields are slices that share control points.

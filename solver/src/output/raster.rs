@@ -37,6 +37,13 @@ impl Raster {
         at[1] * self.pixels[0] + at[0]
     }
 
+    /// Index of the pixel that holds a position, if one does.
+    pub(crate) fn pixel_at(&self, position: [f64; 2]) -> Option<usize> {
+        let at = [0, 1].map(|d| ((position[d] - self.origin[d]) / self.pixel[d]).floor());
+        let inside = (0..2).all(|d| at[d] >= 0.0 && at[d] < self.pixels[d] as f64);
+        inside.then(|| at[1] as usize * self.pixels[0] + at[0] as usize)
+    }
+
     /// Intervals per direction that put three samples on every pixel along two lines of three positions.
     fn samples(&self, along: [[f64; 2]; 3], across: [[f64; 2]; 3]) -> [usize; 2] {
         let size = self.pixel[0].min(self.pixel[1]);

@@ -1,7 +1,11 @@
 //! The background mesh of a scene.
 
+use super::condition::Side;
 use super::shape::Shape;
 use crate::linear_algebra::extremes::{larger, smaller};
+
+/// Distance of a shape from a knot that counts as none, of the size of the shape.
+const NEAR: f64 = 1e-12;
 
 /// Background NURBS patch: a B-spline patch over an axis-aligned rectangle, or any other with its geometry.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,5 +64,31 @@ impl Mesh {
         let (low, high) = shape.bounding_box();
         let (origin, end) = (self.origin(), self.end());
         ([0, 1].map(|d| low[d].max(origin[d])), [0, 1].map(|d| high[d].min(end[d])))
+    }
+
+    /// The spans of a mesh over a rectangle that a shape reaches into, as a mesh of their own: the same
+    /// polynomials on each of them.
+    pub(crate) fn around(&self, shape: &Shape) -> Self {
+        let (low, high) = self.extent(shape);
+        let knots = [0, 1].map(|d| {
+            let (degree, knots) = (self.degree[d], &self.knots[d]);
+            let near = NEAR * (high[d] - low[d]);
+            let first = knots.partition_point(|knot| *knot <= low[d] + near).max(degree + 1) - 1;
+            let last = knots.partition_point(|knot| *knot < high[d] - near).min(knots.len() - degree - 1);
+            let inner = knots[..last].iter().skip(first + 1).copied();
+            let ends = |knot: f64| std::iter::repeat_n(knot, degree + 1);
+            ends(knots[first]).chain(inner).chain(ends(knots[last])).collect()
+        });
+        Self { degree: self.degree, knots, geometry: None }
+    }
+
+    /// Whether a side of this mesh is there on the side of another one that it is a part of.
+    pub(crate) fn shares(&self, side: Side, whole: &Self) -> bool {
+        match side {
+            Side::Left => self.origin()[0] == whole.origin()[0],
+            Side::Right => self.end()[0] == whole.end()[0],
+            Side::Bottom => self.origin()[1] == whole.origin()[1],
+            Side::Top => self.end()[1] == whole.end()[1],
+        }
     }
 }

@@ -33,8 +33,6 @@ pub(super) const NOT_FINITE: &str = "the phase-field solve ran into numbers that
 const INDEFINITE: &str = "the matrix of the phase field is not positive definite to round-off";
 const TOO_FEW_POINTS: &str = "spans with fewer points than the phase field has unknowns there, or history energies many \
                               orders of magnitude apart; use more particles_per_cell or a lower degree";
-const SPANS: &str = "spans that the body hardly fills, or a body about to turn inside out; use smaller cells, more \
-                     particles_per_cell or a lower analysis.safety, or analysis.quadrature = \"points\"";
 const EXTREME: &str = "material constants, lengths or seeds so extreme that their products overflow";
 pub(super) const CONTACT_NOT_FINITE: &str = "the impulses of contact ran into numbers that are not finite";
 const UNSETTLED: &str = "bodies wedged between others, or friction too large for one solution; lower contact.friction or \
@@ -58,17 +56,13 @@ pub(super) const TORN: &str = "the load has torn off the points under it; lower 
 pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> Breakdown {
     let (what, cause) = what_and_cause(failure, tolerance);
     let (place, key) = match failure {
-        Failure::Left(place) | Failure::Folded(place) | Failure::TooFast(TooFast { place, .. }) => (place, None),
+        Failure::Left(place) | Failure::TooFast(TooFast { place, .. }) => (place, None),
         Failure::NoPoints(body) => (place, Some(format!("body.{body}.shape"))),
         Failure::LostTraction { body, traction, lost: LostTraction::Bare(place) }
         | Failure::LostTraction { body, traction, lost: LostTraction::Unbalanced { place, .. } } => {
             (place, Some(format!("body.{body}.traction.{traction}")))
         }
-        Failure::PhaseField(_)
-        | Failure::Spans(_)
-        | Failure::SingularMass
-        | Failure::NoStep
-        | Failure::Unconverged(_) => (place, None),
+        Failure::PhaseField(_) | Failure::SingularMass | Failure::NoStep | Failure::Unconverged(_) => (place, None),
         Failure::LostCondition { condition, place } => (place, Some(format!("body.0.condition.{condition}"))),
         Failure::HeldTwice(condition) => (place, Some(format!("body.0.condition.{condition}.fix"))),
         Failure::Contradiction([_, second]) => (place, Some(format!("boundary.{second}.from"))),
@@ -89,17 +83,6 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
         ),
         Failure::PhaseField(SolveFailure::NotPositiveDefinite) => (INDEFINITE.to_string(), TOO_FEW_POINTS),
         Failure::PhaseField(SolveFailure::NotFinite) => (NOT_FINITE.to_string(), EXTREME),
-        Failure::Folded(_) => ("the displacement at the boundary has no inverse".to_string(), INSIDE_OUT),
-        Failure::Spans(reason) => (
-            match reason {
-                SolveFailure::NotConverged { iterations, error } => {
-                    format!("a solve of the quadrature by spans stopped after {iterations} iterations at {error:.3e}")
-                }
-                SolveFailure::NotPositiveDefinite => "the mass of the spans is not positive definite".to_string(),
-                SolveFailure::NotFinite => "a solve of the quadrature by spans ran into no numbers".to_string(),
-            },
-            SPANS,
-        ),
         Failure::Unconverged(Unconverged { iterations, residual, .. }) => (
             format!(
                 "the impulses of contact did not converge in {iterations} iterations: they still change by {residual:.3e}"

@@ -2,7 +2,7 @@
 
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::failure::Failure;
-use crate::dynamics::total_frame::TotalFrame;
+use crate::dynamics::total_frame::bodies::TotalBodies;
 use crate::dynamics::updated_frame::UpdatedFrame;
 use crate::output::inspection::PointState;
 use crate::output::span_grid::SpanGrid;
@@ -12,7 +12,7 @@ use crate::scene::{self, Scene};
 /// The bodies in the frame of their scene.
 #[derive(Debug)]
 pub(super) enum Bodies {
-    Total(Box<TotalFrame>),
+    Total(Box<TotalBodies>),
     Updated(Box<UpdatedFrame>),
 }
 
@@ -30,7 +30,7 @@ pub(super) use either;
 impl Bodies {
     pub(super) fn new(scene: &Scene) -> Result<Self, Failure> {
         Ok(match scene.analysis.frame {
-            scene::Frame::Total => Self::Total(Box::new(TotalFrame::new(scene)?)),
+            scene::Frame::Total => Self::Total(Box::new(TotalBodies::new(scene)?)),
             scene::Frame::Updated => Self::Updated(Box::new(UpdatedFrame::new(scene)?)),
         })
     }
@@ -49,19 +49,14 @@ impl Bodies {
     /// Takes a step of `dt` seconds; a phase field that is `sampled` after it is solved for.
     pub(super) fn step(&mut self, dt: f64, sampled: bool) -> Result<(), Failure> {
         match self {
-            Self::Total(body) => {
-                if sampled && let Some(fracture) = &mut body.fracture {
-                    fracture.field.expect_solve();
-                }
-                Ok(body.step(dt)?)
-            }
+            Self::Total(bodies) => bodies.step(dt, sampled),
             Self::Updated(body) => body.step(dt),
         }
     }
 
     pub(super) fn particles(&self) -> usize {
         match self {
-            Self::Total(body) => body.lattice().count(),
+            Self::Total(bodies) => bodies.bodies().iter().map(|body| body.lattice().count()).sum(),
             Self::Updated(frame) => frame.fields().iter().map(|field| field.points().len()).sum(),
         }
     }
@@ -70,16 +65,13 @@ impl Bodies {
     pub(super) fn control_points(&self) -> usize {
         let massive = |mass: &[f64]| mass.iter().filter(|m| **m > 0.0).count();
         match self {
-            Self::Total(body) => massive(body.mass().row_sums()),
+            Self::Total(bodies) => bodies.bodies().iter().map(|body| massive(body.mass().row_sums())).sum(),
             Self::Updated(frame) => frame.fields().iter().map(|field| massive(&field.nodes().mass)).sum(),
         }
     }
 
     pub(super) fn phase_field_counts(&self) -> Option<PhaseFieldCounts> {
-        match self {
-            Self::Total(body) => body.fracture.as_ref().map(|f| f.field.counts()),
-            Self::Updated(frame) => frame.phase_field_counts(),
-        }
+        either!(self, body => body.phase_field_counts())
     }
 
     /// Calls `f` with the state of every point.

@@ -242,11 +242,9 @@ impl Simulation {
             Failure::PhaseField(SolveFailure::NotFinite) => self.not_finite(NOT_FINITE),
             Failure::Unconverged(found) if !found.residual.is_finite() => self.not_finite(CONTACT_NOT_FINITE),
             Failure::Left(place)
-            | Failure::Folded(place)
             | Failure::Unconverged(Unconverged { place, .. })
             | Failure::TooFast(TooFast { place, .. }) => self.at(place, what, Some(&cause)),
             Failure::PhaseField(_)
-            | Failure::Spans(_)
             | Failure::SingularMass
             | Failure::NoStep
             | Failure::NoPoints(_)

@@ -156,11 +156,6 @@ impl SplineSpace {
         second
     }
 
-    /// Coefficients of `tᵖ` of the basis functions of a span, t from 0 to 1 along it.
-    pub(crate) fn leading_coefficients(&self, span: usize) -> [f64; MAX_ORDER] {
-        self.spans[span].polynomials.map(|polynomial| polynomial[self.degree])
-    }
-
     /// Greville abscissae, in the unit of the knots: the control values of the function x.
     pub fn greville(&self) -> Vec<f64> {
         let first = fault!("greville-a-knot-early", 1 => 0);

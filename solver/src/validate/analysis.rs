@@ -1,13 +1,11 @@
 //! Checks of times, step, solver and output.
 
-use super::findings::{Findings, side_name};
+use super::findings::Findings;
 use super::ground::Ground;
 use super::material::plausible_speed;
 use super::output;
 use crate::linear_algebra::extremes::larger;
-use crate::scene::{
-    Body, Contact, Frame, Kinematics, Mass, PhaseFieldInterval, Quadrature, Scene, Shape, Side, TimeStep, Transfer,
-};
+use crate::scene::{Body, Contact, Frame, Mass, PhaseFieldInterval, Scene, Shape, TimeStep, Transfer};
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
 
@@ -41,9 +39,6 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     if analysis.mass == Mass::Consistent {
         consistent_mass(scene, ground, findings);
     }
-    if analysis.quadrature == Quadrature::Gauss {
-        spans_integrate(scene, findings);
-    }
     if let Transfer::Xpic(order) = analysis.transfer
         && !(1..=HIGHEST_XPIC).contains(&order)
     {
@@ -63,68 +58,18 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         findings.error("contact.friction", message, "give a coefficient of 0 or more");
     }
     if let Some(contact) = &scene.contact {
-        stiffness(contact, analysis.quadrature, findings);
+        stiffness(contact, analysis.frame, findings);
     }
 }
 
 /// Boundaries that push each other apart have a stiffness.
-fn stiffness(contact: &Contact, quadrature: Quadrature, findings: &mut Findings) {
+fn stiffness(contact: &Contact, frame: Frame, findings: &mut Findings) {
     let (key, stiffness) = ("contact.stiffness", contact.stiffness);
     if !(stiffness > 0.0 && stiffness.is_finite()) {
         let remedy = format!("give a number above 0, such as {}", Contact::default().stiffness);
         findings.error(key, format!("boundaries with {stiffness} times the stiffness of a span"), remedy);
-    } else if quadrature == Quadrature::Points && stiffness != Contact::default().stiffness {
-        findings.warn(key, "has no effect with quadrature = \"points\", whose contact is rigid; remove it");
-    }
-}
-
-/// Gauss points of spans integrate elastic bodies of finite strain that are free or held, and not more yet.
-fn spans_integrate(scene: &Scene, findings: &mut Findings) {
-    let (key, points) = ("analysis.quadrature", "or use quadrature = \"points\"");
-    let analysis = &scene.analysis;
-    let mut refuse = |holds: bool, message: &str, remedy: &str| {
-        if holds {
-            let message = format!("quadrature = \"gauss\" {message}");
-            findings.error(key, message, format!("{remedy}, {points}"));
-        }
-    };
-    refuse(
-        analysis.frame == Frame::Total,
-        "in the total frame, which has no quadrature to choose",
-        "use frame = \"updated\"",
-    );
-    refuse(analysis.kinematics == Kinematics::Small, "with small strains", "use kinematics = \"finite\"");
-    refuse(analysis.transfer != Transfer::default(), "with a transfer, of which it has none", "leave transfer out");
-    refuse(scene.mesh.degree[0] != scene.mesh.degree[1], "with two degrees", "give the same degree twice");
-    let repeated = (0..2).any(|d| {
-        let (knots, ends) = (&scene.mesh.knots[d], scene.mesh.degree[d] + 1);
-        knots.get(ends..knots.len().saturating_sub(ends)).is_some_and(|inner| inner.windows(2).any(|k| k[0] == k[1]))
-    });
-    refuse(repeated, "with a repeated inner knot", "give every inner knot once");
-    for body in &scene.bodies {
-        let name = format!("for body {:?}", body.name);
-        let combined = matches!(body.shape, Shape::Union(_) | Shape::Difference { .. });
-        refuse(combined, &format!("{name}, a union or difference"), "use another shape");
-    }
-    for body in scene.bodies.iter().filter(|body| !body.rigid) {
-        let name = format!("for body {:?}", body.name);
-        let fractures = scene.materials.get(&body.material).is_some_and(|material| material.fracture.is_some());
-        refuse(fractures, &format!("{name}, which fractures"), "remove the fracture table of its material");
-        refuse(!body.tractions.is_empty(), &format!("{name}, which has tractions"), "remove them");
-        let (low, high) = scene.mesh.extent(&body.shape);
-        let (origin, end) = (scene.mesh.origin(), scene.mesh.end());
-        for boundary in &scene.boundaries {
-            let apart = match boundary.side {
-                Side::Left => low[0] - origin[0],
-                Side::Right => end[0] - high[0],
-                Side::Bottom => low[1] - origin[1],
-                Side::Top => end[1] - high[1],
-            };
-            let size = (end[0] - origin[0]).max(end[1] - origin[1]);
-            let message = format!("{name}, which does not begin on the {} side", side_name(boundary.side));
-            refuse(apart > TOLERANCE * size, &message, "let every body begin on the sides that are held");
-            refuse(!boundary.prescribed.is_at_rest(), "with a side that moves", "give it the velocity zero");
-        }
+    } else if frame == Frame::Updated && stiffness != Contact::default().stiffness {
+        findings.warn(key, "has no effect with frame = \"updated\", whose contact is rigid; remove it");
     }
 }
 

@@ -5,7 +5,7 @@ use super::ground::Ground;
 use super::time;
 use crate::dynamics::body_sample::column_name;
 use crate::dynamics::updated_frame::held_sides::lies_on;
-use crate::scene::{Body, Boundary, Frame, Mass, Mesh, Prescribed, Quadrature, Scene, Side};
+use crate::scene::{Body, Boundary, Frame, Mass, Mesh, Prescribed, Scene, Side};
 use crate::splines::patch::Patch;
 
 /// Relative tolerance of "on the side", of the size of the mesh.
@@ -79,14 +79,7 @@ fn supported(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findi
         ("name", boundary.name.is_some()),
     ];
     for (word, _) in varying.into_iter().filter(|(_, given)| *given) {
-        if scene.analysis.frame == Frame::Updated && scene.analysis.quadrature == Quadrature::Gauss {
-            let message = format!("{word} of a boundary with quadrature = \"gauss\", which is not implemented");
-            findings.error(
-                format!("{key}.{word}"),
-                message,
-                "use quadrature = \"points\", or a rigid body that pushes",
-            );
-        } else if scene.analysis.mass == Mass::Consistent && ["displacement", "time"].contains(&word) {
+        if scene.analysis.mass == Mass::Consistent && ["displacement", "time"].contains(&word) {
             let message = "a boundary whose velocity changes, with the consistent mass, is not implemented";
             findings.error(format!("{key}.{word}"), message, "use mass = \"lumped\"");
         }

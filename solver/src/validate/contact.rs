@@ -9,7 +9,7 @@ use crate::contact::motion::longest_step;
 use crate::contact::surface::Center;
 use crate::dynamics::updated_frame::held_sides::is_fixed;
 use crate::linear_algebra::extremes::larger;
-use crate::scene::{Body, Boundary, Frame, Quadrature, Scene, Shape, TimeStep, Transfer};
+use crate::scene::{Body, Boundary, Frame, Kinematics, Scene, Shape, TimeStep, Transfer};
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
 const TOLERANCE: f64 = 1e-3;
@@ -24,10 +24,8 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     if !scene.bodies.is_empty() && scene.bodies.iter().all(|body| body.rigid) {
         findings.error("body", "every body is rigid: there is nothing to model", "add a body that is not rigid");
     }
-    let several = scene.bodies.len() > 1 || scene.contact.is_some();
-    if several && scene.analysis.frame == Frame::Total {
-        let message = "several bodies, and contact, need shape functions at the moved positions";
-        findings.error("analysis.frame", message, "use frame = \"updated\"");
+    if scene.analysis.frame == Frame::Total && (scene.bodies.len() > 1 || scene.contact.is_some()) {
+        in_the_total_frame(scene, findings);
     }
     if scene.contact.as_ref().is_some_and(|contact| contact.fragments) {
         fragments(scene, findings);
@@ -55,6 +53,32 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     }
 }
 
+/// What contact in the total frame lacks.
+fn in_the_total_frame(scene: &Scene, findings: &mut Findings) {
+    let updated = "use analysis.frame = \"updated\"";
+    if scene.analysis.kinematics == Kinematics::Small {
+        let message = "several bodies, and contact, in the total frame need finite strains: small ones do not move";
+        findings.error("analysis.kinematics", message, "use kinematics = \"finite\"");
+    }
+    if scene.mesh.geometry.is_some() {
+        let message = "several bodies, and contact, need a mesh over a rectangle";
+        findings.error("mesh.geometry", message, "give the mesh origin, size and cells, and the body its shape");
+    }
+    if scene.equilibrium {
+        let message = "several bodies, and contact, cannot start from an equilibrium";
+        findings.error("start.equilibrium", message, "remove it, and let gravity or loads grow over time");
+    }
+    let contact = scene.contact.as_ref();
+    for (key, given) in [
+        ("contact.fragments", contact.is_some_and(|contact| contact.fragments)),
+        ("contact.self_contact", contact.is_some_and(|contact| contact.self_contact)),
+    ] {
+        if given {
+            findings.error(key, "in the total frame only different bodies meet", updated);
+        }
+    }
+}
+
 /// Bodies that may fall into fragments.
 fn fragments(scene: &Scene, findings: &mut Findings) {
     let fractures = |body: &Body| scene.materials.get(&body.material).is_some_and(|m| m.fracture.is_some());
@@ -78,10 +102,6 @@ fn self_contact(scene: &Scene, findings: &mut Findings) {
         let message =
             format!("body {:?} fractures, and its phase field sees no gap between parts that meet", body.name);
         findings.error(key, message, "use contact.fragments instead, or remove the fracture table");
-    }
-    if scene.analysis.quadrature == Quadrature::Gauss {
-        let remedy = "use analysis.quadrature = \"points\", or remove the key";
-        findings.error(key, "bodies whose spans integrate do not meet themselves", remedy);
     }
     let follows = |boundary: &Boundary| scene.analysis.frame == Frame::Updated && !is_fixed(boundary);
     if let Some(i) = scene.boundaries.iter().position(follows) {

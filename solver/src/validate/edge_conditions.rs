@@ -6,9 +6,7 @@ use super::look::Look;
 use super::tractions;
 use crate::dynamics::surface::curve_of;
 use crate::scene::edges::BoundaryEdge;
-use crate::scene::{
-    Body, Boundary, EdgeCondition, Frame, Hold, Mass, Mesh, Prescribed, Quadrature, Scene, Shape, Side,
-};
+use crate::scene::{Body, Boundary, EdgeCondition, Hold, Mass, Mesh, Prescribed, Scene, Shape, Side};
 
 /// Distance within which two places are one, of the size of an edge.
 const NEAR: f64 = 1e-9;
@@ -116,15 +114,10 @@ impl<'a> Held<'a> {
     }
 }
 
-/// What spans that integrate, bodies that meet themselves, patches and the consistent mass do not have.
+/// What bodies that meet themselves, patches and the consistent mass do not have.
 fn supported(key: &str, scene: &Scene, look: &Look<'_>, findings: &mut Findings) -> bool {
     let (message, remedy) = if look.body.rigid {
         ("a condition on a rigid body, which moves with its velocity", "remove the condition, or rigid = true")
-    } else if scene.analysis.frame == Frame::Updated && scene.analysis.quadrature == Quadrature::Gauss {
-        (
-            "a condition on a body with quadrature = \"gauss\", which is not implemented",
-            "use quadrature = \"points\", or a rigid body that pushes",
-        )
     } else if scene.analysis.mass == Mass::Consistent {
         ("a condition on a body with the consistent mass, which is not implemented", "use mass = \"lumped\"")
     } else if look.body.shape == Shape::Patch || scene.mesh.geometry.is_some() {

@@ -137,12 +137,8 @@ fn probes(scene: &Scene, findings: &mut Findings) {
     }
 }
 
-/// Bodies can be recorded one by one in the updated frame, under names that differ as columns.
+/// Bodies can be recorded one by one, under names that differ as columns.
 fn recorded_bodies(scene: &Scene, findings: &mut Findings) {
-    if scene.analysis.frame != Frame::Updated {
-        let message = "bodies are recorded one by one in the updated frame only";
-        findings.error("output.bodies", message, "remove it, or use analysis.frame = \"updated\"");
-    }
     if scene.bodies.len() > MOST_RECORDED {
         let message = format!("{} bodies; at most {MOST_RECORDED} are recorded one by one", scene.bodies.len());
         findings.error("output.bodies", message, "remove it");

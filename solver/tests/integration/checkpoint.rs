@@ -115,12 +115,6 @@ fn in_the_updated_frame_with_every_transfer() {
         let kinematics = if transfer == Transfer::Pic { Kinematics::Small } else { Kinematics::Finite };
         goes_on_bit_by_bit(&format!("{transfer:?}"), &flying(transfer, kinematics));
     }
-    let mut by_spans = flying(Transfer::Apic, Kinematics::Finite);
-    by_spans.analysis.quadrature = Quadrature::Gauss;
-    by_spans.bodies[0].tractions.clear();
-    by_spans.bodies[0].cracks.clear();
-    by_spans.materials.get_mut("glass").unwrap().fracture = None;
-    goes_on_bit_by_bit("Gauss quadrature by spans", &by_spans);
     let mut driven = flying(Transfer::Apic, Kinematics::Finite);
     let prescribed = Prescribed { motion: Motion::Velocity([150.0, 60.0]), time: TimeFactor::default() };
     let hold = Hold::Components([true, true]);
@@ -200,19 +194,19 @@ fn with_contact_of_a_body_with_itself() {
 }
 
 #[test]
-fn with_contact_of_bodies_whose_spans_integrate() {
+fn with_contact_in_the_total_frame() {
     let mut scene = rubbing(5e-5, 3);
-    let (kinematics, quadrature) = (Kinematics::Finite, Quadrature::Gauss);
-    scene.analysis = Analysis { kinematics, quadrature, end_time: 4e-6, ..scene.analysis };
+    let (frame, kinematics) = (Frame::Total, Kinematics::Finite);
+    scene.analysis = Analysis { frame, kinematics, end_time: 4e-6, ..scene.analysis };
     let (_, samples) = crate::common::run(&scene);
     let end = samples.last().unwrap();
     assert!(end.contact.unwrap().friction > 0.0 && end.external_work != 0.0, "the bodies meet and rub: {end:?}");
-    goes_on_bit_by_bit("friction and a rigid body with contact of spans", &scene);
+    goes_on_bit_by_bit("friction and a rigid body in the total frame", &scene);
     scene.bodies.truncate(2);
     scene.contact = Some(Contact::default());
     let (_, samples) = crate::common::run(&scene);
     assert!(samples.last().unwrap().contact.unwrap().loss > 0.0, "the bodies meet");
-    goes_on_bit_by_bit("contact of spans", &scene);
+    goes_on_bit_by_bit("contact in the total frame", &scene);
 }
 
 #[test]

@@ -9,7 +9,7 @@
 
 use fisura::Simulation;
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Kinematics, Mesh, Quadrature, Scene, Shape, Transfer};
+use fisura::scene::{Frame, Kinematics, Mesh, Scene, Shape, Transfer};
 
 use super::record::{AnswerError, BenchRecord};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
@@ -19,7 +19,7 @@ use crate::case::expand::CaseScene;
 use crate::extremes::largest;
 use crate::study::contact::{run, sample_is_due};
 
-/// Closure of the ledger over the energy at t = 0: with spans that integrate an error of fit and quadrature.
+/// Closure of the ledger over the energy at t = 0: in the total frame an error of the time step.
 const CLOSURE: f64 = 2e-2;
 /// Height of the bars over their length.
 const HEIGHT: f64 = 0.125;
@@ -28,10 +28,10 @@ const MARGIN: f64 = 7.0;
 
 /// Spans of the mesh over those of a radius of the discs.
 const SPANS_PER_RADIUS: usize = 5;
-/// Fewest spans of the mesh on which discs whose spans integrate close their ledger to [`CLOSURE`].
+/// Fewest spans of the mesh on which discs in the total frame are run.
 const FEWEST: usize = 20;
 
-/// A degree, and a transfer of points that integrate; none if spans do.
+/// A degree, and a transfer of the updated frame; none in the total frame.
 #[derive(Debug, Clone, Copy)]
 struct Way(usize, Option<Transfer>);
 
@@ -46,13 +46,13 @@ const WAYS: [Way; 6] = [
 
 impl Way {
     fn word(self) -> String {
-        self.1.map_or("spans".into(), |transfer| format!("{transfer:?}"))
+        self.1.map_or("total".into(), |transfer| format!("{transfer:?}"))
     }
 
     fn label(self) -> String {
         match self.1 {
             Some(_) => format!("p = {}, {}", self.0, self.word().to_uppercase()),
-            None => format!("p = {}, quadrature by spans", self.0),
+            None => format!("p = {}, total frame", self.0),
         }
     }
 
@@ -64,7 +64,7 @@ impl Way {
             }
             None => {
                 scene.analysis.kinematics = Kinematics::Finite;
-                scene.analysis.quadrature = Quadrature::Gauss;
+                scene.analysis.frame = Frame::Total;
                 self.0 + 1
             }
         };
@@ -134,7 +134,7 @@ fn base(settings: &Settings, name: &str) -> Result<Scene, BenchError> {
     Ok(scene)
 }
 
-/// The meshes that a way is run on: by spans none coarser than `least`.
+/// The meshes that a way is run on: in the total frame none coarser than `least`.
 fn meshes(way: Way, all: &[usize], least: usize) -> Vec<usize> {
     let fits = |n: &usize| way.1.is_some() || *n >= least;
     all.iter().copied().filter(fits).collect()
@@ -224,10 +224,11 @@ struct Watched {
 fn watched(scene: &Scene) -> Result<Watched, BenchError> {
     let (mut energies, mut momenta) = (Vec::new(), Vec::new());
     let mut velocities = Vec::new();
-    run(scene, &mut |simulation, frame| {
-        let momentum = [0, 1].map(|i| frame.fields()[i].momentum()[0]);
-        momenta.push([frame.time(), momentum[0]]);
-        velocities.push(momentum[1] / frame.fields()[1].mass() - momentum[0] / frame.fields()[0].mass());
+    run(scene, &mut |simulation| {
+        let bodies = simulation.momenta();
+        let velocity = |body: usize| bodies[body].1[0] / bodies[body].0;
+        momenta.push([simulation.time(), bodies[0].1[0]]);
+        velocities.push(velocity(1) - velocity(0));
         if sample_is_due(simulation) {
             let sample = simulation.sample();
             energies.push([sample.stored(), sample.closure.abs()]);

@@ -1,13 +1,8 @@
-//! What an error costs where points cross spans: the axis-aligned displacement of
-//! `convergence/gauss-axis-aligned`, by points and by spans, on one thread. The errors are those of the
-//! displacement at the points, against the exact solution; what is timed is the whole run with its
-//! preparation.
-//!
-//! Points run twice: with the Gauss points and the step of the spans, and with the best layout and step that
-//! are known for them, equally spaced 4 × 4 points and steps in proportion to h
+//! What an error costs where bodies move: the axis-aligned displacement of `convergence/axis-aligned` in the
+//! total frame, and in the updated frame, where points cross spans, on one thread. The errors are those of the
+//! displacement against the exact solution; what is timed is the whole run with its preparation. Points have
+//! the best layout and step that are known for them, equally spaced 4 × 4 points and steps in proportion to h
 //! (`convergence/moving-axis-aligned`).
-
-use fisura::scene::Quadrature;
 
 use super::record::{AnswerError, BenchRecord};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
@@ -28,31 +23,30 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
         let path = settings.workspace.join("verification/cases/convergence").join(name).with_extension("toml");
         Case::load(&path, &[])
     };
-    let same = load("gauss-axis-aligned")?;
-    let best = load("moving-axis-aligned")?;
+    let total = load("axis-aligned")?;
+    let updated = load("moving-axis-aligned")?;
     pool(1)?.install(|| {
-        Meshes::with(&same, |same| {
-            Meshes::with(&best, |best| {
-                let mut contestants = contestants(same, settings, false)?;
-                contestants.extend(self::contestants(best, settings, true)?);
+        Meshes::with(&total, |total| {
+            Meshes::with(&updated, |updated| {
+                let mut contestants = contestants(total, settings, false)?;
+                contestants.extend(self::contestants(updated, settings, true)?);
                 round_robin(contestants, settings.rounds(), settings.budget())
             })
         })??
     })
 }
 
-/// Every curve on every mesh; `best` says that points have a layout and a step of their own.
-fn contestants<'a>(meshes: Meshes<'a>, settings: &Settings, best: bool) -> Result<Vec<Contestant<'a>>, BenchError> {
+/// Every curve on every mesh; `moving` says that points cross spans.
+fn contestants<'a>(meshes: Meshes<'a>, settings: &Settings, moving: bool) -> Result<Vec<Contestant<'a>>, BenchError> {
     let mut contestants = Vec::new();
     for curve in meshes.curves() {
-        let (degree, quadrature) = meshes.degree_and_quadrature(curve);
+        let degree = meshes.degree(curve);
         if degree == 1 {
             continue; // its error grows under refinement
         }
-        let (word, words, fine) = match (quadrature, best) {
-            (Quadrature::Points, true) => ("equal-points", "4 × 4 equally spaced points, step ∝ h", &FINE[..]),
-            (Quadrature::Points, false) => ("points", "quadrature by points, layout and step of spans", &FINE[..]),
-            (Quadrature::Gauss, _) => ("spans", "quadrature by spans", &[][..]),
+        let (word, words, fine) = match moving {
+            true => ("equal-points", "updated frame, 4 × 4 equally spaced points, step ∝ h", &FINE[..]),
+            false => ("total", "total frame", &[][..]),
         };
         let some = if settings.quick { &MESHES[..3] } else { &MESHES[..] };
         let fine = if settings.quick { &[] } else { fine };
@@ -63,7 +57,7 @@ fn contestants<'a>(meshes: Meshes<'a>, settings: &Settings, best: bool) -> Resul
                 .with("degree", degree)
                 .with("spans", cells)
                 .with("unknowns", first.unknowns);
-            let quantity = "relative error of the displacement at the points";
+            let quantity = "relative error of the displacement";
             record.error = Some(AnswerError::relative(quantity, first.errors[0], "the exact motion"));
             let run = move |record: &mut BenchRecord| {
                 let watch = Stopwatch::start();

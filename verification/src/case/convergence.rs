@@ -12,10 +12,9 @@
 //!
 //! `frame = "updated"` lets the points of a finite motion cross the spans of a fixed mesh;
 //! `transfers = ["flip", "apic"]` then gives a curve for each, and so does `offsets = [0.0, 0.5]`, by
-//! which the mesh is shifted against the body, and `quadratures = ["points", "gauss"]`: the latter integrates
-//! by spans.
+//! which the mesh is shifted against the body.
 
-use fisura::scene::{Frame, Layout, Mass, Plane, Quadrature, Transfer};
+use fisura::scene::{Frame, Layout, Mass, Plane, Transfer};
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -88,8 +87,6 @@ pub struct ConvergenceSetup {
     pub frame: Frame,
     /// Transfers of the updated frame, a curve each.
     pub transfers: Vec<Transfer>,
-    /// Quadratures of the updated frame, a curve each.
-    pub quadratures: Vec<Quadrature>,
     /// Offsets of the mesh against a body that cuts it, in spans, a curve each; 0.37 of it in y.
     pub offsets: Vec<f64>,
     /// Meshes.
@@ -116,11 +113,6 @@ pub struct ConvergenceSetup {
 }
 
 impl ConvergenceSetup {
-    /// Whether the mass matrix is lumped with a quadrature: where spans integrate it never is.
-    pub fn lumps_mass(&self, quadrature: Quadrature) -> bool {
-        self.mass == Mass::Lumped && quadrature == Quadrature::Points
-    }
-
     /// Points per span and direction for the n-th degree.
     pub fn points(&self, n: usize) -> usize {
         self.points.as_ref().map_or(self.degrees[n] + 1, |points| points[n])
@@ -141,8 +133,6 @@ pub(super) struct ConvergenceTable {
     frame: Word<Frame>,
     /// Transfers of the updated frame, a curve each: `transfers = ["flip", "apic"]`.
     transfers: Option<Filled<TransferName>>,
-    /// Quadratures of the updated frame, a curve each: `quadratures = ["points", "gauss"]`.
-    quadratures: Option<Filled<Word<Quadrature>>>,
     /// Offsets of the mesh against the body, in spans, a curve each: `offsets = [0.0, 0.5]`.
     offsets: Option<Filled<Number>>,
     /// The family of meshes.
@@ -213,13 +203,11 @@ pub(super) fn setup(table: ConvergenceTable, item: &Item<'_>) -> Option<Converge
         return item.at("transfers")?.fail("the total frame has no transfers", remedy);
     }
     let transfers = table.transfers.map(|all| all.0.iter().map(|transfer| transfer.0).collect());
-    let quadratures = table.quadratures.map(|all| all.0.iter().map(|quadrature| quadrature.0).collect());
     Some(ConvergenceSetup {
         problem: table.problem,
         plane: table.plane.0,
         frame: table.frame.0,
         transfers: transfers.unwrap_or(vec![Transfer::default()]),
-        quadratures: quadratures.unwrap_or(vec![Quadrature::Points]),
         offsets: table.offsets.map_or(vec![0.0], |all| all.0.iter().map(|offset| offset.0).collect()),
         patch: table.patch,
         degrees,

@@ -3,7 +3,7 @@
 
 use fisura::scene::{
     Analysis, Body, Boundary, Frame, Kinematics, Layout, Mass, Material, Mesh, Output, PhaseFieldInterval,
-    PhaseFieldSolver, Plane, Quadrature, Scene, Shape, Side, SolverSettings, TimeStep, Transfer,
+    PhaseFieldSolver, Plane, Scene, Shape, Side, SolverSettings, TimeStep, Transfer,
 };
 
 /// What differs from study to study.
@@ -68,7 +68,6 @@ impl PlainScene {
                 time_step: TimeStep::Auto,
                 safety: 0.5,
                 transfer: Transfer::default(),
-                quadrature: Quadrature::Points,
                 mass: self.mass,
                 gravity: [0.0; 2],
             },

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use fisura::scene::{
     Analysis, Contact, Frame, JIntegral, Kinematics, Mass, Output, PhaseFieldInterval, PhaseFieldSolver, Plane, Probe,
-    Quadrature, Scene, Shape, SolverSettings, TimeStep, Transfer,
+    Scene, Shape, SolverSettings, TimeStep, Transfer,
 };
 
 use super::diagnostic::Problem;
@@ -109,7 +109,6 @@ fn analysis(item: &Item<'_>) -> Option<Analysis> {
         "time_step",
         "safety",
         "transfer",
-        "quadrature",
         "mass",
         "gravity",
     ])?;
@@ -124,7 +123,6 @@ fn analysis(item: &Item<'_>) -> Option<Analysis> {
     });
     let safety = fields.or("safety", 0.8, number);
     let transfer = fields.or("transfer", Transfer::default(), transfer);
-    let quadrature = fields.or("quadrature", Quadrature::Points, Item::word);
     let mass = fields.or("mass", Mass::Lumped, Item::word);
     let gravity = fields.or("gravity", [0.0, 0.0], |item| item.vector(Dimension::ACCELERATION));
     Some(Analysis {
@@ -136,7 +134,6 @@ fn analysis(item: &Item<'_>) -> Option<Analysis> {
         time_step: time_step?,
         safety: safety?,
         transfer: transfer?,
-        quadrature: quadrature?,
         mass: mass?,
         gravity: gravity?,
     })

@@ -1,6 +1,6 @@
 //! The words that scene and case files have for the choices of a scene.
 
-use fisura::scene::{Frame, Kinematics, Layout, Mass, PhaseFieldSolver, Plane, Quadrature, Side, Softening, Split};
+use fisura::scene::{Frame, Kinematics, Layout, Mass, PhaseFieldSolver, Plane, Side, Softening, Split};
 
 use super::fields::Words;
 
@@ -14,10 +14,6 @@ impl Words for Frame {
 
 impl Words for Kinematics {
     const WORDS: &'static [(&'static str, Self)] = &[("small", Self::Small), ("finite", Self::Finite)];
-}
-
-impl Words for Quadrature {
-    const WORDS: &'static [(&'static str, Self)] = &[("points", Self::Points), ("gauss", Self::Gauss)];
 }
 
 impl Words for Mass {

@@ -8,7 +8,6 @@ pub(super) mod onset;
 use fisura::Simulation;
 use fisura::contact::impulse::ContactForce;
 use fisura::dynamics::energy::Sample;
-use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::scene::Scene;
 
 use super::StudyError;
@@ -16,14 +15,11 @@ use crate::extremes::{self, larger};
 use crate::record::{Reference, ReferenceKind};
 
 /// Runs a scene to its end; `seen` looks at it at the start and after every step.
-pub(crate) fn run(scene: &Scene, seen: &mut dyn FnMut(&Simulation, &UpdatedFrame)) -> Result<(), StudyError> {
+pub(crate) fn run(scene: &Scene, seen: &mut dyn FnMut(&Simulation)) -> Result<(), StudyError> {
     let mut simulation = Simulation::new(scene)?;
     loop {
         crate::watch::check()?;
-        let Some(frame) = simulation.updated_frame() else {
-            return Err(StudyError::Other("contact needs frame = \"updated\"".into()));
-        };
-        seen(&simulation, frame);
+        seen(&simulation);
         if simulation.finished() {
             return Ok(());
         }

@@ -12,7 +12,7 @@ mod problem;
 mod scene;
 mod solve;
 
-use fisura::scene::{Frame, Layout, Quadrature, Transfer};
+use fisura::scene::{Frame, Layout, Mass, Transfer};
 
 use super::{Findings, StudyError};
 use crate::case::Case;
@@ -48,7 +48,7 @@ pub(super) fn offers(case: &Case, _scenes: &[CaseScene]) -> super::Offered {
         for variant in variants(setup) {
             let name = curve_name(setup, n, variant);
             for &(norm, below) in &norms {
-                offers.curve(&name, refined, &[norm], &[theory(setup, &problem, variant, degree, below)]);
+                offers.curve(&name, refined, &[norm], &[theory(setup, &problem, degree, below)]);
                 if setup.frame == Frame::Total {
                     offers.bare(&name, [over_best(norm)]);
                 }
@@ -89,7 +89,7 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
     let mut curves = Vec::new();
     for (n, &degree) in setup.degrees.iter().enumerate() {
         for variant in variants(setup) {
-            let orders = norms.iter().map(|&(_, below)| theory(setup, &problem, variant, degree, below)).collect();
+            let orders = norms.iter().map(|&(_, below)| theory(setup, &problem, degree, below)).collect();
             let name = curve_name(setup, n, variant);
             let (levels, best) = Meshes { setup, problem: &problem }.levels(CurveKey { n, variant })?;
             for (index, best) in best.into_iter().enumerate() {
@@ -119,18 +119,17 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
 #[derive(Debug, Clone, Copy)]
 struct Variant {
     transfer: Transfer,
-    quadrature: Quadrature,
     /// Offset of the mesh, in spans.
     offset: f64,
 }
 
 impl Variant {
     /// In the total frame there is one.
-    const PLAIN: Self = Self { transfer: Transfer::Apic, quadrature: Quadrature::Points, offset: 0.0 };
+    const PLAIN: Self = Self { transfer: Transfer::Apic, offset: 0.0 };
 }
 
-/// Name of a curve: the degree, with points, transfer, quadrature or offset where these vary.
-fn curve_name(setup: &ConvergenceSetup, n: usize, Variant { transfer, quadrature, offset }: Variant) -> String {
+/// Name of a curve: the degree, with points, transfer or offset where these vary.
+fn curve_name(setup: &ConvergenceSetup, n: usize, Variant { transfer, offset }: Variant) -> String {
     let degree = setup.degrees[n];
     let mut name = format!("p={degree}");
     if setup.degrees.iter().filter(|d| **d == degree).count() > 1 {
@@ -140,12 +139,6 @@ fn curve_name(setup: &ConvergenceSetup, n: usize, Variant { transfer, quadrature
         name += &match transfer {
             Transfer::Xpic(order) => format!(" xpic({order})"),
             named => format!(" {named:?}").to_lowercase(),
-        };
-    }
-    if setup.quadratures.len() > 1 {
-        name += match quadrature {
-            Quadrature::Points => " points",
-            Quadrature::Gauss => " spans",
         };
     }
     if setup.offsets.len() > 1 {
@@ -158,28 +151,20 @@ fn curve_name(setup: &ConvergenceSetup, n: usize, Variant { transfer, quadrature
 fn variants(setup: &ConvergenceSetup) -> Vec<Variant> {
     let mut variants = Vec::new();
     for &transfer in &setup.transfers {
-        for &quadrature in &setup.quadratures {
-            variants.extend(setup.offsets.iter().map(|&offset| Variant { transfer, quadrature, offset }));
-        }
+        variants.extend(setup.offsets.iter().map(|&offset| Variant { transfer, offset }));
     }
     variants
 }
 
 /// Order that theory gives an error `below` orders under that of the displacement. There is none for moving
 /// points: the error of their quadrature does not fall with h.
-fn theory(
-    setup: &ConvergenceSetup,
-    problem: &Problem,
-    Variant { quadrature, .. }: Variant,
-    degree: usize,
-    below: usize,
-) -> Option<f64> {
+fn theory(setup: &ConvergenceSetup, problem: &Problem, degree: usize, below: usize) -> Option<f64> {
     let space = (degree + 1 - below) as f64;
     match (problem.equation, setup.refine) {
-        _ if setup.frame == Frame::Updated && quadrature == Quadrature::Points => None,
+        _ if setup.frame == Frame::Updated => None,
         (Equation::Dynamic, Refine::TimeStep) => Some(2.0),
         (Equation::Dynamic, Refine::Mesh(power)) => {
-            let space = if setup.lumps_mass(quadrature) { space.min(2.0) } else { space };
+            let space = if setup.mass == Mass::Lumped { space.min(2.0) } else { space };
             Some(power.map_or(space, |power| space.min(2.0 * power)))
         }
         _ => Some(space),
@@ -193,9 +178,7 @@ fn other(message: impl Into<String>) -> StudyError {
 fn words_of_theory(setup: &ConvergenceSetup, problem: &Problem) -> String {
     match (problem.equation, setup.refine) {
         (Equation::Dynamic, Refine::TimeStep) => "velocity Verlet is of order 2",
-        (Equation::Dynamic, _) if setup.quadratures.iter().all(|quadrature| setup.lumps_mass(*quadrature)) => {
-            "a lumped mass is of order 2 for every degree"
-        }
+        (Equation::Dynamic, _) if setup.mass == Mass::Lumped => "a lumped mass is of order 2 for every degree",
         _ => "best approximation by splines: p + 1 in L2, p in H1",
     }
     .into()
@@ -226,10 +209,6 @@ fn words_of_patch(family: PatchFamily) -> &'static str {
     }
 }
 
-fn words_of_mass(setup: &ConvergenceSetup, quadrature: Quadrature) -> &'static str {
-    if setup.lumps_mass(quadrature) { "lumped" } else { "consistent" }
-}
-
 fn caption(setup: &ConvergenceSetup, problem: &Problem) -> String {
     let layout = match setup.layout {
         Layout::Gauss => "Gauss",
@@ -244,18 +223,10 @@ fn caption(setup: &ConvergenceSetup, problem: &Problem) -> String {
     };
     let mut words = format!("On {}; {layout} points, {}; {loading}", words_of_patch(setup.patch), points.join(", "));
     if problem.equation == Equation::Dynamic {
-        let mut masses: Vec<&str> =
-            setup.quadratures.iter().map(|quadrature| words_of_mass(setup, *quadrature)).collect();
-        masses.dedup();
-        words.push_str(&format!("; {} mass", masses.join(" and ")));
+        words.push_str(if setup.mass == Mass::Lumped { "; lumped mass" } else { "; consistent mass" });
     }
     if setup.frame == Frame::Updated {
         words.push_str("; updated frame, the points cross spans");
-        words.push_str(match setup.quadratures[..] {
-            [Quadrature::Gauss] => ", spans integrate",
-            [Quadrature::Points] => "",
-            _ => ", points integrate with a lumped mass or spans with the consistent one",
-        });
     }
     words + ". Errors relative to the exact field."
 }

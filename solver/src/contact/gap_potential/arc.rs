@@ -1,5 +1,4 @@
-//! The boundary of a body, step by step: cubics through places and tangents, and the place nearest to another
-//! one.
+//! The boundary of a body as cubics through places and tangents, and the place nearest to another one.
 
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::vectors::{dot, unit};
@@ -14,9 +13,14 @@ const CLOSE: f64 = 1e-13;
 /// Distance of ends that are joined, in arcs.
 const JOINED: f64 = 1e-6;
 
-/// A step of a boundary as a cubic of t from 0 to 1, by the powers of t; the body is to its left.
+/// A step of a boundary as a cubic of t from 0 to 1; the body is to its left.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Arc([[f64; 2]; 4]);
+pub(crate) struct Arc {
+    /// Factors of the powers of t, m.
+    powers: [[f64; 2]; 4],
+    /// Lengths that its Gauss points stand for at t = 0, m.
+    lengths: [f64; POINTS],
+}
 
 /// A place on a boundary.
 #[derive(Debug, Clone, Copy)]
@@ -25,22 +29,43 @@ pub(crate) struct BoundaryPlace {
     pub position: [f64; 2],
     /// Outward unit normal.
     pub normal: [f64; 2],
-    /// Length it stands for, m.
+    /// Length it stands for at t = 0, m.
     pub length: f64,
 }
 
+/// Shares of both ends, and of the tangents there, in the position at t of a cubic.
+pub(crate) fn shares(t: f64) -> [f64; 4] {
+    let turn = t * t * (3.0 - 2.0 * t);
+    [1.0 - turn, turn, t * (1.0 - t).powi(2), t * t * (t - 1.0)]
+}
+
+/// Derivatives of [`shares`] by t.
+pub(crate) fn tangent_shares(t: f64) -> [f64; 4] {
+    let turn = 6.0 * t * (1.0 - t);
+    [-turn, turn, (1.0 - t) * (1.0 - 3.0 * t), t * (3.0 * t - 2.0)]
+}
+
 impl Arc {
-    /// From one end to the other; tangents are derivatives with respect to t, m.
-    pub(crate) fn new(ends: [[f64; 2]; 2], tangents: [[f64; 2]; 2]) -> Self {
-        let [a, b] = ends;
-        let [s, t] = tangents;
-        let power = |f: &dyn Fn(usize) -> f64| [0, 1].map(f);
-        Self([a, s, power(&|d| 3.0 * (b[d] - a[d]) - 2.0 * s[d] - t[d]), power(&|d| 2.0 * (a[d] - b[d]) + s[d] + t[d])])
+    /// From one end to the other at t = 0; tangents are derivatives with respect to t, m.
+    pub(crate) fn new(ends: [[f64; 2]; 2], tangents: [[f64; 2]; 2], rule: &Rule) -> Self {
+        let mut arc = Self { powers: Default::default(), lengths: Default::default() }.through(ends, tangents);
+        for (at, (t, weight)) in rule.points.iter().zip(&rule.weights).enumerate() {
+            let [tx, ty] = arc.tangent(*t);
+            arc.lengths[at] = weight * tx.hypot(ty);
+        }
+        arc
+    }
+
+    /// The same material from one end to another.
+    pub(crate) fn through(&self, [a, b]: [[f64; 2]; 2], [s, t]: [[f64; 2]; 2]) -> Self {
+        let square = [0, 1].map(|d| 3.0 * (b[d] - a[d]) - 2.0 * s[d] - t[d]);
+        let cube = [0, 1].map(|d| 2.0 * (a[d] - b[d]) + s[d] + t[d]);
+        Self { powers: [a, s, square, cube], lengths: self.lengths }
     }
 
     /// Position at t, m.
     pub(crate) fn position(&self, t: f64) -> [f64; 2] {
-        let Self([c0, c1, c2, c3]) = self;
+        let [c0, c1, c2, c3] = self.powers;
         [0, 1].map(|d| c0[d] + t * (c1[d] + t * (c2[d] + t * c3[d])))
     }
 
@@ -50,29 +75,27 @@ impl Arc {
         [ty, -tx].map(|x| x / tx.hypot(ty))
     }
 
-    fn tangent(&self, t: f64) -> [f64; 2] {
-        let Self([_, c1, c2, c3]) = self;
+    /// Derivative of the position by t, m.
+    pub(crate) fn tangent(&self, t: f64) -> [f64; 2] {
+        let [_, c1, c2, c3] = self.powers;
         [0, 1].map(|d| c1[d] + t * (2.0 * c2[d] + t * 3.0 * c3[d]))
     }
 
     fn curvature(&self, t: f64) -> [f64; 2] {
-        let Self([_, _, c2, c3]) = self;
+        let [_, _, c2, c3] = self.powers;
         [0, 1].map(|d| 2.0 * c2[d] + t * 6.0 * c3[d])
     }
 
     /// Its Gauss points.
     pub(crate) fn places<'a>(&'a self, rule: &'a Rule) -> impl Iterator<Item = BoundaryPlace> + 'a {
-        rule.points.iter().zip(&rule.weights).map(|(&t, weight)| {
-            let [tx, ty] = self.tangent(t);
-            let length = tx.hypot(ty);
-            BoundaryPlace { position: self.position(t), normal: [ty / length, -tx / length], length: weight * length }
-        })
+        let place = |(&t, &length)| BoundaryPlace { position: self.position(t), normal: self.normal(t), length };
+        rule.points.iter().zip(&self.lengths).map(place)
     }
 
     /// The same arc after a rigid motion, by what that does to positions and to directions.
     pub(crate) fn moved(&self, place: impl Fn([f64; 2]) -> [f64; 2], turn: impl Fn([f64; 2]) -> [f64; 2]) -> Self {
-        let Self([c0, c1, c2, c3]) = *self;
-        Self([place(c0), turn(c1), turn(c2), turn(c3)])
+        let [c0, c1, c2, c3] = self.powers;
+        Self { powers: [place(c0), turn(c1), turn(c2), turn(c3)], ..*self }
     }
 
     /// Lower left and upper right corner of a box around it, m.
@@ -187,8 +210,8 @@ mod tests {
     fn beside_an_acute_corner_is_outside() {
         // A body above the line y = 0, left of a line that leans to the left: a corner sharper than 90°.
         let corner = [0.0, 0.0];
-        let below = Arc::new([[-1.0, 0.0], corner], [[1.0, 0.0]; 2]);
-        let beside = Arc::new([corner, [-0.1, 1.0]], [[-0.1, 1.0]; 2]);
+        let below = Arc::new([[-1.0, 0.0], corner], [[1.0, 0.0]; 2], &rule());
+        let beside = Arc::new([corner, [-0.1, 1.0]], [[-0.1, 1.0]; 2], &rule());
         for order in [[(0, &below), (1, &beside)], [(1, &beside), (0, &below)]] {
             assert!(nearest([0.5, 0.01], &order).unwrap().depth < 0.0);
             assert!(nearest([0.2, -0.5], &order).unwrap().depth < 0.0);

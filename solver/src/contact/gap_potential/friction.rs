@@ -18,9 +18,9 @@
 //! Both together are what T takes from the motion, `(T(n) + T(n+1))/2 Δs`, exactly while w stays. Where
 //! boundaries part, the stored energy of slip is dissipated.
 //!
-//! The pair ±T acts at one place for both bodies, y on the boundary of b, so that it has no moment. There the
-//! material of a moves as its boundary at x does, turned with that: `Δs = τ · [Δx + Δθ × (y − x) − Δy]`,
-//! which a common rotation leaves at zero. Both places carry labels, so Δx and Δy are differences of
+//! The pair ±T acts at one place for both bodies, y on the boundary of b, so that it has no moment: on a as a
+//! force at x and a couple. There the material of a moves as its boundary at x does, turned with that:
+//! `Δs = τ · [Δx + Δθ × (y − x) − Δy]`, which a common rotation leaves at zero. Both places carry labels, so Δx and Δy are differences of
 //! positions of the same material, and nothing of the grid is needed.
 //!
 //! Wriggers 2006, *Computational contact mechanics*, sections 5.2.3 and 6.3.2, has the return mapping.
@@ -170,7 +170,7 @@ impl History {
 
 #[cfg(test)]
 mod tests {
-    use super::super::arc::nearest;
+    use super::super::arc::{nearest, rule};
     use super::*;
 
     const DEPTH: f64 = 1e-3;
@@ -178,7 +178,7 @@ mod tests {
 
     /// A block, of which one place is looked at, 1e-3 m deep in a floor; both may move along it.
     fn look(friction: &mut Friction, block: f64, floor: f64, depth: f64) -> f64 {
-        let arcs = [Arc::new([[1.0 + floor, 0.0], [-1.0 + floor, 0.0]], [[-2.0, 0.0]; 2])];
+        let arcs = [Arc::new([[1.0 + floor, 0.0], [-1.0 + floor, 0.0]], [[-2.0, 0.0]; 2], &rule())];
         let place = BoundaryPlace { position: [block, -depth], normal: [0.0, -1.0], length: 0.1 };
         friction.begin();
         let nearest = nearest(place.position, &[(0, &arcs[0])]).unwrap();

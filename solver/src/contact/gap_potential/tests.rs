@@ -10,7 +10,7 @@ fn circle(center: [f64; 2], radius: f64, count: usize) -> Outline {
         let (sin, cos) = (turn * i as f64).sin_cos();
         ([center[0] + radius * cos, center[1] + radius * sin], [-radius * turn * sin, radius * turn * cos])
     };
-    let arc = |i: usize| Arc::new([at(i).0, at(i + 1).0], [at(i).1, at(i + 1).1]);
+    let arc = |i: usize| Arc::new([at(i).0, at(i + 1).0], [at(i).1, at(i + 1).1], &rule());
     Outline { arcs: (0..count).map(arc).collect(), spring: 2.0 }
 }
 

@@ -68,6 +68,7 @@ impl TotalFrame {
             loads: body.tractions.iter().enumerate().map(load).collect::<Result<_, _>>()?,
             forced: None,
             edges,
+            boundary: None,
             mass,
             moduli: ElasticModuli::new(material, scene.analysis.plane),
             kinematics: scene.analysis.kinematics,

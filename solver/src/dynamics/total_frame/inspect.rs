@@ -41,9 +41,8 @@ impl TotalFrame {
         });
     }
 
-    /// The spans with points; their corners move with the body.
-    pub(crate) fn span_grid(&self) -> SpanGrid {
-        let mut grid = SpanGrid::default();
+    /// Adds the spans with points of this body; their corners move with it.
+    pub(super) fn add_spans(&self, body: usize, grid: &mut SpanGrid) {
         for (lift, spans) in self.spans_with_points() {
             grid.add(&self.patch, spans, |functions| {
                 let mut here = functions.clone();
@@ -51,19 +50,18 @@ impl TotalFrame {
                 let value = |field: &Vec<f64>| here.interpolate(field).value;
                 let displacement = self.displacement.each_ref().map(value);
                 Corner {
-                    body: 0,
+                    body,
                     position: [0, 1].map(|d| functions.position[d] + displacement[d]),
                     velocity: self.velocity.each_ref().map(value),
                     phase: self.fracture.as_ref().map(|f| functions.interpolate(f.field.control_values()).value),
                 }
             });
         }
-        grid
     }
 
     /// The spans with points, by the distance of their control points from those of the patch: a span that a
     /// slit cuts is there once for each side.
-    fn spans_with_points(&self) -> BTreeMap<usize, BTreeSet<[usize; 2]>> {
+    pub(super) fn spans_with_points(&self) -> BTreeMap<usize, BTreeSet<[usize; 2]>> {
         let mut spans = BTreeMap::<usize, BTreeSet<[usize; 2]>>::new();
         self.lattice.for_each_point(|batch, lane, _, _| {
             let span = self.lattice.location(&self.patch, batch, lane).span;

@@ -144,6 +144,21 @@ impl TotalFrame {
         self.moduli.stress(strain.map(Lane::splat)).map(|s| s[0])
     }
 
+    /// Mass, kg, and momentum, kg m/s, so many seconds ago with the present accelerations.
+    pub(super) fn mass_and_momentum(&self, ago: f64) -> (f64, [f64; 2]) {
+        let masses = self.mass.row_sums();
+        let momentum = |d: usize| {
+            let moving = masses.iter().zip(&self.velocity[d]).zip(&self.acceleration[d]);
+            self.thickness * moving.map(|((m, v), a)| m * (v - ago * a)).sum::<f64>()
+        };
+        (self.thickness * masses.iter().sum::<f64>(), [momentum(0), momentum(1)])
+    }
+
+    /// Thickness, m.
+    pub(super) fn thickness(&self) -> f64 {
+        self.thickness
+    }
+
     /// Elastic energy, J.
     pub fn elastic_energy(&self) -> f64 {
         self.elastic_energy * self.thickness

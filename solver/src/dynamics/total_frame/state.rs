@@ -24,6 +24,7 @@ impl TotalFrame {
             forced,
             constraints: _,
             edges,
+            boundary: _,
             mass: _,
             displacement,
             velocity,

@@ -105,6 +105,9 @@ impl StiffnessOperator for LatticeStiffness<'_> {
         self.unpack(x);
         let mut image = std::mem::take(&mut self.image);
         self.frame.elastic_forces(&self.field, &mut self.strips, &mut image);
+        if let Some(boundary) = &self.frame.boundary {
+            boundary.add_springs(&self.field, &mut image);
+        }
         self.pack_forces(&mut image, out);
         self.image = image;
     }

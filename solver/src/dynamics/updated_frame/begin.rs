@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::affine::{AffineVelocities, Fit};
 use super::field::DiscreteField;
-use super::gauss::SpanQuadrature;
 use super::grid::NodalFields;
 use super::held_edges::HeldEdges;
 use super::held_sides::{self, HeldSide};
@@ -22,7 +21,7 @@ use crate::material::elasticity::ElasticModuli;
 use crate::particles::lattice::Lattice;
 use crate::particles::points::{Cells, OutsidePatch, Point};
 use crate::phase_field::fracture::crack_start;
-use crate::scene::{Body, Boundary, Contact, Kinematics, Material, Plane, Quadrature, Scene, Transfer};
+use crate::scene::{Body, Boundary, Kinematics, Material, Plane, Scene, Transfer};
 use crate::splines::patch::Patch;
 
 impl DiscreteField {
@@ -46,24 +45,12 @@ impl DiscreteField {
         field.points_to_grid();
         field.attach_first(number)?;
         field.respond();
-        field.respond_with_spans()?;
-        if let Some(contact) = &scene.contact {
-            field.expect_contact(contact);
-        }
         for (traction, load) in field.loads.iter().enumerate() {
             let balance = Balance::of_edge(body, &body.tractions[traction].edge);
             let shares = load.shares(&field.patch, &field.nodes);
             balance.check(shares).map_err(|lost| Failure::LostTraction { body: number, traction, lost })?;
         }
         Ok(field)
-    }
-
-    /// Tells spans that integrate that the boundary may meet others.
-    fn expect_contact(&mut self, contact: &Contact) {
-        let Self { patch, spans, .. } = self;
-        if let Some(spans) = spans {
-            spans.expect_contact(patch, contact);
-        }
     }
 
     /// Finds the first spans for the surface points of loads and conditions.
@@ -87,31 +74,24 @@ impl DiscreteField {
         let mut cells = Cells::default();
         cells.sort(&patch, &mut points)?;
         let crack = |model| PointwiseFracture::new(&patch, body, model, &scene.solver, &points);
-        let by_spans = analysis.quadrature == Quadrature::Gauss;
-        let fixed = |boundary: &&Boundary| by_spans || held_sides::is_fixed(boundary);
+        let fixed = |boundary: &&Boundary| held_sides::is_fixed(boundary);
         let (fixed, moving): (Vec<_>, Vec<_>) = scene.boundaries.iter().partition(fixed);
-        let side = |&boundary| match by_spans {
-            true => Some(HeldSide::whole(boundary)),
-            false => HeldSide::with_material(whole, body, boundary),
-        };
+        let side = |&boundary| HeldSide::with_material(whole, body, boundary);
         let sides: Vec<_> = fixed.iter().filter_map(side).collect();
         let nodes = NodalFields::new(&patch, held_sides::constraints(whole, &patch, origin, &sides));
         let moving = moving.into_iter().map(|boundary| held_sides::as_edge(whole, boundary));
         let edges = HeldEdges::new(whole, body, body.conditions.iter().cloned().chain(moving));
         let moduli = ElasticModuli::new(material, analysis.plane);
-        let spans =
-            by_spans.then(|| SpanQuadrature::new((&scene.mesh, &body.shape), &patch, &nodes, moduli, material.density));
-        let finite = analysis.kinematics == Kinematics::Finite && !by_spans;
+        let finite = analysis.kinematics == Kinematics::Finite;
         Ok(Self {
             fracture: FractureModel::of(material).map(crack),
-            spans: spans.flatten().map(Box::new),
             nodes,
             velocity_transfer: VelocityTransfer::new(patch.control_grid(), analysis.transfer),
             affine: fit(analysis.transfer).map(|fit| AffineVelocities::new(fit, &patch, points.len())),
             deformation: finite.then(|| vec![[[0.0; 2]; 2]; points.len()]),
             loads: body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t)).collect(),
             forcing: None,
-            surface: (scene.contact.is_some() && !by_spans).then(|| Surface::new(&scene.mesh, body)),
+            surface: scene.contact.is_some().then(|| Surface::new(&scene.mesh, body)),
             slice: None,
             moduli,
             thickening: thickening(material, analysis.plane),

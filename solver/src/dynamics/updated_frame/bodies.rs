@@ -3,7 +3,6 @@
 use super::UpdatedFrame;
 use super::begin::center_of_mass;
 use super::field::DiscreteField;
-use crate::contact::gap_potential::GapForce;
 use crate::dynamics::body_sample::{BodySample, BodySamples, PairForce, pairs};
 use crate::dynamics::energy::Sample;
 use crate::linear_algebra::extremes::smaller;
@@ -36,9 +35,7 @@ impl UpdatedFrame {
             });
             PairForce { names: pair.map(|i| names[i].clone()), force: sum.map(|f| f * self.thickness) }
         };
-        let constraints = self.contact.iter().flat_map(|contact| contact.constraints().iter().map(|c| c.gap));
-        let depths = self.gap_potential.iter().flat_map(|potential| potential.forces().iter().map(GapForce::gap));
-        let gaps = constraints.chain(depths);
+        let gaps = self.contact.iter().flat_map(|contact| contact.constraints().iter().map(|c| c.gap));
         let smallest_gap = Some(gaps.reduce(smaller).unwrap_or(f64::NAN));
         BodySamples { bodies, forces: pairs(deformable, names.len()).map(force).collect(), smallest_gap }
     }

@@ -8,7 +8,6 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::affine::AffineVelocities;
-use super::gauss::{self, SpanQuadrature};
 use super::grid::{EndOfStep, NodalFields};
 use super::held_edges::HeldEdges;
 use super::held_sides::HeldSide;
@@ -59,8 +58,6 @@ pub struct DiscreteField {
     pub(super) affine: Option<AffineVelocities>,
     /// Displacement gradients `F − I` of the points, if the kinematics are finite.
     pub(super) deformation: Option<Vec<Gradient>>,
-    /// What integrates by spans, if not the points do.
-    pub(super) spans: Option<Box<SpanQuadrature>>,
     pub(super) loads: Vec<SurfaceLoad>,
     pub(super) forcing: Option<PointForcing>,
     /// The boundary, if the body may meet others.
@@ -90,9 +87,6 @@ impl DiscreteField {
     /// # Errors
     /// If the phase field does not converge, or a point leaves the patch.
     pub fn step(&mut self, dt: f64) -> Result<(), Failure> {
-        if self.spans.is_some() {
-            return self.step_with_spans(dt);
-        }
         let end_of_step = self.advance(dt)?;
         self.respond_and_book(dt, &end_of_step); // a(n+1)
         Ok(())
@@ -367,7 +361,6 @@ impl DiscreteField {
 
     /// Whether a point may have moved a quarter of the shortest span since the critical step was taken.
     pub(crate) fn has_moved(&self) -> bool {
-        let spans = if self.spans.is_some() { gauss::WAY_BETWEEN_STEPS } else { 0.25 };
-        self.travelled >= spans * self.patch.shortest_span()
+        self.travelled >= 0.25 * self.patch.shortest_span()
     }
 }

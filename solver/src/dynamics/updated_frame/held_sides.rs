@@ -19,11 +19,6 @@ pub(super) struct HeldSide {
 }
 
 impl HeldSide {
-    /// All of a side.
-    pub(super) fn whole(boundary: &Boundary) -> Self {
-        Self { boundary: boundary.clone(), material: None }
-    }
-
     /// The side where a body lies on it at t = 0, if it does.
     pub(super) fn with_material(patch: &Patch, body: &Body, boundary: &Boundary) -> Option<Self> {
         let material = material_on(patch, body, boundary);

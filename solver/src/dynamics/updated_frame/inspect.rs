@@ -14,8 +14,7 @@ impl UpdatedFrame {
             for (point, carried) in field.points().iter().enumerate() {
                 let cracked = field.fracture.as_ref().map(|fracture| (&fracture.model, fracture.points[point]));
                 let fracture = cracked.map(|(_, c)| PointFracture { history: c.history, phase: c.phase });
-                let Point { position, velocity, displacement, .. } = *carried;
-                let [strain, stress] = field.strain_and_stress(carried);
+                let Point { position, velocity, displacement, strain, stress, .. } = *carried;
                 let degraded = cracked.map(|(model, c)| (model, c.phase));
                 let stress_out_of_plane = stress_out_of_plane(&field.moduli(), strain, degraded);
                 f(PointState {
@@ -39,7 +38,7 @@ impl UpdatedFrame {
         let mut grid = SpanGrid::default();
         for (field, body) in self.fields().iter().zip((0..).map(|at| self.body_of(at))) {
             let spans = field.cells().cells.iter().map(|cell| cell.span);
-            let velocity = field.grid_velocity();
+            let velocity = &field.nodes().velocity;
             grid.add(field.patch(), spans, |functions| Corner {
                 body,
                 position: functions.position,

@@ -40,7 +40,7 @@
 //! stretches the gradient of c across it. What then remains is the stress-work quadrature, O(dt²), as in the
 //! total frame. Where a body falls into fragments its stored energy changes at once, by `partition`: see
 //! [`super::fragments`]. Where steps change from dt to dt', the stagger `dt²/8 aᵀ M a` does too: that is
-//! `step`. With Gauss quadrature by spans there is `relaxation`: see [`super::gauss`].
+//! `step`.
 
 use serde::{Deserialize, Serialize};
 
@@ -53,9 +53,6 @@ pub struct TransferLosses {
     pub power: f64,
     /// Loss where prescribed velocities are imposed on what arrived.
     pub imposed: f64,
-    /// Kinetic energy that relaxing the velocities of points takes, where spans integrate
-    /// ([`gauss`](super::gauss)).
-    pub relaxation: f64,
     /// Loss of the phase field as points move through it.
     pub phase_field: f64,
     /// Loss where bodies fell into fragments ([`fragments`](super::fragments)).
@@ -67,7 +64,7 @@ pub struct TransferLosses {
 impl TransferLosses {
     /// All of it.
     pub fn sum(&self) -> f64 {
-        self.kinetic + self.power + self.imposed + self.relaxation + self.phase_field + self.partition + self.step
+        self.kinetic + self.power + self.imposed + self.phase_field + self.partition + self.step
     }
 
     pub(super) fn plus(self, other: Self) -> Self {
@@ -75,7 +72,6 @@ impl TransferLosses {
             kinetic: self.kinetic + other.kinetic,
             power: self.power + other.power,
             imposed: self.imposed + other.imposed,
-            relaxation: self.relaxation + other.relaxation,
             phase_field: self.phase_field + other.phase_field,
             partition: self.partition + other.partition,
             step: self.step + other.step,
@@ -87,7 +83,6 @@ impl TransferLosses {
             kinetic: factor * self.kinetic,
             power: factor * self.power,
             imposed: factor * self.imposed,
-            relaxation: factor * self.relaxation,
             phase_field: factor * self.phase_field,
             partition: factor * self.partition,
             step: factor * self.step,

@@ -43,7 +43,6 @@ impl UpdatedFrame {
             self.fields.iter().zip(&accelerations).map(|(field, a)| field.sample(dt, a)).collect();
         let recorded = self.recorded.as_ref().map(|names| self.sample_bodies(names, &bodies, dt));
         let mut sample = bodies.into_iter().reduce(Sample::with).expect("a scene has a body");
-        let contact = contact.or_else(|| self.gap_potential.as_ref().map(|potential| potential.ledger()));
         if let Some(ContactLedger { loss, friction, work }) = contact {
             sample.external_work += work;
             sample.contact = Some(ContactSample { loss, friction });
@@ -63,7 +62,7 @@ impl UpdatedFrame {
 
     /// Whether bodies may meet.
     pub fn has_contact(&self) -> bool {
-        self.contact.is_some() || self.gap_potential.is_some()
+        self.contact.is_some()
     }
 
     /// Time, s.
@@ -78,12 +77,14 @@ impl UpdatedFrame {
 
     /// Forces of contact now; `dt` is the step in use.
     pub fn contact_forces(&self, dt: f64) -> Vec<ContactForce> {
-        if let Some(potential) = &self.gap_potential {
-            return potential.contact_forces();
-        }
         self.contact
             .as_ref()
             .map_or_else(Vec::new, |contact| contact.forces(&views(&self.fields), self.coming_kick(dt)))
+    }
+
+    /// Mass (kg) and momentum (kg m/s) of every field, with the velocities of half a step before.
+    pub(crate) fn momenta(&self, _dt: f64) -> Vec<(f64, [f64; 2])> {
+        self.fields.iter().map(|field| (field.mass(), field.momentum())).collect()
     }
 
     /// Whether the impulses of contact of the coming step converge; `dt` is the step in use.
@@ -111,9 +112,7 @@ impl UpdatedFrame {
 
     /// External work so far, J.
     pub fn external_work(&self) -> f64 {
-        let by_impulses = self.contact.as_ref().map(|contact| contact.ledger());
-        let ledger = by_impulses.or_else(|| self.gap_potential.as_ref().map(|potential| potential.ledger()));
-        let rigid = ledger.map_or(0.0, |ledger| ledger.work) * self.thickness;
+        let rigid = self.contact.as_ref().map_or(0.0, |contact| contact.ledger().work) * self.thickness;
         self.fields.iter().map(|field| field.external_work()).sum::<f64>() + rigid
     }
 
@@ -143,7 +142,6 @@ impl UpdatedFrame {
     /// Heap memory of mechanics and of the phase fields, bytes.
     pub fn bytes(&self) -> [usize; 2] {
         let contact = self.contact.as_ref().map_or(0, |contact| contact.bytes());
-        let contact = contact + self.gap_potential.as_ref().map_or(0, |potential| potential.bytes());
         self.fields
             .iter()
             .map(|field| field.bytes())
@@ -155,9 +153,6 @@ impl DiscreteField {
     /// Energies, momenta and crack tip of a body a metre thick at the present whole step with the given
     /// accelerations (m/s²); `dt` is the step in use. Closure is left at zero.
     pub(super) fn sample(&self, dt: f64, acceleration: &VectorField) -> Sample {
-        if let Some(sample) = self.sample_points(dt) {
-            return sample;
-        }
         let nodes = &self.nodes;
         let mut acceleration = Cow::Borrowed(acceleration);
         let conditions = self.edges.as_ref().map(|edges| {
@@ -256,8 +251,7 @@ impl DiscreteField {
 
     /// Square of the speed (infinite if it is no number) and position (m) of the fastest control point.
     fn fastest_place(&self) -> (f64, [f64; 2]) {
-        let velocity = self.grid_velocity();
-        let [vx, vy] = &*velocity;
+        let [vx, vy] = &self.nodes.velocity;
         let speed = |at: usize| {
             let speed = vx[at] * vx[at] + vy[at] * vy[at];
             (if speed.is_nan() { f64::INFINITY } else { speed }, at)
@@ -314,10 +308,9 @@ impl DiscreteField {
         let deformation = self.deformation.as_ref().map_or(0, |gradients| gradients.len() * size_of::<Gradient>());
         let forcing = self.forcing.as_ref().map_or(0, |forcing| forcing.bytes());
         let surface = self.surface.as_ref().map_or(0, |surface| surface.bytes());
-        let spans = self.spans.as_ref().map_or(0, |spans| spans.bytes());
         let slice = self.slice.as_ref().map_or(0, |slice| slice.bytes());
         let edges = self.edges.as_ref().map_or(0, |edges| edges.bytes());
-        let points = points + edges + affine + deformation + forcing + surface + spans + slice;
+        let points = points + edges + affine + deformation + forcing + surface + slice;
         [
             points + self.nodes.bytes() + self.velocity_transfer.bytes() + loads,
             self.fracture.as_ref().map_or(0, |f| f.bytes()),

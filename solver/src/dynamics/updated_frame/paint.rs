@@ -2,10 +2,8 @@
 
 use super::UpdatedFrame;
 use super::field::DiscreteField;
-use crate::linear_algebra::lane::Lane;
 use crate::material::degradation::largest_principal;
 use crate::output::raster::Raster;
-use crate::particles::points::Point;
 
 /// Side of the square a point fills in a picture, over the root of its volume. The points of a Gauss rule
 /// stand up to 1.16 of that apart.
@@ -51,8 +49,7 @@ impl DiscreteField {
         let mut stress = covered.clone();
         for point in &self.points {
             let half = 0.5 * FILL * point.volume.sqrt();
-            let [strain, of_point] = self.strain_and_stress(point);
-            let principal = largest_principal(of_point) / self.volume_ratio(strain);
+            let principal = largest_principal(point.stress) / self.volume_ratio(point.strain);
             raster.for_each_overlap(point.position.map(|x| [x - half, x + half]), |pixel, area| {
                 covered[pixel] += area;
                 stress[pixel] += area * principal;
@@ -71,15 +68,6 @@ impl DiscreteField {
     /// strains.
     fn volume_ratio(&self, strain: [f64; 3]) -> f64 {
         let dilatation = strain[0] + strain[1];
-        let is_finite = self.deformation.is_some() || self.spans.is_some();
-        if is_finite { (self.thickening * dilatation).exp() } else { 1.0 }
-    }
-
-    /// Strain of a point and its stress, Pa; where spans integrate points have none of their own, and these
-    /// are those of the fitted displacement.
-    pub fn strain_and_stress(&self, point: &Point) -> [[f64; 3]; 2] {
-        let Some(spans) = &self.spans else { return [point.strain, point.stress] };
-        let strain = spans.strain_at(&self.patch, point.position);
-        [strain, self.moduli.stress(strain.map(Lane::splat)).map(|lane| lane[0])]
+        if self.deformation.is_some() { (self.thickening * dilatation).exp() } else { 1.0 }
     }
 }

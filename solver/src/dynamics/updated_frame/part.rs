@@ -62,9 +62,6 @@ impl DiscreteField {
         let constraints = constraints(&self.whole, &patch, origin, &self.sides);
         let shift = [0, 1].map(|d| origin[d] as isize - self.origin[d] as isize);
         self.nodes = NodalFields::new(&patch, constraints);
-        if let Some(spans) = &mut self.spans {
-            spans.follow(self.patch.control_grid(), &patch, &self.nodes, shift);
-        }
         self.velocity_transfer = VelocityTransfer::new(patch.control_grid(), self.velocity_transfer.transfer());
         if let Some(affine) = &mut self.affine {
             affine.follow(&patch);

@@ -18,7 +18,7 @@ impl DiscreteField {
     /// The span whose points have turned most around each other (m), and their angle, rad. One point alone
     /// does not turn.
     fn most_turned(&self) -> Option<([f64; 2], f64)> {
-        if self.deformation.is_some() || self.spans.is_some() {
+        if self.deformation.is_some() {
             return None;
         }
         let broken = |at: usize| self.fracture.as_ref().is_some_and(|fracture| fracture.points[at].phase < BROKEN);

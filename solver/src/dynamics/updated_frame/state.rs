@@ -3,8 +3,7 @@
 
 use super::affine::AffineVelocities;
 use super::field::DiscreteField;
-use super::gauss::OnPatch;
-use super::{UpdatedFrame, are_joined, find_gaps, self_contact, views};
+use super::{UpdatedFrame, are_joined, self_contact, views};
 use crate::checkpoint::{Archive, StateError};
 use crate::contact::motion::TooFast;
 use crate::dynamics::failure::Failure;
@@ -16,17 +15,10 @@ impl UpdatedFrame {
     /// Bytes of another scene, and loads that only the program knows.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
         self.exchange_fragments(archive)?;
-        let Self { patch: _, fields, bodies: _, contact, gap_potential, fragments: _, thickness: _, recorded: _ } =
-            self;
+        let Self { patch: _, fields, bodies: _, contact, fragments: _, thickness: _, recorded: _ } = self;
         fields.iter_mut().try_for_each(|field| field.exchange(archive))?;
         if archive.is_reader() && are_joined(fields) {
             self_contact::find_accelerations(fields);
-        }
-        if let Some(potential) = gap_potential {
-            potential.exchange(archive)?;
-            if archive.is_reader() && fields[0].time() > 0.0 {
-                find_gaps(potential, fields, 0.0).map_err(too_fast)?;
-            }
         }
         if let Some(contact) = contact {
             contact.exchange(archive)?;
@@ -61,12 +53,6 @@ impl DiscreteField {
                 StateError(format!("the state belongs to another scene: its grid cannot be rebuilt ({failure:?})"))
             })?;
         }
-        if let Some(spans) = &mut self.spans {
-            spans.exchange(archive, self.points.len())?;
-            if archive.is_reader() {
-                spans.begin_fit(OnPatch { patch: &self.patch, cells: &self.cells, points: &self.points });
-            }
-        }
         self.exchange_sums(archive)
     }
 
@@ -99,7 +85,6 @@ impl DiscreteField {
             stress_work: _,
             ledger: _,
             losses: _,
-            spans: _,
             time,
             at_start,
             last_step,

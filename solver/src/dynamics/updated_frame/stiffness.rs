@@ -16,9 +16,6 @@ impl DiscreteField {
     /// Critical time step of the body, undamaged or broken, at the present positions, s; infinite if nothing
     /// can move.
     pub fn critical_step(&self) -> f64 {
-        if let Some(spans) = &self.spans {
-            return spans.critical_step(&self.patch);
-        }
         let frequency = highest_frequency(&mut PointStiffness::new(self));
         let stiffening = self.fracture.as_ref().map_or(1.0, |fracture| fracture.model.stiffening(&self.moduli));
         stable_fraction() / frequency / stiffening.sqrt()

@@ -67,7 +67,6 @@ impl DiscreteField {
         }
         self.crack_and_stress()?;
         self.rebuild_grid()?;
-        self.respond_with_spans()?;
         Ok(())
     }
 }

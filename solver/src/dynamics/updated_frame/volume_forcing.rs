@@ -78,16 +78,6 @@ impl PointForcing {
         }
     }
 
-    /// Loads at a time, s.
-    pub(crate) fn renew(&mut self, points: &[Point], time: f64) {
-        self.loads = points.iter().map(|point| self.forcing.volume(point.reference(), time)).collect();
-    }
-
-    /// Force on a point per reference volume, N/m³.
-    pub(crate) fn force(&self, at: usize) -> [f64; 2] {
-        self.loads[at].force
-    }
-
     /// Follows a new order of the points.
     pub(crate) fn reorder(&mut self, cells: &Cells) {
         cells.reorder(&mut self.loads);

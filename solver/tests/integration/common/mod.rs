@@ -73,7 +73,6 @@ pub fn elastic_scene(degree: usize, size: [f64; 2], cells: [usize; 2]) -> Scene 
             time_step: TimeStep::Auto,
             safety: 0.8,
             transfer: Transfer::default(),
-            quadrature: Quadrature::Points,
             mass: Mass::Lumped,
             gravity: [0.0; 2],
         },

@@ -11,13 +11,16 @@
 //! across the contact (a²/4 for a semi-ellipse), the peak pressure from the forces on the middle quarter of
 //! the contact, the stress at points under it. Forces at single segments are not unique, and bunch: only what
 //! they are together over a span, which is where control points take them up, means something. So every force
-//! is spread over a span to each side for the pressure. All are means over the steps in which the force is
-//! close to its largest.
+//! is spread over a span to each side for the pressure. A force that varies while a wave passes some spans is
+//! vibration, which Hertz's contact is without, so F is a running mean over that time. All are means over the
+//! steps in which F is close to its largest.
 
 use std::f64::consts::PI;
 
+use fisura::Simulation;
 use fisura::contact::impulse::ContactForce;
-use fisura::dynamics::updated_frame::field::DiscreteField;
+use fisura::material::elasticity::ElasticModuli;
+use fisura::output::inspection::PointState;
 use fisura::scene::{Body, Plane, Scene, Shape};
 
 use super::{Books, dot, exact, larger, run, sample_is_due, sum};
@@ -32,6 +35,8 @@ use crate::study::{Findings, StudyError};
 
 /// Share of the largest force above which a step counts.
 const NEAR_THE_TOP: f64 = 0.97;
+/// Spans that a wave passes in the time over which the force is averaged.
+const PASSED: f64 = 8.0;
 /// Bins across the contact, and the half width they cover, in a.
 const BINS: usize = 40;
 const COVERED: f64 = 1.25;
@@ -102,6 +107,8 @@ struct Hertz {
     /// Shortest span, m, and length of a boundary segment, m.
     span: f64,
     segment: f64,
+    /// Time over which the force is averaged, s.
+    memory: f64,
 }
 
 impl Hertz {
@@ -119,12 +126,15 @@ impl Hertz {
         let shortest = |d: usize| {
             scene.mesh.knots[d].windows(2).map(|w| w[1] - w[0]).filter(|l| *l > 0.0).fold(f64::INFINITY, smaller)
         };
-        let segment = shortest(0).min(shortest(1)) / points;
+        let span = shortest(0).min(shortest(1));
+        let material = &scene.materials[&scene.bodies[0].material];
+        let wave = ElasticModuli::new(material, scene.analysis.plane).dilatational_speed(material.density);
         Ok(Self {
             radius: 1.0 / total(&curvature),
             modulus: 1.0 / total(&compliance),
-            span: shortest(0).min(shortest(1)),
-            segment,
+            span,
+            segment: span / points,
+            memory: PASSED * span / wave,
         })
     }
 
@@ -141,10 +151,10 @@ impl Hertz {
     fn press(self, scene: &Scene) -> Result<Pressed, StudyError> {
         let mut found =
             Pressed { hertz: self, moments: vec![], balance: 0.0, momentum: f64::NAN, books: Books::default() };
-        let mut expected = [0.0; 2];
-        run(scene, &mut |simulation, frame| {
-            let (step, field) = (simulation.plan().step, &frame.fields()[0]);
-            let (forces, momentum) = (frame.contact_forces(step), field.momentum());
+        let (mut expected, mut mean) = ([0.0; 2], 0.0);
+        run(scene, &mut |simulation| {
+            let step = simulation.plan().step;
+            let (forces, (_, momentum)) = (simulation.contact_forces(), simulation.momenta()[0]);
             if simulation.steps() == 0 {
                 (expected, found.momentum) = (momentum, dot(momentum, momentum).sqrt());
             }
@@ -156,22 +166,23 @@ impl Hertz {
             if sample_is_due(simulation) {
                 found.books.enter(&simulation.sample());
             }
+            mean += (step / self.memory).min(1.0) * (dot(total, total).sqrt() - mean);
             if !forces.is_empty() {
-                found.moments.push(self.look(&forces, field));
+                found.moments.push(self.look(&forces, mean, simulation));
             }
         })?;
         Ok(found)
     }
 
-    /// What the forces and the points under them show.
-    fn look(&self, forces: &[ContactForce], field: &DiscreteField) -> Moment {
+    /// What the forces, of which the sum has this mean (N/m), and the points under them show.
+    fn look(&self, forces: &[ContactForce], force: f64, simulation: &Simulation) -> Moment {
         let total = sum(forces);
-        let force = dot(total, total).sqrt();
-        let normal = total.map(|f| f / force);
+        let now = dot(total, total).sqrt();
+        let normal = total.map(|f| f / now);
         let along = [-normal[1], normal[0]];
         let (half, peak) = (self.half_width(force), self.peak(force));
         let mean = |value: &dyn Fn(&ContactForce) -> f64| {
-            forces.iter().map(|f| dot(f.force, normal) * value(f)).sum::<f64>() / force
+            forces.iter().map(|f| dot(f.force, normal) * value(f)).sum::<f64>() / now
         };
         let middle = [0, 1].map(|d| mean(&|f| f.position[d]));
         let place = |position: [f64; 2], direction| dot([0, 1].map(|d| position[d] - middle[d]), direction);
@@ -182,16 +193,15 @@ impl Hertz {
             spread(&mut bins, [s - reach, s + reach], dot(f.force, normal) / (peak * half));
         }
         let (mut stress, mut count) = (0.0, 0);
-        for point in field.points() {
-            let (s, z) = (place(point.position, along) / half, place(point.position, normal) / half);
-            if s.abs() < UNDER[0] && z.abs() < UNDER[1] {
-                let [_, [xx, yy, xy]] = field.strain_and_stress(point);
+        simulation.for_each_point(&mut |PointState { body, present, stress: [xx, yy, xy], .. }| {
+            let (s, z) = (place(present, along) / half, place(present, normal) / half);
+            if body == 0 && s.abs() < UNDER[0] && z.abs() < UNDER[1] {
                 let traction = [xx * normal[0] + xy * normal[1], xy * normal[0] + yy * normal[1]];
                 stress -= dot(traction, normal) * (1.0 + z * z).sqrt() / peak;
                 count += 1;
             }
-        }
-        Moment { force, square, bins, stress: stress / f64::from(count) }
+        });
+        Moment { force, square: square * now / force, bins, stress: stress / f64::from(count) }
     }
 }
 
@@ -207,9 +217,9 @@ fn spread(bins: &mut [f64; BINS], [from, to]: [f64; 2], amount: f64) {
 
 /// What is seen at a step.
 struct Moment {
-    /// N/m.
+    /// Mean, N/m.
     force: f64,
-    /// Mean square of the place across the contact, m².
+    /// Mean square of the place across the contact times the present force over the mean, m².
     square: f64,
     /// Pressure over p0 across the contact.
     bins: [f64; BINS],
@@ -285,7 +295,7 @@ mod tests {
 
     #[test]
     fn the_semi_ellipse_carries_the_force_and_has_its_second_moment() {
-        let hertz = Hertz { radius: 0.3, modulus: 50.0, span: 0.1, segment: 0.1 };
+        let hertz = Hertz { radius: 0.3, modulus: 50.0, span: 0.1, segment: 0.1, memory: 1.0 };
         let force = 0.7;
         let (a, p0) = (hertz.half_width(force), hertz.peak(force));
         assert!((0.5 * PI * a * p0 - force).abs() < 1e-14);

@@ -181,15 +181,16 @@ impl Bars {
 
     fn collide(&self, scene: &Scene) -> Result<Collision, StudyError> {
         let (mut forces, mut books, mut momentum, mut exit) = (vec![], Books::default(), f64::NAN, [f64::NAN; 2]);
-        run(scene, &mut |simulation, frame| {
-            let force = sum(&frame.contact_forces(simulation.plan().step))[0];
-            forces.push([frame.time(), force]);
+        run(scene, &mut |simulation| {
+            let force = sum(&simulation.contact_forces())[0];
+            forces.push([simulation.time(), force]);
             if sample_is_due(simulation) {
                 books.enter(&simulation.sample());
             }
-            exit = [0, 1].map(|i| frame.fields()[i].momentum()[0] / frame.fields()[i].mass() / self.speed);
+            let momenta = simulation.momenta();
+            exit = [0, 1].map(|i| momenta[i].1[0] / momenta[i].0 / self.speed);
             if simulation.steps() == 0 {
-                momentum = frame.fields()[0].momentum()[0];
+                momentum = momenta[0].1[0];
             }
         })?;
         let middle = self.closing() + 0.5 * self.duration();

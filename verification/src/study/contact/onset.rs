@@ -59,10 +59,10 @@ fn approach(scene: &Scene) -> Result<Onset, StudyError> {
     let span = largest_spans(&scene.mesh)[0];
     let mut onset = Onset { gap: f64::NAN, sharing: f64::NAN, momentum: 0.0, force: f64::NAN };
     let mut first = vec![];
-    run(scene, &mut |simulation, frame| {
-        let now = (gap - closing * frame.time()) / span;
-        let forces = frame.contact_forces(simulation.plan().step);
-        let momenta: Vec<[f64; 2]> = frame.fields().iter().map(|field| field.momentum()).collect();
+    run(scene, &mut |simulation| {
+        let now = (gap - closing * simulation.time()) / span;
+        let forces = simulation.contact_forces();
+        let momenta: Vec<[f64; 2]> = simulation.momenta().into_iter().map(|(_, momentum)| momentum).collect();
         let size = |p: [f64; 2]| dot(p, p).sqrt();
         if first.is_empty() {
             first.clone_from(&momenta);
@@ -75,7 +75,8 @@ fn approach(scene: &Scene) -> Result<Onset, StudyError> {
                 onset.gap = now;
             }
         }
-        if onset.sharing.is_nan() && share_a_control_point(frame, span) {
+        if onset.sharing.is_nan() && simulation.updated_frame().is_some_and(|frame| share_a_control_point(frame, span))
+        {
             onset.sharing = now;
         }
         onset.force = size(super::sum(&forces)) / size(first[0]);

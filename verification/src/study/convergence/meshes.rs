@@ -1,6 +1,6 @@
 //! The meshes of a convergence study, one by one: for the study itself, and for what is timed.
 
-use fisura::scene::{Frame, Quadrature};
+use fisura::scene::Frame;
 
 use super::moving::Moving;
 use super::problem::Problem;
@@ -42,9 +42,9 @@ impl<'a> Meshes<'a> {
         (0..self.setup.degrees.len()).flat_map(of_degree).collect()
     }
 
-    /// Degree of a curve, and its quadrature.
-    pub(crate) fn degree_and_quadrature(&self, curve: CurveKey) -> (usize, Quadrature) {
-        (self.setup.degrees[curve.n], curve.variant.quadrature)
+    /// Degree of a curve.
+    pub(crate) fn degree(&self, curve: CurveKey) -> usize {
+        self.setup.degrees[curve.n]
     }
 
     fn mesh(&self, CurveKey { n, variant }: CurveKey, cells: usize) -> Result<Box<dyn OnMesh + 'a>, StudyError> {

@@ -75,14 +75,9 @@ impl<'a> Moving<'a> {
         let acceleration = &self.frame.fields()[0].nodes().acceleration;
         let sides = self.frame.patch().spaces.each_ref().map(sides);
         let mut squares = [[0.0; 2]; 3];
-        let of_points = self.frame.fields()[0].point_accelerations();
-        for (at, point) in self.frame.fields()[0].points().iter().enumerate() {
-            let of_grid = || {
-                acceleration
-                    .each_ref()
-                    .map(|a| self.frame.fields()[0].patch().evaluate(a, point.position).unwrap_or_default().value)
-            };
-            let a = of_points.as_ref().map_or_else(of_grid, |of_points| of_points[at]);
+        for point in self.frame.fields()[0].points() {
+            let patch = self.frame.fields()[0].patch();
+            let a = acceleration.each_ref().map(|a| patch.evaluate(a, point.position).unwrap_or_default().value);
             let velocity = [0, 1].map(|d: usize| point.velocity[d] + 0.5 * dt * a[d]);
             let reference = point.reference();
             let middle = (0..2).all(|d| is_in_middle(reference[d], sides[d]));
@@ -172,7 +167,6 @@ fn is_in_middle(x: f64, [left, right]: [f64; 2]) -> bool {
 fn broken(failure: Failure) -> StudyError {
     match failure {
         Failure::PhaseField(failure) => other(format!("the phase-field solve {failure}")),
-        Failure::Spans(failure) => other(format!("a solve of the quadrature by spans {failure}")),
         Failure::SingularMass => other("the mass matrix is singular to round-off"),
         Failure::NoStep => other("the critical time step is not a number"),
         Failure::Left([x, y]) => other(format!("a point left the mesh at ({x}, {y})")),
@@ -184,7 +178,6 @@ fn broken(failure: Failure) -> StudyError {
         Failure::NoEquilibrium(_) | Failure::Unbalanced(_) => other("there is no static state"),
         Failure::LostTraction { .. } => other("a part of a traction would not act"),
         Failure::Unconverged(_) | Failure::TooFast(_) => other("contact cannot follow the bodies"),
-        Failure::Folded(_) => other("the displacement at the boundary has no inverse"),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The scene of one mesh of a convergence study.
 
-use fisura::scene::{Frame, Quadrature, Scene, Shape};
+use fisura::scene::{Frame, Scene, Shape};
 use fisura::validate::validate;
 
 use super::problem::Problem;
@@ -19,7 +19,7 @@ pub(super) fn scene(
     problem: &Problem,
     n: usize,
     cells: usize,
-    Variant { transfer, quadrature, offset }: Variant,
+    Variant { transfer, offset }: Variant,
 ) -> Result<Scene, StudyError> {
     let mut material = problem.solution.material();
     if problem.equation == Equation::PhaseField {
@@ -37,10 +37,7 @@ pub(super) fn scene(
     let mut scene = plain.scene();
     scene.analysis.kinematics = problem.kinematics;
     if setup.frame == Frame::Updated {
-        (scene.analysis.frame, scene.analysis.quadrature) = (Frame::Updated, quadrature);
-        if quadrature == Quadrature::Points {
-            scene.analysis.transfer = transfer;
-        }
+        (scene.analysis.frame, scene.analysis.transfer) = (Frame::Updated, transfer);
     }
     let body = &mut scene.bodies[0];
     match setup.patch {

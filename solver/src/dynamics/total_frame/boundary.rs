@@ -1,0 +1,170 @@
+//! The boundary of a body that may meet others: where it is now, and forces on it as nodal forces.
+//!
+//! It is divided into steps of about a span. Their ends and the tangents there move with the control points,
+//!
+//! ```text
+//! x_k = Σ N_i(X_k) (X_i + u_i),      t_k = Σ ∂N_i(X_k)/∂s (X_i + u_i),
+//! ```
+//!
+//! and cubics lie between them ([`arc`](crate::contact::gap_potential::arc)). A force at a place of a cubic
+//! acts on the control points by the same shares, as its work asks; a couple acts on the tangent. Both keep
+//! momentum and angular momentum.
+//!
+//! The critical step counts a spring of twice κ all along the boundary: for two equal bodies that is what
+//! both feel of each other. With friction it resists motion along the boundary as it does across it.
+
+use crate::contact::gap_potential::arc::{Arc, Outline, rule, shares, tangent_shares};
+use crate::dynamics::surface::{SurfacePoint, bounding_parts, place_on};
+use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::vectors::dot;
+use crate::scene::edges::BoundaryEdge;
+use crate::scene::{Mesh, Shape};
+use crate::splines::patch::PointFunctions;
+use crate::splines::quadrature::Rule;
+
+/// The steps of the boundary of a shape, for a mesh whose shortest span has this length, m: part by part, the
+/// surface points and derivatives by the step (m) at the ends of the steps.
+fn steps(shape: &Shape, mesh: &Mesh, shortest: f64) -> Vec<Vec<(SurfacePoint, [f64; 2])>> {
+    let (min, max) = mesh.extent(shape);
+    let shape = if *shape == Shape::Patch { &Shape::Rectangle { min, max } } else { shape };
+    let of_part = |(edge, [from, to]): (BoundaryEdge, [f64; 2])| -> Vec<_> {
+        let count = (edge.length() * (to - from) / shortest).ceil().max(1.0);
+        let step = (to - from) / count;
+        (0..=count as usize)
+            .map(|i| {
+                let (point, tangent) = place_on(&edge, from + i as f64 * step, 0.5 * (from + to));
+                (point, tangent.map(|x| x * step))
+            })
+            .collect()
+    };
+    bounding_parts(shape).into_iter().map(of_part).collect()
+}
+
+/// The boundary of a shape at rest, as arcs.
+pub(crate) fn arcs_at_rest(shape: &Shape, mesh: &Mesh, shortest: f64) -> Vec<Arc> {
+    let rule = rule();
+    let arc = |ends: &[(SurfacePoint, [f64; 2])]| {
+        Arc::new([ends[0].0.position, ends[1].0.position], [ends[0].1, ends[1].1], &rule)
+    };
+    steps(shape, mesh, shortest).iter().flat_map(|part| part.windows(2).map(arc)).collect()
+}
+
+/// A place on the boundary whose position and tangent follow the control points.
+#[derive(Debug, Clone)]
+struct BoundaryNode {
+    /// At t = 0, m.
+    position: [f64; 2],
+    tangent: [f64; 2],
+    /// Control point, share in the position, and in the tangent.
+    shares: Vec<(usize, [f64; 2])>,
+}
+
+impl BoundaryNode {
+    fn new(position: [f64; 2], tangent: [f64; 2], functions: &PointFunctions) -> Self {
+        let slope = |gradient: &[f64; 2]| fault!("boundary-with-fixed-tangents", dot(*gradient, tangent) => 0.0);
+        let share = |((at, value), gradient): (&(usize, f64), &[f64; 2])| (*at, [*value, slope(gradient)]);
+        Self { position, tangent, shares: functions.values.iter().zip(&functions.gradients).map(share).collect() }
+    }
+
+    /// Position and tangent under a displacement, m.
+    fn now(&self, displacement: &VectorField) -> [[f64; 2]; 2] {
+        let mut now = [self.position, self.tangent];
+        for &(at, shares) in &self.shares {
+            for (now, share) in now.iter_mut().zip(shares) {
+                (0..2).for_each(|d| now[d] += share * displacement[d][at]);
+            }
+        }
+        now
+    }
+
+    /// Adds forces on the position and on the tangent.
+    fn push(&self, on_position: [f64; 2], on_tangent: [f64; 2], forces: &mut VectorField) {
+        for &(at, [position, tangent]) in &self.shares {
+            (0..2).for_each(|d| forces[d][at] += position * on_position[d] + tangent * on_tangent[d]);
+        }
+    }
+}
+
+/// The boundary of a body.
+#[derive(Debug, Clone)]
+pub(super) struct MaterialBoundary {
+    nodes: Vec<BoundaryNode>,
+    /// Node at which each arc begins, and the arc at t = 0; it ends at the next node.
+    arcs: Vec<(usize, Arc)>,
+    /// κ, Pa/m.
+    stiffness: f64,
+    friction: bool,
+    rule: Rule,
+}
+
+impl MaterialBoundary {
+    /// The boundary of a shape on a mesh with this shortest span (m), stiffness κ of contact (Pa/m), and
+    /// friction or not; `functions` finds the shape functions at a place.
+    ///
+    /// # Errors
+    /// Those of `functions`.
+    pub(super) fn new<E>(
+        (shape, mesh): (&Shape, &Mesh),
+        (shortest, stiffness, friction): (f64, f64, bool),
+        functions: impl Fn(&SurfacePoint) -> Result<PointFunctions, E>,
+    ) -> Result<Self, E> {
+        let (mut nodes, mut arcs, rule) = (Vec::new(), Vec::new(), rule());
+        for part in steps(shape, mesh, shortest) {
+            for (step, (point, tangent)) in part.iter().enumerate() {
+                if let Some((end, end_tangent)) = part.get(step + 1) {
+                    let arc = Arc::new([point.position, end.position], [*tangent, *end_tangent], &rule);
+                    arcs.push((nodes.len(), arc));
+                }
+                nodes.push(BoundaryNode::new(point.position, *tangent, &functions(point)?));
+            }
+        }
+        Ok(Self { nodes, arcs, stiffness, friction, rule })
+    }
+
+    /// The arcs under a displacement, m.
+    pub(super) fn outline(&self, displacement: &VectorField) -> Outline {
+        let now: Vec<_> = self.nodes.iter().map(|node| node.now(displacement)).collect();
+        let through = |(first, arc): &(usize, Arc)| {
+            let ([a, s], [b, t]) = (now[*first], now[first + 1]);
+            arc.through([a, b], [s, t])
+        };
+        Outline { arcs: self.arcs.iter().map(through).collect(), spring: self.stiffness }
+    }
+
+    /// Adds a force at a place of an arc, and what turns the tangent there (see [`Self::turning`]).
+    pub(super) fn push(&self, (arc, t): (usize, f64), force: [f64; 2], turning: [f64; 2], forces: &mut VectorField) {
+        let (first, _) = self.arcs[arc];
+        let ([a, b, s, e], [da, db, ds, de]) = (shares(t), tangent_shares(t));
+        let on = |share: f64, slope: f64| [0, 1].map(|d| share * force[d] + slope * turning[d]);
+        self.nodes[first].push(on(a, da), on(s, ds), forces);
+        self.nodes[first + 1].push(on(b, db), on(e, de), forces);
+    }
+
+    /// What acts on the tangent at a place so that it is a couple, N.
+    pub(super) fn turning(&self, (arc, t): (usize, f64), couple: f64, displacement: &VectorField) -> [f64; 2] {
+        let (first, at_rest) = &self.arcs[arc];
+        let [[a, s], [b, e]] = [first, &(first + 1)].map(|at| self.nodes[*at].now(displacement));
+        let [x, y] = at_rest.through([a, b], [s, e]).tangent(t);
+        let square = x * x + y * y;
+        [-couple * y / square, couple * x / square]
+    }
+
+    /// Adds what springs along the boundary answer to a motion of the control points.
+    pub(super) fn add_springs(&self, motion: &VectorField, out: &mut VectorField) {
+        for (number, (first, arc)) in self.arcs.iter().enumerate() {
+            let of = |node: &BoundaryNode| {
+                let [now, tangent] = node.now(motion);
+                [[0, 1].map(|d| now[d] - node.position[d]), [0, 1].map(|d| tangent[d] - node.tangent[d])]
+            };
+            let [[a, s], [b, t]] = [of(&self.nodes[*first]), of(&self.nodes[first + 1])];
+            for (place, at) in arc.places(&self.rule).zip(&self.rule.points) {
+                let [of_a, of_b, of_s, of_t] = shares(*at);
+                let moved = [0, 1].map(|d| of_a * a[d] + of_b * b[d] + of_s * s[d] + of_t * t[d]);
+                let stiffness = fault!("springs-of-the-boundary-left-out", 2.0 => 0.0) * self.stiffness * place.length;
+                let across = dot(moved, place.normal);
+                let answer = if self.friction { moved } else { place.normal.map(|n| across * n) };
+                self.push((number, *at), answer.map(|x| stiffness * x), [0.0; 2], out);
+            }
+        }
+    }
+}
