@@ -1,8 +1,9 @@
 //! Planted errors: proof that the checks of the verification can fail.
 //!
-//! With the feature `faults`, which no release has, one error can be planted in a process with `plant`, once and
-//! before anything is simulated; `cargo xtask faults` does so and looks for checks that turn red. The errors are
-//! listed in `xtask/src/faults/table.toml`. Each has its sites in the code, here and where results are judged:
+//! With the feature `faults`, which no release has, one error can be planted in a process with `plant`, once
+//! and before anything is simulated; `cargo xtask faults` does so and looks for checks that turn red. The
+//! errors are listed in `xtask/src/faults/table.toml`. Each has its sites in the code, here and where results
+//! are judged:
 //! `fault!("gradient-sign", right => wrong)`. Without the feature that is `right` and nothing else. With it,
 //! every site also notes that it was passed, so that a case which never comes by one need not be run with
 //! that error: `take_passed`.

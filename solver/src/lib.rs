@@ -74,10 +74,9 @@
 //! # Not modelled
 //!
 //! Three dimensions, plasticity, rate effects and heat. [`validate::validate`] refuses what a scene can ask
-//! for and does not exist: general patches, slits, parts of sides, conditions that vary in time, probes and
-//! static starts in the updated frame; the consistent mass there or where a body
-//! cuts spans; contact of a body with itself beside fracture, quadrature by spans or XPIC; fragments
-//! with tractions; and with quadrature by spans fracture, tractions, small strains, driven sides, transfers.
+//! for and does not exist: general patches, slits, probes and static starts in the updated frame; the
+//! consistent mass there or where a body cuts spans; contact of a body with itself beside fracture or XPIC, and
+//! in the total frame; fragments with tractions, and with fields of their own in the total frame.
 //!
 //! # Example
 //!

@@ -1,11 +1,11 @@
-//! The error of a motion in which points cross spans, against time.
+//! The error of a motion in both frames, against time.
 
 use super::pareto::cost_to_reach;
 use super::work_precision::{Chart, Cost, Line, lines, on_finest};
 use super::{Exhibit, Records};
 use crate::number::plain;
 
-/// Errors at which points and spans are compared.
+/// Errors at which the frames are compared.
 const ERRORS: [f64; 6] = [0.05, 0.02, 0.01, 0.008, 0.005, 0.003];
 
 /// One figure.
@@ -16,30 +16,30 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
     }
     let chart = Chart {
         id: "timing/motion".into(),
-        title: "Points that cross spans: error of the displacement against time".into(),
+        title: "A body that moves: error of the displacement against time".into(),
         lines: &lines,
         front: None,
         cost: Cost::Time,
         axis: "processor time of the run (s)",
         uncertainty: 0.0,
     };
-    let caption = "Axis-aligned displacement of finite strain (convergence/gauss-axis-aligned, moving-axis-aligned), one thread; against the exact motion";
+    let caption = "Axis-aligned displacement of finite strain (convergence/axis-aligned, moving-axis-aligned), one thread; against the exact motion";
     let reading = format!("{} {}", at_equal_error(&lines), on_finest(&lines, "spans"));
     vec![chart.plot(caption, reading)]
 }
 
-/// What the best way by points and the best by spans take to an error that both reach.
+/// What the best ways in the updated and in the total frame take to an error that both reach.
 fn at_equal_error(lines: &[Line]) -> String {
-    let best = |spans: bool, error: f64| {
-        let by_spans = |line: &&Line| line.records.iter().all(|record| record.id.contains("-spans/"));
-        let of = lines.iter().filter(|line| by_spans(line) == spans);
+    let best = |total: bool, error: f64| {
+        let in_total = |line: &&Line| line.records.iter().all(|record| record.id.contains("-total/"));
+        let of = lines.iter().filter(|line| in_total(line) == total);
         let costs = of.filter_map(|line| Some((line.label.as_str(), cost_to_reach(&line.points(Cost::Time), error)?)));
         costs.min_by(|a, b| a.1.total_cmp(&b.1))
     };
     let sentence = |&error: &f64| {
-        let ((points, slow), (spans, fast)) = (best(false, error)?, best(true, error)?);
+        let ((updated, slow), (total, fast)) = (best(false, error)?, best(true, error)?);
         let [percent, slow_s, fast_s, ratio] = [100.0 * error, slow, fast, slow / fast].map(|value| plain(value, 2));
-        Some(format!("For an error of {percent} %: {points}, {slow_s} s; {spans}, {fast_s} s; ratio {ratio}."))
+        Some(format!("For an error of {percent} %: {updated}, {slow_s} s; {total}, {fast_s} s; ratio {ratio}."))
     };
     ERRORS.iter().filter_map(sentence).collect::<Vec<_>>().join(" ")
 }
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn points_and_spans_are_compared_at_the_errors_that_both_reach() {
+    fn frames_are_compared_at_the_errors_that_both_reach() {
         let run = |word: &str, seconds: f64, error: f64| {
             let mut record = BenchRecord::new(format!("motion/p2-{word}/{seconds}"), word, 1.0, "unknown");
             record.samples = vec![Sample { wall_s: seconds, cpu_s: seconds }];
@@ -60,15 +60,15 @@ mod tests {
             record.summarise();
             record
         };
-        let records = [run("points", 1.0, 0.05), run("points", 8.0, 0.01), run("spans", 2.0, 0.01)];
+        let records = [run("points", 1.0, 0.05), run("points", 8.0, 0.01), run("total", 2.0, 0.01)];
         let Exhibit::Plot(plot) = exhibits(Records(&records)).remove(0) else { panic!("a plot") };
         assert!(
-            plot.reading.starts_with("For an error of 5 %: points, 1 s; spans, 2 s; ratio 0.5."),
+            plot.reading.starts_with("For an error of 5 %: points, 1 s; total, 2 s; ratio 0.5."),
             "{}",
             plot.reading
         );
         assert!(
-            plot.reading.contains("For an error of 1 %: points, 8 s; spans, 2 s; ratio 4.")
+            plot.reading.contains("For an error of 1 %: points, 8 s; total, 2 s; ratio 4.")
                 && !plot.reading.contains("0.5 %:")
         );
     }

@@ -20,8 +20,7 @@ pub struct Corner {
     pub body: usize,
     /// Position now, m: in the total frame it moves with the body, in the updated frame it stays.
     pub position: [f64; 2],
-    /// Velocity of the nodal field of the body, m/s; in the updated frame that of half a step before. Where
-    /// spans integrate it is fitted to the points.
+    /// Velocity of the nodal field of the body, m/s; in the updated frame that of half a step before.
     pub velocity: [f64; 2],
     /// Phase field of a body that fractures.
     pub phase: Option<f64>,

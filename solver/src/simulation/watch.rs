@@ -143,17 +143,26 @@ impl Simulation {
         }
         let largest = larger(self.energy_in, sample.largest_term());
         let by_contact = sample.contact.map_or(0.0, |contact| contact.loss - contact.friction);
+        let damped = "motion that varies over one or two spans is damped; refine the mesh, or use frame = \"total\" and \
+                      kinematics = \"finite\"";
+        let contact = match &self.frame {
+            Bodies::Updated(_) => ("contact without friction took", damped),
+            Bodies::Total(_) => ("overlaps of boundaries hold", "contact is soft; raise contact.stiffness"),
+        };
         let losses = [
-            ("transfers between points and grid", "transfer_loss_j", sample.transfer_loss.unwrap_or(0.0)),
-            ("contact without friction", "contact_loss_j less friction_j", by_contact),
+            (
+                ("transfers between points and grid took", damped),
+                "transfer_loss_j",
+                sample.transfer_loss.unwrap_or(0.0),
+            ),
+            (contact, "contact_loss_j less friction_j", by_contact),
         ];
-        for (who, column, loss) in losses {
+        for ((who, remedy), column, loss) in losses {
             if loss > LOSS_LIMIT * largest {
-                self.warnings.push(format!(
-                    "{who} took {loss:.3e} J ({column}), {:.0} % of the largest energy of the run: motion that varies \
-                     over one or two spans is damped; refine the mesh, or use quadrature = \"gauss\" for elastic bodies",
-                    100.0 * loss / largest
-                ));
+                let part = 100.0 * loss / largest;
+                let what =
+                    format!("{who} {loss:.3e} J ({column}), {part:.0} % of the largest energy of the run: {remedy}");
+                self.warnings.push(what);
             }
         }
     }

@@ -70,7 +70,7 @@ fn without_jump(key: &str, prescribed: &Prescribed, fix: [bool; 2], equilibrium:
     }
 }
 
-/// What spans that integrate, bodies that meet themselves and the consistent mass do not have.
+/// What bodies that meet themselves and the consistent mass do not have.
 fn supported(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) {
     let varying = [
         ("displacement", boundary.prescribed.is_displacement()),

@@ -1,8 +1,8 @@
 //! What an error costs where bodies move: the axis-aligned displacement of `convergence/axis-aligned` in the
-//! total frame, and in the updated frame, where points cross spans, on one thread. The errors are those of the
-//! displacement against the exact solution; what is timed is the whole run with its preparation. Points have
-//! the best layout and step that are known for them, equally spaced 4 × 4 points and steps in proportion to h
-//! (`convergence/moving-axis-aligned`).
+//! total frame, and in the updated frame, where points cross spans, on one thread. The errors are those of
+//! the displacement against the exact solution; what is timed is the whole run with its preparation. Points
+//! have the best layout and step that are known for them, equally spaced 4 × 4 points and steps in
+//! proportion to h (`convergence/moving-axis-aligned`).
 
 use super::record::{AnswerError, BenchRecord};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};

@@ -35,6 +35,8 @@ use crate::study::{Findings, StudyError};
 
 /// Share of the largest force above which a step counts.
 const NEAR_THE_TOP: f64 = 0.97;
+/// Steps from one look at the points under the contact to the next.
+const BETWEEN_LOOKS: usize = 4;
 /// Spans that a wave passes in the time over which the force is averaged.
 const PASSED: f64 = 8.0;
 /// Bins across the contact, and the half width they cover, in a.
@@ -149,8 +151,14 @@ impl Hertz {
     }
 
     fn press(self, scene: &Scene) -> Result<Pressed, StudyError> {
-        let mut found =
-            Pressed { hertz: self, moments: vec![], balance: 0.0, momentum: f64::NAN, books: Books::default() };
+        let mut found = Pressed {
+            hertz: self,
+            forces: vec![],
+            moments: vec![],
+            balance: 0.0,
+            momentum: f64::NAN,
+            books: Books::default(),
+        };
         let (mut expected, mut mean) = ([0.0; 2], 0.0);
         run(scene, &mut |simulation| {
             let step = simulation.plan().step;
@@ -168,7 +176,10 @@ impl Hertz {
             }
             mean += (step / self.memory).min(1.0) * (dot(total, total).sqrt() - mean);
             if !forces.is_empty() {
-                found.moments.push(self.look(&forces, mean, simulation));
+                found.forces.push(mean);
+                if simulation.steps().is_multiple_of(BETWEEN_LOOKS) {
+                    found.moments.push(self.look(&forces, mean, simulation));
+                }
             }
         })?;
         Ok(found)
@@ -230,6 +241,8 @@ struct Moment {
 /// What a run gave.
 struct Pressed {
     hertz: Hertz,
+    /// Means of the force in every step with contact, N/m.
+    forces: Vec<f64>,
     moments: Vec<Moment>,
     /// Largest difference between the momentum of the body and the impulses on it, kg m/s.
     balance: f64,
@@ -248,8 +261,8 @@ impl Pressed {
 
     /// Whether the force has its largest value well inside the run.
     fn share_after_the_top(&self) -> f64 {
-        let top = self.moments.iter().enumerate().max_by(|a, b| a.1.force.total_cmp(&b.1.force));
-        top.map_or(f64::NAN, |(index, _)| 1.0 - (index + 1) as f64 / self.moments.len() as f64)
+        let top = self.forces.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+        top.map_or(f64::NAN, |(index, _)| 1.0 - (index + 1) as f64 / self.forces.len() as f64)
     }
 
     fn pressure(&self) -> Table {
