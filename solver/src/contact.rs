@@ -33,7 +33,6 @@ pub mod impulse;
 pub(crate) mod motion;
 mod outline;
 pub(crate) mod rigid;
-mod seams;
 mod state;
 pub(crate) mod surface;
 pub(crate) mod view;
@@ -62,8 +61,6 @@ const FACING: f64 = -0.5;
 /// the flanks of a wedge of half angle 3° or more. Beside a right corner that is pressed in the faces of the
 /// corner do not meet the face beneath.
 const CUTTING: f64 = -0.05;
-/// Depth in spans from which on a slice of a body is not inside another, but on the far side of it.
-const FAR_SIDE: f64 = 0.5;
 /// Gap up to which a constraint is looked at, in spans, unless more could close in a step.
 const NEAR: f64 = 0.1;
 
@@ -141,9 +138,6 @@ impl ContactSolver {
                 }
             }
         }
-        if bodies.iter().any(|body| body.copies.is_some()) {
-            encounters = seams::pooled(encounters, bodies);
-        }
         self.constraints = encounters.iter().filter_map(|encounter| self.constraint(encounter, bodies)).collect();
         Ok(())
     }
@@ -174,10 +168,6 @@ impl ContactSolver {
                 let Some(normal) = unit(along) else { continue };
                 let closing = sign * dot([0, 1].map(|d| displacement[d] - nearest.displacement[d]), normal);
                 if nearest.distance > larger(NEAR * self.reach, AHEAD * closing) {
-                    continue;
-                }
-                let one_body = surfaces[0].slice_of.is_some() && surfaces[0].slice_of == surfaces[1].slice_of;
-                if one_body && nearest.distance < -FAR_SIDE * self.reach {
                     continue;
                 }
                 if closing > MOST * self.reach {

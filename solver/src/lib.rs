@@ -55,7 +55,7 @@
 //! | [`simulation`] | – | the run: steps, samples, checkpoints, breakdowns |
 //!
 //! FLIP, XPIC and the other transfers of velocities are in [`dynamics::updated_frame`], as are
-//! fragments of bodies that are cracked through, and contact of a body with itself.
+//! fragments of bodies that are cracked through.
 //!
 //! Where the paper prints a slip, the module that uses the equation says so.
 //!
@@ -75,8 +75,8 @@
 //!
 //! Three dimensions, plasticity, rate effects and heat. [`validate::validate`] refuses what a scene can ask
 //! for and does not exist: general patches, slits, probes and static starts in the updated frame; the
-//! consistent mass there or where a body cuts spans; contact of a body with itself beside fracture or XPIC, and
-//! in the total frame; fragments with tractions, and with fields of their own in the total frame.
+//! consistent mass there or where a body cuts spans; contact of a body with itself there; fragments with
+//! tractions, and with fields of their own in the total frame.
 //!
 //! # Example
 //!

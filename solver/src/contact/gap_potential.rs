@@ -13,7 +13,8 @@
 //! closed. The price is a depth of p/κ under a pressure p: a strain times h/α, with the stiffness α over that
 //! of a span which the scene chooses (`contact.stiffness`). The critical step counts κ.
 //!
-//! Friction acts beside it ([`friction`]). Rigid bodies ([`rigid_outline`]) have an outline and no stiffness
+//! The boundary of a body may also meet itself, where [`own_pairs`] says so. Friction acts beside it
+//! ([`friction`]). Rigid bodies ([`rigid_outline`]) have an outline and no stiffness
 //! of their own; they work on the others with their own velocity V, `−(F(n) · V(n) + F(n+1) · V(n+1)) dt/2`
 //! with the forces F on them.
 //!
@@ -24,6 +25,7 @@
 
 pub(crate) mod arc;
 pub(crate) mod friction;
+pub(crate) mod own_pairs;
 pub(crate) mod rigid_outline;
 
 use super::ContactLedger;
@@ -33,9 +35,13 @@ use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::vectors::dot;
 use crate::splines::quadrature::Rule;
-use arc::{Arc, Outline, around, nearest, rule};
+use arc::{Outline, around, nearest, rule};
 use friction::{ContactPoint, Friction};
+use own_pairs::OwnPairs;
 use rigid_outline::RigidOutline;
+
+/// Depth, in spans, from which on a boundary is not inside its own body, but on the far side of it.
+const FAR_SIDE: f64 = 0.5;
 
 /// A pair of opposite forces, and that of friction beside it.
 #[derive(Debug, Clone, Copy)]
@@ -68,6 +74,8 @@ pub(crate) struct GapPotential {
     rule: Rule,
     /// They are counted after the bodies that deform.
     rigid: Vec<RigidOutline>,
+    /// What may meet of each body that deforms, if bodies may meet themselves.
+    own: Vec<OwnPairs>,
     friction: Option<Friction>,
     forces: Vec<GapForce>,
     energy: f64,
@@ -77,13 +85,14 @@ pub(crate) struct GapPotential {
 }
 
 impl GapPotential {
-    /// Bodies that do not touch on a mesh whose shortest span has this length, m, with the rigid ones among
-    /// them and a coefficient of friction.
-    pub(crate) fn new(span: f64, friction: f64, rigid: Vec<RigidOutline>) -> Self {
+    /// Bodies that do not touch on a mesh whose shortest span has this length, m, with a coefficient of
+    /// friction, the rigid ones among them, and what may meet of each other one, if they may meet themselves.
+    pub(crate) fn new(span: f64, friction: f64, rigid: Vec<RigidOutline>, own: Vec<OwnPairs>) -> Self {
         Self {
             reach: span,
             rule: rule(),
             rigid,
+            own,
             friction: Friction::new(friction),
             forces: Vec::new(),
             energy: 0.0,
@@ -97,15 +106,16 @@ impl GapPotential {
     /// # Errors
     /// If a boundary is a span deep in another body.
     pub(crate) fn find(&mut self, mut outlines: Vec<Outline>, time: f64, dt: f64) -> Result<(), TooFast> {
-        let deformable = outlines.len();
+        let (deformable, alone) = (outlines.len(), self.own.len());
         outlines.extend(self.rigid.iter().map(|body| body.at(time)));
         self.forces.clear();
         self.energy = 0.0;
         self.friction.iter_mut().for_each(Friction::begin);
-        let boxes: Vec<_> = outlines.iter().map(|outline| around(outline.arcs.iter().map(Arc::bounds))).collect();
+        let boxes: Vec<_> = outlines.iter().map(|outline| around(outline.boxes.iter().copied())).collect();
         for a in 0..outlines.len() {
             let deforms = |b: usize| smaller(outlines[a].spring, outlines[b].spring).is_finite();
-            for b in (0..outlines.len()).filter(|&b| b != a && deforms(b)) {
+            let meets = |b: usize| if a == b { a < alone } else { deforms(b) };
+            for b in (0..outlines.len()).filter(|&b| meets(b)) {
                 let low = [0, 1].map(|d| larger(boxes[a][0][d], boxes[b][0][d]));
                 let high = [0, 1].map(|d| smaller(boxes[a][1][d], boxes[b][1][d]));
                 if (0..2).all(|d| low[d] <= high[d]) {
@@ -124,20 +134,19 @@ impl GapPotential {
 
     /// What the boundary of a in a box feels of b.
     fn compare(&mut self, [a, b]: [usize; 2], outlines: &[Outline], common: [[f64; 2]; 2]) -> Result<(), TooFast> {
-        let meets = |arc: &Arc, [low, high]: [[f64; 2]; 2]| {
-            let [own_low, own_high] = arc.bounds();
-            (0..2).all(|d| own_high[d] >= low[d] && own_low[d] <= high[d])
-        };
-        let within = |body: usize, region: [[f64; 2]; 2]| {
-            outlines[body].arcs.iter().enumerate().filter(move |(_, arc)| meets(arc, region))
-        };
-        let wider = [common[0].map(|x| x - self.reach), common[1].map(|x| x + self.reach)];
-        let other: Vec<(usize, &Arc)> = within(b, wider).collect();
+        let wider = |[low, high]: [[f64; 2]; 2]| [low.map(|x| x - self.reach), high.map(|x| x + self.reach)];
+        let own = self.own.get(a).filter(|_| a == b);
+        let mut other: Vec<usize> = outlines[b].within(wider(common)).collect();
         let spring = smaller(outlines[a].spring, outlines[b].spring);
-        for (number, arc) in within(a, common) {
-            for (point, place) in arc.places(&self.rule).enumerate() {
-                let Some(nearest) = nearest(place.position, &other) else { continue };
-                if dot(place.normal, nearest.normal) >= 0.0 || nearest.depth <= 0.0 {
+        for number in outlines[a].within(common) {
+            if let Some(own) = own {
+                let near = outlines[b].within(wider(outlines[a].boxes[number]));
+                other = near.filter(|other| own.may_meet(number, *other)).collect();
+            }
+            for (point, place) in outlines[a].arcs[number].places(&self.rule).enumerate() {
+                let Some(nearest) = nearest(place.position, &outlines[b], &other) else { continue };
+                let beyond = own.is_some() && nearest.depth > FAR_SIDE * self.reach;
+                if dot(place.normal, nearest.normal) >= 0.0 || nearest.depth <= 0.0 || beyond {
                     continue;
                 }
                 let depth = nearest.depth;
@@ -209,7 +218,7 @@ impl GapPotential {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { reach: _, rule: _, rigid: _, friction, forces: _, energy: _, power: _, work } = self;
+        let Self { reach: _, rule: _, rigid: _, own: _, friction, forces: _, energy: _, power: _, work } = self;
         if let Some(friction) = friction {
             friction.exchange(archive)?;
         }
@@ -222,7 +231,8 @@ impl GapPotential {
     /// Heap memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
         let rigid: usize = self.rigid.iter().map(RigidOutline::bytes).sum();
-        rigid + self.forces.len() * size_of::<GapForce>() + self.friction.as_ref().map_or(0, Friction::bytes)
+        let own: usize = self.own.iter().map(OwnPairs::bytes).sum();
+        rigid + own + self.forces.len() * size_of::<GapForce>() + self.friction.as_ref().map_or(0, Friction::bytes)
     }
 }
 

@@ -166,7 +166,6 @@ impl ContactSolver {
         let mut nodes = Vec::new();
         let mut numbers = HashMap::new();
         let mut number = |body: usize, at: usize| {
-            let (body, at) = bodies[body].original(at).unwrap_or((body, at));
             *numbers.entry((body, at)).or_insert_with(|| {
                 let view = &bodies[body];
                 let before = [0, 1].map(|c| view.velocity[c][at]);
@@ -188,9 +187,6 @@ impl ContactSolver {
                 }
                 None => self.rigid[b - bodies.len()].velocity_at(constraint.position),
             };
-            if bodies[a].copies.is_some() {
-                add_up(&mut weights);
-            }
             let impulse = self
                 .last
                 .get(&(constraint.bodies, constraint.square))
@@ -203,18 +199,6 @@ impl ContactSolver {
         }
         Problem { nodes, constraints, unconverged: None }
     }
-}
-
-/// Adds up the weights of a node that two slices of a body share.
-fn add_up(weights: &mut Vec<(usize, f64)>) {
-    let mut sums: Vec<(usize, f64)> = Vec::with_capacity(weights.len());
-    for &(node, weight) in &*weights {
-        match sums.iter_mut().find(|(other, _)| *other == node) {
-            Some((_, sum)) => *sum += weight,
-            None => sums.push((node, weight)),
-        }
-    }
-    *weights = sums;
 }
 
 impl Iteration {

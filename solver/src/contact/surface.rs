@@ -22,8 +22,6 @@ pub struct Surface {
     pub(super) neighbours: Vec<[Option<u32>; 2]>,
     /// Where it was without material first, m.
     pub(super) opened: Option<[f64; 2]>,
-    /// Number of the body it bounds a slice of: it goes on in others beyond its ends.
-    pub(super) slice_of: Option<usize>,
 }
 
 /// The point of a boundary that is nearest to a position.
@@ -138,7 +136,7 @@ impl Surface {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { vertices, displacements, segments, neighbours: _, opened, slice_of: _ } = self;
+        let Self { vertices, displacements, segments, neighbours: _, opened } = self;
         archive.value(vertices)?;
         archive.value(displacements)?;
         archive.value(segments)?;
@@ -163,11 +161,6 @@ impl Surface {
             moment = [0, 1].map(|d| moment[d] + part * (a[d] + b[d]) / 3.0);
         }
         moment.map(|m| m / area)
-    }
-
-    /// Ends of its segments, m.
-    pub(crate) fn lines(&self) -> Vec<[[f64; 2]; 2]> {
-        (0..self.segments.len() as u32).map(|segment| self.ends(segment)).collect()
     }
 
     /// Positions of the vertices, m.
@@ -217,27 +210,13 @@ impl Surface {
         }
         let (square, segment, t, from) = best?;
         let distance = square.sqrt();
-        if distance > reach || (self.slice_of.is_some() && self.is_beyond(segment, t)) {
+        if distance > reach {
             return None;
         }
         let normal = self.normal_at(segment, t);
         let outside = dot(from, normal) >= 0.0;
         let sign = if outside { 1.0 } else { fault!("gap-without-sign", -1.0 => 1.0) };
         Some(Nearest { distance: sign * distance, normal, displacement: self.way_at(segment, t) })
-    }
-
-    /// Whether a place at a fraction t of a segment is an end of the boundary.
-    fn is_beyond(&self, segment: u32, t: f64) -> bool {
-        let [from, to] = self.segments[segment as usize].map(|vertex| self.neighbours[vertex as usize]);
-        (t <= 0.0 && from[0].is_none()) || (t >= 1.0 && to[1].is_none())
-    }
-
-    /// The part of it whose places just under it (m) belong to a slice of the body of that number.
-    pub(crate) fn part(&self, body: usize, spacing: f64, belongs: impl Fn([f64; 2]) -> bool) -> Self {
-        let mut part = Self { slice_of: Some(body), ..self.clone() };
-        part.keep(spacing, belongs);
-        part.join();
-        part
     }
 
     /// Keeps the segments whose places half a spacing of points (m) under them belong.

@@ -1,16 +1,13 @@
 //! What contact sees of a body: its boundary, where it has material, and how its control points answer.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::surface::Surface;
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::particles::points::Cells;
 use crate::splines::patch::Patch;
 
-/// Control points that are copies of those of another body: their numbers, and those of body and original.
-pub(crate) type Copies = BTreeMap<usize, (usize, usize)>;
-
-/// A body, or a slice of one that may meet itself, as contact sees it, at the present whole step.
+/// A body as contact sees it, at the present whole step.
 #[derive(Debug, Clone, Copy)]
 pub struct BodyView<'a> {
     /// The part of the patch its nodal fields cover.
@@ -27,8 +24,6 @@ pub struct BodyView<'a> {
     pub mass: &'a [f64],
     /// See [`Self::mass`].
     pub inverse_mass: &'a [f64],
-    /// Control points that a slice shares with others.
-    pub(crate) copies: Option<&'a Copies>,
     /// Control points and components whose velocity is prescribed.
     pub fixed: &'a BTreeSet<(usize, usize)>,
     /// Velocity half a step ago, m/s.
@@ -38,11 +33,6 @@ pub struct BodyView<'a> {
 }
 
 impl BodyView<'_> {
-    /// The body and control point that a control point is a copy of, if it is one.
-    pub(crate) fn original(&self, at: usize) -> Option<(usize, usize)> {
-        self.copies?.get(&at).copied()
-    }
-
     /// Inverse masses with which the components of a control point answer to a force, m/kg: zero where the
     /// velocity is prescribed or the mass negligible.
     pub(crate) fn mobility(&self, at: usize) -> [f64; 2] {

@@ -10,8 +10,7 @@
 //!
 //! Every body is a discrete field of its own ([`field`]), with its own mass, momentum, force and phase field
 //! on the shared patch. Bodies meet through [`crate::contact`], if the scene declares it: its impulses are
-//! part of the kick. A body that is cracked through becomes several fields ([`fragments`]), and so does one
-//! that may meet itself ([`self_contact`]).
+//! part of the kick. A body that is cracked through becomes several fields ([`fragments`]).
 //!
 //! # The critical step
 //!
@@ -44,7 +43,6 @@ mod parting;
 mod pieces;
 pub(crate) mod pointwise_fracture;
 mod rotation;
-mod self_contact;
 pub(crate) mod smoothing;
 mod state;
 pub(crate) mod stiffness;
@@ -73,7 +71,7 @@ use fragments::Fragments;
 pub struct UpdatedFrame {
     patch: Arc<Patch>,
     fields: Vec<DiscreteField>,
-    /// Number of the body that each field is of, is a fragment of or a slice of.
+    /// Number of the body that each field is of, or is a fragment of.
     bodies: Vec<usize>,
     contact: Option<ContactSolver>,
     /// If bodies may fall into fragments.
@@ -91,21 +89,14 @@ impl UpdatedFrame {
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
         let patch = Arc::new(Patch::new(&scene.mesh));
         let deformable = scene.bodies.iter().filter(|body| !body.rigid);
-        let meets_itself = scene.contact.as_ref().is_some_and(|contact| contact.self_contact);
-        let (mut fields, mut bodies) = (Vec::new(), Vec::new());
-        for (number, body) in deformable.enumerate() {
-            let whole = DiscreteField::new(scene, body, &patch)?;
-            let slices = if meets_itself { whole.slices(number, fields.len())? } else { None };
-            fields.extend(slices.unwrap_or_else(|| vec![whole]));
-            bodies.resize(fields.len(), number);
-        }
+        let fields = deformable.map(|body| DiscreteField::new(scene, body, &patch)).collect::<Result<Vec<_>, _>>()?;
+        let bodies = (0..fields.len()).collect();
         let contact = ContactSolver::new(scene, &patch);
         let recorded = scene.output.bodies.then(|| body_sample::names(scene));
         let parts = scene.contact.as_ref().is_some_and(|contact| contact.fragments);
         let fragments = parts.then(Fragments::default);
         let thickness = scene.analysis.thickness;
         let mut frame = Self { patch, fields, bodies, contact, fragments, thickness, recorded };
-        frame.join_slices();
         frame.part_at_start()?;
         if let Some(contact) = &mut frame.contact {
             contact.find(&views(&frame.fields))?;
@@ -142,11 +133,7 @@ impl UpdatedFrame {
             }
             fields.iter_mut().for_each(|field| field.hold_pushed(dt));
         }
-        if are_joined(fields) {
-            self_contact::step(fields, dt)?;
-        } else {
-            fields.iter_mut().try_for_each(|field| field.step(dt))?;
-        }
+        fields.iter_mut().try_for_each(|field| field.step(dt))?;
         self.part_if_due(dt)?;
         let Self { fields, contact, .. } = self;
         if let Some(contact) = contact {
@@ -163,17 +150,7 @@ impl UpdatedFrame {
 
     /// Critical time step of the undamaged bodies at the present positions, s; infinite if nothing can move.
     pub fn critical_step(&self) -> f64 {
-        if are_joined(&self.fields) {
-            return self_contact::critical_step(&self.fields);
-        }
         self.fields.iter().map(|field| field.critical_step()).fold(f64::INFINITY, smaller)
-    }
-
-    /// Accelerations of slices, where no step leads to them.
-    fn join_slices(&mut self) {
-        if are_joined(&self.fields) {
-            self_contact::find_accelerations(&mut self.fields);
-        }
     }
 
     /// Number of the body that a field is of, or is a part of.
@@ -190,11 +167,6 @@ impl UpdatedFrame {
         self.fields.iter_mut().for_each(|field| field.travelled = 0.0);
         Some(self.critical_step())
     }
-}
-
-/// Whether some fields are slices that share control points.
-fn are_joined(fields: &[DiscreteField]) -> bool {
-    fields.iter().any(|field| field.slice.is_some())
 }
 
 /// The bodies as contact sees them.

@@ -7,9 +7,8 @@ use super::ground::Ground;
 use crate::contact::Surface;
 use crate::contact::motion::longest_step;
 use crate::contact::surface::Center;
-use crate::dynamics::updated_frame::held_sides::is_fixed;
 use crate::linear_algebra::extremes::larger;
-use crate::scene::{Body, Boundary, Frame, Kinematics, Scene, Shape, TimeStep, Transfer};
+use crate::scene::{Body, Frame, Kinematics, Scene, Shape, TimeStep};
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
 const TOLERANCE: f64 = 1e-3;
@@ -30,8 +29,9 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
     if scene.contact.as_ref().is_some_and(|contact| contact.fragments) {
         fragments(scene, findings);
     }
-    if scene.contact.as_ref().is_some_and(|contact| contact.self_contact) {
-        self_contact(scene, findings);
+    if scene.analysis.frame == Frame::Updated && scene.contact.as_ref().is_some_and(|contact| contact.self_contact) {
+        let remedy = "use analysis.frame = \"total\" and kinematics = \"finite\", or remove the key";
+        findings.error("contact.self_contact", "bodies meet themselves in the total frame only", remedy);
     }
     for (i, body) in scene.bodies.iter().enumerate().filter(|(_, body)| body.rigid) {
         rigid(&format!("body.{i}"), body, scene, findings);
@@ -68,14 +68,8 @@ fn in_the_total_frame(scene: &Scene, findings: &mut Findings) {
         let message = "several bodies, and contact, cannot start from an equilibrium";
         findings.error("start.equilibrium", message, "remove it, and let gravity or loads grow over time");
     }
-    let contact = scene.contact.as_ref();
-    for (key, given) in [
-        ("contact.fragments", contact.is_some_and(|contact| contact.fragments)),
-        ("contact.self_contact", contact.is_some_and(|contact| contact.self_contact)),
-    ] {
-        if given {
-            findings.error(key, "in the total frame only different bodies meet", updated);
-        }
+    if scene.contact.as_ref().is_some_and(|contact| contact.fragments) {
+        findings.error("contact.fragments", "bodies fall into fragments in the updated frame only", updated);
     }
 }
 
@@ -91,34 +85,6 @@ fn fragments(scene: &Scene, findings: &mut Findings) {
         let message = format!("a traction on body {:?}, which may fall into fragments", body.name);
         let remedy = "drive a side of the mesh instead, or remove contact.fragments";
         findings.error(format!("body.{i}.traction"), message, remedy);
-    }
-}
-
-/// Bodies that may meet themselves.
-fn self_contact(scene: &Scene, findings: &mut Findings) {
-    let key = "contact.self_contact";
-    let fractures = |body: &Body| scene.materials.get(&body.material).is_some_and(|m| m.fracture.is_some());
-    if let Some(body) = scene.bodies.iter().find(|body| !body.rigid && fractures(body)) {
-        let message =
-            format!("body {:?} fractures, and its phase field sees no gap between parts that meet", body.name);
-        findings.error(key, message, "use contact.fragments instead, or remove the fracture table");
-    }
-    let follows = |boundary: &Boundary| scene.analysis.frame == Frame::Updated && !is_fixed(boundary);
-    if let Some(i) = scene.boundaries.iter().position(follows) {
-        let message = "bodies that meet themselves do not follow sides that move, slide off, have a name or are parts";
-        findings.error(
-            format!("boundary.{i}"),
-            message,
-            "hold all of the side at rest, or remove contact.self_contact",
-        );
-    }
-    if let Some(i) = scene.bodies.iter().position(|body| !body.conditions.is_empty()) {
-        let message = "bodies that meet themselves do not follow conditions on their edges";
-        findings.error(format!("body.{i}.condition"), message, "remove the conditions, or contact.self_contact");
-    }
-    if let Transfer::Xpic(_) = scene.analysis.transfer {
-        let remedy = "use analysis.transfer = \"flip\", \"pic\", \"apic\" or \"tpic\", or remove the key";
-        findings.error(key, "XPIC smooths velocities across the parts of a body that meet", remedy);
     }
 }
 

@@ -187,8 +187,7 @@ fn with_fragments() {
 #[test]
 fn with_contact_of_a_body_with_itself() {
     let scene = horseshoe();
-    let (simulation, samples) = crate::common::run(&scene);
-    assert!(simulation.updated_frame().unwrap().fields().len() > 1);
+    let (_, samples) = crate::common::run(&scene);
     assert!(samples.last().unwrap().contact.unwrap().friction > 0.0, "its sides meet");
     goes_on_bit_by_bit("a body that may meet itself", &scene);
 }

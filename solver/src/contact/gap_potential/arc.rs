@@ -136,8 +136,25 @@ impl Arc {
 pub(crate) struct Outline {
     /// Its arcs.
     pub arcs: Vec<Arc>,
+    /// Boxes around them.
+    pub boxes: Vec<[[f64; 2]; 2]>,
     /// κ of the body, Pa/m; infinite if it is rigid.
     pub spring: f64,
+}
+
+impl Outline {
+    /// These arcs, of a body with this κ, Pa/m.
+    pub(crate) fn new(arcs: Vec<Arc>, spring: f64) -> Self {
+        Self { boxes: arcs.iter().map(Arc::bounds).collect(), arcs, spring }
+    }
+
+    /// The numbers of the arcs whose boxes meet a region.
+    pub(crate) fn within(&self, [low, high]: [[f64; 2]; 2]) -> impl Iterator<Item = usize> + '_ {
+        let meets = move |(_, [own_low, own_high]): &(usize, &[[f64; 2]; 2])| {
+            (0..2).all(|d| own_high[d] >= low[d] && own_low[d] <= high[d])
+        };
+        self.boxes.iter().enumerate().filter(meets).map(|(number, _)| number)
+    }
 }
 
 /// The box around some boxes.
@@ -165,27 +182,27 @@ pub(crate) struct Closest {
     pub label: (usize, f64),
 }
 
-/// The place nearest to a position among some arcs and their numbers.
-pub(crate) fn nearest(position: [f64; 2], arcs: &[(usize, &Arc)]) -> Option<Closest> {
+/// The place nearest to a position among some arcs of an outline.
+pub(crate) fn nearest(position: [f64; 2], outline: &Outline, among: &[usize]) -> Option<Closest> {
     let mut best: Option<(f64, usize, f64)> = None;
-    for (at, (_, arc)) in arcs.iter().enumerate() {
-        let [low, high] = arc.bounds();
+    for &number in among {
+        let ([low, high], arc) = (outline.boxes[number], &outline.arcs[number]);
         let beside = [0, 1].map(|d| larger(0.0, larger(low[d] - position[d], position[d] - high[d])));
         if best.is_some_and(|(least, ..)| dot(beside, beside) > least) {
             continue;
         }
         let (t, square) = arc.nearest(position);
         if best.is_none_or(|(least, ..)| square < least) {
-            best = Some((square, at, t));
+            best = Some((square, number, t));
         }
     }
-    let (square, at, t) = best?;
-    let (number, arc) = arcs[at];
+    let (square, number, t) = best?;
+    let arc = &outline.arcs[number];
     let place = arc.position(t);
     let own = arc.normal(t);
     // At a corner neither normal tells inside from outside, but the mean of both does (Bærentzen & Aanæs
     // 2005, *Signed distance computation using the angle weighted pseudonormal*).
-    let next = if t == 0.0 || t == 1.0 { beside(number, place, 1.0 - t, arcs) } else { None };
+    let next = if t == 0.0 || t == 1.0 { beside(number, place, 1.0 - t, outline, among) } else { None };
     let normal = unit(next.map_or(own, |next| [0, 1].map(|d| own[d] + next[d])))?;
     let inside = dot([0, 1].map(|d| position[d] - place[d]), normal) < 0.0;
     let depth = if inside { square.sqrt() } else { -square.sqrt() };
@@ -193,13 +210,14 @@ pub(crate) fn nearest(position: [f64; 2], arcs: &[(usize, &Arc)]) -> Option<Clos
 }
 
 /// Normal of the arc that begins or ends, as t has it, where another one does not go on.
-fn beside(number: usize, place: [f64; 2], t: f64, arcs: &[(usize, &Arc)]) -> Option<[f64; 2]> {
+fn beside(number: usize, place: [f64; 2], t: f64, outline: &Outline, among: &[usize]) -> Option<[f64; 2]> {
     let joins = |arc: &Arc| {
         let apart = [0, 1].map(|d| arc.position(t)[d] - place[d]);
         let along = [0, 1].map(|d| arc.position(1.0 - t)[d] - place[d]);
         dot(apart, apart) <= JOINED * JOINED * dot(along, along)
     };
-    arcs.iter().find(|(other, arc)| *other != number && joins(arc)).map(|(_, arc)| arc.normal(t))
+    let mut others = among.iter().filter(|other| **other != number).map(|other| &outline.arcs[*other]);
+    others.find(|arc| joins(arc)).map(|arc| arc.normal(t))
 }
 
 #[cfg(test)]
@@ -212,10 +230,12 @@ mod tests {
         let corner = [0.0, 0.0];
         let below = Arc::new([[-1.0, 0.0], corner], [[1.0, 0.0]; 2], &rule());
         let beside = Arc::new([corner, [-0.1, 1.0]], [[-0.1, 1.0]; 2], &rule());
-        for order in [[(0, &below), (1, &beside)], [(1, &beside), (0, &below)]] {
-            assert!(nearest([0.5, 0.01], &order).unwrap().depth < 0.0);
-            assert!(nearest([0.2, -0.5], &order).unwrap().depth < 0.0);
-            assert!((nearest([-0.3, 0.1], &order).unwrap().depth - 0.1).abs() < 1e-12);
+        let outline = Outline::new(vec![below, beside], 1.0);
+        for order in [[0, 1], [1, 0]] {
+            let depth = |position| nearest(position, &outline, &order).unwrap().depth;
+            assert!(depth([0.5, 0.01]) < 0.0);
+            assert!(depth([0.2, -0.5]) < 0.0);
+            assert!((depth([-0.3, 0.1]) - 0.1).abs() < 1e-12);
         }
     }
 }

@@ -170,7 +170,7 @@ impl History {
 
 #[cfg(test)]
 mod tests {
-    use super::super::arc::{nearest, rule};
+    use super::super::arc::{Outline, nearest, rule};
     use super::*;
 
     const DEPTH: f64 = 1e-3;
@@ -181,7 +181,7 @@ mod tests {
         let arcs = [Arc::new([[1.0 + floor, 0.0], [-1.0 + floor, 0.0]], [[-2.0, 0.0]; 2], &rule())];
         let place = BoundaryPlace { position: [block, -depth], normal: [0.0, -1.0], length: 0.1 };
         friction.begin();
-        let nearest = nearest(place.position, &[(0, &arcs[0])]).unwrap();
+        let nearest = nearest(place.position, &Outline::new(arcs.to_vec(), 1.0), &[0]).unwrap();
         let label = ([0, 1], 3, 2);
         let point = ContactPoint { label, place, nearest, arcs: &arcs, stiffness: STIFFNESS };
         let [x, y] = if depth > 0.0 { friction.force(&point) } else { [0.0; 2] };

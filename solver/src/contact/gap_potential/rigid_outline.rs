@@ -21,7 +21,7 @@ impl RigidOutline {
         let Self { arcs, motion } = self;
         let moved = |arc: &Arc| arc.moved(|x| motion.place(x, time), |arm| motion.turn(arm, time));
         let arcs = if motion.rests() { arcs.clone() } else { arcs.iter().map(moved).collect() };
-        Outline { arcs, spring: f64::INFINITY }
+        Outline::new(arcs, f64::INFINITY)
     }
 
     /// Velocity at a position, m/s, at a time, s.

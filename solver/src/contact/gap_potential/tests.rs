@@ -1,5 +1,6 @@
 //! What circles feel that overlap: forces, slip, and the work of a rigid one.
 
+use super::arc::Arc;
 use super::*;
 use crate::contact::rigid::RigidMotion;
 
@@ -11,7 +12,7 @@ fn circle(center: [f64; 2], radius: f64, count: usize) -> Outline {
         ([center[0] + radius * cos, center[1] + radius * sin], [-radius * turn * sin, radius * turn * cos])
     };
     let arc = |i: usize| Arc::new([at(i).0, at(i + 1).0], [at(i).1, at(i + 1).1], &rule());
-    Outline { arcs: (0..count).map(arc).collect(), spring: 2.0 }
+    Outline::new((0..count).map(arc).collect(), 2.0)
 }
 
 fn pair(apart: f64) -> Vec<Outline> {
@@ -19,7 +20,7 @@ fn pair(apart: f64) -> Vec<Outline> {
 }
 
 fn found(apart: f64) -> GapPotential {
-    let mut potential = GapPotential::new(0.1, 0.0, vec![]);
+    let mut potential = GapPotential::new(0.1, 0.0, vec![], vec![]);
     potential.find(pair(apart), 0.0, 0.0).unwrap();
     potential
 }
@@ -49,14 +50,14 @@ fn the_force_is_the_derivative_of_the_energy_and_has_no_moment() {
 
 #[test]
 fn a_boundary_deep_in_another_body_is_said() {
-    let mut potential = GapPotential::new(0.1, 0.0, vec![]);
+    let mut potential = GapPotential::new(0.1, 0.0, vec![], vec![]);
     let error = potential.find(pair(1.7), 0.0, 0.0).unwrap_err();
     assert!(error.spans > 1.0);
 }
 
 #[test]
 fn circles_that_turn_together_do_not_slip_and_one_that_turns_alone_is_held_back() {
-    let mut potential = GapPotential::new(0.1, 0.3, vec![]);
+    let mut potential = GapPotential::new(0.1, 0.3, vec![], vec![]);
     let turned = |outline: &Outline, angle: f64, center: [f64; 2]| {
         let (sin, cos) = angle.sin_cos();
         let turn = |v: [f64; 2]| [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]];
@@ -64,7 +65,7 @@ fn circles_that_turn_together_do_not_slip_and_one_that_turns_alone_is_held_back(
             let arm = turn([0, 1].map(|d| x[d] - center[d]));
             [0, 1].map(|d| center[d] + arm[d])
         };
-        Outline { arcs: outline.arcs.iter().map(|arc| arc.moved(place, turn)).collect(), ..*outline }
+        Outline::new(outline.arcs.iter().map(|arc| arc.moved(place, turn)).collect(), outline.spring)
     };
     let rubbing = |potential: &GapPotential| {
         potential.forces().iter().fold([0.0; 2], |sum: [f64; 2], pair| {
@@ -100,7 +101,7 @@ fn a_rigid_body_works_on_the_others_with_its_own_velocity() {
     let scene_body = circle([0.0, 0.0], 1.0, 64);
     let motion = RigidMotion::steady([1.95, 0.0], [-0.5, 0.0], 0.2);
     let rigid = RigidOutline::new(circle([1.95, 0.0], 1.0, 60).arcs, motion);
-    let mut potential = GapPotential::new(0.1, 0.0, vec![rigid]);
+    let mut potential = GapPotential::new(0.1, 0.0, vec![rigid], vec![]);
     let energy = |potential: &GapPotential| potential.ledger().loss;
     potential.find(vec![scene_body.clone()], 0.0, 0.0).unwrap();
     let before = energy(&potential);

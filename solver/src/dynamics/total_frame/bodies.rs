@@ -1,7 +1,7 @@
 //! The bodies of a scene in the total frame, and their contact.
 //!
-//! Each has a field of its own, on the spans of the mesh that it reaches into at t = 0, and moves wherever its
-//! displacement takes it. Between its internal forces and its acceleration come the forces of contact.
+//! Each has a field of its own, on the spans of the mesh that it reaches into at t = 0, and moves wherever
+//! its displacement takes it. Between its internal forces and its acceleration come the forces of contact.
 
 use super::TotalFrame;
 use super::boundary::arcs_at_rest;
@@ -62,7 +62,8 @@ impl TotalBodies {
                 RigidOutline::new(arcs_at_rest(&body.shape, &scene.mesh, span), motion)
             };
             let rigid = scene.bodies.iter().filter(|body| body.rigid).map(rigid).collect();
-            GapPotential::new(span, contact.friction, rigid)
+            let own = bodies.iter().filter(|_| contact.self_contact).filter_map(TotalFrame::own_pairs).collect();
+            GapPotential::new(span, contact.friction, rigid, own)
         });
         let recorded = scene.output.bodies.then(|| names(scene));
         Ok(Self { bodies, contact, patch, thickness: scene.analysis.thickness, recorded })
@@ -170,7 +171,8 @@ impl TotalBodies {
         self.contact.as_ref().map_or_else(Vec::new, GapPotential::contact_forces)
     }
 
-    /// Mass (kg) and momentum (kg m/s) of every body, with the velocities of half a step of `dt` seconds before.
+    /// Mass (kg) and momentum (kg m/s) of every body, with the velocities of half a step of `dt` seconds
+    /// before.
     pub(crate) fn momenta(&self, dt: f64) -> Vec<(f64, [f64; 2])> {
         self.bodies.iter().map(|body| body.mass_and_momentum(if body.time() > 0.0 { 0.5 * dt } else { 0.0 })).collect()
     }

@@ -14,6 +14,7 @@
 //! both feel of each other. With friction it resists motion along the boundary as it does across it.
 
 use crate::contact::gap_potential::arc::{Arc, Outline, rule, shares, tangent_shares};
+use crate::contact::gap_potential::own_pairs::OwnPairs;
 use crate::dynamics::surface::{SurfacePoint, bounding_parts, place_on};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::vectors::dot;
@@ -121,6 +122,12 @@ impl MaterialBoundary {
         Ok(Self { nodes, arcs, stiffness, friction, rule })
     }
 
+    /// Which of its arcs may meet each other, if they bound this shape.
+    pub(super) fn own_pairs(&self, shape: &Shape) -> OwnPairs {
+        let arcs: Vec<Arc> = self.arcs.iter().map(|(_, arc)| *arc).collect();
+        OwnPairs::new(&arcs, |position| shape.contains(position))
+    }
+
     /// The arcs under a displacement, m.
     pub(super) fn outline(&self, displacement: &VectorField) -> Outline {
         let now: Vec<_> = self.nodes.iter().map(|node| node.now(displacement)).collect();
@@ -128,7 +135,7 @@ impl MaterialBoundary {
             let ([a, s], [b, t]) = (now[*first], now[first + 1]);
             arc.through([a, b], [s, t])
         };
-        Outline { arcs: self.arcs.iter().map(through).collect(), spring: self.stiffness }
+        Outline::new(self.arcs.iter().map(through).collect(), self.stiffness)
     }
 
     /// Adds a force at a place of an arc, and what turns the tangent there (see [`Self::turning`]).

@@ -4,6 +4,7 @@ use super::TotalFrame;
 use super::boundary::MaterialBoundary;
 use crate::contact::gap_potential::GapForce;
 use crate::contact::gap_potential::arc::Outline;
+use crate::contact::gap_potential::own_pairs::OwnPairs;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::loads::{LostTraction, material_at};
 use crate::dynamics::surface::SurfacePoint;
@@ -25,6 +26,11 @@ impl TotalFrame {
         let parameters = (shortest, stiffness, contact.friction > 0.0);
         self.boundary = Some(Box::new(MaterialBoundary::new((&body.shape, mesh), parameters, functions)?));
         Ok(())
+    }
+
+    /// Which parts of the boundary may meet each other.
+    pub(super) fn own_pairs(&self) -> Option<OwnPairs> {
+        Some(self.boundary.as_ref()?.own_pairs(&self.shape))
     }
 
     /// The boundary now, if it may meet others.

@@ -92,7 +92,6 @@ impl DiscreteField {
             loads: body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t)).collect(),
             forcing: None,
             surface: scene.contact.is_some().then(|| Surface::new(&scene.mesh, body)),
-            slice: None,
             moduli,
             thickening: thickening(material, analysis.plane),
             density: material.density,

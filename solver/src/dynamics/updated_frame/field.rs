@@ -13,7 +13,6 @@ use super::held_edges::HeldEdges;
 use super::held_sides::HeldSide;
 use super::losses::TransferLosses;
 use super::pointwise_fracture::PointwiseFracture;
-use super::self_contact::slice::Slice;
 use super::smoothing::Smoothing;
 use super::strain::{FiniteStrain, SmallStrain, StrainUpdate};
 use super::tractions::SurfaceLoad;
@@ -62,8 +61,6 @@ pub struct DiscreteField {
     pub(super) forcing: Option<PointForcing>,
     /// The boundary, if the body may meet others.
     pub(super) surface: Option<Surface>,
-    /// What it shares with other fields, if it is a slice of a body that may meet itself.
-    pub(super) slice: Option<Box<Slice>>,
     /// The phase field, if the material fractures.
     pub fracture: Option<PointwiseFracture>,
     pub(super) crack_start: Option<[f64; 2]>,
@@ -145,18 +142,16 @@ impl DiscreteField {
 
     /// What contact sees of it.
     pub fn view(&self) -> BodyView<'_> {
-        let Self { patch, cells, surface, nodes, slice, .. } = self;
+        let Self { patch, cells, surface, nodes, .. } = self;
         let NodalFields { grid, greville, mass, inverse_mass, velocity, acceleration, .. } = nodes;
-        let joint = slice.as_ref().map(|slice| slice.joint());
         BodyView {
             patch,
             cells,
             surface: surface.as_ref(),
             grid: *grid,
             greville,
-            mass: joint.map_or(mass, |(_, mass, _)| mass),
-            inverse_mass: joint.map_or(inverse_mass, |(_, _, inverse)| inverse),
-            copies: joint.map(|(copies, ..)| copies),
+            mass,
+            inverse_mass,
             fixed: nodes.fixed(),
             velocity,
             acceleration,
@@ -198,10 +193,7 @@ impl DiscreteField {
             surface.follow(&self.view(), &self.nodes.velocity, dt);
             self.surface = Some(surface);
         }
-        let Self { patch, cells, nodes, points, forcing, loads, edges, sides, slice, .. } = self;
-        if let Some(slice) = slice {
-            slice.follow((patch, cells, nodes), &nodes.velocity, dt);
-        }
+        let Self { patch, nodes, points, forcing, loads, edges, sides, .. } = self;
         for load in loads {
             load.move_points(patch, nodes.grid, &nodes.velocity, dt);
         }

@@ -37,29 +37,6 @@ pub struct NodalFields {
     fixed: BTreeSet<(usize, usize)>,
 }
 
-/// What a control point has of several fields.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct NodalShare {
-    mass: f64,
-    momentum: [f64; 2],
-    force: [f64; 2],
-    /// Whether its mass is not negligible.
-    answers: bool,
-}
-
-impl NodalShare {
-    /// Both together.
-    pub(super) fn plus(&self, other: &Self) -> Self {
-        let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
-        Self {
-            mass: self.mass + other.mass,
-            momentum: sum(self.momentum, other.momentum),
-            force: fault!("joint-force-of-one-slice", sum(self.force, other.force) => self.force),
-            answers: self.answers || other.answers,
-        }
-    }
-}
-
 /// What the grid holds at the end of a step, per unit thickness.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EndOfStep {
@@ -130,41 +107,6 @@ impl NodalFields {
         }
         for (velocity, arrived) in self.velocity.iter_mut().zip(&self.arrived) {
             velocity.copy_from_slice(arrived);
-        }
-    }
-
-    /// Takes mass, momentum and forces of a control point away.
-    pub(super) fn take(&mut self, at: usize) -> NodalShare {
-        let mass = std::mem::take(&mut self.mass[at]);
-        NodalShare {
-            mass,
-            momentum: [0, 1].map(|c| mass * std::mem::take(&mut self.arrived[c][at])),
-            force: [0, 1].map(|c| std::mem::take(&mut self.force[c][at])),
-            answers: std::mem::take(&mut self.inverse_mass[at]) > 0.0,
-        }
-    }
-
-    /// Gives a control point mass, momentum and forces.
-    pub(super) fn give(&mut self, at: usize, share: &NodalShare) {
-        self.mass[at] = share.mass;
-        self.inverse_mass[at] = if share.answers { 1.0 / share.mass } else { 0.0 };
-        for c in 0..2 {
-            self.arrived[c][at] = if share.mass > 0.0 { share.momentum[c] / share.mass } else { 0.0 };
-            self.velocity[c][at] = self.arrived[c][at];
-            self.force[c][at] = share.force[c];
-        }
-    }
-
-    /// Velocity that arrived, velocity (m/s) and acceleration (m/s²) of a control point.
-    pub(super) fn motion(&self, at: usize) -> [[f64; 2]; 3] {
-        [&self.arrived, &self.velocity, &self.acceleration].map(|field| [0, 1].map(|c| field[c][at]))
-    }
-
-    /// Sets the same.
-    pub(super) fn set_motion(&mut self, at: usize, motion: [[f64; 2]; 3]) {
-        let fields = [&mut self.arrived, &mut self.velocity, &mut self.acceleration];
-        for (field, value) in fields.into_iter().zip(motion) {
-            (0..2).for_each(|c| field[c][at] = value[c]);
         }
     }
 

@@ -27,11 +27,6 @@ impl HeldSide {
         is_held.then(|| Self { boundary: boundary.clone(), material })
     }
 
-    /// Holds all of the side from now on.
-    pub(super) fn forget_material(&mut self) {
-        self.material = None;
-    }
-
     /// Keeps some of the places, by their positions (m).
     pub(super) fn keep(&mut self, keeps: impl Fn([f64; 2]) -> bool) {
         self.material.iter_mut().for_each(|places| places.retain(|place| keeps(place.position)));

@@ -50,7 +50,7 @@ impl UpdatedFrame {
         Sample { bodies: recorded, fragments: self.count_fragments(), ..sample.for_thickness(self.thickness) }
     }
 
-    /// The fields of the bodies that deform: of those that are whole, of fragments or of slices.
+    /// The fields of the bodies that deform: of those that are whole, or of fragments.
     pub fn fields(&self) -> &[DiscreteField] {
         &self.fields
     }
@@ -308,9 +308,8 @@ impl DiscreteField {
         let deformation = self.deformation.as_ref().map_or(0, |gradients| gradients.len() * size_of::<Gradient>());
         let forcing = self.forcing.as_ref().map_or(0, |forcing| forcing.bytes());
         let surface = self.surface.as_ref().map_or(0, |surface| surface.bytes());
-        let slice = self.slice.as_ref().map_or(0, |slice| slice.bytes());
         let edges = self.edges.as_ref().map_or(0, |edges| edges.bytes());
-        let points = points + edges + affine + deformation + forcing + surface + slice;
+        let points = points + edges + affine + deformation + forcing + surface;
         [
             points + self.nodes.bytes() + self.velocity_transfer.bytes() + loads,
             self.fracture.as_ref().map_or(0, |f| f.bytes()),

@@ -52,14 +52,6 @@ impl<'a> Pieces<'a> {
         Some(pieces)
     }
 
-    /// Given for every point.
-    pub(super) fn given(points: &'a [Point], of: &[u32]) -> Self {
-        let step = STEP * spacing(points);
-        let neighbours = Neighbours::new(points.iter().map(|point| point.position), step);
-        let count = of.iter().max().map_or(0, |last| last + 1);
-        Self { points, neighbours, step, of: of.iter().copied().map(Some).collect(), count }
-    }
-
     /// How many there are.
     pub(super) fn count(&self) -> u32 {
         self.count

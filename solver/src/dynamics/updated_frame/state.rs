@@ -3,7 +3,7 @@
 
 use super::affine::AffineVelocities;
 use super::field::DiscreteField;
-use super::{UpdatedFrame, are_joined, self_contact, views};
+use super::{UpdatedFrame, views};
 use crate::checkpoint::{Archive, StateError};
 use crate::contact::motion::TooFast;
 use crate::dynamics::failure::Failure;
@@ -17,9 +17,6 @@ impl UpdatedFrame {
         self.exchange_fragments(archive)?;
         let Self { patch: _, fields, bodies: _, contact, fragments: _, thickness: _, recorded: _ } = self;
         fields.iter_mut().try_for_each(|field| field.exchange(archive))?;
-        if archive.is_reader() && are_joined(fields) {
-            self_contact::find_accelerations(fields);
-        }
         if let Some(contact) = contact {
             contact.exchange(archive)?;
             if archive.is_reader() && fields[0].time() > 0.0 {
@@ -78,7 +75,6 @@ impl DiscreteField {
             loads,
             forcing,
             surface,
-            slice,
             fracture,
             crack_start,
             elastic_energy: _, // see exchange_sums
@@ -109,9 +105,6 @@ impl DiscreteField {
         edges.iter_mut().try_for_each(|edges| edges.exchange(archive))?;
         if let Some(surface) = surface {
             surface.exchange(archive)?;
-        }
-        if let Some(slice) = slice {
-            slice.exchange(archive)?;
         }
         if let Some(fracture) = fracture {
             fracture.exchange(archive)?;

@@ -94,26 +94,6 @@ impl PointStiffness<'_> {
             *out = self.image[component][at];
         }
     }
-
-    /// Displacement of a control point.
-    pub(super) fn value(&self, at: usize) -> [f64; 2] {
-        [0, 1].map(|c| self.field[c][at])
-    }
-
-    /// Gives a control point a displacement.
-    pub(super) fn set_value(&mut self, at: usize, value: [f64; 2]) {
-        (0..2).for_each(|c| self.field[c][at] = value[c]);
-    }
-
-    /// Force on a control point.
-    pub(super) fn force(&self, at: usize) -> [f64; 2] {
-        [0, 1].map(|c| self.image[c][at])
-    }
-
-    /// Adds a force on a control point.
-    pub(super) fn add_force(&mut self, at: usize, force: [f64; 2]) {
-        (0..2).for_each(|c| self.image[c][at] += force[c]);
-    }
 }
 
 struct ElasticForces<'a> {

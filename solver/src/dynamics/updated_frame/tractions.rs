@@ -35,11 +35,6 @@ impl SurfaceLoad {
         Self { points, stress: traction.load.traction([0.0; 2]), time: traction.time.clone(), power: 0.0 }
     }
 
-    /// Keeps some of the surface points, by their positions (m).
-    pub(crate) fn keep(&mut self, keeps: impl Fn([f64; 2]) -> bool) {
-        self.points.retain(|point| keeps(point.place.position()));
-    }
-
     /// Factor at a time, s.
     pub(crate) fn factor(&self, time: f64) -> f64 {
         self.time.value(time)

@@ -17,7 +17,6 @@ impl UpdatedFrame {
     pub fn set_initial_velocity(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2]) {
         assert!(self.fields.iter().all(|field| field.at_start), "a step has been increment");
         self.fields.iter_mut().for_each(|field| field.set_velocity(&velocity));
-        self.join_slices();
     }
 
     /// Applies the volume loads of a forcing (`volume` alone) from the present time on, before the first
@@ -28,7 +27,6 @@ impl UpdatedFrame {
     pub fn apply_forcing(&mut self, forcing: Arc<dyn Forcing>) {
         assert!(self.fields.iter().all(|field| field.at_start), "a step has been increment");
         self.fields.iter_mut().for_each(|field| field.apply_forcing(Arc::clone(&forcing)));
-        self.join_slices();
     }
 
     /// Moves the points for `dt` seconds with a velocity (m/s) prescribed at the Greville points of all

@@ -170,7 +170,8 @@ pub fn horseshoe() -> Scene {
         block("right", [0.016, 0.018], [0.002, 0.005], -30.0),
     ];
     scene.contact = Some(Contact { friction: 0.4, self_contact: true, ..Contact::default() });
-    scene.analysis = Analysis { end_time: 6e-6, transfer: Transfer::Apic, ..scene.analysis };
+    let (frame, kinematics) = (Frame::Total, Kinematics::Finite);
+    scene.analysis = Analysis { end_time: 6e-6, frame, kinematics, ..scene.analysis };
     scene
 }
 
