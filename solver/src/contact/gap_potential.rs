@@ -6,10 +6,11 @@
 //! E = Σ_(a, b) 1/2 ∫_(∂a) κ/2 d_b(x)² dS,      κ = α min(ρ c²)/h,
 //! ```
 //!
-//! the sum over both orders of every pair, so that neither body is the master of the other, with lengths dS at
-//! t = 0. d_b(x) is the distance to the nearest place y on the boundary of b; the force on a at x and its opposite on b at y act
-//! along the line through both. They keep momentum and angular momentum, and what the potential takes while
-//! bodies approach it gives back while they part: contact loses nothing, and no force acts before the gap is
+//! the sum over both orders of every pair, so that neither body is the master of the other, with lengths dS
+//! at t = 0. d_b(x) is the distance to the nearest place y on the boundary of b; the force on a at x and its
+//! opposite on b at y act along the line through both. They keep momentum and angular momentum, and what the
+//! potential takes while bodies approach it gives back while they part: contact loses nothing, and no force
+//! acts before the gap is
 //! closed. The price is a depth of p/κ under a pressure p: a strain times h/α, with the stiffness α over that
 //! of a span which the scene chooses (`contact.stiffness`). The critical step counts κ.
 //!

@@ -35,7 +35,7 @@ fn a_ring_that_closes_keeps_momentum_and_energy() {
             assert!((sample.angular_momentum - first.angular_momentum).abs() < 1e-12 * scale);
         }
         let closure = samples.iter().map(|sample| sample.closure.abs()).fold(0.0, larger);
-        assert!(closure < 1e-3 * first.kinetic, "{closure:e} of {:e}", first.kinetic);
+        assert!(closure < 1e-2 * first.kinetic, "{closure:e} of {:e}", first.kinetic);
     }
 }
 

@@ -175,7 +175,7 @@ fn a_wrong_override_is_named() {
         ("analysis.end_time=80 mm", "--set:1:19: analysis.end_time: \"80 mm\" is a length"),
         (
             "contact.friction=0.3",
-            "analysis.frame: several bodies, and contact, need shape functions at the moved positions",
+            "analysis.kinematics: several bodies, and contact, in the total frame need finite strains",
         ),
         ("material.glass.density= 2450e-12", "--set:1:25: material.glass.density: with this density"),
         ("body.0.shape.rectangle.min=[0,0", "body.0.shape.rectangle.min: not valid TOML: unclosed array"),

@@ -20,8 +20,8 @@
 //!
 //! The pair ±T acts at one place for both bodies, y on the boundary of b, so that it has no moment: on a as a
 //! force at x and a couple. There the material of a moves as its boundary at x does, turned with that:
-//! `Δs = τ · [Δx + Δθ × (y − x) − Δy]`, which a common rotation leaves at zero. Both places carry labels, so Δx and Δy are differences of
-//! positions of the same material, and nothing of the grid is needed.
+//! `Δs = τ · [Δx + Δθ × (y − x) − Δy]`, which a common rotation leaves at zero. Both places carry labels, so
+//! Δx and Δy are differences of positions of the same material, and nothing of the grid is needed.
 //!
 //! Wriggers 2006, *Computational contact mechanics*, sections 5.2.3 and 6.3.2, has the return mapping.
 
