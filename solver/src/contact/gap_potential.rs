@@ -31,7 +31,6 @@ pub(crate) mod rigid_outline;
 
 use super::ContactLedger;
 use super::impulse::ContactForce;
-use super::motion::TooFast;
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::vectors::dot;
@@ -43,6 +42,15 @@ use rigid_outline::RigidOutline;
 
 /// Depth, in spans, from which on a boundary is not inside its own body, but on the far side of it.
 const FAR_SIDE: f64 = 0.5;
+
+/// A boundary that is deeper in another body than contact follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TooDeep {
+    /// Place, m.
+    pub place: [f64; 2],
+    /// Depth, in spans.
+    pub spans: f64,
+}
 
 /// A pair of opposite forces, and that of friction beside it.
 #[derive(Debug, Clone, Copy)]
@@ -106,7 +114,7 @@ impl GapPotential {
     ///
     /// # Errors
     /// If a boundary is a span deep in another body.
-    pub(crate) fn find(&mut self, mut outlines: Vec<Outline>, time: f64, dt: f64) -> Result<(), TooFast> {
+    pub(crate) fn find(&mut self, mut outlines: Vec<Outline>, time: f64, dt: f64) -> Result<(), TooDeep> {
         let (deformable, alone) = (outlines.len(), self.own.len());
         outlines.extend(self.rigid.iter().map(|body| body.at(time)));
         self.forces.clear();
@@ -134,7 +142,7 @@ impl GapPotential {
     }
 
     /// What the boundary of a in a box feels of b.
-    fn compare(&mut self, [a, b]: [usize; 2], outlines: &[Outline], common: [[f64; 2]; 2]) -> Result<(), TooFast> {
+    fn compare(&mut self, [a, b]: [usize; 2], outlines: &[Outline], common: [[f64; 2]; 2]) -> Result<(), TooDeep> {
         let wider = |[low, high]: [[f64; 2]; 2]| [low.map(|x| x - self.reach), high.map(|x| x + self.reach)];
         let own = self.own.get(a).filter(|_| a == b);
         let mut other: Vec<usize> = outlines[b].within(wider(common)).collect();
@@ -152,7 +160,7 @@ impl GapPotential {
                 }
                 let depth = nearest.depth;
                 if depth > self.reach {
-                    return Err(TooFast { place: place.position, spans: depth / self.reach });
+                    return Err(TooDeep { place: place.position, spans: depth / self.reach });
                 }
                 let out = [0, 1].map(|d| (nearest.position[d] - place.position[d]) / depth);
                 let pressure = 0.5 * spring * depth * place.length;

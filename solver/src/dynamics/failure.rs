@@ -1,6 +1,7 @@
 //! Why a body cannot begin, or take a step.
 
 use super::loads::LostTraction;
+use crate::contact::gap_potential::TooDeep;
 use crate::contact::impulse::Unconverged;
 use crate::contact::motion::TooFast;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
@@ -32,13 +33,20 @@ pub enum Failure {
     HoldsNothing(usize),
     /// There is no material at a place (m) on the edge of that condition of the body.
     LostCondition {
+        /// Number of the body in the scene.
+        body: usize,
         /// Number of the condition.
         condition: usize,
         /// Place, m.
         place: [f64; 2],
     },
     /// What that condition of the body prescribes follows from what others prescribe.
-    HeldTwice(usize),
+    HeldTwice {
+        /// Number of the body in the scene.
+        body: usize,
+        /// Number of the condition.
+        condition: usize,
+    },
     /// Two conditions whose parts of a side share a control point and prescribe it differently.
     Contradiction([usize; 2]),
     /// No static state was found: the largest force out of balance, of the largest nodal force.
@@ -50,6 +58,15 @@ pub enum Failure {
     Unconverged(Unconverged),
     /// Bodies meet that approach each other too far in a step.
     TooFast(TooFast),
+    /// A boundary is too deep in another body.
+    TooDeep(TooDeep),
+    /// There is no material at a place (m) of the boundary of the body of that number.
+    BareBoundary {
+        /// Number of the body in the scene.
+        body: usize,
+        /// Place, m.
+        place: [f64; 2],
+    },
 }
 
 impl Failure {
@@ -57,6 +74,9 @@ impl Failure {
     pub(crate) fn of_body(self, number: usize) -> Self {
         match self {
             Self::NoPoints(_) => Self::NoPoints(number),
+            Self::LostCondition { body: _, condition, place } => Self::LostCondition { body: number, condition, place },
+            Self::HeldTwice { body: _, condition } => Self::HeldTwice { body: number, condition },
+            Self::BareBoundary { body: _, place } => Self::BareBoundary { body: number, place },
             Self::LostTraction { body: _, traction, lost } => Self::LostTraction { body: number, traction, lost },
             other => other,
         }
@@ -72,6 +92,12 @@ impl From<SolveFailure> for Failure {
 impl From<Unconverged> for Failure {
     fn from(failure: Unconverged) -> Self {
         Self::Unconverged(failure)
+    }
+}
+
+impl From<TooDeep> for Failure {
+    fn from(failure: TooDeep) -> Self {
+        Self::TooDeep(failure)
     }
 }
 

@@ -88,8 +88,11 @@ impl UpdatedFrame {
     /// If an initial phase field does not converge, or a point is not on the patch.
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
         let patch = Arc::new(Patch::new(&scene.mesh));
-        let deformable = scene.bodies.iter().filter(|body| !body.rigid);
-        let fields = deformable.map(|body| DiscreteField::new(scene, body, &patch)).collect::<Result<Vec<_>, _>>()?;
+        let deformable = scene.bodies.iter().enumerate().filter(|(_, body)| !body.rigid);
+        let field = |(number, body): (usize, &_)| {
+            DiscreteField::new(scene, body, &patch).map_err(|failure| failure.of_body(number))
+        };
+        let fields = deformable.map(field).collect::<Result<Vec<_>, _>>()?;
         let bodies = (0..fields.len()).collect();
         let contact = ContactSolver::new(scene, &patch);
         let recorded = scene.output.bodies.then(|| body_sample::names(scene));

@@ -1,6 +1,7 @@
 //! What is said of a step that fails, and of a scene that does not start.
 
 use super::breakdown::Breakdown;
+use crate::contact::gap_potential::TooDeep;
 use crate::contact::impulse::Unconverged;
 use crate::contact::motion::{MOST, TooFast};
 use crate::dynamics::failure::Failure;
@@ -37,6 +38,8 @@ const EXTREME: &str = "material constants, lengths or seeds so extreme that thei
 pub(super) const CONTACT_NOT_FINITE: &str = "the impulses of contact ran into numbers that are not finite";
 const UNSETTLED: &str = "bodies wedged between others, or friction too large for one solution; lower contact.friction or \
                          analysis.safety, or use larger cells where they meet";
+const TOO_DEEP: &str = "contact too soft for what presses, or bodies faster than waves; raise contact.stiffness, or use \
+                        smaller cells";
 const TOO_FAST: &str = "bodies faster than contact can follow at this time step: give analysis.time_step as much less, or \
                         lower analysis.safety";
 const WIDEN_PART: &str = "a part shorter than the support of a function, or one that no body reaches: widen or move it, or \
@@ -56,15 +59,20 @@ pub(super) const TORN: &str = "the load has torn off the points under it; lower 
 pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> Breakdown {
     let (what, cause) = what_and_cause(failure, tolerance);
     let (place, key) = match failure {
-        Failure::Left(place) | Failure::TooFast(TooFast { place, .. }) => (place, None),
+        Failure::Left(place) | Failure::TooFast(TooFast { place, .. }) | Failure::TooDeep(TooDeep { place, .. }) => {
+            (place, None)
+        }
+        Failure::BareBoundary { body, place } => (place, Some(format!("body.{body}.shape"))),
         Failure::NoPoints(body) => (place, Some(format!("body.{body}.shape"))),
         Failure::LostTraction { body, traction, lost: LostTraction::Bare(place) }
         | Failure::LostTraction { body, traction, lost: LostTraction::Unbalanced { place, .. } } => {
             (place, Some(format!("body.{body}.traction.{traction}")))
         }
         Failure::PhaseField(_) | Failure::SingularMass | Failure::NoStep | Failure::Unconverged(_) => (place, None),
-        Failure::LostCondition { condition, place } => (place, Some(format!("body.0.condition.{condition}"))),
-        Failure::HeldTwice(condition) => (place, Some(format!("body.0.condition.{condition}.fix"))),
+        Failure::LostCondition { body, condition, place } => {
+            (place, Some(format!("body.{body}.condition.{condition}")))
+        }
+        Failure::HeldTwice { body, condition } => (place, Some(format!("body.{body}.condition.{condition}.fix"))),
         Failure::Contradiction([_, second]) => (place, Some(format!("boundary.{second}.from"))),
         Failure::HoldsNothing(condition) => (place, Some(format!("boundary.{condition}.from"))),
         Failure::NoEquilibrium(_) | Failure::Unbalanced(_) => (place, Some("start.equilibrium".to_string())),
@@ -96,6 +104,13 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
             ),
             TOO_FAST,
         ),
+        Failure::TooDeep(TooDeep { spans, .. }) => {
+            (format!("a boundary is {spans:.3} spans deep in another body, and contact follows 1"), TOO_DEEP)
+        }
+        Failure::BareBoundary { place: [x, y], .. } => (
+            format!("there is no material point within a cell of ({x:.6e}, {y:.6e}) m on the boundary of the body"),
+            ADD_POINTS,
+        ),
         Failure::Contradiction([first, second]) => (
             format!("boundary.{first} and boundary.{second} prescribe the control point between them differently"),
             PART_PARTS,
@@ -104,7 +119,7 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
             format!("there is no material point within a cell of ({x:.6e}, {y:.6e}) m, where the condition acts"),
             CARRY_TRACTION,
         ),
-        Failure::HeldTwice(_) => (
+        Failure::HeldTwice { .. } => (
             "what is prescribed along this edge follows from what is prescribed beside it or on it".to_string(),
             HELD_TWICE,
         ),

@@ -3,6 +3,7 @@
 use super::Simulation;
 use super::causes::{BARE, CONTACT_NOT_FINITE, INSIDE_OUT, LOST, NOT_FINITE, THROWN, TORN, numbers, what_and_cause};
 use super::frame::{Bodies, either};
+use crate::contact::gap_potential::TooDeep;
 use crate::contact::impulse::Unconverged;
 use crate::contact::motion::TooFast;
 use crate::dynamics::energy::Sample;
@@ -252,15 +253,17 @@ impl Simulation {
             Failure::Unconverged(found) if !found.residual.is_finite() => self.not_finite(CONTACT_NOT_FINITE),
             Failure::Left(place)
             | Failure::Unconverged(Unconverged { place, .. })
-            | Failure::TooFast(TooFast { place, .. }) => self.at(place, what, Some(&cause)),
+            | Failure::TooFast(TooFast { place, .. })
+            | Failure::TooDeep(TooDeep { place, .. }) => self.at(place, what, Some(&cause)),
             Failure::PhaseField(_)
             | Failure::SingularMass
             | Failure::NoStep
             | Failure::NoPoints(_)
             | Failure::HoldsNothing(_)
+            | Failure::BareBoundary { .. }
             | Failure::Contradiction(_)
             | Failure::LostCondition { .. }
-            | Failure::HeldTwice(_)
+            | Failure::HeldTwice { .. }
             | Failure::NoEquilibrium(_)
             | Failure::Unbalanced(_)
             | Failure::LostTraction { .. } => self.at_worst_point(&what, Some(&cause)),

@@ -8,9 +8,8 @@ use super::boundary::arcs_at_rest;
 use crate::checkpoint::{Archive, StateError};
 use crate::contact::ContactLedger;
 use crate::contact::gap_potential::rigid_outline::RigidOutline;
-use crate::contact::gap_potential::{GapForce, GapPotential};
+use crate::contact::gap_potential::{GapForce, GapPotential, TooDeep};
 use crate::contact::impulse::ContactForce;
-use crate::contact::motion::TooFast;
 use crate::contact::rigid::RigidMotion;
 use crate::contact::surface::Surface;
 use crate::dynamics::body_sample::{BodySample, BodySamples, PairForce, names, pairs};
@@ -44,14 +43,16 @@ impl TotalBodies {
     /// # Errors
     /// As [`TotalFrame::new`]; if there is no material at a part of a boundary that may meet others.
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
-        let deformable: Vec<&Body> = scene.bodies.iter().filter(|body| !body.rigid).collect();
+        let numbered = scene.bodies.iter().enumerate();
+        let deformable: Vec<(usize, &Body)> = numbered.filter(|(_, body)| !body.rigid).collect();
         let bodies = match (&scene.contact, deformable.as_slice()) {
             (None, [_]) => vec![TotalFrame::new(scene)?],
             _ => {
-                let of = |(number, body): (usize, &&Body)| {
-                    of_body(scene, body, number == 0).map_err(|failure| failure.of_body(number))
+                let first = deformable.first().map_or(0, |(number, _)| *number);
+                let of = |&(number, body): &(usize, &Body)| {
+                    of_body(scene, body, number == first).map_err(|failure| failure.of_body(number))
                 };
-                deformable.iter().enumerate().map(of).collect::<Result<_, _>>()?
+                deformable.iter().map(of).collect::<Result<_, _>>()?
             }
         };
         let patch = Patch::new(&scene.mesh);
@@ -86,7 +87,7 @@ impl TotalBodies {
     }
 
     /// Forces of contact at the present positions, `dt` seconds after they were found last.
-    fn meet(&mut self, dt: f64) -> Result<(), TooFast> {
+    fn meet(&mut self, dt: f64) -> Result<(), TooDeep> {
         let Self { bodies, contact: Some(contact), .. } = self else { return Ok(()) };
         let outlines = bodies.iter().filter_map(TotalFrame::outline).collect();
         contact.find(outlines, bodies[0].time(), dt)?;

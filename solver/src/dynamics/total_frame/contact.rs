@@ -6,7 +6,7 @@ use crate::contact::gap_potential::GapForce;
 use crate::contact::gap_potential::arc::Outline;
 use crate::contact::gap_potential::own_pairs::OwnPairs;
 use crate::dynamics::failure::Failure;
-use crate::dynamics::loads::{LostTraction, material_at};
+use crate::dynamics::loads::material_at;
 use crate::dynamics::surface::SurfacePoint;
 use crate::scene::{Body, Contact, Mesh};
 
@@ -18,7 +18,7 @@ impl TotalFrame {
     pub(super) fn expect_contact(&mut self, body: &Body, mesh: &Mesh, contact: &Contact) -> Result<(), Failure> {
         let Self { patch, lattice, mass, moduli, density, .. } = self;
         let functions = |point: &SurfacePoint| {
-            let bare = Failure::LostTraction { body: 0, traction: 0, lost: LostTraction::Bare(point.position) };
+            let bare = Failure::BareBoundary { body: 0, place: point.position };
             material_at(patch, lattice, point, |at| mass.moves(at)).ok_or(bare)
         };
         let (shortest, speed) = (patch.shortest_span(), moduli.dilatational_speed(*density));

@@ -52,11 +52,12 @@ impl EdgeConditions {
             let of_material = |point: &SurfacePoint| {
                 Some((*point, functions_of_material(patch, lattice, point, |at| mass.moves(at))?))
             };
-            let lost = |point: &SurfacePoint| Failure::LostCondition { condition: number, place: point.position };
+            let lost =
+                |point: &SurfacePoint| Failure::LostCondition { body: 0, condition: number, place: point.position };
             let points = parts.iter().flatten().map(|point| of_material(point).ok_or_else(|| lost(point)));
             let points = points.collect::<Result<Vec<_>, _>>()?;
             let space = multiplier_space(patch, &parts);
-            let beyond = |point| Failure::LostCondition { condition: number, place: point };
+            let beyond = |point| Failure::LostCondition { body: 0, condition: number, place: point };
             moments.extend(moments_of(number, condition.hold, &space, points.into_iter()).map_err(beyond)?);
         }
         if moments.is_empty() {
@@ -74,15 +75,16 @@ impl EdgeConditions {
             };
             let inverses: Vec<f64> = moment.shares.iter().map(of).collect();
             if !moment.yields(&inverses, |at| 1.0 / mass.row_sums()[at]) {
-                return Err(Failure::HeldTwice(moment.condition));
+                return Err(Failure::HeldTwice { body: 0, condition: moment.condition });
             }
             inverse.push(inverses);
         }
         let last = moments[moments.len() - 1].condition;
         let reactions = vec![Reaction::default(); conditions.len()];
-        let multipliers = Multipliers::new(moments, inverse, 0.0).ok_or(Failure::HeldTwice(last))?;
+        let multipliers =
+            Multipliers::new(moments, inverse, 0.0).ok_or(Failure::HeldTwice { body: 0, condition: last })?;
         if let Some(moment) = multipliers.dependent(INDEPENDENT) {
-            return Err(Failure::HeldTwice(moment.condition));
+            return Err(Failure::HeldTwice { body: 0, condition: moment.condition });
         }
         Ok(Some(Box::new(Self { conditions, multipliers, held, reactions })))
     }

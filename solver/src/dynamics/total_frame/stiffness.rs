@@ -80,6 +80,14 @@ impl LatticeStiffness<'_> {
         }
     }
 
+    /// Adds what springs along a boundary that may meet others answer to a motion.
+    pub(super) fn add_springs(&mut self, x: &[f64], forces: &mut VectorField) {
+        if let Some(boundary) = &self.frame.boundary {
+            self.unpack(x);
+            boundary.add_springs(&self.field, forces);
+        }
+    }
+
     /// Forces on the free degrees of freedom, without what conditions on edges carry: what they would leave
     /// to round-off grows from iteration to iteration (Gould, Hribar and Nocedal 2001).
     pub(super) fn pack_forces(&self, forces: &mut VectorField, out: &mut [f64]) {
@@ -105,9 +113,7 @@ impl StiffnessOperator for LatticeStiffness<'_> {
         self.unpack(x);
         let mut image = std::mem::take(&mut self.image);
         self.frame.elastic_forces(&self.field, &mut self.strips, &mut image);
-        if let Some(boundary) = &self.frame.boundary {
-            boundary.add_springs(&self.field, &mut image);
-        }
+        self.add_springs(x, &mut image);
         self.pack_forces(&mut image, out);
         self.image = image;
     }

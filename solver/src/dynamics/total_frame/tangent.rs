@@ -128,6 +128,7 @@ impl StiffnessOperator for Tangent<'_> {
         for (ahead, back) in ahead.iter_mut().zip(back) {
             ahead.iter_mut().zip(back).for_each(|(ahead, back)| *ahead = (*ahead - *back) / (2.0 * probe));
         }
+        undeformed.add_springs(x, ahead);
         undeformed.pack_forces(ahead, out);
     }
 

@@ -39,24 +39,24 @@ impl DiscreteField {
         };
         field.points.iter_mut().for_each(|point| point.velocity = begin(point.position));
         field.take_affine_velocities(begin);
-        let number = number_of(body, scene);
         field.crack_and_stress()?;
         field.begin_ledger();
         field.points_to_grid();
-        field.attach_first(number)?;
+        field.attach_first()?;
         field.respond();
         for (traction, load) in field.loads.iter().enumerate() {
             let balance = Balance::of_edge(body, &body.tractions[traction].edge);
             let shares = load.shares(&field.patch, &field.nodes);
-            balance.check(shares).map_err(|lost| Failure::LostTraction { body: number, traction, lost })?;
+            balance.check(shares).map_err(|lost| Failure::LostTraction { body: 0, traction, lost })?;
         }
         Ok(field)
     }
 
     /// Finds the first spans for the surface points of loads and conditions.
-    fn attach_first(&mut self, body: usize) -> Result<(), Failure> {
+    fn attach_first(&mut self) -> Result<(), Failure> {
         for (traction, load) in self.loads.iter_mut().enumerate() {
-            let bare = |OutsidePatch(place)| Failure::LostTraction { body, traction, lost: LostTraction::Bare(place) };
+            let bare =
+                |OutsidePatch(place)| Failure::LostTraction { body: 0, traction, lost: LostTraction::Bare(place) };
             load.attach(&self.patch, &self.nodes).map_err(bare)?;
         }
         self.attach_loads()
@@ -67,7 +67,7 @@ impl DiscreteField {
         let (material, analysis) = (&scene.materials[&body.material], &scene.analysis);
         let mut points = Point::of_lattice(&Lattice::stepped(whole, body));
         if points.is_empty() {
-            return Err(Failure::NoPoints(number_of(body, scene)));
+            return Err(Failure::NoPoints(0));
         }
         let spans = part::spans_around(whole, &points)?;
         let (patch, origin) = (whole.part(&spans), part::origin(whole, &spans));
@@ -115,11 +115,6 @@ impl DiscreteField {
             cells,
         })
     }
-}
-
-/// Number of a body in its scene.
-fn number_of(body: &Body, scene: &Scene) -> usize {
-    scene.bodies.iter().position(|other| std::ptr::eq(other, body)).unwrap_or_default()
 }
 
 /// Where the points take their velocity gradients from, if the transfer carries them.

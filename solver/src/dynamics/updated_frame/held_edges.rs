@@ -224,7 +224,7 @@ impl HeldEdges {
                 values
             };
             let points = edge.points.iter().map(|(place, point)| (*point, functions(place)));
-            let lost = |place| Failure::LostCondition { condition: number, place };
+            let lost = |place| Failure::LostCondition { body: 0, condition: number, place };
             moments.extend(moments_of(number, edge.condition.hold, &edge.space, points).map_err(lost)?);
         }
         let inverse = |moment: &Moment| -> Option<Vec<f64>> {
@@ -236,6 +236,6 @@ impl HeldEdges {
         let yielding = moments.into_iter().filter_map(|moment| inverse(&moment).map(|inverse| (moment, inverse)));
         let (moments, inverse): (Vec<Moment>, Vec<_>) = yielding.unzip();
         let Some(last) = moments.last().map(|moment| moment.condition) else { return Ok(None) };
-        Multipliers::new(moments, inverse, SOFTNESS).map(Some).ok_or(Failure::HeldTwice(last))
+        Multipliers::new(moments, inverse, SOFTNESS).map(Some).ok_or(Failure::HeldTwice { body: 0, condition: last })
     }
 }

@@ -174,10 +174,12 @@ fn broken(failure: Failure) -> StudyError {
         Failure::HoldsNothing(_)
         | Failure::Contradiction(_)
         | Failure::LostCondition { .. }
-        | Failure::HeldTwice(_) => other("conditions hold nothing, or contradict"),
+        | Failure::HeldTwice { .. } => other("conditions hold nothing, or contradict"),
         Failure::NoEquilibrium(_) | Failure::Unbalanced(_) => other("there is no static state"),
         Failure::LostTraction { .. } => other("a part of a traction would not act"),
-        Failure::Unconverged(_) | Failure::TooFast(_) => other("contact cannot follow the bodies"),
+        Failure::Unconverged(_) | Failure::TooFast(_) | Failure::TooDeep(_) | Failure::BareBoundary { .. } => {
+            other("contact cannot follow the bodies")
+        }
     }
 }
 
