@@ -2,6 +2,8 @@
 
 use crate::common::{unit_solid, updated_scene};
 use fisura::Simulation;
+use fisura::dynamics::failure::Failure;
+use fisura::dynamics::total_frame::bodies::TotalBodies;
 use fisura::linear_algebra::extremes::larger;
 use fisura::scene::*;
 
@@ -91,4 +93,15 @@ fn there_is_no_force_before_boundaries_meet() {
         (0..40).for_each(|_| simulation.step().unwrap());
         assert!(!simulation.contact_forces().is_empty());
     }
+}
+
+#[test]
+fn a_condition_that_cannot_be_met_names_its_body() {
+    let mut scene = discs(2, 20, 0.01);
+    let hold = Hold::Components([true, true]);
+    let prescribed = Prescribed::velocity([0.0; 2]);
+    let edge = Edge::Segment([[0.01, 0.01], [0.02, 0.01]]);
+    scene.bodies[1].conditions = vec![EdgeCondition { name: None, edge, hold, prescribed }];
+    let failure = TotalBodies::new(&scene).unwrap_err();
+    assert_eq!(failure, Failure::HeldTwice { body: 1, condition: 0 });
 }
