@@ -10,14 +10,14 @@
 //! at t = 0. d_b(x) is the distance to the nearest place y on the boundary of b; the force on a at x and its
 //! opposite on b at y act along the line through both. They keep momentum and angular momentum, and what the
 //! potential takes while bodies approach it gives back while they part: contact loses nothing, and no force
-//! acts before the gap is
-//! closed. The price is a depth of p/κ under a pressure p: a strain times h/α, with the stiffness α over that
-//! of a span which the scene chooses (`contact.stiffness`). The critical step counts κ.
+//! acts before the gap is closed. The price is a depth of p/κ under a pressure p: a strain times h/α, with
+//! the stiffness α over that of a span which the scene chooses (`contact.stiffness`). The critical step
+//! counts κ.
 //!
 //! The boundary of a body may also meet itself, where [`own_pairs`] says so. Friction acts beside it
-//! ([`friction`]). Rigid bodies ([`rigid_outline`]) have an outline and no stiffness
-//! of their own; they work on the others with their own velocity V, `−(F(n) · V(n) + F(n+1) · V(n+1)) dt/2`
-//! with the forces F on them.
+//! ([`friction`]). Rigid bodies ([`rigid_outline`]) have an outline and no stiffness of their own; they work
+//! on the others with their own velocity V, `−(F(n) · V(n) + F(n+1) · V(n+1)) dt/2` with the forces F on
+//! them.
 //!
 //! The boundaries are the cubics through places and tangents that the displacement moves ([`arc`]), with four
 //! Gauss points each. Both are linear in the control values, so the forces are the exact derivatives of E. Wriggers 2006, *Computational contact mechanics*, section 6.3, has
