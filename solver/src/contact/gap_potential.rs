@@ -20,10 +20,11 @@
 //! them.
 //!
 //! The boundaries are the cubics through places and tangents that the displacement moves ([`arc`]), with four
-//! Gauss points each. Both are linear in the control values, so the forces are the exact derivatives of E.
-//! Wriggers 2006, *Computational contact mechanics*, section 6.3, has the penalty method; Puso & Laursen
-//! 2004, *A mortar segment-to-segment contact method for large deformation solid mechanics*, the reason to
-//! integrate over boundaries instead of looking at their nodes.
+//! Gauss points each. Both are linear in the control values, so the forces are the derivatives of E where the
+//! nearest place moves smoothly. At a corner it can jump, and E with it. Wriggers 2006, *Computational
+//! contact mechanics*, section 6.3, has the penalty method; Puso & Laursen 2004, *A mortar segment-to-segment
+//! contact method for large deformation solid mechanics*, the reason to integrate over boundaries instead of
+//! looking at their nodes.
 
 pub(crate) mod arc;
 pub(crate) mod friction;
