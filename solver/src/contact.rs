@@ -31,7 +31,7 @@ mod follow;
 pub(crate) mod gap_potential;
 pub mod impulse;
 pub(crate) mod motion;
-mod outline;
+pub(crate) mod outline;
 pub(crate) mod rigid;
 mod state;
 pub(crate) mod surface;

@@ -30,6 +30,8 @@ pub(crate) mod arc;
 pub(crate) mod friction;
 pub(crate) mod own_pairs;
 pub(crate) mod rigid_outline;
+pub(crate) mod thickness;
+mod winding;
 
 use super::ContactLedger;
 use super::impulse::ContactForce;
@@ -37,13 +39,18 @@ use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::vectors::dot;
 use crate::splines::quadrature::Rule;
-use arc::{Outline, around, nearest, rule};
+use arc::{BoundaryPlace, Closest, Outline, around, nearest, rule};
 use friction::{ContactPoint, Friction};
 use own_pairs::OwnPairs;
 use rigid_outline::RigidOutline;
+use thickness::Thickness;
 
 /// Depth, in spans, from which on a boundary is not inside its own body, but on the far side of it.
 const FAR_SIDE: f64 = 0.5;
+/// Cosine of the normals of two places from which on one is on the far face, if that part is thin.
+const BEHIND: f64 = 0.5;
+/// Distance before a boundary, in spans, at which its own body is looked for.
+const SKIN: f64 = 1e-6;
 
 /// A boundary that is deeper in another body than contact follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,6 +59,8 @@ pub struct TooDeep {
     pub place: [f64; 2],
     /// Depth, in spans.
     pub spans: f64,
+    /// Depth that contact follows there, in spans.
+    pub follows: f64,
 }
 
 /// A pair of opposite forces, and that of friction beside it.
@@ -80,11 +89,13 @@ impl GapForce {
 /// Contact of the bodies of a scene.
 #[derive(Debug, Clone)]
 pub(crate) struct GapPotential {
-    /// Depth that is too much, m.
+    /// Depth that contact follows where bodies are thick, m: the shortest span.
     reach: f64,
     rule: Rule,
     /// They are counted after the bodies that deform.
     rigid: Vec<RigidOutline>,
+    /// Of all bodies, in this order.
+    thickness: Vec<Thickness>,
     /// What may meet of each body that deforms, if bodies may meet themselves.
     own: Vec<OwnPairs>,
     friction: Option<Friction>,
@@ -98,11 +109,18 @@ pub(crate) struct GapPotential {
 impl GapPotential {
     /// Bodies that do not touch on a mesh whose shortest span has this length, m, with a coefficient of
     /// friction, the rigid ones among them, and what may meet of each other one, if they may meet themselves.
-    pub(crate) fn new(span: f64, friction: f64, rigid: Vec<RigidOutline>, own: Vec<OwnPairs>) -> Self {
+    pub(crate) fn new(
+        span: f64,
+        friction: f64,
+        rigid: Vec<RigidOutline>,
+        thickness: Vec<Thickness>,
+        own: Vec<OwnPairs>,
+    ) -> Self {
         Self {
             reach: span,
             rule: rule(),
             rigid,
+            thickness,
             own,
             friction: Friction::new(friction),
             forces: Vec::new(),
@@ -115,7 +133,7 @@ impl GapPotential {
     /// Finds the forces at a time, s, `dt` after they were found last, between boundaries that are there now.
     ///
     /// # Errors
-    /// If a boundary is a span deep in another body.
+    /// If a boundary is deeper in another body than contact follows.
     pub(crate) fn find(&mut self, mut outlines: Vec<Outline>, time: f64, dt: f64) -> Result<(), TooDeep> {
         let (deformable, alone) = (outlines.len(), self.own.len());
         outlines.extend(self.rigid.iter().map(|body| body.at(time)));
@@ -145,26 +163,21 @@ impl GapPotential {
 
     /// What the boundary of a in a box feels of b.
     fn compare(&mut self, [a, b]: [usize; 2], outlines: &[Outline], common: [[f64; 2]; 2]) -> Result<(), TooDeep> {
-        let wider = |[low, high]: [[f64; 2]; 2]| [low.map(|x| x - self.reach), high.map(|x| x + self.reach)];
         let own = self.own.get(a).filter(|_| a == b);
-        let mut other: Vec<usize> = outlines[b].within(wider(common)).collect();
         let spring = smaller(outlines[a].spring, outlines[b].spring);
         for number in outlines[a].within(common) {
-            if let Some(own) = own {
-                let near = outlines[b].within(wider(outlines[a].boxes[number]));
-                other = near.filter(|other| own.may_meet(number, *other)).collect();
-            }
             for (point, place) in outlines[a].arcs[number].places(&self.rule).enumerate() {
-                let Some(nearest) = nearest(place.position, &outlines[b], &other) else { continue };
-                let beyond = own.is_some() && nearest.depth > FAR_SIDE * self.reach;
-                if dot(place.normal, nearest.normal) >= 0.0 || nearest.depth <= 0.0 || beyond {
-                    continue;
+                let found = match own {
+                    None => self.opposite(place, &outlines[b], b),
+                    Some(own) => self.opposite_own(place, &outlines[b], |other| own.may_meet(number, other)),
+                };
+                let Some(nearest) = found.filter(|nearest| nearest.distance > 0.0) else { continue };
+                let depth = nearest.distance;
+                let followed = self.thickness[b].followed(nearest.label.0, self.reach);
+                if depth > followed {
+                    let [spans, follows] = [depth, followed].map(|depth| depth / self.reach);
+                    return Err(TooDeep { place: place.position, spans, follows });
                 }
-                let depth = nearest.depth;
-                if depth > self.reach {
-                    return Err(TooDeep { place: place.position, spans: depth / self.reach });
-                }
-                let out = [0, 1].map(|d| (nearest.position[d] - place.position[d]) / depth);
                 let pressure = 0.5 * spring * depth * place.length;
                 self.energy += 0.5 * pressure * depth;
                 let friction = self.friction.as_mut().map(|friction| {
@@ -175,12 +188,42 @@ impl GapPotential {
                     bodies: [a, b],
                     places: [place.position, nearest.position],
                     labels: [(number, self.rule.points[point]), nearest.label],
-                    force: out.map(|out| -pressure * out),
+                    force: nearest.direction.map(|out| -pressure * out),
                     friction,
                 });
             }
         }
         Ok(())
+    }
+
+    /// The nearest place on the boundary of another body of this number, if a place of a boundary is inside it.
+    fn opposite(&self, place: BoundaryPlace, other: &Outline, number: usize) -> Option<Closest> {
+        let BoundaryPlace { position, normal, .. } = place;
+        if !other.contains(position) {
+            return None;
+        }
+        let thickness = &self.thickness[number];
+        let behind = |(arc, t): (usize, f64)| thickness.is_thin(arc) && dot(other.arcs[arc].normal(t), normal) > BEHIND;
+        let near = other.within([position.map(|x| x - self.reach), position.map(|x| x + self.reach)]);
+        nearest(position, other, near, |label| !behind(label))
+            .or_else(|| nearest(position, other, 0..other.arcs.len(), |_| true))
+    }
+
+    /// The nearest of the places that it may meet on the boundary of its own body, if it is inside that.
+    fn opposite_own(
+        &self,
+        place: BoundaryPlace,
+        outline: &Outline,
+        may_meet: impl Fn(usize) -> bool,
+    ) -> Option<Closest> {
+        let BoundaryPlace { position, normal, .. } = place;
+        if !outline.contains([0, 1].map(|d| position[d] + SKIN * self.reach * normal[d])) {
+            return None;
+        }
+        let far = FAR_SIDE * self.reach;
+        let near = outline.within([position.map(|x| x - far), position.map(|x| x + far)]);
+        let nearest = nearest(position, outline, near.filter(|other| may_meet(*other)), |_| true);
+        nearest.filter(|nearest| nearest.distance <= far)
     }
 
     /// Power of the rigid bodies, which are counted from `first`, on the others, W/m.
@@ -229,7 +272,7 @@ impl GapPotential {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { reach: _, rule: _, rigid: _, own: _, friction, forces: _, energy: _, power: _, work } = self;
+        let Self { friction, work, .. } = self;
         if let Some(friction) = friction {
             friction.exchange(archive)?;
         }
@@ -243,7 +286,12 @@ impl GapPotential {
     pub(crate) fn bytes(&self) -> usize {
         let rigid: usize = self.rigid.iter().map(RigidOutline::bytes).sum();
         let own: usize = self.own.iter().map(OwnPairs::bytes).sum();
-        rigid + own + self.forces.len() * size_of::<GapForce>() + self.friction.as_ref().map_or(0, Friction::bytes)
+        let thickness: usize = self.thickness.iter().map(Thickness::bytes).sum();
+        rigid
+            + own
+            + thickness
+            + self.forces.len() * size_of::<GapForce>()
+            + self.friction.as_ref().map_or(0, Friction::bytes)
     }
 }
 

@@ -4,9 +4,10 @@
 
 use super::outline::without_patch;
 use super::surface::{Center, Surface};
-use crate::linear_algebra::extremes::{larger, largest};
+use crate::linear_algebra::extremes::{larger, largest, smaller};
 use crate::particles::spans::smallest_span;
-use crate::scene::{Body, Mesh, Scene};
+use crate::scene::area::Extent;
+use crate::scene::{Body, Frame, Mesh, Scene};
 
 /// Most spans by which bodies that meet approach each other in a step.
 pub(crate) const MOST: f64 = 0.5;
@@ -65,7 +66,7 @@ impl<'a> Moving<'a> {
 /// centroid.
 fn outward_speed(mesh: &Mesh, body: &Body) -> f64 {
     let surface = Surface::of_segments(mesh, body, SEGMENTS);
-    let center = surface.centroid();
+    let center = Extent::new(&without_patch(&body.shape, mesh)).centroid;
     let speeds = (0..surface.segments.len() as u32).flat_map(|segment| {
         let Center { normal, .. } = surface.center(segment);
         surface.ends(segment).map(|end| {
@@ -78,13 +79,30 @@ fn outward_speed(mesh: &Mesh, body: &Body) -> f64 {
 }
 
 /// Longest step, s, in which no two bodies of a scene with contact approach each other by more than [`MOST`]
-/// spans, by the velocities they begin with; infinite without contact.
+/// spans, and in the total frame by as much of half a thin body, by the velocities they begin with; infinite
+/// without contact.
 pub(crate) fn longest_step(scene: &Scene) -> f64 {
     if scene.contact.is_none() {
         return f64::INFINITY;
     }
     let bodies: Vec<Moving> = scene.bodies.iter().map(|body| Moving::new(&scene.mesh, body)).collect();
-    let pairs = bodies.iter().enumerate().flat_map(|(i, a)| bodies[i + 1..].iter().map(move |b| (a, b)));
-    let speeds = pairs.filter(|(a, b)| !(a.body.rigid && b.body.rigid)).map(|(a, b)| a.approach(b));
-    MOST * smallest_span(&scene.mesh) / largest(speeds)
+    let speeds = pairs(&bodies).filter(|(a, b)| !(a.body.rigid && b.body.rigid)).map(|(a, b)| a.approach(b));
+    let is_followed = |_: &&Moving| scene.analysis.frame == Frame::Total;
+    let half = |moving: &Moving| {
+        let Extent { area, length, .. } = Extent::new(&without_patch(&moving.body.shape, &scene.mesh));
+        area / length
+    };
+    let followed = bodies.iter().filter(is_followed).map(half).fold(smallest_span(&scene.mesh), smaller);
+    MOST * followed / largest(speeds)
+}
+
+fn pairs<'b, 'a>(bodies: &'b [Moving<'a>]) -> impl Iterator<Item = (&'b Moving<'a>, &'b Moving<'a>)> {
+    bodies.iter().enumerate().flat_map(move |(i, a)| bodies[i + 1..].iter().map(move |b| (a, b)))
+}
+
+/// The names of two rigid bodies of a scene that may approach each other, if there are such.
+pub(crate) fn rigid_bodies_that_approach(scene: &Scene) -> Option<[&str; 2]> {
+    let rigid = scene.bodies.iter().filter(|body| body.rigid);
+    let bodies: Vec<Moving> = rigid.map(|body| Moving::new(&scene.mesh, body)).collect();
+    pairs(&bodies).find(|(a, b)| a.approach(b) > 0.0).map(|(a, b)| [a, b].map(|moving| moving.body.name.as_str()))
 }

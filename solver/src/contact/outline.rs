@@ -15,7 +15,7 @@ pub(super) fn spacing(mesh: &Mesh, body: &Body) -> f64 {
 }
 
 /// The same shape with a rectangle for the whole patch, which is one in the updated frame.
-pub(super) fn without_patch(shape: &Shape, mesh: &Mesh) -> Shape {
+pub(crate) fn without_patch(shape: &Shape, mesh: &Mesh) -> Shape {
     match shape {
         Shape::Patch => Shape::Rectangle { min: mesh.origin(), max: mesh.end() },
         Shape::Union(shapes) => Shape::Union(shapes.iter().map(|shape| without_patch(shape, mesh)).collect()),

@@ -1,6 +1,8 @@
 //! Rigid bodies: they move as prescribed, whatever they meet.
 
+use super::outline::without_patch;
 use super::surface::Surface;
+use crate::scene::area::Extent;
 use crate::scene::{Body, Mesh};
 
 /// The motion of a rigid body: steady, about a centre that moves on.
@@ -13,8 +15,9 @@ pub(crate) struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// That of a body with its centroid at t = 0, m.
-    pub(crate) fn new(body: &Body, center: [f64; 2]) -> Self {
+    /// That of a body, about its centroid.
+    pub(crate) fn new(mesh: &Mesh, body: &Body) -> Self {
+        let center = Extent::new(&without_patch(&body.shape, mesh)).centroid;
         Self::steady(center, body.velocity, body.angular_velocity)
     }
 
@@ -68,7 +71,7 @@ impl RigidBody {
     /// `body` at t = 0.
     pub(crate) fn new(mesh: &Mesh, body: &Body) -> Self {
         let surface = Surface::new(mesh, body);
-        let motion = RigidMotion::new(body, surface.centroid());
+        let motion = RigidMotion::new(mesh, body);
         Self { reference: surface.positions().to_vec(), surface, motion, time: 0.0 }
     }
 

@@ -151,18 +151,6 @@ impl Surface {
         Ok(())
     }
 
-    /// Centroid of the region it bounds, m.
-    pub fn centroid(&self) -> [f64; 2] {
-        let (mut area, mut moment) = (0.0, [0.0; 2]);
-        for index in 0..self.segments.len() as u32 {
-            let [a, b] = self.ends(index);
-            let part = 0.5 * (a[0] * b[1] - a[1] * b[0]);
-            area += part;
-            moment = [0, 1].map(|d| moment[d] + part * (a[d] + b[d]) / 3.0);
-        }
-        moment.map(|m| m / area)
-    }
-
     /// Positions of the vertices, m.
     pub fn positions(&self) -> &[[f64; 2]] {
         &self.vertices

@@ -3,7 +3,7 @@
 //! An edge is divided where it crosses knots: shape functions are smooth on every part, and Gauss points
 //! integrate them.
 
-use crate::scene::edges::BoundaryEdge;
+use crate::scene::edges::{BESIDE, BoundaryEdge, beside, bounding_parts};
 use crate::scene::{Body, Edge, Layout, Shape};
 use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
@@ -26,8 +26,6 @@ pub(crate) struct SurfacePoint {
 /// Largest part of a circle between two divisions, and Gauss points in a part beyond the degree.
 const PART_OF_CIRCLE: f64 = 1.0 / 16.0;
 const BEYOND_DEGREE: usize = 4;
-/// Distance from an edge at which it is looked for material, of the size of the edge.
-const BESIDE: f64 = 1e-6;
 /// Distance between two divisions, of the length of an edge, that counts as none.
 const NEAR: f64 = 1e-12;
 
@@ -77,8 +75,7 @@ fn fits_points(patch: &Patch, body: &Body, [a, b]: [[f64; 2]; 2]) -> bool {
     matches!(body.shape, Shape::Rectangle { .. } | Shape::Patch) || on_knot(a[d])
 }
 
-/// Points around a shape: along every part of its edges with the shape on one side only. Edges that coincide
-/// count twice.
+/// Points around a shape: along every part of its edges with the shape on one side only.
 pub(crate) fn points_around(patch: &Patch, shape: &Shape) -> Vec<SurfacePoint> {
     let rule = smooth_rule(patch);
     let mut points = Vec::new();
@@ -86,25 +83,6 @@ pub(crate) fn points_around(patch: &Patch, shape: &Shape) -> Vec<SurfacePoint> {
         points.extend(points_between(&divisions(patch, &edge, part), &edge, &rule, shape));
     }
     points
-}
-
-/// The parts (s) of the edges of a shape that have it on one side only.
-pub(crate) fn bounding_parts(shape: &Shape) -> Vec<(BoundaryEdge, [f64; 2])> {
-    let edges = shape.edges();
-    let mut parts = Vec::<(BoundaryEdge, [f64; 2])>::new();
-    for edge in &edges {
-        let places = edge.places_met(&edges, [0.0, 1.0]);
-        let first = parts.len();
-        for pair in places.windows(2).filter(|pair| pair[1] - pair[0] > NEAR) {
-            let [left, right] = beside(edge, 0.5 * (pair[0] + pair[1])).map(|place| shape.contains(place));
-            match parts[first..].last_mut() {
-                _ if left == right => (),
-                Some((_, part)) if part[1] == pair[0] => part[1] = pair[1],
-                _ => parts.push((edge.clone(), [pair[0], pair[1]])),
-            }
-        }
-    }
-    parts
 }
 
 /// The surface point at s on an edge that bounds a shape on its left, of no length, and the derivative of its
@@ -166,16 +144,6 @@ fn points_between<'a>(
             SurfacePoint { position, length, along: s * speed, normal, inner }
         })
     })
-}
-
-/// Positions (m) to the left and to the right of a place on an edge.
-fn beside(edge: &BoundaryEdge, s: f64) -> [[f64; 2]; 2] {
-    let (position, tangent) = edge.at(s);
-    let size = match edge {
-        BoundaryEdge::Line(_) => 1.0,
-        BoundaryEdge::Circle { .. } => 1.0 / std::f64::consts::TAU, // the radius
-    };
-    [BESIDE, -BESIDE].map(|reach| [position[0] - reach * size * tangent[1], position[1] + reach * size * tangent[0]])
 }
 
 /// Ends of a straight edge, m; they coincide if the body has no such side.

@@ -42,7 +42,7 @@ impl TimePlan {
         if analysis.time_step == TimeStep::Auto && longest < stable.min(end) {
             warnings.push(format!(
                 "bodies approach each other so fast that the time step is {longest:.4e} s instead of {stable:.4e} s: \
-                 contact follows {MOST} spans in a step"
+                 contact follows {MOST} spans in a step, and less of thin bodies"
             ));
         }
         let mut samples = output.samples.max(1);

@@ -5,6 +5,8 @@ use super::shape::{Segment, cross};
 
 /// Distance within which two places count as one, of the size of what they lie on.
 const NEAR: f64 = 1e-12;
+/// Distance from an edge at which it is looked for material, of the size of the edge.
+pub(crate) const BESIDE: f64 = 1e-6;
 
 /// A smooth part of the boundary of a shape, with the shape to its left.
 #[derive(Debug, Clone, PartialEq)]
@@ -125,6 +127,13 @@ impl BoundaryEdge {
         }
     }
 
+    /// Whether a position (m) is on a part (s) of it.
+    fn carries(&self, position: [f64; 2], [from, to]: [f64; 2]) -> bool {
+        let s = self.place_after(from, self.place_of(position));
+        let place = self.at(s).0;
+        (from..=to).contains(&s) && (place[0] - position[0]).hypot(place[1] - position[1]) < BESIDE * self.length()
+    }
+
     /// The same place s, on a circle in the first turn from another place on.
     pub(crate) fn place_after(&self, from: f64, s: f64) -> f64 {
         if let Self::Circle { .. } = self { s + (from - s).ceil() } else { s }
@@ -170,6 +179,37 @@ impl BoundaryEdge {
             }
         }
     }
+}
+
+/// The parts (s) of the edges of a shape that have it on one side only. Where edges coincide one is taken.
+pub(crate) fn bounding_parts(shape: &Shape) -> Vec<(BoundaryEdge, [f64; 2])> {
+    let edges = shape.edges();
+    let mut parts = Vec::<(BoundaryEdge, [f64; 2])>::new();
+    for edge in &edges {
+        let places = edge.places_met(&edges, [0.0, 1.0]);
+        let first = parts.len();
+        for pair in places.windows(2).filter(|pair| pair[1] - pair[0] > NEAR) {
+            let middle = 0.5 * (pair[0] + pair[1]);
+            let [left, right] = beside(edge, middle).map(|place| shape.contains(place));
+            let is_taken = parts[..first].iter().any(|(other, part)| other.carries(edge.at(middle).0, *part));
+            match parts[first..].last_mut() {
+                _ if left == right || is_taken => (),
+                Some((_, part)) if part[1] == pair[0] => part[1] = pair[1],
+                _ => parts.push((edge.clone(), [pair[0], pair[1]])),
+            }
+        }
+    }
+    parts
+}
+
+/// Positions (m) to the left and to the right of a place on an edge.
+pub(crate) fn beside(edge: &BoundaryEdge, s: f64) -> [[f64; 2]; 2] {
+    let (position, tangent) = edge.at(s);
+    let size = match edge {
+        BoundaryEdge::Line(_) => 1.0,
+        BoundaryEdge::Circle { .. } => 1.0 / std::f64::consts::TAU, // the radius
+    };
+    [BESIDE, -BESIDE].map(|reach| [position[0] - reach * size * tangent[1], position[1] + reach * size * tangent[0]])
 }
 
 fn lines_meet([a, b]: Segment, [c, d]: Segment) -> Option<[f64; 2]> {

@@ -3,6 +3,7 @@
 use super::condition::Side;
 use super::shape::Shape;
 use crate::linear_algebra::extremes::{larger, smaller};
+use crate::splines::spline::ROUND_OFF;
 
 /// Distance of a shape from a knot that counts as none, of the size of the shape.
 const NEAR: f64 = 1e-12;
@@ -82,13 +83,16 @@ impl Mesh {
         Self { degree: self.degree, knots, geometry: None }
     }
 
-    /// Whether a side of this mesh is there on the side of another one that it is a part of.
-    pub(crate) fn shares(&self, side: Side, whole: &Self) -> bool {
-        match side {
-            Side::Left => self.origin()[0] == whole.origin()[0],
-            Side::Right => self.end()[0] == whole.end()[0],
-            Side::Bottom => self.origin()[1] == whole.origin()[1],
-            Side::Top => self.end()[1] == whole.end()[1],
-        }
+    /// Whether a shape reaches a side of the box around the mesh.
+    pub(crate) fn is_reached(&self, side: Side, shape: &Shape) -> bool {
+        let (d, upper) = match side {
+            Side::Left => (0, false),
+            Side::Right => (0, true),
+            Side::Bottom => (1, false),
+            Side::Top => (1, true),
+        };
+        let (origin, end, (min, max)) = (self.origin()[d], self.end()[d], self.extent(shape));
+        let tolerance = ROUND_OFF * (end - origin);
+        if upper { max[d] >= end - tolerance } else { min[d] <= origin + tolerance }
     }
 }

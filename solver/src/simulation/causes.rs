@@ -104,9 +104,10 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
             ),
             TOO_FAST,
         ),
-        Failure::TooDeep(TooDeep { spans, .. }) => {
-            (format!("a boundary is {spans:.3} spans deep in another body, and contact follows 1"), TOO_DEEP)
-        }
+        Failure::TooDeep(TooDeep { spans, follows, .. }) => (
+            format!("a boundary is {spans:.3} spans deep in another body, and contact follows {follows:.3} there"),
+            TOO_DEEP,
+        ),
         Failure::BareBoundary { place: [x, y], .. } => (
             format!("there is no material point within a cell of ({x:.6e}, {y:.6e}) m on the boundary of the body"),
             ADD_POINTS,

@@ -212,9 +212,11 @@ impl Simulation {
         }
         if !self.warned.closure {
             self.warned.closure = true;
+            let process =
+                if sample.contact.is_some() { "contact, or for the work of stress" } else { "the work of stress" };
             self.warnings.push(format!(
-                "at t = {time:.4e} s {what}: the quadrature of the stress work is coarse; lower analysis.safety (0.2 \
-                 leaves a sixteenth of it)"
+                "at t = {time:.4e} s {what}: the time step is long for {process}; lower analysis.safety (0.2 leaves a \
+                 sixteenth of it)"
             ));
         }
         Ok(())

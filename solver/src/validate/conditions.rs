@@ -187,22 +187,10 @@ fn names(scene: &Scene, findings: &mut Findings) {
 
 /// A warning unless a body reaches the side of a boundary.
 fn held(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) {
-    let (origin, end) = (scene.mesh.origin(), scene.mesh.end());
-    let (d, upper) = match boundary.side {
-        Side::Left => (0, false),
-        Side::Right => (0, true),
-        Side::Bottom => (1, false),
-        Side::Top => (1, true),
-    };
-    let tolerance = TOLERANCE * (end[d] - origin[d]);
     if scene.mesh.geometry.is_some() {
         return; // the sides of the patch are not those of the box around it
     }
-    let place = if upper { end[d] } else { origin[d] };
-    let reaches = |body: &Body| {
-        let (min, max) = scene.mesh.extent(&body.shape);
-        if upper { max[d] >= place - tolerance } else { min[d] <= place + tolerance }
-    };
+    let reaches = |body: &Body| scene.mesh.is_reached(boundary.side, &body.shape);
     let patch = (scene.analysis.frame == Frame::Updated).then(|| Patch::new(&scene.mesh));
     if patch.is_some_and(|patch| !scene.bodies.iter().any(|body| lies_on(&patch, body, boundary))) {
         let message = format!(
@@ -212,10 +200,10 @@ fn held(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) 
         );
         findings.warn(key, message);
     } else if !scene.bodies.iter().any(reaches) {
-        let (side, name) = (side_name(boundary.side), ["x", "y"][d]);
         let message = format!(
-            "no body reaches the {side} side of the mesh, {name} = {place} m, so it holds that body loosely or \
-             not at all; let the mesh end where the body does, or remove the boundary"
+            "no body reaches the {} side of the mesh, so it holds that body loosely or not at all; let the mesh end \
+             where the body does, or remove the boundary",
+            side_name(boundary.side)
         );
         findings.warn(key, message);
     }

@@ -5,13 +5,17 @@ use super::findings::Findings;
 use super::geometry::{complexity, defect};
 use super::ground::Ground;
 use crate::contact::Surface;
-use crate::contact::motion::longest_step;
-use crate::contact::surface::Center;
+use crate::contact::motion::{longest_step, rigid_bodies_that_approach};
+use crate::contact::outline::without_patch;
 use crate::linear_algebra::extremes::larger;
+use crate::scene::edges::bounding_parts;
 use crate::scene::{Body, Frame, Kinematics, Scene, Shape, TimeStep};
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
 const TOLERANCE: f64 = 1e-3;
+
+/// Steps, in spans, in which boundaries are looked at for an overlap.
+const STEP: f64 = 0.25;
 
 /// Most segments of boundaries times corners and circles of their shapes: a quarter of a second, half a GiB.
 const MOST_WORK: f64 = 1e7;
@@ -40,7 +44,15 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         Some(contact) if scene.bodies.len() == 1 && !contact.fragments && !contact.self_contact => {
             findings.warn("contact", "there is only one body; remove the table");
         }
-        Some(_) if ground.is_sound && overlaps(scene, ground, findings) => speeds(scene, findings),
+        Some(_) if ground.is_sound && overlaps(scene, ground, findings) => {
+            speeds(scene, findings);
+            if let Some([one, other]) = rigid_bodies_that_approach(scene) {
+                findings.warn(
+                    "contact",
+                    format!("rigid bodies do not meet: {one:?} and {other:?} pass through each other"),
+                );
+            }
+        }
         None if scene.bodies.len() > 1 => findings.warn(
             "contact",
             format!(
@@ -139,8 +151,10 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) -> bool
                 continue;
             }
             let least = TOLERANCE * spans[i];
-            let [a_in_b, b_in_a] = [(i, j, &b.shape), (j, i, &a.shape)]
-                .map(|(one, other, inside)| depth(&surfaces[one], &surfaces[other], inside, 2.0 * least));
+            let [a_in_b, b_in_a] =
+                [(a, &surfaces[j], &b.shape), (b, &surfaces[i], &a.shape)].map(|(one, other, inside)| {
+                    depth(&without_patch(&one.shape, &scene.mesh), other, inside, [2.0 * least, STEP * spans[i]])
+                });
             let deepest = larger(a_in_b, b_in_a);
             if deepest > least {
                 let message = format!("body {:?} overlaps body {:?} by {deepest:.3e} m at t = 0", b.name, a.name);
@@ -154,15 +168,17 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) -> bool
     true
 }
 
-/// How far what lies `beneath` (m) the boundary of one body reaches into the body inside another, m: the
-/// boundaries of bodies that coincide do not cross. Of very many segments, some are looked at.
-fn depth(one: &Surface, other: &Surface, inside: &Shape, beneath: f64) -> f64 {
-    let [low, high] = other.bounding_box();
-    let below = |segment: u32| {
-        let Center { position, normal, .. } = one.center(segment);
-        [0, 1].map(|d| position[d] - beneath * normal[d])
-    };
-    let below = one.segments_in([low, high]).into_iter().map(below);
+/// How far what lies `beneath` (m) the boundary of one body, in steps (m), reaches into the body inside another,
+/// m: the boundaries of bodies that coincide do not cross. Of very many steps, some are looked at.
+fn depth(one: &Shape, other: &Surface, inside: &Shape, [beneath, step]: [f64; 2]) -> f64 {
+    let below = bounding_parts(one).into_iter().flat_map(|(edge, [from, to])| {
+        let count = (edge.length() * (to - from) / step).ceil();
+        (0..count as usize).map(move |i| {
+            let (position, [x, y]) = edge.at(from + (i as f64 + 0.5) / count * (to - from));
+            let beneath = beneath / x.hypot(y);
+            [position[0] - beneath * y, position[1] + beneath * x]
+        })
+    });
     let within: Vec<_> = below.filter(|position| inside.contains(*position)).collect();
     if within.is_empty() {
         return 0.0;

@@ -1,17 +1,17 @@
 //! The boundary of a body as cubics through places and tangents, and the place nearest to another one.
 
 use crate::linear_algebra::extremes::{larger, smaller};
-use crate::linear_algebra::vectors::{dot, unit};
+use crate::linear_algebra::vectors::dot;
 use crate::scene::Layout;
 use crate::splines::quadrature::Rule;
 
 /// Gauss points of an arc.
 const POINTS: usize = 4;
-/// Corrections of the nearest place, and what is near enough, in arcs.
-const CORRECTIONS: usize = 20;
+/// Divisions of an arc whose ends are looked at for the nearest place: a crushed corner bends its arcs far.
+const LOOKS: usize = 10;
+/// Corrections of that place, and what is near enough, in arcs.
+const CORRECTIONS: usize = 50;
 const CLOSE: f64 = 1e-13;
-/// Distance of ends that are joined, in arcs.
-const JOINED: f64 = 1e-6;
 
 /// A step of a boundary as a cubic of t from 0 to 1; the body is to its left.
 #[derive(Debug, Clone, Copy)]
@@ -70,7 +70,7 @@ impl Arc {
     }
 
     /// Outward unit normal at t.
-    fn normal(&self, t: f64) -> [f64; 2] {
+    pub(crate) fn normal(&self, t: f64) -> [f64; 2] {
         let [tx, ty] = self.tangent(t);
         [ty, -tx].map(|x| x / tx.hypot(ty))
     }
@@ -98,36 +98,54 @@ impl Arc {
         Self { powers: [place(c0), turn(c1), turn(c2), turn(c3)], ..*self }
     }
 
-    /// Lower left and upper right corner of a box around it, m.
-    pub(crate) fn bounds(&self) -> [[f64; 2]; 2] {
+    /// Its ends, and between them the other two corners of the polygon that controls it, m.
+    pub(crate) fn control_polygon(&self) -> [[f64; 2]; 4] {
         let ends = [self.position(0.0), self.position(1.0)];
         let [s, t] = [self.tangent(0.0), self.tangent(1.0)];
         let inner = [[0, 1].map(|d| ends[0][d] + s[d] / 3.0), [0, 1].map(|d| ends[1][d] - t[d] / 3.0)];
-        around(ends.into_iter().chain(inner).map(|x| [x, x]))
+        [ends[0], inner[0], inner[1], ends[1]]
     }
 
-    /// The place nearest to a position, m: t, and the square of the distance, m².
-    fn nearest(&self, position: [f64; 2]) -> (f64, f64) {
-        let from = |t: f64| {
-            let x = self.position(t);
-            [0, 1].map(|d| x[d] - position[d])
+    /// Lower left and upper right corner of a box around it, m.
+    pub(crate) fn bounds(&self) -> [[f64; 2]; 2] {
+        around(self.control_polygon().into_iter().map(|x| [x, x]))
+    }
+
+    /// From a place at t to a position, m.
+    fn to(&self, position: [f64; 2], t: f64) -> [f64; 2] {
+        let x = self.position(t);
+        [0, 1].map(|d| position[d] - x[d])
+    }
+
+    /// t at the place nearest to a position, m.
+    fn nearest(&self, position: [f64; 2]) -> f64 {
+        let square = |t: f64| dot(self.to(position, t), self.to(position, t));
+        let squares: [f64; LOOKS + 1] = std::array::from_fn(|i| square(i as f64 / LOOKS as f64));
+        let is_least = |i: &usize| {
+            let [before, after] = [i.checked_sub(1), Some(i + 1)].map(|at| at.and_then(|at| squares.get(at)));
+            [before, after].into_iter().flatten().all(|other| squares[*i] <= *other)
         };
-        let [start, end] = [from(0.0), from(1.0)];
-        let along = [0, 1].map(|d| end[d] - start[d]);
-        let mut t = (-dot(start, along) / dot(along, along)).clamp(0.0, 1.0);
+        let places = (0..=LOOKS).filter(is_least).map(|i| self.nearest_between(position, i));
+        places.reduce(|best, t| if square(t) < square(best) { t } else { best }).unwrap_or(0.0)
+    }
+
+    /// The same beside the division of this number: Newton's method, and halves of what is left where it fails.
+    fn nearest_between(&self, position: [f64; 2], number: usize) -> f64 {
+        let mut t = number as f64 / LOOKS as f64;
+        let [mut low, mut high] = [-1.0, 1.0].map(|side| (t + side / LOOKS as f64).clamp(0.0, 1.0));
         for _ in 0..CORRECTIONS {
-            let (apart, tangent) = (from(t), self.tangent(t));
-            let slope = dot(apart, tangent);
-            let curved = dot(tangent, tangent) + dot(apart, self.curvature(t));
-            let next = (t - slope / larger(curved, 0.1 * dot(tangent, tangent))).clamp(0.0, 1.0);
+            let (apart, tangent) = (self.to(position, t), self.tangent(t));
+            let slope = -dot(apart, tangent);
+            *(if slope > 0.0 { &mut high } else { &mut low }) = t;
+            let newton = t - slope / (dot(tangent, tangent) - dot(apart, self.curvature(t)));
+            let next = if (low..=high).contains(&newton) { newton } else { 0.5 * (low + high) };
             let change = (next - t).abs();
             t = next;
             if change <= CLOSE {
                 break;
             }
         }
-        let apart = from(t);
-        (t, dot(apart, apart))
+        t
     }
 }
 
@@ -172,52 +190,39 @@ pub(crate) fn rule() -> Rule {
 /// The nearest place of a boundary.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Closest {
-    /// How deep the position is inside the body, m; negative outside.
-    pub depth: f64,
+    /// Distance, m.
+    pub distance: f64,
     /// m.
     pub position: [f64; 2],
-    /// Outward unit normal there.
-    pub normal: [f64; 2],
+    /// Unit vector towards it.
+    pub direction: [f64; 2],
     /// Number of its arc, and t on it: they move with the material.
     pub label: (usize, f64),
 }
 
-/// The place nearest to a position among some arcs of an outline.
-pub(crate) fn nearest(position: [f64; 2], outline: &Outline, among: &[usize]) -> Option<Closest> {
-    let mut best: Option<(f64, usize, f64)> = None;
-    for &number in among {
+/// The place nearest to a position, m, among those of some arcs that count by their labels.
+pub(crate) fn nearest(
+    position: [f64; 2],
+    outline: &Outline,
+    among: impl Iterator<Item = usize>,
+    counts: impl Fn((usize, f64)) -> bool,
+) -> Option<Closest> {
+    let mut best: Option<Closest> = None;
+    for number in among {
         let ([low, high], arc) = (outline.boxes[number], &outline.arcs[number]);
         let beside = [0, 1].map(|d| larger(0.0, larger(low[d] - position[d], position[d] - high[d])));
-        if best.is_some_and(|(least, ..)| dot(beside, beside) > least) {
+        if best.is_some_and(|best| dot(beside, beside) > best.distance * best.distance) {
             continue;
         }
-        let (t, square) = arc.nearest(position);
-        if best.is_none_or(|(least, ..)| square < least) {
-            best = Some((square, number, t));
+        let t = arc.nearest(position);
+        let (place, label) = (arc.position(t), (number, t));
+        let apart = [0, 1].map(|d| place[d] - position[d]);
+        let distance = apart[0].hypot(apart[1]);
+        if best.is_none_or(|best| distance < best.distance) && counts(label) {
+            best = Some(Closest { distance, position: place, direction: apart.map(|x| x / distance), label });
         }
     }
-    let (square, number, t) = best?;
-    let arc = &outline.arcs[number];
-    let place = arc.position(t);
-    let own = arc.normal(t);
-    // At a corner neither normal tells inside from outside, but the mean of both does (Bærentzen & Aanæs
-    // 2005, *Signed distance computation using the angle weighted pseudonormal*).
-    let next = if t == 0.0 || t == 1.0 { beside(number, place, 1.0 - t, outline, among) } else { None };
-    let normal = unit(next.map_or(own, |next| [0, 1].map(|d| own[d] + next[d])))?;
-    let inside = dot([0, 1].map(|d| position[d] - place[d]), normal) < 0.0;
-    let depth = if inside { square.sqrt() } else { -square.sqrt() };
-    Some(Closest { depth, position: place, normal, label: (number, t) })
-}
-
-/// Normal of the arc that begins or ends, as t has it, where another one does not go on.
-fn beside(number: usize, place: [f64; 2], t: f64, outline: &Outline, among: &[usize]) -> Option<[f64; 2]> {
-    let joins = |arc: &Arc| {
-        let apart = [0, 1].map(|d| arc.position(t)[d] - place[d]);
-        let along = [0, 1].map(|d| arc.position(1.0 - t)[d] - place[d]);
-        dot(apart, apart) <= JOINED * JOINED * dot(along, along)
-    };
-    let mut others = among.iter().filter(|other| **other != number).map(|other| &outline.arcs[*other]);
-    others.find(|arc| joins(arc)).map(|arc| arc.normal(t))
+    best
 }
 
 #[cfg(test)]
@@ -225,17 +230,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn beside_an_acute_corner_is_outside() {
-        // A body above the line y = 0, left of a line that leans to the left: a corner sharper than 90°.
-        let corner = [0.0, 0.0];
-        let below = Arc::new([[-1.0, 0.0], corner], [[1.0, 0.0]; 2], &rule());
-        let beside = Arc::new([corner, [-0.1, 1.0]], [[-0.1, 1.0]; 2], &rule());
-        let outline = Outline::new(vec![below, beside], 1.0);
-        for order in [[0, 1], [1, 0]] {
-            let depth = |position| nearest(position, &outline, &order).unwrap().depth;
-            assert!(depth([0.5, 0.01]) < 0.0);
-            assert!(depth([0.2, -0.5]) < 0.0);
-            assert!((depth([-0.3, 0.1]) - 0.1).abs() < 1e-12);
+    fn the_nearest_place_of_an_arc_that_bends_far_is_found() {
+        // A crushed corner: its end goes in by several times the distance of its beginning.
+        let arc = Arc::new([[0.0, 0.0], [-1.0, -1.0]], [[4.0, 1.0], [-4.0, -2.0]], &rule());
+        let outline = Outline::new(vec![arc], 1.0);
+        let distance = |t: f64, x: [f64; 2]| {
+            let place = arc.position(t);
+            (place[0] - x[0]).hypot(place[1] - x[1])
+        };
+        for i in 0..40 {
+            for j in 0..40 {
+                let x = [-1.5 + 0.06 * f64::from(i), -1.5 + 0.06 * f64::from(j)];
+                let least = (0..=4000).map(|k| distance(f64::from(k) / 4000.0, x)).fold(f64::INFINITY, smaller);
+                let found = nearest(x, &outline, 0..1, |_| true).unwrap();
+                assert!(found.distance < least + 1e-9, "{x:?}: {} {least}", found.distance);
+            }
         }
     }
 }

@@ -19,8 +19,15 @@ fn pair(apart: f64) -> Vec<Outline> {
     vec![circle([0.0; 2], 1.0, 64), circle([apart * 0.8, apart * 0.6], 1.0, 60)]
 }
 
+/// Contact of two thick bodies on spans of 0.1 m.
+fn contact(friction: f64, rigid: Vec<RigidOutline>) -> GapPotential {
+    let thick = circle([0.0; 2], 1.0, 64);
+    let thickness = Thickness::new(&thick.arcs, 0.1, |[x, y]| x.hypot(y) < 1.0);
+    GapPotential::new(0.1, friction, rigid, vec![thickness.clone(), thickness], vec![])
+}
+
 fn found(apart: f64) -> GapPotential {
-    let mut potential = GapPotential::new(0.1, 0.0, vec![], vec![]);
+    let mut potential = contact(0.0, vec![]);
     potential.find(pair(apart), 0.0, 0.0).unwrap();
     potential
 }
@@ -50,14 +57,14 @@ fn the_force_is_the_derivative_of_the_energy_and_has_no_moment() {
 
 #[test]
 fn a_boundary_deep_in_another_body_is_said() {
-    let mut potential = GapPotential::new(0.1, 0.0, vec![], vec![]);
+    let mut potential = contact(0.0, vec![]);
     let error = potential.find(pair(1.7), 0.0, 0.0).unwrap_err();
     assert!(error.spans > 1.0);
 }
 
 #[test]
 fn circles_that_turn_together_do_not_slip_and_one_that_turns_alone_is_held_back() {
-    let mut potential = GapPotential::new(0.1, 0.3, vec![], vec![]);
+    let mut potential = contact(0.3, vec![]);
     let turned = |outline: &Outline, angle: f64, center: [f64; 2]| {
         let (sin, cos) = angle.sin_cos();
         let turn = |v: [f64; 2]| [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]];
@@ -101,7 +108,7 @@ fn a_rigid_body_works_on_the_others_with_its_own_velocity() {
     let scene_body = circle([0.0, 0.0], 1.0, 64);
     let motion = RigidMotion::steady([1.95, 0.0], [-0.5, 0.0], 0.2);
     let rigid = RigidOutline::new(circle([1.95, 0.0], 1.0, 60).arcs, motion);
-    let mut potential = GapPotential::new(0.1, 0.0, vec![rigid], vec![]);
+    let mut potential = contact(0.0, vec![rigid]);
     let energy = |potential: &GapPotential| potential.ledger().loss;
     potential.find(vec![scene_body.clone()], 0.0, 0.0).unwrap();
     let before = energy(&potential);

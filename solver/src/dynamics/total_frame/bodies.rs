@@ -8,10 +8,10 @@ use super::boundary::arcs_at_rest;
 use crate::checkpoint::{Archive, StateError};
 use crate::contact::ContactLedger;
 use crate::contact::gap_potential::rigid_outline::RigidOutline;
+use crate::contact::gap_potential::thickness::Thickness;
 use crate::contact::gap_potential::{GapForce, GapPotential, TooDeep};
 use crate::contact::impulse::ContactForce;
 use crate::contact::rigid::RigidMotion;
-use crate::contact::surface::Surface;
 use crate::dynamics::body_sample::{BodySample, BodySamples, PairForce, names, pairs};
 use crate::dynamics::energy::{ContactSample, Sample};
 use crate::dynamics::failure::Failure;
@@ -59,12 +59,14 @@ impl TotalBodies {
         let contact = scene.contact.as_ref().map(|contact| {
             let span = patch.shortest_span();
             let rigid = |body: &Body| {
-                let motion = RigidMotion::new(body, Surface::new(&scene.mesh, body).centroid());
-                RigidOutline::new(arcs_at_rest(&body.shape, &scene.mesh, span), motion)
+                let motion = RigidMotion::new(&scene.mesh, body);
+                let arcs = arcs_at_rest(&body.shape, &scene.mesh, span);
+                (Thickness::new(&arcs, span, |position| body.shape.contains(position)), RigidOutline::new(arcs, motion))
             };
-            let rigid = scene.bodies.iter().filter(|body| body.rigid).map(rigid).collect();
+            let (beneath, rigid): (Vec<_>, _) = scene.bodies.iter().filter(|body| body.rigid).map(rigid).unzip();
+            let thickness = bodies.iter().filter_map(TotalFrame::thickness_beneath).chain(beneath).collect();
             let own = bodies.iter().filter(|_| contact.self_contact).filter_map(TotalFrame::own_pairs).collect();
-            GapPotential::new(span, contact.friction, rigid, own)
+            GapPotential::new(span, contact.friction, rigid, thickness, own)
         });
         let recorded = scene.output.bodies.then(|| names(scene));
         Ok(Self { bodies, contact, patch, thickness: scene.analysis.thickness, recorded })
@@ -163,7 +165,7 @@ impl TotalBodies {
             PairForce { names: pair.map(|i| names[i].clone()), force: sum.map(|f| f * self.thickness) }
         };
         let forces = pairs(bodies.len(), names.len()).map(force).collect();
-        let smallest_gap = Some(contact.forces().iter().map(GapForce::gap).reduce(smaller).unwrap_or(f64::NAN));
+        let smallest_gap = Some(contact.forces().iter().map(GapForce::gap).fold(0.0, smaller));
         BodySamples { bodies, forces, smallest_gap }
     }
 
@@ -275,7 +277,7 @@ fn of_body(scene: &Scene, body: &Body, is_first: bool) -> Result<TotalFrame, Fai
     let boundaries = scene.boundaries.iter().filter(|boundary| {
         let along = usize::from(matches!(boundary.side, Side::Left | Side::Right));
         let meets = boundary.part.is_none_or(|[from, to]| from < high[along] && low[along] < to);
-        meets && mesh.shares(boundary.side, &scene.mesh)
+        meets && scene.mesh.is_reached(boundary.side, &body.shape)
     });
     let mut output = scene.output.clone();
     output.probes.retain(|probe| body.shape.contains_within(probe.at, ROUND_OFF));

@@ -14,11 +14,10 @@
 //! both feel of each other. With friction it resists motion along the boundary as it does across it.
 
 use crate::contact::gap_potential::arc::{Arc, Outline, rule, shares, tangent_shares};
-use crate::contact::gap_potential::own_pairs::OwnPairs;
-use crate::dynamics::surface::{SurfacePoint, bounding_parts, place_on};
+use crate::dynamics::surface::{SurfacePoint, place_on};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::vectors::dot;
-use crate::scene::edges::BoundaryEdge;
+use crate::scene::edges::{BoundaryEdge, bounding_parts};
 use crate::scene::{Mesh, Shape};
 use crate::splines::patch::PointFunctions;
 use crate::splines::quadrature::Rule;
@@ -122,10 +121,9 @@ impl MaterialBoundary {
         Ok(Self { nodes, arcs, stiffness, friction, rule })
     }
 
-    /// Which of its arcs may meet each other, if they bound this shape.
-    pub(super) fn own_pairs(&self, shape: &Shape) -> OwnPairs {
-        let arcs: Vec<Arc> = self.arcs.iter().map(|(_, arc)| *arc).collect();
-        OwnPairs::new(&arcs, |position| shape.contains(position))
+    /// Its arcs at t = 0.
+    pub(super) fn arcs_at_rest(&self) -> Vec<Arc> {
+        self.arcs.iter().map(|(_, arc)| *arc).collect()
     }
 
     /// The arcs under a displacement, m.

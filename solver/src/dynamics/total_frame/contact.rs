@@ -5,6 +5,7 @@ use super::boundary::MaterialBoundary;
 use crate::contact::gap_potential::GapForce;
 use crate::contact::gap_potential::arc::Outline;
 use crate::contact::gap_potential::own_pairs::OwnPairs;
+use crate::contact::gap_potential::thickness::Thickness;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::loads::material_at;
 use crate::dynamics::surface::SurfacePoint;
@@ -30,7 +31,14 @@ impl TotalFrame {
 
     /// Which parts of the boundary may meet each other.
     pub(super) fn own_pairs(&self) -> Option<OwnPairs> {
-        Some(self.boundary.as_ref()?.own_pairs(&self.shape))
+        let arcs = self.boundary.as_ref()?.arcs_at_rest();
+        Some(OwnPairs::new(&arcs, |position| self.shape.contains(position)))
+    }
+
+    /// How thick the body is beneath its boundary.
+    pub(super) fn thickness_beneath(&self) -> Option<Thickness> {
+        let arcs = self.boundary.as_ref()?.arcs_at_rest();
+        Some(Thickness::new(&arcs, self.patch.shortest_span(), |position| self.shape.contains(position)))
     }
 
     /// The boundary now, if it may meet others.
