@@ -22,6 +22,7 @@
 //! lost: that is the contact loss of the ledger, half of it booked with the velocity the step begins with,
 //! half with the one it ends with. A rigid body does external work with its own velocity.
 
+mod area;
 pub mod boundary_fit;
 mod constraint;
 pub(crate) mod crack_faces;

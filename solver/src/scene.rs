@@ -5,7 +5,6 @@
 //! [`crate::Simulation::new`] turns a scene into a running model; [`crate::validate::validate`] says what is
 //! wrong with one, by key.
 
-pub(crate) mod area;
 mod body;
 mod condition;
 pub(crate) mod edges;

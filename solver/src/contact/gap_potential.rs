@@ -7,24 +7,25 @@
 //! ```
 //!
 //! the sum over both orders of every pair, so that neither body is the master of the other, with lengths dS
-//! at t = 0. d_b(x) is the distance to the nearest place y on the boundary of b; the force on a at x and its
-//! opposite on b at y act along the line through both. They keep momentum and angular momentum, and what the
-//! potential takes while bodies approach it gives back while they part: contact loses nothing, and no force
-//! acts before the gap is closed. The price is a depth of p/κ under a pressure p: a strain times h/α, with
-//! the stiffness α over that of a span which the scene chooses (`contact.stiffness`). The critical step
-//! counts κ.
+//! at t = 0. d_b(x) is the distance of a place x that is inside b ([`winding`]) to the nearest place y on
+//! the boundary of b. It is continuous also where y jumps from one side of a corner to the other, and so is
+//! E. The force on a at x and its opposite on b at y act along the line through both. They keep momentum and
+//! angular momentum, and what the potential takes while bodies approach it gives back while they part:
+//! contact loses nothing, and no force acts before the gap is closed. The price is a depth of p/κ under a
+//! pressure p: a strain times h/α, with the stiffness α over that of a span which the scene chooses
+//! (`contact.stiffness`). The critical step counts κ. Where a body is thin its far face does not count
+//! ([`thickness`]).
 //!
 //! The boundary of a body may also meet itself, where [`own_pairs`] says so. Friction acts beside it
 //! ([`friction`]). Rigid bodies ([`rigid_outline`]) have an outline and no stiffness of their own; they work
 //! on the others with their own velocity V, `−(F(n) · V(n) + F(n+1) · V(n+1)) dt/2` with the forces F on
 //! them.
 //!
-//! The boundaries are the cubics through places and tangents that the displacement moves ([`arc`]), with four
-//! Gauss points each. Both are linear in the control values, so the forces are the derivatives of E where the
-//! nearest place moves smoothly. At a corner it can jump, and E with it. Wriggers 2006, *Computational
-//! contact mechanics*, section 6.3, has the penalty method; Puso & Laursen 2004, *A mortar segment-to-segment
-//! contact method for large deformation solid mechanics*, the reason to integrate over boundaries instead of
-//! looking at their nodes.
+//! The boundaries are the cubics through places and tangents that the displacement moves ([`arc`]), with
+//! four Gauss points each. Both are linear in the control values, so the forces are the derivatives of E.
+//! Wriggers 2006, *Computational contact mechanics*, section 6.3, has the penalty method; Puso & Laursen
+//! 2004, *A mortar segment-to-segment contact method for large deformation solid mechanics*, the reason to
+//! integrate over boundaries instead of looking at their nodes.
 
 pub(crate) mod arc;
 pub(crate) mod friction;
@@ -49,8 +50,9 @@ use thickness::Thickness;
 const FAR_SIDE: f64 = 0.5;
 /// Cosine of the normals of two places from which on one is on the far face, if that part is thin.
 const BEHIND: f64 = 0.5;
-/// Distance before a boundary, in spans, at which its own body is looked for.
-const SKIN: f64 = 1e-6;
+/// Distance before a boundary, in spans, at which its own body is looked for, and depth that counts as none:
+/// boundaries that touch overlap by round-off.
+const SKIN: f64 = 1e-9;
 
 /// A boundary that is deeper in another body than contact follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -171,9 +173,9 @@ impl GapPotential {
                     None => self.opposite(place, &outlines[b], b),
                     Some(own) => self.opposite_own(place, &outlines[b], |other| own.may_meet(number, other)),
                 };
-                let Some(nearest) = found.filter(|nearest| nearest.distance > 0.0) else { continue };
+                let Some(nearest) = found.filter(|nearest| nearest.distance > SKIN * self.reach) else { continue };
                 let depth = nearest.distance;
-                let followed = self.thickness[b].followed(nearest.label.0, self.reach);
+                let followed = self.thickness[b].followed(nearest.label, self.reach);
                 if depth > followed {
                     let [spans, follows] = [depth, followed].map(|depth| depth / self.reach);
                     return Err(TooDeep { place: place.position, spans, follows });
@@ -196,7 +198,8 @@ impl GapPotential {
         Ok(())
     }
 
-    /// The nearest place on the boundary of another body of this number, if a place of a boundary is inside it.
+    /// The nearest place on the boundary of another body of this number, if a place of a boundary is inside
+    /// it.
     fn opposite(&self, place: BoundaryPlace, other: &Outline, number: usize) -> Option<Closest> {
         let BoundaryPlace { position, normal, .. } = place;
         if !other.contains(position) {
@@ -205,8 +208,9 @@ impl GapPotential {
         let thickness = &self.thickness[number];
         let behind = |(arc, t): (usize, f64)| thickness.is_thin(arc) && dot(other.arcs[arc].normal(t), normal) > BEHIND;
         let near = other.within([position.map(|x| x - self.reach), position.map(|x| x + self.reach)]);
-        nearest(position, other, near, |label| !behind(label))
-            .or_else(|| nearest(position, other, 0..other.arcs.len(), |_| true))
+        let found = nearest(position, other, near, |label| !behind(label))
+            .or_else(|| nearest(position, other, 0..other.arcs.len(), |_| true));
+        fault!("depth-between-facing-places-only", found => found.filter(|found| dot(normal, found.direction) < 0.0))
     }
 
     /// The nearest of the places that it may meet on the boundary of its own body, if it is inside that.
@@ -217,7 +221,8 @@ impl GapPotential {
         may_meet: impl Fn(usize) -> bool,
     ) -> Option<Closest> {
         let BoundaryPlace { position, normal, .. } = place;
-        if !outline.contains([0, 1].map(|d| position[d] + SKIN * self.reach * normal[d])) {
+        let before = [0, 1].map(|d| position[d] + SKIN * self.reach * normal[d]);
+        if fault!("own-boundary-meets-from-afar", !outline.contains(before) => false) {
             return None;
         }
         let far = FAR_SIDE * self.reach;

@@ -2,11 +2,11 @@
 //! span between two looks is through before it is seen. Bodies that slide along each other, turn in each
 //! other or part are not.
 
+use super::area::ShapeIntegrals;
 use super::outline::without_patch;
 use super::surface::{Center, Surface};
 use crate::linear_algebra::extremes::{larger, largest, smaller};
 use crate::particles::spans::smallest_span;
-use crate::scene::area::Extent;
 use crate::scene::{Body, Frame, Mesh, Scene};
 
 /// Most spans by which bodies that meet approach each other in a step.
@@ -66,7 +66,7 @@ impl<'a> Moving<'a> {
 /// centroid.
 fn outward_speed(mesh: &Mesh, body: &Body) -> f64 {
     let surface = Surface::of_segments(mesh, body, SEGMENTS);
-    let center = Extent::new(&without_patch(&body.shape, mesh)).centroid;
+    let center = ShapeIntegrals::new(&without_patch(&body.shape, mesh)).centroid;
     let speeds = (0..surface.segments.len() as u32).flat_map(|segment| {
         let Center { normal, .. } = surface.center(segment);
         surface.ends(segment).map(|end| {
@@ -89,7 +89,7 @@ pub(crate) fn longest_step(scene: &Scene) -> f64 {
     let speeds = pairs(&bodies).filter(|(a, b)| !(a.body.rigid && b.body.rigid)).map(|(a, b)| a.approach(b));
     let is_followed = |_: &&Moving| scene.analysis.frame == Frame::Total;
     let half = |moving: &Moving| {
-        let Extent { area, length, .. } = Extent::new(&without_patch(&moving.body.shape, &scene.mesh));
+        let ShapeIntegrals { area, length, .. } = ShapeIntegrals::new(&without_patch(&moving.body.shape, &scene.mesh));
         area / length
     };
     let followed = bodies.iter().filter(is_followed).map(half).fold(smallest_span(&scene.mesh), smaller);

@@ -1,8 +1,8 @@
 //! Rigid bodies: they move as prescribed, whatever they meet.
 
+use super::area::ShapeIntegrals;
 use super::outline::without_patch;
 use super::surface::Surface;
-use crate::scene::area::Extent;
 use crate::scene::{Body, Mesh};
 
 /// The motion of a rigid body: steady, about a centre that moves on.
@@ -17,7 +17,7 @@ pub(crate) struct RigidMotion {
 impl RigidMotion {
     /// That of a body, about its centroid.
     pub(crate) fn new(mesh: &Mesh, body: &Body) -> Self {
-        let center = Extent::new(&without_patch(&body.shape, mesh)).centroid;
+        let center = ShapeIntegrals::new(&without_patch(&body.shape, mesh)).centroid;
         Self::steady(center, body.velocity, body.angular_velocity)
     }
 

@@ -3,10 +3,11 @@
 use super::condition::Side;
 use super::shape::Shape;
 use crate::linear_algebra::extremes::{larger, smaller};
-use crate::splines::spline::ROUND_OFF;
 
 /// Distance of a shape from a knot that counts as none, of the size of the shape.
 const NEAR: f64 = 1e-12;
+/// The same from a side of the mesh, of the size of the mesh.
+const ON_SIDE: f64 = 1e-9;
 
 /// Background NURBS patch: a B-spline patch over an axis-aligned rectangle, or any other with its geometry.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,7 +93,7 @@ impl Mesh {
             Side::Top => (1, true),
         };
         let (origin, end, (min, max)) = (self.origin()[d], self.end()[d], self.extent(shape));
-        let tolerance = ROUND_OFF * (end - origin);
+        let tolerance = ON_SIDE * (end - origin);
         if upper { max[d] >= end - tolerance } else { min[d] <= origin + tolerance }
     }
 }

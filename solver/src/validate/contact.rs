@@ -168,8 +168,8 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) -> bool
     true
 }
 
-/// How far what lies `beneath` (m) the boundary of one body, in steps (m), reaches into the body inside another,
-/// m: the boundaries of bodies that coincide do not cross. Of very many steps, some are looked at.
+/// How far what lies `beneath` (m) the boundary of one body, in steps (m), reaches into the body inside
+/// another, m: the boundaries of bodies that coincide do not cross. Of very many steps, some are looked at.
 fn depth(one: &Shape, other: &Surface, inside: &Shape, [beneath, step]: [f64; 2]) -> f64 {
     let below = bounding_parts(one).into_iter().flat_map(|(edge, [from, to])| {
         let count = (edge.length() * (to - from) / step).ceil();

@@ -8,9 +8,9 @@ use crate::splines::quadrature::Rule;
 /// Gauss points of an arc.
 const POINTS: usize = 4;
 /// Divisions of an arc whose ends are looked at for the nearest place: a crushed corner bends its arcs far.
-const LOOKS: usize = 10;
+const LOOKS: usize = 16;
 /// Corrections of that place, and what is near enough, in arcs.
-const CORRECTIONS: usize = 50;
+const CORRECTIONS: usize = 100;
 const CLOSE: f64 = 1e-13;
 
 /// A step of a boundary as a cubic of t from 0 to 1; the body is to its left.
@@ -129,19 +129,22 @@ impl Arc {
         places.reduce(|best, t| if square(t) < square(best) { t } else { best }).unwrap_or(0.0)
     }
 
-    /// The same beside the division of this number: Newton's method, and halves of what is left where it fails.
+    /// The same beside the division of this number: Newton's method, and halves of what is left where its
+    /// steps do not shrink.
     fn nearest_between(&self, position: [f64; 2], number: usize) -> f64 {
         let mut t = number as f64 / LOOKS as f64;
         let [mut low, mut high] = [-1.0, 1.0].map(|side| (t + side / LOOKS as f64).clamp(0.0, 1.0));
+        let mut last = high - low;
         for _ in 0..CORRECTIONS {
             let (apart, tangent) = (self.to(position, t), self.tangent(t));
             let slope = -dot(apart, tangent);
             *(if slope > 0.0 { &mut high } else { &mut low }) = t;
             let newton = t - slope / (dot(tangent, tangent) - dot(apart, self.curvature(t)));
-            let next = if (low..=high).contains(&newton) { newton } else { 0.5 * (low + high) };
-            let change = (next - t).abs();
+            let shrinks = (newton - t).abs() <= 0.5 * last && (low..=high).contains(&newton);
+            let next = if shrinks { newton } else { 0.5 * (low + high) };
+            last = (next - t).abs();
             t = next;
-            if change <= CLOSE {
+            if last <= CLOSE {
                 break;
             }
         }

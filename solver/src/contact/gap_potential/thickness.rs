@@ -5,7 +5,7 @@
 //! [`THICK`] spans, and contact follows most of the thickness. A wedge has no far face.
 
 use super::arc::Arc;
-use crate::linear_algebra::extremes::{larger, smaller};
+use crate::linear_algebra::extremes::smaller;
 
 /// Thickness, in spans, from which on the middle is deeper than contact follows.
 pub(crate) const THICK: f64 = 2.0;
@@ -18,9 +18,10 @@ const TAPER: f64 = 0.5;
 /// Part of the thickness that a boundary may be deep. A step may move it by what is left.
 const FOLLOWED: f64 = 0.75;
 
-/// Thickness beneath every arc of a boundary at t = 0, m; infinite beneath those of thick parts and of wedges.
+/// Thickness beneath both ends of every arc of a boundary at t = 0, m; infinite beneath those of thick parts
+/// and of wedges.
 #[derive(Debug, Clone)]
-pub(crate) struct Thickness(Vec<f64>);
+pub(crate) struct Thickness(Vec<[f64; 2]>);
 
 impl Thickness {
     /// Of a body that `contains` some positions, m, on a mesh whose shortest span has this length, m.
@@ -33,24 +34,25 @@ impl Thickness {
         };
         let thickness = |arc: &Arc| {
             let [start, end] = [BESIDE, 1.0 - BESIDE].map(|t| beneath(arc, t));
-            let least = smaller(start, end);
-            if larger(start, end) - least < TAPER * span { least } else { f64::INFINITY }
+            if (end - start).abs() < TAPER * span { [start, end] } else { [f64::INFINITY; 2] }
         };
         Self(arcs.iter().map(thickness).collect())
     }
 
     /// Whether the body is thin beneath an arc.
     pub(crate) fn is_thin(&self, arc: usize) -> bool {
-        fault!("far-faces-count", self.0[arc].is_finite() => false)
+        fault!("far-faces-count", self.0[arc][0].is_finite() => false)
     }
 
-    /// Depth beneath an arc that contact follows, m, where it follows `most` if the body is thick.
-    pub(crate) fn followed(&self, arc: usize, most: f64) -> f64 {
-        smaller(FOLLOWED * self.0[arc], most)
+    /// Depth beneath a place, by its label, that contact follows, m, where it follows `most` if the body is
+    /// thick.
+    pub(crate) fn followed(&self, (arc, t): (usize, f64), most: f64) -> f64 {
+        let [start, end] = self.0[arc];
+        if self.is_thin(arc) { smaller(FOLLOWED * (start + t * (end - start)), most) } else { most }
     }
 
     /// Heap memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
-        self.0.len() * size_of::<f64>()
+        self.0.len() * size_of::<[f64; 2]>()
     }
 }

@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn where_a_crushed_corner_crosses_itself_the_side_changes_on_the_boundary_only() {
-        // The corner that was at (1, 1) is pushed through the opposite side: beyond, a loop winds the other way.
+        // The corner that was at (1, 1) is pushed through the opposite side: a loop winds the other way.
         let crushed = polygon(&[[0.0, 0.0], [1.0, 0.0], [0.5, -0.2], [0.0, 1.0]]);
         let (steps, mut crossings) = (4000, 0);
         let place = |i: i32| [-0.5 + 2.0 * f64::from(i) / f64::from(steps), 0.05];

@@ -1,13 +1,13 @@
 //! Area, boundary length and centroid of a shape, by integrals along its boundary. So many Gauss points make
 //! those along a whole circle exact to round-off.
 
-use super::edges::bounding_parts;
-use super::{Layout, Shape};
+use crate::scene::edges::bounding_parts;
+use crate::scene::{Layout, Shape};
 use crate::splines::quadrature::{MAX_POINTS, Rule};
 
 /// Integrals over a shape.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Extent {
+pub(crate) struct ShapeIntegrals {
     /// m².
     pub area: f64,
     /// Length of the boundary, m.
@@ -16,7 +16,7 @@ pub(crate) struct Extent {
     pub centroid: [f64; 2],
 }
 
-impl Extent {
+impl ShapeIntegrals {
     /// Those of a shape that is not the patch.
     pub(crate) fn new(shape: &Shape) -> Self {
         let (rule, parts) = (Rule::new(Layout::Gauss, MAX_POINTS), bounding_parts(shape));
@@ -46,7 +46,7 @@ mod tests {
     fn parts_that_share_an_edge_are_counted_once() {
         let rectangle = |min, max| Shape::Rectangle { min, max };
         let angle = Shape::Union(vec![rectangle([3.0, 1.0], [5.0, 2.0]), rectangle([3.0, 1.0], [4.0, 3.0])]);
-        let Extent { area, length, centroid } = Extent::new(&angle);
+        let ShapeIntegrals { area, length, centroid } = ShapeIntegrals::new(&angle);
         assert_relative_eq!(area, 3.0, max_relative = 1e-12);
         assert_relative_eq!(length, 8.0, max_relative = 1e-12);
         assert_relative_eq!(centroid[0], 3.0 + 5.0 / 6.0, max_relative = 1e-12);
@@ -58,7 +58,7 @@ mod tests {
         let hole = Shape::Disk { center: [0.5, 0.1], radius: 0.5 };
         let shape =
             Shape::Difference { of: Box::new(Shape::Disk { center: [0.0; 2], radius: 2.0 }), minus: vec![hole] };
-        let Extent { area, length, centroid } = Extent::new(&shape);
+        let ShapeIntegrals { area, length, centroid } = ShapeIntegrals::new(&shape);
         let pi = std::f64::consts::PI;
         assert_relative_eq!(area, pi * 3.75, max_relative = 1e-12);
         assert_relative_eq!(length, pi * 5.0, max_relative = 1e-12);
