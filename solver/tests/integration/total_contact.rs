@@ -105,3 +105,34 @@ fn a_condition_that_cannot_be_met_names_its_body() {
     let failure = TotalBodies::new(&scene).unwrap_err();
     assert_eq!(failure, Failure::HeldTwice { body: 1, condition: 0 });
 }
+
+#[test]
+fn a_side_holds_the_bodies_that_reach_it_and_no_others() {
+    let mut scene = discs(2, 20, 0.01);
+    let block = |x: f64, y: f64| Shape::Rectangle { min: [x, y], max: [x + 0.4, y + 0.4] };
+    scene.bodies[0].shape = block(0.2, 0.0);
+    scene.bodies[1].shape = block(0.8, 0.02); // its first span reaches the side
+    scene.bodies.iter_mut().for_each(|body| body.velocity = [0.0, 0.05]);
+    scene.boundaries = vec![Boundary::fixed(Side::Bottom, [true; 2])];
+    scene.analysis.end_time = 0.2;
+    let (simulation, _) = crate::common::run(&scene);
+    let [(_, held), (mass, free)] = simulation.momenta()[..] else { panic!("two bodies") };
+    assert!((free[1] / mass - 0.05).abs() < 1e-12 && held[1] < 0.9 * free[1], "{held:?} {free:?}");
+}
+
+#[test]
+fn a_disc_may_fill_a_hole_and_rigid_bodies_that_approach_are_told() {
+    let mut scene = discs(2, 20, 0.01);
+    let Shape::Disk { center, radius } = scene.bodies[0].shape else { panic!("a disc") };
+    scene.bodies[1].shape = Shape::Annulus { center, inner_radius: radius, outer_radius: 1.4 * radius };
+    let told = |scene: &Scene| fisura::validate::validate(scene).unwrap().iter().any(|w| w.message.contains("rigid"));
+    assert!(!told(&scene));
+    scene.bodies.extend([0.05, 0.35].map(|y| Body {
+        name: format!("block at {y}"),
+        shape: Shape::Rectangle { min: [1.1, y], max: [1.3, y + 0.1] },
+        velocity: [0.0, 0.2 - y],
+        rigid: true,
+        ..scene.bodies[0].clone()
+    }));
+    assert!(told(&scene));
+}
