@@ -277,7 +277,8 @@ impl GapPotential {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { friction, work, .. } = self;
+        let Self { reach: _, rule: _, rigid: _, thickness: _, own: _, friction, forces: _, energy: _, power: _, work } =
+            self;
         if let Some(friction) = friction {
             friction.exchange(archive)?;
         }
@@ -292,11 +293,8 @@ impl GapPotential {
         let rigid: usize = self.rigid.iter().map(RigidOutline::bytes).sum();
         let own: usize = self.own.iter().map(OwnPairs::bytes).sum();
         let thickness: usize = self.thickness.iter().map(Thickness::bytes).sum();
-        rigid
-            + own
-            + thickness
-            + self.forces.len() * size_of::<GapForce>()
-            + self.friction.as_ref().map_or(0, Friction::bytes)
+        let friction = self.friction.as_ref().map_or(0, Friction::bytes);
+        rigid + own + thickness + friction + self.forces.len() * size_of::<GapForce>()
     }
 }
 

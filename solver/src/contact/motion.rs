@@ -87,12 +87,14 @@ pub(crate) fn longest_step(scene: &Scene) -> f64 {
     }
     let bodies: Vec<Moving> = scene.bodies.iter().map(|body| Moving::new(&scene.mesh, body)).collect();
     let speeds = pairs(&bodies).filter(|(a, b)| !(a.body.rigid && b.body.rigid)).map(|(a, b)| a.approach(b));
-    let is_followed = |_: &&Moving| scene.analysis.frame == Frame::Total;
-    let half = |moving: &Moving| {
-        let ShapeIntegrals { area, length, .. } = ShapeIntegrals::new(&without_patch(&moving.body.shape, &scene.mesh));
-        area / length
-    };
-    let followed = bodies.iter().filter(is_followed).map(half).fold(smallest_span(&scene.mesh), smaller);
+    let mut followed = smallest_span(&scene.mesh);
+    if scene.analysis.frame == Frame::Total {
+        let half = |body: &Body| {
+            let ShapeIntegrals { area, length, .. } = ShapeIntegrals::new(&without_patch(&body.shape, &scene.mesh));
+            area / length // half the thickness of a strip, half the radius of a disc
+        };
+        followed = scene.bodies.iter().map(half).fold(followed, smaller);
+    }
     MOST * followed / largest(speeds)
 }
 

@@ -8,7 +8,7 @@ use crate::contact::Surface;
 use crate::contact::motion::{longest_step, rigid_bodies_that_approach};
 use crate::contact::outline::without_patch;
 use crate::linear_algebra::extremes::larger;
-use crate::scene::edges::bounding_parts;
+use crate::scene::edges::{BoundaryEdge, bounding_parts};
 use crate::scene::{Body, Frame, Kinematics, Scene, Shape, TimeStep};
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
@@ -143,6 +143,8 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) -> bool
     let surfaces: Vec<Surface> = scene.bodies.iter().map(|body| Surface::new(&scene.mesh, body)).collect();
     let boxes: Vec<_> = surfaces.iter().map(Surface::bounding_box).collect();
     let spans: Vec<f64> = scene.bodies.iter().map(|body| ground.span_lengths(&body.shape)[0]).collect();
+    let steps = |(body, span): (&Body, &f64)| steps_along(&without_patch(&body.shape, &scene.mesh), STEP * span);
+    let steps: Vec<_> = scene.bodies.iter().zip(&spans).map(steps).collect();
     for j in 1..surfaces.len() {
         for i in 0..j {
             let (a, b) = (&scene.bodies[i], &scene.bodies[j]);
@@ -151,10 +153,8 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) -> bool
                 continue;
             }
             let least = TOLERANCE * spans[i];
-            let [a_in_b, b_in_a] =
-                [(a, &surfaces[j], &b.shape), (b, &surfaces[i], &a.shape)].map(|(one, other, inside)| {
-                    depth(&without_patch(&one.shape, &scene.mesh), other, inside, [2.0 * least, STEP * spans[i]])
-                });
+            let [a_in_b, b_in_a] = [(i, j, &b.shape), (j, i, &a.shape)]
+                .map(|(one, other, inside)| depth(&steps[one], &surfaces[other], inside, 2.0 * least));
             let deepest = larger(a_in_b, b_in_a);
             if deepest > least {
                 let message = format!("body {:?} overlaps body {:?} by {deepest:.3e} m at t = 0", b.name, a.name);
@@ -168,17 +168,22 @@ fn overlaps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) -> bool
     true
 }
 
-/// How far what lies `beneath` (m) the boundary of one body, in steps (m), reaches into the body inside
-/// another, m: the boundaries of bodies that coincide do not cross. Of very many steps, some are looked at.
-fn depth(one: &Shape, other: &Surface, inside: &Shape, [beneath, step]: [f64; 2]) -> f64 {
-    let below = bounding_parts(one).into_iter().flat_map(|(edge, [from, to])| {
+/// Positions (m) in the middle of steps (m) along the boundary of a shape, and inward unit normals.
+fn steps_along(shape: &Shape, step: f64) -> Vec<[[f64; 2]; 2]> {
+    let of_part = |(edge, [from, to]): (BoundaryEdge, [f64; 2])| {
         let count = (edge.length() * (to - from) / step).ceil();
         (0..count as usize).map(move |i| {
             let (position, [x, y]) = edge.at(from + (i as f64 + 0.5) / count * (to - from));
-            let beneath = beneath / x.hypot(y);
-            [position[0] - beneath * y, position[1] + beneath * x]
+            [position, [-y, x].map(|along| along / x.hypot(y))]
         })
-    });
+    };
+    bounding_parts(shape).into_iter().flat_map(of_part).collect()
+}
+
+/// How far what lies `beneath` (m) the boundary of one body reaches into the body inside another, m: the
+/// boundaries of bodies that coincide do not cross. Of very many steps, some are looked at.
+fn depth(one: &[[[f64; 2]; 2]], other: &Surface, inside: &Shape, beneath: f64) -> f64 {
+    let below = one.iter().map(|[position, inward]| [0, 1].map(|d| position[d] + beneath * inward[d]));
     let within: Vec<_> = below.filter(|position| inside.contains(*position)).collect();
     if within.is_empty() {
         return 0.0;

@@ -14,6 +14,7 @@
 //! both feel of each other. With friction it resists motion along the boundary as it does across it.
 
 use crate::contact::gap_potential::arc::{Arc, Outline, rule, shares, tangent_shares};
+use crate::contact::outline::without_patch;
 use crate::dynamics::surface::{SurfacePoint, place_on};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::vectors::dot;
@@ -25,8 +26,6 @@ use crate::splines::quadrature::Rule;
 /// The steps of the boundary of a shape, for a mesh whose shortest span has this length, m: part by part, the
 /// surface points and derivatives by the step (m) at the ends of the steps.
 fn steps(shape: &Shape, mesh: &Mesh, shortest: f64) -> Vec<Vec<(SurfacePoint, [f64; 2])>> {
-    let (min, max) = mesh.extent(shape);
-    let shape = if *shape == Shape::Patch { &Shape::Rectangle { min, max } } else { shape };
     let of_part = |(edge, [from, to]): (BoundaryEdge, [f64; 2])| -> Vec<_> {
         let count = (edge.length() * (to - from) / shortest).ceil().max(1.0);
         let step = (to - from) / count;
@@ -37,7 +36,7 @@ fn steps(shape: &Shape, mesh: &Mesh, shortest: f64) -> Vec<Vec<(SurfacePoint, [f
             })
             .collect()
     };
-    bounding_parts(shape).into_iter().map(of_part).collect()
+    bounding_parts(&without_patch(shape, mesh)).into_iter().map(of_part).collect()
 }
 
 /// The boundary of a shape at rest, as arcs.
