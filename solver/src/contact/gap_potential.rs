@@ -14,7 +14,7 @@
 //! contact loses nothing, and no force acts before the gap is closed. The price is a depth of p/κ under a
 //! pressure p: a strain times h/α, with the stiffness α over that of a span which the scene chooses
 //! (`contact.stiffness`). The critical step counts κ. Where a body is thin its far face does not count
-//! ([`thickness`]).
+//! ([`thin_parts`]).
 //!
 //! The boundary of a body may also meet itself, where [`own_pairs`] says so. Friction acts beside it
 //! ([`friction`]). Rigid bodies ([`rigid_outline`]) have an outline and no stiffness of their own; they work
@@ -31,7 +31,7 @@ pub(crate) mod arc;
 pub(crate) mod friction;
 pub(crate) mod own_pairs;
 pub(crate) mod rigid_outline;
-pub(crate) mod thickness;
+pub(crate) mod thin_parts;
 mod winding;
 
 use super::ContactLedger;
@@ -44,12 +44,18 @@ use arc::{BoundaryPlace, Closest, Outline, around, nearest, rule};
 use friction::{ContactPoint, Friction};
 use own_pairs::OwnPairs;
 use rigid_outline::RigidOutline;
-use thickness::Thickness;
+use thin_parts::ThinParts;
 
 /// Depth, in spans, from which on a boundary is not inside its own body, but on the far side of it.
 const FAR_SIDE: f64 = 0.5;
 /// Cosine of the normals of two places from which on one is on the far face, if that part is thin.
 const BEHIND: f64 = 0.5;
+/// Part of the thickness that a boundary may be deep in a thin part, and part of it in which every face counts.
+/// A step moves it by less than what is between them: what passes is seen.
+const FOLLOWED: f64 = 0.7;
+const ENTERED: f64 = 0.1;
+/// Depth, in spans, that is followed at least: beside a corner every part is thin.
+const LEAST: f64 = 0.25;
 /// Distance before a boundary, in spans, at which its own body is looked for, and depth that counts as none:
 /// boundaries that touch overlap by round-off.
 const SKIN: f64 = 1e-9;
@@ -97,7 +103,7 @@ pub(crate) struct GapPotential {
     /// They are counted after the bodies that deform.
     rigid: Vec<RigidOutline>,
     /// Of all bodies, in this order.
-    thickness: Vec<Thickness>,
+    thin: Vec<ThinParts>,
     /// What may meet of each body that deforms, if bodies may meet themselves.
     own: Vec<OwnPairs>,
     friction: Option<Friction>,
@@ -115,14 +121,14 @@ impl GapPotential {
         span: f64,
         friction: f64,
         rigid: Vec<RigidOutline>,
-        thickness: Vec<Thickness>,
+        thin: Vec<ThinParts>,
         own: Vec<OwnPairs>,
     ) -> Self {
         Self {
             reach: span,
             rule: rule(),
             rigid,
-            thickness,
+            thin,
             own,
             friction: Friction::new(friction),
             forces: Vec::new(),
@@ -171,11 +177,15 @@ impl GapPotential {
             for (point, place) in outlines[a].arcs[number].places(&self.rule).enumerate() {
                 let found = match own {
                     None => self.opposite(place, &outlines[b], b),
-                    Some(own) => self.opposite_own(place, &outlines[b], |other| own.may_meet(number, other)),
+                    Some(own) => self
+                        .opposite_own(place, &outlines[b], |other| own.may_meet(number, other))
+                        .map(|nearest| (nearest, self.reach)),
                 };
-                let Some(nearest) = found.filter(|nearest| nearest.distance > SKIN * self.reach) else { continue };
+                let Some((nearest, followed)) = found else { continue };
                 let depth = nearest.distance;
-                let followed = self.thickness[b].followed(nearest.label, self.reach);
+                if depth <= SKIN * self.reach {
+                    continue;
+                }
                 if depth > followed {
                     let [spans, follows] = [depth, followed].map(|depth| depth / self.reach);
                     return Err(TooDeep { place: place.position, spans, follows });
@@ -199,18 +209,27 @@ impl GapPotential {
     }
 
     /// The nearest place on the boundary of another body of this number, if a place of a boundary is inside
-    /// it.
-    fn opposite(&self, place: BoundaryPlace, other: &Outline, number: usize) -> Option<Closest> {
+    /// it, and the depth that contact follows there, m.
+    fn opposite(&self, place: BoundaryPlace, other: &Outline, number: usize) -> Option<(Closest, f64)> {
         let BoundaryPlace { position, normal, .. } = place;
         if !other.contains(position) {
             return None;
         }
-        let thickness = &self.thickness[number];
-        let behind = |(arc, t): (usize, f64)| thickness.is_thin(arc) && dot(other.arcs[arc].normal(t), normal) > BEHIND;
-        let near = other.within([position.map(|x| x - self.reach), position.map(|x| x + self.reach)]);
-        let found = nearest(position, other, near, |label| !behind(label))
-            .or_else(|| nearest(position, other, 0..other.arcs.len(), |_| true));
-        fault!("depth-between-facing-places-only", found => found.filter(|found| dot(normal, found.direction) < 0.0))
+        let near = || other.within([position.map(|x| x - self.reach), position.map(|x| x + self.reach)]);
+        let found = nearest(position, other, near(), |_| true)
+            .or_else(|| nearest(position, other, 0..other.arcs.len(), |_| true))?;
+        let thin = &self.thin[number];
+        let behind = |(arc, t): (usize, f64)| thin.is_thin(arc) && dot(other.arcs[arc].normal(t), normal) > BEHIND;
+        if behind(found.label)
+            && let Some(front) = nearest(position, other, near(), |label| !behind(label))
+        {
+            let thickness = front.distance + found.distance;
+            if found.distance > ENTERED * thickness {
+                return Some((front, smaller(larger(FOLLOWED * thickness, LEAST * self.reach), self.reach)));
+            }
+        }
+        fault!("depth-between-facing-places-only", true => dot(normal, found.direction) < 0.0)
+            .then_some((found, self.reach))
     }
 
     /// The nearest of the places that it may meet on the boundary of its own body, if it is inside that.
@@ -277,7 +296,7 @@ impl GapPotential {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { reach: _, rule: _, rigid: _, thickness: _, own: _, friction, forces: _, energy: _, power: _, work } =
+        let Self { reach: _, rule: _, rigid: _, thin: _, own: _, friction, forces: _, energy: _, power: _, work } =
             self;
         if let Some(friction) = friction {
             friction.exchange(archive)?;
@@ -292,9 +311,9 @@ impl GapPotential {
     pub(crate) fn bytes(&self) -> usize {
         let rigid: usize = self.rigid.iter().map(RigidOutline::bytes).sum();
         let own: usize = self.own.iter().map(OwnPairs::bytes).sum();
-        let thickness: usize = self.thickness.iter().map(Thickness::bytes).sum();
+        let thin: usize = self.thin.iter().map(ThinParts::bytes).sum();
         let friction = self.friction.as_ref().map_or(0, Friction::bytes);
-        rigid + own + thickness + friction + self.forces.len() * size_of::<GapForce>()
+        rigid + own + thin + friction + self.forces.len() * size_of::<GapForce>()
     }
 }
 

@@ -22,8 +22,8 @@ fn pair(apart: f64) -> Vec<Outline> {
 /// Contact of two thick bodies on spans of 0.1 m.
 fn contact(friction: f64, rigid: Vec<RigidOutline>) -> GapPotential {
     let thick = circle([0.0; 2], 1.0, 64);
-    let thickness = Thickness::new(&thick.arcs, 0.1, |[x, y]| x.hypot(y) < 1.0);
-    GapPotential::new(0.1, friction, rigid, vec![thickness.clone(), thickness], vec![])
+    let thin = ThinParts::new(&thick.arcs, 0.1, |[x, y]| x.hypot(y) < 1.0);
+    GapPotential::new(0.1, friction, rigid, vec![thin.clone(), thin], vec![])
 }
 
 fn found(apart: f64) -> GapPotential {

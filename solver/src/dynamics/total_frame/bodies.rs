@@ -8,7 +8,7 @@ use super::boundary::arcs_at_rest;
 use crate::checkpoint::{Archive, StateError};
 use crate::contact::ContactLedger;
 use crate::contact::gap_potential::rigid_outline::RigidOutline;
-use crate::contact::gap_potential::thickness::Thickness;
+use crate::contact::gap_potential::thin_parts::ThinParts;
 use crate::contact::gap_potential::{GapForce, GapPotential, TooDeep};
 use crate::contact::impulse::ContactForce;
 use crate::contact::rigid::RigidMotion;
@@ -61,12 +61,12 @@ impl TotalBodies {
             let rigid = |body: &Body| {
                 let motion = RigidMotion::new(&scene.mesh, body);
                 let arcs = arcs_at_rest(&body.shape, &scene.mesh, span);
-                (Thickness::new(&arcs, span, |position| body.shape.contains(position)), RigidOutline::new(arcs, motion))
+                (ThinParts::new(&arcs, span, |position| body.shape.contains(position)), RigidOutline::new(arcs, motion))
             };
-            let (beneath, rigid): (Vec<_>, _) = scene.bodies.iter().filter(|body| body.rigid).map(rigid).unzip();
-            let thickness = bodies.iter().filter_map(TotalFrame::thickness_beneath).chain(beneath).collect();
+            let (thin_rigid, rigid): (Vec<_>, _) = scene.bodies.iter().filter(|body| body.rigid).map(rigid).unzip();
+            let thin = bodies.iter().filter_map(TotalFrame::thin_parts).chain(thin_rigid).collect();
             let own = bodies.iter().filter(|_| contact.self_contact).filter_map(TotalFrame::own_pairs).collect();
-            GapPotential::new(span, contact.friction, rigid, thickness, own)
+            GapPotential::new(span, contact.friction, rigid, thin, own)
         });
         let recorded = scene.output.bodies.then(|| names(scene));
         Ok(Self { bodies, contact, patch, thickness: scene.analysis.thickness, recorded })

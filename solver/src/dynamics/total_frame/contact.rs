@@ -5,7 +5,7 @@ use super::boundary::MaterialBoundary;
 use crate::contact::gap_potential::GapForce;
 use crate::contact::gap_potential::arc::Outline;
 use crate::contact::gap_potential::own_pairs::OwnPairs;
-use crate::contact::gap_potential::thickness::Thickness;
+use crate::contact::gap_potential::thin_parts::ThinParts;
 use crate::dynamics::failure::Failure;
 use crate::dynamics::loads::material_at;
 use crate::dynamics::surface::SurfacePoint;
@@ -35,10 +35,10 @@ impl TotalFrame {
         Some(OwnPairs::new(&arcs, |position| self.shape.contains(position)))
     }
 
-    /// How thick the body is beneath its boundary.
-    pub(super) fn thickness_beneath(&self) -> Option<Thickness> {
+    /// Where the body is thin.
+    pub(super) fn thin_parts(&self) -> Option<ThinParts> {
         let arcs = self.boundary.as_ref()?.arcs_at_rest();
-        Some(Thickness::new(&arcs, self.patch.shortest_span(), |position| self.shape.contains(position)))
+        Some(ThinParts::new(&arcs, self.patch.shortest_span(), |position| self.shape.contains(position)))
     }
 
     /// The boundary now, if it may meet others.
