@@ -50,8 +50,8 @@ use thin_parts::ThinParts;
 const FAR_SIDE: f64 = 0.5;
 /// Cosine of the normals of two places from which on one is on the far face, if that part is thin.
 const BEHIND: f64 = 0.5;
-/// Part of the thickness that a boundary may be deep in a thin part, and part of it in which every face counts.
-/// A step moves it by less than what is between them: what passes is seen.
+/// Part of the thickness that a boundary may be deep in a thin part, and part of it in which every face
+/// counts.
 const FOLLOWED: f64 = 0.7;
 const ENTERED: f64 = 0.1;
 /// Depth, in spans, that is followed at least: beside a corner every part is thin.
