@@ -1,12 +1,13 @@
 """Values of the test of Kalthoff and Winkler in the limit h -> 0, from runs/*.csv (bilinear elements of 0.5, 0.25, 0.125 mm).
 
-Prints the order that is observed, the limit and its uncertainty of each quantity, as entries of source.toml. From 15 us on energies converge
-with order 1, that of the singularity at the tip of the slit and of the cost of a crack: the limit is extrapolated from the two finest meshes
-with order 1. Its uncertainty is the distance of the finest mesh from it, so that it covers every order from 1 up, and at least 0.05 %, the
-largest of these distances of the elastic runs: where an error changes its sign, two meshes agree by chance. Times at which the crack has a
-length are extrapolated in the same way; they are known at best to the time in which the crack passes an element. Its angles have no order:
-the value is that of the finest mesh, and uncertain by its distance from the next mesh, or by an element at the length of the crack.
-Standard library only.
+Prints the order that is observed, the limit and its uncertainty of each quantity, as entries of source.toml. Theory has order 1, that of the
+singularity at the tip of the slit and of the cost of a crack, and most energies have an order near it: the limit is extrapolated from the
+two finest meshes with order 1. Its uncertainty is the distance of the finest mesh from it, which covers every order from 1 up. Where the
+observed order is below 1, it is at least the distance of the limit of that order. It is never below 0.05 %, the largest distance of the
+finest mesh in the elastic runs: where an error changes its sign, two meshes agree by chance. Where differences grow, there is no order.
+Times at which the crack has a length are extrapolated in the same way; they are known at best to the time in which the crack passes an
+element. Its angles have no order: the value is that of the finest mesh, and uncertain by its distance from the next mesh, or by an element
+at the length of the crack. Standard library only.
 """
 
 import csv
@@ -29,21 +30,38 @@ def load(name):
 
 
 def order(coarse, middle, fine):
+    """None where the differences grow or change their sign."""
     ratio = (middle - coarse) / (fine - middle) if fine != middle else 0.0
-    return f"order {math.log2(ratio):.2f} on the three meshes" if ratio > 0 else "no order on the three meshes"
+    return math.log2(ratio) if ratio > 1 else None
 
 
-def entry(name, unit, value, uncertainty, note):
-    print(f'[[value]]\nname = "{name}"\nunit = "{unit}"\nvalue = {value:.6g}\nuncertainty = {uncertainty:.2g}\nnote = "{note}"\n')
+def note(values):
+    observed = order(*values)
+    return "no order on the three meshes" if observed is None else f"order {observed:.2f} on the three meshes"
+
+
+def extrapolated(values, floor):
+    """Limit with order 1 and its uncertainty, which is at least `floor`."""
+    difference = values[2] - values[1]
+    limit = values[2] + difference
+    uncertainty = max(abs(difference), floor)
+    observed = order(*values)
+    if observed is not None and observed < 1:
+        uncertainty = max(uncertainty, abs(values[2] + difference / (2**observed - 1) - limit))
+    return limit, uncertainty
+
+
+def entry(name, unit, value, uncertainty, remark):
+    print(f'[[value]]\nname = "{name}"\nunit = "{unit}"\nvalue = {value:.6g}\nuncertainty = {uncertainty:.2g}\nnote = "{remark}"\n')
 
 
 def energies(name, runs, times, columns):
     for time in times:
         for column, quantity in columns.items():
             values = [float(run[time][column]) for run in runs]
-            limit = 2 * values[2] - values[1]
             unit = "N/m" if quantity == "reaction" else "J/m"
-            entry(f"{name}/{quantity}-{time:.0f}-us", unit, limit, max(abs(values[2] - values[1]), FLOOR * limit), order(*values))
+            floor = FLOOR * (2 * values[2] - values[1])
+            entry(f"{name}/{quantity}-{time:.0f}-us", unit, *extrapolated(values, floor), note(values))
 
 
 def grown(run, length):
@@ -66,7 +84,6 @@ for plane in ("plane-strain", "plane-stress"):
         found = [grown(run, length) for run in cracked]
         times, angles = [[row[k] for row in found] for k in (0, 1)]
         element = float(SIZES[2])
-        uncertainty = max(abs(times[2] - times[1]), element / found[2][2])
-        entry(f"at1/{plane}/time-at-{length}-mm", "us", 2 * times[2] - times[1], uncertainty, order(*times))
+        entry(f"at1/{plane}/time-at-{length}-mm", "us", *extrapolated(times, element / found[2][2]), note(times))
         uncertainty = max(abs(angles[2] - angles[1]), math.degrees(math.atan(element / length)))
         entry(f"at1/{plane}/angle-at-{length}-mm", "1", angles[2], uncertainty, "degrees; of the finest mesh")

@@ -32,13 +32,14 @@ def limit(coarse, fine):
 
 
 def order(values):
-    """Order p between 0.1 and 5 for which f0 + a h^p passes through the three meshes, if there is one."""
+    """Order p for which f0 + a h^p passes through the three meshes, if there is one between 0.1 and 5."""
     (a, h), (b, g), (c, k) = values
     if (b - a) * (c - b) <= 0:
         return "no order"
     misfit = lambda p: abs((h**p - g**p) / (g**p - k**p) - (a - b) / (b - c))
-    best = min((0.1 + 0.01 * n for n in range(491)), key=misfit)
-    return f"order {best:.2f}"
+    orders = [0.1 + 0.01 * n for n in range(491)]
+    best = min(orders, key=misfit)
+    return f"order {best:.2f}" if orders[0] < best < orders[-1] else "no order"
 
 
 runs = [(load(f"h{name}"), h) for name, h in SIZES]

@@ -30,7 +30,8 @@ pub struct Args {
     /// Also time another checkout of this workspace on the same scenes; it is built in its own folder
     #[arg(long, value_name = "PATH")]
     baseline: Option<PathBuf>,
-    /// Also time this program; its last argument is a folder with particles.csv and block.json
+    /// Also time this program; it is called with a folder as its last argument, which holds particles.csv and
+    /// block.json
     #[arg(long, value_name = "CMD")]
     peer: Option<String>,
     /// Timeout of one run of the program, in seconds

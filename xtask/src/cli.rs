@@ -30,7 +30,7 @@ pub enum Command {
     Verify(verify::Args),
     /// Join the results of all slices of `verify --partition`
     Merge(merge::Args),
-    /// Compare two results folders: unchanged, minor, major, missing, new; accuracy and speed
+    /// Compare the accuracy and the speed of two results folders, record by record
     Compare(compare::Args),
     /// List the cases: what each claims and models, its tier and estimated time
     List(list::Args),
@@ -38,17 +38,17 @@ pub enum Command {
     Demo(demo::Args),
     /// Run a scene to its end and write its history, summary and pictures
     Run(run::Args),
-    /// Validate a scene and show its model and its cost, without running it
+    /// Validate a scene and show its model and its cost; runs its first steps for about a second
     Check(check::Args),
     /// Reproduce the figures of the paper, or redraw them from stored results
     Figures(figures::Args),
     /// Render the report of a results folder again, without running anything
     Report(report::Args),
-    /// Measure speed against error: diagrams, stages of the step, threads, ceilings, scenes
+    /// Measure run times and errors of fisura and of programs that do the same work
     Bench(bench::Args),
     /// Plant known errors, one at a time, and show which checks catch each
     Faults(faults::Args),
-    /// Judge results of any code: verdict with uncertainty, common mistakes, errors side by side
+    /// Compare results of any code with a reference, name likely mistakes, and list errors of several codes
     Judge(judge::Args),
     /// Run cases with the error that the environment names, for `faults`
     #[cfg(feature = "faults")]

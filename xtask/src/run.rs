@@ -30,7 +30,8 @@ pub struct Args {
     /// are frames as well
     #[arg(long)]
     pub animate: bool,
-    /// Go on from the checkpoint in the output folder, to the same bytes; from the start if there is none
+    /// Continue from the checkpoint in the output folder, or start if there is none; files are identical to those
+    /// of an uninterrupted run
     #[arg(long)]
     pub resume: bool,
     /// Wall time between checkpoints, or none; an interrupted run stores one too, and ends with status 130

@@ -34,7 +34,7 @@ pub struct Args {
     /// Only cases whose id matches, such as plate/*
     #[arg(long, value_name = "GLOB")]
     case: Option<String>,
-    /// quick (a few minutes in total), or full (also the cases at paper resolution)
+    /// quick (a few minutes in total), or full (all cases, about 3 hours)
     #[arg(long, value_name = "TIER", default_value = "quick", value_parser = str::parse::<Tier>)]
     tier: Tier,
     /// Only slice K of N of the selected cases, balanced by their estimated time; see `merge`

@@ -172,17 +172,16 @@ fn draw(key: &str, title: &str, words: &str, entries: &[Entry<'_>]) -> String {
 fn sentence(entries: &[Entry<'_>], costs: bool) -> String {
     let Some(best) = entries.first() else { return "Of no result is this quantity known.".into() };
     let (count, within) = (entries.len(), entries.iter().filter(|e| e.is_within_uncertainty()).count());
-    let mut text = format!(
-        "Of {count} results the least error is that of {} ({}, uncertainty of its reference {}).",
-        best.name,
-        percent(best.error),
-        best.uncertainty()
-    );
-    match within {
-        0 => {}
-        1 => text += " One error is within the uncertainty of its reference.",
-        n => text += &format!(" {n} errors are within the uncertainty of their reference: their order says nothing."),
-    }
+    let mut text = match within {
+        0 => format!(
+            "Of {count} results the least error is that of {} ({}, uncertainty of its reference {}).",
+            best.name,
+            percent(best.error),
+            best.uncertainty()
+        ),
+        1 => format!("One of {count} errors is within the uncertainty of its reference."),
+        n => format!("{n} of {count} errors are within the uncertainty of their reference: their order says nothing."),
+    };
     let mut references: Vec<(&str, String)> = entries.iter().map(|e| (e.reference, e.uncertainty())).collect();
     references.sort();
     references.dedup();

@@ -155,6 +155,8 @@ struct LimitTable {
     /// Cause of the limit, and where its bounds come from; that of the check, if absent.
     #[serde(default)]
     why: String,
+    /// `regression`: bounds chosen after the result.
+    bounds: Option<Bounds>,
 }
 
 fn number(quantity: Option<Quantity>) -> Option<f64> {
@@ -234,7 +236,7 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
 /// A documented limit has bounds, a cause, which may be the reason of the check, and nothing the wrong way
 /// round.
 fn limit(table: LimitTable, reason: &str, item: &Item<'_>) -> Option<Limit> {
-    let LimitTable { min, max, mut why } = table;
+    let LimitTable { min, max, mut why, bounds } = table;
     if why.trim().is_empty() {
         why = reason.to_string();
     }
@@ -249,7 +251,7 @@ fn limit(table: LimitTable, reason: &str, item: &Item<'_>) -> Option<Limit> {
     if min.zip(max).is_some_and(|(min, max)| min > max) {
         return item.fail("min is above max", "swap the two");
     }
-    Some(Limit { min, max, why })
+    Some(Limit { min, max, why, regression: bounds.is_some() })
 }
 
 /// `below = 0.1, above = 0.5`: bounds around the reference value.

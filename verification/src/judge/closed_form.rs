@@ -167,7 +167,8 @@ pub fn judge(folder: &str, submission: &Submission, curves: [Option<Curve>; 6]) 
             None => row.why = "the geometry is assumed: no reference decides".into(),
         }
         if k.tolerance == Some(0.0) && value.is_some() {
-            row.outcome = if value.is_some_and(|v| v > 0.0 && v < k.value) { Outcome::Pass } else { Outcome::Fail };
+            let below = value.is_some_and(|v| v > 0.0 && v < k.value);
+            row.outcome = if below { Outcome::Diagnostic } else { Outcome::Fail };
             row.why = k.formula.into();
         }
         QuantityVerdict { quantity: k.what.into(), outcome: row.outcome, comparisons: vec![row] }

@@ -21,8 +21,8 @@ const LEAST: f64 = 0.1;
 pub(super) const EVENTS_DECIDE: f64 = 0.5;
 /// Numerical uncertainties beyond these decide nothing: relative, and of the tip in m.
 pub(super) const DECIDES: [f64; 2] = [0.20, 5e-3];
-/// Numerical uncertainties beyond these show no agreement, though they may show a difference: 5 %, as for the
-/// status of a record, and the same part of what decides for the tip.
+/// Uncertainties U_val beyond these show no agreement, though they may show a difference: 5 %, as for the status
+/// of a record, and the same part of what decides for the tip.
 pub(super) const AGREES: [f64; 2] = [0.05, 1.25e-3];
 /// An increment that starts above this is none, J/m.
 const INCREMENT_STARTS: f64 = 0.02;
@@ -236,14 +236,12 @@ fn compare(
     Some(out)
 }
 
-/// Takes a verdict back where the numerical uncertainty exceeds what decides, or what shows agreement.
+/// Takes a verdict back where the numerical uncertainty exceeds what decides, or U_val what shows agreement.
 pub(super) fn doubt(out: &mut Comparison, [decides, agrees]: [f64; 2]) {
-    let coarse = |limit: f64| out.u_num.is_some_and(|u| u > limit);
-    if coarse(decides) {
+    if out.u_num.is_some_and(|u| u > decides) {
         (out.outcome, out.why) = (Outcome::Diagnostic, "the numerical uncertainty is too large to decide".into());
-    } else if out.outcome == Outcome::Pass && coarse(agrees) {
-        (out.outcome, out.why) =
-            (Outcome::Diagnostic, "within a numerical uncertainty too large to show agreement".into());
+    } else if out.outcome == Outcome::Pass && out.u_val.is_some_and(|u| u > agrees) {
+        (out.outcome, out.why) = (Outcome::Diagnostic, "within an uncertainty too large to show agreement".into());
     }
 }
 

@@ -1,6 +1,6 @@
 //! Events of the crack: onset, branching, right edge, largest speed.
 
-use super::curves::{EVENTS_DECIDE, Numerics, decide};
+use super::curves::{AGREES, EVENTS_DECIDE, Numerics, decide, doubt};
 use super::family::{END, Variant};
 use super::table::Curve;
 use super::verdict::{Comparison, Outcome};
@@ -130,6 +130,8 @@ pub fn events(
         let u_num = numerics.of_event(event.study);
         let u_num = if between > 0.0 { Some(u_num.unwrap_or(0.0).hypot(between)) } else { u_num };
         decide(&mut row, reference.uncertainty.unwrap_or(0.0), u_num);
+        let agrees = if event.unit == "m" { AGREES[1] } else { AGREES[0] * reference.value };
+        doubt(&mut row, [f64::INFINITY, agrees]);
         let due = if event.value.starts_with("right-edge") { END } else { reference.value.min(END) };
         let late = event.unit == "s" && reference.value + row.u_val.unwrap_or(0.0) > last.min(due.max(END));
         if value.is_none() && late {

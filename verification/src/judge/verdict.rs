@@ -195,9 +195,10 @@ impl Verdict {
         self.quantities.iter().flat_map(|q| &q.comparisons).chain(&self.events)
     }
 
-    /// Gives the verdict on the whole: fail if anything fails; pass if something passes and nothing fails.
+    /// Gives the verdict on the whole: fail if anything fails; pass if a quantity or an event passes and nothing
+    /// fails. The balance can fail only: one that closes says nothing of the reference.
     pub(super) fn conclude(&mut self) {
-        let balance = self.balance.as_ref().map(|b| b.outcome);
+        let balance = self.balance.as_ref().map(|b| b.outcome).filter(|outcome| *outcome == Outcome::Fail);
         let of_quantities = self.quantities.iter().map(|q| q.outcome);
         let all: Vec<Outcome> = of_quantities.chain(self.events.iter().map(|e| e.outcome)).chain(balance).collect();
         let count = |outcome| all.iter().filter(|o| **o == outcome).count();

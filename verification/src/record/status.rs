@@ -1,19 +1,20 @@
 //! The status of a record as a function of what it holds.
 //!
-//! A value S agrees with its reference D within the uncertainty of the comparison (ASME V&V 20-2009):
+//! A value S agrees with its reference D within the uncertainty of the comparison (after ASME V&V 20-2009):
 //!
 //! ```text
 //! |S − D| ≤ U,     U² = U_ref² + U_num²
 //! ```
 //!
 //! with the uncertainty U_ref of the reference and the discretisation error U_num of the value, which is
-//! computed, from a family of meshes or from a stated order and constant. Where both are unknown, the check
-//! states bounds with their reason. [`Record::decide`] gives, in this order:
+//! computed, from a family of meshes or from a stated order and constant. Where one is unknown it counts as zero; where both are, the
+//! check states bounds with their reason. Both are half widths: the criterion is made after the pattern of
+//! that standard, which estimates the error of a model and has no pass. [`Record::decide`] gives, in this order:
 //!
 //! 1. `info`, if nothing bounds the value;
 //! 2. `fail`, if there is no finite value;
 //! 3. `pass`, if the value agrees: it lies within bounds that contain the reference, and that leave at most
-//!    [`WIDEST`] of a reference that is not zero ([`WIDEST_ON_A_SIDE`] of a lower or upper bound);
+//!    [`WIDEST`] of a reference that is not zero, or of a curve ([`WIDEST_ON_A_SIDE`] of a lower or upper bound);
 //! 4. `known-limit`, if it lies within the documented limit;
 //! 5. `info`, if it lies within bounds that are wider than that: these cannot show agreement, only the lack
 //!    of it;
@@ -32,6 +33,8 @@ pub const WIDEST: f64 = 0.05;
 /// The same of a reference that is a lower or an upper bound. Orders of convergence are small numbers that
 /// are observed on finite meshes: a tenth of 1.
 pub const WIDEST_ON_A_SIDE: f64 = 0.1;
+/// Unit of a distance from a curve that is divided by the size of the curve.
+const RELATIVE: &str = "1";
 /// Bounds are typed with a few digits, and references computed: this much of the reference is round-off.
 const ROUND_OFF: f64 = 1e-9;
 
@@ -53,6 +56,9 @@ pub struct Limit {
     pub max: Option<f64>,
     /// Cause of the limit, and where its bounds come from.
     pub why: String,
+    /// Whether its bounds were chosen after the result.
+    #[serde(skip_serializing_if = "std::ops::Not::not", default)]
+    pub regression: bool,
 }
 
 /// What bounds say about a reference.
@@ -100,6 +106,7 @@ impl Record {
         let u_ref = self.reference.as_ref().and_then(|reference| reference.uncertainty);
         let u_num = self.discretisation.as_ref().map(|error| error.value);
         let known = u_ref.or(u_num).is_some();
+        let u_num = fault!("judge-forgets-the-mesh", u_num => None);
         known.then(|| u_ref.unwrap_or(0.0).hypot(u_num.unwrap_or(0.0)))
     }
 
@@ -122,7 +129,11 @@ impl Record {
             return Standing::Absent;
         }
         let Some(reference) = self.reference.as_ref() else { return Standing::Decide };
-        let Some(value) = reference.value else { return Standing::Decide };
+        let Some(value) = reference.value else {
+            // a distance from a curve; a relative one has the same widest bound
+            let wide = self.unit == RELATIVE && max.is_some_and(|max| max > WIDEST * (1.0 + ROUND_OFF));
+            return if fault!("judge-takes-wide-curves", wide => false) { Standing::TooWide } else { Standing::Decide };
+        };
         let slack = ROUND_OFF * value.abs();
         let below = min.map_or(f64::INFINITY, |min| value - min);
         let above = max.map_or(f64::INFINITY, |max| max - value);
@@ -131,7 +142,7 @@ impl Record {
         }
         let (leaves, widest) = match reference.side {
             Side::Both => (below.max(above), WIDEST),
-            Side::AtLeast => (below, WIDEST_ON_A_SIDE),
+            Side::AtLeast => (fault!("judge-exchanges-the-sides", below => above), WIDEST_ON_A_SIDE),
             Side::AtMost => (above, WIDEST_ON_A_SIDE),
         };
         let wide = value != 0.0 && leaves > widest * value.abs() + slack;

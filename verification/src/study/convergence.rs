@@ -80,7 +80,7 @@ fn refined(setup: &ConvergenceSetup) -> Refined {
 }
 
 fn over_best(norm: &str) -> String {
-    format!("{norm} over that of the best approximation")
+    format!("{norm} over that of the L2 projection")
 }
 
 pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {

@@ -15,7 +15,7 @@ use crate::case::{Case, Check};
 use crate::extremes::largest;
 use crate::measure::{Run, measure};
 use crate::output::history::Table;
-use crate::record::{Accept, Limit, Record, Reference, ReferenceKind, Status, worst};
+use crate::record::{Accept, Discretisation, Limit, Record, Reference, ReferenceKind, Status, worst};
 use crate::reference::{Library, Obtained, ReferenceBand, ReferenceCurve, relative_rms};
 use crate::scene::plain::PlainScene;
 use crate::study::orders::observed_order;
@@ -105,7 +105,7 @@ fn verdicts(base: &Check) -> Vec<bool> {
     let of_bounds = |(value, min, max, expected)| status(Record { value, ..of_accept(bounds(min, max)) }) == expected;
     let mut right: Vec<bool> = bounded.into_iter().map(of_bounds).collect();
     // reference 10, its uncertainty, bounds, and a limit from 20 to 30
-    let limit = Limit { min: Some(20.0), max: Some(30.0), why: String::new() };
+    let limit = Limit { min: Some(20.0), max: Some(30.0), why: String::new(), regression: false };
     for (value, uncertainty, accept, limited, expected) in [
         (10.1, Some(0.2), bounds(None, None), false, Pass),
         (10.3, Some(0.2), bounds(None, None), false, Fail),
@@ -121,6 +121,27 @@ fn verdicts(base: &Check) -> Vec<bool> {
         let reference = exact(10.0).map(|reference| Reference { uncertainty, ..reference });
         let limit = limited.then(|| limit.clone());
         let record = Record { value: Some(value), reference, accept, limit, ..Record::default() };
+        right.push(status(record) == expected);
+    }
+    // reference 10 +- 0.2, and a discretisation error of 0.3
+    let reference = exact(10.0).map(|reference| Reference { uncertainty: Some(0.2), ..reference });
+    let discretisation = Some(Discretisation { value: 0.3, from: String::new() });
+    let compared = Record { reference, discretisation, ..Record::default() };
+    for (value, expected) in [(10.3, Pass), (10.4, Fail)] {
+        right.push(status(Record { value: Some(value), ..compared.clone() }) == expected);
+    }
+    // a lower bound of 2
+    for (value, min, expected) in [(1.85, 1.81, Pass), (1.7, 1.81, Fail), (1.85, 1.75, Info), (3.0, 1.81, Pass)] {
+        let reference = Some(Reference::at_least(2.0, ReferenceKind::Theory, String::new()));
+        let record = Record { reference, ..of_accept(bounds(Some(min), None)) };
+        right.push(status(Record { value: Some(value), ..record }) == expected);
+    }
+    // distances from a curve, relative and in mm
+    for (value, uncertainty, unit, expected) in
+        [(0.02, 0.03, "1", Pass), (0.04, 0.03, "1", Fail), (0.04, 0.06, "1", Info), (0.4, 0.45, "mm", Pass)]
+    {
+        let curve = Reference { uncertainty: Some(uncertainty), ..Reference::default() };
+        let record = Record { value: Some(value), unit: unit.into(), reference: Some(curve), ..Record::default() };
         right.push(status(record) == expected);
     }
     for (statuses, expected) in [

@@ -31,7 +31,7 @@ pub struct Cell {
     /// Records that fail or are errors; with a fault also those that pass in the sound run and no longer do.
     pub red: Vec<String>,
     /// Records within a known limit.
-    limited: Vec<String>,
+    pub limited: Vec<String>,
     /// Of a sound run: records that pass, which are those that could turn red.
     pub green: Vec<String>,
     /// Of a sound run: faults whose sites it passes.

@@ -39,7 +39,7 @@ impl Caught {
         let others = cases.iter().filter(|case| all && !fault.cases.contains(case));
         for case in fault.cases.iter().chain(others) {
             let (Some(sound), Some(cell)) = (store.get(None, case), store.get(Some(&fault.id), case)) else { continue };
-            caught.checks += sound.green.len();
+            caught.checks += sound.green.len() + sound.limited.len();
             caught.caught_by.extend(cell.red);
             caught.ended.extend(cell.ended.map(|why| format!("{case}: {why}")));
         }

@@ -9,7 +9,7 @@ fn reference(value: f64, uncertainty: Option<f64>) -> Option<Reference> {
 }
 
 fn limit(min: f64, max: f64) -> Option<Limit> {
-    Some(Limit { min: Some(min), max: Some(max), why: "a cause".into() })
+    Some(Limit { min: Some(min), max: Some(max), why: "a cause".into(), regression: false })
 }
 
 fn mesh(value: f64) -> Option<Discretisation> {
