@@ -15,9 +15,9 @@
 //! 2. `fail`, if there is no finite value;
 //! 3. `pass`, if the value agrees: it lies within bounds that contain the reference, and that leave at most
 //!    [`WIDEST`] of a reference that is not zero, or of a curve ([`WIDEST_ON_A_SIDE`] of a lower or upper bound);
-//! 4. `known-limit`, if it lies within the documented limit;
-//! 5. `info`, if it lies within bounds that are wider than that: these cannot show agreement, only the lack
+//! 4. `info`, if it lies within bounds that are wider than that: these cannot show agreement, only the lack
 //!    of it;
+//! 5. `known-limit`, if it lies within the documented limit;
 //! 6. `fail` otherwise.
 //!
 //! Bounds that exclude their reference therefore never make a pass, and an uncertain reference makes none.
@@ -94,8 +94,8 @@ impl Record {
             (Standing::Absent, _) if self.limit.is_none() => Status::Info,
             (_, None) => fault!("judge-passes-what-is-missing", Status::Fail => Status::Pass),
             (Standing::Decide, Some(value)) if within(value, self.accept.min, self.accept.max) => Status::Pass,
-            (_, Some(value)) if within_limit(value) => Status::KnownLimit,
             (Standing::TooWide, Some(value)) if within(value, self.accept.min, self.accept.max) => Status::Info,
+            (_, Some(value)) if within_limit(value) => Status::KnownLimit,
             _ => fault!("judge-fails-nothing", Status::Fail => Status::KnownLimit),
         }
     }

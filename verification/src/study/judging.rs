@@ -116,6 +116,7 @@ fn verdicts(base: &Check) -> Vec<bool> {
         (10.3, None, bounds(Some(10.2), Some(10.4)), false, Fail),
         (10.3, None, bounds(Some(9.0), Some(11.0)), false, Info),
         (25.0, None, bounds(Some(9.0), Some(11.0)), true, KnownLimit),
+        (25.0, None, bounds(Some(9.0), Some(26.0)), true, Info),
         (10.3, Some(0.6), bounds(None, None), false, Info),
     ] {
         let reference = exact(10.0).map(|reference| Reference { uncertainty, ..reference });
