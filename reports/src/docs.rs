@@ -26,12 +26,12 @@ const SUITES: [(&str, &str); 10] = [
     ),
     (
         "rings",
-        "two brittle rings in collision: momentum, balance, symmetry; the geometry is assumed, times of the source paper are shown",
+        "two brittle rings in collision: momentum, balance, symmetry; the geometry is assumed; of the times of the source paper the end of contact is missed, the others are shown",
     ),
     ("stability", "critical time step, bodies that end inside an element, extreme input, units, threads, long runs"),
     (
         "benchmarks",
-        "the test of Kalthoff and Winkler, elastic and with a crack in shear (AT1), against finite elements extrapolated to h = 0; a pressurised ring against one dimension",
+        "the test of Kalthoff and Winkler, elastic and with a crack in shear (AT1), against finite elements extrapolated to h = 0; a pressurised ring against a one-dimensional program",
     ),
     ("plate", "the cracking plate at h = l0, against finite elements and splines extrapolated to h = 0"),
 ];

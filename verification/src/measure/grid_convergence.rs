@@ -17,7 +17,7 @@
 //! **Safety factor** F: 1.25 with three meshes, 3 with two and an order of theory. Where theory is known and
 //! the observed order departs from it by more than a tenth, p is limited to the range from 1/2 to theory and
 //! F is 3 (Oberkampf and Roy, Verification and Validation in Scientific Computing, 2010, section 8.6.3);
-//! within a tenth, p is that of theory. Where no theory is given, p is at most 2.
+//! within a tenth, p is that of theory. Where no theory is given, p is at most 2, and F is 3 beyond.
 //!
 //! **Numerical uncertainty** of the value on the finest mesh, for its comparison with a reference: U_num =
 //! GCI |f1|. A sequence that has no index still has an uncertainty, three times its range (Eça and Hoekstra,
@@ -114,7 +114,8 @@ fn combine(estimate: Estimate, mut meshes: Vec<(f64, f64)>, theory: Option<f64>)
         (Some(p), None) if p < LEAST_ORDER => {
             return Err(format!("the observed order {p:.2} is below {LEAST_ORDER}: too far to extrapolate"));
         }
-        (Some(p), None) => (p.min(HIGHEST_ORDER), 1.25),
+        (Some(p), None) if p > HIGHEST_ORDER => (HIGHEST_ORDER, 3.0),
+        (Some(p), None) => (p, 1.25),
         (None, Some(theory)) => (theory, 3.0),
         (None, None) => return Err("two meshes need the order of theory".into()),
     };
