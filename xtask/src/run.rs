@@ -30,8 +30,8 @@ pub struct Args {
     /// are frames as well
     #[arg(long)]
     pub animate: bool,
-    /// Continue from the checkpoint in the output folder, or start if there is none; files are identical to those
-    /// of an uninterrupted run
+    /// Continue from the checkpoint in the output folder, or start if there is none; files are identical to
+    /// those of an uninterrupted run
     #[arg(long)]
     pub resume: bool,
     /// Wall time between checkpoints, or none; an interrupted run stores one too, and ends with status 130

@@ -179,8 +179,10 @@ fn sentence(entries: &[Entry<'_>], costs: bool) -> String {
             percent(best.error),
             best.uncertainty()
         ),
-        1 => format!("One of {count} errors is within the uncertainty of its reference."),
-        n => format!("{n} of {count} errors are within the uncertainty of their reference: their order says nothing."),
+        1 => format!("Of {count} results one error is within the uncertainty of its reference."),
+        n => format!(
+            "Of {count} results {n} errors are within the uncertainty of their reference: their order says nothing."
+        ),
     };
     let mut references: Vec<(&str, String)> = entries.iter().map(|e| (e.reference, e.uncertainty())).collect();
     references.sort();
@@ -216,15 +218,17 @@ mod tests {
         let mut entries = [entry("a", 0.003, 0.004, "one"), entry("b", 0.02, 0.01, "other")];
         let text = sentence(&entries, false);
         for part in [
-            "Of 2 results the least error is that of a (0.3 %, uncertainty of its reference 0.4 %).",
-            "One error is within the uncertainty of its reference.",
+            "Of 2 results one error is within the uncertainty of its reference.",
             "differ in uncertainty, and errors against different ones do not rank: one (0.4 %, 1), other (1 %, 1).",
             "Costs are not shown",
         ] {
             assert!(text.contains(part), "{part}: {text}");
         }
-        entries[1] = entry("b", 0.02, 0.004, "one");
+        entries = [entry("a", 0.01, 0.004, "one"), entry("b", 0.02, 0.004, "one")];
         let text = sentence(&entries, true);
+        assert!(
+            text.starts_with("Of 2 results the least error is that of a (1 %, uncertainty of its reference 0.4 %).")
+        );
         assert!(!text.contains("differ") && !text.contains("Costs"), "{text}");
     }
 }

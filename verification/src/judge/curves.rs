@@ -21,8 +21,8 @@ const LEAST: f64 = 0.1;
 pub(super) const EVENTS_DECIDE: f64 = 0.5;
 /// Numerical uncertainties beyond these decide nothing: relative, and of the tip in m.
 pub(super) const DECIDES: [f64; 2] = [0.20, 5e-3];
-/// Uncertainties U_val beyond these show no agreement, though they may show a difference: 5 %, as for the status
-/// of a record, and the same part of what decides for the tip.
+/// Uncertainties U_val beyond these show no agreement, though they may show a difference: 5 %, as for the
+/// status of a record, and the same part of what decides for the tip.
 pub(super) const AGREES: [f64; 2] = [0.05, 1.25e-3];
 /// An increment that starts above this is none, J/m.
 const INCREMENT_STARTS: f64 = 0.02;

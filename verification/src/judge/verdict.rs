@@ -195,8 +195,8 @@ impl Verdict {
         self.quantities.iter().flat_map(|q| &q.comparisons).chain(&self.events)
     }
 
-    /// Gives the verdict on the whole: fail if anything fails; pass if a quantity or an event passes and nothing
-    /// fails. The balance can fail only: one that closes says nothing of the reference.
+    /// Gives the verdict on the whole: fail if anything fails; pass if a quantity or an event passes and
+    /// nothing fails. The balance can fail only: one that closes says nothing of the reference.
     pub(super) fn conclude(&mut self) {
         let balance = self.balance.as_ref().map(|b| b.outcome).filter(|outcome| *outcome == Outcome::Fail);
         let of_quantities = self.quantities.iter().map(|q| q.outcome);

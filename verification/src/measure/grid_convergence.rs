@@ -17,7 +17,7 @@
 //! **Safety factor** F: 1.25 with three meshes, 3 with two and an order of theory. Where theory is known and
 //! the observed order departs from it by more than a tenth, p is limited to the range from 1/2 to theory and
 //! F is 3 (Oberkampf and Roy, Verification and Validation in Scientific Computing, 2010, section 8.6.3);
-//! within a tenth, p is that of theory. Where no theory is given, p is at most 2, and F is 3 beyond.
+//! within a tenth, p is that of theory.
 //!
 //! **Numerical uncertainty** of the value on the finest mesh, for its comparison with a reference: U_num =
 //! GCI |f1|. A sequence that has no index still has an uncertainty, three times its range (Eça and Hoekstra,
@@ -36,8 +36,6 @@ use crate::reference::Library;
 
 /// Extrapolation by an order below this would go far beyond what was computed.
 const LEAST_ORDER: f64 = 0.5;
-/// Where theory gives no order, one above this is taken for chance.
-const HIGHEST_ORDER: f64 = 2.0;
 /// Observed and theoretical order agree within this fraction.
 const AGREEMENT: f64 = 0.1;
 const ITERATIONS: usize = 500;
@@ -114,7 +112,6 @@ fn combine(estimate: Estimate, mut meshes: Vec<(f64, f64)>, theory: Option<f64>)
         (Some(p), None) if p < LEAST_ORDER => {
             return Err(format!("the observed order {p:.2} is below {LEAST_ORDER}: too far to extrapolate"));
         }
-        (Some(p), None) if p > HIGHEST_ORDER => (HIGHEST_ORDER, 3.0),
         (Some(p), None) => (p, 1.25),
         (None, Some(theory)) => (theory, 3.0),
         (None, None) => return Err("two meshes need the order of theory".into()),

@@ -7,14 +7,17 @@
 //! ```
 //!
 //! with the uncertainty U_ref of the reference and the discretisation error U_num of the value, which is
-//! computed, from a family of meshes or from a stated order and constant. Where one is unknown it counts as zero; where both are, the
-//! check states bounds with their reason. Both are half widths: the criterion is made after the pattern of
-//! that standard, which estimates the error of a model and has no pass. [`Record::decide`] gives, in this order:
+//! computed, from a family of meshes or from a stated order and constant. Where one is unknown it counts as
+//! zero; where both are, the check states bounds with their reason. Both are half widths. The criterion follows
+//! that standard, which estimates the error of a model and has no pass.
+//!
+//! [`Record::decide`] gives, in this order:
 //!
 //! 1. `info`, if nothing bounds the value;
 //! 2. `fail`, if there is no finite value;
 //! 3. `pass`, if the value agrees: it lies within bounds that contain the reference, and that leave at most
-//!    [`WIDEST`] of a reference that is not zero, or of a curve ([`WIDEST_ON_A_SIDE`] of a lower or upper bound);
+//!    [`WIDEST`] of a reference that is not zero, or of a curve ([`WIDEST_ON_A_SIDE`] of a lower or upper
+//!    bound);
 //! 4. `info`, if it lies within bounds that are wider than that: these cannot show agreement, only the lack
 //!    of it;
 //! 5. `known-limit`, if it lies within the documented limit;

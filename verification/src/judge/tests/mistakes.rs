@@ -75,7 +75,9 @@ fn shifted(name: &str, by: f64, interval: f64, padded: bool) -> TempDir {
 
 #[test]
 fn another_origin_of_the_times_is_named_and_its_remedy_is_right() {
-    for (name, unit) in [(SOUND, 1e-6), ("fisura-p2-h1", 1e-6), ("independent-fem-h3", 1.0)] {
+    let (fine, coarse) = (Outcome::Pass, Outcome::Diagnostic);
+    for (name, unit, mended) in [(SOUND, 1e-6, fine), ("fisura-p2-h1", 1e-6, coarse), ("independent-fem-h3", 1.0, fine)]
+    {
         for by in [1.0, 3.0, 10.0, 2.37, -1.0, -3.0, -10.0] {
             for padded in [false, true] {
                 let folder = shifted(name, by * unit, 0.5 * unit, padded && by > 0.0);
@@ -92,7 +94,7 @@ fn another_origin_of_the_times_is_named_and_its_remedy_is_right() {
                 let text: String = fs::read_to_string(&path).unwrap().lines().map(time).collect();
                 fs::write(&path, text).unwrap();
                 let verdict = judged(folder.path(), None).verdict;
-                assert_eq!(verdict.outcome, Outcome::Pass, "{name}: {by} us, {:?}", verdict.sentence);
+                assert_eq!(verdict.outcome, mended, "{name}: {by} us, {:?}", verdict.sentence);
             }
         }
     }
