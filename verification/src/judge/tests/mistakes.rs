@@ -75,8 +75,8 @@ fn shifted(name: &str, by: f64, interval: f64, padded: bool) -> TempDir {
 
 #[test]
 fn another_origin_of_the_times_is_named_and_its_remedy_is_right() {
-    let (fine, coarse) = (Outcome::Pass, Outcome::Diagnostic);
-    for (name, unit, mended) in [(SOUND, 1e-6, fine), ("fisura-p2-h1", 1e-6, coarse), ("independent-fem-h3", 1.0, fine)]
+    // nothing of the coarse mesh shows agreement, and nothing of it fails
+    for (name, unit, passes) in [(SOUND, 1e-6, true), ("fisura-p2-h1", 1e-6, false), ("independent-fem-h3", 1.0, true)]
     {
         for by in [1.0, 3.0, 10.0, 2.37, -1.0, -3.0, -10.0] {
             for padded in [false, true] {
@@ -94,7 +94,8 @@ fn another_origin_of_the_times_is_named_and_its_remedy_is_right() {
                 let text: String = fs::read_to_string(&path).unwrap().lines().map(time).collect();
                 fs::write(&path, text).unwrap();
                 let verdict = judged(folder.path(), None).verdict;
-                assert_eq!(verdict.outcome, mended, "{name}: {by} us, {:?}", verdict.sentence);
+                assert_ne!(verdict.outcome, Outcome::Fail, "{name}: {by} us, {:?}", verdict.sentence);
+                assert_eq!(verdict.outcome == Outcome::Pass, passes, "{name}: {by} us, {:?}", verdict.sentence);
             }
         }
     }
