@@ -8,8 +8,8 @@
 //!
 //! with the uncertainty U_ref of the reference and the discretisation error U_num of the value, which is
 //! computed, from a family of meshes or from a stated order and constant. Where one is unknown it counts as
-//! zero; where both are, the check states bounds with their reason. Both are half widths. The criterion follows
-//! that standard, which estimates the error of a model and has no pass.
+//! zero; where both are, the check states bounds with their reason. Both are half widths. The criterion
+//! follows that standard, which estimates the error of a model and has no pass.
 //!
 //! [`Record::decide`] gives, in this order:
 //!
