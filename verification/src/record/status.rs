@@ -107,9 +107,9 @@ impl Record {
     /// nor the discretisation error is known.
     pub fn uncertainty(&self) -> Option<f64> {
         let u_ref = self.reference.as_ref().and_then(|reference| reference.uncertainty);
-        let u_num = self.discretisation.as_ref().map(|error| error.value);
+        let of_mesh = self.discretisation.as_ref().map(|error| error.value);
+        let u_num = fault!("judge-forgets-the-mesh", of_mesh => None);
         let known = u_ref.or(u_num).is_some();
-        let u_num = fault!("judge-forgets-the-mesh", u_num => None);
         known.then(|| u_ref.unwrap_or(0.0).hypot(u_num.unwrap_or(0.0)))
     }
 
