@@ -12,7 +12,7 @@ const SUITES: [(&str, &str); 10] = [
     ("patch", "to round-off: spline bases, constant stress, rigid motion, and half models against full ones"),
     (
         "convergence",
-        "orders of convergence against exact solutions: at least p + 1 in the L2 norm and p in the H1 norm; 2 with the lumped mass; at most 2 in theory where the quadrature points move",
+        "orders against exact solutions: at least p + 1 in L2 and p in H1, 2 with the lumped mass, at most 2 where quadrature points move",
     ),
     (
         "manufactured",
@@ -26,7 +26,7 @@ const SUITES: [(&str, &str); 10] = [
     ),
     (
         "rings",
-        "two brittle rings in collision: momentum, balance, symmetry; the geometry is assumed; of the times of the source paper the end of contact is missed, the others are shown",
+        "two brittle rings in collision: momentum, balance, symmetry; the geometry is assumed, and the end of contact in the source paper is missed",
     ),
     ("stability", "critical time step, bodies that end inside an element, extreme input, units, threads, long runs"),
     (

@@ -50,9 +50,9 @@ use thin_parts::ThinParts;
 const FAR_SIDE: f64 = 0.5;
 /// Cosine of the normals of two places from which on one is on the far face, if that part is thin.
 const BEHIND: f64 = 0.5;
-/// Part of the thickness that a boundary may be deep in a thin part, and part of it in which every face
-/// counts.
+/// Part of the thickness of a thin part that a boundary may be deep in it.
 const FOLLOWED: f64 = 0.7;
+/// Part of the thickness within which the nearest face counts, also the far one: a back follows its front.
 const ENTERED: f64 = 0.1;
 /// Depth, in spans, that is followed at least: beside a corner every part is thin.
 const LEAST: f64 = 0.25;

@@ -26,7 +26,7 @@ pub struct Caught {
     fault: &'static Fault,
     /// Records that fail, or are errors, with the fault alone.
     caught_by: Vec<String>,
-    /// Checks that were made with it.
+    /// Checks that pass, or lie within a known limit, without it.
     checks: usize,
     /// How cases ended that have no records.
     #[serde(skip_serializing_if = "Vec::is_empty")]

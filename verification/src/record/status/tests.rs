@@ -50,6 +50,17 @@ fn both_uncertainties_bound_the_value() {
     assert_eq!([distance(0.009), distance(0.011)], [Status::Pass, Status::Fail]);
 }
 
+/// `compare` asks a stored record, which has its reference already.
+#[test]
+fn a_regression_bound_decides_again_as_it_did() {
+    let accept = Accept { max: Some(0.2), regression: true, ..Accept::default() };
+    let mut record = Record { value: Some(0.1), unit: "1".into(), accept, ..Record::default() };
+    for _ in 0..2 {
+        record.decide();
+        assert_eq!(record.status, Status::Pass);
+    }
+}
+
 #[test]
 fn bounds_that_exclude_their_reference_make_no_pass() {
     let held = |value: f64, accept: Accept, limit: Option<Limit>| {
