@@ -133,7 +133,7 @@ impl Record {
         }
         let Some(reference) = self.reference.as_ref() else { return Standing::Decide };
         let Some(value) = reference.value else {
-            // a distance from a curve: a relative one has the same widest bound; an earlier result is no curve
+            // a relative distance from a curve has the same widest bound; an earlier result is no curve
             let relative = self.unit == RELATIVE && reference.kind != ReferenceKind::Regression;
             let wide = relative && max.is_some_and(|max| max > WIDEST * (1.0 + ROUND_OFF));
             return if fault!("judge-takes-wide-curves", wide => false) { Standing::TooWide } else { Standing::Decide };
