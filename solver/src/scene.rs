@@ -18,7 +18,7 @@ mod toughness;
 use std::collections::BTreeMap;
 
 pub use body::{Body, Crack, CrackKind, CrackModel, Fracture, Layout, Material, Softening, Split};
-pub use condition::{Boundary, Edge, EdgeCondition, Hold, Load, Motion, Prescribed, Side, Traction};
+pub use condition::{Boundary, Edge, EdgeCondition, Hold, Load, Motion, Prescribed, Side, StressField, Traction};
 pub use mesh::{Geometry, Mesh};
 pub use shape::Shape;
 pub use time::TimeFactor;
@@ -242,8 +242,10 @@ impl JIntegral {
     /// Where the tip is at t = 0 (m), and the unit vector along the crack; `None` if neither it nor a crack
     /// of its body says so.
     pub(crate) fn tip_and_axis(&self, body: &Body) -> Option<([f64; 2], [f64; 2])> {
-        let last = body.cracks.first().and_then(|crack| crack.segments().last());
-        let tip = self.at.or(last.map(|[_, to]| to))?;
+        let first = body.cracks.first();
+        let last = first.and_then(|crack| crack.segments().last());
+        let driven = first.filter(|crack| matches!(crack.kind, CrackKind::Driven(_)));
+        let tip = self.at.or(driven.map(|crack| crack.points[0])).or(last.map(|[_, to]| to))?;
         let axis = match (self.angle, last) {
             (Some(angle), _) => [angle.cos(), angle.sin()],
             (None, Some([from, to])) => {

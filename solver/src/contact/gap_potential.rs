@@ -36,6 +36,7 @@ mod winding;
 
 use super::ContactLedger;
 use super::impulse::ContactForce;
+use super::rigid::RigidPose;
 use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::vectors::dot;
@@ -144,7 +145,8 @@ impl GapPotential {
     /// If a boundary is deeper in another body than contact follows.
     pub(crate) fn find(&mut self, mut outlines: Vec<Outline>, time: f64, dt: f64) -> Result<(), TooDeep> {
         let (deformable, alone) = (outlines.len(), self.own.len());
-        outlines.extend(self.rigid.iter().map(|body| body.at(time)));
+        let (rigid, poses): (Vec<_>, Vec<_>) = self.rigid.iter().map(|body| body.at(time)).unzip();
+        outlines.extend(rigid);
         self.forces.clear();
         self.energy = 0.0;
         self.friction.iter_mut().for_each(Friction::begin);
@@ -162,7 +164,7 @@ impl GapPotential {
         }
         self.friction.iter_mut().for_each(Friction::end);
         if !self.rigid.is_empty() {
-            let power = self.power_of_rigid_bodies(deformable, time);
+            let power = self.power_of_rigid_bodies(deformable, &poses);
             self.work += 0.5 * dt * (self.power + power);
             self.power = power;
         }
@@ -251,10 +253,9 @@ impl GapPotential {
     }
 
     /// Power of the rigid bodies, which are counted from `first`, on the others, W/m.
-    fn power_of_rigid_bodies(&self, first: usize, time: f64) -> f64 {
+    fn power_of_rigid_bodies(&self, first: usize, poses: &[RigidPose]) -> f64 {
         let on = |body: usize, place: [f64; 2], force: [f64; 2]| {
-            let velocity = |rigid: &RigidOutline| rigid.velocity_at(place, time);
-            body.checked_sub(first).map_or(0.0, |rigid| -dot(force, velocity(&self.rigid[rigid])))
+            body.checked_sub(first).map_or(0.0, |rigid| -dot(force, poses[rigid].velocity_at(place)))
         };
         let of_pair = |pair: &GapForce| {
             let GapForce { bodies: [a, b], places: [x, y], labels: _, force, friction } = *pair;

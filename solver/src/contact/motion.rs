@@ -36,19 +36,29 @@ struct Moving<'a> {
     /// Largest speed with which its boundary moves outwards as it turns and stretches, m/s; that of a disc
     /// that turns hardly does.
     turning: f64,
+    /// Smallest and largest factor of its velocities in time.
+    factors: [f64; 2],
 }
 
 impl<'a> Moving<'a> {
-    fn new(mesh: &Mesh, body: &'a Body) -> Self {
+    fn new(scene: &Scene, body: &'a Body) -> Self {
+        let mesh = &scene.mesh;
         let (low, high) = without_patch(&body.shape, mesh).bounding_box();
         let turning = if body.is_translated() { 0.0 } else { outward_speed(mesh, body) };
-        Self { body, bounds: [low, high], turning }
+        let factors = body.time.range(scene.analysis.end_time);
+        Self { body, bounds: [low, high], turning: turning * largest(factors.map(f64::abs)), factors }
     }
 
     /// Bound of the speed, m/s, at which it comes nearer to another body; zero for bodies that lie beside
     /// each other, with boxes that do not close on each other.
     fn approach(&self, other: &Self) -> f64 {
-        let relative = [0, 1].map(|d| other.body.velocity[d] - self.body.velocity[d]);
+        let courses = self.factors.into_iter().flat_map(|own| other.factors.map(|others| [own, others]));
+        largest(courses.map(|factors| self.approach_with(other, factors)))
+    }
+
+    /// The same, with a factor of the velocity of each.
+    fn approach_with(&self, other: &Self, [own, others]: [f64; 2]) -> f64 {
+        let relative = [0, 1].map(|d| others * other.body.velocity[d] - own * self.body.velocity[d]);
         let turning = self.turning + other.turning;
         let most = relative[0].hypot(relative[1]) + turning;
         let beside = |d: usize| {
@@ -85,7 +95,7 @@ pub(crate) fn longest_step(scene: &Scene) -> f64 {
     if scene.contact.is_none() {
         return f64::INFINITY;
     }
-    let bodies: Vec<Moving> = scene.bodies.iter().map(|body| Moving::new(&scene.mesh, body)).collect();
+    let bodies: Vec<Moving> = scene.bodies.iter().map(|body| Moving::new(scene, body)).collect();
     let speeds = pairs(&bodies).filter(|(a, b)| !(a.body.rigid && b.body.rigid)).map(|(a, b)| a.approach(b));
     let mut followed = smallest_span(&scene.mesh);
     if scene.analysis.frame == Frame::Total {
@@ -105,6 +115,6 @@ fn pairs<'b, 'a>(bodies: &'b [Moving<'a>]) -> impl Iterator<Item = (&'b Moving<'
 /// The names of two rigid bodies of a scene that may approach each other, if there are such.
 pub(crate) fn rigid_bodies_that_approach(scene: &Scene) -> Option<[&str; 2]> {
     let rigid = scene.bodies.iter().filter(|body| body.rigid);
-    let bodies: Vec<Moving> = rigid.map(|body| Moving::new(&scene.mesh, body)).collect();
+    let bodies: Vec<Moving> = rigid.map(|body| Moving::new(scene, body)).collect();
     pairs(&bodies).find(|(a, b)| a.approach(b) > 0.0).map(|(a, b)| [a, b].map(|moving| moving.body.name.as_str()))
 }

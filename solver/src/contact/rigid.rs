@@ -3,27 +3,28 @@
 use super::area::ShapeIntegrals;
 use super::outline::without_patch;
 use super::surface::Surface;
-use crate::scene::{Body, Mesh};
+use crate::scene::{Body, Mesh, TimeFactor};
 
-/// The motion of a rigid body: steady, about a centre that moves on.
-#[derive(Debug, Clone, Copy)]
+/// The motion of a rigid body about a centre that moves on; velocity and spin share one factor in time.
+#[derive(Debug, Clone)]
 pub(crate) struct RigidMotion {
     /// At t = 0, m.
     center: [f64; 2],
     velocity: [f64; 2],
     spin: f64,
+    time: TimeFactor,
 }
 
 impl RigidMotion {
     /// That of a body, about its centroid.
     pub(crate) fn new(mesh: &Mesh, body: &Body) -> Self {
         let center = ShapeIntegrals::new(&without_patch(&body.shape, mesh)).centroid;
-        Self::steady(center, body.velocity, body.angular_velocity)
+        Self { time: body.time.clone(), ..Self::steady(center, body.velocity, body.angular_velocity) }
     }
 
     /// About a centre at t = 0 (m) that moves on with a velocity (m/s), with a spin (rad/s).
     pub(crate) fn steady(center: [f64; 2], velocity: [f64; 2], spin: f64) -> Self {
-        Self { center, velocity, spin }
+        Self { center, velocity, spin, time: TimeFactor::default() }
     }
 
     /// Whether the body stays where it is.
@@ -31,29 +32,50 @@ impl RigidMotion {
         self.velocity == [0.0; 2] && self.spin == 0.0
     }
 
-    /// A direction of t = 0 at a time, s.
-    pub(crate) fn turn(&self, arm: [f64; 2], time: f64) -> [f64; 2] {
-        let (sin, cos) = (self.spin * time).sin_cos();
+    /// Where the body is at a time (s), and how it moves then.
+    pub(crate) fn at(&self, time: f64) -> RigidPose {
+        let factor = self.time.value(time);
+        let travelled = fault!("rigid-course-forgotten", self.time.integral(time) => time);
+        let center = [0, 1].map(|d| self.center[d] + travelled * self.velocity[d]);
+        RigidPose {
+            start: self.center,
+            center,
+            turned: (self.spin * travelled).sin_cos(),
+            velocity: self.velocity.map(|v| v * factor),
+            spin: self.spin * factor,
+        }
+    }
+}
+
+/// Place and velocity of a rigid body at a time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RigidPose {
+    start: [f64; 2],
+    center: [f64; 2],
+    /// Sine and cosine of the angle that it has turned by.
+    turned: (f64, f64),
+    velocity: [f64; 2],
+    spin: f64,
+}
+
+impl RigidPose {
+    /// A direction of t = 0.
+    pub(crate) fn turn(&self, arm: [f64; 2]) -> [f64; 2] {
+        let (sin, cos) = self.turned;
         [cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1]]
     }
 
-    /// A place of t = 0 at a time, s.
-    pub(crate) fn place(&self, reference: [f64; 2], time: f64) -> [f64; 2] {
-        let now = self.center_at(time);
-        let arm = self.turn([0, 1].map(|d| reference[d] - self.center[d]), time);
-        [0, 1].map(|d| now[d] + arm[d])
+    /// A place of t = 0, m.
+    pub(crate) fn place(&self, reference: [f64; 2]) -> [f64; 2] {
+        let arm = self.turn([0, 1].map(|d| reference[d] - self.start[d]));
+        [0, 1].map(|d| self.center[d] + arm[d])
     }
 
-    /// Velocity at a position, m/s, at a time, s.
-    pub(crate) fn velocity_at(&self, position: [f64; 2], time: f64) -> [f64; 2] {
-        let center = self.center_at(time);
-        let arm = [0, 1].map(|d| position[d] - center[d]);
+    /// Velocity at a position (m), m/s.
+    pub(crate) fn velocity_at(&self, position: [f64; 2]) -> [f64; 2] {
+        let arm = [0, 1].map(|d| position[d] - self.center[d]);
         let moving = [self.velocity[0] - self.spin * arm[1], self.velocity[1] + self.spin * arm[0]];
         fault!("rigid-body-at-rest", moving => [0.0; 2])
-    }
-
-    fn center_at(&self, time: f64) -> [f64; 2] {
-        [0, 1].map(|d| self.center[d] + time * self.velocity[d])
     }
 }
 
@@ -64,7 +86,7 @@ pub(crate) struct RigidBody {
     /// Vertices of the surface at t = 0, m.
     reference: Vec<[f64; 2]>,
     motion: RigidMotion,
-    time: f64,
+    pose: RigidPose,
 }
 
 impl RigidBody {
@@ -72,23 +94,23 @@ impl RigidBody {
     pub(crate) fn new(mesh: &Mesh, body: &Body) -> Self {
         let surface = Surface::new(mesh, body);
         let motion = RigidMotion::new(mesh, body);
-        Self { reference: surface.positions().to_vec(), surface, motion, time: 0.0 }
+        Self { reference: surface.positions().to_vec(), surface, pose: motion.at(0.0), motion }
     }
 
     /// Moves to the place it has at a time, s, and expects a step of `dt` seconds.
     pub(crate) fn move_to(&mut self, time: f64, dt: f64) {
-        self.time = time;
         if self.motion.rests() {
             return;
         }
-        let Self { surface, reference, motion, .. } = self;
-        surface.place(|vertex| motion.place(reference[vertex], time));
-        surface.expect_displacements(|position| motion.velocity_at(position, time).map(|v| dt * v));
+        self.pose = self.motion.at(time);
+        let Self { surface, reference, pose, .. } = self;
+        surface.place(|vertex| pose.place(reference[vertex]));
+        surface.expect_displacements(|position| pose.velocity_at(position).map(|v| dt * v));
     }
 
     /// Velocity at a position, m/s.
     pub(crate) fn velocity_at(&self, position: [f64; 2]) -> [f64; 2] {
-        self.motion.velocity_at(position, self.time)
+        self.pose.velocity_at(position)
     }
 
     /// Its boundary now.

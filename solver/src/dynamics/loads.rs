@@ -59,6 +59,8 @@ pub fn boundary_points(patch: &Patch, body: &Body, side: Side) -> Vec<BoundaryPo
 pub enum LostTraction {
     /// No material carries the edge at a place (m): there is none within one span of it.
     Bare([f64; 2]),
+    /// Its stress field is not finite at a place, m.
+    NotFinite([f64; 2]),
     /// The nodal forces are not those of the edge.
     Unbalanced {
         /// Middle of the edge, m.
@@ -150,8 +152,12 @@ impl NodalLoad {
         moves: impl Fn(usize) -> bool,
     ) -> Result<Self, LostTraction> {
         let mut sums = BTreeMap::<usize, [Sum; 3]>::new(); // of the length, and of the force
-        let mut add = |functions: Vec<(usize, f64)>, length: f64, normal: [f64; 2]| {
-            let [x, y] = traction.load.traction(normal);
+        let mut undefined = None;
+        let mut add = |functions: Vec<(usize, f64)>, length: f64, position: [f64; 2], normal: [f64; 2]| {
+            let [x, y] = traction.load.traction(position, normal);
+            if !(x.is_finite() && y.is_finite()) {
+                undefined = Some(position);
+            }
             for (at, value) in functions {
                 let sums = sums.entry(at).or_default();
                 for (sum, density) in sums.iter_mut().zip([1.0, x, y]) {
@@ -163,25 +169,31 @@ impl NodalLoad {
             (Edge::Side(side), Shape::Patch) => {
                 let points = boundary_points(patch, body, *side);
                 for BoundaryPoint { functions, position, length, normal } in &points {
-                    add(on_side(lattice, functions, *position), *length, *normal);
+                    add(on_side(lattice, functions, *position), *length, *position, *normal);
                 }
                 Balance::of_points(&points)
             }
             _ => {
                 for point in surface_points(patch, body, &traction.edge) {
                     let functions = functions_of_material(patch, lattice, &point, &moves);
-                    add(functions.ok_or(LostTraction::Bare(point.position))?, point.length, point.normal);
+                    let functions = functions.ok_or(LostTraction::Bare(point.position))?;
+                    add(functions, point.length, point.position, point.normal);
                 }
                 Balance::of_edge(body, &traction.edge)
             }
         };
+        if let Some(place) = undefined {
+            return Err(LostTraction::NotFinite(place));
+        }
         let [x, y] = lattice.control_positions(patch);
         balance.check(sums.iter().filter(|(at, _)| moves(**at)).map(|(&at, sum)| ([x[at], y[at]], sum[0].value())))?;
         let forces = match traction.load {
             Load::Stress(stress) => {
                 sums.into_iter().map(|(at, [length, ..])| (at, stress.map(|s| s * length.value()))).collect()
             }
-            Load::Pressure(_) => sums.into_iter().map(|(at, [_, x, y])| (at, [x.value(), y.value()])).collect(),
+            Load::Pressure(_) | Load::Field(_) => {
+                sums.into_iter().map(|(at, [_, x, y])| (at, [x.value(), y.value()])).collect()
+            }
         };
         Ok(Self { forces, time: traction.time.clone() })
     }

@@ -122,7 +122,7 @@ impl TotalFrame {
         self.update_loads();
         if let Some(fracture) = &mut self.fracture {
             let Self { lattice, moduli, kinematics, displacement, strip_forces, .. } = self;
-            fracture.update_history(lattice, *moduli, *kinematics, displacement, strip_forces);
+            fracture.update_history(lattice, self.time, *moduli, *kinematics, displacement, strip_forces);
             fracture.advance_phase_field(&self.lattice)?;
         }
         self.internal_forces();

@@ -48,6 +48,8 @@ pub struct LatticeFracture {
     pub relative: Option<Vec<Lane>>,
     /// Iterations of the last solve.
     pub iterations: usize,
+    /// Cracks that grow as prescribed; if there are any, the strain drives nothing.
+    pub driven: Vec<Crack>,
     /// Energy of the intact body (J/m), if its forces were summed since the last sweep of the degraded
     /// stress.
     pub intact_energy: Option<f64>,
@@ -85,20 +87,32 @@ impl LatticeFracture {
         let convergence = field.initialise(lattice, &history)?;
         let iterations = convergence.iterations;
         let (phase, excess) = (zeros.clone(), zeros);
-        Ok(Self { model, history, phase, excess, field, relative, iterations, intact_energy: None })
+        let driven = body.cracks.iter().filter(|crack| matches!(crack.kind, CrackKind::Driven(_))).cloned().collect();
+        Ok(Self { model, history, phase, excess, field, relative, iterations, driven, intact_energy: None })
     }
 
-    /// H from the present displacement; with a threshold also the forces of the intact body, to which those
-    /// of the damage will be added.
+    /// H from the present displacement, or from cracks that are driven, at a time, s; with a threshold also
+    /// the forces of the intact body, to which those of the damage will be added.
     pub fn update_history(
         &mut self,
         lattice: &Lattice,
+        time: f64,
         moduli: ElasticModuli,
         kinematics: Kinematics,
         displacement: &[Vec<f64>; 2],
         forces: &mut StripForces,
     ) {
         let model = self.model;
+        if !self.driven.is_empty() {
+            let grown: Vec<Crack> = self.driven.iter().filter_map(|crack| crack.grown(time)).collect();
+            let Self { history, relative, .. } = self;
+            lattice.for_each_point(|batch, lane, position, _| {
+                let relative = relative.as_ref().map_or(1.0, |relative| relative[batch][lane]);
+                let seeded = relative * seed_energy(&model, &grown, position);
+                history[batch][lane] = larger(history[batch][lane], seeded);
+            });
+            return;
+        }
         let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
         let (chunk, span) = (lattice.strip_batches(), lattice.points_per_span());
         let cells_of_strip = chunk / span;
@@ -240,6 +254,7 @@ impl LatticeFracture {
 pub fn half_width(crack: &Crack, length_scale: f64) -> Option<f64> {
     match crack.kind {
         CrackKind::Seed(half_width) => Some(half_width.unwrap_or(0.5 * length_scale)),
+        CrackKind::Driven(_) => Some(0.5 * length_scale),
         CrackKind::Slit => None,
     }
 }
@@ -304,14 +319,14 @@ pub(crate) fn crack_tip(
 }
 
 /// Initial history energy `H0(d) = B Gc/(4 l0) (1 − d/w)` within the half width w of a crack, else zero.
-pub(crate) fn seed_energy(model: &FractureModel, body: &Body, position: [f64; 2]) -> f64 {
+pub(crate) fn seed_energy(model: &FractureModel, cracks: &[Crack], position: [f64; 2]) -> f64 {
     let strength = SEED_STRENGTH * model.toughness / (4.0 * model.length_scale);
     let of_crack = |crack: &Crack| {
         let half_width = half_width(crack, model.length_scale)?;
         let reach = fault!("seed-twice-as-wide", half_width => 2.0 * half_width);
         Some(strength * (1.0 - crack.distance(position) / reach))
     };
-    body.cracks.iter().filter_map(of_crack).fold(0.0, larger)
+    cracks.iter().filter_map(of_crack).fold(0.0, larger)
 }
 
 /// Control points whose functions do not vanish on the seeds of a body.
@@ -340,10 +355,11 @@ fn relative_toughness(lattice: &Lattice, random: RandomToughness) -> Vec<Lane> {
 /// H0 at the points, with the Gc that is there.
 fn seeded_history(lattice: &Lattice, body: &Body, model: &FractureModel, relative: Option<&[Lane]>) -> Vec<Lane> {
     let mut history = vec![Lane::ZERO; lattice.batches()];
-    if !body.cracks.is_empty() && model.threshold().is_none() {
+    let cracks: Vec<Crack> = body.cracks.iter().filter_map(|crack| crack.grown(0.0)).collect();
+    if !cracks.is_empty() && model.threshold().is_none() {
         lattice.for_each_point(|batch, lane, position, _| {
             let relative = relative.map_or(1.0, |relative| relative[batch][lane]);
-            history[batch][lane] = relative * seed_energy(model, body, position);
+            history[batch][lane] = relative * seed_energy(model, &cracks, position);
         });
     }
     history

@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_2_PI;
 
 use super::condition::{EdgeCondition, Traction};
 use super::shape::{Shape, distance_to_segment};
+use super::time::TimeFactor;
 use super::toughness::{Anisotropy, RandomToughness};
 use crate::linear_algebra::extremes::smaller;
 
@@ -155,6 +156,9 @@ pub enum CrackKind {
     Seed(Option<f64>),
     /// A discontinuity of the displacement: nothing is transmitted across it (total frame).
     Slit,
+    /// A seed that grows along its points from the first on with this speed (m/s), from t = 0. The phase
+    /// field of its body answers to its seeds alone, not to the strain (total frame, AT2).
+    Driven(f64),
 }
 
 /// Initial crack.
@@ -180,6 +184,22 @@ impl Crack {
     /// Whether it is a slit.
     pub fn is_slit(&self) -> bool {
         self.kind == CrackKind::Slit
+    }
+
+    /// What there is of it at a time, s; `None` if nothing is.
+    pub(crate) fn grown(&self, time: f64) -> Option<Self> {
+        let CrackKind::Driven(speed) = self.kind else { return Some(self.clone()) };
+        let mut left = fault!("driven-crack-too-fast", speed => 1.02 * speed) * time;
+        let mut points = vec![self.points[0]];
+        for [from, to] in self.segments() {
+            let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+            if left > 0.0 {
+                let part = smaller(left / length, 1.0);
+                points.push([0, 1].map(|d| from[d] + part * (to[d] - from[d])));
+            }
+            left -= length;
+        }
+        (points.len() > 1).then_some(Self { points, kind: self.kind })
     }
 
     /// Distance of a position from it, m.
@@ -214,6 +234,8 @@ pub struct Body {
     pub velocity_gradient: [[f64; 2]; 2],
     /// Moves with its velocity, unaffected.
     pub rigid: bool,
+    /// How velocity and angular velocity of a rigid body vary in time.
+    pub time: TimeFactor,
     /// Tractions.
     pub tractions: Vec<Traction>,
     /// Conditions on its edges.
@@ -235,6 +257,7 @@ impl Body {
             angular_velocity: 0.0,
             velocity_gradient: [[0.0; 2]; 2],
             rigid: false,
+            time: TimeFactor::default(),
             tractions: Vec::new(),
             conditions: Vec::new(),
             cracks: Vec::new(),

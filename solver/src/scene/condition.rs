@@ -1,6 +1,6 @@
 //! Loads of bodies, and conditions on the sides of the mesh and on edges of bodies.
 
-use super::time::TimeFactor;
+use super::time::{Formula, TimeFactor};
 
 /// Side of a rectangle, or of a patch: left and right bound its first parametric direction, bottom and top
 /// its second.
@@ -34,22 +34,37 @@ pub enum Edge {
     },
 }
 
+/// The stress components xx, yy and xy (Pa) as functions of the position (m).
+pub type StressField = Formula<[f64; 2], [f64; 3]>;
+
 /// What a traction is.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Load {
     /// A traction vector, Pa.
     Stress([f64; 2]),
     /// A pressure against the outward normal, Pa.
     Pressure(f64),
+    /// The traction that a stress field exerts on the boundary as it is at t = 0.
+    Field(StressField),
 }
 
 impl Load {
-    /// The traction (Pa) on a boundary with this outward unit normal.
-    pub(crate) fn traction(&self, normal: [f64; 2]) -> [f64; 2] {
-        match *self {
-            Self::Stress(stress) => stress,
+    /// The traction (Pa) at a position (m) on a boundary with this outward unit normal.
+    pub(crate) fn traction(&self, position: [f64; 2], normal: [f64; 2]) -> [f64; 2] {
+        match self {
+            Self::Stress(stress) => *stress,
             Self::Pressure(pressure) => normal.map(|n| -fault!("pressure-outwards", pressure => -pressure) * n),
+            Self::Field(field) => {
+                let [xx, yy, xy] = field.value(position);
+                let [x, y] = normal;
+                [xx * x + fault!("stress-field-without-shear", xy => 0.0) * y, xy * x + yy * y]
+            }
         }
+    }
+
+    /// Whether it depends on which side of the boundary the material is.
+    pub(crate) fn has_side(&self) -> bool {
+        !matches!(self, Self::Stress(_))
     }
 }
 

@@ -3,6 +3,11 @@
 use std::fmt;
 use std::sync::Arc;
 
+use crate::linear_algebra::extremes::{larger, smaller};
+
+/// Intervals into which the time of a formula is cut to integrate it, or to look at it.
+const PANELS: usize = 256;
+
 /// A factor over time (s).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TimeFactor {
@@ -29,17 +34,25 @@ pub enum Course {
     Formula(TimeFormula),
 }
 
-/// A function of the time (s) and the text that it was read from; two are equal if their texts are.
+/// A factor as a function of the time (s).
+pub type TimeFormula = Formula<f64, f64>;
+
+/// A function and the text that it was read from; two are equal if their texts are.
 #[derive(Clone)]
-pub struct TimeFormula {
+pub struct Formula<A, B> {
     text: String,
-    value: Arc<dyn Fn(f64) -> f64 + Send + Sync>,
+    value: Arc<dyn Fn(A) -> B + Send + Sync>,
 }
 
-impl TimeFormula {
+impl<A, B> Formula<A, B> {
     /// The function that `text` stands for.
-    pub fn new(text: impl Into<String>, value: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
+    pub fn new(text: impl Into<String>, value: impl Fn(A) -> B + Send + Sync + 'static) -> Self {
         Self { text: text.into(), value: Arc::new(value) }
+    }
+
+    /// Its value where its argument has this one.
+    pub fn value(&self, at: A) -> B {
+        (self.value)(at)
     }
 
     /// The formula as it was written.
@@ -48,13 +61,13 @@ impl TimeFormula {
     }
 }
 
-impl fmt::Debug for TimeFormula {
+impl<A, B> fmt::Debug for Formula<A, B> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "TimeFormula({:?})", self.text)
+        write!(f, "Formula({:?})", self.text)
     }
 }
 
-impl PartialEq for TimeFormula {
+impl<A, B> PartialEq for Formula<A, B> {
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text
     }
@@ -84,8 +97,39 @@ impl TimeFactor {
                 fault!("smooth-course-linear", s * s * (3.0 - 2.0 * s) => s)
             }
             Course::Table(rows) => interpolate(rows, time),
-            Course::Formula(formula) => (formula.value)(time),
+            Course::Formula(formula) => formula.value(time),
         }
+    }
+}
+
+impl TimeFactor {
+    /// The factor over the time from 0 on, s: exact, but for a formula, which has [`PANELS`] intervals of two
+    /// Gauss points.
+    pub(crate) fn integral(&self, time: f64) -> f64 {
+        let end = self.until.map_or(time, |until| smaller(until, time));
+        let mut ends = vec![0.0];
+        match &self.course {
+            Course::Constant => return end,
+            Course::Ramp(rise) | Course::Smooth(rise) => ends.push(*rise),
+            Course::Table(rows) => ends.extend(rows.iter().map(|row| row[0])),
+            Course::Formula(_) => ends.extend((1..PANELS).map(|i| end * i as f64 / PANELS as f64)),
+        }
+        ends.retain(|&at| (0.0..end).contains(&at));
+        ends.push(end);
+        let gauss = |[from, to]: [f64; 2]| {
+            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+            half * (self.value(middle - half / 3.0_f64.sqrt()) + self.value(middle + half / 3.0_f64.sqrt()))
+        };
+        ends.windows(2).map(|pair| gauss([pair[0], pair[1]])).sum()
+    }
+
+    /// Smallest and largest factor up to a time (s), of a formula at [`PANELS`] times and of a table at its
+    /// rows.
+    pub(crate) fn range(&self, end: f64) -> [f64; 2] {
+        let times = (0..=PANELS).map(|i| end * i as f64 / PANELS as f64);
+        let rows = if let Course::Table(rows) = &self.course { rows.as_slice() } else { &[] };
+        let values = times.chain(rows.iter().map(|row| row[0])).map(|time| self.value(time));
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [smaller(v, low), larger(v, high)])
     }
 }
 
@@ -121,5 +165,24 @@ mod tests {
         }
         let inside = TimeFactor { course: Course::Table(vec![[1.0, 2.0], [2.0, 4.0]]), until: None };
         assert_eq!([1.25, 9.0].map(|t| inside.value(t)), [2.5, 4.0]);
+    }
+
+    #[test]
+    fn integrals_are_exact_and_end_with_the_factor() {
+        let of = |course| TimeFactor { course, until: Some(4.0) };
+        let table = vec![[1.0, 2.0], [2.0, 4.0], [3.0, -1.0]];
+        let cases = [
+            (of(Course::Constant), [1.0, 4.0], [1.0, 1.0]),
+            (of(Course::Ramp(2.0)), [0.25, 3.0], [0.0, 1.0]),
+            (of(Course::Smooth(2.0)), [0.1875, 3.0], [0.0, 1.0]), // at half the rise 3/32 of it, then half
+            (of(Course::Table(table)), [2.0, 5.5], [-1.0, 4.0]),
+            (of(Course::Formula(TimeFormula::new("t * t", |t| t * t))), [1.0 / 3.0, 64.0 / 3.0], [0.0, 9.0]),
+        ];
+        for (factor, integrals, range) in cases {
+            for (time, exact) in [1.0, 5.0].into_iter().zip(integrals) {
+                assert!((factor.integral(time) - exact).abs() < 1e-12, "{factor:?} {time}: {}", factor.integral(time));
+            }
+            assert_eq!(factor.range(3.0), range, "{factor:?}");
+        }
     }
 }

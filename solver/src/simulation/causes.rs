@@ -64,7 +64,7 @@ pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> 
         }
         Failure::BareBoundary { body, place } => (place, Some(format!("body.{body}.shape"))),
         Failure::NoPoints(body) => (place, Some(format!("body.{body}.shape"))),
-        Failure::LostTraction { body, traction, lost: LostTraction::Bare(place) }
+        Failure::LostTraction { body, traction, lost: LostTraction::Bare(place) | LostTraction::NotFinite(place) }
         | Failure::LostTraction { body, traction, lost: LostTraction::Unbalanced { place, .. } } => {
             (place, Some(format!("body.{body}.traction.{traction}")))
         }
@@ -139,6 +139,9 @@ pub(super) fn what_and_cause(failure: Failure, tolerance: f64) -> (String, Strin
         Failure::NoStep => ("the critical time step is not a number".to_string(), EXTREME),
         Failure::SingularMass => ("the consistent mass matrix is singular to round-off".to_string(), SINGULAR_MASS),
         Failure::NoPoints(_) => ("the body holds no material point".to_string(), ADD_POINTS),
+        Failure::LostTraction { lost: LostTraction::NotFinite([x, y]), .. } => {
+            (format!("the stress field is not finite at ({x}, {y}) m"), "give a field that is finite along the edge")
+        }
         Failure::LostTraction { lost: LostTraction::Bare([x, y]), .. } => (
             format!("there is no material point within a cell of ({x:.6e}, {y:.6e}) m, where the traction acts"),
             CARRY_TRACTION,

@@ -32,6 +32,14 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         {
             findings.error(gradient, "a rigid body that stretches", "remove it, or the key rigid");
         }
+        if !body.rigid && !body.time.is_constant() {
+            let message = "time is a factor of the velocity of a rigid body; this one moves freely";
+            findings.error(
+                format!("{key}.time"),
+                message,
+                "add rigid = true, or give the time of a load or a condition",
+            );
+        }
         points(&key, body, scene.mesh.degree, findings);
         let fracture = material(&key, body, scene, findings);
         if let Some((message, remedy)) = defect(&body.shape) {

@@ -4,6 +4,7 @@ use super::analysis::MOST_STEPS;
 use super::findings::Findings;
 use super::geometry::{complexity, defect};
 use super::ground::Ground;
+use super::time;
 use crate::contact::Surface;
 use crate::contact::motion::{longest_step, rigid_bodies_that_approach};
 use crate::contact::outline::without_patch;
@@ -120,6 +121,7 @@ fn rigid(key: &str, body: &Body, scene: &Scene, findings: &mut Findings) {
             findings.error(format!("{key}.{what}"), message, "remove it, or the key rigid");
         }
     }
+    time::check(key, &body.time, scene.analysis.end_time, findings);
 }
 
 /// Bodies that overlap at t = 0: contact would have to push them apart, and that energy comes from nowhere.

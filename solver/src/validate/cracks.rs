@@ -16,7 +16,24 @@ pub(super) fn slit(key: &str, scene: &Scene, findings: &mut Findings) {
     }
 }
 
+/// A crack that is driven grows by the history field of the total frame.
+fn driven(key: &str, speed: f64, fracture: Option<&Fracture>, look: &Look<'_>, findings: &mut Findings) {
+    let key = format!("{key}.speed");
+    if look.has_steps {
+        let message = "a crack that is driven is implemented in the total frame";
+        findings.error(key.clone(), message, "use frame = \"total\", or leave speed out");
+    }
+    if let Some(model) = fracture.map(|fracture| fracture.model).filter(|model| model.has_threshold()) {
+        let message = format!("a crack that is driven is not implemented with {}", model.word());
+        findings.error(key.clone(), message, "use model = \"at2\", or leave speed out");
+    }
+    findings.positive(key, speed, "speed = \"500 m/s\"");
+}
+
 pub(super) fn check(key: &str, crack: &Crack, fracture: Option<&Fracture>, look: &Look<'_>, findings: &mut Findings) {
+    if let CrackKind::Driven(speed) = crack.kind {
+        driven(key, speed, fracture, look, findings);
+    }
     if let CrackKind::Seed(Some(half_width)) = crack.kind {
         if let Some(model) = fracture.map(|fracture| fracture.model).filter(|model| model.has_threshold()) {
             let word = model.word();

@@ -19,18 +19,23 @@ const STEPPED: &str = "in the updated frame the points of the body end in steps 
                        within two spans of it are not";
 
 pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &mut Findings) {
-    match traction.load {
-        Load::Stress(stress) => drop(findings.finite(format!("{key}.stress"), &stress)),
+    match &traction.load {
+        Load::Stress(stress) => drop(findings.finite(format!("{key}.stress"), stress)),
         Load::Pressure(pressure) => {
-            findings.finite(format!("{key}.pressure"), &[pressure]);
+            findings.finite(format!("{key}.pressure"), &[*pressure]);
             if !look.has_pressure {
                 let message = "a pressure follows the body, which is implemented for small strains in the total frame";
                 findings.error(format!("{key}.pressure"), message, "give stress = [x, y], which keeps its direction");
             }
         }
+        Load::Field(_) if look.has_steps => {
+            let message = "the traction of a stress field is implemented in the total frame";
+            findings.error(format!("{key}.stress_field"), message, "use frame = \"total\", or give stress = [x, y]");
+        }
+        Load::Field(_) => {} // whether it is finite where it acts is seen when the run begins
     }
     time::check(key, &traction.time, look.end_time, findings);
-    edge(key, &traction.edge, matches!(traction.load, Load::Pressure(_)), look, findings);
+    edge(key, &traction.edge, traction.load.has_side(), look, findings);
 }
 
 /// An edge lies on the boundary of its body. What acts there needs a side if it has no meaning between

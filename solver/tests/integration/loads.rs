@@ -55,7 +55,7 @@ fn error(scene: &Scene, [from, to]: [[f64; 2]; 2]) -> f64 {
     let [fx, fy, found] = force_and_moment(scene);
     let length = (to[0] - from[0]).hypot(to[1] - from[1]);
     let middle = [0, 1].map(|d| 0.5 * (from[d] + to[d]));
-    let Load::Stress(stress) = scene.bodies[0].tractions[0].load else { panic!("a traction vector") };
+    let Load::Stress(stress) = &scene.bodies[0].tractions[0].load else { panic!("a traction vector") };
     let [tx, ty] = stress.map(|s| s * length);
     let moment = middle[0] * ty - middle[1] * tx;
     let (force, arm) = (tx.hypot(ty), middle[0].hypot(middle[1]).max(length));
@@ -244,10 +244,25 @@ fn arcs_are_loaded() {
 }
 
 #[test]
+fn a_stress_field_pulls_by_its_normal_and_has_to_be_finite() {
+    let field = |text: &str, xy: f64| StressField::new(text, move |[x, y]| [1e6 * x, 2e6 * y, xy]);
+    let on = |field: StressField| Traction { load: Load::Field(field), ..traction(Edge::Segment(ENDS), [0.0; 2]) };
+    const ENDS: [[f64; 2]; 2] = [[5.0, 1.0], [5.0, 5.0]];
+    let mesh = || Mesh::uniform([2; 2], [0.0; 2], [6.0; 2], [20, 20]);
+    let body = || rectangle([1.0; 2], [5.0; 2]);
+    let [fx, fy, _] = force_and_moment(&loaded(mesh(), body(), on(field("fine", 3e6)), Frame::Total));
+    assert!((fx / 2e7 - 1.0).abs() < 1e-9 && (fy / 1.2e7 - 1.0).abs() < 1e-9, "{fx} {fy}");
+    let broken = Simulation::new(&loaded(mesh(), body(), on(field("broken", f64::NAN)), Frame::Total)).err().unwrap();
+    assert!(format!("{broken:?}").contains("not finite"), "{broken:?}");
+    let moving = validate(&loaded(mesh(), body(), on(field("fine", 3e6)), Frame::Updated)).err().unwrap();
+    assert_eq!(moving[0].key, "body.0.traction.0.stress_field");
+}
+
+#[test]
 fn what_has_no_meaning_inside_a_body_is_bad_input() {
-    let refused = |load, ends, cracks: Vec<Crack>| {
+    let refused = |load: &Load, ends, cracks: Vec<Crack>| {
         let mesh = Mesh::uniform([2; 2], [0.0; 2], [6.0; 2], [20, 20]);
-        let traction = Traction { load, ..traction(Edge::Segment(ends), [0.0; 2]) };
+        let traction = Traction { load: load.clone(), ..traction(Edge::Segment(ends), [0.0; 2]) };
         let mut scene = loaded(mesh, rectangle([0.0; 2], [6.0; 2]), traction, Frame::Total);
         scene.bodies[0].cracks = cracks;
         validate(&scene).err().map(|errors| errors[0].key.clone())
@@ -255,8 +270,8 @@ fn what_has_no_meaning_inside_a_body_is_bad_input() {
     let inside = Some("body.0.traction.0.segment".to_string());
     let (pressure, stress) = (Load::Pressure(1.0), Load::Stress([1.0, 0.0]));
     let slit = || vec![Crack { points: vec![[0.0, 3.0], [3.0, 3.0]], kind: CrackKind::Slit }];
-    assert_eq!(refused(stress, [[0.0, 3.0], [3.0, 3.0]], slit()), inside, "a slit has two faces");
-    assert_eq!(refused(pressure, [[1.0, 0.0], [6.0, 5.0]], vec![]), inside, "no side to push");
-    assert_eq!(refused(stress, [[1.0, 0.0], [6.0, 5.0]], slit()), None, "a line of forces");
-    assert_eq!(refused(pressure, [[1.0, 0.0], [5.0, 0.0]], vec![]), None, "on the boundary");
+    assert_eq!(refused(&stress, [[0.0, 3.0], [3.0, 3.0]], slit()), inside, "a slit has two faces");
+    assert_eq!(refused(&pressure, [[1.0, 0.0], [6.0, 5.0]], vec![]), inside, "no side to push");
+    assert_eq!(refused(&stress, [[1.0, 0.0], [6.0, 5.0]], slit()), None, "a line of forces");
+    assert_eq!(refused(&pressure, [[1.0, 0.0], [5.0, 0.0]], vec![]), None, "on the boundary");
 }

@@ -147,7 +147,7 @@ impl<'a> Variant<'a> {
         let split = !["spectral", "unknown"].contains(&model.split.as_str());
         note(split, format!("split {:?} instead of the spectral one", model.split));
         let other = !["AT2", "unknown"].contains(&model.phase_field.as_str());
-        note(other, format!("phase-field model {} instead of AT2", model.phase_field));
+        note(other, format!("phase-field model {} instead of AT2", model.crack_model()));
         let length = model.length_scale.filter(|l| (l / LENGTH_SCALE - 1.0).abs() > 0.01);
         if let Some(l) = length {
             note(true, format!("l0 = {} mm in Borden's convention instead of 0.25 mm", l * 1e3));

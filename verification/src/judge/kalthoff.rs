@@ -163,7 +163,7 @@ fn differences(submission: &Submission) -> Vec<String> {
     let model = &submission.model;
     let mut out = model.differences.clone();
     if !["AT1", "none"].contains(&model.phase_field.as_str()) {
-        out.push(format!("phase-field model {} instead of AT1", model.phase_field));
+        out.push(format!("phase-field model {} instead of AT1", model.crack_model()));
     }
     if !["spectral", "unknown"].contains(&model.split.as_str()) {
         out.push(format!("split {:?} instead of the spectral one", model.split));

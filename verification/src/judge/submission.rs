@@ -71,6 +71,10 @@ pub struct Model {
     pub split: String,
     /// `AT2` is that of the references.
     pub phase_field: String,
+    /// Tensile strength of a cohesive crack, Pa, where said.
+    pub tensile_strength: Option<f64>,
+    /// Softening of a cohesive crack, where said.
+    pub softening: Option<String>,
     /// l0 in Borden's convention, m; absent where not said.
     pub length_scale: Option<f64>,
     /// k.
@@ -258,6 +262,8 @@ impl Default for Model {
             crack: Crack::Seeded,
             split: "spectral".into(),
             phase_field: "AT2".into(),
+            tensile_strength: None,
+            softening: None,
             length_scale: None,
             residual_stiffness: 0.0,
             half: false,
@@ -267,12 +273,25 @@ impl Default for Model {
     }
 }
 
-const MODEL: [&str; 11] = [
+impl Model {
+    /// Its phase-field model in words.
+    pub(super) fn crack_model(&self) -> String {
+        let strength = self.tensile_strength.map(|ft| format!("ft = {} MPa", ft * 1e-6));
+        let softening = self.softening.as_ref().map(|law| format!("{law} softening"));
+        let said: Vec<String> = strength.into_iter().chain(softening).collect();
+        let said = if said.is_empty() { String::new() } else { format!(" ({})", said.join(", ")) };
+        format!("{}{said}", self.phase_field)
+    }
+}
+
+const MODEL: [&str; 13] = [
     "plane",
     "traction",
     "crack",
     "split",
     "phase_field",
+    "tensile_strength",
+    "softening",
     "length_scale",
     "convention",
     "residual_stiffness",
@@ -309,6 +328,14 @@ fn model(item: &Item<'_>, needed: &[&str]) -> Option<Model> {
     let models = ["AT2", "AT1", "PF-CZM", "none", "other", "unknown"].map(|w| (w, w));
     let phase_field = asked("phase_field")
         .then(|| fields.need("phase_field", "phase_field = \"AT1\", \"AT2\", …", |item| item.choice(&models)));
+    if phase_field != Some(Some("PF-CZM"))
+        && let Some((key, given)) = ["tensile_strength", "softening"].iter().find_map(|k| Some((k, fields.get(k)?)))
+    {
+        return given.fail(format!("{key} belongs to PF-CZM"), "remove it, or give phase_field = \"PF-CZM\"");
+    }
+    let strength = fields.maybe("tensile_strength", |item| item.positive(Dimension::STRESS));
+    let laws = ["linear", "exponential", "cornelissen", "other"].map(|w| (w, w));
+    let softening = fields.maybe("softening", |item| item.choice(&laws));
     let length = fields.maybe("length_scale", |item| item.positive(Dimension::LENGTH));
     let convention = fields.or("convention", 1.0, |item| item.choice(&[("l0", 1.0), ("l", 0.5)]));
     let k = fields.or("residual_stiffness", 0.0, |item| item.quantity(Dimension::NONE));
@@ -322,6 +349,8 @@ fn model(item: &Item<'_>, needed: &[&str]) -> Option<Model> {
         crack: crack.unwrap_or(Some(Crack::Slit))?,
         split: split.unwrap_or(Some("spectral"))?.into(),
         phase_field: phase_field.unwrap_or(Some("AT2"))?.into(),
+        tensile_strength: strength?,
+        softening: softening?.map(String::from),
         length_scale: length?.map(|l| l * convention),
         residual_stiffness: k?,
         half: half?,

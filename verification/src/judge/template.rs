@@ -37,6 +37,7 @@ traction = "1 MPa"                  # on each loaded edge, held from t = 0; or "
 crack    = "seeded"                 # by a history field; "phase-field" (prescribed), "slit" (free faces), "unknown"
 split    = "spectral"               # "none", "volumetric-deviatoric", "star-convex", "rankine", "other", "unknown"
 # phase_field        = "AT2"        # "AT1", "PF-CZM", "none", "other", "unknown"
+# tensile_strength   = "3 MPa"      # of PF-CZM; and softening = "linear", "exponential", "cornelissen", "other"
 # length_scale       = "0.25 mm"
 # convention         = "l0"         # Borden; "l" if your model has Gc/2 (d²/l + l |grad d|²), where l = 2 l0
 # residual_stiffness = 0.0

@@ -59,8 +59,8 @@ pub(super) fn slope_over_plane_wave_power(check: &Check, run: &Run) -> Result<Me
     let material = &scene.materials[&body.material];
     let moduli = ElasticModuli::new(material, scene.analysis.plane);
     let (low, high) = body.shape.bounding_box();
-    let Load::Stress([_, stress]) = body.tractions.first().ok_or("no traction")?.load else {
-        return Err("the first traction is a pressure".to_string());
+    let Load::Stress([_, stress]) = &body.tractions.first().ok_or("no traction")?.load else {
+        return Err("the first traction is no stress vector".to_string());
     };
     let impedance = material.density * moduli.dilatational_speed(material.density);
     let power = (high[0] - low[0]) * stress * stress / impedance * scene.analysis.thickness;

@@ -262,6 +262,17 @@ impl<'a> Fields<'a> {
     pub fn maybe<T>(&self, key: &str, read: impl FnOnce(&Item<'a>) -> Option<T>) -> Option<Option<T>> {
         self.get(key).map_or(Some(None), |item| read(&item).map(Some))
     }
+
+    /// Which one of several keys is there, and its value; two of them are a problem.
+    pub fn one_of<'k>(&self, keys: &[&'k str]) -> Option<Option<(&'k str, Item<'a>)>> {
+        let mut given = keys.iter().filter_map(|key| self.get(key).map(|item| (*key, item)));
+        match (given.next(), given.next()) {
+            (Some((first, _)), Some((second, item))) => {
+                item.fail(format!("both {first} and {second} are given"), "remove one of the two")
+            }
+            (first, _) => Some(first),
+        }
+    }
 }
 
 fn quoted(words: &[&str]) -> String {

@@ -12,8 +12,8 @@ use super::diagnostic::Problem;
 use super::document::Node;
 use super::fields::{Item, Problems};
 use super::read_body::{bodies, materials};
+use super::read_load::boundaries;
 use super::read_mesh::mesh;
-use super::read_time::boundaries;
 use super::units::Dimension;
 
 /// Keys of a scene.

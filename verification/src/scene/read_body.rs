@@ -4,15 +4,16 @@ use std::collections::BTreeMap;
 
 use fisura::scene::time::TimeFactor;
 use fisura::scene::{
-    Anisotropy, Body, Crack, CrackKind, CrackModel, Edge, Fracture, Layout, Load, Material, RandomToughness, Shape,
-    Softening, Split, Traction,
+    Anisotropy, Body, Crack, CrackKind, CrackModel, Fracture, Layout, Material, RandomToughness, Shape, Softening,
+    Split,
 };
 
 use super::document::join;
 use super::fields::{Fields, Item};
-use super::read::{length, number, point, time};
+use super::read::{length, number, point};
 use super::read_file::rows_of_file;
-use super::read_time::{edge_condition, factor};
+use super::read_function::factor;
+use super::read_load::{edge_condition, traction};
 use super::units::Dimension;
 
 /// `[material.NAME]` tables by name.
@@ -152,6 +153,7 @@ fn body(item: &Item<'_>) -> Option<Body> {
         "angular_velocity",
         "velocity_gradient",
         "rigid",
+        "time",
         "traction",
         "condition",
         "crack",
@@ -166,6 +168,7 @@ fn body(item: &Item<'_>) -> Option<Body> {
     let angular_velocity = fields.or("angular_velocity", 0.0, |item| item.quantity(Dimension::RATE));
     let gradient = fields.or("velocity_gradient", [[0.0; 2]; 2], |item| item.pair(|row| row.vector(Dimension::RATE)));
     let rigid = fields.or("rigid", false, Item::flag);
+    let time = fields.or("time", TimeFactor::default(), factor);
     let tractions = fields.or("traction", Vec::new(), |item| all(item, traction));
     let conditions = fields.or("condition", Vec::new(), |item| all(item, edge_condition));
     let cracks = fields.or("crack", Vec::new(), |item| all(item, crack));
@@ -179,6 +182,7 @@ fn body(item: &Item<'_>) -> Option<Body> {
         angular_velocity: angular_velocity?,
         velocity_gradient: gradient?,
         rigid: rigid?,
+        time: time?,
         tractions: tractions?,
         conditions: conditions?,
         cracks: cracks?,
@@ -270,52 +274,8 @@ fn center(fields: &Fields<'_>) -> Option<[f64; 2]> {
     fields.need("center", "center = [0.0, 0.0] (m)", point)
 }
 
-fn traction(item: &Item<'_>) -> Option<Traction> {
-    let fields = item.fields(&["edge", "segment", "arc", "stress", "pressure", "ramp", "time"])?;
-    let edge = edge(&fields);
-    let load = match (fields.get("stress"), fields.get("pressure")) {
-        (_, None) => fields
-            .need("stress", "stress = [0.0, \"1 MPa\"], or pressure = \"1 MPa\"", |i| i.vector(Dimension::STRESS))
-            .map(Load::Stress),
-        (None, Some(pressure)) => pressure.quantity(Dimension::STRESS).map(Load::Pressure),
-        (Some(_), Some(pressure)) => pressure.fail("both stress and pressure are given", "remove one of the two"),
-    };
-    let time = match (fields.get("ramp"), fields.get("time")) {
-        (Some(_), Some(time)) => time.fail("both ramp and time are given", "write time = { ramp = \"1 us\" }"),
-        (Some(ramp), None) => time(&ramp).map(TimeFactor::ramp), // the short form
-        (None, _) => fields.or("time", TimeFactor::default(), factor),
-    };
-    Some(Traction { edge: edge?, load: load?, time: time? })
-}
-
-/// Where a load or a condition acts: one of edge, segment and arc.
-pub(super) fn edge(fields: &Fields<'_>) -> Option<Edge> {
-    let places: Vec<Item<'_>> = ["edge", "segment", "arc"].iter().filter_map(|place| fields.get(place)).collect();
-    match places.as_slice() {
-        [] => fields.need("edge", "edge = \"top\", or segment = [[x0, y0], [x1, y1]], or arc = { … }", |_| None),
-        [place] => match place.path.rsplit('.').next()? {
-            "edge" => place.word().map(Edge::Side),
-            "segment" => place.pair(point).map(Edge::Segment),
-            _ => arc(place),
-        },
-        [first, second, ..] => {
-            let names = [first, second].map(|item| item.path.rsplit('.').next().unwrap_or_default());
-            first.fail(format!("both {} and {} are given", names[0], names[1]), "remove one of the two")
-        }
-    }
-}
-
-/// An arc: angles in degrees, anticlockwise; the whole circle if they are left out.
-fn arc(item: &Item<'_>) -> Option<Edge> {
-    let fields = item.fields(&["center", "radius", "angles"])?;
-    let center = center(&fields);
-    let radius = fields.need("radius", "radius = 0.1 (m)", length);
-    let angles = fields.or("angles", [0.0, 360.0], |item| item.pair(number));
-    Some(Edge::Arc { center: center?, radius: radius?, angles: angles?.map(f64::to_radians) })
-}
-
 fn crack(item: &Item<'_>) -> Option<Crack> {
-    let fields = item.fields(&["from", "to", "points", "as", "half_width"])?;
+    let fields = item.fields(&["from", "to", "points", "as", "half_width", "speed"])?;
     let points = match fields.get("points") {
         Some(points) => match fields.get("from").or_else(|| fields.get("to")) {
             Some(end) => end.fail("both points and an end are given", "remove one of the two"),
@@ -329,12 +289,21 @@ fn crack(item: &Item<'_>) -> Option<Crack> {
     };
     let slit = fields.or("as", false, |item| item.choice(&[("seed", false), ("slit", true)]));
     let half_width = fields.maybe("half_width", length);
-    let kind = match (slit?, half_width?) {
-        (false, half_width) => CrackKind::Seed(half_width),
-        (true, None) => CrackKind::Slit,
-        (true, Some(_)) => {
+    let speed = fields.maybe("speed", |item| item.quantity(Dimension::VELOCITY));
+    let kind = match (slit?, half_width?, speed?) {
+        (false, half_width, None) => CrackKind::Seed(half_width),
+        (true, None, None) => CrackKind::Slit,
+        (false, None, Some(speed)) => CrackKind::Driven(speed),
+        (true, None, Some(_)) => {
+            return fields.get("speed")?.fail("a slit does not grow", "remove it, or use as = \"seed\"");
+        }
+        (true, Some(_), _) => {
             let given = fields.get("half_width")?;
             return given.fail("a slit has no half width", "remove it, or use as = \"seed\"");
+        }
+        (false, Some(_), Some(_)) => {
+            let given = fields.get("half_width")?;
+            return given.fail("a crack that is driven has the half width l0/2", "remove it");
         }
     };
     Some(Crack { points: points?, kind })

@@ -113,6 +113,7 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
             iterations: 0,
             intact_energy: None,
             relative: None,
+            driven: Vec::new(),
         },
         forces: StripForces::new(&lattice),
         greville: patch.spaces[0].greville(),
@@ -228,7 +229,7 @@ impl Points<'_> {
         for at in grid.indices() {
             displacement[0][at] = strain * self.greville[grid.column_of(at)];
         }
-        fracture.update_history(lattice, *moduli, Kinematics::Small, &displacement, forces);
+        fracture.update_history(lattice, 0.0, *moduli, Kinematics::Small, &displacement, forces);
         let solved = fracture.solve_phase_field(lattice);
         solved.map_err(|failure| StudyError::Other(format!("the phase-field solve {failure}")))?;
         fracture.degraded_forces(lattice, *moduli, Kinematics::Small, [&displacement[0], &displacement[1]], forces);

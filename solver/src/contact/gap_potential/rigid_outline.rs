@@ -1,7 +1,7 @@
 //! The boundary of a rigid body in contact by the potential of the gap.
 
 use super::arc::{Arc, Outline};
-use crate::contact::rigid::RigidMotion;
+use crate::contact::rigid::{RigidMotion, RigidPose};
 
 /// The boundary of a rigid body at t = 0 and its motion.
 #[derive(Debug, Clone)]
@@ -16,17 +16,12 @@ impl RigidOutline {
         Self { arcs, motion }
     }
 
-    /// Where it is at a time, s.
-    pub(crate) fn at(&self, time: f64) -> Outline {
-        let Self { arcs, motion } = self;
-        let moved = |arc: &Arc| arc.moved(|x| motion.place(x, time), |arm| motion.turn(arm, time));
-        let arcs = if motion.rests() { arcs.clone() } else { arcs.iter().map(moved).collect() };
-        Outline::new(arcs, f64::INFINITY)
-    }
-
-    /// Velocity at a position, m/s, at a time, s.
-    pub(crate) fn velocity_at(&self, position: [f64; 2], time: f64) -> [f64; 2] {
-        self.motion.velocity_at(position, time)
+    /// Where it is at a time (s), and how it moves then.
+    pub(crate) fn at(&self, time: f64) -> (Outline, RigidPose) {
+        let pose = self.motion.at(time);
+        let moved = |arc: &Arc| arc.moved(|x| pose.place(x), |arm| pose.turn(arm));
+        let arcs = if self.motion.rests() { self.arcs.clone() } else { self.arcs.iter().map(moved).collect() };
+        (Outline::new(arcs, f64::INFINITY), pose)
     }
 
     /// Heap memory, bytes.

@@ -146,7 +146,7 @@ impl TotalFrame {
         if let Some(fracture) = &mut self.fracture {
             fracture.field.wake_everything();
             let Self { lattice, moduli, kinematics, displacement, strip_forces, .. } = self;
-            fracture.update_history(lattice, *moduli, *kinematics, displacement, strip_forces);
+            fracture.update_history(lattice, self.time, *moduli, *kinematics, displacement, strip_forces);
             fracture.field.initialise(&self.lattice, &fracture.history)?;
         }
         Ok(())

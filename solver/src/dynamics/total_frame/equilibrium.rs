@@ -8,7 +8,7 @@ use super::TotalFrame;
 use super::tangent::Tangent;
 use crate::dynamics::critical_step::StiffnessOperator;
 use crate::dynamics::failure::Failure;
-use crate::linear_algebra::extremes::largest;
+use crate::linear_algebra::extremes::{larger, largest};
 use crate::linear_algebra::lane::Lane;
 use crate::scene::Kinematics;
 
@@ -18,9 +18,15 @@ const TOLERANCE: f64 = 1e-9;
 /// linear body is the whole solution, beyond [`TOLERANCE`].
 const REDUCTION: f64 = 1e-4;
 const LINEAR_REDUCTION: f64 = 1e-11;
-/// Most steps of Newton's method, and halvings of one: it converges in a few, or not at all.
+/// Most steps of Newton's method, and lengths of one: it converges in a few, or not at all.
 const MOST_STEPS: usize = 50;
-const MOST_HALVINGS: usize = 10;
+const MOST_TRIES: usize = 20;
+/// Slope of the potential energy along a step, of that at its start, with which the step ends. Where the split
+/// has a kink, the tangent may be several times too stiff or too soft: a longer step follows the secant, a
+/// shorter one is found by bisection.
+const DESCENT: f64 = 0.5;
+/// Least part of the slope by which a step is taken to have reduced it.
+const STRETCH: f64 = 0.1;
 /// Most iterations of a linear solve, per control point along the longer side of the mesh: their number grows
 /// with that of control points across the body; slender ones, and quartics that are cut, need more.
 const MOST_ITERATIONS: usize = 60;
@@ -49,18 +55,22 @@ impl TotalFrame {
             } else {
                 self.solve(&mut Tangent::new(self), &residual, REDUCTION)?
             };
-            let before = norm(&residual);
-            let reduces = |halvings: usize| {
-                let part = 0.5_f64.powi(halvings as i32);
-                self.displace(&free, &change, part);
+            let slope = dot(&residual, &change);
+            let (mut taken, mut part, mut bounds) = (0.0, 1.0, [0.0, f64::INFINITY]);
+            let descends = |_| {
+                self.displace(&free, &change, part - taken);
                 (residual, scale) = self.out_of_balance(&free);
-                let reduced = norm(&residual) < before;
-                if !reduced {
-                    self.displace(&free, &change, -part);
-                }
-                reduced
+                let left = dot(&residual, &change) / slope;
+                taken = part;
+                bounds[usize::from(left < 0.0)] = part;
+                part = if bounds[1].is_finite() {
+                    0.5 * (bounds[0] + bounds[1])
+                } else {
+                    part / larger(1.0 - left, STRETCH)
+                };
+                left.abs() <= DESCENT
             };
-            if !(0..MOST_HALVINGS).any(reduces) {
+            if !(0..MOST_TRIES).any(descends) {
                 break; // another step would be the same
             }
         }
@@ -150,10 +160,6 @@ impl TotalFrame {
         }
         if square.is_finite() { Ok(x) } else { Err(Failure::NoEquilibrium(f64::NAN)) }
     }
-}
-
-fn norm(values: &[f64]) -> f64 {
-    dot(values, values).sqrt()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

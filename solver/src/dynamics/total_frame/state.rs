@@ -59,6 +59,7 @@ impl TotalFrame {
             iterations,
             intact_energy: _,
             relative: _,
+            driven: _,
         }) = fracture
         {
             [history, phase, excess].into_iter().try_for_each(|values| archive.list(values))?;

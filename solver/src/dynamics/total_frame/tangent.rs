@@ -16,7 +16,7 @@ use crate::transfer::point_kernel::Fields;
 use crate::transfer::sweep::{StripForces, sweep};
 
 /// Displacement gradients of the probes: small against strains that matter, large against round-off.
-const PROBE: f64 = 1e-6;
+const PROBE: f64 = 1e-8;
 /// Stiffening, over that at which the critical step was last taken, at which it is taken again.
 const NOTICEABLE: f64 = 1.5;
 

@@ -63,7 +63,7 @@ impl PointwiseFracture {
         settings: &SolverSettings,
         points: &[Point],
     ) -> Self {
-        let history = |p: &Point| seed_energy(&model, body, p.position);
+        let history = |p: &Point| seed_energy(&model, &body.cracks, p.position);
         let points = points.iter().map(|p| FracturePoint { history: history(p), phase: 1.0, ..Default::default() });
         let degree = [0, 1].map(|d| patch.spaces[d].degree());
         Self {

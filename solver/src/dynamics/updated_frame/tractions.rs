@@ -32,7 +32,7 @@ impl SurfaceLoad {
         let place =
             |p: SurfacePoint| MovingSurfacePoint { place: CarriedPlace::new(patch, body, &p), length: p.length };
         let points = points.map(place).collect();
-        Self { points, stress: traction.load.traction([0.0; 2]), time: traction.time.clone(), power: 0.0 }
+        Self { points, stress: traction.load.traction([0.0; 2], [0.0; 2]), time: traction.time.clone(), power: 0.0 }
     }
 
     /// Factor at a time, s.
