@@ -17,6 +17,8 @@ pub struct PointState {
     /// Number of the point in its body; in the updated frame points are numbered anew whenever one changes
     /// spans.
     pub point: usize,
+    /// Area at t = 0, m².
+    pub area: f64,
     /// Position, m; that at t = 0 in the total frame.
     pub position: [f64; 2],
     /// Position now, m.
@@ -171,6 +173,7 @@ mod tests {
     fn point(number: usize, strain: f64) -> PointState {
         let fracture = Some(PointFracture { history: strain, phase: 0.5 });
         PointState {
+            area: 1.0,
             body: 0,
             point: number,
             position: [0.0; 2],

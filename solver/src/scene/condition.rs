@@ -53,7 +53,7 @@ impl Load {
     pub(crate) fn traction(&self, position: [f64; 2], normal: [f64; 2]) -> [f64; 2] {
         match self {
             Self::Stress(stress) => *stress,
-            Self::Pressure(pressure) => normal.map(|n| -fault!("pressure-outwards", pressure => -pressure) * n),
+            Self::Pressure(pressure) => normal.map(|n| -fault!("pressure-outwards", *pressure => -*pressure) * n),
             Self::Field(field) => {
                 let [xx, yy, xy] = field.value(position);
                 let [x, y] = normal;

@@ -6,7 +6,7 @@ mod sweep;
 
 use fisura::Simulation;
 use fisura::output::picture::Picture;
-use fisura::scene::Scene;
+use fisura::scene::{Frame, Scene};
 use fisura::simulation::square_pixels;
 
 use super::scene::series_stem;
@@ -24,6 +24,8 @@ pub(super) use sweep::{offers as sweep_offers, study as sweep};
 pub const PAPER: [Option<f64>; 6] = [Some(30e-6), Some(60e-6), Some(100e-6), None, Some(150e-6), Some(400e-6)];
 /// Phase field below which the first crack has formed.
 const CRACKED: f64 = 0.05;
+/// What the updated frame has besides.
+const TRANSFER_LOSS: &str = "transfer loss over the initial kinetic energy";
 /// Pixels of a picture along its longer side.
 const PIXELS: usize = 300;
 
@@ -73,18 +75,17 @@ pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
         "largest fall of the fracture energy over its end",
         "largest fall of the friction work over the initial kinetic energy",
         "contact loss over the initial kinetic energy",
-        "transfer loss over the initial kinetic energy",
         "broken material aside the diameter at the end",
         "fracture energy at the end, J",
     ];
     let both = [
         "drift of the momentum over that of a ring",
         "asymmetry of the elastic energies before the first crack",
-        "asymmetry of the fracture energies at the end",
+        "asymmetry of the damage at the end",
         "event times of the rings apart",
     ];
     let mut offers = super::Offers::of_scenes(scenes, &[], bare);
-    for (index, CaseScene { name, scene, .. }) in scenes.iter().enumerate() {
+    for CaseScene { name, scene, .. } in scenes {
         let rings = (0..scene.bodies.len()).filter_map(|body| Watch::new(scene, body)).count();
         if rings == 0 {
             return Err(no_ring());
@@ -95,8 +96,8 @@ pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
         if rings == 2 {
             offers.bare(name, both);
         }
-        if index > 0 {
-            offers.bare(name, PARTS.map(|(_, words)| apart_from_the_full_model(words)));
+        if scene.analysis.frame == Frame::Updated {
+            offers.bare(name, [TRANSFER_LOSS]);
         }
     }
     Ok(offers)
@@ -106,28 +107,18 @@ fn no_ring() -> StudyError {
     StudyError::Other("no body is a brittle ring".into())
 }
 
-/// Energies in which a part is compared with the full model: columns and words.
-const PARTS: [(&str, &str); 3] = [("kinetic_j", "kinetic"), ("elastic_j", "elastic"), ("fracture_j", "fracture")];
-
-fn apart_from_the_full_model(energy: &str) -> String {
-    format!("{energy} energy apart from the full model, over the initial kinetic energy")
-}
-
 /// Events and invariants of every scene of a case.
 pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
-    let mut first: Option<Watched> = None;
-    for case_scene in scenes {
-        let CaseScene { name, scene, energy_factor, .. } = case_scene;
+    for (index, case_scene) in scenes.iter().enumerate() {
+        let CaseScene { name, scene, .. } = case_scene;
         let watched = Watched::run(scene)?;
         add_events(&mut findings, name, &watched.rings[0]);
-        add_invariants(&mut findings, name, scene, &watched, *energy_factor);
-        match &first {
-            None => figures::add(&mut findings, case, case_scene, &watched),
-            Some(first) => compare(&mut findings, name, first, &watched, *energy_factor),
+        add_invariants(&mut findings, name, scene, &watched);
+        if index == 0 {
+            figures::add(&mut findings, case, case_scene, &watched);
         }
         findings.series.push((series_stem(case, name), watched.rings[0].table.clone()));
-        first.get_or_insert(watched);
     }
     Ok(findings)
 }
@@ -150,7 +141,7 @@ fn add_events(findings: &mut Findings, variant: &str, watch: &Watch) {
     }
 }
 
-fn add_invariants(findings: &mut Findings, variant: &str, scene: &Scene, watched: &Watched, factor: f64) {
+fn add_invariants(findings: &mut Findings, variant: &str, scene: &Scene, watched: &Watched) {
     let table = &watched.rings[0].table;
     let column = |name: &str| table.column(name).unwrap_or_default();
     let last = |name: &str| column(name).last().copied().unwrap_or(f64::NAN);
@@ -162,9 +153,11 @@ fn add_invariants(findings: &mut Findings, variant: &str, scene: &Scene, watched
     add("largest fall of the fracture energy over its end", fall("fracture_j") / last("fracture_j"));
     add("largest fall of the friction work over the initial kinetic energy", fall("friction_j") / initial);
     add("contact loss over the initial kinetic energy", last("contact_loss_j") / initial);
-    add("transfer loss over the initial kinetic energy", last("transfer_loss_j") / initial);
+    if scene.analysis.frame == Frame::Updated {
+        add(TRANSFER_LOSS, last("transfer_loss_j") / initial);
+    }
     add("broken material aside the diameter at the end", last("broken_aside"));
-    add("fracture energy at the end, J", factor * last("fracture_j"));
+    add("fracture energy at the end, J", last("fracture_j"));
     if let [left, right] = &watched.rings[..] {
         let [x, y] = scene.bodies[0].velocity;
         let of_one = initial / x.hypot(y); // m v, and all kinetic energy is 2 · ½ m v²
@@ -172,23 +165,12 @@ fn add_invariants(findings: &mut Findings, variant: &str, scene: &Scene, watched
         add("drift of the momentum over that of a ring", larger(drift("momentum_x"), drift("momentum_y")) / of_one);
         let intact = column("elastic_asymmetry").iter().zip(column("min_phase_field")).filter(|(_, c)| **c > CRACKED);
         add("asymmetry of the elastic energies before the first crack", largest(intact.map(|(a, _)| a.abs())));
-        add("asymmetry of the fracture energies at the end", last("fracture_asymmetry").abs());
+        add("asymmetry of the damage at the end", last("fracture_asymmetry").abs());
         let apart = left.events().into_iter().zip(right.events()).map(|(a, b)| match (a, b) {
             (Some(a), Some(b)) => (a - b).abs() / a,
             (None, None) => 0.0,
             _ => f64::NAN,
         });
         add("event times of the rings apart", largest(apart));
-    }
-}
-
-/// Difference of a scene that models a part from the first, which models all.
-fn compare(findings: &mut Findings, variant: &str, first: &Watched, watched: &Watched, factor: f64) {
-    let [all, part] = [first, watched].map(|w| &w.rings[0].table);
-    let scale = largest(all.column("kinetic_j").unwrap_or_default().iter().copied());
-    for (column, words) in PARTS {
-        let pairs = all.column(column).unwrap_or_default().iter().zip(part.column(column).unwrap_or_default());
-        let apart = largest(pairs.map(|(all, part)| (all - factor * part).abs())) / scale;
-        findings.add(variant, &apart_from_the_full_model(words), apart, None);
     }
 }

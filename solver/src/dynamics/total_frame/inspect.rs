@@ -11,7 +11,7 @@ impl TotalFrame {
     /// Calls `f` with the state of every point.
     pub(crate) fn for_each_point_state(&self, f: &mut dyn FnMut(PointState)) {
         let mut point = 0;
-        self.lattice.for_each_point(|batch, lane, position, _| {
+        self.lattice.for_each_point(|batch, lane, position, area| {
             let functions = self.lattice.functions_at(&self.patch, batch, lane);
             let value = |field: &Vec<f64>| functions.interpolate(field);
             let [x, y] = self.displacement.each_ref().map(value);
@@ -28,6 +28,7 @@ impl TotalFrame {
             f(PointState {
                 body: 0,
                 point,
+                area,
                 position,
                 present,
                 displacement,

@@ -20,6 +20,7 @@ impl UpdatedFrame {
                 f(PointState {
                     body,
                     point,
+                    area: carried.volume,
                     position,
                     present: position,
                     displacement,

@@ -2,9 +2,9 @@
 
 use fisura::Simulation;
 use fisura::dynamics::energy::Sample;
-use fisura::dynamics::updated_frame::field::DiscreteField;
 use fisura::fault;
 use fisura::material::degradation::BROKEN;
+use fisura::output::inspection::PointState;
 use fisura::scene::{Scene, Shape};
 
 use crate::extremes::smaller;
@@ -46,11 +46,26 @@ pub struct Watch {
     strip: f64,
     /// Depth under the outer edge that counts as reached by the crack, m.
     depth: f64,
+    thickness: f64,
     /// What is watched, row by row.
     pub table: Table,
 }
 
 impl Wall {
+    /// Without a point in its intervals.
+    fn of(intervals: usize) -> Self {
+        Self { phases: vec![f64::INFINITY; intervals] }
+    }
+
+    /// Takes the phase field of a point at a distance from the inner edge, in intervals.
+    fn see(&mut self, at: f64, phase: f64) {
+        if at >= 0.0
+            && let Some(least) = self.phases.get_mut(at as usize)
+        {
+            *least = smaller(*least, phase);
+        }
+    }
+
     /// Whether the crack has begun at the inner edge.
     fn begun(&self) -> bool {
         self.phases.first().is_some_and(|c| *c < BROKEN)
@@ -98,6 +113,7 @@ impl Watch {
             interval: 2.0 * spacing,
             strip: 1.01 * spacing,
             depth: 2.0 * fracture.length_scale,
+            thickness: scene.analysis.thickness,
             table: Table { names: names.map(String::from).to_vec(), columns: vec![Vec::new(); names.len()] },
         })
     }
@@ -109,56 +125,50 @@ impl Watch {
             self.table.names.extend(own);
             self.table.columns.resize(self.table.names.len(), Vec::new());
         }
-        let [front, rear] = [self.side, -self.side].map(|side| self.wall(simulation, side));
-        let frame = simulation.updated_frame().expect("rings move in the updated frame");
-        let forces = frame.contact_forces(sample.time_step);
-        let force = forces.iter().map(|f| f.force[0]).sum::<f64>() * frame.thickness();
+        let [mut front, mut rear] = [Wall::of(self.intervals()), Wall::of(self.intervals())];
+        let (mut broken, mut aside) = (0.0, 0.0);
+        let mut bodies = vec![[0.0; 2]; 2];
+        simulation.for_each_point(&mut |point| {
+            let PointState { body, area, stress: [xx, yy, xy], strain: [a, b, c], .. } = point;
+            let phase = point.fracture.map_or(1.0, |fracture| fracture.phase);
+            if let Some([elastic, damage]) = bodies.get_mut(body) {
+                *elastic += 0.5 * area * (xx * a + yy * b + 2.0 * xy * c);
+                *damage += area * (1.0 - phase) * (1.0 - phase);
+            }
+            if body != self.body {
+                return;
+            }
+            let [x, y] = [0, 1].map(|d| point.present[d] - point.displacement[d] - self.center[d]);
+            if y.abs() <= self.strip {
+                let wall = if self.side * x > 0.0 { &mut front } else { &mut rear };
+                wall.see((x.abs() - self.radii[0]) / self.interval, phase);
+            }
+            if phase < BROKEN {
+                broken += area;
+                aside += if y.abs() > ASIDE * self.depth { area } else { 0.0 };
+            }
+        });
+        let force = simulation.contact_forces().iter().map(|f| f.force[0]).sum::<f64>() * self.thickness;
         let yes = |holds: bool| f64::from(u8::from(holds));
+        let [left, right] = [0, 1].map(|body| bodies[body]);
         let mut row = vec![
             front.broken(),
             rear.broken(),
             yes(front.begun()),
             yes(rear.begun()),
             force,
-            asymmetry(simulation, |field| field.elastic_energy()),
-            asymmetry(simulation, |field| field.fracture.as_ref().map_or(0.0, |f| f.surface_energy)),
-            self.aside(simulation),
+            asymmetry(left[0], right[0]),
+            asymmetry(left[1], right[1]),
+            if broken > 0.0 { aside / broken } else { 0.0 },
         ];
         row.extend(sample.named_values().iter().map(|(_, value)| value));
         self.table.push(&row);
     }
 
-    fn wall(&self, simulation: &Simulation, side: f64) -> Wall {
-        let field = &simulation.updated_frame().expect("rings move in the updated frame").fields()[self.body];
-        let Some(cracking) = &field.fracture else { return Wall::default() };
+    /// Intervals of a wall, from the inner edge to where the outer one counts as reached.
+    fn intervals(&self) -> usize {
         let [inner, outer] = self.radii;
-        let reach = outer - self.depth - inner;
-        let count = (reach / self.interval).floor().max(1.0) as usize;
-        let mut phases = vec![f64::INFINITY; count];
-        for (point, cracked) in field.points().iter().zip(&cracking.points) {
-            let [x, y] = [0, 1].map(|d| point.reference()[d] - self.center[d]);
-            let at = (side * x - inner) / self.interval;
-            if y.abs() <= self.strip && at >= 0.0 && (at as usize) < count {
-                phases[at as usize] = smaller(phases[at as usize], cracked.phase);
-            }
-        }
-        Wall { phases }
-    }
-
-    /// Part of the broken material that lies further than a few length scales from the line of centres: zero
-    /// if the ring splits along the diameter alone.
-    fn aside(&self, simulation: &Simulation) -> f64 {
-        let field = &simulation.updated_frame().expect("rings move in the updated frame").fields()[self.body];
-        let cracked = field.fracture.iter().flat_map(|cracking| cracking.points.iter());
-        let broken = field.points().iter().zip(cracked).filter(|(_, cracked)| cracked.phase < BROKEN);
-        let (mut all, mut aside) = (0.0, 0.0);
-        for (point, _) in broken {
-            all += point.volume;
-            if (point.reference()[1] - self.center[1]).abs() > ASIDE * self.depth {
-                aside += point.volume;
-            }
-        }
-        if all > 0.0 { aside / all } else { 0.0 }
+        ((outer - self.depth - inner) / self.interval).floor().max(1.0) as usize
     }
 
     /// Times (s) of [`EVENTS`]; none of those that did not come.
@@ -183,12 +193,9 @@ impl Watch {
     }
 }
 
-/// Difference of an energy between both rings over their mean; zero if there is one ring.
-fn asymmetry(simulation: &Simulation, energy: impl Fn(&DiscreteField) -> f64) -> f64 {
-    let fields = simulation.updated_frame().map_or(&[][..], |frame| frame.fields());
-    let [a, b] = fields else { return 0.0 };
-    let [a, b] = [energy(a), energy(b)];
-    if a + b == 0.0 { 0.0 } else { 2.0 * (a - b) / (a + b) }
+/// Difference of a value between both rings over their mean; zero if there is one ring.
+fn asymmetry(a: f64, b: f64) -> f64 {
+    if a == 0.0 || b == 0.0 { 0.0 } else { 2.0 * (a - b) / (a + b) }
 }
 
 #[cfg(test)]
@@ -216,6 +223,7 @@ mod tests {
             interval: 0.1,
             strip: 0.1,
             depth: 0.1,
+            thickness: 1.0,
             table,
         };
         assert_eq!(watch.events(), [Some(1.0), Some(2.0), Some(2.0), None, Some(3.0), Some(2.0)]);
