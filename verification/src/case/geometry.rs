@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use fisura::scene::{Layout, Mesh, Scene, Shape};
+use fisura::scene::{Mesh, Scene, Shape};
 
 /// A geometry of the rings and how it is resolved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,26 +47,22 @@ impl Geometry {
     }
 
     /// `template` with this geometry: its first body becomes a ring that touches x = 0 from the left, and its
-    /// mesh reaches around the upper half of it, with a few spans beyond x = 0.
-    pub fn quarter(&self, template: &Scene) -> Scene {
+    /// mesh reaches around it, with a few spans beyond x = 0; y = 0 is a line of knots.
+    pub fn against_a_wall(&self, template: &Scene) -> Scene {
         let mut scene = template.clone();
         let h = self.points as f64 * self.spacing(PARTICLES);
         let spans = [(2.0 * self.outer / h).ceil() as usize + MARGIN, (self.outer / h).ceil() as usize + MARGIN];
-        let cells = [spans[0] + MARGIN, spans[1]];
+        let cells = [spans[0] + MARGIN, 2 * spans[1]];
         scene.mesh = Mesh::uniform(
             template.mesh.degree,
-            [-(spans[0] as f64) * h, 0.0],
-            [cells[0] as f64 * h, cells[1] as f64 * h],
+            [spans[0], spans[1]].map(|n| -(n as f64) * h),
+            cells.map(|n| n as f64 * h),
             cells,
         );
         let ring = &mut scene.bodies[0];
-        // The lower half is that of the mesh's mirror image.
         let (center, inner_radius, outer_radius) = ([-self.outer, 0.0], self.inner, self.outer);
-        ring.shape = Shape::Difference {
-            of: Box::new(Shape::Annulus { center, inner_radius, outer_radius }),
-            minus: vec![Shape::Rectangle { min: [-3.0 * self.outer, -2.0 * self.outer], max: [self.outer, 0.0] }],
-        };
-        (ring.particles_per_cell, ring.layout) = ([self.points; 2], Layout::Uniform);
+        ring.shape = Shape::Annulus { center, inner_radius, outer_radius };
+        ring.particles_per_cell = [self.points; 2];
         for material in scene.materials.values_mut() {
             if let Some(fracture) = &mut material.fracture {
                 fracture.length_scale = self.length_scale;

@@ -6,7 +6,7 @@ mod sweep;
 
 use fisura::Simulation;
 use fisura::output::picture::Picture;
-use fisura::scene::{Frame, Scene};
+use fisura::scene::Scene;
 use fisura::simulation::square_pixels;
 
 use super::scene::series_stem;
@@ -24,8 +24,6 @@ pub(super) use sweep::{offers as sweep_offers, study as sweep};
 pub const PAPER: [Option<f64>; 6] = [Some(30e-6), Some(60e-6), Some(100e-6), None, Some(150e-6), Some(400e-6)];
 /// Phase field below which the first crack has formed.
 const CRACKED: f64 = 0.05;
-/// What the updated frame has besides.
-const TRANSFER_LOSS: &str = "transfer loss over the initial kinetic energy";
 /// Pixels of a picture along its longer side.
 const PIXELS: usize = 300;
 
@@ -96,9 +94,6 @@ pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
         if rings == 2 {
             offers.bare(name, both);
         }
-        if scene.analysis.frame == Frame::Updated {
-            offers.bare(name, [TRANSFER_LOSS]);
-        }
     }
     Ok(offers)
 }
@@ -153,9 +148,6 @@ fn add_invariants(findings: &mut Findings, variant: &str, scene: &Scene, watched
     add("largest fall of the fracture energy over its end", fall("fracture_j") / last("fracture_j"));
     add("largest fall of the friction work over the initial kinetic energy", fall("friction_j") / initial);
     add("contact loss over the initial kinetic energy", last("contact_loss_j") / initial);
-    if scene.analysis.frame == Frame::Updated {
-        add(TRANSFER_LOSS, last("transfer_loss_j") / initial);
-    }
     add("broken material aside the diameter at the end", last("broken_aside"));
     add("fracture energy at the end, J", last("fracture_j"));
     if let [left, right] = &watched.rings[..] {

@@ -23,7 +23,7 @@ pub fn add(findings: &mut Findings, case: &Case, case_scene: &CaseScene, watched
     };
     let series = format!("series/{stem}.csv");
     let factor = case_scene.energy_factor;
-    let energies = ["fracture_j", "kinetic_j", "elastic_j", "contact_loss_j", "transfer_loss_j", "closure_j"];
+    let energies = ["fracture_j", "kinetic_j", "elastic_j", "contact_loss_j", "closure_j"];
     let curve = |column: &str| Curve::energy(&series, column, factor);
     findings.figures.push(figure(
         format!("{}-fracture-energy", case.name),

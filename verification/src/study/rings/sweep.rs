@@ -1,5 +1,5 @@
-//! Sweep over the geometries of a case's `[rings]` table: half a ring against a frictionless wall, scored by
-//! the events.
+//! Sweep over the geometries of a case's `[rings]` table: a ring against a frictionless wall, scored by the
+//! events.
 
 use fisura::scene::Scene;
 use fisura::simulation::breakdown::Breakdown;
@@ -41,7 +41,7 @@ struct Trial {
 
 impl Trial {
     fn run(geometry: Geometry, template: &Scene) -> Result<Self, StudyError> {
-        match Watched::run(&geometry.quarter(template)) {
+        match Watched::run(&geometry.against_a_wall(template)) {
             Ok(watched) => {
                 let ring = &watched.rings[0];
                 let events = ring.events();
@@ -80,14 +80,13 @@ impl Trial {
     }
 }
 
-/// Energy (J) that the walls broken on the line of centres cost at least, in the upper half of a ring: Gc per
-/// unit area of crack, half of it on this side, over the depth that counts as reached; none if no wall is
-/// broken through.
+/// Energy (J) that the walls of a ring broken on the line of centres cost at least: Gc per unit area of crack,
+/// over the depth that counts as reached; none if no wall is broken through.
 fn walls(geometry: &Geometry, events: &Events, template: &Scene) -> Option<f64> {
     let broken = [events[1], events[3]].iter().flatten().count();
     let fracture = template.materials.values().find_map(|material| material.fracture.as_ref())?;
     let depth = geometry.outer - geometry.inner - 2.0 * geometry.length_scale;
-    let of_one = 0.5 * fracture.critical_energy_release_rate * template.analysis.thickness * depth;
+    let of_one = fracture.critical_energy_release_rate * template.analysis.thickness * depth;
     (broken > 0).then_some(broken as f64 * of_one)
 }
 
