@@ -9,7 +9,10 @@ use crate::view::{BASES, Basis, Counts, limited};
 
 /// What each suite is about, in the order of the tables.
 const SUITES: [(&str, &str); 10] = [
-    ("patch", "to round-off: spline bases, constant stress, rigid motion, and half models against full ones"),
+    (
+        "patch",
+        "to round-off: spline bases, constant stress, rigid motion, bending, and half models against full ones; a plate with a hole to 1 % of its largest stress",
+    ),
     (
         "convergence",
         "orders against exact solutions: at least p + 1 in L2 and p in H1, 2 with the lumped mass, at most 2 where quadrature points move",

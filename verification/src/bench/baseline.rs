@@ -32,7 +32,7 @@ const SCENES: [(&str, &str, &str, &[&str]); 3] = [
         "plate/half-p2-h1",
         &["output.frames=[]", "mesh.cells=[800, 160]"],
     ),
-    ("rings", "two rings, p = 3", "rings/collision", &["output.frames=[]"]),
+    ("rings", "two rings, total frame, p = 2", "rings/collision", &["output.frames=[]"]),
 ];
 /// The one that stands for all in a quick run.
 const QUICK: (&str, &str, &str, &[&str]) =

@@ -127,7 +127,7 @@ impl Watch {
         }
         let [mut front, mut rear] = [Wall::of(self.intervals()), Wall::of(self.intervals())];
         let (mut broken, mut aside) = (0.0, 0.0);
-        let mut bodies = vec![[0.0; 2]; 2];
+        let mut bodies = [[0.0; 2]; 2];
         simulation.for_each_point(&mut |point| {
             let PointState { body, area, stress: [xx, yy, xy], strain: [a, b, c], .. } = point;
             let phase = point.fracture.map_or(1.0, |fracture| fracture.phase);
