@@ -70,6 +70,11 @@ pub(super) fn stress_field(item: &Item<'_>) -> Option<StressField> {
         return Some(kirsch(1.0, 1.0, [0.0; 2]));
     }
     let fields = item.fields(&["xx", "yy", "xy", "kirsch"])?;
+    let has_components = ["xx", "yy", "xy"].iter().any(|component| fields.get(component).is_some());
+    if has_components == fields.get("kirsch").is_some() {
+        let message = if has_components { "both kirsch and components are given" } else { "no component is given" };
+        return item.fail(message, "give xx, yy or xy, or kirsch = { stress = \"1 MPa\", radius = \"10 mm\" }");
+    }
     if let Some(scales) = fields.get("kirsch") {
         let scales = scales.fields(&["stress", "radius", "center"])?;
         let stress = scales.need("stress", "stress = \"1 MPa\"", |item| item.quantity(Dimension::STRESS));
