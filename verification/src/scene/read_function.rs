@@ -1,16 +1,13 @@
 //! From the tree of a document to functions: factors over time, and stress fields.
 
+use fisura::scene::StressField;
 use fisura::scene::time::{Course, TimeFactor, TimeFormula};
-use fisura::scene::{Plane, StressField};
 
 use super::fields::Item;
 use super::read::{number, point, time};
 use super::read_file::rows_of_file;
 use super::units::{self, Dimension};
 use crate::arithmetic::Arithmetic;
-use crate::exact::ExactSolution;
-use crate::exact::kirsch::Kirsch;
-use crate::exact::motion::Derived;
 
 /// A factor over time: `{ ramp = "1 us", until = "5 us" }`.
 pub(super) fn factor(item: &Item<'_>) -> Option<TimeFactor> {
@@ -63,7 +60,8 @@ fn function<const N: usize>(
     Some((text, move |values: [f64; N]| arithmetic.value(&used.iter().map(|&i| values[i]).collect::<Vec<f64>>())))
 }
 
-/// The stress field of a traction: a name, `"kirsch"`; that with its scales, or its components as formulas of x and y.
+/// The stress field of a traction: a name, `"kirsch"`; that with its scales, or its components as formulas of
+/// x and y.
 pub(super) fn stress_field(item: &Item<'_>) -> Option<StressField> {
     if item.node.as_str().is_some() {
         item.choice(&[("kirsch", ())])?;
@@ -95,11 +93,17 @@ pub(super) fn stress_field(item: &Item<'_>) -> Option<StressField> {
     }))
 }
 
-/// That of an infinite plate with a hole of a radius (m) about a centre (m), which is pulled along x (Pa).
+/// That of an infinite plate with a hole of a radius (m) about a centre (m), which is pulled along x (Pa):
+/// Kirsch 1898.
 fn kirsch(stress: f64, radius: f64, center: [f64; 2]) -> StressField {
     StressField::new(format!("kirsch({stress}, {radius}, {center:?})"), move |at| {
-        let exact = Derived(Kirsch { plane: Plane::Strain }); // the stress is the same in both plane states
-        let [[xx, xy], [_, yy]] = exact.stress([0, 1].map(|d| (at[d] - center[d]) / radius), 0.0);
+        let [x, y] = [0, 1].map(|d| (at[d] - center[d]) / radius);
+        let (near, angle) = (1.0 / (x * x + y * y), y.atan2(x));
+        let ((sin2, cos2), (sin4, cos4)) = ((2.0 * angle).sin_cos(), (4.0 * angle).sin_cos());
+        let nearest = 1.5 * near * near;
+        let xx = 1.0 - near * (1.5 * cos2 + cos4) + nearest * cos4;
+        let yy = -near * (0.5 * cos2 - cos4) - nearest * cos4;
+        let xy = -near * (0.5 * sin2 + sin4) + nearest * sin4;
         [xx, yy, xy].map(|component| stress * component)
     })
 }

@@ -21,9 +21,9 @@ const LINEAR_REDUCTION: f64 = 1e-11;
 /// Most steps of Newton's method, and lengths of one: it converges in a few, or not at all.
 const MOST_STEPS: usize = 50;
 const MOST_TRIES: usize = 20;
-/// Slope of the potential energy along a step, of that at its start, with which the step ends. Where the split
-/// has a kink, the tangent may be several times too stiff or too soft: a longer step follows the secant, a
-/// shorter one is found by bisection.
+/// Slope of the potential energy along a step, of that at its start, with which the step ends. Where the
+/// split has a kink, the tangent may be several times too stiff or too soft: a longer step follows the
+/// secant, a shorter one is found by bisection.
 const DESCENT: f64 = 0.5;
 /// Least part of the slope by which a step is taken to have reduced it.
 const STRETCH: f64 = 0.1;

@@ -80,8 +80,8 @@ impl Trial {
     }
 }
 
-/// Energy (J) that the walls of a ring broken on the line of centres cost at least: Gc per unit area of crack,
-/// over the depth that counts as reached; none if no wall is broken through.
+/// Energy (J) that the walls of a ring broken on the line of centres cost at least: Gc per unit area of
+/// crack, over the depth that counts as reached; none if no wall is broken through.
 fn walls(geometry: &Geometry, events: &Events, template: &Scene) -> Option<f64> {
     let broken = [events[1], events[3]].iter().flatten().count();
     let fracture = template.materials.values().find_map(|material| material.fracture.as_ref())?;
