@@ -15,6 +15,7 @@ pub mod family;
 mod kalthoff;
 pub mod mapping;
 pub mod mistakes;
+pub mod model;
 mod origin;
 pub mod submission;
 pub mod table;

@@ -100,9 +100,7 @@ impl TimeFactor {
             Course::Formula(formula) => formula.value(time),
         }
     }
-}
 
-impl TimeFactor {
     /// The factor over the time from 0 on, s: exact, but for a formula, which has [`PANELS`] intervals of two
     /// Gauss points.
     pub(crate) fn integral(&self, time: f64) -> f64 {

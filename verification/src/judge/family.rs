@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::submission::{Crack, Model, Plane};
+use super::model::{Crack, Model, Plane};
 use super::{FRACTURE, QUANTITIES};
 use crate::output::history::{Table, TableError};
 use crate::reference::{Library, ReferenceCurve};

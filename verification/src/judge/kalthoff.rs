@@ -2,7 +2,8 @@
 //! length, against bilinear elements extrapolated to h = 0 (`reference-data/kalthoff`).
 
 use super::curves::{self, AGREES, DECIDES, SAFETY, WIDEST, decide, doubt};
-use super::submission::{Plane, Submission};
+use super::model::Plane;
+use super::submission::Submission;
 use super::table::Curve;
 use super::verdict::{Comparison, QuantityVerdict, ReferenceUsed, Verdict};
 use super::{Judged, QUANTITIES, TIP_X, TIP_Y, balance, explained_by_difference};

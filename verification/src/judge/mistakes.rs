@@ -6,7 +6,8 @@
 //! square of the load, and the shapes of the curves tell the plane state.
 
 use super::family::{END, Variant};
-use super::submission::{Plane, Submission};
+use super::model::Plane;
+use super::submission::Submission;
 use super::table::Curve;
 use super::verdict::Finding;
 use super::{FRACTURE, KINETIC, QUANTITIES, TIP_X, curves, exchanged, origin};

@@ -93,16 +93,11 @@ fn arc(item: &Item<'_>) -> Option<Edge> {
 
 /// What a condition prescribes, and when: at rest if nothing is given.
 fn prescribed(fields: &Fields<'_>) -> Option<Prescribed> {
-    let velocity = fields.maybe("velocity", |item| item.vector(Dimension::VELOCITY));
-    let displacement = fields.maybe("displacement", |item| item.vector(Dimension::LENGTH));
     let time = fields.or("time", TimeFactor::default(), factor);
-    let motion = match (velocity?, displacement?) {
-        (Some(_), Some(_)) => {
-            let given = fields.get("displacement")?;
-            return given.fail("both velocity and displacement are given", "remove one of the two");
-        }
-        (None, Some(displacement)) => Motion::Displacement(displacement),
-        (velocity, None) => Motion::Velocity(velocity.unwrap_or_default()),
+    let motion = match fields.one_of(&["velocity", "displacement"])? {
+        None => Some(Motion::Velocity([0.0; 2])),
+        Some(("velocity", velocity)) => velocity.vector(Dimension::VELOCITY).map(Motion::Velocity),
+        Some((_, displacement)) => displacement.vector(Dimension::LENGTH).map(Motion::Displacement),
     };
-    Some(Prescribed { motion, time: time? })
+    Some(Prescribed { motion: motion?, time: time? })
 }

@@ -3,6 +3,9 @@
 use std::path::Path;
 
 use fisura::scene::*;
+use fisura_verification::exact::ExactSolution;
+use fisura_verification::exact::kirsch::Kirsch;
+use fisura_verification::exact::motion::Derived;
 use fisura_verification::scene::{Document, SceneFile, read_scene};
 
 use crate::support::refused_where;
@@ -77,6 +80,21 @@ fn every_form_of_a_key_is_read() {
     let text = edited("{ rectangle = { min = [0.0, 0.0], max = [0.1, 0.04] } }", shapes);
     let scene = read_scene(&Document::parse("shapes.toml", &text).unwrap().root, "", Path::new("")).unwrap();
     assert!(matches!(&scene.bodies[0].shape, Shape::Difference { minus, .. } if minus.len() == 2));
+}
+
+#[test]
+fn the_field_of_kirsch_is_that_of_the_exact_solution() {
+    let field = "stress_field = { kirsch = { stress = \"2 MPa\", radius = \"5 mm\", center = [0.03, 0.01] } }";
+    let text = edited("edge   = \"bottom\"\nstress", &format!("edge = \"bottom\"\n{field}\n# stress"));
+    let scene = SceneFile::parse("field.toml", &text, &[]).unwrap().scene;
+    let Load::Field(field) = &scene.bodies[0].tractions[1].load else { panic!("a stress field") };
+    let exact = Derived(Kirsch { plane: Plane::Stress });
+    for at in [[0.035, 0.01], [0.03, 0.015], [0.02, 0.017], [0.041, -0.003]] {
+        let [[xx, xy], [_, yy]] = exact.stress([(at[0] - 0.03) / 0.005, (at[1] - 0.01) / 0.005], 0.0);
+        for (found, exact) in field.value(at).into_iter().zip([xx, yy, xy]) {
+            approx::assert_relative_eq!(found, 2e6 * exact, epsilon = 1e-6, max_relative = 1e-12);
+        }
+    }
 }
 
 #[test]
