@@ -57,7 +57,7 @@ impl Watched {
             if simulation.steps().is_multiple_of(plan.steps_per_sample) {
                 let sample = simulation.sample();
                 simulation.watch_ledger(&sample)?;
-                watched.rings.iter_mut().for_each(|ring| ring.look(&simulation, &sample));
+                Watch::look(&mut watched.rings, &simulation, &sample);
             }
             if simulation.finished() {
                 return Ok(watched);

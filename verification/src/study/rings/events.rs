@@ -26,8 +26,7 @@ pub const EVENTS: [&str; 6] = [
     "contact ends",
 ];
 
-/// The wall of the first ring on the line of centres, on the side of the contact or at the rear.
-#[derive(Debug, Clone, Default)]
+/// The wall of a ring on the line of centres, on the side of the contact or at the rear.
 struct Wall {
     /// Smallest phase field of the points in every interval from the inner edge outwards.
     phases: Vec<f64>,
@@ -118,49 +117,35 @@ impl Watch {
         })
     }
 
-    /// Adds the present state of a run to the watched rows.
-    pub fn look(&mut self, simulation: &Simulation, sample: &Sample) {
+    /// Adds the present state of a run to the rows of every ring.
+    pub fn look(rings: &mut [Self], simulation: &Simulation, sample: &Sample) {
+        let mut seen: Vec<Seen> = rings.iter().map(Seen::of).collect();
+        simulation.for_each_point(&mut |point| {
+            let ring = rings.iter().zip(&mut seen).find(|(ring, _)| ring.body == point.body);
+            ring.into_iter().for_each(|(ring, seen)| seen.take(ring, &point));
+        });
+        let asymmetry = |value: fn(&Seen) -> f64| match seen.as_slice() {
+            [left, right] => asymmetry(value(left), value(right)),
+            _ => 0.0,
+        };
+        let apart = [asymmetry(|seen| seen.elastic), asymmetry(|seen| seen.damage)];
+        let force = simulation.contact_forces().iter().map(|f| f.force[0]).sum::<f64>();
+        for (ring, seen) in rings.iter_mut().zip(&seen) {
+            ring.push(seen, force * ring.thickness, apart, sample);
+        }
+    }
+
+    fn push(&mut self, seen: &Seen, force: f64, [elastic, damage]: [f64; 2], sample: &Sample) {
         if self.table.rows() == 0 {
             let own: Vec<String> = sample.named_values().iter().map(|(name, _)| name.to_string()).collect();
             self.table.names.extend(own);
             self.table.columns.resize(self.table.names.len(), Vec::new());
         }
-        let [mut front, mut rear] = [Wall::of(self.intervals()), Wall::of(self.intervals())];
-        let (mut broken, mut aside) = (0.0, 0.0);
-        let mut bodies = [[0.0; 2]; 2];
-        simulation.for_each_point(&mut |point| {
-            let PointState { body, area, stress: [xx, yy, xy], strain: [a, b, c], .. } = point;
-            let phase = point.fracture.map_or(1.0, |fracture| fracture.phase);
-            if let Some([elastic, damage]) = bodies.get_mut(body) {
-                *elastic += 0.5 * area * (xx * a + yy * b + 2.0 * xy * c);
-                *damage += area * (1.0 - phase) * (1.0 - phase);
-            }
-            if body != self.body {
-                return;
-            }
-            let [x, y] = [0, 1].map(|d| point.present[d] - point.displacement[d] - self.center[d]);
-            if y.abs() <= self.strip {
-                let wall = if self.side * x > 0.0 { &mut front } else { &mut rear };
-                wall.see((x.abs() - self.radii[0]) / self.interval, phase);
-            }
-            if phase < BROKEN {
-                broken += area;
-                aside += if y.abs() > ASIDE * self.depth { area } else { 0.0 };
-            }
-        });
-        let force = simulation.contact_forces().iter().map(|f| f.force[0]).sum::<f64>() * self.thickness;
+        let [front, rear] = &seen.walls;
         let yes = |holds: bool| f64::from(u8::from(holds));
-        let [left, right] = [0, 1].map(|body| bodies[body]);
-        let mut row = vec![
-            front.broken(),
-            rear.broken(),
-            yes(front.begun()),
-            yes(rear.begun()),
-            force,
-            asymmetry(left[0], right[0]),
-            asymmetry(left[1], right[1]),
-            if broken > 0.0 { aside / broken } else { 0.0 },
-        ];
+        let aside = if seen.broken > 0.0 { seen.aside / seen.broken } else { 0.0 };
+        let begun = [front, rear].map(|wall| yes(wall.begun()));
+        let mut row = vec![front.broken(), rear.broken(), begun[0], begun[1], force, elastic, damage, aside];
         row.extend(sample.named_values().iter().map(|(_, value)| value));
         self.table.push(&row);
     }
@@ -193,9 +178,45 @@ impl Watch {
     }
 }
 
-/// Difference of a value between both rings over their mean; zero if there is one ring.
+/// What is seen of a ring at one time.
+struct Seen {
+    /// Towards the contact, and at the rear.
+    walls: [Wall; 2],
+    /// Elastic energy, J/m.
+    elastic: f64,
+    /// Integral of (1 − c)², m².
+    damage: f64,
+    /// Area of the broken points, and of those aside the line of centres, m².
+    broken: f64,
+    aside: f64,
+}
+
+impl Seen {
+    fn of(ring: &Watch) -> Self {
+        let walls = [0, 1].map(|_| Wall::of(ring.intervals()));
+        Self { walls, elastic: 0.0, damage: 0.0, broken: 0.0, aside: 0.0 }
+    }
+
+    fn take(&mut self, ring: &Watch, point: &PointState) {
+        let ([xx, yy, xy], [a, b, c]) = (point.stress, point.strain);
+        let phase = point.fracture.map_or(1.0, |fracture| fracture.phase);
+        self.elastic += 0.5 * point.area * (xx * a + yy * b + 2.0 * xy * c);
+        self.damage += point.area * (1.0 - phase) * (1.0 - phase);
+        let [x, y] = [0, 1].map(|d| point.present[d] - point.displacement[d] - ring.center[d]);
+        if y.abs() <= ring.strip {
+            let wall = usize::from(ring.side * x < 0.0);
+            self.walls[wall].see((x.abs() - ring.radii[0]) / ring.interval, phase);
+        }
+        if phase < BROKEN {
+            self.broken += point.area;
+            self.aside += if y.abs() > ASIDE * ring.depth { point.area } else { 0.0 };
+        }
+    }
+}
+
+/// Difference of a value between both rings over their mean.
 fn asymmetry(a: f64, b: f64) -> f64 {
-    if a == 0.0 || b == 0.0 { 0.0 } else { 2.0 * (a - b) / (a + b) }
+    if a + b == 0.0 { 0.0 } else { 2.0 * (a - b) / (a + b) }
 }
 
 #[cfg(test)]

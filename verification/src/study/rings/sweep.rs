@@ -9,7 +9,7 @@ use super::{PAPER, Watched, in_microseconds};
 use crate::case::Case;
 use crate::case::expand::CaseScene;
 use crate::case::geometry::{Geometry, PARTICLES};
-use crate::extremes::{larger, largest};
+use crate::extremes::larger;
 use crate::output::history::Table;
 use crate::study::scene::series_stem;
 use crate::study::{Findings, StudyError};
@@ -108,7 +108,6 @@ pub fn offers(case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
             "geometries whose cracks come in the paper's order",
             "geometries near the paper",
             "geometries near the paper that split along the diameter",
-            "largest difference from 12888 of the equally spaced points that set the spans",
             "least fracture energy over that of the broken walls",
         ],
     );
@@ -146,13 +145,6 @@ fn add(findings: &mut Findings, trials: &[Trial]) {
     count("geometries whose cracks come in the paper's order", Trial::is_in_order);
     count("geometries near the paper", |trial| trial.score <= NEAR);
     count("geometries near the paper that split along the diameter", Trial::is_near);
-    let apart = |trial: &Trial| trial.geometry.count(trial.geometry.spacing(PARTICLES)).abs_diff(PARTICLES) as f64;
-    findings.add(
-        "",
-        "largest difference from 12888 of the equally spaced points that set the spans",
-        largest(trials.iter().map(apart)),
-        None,
-    );
     let ratios = trials.iter().filter_map(|trial| trial.energy_over_walls);
     let least = ratios.map(|ratio| -ratio).reduce(larger).map_or(f64::NAN, |ratio| -ratio);
     findings.add("", "least fracture energy over that of the broken walls", least, None);
@@ -226,7 +218,6 @@ mod tests {
         assert_eq!(value("geometries near the paper"), 2.0);
         assert_eq!(value("geometries near the paper that split along the diameter"), 1.0);
         assert_eq!(value("least fracture energy over that of the broken walls"), 1.25);
-        assert!(value("largest difference from 12888 of the equally spaced points that set the spans") <= 4.0);
     }
 
     #[test]
