@@ -34,7 +34,7 @@ const SUITES: [(&str, &str); 10] = [
     ("stability", "critical time step, bodies that end inside an element, extreme input, units, threads, long runs"),
     (
         "benchmarks",
-        "the test of Kalthoff and Winkler, elastic and with a crack in shear (AT1), against finite elements (energies and times extrapolated to h = 0); a pressurised ring against a one-dimensional program",
+        "the test of Kalthoff and Winkler, elastic and with a crack in shear (AT1), and a pre-strained strip, against finite elements (extrapolated to h = 0); a pressurised ring against a one-dimensional program; the strength of a disc pressed on arcs",
     ),
     ("plate", "the cracking plate at h = l0, against finite elements and splines extrapolated to h = 0"),
 ];

@@ -8,6 +8,7 @@ use std::time::Instant;
 use clap::Parser;
 use independent_fem::crack;
 use independent_fem::kalthoff::{self, Kalthoff};
+use independent_fem::mapped::{Mapped, Problem};
 use independent_fem::material::{Material, Surface};
 use independent_fem::mesh::{Grading, Mesh};
 use independent_fem::plate::{Plate, Sample};
@@ -80,6 +81,12 @@ struct Options {
     /// The test of Kalthoff and Winkler, with elements of --h-mm; elastic with --frozen
     #[arg(long)]
     kalthoff: bool,
+    /// A problem on quadrilaterals with AT1; elastic with --frozen
+    #[arg(long, conflicts_with = "kalthoff")]
+    problem: Option<Problem>,
+    /// With --problem ring: seed of the random toughness
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
     /// Threads
     #[arg(long, value_name = "N", default_value_t = 1)]
     threads: usize,
@@ -129,9 +136,43 @@ fn run_kalthoff(options: &Options) -> Result<(), Box<dyn Error>> {
     Ok(file.flush()?)
 }
 
+/// A problem on quadrilaterals.
+fn run_mapped(options: &Options, problem: Problem) -> Result<(), Box<dyn Error>> {
+    let run = Mapped {
+        problem,
+        h: options.h_mm * 1e-3,
+        b: 2e-3 * options.length_scale_mm,
+        cracks: !options.frozen,
+        seed: options.seed,
+        end: options.end_us * 1e-6,
+        interval: options.interval_us * 1e-6,
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
+    let mut file = csv::Writer::from_path(&options.out)?;
+    let energies = ["external_work_j_per_m", "kinetic_j_per_m", "elastic_j_per_m", "fracture_j_per_m"];
+    file.write_record(["time_us"].iter().chain(&energies).chain(&["tip_x_mm", "tip_y_mm"]))?;
+    let mut written = Ok(());
+    pool.install(|| {
+        run.run(|[time, rest @ .., tip_x, tip_y], _| {
+            let mut row = vec![format!("{:.4}", time * 1e6)];
+            row.extend(rest.map(|value| format!("{value:.9e}")));
+            row.extend(
+                [tip_x, tip_y].map(|x| if x.is_finite() { format!("{:.5}", x * 1e3) } else { "nan".to_string() }),
+            );
+            if written.is_ok() {
+                written = file.write_record(row).and_then(|()| Ok(file.flush()?));
+            }
+        });
+    });
+    Ok(written?)
+}
+
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     if options.kalthoff {
         return run_kalthoff(options);
+    }
+    if let Some(problem) = options.problem {
+        return run_mapped(options, problem);
     }
     let material = cracking(options, Material::new(32e9, 0.2, options.plane_stress));
     let grading = Grading { fine_from: options.fine_from_mm * 1e-3, fine_to: options.fine_mm * 1e-3 };

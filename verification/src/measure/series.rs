@@ -51,6 +51,12 @@ pub(super) fn slope(check: &Check, run: &Run) -> Result<f64, String> {
     fitted_slope(window.map(|i| (times[i], values[i]))).ok_or_else(|| "the window contains only one sample".to_string())
 }
 
+/// Slope of a straight line fitted over the window against the place x of the tip, per metre.
+pub(super) fn slope_over_tip(check: &Check, run: &Run) -> Result<f64, String> {
+    let (window, tip, values) = (run.window(check)?, run.column("crack_tip_x_m")?, run.column(column(check)?)?);
+    fitted_slope(window.map(|i| (tip[i], values[i]))).ok_or_else(|| "the tip stands still in the window".to_string())
+}
+
 /// Slope over the power `W sigma²/(rho c_d)` that two plane waves entering over the width W carry into
 /// elastic energy.
 pub(super) fn slope_over_plane_wave_power(check: &Check, run: &Run) -> Result<Measured, String> {

@@ -44,7 +44,7 @@ pub enum LooksAt {
 const WINDOW: &[&str] = &["from", "to"];
 
 /// All of them.
-pub static MEASURES: [Measure; 30] = [
+pub static MEASURES: [Measure; 31] = [
     on_curve("relative-rms", |q| series::against_curve("relative-rms", q.check, q.run, q.library)),
     on_curve("rms-difference", |q| series::against_curve("rms-difference", q.check, q.run, q.library)),
     of_column("value-at", &["column", "at"], &[], |q| some(series::value_at(q.check, q.run, false)?)),
@@ -54,6 +54,7 @@ pub static MEASURES: [Measure; 30] = [
     of_column("smooth-mean", &["column"], WINDOW, |q| value(series::smooth_mean(q.check, q.run)?)),
     of_column("slope-from-zero", &["column"], WINDOW, |q| value(series::slope_from_zero(q.check, q.run)?)),
     of_column("slope", &["column"], WINDOW, |q| value(series::slope(q.check, q.run)?)),
+    of_column("slope-over-tip", &["column"], WINDOW, |q| value(series::slope_over_tip(q.check, q.run)?)),
     of_column("slope-ratio", &["column"], WINDOW, |q| series::slope_over_plane_wave_power(q.check, q.run)),
     of_column("closure", &[], &[], |q| value(series::closure(q.run)?)),
     of_column("drift", &["column"], WINDOW, |q| value(series::drift(q.check, q.run)?)),
