@@ -1,5 +1,5 @@
-//! Change of the nodal forces along a direction of displacements, by central differences of the stress at each
-//! point.
+//! Change of the nodal forces along a direction of displacements, by central differences of the stress at
+//! each point.
 
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::larger;
@@ -15,9 +15,9 @@ use crate::transfer::sweep::{StripForces, sweep};
 const PROBE: f64 = 1e-8;
 
 /// Displacement gradients at the points of a strip.
-struct Gradients<'a>(&'a mut [[Lane; 4]]);
+struct GradientsOfStrip<'a>(&'a mut [[Lane; 4]]);
 
-impl PointKernel for Gradients<'_> {
+impl PointKernel for GradientsOfStrip<'_> {
     const DISPLACEMENT: bool = true;
     const PHASE: bool = false;
     const PHASE_GRADIENT: bool = false;
@@ -33,19 +33,19 @@ impl PointKernel for Gradients<'_> {
 /// Displacement gradients at all points, batch by batch.
 pub(crate) fn gradients(lattice: &Lattice, displacement: &VectorField) -> Vec<[Lane; 4]> {
     let mut gradients = vec![[Lane::ZERO; 4]; lattice.strips() * lattice.strip_batches()];
-    let mut kernels: Vec<_> = gradients.chunks_mut(lattice.strip_batches()).map(Gradients).collect();
+    let mut kernels: Vec<_> = gradients.chunks_mut(lattice.strip_batches()).map(GradientsOfStrip).collect();
     let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
     sweep(lattice, fields, &mut kernels, None);
     gradients
 }
 
 /// The change of the stress of a kernel along the gradient that the sweep gives.
-struct Along<'a, K> {
+struct StressAlong<'a, K> {
     kernel: K,
     gradients: &'a [[Lane; 4]],
 }
 
-impl<K: PointKernel> PointKernel for Along<'_, K> {
+impl<K: PointKernel> PointKernel for StressAlong<'_, K> {
     const DISPLACEMENT: bool = true;
     const PHASE: bool = false;
     const PHASE_GRADIENT: bool = false;
@@ -85,13 +85,13 @@ pub(crate) fn sweep_along<K: PointKernel>(
     match kinematics {
         Kinematics::Small => {
             let mut along: Vec<_> =
-                kernels.zip(strips).map(|(kernel, gradients)| Along { kernel, gradients }).collect();
+                kernels.zip(strips).map(|(kernel, gradients)| StressAlong { kernel, gradients }).collect();
             sweep(lattice, fields, &mut along, Some(forces));
         }
         Kinematics::Finite => {
             let mut kernels: Vec<_> = kernels.collect();
             let finite = kernels.iter_mut().map(OnHenckyStrain).zip(strips);
-            let mut along: Vec<_> = finite.map(|(kernel, gradients)| Along { kernel, gradients }).collect();
+            let mut along: Vec<_> = finite.map(|(kernel, gradients)| StressAlong { kernel, gradients }).collect();
             sweep(lattice, fields, &mut along, Some(forces));
         }
     }
