@@ -180,8 +180,8 @@ impl QuadBody {
         }
     }
 
-    /// Bound of the angular frequencies of the intact body: the largest of an element by itself, with a quarter
-    /// of its mass at each corner, 1/s.
+    /// Bound of the angular frequencies of the intact body: the largest of an element by itself, with its
+    /// mass at the corners, 1/s.
     pub fn largest_frequency(&self) -> f64 {
         let of_element = |points: &[GaussPoint; 4]| {
             let mass: [f64; 4] =
@@ -341,8 +341,8 @@ impl QuadBody {
         [(0..self.mass.len()).map(kinetic).sum(), elastic, fracture]
     }
 
-    /// Moves, and stops whenever the kinetic energy falls, until it is `part` of the elastic one: the state at
-    /// rest.
+    /// Moves, and stops whenever the kinetic energy falls, until it is `part` of the elastic one: the state
+    /// at rest.
     pub fn relax(&mut self, dt: f64, part: f64) {
         let mut last = 0.0;
         loop {
