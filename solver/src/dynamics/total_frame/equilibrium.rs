@@ -9,7 +9,7 @@ use super::tangent::Tangent;
 use crate::dynamics::critical_step::StiffnessOperator;
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::{larger, largest};
-use crate::phase_field::fracture::LatticeFracture;
+use crate::linear_algebra::lane::Lane;
 use crate::scene::Kinematics;
 
 /// Largest force out of balance, of the largest nodal force; and distance of c from 1 in an intact body.
@@ -40,8 +40,8 @@ impl TotalFrame {
     /// Loads that would accelerate a body that nothing holds; no convergence.
     pub(super) fn find_equilibrium(&mut self) -> Result<(), Failure> {
         self.internal_forces(); // sets the phase field at the points
-        let least = |fracture: &LatticeFracture| fracture.surface_energy(&self.lattice).1;
-        let is_intact = self.fracture.as_ref().is_none_or(|fracture| least(fracture) >= 1.0 - TOLERANCE);
+        let intact = |c: &Lane| c.0.iter().all(|c| (c - 1.0).abs() <= TOLERANCE);
+        let is_intact = self.fracture.as_ref().is_none_or(|fracture| fracture.phase.iter().all(intact));
         let linear = is_intact && self.kinematics == Kinematics::Small;
         let free = self.free_components();
         let (mut residual, mut scale) = self.out_of_balance(&free);
