@@ -153,7 +153,7 @@ fn run_mapped(options: &Options, problem: Problem) -> Result<(), Box<dyn Error>>
     file.write_record(["time_us"].iter().chain(&energies).chain(&["tip_x_mm", "tip_y_mm"]))?;
     let mut written = Ok(());
     pool.install(|| {
-        run.run(|[time, rest @ .., tip_x, tip_y], _| {
+        run.run(|[time, rest @ .., tip_x, tip_y]| {
             let mut row = vec![format!("{:.4}", time * 1e6)];
             row.extend(rest.map(|value| format!("{value:.9e}")));
             row.extend(

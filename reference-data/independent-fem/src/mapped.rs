@@ -2,6 +2,7 @@
 //! two holes that stop a crack.
 
 use crate::material::{Material, Surface};
+use crate::mesh::extend;
 use crate::quad_body::{QuadBody, Split};
 use crate::quads::{Hole, Quads};
 use crate::random::Toughness;
@@ -39,16 +40,13 @@ pub struct Mapped {
 /// Time (s), work of loads and driven sides, kinetic, elastic, fracture energy (J/m), tip (m).
 pub type Row = [f64; 7];
 
-/// Speed of the grips or of the driven side, and the pressure on the bore.
+/// A speed (m/s) or a pressure (Pa) against time (s).
 type Course = fn(f64) -> f64;
 
-fn lines(parts: &[(f64, f64)], start: f64) -> Vec<f64> {
-    let mut lines = vec![start];
-    for &(end, size) in parts {
-        let first = lines[lines.len() - 1];
-        let spans = ((end - first) / size).round().max(1.0) as usize;
-        lines.extend((1..=spans).map(|k| first + (end - first) * k as f64 / spans as f64));
-    }
+/// Node lines from zero on: the ends of the parts and the sizes of their spans.
+fn lines(parts: &[(f64, f64)]) -> Vec<f64> {
+    let mut lines = vec![0.0];
+    parts.iter().for_each(|&(end, size)| extend(&mut lines, end, size));
     lines
 }
 
@@ -79,8 +77,8 @@ impl Mapped {
     }
 
     fn strip(&self) -> QuadBody {
-        let x = lines(&[(0.04, self.h)], 0.0);
-        let y = lines(&[(1e-3, self.h), (4e-3, 2.0 * self.h)], 0.0);
+        let x = lines(&[(0.04, self.h)]);
+        let y = lines(&[(1e-3, self.h), (4e-3, 2.0 * self.h)]);
         let material = self.material(32e9, 0.2, 2450.0, 3.0);
         let mut body = QuadBody::new(Quads::between(&x, &y), material, Split::Spectral, |_| 1.0);
         for (n, [x, y]) in body.mesh.nodes.clone().into_iter().enumerate() {
@@ -104,9 +102,7 @@ impl Mapped {
 
     fn arrest(&self) -> QuadBody {
         let (h, most) = (self.h, 1.5e-3);
-        let ends = |first: f64, parts: &[Vec<(f64, f64)>]| lines(&parts.concat(), first);
-        let x = ends(
-            0.0,
+        let x = lines(
             &[
                 vec![(27e-3, most)],
                 vec![(63e-3, most)],
@@ -114,17 +110,18 @@ impl Mapped {
                 vec![(76e-3, h), (95e-3, h)],
                 growing(95e-3, 104e-3, h, most),
                 vec![(140e-3, most)],
-            ],
+            ]
+            .concat(),
         );
-        let y = ends(
-            0.0,
+        let y = lines(
             &[
                 vec![(17e-3, most)],
                 growing(34.2e-3, 17e-3, h, most),
                 vec![(34.75e-3, h), (35.25e-3, h), (35.8e-3, h), (36e-3, 1.2 * h)],
                 growing(36e-3, 53e-3, 1.5 * h, most),
                 vec![(64e-3, most), (70e-3, most)],
-            ],
+            ]
+            .concat(),
         );
         let mut mesh = Quads::between(&x, &y);
         mesh.cut(&x, &y, Hole { centre: [45e-3, 35e-3], radius: 15e-3, half: 18e-3, layers: 6 });
@@ -144,7 +141,7 @@ impl Mapped {
     }
 
     /// Steps to the end; the rows sampled.
-    pub fn run(&self, mut sampled: impl FnMut(Row, &QuadBody)) {
+    pub fn run(&self, mut sampled: impl FnMut(Row)) {
         let still: Course = |_| 0.0;
         let smooth: Course = |time| {
             let s = (time / 0.5e-6).clamp(0.0, 1.0);
@@ -156,7 +153,6 @@ impl Mapped {
             Problem::Ring => (self.ring(), still, pulse, [0.0; 2]),
             Problem::Arrest => (self.arrest(), smooth, still, [75e-3, 35e-3]),
         };
-        body.cracks = self.cracks;
         let driven: Vec<usize> =
             (0..body.mass.len()).filter(|&n| body.held[n][0] && body.mesh.nodes[n][0] == 0.0).collect();
         let bore: Vec<[usize; 2]> = match self.problem {
@@ -176,7 +172,7 @@ impl Mapped {
         for n in 0..=(self.end / dt).round() as usize {
             let time = n as f64 * dt;
             body.deform();
-            if n > 0 && body.cracks {
+            if n > 0 && self.cracks {
                 body.crack();
             }
             body.evaluate();
@@ -205,7 +201,7 @@ impl Mapped {
                 let of_driven: f64 = driven.iter().map(|&n| 0.5 * body.mass[n] * last[1] * next).sum();
                 let own: f64 = driven.iter().map(|&n| 0.5 * body.mass[n] * last[1] * last[1]).sum();
                 let [x, y] = body.tip(start).unwrap_or([f64::NAN; 2]);
-                sampled([time, work, kinetic + of_driven - own, elastic, fracture, x, y], &body);
+                sampled([time, work, kinetic + of_driven - own, elastic, fracture, x, y]);
             }
             work += 0.5 * dt * (power(&body, kick) + next * reaction);
             driven.iter().for_each(|&n| body.velocity[n][0] = next);

@@ -114,8 +114,8 @@ impl Mesh {
 }
 
 /// Continues node lines to `end` in equal spans of about `h`.
-fn extend(lines: &mut Vec<f64>, end: f64, h: f64) {
+pub fn extend(lines: &mut Vec<f64>, end: f64, h: f64) {
     let start = lines.last().copied().unwrap_or(0.0);
-    let spans = ((end - start) / h).round() as usize;
+    let spans = ((end - start) / h).round().max(1.0) as usize;
     lines.extend((1..=spans).map(|k| start + (end - start) * k as f64 / spans as f64));
 }

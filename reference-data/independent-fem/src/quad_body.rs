@@ -35,12 +35,10 @@ pub struct QuadBody {
     pub held: Vec<[bool; 2]>,
     /// Phase field at the nodes, 1 where intact.
     pub c: Vec<f64>,
-    /// Whether it cracks.
-    pub cracks: bool,
     material: Material,
     split: Split,
     young: f64,
-    /// Toughness at the Gauss points, J/m².
+    /// Toughness at the Gauss points over that of the material.
     toughness: Vec<[f64; 4]>,
     points: Vec<[GaussPoint; 4]>,
     /// Elements of each node, as 4 e + corner.
@@ -63,11 +61,8 @@ impl QuadBody {
             let corners = corners(&mesh.elements[e]);
             [0, 1].map(|d| (0..4).map(|k| point.values[k] * corners[k][d]).sum())
         };
-        let toughness = points.iter().enumerate().map(|(e, of)| {
-            let factor = |point: &GaussPoint| material.toughness * factor(place(e, point));
-            std::array::from_fn(|k| factor(&of[k]))
-        });
-        let toughness = toughness.collect();
+        let factors = |(e, of): (usize, &[GaussPoint; 4])| of.map(|point| factor(place(e, &point)));
+        let toughness = points.iter().enumerate().map(factors).collect();
         let mut mass = vec![0.0; mesh.nodes.len()];
         let mut around = vec![Vec::new(); mesh.nodes.len()];
         for (e, element) in mesh.elements.iter().enumerate() {
@@ -84,7 +79,6 @@ impl QuadBody {
             force: vec![[0.0; 2]; nodes],
             held: vec![[false; 2]; nodes],
             c: vec![1.0; nodes],
-            cracks: true,
             mass,
             material,
             split,
@@ -118,22 +112,17 @@ impl QuadBody {
         match self.split {
             Split::Spectral => self.material.tensile_energy(strain),
             Split::Rankine => {
-                let [xx, yy, xy] = self.whole_stress(strain);
+                let [xx, yy, xy] = self.material.stress(strain, 1.0);
                 let largest = larger(0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy), 0.0);
                 largest * largest / (2.0 * self.young)
             }
         }
     }
 
-    fn whole_stress(&self, [xx, yy, xy]: [f64; 3]) -> [f64; 3] {
-        let (m, mean) = (&self.material, self.material.lambda * (xx + yy));
-        [mean + 2.0 * m.mu * xx, mean + 2.0 * m.mu * yy, m.mu * xy]
-    }
-
     fn stress(&self, strain: [f64; 3], g: f64) -> [f64; 3] {
         match self.split {
             Split::Spectral => self.material.stress(strain, g),
-            Split::Rankine => self.whole_stress(strain).map(|stress| g * stress),
+            Split::Rankine => self.material.stress(strain, 1.0).map(|stress| g * stress),
         }
     }
 
@@ -193,7 +182,7 @@ impl QuadBody {
                 for point in points {
                     let slope = |d: usize, of: usize| (0..4).map(|k| point.slopes[k][d] * u[k][of]).sum::<f64>();
                     let strain = [slope(0, 0), slope(1, 1), slope(1, 0) + slope(0, 1)];
-                    let [xx, yy, xy] = self.whole_stress(strain).map(|stress| stress * point.area);
+                    let [xx, yy, xy] = self.material.stress(strain, 1.0).map(|stress| stress * point.area);
                     for (next, [x, y]) in next.iter_mut().zip(point.slopes) {
                         next[0] += xx * x + xy * y;
                         next[1] += xy * x + yy * y;
@@ -217,8 +206,8 @@ impl QuadBody {
     pub fn crack(&mut self) {
         let mut drive = std::mem::take(&mut self.drive);
         let beyond = |e: usize, drive: &[f64; 4]| {
-            let b = 2.0 * self.material.length_scale;
-            (0..4).any(|k| drive[k] > 0.1875 * self.toughness[e][k] / b)
+            let [local, factor, _] = self.material.crack_equation();
+            (0..4).any(|k| local + factor * drive[k] / self.toughness[e][k] > 1.0)
                 || self.mesh.elements[e].iter().any(|&n| self.c[n] < 1.0)
         };
         let counted: Vec<usize> = drive
@@ -301,17 +290,16 @@ impl QuadBody {
 
     /// Matrix and right-hand side of the phase field of an element.
     fn of_element(&self, e: usize) -> ([[f64; 4]; 4], [f64; 4]) {
-        let b = 2.0 * self.material.length_scale;
+        let [local, drive, diffusion] = self.material.crack_equation();
         let (mut matrix, mut load) = ([[0.0; 4]; 4], [0.0; 4]);
         for (k, point) in self.points[e].iter().enumerate() {
-            let toughness = self.toughness[e][k];
-            let drive = 2.0 * (1.0 - self.material.residual) * self.drive[e][k] * point.area;
-            let slope = 0.75 * toughness * b * point.area;
+            let surface = self.toughness[e][k] * point.area;
+            let product = local * surface + drive * self.drive[e][k] * point.area;
             for i in 0..4 {
-                load[i] += 0.375 * toughness / b * point.area * point.values[i];
+                load[i] += surface * point.values[i];
                 for j in 0..4 {
                     let dot: f64 = (0..2).map(|d| point.slopes[i][d] * point.slopes[j][d]).sum();
-                    matrix[i][j] += drive * point.values[i] * point.values[j] + slope * dot;
+                    matrix[i][j] += product * point.values[i] * point.values[j] + diffusion * surface * dot;
                 }
             }
         }
@@ -325,7 +313,6 @@ impl QuadBody {
             (0..2).map(|d| 0.5 * self.mass[n] * self.velocity[n][d] * (self.velocity[n][d] + gain(d))).sum::<f64>()
         };
         let (mut elastic, mut fracture) = (0.0, 0.0);
-        let b = 2.0 * self.material.length_scale;
         for (e, points) in self.points.iter().enumerate() {
             for (k, point) in points.iter().enumerate() {
                 let strain = self.strains[e][k];
@@ -334,7 +321,7 @@ impl QuadBody {
                 elastic += 0.5 * point.area * (0..3).map(|k| stress[k] * strain[k]).sum::<f64>();
                 let corners = self.mesh.elements[e].map(|n| self.c[n]);
                 let slope = [0, 1].map(|d| (0..4).map(|k| point.slopes[k][d] * corners[k]).sum::<f64>());
-                let density = 0.375 * ((1.0 - c) / b + b * (slope[0] * slope[0] + slope[1] * slope[1]));
+                let density = self.material.crack_density(c, slope[0] * slope[0] + slope[1] * slope[1]);
                 fracture += point.area * self.toughness[e][k] * density;
             }
         }
