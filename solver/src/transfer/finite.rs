@@ -12,7 +12,7 @@ use crate::transfer::point_kernel::{Fields, PointKernel, PointValues, Stress};
 use crate::transfer::sweep::{StripForces, sweep};
 
 /// A kernel on Hencky strains; its logarithms take longer than loops whose length is not known.
-struct OnHenckyStrain<'a, K>(&'a mut K);
+pub(super) struct OnHenckyStrain<'a, K>(pub(super) &'a mut K);
 
 impl<K: PointKernel> PointKernel for OnHenckyStrain<'_, K> {
     const DISPLACEMENT: bool = K::DISPLACEMENT;

@@ -9,15 +9,12 @@ use super::tangent::Tangent;
 use crate::dynamics::critical_step::StiffnessOperator;
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::{larger, largest};
-use crate::linear_algebra::lane::Lane;
-use crate::scene::Kinematics;
 
-/// Largest force out of balance, of the largest nodal force; and distance of c from 1 in an intact body.
+/// Largest force out of balance, of the largest nodal force.
 const TOLERANCE: f64 = 1e-9;
-/// Reduction of the residual by a linear solve, which the next step of Newton's method squares; the one of a
-/// linear body is the whole solution, beyond [`TOLERANCE`].
+/// Reduction of the residual by a linear solve, which the next step of Newton's method squares. A solve that
+/// goes further drifts along rigid motions that no condition holds.
 const REDUCTION: f64 = 1e-4;
-const LINEAR_REDUCTION: f64 = 1e-11;
 /// Most steps of Newton's method, and lengths of one: it converges in a few, or not at all.
 const MOST_STEPS: usize = 50;
 const MOST_TRIES: usize = 20;
@@ -40,9 +37,6 @@ impl TotalFrame {
     /// Loads that would accelerate a body that nothing holds; no convergence.
     pub(super) fn find_equilibrium(&mut self) -> Result<(), Failure> {
         self.internal_forces(); // sets the phase field at the points
-        let intact = |c: &Lane| c.0.iter().all(|c| (c - 1.0).abs() <= TOLERANCE);
-        let is_intact = self.fracture.as_ref().is_none_or(|fracture| fracture.phase.iter().all(intact));
-        let linear = is_intact && self.kinematics == Kinematics::Small;
         let free = self.free_components();
         let (mut residual, mut scale) = self.out_of_balance(&free);
         self.refuse_unbalanced(&free, &residual)?;
@@ -50,11 +44,7 @@ impl TotalFrame {
             if largest(residual.iter().map(|r| r.abs())) <= TOLERANCE * scale {
                 return Ok(());
             }
-            let change = if linear {
-                self.solve(&mut self.stiffness_operator(), &residual, LINEAR_REDUCTION)?
-            } else {
-                self.solve(&mut Tangent::new(self), &residual, REDUCTION)?
-            };
+            let change = self.solve(&mut Tangent::new(self), &residual)?;
             let slope = dot(&residual, &change);
             let (mut taken, mut part, mut bounds) = (0.0, 1.0, [0.0, f64::INFINITY]);
             let descends = |_| {
@@ -129,14 +119,14 @@ impl TotalFrame {
         Ok(())
     }
 
-    /// Solves `K x = right` for the free components to a reduction of the residual.
-    fn solve(&self, operator: &mut impl StiffnessOperator, right: &[f64], reduction: f64) -> Result<Vec<f64>, Failure> {
+    /// Solves `K x = right` for the free components, to [`REDUCTION`] of the residual.
+    fn solve(&self, operator: &mut impl StiffnessOperator, right: &[f64]) -> Result<Vec<f64>, Failure> {
         let n = right.len();
         let (mut x, mut r, mut image) = (vec![0.0; n], right.to_vec(), vec![0.0; n]);
         let mut z = vec![0.0; n];
         operator.divide_by_mass(&r, &mut z);
         let (mut p, mut square) = (z.clone(), dot(&r, &z));
-        let target = reduction * reduction * square;
+        let target = REDUCTION * REDUCTION * square;
         for _ in 0..MOST_ITERATIONS * (self.grid.columns.max(self.grid.rows) + 100) {
             if square <= target {
                 return Ok(x);

@@ -5,18 +5,17 @@ use super::TotalFrame;
 use super::stiffness::LatticeStiffness;
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::VectorField;
-use crate::linear_algebra::extremes::{largest, smaller};
+use crate::linear_algebra::extremes::smaller;
 use crate::linear_algebra::lane::Lane;
-use crate::particles::spans::lengths_of_chords;
+use crate::phase_field::fracture::LatticeFracture;
 use crate::scene::{Kinematics, Split};
+use crate::transfer::directional::{gradients, sweep_along};
 use crate::transfer::elastic_forces::elastic_forces;
 use crate::transfer::finite::sweep_with;
-use crate::transfer::kernels::{HeldPhaseStress, LeastStretch};
+use crate::transfer::kernels::{ElasticStress, HeldPhaseStress, LeastStretch};
 use crate::transfer::point_kernel::Fields;
 use crate::transfer::sweep::{StripForces, sweep};
 
-/// Displacement gradients of the probes: small against strains that matter, large against round-off.
-const PROBE: f64 = 1e-8;
 /// Stiffening, over that at which the critical step was last taken, at which it is taken again.
 const NOTICEABLE: f64 = 1.5;
 
@@ -66,43 +65,60 @@ impl TotalFrame {
             elastic_forces(lattice, *moduli, *kinematics, displacement, strips, out);
             return self.fold(out);
         };
-        let phases = fracture.phase.chunks(lattice.strip_batches());
-        let mut kernels: Vec<_> =
-            phases.map(|phase| HeldPhaseStress { moduli: *moduli, model: fracture.model, phase }).collect();
+        let mut kernels: Vec<_> = self.held_phase(fracture).collect();
         let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
         sweep_with(*kinematics, lattice, fields, &mut kernels, Some(strips));
         strips.assemble(lattice.grid.stride, out);
         self.fold(out);
     }
+
+    /// Stress with the phase field at the points as it is now, per strip.
+    fn held_phase<'a>(&self, fracture: &'a LatticeFracture) -> impl Iterator<Item = HeldPhaseStress<'a>> {
+        let (moduli, model) = (self.moduli, fracture.model);
+        let phases = fracture.phase.chunks(self.lattice.strip_batches());
+        phases.map(move |phase| HeldPhaseStress { moduli, model, phase })
+    }
 }
 
-/// Tangent stiffness on the free degrees of freedom, by central differences of the internal forces: the
-/// geometric part is in it.
+/// Tangent stiffness on the free degrees of freedom; the geometric part is in it.
 pub(super) struct Tangent<'a> {
     frame: &'a TotalFrame,
     undeformed: LatticeStiffness<'a>,
-    shortest_span: f64,
+    gradients: Vec<[Lane; 4]>,
     strips: StripForces,
-    displacement: VectorField,
-    forces: [VectorField; 2],
+    direction: VectorField,
+    forces: VectorField,
 }
 
 impl<'a> Tangent<'a> {
     pub(super) fn new(frame: &'a TotalFrame) -> Self {
-        let spans = frame.patch.spaces.iter().flat_map(|space| space.spans());
-        let shortest_span = match &frame.patch.geometry {
-            None => spans.map(|span| span.length()).fold(f64::INFINITY, smaller),
-            Some(patch) => lengths_of_chords(patch)[0],
-        };
         let zeros = || [frame.grid.zeros(), frame.grid.zeros()];
         Self {
             frame,
             undeformed: frame.stiffness_operator(),
-            shortest_span,
+            gradients: gradients(&frame.lattice, &frame.displacement),
             strips: frame.strip_forces(),
-            displacement: frame.displacement.clone(),
-            forces: [zeros(), zeros()],
+            direction: zeros(),
+            forces: zeros(),
         }
+    }
+
+    /// Change of the internal forces along the direction, with the phase field at the points as it is now.
+    fn forces_along(&mut self) {
+        let Self { frame, gradients, strips, direction, forces, .. } = self;
+        let TotalFrame { lattice, moduli, kinematics, fracture, .. } = frame;
+        match fracture {
+            None => {
+                let kernels = (0..lattice.strips()).map(|_| ElasticStress { moduli: *moduli, energy: Lane::ZERO });
+                sweep_along(*kinematics, lattice, gradients, direction, kernels, strips);
+            }
+            Some(fracture) => {
+                let kernels = frame.held_phase(fracture);
+                sweep_along(*kinematics, lattice, gradients, direction, kernels, strips);
+            }
+        }
+        strips.assemble(lattice.grid.stride, forces);
+        frame.fold(forces);
     }
 }
 
@@ -112,24 +128,15 @@ impl StiffnessOperator for Tangent<'_> {
     }
 
     fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
-        let Self { frame, undeformed, strips, displacement, forces, .. } = self;
-        let free = undeformed.degrees_of_freedom();
-        let probe = PROBE * self.shortest_span / largest(x.iter().map(|x| x.abs()));
-        for (sign, forces) in [1.0, -1.0].into_iter().zip(forces.iter_mut()) {
-            for (&(at, component), x) in free.iter().zip(x) {
-                displacement[component][at] = frame.displacement[component][at] + sign * probe * x;
-            }
-            if let Some(sheets) = frame.lattice.sheets() {
-                sheets.spread(displacement);
-            }
-            frame.forces_now(displacement, strips, forces);
+        for (&(at, component), x) in self.undeformed.degrees_of_freedom().iter().zip(x) {
+            self.direction[component][at] = *x;
         }
-        let [ahead, back] = forces;
-        for (ahead, back) in ahead.iter_mut().zip(back) {
-            ahead.iter_mut().zip(back).for_each(|(ahead, back)| *ahead = (*ahead - *back) / (2.0 * probe));
+        if let Some(sheets) = self.frame.lattice.sheets() {
+            sheets.spread(&mut self.direction);
         }
-        undeformed.add_springs(x, ahead);
-        undeformed.pack_forces(ahead, out);
+        self.forces_along();
+        self.undeformed.add_springs(x, &mut self.forces);
+        self.undeformed.pack_forces(&mut self.forces, out);
     }
 
     fn divide_by_mass(&mut self, x: &[f64], out: &mut [f64]) {
