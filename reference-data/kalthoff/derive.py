@@ -77,13 +77,14 @@ def grown(run, length):
 
 
 for plane in ("plane-strain", "plane-stress"):
-    elastic, cracked = ([load(f"{model}-{plane}-h{size}") for size in SIZES] for model in ("elastic", "at1"))
-    energies(f"elastic/{plane}", elastic, (20.0, 30.0), {**ENERGIES, **REACTION})
-    energies(f"at1/{plane}", cracked, (30.0, 45.0), {**ENERGIES, **FRACTURE})
-    for length in LENGTHS:
-        found = [grown(run, length) for run in cracked]
-        times, angles = [[row[k] for row in found] for k in (0, 1)]
-        element = float(SIZES[2])
-        entry(f"at1/{plane}/time-at-{length}-mm", "us", *extrapolated(times, element / found[2][2]), note(times))
-        uncertainty = max(abs(angles[2] - angles[1]), math.degrees(math.atan(element / length)))
-        entry(f"at1/{plane}/angle-at-{length}-mm", "1", angles[2], uncertainty, "degrees; of the finest mesh")
+    energies(f"elastic/{plane}", [load(f"elastic-{plane}-h{size}") for size in SIZES], (20.0, 30.0), {**ENERGIES, **REACTION})
+    for model in ("at1", "at2"):
+        cracked = [load(f"{model}-{plane}-h{size}") for size in SIZES]
+        energies(f"{model}/{plane}", cracked, (30.0, 45.0), {**ENERGIES, **FRACTURE})
+        for length in LENGTHS:
+            found = [grown(run, length) for run in cracked]
+            times, angles = [[row[k] for row in found] for k in (0, 1)]
+            element = float(SIZES[2])
+            entry(f"{model}/{plane}/time-at-{length}-mm", "us", *extrapolated(times, element / found[2][2]), note(times))
+            uncertainty = max(abs(angles[2] - angles[1]), math.degrees(math.atan(element / length)))
+            entry(f"{model}/{plane}/angle-at-{length}-mm", "1", angles[2], uncertainty, "degrees; of the finest mesh")

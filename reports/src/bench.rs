@@ -16,6 +16,7 @@ pub mod plate;
 pub mod plate_match;
 pub mod ratios;
 pub mod scale;
+pub mod scoreboard;
 pub mod stages;
 pub mod work_precision;
 
@@ -143,6 +144,7 @@ pub fn sections(set: &BenchSet) -> Vec<Section> {
         ("Targets", ratios::exhibits(records)),
         ("Work and precision", work_precision::exhibits(records)),
         ("The plate", plate::exhibits(set)),
+        ("Other benchmarks", scoreboard::exhibits(records)),
         ("Time of a step by phase", stages::exhibits(records)),
         ("Solving for the phase field", stages::solves(records)),
         ("Threads", conditions::threads(records)),

@@ -9,6 +9,7 @@
 //! | family | question |
 //! |---|---|
 //! | `work-precision` | what an error costs: degrees, mass, layouts and frames, one problem ([`wave`]) |
+//! | `scoreboard` | what an error of other benchmarks costs, for fisura and for elements ([`scoreboard`]) |
 //! | `plate` | what an error of the plate costs, for fisura and for finite elements ([`plate`]) |
 //! | `stages` | where the time of a step goes, beside a plain kernel ([`stages`], [`minimal`]) |
 //! | `solves` | the phase-field solver against plain ones ([`solves`]) |
@@ -38,6 +39,7 @@ mod plate_share;
 pub mod record;
 pub mod scale;
 pub mod scenes;
+pub mod scoreboard;
 pub mod solves;
 pub mod stages;
 pub mod threads;
@@ -159,9 +161,10 @@ impl From<Breakdown> for BenchError {
 type Family = fn(&Settings<'_>) -> Result<Vec<BenchRecord>, BenchError>;
 
 /// All families, in the order of the report.
-pub const FAMILIES: [(&str, Family); 12] = [
+pub const FAMILIES: [(&str, Family); 13] = [
     ("work-precision", wave::family),
     ("plate", plate::family),
+    ("scoreboard", scoreboard::family),
     ("stages", stages::family),
     ("solves", solves::family),
     ("threads", threads::family),

@@ -116,7 +116,7 @@ impl Mapped {
         let y = lines(
             &[
                 vec![(17e-3, most)],
-                growing(34.2e-3, 17e-3, h, most),
+                growing(33.6e-3, 17e-3, h, most),
                 vec![(34.75e-3, h), (35.25e-3, h), (35.8e-3, h), (36e-3, 1.2 * h)],
                 growing(36e-3, 53e-3, 1.5 * h, most),
                 vec![(64e-3, most), (70e-3, most)],

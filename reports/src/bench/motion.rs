@@ -1,12 +1,7 @@
 //! The error of a motion in both frames, against time.
 
-use super::pareto::cost_to_reach;
-use super::work_precision::{Chart, Cost, Line, lines, on_finest};
+use super::work_precision::{Chart, Cost, Line, at_equal_error, lines, on_finest};
 use super::{Exhibit, Records};
-use crate::number::plain;
-
-/// Errors at which the frames are compared.
-const ERRORS: [f64; 6] = [0.05, 0.02, 0.01, 0.008, 0.005, 0.003];
 
 /// One figure.
 pub fn exhibits(records: Records) -> Vec<Exhibit> {
@@ -24,24 +19,10 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
         uncertainty: 0.0,
     };
     let caption = "Axis-aligned displacement of finite strain (convergence/axis-aligned, moving-axis-aligned), one thread; against the exact motion";
-    let reading = format!("{} {}", at_equal_error(&lines), on_finest(&lines, "spans"));
+    let in_total = |line: &&Line| line.records.iter().all(|record| record.id.contains("-total/"));
+    let (total, updated) = lines.iter().partition(in_total);
+    let reading = format!("{} {}", at_equal_error([updated, total]), on_finest(&lines, "spans"));
     vec![chart.plot(caption, reading)]
-}
-
-/// What the best ways in the updated and in the total frame take to an error that both reach.
-fn at_equal_error(lines: &[Line]) -> String {
-    let best = |total: bool, error: f64| {
-        let in_total = |line: &&Line| line.records.iter().all(|record| record.id.contains("-total/"));
-        let of = lines.iter().filter(|line| in_total(line) == total);
-        let costs = of.filter_map(|line| Some((line.label.as_str(), cost_to_reach(&line.points(Cost::Time), error)?)));
-        costs.min_by(|a, b| a.1.total_cmp(&b.1))
-    };
-    let sentence = |&error: &f64| {
-        let ((updated, slow), (total, fast)) = (best(false, error)?, best(true, error)?);
-        let [percent, slow_s, fast_s, ratio] = [100.0 * error, slow, fast, slow / fast].map(|value| plain(value, 2));
-        Some(format!("For an error of {percent} %: {updated}, {slow_s} s; {total}, {fast_s} s; ratio {ratio}."))
-    };
-    ERRORS.iter().filter_map(sentence).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

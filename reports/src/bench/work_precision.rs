@@ -4,7 +4,7 @@ use fisura_verification::bench::record::{BenchRecord, Spread};
 use fisura_verification::output::history::Table;
 use fisura_verification::record::{Curve, CurveStyle, Floor};
 
-use super::pareto::{cost_of, front};
+use super::pareto::{cost_of, cost_to_reach, front};
 use super::{Exhibit, Records};
 use crate::number::{plain, pretty};
 use crate::series::SeriesSet;
@@ -65,6 +65,23 @@ pub(super) fn on_finest(lines: &[Line], spans: &str) -> String {
         Some(format!("{}: {value} with {count} {spans}, {} s.", line.label, plain(last.cpu_s.median, 3)))
     };
     lines.iter().filter_map(sentence).collect::<Vec<_>>().join(" ")
+}
+
+/// Errors at which two groups of lines are compared.
+const ERRORS: [f64; 7] = [0.1, 0.05, 0.02, 0.01, 0.008, 0.005, 0.003];
+
+/// What the best lines of two groups take to an error that both reach, and the ratio.
+pub(super) fn at_equal_error(groups: [Vec<&Line>; 2]) -> String {
+    let best = |group: &[&Line], error: f64| {
+        let cost = |line: &&Line| Some((line.label.clone(), cost_to_reach(&line.points(Cost::Time), error)?));
+        group.iter().filter_map(cost).min_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let sentence = |&error: &f64| {
+        let ((first, slow), (second, fast)) = (best(&groups[0], error)?, best(&groups[1], error)?);
+        let [percent, slow_s, fast_s, ratio] = [100.0 * error, slow, fast, slow / fast].map(|value| plain(value, 2));
+        Some(format!("For an error of {percent} %: {first}, {slow_s} s; {second}, {fast_s} s; ratio {ratio}."))
+    };
+    ERRORS.iter().filter_map(sentence).collect::<Vec<_>>().join(" ")
 }
 
 /// Records whose answers hold, by label, in the order in which labels appear.

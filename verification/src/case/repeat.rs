@@ -121,6 +121,11 @@ impl Expansion {
             return self.each(path, check);
         };
         let mut checks = self.set(path, &set, depth);
+        let folder = beside.get("reference").and_then(Node::as_str).filter(|name| name.ends_with('/'));
+        if let Some(folder) = folder.map(String::from) {
+            beside.remove("reference");
+            checks.iter_mut().for_each(|check| put_reference_into(check, &folder));
+        }
         for check in &mut checks {
             put(check, &beside);
         }
@@ -194,6 +199,15 @@ fn put(node: &mut Node, entries: &Table) {
     }
 }
 
+/// Puts the folder before the reference of a check, if it has one.
+fn put_reference_into(check: &mut Node, folder: &str) {
+    if let Value::Table(table) = &mut check.value
+        && let Some(Node { value: Value::String(name), .. }) = table.get_mut("reference")
+    {
+        name.insert_str(0, folder);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::fs;
@@ -227,6 +241,14 @@ mod tests {
         assert!(case.checks.iter().all(|check| check.variant.as_deref() == Some("p=2")));
         let found: Vec<_> = case.checks.iter().map(|c| (c.id.as_str(), c.unit.as_str(), c.accept.max)).collect();
         assert_eq!(found, [("first-a", "s", None), ("b", "m", Some(3.0)), ("c", "1", None), ("d", "1", None)]);
+    }
+
+    #[test]
+    fn a_folder_beside_a_set_holds_the_references_of_its_checks() {
+        let sets = "[[two]]\neach = [{ quantity = \"a\", reference = \"x\" }, { quantity = \"b\" }]\n";
+        let case = read("[[check]]\nset = \"two\"\nreference = \"folder/part/\"\n", sets, BASES).unwrap();
+        let found: Vec<_> = case.checks.iter().map(|check| check.reference.as_deref()).collect();
+        assert_eq!(found, [Some("folder/part/x"), None]);
     }
 
     #[test]

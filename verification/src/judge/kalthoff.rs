@@ -1,7 +1,8 @@
 //! The test of Kalthoff and Winkler: energies at two times, and times and angles at which the crack has a
 //! length, against bilinear elements extrapolated to h = 0 (`reference-data/kalthoff`).
 
-use super::curves::{self, AGREES, DECIDES, SAFETY, WIDEST, decide, doubt};
+use super::curves::{self, WIDEST};
+use super::elements::{Elements, differences};
 use super::model::Plane;
 use super::submission::Submission;
 use super::table::Curve;
@@ -11,14 +12,8 @@ use crate::measure::{chord, grown};
 use crate::reference::{Library, ReferenceValue};
 use crate::scene::SceneFileError;
 
-/// Folder of the reference.
-const FOLDER: &str = "kalthoff";
 /// Ends of the slit, m.
 const SLIT: [[f64; 2]; 2] = [[0.0, 25e-3], [50e-3, 25e-3]];
-/// Spacing of the finest elements, whose distance from the limit is the uncertainty of the reference, m.
-const FINEST: f64 = 0.125e-3;
-/// l0 of the cracked reference, half of b, m.
-const LENGTH_SCALE: f64 = 0.75e-3;
 /// Times of energies, µs, and lengths of the crack, mm, of which the reference has some.
 const TIMES: [u32; 3] = [20, 30, 45];
 const LENGTHS: [u32; 4] = [5, 15, 25, 35];
@@ -29,6 +24,7 @@ const SPEED: f64 = 1870.0;
 struct Comparer<'a> {
     submission: &'a Submission,
     library: &'a Library,
+    elements: &'a Elements,
     /// `at1/plane-strain`, …
     variant: String,
 }
@@ -52,16 +48,21 @@ pub fn judge(
     if submission.model.plane == Plane::Unknown {
         notes.push("the plane state is unknown; plane strain is assumed".into());
     }
-    let cracks = if submission.model.phase_field == "none" { "elastic" } else { "at1" };
+    let cracks = match submission.model.phase_field.as_str() {
+        "none" => "elastic",
+        "AT2" => "at2",
+        _ => "at1",
+    };
     let plane = if submission.model.plane == Plane::Stress { "plane-stress" } else { "plane-strain" };
-    let comparer = Comparer { submission, library, variant: format!("{cracks}/{plane}") };
+    let elements = Elements::of("kalthoff").expect("in the list");
+    let comparer = Comparer { submission, library, elements, variant: format!("{cracks}/{plane}") };
     let mut quantities = comparer.energies(&curves);
     quantities.extend(comparer.path(&curves));
-    let Some(source) = library.source(FOLDER).filter(|_| !quantities.is_empty()) else {
-        let message = format!("no reference {FOLDER}/{}", comparer.variant);
+    let Some(source) = library.source(elements.folder).filter(|_| !quantities.is_empty()) else {
+        let message = format!("no reference {}/{}", elements.folder, comparer.variant);
         return Err(submission.key_error("benchmark", message, "restore reference-data"));
     };
-    let differences = differences(submission);
+    let differences = differences(submission, elements);
     if !differences.is_empty() {
         for verdict in &mut quantities {
             verdict.comparisons.iter_mut().for_each(|row| explained_by_difference(row, true));
@@ -69,7 +70,7 @@ pub fn judge(
         }
     }
     let reference = ReferenceUsed {
-        id: format!("{FOLDER}/{}", comparer.variant),
+        id: format!("{}/{}", elements.folder, comparer.variant),
         label: source.citation.clone(),
         uncertainty: "distance of the finest of three meshes from the limit h to 0".into(),
     };
@@ -132,11 +133,9 @@ impl Comparer<'_> {
     }
 
     fn reference(&self, name: &str) -> Option<&ReferenceValue> {
-        self.library.value(FOLDER, &format!("{}/{name}", self.variant))
+        self.elements.value(self.library, &self.variant, name)
     }
 
-    /// A value against its reference; without a `stated` uncertainty with that of elements of the spacing, in
-    /// proportion to their size.
     fn compared(
         &self,
         words: String,
@@ -146,33 +145,9 @@ impl Comparer<'_> {
         stated: Option<f64>,
     ) -> QuantityVerdict {
         let mut row = Comparison { name: words.clone(), unit: unit.into(), value, ..Comparison::default() };
-        row.reference = Some(reference.value);
-        row.error = value.map(|value| value - reference.value);
-        let u_ref = reference.uncertainty.unwrap_or(0.0);
-        let of_elements = self.submission.spacing.map(|spacing| SAFETY * u_ref * spacing / FINEST);
-        decide(&mut row, u_ref, stated.or(of_elements));
-        match value {
-            Some(_) => doubt(&mut row, [DECIDES[0], AGREES[0]].map(|part| part * reference.value.abs())),
-            None => row.why = "not given, not reached, or between rows more than 2 µs apart".into(),
-        }
+        self.elements.compare(&mut row, reference, self.submission.spacing, stated);
         QuantityVerdict { quantity: words, outcome: row.outcome, comparisons: vec![row] }
     }
-}
-
-/// What the declared model has that the reference has not.
-fn differences(submission: &Submission) -> Vec<String> {
-    let model = &submission.model;
-    let mut out = model.differences.clone();
-    if !["AT1", "none"].contains(&model.phase_field.as_str()) {
-        out.push(format!("phase-field model {} instead of AT1", model.crack_model()));
-    }
-    if !["spectral", "unknown"].contains(&model.split.as_str()) {
-        out.push(format!("split {:?} instead of the spectral one", model.split));
-    }
-    if let Some(l) = model.length_scale.filter(|l| (l / LENGTH_SCALE - 1.0).abs() > 0.01) {
-        out.push(format!("l0 = {} mm in Borden's convention instead of 0.75 mm", l * 1e3));
-    }
-    out
 }
 
 /// The value at a time between two rows that are close.

@@ -79,6 +79,8 @@ pub struct Submission {
     pub curves: [Option<Mapping>; 6],
     /// Numbers of closed-form benchmarks, SI, with their place.
     pub values: Vec<(String, f64)>,
+    /// Their numerical uncertainties, SI.
+    pub stated_values: Vec<(String, f64)>,
     document: Document,
 }
 
@@ -155,6 +157,7 @@ fn read(root: &Item<'_>, document: &Document) -> Option<Submission> {
     let needed: &[&str] = match benchmark {
         Some("plate") => &["traction", "crack", "split"],
         Some("kalthoff") => &["phase_field"],
+        Some("strip" | "ring" | "arrest") => &["phase_field", "split"],
         _ => &[],
     };
     let model = match needed {
@@ -163,11 +166,15 @@ fn read(root: &Item<'_>, document: &Document) -> Option<Submission> {
     };
     let rest = fields.get("discretisation").map_or(Some(Default::default()), |item| discretisation(&item));
     let cost = fields.get("cost").map_or(Some(Cost::default()), |item| cost(&item));
-    let stated = fields.get("uncertainty").map_or(Some([None; 6]), |item| stated(&item));
+    let asked = benchmark.unwrap_or_default();
+    let asks_for_curves = super::numbers::values(asked).is_empty();
+    let uncertainty = |of_numbers: bool| fields.get("uncertainty").filter(|_| of_numbers != asks_for_curves);
+    let stated = uncertainty(false).map_or(Some([None; 6]), |item| stated(&item));
+    let stated_values = uncertainty(true).map_or(Some(Vec::new()), |item| values(&item, asked));
     let files = fields.get("files").map_or(Some((None, "#".into())), |item| files(&item));
     let thickness = model.as_ref().and_then(|m| m.thickness);
     let curves = fields.get("curves").map_or(Some(Default::default()), |item| curves(&item, thickness));
-    let values = fields.get("values").map_or(Some(Vec::new()), |item| values(&item, benchmark?));
+    let values = fields.get("values").map_or(Some(Vec::new()), |item| values(&item, asked));
     let ((method, spacing, discretisation), (separator, comment), (time, curves)) = (rest?, files?, curves?);
     Some(Submission {
         benchmark: benchmark?.to_string(),
@@ -183,6 +190,7 @@ fn read(root: &Item<'_>, document: &Document) -> Option<Submission> {
         time,
         curves,
         values: values?,
+        stated_values: stated_values?,
         document: document.clone(),
     })
 }
@@ -250,10 +258,10 @@ fn files(item: &Item<'_>) -> Option<(Option<char>, String)> {
 }
 
 fn values(item: &Item<'_>, benchmark: &str) -> Option<Vec<(String, f64)>> {
-    let known = super::closed_form::values(benchmark);
-    let names: Vec<&str> = known.iter().map(|v| v.name).collect();
+    let asked = super::numbers::values(benchmark);
+    let names: Vec<&str> = asked.iter().map(|a| a.name.as_str()).collect();
     let fields = item.fields(&names)?;
-    let read = known.iter().map(|v| Some((v.name.to_string(), fields.maybe(v.name, |i| i.quantity(v.dimension))?)));
+    let read = asked.iter().map(|a| Some((a.name.clone(), fields.maybe(&a.name, |i| i.quantity(a.dimension))?)));
     let read: Vec<(String, Option<f64>)> = read.collect::<Option<_>>()?;
     Some(read.into_iter().filter_map(|(name, value)| Some((name, value?))).collect())
 }

@@ -1,6 +1,7 @@
 //! `judge --new BENCHMARK`: a commented `submission.toml`.
 
-use super::closed_form::values;
+use super::elements::Elements;
+use super::numbers::values;
 
 const HEAD: &str = r##"# A result to be judged by `cargo xtask judge FOLDER`. Everything that is commented out is optional.
 benchmark = "@"
@@ -57,6 +58,17 @@ phase_field = "AT1"                 # "none" for the elastic test; others have n
 # Energies are of the half plate: give factor = 0.5 below if you computed the whole one.
 "##;
 
+const AT1: &str = r##"
+[model]
+plane       = "stress"
+phase_field = "AT1"
+split       = "spectral"            # "rankine": driven by the largest principal stress
+# length_scale = "0.25 mm"          # of Borden et al.: half of b
+# differences  = ["what else differs from the benchmark"]
+
+# [uncertainty]                     # numerical uncertainty of each number below, from your own mesh study
+"##;
+
 const CURVES: &str = r##"
 # [uncertainty]                     # numerical uncertainty from your own mesh study: relative rms over the run
 # kinetic  = 0.02
@@ -88,10 +100,10 @@ pub fn template(benchmark: &str) -> String {
         "kalthoff" => return head + KALTHOFF + CURVES,
         _ => {}
     }
-    let rows = values(benchmark).into_iter().map(|k| {
-        let (what, unit) = (k.what, k.unit);
-        let example = if unit == "1" { "0.0".to_string() } else { format!("\"0.0 {unit}\"") };
-        format!("{} = {example} # {what}\n", k.name)
+    let rows = values(benchmark).into_iter().map(|a| {
+        let example = if a.unit == "1" { "0.0".to_string() } else { format!("\"0.0 {}\"", a.unit) };
+        format!("{} = {example} # {}\n", a.name, a.what)
     });
-    head + "\n[values]\n" + &rows.collect::<String>()
+    let model = Elements::of(benchmark).map_or("", |_| AT1);
+    head + model + "\n[values]\n" + &rows.collect::<String>()
 }

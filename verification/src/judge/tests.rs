@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
+use super::elements::Elements;
+use super::numbers::{Asked, Basis};
 use super::submission::Submission;
 use super::verdict::{Finding, Outcome};
 use super::*;
@@ -371,21 +373,56 @@ fn an_end_or_a_quantity_that_is_missing_is_incomplete() {
 }
 
 #[test]
-fn the_templates_are_valid_and_closed_forms_are_judged() {
+fn the_templates_are_valid_and_numbers_are_judged() {
+    let library = library();
     for benchmark in BENCHMARKS {
         Submission::parse("submission.toml", &template::template(benchmark.name)).unwrap_or_else(|e| panic!("{e}"));
-        let known = closed_form::values(benchmark.name);
+        let elements = Elements::of(benchmark.name);
+        let model =
+            elements.map_or("", |_| "[model]\nplane = \"stress\"\nphase_field = \"AT1\"\nsplit = \"unknown\"\n");
+        let known = |basis: Basis| match basis {
+            Basis::ClosedForm(value, _) | Basis::Below(value) | Basis::Undecided(value, _) => value,
+            Basis::Elements(name) => elements.unwrap().value(&library, benchmark.name, &name).unwrap().value,
+        };
+        let asked = numbers::values(benchmark.name);
         for (factor, outcome) in [(1.0 - 1e-9, Outcome::Pass), (1.1, Outcome::Fail)] {
-            let values: String = known.iter().map(|k| format!("{} = {:e}\n", k.name, k.value * factor)).collect();
+            let value = |a: &Asked| format!("{} = {:e}\n", a.name, known(a.basis.clone()) * factor);
+            let values: String = asked.iter().map(value).collect();
             let folder = tempfile::tempdir().unwrap();
-            let text = format!("benchmark = {:?}\n[code]\nname = \"c\"\n[values]\n{values}", benchmark.name);
+            let text = format!("benchmark = {:?}\n[code]\nname = \"c\"\n{model}[values]\n{values}", benchmark.name);
             fs::write(folder.path().join("submission.toml"), text).unwrap();
-            if !known.is_empty() {
+            if !asked.is_empty() {
                 let shows_no_agreement = benchmark.name == "crack-speed" && factor < 1.0;
-                let diagnostic = benchmark.name == "rings" || shows_no_agreement;
+                let diagnostic = ["rings", "pmma-strip"].contains(&benchmark.name) || shows_no_agreement;
                 let outcome = if diagnostic { Outcome::Diagnostic } else { outcome };
                 assert_eq!(judged(folder.path(), None).verdict.outcome, outcome, "{}", benchmark.name);
             }
         }
+    }
+}
+
+#[test]
+fn numbers_have_the_uncertainty_that_is_stated_or_that_of_elements_of_their_spacing() {
+    let judged = |lines: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let text = "benchmark = \"strip\"\ncode = { name = \"c\" }\nvalues = { speed = \"1380 m/s\" }\n";
+        fs::write(folder.path().join("submission.toml"), format!("{text}{lines}\n")).unwrap();
+        judge(folder.path(), &library(), &data(), None).map(|judged| judged.verdict)
+    };
+    let model = "model = { plane = \"stress\", phase_field = \"AT1\", split = \"spectral\" }\n";
+    let speed = |lines: &str| judged(&format!("{model}{lines}")).unwrap().quantities[0].comparisons[0].clone();
+    let alone = speed("");
+    assert!(alone.outcome == Outcome::Fail && alone.u_num.is_none(), "{alone:?}");
+    let stated = speed("uncertainty = { speed = \"20 m/s\" }");
+    assert!(stated.outcome == Outcome::Pass && stated.u_num == Some(20.0), "{stated:?}");
+    let spacing = speed("discretisation = { spacing = \"62.5 um\" }");
+    assert!((spacing.u_num.unwrap() / (2.5 * spacing.u_ref.unwrap()) - 1.0).abs() < 1e-12, "{spacing:?}");
+    assert_eq!(spacing.outcome, Outcome::Diagnostic, "an uncertainty of 7 % shows no agreement");
+    let other = judged("model = { plane = \"strain\", phase_field = \"AT2\", split = \"none\" }").unwrap();
+    assert!(other.differences.len() == 3 && other.outcome == Outcome::Incomplete, "{other:?}");
+    let refused = [("", "model: missing"), ("uncertainty = { sped = \"20 m/s\" }", "uncertainty.sped")];
+    for (lines, says) in refused {
+        let error = judged(lines).unwrap_err().to_string();
+        assert!(error.contains(says), "{lines}: {error}");
     }
 }

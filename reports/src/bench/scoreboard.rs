@@ -1,0 +1,33 @@
+//! Error against time over the benchmarks, for this solver and for finite elements.
+
+use super::work_precision::{Chart, Cost, Line, at_equal_error, lines};
+use super::{Exhibit, Records};
+
+/// One figure for all of them.
+pub fn exhibits(records: Records) -> Vec<Exhibit> {
+    let lines = lines(records.below("scoreboard/"));
+    if lines.is_empty() {
+        return Vec::new();
+    }
+    let mut problems: Vec<&str> =
+        lines.iter().filter_map(|line| line.records[0].parameters.get("problem")?.as_str()).collect();
+    problems.dedup();
+    let reading = problems.into_iter().map(|problem| {
+        let of = |line: &&Line, code: &str| line.records[0].id.starts_with(&format!("scoreboard/{problem}/{code}/"));
+        let [elements, fisura] = ["elements", "fisura"].map(|code| lines.iter().filter(|l| of(l, code)).collect());
+        at_equal_error([elements, fisura])
+    });
+    let reading = reading.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" ");
+    let chart = Chart {
+        id: "timing/scoreboard".into(),
+        title: "Benchmarks: error against time".into(),
+        lines: &lines,
+        front: None,
+        cost: Cost::Time,
+        axis: "processor time of the run (s)",
+        uncertainty: 0.0,
+    };
+    let caption = "Whole runs on one thread, both programs on equal meshes and with a solve for the phase field in every \
+                   step; the references are the same elements on finer meshes, extrapolated to h = 0";
+    vec![chart.plot(caption, reading)]
+}

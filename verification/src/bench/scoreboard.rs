@@ -1,0 +1,207 @@
+//! What an error of the benchmarks costs: whole runs of this solver and of the independent finite elements
+//! ([`elements`]) in the same rounds, on one thread, each as its reference in `reference-data` has it. Both
+//! have equal meshes where the crack runs, their own critical step, and solve for the phase field in every
+//! step. The plate, whose elements are graded, has a family of its own ([`super::plate`]).
+//!
+//! The error of a run is the root mean square of the relative errors of all numbers that the case compares
+//! with the reference, measured in the same way for both programs.
+
+use std::fs;
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::elements::{self, Built};
+use super::peer::program::Program;
+use super::record::{AnswerError, BenchRecord};
+use super::timing::{Contestant, Stopwatch, pool, round_robin};
+use super::{BenchError, Settings};
+use crate::case::Case;
+use crate::case::expand::CaseScene;
+use crate::measure::{Run, measure};
+use crate::output::history::Table;
+use crate::reference::Library;
+use crate::scene_run::run_scene;
+
+/// Time that one run may take.
+const LIMIT: Duration = Duration::from_secs(1800);
+/// Open part of the balance of energies of fisura over the largest.
+const CLOSURE: f64 = 1e-2;
+
+/// A problem on its meshes.
+struct Contest {
+    name: &'static str,
+    /// Case whose checks name the reference.
+    case: &'static str,
+    /// Key that sets the mesh, and its values; the spacing times the last number in mm.
+    meshes: (&'static str, &'static [&'static str]),
+    /// Options of the elements, and their sizes in mm.
+    elements: (&'static [&'static str], &'static [&'static str]),
+    /// From their energies to those of the case.
+    factor: f64,
+}
+
+/// All of them; a quick run has the first two meshes of each.
+const PROBLEMS: [Contest; 2] = [
+    Contest {
+        name: "kalthoff",
+        case: "kalthoff-at1-fine",
+        meshes: ("mesh.cells", &["[128, 128]", "[192, 192]", "[256, 256]", "[384, 384]"]),
+        elements: (
+            &["--kalthoff", "--at1", "--length-scale-mm", "0.75", "--toughness", "22130", "--end-us", "48"],
+            &["0.5", "0.25", "0.2"],
+        ),
+        factor: 1.0,
+    },
+    Contest {
+        name: "strip",
+        case: "strip-energy-fine",
+        meshes: ("mesh.subdivide", &["4", "8", "16"]),
+        elements: (&["--problem", "strip", "--length-scale-mm", "0.25", "--end-us", "18"], &["0.125", "0.0625"]),
+        factor: 2.0,
+    },
+];
+
+/// Columns of the elements, and the names and factors to SI that the cases know them by.
+const COLUMNS: [(&str, &str, f64); 7] = [
+    ("time_us", "time_s", 1e-6),
+    ("external_work_j_per_m", "work_impactor_j", 1.0),
+    ("kinetic_j_per_m", "kinetic_j", 1.0),
+    ("elastic_j_per_m", "elastic_j", 1.0),
+    ("fracture_j_per_m", "fracture_j", 1.0),
+    ("tip_x_mm", "crack_tip_x_m", 1e-3),
+    ("tip_y_mm", "crack_tip_y_m", 1e-3),
+];
+
+/// Times every problem on its meshes.
+///
+/// # Errors
+/// If a case or the reference is missing, or a run breaks down.
+pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
+    let library = Arc::new(settings.library()?);
+    let built = settings.elements.get_or_init(|| elements::build(&settings.workspace));
+    pool(1)?.install(|| {
+        let mut contestants = Vec::new();
+        for problem in &PROBLEMS {
+            let (key, meshes) = problem.meshes;
+            for mesh in some(meshes, settings.quick) {
+                contestants.push(ours(settings, problem, &format!("{key}={mesh}"), mesh, &library)?);
+            }
+            for h in some(problem.elements.1, settings.quick) {
+                if let Ok(built) = built {
+                    contestants.push(theirs(settings, problem, built, h, &library)?);
+                }
+            }
+        }
+        round_robin(contestants, 1, settings.budget())
+    })
+}
+
+fn some<'a>(meshes: &'a [&'static str], quick: bool) -> &'a [&'static str] {
+    if quick { &meshes[..2] } else { meshes }
+}
+
+/// The case of a problem on one mesh, and its first scene without pictures.
+fn load(settings: &Settings, problem: &Contest, mesh: &[String]) -> Result<(Case, CaseScene), BenchError> {
+    let path = settings.workspace.join("verification/cases/benchmarks").join(problem.case).with_extension("toml");
+    let case = Case::load(&path, mesh)?;
+    let scene = case.scenes()?.into_iter().next();
+    let scene = scene.ok_or_else(|| BenchError::input(format!("{} has no scene", path.display())))?;
+    Ok((case, scene))
+}
+
+fn ours(
+    settings: &Settings,
+    problem: &Contest,
+    set: &str,
+    mesh: &str,
+    library: &Arc<Library>,
+) -> Result<Contestant<'static>, BenchError> {
+    let (case, scene) = load(settings, problem, &[set.to_string()])?;
+    let degree = scene.scene.mesh.degree[0];
+    let (id, label) =
+        (format!("scoreboard/{}/fisura/{mesh}", problem.name), format!("{}: fisura, p = {degree}", problem.name));
+    let record = BenchRecord::new(id, label, 1.0, "run").with("problem", problem.name).with("mesh", mesh);
+    let library = Arc::clone(library);
+    let run = move |record: &mut BenchRecord| {
+        let watch = Stopwatch::start();
+        let run = run_scene(&scene.scene, &mut |_| {}, &mut |_, _| {});
+        let sample = watch.read();
+        if let Some(breakdown) = run.breakdown {
+            return Err(breakdown.into());
+        }
+        let closure = run.summary.largest_closure_over_largest_energy;
+        record.verify_at_most("closure of the ledger over the largest energy", closure, CLOSURE);
+        record.note_errors(errors(&case, &scene, &run.history, scene.energy_factor, &library));
+        Ok(sample)
+    };
+    Ok(Contestant { record, run: Box::new(run) })
+}
+
+fn theirs(
+    settings: &Settings,
+    problem: &Contest,
+    built: &Built,
+    h: &str,
+    library: &Arc<Library>,
+) -> Result<Contestant<'static>, BenchError> {
+    let (case, scene) = load(settings, problem, &[])?;
+    let label = format!("{}: elements ({})", problem.name, built.instructions);
+    let id = format!("scoreboard/{}/elements/{h}", problem.name);
+    let record = BenchRecord::new(id, label, 1.0, "run").with("problem", problem.name).with("mesh", format!("{h} mm"));
+    let file = settings.workspace.join("target/independent-fem").join(format!("{}.csv", problem.name));
+    let mut words = vec![built.program.display().to_string()];
+    words.extend(problem.elements.0.iter().map(|word| word.to_string()));
+    words.extend(["--interval-us", "0.25", "--h-mm", h, "--out"].map(String::from));
+    let (program, factor, library) = (Program::of_words(words, LIMIT), problem.factor, Arc::clone(library));
+    let run = move |record: &mut BenchRecord| {
+        let _ = fs::remove_file(&file); // the answer of another run is none
+        let sample = program.run(&file)?;
+        match Table::read(&file) {
+            Ok(table) => {
+                record.verify(true, "the program wrote its history");
+                record.note_errors(errors(&case, &scene, &renamed(&table), factor, &library));
+            }
+            Err(error) => record.verify(false, format!("it wrote no history: {error}")),
+        }
+        Ok(sample)
+    };
+    Ok(Contestant { record, run: Box::new(run) })
+}
+
+/// A history of the elements with the columns of this solver.
+fn renamed(table: &Table) -> Table {
+    let found = COLUMNS.iter().filter_map(|(theirs, ours, factor)| {
+        let values = table.column(theirs)?.iter().map(|value| factor * value).collect();
+        Some((ours.to_string(), values))
+    });
+    let (names, columns) = found.unzip();
+    Table { names, columns }
+}
+
+/// The root mean square of the relative errors of all numbers with a reference, then each of them.
+fn errors(
+    case: &Case,
+    scene: &CaseScene,
+    history: &Table,
+    energy_factor: f64,
+    library: &Library,
+) -> Option<Vec<AnswerError>> {
+    let run =
+        Run { name: &scene.name, scene: &scene.scene, history, frames: &[], energy_factor, values: &scene.values };
+    let mut each = Vec::new();
+    for check in case.checks.iter().filter(|check| check.reference.is_some()) {
+        let measured = measure(check, &run, &[run], library).ok()?;
+        let reference = measured.reference?;
+        let (value, known) = (measured.value?, reference.value?);
+        let uncertainty = reference.uncertainty.unwrap_or(0.0) / known.abs();
+        let error = AnswerError::relative(&check.quantity, (value / known - 1.0).abs(), &reference.source);
+        each.push(AnswerError { uncertainty, ..error });
+    }
+    let mean = |of: fn(&AnswerError) -> f64| {
+        (each.iter().map(|error| of(error).powi(2)).sum::<f64>() / each.len() as f64).sqrt()
+    };
+    let quantity = format!("root mean square of the relative errors of {} numbers", each.len());
+    let all = AnswerError::relative(&quantity, mean(|error| error.value), "elements extrapolated to h = 0");
+    let all = AnswerError { uncertainty: mean(|error| error.uncertainty), ..all };
+    (!each.is_empty()).then(|| [all].into_iter().chain(each).collect())
+}
