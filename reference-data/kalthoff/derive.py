@@ -3,8 +3,9 @@
 Prints the order that is observed, the limit and its uncertainty of each quantity, as entries of source.toml. Theory has order 1, that of the
 singularity at the tip of the slit and of the cost of a crack, and most energies have an order near it: the limit is extrapolated from the
 two finest meshes with order 1. Its uncertainty is the distance of the finest mesh from it, which covers every order from 1 up. Where the
-observed order is below 1, it is at least the distance of the limit of that order. It is never below 0.05 %, the largest distance of the
-finest mesh in the elastic runs: where an error changes its sign, two meshes agree by chance. Where differences grow, there is no order.
+observed order is below 1, it is at least the distance of the limit of that order. Where an error changes its sign, two meshes agree by
+chance: the uncertainty is at least a quarter of the spread of the three meshes, the whole of it where differences grow or change their
+sign and there is no order, and never below 0.05 %, the largest distance of the finest mesh in the elastic runs.
 Times at which the crack has a length are extrapolated in the same way; they are known at best to the time in which the crack passes an
 element. Its angles have no order: the value is that of the finest mesh, and uncertain by its distance from the next mesh, or by an element
 at the length of the crack. Standard library only.
@@ -44,9 +45,12 @@ def extrapolated(values, floor):
     """Limit with order 1 and its uncertainty, which is at least `floor`."""
     difference = values[2] - values[1]
     limit = values[2] + difference
-    uncertainty = max(abs(difference), floor)
+    spread = max(values) - min(values)
+    uncertainty = max(abs(difference), spread / 4, floor)
     observed = order(*values)
-    if observed is not None and observed < 1:
+    if observed is None:
+        uncertainty = max(uncertainty, spread)
+    elif observed < 1:
         uncertainty = max(uncertainty, abs(values[2] + difference / (2**observed - 1) - limit))
     return limit, uncertainty
 
