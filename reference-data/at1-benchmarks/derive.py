@@ -29,8 +29,10 @@ def extrapolated(values, ratio, equal):
     change = (middle - coarse) / (fine - middle) if fine != middle else 0.0
     if change <= 0:
         return limit, max(uncertainty, spread), "no order on the three meshes"
-    if not equal:
-        return limit, uncertainty, "no order: the meshes have unequal ratios"
+    if not equal:  # the sizes have equal differences: with order 1 the values have too
+        if change < 1:
+            return limit, max(uncertainty, spread), "an order below 1 on the three meshes"
+        return limit, uncertainty, "an order of 1 or more on the three meshes"
     order = math.log(change) / math.log(ratio)
     if order < 1:
         further = abs(fine + (fine - middle) / (change - 1) - limit) if order > 0 else 0.0

@@ -23,8 +23,8 @@ pub struct Args {
     /// Few meshes and repetitions: under five minutes on an idle machine
     #[arg(long)]
     quick: bool,
-    /// Only these families, separated by commas: work-precision, plate, stages, solves, threads, ceilings,
-    /// scenes, contact, motion, scale
+    /// Only these families, separated by commas: work-precision, plate, scoreboard, stages, solves, threads,
+    /// ceilings, scenes, contact, motion, scale
     #[arg(long, value_name = "FAMILY,…", value_delimiter = ',')]
     family: Vec<String>,
     /// Also time another checkout of this workspace on the same scenes; it is built in its own folder

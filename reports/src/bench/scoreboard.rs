@@ -27,7 +27,7 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
         axis: "processor time of the run (s)",
         uncertainty: 0.0,
     };
-    let caption = "Whole runs on one thread, both programs on equal meshes and with a solve for the phase field in every \
-                   step; the references are the same elements on finer meshes, extrapolated to h = 0";
+    let caption = "Whole runs on one thread, both programs on uniform meshes and with a solve for the phase field in \
+                   every step; the references are extrapolated from runs of the same elements, which favours them";
     vec![chart.plot(caption, reading)]
 }

@@ -122,9 +122,14 @@ impl Expansion {
         };
         let mut checks = self.set(path, &set, depth);
         let folder = beside.get("reference").and_then(Node::as_str).filter(|name| name.ends_with('/'));
-        if let Some(folder) = folder.map(String::from) {
-            beside.remove("reference");
-            checks.iter_mut().for_each(|check| put_reference_into(check, &folder));
+        if let Some(folder) = folder.map(String::from)
+            && let Some(given) = beside.remove("reference")
+        {
+            let placed = checks.iter_mut().filter_map(|check| put_reference_into(check, &folder)).count();
+            if placed == 0 {
+                let remedy = "name a whole reference, \"folder/name\"".into();
+                self.note(&format!("{path}.reference"), &given, "no check of the set has a reference".into(), remedy);
+            }
         }
         for check in &mut checks {
             put(check, &beside);
@@ -199,13 +204,12 @@ fn put(node: &mut Node, entries: &Table) {
     }
 }
 
-/// Puts the folder before the reference of a check, if it has one.
-fn put_reference_into(check: &mut Node, folder: &str) {
-    if let Value::Table(table) = &mut check.value
-        && let Some(Node { value: Value::String(name), .. }) = table.get_mut("reference")
-    {
-        name.insert_str(0, folder);
-    }
+/// Puts the folder before the reference of a check; `None` if it has no reference.
+fn put_reference_into(check: &mut Node, folder: &str) -> Option<()> {
+    let Value::Table(table) = &mut check.value else { return None };
+    let Value::String(name) = &mut table.get_mut("reference")?.value else { return None };
+    name.insert_str(0, folder);
+    Some(())
 }
 
 #[cfg(test)]
@@ -249,6 +253,8 @@ mod tests {
         let case = read("[[check]]\nset = \"two\"\nreference = \"folder/part/\"\n", sets, BASES).unwrap();
         let found: Vec<_> = case.checks.iter().map(|check| check.reference.as_deref()).collect();
         assert_eq!(found, [Some("folder/part/x"), None]);
+        let none = read("[[check]]\nset = \"ends\"\nreference = \"folder/\"\n", SETS, BASES).unwrap_err();
+        assert!(none.contains("check.0.reference: no check of the set has a reference"), "{none}");
     }
 
     #[test]

@@ -7,9 +7,8 @@ use super::verdict::Comparison;
 use crate::reference::{Library, ReferenceValue};
 
 /// What the elements of a benchmark computed.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub struct Elements {
-    benchmark: &'static str,
     /// Folder of the values.
     pub folder: &'static str,
     /// Phase-field models.
@@ -17,52 +16,56 @@ pub struct Elements {
     /// Whether all is in plane stress.
     plane_stress: bool,
     /// Split of the energy.
-    split: &'static str,
+    pub split: &'static str,
     /// l0, half of b of AT1, m.
-    length_scale: f64,
-    /// Spacing of the finest elements, whose distance from the limit is the uncertainty, m.
+    pub length_scale: f64,
+    /// Spacing of the finest elements, m.
     finest: f64,
 }
 
-const ALL: [Elements; 4] = [
-    Elements {
-        folder: "kalthoff",
-        models: &["AT1", "AT2", "none"],
-        plane_stress: false,
-        finest: 0.125e-3,
-        ..at1("kalthoff", "spectral", 0.75e-3)
-    },
-    Elements { finest: 31.25e-6, ..at1("strip", "spectral", 0.25e-3) },
-    Elements { finest: 0.5e-3, ..at1("ring", "rankine", 0.75e-3) },
-    Elements { finest: 18.75e-6, ..at1("arrest", "rankine", 18.75e-6) },
-];
+/// The test of Kalthoff and Winkler.
+pub static KALTHOFF: Elements = Elements {
+    folder: "kalthoff",
+    models: &["AT1", "AT2", "none"],
+    plane_stress: false,
+    split: "spectral",
+    length_scale: 0.75e-3,
+    finest: 0.125e-3,
+};
+/// The pre-strained strip.
+pub static STRIP: Elements = at1("spectral", 0.25e-3, 31.25e-6);
+/// The ring that breaks into pieces.
+pub static RING: Elements = at1("rankine", 0.75e-3, 0.5e-3);
+/// The crack that a hole stops.
+pub static ARREST: Elements = at1("rankine", 18.75e-6, 18.75e-6);
 
-const fn at1(benchmark: &'static str, split: &'static str, length_scale: f64) -> Elements {
-    let (folder, models) = ("at1-benchmarks", &["AT1"]);
-    Elements { benchmark, folder, models, plane_stress: true, split, length_scale, finest: 0.0 }
+const fn at1(split: &'static str, length_scale: f64, finest: f64) -> Elements {
+    Elements { folder: "at1-benchmarks", models: &["AT1"], plane_stress: true, split, length_scale, finest }
 }
 
 impl Elements {
-    /// Those of a benchmark, if it has any.
-    pub fn of(benchmark: &str) -> Option<&'static Self> {
-        ALL.iter().find(|elements| elements.benchmark == benchmark)
-    }
-
     /// The value called `part/name`.
     pub fn value<'a>(&self, library: &'a Library, part: &str, name: &str) -> Option<&'a ReferenceValue> {
         library.value(self.folder, &format!("{part}/{name}"))
     }
 
     /// Holds a value against its reference; without a `stated` uncertainty with that of elements of the
-    /// spacing, in proportion to their size.
-    pub fn compare(&self, row: &mut Comparison, reference: &ReferenceValue, spacing: Option<f64>, stated: Option<f64>) {
+    /// spacing, in proportion to their size. `missing` says why there may be no value.
+    pub fn compare(
+        &self,
+        row: &mut Comparison,
+        reference: &ReferenceValue,
+        spacing: Option<f64>,
+        stated: Option<f64>,
+        missing: &str,
+    ) {
         row.reference = Some(reference.value);
         row.error = row.value.map(|value| value - reference.value);
         let u_ref = reference.uncertainty.unwrap_or(0.0);
         decide(row, u_ref, stated.or(spacing.map(|spacing| SAFETY * u_ref * spacing / self.finest)));
         match row.value {
             Some(_) => doubt(row, [DECIDES[0], AGREES[0]].map(|part| part * reference.value.abs())),
-            None => row.why = "not given, not reached, or between rows more than 2 µs apart".into(),
+            None => row.why = missing.into(),
         }
     }
 }
@@ -76,6 +79,9 @@ pub fn differences(submission: &Submission, elements: &Elements) -> Vec<String> 
     }
     if elements.plane_stress && model.plane == Plane::Strain {
         out.push("plane strain instead of plane stress".into());
+    }
+    if model.phase_field == "none" {
+        return out;
     }
     if ![elements.split, "unknown"].contains(&model.split.as_str()) {
         out.push(format!("split {:?} instead of {:?}", model.split, elements.split));

@@ -4,8 +4,9 @@
 
 use std::f64::consts::FRAC_2_PI;
 
-use super::curves::{AGREES, DECIDES, decide, doubt};
-use super::elements::{Elements, differences};
+use super::curves::decide;
+use super::elements::{ARREST, Elements, RING, STRIP, differences};
+use super::model::Plane;
 use super::submission::Submission;
 use super::table::Curve;
 use super::verdict::{Comparison, Outcome, QuantityVerdict, ReferenceUsed, Verdict};
@@ -55,8 +56,8 @@ pub enum Basis {
     Below(f64),
     /// A value that decides nothing, and why.
     Undecided(f64, &'static str),
-    /// Its name in the references of [`Elements`].
-    Elements(String),
+    /// A value of independent finite elements, and its name.
+    Elements(&'static Elements, String),
 }
 
 /// What a benchmark asks for; nothing for those that ask for curves.
@@ -134,28 +135,30 @@ pub fn values(benchmark: &str) -> Vec<Asked> {
         }
         "strip" => {
             let per_length = |name: &str| {
-                asked(name, format!("{name} energy per length of the crack"), "J/m^2", Basis::Elements(name.into()))
+                let what = format!("{name} energy per length of the crack");
+                asked(name, what, "J/m^2", Basis::Elements(&STRIP, name.into()))
             };
-            let speed = asked("speed", "speed of the crack", "m/s", Basis::Elements("speed".into()));
+            let speed = asked("speed", "speed of the crack", "m/s", Basis::Elements(&STRIP, "speed".into()));
             [speed].into_iter().chain(["fracture", "kinetic", "elastic"].map(per_length)).collect()
         }
         "ring" => {
             let at = |(seed, time)| {
                 let reference = format!("seed-{seed}/fracture-energy-{time}-us");
                 let what = format!("fracture energy at {time} us, seed {seed}");
-                asked(&format!("seed_{seed}_{time}_us"), what, "J/m", Basis::Elements(reference))
+                asked(&format!("seed_{seed}_{time}_us"), what, "J/m", Basis::Elements(&RING, reference))
             };
             [1, 2].into_iter().flat_map(|seed| [60, 70, 80, 100].map(|time| (seed, time))).map(at).collect()
         }
         "arrest" => {
             let passes = |length: u32| {
                 let what = format!("time at which x of the tip is {length} mm from the end of the slot");
-                asked(&format!("time_{length}_mm"), what, "s", Basis::Elements(format!("time-at-{length}-mm")))
+                let reference = Basis::Elements(&ARREST, format!("time-at-{length}-mm"));
+                asked(&format!("time_{length}_mm"), what, "s", reference)
             };
-            let energy = Basis::Elements("fracture-energy-200-us".into());
+            let energy = Basis::Elements(&ARREST, "fracture-energy-200-us".into());
             let length = "x of the arrested tip, from the end of the slot";
             let mut all = vec![
-                asked("length", length, "m", Basis::Elements("length".into())),
+                asked("length", length, "m", Basis::Elements(&ARREST, "length".into())),
                 asked("fracture", "fracture energy at 200 us", "J/m", energy),
             ];
             all.extend([5, 10, 15].map(passes));
@@ -163,6 +166,14 @@ pub fn values(benchmark: &str) -> Vec<Asked> {
         }
         _ => Vec::new(),
     }
+}
+
+/// The elements behind the numbers of a benchmark, if there are any.
+pub fn elements(benchmark: &str) -> Option<&'static Elements> {
+    values(benchmark).into_iter().find_map(|asked| match asked.basis {
+        Basis::Elements(elements, _) => Some(elements),
+        _ => None,
+    })
 }
 
 fn asked(name: &str, what: impl Into<String>, unit: &'static str, basis: Basis) -> Asked {
@@ -194,7 +205,7 @@ pub fn judge(
         let remedy = format!("add [values] with {}", names.join(", "));
         return Err(submission.key_error("benchmark", "nothing to judge", remedy));
     }
-    let elements = Elements::of(&submission.benchmark);
+    let elements = elements(&submission.benchmark);
     let differences = match elements {
         Some(elements) => differences(submission, elements),
         None => submission.model.differences.clone(),
@@ -204,50 +215,51 @@ pub fn judge(
         let find = |all: &[(String, f64)]| all.iter().find(|v| v.0 == asked.name).map(|v| v.1);
         let value = find(&submission.values);
         let mut row = Comparison { name: asked.name.clone(), unit: asked.unit.into(), value, ..Comparison::default() };
-        match (&asked.basis, elements) {
-            (Basis::Elements(name), Some(elements)) => {
+        match &asked.basis {
+            Basis::Elements(elements, name) => {
                 let Some(reference) = elements.value(library, &submission.benchmark, name) else {
                     let message = format!("no reference {}/{}/{name}", elements.folder, submission.benchmark);
                     return Err(submission.key_error("benchmark", message, "restore reference-data"));
                 };
-                elements.compare(&mut row, reference, submission.spacing, find(&submission.stated_values));
+                let stated = find(&submission.stated_values);
+                elements.compare(&mut row, reference, submission.spacing, stated, "not given");
                 if !differences.is_empty() {
                     explained_by_difference(&mut row, true);
                 }
             }
-            (Basis::ClosedForm(known, tolerance), _) => {
+            Basis::ClosedForm(known, tolerance) => {
                 hold(&mut row, *known);
-                let stated = find(&submission.stated_values);
-                decide(&mut row, 0.0, Some(stated.unwrap_or(tolerance * known.abs())));
-                doubt(&mut row, [DECIDES[0], AGREES[0]].map(|part| part * known.abs()));
+                decide(&mut row, 0.0, Some(tolerance * known.abs()));
             }
-            (Basis::Below(bound), _) => {
+            Basis::Below(bound) => {
                 hold(&mut row, *bound);
                 let below = value.is_some_and(|v| v > 0.0 && v < *bound);
                 row.outcome = if below { Outcome::Diagnostic } else { Outcome::Fail };
                 row.why = "an upper bound shows no agreement".into();
             }
-            (Basis::Undecided(known, why), _) => {
+            Basis::Undecided(known, why) => {
                 hold(&mut row, *known);
                 row.why = (*why).into();
             }
-            (Basis::Elements(_), None) => unreachable!("only benchmarks with elements name their values"),
         }
         quantities.push(QuantityVerdict { quantity: asked.what.clone(), outcome: row.outcome, comparisons: vec![row] });
     }
     let (uncertainty, numerical) = match (elements, &asked[0].basis) {
         (Some(_), _) => (
-            "distance of the finest of three meshes from the limit h to 0, and a quarter of their spread",
+            "distance of the finest of three meshes from the limit h to 0; a quarter of their spread at least, all of it \
+             below order 1",
             "stated for each number, else 1.25 times what elements of the same spacing are off by",
         ),
         (None, Basis::Undecided(..)) => ("unknown: diagnostic only", "nothing is decided"),
-        _ => ("a closed form", "stated for each number, else what a sound mesh may be off by"),
+        _ => ("a closed form", "what a sound mesh may be off by, stated with the benchmark"),
     };
     let id = submission.benchmark.clone();
     let label = BENCHMARKS.iter().find(|b| b.name == id).map_or("", |b| b.what).into();
     let reference = ReferenceUsed { id, label, uncertainty: uncertainty.into() };
     let base = Verdict::of(folder, submission, reference, numerical);
-    let mut verdict = Verdict { differences, quantities, ..base };
+    let unknown = elements.is_some() && submission.model.plane == Plane::Unknown;
+    let notes = unknown.then(|| "the plane state is unknown; plane stress is assumed".into()).into_iter().collect();
+    let mut verdict = Verdict { differences, notes, quantities, ..base };
     verdict.conclude();
     Ok(Judged { verdict, curves, references: Default::default() })
 }

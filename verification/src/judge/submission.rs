@@ -79,7 +79,7 @@ pub struct Submission {
     pub curves: [Option<Mapping>; 6],
     /// Numbers of closed-form benchmarks, SI, with their place.
     pub values: Vec<(String, f64)>,
-    /// Their numerical uncertainties, SI.
+    /// Numerical uncertainties of the values, SI; those of curves are in [`Self::stated`].
     pub stated_values: Vec<(String, f64)>,
     document: Document,
 }
@@ -167,14 +167,24 @@ fn read(root: &Item<'_>, document: &Document) -> Option<Submission> {
     let rest = fields.get("discretisation").map_or(Some(Default::default()), |item| discretisation(&item));
     let cost = fields.get("cost").map_or(Some(Cost::default()), |item| cost(&item));
     let asked = benchmark.unwrap_or_default();
-    let asks_for_curves = super::numbers::values(asked).is_empty();
-    let uncertainty = |of_numbers: bool| fields.get("uncertainty").filter(|_| of_numbers != asks_for_curves);
-    let stated = uncertainty(false).map_or(Some([None; 6]), |item| stated(&item));
-    let stated_values = uncertainty(true).map_or(Some(Vec::new()), |item| values(&item, asked));
+    let uncertainty = fields.get("uncertainty");
+    let (mut stated_curves, mut stated_values) = (Some([None; 6]), Some(Vec::new()));
+    if let Some(item) = &uncertainty {
+        if super::numbers::values(asked).is_empty() {
+            stated_curves = stated(item);
+        } else if super::numbers::elements(asked).is_some() {
+            stated_values = values(item, asked, |item, dimension| item.positive(dimension));
+        } else {
+            let message = "this benchmark has a tolerance of its own, or decides nothing";
+            stated_values = item.fail(message, "remove [uncertainty]");
+        }
+    }
     let files = fields.get("files").map_or(Some((None, "#".into())), |item| files(&item));
     let thickness = model.as_ref().and_then(|m| m.thickness);
     let curves = fields.get("curves").map_or(Some(Default::default()), |item| curves(&item, thickness));
-    let values = fields.get("values").map_or(Some(Vec::new()), |item| values(&item, asked));
+    let values = fields
+        .get("values")
+        .map_or(Some(Vec::new()), |item| values(&item, asked, |item, dimension| item.quantity(dimension)));
     let ((method, spacing, discretisation), (separator, comment), (time, curves)) = (rest?, files?, curves?);
     Some(Submission {
         benchmark: benchmark?.to_string(),
@@ -184,7 +194,7 @@ fn read(root: &Item<'_>, document: &Document) -> Option<Submission> {
         spacing,
         discretisation,
         cost: cost?,
-        stated: stated?,
+        stated: stated_curves?,
         separator,
         comment,
         time,
@@ -257,11 +267,16 @@ fn files(item: &Item<'_>) -> Option<(Option<char>, String)> {
     Some((separator?, comment?))
 }
 
-fn values(item: &Item<'_>, benchmark: &str) -> Option<Vec<(String, f64)>> {
+/// Numbers that the benchmark asks for, each read by `read`.
+fn values(
+    item: &Item<'_>,
+    benchmark: &str,
+    read: impl Fn(&Item<'_>, Dimension) -> Option<f64>,
+) -> Option<Vec<(String, f64)>> {
     let asked = super::numbers::values(benchmark);
     let names: Vec<&str> = asked.iter().map(|a| a.name.as_str()).collect();
     let fields = item.fields(&names)?;
-    let read = asked.iter().map(|a| Some((a.name.clone(), fields.maybe(&a.name, |i| i.quantity(a.dimension))?)));
-    let read: Vec<(String, Option<f64>)> = read.collect::<Option<_>>()?;
-    Some(read.into_iter().filter_map(|(name, value)| Some((name, value?))).collect())
+    let found = asked.iter().map(|a| Some((a.name.clone(), fields.maybe(&a.name, |item| read(item, a.dimension))?)));
+    let found: Vec<(String, Option<f64>)> = found.collect::<Option<_>>()?;
+    Some(found.into_iter().filter_map(|(name, value)| Some((name, value?))).collect())
 }

@@ -1,7 +1,6 @@
 //! `judge --new BENCHMARK`: a commented `submission.toml`.
 
-use super::elements::Elements;
-use super::numbers::values;
+use super::numbers::{elements, values};
 
 const HEAD: &str = r##"# A result to be judged by `cargo xtask judge FOLDER`. Everything that is commented out is optional.
 benchmark = "@"
@@ -50,7 +49,7 @@ split    = "spectral"               # "none", "volumetric-deviatoric", "star-con
 const KALTHOFF: &str = r##"
 [model]
 plane       = "strain"              # "stress", "unknown"
-phase_field = "AT1"                 # "none" for the elastic test; others have no reference
+phase_field = "AT1"                 # "AT2", or "none" for the elastic test; others have no reference
 # split        = "spectral"
 # length_scale = "0.75 mm"          # of Borden et al.: half of b = 1.5 mm
 # thickness    = "1 m"              # needed if energies are given in J instead of J/m
@@ -62,8 +61,8 @@ const AT1: &str = r##"
 [model]
 plane       = "stress"
 phase_field = "AT1"
-split       = "spectral"            # "rankine": driven by the largest principal stress
-# length_scale = "0.25 mm"          # of Borden et al.: half of b
+split       = "@split"
+# length_scale = "@l0 mm"           # of Borden et al.: half of b
 # differences  = ["what else differs from the benchmark"]
 
 # [uncertainty]                     # numerical uncertainty of each number below, from your own mesh study
@@ -104,6 +103,9 @@ pub fn template(benchmark: &str) -> String {
         let example = if a.unit == "1" { "0.0".to_string() } else { format!("\"0.0 {}\"", a.unit) };
         format!("{} = {example} # {}\n", a.name, a.what)
     });
-    let model = Elements::of(benchmark).map_or("", |_| AT1);
-    head + model + "\n[values]\n" + &rows.collect::<String>()
+    let model = elements(benchmark).map(|elements| {
+        let l0 = (1e3 * elements.length_scale).to_string();
+        AT1.replace("@split", elements.split).replace("@l0", &l0)
+    });
+    head + &model.unwrap_or_default() + "\n[values]\n" + &rows.collect::<String>()
 }

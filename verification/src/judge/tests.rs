@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use super::elements::Elements;
 use super::numbers::{Asked, Basis};
 use super::submission::Submission;
 use super::verdict::{Finding, Outcome};
@@ -382,7 +381,7 @@ fn the_templates_are_valid_and_numbers_are_judged() {
             elements.map_or("", |_| "[model]\nplane = \"stress\"\nphase_field = \"AT1\"\nsplit = \"unknown\"\n");
         let known = |basis: Basis| match basis {
             Basis::ClosedForm(value, _) | Basis::Below(value) | Basis::Undecided(value, _) => value,
-            Basis::Elements(name) => elements.unwrap().value(&library, benchmark.name, &name).unwrap().value,
+            Basis::Elements(elements, name) => elements.value(&library, benchmark.name, &name).unwrap().value,
         };
         let asked = numbers::values(benchmark.name);
         for (factor, outcome) in [(1.0 - 1e-9, Outcome::Pass), (1.1, Outcome::Fail)] {
@@ -420,7 +419,11 @@ fn numbers_have_the_uncertainty_that_is_stated_or_that_of_elements_of_their_spac
     assert_eq!(spacing.outcome, Outcome::Diagnostic, "an uncertainty of 7 % shows no agreement");
     let other = judged("model = { plane = \"strain\", phase_field = \"AT2\", split = \"none\" }").unwrap();
     assert!(other.differences.len() == 3 && other.outcome == Outcome::Incomplete, "{other:?}");
-    let refused = [("", "model: missing"), ("uncertainty = { sped = \"20 m/s\" }", "uncertainty.sped")];
+    let refused = [
+        ("", "model: missing"),
+        ("uncertainty = { sped = \"20 m/s\" }", "uncertainty.sped"),
+        ("uncertainty = { speed = \"-20 m/s\" }", "uncertainty.speed"),
+    ];
     for (lines, says) in refused {
         let error = judged(lines).unwrap_err().to_string();
         assert!(error.contains(says), "{lines}: {error}");

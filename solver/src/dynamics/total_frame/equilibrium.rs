@@ -44,7 +44,7 @@ impl TotalFrame {
             if largest(residual.iter().map(|r| r.abs())) <= TOLERANCE * scale {
                 return Ok(());
             }
-            let change = self.solve(&mut Tangent::new(self), &residual)?;
+            let change = self.solve(&residual)?;
             let slope = dot(&residual, &change);
             let (mut taken, mut part, mut bounds) = (0.0, 1.0, [0.0, f64::INFINITY]);
             let descends = |_| {
@@ -79,9 +79,7 @@ impl TotalFrame {
 
     /// External minus internal force at the free components, and the largest internal or external one, N/m.
     fn out_of_balance(&mut self, free: &[(usize, usize)]) -> (Vec<f64>, f64) {
-        let mut internal = [self.grid.zeros(), self.grid.zeros()];
-        self.forces_now(&self.displacement, &mut self.strip_forces(), &mut internal);
-        self.internal = internal;
+        self.internal = self.forces_now();
         self.external_minus_internal();
         if let Some(edges) = &self.edges {
             edges.multipliers().project_forces(&mut self.acceleration);
@@ -120,8 +118,8 @@ impl TotalFrame {
     }
 
     /// Solves `K x = right` for the free components, to [`REDUCTION`] of the residual.
-    fn solve(&self, operator: &mut impl StiffnessOperator, right: &[f64]) -> Result<Vec<f64>, Failure> {
-        let n = right.len();
+    fn solve(&self, right: &[f64]) -> Result<Vec<f64>, Failure> {
+        let (mut operator, n) = (Tangent::new(self), right.len());
         let (mut x, mut r, mut image) = (vec![0.0; n], right.to_vec(), vec![0.0; n]);
         let mut z = vec![0.0; n];
         operator.divide_by_mass(&r, &mut z);

@@ -58,18 +58,20 @@ impl TotalFrame {
         (1.0 - squared.ln()) / squared
     }
 
-    /// Internal forces (N/m) under a displacement (m), with the phase field at the points as it is now.
-    pub(super) fn forces_now(&self, displacement: &VectorField, strips: &mut StripForces, out: &mut VectorField) {
-        let Self { lattice, moduli, kinematics, fracture, .. } = self;
-        let Some(fracture) = fracture else {
-            elastic_forces(lattice, *moduli, *kinematics, displacement, strips, out);
-            return self.fold(out);
-        };
-        let mut kernels: Vec<_> = self.held_phase(fracture).collect();
-        let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
-        sweep_with(*kinematics, lattice, fields, &mut kernels, Some(strips));
-        strips.assemble(lattice.grid.stride, out);
-        self.fold(out);
+    /// Internal forces (N/m), with the phase field at the points as it is now.
+    pub(super) fn forces_now(&self) -> VectorField {
+        let Self { lattice, moduli, kinematics, displacement, fracture, .. } = self;
+        let (mut out, mut strips) = ([self.grid.zeros(), self.grid.zeros()], self.strip_forces());
+        if let Some(fracture) = fracture {
+            let mut kernels: Vec<_> = self.held_phase(fracture).collect();
+            let fields = Fields { displacement: [&displacement[0], &displacement[1]], phase: &[] };
+            sweep_with(*kinematics, lattice, fields, &mut kernels, Some(&mut strips));
+            strips.assemble(lattice.grid.stride, &mut out);
+        } else {
+            elastic_forces(lattice, *moduli, *kinematics, displacement, &mut strips, &mut out);
+        }
+        self.fold(&mut out);
+        out
     }
 
     /// Stress with the phase field at the points as it is now, per strip.
