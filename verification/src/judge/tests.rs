@@ -376,9 +376,8 @@ fn the_templates_are_valid_and_numbers_are_judged() {
     let library = library();
     for benchmark in BENCHMARKS {
         Submission::parse("submission.toml", &template::template(benchmark.name)).unwrap_or_else(|e| panic!("{e}"));
-        let elements = Elements::of(benchmark.name);
-        let model =
-            elements.map_or("", |_| "[model]\nplane = \"stress\"\nphase_field = \"AT1\"\nsplit = \"unknown\"\n");
+        let model = numbers::elements(benchmark.name)
+            .map_or("", |_| "[model]\nplane = \"stress\"\nphase_field = \"AT1\"\nsplit = \"unknown\"\n");
         let known = |basis: Basis| match basis {
             Basis::ClosedForm(value, _) | Basis::Below(value) | Basis::Undecided(value, _) => value,
             Basis::Elements(elements, name) => elements.value(&library, benchmark.name, &name).unwrap().value,
