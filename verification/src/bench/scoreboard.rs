@@ -231,8 +231,8 @@ fn errors(
     let mean = |of: fn(&AnswerError) -> f64| {
         (each.iter().map(|error| of(error).powi(2)).sum::<f64>() / each.len() as f64).sqrt()
     };
-    let quantity = format!("root mean square of the relative errors of {} numbers", each.len());
-    let all = AnswerError::relative(&quantity, mean(|error| error.value), "elements extrapolated to h = 0");
+    let quantity = "root mean square of the relative errors";
+    let all = AnswerError::relative(quantity, mean(|error| error.value), "elements extrapolated to h = 0");
     let all = AnswerError { uncertainty: mean(|error| error.uncertainty), ..all };
     if each.is_empty() { Err("no reference is known well".into()) } else { Ok([all].into_iter().chain(each).collect()) }
 }
