@@ -30,8 +30,7 @@ impl PointKernel for Gradients<'_> {
     }
 }
 
-/// Displacement gradients [u_x,x, u_x,y, u_y,x, u_y,y] at all points, one entry per batch of points: as many as
-/// batches of all strips.
+/// Displacement gradients [u_x,x, u_x,y, u_y,x, u_y,y] at all points: one entry for each batch of each strip.
 pub(crate) fn gradients(lattice: &Lattice, displacement: &VectorField) -> Vec<[Lane; 4]> {
     let mut gradients = vec![[Lane::ZERO; 4]; lattice.strips() * lattice.strip_batches()];
     let mut kernels: Vec<_> = gradients.chunks_mut(lattice.strip_batches()).map(Gradients).collect();
@@ -72,8 +71,8 @@ impl<K: PointKernel> PointKernel for StressAlong<'_, K> {
     }
 }
 
-/// Change of the nodal forces of the kernels (N/m per m of the direction) along a direction of displacements (m),
-/// from a body with these [`gradients`]; the strips are not assembled yet.
+/// Change of the nodal forces of the kernels (N/m per m of the direction) along a direction of displacements
+/// (m), from a body with these [`gradients`]; the strips are not assembled yet.
 pub(crate) fn sweep_along<K: PointKernel>(
     kinematics: Kinematics,
     lattice: &Lattice,

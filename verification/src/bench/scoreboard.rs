@@ -1,8 +1,8 @@
 //! What an error of the benchmarks costs: whole runs of this solver and of the independent finite elements
 //! ([`elements`]) in the same rounds, on one thread. Both have a uniform mesh where the crack runs, a step in
 //! proportion to their own critical one, and solve for the phase field in every step. The references are
-//! extrapolated from runs of the same elements, two of which are repeated here: an error of elements is known
-//! as well as their limit, and no better. The plate, whose elements are graded, has a family of its own ([`super::plate`]).
+//! extrapolated from runs of the same elements, two of which are repeated here: this favours them. The plate,
+//! whose elements are graded, has a family of its own ([`super::plate`]).
 //!
 //! The error of a run is the root mean square of the relative errors of the numbers that the case compares
 //! with the reference, measured in the same way for both programs. Numbers whose reference is uncertain by
