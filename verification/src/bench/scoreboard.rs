@@ -6,7 +6,7 @@
 //!
 //! The error of a run is the root mean square of the relative errors of the numbers that the case compares
 //! with the reference, measured in the same way for both programs. Numbers whose reference is uncertain by
-//! more than [`KNOWN`] do not count.
+//! more than 5 % do not count.
 
 use std::fs;
 use std::sync::Arc;
