@@ -68,7 +68,7 @@ pub(super) fn on_finest(lines: &[Line], spans: &str) -> String {
 }
 
 /// Errors at which two groups of lines are compared.
-const ERRORS: [f64; 7] = [0.1, 0.05, 0.02, 0.01, 0.008, 0.005, 0.003];
+const ERRORS: [f64; 6] = [0.05, 0.02, 0.01, 0.008, 0.005, 0.003];
 
 /// What the best lines of two groups take to an error that both reach, and the ratio.
 pub(super) fn at_equal_error(groups: [Vec<&Line>; 2]) -> String {
