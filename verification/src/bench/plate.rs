@@ -17,7 +17,7 @@ use super::plate_error::{References, TIGHT_TOLERANCE, difference_of_energies};
 use super::plate_scene::{graded, half, with_toughness_of_mesh};
 use super::plate_share::share;
 use super::record::{AnswerError, BenchRecord};
-use super::timing::{Contestant, Stopwatch, pool, round_robin};
+use super::timing::{Contestant, pool, round_robin, whole_run};
 use super::{BenchError, Settings, elements};
 use crate::case::expand::CaseScene;
 use crate::output::history::Table;
@@ -164,17 +164,7 @@ fn plate<'a>(
         .with("degree", case.scene.mesh.degree[0])
         .with("h_over_l0", h)
         .with("tolerance", case.scene.solver.phase_field_tolerance);
-    let run = move |record: &mut BenchRecord| {
-        let watch = Stopwatch::start();
-        let run = run_scene(&case.scene, &mut |_| {}, &mut |_, _| {});
-        let sample = watch.read();
-        if let Some(breakdown) = run.breakdown {
-            return Err(breakdown.into());
-        }
-        let closure = run.summary.largest_closure_over_largest_energy;
-        record.verify_at_most("closure of the ledger over the largest energy", closure, CLOSURE);
-        record.note_errors(errors(&run.history, case.energy_factor));
-        Ok(sample)
-    };
-    Ok(Contestant { record, run: Box::new(run) })
+    let factor = case.energy_factor;
+    let answer = move |record: &mut BenchRecord, history: &Table| record.note_errors(errors(history, factor));
+    Ok(whole_run(record, case.scene, CLOSURE, answer))
 }

@@ -15,7 +15,7 @@ use std::time::Duration;
 use super::elements::{self, Built};
 use super::peer::program::Program;
 use super::record::{AnswerError, BenchRecord};
-use super::timing::{Contestant, Stopwatch, pool, round_robin};
+use super::timing::{Contestant, pool, round_robin, whole_run};
 use super::{BenchError, Settings};
 use crate::case::Case;
 use crate::case::expand::CaseScene;
@@ -23,7 +23,6 @@ use crate::extremes::largest;
 use crate::measure::{Run, measure};
 use crate::output::history::Table;
 use crate::reference::Library;
-use crate::scene_run::run_scene;
 
 /// Time that one run may take.
 const LIMIT: Duration = Duration::from_secs(1800);
@@ -124,19 +123,11 @@ fn ours(
         (format!("scoreboard/{}/fisura/{mesh}", problem.name), format!("{}: fisura, p = {degree}", problem.name));
     let record = BenchRecord::new(id, label, 1.0, "run").with("problem", problem.name).with("mesh", mesh);
     let library = Arc::clone(library);
-    let run = move |record: &mut BenchRecord| {
-        let watch = Stopwatch::start();
-        let run = run_scene(&scene.scene, &mut |_| {}, &mut |_, _| {});
-        let sample = watch.read();
-        if let Some(breakdown) = run.breakdown {
-            return Err(breakdown.into());
-        }
-        let closure = run.summary.largest_closure_over_largest_energy;
-        record.verify_at_most("closure of the ledger over the largest energy", closure, CLOSURE);
-        note(record, errors(&case, &scene, &run.history, scene.energy_factor, &library));
-        Ok(sample)
+    let (simulated, factor) = (scene.scene.clone(), scene.energy_factor);
+    let answer = move |record: &mut BenchRecord, history: &Table| {
+        note(record, errors(&case, &scene, history, factor, &library));
     };
-    Ok(Contestant { record, run: Box::new(run) })
+    Ok(whole_run(record, simulated, CLOSURE, answer))
 }
 
 fn theirs(

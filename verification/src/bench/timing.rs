@@ -3,9 +3,12 @@
 use std::time::Instant;
 
 use fisura::Simulation;
+use fisura::scene::Scene;
 
 use super::BenchError;
 use super::record::{BenchRecord, Sample};
+use crate::output::history::Table;
+use crate::scene_run::run_scene;
 
 /// Wall and processor time since it was started.
 #[derive(Debug, Clone, Copy)]
@@ -60,6 +63,29 @@ pub struct Contestant<'a> {
     pub record: BenchRecord,
     /// Runs it once.
     pub run: Run<'a>,
+}
+
+/// A run of a scene from memory to the last row of its history, whose ledger has to close to `closure` of the
+/// largest energy; `answer` notes what its history gave.
+pub fn whole_run<'a>(
+    record: BenchRecord,
+    scene: Scene,
+    closure: f64,
+    answer: impl Fn(&mut BenchRecord, &Table) + 'a,
+) -> Contestant<'a> {
+    let run = move |record: &mut BenchRecord| {
+        let watch = Stopwatch::start();
+        let run = run_scene(&scene, &mut |_| {}, &mut |_, _| {});
+        let sample = watch.read();
+        if let Some(breakdown) = run.breakdown {
+            return Err(breakdown.into());
+        }
+        let open = run.summary.largest_closure_over_largest_energy;
+        record.verify_at_most("closure of the ledger over the largest energy", open, closure);
+        answer(record, &run.history);
+        Ok(sample)
+    };
+    Contestant { record, run: Box::new(run) }
 }
 
 /// Runs a contestant once.

@@ -193,6 +193,9 @@ pub(super) fn check(table: CheckTable, item: &Item<'_>) -> Option<Check> {
     if from.zip(to).is_some_and(|(from, to)| from > to) {
         item.at("to")?.fail::<()>("to is before from", "give the earlier time as from");
     }
+    if let Some(given) = item.at("discretisation").filter(|_| table.meshes.is_some()) {
+        given.fail::<()>("discretisation beside meshes, which give it", "remove one of the two");
+    }
     let discretisation = value(NumberKey::Discretisation, table.discretisation.as_ref().map(|error| error.0.clone()));
     let of_expect = ["expect_kind", "expect_source", "expect_side", "uncertainty"];
     for given in of_expect.into_iter().filter(|_| expect.is_none()).filter_map(|key| item.at(key)) {

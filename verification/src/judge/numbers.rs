@@ -133,6 +133,13 @@ pub fn values(benchmark: &str) -> Vec<Asked> {
             };
             loads.map(speed).collect()
         }
+        _ => computed(benchmark),
+    }
+}
+
+/// What benchmarks ask for whose reference is independent finite elements.
+fn computed(benchmark: &str) -> Vec<Asked> {
+    match benchmark {
         "strip" => {
             let per_length = |name: &str| {
                 let what = format!("{name} energy per length of the crack");

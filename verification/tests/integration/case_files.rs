@@ -123,6 +123,7 @@ fn what_no_run_of_a_scene_has_is_refused_before_it_runs() {
         ("measure = \"closuer\"", &["unknown measure"]),
         ("measure = \"closure\"\nvariant = \"none\"", &["no run of this case"]),
         ("measure = \"closure\"\nmax = 1.0", &["bounds without a reason"]),
+        ("meshes = \"finest-mesh\"\ndiscretisation = 0.1\nwhy = \"w\"", &["discretisation beside meshes"]),
         ("measure = \"closure\"\ncolumn = \"elastic_j\"", &["does not read \"column\""]),
         ("measure = \"drift\"", &["needs column", "add column"]),
         ("measure = \"initial\"\ncolumn = \"elastic_j + elastics_j\"", &["no column \"elastics_j\"", "momentum_x"]),
