@@ -67,10 +67,10 @@ fn sweeps(criterion: &mut Criterion, square: &Block) {
 
     let field = square.phase_field().expect("the first solve converges");
     let mut at_points = square.at_points();
-    square.degraded_sweep(split, field.control_values(), &history, &mut at_points, &mut strips);
+    square.degraded_sweep(split, field.control_values(), &mut history, &mut at_points, &mut strips);
     assert!(square.force_imbalance(&strips) <= BALANCED, "total force");
     phase(criterion, "degraded_sweep", square, || {
-        square.degraded_sweep(split, field.control_values(), &history, &mut at_points, &mut strips);
+        square.degraded_sweep(split, field.control_values(), &mut history, &mut at_points, &mut strips);
     });
 
     let mut forces = [square.lattice.grid.zeros(), square.lattice.grid.zeros()];

@@ -103,6 +103,7 @@ impl TotalFrame {
     fn begin(&mut self) {
         self.internal_forces();
         self.ledger.history_work = 0.0; // there was no step yet
+        self.fracture.iter_mut().for_each(|fracture| fracture.begin_work(&self.lattice));
         self.accelerate();
     }
 
@@ -122,7 +123,9 @@ impl TotalFrame {
         self.update_loads();
         if let Some(fracture) = &mut self.fracture {
             let Self { lattice, moduli, kinematics, displacement, strip_forces, .. } = self;
-            fracture.update_history(lattice, self.time, *moduli, *kinematics, displacement, strip_forces);
+            if fracture.needs_history() {
+                fracture.update_history(lattice, self.time, *moduli, *kinematics, displacement, strip_forces);
+            }
             fracture.advance_phase_field(&self.lattice)?;
         }
         self.internal_forces();

@@ -208,6 +208,21 @@ macro_rules! each {
 }
 pub(crate) use each;
 
+/// Asks the processor to fetch a value that will be read soon, if there is one: sweeps walk down columns of
+/// spans, which no hardware foresees.
+#[inline(always)]
+pub(crate) fn prefetch<T>(values: &[T], at: usize) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(value) = values.get(at) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a hint that changes nothing, at an address within a slice.
+        #[expect(unsafe_code, reason = "hints to the processor take a pointer")]
+        unsafe {
+            _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(value).cast());
+        }
+    }
+}
+
 /// Work to be compiled once for wide vector instructions and once without.
 pub trait Vectorised {
     /// Result.

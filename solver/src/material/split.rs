@@ -14,12 +14,15 @@
 //! [`degradation`](super::degradation).
 //!
 //! The spectral split needs no eigenvectors. With `m = (exx + eyy)/2` and `r = hypot((exx − eyy)/2, exy)` the
-//! principal strains are `m ± r`, and the tensile part is `e+ = a (e − b I)` with (a, b) = (1, 0) where both
-//! are tensile, (0, ·) where both are compressive and `(e1/(2 r), e2)` between, where `2 r ≥ max(|e1|,
-//! |e2|)`: nothing is ever divided by a small number, so equal and nearly equal principal strains need no
-//! special care. The hypotenuse is scaled, so squares do not underflow. A strain that is not a number has
-//! energies and stresses that are none: the energy of a body tells that one of its points has lost its
-//! numbers.
+//! principal strains are `e1, e2 = m ± r`, and the tensile part is
+//!
+//! ```text
+//! e+ = (⟨e1⟩+ + ⟨e2⟩+)/2 I + q (e − m I),          q = (⟨e1⟩+ − ⟨e2⟩+)/(2 r).
+//! ```
+//!
+//! q lies between 0 and 1, and its error is that of the strains over r, so equal and nearly equal principal
+//! strains need no special care. A strain that is not a number has energies and stresses that are none: the
+//! energy of a body tells that one of its points has lost its numbers.
 
 use crate::linear_algebra::lane::Lane;
 use crate::material::elasticity::ElasticModuli;
@@ -71,7 +74,8 @@ pub fn driving_energy(moduli: &ElasticModuli, law: Split, strain: [Lane; 3]) -> 
         return split(moduli, law, strain).energy_plus;
     }
     let [xx, yy, xy] = moduli.stress(strain);
-    let radius = ((xx - yy) * 0.5).zip(xy, scaled_hypot);
+    let half_difference = (xx - yy) * 0.5;
+    let radius = (half_difference * half_difference + xy * xy).map(f64::sqrt);
     let largest =
         ((xx + yy) * 0.5 + fault!("rankine-smallest-stress", radius => Lane::ZERO - radius)).at_least(Lane::ZERO);
     largest * largest * (fault!("rankine-modulus", 0.5 => 1.0) / moduli.young)
@@ -82,21 +86,14 @@ pub fn driving_energy(moduli: &ElasticModuli, law: Split, strain: [Lane; 3]) -> 
 pub fn tensile_strain([xx, yy, xy]: [Lane; 3]) -> ([Lane; 3], [Lane; 2]) {
     let mean = (xx + yy) * 0.5;
     let half_difference = (xx - yy) * 0.5;
-    let radius = half_difference.zip(xy, scaled_hypot);
+    let radius = (half_difference * half_difference + xy * xy).map(f64::sqrt);
     let (e1, e2) = fault!("split-swapped", (mean + radius, mean - radius) => (mean - radius, mean + radius));
-    let factor = e1.zip(radius, |e1, r| if e1 <= 0.0 { 0.0 } else { e1 / (2.0 * r) });
-    let factor = factor.zip(e2, |f, e2| if e2 >= 0.0 { 1.0 } else { f });
-    let shift = e2.at_most(Lane::ZERO);
-    ([(xx - shift) * factor, (yy - shift) * factor, xy * factor], [e1, e2])
-}
-
-/// `hypot(a, b)` by scaling with the larger one: exact to an ulp or two down to the smallest normal numbers.
-#[inline(always)]
-fn scaled_hypot(a: f64, b: f64) -> f64 {
-    let (a, b) = (a.abs(), b.abs());
-    let (large, small) = if a > b { (a, b) } else { (b, a) };
-    let ratio = small / if large > 0.0 { large } else { 1.0 };
-    large * (1.0 + ratio * ratio).sqrt()
+    let (plus1, plus2) = (e1.at_least(Lane::ZERO), e2.at_least(Lane::ZERO));
+    let half_sum = (plus1 + plus2) * 0.5;
+    let diameter = (radius * 2.0).at_least(Lane::splat(f64::MIN_POSITIVE));
+    let q = (plus1 - plus2).zip(diameter, |difference, diameter| difference / diameter);
+    let deviator = half_difference * q;
+    ([half_sum + deviator, half_sum - deviator, xy * q], [e1, e2])
 }
 
 #[inline(always)]

@@ -10,7 +10,15 @@
 //!
 //! Nothing heals, and a value that was solved as negative is not raised. Such a c does not solve its
 //! equation. With the residual `r = Gc/(2 l0) (K c − b)` its changes do the work `Σ ½ (r_n + r_{n+1}) · Δc`,
-//! which is a term of the energy ledger; after a solve r is zero.
+//! which is a term of the energy ledger; after a solve r is zero. The part of r that comes from the surface
+//! energy Γ(c), which is quadratic, does the work that Γ changes by. What is left is a sum over the points,
+//!
+//! ```text
+//! Γ(c_n) − Γ(c_0) + (1 − k) Σ_steps Σ_p V [s(c) H + s(c') H'] (c' − c),
+//! ```
+//!
+//! with H, c before a step and H', c' after it: no matrix is needed between solves
+//! ([`fracture`](super::fracture)).
 
 use super::PhaseField;
 use super::lag::Lag;
@@ -28,17 +36,27 @@ impl PhaseField {
     /// As [`Self::solve`].
     pub(crate) fn advance(&mut self, lattice: &Lattice, history: &[Lane]) -> Result<Option<Convergence>, SolveFailure> {
         let Some(mut lag) = self.lag.take() else { return self.solve(lattice, history).map(Some) };
-        self.assemble_history(lattice, history);
         let due = lag.is_due();
         lag.since += 1;
         let result = if due {
+            self.assemble_history(lattice, history);
             self.solve_after(&mut lag).map(Some)
         } else {
-            self.carry_on(&mut lag);
+            self.carry_on(&lag);
             Ok(None)
         };
         self.lag = Some(lag);
         result
+    }
+
+    /// Whether the coming step solves.
+    pub(crate) fn is_due(&self) -> bool {
+        self.lag.as_ref().is_none_or(|lag| lag.is_due())
+    }
+
+    /// Whether there are steps without a solve.
+    pub(crate) fn skips_solves(&self) -> bool {
+        self.lag.is_some()
     }
 
     /// Makes the coming step solve.
@@ -48,11 +66,9 @@ impl PhaseField {
         }
     }
 
-    /// Work of the changes of c on the residual of its equation, J/m: on the bounds, if there are any;
-    /// between solves, if there are steps without one.
-    pub(crate) fn residual_work(&self) -> Option<f64> {
-        let of_bounds = self.bounds.as_ref().map(|bounds| bounds.work);
-        of_bounds.or_else(|| self.lag.as_ref().map(|lag| lag.work))
+    /// Work of the changes of c on its bounds, if there are any, J/m.
+    pub(crate) fn work_on_bounds(&self) -> Option<f64> {
+        self.bounds.as_ref().map(|bounds| bounds.work)
     }
 
     /// Largest increase of a control value by a solve so far, if there are steps without one.
@@ -63,14 +79,8 @@ impl PhaseField {
     fn solve_after(&mut self, lag: &mut Lag) -> Result<Convergence, SolveFailure> {
         let carried = std::mem::replace(&mut self.phase, lag.solved.clone());
         let convergence = self.solve_with(TOO_MANY, lag.ahead())?;
-        let mut work = 0.0;
-        for at in self.matrix.grid.indices() {
-            let change = self.phase[at] - carried[at];
-            work += 0.5 * lag.residual[at] * change;
-            lag.healing = larger(lag.healing, change);
-        }
-        lag.work += work;
-        lag.residual.fill(0.0);
+        let changes = self.matrix.grid.indices().map(|at| self.phase[at] - carried[at]);
+        lag.healing = changes.fold(lag.healing, larger);
         (lag.apart, lag.since, lag.expected) = (lag.since, 0, false);
         lag.solved.copy_from_slice(&self.phase);
         let steps = lag.apart as f64;
@@ -79,21 +89,10 @@ impl PhaseField {
         Ok(convergence)
     }
 
-    fn carry_on(&mut self, lag: &mut Lag) {
-        let before = self.phase.clone();
+    fn carry_on(&mut self, lag: &Lag) {
         let ahead = fault!("phase-field-carried-too-far", lag.ahead() => 2.0 * lag.ahead());
         for ((phase, solved), previous) in self.phase.iter_mut().zip(&lag.solved).zip(&self.previous) {
             *phase = larger(solved.min(0.0), solved + ahead * (solved - previous).min(0.0));
         }
-        let mut image = self.matrix.grid.zeros();
-        self.matrix.apply(&self.phase, &mut image);
-        let unit = self.model.toughness / (2.0 * self.model.length_scale);
-        let mut work = 0.0;
-        for at in self.matrix.grid.indices() {
-            let residual = unit * (image[at] - self.load[at]);
-            work += 0.5 * (lag.residual[at] + residual) * (self.phase[at] - before[at]);
-            lag.residual[at] = residual;
-        }
-        lag.work += fault!("phase-lag-work-left-out", work => 0.0);
     }
 }

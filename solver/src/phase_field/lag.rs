@@ -21,10 +21,6 @@ pub(super) struct Lag {
     pub(super) since: usize,
     /// Largest decrease of a control value per step between the last two solves.
     pub(super) fastest: f64,
-    /// `Gc/(2 l0) (K c − b)`, J/m² per control value.
-    pub(super) residual: Vec<f64>,
-    /// Work of the changes of c on the residual, J/m.
-    pub(super) work: f64,
     /// Largest increase of a control value by a solve.
     pub(super) healing: f64,
     /// Whether the coming step is to solve.
@@ -41,8 +37,6 @@ impl Lag {
                 apart: 0,
                 since: 0,
                 fastest: 0.0,
-                residual: vec![0.0; phase.len()],
-                work: 0.0,
                 healing: 0.0,
                 expected: false,
             })
@@ -77,15 +71,14 @@ impl Lag {
     /// Bytes of another scene.
     pub(super) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
         // A step begins and ends with `expected` false.
-        let Self { interval: _, solved, apart, since, fastest, residual, work, healing, expected: _ } = self;
+        let Self { interval: _, solved, apart, since, fastest, healing, expected: _ } = self;
         archive.list(solved)?;
-        archive.list(residual)?;
         [apart, since].into_iter().try_for_each(|count| archive.value(count))?;
-        [fastest, work, healing].into_iter().try_for_each(|value| archive.value(value))
+        [fastest, healing].into_iter().try_for_each(|value| archive.value(value))
     }
 
     /// Heap memory, bytes.
     pub(super) fn bytes(&self) -> usize {
-        8 * (self.solved.len() + self.residual.len())
+        8 * self.solved.len()
     }
 }

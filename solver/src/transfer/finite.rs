@@ -30,6 +30,11 @@ impl<K: PointKernel> PointKernel for OnHenckyStrain<'_, K> {
     }
 
     #[inline(always)]
+    fn prefetch(&self, at: usize) {
+        self.0.prefetch(at);
+    }
+
+    #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
         // Where there is no point, control points without mass may fly anywhere: no strain there.
         let [xx, xy, yx, yy] =

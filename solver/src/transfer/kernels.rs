@@ -7,7 +7,7 @@
 //! ```
 
 use crate::linear_algebra::extremes::{larger, smaller};
-use crate::linear_algebra::lane::Lane;
+use crate::linear_algebra::lane::{Lane, prefetch};
 use crate::material::degradation::BROKEN;
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
@@ -70,6 +70,11 @@ impl PointKernel for HistoryUpdate<'_> {
     }
 
     #[inline(always)]
+    fn prefetch(&self, at: usize) {
+        prefetch(self.history, at);
+    }
+
+    #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
         let energy = driving_energy(&self.moduli, self.model.split, strain(values.gradient));
         let least = if self.model.threshold().is_none() { self.history[at] } else { Lane::ZERO };
@@ -89,15 +94,21 @@ pub struct DegradedStress<'a> {
     /// Fracture constants.
     pub model: FractureModel,
     /// History energy of the strip, J/m³.
-    pub history: &'a [Lane],
+    pub history: &'a mut [Lane],
+    /// Whether the history energy is still that of the last step.
+    pub updates_history: bool,
     /// Phase field at the points: at the last step, then at this one.
     pub phase: &'a mut [Lane],
     /// `s (H − psi+)` at the points: at the last step, then at this one, J/m³.
     pub excess: &'a mut [Lane],
+    /// `s H` at the points: at the last step, then at this one, J/m³; empty if its work is not asked for.
+    pub drive: &'a mut [Lane],
     /// Elastic energy per unit thickness, J/m.
     pub energy: Lane,
     /// Work of the history field over the step, without the factor 1 − k, J/m.
     pub history_work: Lane,
+    /// Work of the change of c on the history energy over the step, without the factor 1 − k, J/m.
+    pub drive_work: Lane,
 }
 
 impl PointKernel for DegradedStress<'_> {
@@ -117,14 +128,32 @@ impl PointKernel for DegradedStress<'_> {
     }
 
     #[inline(always)]
+    fn prefetch(&self, at: usize) {
+        prefetch(self.history, at);
+        prefetch(self.phase, at);
+        prefetch(self.excess, at);
+        prefetch(self.drive, at);
+    }
+
+    #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
         let strain = strain(values.gradient);
         let state = split(&self.moduli, self.model.split, strain);
         let c = values.phase;
-        let excess = self.model.half_slope(c) * (self.history[at] - state.energy_plus);
+        if self.updates_history {
+            self.history[at] = driving_energy(&self.moduli, self.model.split, strain).at_least(self.history[at]);
+        }
+        let slope = self.model.half_slope(c);
+        let excess = slope * (self.history[at] - state.energy_plus);
         let change = (excess + self.excess[at]) * (self.phase[at] - c);
         self.history_work = self.history_work.add_product::<FMA>(weight, change);
         self.excess[at] = excess;
+        if !self.drive.is_empty() {
+            let drive = slope * self.history[at];
+            let change = (drive + self.drive[at]) * (c - self.phase[at]);
+            self.drive_work = self.drive_work.add_product::<FMA>(weight, change);
+            self.drive[at] = drive;
+        }
         self.phase[at] = c;
         let (mut energy, mut stress) = state.degraded::<FMA>(self.model.degradation(c));
         if self.adds() {

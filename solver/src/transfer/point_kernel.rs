@@ -62,6 +62,10 @@ pub trait PointKernel: Send {
         false
     }
 
+    /// Fetches what it keeps of a batch that comes soon.
+    #[inline(always)]
+    fn prefetch(&self, _at: usize) {}
+
     /// One batch: `at` counts batches from the start of the strip, `weight` is in m² and zero where there is
     /// no point.
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress;

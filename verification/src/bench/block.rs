@@ -150,24 +150,27 @@ impl Block {
         &self,
         split: Split,
         phase: &[f64],
-        history: &[Lane],
+        history: &mut [Lane],
         at_points: &mut [Vec<Lane>; 2],
         strips: &mut StripForces,
     ) {
         let model = FractureModel { split, ..self.model };
         let chunk = self.lattice.strip_batches();
         let [phases, excess] = at_points;
-        let states = phases.chunks_mut(chunk).zip(excess.chunks_mut(chunk)).zip(history.chunks(chunk));
+        let states = phases.chunks_mut(chunk).zip(excess.chunks_mut(chunk)).zip(history.chunks_mut(chunk));
         let mut kernels: Vec<_> = states
             .map(|((phase, excess), history)| DegradedStress {
                 cells: &[],
                 moduli: self.moduli,
                 model,
                 history,
+                updates_history: false,
                 phase,
                 excess,
+                drive: &mut [],
                 energy: Lane::ZERO,
                 history_work: Lane::ZERO,
+                drive_work: Lane::ZERO,
             })
             .collect();
         sweep(&self.lattice, self.fields(phase), &mut kernels, Some(strips));

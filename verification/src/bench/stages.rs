@@ -93,12 +93,12 @@ fn sweeps<'a, const P: usize>(block: &'a Block) -> Result<Vec<Contestant<'a>>, B
         let mut of_stress =
             record::<P>(&format!("stress-sweep{suffix}"), &format!("degraded stress sweep, {name}"), block.points);
         let mut at_points = block.at_points();
-        block.degraded_sweep(split, phase.control_values(), &history, &mut at_points, &mut strips);
+        block.degraded_sweep(split, phase.control_values(), &mut history, &mut at_points, &mut strips);
         of_stress.verify_at_most("total of the forces over their size", block.force_imbalance(&strips), 1e-12);
-        let (mut own, phase, grown) = (strips.clone(), phase.control_values().to_vec(), history.clone());
+        let (mut own, phase, mut grown) = (strips.clone(), phase.control_values().to_vec(), history.clone());
         contestants.push(Contestant::short(of_history, move || block.history_sweep(split, &mut history)));
         contestants.push(Contestant::short(of_stress, move || {
-            block.degraded_sweep(split, &phase, &grown, &mut at_points, &mut own);
+            block.degraded_sweep(split, &phase, &mut grown, &mut at_points, &mut own);
         }));
     }
 

@@ -13,12 +13,12 @@
 
 use std::f64::consts::FRAC_2_PI;
 
+use fisura::linear_algebra::conjugate_gradients::SolveFailure;
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::degradation::FractureModel;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::material::split::driving_energy;
 use fisura::particles::lattice::Lattice;
-use fisura::phase_field::PhaseField;
 use fisura::phase_field::fracture::LatticeFracture;
 use fisura::scene::{CrackModel, Fracture, Kinematics, Material, Plane, Scene, Side, Split};
 use fisura::splines::patch::Patch;
@@ -98,23 +98,11 @@ fn loading(case_scene: &CaseScene) -> Result<(Table, f64), StudyError> {
     let patch = Patch::new(&scene.mesh);
     let lattice = Lattice::new(&patch, body);
     let (low, high) = body.shape.bounding_box();
-    let zeros = vec![Lane::ZERO; lattice.batches()];
-    let field = PhaseField::new(&lattice, model, &scene.solver);
-    let history = zeros.clone();
+    let cracking = LatticeFracture::new(&patch, &lattice, body, model, None, &scene.solver).map_err(unsolved)?;
     let mut points = Points {
         lattice: &lattice,
         moduli,
-        fracture: LatticeFracture {
-            model,
-            history,
-            phase: zeros.clone(),
-            excess: zeros,
-            field,
-            iterations: 0,
-            intact_energy: None,
-            relative: None,
-            driven: Vec::new(),
-        },
+        fracture: cracking,
         forces: StripForces::new(&lattice),
         greville: patch.spaces[0].greville(),
         height: high[1] - low[1],
@@ -231,7 +219,7 @@ impl Points<'_> {
         }
         fracture.update_history(lattice, 0.0, *moduli, Kinematics::Small, &displacement, forces);
         let solved = fracture.solve_phase_field(lattice);
-        solved.map_err(|failure| StudyError::Other(format!("the phase-field solve {failure}")))?;
+        solved.map_err(unsolved)?;
         fracture.degraded_forces(lattice, *moduli, Kinematics::Small, [&displacement[0], &displacement[1]], forces);
         let mut nodal = [grid.zeros(), grid.zeros()];
         forces.assemble(grid.stride, &mut nodal);
@@ -239,6 +227,10 @@ impl Points<'_> {
         let phase = grid.indices().map(|at| fracture.field.control_values()[at]).collect();
         Ok((phase, force / self.height))
     }
+}
+
+fn unsolved(failure: SolveFailure) -> StudyError {
+    StudyError::Other(format!("the phase-field solve {failure}"))
 }
 
 /// Strain and stress of the highest row over the closed forms; rows include the peak itself.

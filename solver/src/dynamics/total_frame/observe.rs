@@ -58,7 +58,7 @@ impl TotalFrame {
             let (energy, min_phase) = f.surface_energy(&self.lattice);
             FractureSample {
                 energy,
-                works: f.works(self.ledger.history_work),
+                works: f.works(self.ledger.history_work, energy),
                 crack_tip: self.crack_tip(f),
                 min_phase,
                 iterations: f.iterations,

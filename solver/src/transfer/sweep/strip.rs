@@ -1,7 +1,7 @@
 //! The sweep over one strip: control fields to points and stresses back to control points, by sum
 //! factorisation.
 
-use crate::linear_algebra::lane::{Lane, Vectorised};
+use crate::linear_algebra::lane::{LANES, Lane, Vectorised, prefetch};
 use crate::particles::lattice::{Lattice, MappedPoint, Row, Tile};
 use crate::splines::quadrature::MAX_POINTS;
 use crate::splines::spline::MAX_ORDER;
@@ -107,6 +107,9 @@ impl<K: PointKernel> StripSweep<'_, K> {
             }
             let slopes = !phase || K::PHASE_GRADIENT;
             let base = if phase { base - lift * self.lattice.grid.stride } else { base };
+            for ahead in [0, kx + LANES - 2] {
+                prefetch(field, base + self.lattice.grid.stride + ahead); // the next row
+            }
             for a in 0..nx {
                 let (mut value, mut slope) = (Lane::ZERO, Lane::ZERO);
                 for k in 0..kx {
@@ -175,6 +178,7 @@ impl<K: PointKernel> StripSweep<'_, K> {
                     point = rational::<K>(map, displacement, &point);
                 }
                 let weight = self.lattice.weight(row_index, tile_index, b, a);
+                self.kernel.prefetch(at + self.lattice.tiles.len() * nx * ny + b * nx + a); // the next row
                 let stress = self.kernel.points::<FMA>(at + b * nx + a, weight, &point);
                 if K::STRESS {
                     let Stress { xx, xy, yx, yy } = stress;
