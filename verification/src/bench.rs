@@ -60,7 +60,6 @@ use crate::reference::{Library, ReferenceError, ReferenceValue};
 use crate::scene::SceneFileError;
 use crate::study::StudyError;
 use baseline::Baseline;
-use elements::Built;
 use record::{BenchRecord, BenchSet, NamedPeer, SCHEMA};
 
 /// What is to be measured, and where the files are.
@@ -83,7 +82,7 @@ pub struct Settings<'a> {
     /// Families to run; empty: all.
     pub families: Vec<String>,
     /// The program of the finite elements, or why there is none, once it was asked for.
-    pub elements: OnceLock<Result<Built, String>>,
+    pub elements: OnceLock<Result<PathBuf, String>>,
 }
 
 impl Settings<'_> {

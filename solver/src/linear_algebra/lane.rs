@@ -3,7 +3,8 @@
 //!
 //! Every loop over [`Lane`] is plain arithmetic on eight numbers, which the compiler turns into vector
 //! instructions of whatever width the surrounding function may use. [`dispatch`] enters a function compiled
-//! for AVX2 and FMA where the processor has them, so a default build needs no compiler flags.
+//! for AVX2 and FMA, or for AVX-512, where the processor has them, so a default build needs no compiler
+//! flags.
 
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub};
@@ -223,10 +224,13 @@ pub(crate) fn prefetch<T>(values: &[T], at: usize) {
     }
 }
 
-/// Work to be compiled once for wide vector instructions and once without.
+/// Work to be compiled for wide vector instructions and without.
 pub trait Vectorised {
     /// Result.
     type Output;
+    /// Whether it is also compiled for AVX-512, where the processor has that. It gives the same bits, takes
+    /// long to compile, and only sweeps with much arithmetic per number gain from it.
+    const WIDEST: bool = false;
     /// The work; implementations are `#[inline(always)]` so that they take on the instructions of their
     /// caller.
     fn run<const FMA: bool>(self) -> Self::Output;
@@ -236,11 +240,26 @@ pub trait Vectorised {
 pub fn dispatch<W: Vectorised>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     {
+        #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
+        fn widest<W: Vectorised>(work: W) -> W::Output {
+            work.run::<true>()
+        }
         #[target_feature(enable = "avx2,fma")]
         fn wide<W: Vectorised>(work: W) -> W::Output {
             work.run::<true>()
         }
-        if std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma") {
+        let has_avx2 = std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma");
+        if W::WIDEST
+            && has_avx2
+            && std::is_x86_feature_detected!("avx512f")
+            && std::is_x86_feature_detected!("avx512dq")
+            && std::is_x86_feature_detected!("avx512vl")
+        {
+            // SAFETY: the processor was just asked for these features.
+            #[expect(unsafe_code, reason = "the caller of a function compiled for more features must have them")]
+            return unsafe { widest(work) };
+        }
+        if has_avx2 {
             // SAFETY: the processor was just asked for both features.
             #[expect(unsafe_code, reason = "the caller of a function compiled for more features must have them")]
             return unsafe { wide(work) };

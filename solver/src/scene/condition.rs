@@ -16,6 +16,18 @@ pub enum Side {
     Top,
 }
 
+impl Side {
+    /// Direction across it, and whether it is the upper end there.
+    pub(crate) fn axis(self) -> (usize, bool) {
+        match self {
+            Side::Left => (0, false),
+            Side::Right => (0, true),
+            Side::Bottom => (1, false),
+            Side::Top => (1, true),
+        }
+    }
+}
+
 /// Where a traction or a condition acts.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Edge {

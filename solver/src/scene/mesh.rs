@@ -44,6 +44,19 @@ impl Mesh {
         Self { degree, knots, geometry: None }
     }
 
+    /// Joins the two spans next to a side of a mesh over a rectangle, all along it; `false` if there is only
+    /// one. There the functions of degree 2 and more have the highest frequencies: the critical step is that
+    /// of the spans at the sides, and grows with their length.
+    pub fn lengthen_end(&mut self, side: Side) -> bool {
+        let (d, upper) = side.axis();
+        let inner = self.degree[d] + 1..self.knots[d].len().saturating_sub(self.degree[d] + 1);
+        let knots = self.knots[d].get(inner).unwrap_or_default();
+        let next = if upper { knots.last() } else { knots.first() };
+        let Some(next) = next.copied() else { return false };
+        self.knots[d].retain(|knot| *knot != next);
+        true
+    }
+
     /// Lower left corner of the patch, or of the box around its control points, m.
     pub fn origin(&self) -> [f64; 2] {
         [0, 1].map(|d| match &self.geometry {
@@ -86,12 +99,7 @@ impl Mesh {
 
     /// Whether a shape reaches a side of the box around the mesh.
     pub(crate) fn is_reached(&self, side: Side, shape: &Shape) -> bool {
-        let (d, upper) = match side {
-            Side::Left => (0, false),
-            Side::Right => (0, true),
-            Side::Bottom => (1, false),
-            Side::Top => (1, true),
-        };
+        let (d, upper) = side.axis();
         let (origin, end, (min, max)) = (self.origin()[d], self.end()[d], self.extent(shape));
         let tolerance = ON_SIDE * (end - origin);
         if upper { max[d] >= end - tolerance } else { min[d] <= origin + tolerance }

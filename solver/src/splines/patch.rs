@@ -89,12 +89,7 @@ impl Patch {
     /// Points along a side with a rule in every part of a span between `cuts`, in increasing order.
     pub(crate) fn boundary_cut(&self, side: Side, rule: &Rule, cuts: &[f64]) -> Vec<BoundaryPoint> {
         let grid = self.control_grid();
-        let (across, upper) = match side {
-            Side::Left => (0, false),
-            Side::Right => (0, true),
-            Side::Bottom => (1, false),
-            Side::Top => (1, true),
-        };
+        let (across, upper) = side.axis();
         let along = 1 - across;
         let ends = self.spaces[across].spans();
         let (fixed_span, fixed) = if upper { (ends.len() - 1, ends[ends.len() - 1].right) } else { (0, ends[0].left) };

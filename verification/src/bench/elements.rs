@@ -3,7 +3,7 @@
 //!
 //! | what | choice |
 //! |---|---|
-//! | build | `cargo build --release`, for AVX2 and FMA where this processor has them, as the solver |
+//! | build | `cargo build --release`; with AVX2 it is slower, and with AVX-512 no faster |
 //! | mesh | graded: elements twice and four times as large where no crack runs |
 //! | step | the critical one of an element |
 //! | phase field | solved for in every third step, in between it goes on linearly |
@@ -46,41 +46,21 @@ const LIMIT: Duration = Duration::from_secs(1800);
 /// Open part of the balance of energies over the largest work.
 const BALANCE: f64 = 2e-2;
 
-/// The program, and the instructions it was built for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Built {
-    /// Path.
-    pub program: PathBuf,
-    /// In words; the same in names of folders.
-    pub instructions: &'static str,
-}
-
-/// Instructions beyond the default target, as flags and in words: those that the solver uses here.
-fn instructions() -> (&'static str, &'static str) {
-    #[cfg(target_arch = "x86_64")]
-    if std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma") {
-        return ("-C target-feature=+avx2,+fma", "AVX2");
-    }
-    ("", "default target")
-}
-
-/// Builds the program, with its own lock file, in a folder of its own for each set of instructions.
+/// Builds the program, with its own lock file, in a folder of its own; its path.
 ///
 /// # Errors
 /// Why it cannot be built, in words.
-pub fn build(workspace: &Path) -> Result<Built, String> {
-    let (flags, words) = instructions();
+pub fn build(workspace: &Path) -> Result<PathBuf, String> {
     let package = workspace.join("reference-data/independent-fem/Cargo.toml");
-    let target = folder(workspace).join(words.replace(' ', "-").to_lowercase());
+    let target = folder(workspace);
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
     let mut command = Command::new(cargo);
     command.args(["build", "--release", "--locked", "--quiet", "--manifest-path"]).arg(&package);
     command.arg("--target-dir").arg(&target).stdin(Stdio::null()).stdout(Stdio::null());
-    command.env("RUSTFLAGS", flags).env_remove("CARGO_ENCODED_RUSTFLAGS");
+    command.env_remove("RUSTFLAGS").env_remove("CARGO_ENCODED_RUSTFLAGS");
     let output = command.output().map_err(|e| format!("cargo cannot be started: {e}"))?;
     if output.status.success() {
-        let program = target.join("release").join(format!("independent-fem{}", std::env::consts::EXE_SUFFIX));
-        return Ok(Built { program, instructions: words });
+        return Ok(target.join("release").join(format!("independent-fem{}", std::env::consts::EXE_SUFFIX)));
     }
     let words = String::from_utf8_lossy(&output.stderr);
     let first = words.lines().find(|line| line.starts_with("error")).or_else(|| words.lines().next());
@@ -105,9 +85,9 @@ impl Run {
         format!("plate/elements/{toughness}-{:e}/h{}", self.tolerance, (self.h * 1000.0).round() / 1000.0)
     }
 
-    fn label(&self, instructions: &str) -> String {
+    fn label(&self) -> String {
         let toughness = if self.corrected { "Gc/κ" } else { "Gc" };
-        format!("elements ({instructions}), graded, {toughness}, {:e}", self.tolerance)
+        format!("elements, graded, {toughness}, {:e}", self.tolerance)
     }
 
     fn words(&self, program: &Path) -> Vec<String> {
@@ -122,20 +102,19 @@ impl Run {
 }
 
 /// Runs of the half plate on graded meshes, on one thread.
-pub fn contestants<'a>(settings: &Settings, built: &Built, references: &Arc<References<'a>>) -> Vec<Contestant<'a>> {
+pub fn contestants<'a>(settings: &Settings, program: &Path, references: &Arc<References<'a>>) -> Vec<Contestant<'a>> {
     let meshes = if settings.quick { &MESHES[..QUICK] } else { &MESHES[..] };
     let history = folder(&settings.workspace).join("history.csv");
     let ways = WITH_GC.map(|tolerance| (tolerance, false)).into_iter();
     let ways = ways.chain(WITH_KAPPA.map(|tolerance| (tolerance, true)));
     let runs = ways.flat_map(|(tolerance, corrected)| meshes.iter().map(move |&h| Run { h, tolerance, corrected }));
-    runs.map(|run| contestant(built, history.clone(), run, Arc::clone(references))).collect()
+    runs.map(|run| contestant(program, history.clone(), run, Arc::clone(references))).collect()
 }
 
-fn contestant<'a>(built: &Built, history: PathBuf, run: Run, references: Arc<References<'a>>) -> Contestant<'a> {
-    let program = Program::of_words(run.words(&built.program), LIMIT);
-    let record = BenchRecord::new(run.id(), run.label(built.instructions), 1.0, "run")
-        .with("h_over_l0", run.h)
-        .with("options", FAST.join(" "));
+fn contestant<'a>(program: &Path, history: PathBuf, run: Run, references: Arc<References<'a>>) -> Contestant<'a> {
+    let program = Program::of_words(run.words(program), LIMIT);
+    let record =
+        BenchRecord::new(run.id(), run.label(), 1.0, "run").with("h_over_l0", run.h).with("options", FAST.join(" "));
     let run = move |record: &mut BenchRecord| {
         let _ = fs::remove_file(&history); // the answer of another run is none
         let sample = program.run(&history)?;
@@ -176,7 +155,7 @@ mod tests {
         let words = run.words(Path::new("fem")).join(" ");
         assert!(words.contains("--h-mm 0.125000000 --toughness 2.771362587 --tolerance 1e-4 --out"), "{words}");
         assert_eq!(run.id(), "plate/elements/kappa-1e-4/h0.5");
-        assert_eq!(run.label("AVX2"), "elements (AVX2), graded, Gc/κ, 1e-4");
+        assert_eq!(run.label(), "elements, graded, Gc/κ, 1e-4");
         let words = Run { corrected: false, ..run }.words(Path::new("fem")).join(" ");
         assert!(words.contains("--toughness 3.000000000"), "{words}");
     }

@@ -1,7 +1,7 @@
 //! From the tree of a document to the background mesh: a rectangle, a general NURBS patch, or an annular
 //! sector.
 
-use fisura::scene::{Geometry, Mesh};
+use fisura::scene::{Geometry, Mesh, Side};
 use fisura::splines::nurbs::{NurbsError, NurbsPatch};
 
 use super::fields::{Fields, Item};
@@ -15,8 +15,8 @@ const MOST_MAPPED_POSITIONS: usize = 2_500_000;
 const MOST_MAPPED_IN_A_ROW: usize = 10_000;
 /// Angle short of a full turn that a ring has to leave open, rad.
 const LEAST_OPENING: f64 = 1e-9;
-const KEYS: [&str; 9] =
-    ["degree", "origin", "size", "cells", "knots", "control_points", "weights", "subdivide", "annulus"];
+const KEYS: [&str; 10] =
+    ["degree", "origin", "size", "cells", "knots", "long_ends", "control_points", "weights", "subdivide", "annulus"];
 
 /// The `[mesh]` table.
 pub(super) fn mesh(item: &Item<'_>) -> Option<Mesh> {
@@ -24,8 +24,8 @@ pub(super) fn mesh(item: &Item<'_>) -> Option<Mesh> {
     let form = ["control_points", "annulus"].into_iter().find(|key| fields.get(key).is_some());
     let allowed: &[&str] = match form {
         Some("control_points") => &["degree", "knots", "control_points", "weights", "subdivide"],
-        Some(_) => &["degree", "cells", "annulus"],
-        None => &["degree", "origin", "size", "cells", "knots", "subdivide"],
+        Some(_) => &["degree", "cells", "long_ends", "annulus"],
+        None => &["degree", "origin", "size", "cells", "knots", "subdivide", "long_ends"],
     };
     let mut complete = true;
     for key in KEYS.into_iter().filter(|key| !allowed.contains(key)) {
@@ -58,11 +58,27 @@ fn rectangle(fields: &Fields<'_>, degree: Option<[usize; 2]>) -> Option<Mesh> {
         (Some(item), Some(None)) => item.fail("subdivide without knots", "give more cells, or the knots to subdivide"),
         _ => fields.or("subdivide", 1, |item| item.whole(1, MOST_CELLS)),
     };
+    let ends = long_ends(fields);
     let (degree, origin, size, knots, cells, parts) = (degree?, origin?, size?, knots?, cells?, parts?);
-    match knots {
-        None => Some(Mesh::uniform(degree, origin, size, cells)),
-        Some(knots) => graded(fields, degree, origin, size, knots, parts),
+    let mut mesh = match knots {
+        None => Mesh::uniform(degree, origin, size, cells),
+        Some(knots) => graded(fields, degree, origin, size, knots, parts)?,
+    };
+    if ends?.into_iter().all(|side| mesh.lengthen_end(side)) { Some(mesh) } else { too_short(fields) }
+}
+
+/// Sides at which the last two spans are one.
+fn long_ends(fields: &Fields<'_>) -> Option<Vec<Side>> {
+    let ends = fields.or("long_ends", Vec::new(), |item| item.each(Item::word::<Side>))?;
+    if (1..ends.len()).any(|number| ends[..number].contains(&ends[number])) {
+        return fields.get("long_ends")?.fail("a side is named twice", "name each side once");
     }
+    Some(ends)
+}
+
+fn too_short<T>(fields: &Fields<'_>) -> Option<T> {
+    let remedy = "give more cells, or leave the side out";
+    fields.get("long_ends")?.fail("there are too few spans to join two at a side", remedy)
 }
 
 fn size(item: &Item<'_>) -> Option<[f64; 2]> {
@@ -145,7 +161,8 @@ fn annulus(item: &Item<'_>, fields: &Fields<'_>, degree: [usize; 2]) -> Option<M
         let remedy = "give a degree of at least 2 along the arc, such as degree = [1, 2] or 2";
         return fields.get("degree")?.fail("an arc is a rational curve of degree 2", remedy);
     }
-    let (center, inner, outer, angles, cells) = (center?, inner?, outer?, angles?, cells?);
+    let ends = long_ends(fields);
+    let (center, inner, outer, angles, cells, ends) = (center?, inner?, outer?, angles?, cells?, ends?);
     few_enough(fields, "cells", cells, degree)?;
     if angles[1] - angles[0] >= std::f64::consts::TAU - LEAST_OPENING {
         let message = "a full turn would leave a slit: the ends of the patch touch and are not joined";
@@ -165,6 +182,11 @@ fn annulus(item: &Item<'_>, fields: &Fields<'_>, degree: [usize; 2]) -> Option<M
         let message = format!("{} cells along an arc of {pieces} rational pieces", cells[1]);
         return fields.get("cells")?.fail(message, format!("give a multiple of {pieces}"));
     }
+    let joined = [[Side::Left, Side::Right], [Side::Bottom, Side::Top]]
+        .map(|sides| sides.map(|side| usize::from(ends.contains(&side))));
+    if (0..2).any(|d| cells[d] / [1, pieces][d] <= joined[d][0] + joined[d][1]) {
+        return too_short(fields);
+    }
     let refine = || {
         let mut patch = sector;
         for d in 0..2 {
@@ -173,8 +195,11 @@ fn annulus(item: &Item<'_>, fields: &Fields<'_>, degree: [usize; 2]) -> Option<M
             }
             let parts = cells[d] / [1, pieces][d];
             let spans = patch.spaces()[d].spans().iter();
-            let new: Vec<f64> =
+            let mut new: Vec<f64> =
                 spans.flat_map(|s| (1..parts).map(move |i| s.left + s.length() * i as f64 / parts as f64)).collect();
+            let [first, last] = joined[d];
+            new.drain(..first);
+            new.truncate(new.len() - last);
             patch = patch.insert_knots(d, &new)?;
         }
         Ok(patch)

@@ -25,6 +25,7 @@ pub(super) struct StripSweep<'a, K> {
 
 impl<K: PointKernel> Vectorised for StripSweep<'_, K> {
     type Output = ();
+    const WIDEST: bool = K::EVERY_STEP;
 
     /// On wide processors, kernels of every step get loops of constant length for the usual degrees and
     /// numbers of points over a rectangle; any other runs the same code.
