@@ -21,8 +21,9 @@
 //! ```
 //!
 //! q lies between 0 and 1, and its error is that of the strains over r, so equal and nearly equal principal
-//! strains need no special care. Squares of strains below 1e-150 underflow; such strains are none. A strain that is not a number has energies and stresses that are none: the
-//! energy of a body tells that one of its points has lost its numbers.
+//! strains need no special care. Squares of strains below 1e-150 underflow; such strains count as none. A
+//! strain that is not a number has energies and stresses that are none: the energy of a body tells that one
+//! of its points has lost its numbers.
 
 use crate::linear_algebra::lane::Lane;
 use crate::material::elasticity::ElasticModuli;

@@ -35,6 +35,25 @@ fn frequencies(scene: &Scene) -> (f64, f64) {
     (largest.sqrt(), bound)
 }
 
+/// The functions at the sides of a mesh have the highest frequencies.
+#[test]
+fn long_spans_at_the_sides_allow_steps_nearly_twice_as_long() {
+    for (degree, least) in [(1, 0.99), (2, 1.85), (3, 1.85), (4, 1.85)] {
+        let highest = |sides: &[Side]| {
+            let mut scene = elastic_scene(degree, [1.0; 2], [16; 2]);
+            scene.bodies[0].particles_per_cell = [degree.max(2); 2];
+            assert!(sides.iter().all(|side| scene.mesh.lengthen_end(*side)));
+            let simulation = Simulation::new(&scene).unwrap();
+            highest_frequency(&mut simulation.total_frame().unwrap().stiffness_operator())
+        };
+        let longer = highest(&[]) / highest(&[Side::Left, Side::Right, Side::Bottom, Side::Top]);
+        assert!((least..2.0).contains(&longer), "p = {degree}: {longer}");
+    }
+    let mut one = Mesh::uniform([2; 2], [0.0; 2], [1.0; 2], [2, 1]);
+    assert!(one.lengthen_end(Side::Left) && !one.lengthen_end(Side::Right) && !one.lengthen_end(Side::Top));
+    assert_eq!(one.knots[0], [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
+}
+
 /// A chain of so many masses of 4 kg between springs of 1 N/m, held at both ends.
 struct Chain(usize);
 

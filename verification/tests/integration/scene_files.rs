@@ -70,6 +70,9 @@ fn every_form_of_a_key_is_read() {
     let cut = read_scene(&Document::parse("cut.toml", &cut).unwrap().root, "", Path::new("")).unwrap().mesh.knots;
     assert_eq!(cut[0], [0.0, 0.0, 0.0, 0.0125, 0.025, 0.05, 0.1 * 0.75, 0.1 * 0.875, 0.1, 0.1, 0.1]);
     assert_eq!(cut[1], [0.0, 0.0, 0.0, 0.02, 0.04, 0.04, 0.04]);
+    let long = text.replace("knots =", "long_ends = [\"right\"]\nknots =");
+    let long = read_scene(&Document::parse("long.toml", &long).unwrap().root, "", Path::new("")).unwrap().mesh.knots;
+    assert_eq!(long[0], [0.0, 0.0, 0.0, 0.025, 0.1, 0.1, 0.1]);
     assert_eq!(scene.analysis.transfer, Transfer::Xpic(5));
     assert_eq!(scene.contact, Some(Contact { friction: 0.65, ..Contact::default() }));
     assert_eq!(scene.bodies[0].tractions[1].edge, Edge::Segment([[0.0, 0.0], [0.05, 0.0]]));
