@@ -3,7 +3,7 @@
 //!
 //! | what | choice |
 //! |---|---|
-//! | build | `cargo build --release`; with AVX2 it is slower, and with AVX-512 no faster |
+//! | build | `cargo build --release` in its folder, whose configuration asks for the instructions of this processor |
 //! | mesh | graded: elements twice and four times as large where no crack runs |
 //! | step | the critical one of an element |
 //! | phase field | solved for in every third step, in between it goes on linearly |
@@ -46,16 +46,16 @@ const LIMIT: Duration = Duration::from_secs(1800);
 /// Open part of the balance of energies over the largest work.
 const BALANCE: f64 = 2e-2;
 
-/// Builds the program, with its own lock file, in a folder of its own; its path.
+/// Builds the program with its own lock file and configuration, into a folder of the workspace; its path.
 ///
 /// # Errors
 /// Why it cannot be built, in words.
 pub fn build(workspace: &Path) -> Result<PathBuf, String> {
-    let package = workspace.join("reference-data/independent-fem/Cargo.toml");
+    let package = workspace.join("reference-data/independent-fem");
     let target = folder(workspace);
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
     let mut command = Command::new(cargo);
-    command.args(["build", "--release", "--locked", "--quiet", "--manifest-path"]).arg(&package);
+    command.args(["build", "--release", "--locked", "--quiet"]).current_dir(&package); // cargo reads its configuration there
     command.arg("--target-dir").arg(&target).stdin(Stdio::null()).stdout(Stdio::null());
     command.env_remove("RUSTFLAGS").env_remove("CARGO_ENCODED_RUSTFLAGS");
     let output = command.output().map_err(|e| format!("cargo cannot be started: {e}"))?;
