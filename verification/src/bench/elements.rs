@@ -52,10 +52,13 @@ const BALANCE: f64 = 2e-2;
 /// Why it cannot be built, in words.
 pub fn build(workspace: &Path) -> Result<PathBuf, String> {
     let package = workspace.join("reference-data/independent-fem");
-    let target = folder(workspace);
+    if !package.is_dir() {
+        return Err(format!("{} is missing", package.display()));
+    }
+    let target = std::path::absolute(folder(workspace)).map_err(|e| e.to_string())?;
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
     let mut command = Command::new(cargo);
-    command.args(["build", "--release", "--locked", "--quiet"]).current_dir(&package); // cargo reads its configuration there
+    command.args(["build", "--release", "--locked", "--quiet"]).current_dir(&package); // with the configuration there
     command.arg("--target-dir").arg(&target).stdin(Stdio::null()).stdout(Stdio::null());
     command.env_remove("RUSTFLAGS").env_remove("CARGO_ENCODED_RUSTFLAGS");
     let output = command.output().map_err(|e| format!("cargo cannot be started: {e}"))?;
@@ -146,7 +149,7 @@ mod tests {
     fn a_package_that_is_not_there_is_said() {
         let folder = tempfile::tempdir().unwrap();
         let reason = build(folder.path()).unwrap_err();
-        assert!(reason.contains("cargo, exit") && reason.contains("Cargo.toml"), "{reason}");
+        assert!(reason.contains("independent-fem is missing"), "{reason}");
     }
 
     #[test]

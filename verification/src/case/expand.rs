@@ -37,8 +37,8 @@ pub struct CaseScene {
 fn depth_of_one_value(path: &str) -> usize {
     let key = path.rsplit('.').next().unwrap_or(path);
     match key {
-        "cells" | "origin" | "size" | "particles_per_cell" | "velocity" | "displacement" | "gravity" | "fix"
-        | "frames" | "at" | "min" | "max" | "center" | "from" | "to" | "stress" | "weights" | "angles" => 1,
+        "cells" | "long_ends" | "origin" | "size" | "particles_per_cell" | "velocity" | "displacement" | "gravity"
+        | "fix" | "frames" | "at" | "min" | "max" | "center" | "from" | "to" | "stress" | "weights" | "angles" => 1,
         "knots" | "points" | "segment" | "control_points" | "table" | "velocity_gradient" | "tensor" => 2,
         "minus" => usize::MAX,
         _ => 0,
