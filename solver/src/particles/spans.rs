@@ -2,7 +2,7 @@
 //! whose knots are parameters, the chords between neighbouring knots through the middles of the spans.
 
 use crate::linear_algebra::extremes::{larger, smaller};
-use crate::scene::{Mesh, Shape};
+use crate::scene::{Mesh, Shape, Side};
 use crate::splines::nurbs::NurbsPatch;
 
 /// Largest span in either direction, m.
@@ -30,6 +30,19 @@ pub(crate) fn lengths_of_chords(patch: &NurbsPatch) -> [f64; 2] {
 /// Smallest and largest length (m) of the spans of a rectangle under the box around a shape.
 pub(crate) fn lengths_of_spans(mesh: &Mesh, shape: &Shape) -> [f64; 2] {
     extremes(lengths_along(mesh, shape).into_iter().flatten())
+}
+
+/// Largest length (m) of the spans of a rectangle under the box around a shape. Those at the sides of the mesh,
+/// which may be long ends, count where there are no others.
+pub(crate) fn longest_span_inside(mesh: &Mesh, shape: &Shape) -> f64 {
+    let lengths = lengths_along(mesh, shape);
+    let reached = |side| usize::from(mesh.is_reached(side, shape));
+    let inside = |d: usize, sides: [Side; 2]| {
+        let [first, last] = sides.map(reached);
+        let inner = lengths[d].get(first..lengths[d].len().saturating_sub(last)).filter(|inner| !inner.is_empty());
+        extremes(inner.unwrap_or(&lengths[d]).iter().copied())[1]
+    };
+    larger(inside(0, [Side::Left, Side::Right]), inside(1, [Side::Bottom, Side::Top]))
 }
 
 /// Length (m) of the spans of the finest cell of a rectangle under the box around a shape: the longer one.
@@ -76,6 +89,16 @@ mod tests {
 
     /// A ring of 4 by 4 spans between the radii 1 and 2 m: chords of a sixteenth of a turn at the largest
     /// middle radius.
+    #[test]
+    fn long_ends_are_no_measure_of_a_mesh_but_where_there_is_nothing_else() {
+        let mut mesh = Mesh::uniform([2; 2], [0.0; 2], [1.0, 0.5], [10, 5]);
+        assert!([Side::Left, Side::Right, Side::Top].into_iter().all(|side| mesh.lengthen_end(side)));
+        let longest = |max: [f64; 2]| longest_span_inside(&mesh, &Shape::Rectangle { min: [0.0; 2], max });
+        approx::assert_relative_eq!(longest([1.0, 0.5]), 0.1, max_relative = 1e-13);
+        approx::assert_relative_eq!(longest([0.15, 0.2]), 0.2, max_relative = 1e-13);
+        approx::assert_relative_eq!(lengths_of_spans(&mesh, &Shape::Patch)[1], 0.2, max_relative = 1e-13);
+    }
+
     #[test]
     fn spans_of_a_patch_are_measured_in_metres() {
         let ring = NurbsPatch::quarter_annulus(1.0, 2.0).unwrap().elevate(0).unwrap().subdivide(4).unwrap();

@@ -4,7 +4,7 @@
 use super::findings::Findings;
 use super::ground::Ground;
 use crate::linear_algebra::extremes::{larger, smaller};
-use crate::particles::spans::{finest_cell, lengths_of_spans};
+use crate::particles::spans::{finest_cell, longest_span_inside};
 use crate::phase_field::fracture::half_width;
 use crate::scene::{Body, Fracture, Mesh, Shape};
 
@@ -14,13 +14,16 @@ const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
 /// An error for cells above four times the length scale at the initial cracks of a body, or everywhere if it
 /// has none; a warning for such cells elsewhere, and for cells above the length scale.
 pub(super) fn check(body: &Body, fracture: &Fracture, ground: &Ground<'_>, findings: &mut Findings) {
-    let ([_, longest], l0) = (ground.span_lengths(&body.shape), fracture.shortest_length());
+    let is_mapped = ground.patch.is_some();
+    let longest =
+        if is_mapped { ground.span_lengths(&body.shape)[1] } else { longest_span_inside(ground.mesh, &body.shape) };
+    let l0 = fracture.shortest_length();
     if let Some(random) = fracture.random.filter(|random| random.correlation < longest) {
         let message = format!("{:.4e} m is shorter than the largest cell, {longest:.4e} m", random.correlation);
         let remedy = "give at least the length of a cell: the points of one cell cannot differ by more";
         findings.error(format!("material.{}.fracture.random.correlation", body.material), message, remedy);
     }
-    let needed = if ground.patch.is_some() { longest } else { span_of_cracks(body, l0, ground.mesh) };
+    let needed = if is_mapped { longest } else { span_of_cracks(body, l0, ground.mesh) };
     let exceeds = |h: f64, times: f64| h > times * l0 * (1.0 + TOLERANCE);
     let sizes = |h: f64| format!("cells of h = {:.4} mm against l0 = {:.4} mm", 1e3 * h, 1e3 * l0);
     let key = format!("material.{}.fracture.length_scale", body.material);
@@ -48,8 +51,7 @@ fn span_of_cracks(body: &Body, l0: f64, mesh: &Mesh) -> f64 {
         let ends = |d: usize| crack.points.iter().map(move |point| point[d]);
         let min = [0, 1].map(|d| ends(d).fold(f64::INFINITY, smaller) - width);
         let max = [0, 1].map(|d| ends(d).fold(f64::NEG_INFINITY, larger) + width);
-        let [_, longest] = lengths_of_spans(mesh, &Shape::Rectangle { min, max });
-        longest
+        longest_span_inside(mesh, &Shape::Rectangle { min, max })
     });
     spans.reduce(larger).unwrap_or_else(|| finest_cell(mesh, &body.shape))
 }

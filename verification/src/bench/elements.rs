@@ -3,7 +3,7 @@
 //!
 //! | what | choice |
 //! |---|---|
-//! | build | `cargo build --release` in its folder, whose configuration asks for the instructions of this processor |
+//! | build | `cargo build --release` in its folder: for the instructions of this processor |
 //! | mesh | graded: elements twice and four times as large where no crack runs |
 //! | step | the critical one of an element |
 //! | phase field | solved for in every third step, in between it goes on linearly |
