@@ -32,8 +32,8 @@ pub(crate) fn lengths_of_spans(mesh: &Mesh, shape: &Shape) -> [f64; 2] {
     extremes(lengths_along(mesh, shape).into_iter().flatten())
 }
 
-/// Largest length (m) of the spans of a rectangle under the box around a shape. Those at the sides of the mesh,
-/// which may be long ends, count where there are no others.
+/// Largest length (m) of the spans of a rectangle under the box around a shape. Those at the sides of the
+/// mesh, which may be long ends, count where there are no others.
 pub(crate) fn longest_span_inside(mesh: &Mesh, shape: &Shape) -> f64 {
     let lengths = lengths_along(mesh, shape);
     let reached = |side| usize::from(mesh.is_reached(side, shape));
