@@ -21,8 +21,8 @@
 //! ```
 //!
 //! q lies between 0 and 1, and its error is that of the strains over r, so equal and nearly equal principal
-//! strains need no special care. Squares of strains below 1e-150 underflow; such strains count as none. A
-//! strain that is not a number has energies and stresses that are none: the energy of a body tells that one
+//! strains need no special care. Squares are scaled: those of strains down to 1e-270 do not underflow.
+//! A strain that is not a number has energies and stresses that are none: the energy of a body tells that one
 //! of its points has lost its numbers.
 
 use crate::linear_algebra::lane::Lane;
@@ -76,7 +76,7 @@ pub fn driving_energy(moduli: &ElasticModuli, law: Split, strain: [Lane; 3]) -> 
     }
     let [xx, yy, xy] = moduli.stress(strain);
     let half_difference = (xx - yy) * 0.5;
-    let radius = (half_difference * half_difference + xy * xy).map(f64::sqrt);
+    let radius = hypotenuse(half_difference, xy);
     let largest =
         ((xx + yy) * 0.5 + fault!("rankine-smallest-stress", radius => Lane::ZERO - radius)).at_least(Lane::ZERO);
     largest * largest * (fault!("rankine-modulus", 0.5 => 1.0) / moduli.young)
@@ -87,7 +87,7 @@ pub fn driving_energy(moduli: &ElasticModuli, law: Split, strain: [Lane; 3]) -> 
 pub fn tensile_strain([xx, yy, xy]: [Lane; 3]) -> ([Lane; 3], [Lane; 2]) {
     let mean = (xx + yy) * 0.5;
     let half_difference = (xx - yy) * 0.5;
-    let radius = (half_difference * half_difference + xy * xy).map(f64::sqrt);
+    let radius = hypotenuse(half_difference, xy);
     let (e1, e2) = fault!("split-swapped", (mean + radius, mean - radius) => (mean - radius, mean + radius));
     let (plus1, plus2) = (e1.at_least(Lane::ZERO), e2.at_least(Lane::ZERO));
     let half_sum = (plus1 + plus2) * 0.5;
@@ -95,6 +95,16 @@ pub fn tensile_strain([xx, yy, xy]: [Lane; 3]) -> ([Lane; 3], [Lane; 2]) {
     let q = (plus1 - plus2).zip(diameter, |difference, diameter| difference / diameter);
     let deviator = half_difference * q;
     ([half_sum + deviator, half_sum - deviator, xy * q], [e1, e2])
+}
+
+/// `hypot(a, b)` for 1e-270 to 1e30: scaled by a power of two, which changes no bit where squares are normal
+/// numbers.
+#[inline(always)]
+fn hypotenuse(a: Lane, b: Lane) -> Lane {
+    const ROOT: f64 = (1_u128 << 100) as f64;
+    const SCALE: f64 = ROOT * ROOT * ROOT * ROOT; // 2^400
+    let (a, b) = (a * SCALE, b * SCALE);
+    (a * a + b * b).map(f64::sqrt) * (1.0 / SCALE)
 }
 
 #[inline(always)]

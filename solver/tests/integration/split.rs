@@ -83,7 +83,7 @@ fn check(strain: Strain) {
     let state = state(&moduli, Split::Spectral, strain);
     let whole = moduli.energy(strain.map(Lane::splat))[0];
     let sum = state.energy_plus[0] + state.energy_minus[0];
-    let rounding = 4e-15 * scale * scale;
+    let rounding = 4e-15 * scale * scale + 1e-320; // squares near the smallest number are coarse
     assert!((sum - whole).abs() <= moduli.mu * rounding, "{strain:?}: psi+ + psi- = {sum} for {whole}");
     assert!(state.energy_plus[0] >= 0.0 && state.energy_minus[0] >= 0.0, "{strain:?}");
     let stress = moduli.stress(strain.map(Lane::splat));
@@ -104,14 +104,14 @@ fn degenerate_families() {
     let angles = [0.0, 1e-9, 0.3, std::f64::consts::FRAC_PI_4, 1.2, std::f64::consts::FRAC_PI_2, 2.9];
     // equal, equal to a last digit, next to zero, zero, and of either sign
     let values = [1.0, 1.0 - 1e-16, 1.0 + 2.3e-16, 1e-16, 0.0, -1e-16, -1.0, -1.0 - 2.3e-16];
-    for magnitude in [1.0, 1e-3, 1e-8, 1e-130, 1e100] {
+    for magnitude in [1.0, 1e-3, 1e-8, 1e-170, 1e-250, 1e30] {
         for (e1, e2) in values.into_iter().flat_map(|e1| values.map(|e2| (e1, e2))) {
             for angle in angles {
                 check(turned(e1 * magnitude, e2 * magnitude, angle));
             }
         }
     }
-    for shear in [1.0, -1e-5, 1e-130] {
+    for shear in [1.0, -1e-5, 1e-170] {
         check([0.0, 0.0, shear]);
         assert_eq!(tensile([0.0, 0.0, shear]), [0.5 * shear.abs(), 0.5 * shear.abs(), 0.5 * shear]);
     }
@@ -145,7 +145,7 @@ proptest! {
     })]
 
     #[test]
-    fn random_strains(xx in -1.0f64..1.0, yy in -1.0f64..1.0, xy in -1.0f64..1.0, exponent in -130i32..3) {
+    fn random_strains(xx in -1.0f64..1.0, yy in -1.0f64..1.0, xy in -1.0f64..1.0, exponent in -160i32..3) {
         let magnitude = 10f64.powi(exponent);
         check([xx * magnitude, yy * magnitude, xy * magnitude]);
     }
