@@ -32,7 +32,7 @@ mod awake;
 mod bounds;
 pub mod fracture;
 mod increments;
-mod lag;
+pub(crate) mod lag;
 mod method;
 mod minimise;
 mod newton;

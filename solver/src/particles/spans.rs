@@ -32,17 +32,19 @@ pub(crate) fn lengths_of_spans(mesh: &Mesh, shape: &Shape) -> [f64; 2] {
     extremes(lengths_along(mesh, shape).into_iter().flatten())
 }
 
-/// Largest length (m) of the spans of a rectangle under the box around a shape. Those at the sides of the
-/// mesh, which may be long ends, count where there are no others.
-pub(crate) fn longest_span_inside(mesh: &Mesh, shape: &Shape) -> f64 {
-    let lengths = lengths_along(mesh, shape);
-    let reached = |side| usize::from(mesh.is_reached(side, shape));
-    let inside = |d: usize, sides: [Side; 2]| {
-        let [first, last] = sides.map(reached);
-        let inner = lengths[d].get(first..lengths[d].len().saturating_sub(last)).filter(|inner| !inner.is_empty());
-        extremes(inner.unwrap_or(&lengths[d]).iter().copied())[1]
+/// Largest length (m) of the spans of a rectangle under the box around a shape. A span at a side of the mesh,
+/// which may be a long end, counts as half as long where there are others inside.
+pub(crate) fn longest_span(mesh: &Mesh, shape: &Shape) -> f64 {
+    let longest = |mut lengths: Vec<f64>, sides: [Side; 2]| {
+        let [first, last] = sides.map(|side| mesh.is_reached(side, shape));
+        if lengths.len() > usize::from(first) + usize::from(last) {
+            lengths.first_mut().filter(|_| first).into_iter().for_each(|length| *length *= 0.5);
+            lengths.last_mut().filter(|_| last).into_iter().for_each(|length| *length *= 0.5);
+        }
+        extremes(lengths.into_iter())[1]
     };
-    larger(inside(0, [Side::Left, Side::Right]), inside(1, [Side::Bottom, Side::Top]))
+    let [x, y] = lengths_along(mesh, shape);
+    larger(longest(x, [Side::Left, Side::Right]), longest(y, [Side::Bottom, Side::Top]))
 }
 
 /// Length (m) of the spans of the finest cell of a rectangle under the box around a shape: the longer one.
@@ -90,13 +92,14 @@ mod tests {
     /// A ring of 4 by 4 spans between the radii 1 and 2 m: chords of a sixteenth of a turn at the largest
     /// middle radius.
     #[test]
-    fn long_ends_are_no_measure_of_a_mesh_but_where_there_is_nothing_else() {
+    fn long_ends_count_as_the_two_spans_that_they_join() {
         let mut mesh = Mesh::uniform([2; 2], [0.0; 2], [1.0, 0.5], [10, 5]);
         assert!([Side::Left, Side::Right, Side::Top].into_iter().all(|side| mesh.lengthen_end(side)));
-        let longest = |max: [f64; 2]| longest_span_inside(&mesh, &Shape::Rectangle { min: [0.0; 2], max });
+        let longest = |max: [f64; 2]| longest_span(&mesh, &Shape::Rectangle { min: [0.0; 2], max });
         approx::assert_relative_eq!(longest([1.0, 0.5]), 0.1, max_relative = 1e-13);
         approx::assert_relative_eq!(longest([0.15, 0.2]), 0.2, max_relative = 1e-13);
-        approx::assert_relative_eq!(lengths_of_spans(&mesh, &Shape::Patch)[1], 0.2, max_relative = 1e-13);
+        mesh.knots[0] = vec![0.0, 0.0, 0.0, 0.1, 0.2, 1.0, 1.0, 1.0];
+        assert_eq!(longest_span(&mesh, &Shape::Patch), 0.4, "a coarse end is no long end");
     }
 
     #[test]

@@ -18,7 +18,7 @@
 //! ```
 //!
 //! with H, c before a step and H', c' after it: no matrix is needed between solves
-//! ([`fracture`](super::fracture)).
+//! ([`LagWork`](super::lag::LagWork)).
 
 use super::PhaseField;
 use super::lag::Lag;
@@ -52,6 +52,11 @@ impl PhaseField {
     /// Whether the coming step solves.
     pub(crate) fn is_due(&self) -> bool {
         self.lag.as_ref().is_none_or(|lag| lag.is_due())
+    }
+
+    /// Whether the present c was carried on.
+    pub(crate) fn is_carried_on(&self) -> bool {
+        self.lag.as_ref().is_some_and(|lag| lag.since > 0)
     }
 
     /// Whether there are steps without a solve.

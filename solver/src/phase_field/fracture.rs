@@ -12,6 +12,7 @@ use crate::material::random_field::RandomField;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::PhaseField;
 use crate::phase_field::awake::Awake;
+use crate::phase_field::lag::LagWork;
 use crate::scene::{Body, Crack, CrackKind, Kinematics, RandomToughness, SolverSettings};
 use crate::splines::patch::Patch;
 use crate::transfer::elastic_forces::elastic_sweep;
@@ -42,12 +43,8 @@ pub struct LatticeFracture {
     pub phase: Vec<Lane>,
     /// `s (H − psi+)` at the points with `s = g'/2`, J/m³.
     pub excess: Vec<Lane>,
-    /// Whether H is still that of the step before.
-    pub history_is_old: bool,
-    /// `s H` at the points, J/m³, if there are steps without a solve.
-    pub drive: Vec<Lane>,
-    /// Work of the changes of c on it, and surface energy at t = 0, J/m.
-    pub drive_work: [f64; 2],
+    /// Work between solves, if there are steps without one.
+    pub(crate) lag_work: Option<LagWork>,
     /// Phase field on the control points.
     pub field: PhaseField,
     /// Gc over its mean at the points, where it is random.
@@ -92,23 +89,10 @@ impl LatticeFracture {
         }
         let convergence = field.initialise(lattice, &history)?;
         let iterations = convergence.iterations;
-        let drive = if field.skips_solves() { zeros.clone() } else { Vec::new() };
+        let lag_work = field.skips_solves().then(|| LagWork::new(lattice.batches()));
         let (phase, excess) = (zeros.clone(), zeros);
         let driven = body.cracks.iter().filter(|crack| matches!(crack.kind, CrackKind::Driven(_))).cloned().collect();
-        Ok(Self {
-            model,
-            history,
-            phase,
-            excess,
-            history_is_old: false,
-            drive,
-            drive_work: [0.0; 2],
-            field,
-            relative,
-            iterations,
-            driven,
-            intact_energy: None,
-        })
+        Ok(Self { model, history, phase, excess, lag_work, field, relative, iterations, driven, intact_energy: None })
     }
 
     /// H from the present displacement, or from cracks that are driven, at a time, s; with a threshold also
@@ -158,9 +142,12 @@ impl LatticeFracture {
         sweep_with(kinematics, lattice, fields, &mut kernels, None);
     }
 
-    /// Begins the work of the phase field with zero.
+    /// Begins the work between solves with zero.
     pub(crate) fn begin_work(&mut self, lattice: &Lattice) {
-        self.drive_work = [0.0, if self.drive.is_empty() { 0.0 } else { self.surface_energy(lattice).0 }];
+        if let Some(mut work) = self.lag_work.take() {
+            (work.on_drive, work.surface_at_start) = (0.0, self.surface_energy(lattice).0);
+            self.lag_work = Some(work);
+        }
     }
 
     /// Whether H is needed for the c of the coming step; otherwise the sweep of the stress will update it.
@@ -173,7 +160,6 @@ impl LatticeFracture {
     /// # Errors
     /// If the solve does not converge.
     pub fn advance_phase_field(&mut self, lattice: &Lattice) -> Result<(), SolveFailure> {
-        self.history_is_old = !self.needs_history();
         if let Some(convergence) = self.field.advance(lattice, &self.history)? {
             self.iterations = convergence.iterations;
         }
@@ -210,8 +196,8 @@ impl LatticeFracture {
         let knows_excess = model.driving_work().is_some();
         let visited = awake.map(|awake| if knows_excess { awake.computed() } else { awake.damaged() });
         let mut cells = visited.unwrap_or_default().chunks(chunk / lattice.points_per_span());
-        let updates_history = std::mem::take(&mut self.history_is_old);
-        let mut drive = self.drive.chunks_mut(chunk);
+        let updates_history = self.field.is_carried_on() && self.driven.is_empty();
+        let mut drive = self.lag_work.iter_mut().flat_map(|work| work.drive.chunks_mut(chunk));
         let states = self.phase.chunks_mut(chunk).zip(self.excess.chunks_mut(chunk));
         let mut kernels: Vec<_> = states
             .zip(self.history.chunks_mut(chunk))
@@ -230,22 +216,22 @@ impl LatticeFracture {
             })
             .collect();
         sweep_with(kinematics, lattice, fields, &mut kernels, Some(forces));
-        self.drive_work[0] +=
-            (1.0 - model.residual_stiffness) * kernels.iter().map(|k| k.drive_work.sum()).sum::<f64>();
+        let drive_work: f64 = kernels.iter().map(|k| k.drive_work.sum()).sum();
         let history_work: f64 = kernels.iter().map(|k| k.history_work.sum()).sum();
+        let elastic_energy = intact + kernels.iter().map(|k| k.energy.sum()).sum::<f64>();
+        let share = 1.0 - model.residual_stiffness;
+        self.lag_work.iter_mut().for_each(|work| work.on_drive += share * drive_work);
         StressSums {
-            elastic_energy: intact + kernels.iter().map(|k| k.energy.sum()).sum::<f64>(),
-            history_work: (1.0 - model.residual_stiffness)
-                * fault!("history-work-halved", history_work => 0.5 * history_work),
+            elastic_energy,
+            history_work: share * fault!("history-work-halved", history_work => 0.5 * history_work),
         }
     }
 
     /// What the phase field adds to the energy of the body, given the work of the history field and the
     /// surface energy, by the names of columns, J/m.
     pub(crate) fn works(&self, history_work: f64, surface_energy: f64) -> Vec<(&'static str, f64)> {
-        let [drive_work, surface_at_start] = self.drive_work;
-        let lag = fault!("phase-lag-work-left-out", surface_energy - surface_at_start + drive_work => 0.0);
-        let residual = self.field.work_on_bounds().or((!self.drive.is_empty()).then_some(lag));
+        let of_lag = |work: &LagWork| fault!("phase-lag-work-left-out", work.total(surface_energy) => 0.0);
+        let residual = self.field.work_on_bounds().or(self.lag_work.as_ref().map(of_lag));
         let values = self.model.driving_work().map(|_| history_work).into_iter().chain(residual);
         self.model.columns_of_work(residual.is_some()).into_iter().zip(values).collect()
     }
@@ -285,7 +271,8 @@ impl LatticeFracture {
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
         let relative = self.relative.as_ref().map_or(0, Vec::len);
-        let lanes = self.history.len() + self.phase.len() + self.excess.len() + self.drive.len() + relative;
+        let drive = self.lag_work.as_ref().map_or(0, |work| work.drive.len());
+        let lanes = self.history.len() + self.phase.len() + self.excess.len() + drive + relative;
         lanes * size_of::<Lane>() + self.field.bytes()
     }
 }

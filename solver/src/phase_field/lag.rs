@@ -1,6 +1,7 @@
-//! The state between two solves of the phase field: see [`advance`](super::advance).
+//! The state between two solves of the phase field, and the work done there: see [`advance`](super::advance).
 
 use crate::checkpoint::{Archive, StateError};
+use crate::linear_algebra::lane::Lane;
 use crate::scene::PhaseFieldInterval;
 
 /// Largest change of c at a control point between two solves of the automatic interval: a twentieth of the
@@ -80,5 +81,38 @@ impl Lag {
     /// Heap memory, bytes.
     pub(super) fn bytes(&self) -> usize {
         8 * self.solved.len()
+    }
+}
+
+/// Work of the changes of c where there are steps without a solve.
+#[derive(Debug, Clone)]
+pub(crate) struct LagWork {
+    /// `s H` at the points, J/m³.
+    pub(crate) drive: Vec<Lane>,
+    /// Work of the changes of c on it, J/m.
+    pub(crate) on_drive: f64,
+    /// Surface energy at t = 0, J/m.
+    pub(crate) surface_at_start: f64,
+}
+
+impl LagWork {
+    /// None yet, for a lattice with this many batches.
+    pub(crate) fn new(batches: usize) -> Self {
+        Self { drive: vec![Lane::ZERO; batches], on_drive: 0.0, surface_at_start: 0.0 }
+    }
+
+    /// The work so far, given the surface energy now, J/m.
+    pub(crate) fn total(&self, surface_energy: f64) -> f64 {
+        surface_energy - self.surface_at_start + self.on_drive
+    }
+
+    /// Stores or takes up what steps change.
+    ///
+    /// # Errors
+    /// Bytes of another scene.
+    pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        let Self { drive, on_drive, surface_at_start } = self;
+        archive.list(drive)?;
+        [on_drive, surface_at_start].into_iter().try_for_each(|energy| archive.value(energy))
     }
 }

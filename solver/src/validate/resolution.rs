@@ -4,7 +4,7 @@
 use super::findings::Findings;
 use super::ground::Ground;
 use crate::linear_algebra::extremes::{larger, smaller};
-use crate::particles::spans::{finest_cell, longest_span_inside};
+use crate::particles::spans::{finest_cell, longest_span};
 use crate::phase_field::fracture::half_width;
 use crate::scene::{Body, Fracture, Mesh, Shape};
 
@@ -15,8 +15,7 @@ const TOLERANCE: f64 = crate::splines::spline::ROUND_OFF;
 /// has none; a warning for such cells elsewhere, and for cells above the length scale.
 pub(super) fn check(body: &Body, fracture: &Fracture, ground: &Ground<'_>, findings: &mut Findings) {
     let is_mapped = ground.patch.is_some();
-    let longest =
-        if is_mapped { ground.span_lengths(&body.shape)[1] } else { longest_span_inside(ground.mesh, &body.shape) };
+    let longest = if is_mapped { ground.span_lengths(&body.shape)[1] } else { longest_span(ground.mesh, &body.shape) };
     let l0 = fracture.shortest_length();
     if let Some(random) = fracture.random.filter(|random| random.correlation < longest) {
         let message = format!("{:.4e} m is shorter than the largest cell, {longest:.4e} m", random.correlation);
@@ -51,7 +50,7 @@ fn span_of_cracks(body: &Body, l0: f64, mesh: &Mesh) -> f64 {
         let ends = |d: usize| crack.points.iter().map(move |point| point[d]);
         let min = [0, 1].map(|d| ends(d).fold(f64::INFINITY, smaller) - width);
         let max = [0, 1].map(|d| ends(d).fold(f64::NEG_INFINITY, larger) + width);
-        longest_span_inside(mesh, &Shape::Rectangle { min, max })
+        longest_span(mesh, &Shape::Rectangle { min, max })
     });
     spans.reduce(larger).unwrap_or_else(|| finest_cell(mesh, &body.shape))
 }

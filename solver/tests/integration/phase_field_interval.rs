@@ -1,7 +1,9 @@
 //! Steps without a solve of the phase field.
 
 use crate::common::{notched_plate, relative_closure, run};
+use fisura::Simulation;
 use fisura::dynamics::energy::Sample;
+use fisura::material::split::driving_energy;
 use fisura::scene::*;
 
 fn cracking(interval: PhaseFieldInterval) -> (usize, Vec<Sample>) {
@@ -45,4 +47,25 @@ fn an_interval_that_is_too_long_warns() {
     assert_eq!(warnings(2), [""; 0]);
     let found = warnings(20);
     assert!(found.iter().any(|warning| warning.contains("lower solver.phase_field_interval")), "{found:?}");
+}
+
+/// Also between solves, where the sweep of the stress updates it.
+#[test]
+fn the_history_is_never_below_the_present_driving_energy() {
+    let mut scene = notched_plate(4e6);
+    scene.analysis.end_time = 3.2e-6;
+    scene.output.samples = 2;
+    scene.solver.phase_field_interval = PhaseFieldInterval::Steps(5);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    for step in 0..simulation.plan().steps() {
+        simulation.step().unwrap();
+        let frame = simulation.total_frame().unwrap();
+        let (fracture, lattice) = (frame.fracture.as_ref().unwrap(), frame.lattice());
+        for (batch, history) in fracture.history.iter().enumerate() {
+            let [(_, x), (_, y)] = frame.displacement().each_ref().map(|u| lattice.interpolate(batch, u));
+            let energy = driving_energy(&frame.moduli(), fracture.model.split, [x[0], y[1], (x[1] + y[0]) * 0.5]);
+            let below = energy.0.iter().zip(history.0).any(|(energy, history)| history < energy * (1.0 - 1e-9) - 1e-6);
+            assert!(!below, "step {step}, batch {batch}: H = {history:?}, psi+ = {energy:?}");
+        }
+    }
 }

@@ -107,6 +107,17 @@ fn an_annulus_has_its_centre_angles_degrees_and_cells() {
 }
 
 #[test]
+fn an_annulus_has_long_ends() {
+    let mesh =
+        "degree = 2\nlong_ends = [\"left\", \"top\"]\ncells = [4, 6]\nannulus = { inner_radius = 1, outer_radius = 2 }";
+    let mesh = scene(&with_mesh(mesh)).mesh;
+    assert_eq!(mesh.knots[0], [0.0, 0.0, 0.0, 0.5, 0.75, 1.0, 1.0, 1.0]);
+    assert_eq!(mesh.knots[1].len(), 3 + 4 + 3, "five spans");
+    let [x, y] = position(&mesh, [0.5, 0.5]);
+    approx::assert_abs_diff_eq!(x.hypot(y), 1.5, epsilon = 1e-13);
+}
+
+#[test]
 fn a_patch_on_a_rectangle_is_the_rectangle() {
     let scene = scene(&with_mesh("degree = 2\norigin = [0.1, 0.2]\nsize = [1.0, 0.8]\ncells = [16, 8]"));
     assert_eq!(scene.mesh, Mesh::uniform([2; 2], [0.1, 0.2], [1.0, 0.8], [16, 8]));

@@ -55,9 +55,7 @@ impl TotalFrame {
             history,
             phase,
             excess,
-            history_is_old: _, // never between steps
-            drive,
-            drive_work,
+            lag_work,
             field,
             iterations,
             intact_energy: _,
@@ -65,9 +63,9 @@ impl TotalFrame {
             driven: _,
         }) = fracture
         {
-            [history, phase, excess, drive].into_iter().try_for_each(|values| archive.list(values))?;
+            [history, phase, excess].into_iter().try_for_each(|values| archive.list(values))?;
             field.exchange(archive)?;
-            archive.value(drive_work)?;
+            lag_work.as_mut().map_or(Ok(()), |work| work.exchange(archive))?;
             archive.value(iterations)?;
         }
         [elastic_energy, time, judged_stiffening].into_iter().try_for_each(|value| archive.value(value))?;
