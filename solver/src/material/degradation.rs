@@ -22,7 +22,7 @@ use std::f64::consts::FRAC_2_PI;
 
 use super::cohesive::Cohesive;
 use super::elasticity::ElasticModuli;
-use super::split::{degraded, split};
+use super::split::split;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::Lane;
 use crate::scene::{Anisotropy, CrackModel, Material, Split};
@@ -204,10 +204,9 @@ impl FractureModel {
 pub(crate) fn stress_at(moduli: &ElasticModuli, strain: [f64; 3], fracture: Option<(&FractureModel, f64)>) -> [f64; 3] {
     let strain = strain.map(Lane::splat);
     let stress = match fracture {
-        None => moduli.stress::<false>(strain),
+        None => moduli.stress(strain),
         Some((model, phase)) => {
-            let state = split::<false>(moduli, model.split, strain);
-            degraded::<false>(moduli, &state, strain, model.degradation(Lane::splat(phase))).1
+            split(moduli, model.split, strain).degraded::<false>(model.degradation(Lane::splat(phase))).1
         }
     };
     stress.map(|s| s[0])

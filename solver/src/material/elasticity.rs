@@ -48,20 +48,19 @@ impl ElasticModuli {
 
     /// Stress `[xx, yy, xy]` of an intact batch, Pa.
     #[inline(always)]
-    pub fn stress<const FMA: bool>(&self, strain: [Lane; 3]) -> [Lane; 3] {
+    pub fn stress(&self, strain: [Lane; 3]) -> [Lane; 3] {
         let spherical = (strain[0] + strain[1]) * self.lambda;
         let twice = 2.0 * self.mu;
         let shear = fault!("shear-halved", strain[2] * twice => strain[2] * self.mu);
-        [spherical.add_scaled::<FMA>(strain[0], twice), spherical.add_scaled::<FMA>(strain[1], twice), shear]
+        [spherical + strain[0] * twice, spherical + strain[1] * twice, shear]
     }
 
     /// Energy density of an intact batch, J/m³.
     #[inline(always)]
-    pub fn energy<const FMA: bool>(&self, strain: [Lane; 3]) -> Lane {
+    pub fn energy(&self, strain: [Lane; 3]) -> Lane {
         let trace = strain[0] + strain[1];
         let twice = fault!("shear-energy-once", 2.0 => 1.0);
-        let [xx, yy, xy] = strain;
-        let square = (xx * xx).add_product::<FMA>(yy, yy).add_product::<FMA>(xy, xy * twice);
-        (square * self.mu).add_product::<FMA>(trace, trace * (0.5 * self.lambda))
+        let square = strain[0] * strain[0] + strain[1] * strain[1] + strain[2] * strain[2] * twice;
+        trace * trace * (0.5 * self.lambda) + square * self.mu
     }
 }

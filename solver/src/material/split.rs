@@ -25,134 +25,136 @@
 //! A strain that is not a number has energies and stresses that are none: the energy of a body tells that one
 //! of its points has lost its numbers.
 
-use crate::linear_algebra::lane::{Lane, each};
+use crate::linear_algebra::lane::Lane;
 use crate::material::elasticity::ElasticModuli;
 use crate::scene::Split;
 
-/// The part of energy and stress of a batch of points that drives fracture and is degraded, of the intact
-/// material.
+/// Energies and stresses of a batch of points: intact values of both parts.
 #[derive(Debug, Clone, Copy)]
 pub struct SplitState {
-    /// Energy density psi+, J/m³.
+    /// Energy density that drives fracture, psi+, J/m³.
     pub energy_plus: Lane,
-    /// Its stress dpsi+/de `[xx, yy, xy]`, Pa.
+    /// The rest, psi−, J/m³.
+    pub energy_minus: Lane,
+    /// Stress of the driving part `[xx, yy, xy]`, Pa.
     pub stress_plus: [Lane; 3],
+    /// Stress of the rest `[xx, yy, xy]`, Pa.
+    pub stress_minus: [Lane; 3],
 }
 
 impl SplitState {
-    /// What a degradation g takes from the energy density (J/m³) and the stress `[xx, yy, xy]` (Pa) of the
-    /// intact material, with the other sign.
+    /// Energy density (J/m³) and stress `[xx, yy, xy]` (Pa) of a material degraded by g (E 6).
     #[inline(always)]
-    pub fn change(&self, g: Lane) -> (Lane, [Lane; 3]) {
-        let loss = g - Lane::splat(1.0);
-        (loss * self.energy_plus, each!(i in [0, 1, 2] => loss * self.stress_plus[i]))
-    }
-
-    /// Energy density (J/m³) that drives fracture: psi+, or that of the largest principal stress.
-    #[inline(always)]
-    pub fn driving_energy<const FMA: bool>(&self, moduli: &ElasticModuli, law: Split) -> Lane {
-        if law != Split::Rankine {
-            return self.energy_plus;
+    pub fn degraded<const FMA: bool>(&self, g: Lane) -> (Lane, [Lane; 3]) {
+        // no array::map: it is compiled on its own, without FMA, where each product would be a call of the
+        // library
+        let mut stress = fault!("compression-degraded", self.stress_minus => self.stress_minus.map(|s| s * g));
+        for (stress, plus) in stress.iter_mut().zip(self.stress_plus) {
+            *stress = stress.add_product::<FMA>(g, plus);
         }
-        let [xx, yy, xy] = self.stress_plus;
-        let radius = hypotenuse::<FMA>((xx - yy) * 0.5, xy);
-        let largest =
-            ((xx + yy) * 0.5 + fault!("rankine-smallest-stress", radius => Lane::ZERO - radius)).at_least(Lane::ZERO);
-        largest * largest * (fault!("rankine-modulus", 0.5 => 1.0) / moduli.young)
+        (self.energy_minus.add_product::<FMA>(g, self.energy_plus), stress)
     }
-}
-
-/// Energy density (J/m³) and stress `[xx, yy, xy]` (Pa) of a material degraded by g (E 6), with what drives
-/// fracture at the strain. The energy is half the product of stress and strain: every split is homogeneous.
-#[inline(always)]
-pub fn degraded<const FMA: bool>(
-    moduli: &ElasticModuli,
-    state: &SplitState,
-    strain: [Lane; 3],
-    g: Lane,
-) -> (Lane, [Lane; 3]) {
-    let (loss, intact) = (g - Lane::splat(1.0), moduli.stress::<FMA>(strain));
-    let plus = fault!("compression-degraded", state.stress_plus => intact);
-    let stress = each!(i in [0, 1, 2] => intact[i].add_product::<FMA>(loss, plus[i]));
-    let shear = stress[2] * 2.0;
-    let work = (stress[0] * strain[0]).add_product::<FMA>(stress[1], strain[1]).add_product::<FMA>(shear, strain[2]);
-    (work * 0.5, stress)
 }
 
 /// Splits the strain `[exx, eyy, exy]` (tensor shear).
 #[inline(always)]
-pub fn split<const FMA: bool>(moduli: &ElasticModuli, split: Split, strain: [Lane; 3]) -> SplitState {
+pub fn split(moduli: &ElasticModuli, split: Split, strain: [Lane; 3]) -> SplitState {
     match split {
-        Split::Spectral => spectral::<FMA>(moduli, strain),
-        Split::VolumetricDeviatoric => volumetric::<FMA>(moduli, 0.0, strain),
-        Split::StarConvex(gamma) => volumetric::<FMA>(moduli, gamma, strain),
-        Split::Rankine | Split::None => {
-            SplitState { energy_plus: moduli.energy::<FMA>(strain), stress_plus: moduli.stress::<FMA>(strain) }
-        }
+        Split::Spectral => spectral(moduli, strain),
+        Split::VolumetricDeviatoric => volumetric(moduli, 0.0, strain),
+        Split::StarConvex(gamma) => volumetric(moduli, gamma, strain),
+        Split::Rankine | Split::None => whole(moduli, strain),
     }
 }
 
-/// Energy density (J/m³) that drives fracture at a strain `[exx, eyy, exy]`.
+/// Energy density (J/m³) that drives fracture at a strain `[exx, eyy, exy]`: psi+, or that of the largest
+/// principal stress.
 #[inline(always)]
-pub fn driving_energy<const FMA: bool>(moduli: &ElasticModuli, law: Split, strain: [Lane; 3]) -> Lane {
-    split::<FMA>(moduli, law, strain).driving_energy::<FMA>(moduli, law)
+pub fn driving_energy(moduli: &ElasticModuli, law: Split, strain: [Lane; 3]) -> Lane {
+    if law != Split::Rankine {
+        return split(moduli, law, strain).energy_plus;
+    }
+    let [xx, yy, xy] = moduli.stress(strain);
+    let half_difference = (xx - yy) * 0.5;
+    let radius = hypotenuse(half_difference, xy);
+    let largest =
+        ((xx + yy) * 0.5 + fault!("rankine-smallest-stress", radius => Lane::ZERO - radius)).at_least(Lane::ZERO);
+    largest * largest * (fault!("rankine-modulus", 0.5 => 1.0) / moduli.young)
 }
 
-/// The tensile part `e+` of a strain, and both principal strains, largest first.
+/// The tensile part `e+` of a strain and both principal strains, largest first.
 #[inline(always)]
-pub fn tensile_strain<const FMA: bool>([xx, yy, xy]: [Lane; 3]) -> ([Lane; 3], [Lane; 2]) {
+pub fn tensile_strain([xx, yy, xy]: [Lane; 3]) -> ([Lane; 3], [Lane; 2]) {
     let mean = (xx + yy) * 0.5;
     let half_difference = (xx - yy) * 0.5;
-    let radius = hypotenuse::<FMA>(half_difference, xy);
+    let radius = hypotenuse(half_difference, xy);
     let (e1, e2) = fault!("split-swapped", (mean + radius, mean - radius) => (mean - radius, mean + radius));
     let (plus1, plus2) = (e1.at_least(Lane::ZERO), e2.at_least(Lane::ZERO));
     let half_sum = (plus1 + plus2) * 0.5;
     let diameter = (radius * 2.0).at_least(Lane::splat(f64::MIN_POSITIVE));
     let q = (plus1 - plus2).zip(diameter, |difference, diameter| difference / diameter);
-    let (first, second) = (half_sum.add_product::<FMA>(half_difference, q), half_difference.map(|half| -half));
-    ([first, half_sum.add_product::<FMA>(second, q), xy * q], [e1, e2])
+    let deviator = half_difference * q;
+    ([half_sum + deviator, half_sum - deviator, xy * q], [e1, e2])
 }
 
 /// `hypot(a, b)` for 1e-270 to 1e30: scaled by a power of two, which changes no bit where squares are normal
 /// numbers.
 #[inline(always)]
-fn hypotenuse<const FMA: bool>(a: Lane, b: Lane) -> Lane {
+fn hypotenuse(a: Lane, b: Lane) -> Lane {
     const ROOT: f64 = (1_u128 << 100) as f64;
     const SCALE: f64 = ROOT * ROOT * ROOT * ROOT; // 2^400
     let (a, b) = (a * SCALE, b * SCALE);
-    (a * a).add_product::<FMA>(b, b).map(f64::sqrt) * (1.0 / SCALE)
+    (a * a + b * b).map(f64::sqrt) * (1.0 / SCALE)
 }
 
 #[inline(always)]
-fn spectral<const FMA: bool>(moduli: &ElasticModuli, strain: [Lane; 3]) -> SplitState {
+fn spectral(moduli: &ElasticModuli, strain: [Lane; 3]) -> SplitState {
     let ElasticModuli { lambda, mu, .. } = *moduli;
-    let (tensile, [e1, e2]) = tensile_strain::<FMA>(strain);
+    let (tensile, [e1, e2]) = tensile_strain(strain);
     let trace = strain[0] + strain[1];
-    let trace = fault!("trace-not-split", trace.at_least(Lane::ZERO) => trace);
-    let (e1, e2) = (e1.at_least(Lane::ZERO), e2.at_least(Lane::ZERO));
-    let (spherical, twice) = (trace * lambda, 2.0 * mu);
-    let square = (e1 * e1).add_product::<FMA>(e2, e2);
+    let (trace_plus, trace_minus) =
+        fault!("trace-not-split", (trace.at_least(Lane::ZERO), trace.at_most(Lane::ZERO)) => (trace, Lane::ZERO));
+    let square = |a: Lane, b: Lane| a * a + b * b;
+    let plus = square(e1.at_least(Lane::ZERO), e2.at_least(Lane::ZERO));
+    let minus = square(e1.at_most(Lane::ZERO), e2.at_most(Lane::ZERO));
+    let stress = |trace: Lane, [xx, yy, xy]: [Lane; 3]| {
+        [trace * lambda + xx * (2.0 * mu), trace * lambda + yy * (2.0 * mu), xy * (2.0 * mu)]
+    };
+    let compressive = [strain[0] - tensile[0], strain[1] - tensile[1], strain[2] - tensile[2]];
     SplitState {
-        energy_plus: (square * mu).add_product::<FMA>(spherical, trace * 0.5),
-        stress_plus: [
-            spherical.add_scaled::<FMA>(tensile[0], twice),
-            spherical.add_scaled::<FMA>(tensile[1], twice),
-            tensile[2] * twice,
-        ],
+        energy_plus: trace_plus * trace_plus * (0.5 * lambda) + plus * mu,
+        energy_minus: trace_minus * trace_minus * (0.5 * lambda) + minus * mu,
+        stress_plus: stress(trace_plus, tensile),
+        stress_minus: stress(trace_minus, compressive),
     }
 }
 
 /// Volumetric-deviatoric for gamma = 0, else star-convex.
 #[inline(always)]
-fn volumetric<const FMA: bool>(moduli: &ElasticModuli, gamma: f64, strain: [Lane; 3]) -> SplitState {
+fn volumetric(moduli: &ElasticModuli, gamma: f64, strain: [Lane; 3]) -> SplitState {
     let bulk = moduli.volumetric;
-    let compression = (strain[0] + strain[1]).at_most(Lane::ZERO);
-    let [xx, yy, xy] = moduli.stress::<FMA>(strain);
+    let trace = strain[0] + strain[1];
+    let compression = trace.at_most(Lane::ZERO);
+    let energy = moduli.energy(strain);
+    let stress = moduli.stress(strain);
     let star = fault!("star-convex-sign", 1.0 + gamma => 1.0 - gamma);
     let half = fault!("volumetric-energy-halved", 0.5 => 0.25);
+    let energy_minus = compression * compression * (half * star * bulk);
     let pressure = compression * (star * bulk);
     SplitState {
-        energy_plus: moduli.energy::<FMA>(strain) - compression * compression * (half * star * bulk),
-        stress_plus: [xx - pressure, yy - pressure, xy],
+        energy_plus: energy - energy_minus,
+        energy_minus,
+        stress_plus: [stress[0] - pressure, stress[1] - pressure, stress[2]],
+        stress_minus: [pressure, pressure, Lane::ZERO],
+    }
+}
+
+#[inline(always)]
+fn whole(moduli: &ElasticModuli, strain: [Lane; 3]) -> SplitState {
+    SplitState {
+        energy_plus: moduli.energy(strain),
+        energy_minus: Lane::ZERO,
+        stress_plus: moduli.stress(strain),
+        stress_minus: [Lane::ZERO; 3],
     }
 }

@@ -11,7 +11,7 @@ use crate::linear_algebra::lane::{Lane, prefetch};
 use crate::material::degradation::BROKEN;
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
-use crate::material::split::{degraded, driving_energy, split};
+use crate::material::split::{driving_energy, split};
 use crate::transfer::point_kernel::{PointKernel, PointValues, Stress};
 
 /// Linear strain `[exx, eyy, exy]` of a displacement gradient.
@@ -39,8 +39,8 @@ impl PointKernel for ElasticStress {
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, _at: usize, weight: Lane, values: &PointValues) -> Stress {
         let strain = strain(values.gradient);
-        self.energy = self.energy.add_product::<FMA>(weight, self.moduli.energy::<FMA>(strain));
-        Stress::symmetric(self.moduli.stress::<FMA>(strain))
+        self.energy = self.energy.add_product::<FMA>(weight, self.moduli.energy(strain));
+        Stress::symmetric(self.moduli.stress(strain))
     }
 }
 
@@ -76,7 +76,7 @@ impl PointKernel for HistoryUpdate<'_> {
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
-        let energy = driving_energy::<FMA>(&self.moduli, self.model.split, strain(values.gradient));
+        let energy = driving_energy(&self.moduli, self.model.split, strain(values.gradient));
         let least = if self.model.threshold().is_none() { self.history[at] } else { Lane::ZERO };
         self.history[at] = fault!("history-forgets", energy.at_least(least) => energy);
         Stress::ZERO
@@ -138,11 +138,10 @@ impl PointKernel for DegradedStress<'_> {
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
         let strain = strain(values.gradient);
-        let state = split::<FMA>(&self.moduli, self.model.split, strain);
+        let state = split(&self.moduli, self.model.split, strain);
         let c = values.phase;
         if self.updates_history {
-            let drive = state.driving_energy::<FMA>(&self.moduli, self.model.split);
-            self.history[at] = drive.at_least(self.history[at]);
+            self.history[at] = driving_energy(&self.moduli, self.model.split, strain).at_least(self.history[at]);
         }
         let slope = self.model.half_slope(c);
         let excess = slope * (self.history[at] - state.energy_plus);
@@ -156,11 +155,14 @@ impl PointKernel for DegradedStress<'_> {
             self.drive[at] = drive;
         }
         self.phase[at] = c;
-        let g = self.model.degradation(c);
-        let (energy, stress) = match self.adds() {
-            true => fault!("intact-stress-left-in", state.change(g) => state.change(g + Lane::splat(1.0))),
-            false => degraded::<FMA>(&self.moduli, &state, strain, g),
-        };
+        let (mut energy, mut stress) = state.degraded::<FMA>(self.model.degradation(c));
+        if self.adds() {
+            energy = energy - self.moduli.energy(strain);
+            let intact = self.moduli.stress(fault!("intact-stress-left-in", strain => [Lane::ZERO; 3]));
+            for i in 0..3 {
+                stress[i] = stress[i] - intact[i];
+            }
+        }
         self.energy = self.energy.add_product::<FMA>(weight, energy);
         Stress::symmetric(stress)
     }
@@ -193,7 +195,7 @@ impl PointKernel for ScreenedStress<'_> {
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, weight: Lane, values: &PointValues) -> Stress {
         let strain = strain(values.gradient);
-        let energy = self.moduli.energy::<FMA>(strain);
+        let energy = self.moduli.energy(strain);
         self.energy = self.energy.add_product::<FMA>(weight, energy);
         let here = energy.zip(weight, |energy, weight| if weight > 0.0 { energy } else { 0.0 });
         self.most = here.at_least(self.most);
@@ -201,7 +203,7 @@ impl PointKernel for ScreenedStress<'_> {
             self.reached[at / self.span] = self.most.0.iter().any(|&energy| energy >= self.level);
             self.most = Lane::ZERO;
         }
-        Stress::symmetric(self.moduli.stress::<FMA>(strain))
+        Stress::symmetric(self.moduli.stress(strain))
     }
 }
 
@@ -224,9 +226,8 @@ impl PointKernel for HeldPhaseStress<'_> {
 
     #[inline(always)]
     fn points<const FMA: bool>(&mut self, at: usize, _weight: Lane, values: &PointValues) -> Stress {
-        let strain = strain(values.gradient);
-        let state = split::<FMA>(&self.moduli, self.model.split, strain);
-        Stress::symmetric(degraded::<FMA>(&self.moduli, &state, strain, self.model.degradation(self.phase[at])).1)
+        let state = split(&self.moduli, self.model.split, strain(values.gradient));
+        Stress::symmetric(state.degraded::<FMA>(self.model.degradation(self.phase[at])).1)
     }
 }
 

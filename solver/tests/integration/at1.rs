@@ -135,7 +135,7 @@ fn damage_is_the_least_energy_between_its_bounds() {
         for (batch, drive) in drive.iter_mut().enumerate() {
             let [x, y] = frame.displacement().each_ref().map(|u| lattice.interpolate(batch, u).1);
             let strain = [x[0], y[1], (x[1] + y[0]) * 0.5];
-            *drive = driving_energy::<false>(&frame.moduli(), split, strain).at_least(Lane::ZERO);
+            *drive = driving_energy(&frame.moduli(), split, strain).at_least(Lane::ZERO);
         }
         let mut matrix = Stencil::zeros(lattice.patch_grid, lattice.degree);
         add_form(&mut matrix, lattice, Integrand::Mass, &Reaction(&drive, model.reaction_per_energy()));

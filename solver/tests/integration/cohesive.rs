@@ -111,7 +111,7 @@ fn damage_is_stationary_between_its_bounds() {
         lattice.for_each_point(|batch, lane, _, weight| {
             let [x, y] = frame.displacement().each_ref().map(|u| lattice.interpolate(batch, u).1);
             let strain = [x[0], y[1], (x[1] + y[0]) * 0.5];
-            let drive = driving_energy::<false>(&moduli, split, strain).at_least(Lane::ZERO)[lane];
+            let drive = driving_energy(&moduli, split, strain).at_least(Lane::ZERO)[lane];
             let (phase, slope) = lattice.interpolate(batch, c);
             let step = 1e-6;
             let g = |c: f64| model.degradation(Lane::splat(c))[0];

@@ -5,7 +5,7 @@ use crate::common::{glass, moduli};
 use fisura::linear_algebra::extremes::larger;
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::elasticity::ElasticModuli;
-use fisura::material::split::{SplitState, degraded, driving_energy, split, tensile_strain};
+use fisura::material::split::{SplitState, driving_energy, split, tensile_strain};
 use fisura::scene::{Material, Plane, Split};
 use nalgebra::{Matrix2, SymmetricEigen};
 use proptest::prelude::*;
@@ -14,7 +14,7 @@ use proptest::test_runner::RngSeed;
 type Strain = [f64; 3];
 
 fn tensile(strain: Strain) -> Strain {
-    tensile_strain::<false>(strain.map(Lane::splat)).0.map(|e| e[3])
+    tensile_strain(strain.map(Lane::splat)).0.map(|e| e[3])
 }
 
 const SPLITS: [Split; 6] = [
@@ -27,19 +27,12 @@ const SPLITS: [Split; 6] = [
 ];
 
 fn state(moduli: &ElasticModuli, law: Split, strain: Strain) -> SplitState {
-    split::<false>(moduli, law, strain.map(Lane::splat))
+    split(moduli, law, strain.map(Lane::splat))
 }
 
-/// psi+ and psi−: the energies of the broken material and of what is left of the intact one.
 fn energies(moduli: &ElasticModuli, law: Split, strain: Strain) -> [f64; 2] {
-    [state(moduli, law, strain).energy_plus[0], broken(moduli, law, strain).0]
-}
-
-/// Energy and stress of the broken material, psi− and dpsi−/de.
-fn broken(moduli: &ElasticModuli, law: Split, strain: Strain) -> (f64, Strain) {
     let state = state(moduli, law, strain);
-    let (energy, stress) = degraded::<false>(moduli, &state, strain.map(Lane::splat), Lane::ZERO);
-    (energy[0], stress.map(|s| s[0]))
+    [state.energy_plus[0], state.energy_minus[0]]
 }
 
 /// Glass of another Poisson ratio.
@@ -88,26 +81,15 @@ fn check(strain: Strain) {
     assert!(overlap <= 1e-14, "{strain:?}: e+:e- = {overlap:e}");
     let moduli = moduli();
     let state = state(&moduli, Split::Spectral, strain);
-    let (psi_minus, stress_minus) = broken(&moduli, Split::Spectral, strain);
-    let energy = |part: Strain, trace: f64| 0.5 * moduli.lambda * trace * trace + moduli.mu * product(part, part);
-    let trace = strain[0] + strain[1];
+    let whole = moduli.energy(strain.map(Lane::splat))[0];
+    let sum = state.energy_plus[0] + state.energy_minus[0];
     let rounding = 4e-15 * scale * scale + 1e-320; // squares near the smallest number are coarse
-    for (found, expected) in
-        [(state.energy_plus[0], energy(plus, trace.max(0.0))), (psi_minus, energy(minus_part, trace.min(0.0)))]
-    {
-        assert!((found - expected).abs() <= moduli.mu * rounding, "{strain:?}: psi {found} for {expected}");
-    }
-    assert!(state.energy_plus[0] >= 0.0, "{strain:?}");
-    let stress = |part: Strain, trace: f64, i: usize| {
-        2.0 * moduli.mu * part[i] + if i < 2 { moduli.lambda * trace } else { 0.0 }
-    };
+    assert!((sum - whole).abs() <= moduli.mu * rounding, "{strain:?}: psi+ + psi- = {sum} for {whole}");
+    assert!(state.energy_plus[0] >= 0.0 && state.energy_minus[0] >= 0.0, "{strain:?}");
+    let stress = moduli.stress(strain.map(Lane::splat));
     for i in 0..3 {
-        for (found, expected) in [
-            (state.stress_plus[i][0], stress(plus, trace.max(0.0), i)),
-            (stress_minus[i], stress(minus_part, trace.min(0.0), i)),
-        ] {
-            assert!((found - expected).abs() <= 2e-14 * moduli.mu * scale, "{strain:?}: stress {found} for {expected}");
-        }
+        let (parts, whole) = (state.stress_plus[i][0] + state.stress_minus[i][0], stress[i][0]);
+        assert!((parts - whole).abs() <= 1e-14 * moduli.mu * scale, "{strain:?}: stress {parts} for {whole}");
     }
 }
 
@@ -148,7 +130,7 @@ fn lanes_do_not_mix() {
             lanes[i][l] = strain[i];
         }
     }
-    let (plus, _) = tensile_strain::<false>(lanes);
+    let (plus, _) = tensile_strain(lanes);
     for (l, strain) in strains.iter().enumerate() {
         assert_eq!(plus.map(|e| e[l]), tensile(*strain));
     }
@@ -188,15 +170,15 @@ proptest! {
         for (law, plane) in SPLITS.into_iter().flat_map(|law| [(law, Plane::Strain), (law, Plane::Stress)]) {
             let moduli = moduli_in(plane, 0.3);
             let (ahead, behind) = (energies(&moduli, law, moved(step)), energies(&moduli, law, moved(-step)));
-            let stress_plus = state(&moduli, law, strain).stress_plus.map(|s| s[0]);
-            for (i, stress) in [stress_plus, broken(&moduli, law, strain).1].into_iter().enumerate() {
+            let state = state(&moduli, law, strain);
+            for (i, stress) in [state.stress_plus, state.stress_minus].into_iter().enumerate() {
                 let slope = (ahead[i] - behind[i]) / (2.0 * step);
-                let power = product(stress, direction);
+                let power = product(stress.map(|s| s[0]), direction);
                 let scale = if let Split::StarConvex(gamma) = law { 1.0 + gamma } else { 1.0 };
                 prop_assert!((slope - power).abs() <= 4e-7 * scale * moduli.mu, "{law:?}: {slope} for {power}");
             }
-            let sum: f64 = energies(&moduli, law, strain).iter().sum();
-            let whole = moduli.energy::<false>(strain.map(Lane::splat))[0];
+            let sum = state.energy_plus[0] + state.energy_minus[0];
+            let whole = moduli.energy(strain.map(Lane::splat))[0];
             prop_assert!((sum - whole).abs() <= 1e-14 * moduli.mu, "{law:?}: {sum} for {whole}");
         }
     }
@@ -206,17 +188,13 @@ proptest! {
     fn splits_turn_with_the_frame(e1 in -1.0f64..1.0, e2 in -1.0f64..1.0, angle in 0.0f64..3.1) {
         for law in SPLITS {
             let moduli = moduli();
-            let turn = |[xx, yy, _]: Strain| turned(xx, yy, angle);
-            let stresses = [0.0, angle].map(|angle| {
-                let strain = turned(e1, e2, angle);
-                [state(&moduli, law, strain).stress_plus.map(|s| s[0]), broken(&moduli, law, strain).1]
-            });
-            let [here, there] = stresses;
-            for (a, b) in here.into_iter().zip(there) {
-                let gap = norm(minus(turn(a), b));
+            let [here, there] = [0.0, angle].map(|angle| state(&moduli, law, turned(e1, e2, angle)));
+            let turn = |[xx, yy, _]: [Lane; 3]| turned(xx[0], yy[0], angle);
+            for (a, b) in [(here.stress_plus, there.stress_plus), (here.stress_minus, there.stress_minus)] {
+                let gap = norm(minus(turn(a), b.map(|s| s[0])));
                 prop_assert!(gap <= 1e-13 * moduli.mu, "{law:?}: {gap:e}");
             }
-            let drive = |angle: f64| driving_energy::<false>(&moduli, law, turned(e1, e2, angle).map(Lane::splat))[0];
+            let drive = |angle: f64| driving_energy(&moduli, law, turned(e1, e2, angle).map(Lane::splat))[0];
             prop_assert!((drive(0.0) - drive(angle)).abs() <= 1e-13 * moduli.mu, "{law:?}");
         }
     }
@@ -235,9 +213,8 @@ fn uniaxial(plane: Plane, nu: f64) -> Strain {
 fn strength_in_compression_over_that_in_tension() {
     let ratio = |law: Split, plane: Plane, nu: f64| {
         let moduli = moduli_in(plane, nu);
-        let drive =
-            |sign: f64| driving_energy::<false>(&moduli, law, uniaxial(plane, nu).map(|e| Lane::splat(sign * e)))[0];
-        let stress = moduli.stress::<false>(uniaxial(plane, nu).map(Lane::splat));
+        let drive = |sign: f64| driving_energy(&moduli, law, uniaxial(plane, nu).map(|e| Lane::splat(sign * e)))[0];
+        let stress = moduli.stress(uniaxial(plane, nu).map(Lane::splat));
         assert!((stress[0][0] - 1.0).abs() < 1e-12 && stress[1][0].abs() < 1e-12, "it is uniaxial");
         (drive(1.0) / drive(-1.0)).sqrt()
     };
@@ -276,9 +253,9 @@ fn rankine_is_driven_by_the_largest_principal_stress() {
     for (plane, nu) in [(Plane::Strain, 0.2), (Plane::Stress, 0.3), (Plane::Strain, -0.2)] {
         let moduli = moduli_in(plane, nu);
         for (e1, e2, angle) in [(1e-3, 2e-4, 0.3), (1e-3, -2e-3, 1.0), (3e-4, -1e-4, 2.0), (-1e-4, -2e-3, 0.7)] {
-            let [xx, yy, xy] = moduli.stress::<false>(turned(e1, e2, angle).map(Lane::splat)).map(|s| s[0]);
+            let [xx, yy, xy] = moduli.stress(turned(e1, e2, angle).map(Lane::splat)).map(|s| s[0]);
             let largest = SymmetricEigen::new(Matrix2::new(xx, xy, xy, yy)).eigenvalues.max().max(0.0);
-            let drive = driving_energy::<false>(&moduli, Split::Rankine, turned(e1, e2, angle).map(Lane::splat))[0];
+            let drive = driving_energy(&moduli, Split::Rankine, turned(e1, e2, angle).map(Lane::splat))[0];
             let exact = largest * largest / (2.0 * glass().young_modulus);
             assert!((drive - exact).abs() <= 1e-12 * exact, "{drive} for {exact}");
         }
@@ -292,9 +269,10 @@ fn what_is_not_a_number_has_no_energy_and_no_stress() {
         for (component, base) in [0, 1, 2].into_iter().flat_map(|c| [-1e-3, 0.0, 1e-3].map(|base| (c, base))) {
             let mut strain = [base, -0.5 * base, 0.3 * base];
             strain[component] = f64::NAN;
-            let energy: f64 = energies(&moduli(), law, strain).iter().sum();
+            let state = state(&moduli(), law, strain);
+            let energy = state.energy_plus[0] + state.energy_minus[0];
             assert!(energy.is_nan(), "{law:?}, {strain:?}: energy {energy}");
-            let stress: f64 = broken(&moduli(), law, strain).1.iter().sum();
+            let stress: f64 = state.stress_plus.iter().chain(&state.stress_minus).map(|s| s[0]).sum();
             assert!(stress.is_nan(), "{law:?}, {strain:?}: stress {stress}");
         }
         assert!(

@@ -172,7 +172,7 @@ fn strengths(scene: &Scene) -> Result<f64, StudyError> {
     let moduli = ElasticModuli::new(material, scene.analysis.plane);
     let drive = |sign: f64| {
         let strain = [along, across, 0.0].map(|e| Lane::splat(sign * e));
-        driving_energy::<false>(&moduli, fracture.split, strain)[0]
+        driving_energy(&moduli, fracture.split, strain)[0]
     };
     Ok(((drive(-1.0) / drive(1.0)).sqrt() - (compressive / tensile).sqrt()).abs())
 }

@@ -13,7 +13,7 @@ use super::TotalFrame;
 use super::domain::Domain;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::lane::Lane;
-use crate::material::split::{degraded, split};
+use crate::material::split::split;
 
 /// Part of the radius within which q is 1.
 const PLATEAU: f64 = 0.5;
@@ -54,11 +54,10 @@ impl TotalFrame {
             let (strain, _) = self.strain([ux.gradient, uy.gradient]);
             let strain = strain.map(Lane::splat);
             let (energy, stress) = match &self.fracture {
-                None => (self.moduli.energy::<false>(strain), self.moduli.stress::<false>(strain)),
+                None => (self.moduli.energy(strain), self.moduli.stress(strain)),
                 Some(fracture) => {
                     let g = fracture.model.degradation(Lane::splat(fracture.phase[batch][lane]));
-                    let state = split::<false>(&self.moduli, fracture.model.split, strain);
-                    degraded::<false>(&self.moduli, &state, strain, g)
+                    split(&self.moduli, fracture.model.split, strain).degraded::<false>(g)
                 }
             };
             let [xx, yy, xy] = stress.map(|s| s[0]);

@@ -141,7 +141,7 @@ impl TotalFrame {
         let [x, y] = [0, 1].map(|c| self.patch.evaluate(&displacement[c], position));
         let (Some(x), Some(y)) = (x, y) else { return [f64::NAN; 3] };
         let (strain, _) = self.strain([x.gradient, y.gradient]);
-        self.moduli.stress::<false>(strain.map(Lane::splat)).map(|s| s[0])
+        self.moduli.stress(strain.map(Lane::splat)).map(|s| s[0])
     }
 
     /// Mass, kg, and momentum, kg m/s, so many seconds ago with the present accelerations.

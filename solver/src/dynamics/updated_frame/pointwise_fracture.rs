@@ -175,7 +175,7 @@ impl Vectorised for UpdateHistory<'_> {
     fn run<const FMA: bool>(self) {
         for (points, fracture) in self.points.chunks(LANES).zip(self.fracture.chunks_mut(LANES)) {
             let strain = each!(i in [0, 1, 2] => gather(points, |p| p.strain[i]));
-            let energy = split::driving_energy::<false>(self.moduli, self.model.split, strain);
+            let energy = split::driving_energy(self.moduli, self.model.split, strain);
             for (lane, point) in fracture.iter_mut().enumerate() {
                 let grows = fault!("history-forgets", energy[lane] > point.history => true);
                 point.history = if grows { energy[lane] } else { point.history };
@@ -288,9 +288,8 @@ impl UpdateStress<'_> {
     fn degrade(&mut self, some: std::ops::Range<usize>, phase: Lane, sums: &mut PointSums) {
         let (points, fracture) = (&mut self.points[some.clone()], &mut self.fracture[some]);
         let strain = each!(i in [0, 1, 2] => gather(points, |p| p.strain[i]));
-        let state = split::split::<false>(self.moduli, self.model.split, strain);
-        let g = self.model.degradation(phase);
-        let (energy, stress) = split::degraded::<false>(self.moduli, &state, strain, g);
+        let state = split::split(self.moduli, self.model.split, strain);
+        let (energy, stress) = state.degraded::<false>(self.model.degradation(phase));
         for (lane, (point, cracked)) in points.iter_mut().zip(fracture).enumerate() {
             point.stress = each!(i in [0, 1, 2] => stress[i][lane]);
             sums.elastic_energy += point.volume * energy[lane];

@@ -255,8 +255,8 @@ fn elastic_stress(
     motion: &mut StripMotion,
 ) {
     let strain = each!(i in [0, 1, 2] => gather(points, |p| p.strain[i]));
-    let stress = moduli.stress::<false>(strain);
-    let energy = moduli.energy::<false>(strain);
+    let stress = moduli.stress(strain);
+    let energy = moduli.energy(strain);
     for (lane, point) in points.iter_mut().enumerate() {
         point.stress = each!(i in [0, 1, 2] => stress[i][lane]);
         motion.elastic_energy += point.volume * energy[lane];

@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_2_PI;
 use fisura::linear_algebra::lane::Lane;
 use fisura::material::degradation::FractureModel;
 use fisura::material::elasticity::ElasticModuli;
-use fisura::material::split::{degraded, split};
+use fisura::material::split::split;
 use fisura::scene::{CrackModel, Kinematics};
 use nalgebra::{Matrix2, SymmetricEigen};
 
@@ -98,10 +98,9 @@ fn the_stress_follows_from_the_gradient() {
         let expected = match (solution.phase(), FractureModel::of(&solution.material())) {
             (Some(phase), Some(model)) => {
                 let [[xx, xy], [yx, yy]] = gradient;
-                let strain = [xx, yy, 0.5 * (xy + yx)].map(Lane::splat);
-                let state = split::<false>(&moduli, model.split, strain);
+                let state = split(&moduli, model.split, [xx, yy, 0.5 * (xy + yx)].map(Lane::splat));
                 let g = model.degradation(Lane::splat(phase.value(place, time)));
-                let [xx, yy, xy] = degraded::<false>(&moduli, &state, strain, g).1.map(|s| s.0[0]);
+                let [xx, yy, xy] = state.degraded::<false>(g).1.map(|s| s.0[0]);
                 Matrix2::new(xx, xy, xy, yy)
             }
             _ => law(&moduli, gradient),
@@ -114,7 +113,7 @@ fn the_stress_follows_from_the_gradient() {
 }
 
 fn linear(moduli: &ElasticModuli, [[xx, xy], [yx, yy]]: [[f64; 2]; 2]) -> Matrix2<f64> {
-    let [xx, yy, xy] = moduli.stress::<false>([xx, yy, 0.5 * (xy + yx)].map(Lane::splat)).map(|s| s.0[0]);
+    let [xx, yy, xy] = moduli.stress([xx, yy, 0.5 * (xy + yx)].map(Lane::splat)).map(|s| s.0[0]);
     Matrix2::new(xx, xy, xy, yy)
 }
 

@@ -262,7 +262,7 @@ impl<'a> Discrete<'a> {
         let [x, y] = &mut forces;
         self.frame.lattice().add_integral(&mut [x, y], |_, _, position| {
             let [[xx, xy], [yx, yy]] = solution.displacement_gradient(position, 0.0);
-            let [sx, sy, sxy] = moduli.stress::<false>([xx, yy, 0.5 * (xy + yx)].map(Lane::splat)).map(|s| s[0]);
+            let [sx, sy, sxy] = moduli.stress([xx, yy, 0.5 * (xy + yx)].map(Lane::splat)).map(|s| s[0]);
             let force = solution.displacement(position, 0.0).map(|u| SHIFT * material.density * u);
             (force, [[sx, sxy], [sxy, sy]])
         });
