@@ -21,9 +21,11 @@ use crate::failure::Failure;
 use crate::{console, scene_input};
 
 mod growth;
+mod long_ends;
 mod trial;
 
 use growth::Tried;
+use long_ends::LongEnds;
 use trial::{Trial, spans};
 
 /// Points or control points up to which a scene is made ready to be checked: seconds, and less than 1 GiB.
@@ -96,6 +98,9 @@ struct Findings {
     control_points: usize,
     end_time_s: f64,
     critical_step_s: Option<f64>,
+    /// Absent where it would not pay.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    long_ends: Option<LongEnds>,
     time_step_s: f64,
     steps: usize,
     samples: usize,
@@ -228,6 +233,7 @@ impl Findings {
             control_points: extent.control_points,
             end_time_s: scene.analysis.end_time,
             critical_step_s: Some(plan.critical).filter(|c| c.is_finite()),
+            long_ends: LongEnds::of(scene),
             time_step_s: plan.step,
             steps: plan.steps(),
             samples: plan.samples,
@@ -262,6 +268,9 @@ impl Findings {
             ("particles", self.particles.to_string()),
             ("control points", self.control_points.to_string()),
             ("critical step", critical),
+        ]);
+        rows.extend(self.long_ends.iter().map(|long_ends| ("", long_ends.text())));
+        rows.extend([
             ("time", time),
             ("output", format!("{} rows after the first, {} frames", self.samples, self.frames)),
             ("memory", format!("about {} MB{memory}", plain(self.memory_mb, 3))),

@@ -54,6 +54,19 @@ impl SplitState {
         }
         (self.energy_minus.add_product::<FMA>(g, self.energy_plus), stress)
     }
+
+    /// Energy density (J/m³) that drives fracture: psi+, or that of the largest principal stress.
+    #[inline(always)]
+    pub fn driving_energy(&self, moduli: &ElasticModuli, law: Split) -> Lane {
+        if law != Split::Rankine {
+            return self.energy_plus;
+        }
+        let [xx, yy, xy] = self.stress_plus;
+        let radius = hypotenuse((xx - yy) * 0.5, xy);
+        let largest =
+            ((xx + yy) * 0.5 + fault!("rankine-smallest-stress", radius => Lane::ZERO - radius)).at_least(Lane::ZERO);
+        largest * largest * (fault!("rankine-modulus", 0.5 => 1.0) / moduli.young)
+    }
 }
 
 /// Splits the strain `[exx, eyy, exy]` (tensor shear).
@@ -67,19 +80,10 @@ pub fn split(moduli: &ElasticModuli, split: Split, strain: [Lane; 3]) -> SplitSt
     }
 }
 
-/// Energy density (J/m³) that drives fracture at a strain `[exx, eyy, exy]`: psi+, or that of the largest
-/// principal stress.
+/// Energy density (J/m³) that drives fracture at a strain `[exx, eyy, exy]`.
 #[inline(always)]
 pub fn driving_energy(moduli: &ElasticModuli, law: Split, strain: [Lane; 3]) -> Lane {
-    if law != Split::Rankine {
-        return split(moduli, law, strain).energy_plus;
-    }
-    let [xx, yy, xy] = moduli.stress(strain);
-    let half_difference = (xx - yy) * 0.5;
-    let radius = hypotenuse(half_difference, xy);
-    let largest =
-        ((xx + yy) * 0.5 + fault!("rankine-smallest-stress", radius => Lane::ZERO - radius)).at_least(Lane::ZERO);
-    largest * largest * (fault!("rankine-modulus", 0.5 => 1.0) / moduli.young)
+    split(moduli, law, strain).driving_energy(moduli, law)
 }
 
 /// The tensile part `e+` of a strain and both principal strains, largest first.

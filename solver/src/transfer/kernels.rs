@@ -141,7 +141,7 @@ impl PointKernel for DegradedStress<'_> {
         let state = split(&self.moduli, self.model.split, strain);
         let c = values.phase;
         if self.updates_history {
-            self.history[at] = driving_energy(&self.moduli, self.model.split, strain).at_least(self.history[at]);
+            self.history[at] = state.driving_energy(&self.moduli, self.model.split).at_least(self.history[at]);
         }
         let slope = self.model.half_slope(c);
         let excess = slope * (self.history[at] - state.energy_plus);

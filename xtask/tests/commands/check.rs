@@ -25,6 +25,25 @@ fn an_elastic_scene_has_no_memory_for_a_phase_field() {
     assert!(!text.contains("phase field") && text.contains(" here, with "), "{text}");
 }
 
+/// At all sides of a block; not where the side that a crack comes from bounds the step, or where ends are
+/// long already.
+#[test]
+fn it_says_where_long_ends_would_pay() {
+    let check = |scene: &str, sets: &[&str]| {
+        let place = Place::with("s.toml", scene);
+        let arguments = [&["check", "s.toml", "--format", "json", "--set", "mesh.cells=[20, 10]"], sets].concat();
+        place.xtask(&arguments).with_status(0).json()
+    };
+    let sides = ["left", "right", "bottom", "top"];
+    let (found, set) = (check(BLOCK, &[]), format!("mesh.long_ends={sides:?}"));
+    assert_eq!(found["long_ends"]["sides"], serde_json::json!(sides));
+    let long = check(BLOCK, &["--set", &set]);
+    let step = |found: &serde_json::Value| found["critical_step_s"].as_f64().unwrap();
+    let times = found["long_ends"]["times"].as_f64().unwrap();
+    assert!(times > 1.4 && (step(&long) / step(&found) / times - 1.0).abs() < 1e-6, "{times}");
+    assert!(long.get("long_ends").is_none() && check(&notched(), &[]).get("long_ends").is_none());
+}
+
 /// What `check` foretells and the peak of the process that runs the scene, 10⁶ bytes.
 fn memory(scene: &str, sets: &[&str]) -> [f64; 2] {
     let place = Place::with("s.toml", scene);
