@@ -49,7 +49,7 @@ use crate::splines::patch::Patch;
 use boundary_fit::{BoundaryFit, DEPTH};
 pub use constraint::ContactConstraint;
 use constraint::Impulse;
-use encounter::Encounter;
+use encounter::{Encounter, Squares};
 use motion::{AHEAD, MOST, TooFast};
 pub(crate) use rigid::RigidBody;
 use surface::Center;
@@ -80,15 +80,15 @@ pub struct ContactLedger {
 #[derive(Debug, Clone)]
 pub struct ContactSolver {
     friction: f64,
-    /// Corner of the patch, m, and its shortest span: the side of a square.
-    origin: [f64; 2],
+    squares: Squares,
+    /// Shortest span of the patch, m.
     reach: f64,
     rigid: Vec<RigidBody>,
     constraints: Vec<ContactConstraint>,
     /// Length of a step, s.
     step: f64,
     /// Forces of the last step (impulses per second), where to start from.
-    last: BTreeMap<([usize; 2], [i32; 2]), Impulse>,
+    last: BTreeMap<([usize; 2], [usize; 2]), Impulse>,
     ledger: ContactLedger,
 }
 
@@ -97,7 +97,7 @@ impl ContactSolver {
     pub fn new(scene: &Scene, whole: &Patch) -> Option<Self> {
         Some(Self {
             friction: scene.contact.as_ref()?.friction,
-            origin: [0, 1].map(|d| whole.spaces[d].spans()[0].left),
+            squares: Squares::new(whole),
             reach: whole.shortest_span(),
             rigid: scene.bodies.iter().filter(|b| b.rigid).map(|b| RigidBody::new(&scene.mesh, b)).collect(),
             constraints: Vec::new(),
@@ -151,7 +151,7 @@ impl ContactSolver {
         bodies: [usize; 2],
         common: [[f64; 2]; 2],
         reach: f64,
-    ) -> Result<impl Iterator<Item = Encounter> + use<>, TooFast> {
+    ) -> Result<Vec<Encounter>, TooFast> {
         let mut squares = BTreeMap::new();
         let segments = surfaces.map(|surface| surface.segments_in(common));
         for (own, other, sign) in [(0, 1, 1.0), (1, 0, -1.0)] {
@@ -175,8 +175,7 @@ impl ContactSolver {
                     return Err(TooFast { place: position, spans: closing / self.reach });
                 }
                 let middle = [0, 1].map(|d| position[d] + 0.5 * sign * nearest.distance * normal[d]);
-                // Squares around the knots: a plane of symmetry along a knot line cuts none.
-                let square = [0, 1].map(|d| ((middle[d] - self.origin[d]) / self.reach).round() as i32);
+                let square = self.squares.of(middle);
                 let sums: &mut Encounter = squares.entry(square).or_insert_with(|| Encounter::new(bodies, square));
                 sums.count += 1.0;
                 sums.gap += nearest.distance;
@@ -186,7 +185,7 @@ impl ContactSolver {
                 }
             }
         }
-        Ok(squares.into_values())
+        Ok(Encounter::merged(squares.into_values(), &self.squares))
     }
 
     /// The constraint of a square; none if a body has no material there.

@@ -12,7 +12,7 @@ pub struct ContactConstraint {
     /// Numbers of the bodies a and b; rigid ones are counted after the others, so only b may be rigid.
     pub(super) bodies: [usize; 2],
     /// Column and row of the square it stands for.
-    pub(super) square: [i32; 2],
+    pub(super) square: [usize; 2],
     /// Position, m.
     pub(super) position: [f64; 2],
     /// Unit normal from a to b.

@@ -9,7 +9,7 @@ impl ContactSolver {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { friction: _, origin: _, reach: _, rigid: _, constraints: _, step, last, ledger } = self;
+        let Self { friction: _, squares: _, reach: _, rigid: _, constraints: _, step, last, ledger } = self;
         archive.value(step)?;
         archive.value(last)?;
         archive.value(ledger)

@@ -52,8 +52,9 @@ const NO_EQUILIBRIUM: &str = "a load beyond the strength of the body, or a seed 
                               load, shorten the crack, or leave start.equilibrium out";
 const UNBALANCED: &str =
     "a body that is not held: add a [[boundary]], balance the loads, or leave start.equilibrium out";
-pub(super) const BARE: &str = "a traction acts where there is no material any more";
-pub(super) const TORN: &str = "the load has torn off the points under it; lower or ramp the traction, or end earlier";
+pub(super) const BARE: &str = "a load or condition acts where there is no material any more";
+pub(super) const TORN: &str =
+    "it has torn off or left behind the points under it; lower or ramp it, end earlier, or use frame = \"total\"";
 
 /// What keeps a scene from starting, near `place` (m).
 pub(super) fn not_started(place: [f64; 2], tolerance: f64, failure: Failure) -> Breakdown {

@@ -137,33 +137,37 @@ impl Simulation {
         ));
     }
 
-    /// Warns at the end of what the transfers and contact took, if that is much.
+    /// Warns at the end of what the transfers and contact took or gave, if that is much beside the energy that
+    /// is not of the mean motion.
     fn watch_losses(&mut self, sample: &Sample) {
         if !self.finished() {
             return;
         }
-        let largest = larger(self.energy_in, sample.largest_term());
+        let mass: f64 = self.updated_frame().map_or(0.0, |frame| frame.fields().iter().map(|field| field.mass()).sum());
+        let [px, py] = sample.momentum;
+        let mean = if mass > 0.0 { 0.5 * (px * px + py * py) / mass } else { 0.0 };
+        let largest = larger(self.energy_in, sample.largest_term()) - mean;
         let by_contact = sample.contact.map_or(0.0, |contact| contact.loss - contact.friction);
-        let damped = "motion that varies over one or two spans is damped; refine the mesh, or use frame = \"total\" and \
-                      kinematics = \"finite\"";
+        let damped = "motion that varies over one or two spans is damped, and so are stresses where points cross spans; use \
+                      frame = \"total\" and kinematics = \"finite\", or compare meshes";
+        let grows = "this is unstable; lower analysis.safety, or use degree 2 or more and more particles_per_cell";
         let contact = match &self.frame {
-            Bodies::Updated(_) => ("contact without friction took", damped),
-            Bodies::Total(_) => ("overlaps of boundaries hold", "contact is soft; raise contact.stiffness"),
+            Bodies::Updated(_) => ("contact without friction", "took", damped),
+            Bodies::Total(_) => ("overlaps of boundaries", "hold", "contact is soft; raise contact.stiffness"),
         };
-        let losses = [
-            (
-                ("transfers between points and grid took", damped),
-                "transfer_loss_j",
-                sample.transfer_loss.unwrap_or(0.0),
-            ),
-            (contact, "contact_loss_j less friction_j", by_contact),
-        ];
-        for ((who, remedy), column, loss) in losses {
-            if loss > LOSS_LIMIT * largest {
-                let part = 100.0 * loss / largest;
-                let what =
-                    format!("{who} {loss:.3e} J ({column}), {part:.0} % of the largest energy of the run: {remedy}");
-                self.warnings.push(what);
+        let transfers = ("transfers between points and grid", "took", damped);
+        let by_transfers = sample.transfer_loss.unwrap_or(0.0);
+        for ((who, does, remedy), column, loss) in
+            [(transfers, "transfer_loss_j", by_transfers), (contact, "contact_loss_j less friction_j", by_contact)]
+        {
+            let (does, remedy) = if loss < 0.0 { ("gave", grows) } else { (does, remedy) };
+            if loss.abs() > LOSS_LIMIT * largest {
+                let part = 100.0 * loss.abs() / largest;
+                self.warnings.push(format!(
+                    "{who} {does} {:.3e} J ({column}), {part:.0} % of the largest energy of the run besides that of the mean \
+                     motion: {remedy}",
+                    loss.abs()
+                ));
             }
         }
     }

@@ -36,6 +36,11 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
                        frame = \"updated\"";
         findings.warn("analysis.transfer", message);
     }
+    if analysis.frame == Frame::Updated && scene.mesh.degree.contains(&1) {
+        let message = "linear functions in the updated frame: forces jump where points cross spans, and runs gain energy or \
+                       break down; use degree 2 or more";
+        findings.warn("mesh.degree", message);
+    }
     if analysis.mass == Mass::Consistent {
         consistent_mass(scene, ground, findings);
     }
@@ -149,6 +154,10 @@ fn steps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
         }
     } else if ground.is_sound {
         let steps = scene.bodies.iter().filter_map(|body| crossings(body, scene, ground)).fold(0.0, larger);
+        if steps > 0.0 && steps < 1.0 {
+            let message = "until then waves do not cross a single cell; check the units of times and lengths (m)";
+            findings.warn("analysis.end_time", message);
+        }
         if steps > MOST_STEPS {
             let message = format!("{end:e} s are about {steps:.1e} steps of the smallest cell, above {MOST_STEPS:e}");
             findings.error("analysis.end_time", message, "give a shorter end_time with its unit, such as \"80 us\"");

@@ -90,7 +90,7 @@ fn wave_speed(key: &str, material: &Material, plane: Plane, findings: &mut Findi
     } else if speed < SLOWEST {
         findings.error(key, format!("{implied}, slower than in any solid"), remedy);
     } else if speed < SLOW {
-        findings.warn(key, format!("{implied}, which is slow for a solid; {remedy}"));
+        findings.warn(key, format!("{implied}, which is slow for a solid, though right for a gel; {remedy}"));
     } else if !(LIGHTEST..HEAVIEST).contains(&density) {
         let than = if density < LIGHTEST { "lighter" } else { "heavier" };
         findings.warn(key, format!("{density:e} kg/m^3 is {than} than any solid; {remedy}"));
@@ -117,8 +117,8 @@ fn likely_units(material: &Material, speed: f64) -> String {
         return "check the units of density (kg/m^3) and young_modulus (Pa)".to_string();
     }
     format!(
-        "numbers without a unit are SI, and these do not look like it: {}; write the unit with every number, lengths \
-         and loads too, as in density = \"{density:e} {density_unit}\" and young_modulus = \"{modulus:e} {modulus_unit}\"",
+        "numbers without a unit are SI; if these are without, they do not look like it: {}; write the unit with every \
+         number, lengths and loads too, as in density = \"{density:e} {density_unit}\" and young_modulus = \"{modulus:e} {modulus_unit}\"",
         looks.join(", ")
     )
 }

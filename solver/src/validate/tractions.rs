@@ -15,8 +15,8 @@ const BESIDE: f64 = 1e-6;
 const ON_BOUNDARY: &str = "give an edge of which every point lies on the body's boundary; the faces of a slit carry no load: \
                            cut a notch";
 
-const STEPPED: &str = "in the updated frame the points of the body end in steps along this edge: the force is right, stresses \
-                       within two spans of it are not";
+const STEPPED: &str = "in the updated frame the points of the body end in steps along this edge: stresses within two spans of it \
+                       are wrong, and so are forces of reaction; use frame = \"total\"";
 
 pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &mut Findings) {
     match &traction.load {

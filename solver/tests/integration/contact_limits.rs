@@ -62,6 +62,38 @@ fn a_block_over_one_row_of_control_points_stands_on_its_floor() {
     }
 }
 
+/// Floors halfway between two knot lines and beside, spans that are wider than high, and fine columns far
+/// away: constraints are never more than the control points along a face. The largest fall differs by as
+/// much as the points are apart.
+#[test]
+fn blocks_stand_wherever_the_knots_are() {
+    let uniform = |columns: usize| (0..=columns).map(|i| i as f64 / columns as f64).collect::<Vec<_>>();
+    let fine = (0..16).map(|i| 0.05 * i as f64).chain((0..=20).map(|i| 0.8 + 0.01 * i as f64)).collect();
+    for (knots, floor) in [
+        (uniform(40), 0.2125),
+        (uniform(40), 0.2375),
+        (uniform(40), 0.21251),
+        (uniform(30), 0.2),
+        (uniform(30), 0.2125),
+        (fine, 0.2),
+    ] {
+        let mut scene = scene(2, [1.0, 0.5], [40, 20]);
+        scene.mesh.knots[0] = [vec![0.0; 2], knots, vec![1.0; 2]].concat();
+        scene.bodies = vec![
+            body(rectangle([0.2, floor], [0.7, floor + 0.2]), [2; 2]),
+            rigid("floor", rectangle([-1.0, -1.0], [2.0, floor]), [0.0; 2]),
+        ];
+        scene.analysis.gravity = [0.0, -1e-3];
+        scene.analysis.end_time = 2.0;
+        let (simulation, broken) = ending(&scene);
+        assert!(broken.is_none(), "floor at {floor}: {broken:?}");
+        let points = simulation.updated_frame().unwrap().fields()[0].points();
+        let fallen = points.iter().map(|p| -p.displacement[1]).max_by(f64::total_cmp).unwrap();
+        // free fall: 2e-3 m; rho g H²/E = 4e-5 m, twice that as it vibrates, and the softness of a contact
+        assert!((2e-5..1.6e-4).contains(&fallen), "floor at {floor}: fallen by {fallen} m");
+    }
+}
+
 /// Bilinears, half a span above the boundary the place itself on a knot line or next to one: the rows of
 /// control points differ in weight by as much as the distance from there. The weights still stand for the
 /// boundary, to round-off.
