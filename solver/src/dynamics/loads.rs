@@ -8,6 +8,7 @@
 use std::collections::BTreeMap;
 
 use crate::dynamics::surface::{SurfacePoint, edge_ends, surface_points};
+use crate::linear_algebra::extremes::larger;
 use crate::particles::lattice::Lattice;
 use crate::scene::{Body, Edge, Load, Shape, Side, TimeFactor, Traction};
 use crate::splines::nearest_span::nearest_span;
@@ -129,12 +130,39 @@ impl Balance {
     }
 }
 
+/// Factor of a load, constant over a kick: its mean from half a step before a time to half a step after it,
+/// so that the impulse of the load is exact however short it is.
+#[derive(Debug, Clone)]
+pub struct KickFactor {
+    time: TimeFactor,
+    step: f64,
+}
+
+impl KickFactor {
+    /// Before any step: the factor itself.
+    pub(crate) fn new(time: TimeFactor) -> Self {
+        Self { time, step: 0.0 }
+    }
+
+    /// From now on for steps of `dt` seconds.
+    pub(crate) fn prepare(&mut self, dt: f64) {
+        self.step = dt;
+    }
+
+    /// The factor in the kick at a time, s.
+    pub fn at(&self, time: f64) -> f64 {
+        let half = 0.5 * self.step;
+        if half == 0.0 { self.time.value(time) } else { self.time.mean([larger(time - half, 0.0), time + half]) }
+    }
+}
+
 /// A traction as nodal forces that share one factor in time.
 #[derive(Debug, Clone)]
 pub struct NodalLoad {
     /// Control point and force at full strength per unit thickness, N/m.
     pub forces: Vec<(usize, [f64; 2])>,
-    time: TimeFactor,
+    /// Its factor.
+    pub factor: KickFactor,
 }
 
 impl NodalLoad {
@@ -195,12 +223,7 @@ impl NodalLoad {
                 sums.into_iter().map(|(at, [_, x, y])| (at, [x.value(), y.value()])).collect()
             }
         };
-        Ok(Self { forces, time: traction.time.clone() })
-    }
-
-    /// Factor at a time, s.
-    pub fn factor(&self, time: f64) -> f64 {
-        self.time.value(time)
+        Ok(Self { forces, factor: KickFactor::new(traction.time.clone()) })
     }
 }
 
@@ -237,7 +260,7 @@ pub(crate) fn material_at(
 
 /// Where to evaluate the shape functions of a position (m) on a straight edge, so that all of them belong to
 /// control points that can move.
-fn carrier(patch: &Patch, position: [f64; 2], moves: impl Fn(usize, usize) -> bool) -> Option<Location> {
+pub(crate) fn carrier(patch: &Patch, position: [f64; 2], moves: impl Fn(usize, usize) -> bool) -> Option<Location> {
     let carries = |span| patch.all_functions(span, |at| moves(patch.first_function(span), at));
     nearest_span(&patch.spaces, position, carries).map(|span| Location { span, parameters: position })
 }

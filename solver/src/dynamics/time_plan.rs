@@ -1,8 +1,8 @@
 //! Time steps and samples: a sample interval is a whole number of equal steps.
 
 use crate::contact::motion::{MOST, longest_step};
-use crate::linear_algebra::extremes::{larger, smaller};
-use crate::scene::{Analysis, Output, Scene, TimeFactor, TimeStep};
+use crate::linear_algebra::extremes::smaller;
+use crate::scene::{Analysis, Output, Scene, TimeStep};
 
 /// Fraction of the longest step of bodies that meet that is taken: speeds change.
 const SPARE: f64 = 0.8;
@@ -10,10 +10,6 @@ const SPARE: f64 = 0.8;
 const ROUND_OFF: f64 = 1e-12;
 /// Part by which a given step may be shortened without a word.
 const TOLERATED: f64 = 1e-6;
-
-/// Part of its impulse by which a load may be off without a word, and steps up to which it is summed.
-const MOST_MISSED: f64 = 0.02;
-const MOST_SUMMED: usize = 100_000;
 
 /// Steps and samples of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,35 +27,7 @@ pub struct TimePlan {
 impl TimePlan {
     /// Plan for a scene whose operator has the critical step `critical` (s), with warnings for people.
     pub fn new(scene: &Scene, critical: f64) -> (Self, Vec<String>) {
-        let (plan, mut warnings) = Self::within(&scene.analysis, &scene.output, critical, longest_step(scene));
-        for (b, body) in scene.bodies.iter().enumerate() {
-            for (t, traction) in body.tractions.iter().enumerate() {
-                let error = plan.error_of_impulse(&traction.time);
-                if error.abs() > MOST_MISSED {
-                    warnings.push(format!(
-                        "body.{b}.traction.{t}.time changes within a time step of {:.4e} s: the impulse of the load is off by \
-                         {:.0} % of itself; lower analysis.safety or time_step",
-                        plan.step,
-                        100.0 * error
-                    ));
-                }
-            }
-        }
-        (plan, warnings)
-    }
-
-    /// Relative error of the impulse of a load, which acts at whole steps with the value that it has there.
-    fn error_of_impulse(&self, time: &TimeFactor) -> f64 {
-        let steps = self.steps();
-        if time.is_constant() || steps > MOST_SUMMED {
-            return 0.0;
-        }
-        let exact = time.integral(self.step * steps as f64);
-        let share = |n: usize| if n == 0 || n == steps { 0.5 * self.step } else { self.step };
-        let impulses = (0..=steps).map(|n| share(n) * time.value(self.step * n as f64));
-        let (sum, size) = impulses.fold((0.0, 0.0_f64), |(sum, size), part| (sum + part, size + part.abs()));
-        let size = larger(size, exact.abs());
-        if size > 0.0 { (sum - exact) / size } else { 0.0 }
+        Self::within(&scene.analysis, &scene.output, critical, longest_step(scene))
     }
 
     /// Plan for a critical step and the longest step (s) in which contact can follow bodies that meet.
@@ -128,7 +96,6 @@ fn whole(ratio: f64) -> usize {
 mod tests {
     use super::*;
     use crate::example::elastic_scene;
-    use crate::scene::time::Course;
 
     fn plan(end_time: f64, time_step: TimeStep, samples: usize, critical: f64) -> (TimePlan, Vec<String>) {
         plan_within(end_time, time_step, samples, critical, f64::INFINITY)
@@ -174,18 +141,6 @@ mod tests {
         );
         assert_eq!(told(TimeStep::Fixed(1.0), 1).len(), 2, "beyond the end, and critical");
         assert!(told(TimeStep::Auto, 50).is_empty() && told(TimeStep::Auto, 120).is_empty());
-    }
-
-    /// A load that ends after 10.4 steps acts for 11 but a half; a pulse between two steps is missed.
-    #[test]
-    fn loads_that_change_within_a_step_have_another_impulse() {
-        let (plan, _) = plan(1.0, TimeStep::Fixed(0.025), 40, 1.0);
-        let error = |course, until| plan.error_of_impulse(&TimeFactor { course, until });
-        let of = |found: f64, sum: f64, exact: f64| assert!((found - (sum - exact) / sum.max(exact)).abs() < 1e-12);
-        of(error(Course::Constant, Some(0.26)), 0.2625, 0.26);
-        of(error(Course::Constant, Some(0.25)), 0.2375, 0.25);
-        assert_eq!(error(Course::Table(vec![[0.501, 0.0], [0.51, 1.0], [0.52, 0.0]]), None), -1.0);
-        assert!(error(Course::Ramp(0.5), None).abs() < 1e-12 && error(Course::Constant, None) == 0.0);
     }
 
     #[test]

@@ -216,6 +216,7 @@ impl TotalFrame {
     /// Makes ready for steps of `dt` seconds: the accelerations at t = 0 of what is prescribed.
     pub(crate) fn prepare(&mut self, dt: f64) {
         self.time_step = dt;
+        self.loads.iter_mut().for_each(|load| load.factor.prepare(dt));
         self.accelerate();
     }
 
@@ -233,7 +234,7 @@ impl TotalFrame {
             });
         }
         for load in &self.loads {
-            let factor = load.factor(self.time);
+            let factor = load.factor.at(self.time);
             for &(at, force) in &load.forces {
                 for component in 0..2 {
                     self.acceleration[component][at] += factor * force[component];
@@ -250,8 +251,8 @@ impl TotalFrame {
         let velocity = &self.velocity; // half a step before self.time: between the two ends of the step
         let mut power = 0.0;
         for load in &self.loads {
-            let before = fault!("work-of-the-last-force", load.factor(self.time - dt) => load.factor(self.time));
-            let factor = 0.5 * (before + load.factor(self.time));
+            let before = fault!("work-of-the-last-force", load.factor.at(self.time - dt) => load.factor.at(self.time));
+            let factor = 0.5 * (before + load.factor.at(self.time));
             let forces = load.forces.iter();
             power += factor * forces.map(|&(at, f)| f[0] * velocity[0][at] + f[1] * velocity[1][at]).sum::<f64>();
         }

@@ -112,7 +112,7 @@ impl UpdatedFrame {
     /// # Errors
     /// If bodies are about to meet that approach each other too far in a step.
     pub fn prepare(&mut self, dt: f64) -> Result<(), Failure> {
-        self.fields.iter_mut().for_each(|field| field.prepare(dt));
+        self.fields.iter_mut().try_for_each(|field| field.prepare(dt))?;
         let Some(contact) = &mut self.contact else { return Ok(()) };
         self.fields.iter_mut().for_each(|field| field.expect_motion(dt));
         contact.set_step(dt);

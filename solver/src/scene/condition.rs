@@ -152,10 +152,10 @@ impl Prescribed {
     }
 
     /// Mean velocity (m/s) over a step of `dt` seconds from `time` on.
-    pub(crate) fn mean_velocity(&self, time: f64, dt: f64) -> [f64; 2] {
+    pub fn mean_velocity(&self, time: f64, dt: f64) -> [f64; 2] {
         match self.motion {
             Motion::Velocity(velocity) => {
-                let factor = self.time.value(time + 0.5 * dt);
+                let factor = self.time.mean([time, time + dt]);
                 velocity.map(|v| v * factor)
             }
             Motion::Displacement(displacement) => {

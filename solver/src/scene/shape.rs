@@ -154,15 +154,26 @@ fn polygon_contains(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     polygon_edges(points).filter(crosses).count() % 2 == 1
 }
 
+/// Part of a segment beyond its ends that still belongs to it.
+const ROUND_OFF: f64 = 1e-9;
+
 /// A straight line between two positions, m.
 pub(crate) type Segment = [[f64; 2]; 2];
 
 /// Whether the step from a to b crosses a segment. A position on the line of the segment counts as one on its
-/// left, so that it has a side.
+/// left, so that it has a side; where round-off puts both on different sides of it, they are parted as well.
 pub(crate) fn cross([a, b]: Segment, [c, d]: Segment) -> bool {
-    let turn = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    let along = [d[0] - c[0], d[1] - c[1]];
+    let left = |p: [f64; 2]| along[0] * (p[1] - c[1]) - along[1] * (p[0] - c[0]);
     let apart = (0..2).any(|i| a[i].max(b[i]) < c[i].min(d[i]) || c[i].max(d[i]) < a[i].min(b[i]));
-    !apart && (turn(c, d, a) >= 0.0) != (turn(c, d, b) >= 0.0) && turn(a, b, c) * turn(a, b, d) <= 0.0
+    let (from, to) = (left(a), left(b));
+    if apart || (from >= 0.0) == (to >= 0.0) {
+        return false;
+    }
+    let meeting = [0, 1].map(|i| a[i] + from / (from - to) * (b[i] - a[i]) - c[i]);
+    let length = along[0] * along[0] + along[1] * along[1];
+    let ends = -ROUND_OFF * length..=(1.0 + ROUND_OFF) * length;
+    ends.contains(&(along[0] * meeting[0] + along[1] * meeting[1]))
 }
 
 /// Distance (m) of `position` from the segment between `from` and `to`.
@@ -212,6 +223,21 @@ mod tests {
             assert!(shape.contains_within(on_the_boundary, 1e-9), "{shape:?}");
             assert!(!shape.contains_within(on_the_boundary, -1e-9), "{shape:?}");
         }
+    }
+
+    /// Positions along a line, to round-off, which puts some on its left and some on its right.
+    #[test]
+    fn a_segment_parts_positions_on_either_side_to_round_off() {
+        let line = [[2.5e-3, 0.0], [14.5e-3, 12e-3]];
+        let positions = (1..120).map(|i| 1e-4 * i as f64).map(|y| [2.5e-3 + y, y]).collect::<Vec<_>>();
+        let left = |p: [f64; 2]| !cross([p, [12e-3, 4e-3]], line);
+        let (mut parted, mut joined) = (0, 0);
+        for pair in positions.windows(2) {
+            assert_eq!(cross([pair[0], pair[1]], line), left(pair[0]) != left(pair[1]), "{pair:?}");
+            *(if left(pair[0]) == left(pair[1]) { &mut joined } else { &mut parted }) += 1;
+        }
+        assert!(parted > 0 && joined > 0, "{parted} {joined}");
+        assert!(!cross([[2.4e-3, 0.0], [2.4e-3, 1e-3]], line) && cross([[2.5e-3, 1e-5], [2.6e-3, 0.0]], line));
     }
 
     #[test]

@@ -104,15 +104,28 @@ impl TimeFactor {
     /// The factor over the time from 0 on, s: exact, but for a formula, which has [`PANELS`] intervals of two
     /// Gauss points.
     pub(crate) fn integral(&self, time: f64) -> f64 {
-        let end = self.until.map_or(time, |until| smaller(until, time));
-        let mut ends = vec![0.0];
+        self.over([0.0, time], PANELS)
+    }
+
+    /// Mean of the factor between two times, s: exact, but for a formula, which has two Gauss points.
+    pub(crate) fn mean(&self, times: [f64; 2]) -> f64 {
+        if self.is_constant() { 1.0 } else { self.over(times, 1) / (times[1] - times[0]) }
+    }
+
+    /// The factor over the time between two times, s, of a formula with so many intervals.
+    fn over(&self, [start, stop]: [f64; 2], panels: usize) -> f64 {
+        let end = self.until.map_or(stop, |until| smaller(until, stop));
+        if end <= start {
+            return 0.0;
+        }
+        let mut ends = vec![start];
         match &self.course {
-            Course::Constant => return end,
+            Course::Constant => return end - start,
             Course::Ramp(rise) | Course::Smooth(rise) => ends.push(*rise),
             Course::Table(rows) => ends.extend(rows.iter().map(|row| row[0])),
-            Course::Formula(_) => ends.extend((1..PANELS).map(|i| end * i as f64 / PANELS as f64)),
+            Course::Formula(_) => ends.extend((1..panels).map(|i| start + (end - start) * i as f64 / panels as f64)),
         }
-        ends.retain(|&at| (0.0..end).contains(&at));
+        ends.retain(|at| (start..end).contains(at));
         ends.push(end);
         let gauss = |[from, to]: [f64; 2]| {
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));

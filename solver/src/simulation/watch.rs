@@ -137,8 +137,8 @@ impl Simulation {
         ));
     }
 
-    /// Warns at the end of what the transfers and contact took or gave, if that is much beside the energy that
-    /// is not of the mean motion.
+    /// Warns at the end of what the transfers and contact took or gave, if that is much beside the energy
+    /// that is not of the mean motion.
     fn watch_losses(&mut self, sample: &Sample) {
         if !self.finished() {
             return;

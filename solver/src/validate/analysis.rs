@@ -11,6 +11,8 @@ use crate::splines::spline::SplineSpace;
 
 /// Most steps of a run.
 pub(super) const MOST_STEPS: f64 = 1e9;
+/// Part of the smallest cell that waves cross in the shortest run without a warning.
+const LEAST_CROSSED: f64 = 0.25;
 /// Highest order of XPIC: each costs a transfer to the points and back per step.
 const HIGHEST_XPIC: usize = 100;
 /// Relative tolerance of "on the side", of the size of the mesh.
@@ -154,8 +156,8 @@ fn steps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
         }
     } else if ground.is_sound {
         let steps = scene.bodies.iter().filter_map(|body| crossings(body, scene, ground)).fold(0.0, larger);
-        if steps > 0.0 && steps < 1.0 {
-            let message = "until then waves do not cross a single cell; check the units of times and lengths (m)";
+        if steps > 0.0 && steps < LEAST_CROSSED && !scene.equilibrium {
+            let message = "until then waves cross no quarter of a cell; check the units of times and lengths (m)";
             findings.warn("analysis.end_time", message);
         }
         if steps > MOST_STEPS {

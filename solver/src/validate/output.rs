@@ -101,9 +101,10 @@ fn filled(
         return;
     }
     let key = format!("{key}.radius");
-    let message = format!("the boundary of the body enters the circle about the tip ({}, {}) m", tip[0], tip[1]);
+    let message =
+        format!("the boundary of the body or another crack enters the circle about the tip ({}, {}) m", tip[0], tip[1]);
     if fractures && integral.at.is_none() {
-        findings.warn(key, format!("{message}: J is not a number until the crack is a radius away from it"));
+        findings.warn(key, format!("{message}: J is not a number until the tip is a radius away from it"));
     } else {
         findings.error(key, message, "give a smaller radius; the last point of the crack is its tip");
     }

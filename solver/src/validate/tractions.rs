@@ -68,8 +68,9 @@ pub(super) fn edge(key: &str, edge: &Edge, needs_side: bool, look: &Look<'_>, fi
             let parts = || middles_of_parts(BoundaryEdge::Line(*ends), [0.0, 1.0], body);
             if ends[0] == ends[1] {
                 findings.error(key, "a segment of zero length", "give two different ends");
-            } else if let Some([x, y]) =
-                look.first_outside(*ends, SEGMENT_INTERVALS).or_else(|| parts().find(|at| look.is_outside(*at)))
+            } else if let Some([x, y]) = look
+                .first_outside(*ends, SEGMENT_INTERVALS)
+                .or_else(|| middles(*ends).chain(parts()).find(|&at| look.is_outside(at) || is_bare(at, *ends, body)))
             {
                 let message = format!("the segment leaves body {:?}: ({x}, {y}) m lies outside", body.name);
                 findings.error(key, message, ON_BOUNDARY);
@@ -105,10 +106,20 @@ fn middles([from, to]: [[f64; 2]; 2]) -> impl Iterator<Item = [f64; 2]> {
     (0..SEGMENT_INTERVALS).map(move |i| [0, 1].map(|d| from[d] + part(i) * (to[d] - from[d])))
 }
 
-/// Whether there is material on both sides of a position (m) on a segment.
-fn is_between([x, y]: [f64; 2], [from, to]: [[f64; 2]; 2], body: &Body) -> bool {
+/// Whether there is material on either side of a position (m) on a segment.
+fn sides([x, y]: [f64; 2], [from, to]: [[f64; 2]; 2], body: &Body) -> [bool; 2] {
     let beside = [0, 1].map(|d| BESIDE * (to[d] - from[d]));
-    [1.0, -1.0].iter().all(|side| body.shape.contains([x - side * beside[1], y + side * beside[0]]))
+    [1.0, -1.0].map(|side| body.shape.contains([x - side * beside[1], y + side * beside[0]]))
+}
+
+/// Whether there is material on both sides.
+fn is_between(at: [f64; 2], ends: [[f64; 2]; 2], body: &Body) -> bool {
+    sides(at, ends, body) == [true, true]
+}
+
+/// Whether there is none: in the mouth of a notch that begins on the segment.
+fn is_bare(at: [f64; 2], ends: [[f64; 2]; 2], body: &Body) -> bool {
+    body.shape != Shape::Patch && sides(at, ends, body) == [false, false]
 }
 
 /// Whether what acts at a position (m) on a segment has no meaning: it needs a side, or the segment is on a
@@ -135,22 +146,22 @@ fn arc(key: &str, center: [f64; 2], radius: f64, angles: [f64; 2], look: &Look<'
             "give two angles that increase by at most 360 degrees",
         );
     }
-    let position = |i: usize, radius: f64| {
+    let position = |i: usize| {
         let (sine, cosine) = (angles[0] + swept * i as f64 / SEGMENT_INTERVALS as f64).sin_cos();
         [center[0] + radius * cosine, center[1] + radius * sine]
     };
     let (circle, part) = (BoundaryEdge::Circle { center, radius, sign: 1.0 }, angles.map(|angle| angle / TAU));
-    let parts = middles_of_parts(circle, part, look.body);
-    let mut positions = (0..=SEGMENT_INTERVALS).map(|i| position(i, radius)).chain(parts);
+    let parts: Vec<_> = middles_of_parts(circle, part, look.body).collect();
+    let positions = || (0..=SEGMENT_INTERVALS).map(position).chain(parts.iter().copied());
+    let is_between = |p: &[f64; 2]| {
+        let beside = |part: f64| [0, 1].map(|d| center[d] + part * (p[d] - center[d]));
+        [1.0 - BESIDE, 1.0 + BESIDE].iter().all(|part| look.body.shape.contains(beside(*part)))
+    };
     let name = &look.body.name;
-    if let Some([x, y]) = positions.find(|p| look.is_outside(*p)) {
+    if let Some([x, y]) = positions().find(|p| look.is_outside(*p)) {
         let message = format!("the arc leaves body {name:?}: ({x}, {y}) m lies outside");
         findings.error(key, message, ON_BOUNDARY);
-    } else if let Some(i) = (0..=SEGMENT_INTERVALS).find(|&i| {
-        let beside = [1.0 - BESIDE, 1.0 + BESIDE].map(|part| look.body.shape.contains(position(i, part * radius)));
-        beside == [true, true]
-    }) {
-        let [x, y] = position(i, radius);
+    } else if let Some([x, y]) = positions().find(is_between) {
         let message = format!("the arc runs inside body {name:?}: there is material on both sides of ({x}, {y}) m");
         findings.error(key, message, ON_BOUNDARY);
     } else if look.has_steps {

@@ -1,8 +1,9 @@
 //! No part of a traction is lost on its way to the control points, wherever its edge lies; nor is a body
 //! without points begun.
 
-use crate::common::{body, elastic_scene, rectangle};
+use crate::common::{body, elastic_scene, rectangle, run};
 use fisura::Simulation;
+use fisura::scene::time::Course;
 use fisura::scene::*;
 use fisura::splines::nurbs::NurbsPatch;
 use fisura::validate::validate;
@@ -122,6 +123,32 @@ fn edges_that_cut_spans_are_loaded() {
 }
 
 /// Segments along slanted edges and through corners, where a span on the edge often has no point at all.
+/// Impulses of loads that end or peak between two steps; velocities of sides give exact displacements.
+#[test]
+fn impulses_and_displacements_are_exact_however_short_they_are() {
+    let pulse = Course::Table(vec![[0.55, 0.0], [0.6, 2.0], [0.7, 0.0]]);
+    let courses = [(Course::Constant, Some(1.1), 1.1), (pulse, None, 0.15), (Course::Ramp(0.7), Some(1.1), 0.75)];
+    for ((course, until, exact), frame) in courses.iter().flat_map(|course| FRAMES.map(|frame| (course, frame))) {
+        let time = TimeFactor { course: course.clone(), until: *until };
+        let pushed = Traction::on(Side::Right, [1e-3, 0.0], time.clone());
+        let mut scene =
+            loaded(Mesh::uniform([2; 2], [0.0; 2], [2.0; 2], [8; 2]), rectangle([0.25; 2], [1.25; 2]), pushed, frame);
+        scene
+            .materials
+            .values_mut()
+            .for_each(|m| *m = Material { young_modulus: 1e-2, poisson_ratio: 0.0, density: 1.0, fracture: None });
+        scene.analysis.time_step = TimeStep::Fixed(0.25);
+        scene.analysis.end_time = 2.0;
+        let (_, samples) = run(&scene);
+        let last = samples.last().unwrap();
+        assert!((last.momentum[0] / (1e-3 * exact) - 1.0).abs() < 1e-12, "{frame:?} {time:?}: {:?}", last.momentum);
+        assert!(last.closure.abs() < 1e-3 * last.external_work, "{frame:?} {time:?}: {}", last.closure);
+        let moved = Prescribed { motion: Motion::Velocity([1.0, 0.0]), time };
+        let way: f64 = (0..8).map(|n| 0.25 * n as f64).map(|t| 0.25 * moved.mean_velocity(t, 0.25)[0]).sum();
+        assert!((way / exact - 1.0).abs() < 1e-12, "{moved:?}: {way}");
+    }
+}
+
 #[test]
 fn segments_of_other_shapes_are_loaded() {
     let triangle = vec![[0.63, 0.51], [5.27, 1.98], [2.11, 5.43]];

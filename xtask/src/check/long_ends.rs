@@ -32,8 +32,8 @@ pub(super) struct LongEnds {
 }
 
 impl LongEnds {
-    /// At the sides that are as fine as the mesh and that no seeded crack is near; none if it is not worthwhile.
-    /// A phase field does not change the ratio of the steps.
+    /// At the sides that are as fine as the mesh and that no seeded crack is near; none if it is not
+    /// worthwhile. A phase field does not change the ratio of the steps.
     pub(super) fn of(scene: &Scene) -> Option<Self> {
         let mut long = scene.clone();
         if scene.analysis.frame == Frame::Updated

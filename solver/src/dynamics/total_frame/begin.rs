@@ -64,6 +64,8 @@ impl TotalFrame {
         };
         let zeros = || [grid.zeros(), grid.zeros()];
         let edges = EdgeConditions::new(&patch, &lattice, body, &mass, &constraints)?;
+        let probe = |probe| ProbePlace::new(&patch, &lattice, probe, |at| mass.moves(at));
+        let probes = scene.output.probes.iter().filter_map(probe).collect();
         let mut frame = Self {
             loads: body.tractions.iter().enumerate().map(load).collect::<Result<_, _>>()?,
             forced: None,
@@ -76,7 +78,7 @@ impl TotalFrame {
             thickness: scene.analysis.thickness,
             gravity: scene.analysis.gravity,
             strip_forces: StripForces::new(&lattice),
-            probes: scene.output.probes.iter().filter_map(|probe| ProbePlace::new(&patch, &lattice, probe)).collect(),
+            probes,
             domains: Domain::all(&patch, body, &scene.output.j_integrals),
             density: material.density,
             crack_start: crack_start(body),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::dynamics::body_sample::column_name;
 use crate::dynamics::surface::points_around;
-use crate::scene::{Body, JIntegral, Shape};
+use crate::scene::{Body, Crack, JIntegral, Shape};
 use crate::splines::patch::Patch;
 
 /// A J-integral, with its axis.
@@ -22,6 +22,8 @@ pub(crate) struct Domain {
     pub axis: [f64; 2],
     /// Positions along the boundary of the body, m.
     pub boundary: Arc<Vec<[f64; 2]>>,
+    /// Cracks at the start besides the nearest to the tip.
+    others: Vec<Crack>,
 }
 
 impl Domain {
@@ -34,15 +36,19 @@ impl Domain {
         let domain = |integral: &JIntegral| {
             let (tip, axis) = integral.tip_and_axis(body)?;
             let (column, boundary) = (column(integral), Arc::clone(&boundary));
-            Some(Self { column, radius: integral.radius, tip, moves: integral.at.is_none(), axis, boundary })
+            let mut others = body.cracks.clone();
+            others.sort_by(|a, b| a.distance(tip).total_cmp(&b.distance(tip)));
+            others.drain(..others.len().min(1));
+            Some(Self { column, radius: integral.radius, tip, moves: integral.at.is_none(), axis, boundary, others })
         };
         integrals.iter().filter_map(domain).collect()
     }
 
-    /// Whether the body fills it about a tip, m.
+    /// Whether the body fills it about a tip (m), without another crack.
     pub(crate) fn is_filled(&self, tip: [f64; 2], shape: &Shape) -> bool {
         let reaches = |place: &[f64; 2]| (place[0] - tip[0]).hypot(place[1] - tip[1]) < self.radius;
-        shape.contains(tip) && !self.boundary.iter().any(reaches)
+        let is_free = self.others.iter().all(|crack| crack.distance(tip) >= self.radius);
+        shape.contains(tip) && is_free && !self.boundary.iter().any(reaches)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::field::DiscreteField;
 use super::grid::ImposedEnergy;
 use super::held_sides::constraints;
+use crate::dynamics::failure::Failure;
 
 impl DiscreteField {
     /// Lets the sides hold the control points that their material reaches now.
@@ -27,11 +28,21 @@ impl DiscreteField {
         }
     }
 
-    /// Accelerations at t = 0 that lead to what is prescribed for a step of `dt` seconds.
-    pub(super) fn prepare(&mut self, dt: f64) {
-        let Some(edges) = self.edges.as_mut().filter(|_| self.at_start) else { return };
-        edges.go_on([self.time, dt]);
-        self.accelerate();
+    /// Accelerations at t = 0 by the loads of the first kick, which lead to what is prescribed for a step of
+    /// `dt` seconds.
+    ///
+    /// # Errors
+    /// A load or a condition that has lost its material.
+    pub(super) fn prepare(&mut self, dt: f64) -> Result<(), Failure> {
+        self.loads.iter_mut().for_each(|load| load.factor.prepare(dt));
+        if self.at_start && !self.loads.is_empty() {
+            self.rebuild_grid()?;
+        }
+        if let Some(edges) = self.edges.as_mut().filter(|_| self.at_start) {
+            edges.go_on([self.time, dt]);
+            self.accelerate();
+        }
+        Ok(())
     }
 
     /// Lets the edges answer to accelerations that were added for a step of `dt` seconds.

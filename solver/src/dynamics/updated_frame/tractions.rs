@@ -3,10 +3,11 @@
 use super::carried_place::CarriedPlace;
 use super::grid::NodalFields;
 use crate::checkpoint::{Archive, StateError};
+use crate::dynamics::loads::KickFactor;
 use crate::dynamics::surface::{SurfacePoint, surface_points};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::particles::points::OutsidePatch;
-use crate::scene::{Body, TimeFactor, Traction};
+use crate::scene::{Body, Traction};
 use crate::splines::patch::Patch;
 
 /// A traction and the surface points that carry it.
@@ -14,7 +15,8 @@ use crate::splines::patch::Patch;
 pub(crate) struct SurfaceLoad {
     points: Vec<MovingSurfacePoint>,
     stress: [f64; 2],
-    time: TimeFactor,
+    /// Its factor.
+    pub factor: KickFactor,
     /// Power of the full traction on the points during the last motion, W/m.
     power: f64,
 }
@@ -32,12 +34,12 @@ impl SurfaceLoad {
         let place =
             |p: SurfacePoint| MovingSurfacePoint { place: CarriedPlace::new(patch, body, &p), length: p.length };
         let points = points.map(place).collect();
-        Self { points, stress: traction.load.traction([0.0; 2], [0.0; 2]), time: traction.time.clone(), power: 0.0 }
-    }
-
-    /// Factor at a time, s.
-    pub(crate) fn factor(&self, time: f64) -> f64 {
-        self.time.value(time)
+        Self {
+            points,
+            stress: traction.load.traction([0.0; 2], [0.0; 2]),
+            factor: KickFactor::new(traction.time.clone()),
+            power: 0.0,
+        }
     }
 
     /// Power of the full traction on the points during the last motion, W/m.
@@ -73,7 +75,7 @@ impl SurfaceLoad {
 
     /// Adds the nodal forces at a time, N/m.
     pub(crate) fn add_forces(&self, patch: &Patch, grid: ControlGrid, time: f64, force: &mut [Vec<f64>; 2]) {
-        let factor = self.factor(time);
+        let factor = self.factor.at(time);
         for point in &self.points {
             point.place.for_each_function(patch, grid, |at, n| {
                 for component in 0..2 {
@@ -99,7 +101,7 @@ impl SurfaceLoad {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { points, stress: _, time: _, power } = self;
+        let Self { points, stress: _, factor: _, power } = self;
         points.iter_mut().try_for_each(|point| point.place.exchange(archive))?;
         archive.value(power)
     }
