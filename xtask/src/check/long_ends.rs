@@ -62,7 +62,7 @@ fn is_fine(scene: &Scene, d: usize, upper: bool) -> bool {
     let lengths = |d: usize| scene.mesh.knots[d].windows(2).map(|k| k[1] - k[0]).filter(|length| *length > 0.0);
     let shortest = lengths(0).chain(lengths(1)).fold(f64::INFINITY, smaller);
     let (end, side) =
-        if upper { (lengths(d).last(), scene.mesh.end()[d]) } else { (lengths(d).next(), scene.mesh.origin()[d]) };
+        if upper { (lengths(d).next_back(), scene.mesh.end()[d]) } else { (lengths(d).next(), scene.mesh.origin()[d]) };
     let seeds = scene.bodies.iter().flat_map(|body| &body.cracks).filter(|crack| !crack.is_slit());
     let near = |point: &[f64; 2]| (point[d] - side).abs() < 2.0 * LONG * shortest;
     let mut points = seeds.flat_map(|crack| &crack.points);
