@@ -55,6 +55,32 @@ fn a_brittle_body_with_a_slit_starts_from_rest() {
     assert!(relative_closure(&samples) < 1e-3, "{:e}", relative_closure(&samples));
 }
 
+/// A grip that is displaced takes a body that is free elsewhere with it: all forces vanish.
+#[test]
+fn a_displaced_grip_moves_a_free_body_as_a_whole() {
+    for (degree, side, kinematics) in [
+        (1, Side::Left, Kinematics::Small),
+        (2, Side::Top, Kinematics::Small),
+        (3, Side::Right, Kinematics::Finite),
+        (4, Side::Bottom, Kinematics::Small),
+    ] {
+        let mut scene = pulled(degree, TimeFactor::default());
+        scene.analysis.kinematics = kinematics;
+        scene.bodies[0].tractions.clear();
+        let motion = Motion::Displacement([1e-6, -2e-6]);
+        let prescribed = Prescribed { motion, time: TimeFactor::default() };
+        scene.boundaries = vec![Boundary { prescribed, ..Boundary::fixed(side, [true, true]) }];
+        let simulation = Simulation::new(&scene).unwrap();
+        for (component, moved) in [1e-6, -2e-6].into_iter().enumerate() {
+            let frame = simulation.total_frame().unwrap();
+            let grid = frame.lattice().grid;
+            for at in grid.indices() {
+                assert!((frame.displacement()[component][at] / moved - 1.0).abs() < 1e-9, "p = {degree}, {side:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn balanced_loads_on_a_free_body_are_static_and_others_are_refused() {
     let mut scene = pulled(2, TimeFactor::default());

@@ -12,6 +12,8 @@ use crate::linear_algebra::extremes::{larger, largest};
 
 /// Largest force out of balance, of the largest nodal force.
 const TOLERANCE: f64 = 1e-9;
+/// The same of the largest nodal force at the start: where conditions only move a body, all forces vanish.
+const ROUND_OFF: f64 = 1e-12;
 /// Reduction of the residual by a linear solve, which the next step of Newton's method squares. A solve that
 /// goes further drifts along rigid motions that no condition holds.
 const REDUCTION: f64 = 1e-4;
@@ -39,9 +41,10 @@ impl TotalFrame {
         self.internal_forces(); // sets the phase field at the points
         let free = self.free_components();
         let (mut residual, mut scale) = self.out_of_balance(&free);
+        let least = ROUND_OFF * scale;
         self.refuse_unbalanced(&free, &residual)?;
         for _ in 0..MOST_STEPS {
-            if largest(residual.iter().map(|r| r.abs())) <= TOLERANCE * scale {
+            if largest(residual.iter().map(|r| r.abs())) <= larger(TOLERANCE * scale, least) {
                 return Ok(());
             }
             let change = self.solve(&residual)?;
