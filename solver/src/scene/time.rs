@@ -122,7 +122,10 @@ impl TimeFactor {
         match &self.course {
             Course::Constant => return end - start,
             Course::Ramp(rise) | Course::Smooth(rise) => ends.push(*rise),
-            Course::Table(rows) => ends.extend(rows.iter().map(|row| row[0])),
+            Course::Table(rows) => {
+                let later = rows[rows.partition_point(|row| row[0] <= start)..].iter();
+                ends.extend(later.map(|row| row[0]).take_while(|at| *at < end));
+            }
             Course::Formula(_) => ends.extend((1..panels).map(|i| start + (end - start) * i as f64 / panels as f64)),
         }
         ends.retain(|at| (start..end).contains(at));

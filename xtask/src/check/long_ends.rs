@@ -42,6 +42,7 @@ impl LongEnds {
         {
             return None;
         }
+        long.equilibrium = false;
         long.bodies.iter_mut().for_each(|body| body.cracks.clear());
         long.materials.values_mut().for_each(|material| material.fracture = None);
         let critical = |scene: &Scene| Some(Simulation::new(scene).ok()?.plan().critical);
