@@ -8,9 +8,11 @@
 use std::collections::BTreeMap;
 
 use crate::dynamics::surface::{SurfacePoint, edge_ends, surface_points};
+use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::extremes::larger;
+use crate::linear_algebra::vectors::cofactor;
 use crate::particles::lattice::Lattice;
-use crate::scene::{Body, Edge, Load, Shape, Side, TimeFactor, Traction};
+use crate::scene::{Body, Edge, Kinematics, Load, Shape, Side, TimeFactor, Traction};
 use crate::splines::nearest_span::nearest_span;
 use crate::splines::nurbs::locate::Location;
 use crate::splines::patch::{BoundaryPoint, Patch, PointFunctions};
@@ -97,7 +99,7 @@ impl Balance {
     /// Of a side of a patch, as its points integrate it.
     fn of_points(points: &[BoundaryPoint]) -> Self {
         let length = Sum::of(points.iter().map(|p| p.length));
-        let middle = |d: usize| Sum::of(points.iter().map(|p| p.length * p.position[d])) / length;
+        let middle = |d: usize| Sum::of(points.iter().map(|p| p.length * p.functions.position[d])) / length;
         Self { length, middle: [0, 1].map(middle) }
     }
 
@@ -163,49 +165,66 @@ pub struct NodalLoad {
     pub forces: Vec<(usize, [f64; 2])>,
     /// Its factor.
     pub factor: KickFactor,
+    /// If it follows the body.
+    following: Option<Box<FollowingForces>>,
+}
+
+/// Forces on the boundary that turn and stretch with it.
+#[derive(Debug, Clone)]
+struct FollowingForces {
+    /// Shape functions, and the force at full strength on the boundary as it is at t = 0, N/m.
+    points: Vec<(PointFunctions, [f64; 2])>,
+    /// The nodal forces of the last step.
+    before: Vec<(usize, [f64; 2])>,
 }
 
 impl NodalLoad {
     /// Nodal forces of `traction` with the shape functions at the reference positions, on control points that
     /// can move: `moves` says which have mass. Where an edge crosses a span with others, the polynomials of
-    /// the nearest span without carry it.
+    /// the nearest span without carry it. With finite `kinematics` a pressure follows the body.
     ///
     /// # Errors
     /// If a part of the traction would be lost.
     pub fn new(
-        patch: &Patch,
-        lattice: &Lattice,
+        (patch, lattice): (&Patch, &Lattice),
         body: &Body,
         traction: &Traction,
+        kinematics: Kinematics,
         moves: impl Fn(usize) -> bool,
     ) -> Result<Self, LostTraction> {
+        let follows = matches!(traction.load, Load::Pressure(_)) && kinematics == Kinematics::Finite;
         let mut sums = BTreeMap::<usize, [Sum; 3]>::new(); // of the length, and of the force
-        let mut undefined = None;
-        let mut add = |functions: Vec<(usize, f64)>, length: f64, position: [f64; 2], normal: [f64; 2]| {
-            let [x, y] = traction.load.traction(position, normal);
+        let (mut undefined, mut points) = (None, Vec::new());
+        let mut add = |functions: PointFunctions, length: f64, normal: [f64; 2]| {
+            let [x, y] = traction.load.traction(functions.position, normal);
             if !(x.is_finite() && y.is_finite()) {
-                undefined = Some(position);
+                undefined = Some(functions.position);
             }
-            for (at, value) in functions {
+            for &(at, value) in &functions.values {
                 let sums = sums.entry(at).or_default();
                 for (sum, density) in sums.iter_mut().zip([1.0, x, y]) {
                     *sum = sum.plus(density * (value * length));
                 }
             }
+            if follows {
+                points.push((functions, [length * x, length * y]));
+            }
         };
         let balance = match (&traction.edge, &body.shape) {
             (Edge::Side(side), Shape::Patch) => {
                 let points = boundary_points(patch, body, *side);
-                for BoundaryPoint { functions, position, length, normal } in &points {
-                    add(on_side(lattice, functions, *position), *length, *position, *normal);
+                let balance = Balance::of_points(&points);
+                for BoundaryPoint { mut functions, length, normal } in points {
+                    let place = functions.position;
+                    take_side(lattice, &mut functions, place);
+                    add(functions, length, normal);
                 }
-                Balance::of_points(&points)
+                balance
             }
             _ => {
                 for point in surface_points(patch, body, &traction.edge) {
-                    let functions = functions_of_material(patch, lattice, &point, &moves);
-                    let functions = functions.ok_or(LostTraction::Bare(point.position))?;
-                    add(functions, point.length, point.position, point.normal);
+                    let functions = material_at(patch, lattice, &point, &moves);
+                    add(functions.ok_or(LostTraction::Bare(point.position))?, point.length, point.normal);
                 }
                 Balance::of_edge(body, &traction.edge)
             }
@@ -215,21 +234,49 @@ impl NodalLoad {
         }
         let [x, y] = lattice.control_positions(patch);
         balance.check(sums.iter().filter(|(at, _)| moves(**at)).map(|(&at, sum)| ([x[at], y[at]], sum[0].value())))?;
-        let forces = match traction.load {
-            Load::Stress(stress) => {
-                sums.into_iter().map(|(at, [length, ..])| (at, stress.map(|s| s * length.value()))).collect()
-            }
-            Load::Pressure(_) | Load::Field(_) => {
-                sums.into_iter().map(|(at, [_, x, y])| (at, [x.value(), y.value()])).collect()
-            }
+        let force = |[length, x, y]: [Sum; 3]| match traction.load {
+            Load::Stress(stress) => stress.map(|s| s * length.value()),
+            Load::Pressure(_) | Load::Field(_) => [x.value(), y.value()],
         };
-        Ok(Self { forces, factor: KickFactor::new(traction.time.clone()) })
+        let forces: Vec<_> = sums.into_iter().map(|(at, sums)| (at, force(sums))).collect();
+        let following = follows.then(|| Box::new(FollowingForces { points, before: forces.clone() }));
+        Ok(Self { forces, factor: KickFactor::new(traction.time.clone()), following })
+    }
+
+    /// Goes on to another displacement, m.
+    pub(crate) fn follow(&mut self, displacement: &VectorField) {
+        let Self { forces, following: Some(following), .. } = self else { return };
+        std::mem::swap(forces, &mut following.before);
+        let mut sums: BTreeMap<usize, [f64; 2]> = forces.iter().map(|(at, _)| (*at, [0.0; 2])).collect();
+        for (functions, force) in &following.points {
+            let gradient = displacement.each_ref().map(|component| functions.interpolate(component).gradient);
+            let turned = fault!("pressure-that-keeps-its-direction", cofactor(gradient, *force) => [0.0; 2]);
+            for (at, value) in &functions.values {
+                let sum = sums.entry(*at).or_default();
+                (0..2).for_each(|d| sum[d] += value * (force[d] + turned[d]));
+            }
+        }
+        forces.clear();
+        forces.extend(sums);
+    }
+
+    /// Power of the full strength (W/m), times a factor of the last step and one of the present one, with
+    /// their forces.
+    pub(crate) fn power(&self, [before, now]: [f64; 2], velocity: &VectorField) -> f64 {
+        let with = |forces: &[(usize, [f64; 2])]| {
+            forces.iter().map(|&(at, f)| f[0] * velocity[0][at] + f[1] * velocity[1][at]).sum::<f64>()
+        };
+        match &self.following {
+            None => (before + now) * with(&self.forces),
+            Some(following) => before * with(&following.before) + now * with(&self.forces),
+        }
     }
 }
 
-/// Control points and values of functions on the side of the slits of a position, m.
-fn on_side(lattice: &Lattice, functions: &[(usize, f64)], place: [f64; 2]) -> Vec<(usize, f64)> {
-    functions.iter().map(|&(at, value)| (lattice.control_point(at, functions[0].0, place), value)).collect()
+/// Takes the control points on the side of the slits of a place, m.
+pub(super) fn take_side(lattice: &Lattice, functions: &mut PointFunctions, place: [f64; 2]) {
+    let first = functions.values[0].0;
+    functions.values.iter_mut().for_each(|(at, _)| *at = lattice.control_point(*at, first, place));
 }
 
 /// Control points of the material at a surface point, and values of their functions there; `None` if there
@@ -253,8 +300,7 @@ pub(crate) fn material_at(
     let carries =
         |first, at| lattice.has_side(first, point.inner) && moves(lattice.control_point(at, first, point.inner));
     let mut functions = patch.functions(carrier(patch, point.position, carries)?);
-    let first = functions.values[0].0;
-    functions.values.iter_mut().for_each(|(at, _)| *at = lattice.control_point(*at, first, point.inner));
+    take_side(lattice, &mut functions, point.inner);
     Some(functions)
 }
 

@@ -174,13 +174,19 @@ impl TotalFrame {
         }
     }
 
-    /// Loads that vary in space, at the present time.
+    /// Loads that follow the body or vary in space, at the present time.
     fn update_loads(&mut self) {
+        self.follow_with_loads();
         let Some(forced) = &mut self.forced else { return };
         forced.update_forces(&self.lattice, self.time);
         if let Some(fracture) = &mut self.fracture {
             fracture.field.set_load(forced.phase_load(&self.lattice, self.time));
         }
+    }
+
+    /// Loads that follow the body, at the present displacement.
+    fn follow_with_loads(&mut self) {
+        self.loads.iter_mut().for_each(|load| load.follow(&self.displacement));
     }
 
     /// Stress at the points and its nodal forces; books the work of the history field.
@@ -252,9 +258,7 @@ impl TotalFrame {
         let mut power = 0.0;
         for load in &self.loads {
             let before = fault!("work-of-the-last-force", load.factor.at(self.time - dt) => load.factor.at(self.time));
-            let factor = 0.5 * (before + load.factor.at(self.time));
-            let forces = load.forces.iter();
-            power += factor * forces.map(|&(at, f)| f[0] * velocity[0][at] + f[1] * velocity[1][at]).sum::<f64>();
+            power += 0.5 * load.power([before, load.factor.at(self.time)], velocity);
         }
         for (component, gravity) in self.gravity.into_iter().enumerate().filter(|(_, g)| *g != 0.0) {
             power += gravity * self.mass.row_sums().iter().zip(&velocity[component]).map(|(m, v)| m * v).sum::<f64>();

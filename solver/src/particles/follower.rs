@@ -12,6 +12,11 @@ use crate::splines::nearest_span::nearest_span;
 use crate::splines::patch::Patch;
 use crate::splines::spline::ShapeFunctions;
 
+/// Least mass of a control point that a load or a condition takes hold of, of that inside a body. In trials
+/// with bars at eleven angles, 1e-6 and 1e-5 gave the work of a driven edge best, without and with 1e-3 of it
+/// some lost their grip or became soft at the edge.
+const SHARE: f64 = 1e-5;
+
 /// A position that moves with a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Follower {
@@ -39,13 +44,21 @@ impl Follower {
         Self { position, ..self }
     }
 
-    /// Chooses the span anew: the nearest whose control points all answer to a force.
+    /// Chooses the span anew: the nearest whose control points all have a [share](SHARE) of the mass that they
+    /// have inside a body of a density (kg/m³), or else the nearest whose control points all answer to a force.
+    /// What a condition or a load does to control points of next to no mass would not reach the body.
     ///
     /// # Errors
     /// If there is none within one span of it.
-    pub(crate) fn attach(&mut self, patch: &Patch, inverse_mass: &[f64]) -> Result<(), OutsidePatch> {
-        let answers = |span| patch.all_functions(span, |at| inverse_mass[at] > 0.0);
-        self.span = nearest_span(&patch.spaces, self.position, answers).ok_or(OutsidePatch(self.position))?;
+    pub(crate) fn attach(&mut self, patch: &Patch, inverse_mass: &[f64], density: f64) -> Result<(), OutsidePatch> {
+        let area = |span: [usize; 2]| (0..2).map(|d| patch.spaces[d].spans()[span[d]].length()).product::<f64>();
+        let nearest = |share: f64| {
+            let carries = |span, least: f64| {
+                patch.all_functions(span, |at| inverse_mass[at] > 0.0 && inverse_mass[at] * least <= 1.0)
+            };
+            nearest_span(&patch.spaces, self.position, |span| carries(span, share * density * area(span)))
+        };
+        self.span = nearest(SHARE).or_else(|| nearest(0.0)).ok_or(OutsidePatch(self.position))?;
         Ok(())
     }
 

@@ -36,6 +36,7 @@ use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::MAX_FUNCTIONS;
 use crate::splines::spline::SplineSpace;
+use cut::Rules;
 use tables::Along;
 pub(crate) use tables::{Row, Tile};
 
@@ -116,7 +117,7 @@ pub(crate) fn fills_lattice(mapped: bool, shape: &Shape) -> bool {
 /// Whether the boundary of a shape, if it is no rectangle, cuts spans of a patch over a rectangle.
 pub(crate) fn cuts_spans(shape: &Shape, spaces: &[SplineSpace; 2]) -> bool {
     let edges = cut::edges_in_spans(shape, spaces);
-    !fills_lattice(false, shape) && cut::cut_spans(shape, &edges, spaces, 1).next().is_some()
+    !fills_lattice(false, shape) && cut::cut_spans(shape, &edges, spaces, Rules::exact(spaces, 1)).next().is_some()
 }
 
 /// The box around a body, with its rule, along both directions. A rectangle cuts spans, unless the lattice is

@@ -88,7 +88,6 @@ impl Patch {
 
     /// Points along a side with a rule in every part of a span between `cuts`, in increasing order.
     pub(crate) fn boundary_cut(&self, side: Side, rule: &Rule, cuts: &[f64]) -> Vec<BoundaryPoint> {
-        let grid = self.control_grid();
         let (across, upper) = side.axis();
         let along = 1 - across;
         let ends = self.spaces[across].spans();
@@ -105,27 +104,18 @@ impl Patch {
                 let (mut at, mut parameters) = ([fixed_span; 2], [fixed; 2]);
                 at[along] = index;
                 parameters[along] = left + t * part;
-                let (functions, image) = match &self.geometry {
-                    None => (self.products(at, parameters), None),
-                    Some(patch) => {
-                        let functions = patch.shape_functions(at, parameters);
-                        let image = patch.map(&functions);
-                        (functions, Some(image))
-                    }
+                let tangent = match &self.geometry {
+                    None => [0, 1].map(|i| f64::from(u8::from(i == along))),
+                    Some(patch) => patch.map(&patch.shape_functions(at, parameters)).jacobian.map(|row| row[along]),
                 };
-                let tangent = image.map_or_else(
-                    || [0, 1].map(|i| f64::from(u8::from(i == along))),
-                    |image| [image.jacobian[0][along], image.jacobian[1][along]],
-                );
                 let speed = tangent[0].hypot(tangent[1]);
                 // The tangent of the first direction has the patch to its left, that of the second to its
                 // right.
                 let turn = if along == 0 { -sign } else { sign };
                 points.push(BoundaryPoint {
-                    position: image.map_or(parameters, |image| image.position),
                     normal: [turn * tangent[1] / speed, -turn * tangent[0] / speed],
                     length: weight * part * speed,
-                    functions: on_grid(grid, &functions),
+                    functions: self.functions(Location { span: at, parameters }),
                 });
             }
         }
@@ -177,14 +167,12 @@ impl Mesh {
 /// A point on a side of a patch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundaryPoint {
-    /// Position, m.
-    pub position: [f64; 2],
     /// Outward unit normal.
     pub normal: [f64; 2],
     /// Length it stands for, m.
     pub length: f64,
-    /// Shape functions that do not vanish: index in a field, and value.
-    pub functions: Vec<(usize, f64)>,
+    /// Its position, and the shape functions there.
+    pub functions: PointFunctions,
 }
 
 impl Patch {
@@ -245,7 +233,7 @@ impl Patch {
 
 /// Shape functions at a position.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct PointFunctions {
+pub struct PointFunctions {
     /// The position, m.
     pub position: [f64; 2],
     /// Index in a field and value of those that do not vanish.

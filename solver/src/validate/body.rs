@@ -73,20 +73,14 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         }
         if placed && (0..2).all(|d| has_rule(body, d)) {
             let fracture = fracture.filter(|_| findings.errors.len() == before);
-            material_points(&key, body, fracture, (ground, scene.analysis.frame), findings);
+            material_points(&key, body, fracture, ground, findings);
         }
     }
 }
 
 /// The body has material points, and the seeds of its cracks, if they are sound, reach them.
-fn material_points(
-    key: &str,
-    body: &Body,
-    fracture: Option<&Fracture>,
-    (ground, frame): (&Ground<'_>, Frame),
-    findings: &mut Findings,
-) {
-    let has_cut_spans = frame == Frame::Total && ground.patch.is_none(); // with points of their own
+fn material_points(key: &str, body: &Body, fracture: Option<&Fracture>, ground: &Ground<'_>, findings: &mut Findings) {
+    let has_cut_spans = ground.patch.is_none(); // with points of their own
     let points = Points::new(body, ground).filter(|points| !has_cut_spans || points.exist());
     let Some(points) = points else {
         let seeds = (0..body.cracks.len()).filter(|_| fracture.is_some());

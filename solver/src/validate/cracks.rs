@@ -19,7 +19,7 @@ pub(super) fn slit(key: &str, scene: &Scene, findings: &mut Findings) {
 /// A crack that is driven grows by the history field of the total frame.
 fn driven(key: &str, speed: f64, fracture: Option<&Fracture>, look: &Look<'_>, findings: &mut Findings) {
     let key = format!("{key}.speed");
-    if look.has_steps {
+    if look.frame == Frame::Updated {
         let message = "a crack that is driven is implemented in the total frame";
         findings.error(key.clone(), message, "use frame = \"total\", or leave speed out");
     }

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::geometry::complexity;
 use super::ground::Ground;
-use crate::scene::{Analysis, Body, Frame, Kinematics};
+use crate::scene::{Analysis, Body, Frame};
 use crate::splines::nurbs::NurbsPatch;
 
 /// Relative tolerance of "inside", of the size of the mesh or body.
@@ -22,10 +22,7 @@ pub(super) struct Look<'a> {
     pub ground: &'a Ground<'a>,
     /// End of the simulated time, s.
     pub end_time: f64,
-    /// Whether pressures are implemented.
-    pub has_pressure: bool,
-    /// Whether the points of the body end in steps along edges that are not parallel to the mesh.
-    pub has_steps: bool,
+    pub frame: Frame,
     tolerance: f64,
     /// Parameters of the last position found on the patch.
     last: Cell<Option<[f64; 2]>>,
@@ -42,8 +39,7 @@ impl<'a> Look<'a> {
             body,
             ground,
             end_time: analysis.end_time,
-            has_pressure: analysis.frame == Frame::Total && analysis.kinematics == Kinematics::Small,
-            has_steps: analysis.frame == Frame::Updated,
+            frame: analysis.frame,
             tolerance: TOLERANCE * (max[0] - min[0]).max(max[1] - min[1]),
             last: Cell::new(None),
             most: (MOST_LOOKS / cost.max(1)).clamp(2, MOST_POSITIONS),

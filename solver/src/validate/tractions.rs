@@ -15,23 +15,10 @@ const BESIDE: f64 = 1e-6;
 const ON_BOUNDARY: &str = "give an edge of which every point lies on the body's boundary; the faces of a slit carry no load: \
                            cut a notch";
 
-const STEPPED: &str = "in the updated frame the points of the body end in steps along this edge: stresses within two spans of it \
-                       are wrong, and so are forces of reaction; use frame = \"total\"";
-
 pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &mut Findings) {
     match &traction.load {
         Load::Stress(stress) => drop(findings.finite(format!("{key}.stress"), stress)),
-        Load::Pressure(pressure) => {
-            findings.finite(format!("{key}.pressure"), &[*pressure]);
-            if !look.has_pressure {
-                let message = "a pressure follows the body, which is implemented for small strains in the total frame";
-                findings.error(format!("{key}.pressure"), message, "give stress = [x, y], which keeps its direction");
-            }
-        }
-        Load::Field(_) if look.has_steps => {
-            let message = "the traction of a stress field is implemented in the total frame";
-            findings.error(format!("{key}.stress_field"), message, "use frame = \"total\", or give stress = [x, y]");
-        }
+        Load::Pressure(pressure) => drop(findings.finite(format!("{key}.pressure"), &[*pressure])),
         Load::Field(_) => {} // whether it is finite where it acts is seen when the run begins
     }
     time::check(key, &traction.time, look.end_time, findings);
@@ -82,11 +69,6 @@ pub(super) fn edge(key: &str, edge: &Edge, needs_side: bool, look: &Look<'_>, fi
                     body.name
                 );
                 findings.error(key, message, ON_BOUNDARY);
-            } else if look.has_steps
-                && (0..2).all(|d| ends[0][d] != ends[1][d])
-                && !middles(*ends).all(|at| is_between(at, *ends, body))
-            {
-                findings.warn(key, STEPPED);
             }
         }
     }
@@ -164,7 +146,5 @@ fn arc(key: &str, center: [f64; 2], radius: f64, angles: [f64; 2], look: &Look<'
     } else if let Some([x, y]) = positions().find(is_between) {
         let message = format!("the arc runs inside body {name:?}: there is material on both sides of ({x}, {y}) m");
         findings.error(key, message, ON_BOUNDARY);
-    } else if look.has_steps {
-        findings.warn(key, STEPPED);
     }
 }

@@ -16,9 +16,9 @@ fn check_surface(name: &str, nurbs: &NurbsPatch, points: usize, tolerance: f64) 
     let (mut closed, mut twice, mut length) = ([0.0; 2], 0.0, 0.0);
     for side in [Side::Left, Side::Right, Side::Bottom, Side::Top] {
         for (n, point) in patch.boundary(side, &rule).into_iter().enumerate() {
-            let ([x, y], [nx, ny]) = (point.position, point.normal);
+            let ([x, y], [nx, ny]) = (point.functions.position, point.normal);
             assert!((nx.hypot(ny) - 1.0).abs() <= 1e-14, "{name}: a unit normal");
-            assert!((point.functions.iter().map(|f| f.1).sum::<f64>() - 1.0).abs() <= 1e-13);
+            assert!((point.functions.values.iter().map(|f| f.1).sum::<f64>() - 1.0).abs() <= 1e-13);
             closed = [closed[0] + nx * point.length, closed[1] + ny * point.length];
             twice += (x * nx + y * ny) * point.length;
             length += point.length;
@@ -58,7 +58,7 @@ fn arcs_have_their_length_and_point_away_from_the_centre() {
         approx::assert_relative_eq!(length, radius * std::f64::consts::FRAC_PI_2, max_relative = 1e-13);
         for p in points {
             for d in 0..2 {
-                assert!((p.normal[d] - outwards * p.position[d] / radius).abs() <= 1e-13, "{side:?}");
+                assert!((p.normal[d] - outwards * p.functions.position[d] / radius).abs() <= 1e-13, "{side:?}");
             }
         }
     }

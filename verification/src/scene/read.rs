@@ -44,7 +44,8 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     let analysis = fields.need("analysis", "a table [analysis] with end_time", analysis);
     let solver = fields.or("solver", default_solver(), solver);
     let materials = fields.or("material", BTreeMap::new(), materials);
-    let bodies = fields.or("body", Vec::new(), bodies);
+    let frame = analysis.as_ref().map_or(Frame::Total, |analysis| analysis.frame);
+    let bodies = fields.or("body", Vec::new(), |item| bodies(item, frame));
     let contact = fields.maybe("contact", |item| {
         let fields = item.fields(&["friction", "fragments", "self_contact", "stiffness"])?;
         let friction = fields.need("friction", "friction = 0.65", number);

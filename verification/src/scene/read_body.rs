@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use fisura::scene::time::TimeFactor;
 use fisura::scene::{
-    Anisotropy, Body, Crack, CrackKind, CrackModel, Fracture, Layout, Material, RandomToughness, Shape, Softening,
-    Split,
+    Anisotropy, Body, Crack, CrackKind, CrackModel, Fracture, Frame, Layout, Material, RandomToughness, Shape,
+    Softening, Split,
 };
 
 use super::document::join;
 use super::fields::{Fields, Item};
 use super::read::{length, number, point};
-use super::read_file::rows_of_file;
+use super::read_file::outline;
 use super::read_function::factor;
 use super::read_load::{edge_condition, traction};
 use super::units::Dimension;
@@ -132,8 +132,16 @@ fn random(item: &Item<'_>) -> Option<RandomToughness> {
 }
 
 /// `[[body]]` tables in order.
-pub(super) fn bodies(item: &Item<'_>) -> Option<Vec<Body>> {
-    all(item, body)
+pub(super) fn bodies(item: &Item<'_>, frame: Frame) -> Option<Vec<Body>> {
+    all(item, |item| body(item, default_layout(frame)))
+}
+
+/// Points that move through the mesh lose Gauss's places in the spans, and equal distances serve them better.
+fn default_layout(frame: Frame) -> Layout {
+    match frame {
+        Frame::Total => Layout::Gauss,
+        Frame::Updated => Layout::Uniform,
+    }
 }
 
 /// Every entry of an array of tables.
@@ -142,7 +150,7 @@ fn all<T>(item: &Item<'_>, read: impl Fn(&Item<'_>) -> Option<T>) -> Option<Vec<
     read.into_iter().collect()
 }
 
-fn body(item: &Item<'_>) -> Option<Body> {
+fn body(item: &Item<'_>, default_layout: Layout) -> Option<Body> {
     let fields = item.fields(&[
         "name",
         "material",
@@ -163,7 +171,7 @@ fn body(item: &Item<'_>) -> Option<Body> {
     let shape_like = "shape = { rectangle = { min = [0.0, 0.0], max = [0.1, 0.04] } }";
     let shape = fields.need("shape", shape_like, shape);
     let points = fields.or("particles_per_cell", [2, 2], |item| item.whole_per_direction(1, 16));
-    let layout = fields.or("layout", Layout::Gauss, Item::word);
+    let layout = fields.or("layout", default_layout, Item::word);
     let velocity = fields.or("velocity", [0.0, 0.0], |item| item.vector(Dimension::VELOCITY));
     let angular_velocity = fields.or("angular_velocity", 0.0, |item| item.quantity(Dimension::RATE));
     let gradient = fields.or("velocity_gradient", [[0.0; 2]; 2], |item| item.pair(|row| row.vector(Dimension::RATE)));
@@ -226,10 +234,7 @@ fn shape(item: &Item<'_>) -> Option<Shape> {
             let points = inner.fields(&["points"])?.need("points", like, |item| item.each(point));
             Some(Shape::Polygon { points: points? })
         }
-        "file" => {
-            let remedy = "give a CSV file beside the scene with the corners of a polygon in order, x and y in m";
-            rows_of_file(inner, remedy).map(|points| Shape::Polygon { points })
-        }
+        "file" => outline(inner),
         "union" => inner.each(shape).map(Shape::Union),
         _ => {
             let fields = inner.fields(&["of", "minus"])?;

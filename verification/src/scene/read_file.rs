@@ -1,18 +1,83 @@
-//! Numbers that a scene keeps in a CSV file beside it.
+//! Numbers and outlines that a scene keeps in a file beside it.
+
+use std::path::Path;
+
+use fisura::scene::Shape;
+use geojson::{FeatureCollection, GeoJson, Geometry, GeometryValue};
 
 use super::fields::Item;
 
-/// Rows of two numbers; a first line without any number is a header.
+const OUTLINE: &str = "give a CSV file beside the scene with the corners of a polygon in order, or a GeoJSON file with \
+                       polygons; x and y in m";
+
+/// Rows of two numbers of a CSV file; a first line with letters and without any number is a header.
 pub(super) fn rows_of_file(item: &Item<'_>, remedy: &str) -> Option<Vec<[f64; 2]>> {
+    read(item, remedy, |_, text| rows(text))
+}
+
+/// The polygon of a CSV file, or the polygons of a GeoJSON file.
+pub(super) fn outline(item: &Item<'_>) -> Option<Shape> {
+    read(item, OUTLINE, |path, text| {
+        if path.extension().is_some_and(|extension| extension == "geojson" || extension == "json") {
+            polygons(text)
+        } else {
+            rows(text).map(|points| Shape::Polygon { points })
+        }
+    })
+}
+
+/// What a file beside the scene contains.
+fn read<T>(item: &Item<'_>, remedy: &str, parse: impl FnOnce(&Path, &str) -> Result<T, String>) -> Option<T> {
     let path = item.folder().join(item.words()?);
     let text = match std::fs::read_to_string(&path) {
         Ok(text) => text,
         Err(e) => return item.fail(format!("{} cannot be read: {e}", path.display()), remedy),
     };
-    match rows(&text) {
-        Ok(rows) => Some(rows),
+    match parse(&path, &text) {
+        Ok(value) => Some(value),
         Err(message) => item.fail(format!("{}: {message}", path.display()), remedy),
     }
+}
+
+/// All polygons of a GeoJSON document, with their holes.
+fn polygons(text: &str) -> Result<Shape, String> {
+    let mut shapes = Vec::new();
+    match text.parse::<GeoJson>().map_err(|e| e.to_string())? {
+        GeoJson::Geometry(geometry) => add_polygons(&geometry, &mut shapes)?,
+        GeoJson::Feature(feature) => feature.geometry.iter().try_for_each(|g| add_polygons(g, &mut shapes))?,
+        GeoJson::FeatureCollection(FeatureCollection { features, .. }) => {
+            let mut geometries = features.iter().flat_map(|feature| &feature.geometry);
+            geometries.try_for_each(|geometry| add_polygons(geometry, &mut shapes))?;
+        }
+    }
+    match shapes.len() {
+        0 => Err("no polygon".to_string()),
+        1 => Ok(shapes.remove(0)),
+        _ => Ok(Shape::Union(shapes)),
+    }
+}
+
+fn add_polygons(geometry: &Geometry, shapes: &mut Vec<Shape>) -> Result<(), String> {
+    let polygons = match &geometry.value {
+        GeometryValue::Polygon { coordinates } => std::slice::from_ref(coordinates),
+        GeometryValue::MultiPolygon { coordinates } => coordinates,
+        GeometryValue::GeometryCollection { geometries } => {
+            return geometries.iter().try_for_each(|geometry| add_polygons(geometry, shapes));
+        }
+        other => return Err(format!("a {}, where a Polygon or a MultiPolygon is needed", other.type_name())),
+    };
+    for rings in polygons {
+        // The last position of a ring repeats the first.
+        let corners = |ring: &Vec<geojson::Position>| {
+            let points = ring.iter().take(ring.len().max(1) - 1).map(|position| [position[0], position[1]]).collect();
+            Shape::Polygon { points }
+        };
+        let mut rings = rings.iter().map(corners);
+        let outer = rings.next().ok_or("a Polygon without a ring")?;
+        let minus: Vec<Shape> = rings.collect();
+        shapes.push(if minus.is_empty() { outer } else { Shape::Difference { of: Box::new(outer), minus } });
+    }
+    Ok(())
 }
 
 fn rows(text: &str) -> Result<Vec<[f64; 2]>, String> {
@@ -24,7 +89,7 @@ fn rows(text: &str) -> Result<Vec<[f64; 2]>, String> {
         let numbers: Vec<Option<f64>> = record.iter().map(|field| field.parse().ok()).collect();
         match numbers[..] {
             [Some(first), Some(second)] => rows.push([first, second]),
-            _ if number == 0 && numbers.iter().all(Option::is_none) => {} // a header
+            _ if number == 0 && numbers.iter().all(Option::is_none) && has_letter(&record) => {} // a header
             _ => {
                 let line = record.position().map_or(0, csv::Position::line);
                 return Err(format!(
@@ -37,9 +102,39 @@ fn rows(text: &str) -> Result<Vec<[f64; 2]>, String> {
     Ok(rows)
 }
 
+fn has_letter(record: &csv::StringRecord) -> bool {
+    record.iter().any(|field| field.contains(char::is_alphabetic))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::rows;
+    use super::*;
+
+    #[test]
+    fn polygons_of_geojson_keep_their_holes() {
+        let square = |x: f64, size: f64| {
+            let corner = |dx: f64, dy: f64| format!("[{}, {}]", x + dx * size, dy * size);
+            format!("[{}]", [[0., 0.], [1., 0.], [1., 1.], [0., 1.], [0., 0.]].map(|[x, y]| corner(x, y)).join(", "))
+        };
+        let polygon = |rings: &str| format!(r#"{{"type": "Polygon", "coordinates": [{rings}]}}"#);
+        let feature = |geometry: &str| format!(r#"{{"type": "Feature", "properties": null, "geometry": {geometry}}}"#);
+        let simple = polygons(&polygon(&square(0.0, 1.0))).unwrap();
+        assert_eq!(simple, Shape::Polygon { points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] });
+        let holed = polygon(&[square(0.0, 1.0), square(0.1, 0.5)].join(", "));
+        let Shape::Difference { of, minus } = polygons(&feature(&holed)).unwrap() else { panic!("a hole is cut out") };
+        assert!(*of == simple && minus.len() == 1);
+        let two = [feature(&holed), feature(&polygon(&square(2.0, 1.0)))].join(", ");
+        let collection = format!(r#"{{"type": "FeatureCollection", "features": [{two}]}}"#);
+        assert!(matches!(polygons(&collection).unwrap(), Shape::Union(shapes) if shapes.len() == 2));
+        for (text, message) in [
+            (r#"{"type": "Point", "coordinates": [0, 0]}"#, "a Point, where"),
+            (r#"{"type": "FeatureCollection", "features": []}"#, "no polygon"),
+            (r#"{"type": "Polygon", "coordinates": []}"#, "without a ring"),
+            ("0, 1", ""),
+        ] {
+            assert!(polygons(text).unwrap_err().contains(message), "{text}");
+        }
+    }
 
     #[test]
     fn a_header_is_a_first_line_without_a_number() {
@@ -47,8 +142,9 @@ mod tests {
         assert_eq!(rows("0, 1\n1e-6, 2.5\n"), expected);
         assert_eq!(rows("time_s,factor\n\n0,1\n1e-6,2.5"), expected);
         assert_eq!(rows("time_s\n0,1\n1e-6,2.5"), expected, "a header of one column");
-        assert!(rows("0;1\n").unwrap().is_empty(), "nothing that is a number");
-        for (text, line) in [("0,1,2\n", 1), ("0,x\n", 1), ("t,f\n\n0,1\n1\n", 4), ("t,f\n0,1\n1,\n", 3)] {
+        for (text, line) in
+            [("0;1\n0;2\n", 1), ("0,1,2\n", 1), ("0,x\n", 1), ("t,f\n\n0,1\n1\n", 4), ("t,f\n0,1\n1,\n", 3)]
+        {
             assert!(rows(text).unwrap_err().starts_with(&format!("line {line} ")), "{text:?}: {:?}", rows(text));
         }
     }

@@ -9,7 +9,7 @@
 use fisura::dynamics::critical_step::StiffnessOperator;
 use fisura::dynamics::loads::{NodalLoad, boundary_points};
 use fisura::dynamics::total_frame::TotalFrame;
-use fisura::scene::{Shape, Side, TimeFactor, Traction};
+use fisura::scene::{Kinematics, Shape, Side, TimeFactor, Traction};
 use nalgebra::{DMatrix, DVector};
 
 use super::{Findings, StudyError};
@@ -108,7 +108,7 @@ impl<'a> PatchTest<'a> {
             if body.shape == Shape::Patch {
                 for point in boundary_points(self.frame.patch(), body, side) {
                     let [x, y] = point.normal.map(|n| n * point.length);
-                    for &(at, value) in &point.functions {
+                    for &(at, value) in &point.functions.values {
                         forces[0][at] += value * (xx * x + xy * y);
                         forces[1][at] += value * (xy * x + yy * y);
                     }
@@ -116,9 +116,8 @@ impl<'a> PatchTest<'a> {
                 continue;
             }
             let traction = Traction::on(side, stress, TimeFactor::default());
-            let load = NodalLoad::new(self.frame.patch(), self.frame.lattice(), body, &traction, |at| {
-                self.frame.mass().moves(at)
-            });
+            let (space, moves) = ((self.frame.patch(), self.frame.lattice()), |at| self.frame.mass().moves(at));
+            let load = NodalLoad::new(space, body, &traction, Kinematics::Small, moves);
             for (at, force) in load.expect("the sides of the body are carried by its points").forces {
                 forces[0][at] += force[0];
                 forces[1][at] += force[1];

@@ -145,7 +145,7 @@ fn residual(patch: &Patch, points: usize) -> [f64; 2] {
     for side in [Side::Left, Side::Right, Side::Bottom, Side::Top] {
         for point in patch.boundary(side, &rule) {
             let [x, y] = point.normal.map(|n| n * point.length);
-            for &(at, value) in &point.functions {
+            for &(at, value) in &point.functions.values {
                 for i in 0..2 {
                     tractions[i][at] += value * (STRESS[i][0] * x + STRESS[i][1] * y);
                 }

@@ -59,7 +59,8 @@ impl TotalFrame {
             return Err(Failure::HoldsNothing(number));
         }
         let load = |(number, traction)| {
-            let load = NodalLoad::new(&patch, &lattice, body, traction, |at| mass.moves(at));
+            let moves = |at| mass.moves(at);
+            let load = NodalLoad::new((&patch, &lattice), body, traction, scene.analysis.kinematics, moves);
             load.map_err(|lost| Failure::LostTraction { body: 0, traction: number, lost })
         };
         let zeros = || [grid.zeros(), grid.zeros()];
@@ -136,6 +137,7 @@ impl TotalFrame {
     pub fn start_with(&mut self, displacement: VectorField, velocity: VectorField) -> Result<(), SolveFailure> {
         (self.displacement, self.velocity) = (displacement, velocity);
         self.start_conditions();
+        self.follow_with_loads();
         self.ledger = Ledger::default();
         self.time = 0.0;
         self.release_phase_field()?;

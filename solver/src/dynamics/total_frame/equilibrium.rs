@@ -82,6 +82,7 @@ impl TotalFrame {
 
     /// External minus internal force at the free components, and the largest internal or external one, N/m.
     fn out_of_balance(&mut self, free: &[(usize, usize)]) -> (Vec<f64>, f64) {
+        self.follow_with_loads();
         self.internal = self.forces_now();
         self.external_minus_internal();
         if let Some(edges) = &self.edges {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::dynamics::forcing::Forcing;
+use crate::dynamics::loads::take_side;
 use crate::dynamics::surface::{SurfacePoint, points_around};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::particles::lattice::Lattice;
@@ -37,11 +38,9 @@ impl LatticeForcing {
             sides.into_iter().flat_map(|(side, rule)| patch.boundary(side, rule)).collect()
         } else {
             let with_functions = |SurfacePoint { position, length, normal, inner, .. }| {
-                let functions = patch.functions_at(position)?.values;
-                let first = functions[0].0;
-                let on_side = |(at, value)| (lattice.control_point(at, first, inner), value);
-                let functions = functions.into_iter().map(on_side).collect();
-                Some(BoundaryPoint { position, normal, length, functions })
+                let mut functions = patch.functions_at(position)?;
+                take_side(lattice, &mut functions, inner);
+                Some(BoundaryPoint { normal, length, functions })
             };
             points_around(patch, shape).into_iter().filter_map(with_functions).collect()
         };
@@ -61,8 +60,8 @@ impl LatticeForcing {
             });
         }
         for point in &self.boundary {
-            let traction = self.forcing.traction(point.position, point.normal, time);
-            for &(at, value) in &point.functions {
+            let traction = self.forcing.traction(point.functions.position, point.normal, time);
+            for &(at, value) in &point.functions.values {
                 for component in 0..2 {
                     self.now[component][at] += value * point.length * traction[component];
                 }
@@ -74,8 +73,8 @@ impl LatticeForcing {
     pub(crate) fn phase_load(&self, lattice: &Lattice, time: f64) -> Vec<f64> {
         let mut load = lattice.integrate(|_, _, position| self.forcing.phase_source(position, time));
         for point in &self.boundary {
-            let flux = self.forcing.phase_flux(point.position, point.normal, time);
-            for &(at, value) in &point.functions {
+            let flux = self.forcing.phase_flux(point.functions.position, point.normal, time);
+            for &(at, value) in &point.functions.values {
                 load[at] += value * point.length * flux;
             }
         }

@@ -24,10 +24,10 @@ pub(super) fn held_points(patch: &Patch, lattice: &Lattice, boundary: &Boundary)
     let rule = Rule::new(Layout::Gauss, patch.spaces[along].degree() + 1);
     let mut integrals = BTreeMap::<usize, [f64; 2]>::new(); // on the part, and in all
     for point in patch.boundary_cut(boundary.side, &rule, &part) {
-        let on_it = (part[0]..=part[1]).contains(&point.position[along]);
+        let on_it = (part[0]..=part[1]).contains(&point.functions.position[along]);
         let inside = fault!("part-of-a-side-is-all-of-it", on_it => true);
-        for &(at, value) in point.functions.iter().filter(|(_, value)| *value > ROUND_OFF) {
-            let at = lattice.control_point(at, point.functions[0].0, point.position);
+        for &(at, value) in point.functions.values.iter().filter(|(_, value)| *value > ROUND_OFF) {
+            let at = lattice.control_point(at, point.functions.values[0].0, point.functions.position);
             let [on_part, all] = integrals.entry(at).or_default();
             *all += value * point.length;
             if inside {

@@ -20,7 +20,7 @@ impl TotalFrame {
             shape: _,
             thickness: _,
             gravity: _,
-            loads: _,
+            loads,
             forced,
             constraints: _,
             edges,
@@ -47,9 +47,10 @@ impl TotalFrame {
             return Err(StateError("loads that only the program knows cannot be stored".to_string()));
         }
         let stored = fault!("checkpoint-without-accelerations", 4 => 3);
-        for field in [displacement, velocity, internal, acceleration].into_iter().take(stored) {
+        for field in [&mut *displacement, velocity, internal, acceleration].into_iter().take(stored) {
             field.iter_mut().try_for_each(|component| archive.list(component))?;
         }
+        loads.iter_mut().for_each(|load| load.follow(displacement));
         if let Some(LatticeFracture {
             model: _,
             history,

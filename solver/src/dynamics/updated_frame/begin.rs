@@ -45,6 +45,9 @@ impl DiscreteField {
         field.attach_first()?;
         field.respond();
         for (traction, load) in field.loads.iter().enumerate() {
+            if let Some(place) = load.undefined() {
+                return Err(Failure::LostTraction { body: 0, traction, lost: LostTraction::NotFinite(place) });
+            }
             let balance = Balance::of_edge(body, &body.tractions[traction].edge);
             let shares = load.shares(&field.patch, &field.nodes);
             balance.check(shares).map_err(|lost| Failure::LostTraction { body: 0, traction, lost })?;
@@ -57,7 +60,7 @@ impl DiscreteField {
         for (traction, load) in self.loads.iter_mut().enumerate() {
             let bare =
                 |OutsidePatch(place)| Failure::LostTraction { body: 0, traction, lost: LostTraction::Bare(place) };
-            load.attach(&self.patch, &self.nodes).map_err(bare)?;
+            load.attach(&self.patch, &self.nodes, self.density).map_err(bare)?;
         }
         self.attach_loads()
     }
@@ -65,7 +68,7 @@ impl DiscreteField {
     /// Sorted points at rest, on nodal fields of zeros.
     fn at_rest(scene: &Scene, body: &Body, whole: &Arc<Patch>) -> Result<Self, Failure> {
         let (material, analysis) = (&scene.materials[&body.material], &scene.analysis);
-        let mut points = Point::of_lattice(&Lattice::stepped(whole, body));
+        let mut points = Point::of_lattice(&Lattice::moving(whole, body));
         if points.is_empty() {
             return Err(Failure::NoPoints(0));
         }

@@ -17,8 +17,8 @@ impl DiscreteField {
     /// Books the works and losses of the step that ends now.
     pub(super) fn book(&mut self, dt: f64, end_of_step: &EndOfStep, imposed: ImposedEnergy) {
         let weight = self.gravity[0] * end_of_step.momentum[0] + self.gravity[1] * end_of_step.momentum[1];
-        let traction_at = |time: f64| self.loads.iter().map(|load| load.factor.at(time) * load.power()).sum::<f64>();
-        let [before, now] = [self.time - dt, self.time].map(traction_at);
+        let powers = self.loads.iter().map(|load| load.powers(self.time, dt));
+        let [before, now] = powers.fold([0.0; 2], |[a, b], [before, now]| [a + before, b + now]);
         let [forced_before, forced_now] = self.forcing.as_ref().map_or([0.0; 2], |forcing| forcing.powers());
         let driven = self.edges.as_mut().map_or(0.0, |edges| edges.work(dt));
         let on_points = now + forced_now + weight - self.stress_work / dt;

@@ -39,8 +39,8 @@ impl CarriedPlace {
     ///
     /// # Errors
     /// If there is no material within one span of it.
-    pub(super) fn attach(&mut self, patch: &Patch, inverse_mass: &[f64]) -> Result<(), OutsidePatch> {
-        self.root.attach(patch, inverse_mass)
+    pub(super) fn attach(&mut self, patch: &Patch, inverse_mass: &[f64], density: f64) -> Result<(), OutsidePatch> {
+        self.root.attach(patch, inverse_mass, density)
     }
 
     /// Calls `f` with control point and value of every shape function at the edge, by the polynomials of the
@@ -56,14 +56,21 @@ impl CarriedPlace {
         self.root.for_each_gradient(patch, grid, |at, n, [x, y]| f(at, n + arm[0] * x + arm[1] * y));
     }
 
-    /// Moves with a velocity field (m/s) for `dt` seconds.
-    pub(super) fn follow(&mut self, patch: &Patch, grid: ControlGrid, velocity: &VectorField, dt: f64) {
+    /// Moves with a velocity field (m/s) for `dt` seconds; the gradient of that at the root, 1/s.
+    pub(super) fn follow(
+        &mut self,
+        patch: &Patch,
+        grid: ControlGrid,
+        velocity: &VectorField,
+        dt: f64,
+    ) -> [[f64; 2]; 2] {
         let mut gradient = [[0.0; 2]; 2];
         self.root.for_each_gradient(patch, grid, |at, _, slope| {
             (0..2).for_each(|c| (0..2).for_each(|d| gradient[c][d] += velocity[c][at] * slope[d]));
         });
         self.root.follow(patch, grid, velocity, dt);
         self.arm = [0, 1].map(|c| self.arm[c] + dt * dot(gradient[c], self.arm));
+        gradient
     }
 
     /// Stores or takes up where it is.

@@ -193,14 +193,15 @@ impl DiscreteField {
             surface.follow(&self.view(), &self.nodes.velocity, dt);
             self.surface = Some(surface);
         }
-        let Self { patch, nodes, points, forcing, loads, edges, sides, .. } = self;
+        let Self { patch, nodes, points, forcing, loads, edges, sides, density, .. } = self;
         for load in loads {
             load.move_points(patch, nodes.grid, &nodes.velocity, dt);
         }
         if let Some(edges) = edges {
             edges.move_points(patch, nodes, dt);
         }
-        let slid = sides.iter_mut().map(|side| side.follow(patch, nodes, dt)).collect::<Result<Vec<_>, _>>()?;
+        let slid =
+            sides.iter_mut().map(|side| side.follow(patch, nodes, *density, dt)).collect::<Result<Vec<_>, _>>()?;
         if let Some(forcing) = forcing {
             forcing.after_motion(points, self.time, dt);
         }
@@ -272,9 +273,9 @@ impl DiscreteField {
     /// # Errors
     /// If one has lost its material, or conditions are not independent.
     pub(super) fn attach_loads(&mut self) -> Result<(), Failure> {
-        let Self { patch, nodes, loads, edges, .. } = self;
-        loads.iter_mut().try_for_each(|load| load.attach(patch, nodes))?;
-        edges.iter_mut().try_for_each(|edges| edges.attach(patch, nodes))
+        let Self { patch, nodes, loads, edges, density, .. } = self;
+        loads.iter_mut().try_for_each(|load| load.attach(patch, nodes, *density))?;
+        edges.iter_mut().try_for_each(|edges| edges.attach(patch, nodes, *density))
     }
 
     /// History, phase field and degraded stress; an elastic body has its stress from G2P.

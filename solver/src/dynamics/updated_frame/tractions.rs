@@ -1,4 +1,5 @@
-//! Tractions on surface points s that move with the body: `f_I = factor(time) Σ_s l_s t N_I(x_s)`.
+//! Tractions on surface points s that move with the body: `f_I = factor(time) Σ_s f_s N_I(x_s)`, where the
+//! force f_s of a pressure turns and stretches with the boundary.
 
 use super::carried_place::CarriedPlace;
 use super::grid::NodalFields;
@@ -6,53 +7,65 @@ use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::loads::KickFactor;
 use crate::dynamics::surface::{SurfacePoint, surface_points};
 use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::vectors::{cofactor, dot};
 use crate::particles::points::OutsidePatch;
-use crate::scene::{Body, Traction};
+use crate::scene::{Body, Load, Traction};
 use crate::splines::patch::Patch;
 
 /// A traction and the surface points that carry it.
 #[derive(Debug, Clone)]
 pub(crate) struct SurfaceLoad {
     points: Vec<MovingSurfacePoint>,
-    stress: [f64; 2],
+    /// Whether it is a pressure.
+    follows: bool,
     /// Its factor.
     pub factor: KickFactor,
-    /// Power of the full traction on the points during the last motion, W/m.
-    power: f64,
+    /// Power at full strength during the last motion, of the forces before and after it, W/m.
+    powers: [f64; 2],
 }
 
 #[derive(Debug, Clone, Copy)]
 struct MovingSurfacePoint {
     place: CarriedPlace,
+    /// Length at t = 0, m.
     length: f64,
+    /// At full strength, N/m.
+    force: [f64; 2],
 }
 
 impl SurfaceLoad {
     /// The surface points of a traction at t = 0.
     pub(crate) fn new(patch: &Patch, body: &Body, traction: &Traction) -> Self {
-        let points = surface_points(patch, body, &traction.edge).into_iter();
-        let place =
-            |p: SurfacePoint| MovingSurfacePoint { place: CarriedPlace::new(patch, body, &p), length: p.length };
-        let points = points.map(place).collect();
+        let carried = |point: SurfacePoint| {
+            let SurfacePoint { position, length, normal, .. } = point;
+            let force = traction.load.traction(position, normal).map(|t| length * t);
+            MovingSurfacePoint { place: CarriedPlace::new(patch, body, &point), length, force }
+        };
         Self {
-            points,
-            stress: traction.load.traction([0.0; 2], [0.0; 2]),
+            points: surface_points(patch, body, &traction.edge).into_iter().map(carried).collect(),
+            follows: matches!(traction.load, Load::Pressure(_)),
             factor: KickFactor::new(traction.time.clone()),
-            power: 0.0,
+            powers: [0.0; 2],
         }
     }
 
-    /// Power of the full traction on the points during the last motion, W/m.
-    pub(crate) fn power(&self) -> f64 {
-        self.power
+    /// A place where its force is not finite, m.
+    pub(crate) fn undefined(&self) -> Option<[f64; 2]> {
+        let is_undefined = |point: &&MovingSurfacePoint| !point.force.iter().all(|f| f.is_finite());
+        self.points.iter().find(is_undefined).map(|point| point.place.position())
+    }
+
+    /// Power during the last motion of `dt` seconds, of the forces before and after it at `time`, W/m.
+    pub(crate) fn powers(&self, time: f64, dt: f64) -> [f64; 2] {
+        [self.factor.at(time - dt) * self.powers[0], self.factor.at(time) * self.powers[1]]
     }
 
     /// Chooses the span of every surface point anew.
     ///
     /// # Errors
     /// A surface point with no material within one span of it.
-    pub(crate) fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), OutsidePatch> {
-        self.points.iter_mut().try_for_each(|point| point.place.attach(patch, &nodes.inverse_mass))
+    pub(crate) fn attach(&mut self, patch: &Patch, nodes: &NodalFields, density: f64) -> Result<(), OutsidePatch> {
+        self.points.iter_mut().try_for_each(|point| point.place.attach(patch, &nodes.inverse_mass, density))
     }
 
     /// Position (m) of every control point that answers to the load, and its share of the length of the edge,
@@ -78,32 +91,38 @@ impl SurfaceLoad {
         let factor = self.factor.at(time);
         for point in &self.points {
             point.place.for_each_function(patch, grid, |at, n| {
-                for component in 0..2 {
-                    force[component][at] += factor * point.length * self.stress[component] * n;
-                }
+                (0..2).for_each(|c| force[c][at] += factor * point.force[c] * n);
             });
         }
     }
 
-    /// Moves the points with the grid over `dt` seconds and records the power.
+    /// Moves the points with the grid over `dt` seconds and records the powers.
     pub(crate) fn move_points(&mut self, patch: &Patch, grid: ControlGrid, velocity: &[Vec<f64>; 2], dt: f64) {
-        self.power = 0.0;
-        for point in &mut self.points {
+        self.powers = [0.0; 2];
+        for MovingSurfacePoint { place, force, .. } in &mut self.points {
             let mut v = [0.0; 2];
-            point.place.for_each_function(patch, grid, |at, n| v = [0, 1].map(|c| v[c] + n * velocity[c][at]));
-            point.place.follow(patch, grid, velocity, dt);
-            self.power += point.length * (self.stress[0] * v[0] + self.stress[1] * v[1]);
+            place.for_each_function(patch, grid, |at, n| v = [0, 1].map(|c| v[c] + n * velocity[c][at]));
+            let gradient = place.follow(patch, grid, velocity, dt);
+            self.powers[0] += dot(*force, v);
+            if fault!("pressure-on-the-edge-of-t-0", self.follows => false) {
+                let turned = cofactor(gradient, *force);
+                *force = [0, 1].map(|c| force[c] + dt * turned[c]);
+            }
+            self.powers[1] += dot(*force, v);
         }
     }
 
-    /// Stores or takes up the positions of the points and their power.
+    /// Stores or takes up what steps change.
     ///
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { points, stress: _, factor: _, power } = self;
+        let Self { points, follows, factor: _, powers } = self;
         points.iter_mut().try_for_each(|point| point.place.exchange(archive))?;
-        archive.value(power)
+        if *follows {
+            points.iter_mut().try_for_each(|point| archive.value(&mut point.force))?;
+        }
+        archive.value(powers)
     }
 
     /// Heap memory, bytes.

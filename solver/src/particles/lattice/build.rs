@@ -1,5 +1,6 @@
 //! How a lattice is made: tables, spans that the boundary cuts, and copies along slits and gaps.
 
+use super::cut::{EdgesInSpans, Rules};
 use super::cut_batch::{CutPoint, first_function};
 use super::gaps::Gaps;
 use super::tables::{Row, tiles};
@@ -21,9 +22,7 @@ impl Lattice {
             gaps = Gaps::Of(&body.shape);
             if !mapped {
                 let edges = cut::edges_in_spans(&body.shape, &patch.spaces);
-                let most = body.particles_per_cell[0].max(body.particles_per_cell[1]);
-                let spans = cut::cut_spans(&body.shape, &edges, &patch.spaces, most);
-                cut.extend(spans.flat_map(|(span, points)| CutPoint::of_span(patch, span, points)));
+                cut.extend(cut_points(patch, body, &edges, Rules::exact(&patch.spaces, most(body))));
                 if body.shape.all_edges_bound() {
                     let of_function = |(span, edges)| (first_function(patch, span), edges);
                     gaps = Gaps::Between(edges.into_iter().map(of_function).collect());
@@ -43,12 +42,17 @@ impl Lattice {
         lattice
     }
 
-    /// The points of `body` on `patch`: of a span that its boundary cuts, those of a whole one that lie
-    /// inside.
-    pub(crate) fn stepped(patch: &Patch, body: &Body) -> Self {
+    /// The points of `body` on `patch` as they begin to move; in a span that its boundary cuts there are fewer
+    /// than the degree needs, since they do not stay there.
+    pub(crate) fn moving(patch: &Patch, body: &Body) -> Self {
         let mut lattice = Self::of_tables(patch, body);
-        if !fills_lattice(patch.geometry.is_some(), &body.shape) {
+        if !fills_lattice(false, &body.shape) {
             lattice.keep_inside(&body.shape);
+            let edges = cut::edges_in_spans(&body.shape, &patch.spaces);
+            let cut: Vec<_> = cut_points(patch, body, &edges, Rules::plain(body.layout, most(body))).collect();
+            if !cut.is_empty() {
+                lattice.append_cut(patch, cut);
+            }
         }
         lattice
     }
@@ -114,4 +118,20 @@ impl Lattice {
         }
         self.factor = Some(factor);
     }
+}
+
+/// The points in the spans that the boundary of a body cuts.
+fn cut_points<'a>(
+    patch: &'a Patch,
+    body: &'a Body,
+    edges: &'a EdgesInSpans,
+    rules: Rules,
+) -> impl Iterator<Item = CutPoint> + 'a {
+    let spans = cut::cut_spans(&body.shape, edges, &patch.spaces, rules);
+    spans.flat_map(move |(span, points)| CutPoint::of_span(patch, span, points))
+}
+
+/// Points per span and direction: the larger number.
+fn most(body: &Body) -> usize {
+    body.particles_per_cell[0].max(body.particles_per_cell[1])
 }

@@ -30,12 +30,33 @@ type Corners = [[f64; 2]; 2];
 /// Position (m) and weight (m²) of a point.
 pub(super) type WeightedPoint = ([f64; 2], f64);
 
-/// A shape and the rules to integrate over it.
-struct Cutter<'a> {
-    shape: &'a Shape,
+/// The rules of a span that the boundary cuts, along both directions.
+#[derive(Debug, Clone)]
+pub(super) struct Rules {
     across: Rule,
     /// Between straight edges, and beside arcs.
     along: [Rule; 2],
+}
+
+impl Rules {
+    /// At least so many points on a line across, and what polynomials up to twice the degree need.
+    pub(super) fn exact(spaces: &[SplineSpace; 2], points: usize) -> Self {
+        let across = spaces.iter().map(|space| space.degree() + 1).fold(points, usize::max);
+        let rule = |count: usize| Rule::new(Layout::Gauss, count.min(MAX_POINTS));
+        Self { across: rule(across), along: [2 * across - 1, 2 * across + 2].map(rule) }
+    }
+
+    /// So many points on a line across, and as many lines: areas are exact between straight edges.
+    pub(super) fn plain(layout: Layout, points: usize) -> Self {
+        let rule = Rule::new(layout, points);
+        Self { across: rule.clone(), along: [rule.clone(), rule] }
+    }
+}
+
+/// A shape and the rules to integrate over it.
+struct Cutter<'a> {
+    shape: &'a Shape,
+    rules: Rules,
 }
 
 /// Edges of a shape by column and row of the spans that they run through.
@@ -65,17 +86,14 @@ pub(super) fn edges_in_spans(shape: &Shape, spaces: &[SplineSpace; 2]) -> EdgesI
     found
 }
 
-/// The points of all spans, by column and row, that the boundary of a shape cuts: at least so many across.
+/// The points of all spans, by column and row, that the boundary of a shape cuts.
 pub(super) fn cut_spans<'a>(
     shape: &'a Shape,
     edges: &'a EdgesInSpans,
     spaces: &'a [SplineSpace; 2],
-    points: usize,
+    rules: Rules,
 ) -> impl Iterator<Item = ([usize; 2], Vec<WeightedPoint>)> + 'a {
-    let across = spaces.iter().map(|space| space.degree() + 1).chain([points]).max().unwrap_or(points);
-    let rule = |count: usize| Rule::new(Layout::Gauss, count.min(MAX_POINTS));
-    let along = [2 * across - 1, 2 * across + 2].map(rule);
-    let cutter = Cutter { shape, across: rule(across), along };
+    let cutter = Cutter { shape, rules };
     edges.iter().filter_map(move |(span, edges)| {
         let [low, high] = corners(spaces, *span);
         let mut points = Vec::new();
@@ -148,7 +166,7 @@ impl Cutter<'_> {
 
     /// Gauss points in all of a box.
     fn fill(&self, [low, high]: Corners, out: &mut Vec<WeightedPoint>) {
-        let points = |d: usize| self.across.between(low[d], high[d]);
+        let points = |d: usize| self.rules.across.between(low[d], high[d]);
         out.extend(points(1).flat_map(|(y, v)| points(0).map(move |(x, w)| ([x, y], v * w))));
     }
 
@@ -172,7 +190,7 @@ impl Cutter<'_> {
         breaks.retain(|x| (low[outer]..=high[outer]).contains(x));
         breaks.sort_by(f64::total_cmp);
         for slab in breaks.windows(2).filter(|slab| slab[1] - slab[0] > 1e-14 * (high[outer] - low[outer])) {
-            for (place, weight) in self.along[arcs].between(slab[0], slab[1]) {
+            for (place, weight) in self.rules.along[arcs].between(slab[0], slab[1]) {
                 let on_line = |x: f64| if inner == 0 { [x, place] } else { [place, x] };
                 let mut ends = vec![low[inner], high[inner]];
                 let met = edges.iter().flat_map(|edge| edge.crossings(outer, place));
@@ -180,7 +198,7 @@ impl Cutter<'_> {
                 ends.sort_by(f64::total_cmp);
                 for part in ends.windows(2) {
                     if part[1] > part[0] && self.shape.contains(on_line(0.5 * (part[0] + part[1]))) {
-                        out.extend(self.across.between(part[0], part[1]).map(|(x, w)| (on_line(x), weight * w)));
+                        out.extend(self.rules.across.between(part[0], part[1]).map(|(x, w)| (on_line(x), weight * w)));
                     }
                 }
             }
@@ -195,7 +213,7 @@ mod tests {
     use crate::splines::patch::Patch;
 
     fn all(shape: &Shape, spaces: &[SplineSpace; 2]) -> BTreeMap<[usize; 2], Vec<WeightedPoint>> {
-        cut_spans(shape, &edges_in_spans(shape, spaces), spaces, 1).collect()
+        cut_spans(shape, &edges_in_spans(shape, spaces), spaces, Rules::exact(spaces, 1)).collect()
     }
 
     /// `∫ x^a y^b` over a shape on a mesh: spans inside by their middles.

@@ -204,8 +204,8 @@ impl<'a> Discrete<'a> {
             let mut matrix = DMatrix::zeros(at.len(), at.len());
             let mut right = DMatrix::zeros(at.len(), 2);
             for point in self.frame.patch().boundary(side, &rule) {
-                let exact = self.problem.solution.displacement(point.position, 0.0);
-                let on_side = point.functions.iter().filter_map(|&(index, value)| Some((number(index)?, value)));
+                let exact = self.problem.solution.displacement(point.functions.position, 0.0);
+                let on_side = point.functions.values.iter().filter_map(|&(index, value)| Some((number(index)?, value)));
                 let functions: Vec<(usize, f64)> = on_side.collect();
                 for &(m, value) in &functions {
                     for &(n, other) in &functions {
