@@ -1,23 +1,23 @@
 """A column of three blocks on a floor: what it settles by if contact forces act through mass-weighted fits.
 
 The blocks of the case `contact/stack` in one dimension: height H = 0.25, modulus and density 1, splines on
-equal spans of a metre that the blocks cut, Gauss points in the part of each span that is inside. A contact force
+equal spans that the blocks cut, equally spaced points in the part of each span that is inside. A contact force
 acts on control points with weights `W = N(y) m [a + b (X − x)]`, y half a span inside the boundary at x, X the
 Greville abscissae, `Σ W = 1` and `Σ W X = x`, and boundaries follow `Σ W u`. In place of the shape functions at
 the boundary such weights add a compliance: a layer that gives way besides, so many spans thick on each side.
 """
 
-from splines import gauss, greville, matrices, open_knots, shape_functions, solve
+from splines import greville, matrices, open_knots, shape_functions, solve
 
 HEIGHT, FOOT = 0.25, 0.07
 
 
 def points_of(bottom, top, h, count):
-    """Gauss points of the parts of spans between two heights."""
+    """Equally spaced points of the parts of spans between two heights."""
     points, low = [], bottom
     while low < top - 1e-12:
         high = min(h * int(low / h + 1 + 1e-9), top)
-        points += [(low + (high - low) * x, (high - low) * w) for x, w in gauss(count)]
+        points += [(low + (high - low) * (k + 0.5) / count, (high - low) / count) for k in range(count)]
         low = high
     return points
 

@@ -101,6 +101,7 @@ pub struct TotalFrame {
 impl TotalFrame {
     /// Forces and accelerations at t = 0.
     fn begin(&mut self) {
+        self.follow_with_loads();
         self.internal_forces();
         self.ledger.history_work = 0.0; // there was no step yet
         self.fracture.iter_mut().for_each(|fracture| fracture.begin_work(&self.lattice));

@@ -44,9 +44,9 @@ impl Follower {
         Self { position, ..self }
     }
 
-    /// Chooses the span anew: the nearest whose control points all have a [share](SHARE) of the mass that they
-    /// have inside a body of a density (kg/m³), or else the nearest whose control points all answer to a force.
-    /// What a condition or a load does to control points of next to no mass would not reach the body.
+    /// Chooses the span anew: the nearest whose control points all have a [share](SHARE) of the mass that
+    /// they have inside a body of a density (kg/m³), or else the nearest whose control points all answer to a
+    /// force. What a condition or a load does to those of next to no mass would not reach the body.
     ///
     /// # Errors
     /// If there is none within one span of it.
@@ -58,7 +58,8 @@ impl Follower {
             };
             nearest_span(&patch.spaces, self.position, |span| carries(span, share * density * area(span)))
         };
-        self.span = nearest(SHARE).or_else(|| nearest(0.0)).ok_or(OutsidePatch(self.position))?;
+        let share = fault!("next-to-no-mass-is-held", SHARE => 0.0);
+        self.span = nearest(share).or_else(|| nearest(0.0)).ok_or(OutsidePatch(self.position))?;
         Ok(())
     }
 

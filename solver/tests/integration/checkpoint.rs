@@ -5,6 +5,7 @@ use crate::common::{
     body, brittle, driven_plate, elastic_scene, glass, horseshoe, make_at1, make_cohesive, notched_plate, patch_scene,
     rectangle,
 };
+use crate::pressure::spinning_ring;
 use fisura::Simulation;
 use fisura::scene::*;
 use fisura::simulation::state::ResumeError;
@@ -121,6 +122,9 @@ fn in_the_updated_frame_with_every_transfer() {
     let name = Some("grip".into());
     driven.bodies[0].conditions = vec![EdgeCondition { name, edge: Edge::Side(Side::Left), hold, prescribed }];
     goes_on_bit_by_bit("an edge that is driven", &driven);
+    for frame in [Frame::Total, Frame::Updated] {
+        goes_on_bit_by_bit(&format!("a pressure that follows, {frame:?}"), &spinning_ring(frame, 0.01));
+    }
     let mut sliding = flying(Transfer::Apic, Kinematics::Finite);
     sliding.mesh = Mesh::uniform([2, 2], [-0.003, 0.0], [0.020, 0.012], [80, 48]);
     (sliding.bodies[0].velocity, sliding.bodies[0].angular_velocity) = ([900.0, 0.0], 0.0);

@@ -35,6 +35,7 @@ mod modules;
 mod nurbs;
 mod phase_field_interval;
 mod points_and_spans;
+mod pressure;
 mod rotation;
 mod seeds;
 mod self_contact;

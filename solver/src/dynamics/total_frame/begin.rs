@@ -137,7 +137,6 @@ impl TotalFrame {
     pub fn start_with(&mut self, displacement: VectorField, velocity: VectorField) -> Result<(), SolveFailure> {
         (self.displacement, self.velocity) = (displacement, velocity);
         self.start_conditions();
-        self.follow_with_loads();
         self.ledger = Ledger::default();
         self.time = 0.0;
         self.release_phase_field()?;

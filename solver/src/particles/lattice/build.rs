@@ -42,8 +42,8 @@ impl Lattice {
         lattice
     }
 
-    /// The points of `body` on `patch` as they begin to move; in a span that its boundary cuts there are fewer
-    /// than the degree needs, since they do not stay there.
+    /// The points of `body` on `patch` as they begin to move; in a span that its boundary cuts there are
+    /// fewer than the degree needs, since they do not stay there.
     pub(crate) fn moving(patch: &Patch, body: &Body) -> Self {
         let mut lattice = Self::of_tables(patch, body);
         if !fills_lattice(false, &body.shape) {

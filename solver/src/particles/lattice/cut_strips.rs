@@ -74,7 +74,7 @@ impl Lattice {
                 if cut.contains(&self.first_of(batch, lane))
                     && let Some(factor) = &mut self.factor
                 {
-                    factor[batch][lane] = 0.0;
+                    factor[batch][lane] = fault!("points-of-cut-spans-twice", 0.0 => 1.0);
                 }
             }
         }
