@@ -249,8 +249,7 @@ impl NodalLoad {
         std::mem::swap(forces, &mut following.before);
         let mut sums: BTreeMap<usize, [f64; 2]> = forces.iter().map(|(at, _)| (*at, [0.0; 2])).collect();
         for (functions, force) in &following.points {
-            let gradient = displacement.each_ref().map(|component| functions.interpolate(component).gradient);
-            let turned = fault!("pressure-that-keeps-its-direction", cofactor(gradient, *force) => [0.0; 2]);
+            let turned = turned(functions, *force, displacement);
             for (at, value) in &functions.values {
                 let sum = sums.entry(*at).or_default();
                 (0..2).for_each(|d| sum[d] += value * (force[d] + turned[d]));
@@ -258,6 +257,16 @@ impl NodalLoad {
         }
         forces.clear();
         forces.extend(sums);
+    }
+
+    /// Adds to nodal forces their change with a displacement (m), times a factor.
+    pub(crate) fn add_change(&self, factor: f64, displacement: &VectorField, forces: &mut VectorField) {
+        for (functions, force) in self.following.iter().flat_map(|following| &following.points) {
+            let turned = turned(functions, *force, displacement);
+            for &(at, value) in &functions.values {
+                (0..2).for_each(|d| forces[d][at] += factor * value * turned[d]);
+            }
+        }
     }
 
     /// Power of the full strength (W/m), times a factor of the last step and one of the present one, with
@@ -271,6 +280,12 @@ impl NodalLoad {
             Some(following) => before * with(&following.before) + now * with(&self.forces),
         }
     }
+}
+
+/// What a displacement (m) adds to a force on the boundary that follows it.
+fn turned(functions: &PointFunctions, force: [f64; 2], displacement: &VectorField) -> [f64; 2] {
+    let gradient = displacement.each_ref().map(|component| functions.interpolate(component).gradient);
+    fault!("pressure-that-keeps-its-direction", cofactor(gradient, force) => [0.0; 2])
 }
 
 /// Takes the control points on the side of the slits of a place, m.

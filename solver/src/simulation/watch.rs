@@ -32,6 +32,8 @@ const MOST_PARTS: f64 = 64.0;
 
 /// Part of the largest energy of a run that transfers, or contact without friction, may take without a word.
 const LOSS_LIMIT: f64 = 0.05;
+/// Energy besides that of the mean motion that counts as none, of the largest energy.
+const LEAST_BESIDE: f64 = 1e-6;
 
 /// Angle that material may turn by with small strains, rad: in the total frame they take this one for a
 /// strain of 0.5 %, and in the updated frame stresses do not turn with the material.
@@ -146,7 +148,10 @@ impl Simulation {
         let mass: f64 = self.updated_frame().map_or(0.0, |frame| frame.fields().iter().map(|field| field.mass()).sum());
         let [px, py] = sample.momentum;
         let mean = if mass > 0.0 { 0.5 * (px * px + py * py) / mass } else { 0.0 };
-        let largest = larger(self.energy_in, sample.largest_term()) - mean;
+        let fracture = sample.fracture.as_ref().map_or(0.0, |fracture| fracture.energy);
+        let beside = [sample.kinetic - mean, sample.elastic, fracture, self.energy_in - mean];
+        let least = LEAST_BESIDE * larger(self.energy_in, sample.largest_term());
+        let largest = beside.into_iter().fold(least, larger);
         let by_contact = sample.contact.map_or(0.0, |contact| contact.loss - contact.friction);
         let damped = "motion that varies over one or two spans is damped, and so are stresses where points cross spans; use \
                       frame = \"total\" and kinematics = \"finite\", or compare meshes";

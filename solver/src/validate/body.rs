@@ -1,7 +1,7 @@
 //! Checks of bodies: shape, place in the mesh, points, resolution of the length scale, tractions, cracks.
 
 use super::findings::Findings;
-use super::geometry::{covered_side, cut_nowhere, defect, outline};
+use super::geometry::{covered_side, cut_nowhere, defect, narrow_gap, outline};
 use super::ground::Ground;
 use super::look::{Look, TOLERANCE};
 use super::points::Points;
@@ -53,8 +53,10 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
             findings.warn(format!("{key}.shape"), message);
         }
         let placed = ground.is_sound && !body.rigid && inside_mesh(&key, body, ground, findings);
-        if placed && scene.analysis.frame == Frame::Total {
-            cut_spans(&key, body, ground, findings);
+        match scene.analysis.frame {
+            Frame::Total if placed => cut_spans(&key, body, ground, findings),
+            Frame::Updated if placed => gaps(&key, body, &scene.mesh.degree, ground, findings),
+            _ => {}
         }
         let before = findings.errors.len();
         if placed && let Some(fracture) = fracture {
@@ -93,6 +95,20 @@ fn material_points(key: &str, body: &Body, fracture: Option<&Fracture>, ground: 
         findings.error(format!("{key}.shape"), message, remedy);
     } else if let Some(fracture) = fracture.filter(|fracture| fracture.model == CrackModel::At2) {
         seed::check(key, body, fracture, &points, h, findings);
+    }
+}
+
+/// Functions of the updated frame reach across gaps and join their sides.
+fn gaps(key: &str, body: &Body, degree: &[usize; 2], ground: &Ground<'_>, findings: &mut Findings) {
+    let [_, h] = ground.span_lengths(&body.shape);
+    let cells = degree[0].max(degree[1]) as f64 + 0.5;
+    if let Some(([x, y], width)) = narrow_gap(&body.shape, cells * h) {
+        let message = format!(
+            "a gap or hole of body {:?} is narrower than {cells} cells: {width:.2e} m beside ({x:.4e}, {y:.4e}) m; in the \
+             updated frame functions reach across it and join its sides; use frame = \"total\" or smaller cells",
+            body.name
+        );
+        findings.warn(format!("{key}.shape"), message);
     }
 }
 

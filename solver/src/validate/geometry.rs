@@ -1,7 +1,9 @@
 //! Shapes that are empty or malformed, and their outlines.
 
+use crate::linear_algebra::extremes::{larger, smaller};
 use crate::scene::Shape;
-use crate::scene::shape::polygon_edges;
+use crate::scene::edges::{beside, bounding_parts};
+use crate::scene::shape::{Segment, polygon_edges};
 use crate::splines::nurbs::NurbsPatch;
 
 pub(super) type Position = [f64; 2];
@@ -12,6 +14,12 @@ const MOST_OUTLINE: usize = 4096;
 /// Points looked at along a circle or a straight edge of a body on a general patch, and along a side of the
 /// patch.
 const OUTLINE_INTERVALS: usize = 64;
+
+/// Sine of the angle between two lines that counts as none.
+const ROUND_OFF: f64 = 1e-12;
+/// Places looked at outwards from a boundary, and most of these positions times the corners of the shape.
+const GAP_LOOKS: usize = 10;
+const MOST_GAP_LOOKS: usize = 200_000;
 
 /// Why a shape is empty or malformed, with a remedy.
 pub(crate) fn defect(shape: &Shape) -> Option<(String, &'static str)> {
@@ -38,13 +46,57 @@ pub(crate) fn defect(shape: &Shape) -> Option<(String, &'static str)> {
                 let (min, max) = shape.bounding_box();
                 area(points).abs() > 1e-12 * (max[0] - min[0]).max(max[1] - min[1]).powi(2)
             };
-            (!sound).then(|| ("a polygon without area".into(), "give the corners in order, not all on one line"))
+            if !sound {
+                return Some(("a polygon without area".into(), "give the corners in order, not all on one line"));
+            }
+            let remedy = "give the corners in order around the boundary";
+            crossing(points).map(|[x, y]| (format!("a polygon whose edges cross near ({x}, {y}) m"), remedy))
         }
         Shape::Patch => None,
         Shape::Union(shapes) if shapes.is_empty() => Some(("a union of no shapes".into(), "give its shapes")),
         Shape::Union(shapes) => shapes.iter().find_map(defect),
         Shape::Difference { of, minus } => defect(of).or_else(|| minus.iter().find_map(defect)),
     }
+}
+
+/// Middle of an edge of a polygon that another one crosses, m.
+fn crossing(points: &[Position]) -> Option<Position> {
+    let range = |[a, b]: &Segment| [smaller(a[0], b[0]), larger(a[0], b[0])];
+    let mut edges: Vec<(usize, Segment)> = polygon_edges(points).enumerate().collect();
+    edges.sort_by(|a, b| range(&a.1)[0].total_cmp(&range(&b.1)[0]));
+    let side = |[a, b]: Segment, c: Position| {
+        let twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        let size = (b[0] - a[0]).hypot(b[1] - a[1]) * (c[0] - a[0]).hypot(c[1] - a[1]);
+        if twice.abs() <= ROUND_OFF * size { 0.0 } else { twice.signum() }
+    };
+    let parts = |line: Segment, [a, b]: Segment| side(line, a) * side(line, b) < 0.0;
+    edges.iter().enumerate().find_map(|(n, (i, edge))| {
+        let after = edges[n + 1..].iter().take_while(|other| range(&other.1)[0] <= range(edge)[1]);
+        let apart = |j: usize| i.abs_diff(j) > 1 && i.abs_diff(j) + 1 < points.len();
+        let mut crossed = after.filter(|(j, other)| apart(*j) && parts(*edge, *other) && parts(*other, *edge));
+        crossed.next().map(|_| [0, 1].map(|d| 0.5 * (edge[0][d] + edge[1][d])))
+    })
+}
+
+/// A place (m) on the boundary of a shape from which, outwards, there is material within a `reach` (m), and
+/// the distance at which it was found, m: a gap, or the other side of a small hole.
+pub(crate) fn narrow_gap(shape: &Shape, reach: f64) -> Option<(Position, f64)> {
+    let parts = bounding_parts(shape);
+    let most = MOST_GAP_LOOKS / complexity(shape).max(1);
+    let length: f64 = parts.iter().map(|(edge, [from, to])| (to - from) * edge.length()).sum();
+    let step = larger(0.25 * reach, length / most as f64);
+    parts.iter().find_map(|(edge, [from, to])| {
+        let count = ((to - from) * edge.length() / step).ceil().max(1.0) as usize;
+        (0..count).find_map(|i| {
+            let s = from + (to - from) * (i as f64 + 0.5) / count as f64;
+            let (place, tangent) = edge.at(s);
+            let [left, _] = beside(edge, s);
+            let outwards = if shape.contains(left) { 1.0 } else { -1.0 } / tangent[0].hypot(tangent[1]);
+            let at = |d: f64| [place[0] + d * outwards * tangent[1], place[1] - d * outwards * tangent[0]];
+            let found = (1..=GAP_LOOKS).map(|k| reach * k as f64 / GAP_LOOKS as f64).find(|d| shape.contains(at(*d)));
+            found.map(|d| (place, d))
+        })
+    })
 }
 
 /// A shape that is cut out of another one that it does not reach.

@@ -25,17 +25,14 @@ pub fn spinning_ring(frame: Frame, radius: f64) -> Scene {
 fn a_pressure_all_around_exerts_no_force_and_no_moment() {
     for radius in [0.01, 0.02] {
         let impulse = 3e7 * radius * 2e-4;
-        let mut works = [0.0; 2];
-        for (work, (frame, tolerance)) in works.iter_mut().zip([(Frame::Total, 1e-12), (Frame::Updated, 2e-3)]) {
+        for (frame, tolerance) in [(Frame::Total, 1e-12), (Frame::Updated, 2e-3)] {
             let (_, samples) = run(&spinning_ring(frame, radius));
             let (first, last) = (&samples[0], samples.last().unwrap());
             let [x, y] = last.momentum;
             assert!(x.hypot(y) < tolerance * impulse, "{frame:?}, {radius} m: {x} {y}");
             let lost = 1.0 - last.angular_momentum / first.angular_momentum;
             assert!(lost.abs() < tolerance, "{frame:?}, {radius} m: {lost}");
-            *work = last.external_work - last.transfer_loss.unwrap_or(0.0);
         }
-        assert!((works[1] / works[0] - 1.0).abs() < 0.05, "{radius} m: work and loss {works:?}");
     }
 }
 

@@ -1,5 +1,6 @@
 //! Numbers and outlines that a scene keeps in a file beside it.
 
+use std::ffi::OsStr;
 use std::path::Path;
 
 use fisura::scene::Shape;
@@ -10,7 +11,7 @@ use super::fields::Item;
 const OUTLINE: &str = "give a CSV file beside the scene with the corners of a polygon in order, or a GeoJSON file with \
                        polygons; x and y in m";
 
-/// Rows of two numbers of a CSV file; a first line with letters and without any number is a header.
+/// Rows of two numbers of a CSV file; a first line of words is a header.
 pub(super) fn rows_of_file(item: &Item<'_>, remedy: &str) -> Option<Vec<[f64; 2]>> {
     read(item, remedy, |_, text| rows(text))
 }
@@ -18,7 +19,8 @@ pub(super) fn rows_of_file(item: &Item<'_>, remedy: &str) -> Option<Vec<[f64; 2]
 /// The polygon of a CSV file, or the polygons of a GeoJSON file.
 pub(super) fn outline(item: &Item<'_>) -> Option<Shape> {
     read(item, OUTLINE, |path, text| {
-        if path.extension().is_some_and(|extension| extension == "geojson" || extension == "json") {
+        let is_json = |suffix: &OsStr| ["geojson", "json"].iter().any(|word| suffix.eq_ignore_ascii_case(word));
+        if path.extension().is_some_and(is_json) {
             polygons(text)
         } else {
             rows(text).map(|points| Shape::Polygon { points })
@@ -67,14 +69,9 @@ fn add_polygons(geometry: &Geometry, shapes: &mut Vec<Shape>) -> Result<(), Stri
         other => return Err(format!("a {}, where a Polygon or a MultiPolygon is needed", other.type_name())),
     };
     for rings in polygons {
-        // The last position of a ring repeats the first.
-        let corners = |ring: &Vec<geojson::Position>| {
-            let points = ring.iter().take(ring.len().max(1) - 1).map(|position| [position[0], position[1]]).collect();
-            Shape::Polygon { points }
-        };
-        let mut rings = rings.iter().map(corners);
-        let outer = rings.next().ok_or("a Polygon without a ring")?;
-        let minus: Vec<Shape> = rings.collect();
+        let mut rings = rings.iter().map(|ring| ring_of(ring));
+        let outer = rings.next().ok_or("a Polygon without a ring")??;
+        let minus = rings.collect::<Result<Vec<_>, _>>()?;
         shapes.push(if minus.is_empty() { outer } else { Shape::Difference { of: Box::new(outer), minus } });
     }
     Ok(())
@@ -86,10 +83,11 @@ fn rows(text: &str) -> Result<Vec<[f64; 2]>, String> {
     let mut rows = Vec::new();
     for (number, record) in reader.records().enumerate() {
         let record = record.map_err(|e| e.to_string())?;
-        let numbers: Vec<Option<f64>> = record.iter().map(|field| field.parse().ok()).collect();
+        let numbers: Vec<Option<f64>> =
+            record.iter().map(|field| field.parse().ok().filter(|x: &f64| x.is_finite())).collect();
         match numbers[..] {
             [Some(first), Some(second)] => rows.push([first, second]),
-            _ if number == 0 && numbers.iter().all(Option::is_none) && has_letter(&record) => {} // a header
+            _ if number == 0 && numbers.iter().all(Option::is_none) && is_header(&record) => {}
             _ => {
                 let line = record.position().map_or(0, csv::Position::line);
                 return Err(format!(
@@ -102,8 +100,23 @@ fn rows(text: &str) -> Result<Vec<[f64; 2]>, String> {
     Ok(rows)
 }
 
-fn has_letter(record: &csv::StringRecord) -> bool {
-    record.iter().any(|field| field.contains(char::is_alphabetic))
+/// A ring, whose last position repeats the first.
+fn ring_of(ring: &[geojson::Position]) -> Result<Shape, String> {
+    let corner = |position: &geojson::Position| match position.as_slice() {
+        [x, y, ..] => Ok([*x, *y]),
+        _ => Err("a position of fewer than two numbers".to_string()),
+    };
+    let mut points = ring.iter().map(corner).collect::<Result<Vec<_>, _>>()?;
+    if points.len() < 2 || points.first() != points.last() {
+        return Err("a ring that is not closed: its last position has to repeat the first".to_string());
+    }
+    points.pop();
+    Ok(Shape::Polygon { points })
+}
+
+/// Whether all fields are words: they begin with a letter and have no decimal point.
+fn is_header(record: &csv::StringRecord) -> bool {
+    record.iter().all(|field| field.starts_with(char::is_alphabetic) && !field.contains('.'))
 }
 
 #[cfg(test)]
@@ -130,6 +143,8 @@ mod tests {
             (r#"{"type": "Point", "coordinates": [0, 0]}"#, "a Point, where"),
             (r#"{"type": "FeatureCollection", "features": []}"#, "no polygon"),
             (r#"{"type": "Polygon", "coordinates": []}"#, "without a ring"),
+            (r#"{"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1]]]}"#, "not closed"),
+            (r#"{"type": "Polygon", "coordinates": [[[0, 0], [1], [1, 1], [0, 0]]]}"#, "fewer than two numbers"),
             ("0, 1", ""),
         ] {
             assert!(polygons(text).unwrap_err().contains(message), "{text}");
@@ -142,9 +157,16 @@ mod tests {
         assert_eq!(rows("0, 1\n1e-6, 2.5\n"), expected);
         assert_eq!(rows("time_s,factor\n\n0,1\n1e-6,2.5"), expected);
         assert_eq!(rows("time_s\n0,1\n1e-6,2.5"), expected, "a header of one column");
-        for (text, line) in
-            [("0;1\n0;2\n", 1), ("0,1,2\n", 1), ("0,x\n", 1), ("t,f\n\n0,1\n1\n", 4), ("t,f\n0,1\n1,\n", 3)]
-        {
+        for (text, line) in [
+            ("0.2m,1\n", 1),
+            ("O.2,O.1\n0,1\n", 1),
+            ("0,nan\n", 1),
+            ("0;1\n0;2\n", 1),
+            ("0,1,2\n", 1),
+            ("0,x\n", 1),
+            ("t,f\n\n0,1\n1\n", 4),
+            ("t,f\n0,1\n1,\n", 3),
+        ] {
             assert!(rows(text).unwrap_err().starts_with(&format!("line {line} ")), "{text:?}: {:?}", rows(text));
         }
     }

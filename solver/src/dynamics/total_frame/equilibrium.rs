@@ -55,7 +55,7 @@ impl TotalFrame {
                 (residual, scale) = self.out_of_balance(&free);
                 let left = dot(&residual, &change) / slope;
                 taken = part;
-                bounds[usize::from(left < 0.0)] = part;
+                bounds[usize::from(left < 0.0 || left.is_nan())] = part; // turned inside out: too far
                 part = if bounds[1].is_finite() {
                     0.5 * (bounds[0] + bounds[1])
                 } else {

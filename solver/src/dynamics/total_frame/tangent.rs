@@ -137,6 +137,9 @@ impl StiffnessOperator for Tangent<'_> {
             sheets.spread(&mut self.direction);
         }
         self.forces_along();
+        for load in &self.frame.loads {
+            load.add_change(-load.factor.at(self.frame.time), &self.direction, &mut self.forces);
+        }
         self.undeformed.add_springs(x, &mut self.forces);
         self.undeformed.pack_forces(&mut self.forces, out);
     }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::affine::{AffineVelocities, Fit};
+use super::carried_place::PlacedPoints;
 use super::field::DiscreteField;
 use super::grid::NodalFields;
 use super::held_edges::HeldEdges;
@@ -83,7 +84,9 @@ impl DiscreteField {
         let sides: Vec<_> = fixed.iter().filter_map(side).collect();
         let nodes = NodalFields::new(&patch, held_sides::constraints(whole, &patch, origin, &sides));
         let moving = moving.into_iter().map(|boundary| held_sides::as_edge(whole, boundary));
-        let edges = HeldEdges::new(whole, body, body.conditions.iter().cloned().chain(moving));
+        let placed = PlacedPoints { patch: &patch, cells: &cells, points: &points };
+        let edges = HeldEdges::new(whole, body, body.conditions.iter().cloned().chain(moving), &placed);
+        let loads = body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t, &placed)).collect();
         let moduli = ElasticModuli::new(material, analysis.plane);
         let finite = analysis.kinematics == Kinematics::Finite;
         Ok(Self {
@@ -92,7 +95,7 @@ impl DiscreteField {
             velocity_transfer: VelocityTransfer::new(patch.control_grid(), analysis.transfer),
             affine: fit(analysis.transfer).map(|fit| AffineVelocities::new(fit, &patch, points.len())),
             deformation: finite.then(|| vec![[[0.0; 2]; 2]; points.len()]),
-            loads: body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t)).collect(),
+            loads,
             forcing: None,
             surface: scene.contact.is_some().then(|| Surface::new(&scene.mesh, body)),
             moduli,

@@ -3,11 +3,39 @@
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::surface::SurfacePoint;
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
+use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::vectors::dot;
 use crate::particles::follower::Follower;
-use crate::particles::points::OutsidePatch;
+use crate::particles::points::{Cells, OutsidePatch, Point};
 use crate::scene::Body;
 use crate::splines::patch::Patch;
+
+/// The points of a body at t = 0, by the spans of a patch.
+pub(super) struct PlacedPoints<'a> {
+    pub patch: &'a Patch,
+    pub cells: &'a Cells,
+    pub points: &'a [Point],
+}
+
+impl PlacedPoints<'_> {
+    /// Depth under a place on the edge of the points next to it, m: the least of those that lie within the
+    /// distance of points to either side, in its span or one beside it.
+    fn depth_under(&self, body: &Body, SurfacePoint { position, normal, inner, .. }: &SurfacePoint) -> f64 {
+        let Self { patch, cells, points } = self;
+        let home = [0, 1].map(|d| patch.spaces[d].find_span(inner[d]).unwrap_or_default());
+        let spacing = [0, 1].map(|d| patch.spaces[d].spans()[home[d]].length() / body.particles_per_cell[d] as f64);
+        let window = larger(spacing[0], spacing[1]);
+        let around = |d: usize| home[d].saturating_sub(1)..(home[d] + 2).min(patch.spaces[d].spans().len());
+        let near = around(1).flat_map(|j| around(0).flat_map(move |i| points[cells.points_in([i, j])].iter()));
+        let depths = near.filter_map(|point| {
+            let from = [0, 1].map(|d| position[d] - point.position[d]);
+            let beside = from[0] * normal[1] - from[1] * normal[0];
+            (beside.abs() <= window).then(|| dot(from, *normal)).filter(|depth| *depth > 0.0)
+        });
+        let least = depths.fold(f64::INFINITY, smaller);
+        if least.is_finite() { least } else { 0.5 * (spacing[0] * normal[0].abs() + spacing[1] * normal[1].abs()) }
+    }
+}
 
 /// A place on an edge: a root as deep in the body as the points next to the edge are, which moves as they do,
 /// and the arm from it to the edge, which deforms with it. So the edge stays where the points are, though no
@@ -20,13 +48,9 @@ pub(super) struct CarriedPlace {
 
 impl CarriedPlace {
     /// A place on the edge of a body at t = 0, m, to be attached.
-    pub(super) fn new(patch: &Patch, body: &Body, point: &SurfacePoint) -> Self {
-        let spacing = |d: usize| {
-            let space = &patch.spaces[d];
-            let length = space.find_span(point.inner[d]).map_or(0.0, |span| space.spans()[span].length());
-            length * point.normal[d].abs() / body.particles_per_cell[d] as f64
-        };
-        let arm = point.normal.map(|n| 0.5 * (spacing(0) + spacing(1)) * n);
+    pub(super) fn new(body: &Body, point: &SurfacePoint, placed: &PlacedPoints<'_>) -> Self {
+        let depth = placed.depth_under(body, point);
+        let arm = point.normal.map(|n| depth * n);
         Self { root: Follower::new([0, 1].map(|d| point.position[d] - arm[d])), arm }
     }
 

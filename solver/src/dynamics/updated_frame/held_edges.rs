@@ -12,7 +12,7 @@
 //!
 //! The first is an impact. It does the work `−λ·B w` and costs `½ λ·(B v − B w)`.
 
-use super::carried_place::CarriedPlace;
+use super::carried_place::{CarriedPlace, PlacedPoints};
 use super::grid::{ImposedEnergy, NodalFields};
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::edge_moments::{Moment, Multipliers, moments_of, multiplier_space};
@@ -57,11 +57,12 @@ impl HeldEdges {
         patch: &Patch,
         body: &Body,
         conditions: impl Iterator<Item = EdgeCondition>,
+        placed: &PlacedPoints<'_>,
     ) -> Option<Box<Self>> {
         let edge = |condition: EdgeCondition| {
             let parts = smooth_parts(patch, body, &condition.edge);
             let on_material = parts.iter().flatten().filter(|point| body.shape.contains(point.inner));
-            let points: Vec<_> = on_material.map(|point| (CarriedPlace::new(patch, body, point), *point)).collect();
+            let points: Vec<_> = on_material.map(|point| (CarriedPlace::new(body, point, placed), *point)).collect();
             let reaction = Reaction::at_start(condition.prescribed.start()[1]);
             (!points.is_empty()).then(|| HeldEdge {
                 space: multiplier_space(patch, &parts),

@@ -1,7 +1,7 @@
 //! Tractions on surface points s that move with the body: `f_I = factor(time) Σ_s f_s N_I(x_s)`, where the
 //! force f_s of a pressure turns and stretches with the boundary.
 
-use super::carried_place::CarriedPlace;
+use super::carried_place::{CarriedPlace, PlacedPoints};
 use super::grid::NodalFields;
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::loads::KickFactor;
@@ -35,11 +35,11 @@ struct MovingSurfacePoint {
 
 impl SurfaceLoad {
     /// The surface points of a traction at t = 0.
-    pub(crate) fn new(patch: &Patch, body: &Body, traction: &Traction) -> Self {
+    pub(super) fn new(patch: &Patch, body: &Body, traction: &Traction, placed: &PlacedPoints<'_>) -> Self {
         let carried = |point: SurfacePoint| {
             let SurfacePoint { position, length, normal, .. } = point;
             let force = traction.load.traction(position, normal).map(|t| length * t);
-            MovingSurfacePoint { place: CarriedPlace::new(patch, body, &point), length, force }
+            MovingSurfacePoint { place: CarriedPlace::new(body, &point, placed), length, force }
         };
         Self {
             points: surface_points(patch, body, &traction.edge).into_iter().map(carried).collect(),
