@@ -13,7 +13,7 @@ use crate::splines::patch::Patch;
 use crate::splines::spline::ShapeFunctions;
 
 /// Least mass of a control point that a load or a condition takes hold of, of that inside a body. In trials
-/// with bars at eleven angles, 1e-6 and 1e-5 gave the work of a driven edge best, without and with 1e-3 of it
+/// with bars at six angles 1e-6 and 1e-5 gave the work of a driven edge best; with none and with 1e-3 of it
 /// some lost their grip or became soft at the edge.
 const SHARE: f64 = 1e-5;
 

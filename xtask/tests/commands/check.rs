@@ -108,18 +108,19 @@ fn a_broken_scene_ends_with_2_and_names_place_key_and_remedy() {
     }
 }
 
-/// A traction that would be lost without a word, which only the beginning of a run can tell.
+/// A stress field without a value, which only the beginning of a run can tell.
 #[test]
 fn what_would_not_happen_is_refused_before_anything_runs() {
-    let rectangle = "{ rectangle = { min = [\"0 mm\", \"0 mm\"], max = [\"10 mm\", \"5 mm\"] } }";
-    let needle = "{ polygon = { points = [[0, 0], [2e-3, 0], [9e-3, 3e-6], [2e-3, 1e-5], [2e-3, 2e-3], [0, 2e-3]] } }";
-    let text = BLOCK.replacen(rectangle, needle, 1).replacen("[analysis]", "[analysis]\nframe = \"updated\"", 1);
-    let text = text.replacen("edge   = \"top\"", "segment = [[5e-3, 3e-6], [8e-3, 3e-6]]", 1);
-    let place = Place::with("s.toml", &text);
-    for command in ["check", "run"] {
-        let outcome = place.xtask(&[command, "s.toml"]).with_status(2);
-        let outcome = outcome.complains_of(&["s.toml:", "body.0.traction.0: ", "no material point within a cell of"]);
-        assert!(outcome.out.is_empty() && !outcome.err.contains("panicked"), "{outcome:?}");
+    let stress = BLOCK.lines().find(|line| line.starts_with("stress")).expect("the block is pulled");
+    let text = BLOCK.replacen(stress, "stress_field = { yy = \"sqrt(-1 - x)\" }", 1);
+    for frame in ["total", "updated"] {
+        let text = text.replacen("[analysis]", &format!("[analysis]\nframe = \"{frame}\""), 1);
+        let place = Place::with("s.toml", &text);
+        for command in ["check", "run"] {
+            let outcome = place.xtask(&[command, "s.toml"]).with_status(2);
+            let outcome = outcome.complains_of(&["s.toml:", "body.0.traction.0: ", "the stress field is not finite"]);
+            assert!(outcome.out.is_empty() && !outcome.err.contains("panicked"), "{outcome:?}");
+        }
     }
 }
 
