@@ -207,6 +207,30 @@ mod tests {
     }
 
     #[test]
+    fn edges_that_cross_are_told_from_those_that_touch() {
+        let refused = |points: &[Position]| defect(&Shape::Polygon { points: points.to_vec() }).is_some();
+        let bow = [[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 3.0]];
+        assert!(refused(&bow) && refused(&bow.map(|[x, y]| [-y, x])), "in any direction");
+        assert!(!refused(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.5], [0.0, 2.0]]), "a re-entrant corner");
+        let keyhole = [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0], [0.0, 0.0], [1.0, 1.0], [1.0, 2.0], [2.0, 1.0]];
+        assert!(!refused(&[&keyhole[..], &[[1.0, 1.0]]].concat()), "a hole joined to the outside by a line");
+    }
+
+    #[test]
+    fn narrow_gaps_and_small_holes_are_found() {
+        let block = |x: f64| Shape::Rectangle { min: [x, 0.0], max: [x + 1.0, 1.0] };
+        let apart = |gap: f64| narrow_gap(&Shape::Union(vec![block(0.0), block(1.0 + gap)]), 0.25).is_some();
+        assert!(apart(0.02) && apart(0.24) && !apart(0.26));
+        let holed = |radius: f64| {
+            let hole = Shape::Disk { center: [0.5; 2], radius };
+            narrow_gap(&Shape::Difference { of: Box::new(block(0.0)), minus: vec![hole] }, 0.25).is_some()
+        };
+        assert!(holed(0.12) && !holed(0.13));
+        let corner = vec![[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+        assert!(narrow_gap(&Shape::Polygon { points: corner }, 0.25).is_none(), "an L has no gap");
+    }
+
+    #[test]
     fn a_cut_that_misses_is_found() {
         let disk = |x, y, radius| Shape::Disk { center: [x, y], radius };
         let plate = || Box::new(Shape::Rectangle { min: [0.0; 2], max: [1.0; 2] });

@@ -114,9 +114,10 @@ fn ring_of(ring: &[geojson::Position]) -> Result<Shape, String> {
     Ok(Shape::Polygon { points })
 }
 
-/// Whether all fields are words: they begin with a letter and have no decimal point.
+/// Whether all fields are words: they begin with a letter, have no decimal point and are not "nan" or "inf".
 fn is_header(record: &csv::StringRecord) -> bool {
-    record.iter().all(|field| field.starts_with(char::is_alphabetic) && !field.contains('.'))
+    let is_word = |field: &str| field.starts_with(char::is_alphabetic) && !field.contains('.');
+    record.iter().all(|field| is_word(field) && field.parse::<f64>().is_err())
 }
 
 #[cfg(test)]
@@ -161,6 +162,7 @@ mod tests {
             ("0.2m,1\n", 1),
             ("O.2,O.1\n0,1\n", 1),
             ("0,nan\n", 1),
+            ("nan,inf\n0,1\n", 1),
             ("0;1\n0;2\n", 1),
             ("0,1,2\n", 1),
             ("0,x\n", 1),
