@@ -26,7 +26,6 @@ pub mod assembly;
 mod begin;
 mod bodies;
 mod booking;
-mod carried_place;
 mod conditions;
 pub mod fictitious;
 pub mod field;

@@ -8,14 +8,10 @@
 use super::points::{Cells, OutsidePatch};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::control_grid::VectorField;
+use crate::material::hencky::Gradient;
 use crate::splines::nearest_span::nearest_span;
 use crate::splines::patch::Patch;
 use crate::splines::spline::ShapeFunctions;
-
-/// Least mass of a control point that a load or a condition takes hold of, of that inside a body. In trials
-/// with bars at six angles 1e-6 and 1e-5 gave the work of a driven edge best; with none and with 1e-3 of it
-/// some lost their grip or became soft at the edge.
-const SHARE: f64 = 1e-5;
 
 /// A position that moves with a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,35 +35,27 @@ impl Follower {
         Some(Self { position, span })
     }
 
-    /// Another position (m) with the polynomials of the same span.
-    pub(crate) fn continued_to(self, position: [f64; 2]) -> Self {
-        Self { position, ..self }
-    }
-
-    /// Chooses the span anew: the nearest whose control points all have a [share](SHARE) of the mass that
-    /// they have inside a body of a density (kg/m³), or else the nearest whose control points all answer to a
-    /// force. What a condition or a load does to those of next to no mass would not reach the body.
+    /// Chooses the span anew: the nearest whose control points all answer to a force.
     ///
     /// # Errors
     /// If there is none within one span of it.
-    pub(crate) fn attach(&mut self, patch: &Patch, inverse_mass: &[f64], density: f64) -> Result<(), OutsidePatch> {
-        let area = |span: [usize; 2]| (0..2).map(|d| patch.spaces[d].spans()[span[d]].length()).product::<f64>();
-        let nearest = |share: f64| {
-            let carries = |span, least: f64| {
-                patch.all_functions(span, |at| inverse_mass[at] > 0.0 && inverse_mass[at] * least <= 1.0)
-            };
-            nearest_span(&patch.spaces, self.position, |span| carries(span, share * density * area(span)))
-        };
-        let share = fault!("next-to-no-mass-is-held", SHARE => 0.0);
-        self.span = nearest(share).or_else(|| nearest(0.0)).ok_or(OutsidePatch(self.position))?;
+    pub(crate) fn attach(&mut self, patch: &Patch, inverse_mass: &[f64]) -> Result<(), OutsidePatch> {
+        let carries = |span| patch.all_functions(span, |at| inverse_mass[at] > 0.0);
+        self.span = nearest_span(&patch.spaces, self.position, carries).ok_or(OutsidePatch(self.position))?;
         Ok(())
     }
 
-    /// Moves with a velocity field (m/s) for `dt` seconds.
-    pub(crate) fn follow(&mut self, patch: &Patch, grid: ControlGrid, velocity: &VectorField, dt: f64) {
-        let mut v = [0.0; 2];
-        self.for_each_function(patch, grid, |at, n| v = [0, 1].map(|c| v[c] + n * velocity[c][at]));
+    /// Moves with a velocity field (m/s) for `dt` seconds; the gradient of that there, 1/s.
+    pub(crate) fn follow(&mut self, patch: &Patch, grid: ControlGrid, velocity: &VectorField, dt: f64) -> Gradient {
+        let (mut v, mut gradient) = ([0.0; 2], [[0.0; 2]; 2]);
+        self.for_each_gradient(patch, grid, |at, n, slope| {
+            for c in 0..2 {
+                v[c] += n * velocity[c][at];
+                (0..2).for_each(|d| gradient[c][d] += velocity[c][at] * slope[d]);
+            }
+        });
         self.position = [0, 1].map(|c| self.position[c] + dt * v[c]);
+        gradient
     }
 
     /// Calls `f` with control point and value of every shape function at the position.

@@ -8,12 +8,14 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+use crate::material::hencky::Gradient;
 use crate::particles::lattice::Lattice;
 use crate::splines::patch::Patch;
-use crate::splines::spline::{MAX_DEGREE, SplineSpace};
+use crate::splines::spline::{MAX_DEGREE, MeanFunctions, SplineSpace};
 
-/// Rows of spans in a strip: the highest degree, so that every second strip has control points of its own.
-const STRIP_ROWS: usize = MAX_DEGREE;
+/// Rows of spans in a strip: two more than the highest degree, so that every second strip has control points
+/// of its own.
+const STRIP_ROWS: usize = MAX_DEGREE + 2;
 
 /// What every material point carries.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -30,6 +32,10 @@ pub struct Point {
     pub stress: [f64; 3],
     /// Volume at t = 0 per unit thickness, m².
     pub volume: f64,
+    /// Width over height of its domain at t = 0.
+    pub aspect: f64,
+    /// Half the width and half the height of its domain now, m.
+    pub half_width: [f64; 2],
 }
 
 /// What a point of a fracturing body carries besides.
@@ -69,7 +75,7 @@ pub struct Strip {
     pub cells: Range<usize>,
     /// Its points.
     pub points: Range<usize>,
-    /// Control rows its points reach.
+    /// Control rows that the domains of its points reach.
     pub control_rows: Range<usize>,
 }
 
@@ -96,14 +102,45 @@ impl Point {
         [0, 1].map(|d| self.position[d] - self.displacement[d])
     }
 
-    /// The points of a lattice at rest.
-    pub(crate) fn of_lattice(lattice: &Lattice) -> Vec<Self> {
+    /// A point at rest with a domain of a volume, m², and a ratio of width and height.
+    pub(crate) fn at_rest(position: [f64; 2], volume: f64, aspect: f64) -> Self {
+        let [velocity, displacement] = [[0.0; 2]; 2];
+        let half_width = [0.5 * (volume * aspect).sqrt(), 0.5 * (volume / aspect).sqrt()];
+        let (strain, stress) = ([0.0; 3], [0.0; 3]);
+        Self { position, velocity, displacement, strain, stress, volume, aspect, half_width }
+    }
+
+    /// The points of a lattice of `particles_per_cell` points a span on `patch`, at rest.
+    pub(crate) fn of_lattice(lattice: &Lattice, patch: &Patch, particles_per_cell: [usize; 2]) -> Vec<Self> {
         let mut points = Vec::new();
         lattice.for_each_point(|_, _, position, volume| {
-            let [velocity, displacement] = [[0.0; 2]; 2];
-            points.push(Self { position, velocity, displacement, strain: [0.0; 3], stress: [0.0; 3], volume });
+            let [width, height] = [0, 1].map(|d| {
+                let span = patch.spaces[d].find_span(position[d]).unwrap_or_default();
+                patch.spaces[d].spans()[span].length() / particles_per_cell[d] as f64
+            });
+            points.push(Self::at_rest(position, volume, width / height));
         });
         points
+    }
+
+    /// Deforms the domain: a box with the second moments of what `F = I + displacement` makes of it.
+    #[inline(always)]
+    pub(crate) fn deform_domain(&mut self, displacement: &Gradient) {
+        let squares = [self.volume * self.aspect, self.volume / self.aspect];
+        for d in 0..2 {
+            let mut row = displacement[d];
+            row[d] += 1.0;
+            self.half_width[d] = 0.5 * (row[0] * row[0] * squares[0] + row[1] * row[1] * squares[1]).sqrt();
+        }
+    }
+
+    /// Means of the shape functions in x and y over the domain, which lies in a cell and reaches over at most
+    /// one knot in each direction; `order` is p + 1.
+    #[inline(always)]
+    pub(crate) fn mean_functions(&self, patch: &Patch, cell: &Cell, order: [usize; 2]) -> [MeanFunctions; 2] {
+        let mean =
+            |d: usize| patch.spaces[d].mean_functions(cell.span[d], self.position[d], self.half_width[d], order[d]);
+        [mean(0), mean(1)]
     }
 }
 
@@ -183,6 +220,7 @@ impl Cells {
         let Self { cells, strips, starts, spans, .. } = self;
         let [x, y] = [0, 1].map(|d| patch.spaces[d].spans());
         let order = patch.spaces[1].degree() + 1;
+        let control_rows = patch.spaces[1].dimension();
         cells.clear();
         strips.clear();
         for index in 0..spans[1].div_ceil(STRIP_ROWS) {
@@ -199,7 +237,8 @@ impl Cells {
                     index,
                     cells: first_cell..cells.len(),
                     points: starts[rows.start * spans[0]]..starts[rows.end * spans[0]],
-                    control_rows: y[rows.start].first..y[rows.end - 1].first + order,
+                    control_rows: y[rows.start].first.saturating_sub(1)
+                        ..(y[rows.end - 1].first + order + 1).min(control_rows),
                 });
             }
         }
@@ -219,8 +258,7 @@ mod tests {
     use crate::scene::Mesh;
 
     fn at(x: f64, y: f64) -> Point {
-        let zero = [0.0; 3];
-        Point { position: [x, y], velocity: [0.0; 2], displacement: [0.0; 2], strain: zero, stress: zero, volume: x }
+        Point::at_rest([x, y], x, 1.0)
     }
 
     #[test]

@@ -13,6 +13,8 @@ pub(crate) const MAX_DEGREE: usize = 4;
 pub const ROUND_OFF: f64 = 1e-9;
 /// Most basis functions on a span, `MAX_DEGREE + 1`.
 pub(crate) const MAX_ORDER: usize = MAX_DEGREE + 1;
+/// Most basis functions that do not vanish on an interval with one knot within it.
+pub(crate) const MAX_REACH: usize = MAX_ORDER + 1;
 /// Most shape functions at a point of a patch.
 pub(crate) const MAX_FUNCTIONS: usize = MAX_ORDER * MAX_ORDER;
 
@@ -27,6 +29,18 @@ pub struct Span {
     pub first: usize,
     /// `polynomials[k][m]`: coefficient of `t^m` of the basis function `first + k`.
     polynomials: [[f64; MAX_ORDER]; MAX_ORDER],
+    /// What lies beyond either end.
+    neighbours: [Neighbour; 2],
+}
+
+/// The span beyond an end of a span.
+#[derive(Debug, Clone, Copy, Default)]
+struct Neighbour {
+    /// Its length, m or unit of the knots: zero beyond the ends of the space and beyond repeated knots.
+    length: f64,
+    /// For the basis functions of both spans: `|x − knot|^p` times this is what the function has there beyond
+    /// the polynomial of the span itself; with the sign of the direction, so that it gives slopes.
+    kink: [f64; MAX_REACH],
 }
 
 impl Span {
@@ -45,6 +59,17 @@ pub struct ShapeFunctions {
     pub derivative: [f64; MAX_ORDER],
 }
 
+/// Means of basis functions and of their derivatives over an interval; entries past the functions are zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct MeanFunctions {
+    /// The first function: 0 is the one before the first of the span.
+    pub start: usize,
+    /// Means of the values.
+    pub value: [f64; MAX_REACH],
+    /// Means of the derivatives, 1/m or 1/unit of the knots.
+    pub derivative: [f64; MAX_REACH],
+}
+
 /// B-spline space of one direction.
 #[derive(Debug, Clone)]
 pub struct SplineSpace {
@@ -59,15 +84,24 @@ impl SplineSpace {
     pub fn new(degree: usize, knots: &[f64]) -> Self {
         assert!((1..=MAX_DEGREE).contains(&degree), "degree 1 to {MAX_DEGREE}");
         assert!(knots.len() >= 2 * (degree + 1), "an open knot vector has at least 2 (p + 1) knots");
-        let spans = (degree..knots.len() - degree - 1)
+        let mut spans: Vec<Span> = (degree..knots.len() - degree - 1)
             .filter(|&i| knots[i + 1] > knots[i])
             .map(|i| Span {
                 left: knots[i],
                 right: knots[i + 1],
                 first: i - degree,
                 polynomials: span_polynomials(degree, knots, i),
+                neighbours: [Neighbour::default(); 2],
             })
             .collect();
+        for right in 1..spans.len() {
+            let pair = [&spans[right - 1], &spans[right]];
+            if pair[1].first == pair[0].first + 1 {
+                let [beyond, before] = neighbours(degree, pair);
+                spans[right - 1].neighbours[1] = beyond;
+                spans[right].neighbours[0] = before;
+            }
+        }
         Self { degree, knots: knots.to_vec(), spans }
     }
 
@@ -140,6 +174,42 @@ impl SplineSpace {
         shape
     }
 
+    /// Means of the `order` = p + 1 functions of a span and the one beyond its nearer end over an interval
+    /// around `x` (m), which should lie in `span`. The interval is shortened where it would reach beyond two
+    /// spans, an end of the space or a repeated knot.
+    #[inline(always)]
+    pub(crate) fn mean_functions(&self, span: usize, x: f64, half_width: f64, order: usize) -> MeanFunctions {
+        let span = &self.spans[span];
+        let scale = 1.0 / span.length();
+        let to_end = [x - span.left, span.right - x];
+        let near = usize::from(to_end[1] < to_end[0]);
+        let neighbour = &span.neighbours[near];
+        let half_width = half_width.min(to_end[1 - near]).min(to_end[near] + neighbour.length);
+        let (t, r) = (to_end[0] * scale, half_width * scale);
+        let (tt, rr) = (t * t, r * r);
+        // Means of the powers of the local coordinate, and of their derivatives.
+        let power = [1.0, t, tt + rr / 3.0, t * (tt + rr), tt * tt + 2.0 * tt * rr + rr * rr / 5.0];
+        let slope = [0.0, scale, 2.0 * scale * t, scale * (3.0 * tt + rr), 4.0 * scale * t * (tt + rr)];
+        let beyond = half_width - to_end[near];
+        let start = usize::from(!(beyond > 0.0 && near == 0));
+        let mut mean = MeanFunctions { start, value: [0.0; MAX_REACH], derivative: [0.0; MAX_REACH] };
+        for k in 0..order {
+            for m in 0..order {
+                mean.value[k + 1 - start] += span.polynomials[k][m] * power[m];
+                mean.derivative[k + 1 - start] += span.polynomials[k][m] * slope[m];
+            }
+        }
+        if beyond > 0.0 {
+            let of_slope = beyond.powi(order as i32 - 1) / (2.0 * half_width);
+            let of_value = [-1.0, 1.0][near] * of_slope * beyond / order as f64;
+            for k in 0..=order {
+                mean.value[k] += of_value * neighbour.kink[k];
+                mean.derivative[k] += of_slope * neighbour.kink[k];
+            }
+        }
+        mean
+    }
+
     /// Second derivatives (1/m²) of the shape functions at `x` (m), which should lie in `span`.
     #[inline]
     pub(crate) fn second_derivatives(&self, span: usize, x: f64) -> [f64; MAX_ORDER] {
@@ -156,6 +226,13 @@ impl SplineSpace {
         second
     }
 
+    /// `Σ N_I (x_I − x)²` of the Greville abscissae at any x on a span as long as its neighbours, m².
+    #[inline(always)]
+    pub(crate) fn spread(&self, span: usize) -> f64 {
+        let length = self.spans[span].length();
+        (self.degree + 1) as f64 / 12.0 * length * length
+    }
+
     /// Greville abscissae, in the unit of the knots: the control values of the function x.
     pub fn greville(&self) -> Vec<f64> {
         let first = fault!("greville-a-knot-early", 1 => 0);
@@ -163,6 +240,19 @@ impl SplineSpace {
             .map(|i| self.knots[i + first..i + first + self.degree].iter().sum::<f64>() / self.degree as f64)
             .collect()
     }
+}
+
+/// What lies beyond the knot between two spans, for the left and for the right one.
+fn neighbours(degree: usize, [left, right]: [&Span; 2]) -> [Neighbour; 2] {
+    let highest = |span: &Span, k: usize| span.polynomials[k][degree] / span.length().powi(degree as i32);
+    let mut kink = [0.0; MAX_REACH];
+    for k in 0..=degree {
+        kink[k] -= highest(left, k);
+        kink[k + 1] += highest(right, k);
+    }
+    let sign = if degree.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let before = Neighbour { length: left.length(), kink: kink.map(|k| sign * k) };
+    [Neighbour { length: right.length(), kink }, before]
 }
 
 /// Cox–de Boor on polynomials of the local coordinate of the span `[knots[i], knots[i + 1])`.
@@ -216,6 +306,39 @@ mod tests {
                     let difference = (beyond.derivative[k] - before.derivative[k]) / (2.0 * step);
                     assert_abs_diff_eq!(second[k], difference, epsilon = 1e-3 * (1.0 + second[k].abs()));
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn means_are_those_of_many_points() {
+        const MANY: usize = 2000;
+        for degree in 1..=4 {
+            let space = graded(degree);
+            for (x, half_width) in [(0.02, 0.01), (0.11, 0.04), (0.148, 0.01), (0.3, 0.1), (0.42, 0.3), (0.89, 0.05)] {
+                let span = space.find_span(x).unwrap();
+                let mean = space.mean_functions(span, x, half_width, degree + 1);
+                let (mut value, mut slope) = ([0.0; 16], [0.0; 16]);
+                let to_end = [x - space.spans()[span].left, space.spans()[span].right - x];
+                let (near, far) = (to_end[0].min(to_end[1]), to_end[0].max(to_end[1]));
+                let bound = if to_end[0] > to_end[1] && span == 2 { near } else { far };
+                let half_width = if x == 0.42 { near } else { f64::min(half_width, bound) };
+                for n in 0..MANY {
+                    let y = x + half_width * ((2 * n + 1) as f64 / MANY as f64 - 1.0);
+                    let span = space.find_span(y).unwrap();
+                    let (shape, first) = (space.shape_functions(span, y), space.spans()[span].first);
+                    for k in 0..=degree {
+                        value[first + k] += shape.value[k] / MANY as f64;
+                        slope[first + k] += shape.derivative[k] / MANY as f64;
+                    }
+                }
+                let first = space.spans()[span].first + mean.start;
+                for k in (0..=degree + 1).filter(|k| first + k > 0) {
+                    let at = first + k - 1;
+                    assert_abs_diff_eq!(mean.value[k], value[at], epsilon = 1e-4);
+                    assert_abs_diff_eq!(mean.derivative[k], slope[at], epsilon = 2e-2);
+                }
+                assert_abs_diff_eq!(mean.value.iter().sum::<f64>(), 1.0, epsilon = 1e-14);
             }
         }
     }

@@ -101,7 +101,7 @@ fn material_points(key: &str, body: &Body, fracture: Option<&Fracture>, ground: 
 /// Functions of the updated frame reach across gaps and join their sides.
 fn gaps(key: &str, body: &Body, degree: &[usize; 2], ground: &Ground<'_>, findings: &mut Findings) {
     let [_, h] = ground.span_lengths(&body.shape);
-    let cells = degree[0].max(degree[1]) as f64 + 0.5;
+    let cells = (degree[0].max(degree[1]) + 1) as f64;
     if let Some(([x, y], width)) = narrow_gap(&body.shape, cells * h) {
         let message = format!(
             "a gap or hole of body {:?} is narrower than {cells} cells: {width:.2e} m beside ({x:.4e}, {y:.4e}) m; in the \

@@ -91,7 +91,8 @@ pub(crate) fn narrow_gap(shape: &Shape, reach: f64) -> Option<(Position, f64)> {
             let s = from + (to - from) * (i as f64 + 0.5) / count as f64;
             let (place, tangent) = edge.at(s);
             let [left, _] = beside(edge, s);
-            let outwards = if shape.contains(left) { 1.0 } else { -1.0 } / tangent[0].hypot(tangent[1]);
+            let side = if shape.contains(left) { 1.0 } else { -1.0 };
+            let outwards = side / tangent[0].hypot(tangent[1]);
             let at = |d: f64| [place[0] + d * outwards * tangent[1], place[1] - d * outwards * tangent[0]];
             let found = (1..=GAP_LOOKS).map(|k| reach * k as f64 / GAP_LOOKS as f64).find(|d| shape.contains(at(*d)));
             found.map(|d| (place, d))

@@ -19,15 +19,14 @@
 use rayon::prelude::*;
 
 use super::transfer::walk;
-use super::windows::{Window, control_values, cut, scatter};
+use super::windows::{Window, control_values, cut, in_cell, scatter, zeros};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::lane::{Vectorised, dispatch, each};
 use crate::material::hencky::Gradient;
 use crate::particles::points::{Cell, Cells, Point};
 use crate::splines::patch::Patch;
-use crate::splines::spline::MAX_FUNCTIONS;
-use crate::splines::spline::{MAX_ORDER, ShapeFunctions, SplineSpace};
+use crate::splines::spline::{MAX_REACH, MeanFunctions, SplineSpace};
 
 /// `D/h²` below which the derivatives stand for the affine fit.
 const DEGENERATE: f64 = 1e-14;
@@ -92,6 +91,11 @@ impl AffineVelocities {
         });
     }
 
+    /// The velocity gradients if they are fitted with the shape functions as weights, else none.
+    pub(super) fn fitted(&mut self) -> &mut [Gradient] {
+        if self.fit == Fit::Weighted { &mut self.gradients } else { &mut [] }
+    }
+
     /// Heap memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
         self.gradients.len() * size_of::<Gradient>() + 8 * (self.greville[0].len() + self.greville[1].len())
@@ -105,32 +109,33 @@ impl Fit {
         self,
         space: &SplineSpace,
         span: usize,
-        shape: &ShapeFunctions,
-        lever: &[f64; MAX_ORDER],
-    ) -> [f64; MAX_ORDER] {
+        shape: &MeanFunctions,
+        lever: &[f64; MAX_REACH],
+    ) -> [f64; MAX_REACH] {
         if self == Self::Taylor {
             return shape.derivative;
         }
-        let spread: f64 = (0..=space.degree()).map(|k| shape.value[k] * lever[k] * lever[k]).sum();
+        let spread: f64 = (0..MAX_REACH).map(|k| shape.value[k] * lever[k] * lever[k]).sum();
         let length = space.spans()[span].length();
         if spread <= DEGENERATE * length * length {
             return shape.derivative;
         }
         let inertia = fault!("apic-spread-of-quadratics", spread => 0.25 * length * length);
-        let mut slopes = [0.0; MAX_ORDER];
-        for k in 0..MAX_ORDER {
+        let mut slopes = [0.0; MAX_REACH];
+        for k in 0..MAX_REACH {
             slopes[k] = shape.value[k] * lever[k] / inertia;
         }
         slopes
     }
 }
 
-/// `x_k − x` of the control points of a span.
+/// `x_k − x` of the control points that a point reaches; `first` is the first of its span.
 #[inline(always)]
-fn levers(greville: &[f64], first: usize, order: usize, x: f64) -> [f64; MAX_ORDER] {
-    let mut levers = [0.0; MAX_ORDER];
-    for k in 0..order {
-        levers[k] = greville[first + k] - x;
+fn levers(greville: &[f64], first: usize, mean: &MeanFunctions, order: usize, x: f64) -> [f64; MAX_REACH] {
+    let mut levers = [0.0; MAX_REACH];
+    let end = (order + 1).min(greville.len() + 1 - first - mean.start);
+    for k in 0..end {
+        levers[k] = greville[first + mean.start + k - 1] - x;
     }
     levers
 }
@@ -164,25 +169,27 @@ impl GradientsFromGrid<'_> {
             let local = control_values(self.velocity, self.grid, cell, kx, ky);
             for at in cell.points.start - offset..cell.points.end - offset {
                 let position = self.points[at].position;
-                let sx = x.shape_functions(cell.span[0], position[0]);
-                let sy = y.shape_functions(cell.span[1], position[1]);
-                let gx =
-                    self.fit.slopes(x, cell.span[0], &sx, &levers(&self.greville[0], cell.first[0], kx, position[0]));
-                let gy =
-                    self.fit.slopes(y, cell.span[1], &sy, &levers(&self.greville[1], cell.first[1], ky, position[1]));
+                let functions = self.points[at].mean_functions(self.patch, cell, [kx, ky]);
+                let [sx, sy] = &functions;
+                let lx = levers(&self.greville[0], cell.first[0], sx, kx, position[0]);
+                let ly = levers(&self.greville[1], cell.first[1], sy, ky, position[1]);
+                let gx = self.fit.slopes(x, cell.span[0], sx, &lx);
+                let gy = self.fit.slopes(y, cell.span[1], sy, &ly);
                 let mut value = [0.0; 2];
-                for l in 0..ky {
-                    for k in 0..kx {
-                        value = each!(c in [0, 1] => value[c] + sx.value[k] * sy.value[l] * local[l * kx + k][c]);
+                for l in 0..=ky {
+                    let first = in_cell(&functions, l, kx);
+                    for k in 0..=kx {
+                        value = each!(c in [0, 1] => value[c] + sx.value[k] * sy.value[l] * local[first + k][c]);
                     }
                 }
                 // Against the velocity at the point: a constant has no gradient, whatever rounding does to
                 // the factors.
                 let mut gradient = [[0.0; 2]; 2];
-                for l in 0..ky {
-                    for k in 0..kx {
+                for l in 0..=ky {
+                    let first = in_cell(&functions, l, kx);
+                    for k in 0..=kx {
                         let factors = [gx[k] * sy.value[l], sx.value[k] * gy[l]];
-                        let against = each!(c in [0, 1] => local[l * kx + k][c] - value[c]);
+                        let against = each!(c in [0, 1] => local[first + k][c] - value[c]);
                         gradient = each!(c in [0, 1] => each!(d in [0, 1] => gradient[c][d] + against[c] * factors[d]));
                     }
                 }
@@ -215,22 +222,22 @@ impl Vectorised for GradientsToGrid<'_> {
 impl GradientsToGrid<'_> {
     #[inline(always)]
     fn walk(mut self, kx: usize, ky: usize) {
-        let [x, y] = &self.patch.spaces;
         for cell in self.cells {
-            let mut sums = [[0.0; 2]; MAX_FUNCTIONS];
+            let mut sums = zeros();
             for at in cell.points.clone() {
                 let point = &self.points[at];
-                let sx = x.shape_functions(cell.span[0], point.position[0]);
-                let sy = y.shape_functions(cell.span[1], point.position[1]);
-                let lx = levers(&self.greville[0], cell.first[0], kx, point.position[0]);
-                let ly = levers(&self.greville[1], cell.first[1], ky, point.position[1]);
+                let functions = point.mean_functions(self.patch, cell, [kx, ky]);
+                let [sx, sy] = &functions;
+                let lx = levers(&self.greville[0], cell.first[0], sx, kx, point.position[0]);
+                let ly = levers(&self.greville[1], cell.first[1], sy, ky, point.position[1]);
                 let mass = self.density * point.volume;
                 let [[xx, xy], [yx, yy]] = each!(c in [0, 1] => each!(d in [0, 1] => mass * self.gradients[at][c][d]));
                 let [cx, cy] = fault!("affine-transposed", [[xx, xy], [yx, yy]] => [[xx, yx], [xy, yy]]);
-                for l in 0..ky {
-                    for k in 0..kx {
+                for l in 0..=ky {
+                    let first = in_cell(&functions, l, kx);
+                    for k in 0..=kx {
                         let n = sx.value[k] * sy.value[l];
-                        let sum = &mut sums[l * kx + k];
+                        let sum = &mut sums[first + k];
                         sum[0] += n * (cx[0] * lx[k] + cx[1] * ly[l]);
                         sum[1] += n * (cy[0] * lx[k] + cy[1] * ly[l]);
                     }

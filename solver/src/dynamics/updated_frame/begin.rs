@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use super::affine::{AffineVelocities, Fit};
-use super::carried_place::PlacedPoints;
 use super::field::DiscreteField;
 use super::grid::NodalFields;
 use super::held_edges::HeldEdges;
@@ -61,7 +60,7 @@ impl DiscreteField {
         for (traction, load) in self.loads.iter_mut().enumerate() {
             let bare =
                 |OutsidePatch(place)| Failure::LostTraction { body: 0, traction, lost: LostTraction::Bare(place) };
-            load.attach(&self.patch, &self.nodes, self.density).map_err(bare)?;
+            load.attach(&self.patch, &self.nodes).map_err(bare)?;
         }
         self.attach_loads()
     }
@@ -69,7 +68,7 @@ impl DiscreteField {
     /// Sorted points at rest, on nodal fields of zeros.
     fn at_rest(scene: &Scene, body: &Body, whole: &Arc<Patch>) -> Result<Self, Failure> {
         let (material, analysis) = (&scene.materials[&body.material], &scene.analysis);
-        let mut points = Point::of_lattice(&Lattice::moving(whole, body));
+        let mut points = Point::of_lattice(&Lattice::moving(whole, body), whole, body.particles_per_cell);
         if points.is_empty() {
             return Err(Failure::NoPoints(0));
         }
@@ -84,9 +83,8 @@ impl DiscreteField {
         let sides: Vec<_> = fixed.iter().filter_map(side).collect();
         let nodes = NodalFields::new(&patch, held_sides::constraints(whole, &patch, origin, &sides));
         let moving = moving.into_iter().map(|boundary| held_sides::as_edge(whole, boundary));
-        let placed = PlacedPoints { patch: &patch, cells: &cells, points: &points };
-        let edges = HeldEdges::new(whole, body, body.conditions.iter().cloned().chain(moving), &placed);
-        let loads = body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t, &placed)).collect();
+        let edges = HeldEdges::new(whole, body, body.conditions.iter().cloned().chain(moving));
+        let loads = body.tractions.iter().map(|t| SurfaceLoad::new(whole, body, t)).collect();
         let moduli = ElasticModuli::new(material, analysis.plane);
         let finite = analysis.kinematics == Kinematics::Finite;
         Ok(Self {

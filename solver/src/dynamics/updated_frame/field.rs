@@ -183,9 +183,15 @@ impl DiscreteField {
         let motions = match self.deformation.take() {
             None => self.move_points(dt, self.cells.strips.iter().map(|_| SmallStrain).collect()),
             Some(mut deformation) => {
-                let strips = cut(&mut deformation, self.cells.strips.iter().map(|s| s.points.clone()));
-                let motions = self.move_points(dt, strips.into_iter().map(FiniteStrain).collect());
-                self.deformation = Some(deformation);
+                let mut affine = self.affine.take();
+                let fitted = affine.as_mut().map_or(&mut [][..], AffineVelocities::fitted);
+                let ranges = || self.cells.strips.iter().map(|s| s.points.clone());
+                let fitted =
+                    if fitted.is_empty() { ranges().map(|_| &mut [][..]).collect() } else { cut(fitted, ranges()) };
+                let strips = cut(&mut deformation, ranges()).into_iter().zip(fitted);
+                let strips = strips.map(|(deformation, fitted)| FiniteStrain { deformation, fitted }).collect();
+                let motions = self.move_points(dt, strips);
+                (self.deformation, self.affine) = (Some(deformation), affine);
                 motions
             }
         };
@@ -193,15 +199,14 @@ impl DiscreteField {
             surface.follow(&self.view(), &self.nodes.velocity, dt);
             self.surface = Some(surface);
         }
-        let Self { patch, nodes, points, forcing, loads, edges, sides, density, .. } = self;
+        let Self { patch, nodes, points, forcing, loads, edges, sides, .. } = self;
         for load in loads {
             load.move_points(patch, nodes.grid, &nodes.velocity, dt);
         }
         if let Some(edges) = edges {
             edges.move_points(patch, nodes, dt);
         }
-        let slid =
-            sides.iter_mut().map(|side| side.follow(patch, nodes, *density, dt)).collect::<Result<Vec<_>, _>>()?;
+        let slid = sides.iter_mut().map(|side| side.follow(patch, nodes, dt)).collect::<Result<Vec<_>, _>>()?;
         if let Some(forcing) = forcing {
             forcing.after_motion(points, self.time, dt);
         }
@@ -249,7 +254,7 @@ impl DiscreteField {
     }
 
     pub(super) fn sort(&mut self) -> Result<(), OutsidePatch> {
-        if self.cells.sort(&self.patch, &mut self.points).is_err() {
+        if self.cells.sort(&self.patch, &mut self.points).is_err() || self.reaches_beyond() {
             self.follow()?;
         }
         let cells = &self.cells;
@@ -273,9 +278,9 @@ impl DiscreteField {
     /// # Errors
     /// If one has lost its material, or conditions are not independent.
     pub(super) fn attach_loads(&mut self) -> Result<(), Failure> {
-        let Self { patch, nodes, loads, edges, density, .. } = self;
-        loads.iter_mut().try_for_each(|load| load.attach(patch, nodes, *density))?;
-        edges.iter_mut().try_for_each(|edges| edges.attach(patch, nodes, *density))
+        let Self { patch, nodes, loads, edges, .. } = self;
+        loads.iter_mut().try_for_each(|load| load.attach(patch, nodes))?;
+        edges.iter_mut().try_for_each(|edges| edges.attach(patch, nodes))
     }
 
     /// History, phase field and degraded stress; an elastic body has its stress from G2P.
@@ -298,7 +303,7 @@ impl DiscreteField {
         nodes.clear();
         let (grid, density) = (nodes.grid, *density);
         let NodalFields { mass, arrived: [px, py], force: [fx, fy], .. } = nodes;
-        scatter(&cells.strips, [mass, px, py, fx, fy], [grid.stride; 5], |strip, window| {
+        scatter(&cells.strips, [px, py, fx, fy, mass], [grid.stride; 5], |strip, window| {
             let cells = &cells.cells[strip.cells.clone()];
             dispatch(PointsToGrid { patch, grid, density, cells, points, window });
         });

@@ -12,7 +12,6 @@
 //!
 //! The first is an impact. It does the work `−λ·B w` and costs `½ λ·(B v − B w)`.
 
-use super::carried_place::{CarriedPlace, PlacedPoints};
 use super::grid::{ImposedEnergy, NodalFields};
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::edge_moments::{Moment, Multipliers, moments_of, multiplier_space};
@@ -22,6 +21,7 @@ use crate::dynamics::reaction::Reaction;
 use crate::dynamics::surface::{SurfacePoint, smooth_parts};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::vectors::dot;
+use crate::particles::follower::Follower;
 use crate::scene::{Body, EdgeCondition};
 use crate::splines::patch::Patch;
 use crate::splines::spline::SplineSpace;
@@ -45,7 +45,7 @@ pub(super) struct HeldEdges {
 struct HeldEdge {
     condition: EdgeCondition,
     space: SplineSpace,
-    points: Vec<(CarriedPlace, SurfacePoint)>,
+    points: Vec<(Follower, SurfacePoint)>,
     reaction: Reaction,
     /// Work of the impact at the present whole step, J/m.
     struck: f64,
@@ -57,12 +57,11 @@ impl HeldEdges {
         patch: &Patch,
         body: &Body,
         conditions: impl Iterator<Item = EdgeCondition>,
-        placed: &PlacedPoints<'_>,
     ) -> Option<Box<Self>> {
         let edge = |condition: EdgeCondition| {
             let parts = smooth_parts(patch, body, &condition.edge);
             let on_material = parts.iter().flatten().filter(|point| body.shape.contains(point.inner));
-            let points: Vec<_> = on_material.map(|point| (CarriedPlace::new(body, point, placed), *point)).collect();
+            let points: Vec<_> = on_material.map(|point| (Follower::new(point.position), *point)).collect();
             let reaction = Reaction::at_start(condition.prescribed.start()[1]);
             (!points.is_empty()).then(|| HeldEdge {
                 space: multiplier_space(patch, &parts),
@@ -79,7 +78,7 @@ impl HeldEdges {
     /// Keeps some of the points, by their positions (m); the work so far stays with who `keeps_work`.
     pub(super) fn keep(&mut self, keeps_work: bool, keeps: impl Fn([f64; 2]) -> bool) {
         for edge in &mut self.edges {
-            edge.points.retain(|(place, _)| keeps(place.position()));
+            edge.points.retain(|(place, _)| keeps(place.position));
             if !keeps_work {
                 edge.reaction.forget_work();
             }
@@ -90,9 +89,9 @@ impl HeldEdges {
     ///
     /// # Errors
     /// A point with no material within one span of it, or conditions that are not independent.
-    pub(super) fn attach(&mut self, patch: &Patch, nodes: &NodalFields, density: f64) -> Result<(), Failure> {
+    pub(super) fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), Failure> {
         let mut places = self.edges.iter_mut().flat_map(|edge| &mut edge.points);
-        places.try_for_each(|(place, _)| place.attach(patch, &nodes.inverse_mass, density))?;
+        places.try_for_each(|(place, _)| place.attach(patch, &nodes.inverse_mass))?;
         self.multipliers = self.on_grid(patch, nodes)?;
         Ok(())
     }
@@ -202,14 +201,14 @@ impl HeldEdges {
         archive.value(&mut self.step)?;
         for edge in &mut self.edges {
             archive.value(&mut edge.reaction)?;
-            edge.points.iter_mut().try_for_each(|(place, _)| place.exchange(archive))?;
+            edge.points.iter_mut().try_for_each(|(place, _)| archive.value(&mut place.position))?;
         }
         Ok(())
     }
 
     /// Heap memory, bytes.
     pub(super) fn bytes(&self) -> usize {
-        self.edges.iter().map(|edge| edge.points.len() * size_of::<(CarriedPlace, SurfacePoint)>()).sum()
+        self.edges.iter().map(|edge| edge.points.len() * size_of::<(Follower, SurfacePoint)>()).sum()
     }
 
     /// The multipliers that can move something on the present grid.
@@ -219,9 +218,9 @@ impl HeldEdges {
     fn on_grid(&self, patch: &Patch, nodes: &NodalFields) -> Result<Option<Multipliers>, Failure> {
         let mut moments = Vec::new();
         for (number, edge) in self.edges.iter().enumerate() {
-            let functions = |place: &CarriedPlace| {
+            let functions = |place: &Follower| {
                 let mut values = Vec::new();
-                place.for_each_continued(patch, nodes.grid, |at, n| values.push((at, n)));
+                place.for_each_function(patch, nodes.grid, |at, n| values.push((at, n)));
                 values
             };
             let points = edge.points.iter().map(|(place, point)| (*point, functions(place)));

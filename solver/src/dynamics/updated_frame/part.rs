@@ -56,6 +56,17 @@ impl DiscreteField {
         })
     }
 
+    /// Whether a point is in an outermost span of the part where the patch goes on: its domain may reach
+    /// further.
+    pub(super) fn reaches_beyond(&self) -> bool {
+        let covered = self.covered_spans();
+        (0..2).any(|d| {
+            let inner = [covered[d].start > 0, covered[d].end < self.whole.spaces[d].spans().len()];
+            let last = covered[d].len() - 1;
+            self.cells.cells.iter().any(|c| (inner[0] && c.span[d] == 0) || (inner[1] && c.span[d] == last))
+        })
+    }
+
     /// Makes some spans of the patch the part; the points are to be sorted anew.
     pub(super) fn occupy(&mut self, spans: &[Range<usize>; 2]) {
         let (patch, origin) = (self.whole.part(spans), origin(&self.whole, spans));

@@ -137,8 +137,7 @@ mod tests {
         for (row, line) in rows.iter().rev().enumerate() {
             for (column, mark) in line.chars().enumerate().filter(|(_, mark)| *mark != ' ') {
                 let position = [0.1 * column as f64, 0.1 * row as f64];
-                let (velocity, displacement, strain, stress) = ([0.0; 2], [0.0; 2], [0.0; 3], [0.0; 3]);
-                points.push(Point { position, velocity, displacement, strain, stress, volume: 0.01 });
+                points.push(Point::at_rest(position, 0.01, 1.0));
                 let phase = if mark == '#' { 1.0 } else { 0.0 };
                 fracture.push(FracturePoint { phase, ..Default::default() });
             }

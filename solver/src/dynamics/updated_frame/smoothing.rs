@@ -5,13 +5,12 @@
 //! makes it a filter for all fields but the constant; that is the loss of PIC, and what XPIC corrects.
 
 use super::transfer::walk;
-use super::windows::{Window, control_values, scatter};
+use super::windows::{Window, control_values, in_cell, scatter, zeros};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::lane::{Vectorised, dispatch, each};
 use crate::particles::points::{Cell, Cells, Point};
 use crate::splines::patch::Patch;
-use crate::splines::spline::MAX_FUNCTIONS;
 
 /// Points on a grid, and the lumped mass they give it.
 #[derive(Debug, Clone, Copy)]
@@ -67,25 +66,26 @@ impl Vectorised for GridToGrid<'_> {
 impl GridToGrid<'_> {
     #[inline(always)]
     fn walk(mut self, kx: usize, ky: usize) {
-        let [x, y] = &self.patch.spaces;
         for cell in self.cells {
             let local = control_values(self.field, self.grid, cell, kx, ky);
-            let mut sums = [[0.0; 2]; MAX_FUNCTIONS];
+            let mut sums = zeros();
             for point in &self.points[cell.points.clone()] {
-                let sx = x.shape_functions(cell.span[0], point.position[0]);
-                let sy = y.shape_functions(cell.span[1], point.position[1]);
+                let functions = point.mean_functions(self.patch, cell, [kx, ky]);
+                let [sx, sy] = &functions;
                 let mut value = [0.0; 2];
-                for l in 0..ky {
-                    for k in 0..kx {
+                for l in 0..=ky {
+                    let first = in_cell(&functions, l, kx);
+                    for k in 0..=kx {
                         let n = sx.value[k] * sy.value[l];
-                        value = each!(c in [0, 1] => value[c] + n * local[l * kx + k][c]);
+                        value = each!(c in [0, 1] => value[c] + n * local[first + k][c]);
                     }
                 }
                 let momentum = value.map(|v| self.density * point.volume * v);
-                for l in 0..ky {
-                    for k in 0..kx {
+                for l in 0..=ky {
+                    let first = in_cell(&functions, l, kx);
+                    for k in 0..=kx {
                         let n = sx.value[k] * sy.value[l];
-                        let sum = &mut sums[l * kx + k];
+                        let sum = &mut sums[first + k];
                         *sum = each!(c in [0, 1] => sum[c] + n * momentum[c]);
                     }
                 }

@@ -3,14 +3,13 @@
 use super::field::DiscreteField;
 use super::transfer::walk;
 use super::velocity_transfer::stable_fraction;
-use super::windows::{Window, control_values, scatter};
+use super::windows::{Window, control_values, in_cell, scatter, zeros};
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{Vectorised, dispatch, each};
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::points::{Cell, Point};
 use crate::splines::patch::Patch;
-use crate::splines::spline::MAX_FUNCTIONS;
 
 impl DiscreteField {
     /// Critical time step of the body, undamaged or broken, at the present positions, s; infinite if nothing
@@ -118,19 +117,19 @@ impl Vectorised for ElasticForces<'_> {
 impl ElasticForces<'_> {
     #[inline(always)]
     fn walk(mut self, kx: usize, ky: usize) {
-        let [x, y] = &self.patch.spaces;
         let ElasticModuli { lambda, mu, .. } = self.moduli;
         for cell in self.cells {
             let local = control_values(self.field, self.grid, cell, kx, ky);
-            let mut forces = [[0.0; 2]; MAX_FUNCTIONS];
+            let mut forces = zeros();
             for point in &self.points[cell.points.clone()] {
-                let sx = x.shape_functions(cell.span[0], point.position[0]);
-                let sy = y.shape_functions(cell.span[1], point.position[1]);
+                let functions = point.mean_functions(self.patch, cell, [kx, ky]);
+                let [sx, sy] = &functions;
                 let slope = |k: usize, l: usize| [sx.derivative[k] * sy.value[l], sx.value[k] * sy.derivative[l]];
                 let mut gradient = [[0.0; 2]; 2];
-                for l in 0..ky {
-                    for k in 0..kx {
-                        let (u, d) = (local[l * kx + k], slope(k, l));
+                for l in 0..=ky {
+                    let first = in_cell(&functions, l, kx);
+                    for k in 0..=kx {
+                        let (u, d) = (local[first + k], slope(k, l));
                         gradient = each!(c in [0, 1] => each!(i in [0, 1] => gradient[c][i] + u[c] * d[i]));
                     }
                 }
@@ -138,9 +137,10 @@ impl ElasticForces<'_> {
                 let spherical = lambda * (uxx + uyy);
                 let stress = [spherical + 2.0 * mu * uxx, spherical + 2.0 * mu * uyy, mu * (uxy + uyx)];
                 let [xx, yy, xy] = stress.map(|s| s * point.volume);
-                for l in 0..ky {
-                    for k in 0..kx {
-                        let (f, d) = (&mut forces[l * kx + k], slope(k, l));
+                for l in 0..=ky {
+                    let first = in_cell(&functions, l, kx);
+                    for k in 0..=kx {
+                        let (f, d) = (&mut forces[first + k], slope(k, l));
                         *f = [f[0] + xx * d[0] + xy * d[1], f[1] + xy * d[0] + yy * d[1]];
                     }
                 }

@@ -1,13 +1,13 @@
 //! Tractions on surface points s that move with the body: `f_I = factor(time) Σ_s f_s N_I(x_s)`, where the
 //! force f_s of a pressure turns and stretches with the boundary.
 
-use super::carried_place::{CarriedPlace, PlacedPoints};
 use super::grid::NodalFields;
 use crate::checkpoint::{Archive, StateError};
 use crate::dynamics::loads::KickFactor;
 use crate::dynamics::surface::{SurfacePoint, surface_points};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::vectors::{cofactor, dot};
+use crate::particles::follower::Follower;
 use crate::particles::points::OutsidePatch;
 use crate::scene::{Body, Load, Traction};
 use crate::splines::patch::Patch;
@@ -26,7 +26,7 @@ pub(crate) struct SurfaceLoad {
 
 #[derive(Debug, Clone, Copy)]
 struct MovingSurfacePoint {
-    place: CarriedPlace,
+    place: Follower,
     /// Length at t = 0, m.
     length: f64,
     /// At full strength, N/m.
@@ -35,11 +35,11 @@ struct MovingSurfacePoint {
 
 impl SurfaceLoad {
     /// The surface points of a traction at t = 0.
-    pub(super) fn new(patch: &Patch, body: &Body, traction: &Traction, placed: &PlacedPoints<'_>) -> Self {
+    pub(super) fn new(patch: &Patch, body: &Body, traction: &Traction) -> Self {
         let carried = |point: SurfacePoint| {
             let SurfacePoint { position, length, normal, .. } = point;
             let force = traction.load.traction(position, normal).map(|t| length * t);
-            MovingSurfacePoint { place: CarriedPlace::new(body, &point, placed), length, force }
+            MovingSurfacePoint { place: Follower::new(position), length, force }
         };
         Self {
             points: surface_points(patch, body, &traction.edge).into_iter().map(carried).collect(),
@@ -52,7 +52,7 @@ impl SurfaceLoad {
     /// A place where its force is not finite, m.
     pub(crate) fn undefined(&self) -> Option<[f64; 2]> {
         let is_undefined = |point: &&MovingSurfacePoint| !point.force.iter().all(|f| f.is_finite());
-        self.points.iter().find(is_undefined).map(|point| point.place.position())
+        self.points.iter().find(is_undefined).map(|point| point.place.position)
     }
 
     /// Power during the last motion of `dt` seconds, of the forces before and after it at `time`, W/m.
@@ -64,8 +64,8 @@ impl SurfaceLoad {
     ///
     /// # Errors
     /// A surface point with no material within one span of it.
-    pub(crate) fn attach(&mut self, patch: &Patch, nodes: &NodalFields, density: f64) -> Result<(), OutsidePatch> {
-        self.points.iter_mut().try_for_each(|point| point.place.attach(patch, &nodes.inverse_mass, density))
+    pub(crate) fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), OutsidePatch> {
+        self.points.iter_mut().try_for_each(|point| point.place.attach(patch, &nodes.inverse_mass))
     }
 
     /// Position (m) of every control point that answers to the load, and its share of the length of the edge,
@@ -118,7 +118,7 @@ impl SurfaceLoad {
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
         let Self { points, follows, factor: _, powers } = self;
-        points.iter_mut().try_for_each(|point| point.place.exchange(archive))?;
+        points.iter_mut().try_for_each(|point| archive.value(&mut point.place.position))?;
         if *follows {
             points.iter_mut().try_for_each(|point| archive.value(&mut point.force))?;
         }

@@ -14,7 +14,7 @@ use crate::dynamics::forcing::{Forcing, VolumeLoad};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::material::hencky::{Gradient, gradient_at_end};
-use crate::particles::points::{Cells, Point};
+use crate::particles::points::{Cell, Cells, Point};
 use crate::splines::patch::Patch;
 
 /// A forcing, and what it needs per point.
@@ -45,12 +45,12 @@ impl PointForcing {
             .zip(&cells.strips)
             .map(|(motion, strip)| {
                 let mut power = 0.0;
-                for (span, at) in in_cells(cells, strip.cells.clone()) {
+                for (cell, at) in in_cells(cells, strip.cells.clone()) {
                     let point = &points[at];
                     let moved = &mut motion[at - strip.points.start];
                     *moved = Default::default();
                     let (v, gradient) = moved;
-                    for_each_function(patch, grid, span, point.position, |node, n, slope| {
+                    for_each_function(patch, grid, cell, point, |node, n, slope| {
                         for i in 0..2 {
                             v[i] += n * velocity[i][node];
                             gradient[i] = [0, 1].map(|j| gradient[i][j] + slope[j] * velocity[i][node]);
@@ -88,9 +88,9 @@ impl PointForcing {
         let grid = patch.control_grid();
         scatter(&cells.strips, force.each_mut().map(|f| &mut f[..]), [grid.stride; 2], |strip, window| {
             let above = window.first_row * grid.stride;
-            for (span, at) in in_cells(cells, strip.cells.clone()) {
+            for (cell, at) in in_cells(cells, strip.cells.clone()) {
                 let (point, load) = (&points[at], &self.loads[at]);
-                for_each_function(patch, grid, span, point.position, |node, n, slope| {
+                for_each_function(patch, grid, cell, point, |node, n, slope| {
                     for i in 0..2 {
                         let stress = load.stress[i][0] * slope[0] + load.stress[i][1] * slope[1];
                         window.fields[i][node - above] += point.volume * (n * load.force[i] + stress);
@@ -116,25 +116,27 @@ fn power_density(load: &VolumeLoad, (v, gradient): &([f64; 2], Gradient)) -> f64
     (0..2).map(|i| load.force[i] * v[i] + (0..2).map(|j| load.stress[i][j] * gradient[i][j]).sum::<f64>()).sum()
 }
 
-/// Span and index of the points of some cells.
-fn in_cells(cells: &Cells, some: std::ops::Range<usize>) -> impl Iterator<Item = ([usize; 2], usize)> {
-    cells.cells[some].iter().flat_map(|cell| cell.points.clone().map(|at| (cell.span, at)))
+/// Cell and index of the points of some cells.
+fn in_cells(cells: &Cells, some: std::ops::Range<usize>) -> impl Iterator<Item = (&Cell, usize)> {
+    cells.cells[some].iter().flat_map(|cell| cell.points.clone().map(move |at| (cell, at)))
 }
 
-/// Calls `f` with control point, value and gradient of every shape function at a position.
+/// Calls `f` with control point and means of value and gradient of every shape function over the domain of a
+/// point.
 fn for_each_function(
     patch: &Patch,
     grid: ControlGrid,
-    span: [usize; 2],
-    position: [f64; 2],
+    cell: &Cell,
+    point: &Point,
     mut f: impl FnMut(usize, f64, [f64; 2]),
 ) {
-    let [sx, sy] = [0, 1].map(|d| patch.spaces[d].shape_functions(span[d], position[d]));
-    let first = [0, 1].map(|d| patch.spaces[d].spans()[span[d]].first);
-    for l in 0..=patch.spaces[1].degree() {
-        for k in 0..=patch.spaces[0].degree() {
+    let order = [0, 1].map(|d| patch.spaces[d].degree() + 1);
+    let [sx, sy] = point.mean_functions(patch, cell, order);
+    for l in (0..=order[1]).filter(|&l| sy.value[l] != 0.0) {
+        for k in (0..=order[0]).filter(|&k| sx.value[k] != 0.0) {
             let slope = [sx.derivative[k] * sy.value[l], sx.value[k] * sy.derivative[l]];
-            f(grid.index(first[0] + k, first[1] + l), sx.value[k] * sy.value[l], slope);
+            let at = grid.index(cell.first[0] + sx.start + k - 1, cell.first[1] + sy.start + l - 1);
+            f(at, sx.value[k] * sy.value[l], slope);
         }
     }
 }

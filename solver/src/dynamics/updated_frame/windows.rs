@@ -7,7 +7,26 @@ use rayon::prelude::*;
 
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::particles::points::{Cell, Strip};
-use crate::splines::spline::MAX_FUNCTIONS;
+use crate::splines::spline::{MAX_REACH, MeanFunctions};
+
+/// Control points that the domains of the points of a cell may reach in a direction: those of its span and
+/// one on either side, which is where the cell's numbers of control columns and rows begin.
+const MAX_CELL: usize = MAX_REACH + 1;
+
+/// One value for each control point of a cell, row by row.
+pub type OfCell<T> = [T; MAX_CELL * MAX_CELL];
+
+/// Values of zero for the control points of a cell.
+#[inline(always)]
+pub fn zeros<const N: usize>() -> OfCell<[f64; N]> {
+    [[0.0; N]; MAX_CELL * MAX_CELL]
+}
+
+/// Number in an [`OfCell`] of the first of some functions of a row, in a cell of spans with `kx` functions.
+#[inline(always)]
+pub(super) fn in_cell([sx, sy]: &[MeanFunctions; 2], l: usize, kx: usize) -> usize {
+    (sy.start + l) * (kx + 2) + sx.start
+}
 
 /// The control rows a strip may write, in `N` fields.
 #[derive(Debug)]
@@ -19,21 +38,29 @@ pub struct Window<'a, const N: usize> {
 }
 
 impl<const N: usize> Window<'_, N> {
-    /// Adds the sums over the points of a cell with `kx` by `ky` control points, row by row.
+    /// Adds the sums over the points of a cell, whose spans have `kx` by `ky` functions. Rows of fields have
+    /// room for a column too many at either end.
     #[inline(always)]
-    pub fn add(&mut self, grid: ControlGrid, cell: &Cell, sums: &[[f64; N]; MAX_FUNCTIONS], kx: usize, ky: usize) {
-        for l in 0..ky {
-            let base = grid.index(cell.first[0], cell.first[1] + l - self.first_row);
-            for k in 0..kx {
+    pub fn add(&mut self, grid: ControlGrid, cell: &Cell, sums: &OfCell<[f64; N]>, kx: usize, ky: usize) {
+        for l in rows_of_cell(grid, cell, ky) {
+            let base = grid.index(cell.first[0], cell.first[1] + l - 1 - self.first_row) - 1;
+            for k in 0..kx + 2 {
                 for component in 0..N {
-                    self.fields[component][base + k] += sums[l * kx + k][component];
+                    self.fields[component][base + k] += sums[l * (kx + 2) + k][component];
                 }
             }
         }
     }
 }
 
-/// Values of fields at the `kx` by `ky` control points of a cell, row by row.
+/// The rows of a cell that the grid has.
+#[inline(always)]
+fn rows_of_cell(grid: ControlGrid, cell: &Cell, ky: usize) -> Range<usize> {
+    usize::from(cell.first[1] == 0)..(ky + 2).min(grid.rows + 1 - cell.first[1])
+}
+
+/// Values of fields at the control points of a cell, whose spans have `kx` by `ky` functions; zero beyond the
+/// grid.
 #[inline(always)]
 pub fn control_values<const N: usize>(
     fields: [&[f64]; N],
@@ -41,12 +68,12 @@ pub fn control_values<const N: usize>(
     cell: &Cell,
     kx: usize,
     ky: usize,
-) -> [[f64; N]; MAX_FUNCTIONS] {
-    let mut values = [[0.0; N]; MAX_FUNCTIONS];
-    for l in 0..ky {
-        let base = grid.index(cell.first[0], cell.first[1] + l);
-        for k in 0..kx {
-            values[l * kx + k] = fields.map(|field| field[base + k]);
+) -> OfCell<[f64; N]> {
+    let mut values = zeros();
+    for l in rows_of_cell(grid, cell, ky) {
+        let base = grid.index(cell.first[0], cell.first[1] + l - 1) - 1;
+        for k in 0..kx + 2 {
+            values[l * (kx + 2) + k] = fields.map(|field| field[base + k]);
         }
     }
     values
