@@ -1,5 +1,6 @@
 """Splines on a line, and what the one-dimensional scripts share: shape functions, Gauss points, dense solves."""
 
+from functools import cache
 from math import cos, pi
 
 
@@ -38,10 +39,34 @@ def shape_functions(knots, degree, x):
     return span - degree, values, slopes
 
 
+def mean_functions(knots, degree, x, half_width):
+    """The same for means of values and derivatives over an interval, which ends at the ends of the knots."""
+    half_width = min(half_width, x - knots[degree], knots[-degree - 1] - x)
+    left, right = x - half_width, x + half_width
+    cuts = [left, *(k for k in sorted(set(knots)) if left < k < right), right]
+    means = {}
+
+    def add(at, weight, slopes_too=False):
+        first, values, _ = shape_functions(knots, degree, at)
+        for a, value in enumerate(values):
+            mean = means.setdefault(first + a, [0.0, 0.0])
+            mean[1 if slopes_too else 0] += weight * value
+
+    for low, high in zip(cuts, cuts[1:]):
+        for at, weight in gauss(degree // 2 + 1):
+            add(low + (high - low) * at, weight * (high - low) / (right - left))
+    add(right, 1 / (right - left), True)
+    add(left, -1 / (right - left), True)
+    first = min(means)
+    both = [means.get(i, [0.0, 0.0]) for i in range(first, max(means) + 1)]
+    return first, [v for v, _ in both], [s for _, s in both]
+
+
 def greville(knots, degree):
     return [sum(knots[i + 1 : i + degree + 1]) / degree for i in range(len(knots) - degree - 1)]
 
 
+@cache
 def gauss(n):
     """Points and weights on (0, 1), by Newton's method on Legendre's polynomial."""
     rule = []

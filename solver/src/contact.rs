@@ -46,7 +46,7 @@ use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::vectors::{dot, unit};
 use crate::scene::Scene;
 use crate::splines::patch::Patch;
-use boundary_fit::{BoundaryFit, DEPTH};
+use boundary_fit::BoundaryFit;
 pub use constraint::ContactConstraint;
 use constraint::Impulse;
 use encounter::{Encounter, Squares};
@@ -192,11 +192,10 @@ impl ContactSolver {
     fn constraint(&self, encounter: &Encounter, bodies: &[BodyView]) -> Option<ContactConstraint> {
         let position = encounter.position();
         let normal = unit(encounter.normal)?;
-        let inside = |depth: f64| [0, 1].map(|d| position[d] + depth * self.reach * normal[d]);
         let Encounter { bodies: pair @ [a, b], square, .. } = *encounter;
-        let on_a = BoundaryFit::new(&bodies[a], position, inside(-DEPTH))?;
+        let on_a = BoundaryFit::new(&bodies[a], position)?;
         let on_b = match bodies.get(b) {
-            Some(body) => Some(BoundaryFit::new(body, position, inside(DEPTH))?),
+            Some(body) => Some(BoundaryFit::new(body, position)?),
             None => None,
         };
         Some(ContactConstraint {

@@ -15,7 +15,7 @@ use fisura::scene::{Contact, Split};
 use fisura::transfer::sweep::StripForces;
 use fisura_verification::bench::block::{Block, DENSITY, SPAN, elastic_scene};
 use fisura_verification::bench::minimal::Minimal;
-use fisura_verification::bench::moving_block::{MovingBlock, minimal, minimal_deviation, moving_scene};
+use fisura_verification::bench::moving_block::{MovingBlock, minimal, moving_scene};
 use fisura_verification::bench::scenes::pair;
 
 /// Round-off in sums of forces.
@@ -166,7 +166,6 @@ fn updated_frame<const P: usize>(criterion: &mut Criterion, points: usize, cells
     let mut simulation = Simulation::new(&moving_scene(P, points, cells)).expect("the scene starts");
     timed("elastic_step_updated", &name, &mut || simulation.step().expect("a stable step"));
 
-    assert!(minimal_deviation::<P>(points, 16, 5).expect("the block moves") <= 1e-10, "the same accelerations");
     let (mut kernel, dt): (Minimal<P>, f64) = minimal(points, cells).expect("the scene starts");
     timed("minimal_step", &name, &mut || kernel.step(dt));
 }

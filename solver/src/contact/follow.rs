@@ -2,12 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::boundary_fit::{BoundaryFit, DEPTH};
+use super::boundary_fit::BoundaryFit;
 use super::surface::{Center, Surface};
 use super::view::BodyView;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::particles::follower::Follower;
 
+/// Depth under the boundary at which there is material, in spans.
+const DEPTH: f64 = 0.5;
 /// Length of a segment above which it may span a gap, in spans.
 const MOST_STRETCH: f64 = 2.0;
 
@@ -54,13 +56,9 @@ impl Surface {
 
     /// Displacements of the vertices in `dt` seconds, m; `None` where the body has no material any more.
     fn displacements_of(&self, body: &BodyView, velocity: &VectorField, dt: f64) -> Vec<Option<[f64; 2]>> {
-        let depth = DEPTH * body.patch.shortest_span();
         let displacement = |vertex: usize| {
-            let position = self.vertices[vertex];
-            let normal = self.vertex_normal(vertex);
-            let inside = [0, 1].map(|d| position[d] - depth * normal[d]);
             let time = fault!("boundary-lags-behind", dt => 0.9 * dt);
-            BoundaryFit::new(body, position, inside).map(|boundary_fit| boundary_fit.value(velocity).map(|v| time * v))
+            BoundaryFit::new(body, self.vertices[vertex]).map(|fit| fit.value(velocity).map(|v| time * v))
         };
         (0..self.vertices.len()).into_par_iter().map(displacement).collect()
     }

@@ -24,6 +24,8 @@ pub struct BodyView<'a> {
     pub mass: &'a [f64],
     /// See [`Self::mass`].
     pub inverse_mass: &'a [f64],
+    /// Density, kg/m³.
+    pub density: f64,
     /// Control points and components whose velocity is prescribed.
     pub fixed: &'a BTreeSet<(usize, usize)>,
     /// Velocity half a step ago, m/s.

@@ -199,7 +199,7 @@ impl SplineSpace {
                 mean.derivative[k + 1 - start] += span.polynomials[k][m] * slope[m];
             }
         }
-        if beyond > 0.0 {
+        if fault!("domain-ends-at-the-knot", beyond > 0.0 => false) {
             let of_slope = beyond.powi(order as i32 - 1) / (2.0 * half_width);
             let of_value = [-1.0, 1.0][near] * of_slope * beyond / order as f64;
             for k in 0..=order {

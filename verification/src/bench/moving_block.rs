@@ -174,45 +174,9 @@ pub fn minimal<const P: usize>(points: usize, cells: usize) -> Result<(Minimal<P
     Ok((Minimal::new(&scene.mesh, field.points(), field.moduli(), DENSITY), dt))
 }
 
-/// Takes `steps` steps with the solver and with the minimal kernel on a block of `cells` × `cells` spans: the
-/// largest difference of their nodal accelerations over the largest acceleration.
-///
-/// # Errors
-/// If a step cannot be increment.
-pub fn minimal_deviation<const P: usize>(points: usize, cells: usize, steps: usize) -> Result<f64, BenchError> {
-    let (frame, _) = moved(&moving_scene(P, points, cells), steps)?;
-    let (mut minimal, dt) = self::minimal::<P>(points, cells)?;
-    (0..steps).for_each(|_| minimal.step(dt));
-    let (field, whole) = (&frame.fields()[0], frame.patch());
-    let (nodes, part) = (field.nodes(), field.patch());
-    // the nodal fields of the solver cover a part of the patch
-    let first = [0, 1].map(|d| {
-        let left = part.spaces[d].spans()[0].left;
-        whole.spaces[d].spans().iter().position(|span| span.left == left).unwrap_or(0)
-    });
-    let (mut difference, mut size) = (0.0, 0.0);
-    for at in nodes.grid.indices() {
-        let (column, row) = (nodes.grid.column_of(at) + first[0], nodes.grid.row_of(at) + first[1]);
-        let other = minimal.acceleration(column, row);
-        for d in 0..2 {
-            let own = nodes.acceleration[d][at];
-            (difference, size) = (larger(difference, (own - other[d]).abs()), larger(size, own.abs()));
-        }
-    }
-    Ok(difference / size)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_minimal_kernel_moves_as_the_solver_does() {
-        for deviation in [minimal_deviation::<2>(2, 12, 4), minimal_deviation::<3>(2, 12, 4)] {
-            let deviation = deviation.unwrap();
-            assert!(deviation <= 1e-10 && deviation > 0.0, "{deviation:e}");
-        }
-    }
 
     #[test]
     fn the_phases_put_together_are_the_step_of_the_solver() {

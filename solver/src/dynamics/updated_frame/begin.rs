@@ -60,7 +60,7 @@ impl DiscreteField {
         for (traction, load) in self.loads.iter_mut().enumerate() {
             let bare =
                 |OutsidePatch(place)| Failure::LostTraction { body: 0, traction, lost: LostTraction::Bare(place) };
-            load.attach(&self.patch, &self.nodes).map_err(bare)?;
+            load.attach(&self.patch, &self.nodes, self.density).map_err(bare)?;
         }
         self.attach_loads()
     }

@@ -142,7 +142,7 @@ impl DiscreteField {
 
     /// What contact sees of it.
     pub fn view(&self) -> BodyView<'_> {
-        let Self { patch, cells, surface, nodes, .. } = self;
+        let Self { patch, cells, surface, nodes, density, .. } = self;
         let NodalFields { grid, greville, mass, inverse_mass, velocity, acceleration, .. } = nodes;
         BodyView {
             patch,
@@ -152,6 +152,7 @@ impl DiscreteField {
             greville,
             mass,
             inverse_mass,
+            density: *density,
             fixed: nodes.fixed(),
             velocity,
             acceleration,
@@ -199,14 +200,15 @@ impl DiscreteField {
             surface.follow(&self.view(), &self.nodes.velocity, dt);
             self.surface = Some(surface);
         }
-        let Self { patch, nodes, points, forcing, loads, edges, sides, .. } = self;
+        let Self { patch, nodes, points, forcing, loads, edges, sides, density, .. } = self;
         for load in loads {
             load.move_points(patch, nodes.grid, &nodes.velocity, dt);
         }
         if let Some(edges) = edges {
             edges.move_points(patch, nodes, dt);
         }
-        let slid = sides.iter_mut().map(|side| side.follow(patch, nodes, dt)).collect::<Result<Vec<_>, _>>()?;
+        let slid =
+            sides.iter_mut().map(|side| side.follow(patch, nodes, *density, dt)).collect::<Result<Vec<_>, _>>()?;
         if let Some(forcing) = forcing {
             forcing.after_motion(points, self.time, dt);
         }
@@ -254,7 +256,7 @@ impl DiscreteField {
     }
 
     pub(super) fn sort(&mut self) -> Result<(), OutsidePatch> {
-        if self.cells.sort(&self.patch, &mut self.points).is_err() || self.reaches_beyond() {
+        if self.reaches_beyond() || self.cells.sort(&self.patch, &mut self.points).is_err() {
             self.follow()?;
         }
         let cells = &self.cells;
@@ -278,9 +280,9 @@ impl DiscreteField {
     /// # Errors
     /// If one has lost its material, or conditions are not independent.
     pub(super) fn attach_loads(&mut self) -> Result<(), Failure> {
-        let Self { patch, nodes, loads, edges, .. } = self;
-        loads.iter_mut().try_for_each(|load| load.attach(patch, nodes))?;
-        edges.iter_mut().try_for_each(|edges| edges.attach(patch, nodes))
+        let Self { patch, nodes, loads, edges, density, .. } = self;
+        loads.iter_mut().try_for_each(|load| load.attach(patch, nodes, *density))?;
+        edges.iter_mut().try_for_each(|edges| edges.attach(patch, nodes, *density))
     }
 
     /// History, phase field and degraded stress; an elastic body has its stress from G2P.

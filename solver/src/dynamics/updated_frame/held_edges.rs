@@ -89,9 +89,9 @@ impl HeldEdges {
     ///
     /// # Errors
     /// A point with no material within one span of it, or conditions that are not independent.
-    pub(super) fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), Failure> {
+    pub(super) fn attach(&mut self, patch: &Patch, nodes: &NodalFields, density: f64) -> Result<(), Failure> {
         let mut places = self.edges.iter_mut().flat_map(|edge| &mut edge.points);
-        places.try_for_each(|(place, _)| place.attach(patch, &nodes.inverse_mass))?;
+        places.try_for_each(|(place, _)| place.attach(patch, &nodes.inverse_mass, density))?;
         self.multipliers = self.on_grid(patch, nodes)?;
         Ok(())
     }

@@ -37,13 +37,19 @@ impl HeldSide {
     ///
     /// # Errors
     /// A place with no material within one span of it.
-    pub(super) fn follow(&mut self, patch: &Patch, nodes: &NodalFields, dt: f64) -> Result<bool, OutsidePatch> {
+    pub(super) fn follow(
+        &mut self,
+        patch: &Patch,
+        nodes: &NodalFields,
+        density: f64,
+        dt: f64,
+    ) -> Result<bool, OutsidePatch> {
         let along = self.along();
         let mut went_on = false;
         for place in self.material.iter_mut().flatten().filter(|_| self.boundary.fix != [true; 2]) {
             let reached = |place: &Follower| patch.spaces[along].first_function(place.position[along]);
             let before = reached(place);
-            place.attach(patch, &nodes.inverse_mass)?;
+            place.attach(patch, &nodes.inverse_mass, density)?;
             place.follow(patch, nodes.grid, &nodes.velocity, dt);
             went_on |= reached(place) != before;
         }

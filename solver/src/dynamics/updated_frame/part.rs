@@ -60,11 +60,13 @@ impl DiscreteField {
     /// further.
     pub(super) fn reaches_beyond(&self) -> bool {
         let covered = self.covered_spans();
-        (0..2).any(|d| {
-            let inner = [covered[d].start > 0, covered[d].end < self.whole.spaces[d].spans().len()];
-            let last = covered[d].len() - 1;
-            self.cells.cells.iter().any(|c| (inner[0] && c.span[d] == 0) || (inner[1] && c.span[d] == last))
-        })
+        let inner = [0, 1].map(|d| {
+            let spans = self.patch.spaces[d].spans();
+            let left = if covered[d].start > 0 { spans[0].right } else { f64::NEG_INFINITY };
+            let ends = covered[d].end == self.whole.spaces[d].spans().len();
+            left..if ends { f64::INFINITY } else { spans[spans.len() - 1].left }
+        });
+        self.points.iter().any(|point| (0..2).any(|d| !inner[d].contains(&point.position[d])))
     }
 
     /// Makes some spans of the patch the part; the points are to be sorted anew.

@@ -50,7 +50,7 @@ impl StrainUpdate for FiniteStrain<'_> {
             let with_domain = |half_width: [f64; 2], d: usize| spread[d] + half_width[d] * half_width[d] / 3.0;
             for d in 0..2 {
                 let factor = with_domain(before, d) / with_domain(point.half_width, d);
-                fitted.iter_mut().for_each(|row| row[d] *= factor);
+                fitted.iter_mut().for_each(|row| row[d] *= fault!("affine-not-scaled", factor => 1.0));
             }
         }
         symmetric(gradient_at_end(step))

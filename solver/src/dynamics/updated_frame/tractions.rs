@@ -64,8 +64,8 @@ impl SurfaceLoad {
     ///
     /// # Errors
     /// A surface point with no material within one span of it.
-    pub(crate) fn attach(&mut self, patch: &Patch, nodes: &NodalFields) -> Result<(), OutsidePatch> {
-        self.points.iter_mut().try_for_each(|point| point.place.attach(patch, &nodes.inverse_mass))
+    pub(crate) fn attach(&mut self, patch: &Patch, nodes: &NodalFields, density: f64) -> Result<(), OutsidePatch> {
+        self.points.iter_mut().try_for_each(|point| point.place.attach(patch, &nodes.inverse_mass, density))
     }
 
     /// Position (m) of every control point that answers to the load, and its share of the length of the edge,

@@ -2,9 +2,8 @@
 //!
 //! A block of equally spaced points, two a span, flies a sixteenth of a span in every step: its points stand
 //! on knots again and again. Powers of two make positions exact, or nearly so. Nothing may happen to it until
-//! its first point is off the mesh, which has to end the run in words at the step at which it happens. For p
-//! = 1 that is not so: a point a rounding beyond a knot gives a control point next to no mass but a whole
-//! gradient, and no step is short enough. Bodies that overlap at t = 0 have to be refused.
+//! its first point is off the mesh, which has to end the run in words at the step at which it happens. Bodies
+//! that overlap at t = 0 have to be refused.
 
 use fisura::Simulation;
 use fisura::scene::{Body, Contact, Frame, Layout, Material, Mesh, Scene, Shape, TimeStep, Transfer};
@@ -30,20 +29,10 @@ pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::st
     for degree in 1..=3 {
         for word in ["FLIP", "APIC"] {
             let name = format!("p={degree}, {word}");
-            if degree == 1 {
-                offers.bare(
-                    &name,
-                    [
-                        "bilinears on knots: change of velocity, and strain, over the speed",
-                        "bilinears on knots: the run says that its step is too long (1 is yes)",
-                    ],
-                );
-            } else {
-                let bare = ["points that stood on a knot", "the ending names what left, and a remedy (1 is yes)"];
-                offers.bare(&name, bare);
-                let held = ["change of velocity, and strain, over the speed", "time at which the run ends, s"];
-                offers.held(&name, held);
-            }
+            let bare = ["points that stood on a knot", "the ending names what left, and a remedy (1 is yes)"];
+            offers.bare(&name, bare);
+            let held = ["change of velocity, and strain, over the speed", "time at which the run ends, s"];
+            offers.held(&name, held);
         }
     }
     for depth in DEPTHS {
@@ -57,8 +46,7 @@ pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Fin
     let mut findings = Findings::default();
     for degree in 1..=3 {
         for (word, transfer) in [("FLIP", Transfer::Flip), ("APIC", Transfer::Apic)] {
-            let (name, flight) = (format!("p={degree}, {word}"), fly(&flying(degree, transfer))?);
-            if degree == 1 { flight.add_limit(&name, &mut findings) } else { flight.add(&name, &mut findings) }
+            fly(&flying(degree, transfer))?.add(&format!("p={degree}, {word}"), &mut findings);
         }
     }
     for depth in DEPTHS {
@@ -109,7 +97,6 @@ struct Flight {
     /// Largest change of a velocity, and strain.
     off: f64,
     ending: Option<Breakdown>,
-    warned: bool,
 }
 
 fn fly(scene: &Scene) -> Result<Flight, StudyError> {
@@ -130,13 +117,12 @@ fn fly(scene: &Scene) -> Result<Flight, StudyError> {
         off = larger(off, largest(speed));
         off = larger(off, largest(points.iter().flat_map(|p| p.strain).map(f64::abs)));
     };
-    let warned = simulation.warnings().iter().any(|warning| warning.contains("times the critical step"));
-    Ok(Flight { on_knots, off, ending, warned })
+    Ok(Flight { on_knots, off, ending })
 }
 
 impl Flight {
     fn add(&self, name: &str, findings: &mut Findings) {
-        let Self { on_knots, off, ending, .. } = self;
+        let Self { on_knots, off, ending } = self;
         findings.add(name, "points that stood on a knot", *on_knots as f64, None);
         findings.add(name, "change of velocity, and strain, over the speed", *off, exact(0.0, "a rigid translation"));
         // The foremost points stand at 2.75 + t: beyond 12 from t = 9.25 + STEP on; those of a step before
@@ -147,12 +133,6 @@ impl Flight {
         let named =
             ending.as_ref().is_some_and(|e| e.to_string().contains("left the mesh") && e.cause.contains("mesh"));
         findings.add(name, "the ending names what left, and a remedy (1 is yes)", f64::from(u8::from(named)), None);
-    }
-
-    fn add_limit(&self, name: &str, findings: &mut Findings) {
-        findings.add(name, "bilinears on knots: change of velocity, and strain, over the speed", self.off, None);
-        let warned = f64::from(u8::from(self.warned));
-        findings.add(name, "bilinears on knots: the run says that its step is too long (1 is yes)", warned, None);
     }
 }
 
