@@ -6,7 +6,7 @@
 //! both bodies measure within a square as large as a span is one [`ContactConstraint`]: its position x and
 //! gap g are their means, so that constraints are as many as control points can tell apart, and neither body
 //! is the master of the other. An impulse P acts there on one body, −P on the other. Both spread it over
-//! control points with weights W that stand for the same position x ([`mod@boundary_fit`]),
+//! control points with weights W that stand for the same position x ([`mod@boundary_functions`]),
 //!
 //! ```text
 //! f_I = ± W_I P,        v_rel = Σ W_I^b v_I^b − Σ W_I^a v_I^a,        Σ W_I = 1,   Σ W_I x_I = x,
@@ -23,7 +23,7 @@
 //! half with the one it ends with. A rigid body does external work with its own velocity.
 
 mod area;
-pub mod boundary_fit;
+pub mod boundary_functions;
 mod constraint;
 pub(crate) mod crack_faces;
 mod displacements;
@@ -46,7 +46,7 @@ use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::vectors::{dot, unit};
 use crate::scene::Scene;
 use crate::splines::patch::Patch;
-use boundary_fit::BoundaryFit;
+use boundary_functions::BoundaryFunctions;
 pub use constraint::ContactConstraint;
 use constraint::Impulse;
 use encounter::{Encounter, Squares};
@@ -193,9 +193,9 @@ impl ContactSolver {
         let position = encounter.position();
         let normal = unit(encounter.normal)?;
         let Encounter { bodies: pair @ [a, b], square, .. } = *encounter;
-        let on_a = BoundaryFit::new(&bodies[a], position)?;
+        let on_a = BoundaryFunctions::new(&bodies[a], position)?;
         let on_b = match bodies.get(b) {
-            Some(body) => Some(BoundaryFit::new(body, position)?),
+            Some(body) => Some(BoundaryFunctions::new(body, position)?),
             None => None,
         };
         Some(ContactConstraint {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::boundary_fit::BoundaryFit;
+use super::boundary_functions::BoundaryFunctions;
 
 /// A place, as large as a span, where the boundaries of two bodies are near each other.
 #[derive(Debug, Clone)]
@@ -18,8 +18,8 @@ pub struct ContactConstraint {
     /// Unit normal from a to b.
     pub(super) normal: [f64; 2],
     /// The control points that stand for the position in a and b; a rigid b has none.
-    pub(super) on_a: BoundaryFit,
-    pub(super) on_b: Option<BoundaryFit>,
+    pub(super) on_a: BoundaryFunctions,
+    pub(super) on_b: Option<BoundaryFunctions>,
 }
 
 /// Impulse at a constraint along normal and tangent, kg/s per unit thickness.

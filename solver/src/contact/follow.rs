@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::boundary_fit::BoundaryFit;
+use super::boundary_functions::BoundaryFunctions;
 use super::surface::{Center, Surface};
 use super::view::BodyView;
 use crate::linear_algebra::control_grid::VectorField;
@@ -58,7 +58,8 @@ impl Surface {
     fn displacements_of(&self, body: &BodyView, velocity: &VectorField, dt: f64) -> Vec<Option<[f64; 2]>> {
         let displacement = |vertex: usize| {
             let time = fault!("boundary-lags-behind", dt => 0.9 * dt);
-            BoundaryFit::new(body, self.vertices[vertex]).map(|fit| fit.value(velocity).map(|v| time * v))
+            BoundaryFunctions::new(body, self.vertices[vertex])
+                .map(|functions| functions.value(velocity).map(|v| time * v))
         };
         (0..self.vertices.len()).into_par_iter().map(displacement).collect()
     }

@@ -1,7 +1,8 @@
 //! Explicit dynamics in the updated frame: points carry everything, the grid is rebuilt at every step (lumped
 //! mass).
 //!
-//! Between two whole steps n and n + 1 the shape functions are those at the positions x(n). The scheme is
+//! Between two whole steps n and n + 1 the shape functions are means over the domains of the points as they
+//! are at n ([`transfer`]). The scheme is
 //! velocity Verlet written as one full kick on the rebuilt grid; no acceleration outlives its grid. What the
 //! points take from the grid is the transfer's choice: see [`velocity_transfer`]. Strains are small, the sum
 //! of `dt sym(grad v(n + 1/2))`, or finite: Hencky strains of the deformation gradient of each point with

@@ -191,21 +191,28 @@ impl SplineSpace {
         let power = [1.0, t, tt + rr / 3.0, t * (tt + rr), tt * tt + 2.0 * tt * rr + rr * rr / 5.0];
         let slope = [0.0, scale, 2.0 * scale * t, scale * (3.0 * tt + rr), 4.0 * scale * t * (tt + rr)];
         let beyond = half_width - to_end[near];
-        let start = usize::from(!(beyond > 0.0 && near == 0));
-        let mut mean = MeanFunctions { start, value: [0.0; MAX_REACH], derivative: [0.0; MAX_REACH] };
+        let reaches = fault!("domain-ends-at-the-knot", beyond > 0.0 => false);
+        let before = reaches && near == 0;
+        let (mut own_value, mut own_slope) = ([0.0; MAX_REACH + 1], [0.0; MAX_REACH + 1]);
         for k in 0..order {
             for m in 0..order {
-                mean.value[k + 1 - start] += span.polynomials[k][m] * power[m];
-                mean.derivative[k + 1 - start] += span.polynomials[k][m] * slope[m];
+                own_value[k + 1] += span.polynomials[k][m] * power[m];
+                own_slope[k + 1] += span.polynomials[k][m] * slope[m];
             }
         }
-        if fault!("domain-ends-at-the-knot", beyond > 0.0 => false) {
-            let of_slope = beyond.powi(order as i32 - 1) / (2.0 * half_width);
-            let of_value = [-1.0, 1.0][near] * of_slope * beyond / order as f64;
-            for k in 0..=order {
-                mean.value[k] += of_value * neighbour.kink[k];
-                mean.derivative[k] += of_slope * neighbour.kink[k];
-            }
+        let (mut of_value, mut of_slope) = (0.0, 0.0);
+        if reaches {
+            of_slope = 0.5 / half_width;
+            (1..order).for_each(|_| of_slope *= beyond);
+            of_value = if before { -beyond } else { beyond } * of_slope / order as f64;
+        }
+        let mut mean =
+            MeanFunctions { start: usize::from(!before), value: [0.0; MAX_REACH], derivative: [0.0; MAX_REACH] };
+        for k in 0..=order {
+            let (value, slope) =
+                if before { (own_value[k], own_slope[k]) } else { (own_value[k + 1], own_slope[k + 1]) };
+            mean.value[k] = value + of_value * neighbour.kink[k];
+            mean.derivative[k] = slope + of_slope * neighbour.kink[k];
         }
         mean
     }

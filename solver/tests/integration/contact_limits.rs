@@ -3,7 +3,7 @@
 
 use crate::common::{body, elastic_scene, rectangle, run};
 use fisura::Simulation;
-use fisura::contact::boundary_fit::BoundaryFit;
+use fisura::contact::boundary_functions::BoundaryFunctions;
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::scene::*;
 use fisura::simulation::breakdown::Breakdown;
@@ -103,15 +103,19 @@ fn weights_stand_for_their_position_beside_knot_lines() {
     for column in [0.5, 0.5 + 0.3 * h] {
         for off in [0.0, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-8, 1e-6] {
             let position = [column, 0.25 + off * h];
-            let boundary_fit = BoundaryFit::new(&field.view(), position).expect("there is material");
+            let boundary_functions = BoundaryFunctions::new(&field.view(), position).expect("there is material");
             let sum = |value: &dyn Fn([f64; 2]) -> f64| -> f64 {
-                boundary_fit.weights().iter().map(|&(at, weight)| weight * value(field.nodes().position(at))).sum()
+                boundary_functions
+                    .weights()
+                    .iter()
+                    .map(|&(at, weight)| weight * value(field.nodes().position(at)))
+                    .sum()
             };
             assert!((sum(&|_| 1.0) - 1.0).abs() < 1e-14);
             assert!(
-                boundary_fit.weights().iter().all(|(_, weight)| weight.abs() < 2.0),
+                boundary_functions.weights().iter().all(|(_, weight)| weight.abs() < 2.0),
                 "off {off:e}: {:?}",
-                boundary_fit.weights()
+                boundary_functions.weights()
             );
             let [along, across] = [0, 1].map(|d| (sum(&|x| x[d]) - position[d]) / h);
             assert!(along.abs() < 1e-12, "off {off:e}: {along:e} spans along");

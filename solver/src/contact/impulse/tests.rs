@@ -1,11 +1,11 @@
 //! Impulses at constraints that share few control points.
 
 use super::*;
-use crate::contact::boundary_fit::BoundaryFit;
+use crate::contact::boundary_functions::BoundaryFunctions;
 
 /// A constraint of body 0 on the left with a rigid body, which pushes it along the normal.
 fn constraint(normal: [f64; 2], x: f64) -> ContactConstraint {
-    let (bodies, square, on_a) = ([0, 1], [0, 0], BoundaryFit::default());
+    let (bodies, square, on_a) = ([0, 1], [0, 0], BoundaryFunctions::default());
     ContactConstraint { gap: 0.0, bodies, square, position: [x, 0.5], normal, on_a, on_b: None }
 }
 

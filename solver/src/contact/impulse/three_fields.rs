@@ -3,7 +3,7 @@
 //! stated for these impulses and judged by its tolerances.
 
 use super::*;
-use crate::contact::boundary_fit::BoundaryFit;
+use crate::contact::boundary_functions::BoundaryFunctions;
 
 /// Tolerances of GEOS: velocities and momentum (relative to the largest), momentum, impulses and gaps.
 const VELOCITY: f64 = 1e-8;
@@ -52,7 +52,7 @@ fn shared_interface(gap: f64) -> Meeting {
 impl Meeting {
     /// The impulses of one step; what holds in every case is checked.
     fn outcome(&self) -> Outcome {
-        let fit = BoundaryFit::default;
+        let fit = BoundaryFunctions::default;
         let described = self.touching.iter().map(|&(bodies, normal, gap)| ContactConstraint {
             gap,
             bodies,

@@ -11,21 +11,21 @@ use crate::splines::spline::MAX_FUNCTIONS;
 
 /// Weights of control points that stand for a position of a body.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct BoundaryFit {
+pub struct BoundaryFunctions {
     weights: [(usize, f64); MAX_FUNCTIONS],
     count: usize,
 }
 
-impl BoundaryFit {
+impl BoundaryFunctions {
     /// Stands for `position` (m); `None` if there is no material of the body within a span of it.
     pub fn new(body: &BodyView, position: [f64; 2]) -> Option<Self> {
         let place = Follower::carried(position, body.patch, body.inverse_mass, body.density)?;
-        let mut fit = Self { weights: [(0, 0.0); MAX_FUNCTIONS], count: 0 };
+        let mut functions = Self { weights: [(0, 0.0); MAX_FUNCTIONS], count: 0 };
         place.for_each_function(body.patch, body.grid, |at, n| {
-            fit.weights[fit.count] = (at, fault!("impulse-beside-its-place", n => n * n));
-            fit.count += 1;
+            functions.weights[functions.count] = (at, fault!("impulse-beside-its-place", n => n * n));
+            functions.count += 1;
         });
-        Some(fit)
+        Some(functions)
     }
 
     /// Index in the nodal fields and weight of every control point.
