@@ -1,7 +1,7 @@
 //! The control points that stand for a position on the boundary of a body.
 //!
 //! They are those of its shape functions there, as for loads and conditions on edges
-//! ([`Follower`](crate::particles::follower::Follower)): affine velocity fields have their values at the
+//! (`particles::follower`): affine velocity fields have their values at the
 //! position, and an impulse is spread with neither momentum nor torque lost.
 
 use super::view::BodyView;

@@ -2,12 +2,12 @@
 //! mass).
 //!
 //! Between two whole steps n and n + 1 the shape functions are means over the domains of the points as they
-//! are at n ([`transfer`]). The scheme is
-//! velocity Verlet written as one full kick on the rebuilt grid; no acceleration outlives its grid. What the
-//! points take from the grid is the transfer's choice: see [`velocity_transfer`]. Strains are small, the sum
-//! of `dt sym(grad v(n + 1/2))`, or finite: Hencky strains of the deformation gradient of each point with
-//! Kirchhoff stresses, so that the internal force is `Σ V tau grad N` with the reference volume V
-//! ([`crate::material::hencky`]). Every loss of a transfer is measured: see [`losses`].
+//! are at n ([`transfer`]). The scheme is velocity Verlet written as one full kick on the rebuilt grid; no
+//! acceleration outlives its grid. What the points take from the grid is the transfer's choice: see
+//! [`velocity_transfer`]. Strains are small, the sum of `dt sym(grad v(n + 1/2))`, or finite: Hencky strains
+//! of the deformation gradient of each point with Kirchhoff stresses, so that the internal force is
+//! `Σ V tau grad N` with the reference volume V ([`crate::material::hencky`]). Every loss of a transfer is
+//! measured: see [`losses`].
 //!
 //! Every body is a discrete field of its own ([`field`]), with its own mass, momentum, force and phase field
 //! on the shared patch. Bodies meet through [`crate::contact`], if the scene declares it: its impulses are

@@ -7,13 +7,13 @@
 //!
 //! N_I and grad N_I are means over the domain of the point: a box of its volume that deforms with it
 //! (Bardenhagen and Kober 2004 for hat functions). Values at the point itself would leave a constant stress
-//! with forces of its own wherever the points do not lie as they did at the start, and those soften or stiffen
-//! a body that is stretched or pressed until it comes apart.
+//! with forces of its own wherever the points do not lie as they did at the start. Those soften or stiffen a
+//! body that is stretched or pressed, until it comes apart.
 //!
 //! Strain and deformation gradient follow from A in [`strain`](super::strain).
 //!
 //! Both go cell by cell: the control values of a span are gathered once for all its points. Shape functions
-//! are products of two one-dimensional ones ([`SplineSpace::mean_functions`]). Four numbers travel together
+//! are products of two one-dimensional ones (`SplineSpace::mean_functions`). Four numbers travel together
 //! through the inner loops, which is what the vector instructions of every processor in question hold.
 
 use super::strain::StrainUpdate;
