@@ -1,8 +1,8 @@
 //! The control points that stand for a position on the boundary of a body.
 //!
-//! They are those of its shape functions there, as for loads and conditions on edges
-//! (`particles::follower`): affine velocity fields have their values at the
-//! position, and an impulse is spread with neither momentum nor torque lost.
+//! They are those of its shape functions there, as for loads and conditions on edges (`particles::follower`):
+//! affine velocity fields have their values at the position, and an impulse is spread with neither momentum
+//! nor torque lost.
 
 use super::view::BodyView;
 use crate::linear_algebra::control_grid::VectorField;

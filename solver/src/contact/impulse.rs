@@ -21,8 +21,9 @@ const CONVERGED: f64 = 1e-12;
 /// less have converged.
 const ROUND_OFF: f64 = 1e-14;
 /// Change of an impulse, relative to the largest, above which impulses are not used: momentum is kept by any,
-/// so this is the error of the velocities at the constraints. Functions of even degree hardly tell neighbouring
-/// constraints on knots apart, so that impulses may change for long that leave these velocities as they are.
+/// so this is the error of the velocities at the constraints. Functions of even degree hardly tell
+/// neighbouring constraints on knots apart, so that impulses may change for long that leave these velocities
+/// as they are.
 const ACCEPTED: f64 = 1e-6;
 
 /// Time of a kick and of the step it belongs to, s: the first kick is half a step.
