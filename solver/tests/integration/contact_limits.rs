@@ -92,8 +92,8 @@ fn blocks_stand_wherever_the_knots_are() {
     }
 }
 
-/// On a knot line, or next to one, the row of control points beyond it has next to no weight. The weights stand
-/// for the boundary to round-off.
+/// On a knot line, or next to one, the row of control points beyond it has next to no weight. The weights
+/// stand for the boundary to round-off.
 #[test]
 fn weights_stand_for_their_position_beside_knot_lines() {
     let (mut scene, h) = (scene(1, [1.0, 1.0], [16, 16]), 1.0 / 16.0);
