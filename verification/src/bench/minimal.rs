@@ -3,8 +3,8 @@
 //! Uniform splines of degree 2 or 3 on an unbounded grid, points sorted by span, small strains, FLIP, one
 //! thread, one record per point and one per node, loops of constant length. No open knots, no boundary
 //! conditions, no loads, no fracture, no ledger, and functions at the points, not means over their domains:
-//! what a step of the solver costs beyond this is the price of its features. It pulls as the total frame does:
-//! see the test in [`super::stages`].
+//! what a step of the solver costs beyond this is the price of its features. It pulls as the total frame
+//! does: see the test in [`super::stages`].
 
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::points::Point;
