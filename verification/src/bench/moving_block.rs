@@ -81,7 +81,7 @@ impl MovingBlock {
         nodes.clear();
         let grid = nodes.grid;
         let NodalFields { mass, arrived: [px, py], force: [fx, fy], .. } = nodes;
-        scatter(&cells.strips, [mass, px, py, fx, fy], [grid.stride; 5], |strip, window| {
+        scatter(&cells.strips, [px, py, fx, fy, mass], [grid.stride; 5], |strip, window| {
             let cells = &cells.cells[strip.cells.clone()];
             dispatch(PointsToGrid { patch, grid, density: DENSITY, cells, points, window });
         });
