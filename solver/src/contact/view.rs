@@ -18,11 +18,7 @@ pub struct BodyView<'a> {
     pub surface: Option<&'a Surface>,
     /// Layout of the control points.
     pub grid: ControlGrid,
-    /// Greville abscissae in x and y, m.
-    pub greville: &'a [Vec<f64>; 2],
-    /// Lumped mass, kg/m, and its inverse (zero where negligible).
-    pub mass: &'a [f64],
-    /// See [`Self::mass`].
+    /// Inverse of the lumped mass, m/kg; zero where that is negligible.
     pub inverse_mass: &'a [f64],
     /// Density, kg/m³.
     pub density: f64,

@@ -38,8 +38,9 @@ pub struct Span {
 struct Neighbour {
     /// Its length, m or unit of the knots: zero beyond the ends of the space and beyond repeated knots.
     length: f64,
-    /// For the basis functions of both spans: `|x − knot|^p` times this is what the function has there beyond
-    /// the polynomial of the span itself; with the sign of the direction, so that it gives slopes.
+    /// How each basis function of both spans departs there from its polynomial in this span: by
+    /// `kink |x − knot|^p` on the right, and by minus that on the left, so that slopes grow by
+    /// `kink p |x − knot|^(p − 1)` on either side.
     kink: [f64; MAX_REACH],
 }
 
@@ -328,8 +329,9 @@ mod tests {
                 let (mut value, mut slope) = ([0.0; 16], [0.0; 16]);
                 let to_end = [x - space.spans()[span].left, space.spans()[span].right - x];
                 let (near, far) = (to_end[0].min(to_end[1]), to_end[0].max(to_end[1]));
-                let bound = if to_end[0] > to_end[1] && span == 2 { near } else { far };
-                let half_width = if x == 0.42 { near } else { f64::min(half_width, bound) };
+                // A repeated knot at 0.4 ends the third span and begins the fourth.
+                let beside_repeated = (to_end[0] > to_end[1] && span == 2) || (to_end[0] < to_end[1] && span == 3);
+                let half_width = f64::min(half_width, if beside_repeated { near } else { far });
                 for n in 0..MANY {
                     let y = x + half_width * ((2 * n + 1) as f64 / MANY as f64 - 1.0);
                     let span = space.find_span(y).unwrap();

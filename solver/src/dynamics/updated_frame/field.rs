@@ -143,14 +143,12 @@ impl DiscreteField {
     /// What contact sees of it.
     pub fn view(&self) -> BodyView<'_> {
         let Self { patch, cells, surface, nodes, density, .. } = self;
-        let NodalFields { grid, greville, mass, inverse_mass, velocity, acceleration, .. } = nodes;
+        let NodalFields { grid, inverse_mass, velocity, acceleration, .. } = nodes;
         BodyView {
             patch,
             cells,
             surface: surface.as_ref(),
             grid: *grid,
-            greville,
-            mass,
             inverse_mass,
             density: *density,
             fixed: nodes.fixed(),
