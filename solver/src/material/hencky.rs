@@ -2,7 +2,7 @@
 //!
 //! The deformation gradient F is kept as the displacement gradient `D = F − I`, so that small strains keep
 //! their digits. With `B = F Fᵀ − I = D + Dᵀ + D Dᵀ`, its mean `m = tr B/2` and
-//! `r = hypot((Bxx − Byy)/2, Bxy)`, the eigenvalues of `F Fᵀ` are `1 + m ± r`, and
+//! `r = √((Bxx − Byy)²/4 + Bxy²)`, the eigenvalues of `F Fᵀ` are `1 + m ± r`, and
 //!
 //! ```text
 //! e = ½ ln(det F) I + β (B − m I),    β = atanh(q)/q / (2 (1 + m)),    q = r/(1 + m)
@@ -49,7 +49,7 @@ pub fn hencky_strain(displacement: &Gradient) -> [f64; 3] {
     let mean = xx + yy + 0.5 * (xx * xx + xy * xy + yx * yx + yy * yy);
     let half_difference = xx - yy + 0.5 * (xx * xx + xy * xy - yx * yx - yy * yy);
     let shear = xy + yx + (xx * yx + xy * yy);
-    let radius = half_difference.hypot(shear);
+    let radius = (half_difference * half_difference + shear * shear).sqrt();
     let ratio = radius / (1.0 + mean);
     let factor = if ratio < STRETCHED {
         atanh_over(ratio) / (2.0 * (1.0 + mean))

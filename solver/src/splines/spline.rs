@@ -27,8 +27,8 @@ pub struct Span {
     pub right: f64,
     /// Index of the first of the `p + 1` basis functions on the span.
     pub first: usize,
-    /// `polynomials[k][m]`: coefficient of `t^m` of the basis function `first + k`.
-    polynomials: [[f64; MAX_ORDER]; MAX_ORDER],
+    /// `polynomials[m][k + 1]`: coefficient of `t^m` of the basis function `first + k`; zeros around them.
+    polynomials: [[f64; MAX_REACH + 1]; MAX_ORDER],
     /// What lies beyond either end.
     neighbours: [Neighbour; 2],
 }
@@ -163,11 +163,11 @@ impl SplineSpace {
         let t = (x - span.left) * scale;
         let mut shape = ShapeFunctions { value: [0.0; MAX_ORDER], derivative: [0.0; MAX_ORDER] };
         for k in 0..=self.degree {
-            let polynomial = &span.polynomials[k];
-            let (mut value, mut slope) = (polynomial[self.degree], 0.0);
+            let coefficient = |m: usize| span.polynomials[m][k + 1];
+            let (mut value, mut slope) = (coefficient(self.degree), 0.0);
             for m in (0..self.degree).rev() {
                 slope = slope * t + value;
-                value = value * t + polynomial[m];
+                value = value * t + coefficient(m);
             }
             shape.value[k] = value;
             shape.derivative[k] = fault!("gradient-sign", slope * scale => -slope * scale);
@@ -194,26 +194,22 @@ impl SplineSpace {
         let beyond = half_width - to_end[near];
         let reaches = fault!("domain-ends-at-the-knot", beyond > 0.0 => false);
         let before = reaches && near == 0;
-        let (mut own_value, mut own_slope) = ([0.0; MAX_REACH + 1], [0.0; MAX_REACH + 1]);
-        for k in 0..order {
-            for m in 0..order {
-                own_value[k + 1] += span.polynomials[k][m] * power[m];
-                own_slope[k + 1] += span.polynomials[k][m] * slope[m];
-            }
-        }
-        let (mut of_value, mut of_slope) = (0.0, 0.0);
-        if reaches {
-            of_slope = 0.5 / half_width;
-            (1..order).for_each(|_| of_slope *= beyond);
-            of_value = if before { -beyond } else { beyond } * of_slope / order as f64;
-        }
-        let mut mean =
-            MeanFunctions { start: usize::from(!before), value: [0.0; MAX_REACH], derivative: [0.0; MAX_REACH] };
+        let mut of_slope = 0.5 / half_width;
+        (1..order).for_each(|_| of_slope *= beyond);
+        of_slope = if reaches { of_slope } else { 0.0 };
+        let of_value = if before { -beyond } else { beyond } * of_slope / order as f64;
+        let start = usize::from(!before);
+        let mut mean = MeanFunctions { start, value: [0.0; MAX_REACH], derivative: [0.0; MAX_REACH] };
         for k in 0..=order {
-            let (value, slope) =
-                if before { (own_value[k], own_slope[k]) } else { (own_value[k + 1], own_slope[k + 1]) };
-            mean.value[k] = value + of_value * neighbour.kink[k];
-            mean.derivative[k] = slope + of_slope * neighbour.kink[k];
+            mean.value[k] = of_value * neighbour.kink[k];
+            mean.derivative[k] = of_slope * neighbour.kink[k];
+        }
+        for m in 0..order {
+            let coefficients = &span.polynomials[m][start..];
+            for k in 0..=order {
+                mean.value[k] += coefficients[k] * power[m];
+                mean.derivative[k] += coefficients[k] * slope[m];
+            }
         }
         mean
     }
@@ -227,7 +223,7 @@ impl SplineSpace {
         let mut second = [0.0; MAX_ORDER];
         for k in 0..=self.degree {
             for m in (2..=self.degree).rev() {
-                second[k] = second[k] * t + (m * (m - 1)) as f64 * span.polynomials[k][m];
+                second[k] = second[k] * t + (m * (m - 1)) as f64 * span.polynomials[m][k + 1];
             }
             second[k] *= scale * scale;
         }
@@ -252,7 +248,7 @@ impl SplineSpace {
 
 /// What lies beyond the knot between two spans, for the left and for the right one.
 fn neighbours(degree: usize, [left, right]: [&Span; 2]) -> [Neighbour; 2] {
-    let highest = |span: &Span, k: usize| span.polynomials[k][degree] / span.length().powi(degree as i32);
+    let highest = |span: &Span, k: usize| span.polynomials[degree][k + 1] / span.length().powi(degree as i32);
     let mut kink = [0.0; MAX_REACH];
     for k in 0..=degree {
         kink[k] -= highest(left, k);
@@ -264,7 +260,7 @@ fn neighbours(degree: usize, [left, right]: [&Span; 2]) -> [Neighbour; 2] {
 }
 
 /// Cox–de Boor on polynomials of the local coordinate of the span `[knots[i], knots[i + 1])`.
-fn span_polynomials(degree: usize, knots: &[f64], i: usize) -> [[f64; MAX_ORDER]; MAX_ORDER] {
+fn span_polynomials(degree: usize, knots: &[f64], i: usize) -> [[f64; MAX_REACH + 1]; MAX_ORDER] {
     let (left, length) = (knots[i], knots[i + 1] - knots[i]);
     let mut basis = [[0.0; MAX_ORDER]; MAX_ORDER];
     basis[0][0] = 1.0;
@@ -286,7 +282,13 @@ fn span_polynomials(degree: usize, knots: &[f64], i: usize) -> [[f64; MAX_ORDER]
         }
         basis = next;
     }
-    basis
+    let mut polynomials = [[0.0; MAX_REACH + 1]; MAX_ORDER];
+    for (k, coefficients) in basis.iter().enumerate() {
+        for (m, coefficient) in coefficients.iter().enumerate() {
+            polynomials[m][k + 1] = *coefficient;
+        }
+    }
+    polynomials
 }
 
 #[cfg(test)]

@@ -83,7 +83,7 @@ impl MovingBlock {
         let NodalFields { mass, arrived: [px, py], force: [fx, fy], .. } = nodes;
         scatter(&cells.strips, [px, py, fx, fy, mass], [grid.stride; 5], |strip, window| {
             let cells = &cells.cells[strip.cells.clone()];
-            dispatch(PointsToGrid { patch, grid, density: DENSITY, cells, points, window });
+            dispatch(PointsToGrid { patch, grid, density: DENSITY, cells, points, affine: None, window });
         });
     }
 
@@ -114,6 +114,7 @@ impl MovingBlock {
                     motion,
                     increment,
                     kept_fraction,
+                    affine: None,
                     kinematics: SmallStrain,
                     elastic: Some(*moduli),
                     cells: &cells.cells[strip.cells.clone()],

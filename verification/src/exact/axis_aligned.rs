@@ -20,7 +20,7 @@ use std::f64::consts::PI;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane};
 
-use super::dual::{Jet, Scalar};
+use super::dual::Scalar;
 use super::law::{self, Tensor};
 use super::motion::{Derived, Motion};
 use super::{Equation, Held, Solution, unit_material};
@@ -58,9 +58,9 @@ impl Motion for AxisAligned {
         self.plane
     }
 
-    fn displacement(&self, [x, y, t]: [Jet; 3]) -> [Jet; 2] {
+    fn displacement<T: Scalar>(&self, [x, y, t]: [T; 3]) -> [T; 2] {
         let speed = (self.material().young_modulus / self.material().density).sqrt();
-        let along = |coordinate: Jet, phase: f64| {
+        let along = |coordinate: T, phase: f64| {
             (coordinate * (2.0 * PI)).sin() * (t * (PI * speed) + phase).sin() * self.amplitude
         };
         [along(x, 0.0), along(y, 2.0 * PI / 3.0)]

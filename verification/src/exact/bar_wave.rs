@@ -23,7 +23,7 @@ use std::f64::consts::PI;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane};
 
-use super::dual::{Jet, Scalar};
+use super::dual::Scalar;
 use super::law::{self, Tensor};
 use super::motion::{Derived, Motion};
 use super::{Equation, Held, Solution, unit_material};
@@ -35,10 +35,10 @@ fn material() -> Material {
     unit_material(0.0)
 }
 
-fn displacement([x, _, t]: [Jet; 3]) -> [Jet; 2] {
+fn displacement<T: Scalar>([x, _, t]: [T; 3]) -> [T; 2] {
     let speed = (material().young_modulus / material().density).sqrt();
     let mode = |n: f64| (x * (n * PI)).sin() * (t * (n * PI * speed)).sin();
-    [mode(1.0) * AMPLITUDES[0] + mode(2.0) * AMPLITUDES[1], Jet::constant(0.0)]
+    [mode(1.0) * AMPLITUDES[0] + mode(2.0) * AMPLITUDES[1], T::constant(0.0)]
 }
 
 /// What this file registers.
@@ -89,7 +89,7 @@ impl<const HENCKY: bool> Motion for BarWave<HENCKY> {
         self.plane
     }
 
-    fn displacement(&self, variables: [Jet; 3]) -> [Jet; 2] {
+    fn displacement<T: Scalar>(&self, variables: [T; 3]) -> [T; 2] {
         displacement(variables)
     }
 

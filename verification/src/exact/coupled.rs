@@ -92,7 +92,7 @@ impl Motion for Coupled {
         self.plane
     }
 
-    fn displacement(&self, [x, y, t]: [Jet; 3]) -> [Jet; 2] {
+    fn displacement<T: Scalar>(&self, [x, y, t]: [T; 3]) -> [T; 2] {
         let mut alpha = (t * 1.2 + 0.1).sin() * 0.15 + 0.20;
         let mut beta = t * t * 0.08 + t * 0.10 + 0.15;
         if self.is_squeezed() {
@@ -103,7 +103,7 @@ impl Motion for Coupled {
         [alpha * u, beta * v]
     }
 
-    fn phase(&self, [x, y, t]: [Jet; 3]) -> Jet {
+    fn phase<T: Scalar>(&self, [x, y, t]: [T; 3]) -> T {
         if self.fracture.model == CrackModel::At2 {
             return (x * 1.9 - 0.6 + t * 0.5).sin() * (y * 1.3 + 0.4 - t * 0.8).cos() * 0.25 + 0.7;
         }

@@ -13,15 +13,15 @@
 use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane};
 
-use super::dual::{Jet, Scalar};
+use super::dual::Scalar;
 use super::motion::{Derived, Motion};
 use super::{Equation, Held, Solution, unit_material};
 
 /// Between these numbers k R lies: a zero of J0 is the upper one, and a zero of J1 the lower one of the
 /// second.
 const BRACKETS: [[f64; 2]; 2] = [[1.0, 2.404_825_557_695_773], [3.831_705_970_207_512, 5.520_078_110_286_311]];
-/// Terms of the series, enough for k r up to 8.
-const TERMS: usize = 32;
+/// Terms of the series, enough for k r up to 6.
+const TERMS: usize = 20;
 
 /// What this file registers.
 pub const SOLUTIONS: &[Solution] = &[Solution {
@@ -82,7 +82,7 @@ impl Motion for DiscWave {
         self.plane
     }
 
-    fn displacement(&self, [x, y, t]: [Jet; 3]) -> [Jet; 2] {
+    fn displacement<T: Scalar>(&self, [x, y, t]: [T; 3]) -> [T; 2] {
         let moduli = ElasticModuli::new(&self.material(), self.plane);
         let speed = moduli.dilatational_speed(self.material().density);
         let square = x * x + y * y;

@@ -84,16 +84,28 @@ pub type Field = Dual<f64>;
 /// A number with its first and second derivatives: `gradient[i].gradient[j]` is `∂²/∂i∂j`.
 pub type Jet = Dual<Field>;
 
-impl Jet {
+impl Field {
     /// x (m), y (m) and t (s) as the variables of differentiation.
     pub fn variables([x, y]: [f64; 2], t: f64) -> [Self; DIRECTIONS] {
-        let mut variables = [x, y, t].map(Self::constant);
-        for (d, variable) in variables.iter_mut().enumerate() {
-            variable.value.gradient[d] = 1.0;
-            variable.gradient[d] = Field::constant(1.0);
-        }
-        variables
+        varied([x, y, t])
     }
+}
+
+impl Jet {
+    /// x (m), y (m) and t (s) as the variables of differentiation.
+    pub fn variables(position: [f64; 2], t: f64) -> [Self; DIRECTIONS] {
+        varied(Field::variables(position, t))
+    }
+}
+
+/// Numbers that vary each in its own direction.
+fn varied<T: Scalar>(values: [T; DIRECTIONS]) -> [Dual<T>; DIRECTIONS] {
+    let mut direction = 0..DIRECTIONS;
+    values.map(|value| {
+        let mut gradient = [T::constant(0.0); DIRECTIONS];
+        gradient[direction.next().unwrap_or_default()] = T::constant(1.0);
+        Dual { value, gradient }
+    })
 }
 
 impl<T: Scalar> Dual<T> {

@@ -12,7 +12,7 @@
 
 use fisura::scene::{Frame, Kinematics, Material, Plane, Side};
 
-use super::dual::{Jet, Scalar};
+use super::dual::Scalar;
 use super::motion::{Derived, Motion};
 use super::{Equation, Held, Solution, unit_material};
 
@@ -44,7 +44,7 @@ impl Motion for Elastostatics {
         self.plane
     }
 
-    fn displacement(&self, [x, y, _]: [Jet; 3]) -> [Jet; 2] {
+    fn displacement<T: Scalar>(&self, [x, y, _]: [T; 3]) -> [T; 2] {
         [
             (x * 1.3 + 0.4).sin() * (y * 0.9 - 0.3).cos() * 0.10 + (x * 0.5 - y * 0.4).exp() * 0.03,
             (x * 0.8 - 0.2).cos() * (y * 1.7 + 0.6).sin() * 0.08 + (y * 0.6 - x * 0.3).exp() * 0.02,

@@ -18,7 +18,7 @@
 use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane};
 
-use super::dual::{Jet, Scalar};
+use super::dual::Scalar;
 use super::motion::{Derived, Motion};
 use super::{Equation, Held, Solution, unit_material};
 
@@ -58,7 +58,7 @@ impl Motion for Kirsch {
         self.plane
     }
 
-    fn displacement(&self, [x, y, _]: [Jet; 3]) -> [Jet; 2] {
+    fn displacement<T: Scalar>(&self, [x, y, _]: [T; 3]) -> [T; 2] {
         let nu = self.material().poisson_ratio;
         let kappa = match self.plane {
             Plane::Strain => 3.0 - 4.0 * nu,
@@ -68,7 +68,7 @@ impl Motion for Kirsch {
         let (cos, sin) = (x / r, y / r);
         let cos3 = cos * cos * cos * 4.0 - cos * 3.0;
         let sin3 = sin * 3.0 - sin * sin * sin * 4.0;
-        let (near, far) = (Jet::constant(2.0 * RADIUS) / r, r * (1.0 / RADIUS));
+        let (near, far) = (T::constant(2.0 * RADIUS) / r, r * (1.0 / RADIUS));
         let nearest = near * near * near * 0.25;
         let scale = TENSION * RADIUS / (8.0 * ElasticModuli::new(&self.material(), self.plane).mu);
         [

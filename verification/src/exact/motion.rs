@@ -28,15 +28,15 @@ pub trait Motion: Send + Sync {
     /// Plane state.
     fn plane(&self) -> Plane;
     /// Displacement, m, of x (m), y (m), t (s).
-    fn displacement(&self, variables: [Jet; 3]) -> [Jet; 2];
+    fn displacement<T: Scalar>(&self, variables: [T; 3]) -> [T; 2];
     /// Intact first Piola–Kirchhoff stress, Pa, from the displacement gradient; that of linear elasticity if
     /// not given.
     fn stress(&self, gradient: Tensor) -> Tensor {
         law::linear(&ElasticModuli::new(&self.material(), self.plane()), gradient)
     }
     /// Phase field; 1 where none is modelled.
-    fn phase(&self, _variables: [Jet; 3]) -> Jet {
-        Jet::constant(1.0)
+    fn phase<T: Scalar>(&self, _variables: [T; 3]) -> T {
+        T::constant(1.0)
     }
     /// History energy H, J/m³.
     fn history(&self, _variables: [Jet; 3]) -> f64 {
@@ -78,15 +78,16 @@ impl<M: Motion> ExactSolution for Derived<M> {
     }
 
     fn displacement(&self, position: [f64; 2], time: f64) -> [f64; 2] {
-        self.0.displacement(Jet::variables(position, time)).map(|u| u.value.value)
+        let [x, y] = position;
+        self.0.displacement([x, y, time])
     }
 
     fn displacement_gradient(&self, position: [f64; 2], time: f64) -> [[f64; 2]; 2] {
-        values(displacement_gradient(&self.0, Jet::variables(position, time)))
+        self.0.displacement(Field::variables(position, time)).map(|u| [u.gradient[0], u.gradient[1]])
     }
 
     fn velocity(&self, position: [f64; 2], time: f64) -> [f64; 2] {
-        self.0.displacement(Jet::variables(position, time)).map(|u| u.gradient[TIME].value)
+        self.0.displacement(Field::variables(position, time)).map(|u| u.gradient[TIME])
     }
 
     fn acceleration(&self, position: [f64; 2], time: f64) -> [f64; 2] {
@@ -120,12 +121,13 @@ impl<M: Motion> ExactSolution for Derived<M> {
 
 impl<M: Motion> ExactPhase for Derived<M> {
     fn value(&self, position: [f64; 2], time: f64) -> f64 {
-        self.0.phase(Jet::variables(position, time)).value.value
+        let [x, y] = position;
+        self.0.phase([x, y, time])
     }
 
     fn gradient(&self, position: [f64; 2], time: f64) -> [f64; 2] {
-        let Dual { gradient: [x, y, _], .. } = self.0.phase(Jet::variables(position, time));
-        [x.value, y.value]
+        let Dual { gradient: [x, y, _], .. } = self.0.phase(Field::variables(position, time));
+        [x, y]
     }
 
     fn history(&self, position: [f64; 2], time: f64) -> f64 {

@@ -70,11 +70,11 @@ impl Motion for PhaseField {
         self.plane
     }
 
-    fn displacement(&self, _variables: [Jet; 3]) -> [Jet; 2] {
-        [Jet::constant(0.0); 2]
+    fn displacement<T: Scalar>(&self, _variables: [T; 3]) -> [T; 2] {
+        [T::constant(0.0); 2]
     }
 
-    fn phase(&self, [x, y, _]: [Jet; 3]) -> Jet {
+    fn phase<T: Scalar>(&self, [x, y, _]: [T; 3]) -> T {
         if self.zero_flux {
             let coupled = (x * PI).cos() * (y * (2.0 * PI / SIZE[1])).cos();
             coupled * 0.25 + (x * (2.0 * PI)).cos() * 0.1 + 0.6

@@ -19,7 +19,7 @@ use std::f64::consts::PI;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane};
 
-use super::dual::{Jet, Scalar};
+use super::dual::Scalar;
 use super::motion::{Derived, Motion};
 use super::{Equation, Held, Solution, unit_material};
 
@@ -62,7 +62,7 @@ impl Motion for StandingWave {
         self.plane
     }
 
-    fn displacement(&self, [x, y, t]: [Jet; 3]) -> [Jet; 2] {
+    fn displacement<T: Scalar>(&self, [x, y, t]: [T; 3]) -> [T; 2] {
         let density = self.material().density;
         let moduli = ElasticModuli::new(&self.material(), self.plane);
         let dilatational = {

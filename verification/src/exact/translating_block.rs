@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane};
 
-use super::dual::{Jet, Scalar};
+use super::dual::Scalar;
 use super::law::{self, Tensor};
 use super::motion::{Derived, Motion};
 use super::{Equation, Held, Solution, unit_material};
@@ -55,8 +55,8 @@ impl Motion for TranslatingBlock {
         self.plane
     }
 
-    fn displacement(&self, [x, y, t]: [Jet; 3]) -> [Jet; 2] {
-        let bump = |coordinate: Jet| {
+    fn displacement<T: Scalar>(&self, [x, y, t]: [T; 3]) -> [T; 2] {
+        let bump = |coordinate: T| {
             let sine = (coordinate * PI).sin();
             sine * sine
         };

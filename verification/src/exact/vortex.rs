@@ -25,7 +25,7 @@ use std::f64::consts::PI;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane};
 
-use super::dual::{Jet, Scalar};
+use super::dual::Scalar;
 use super::law::{self, Tensor};
 use super::motion::{Derived, Motion};
 use super::{Equation, Held, Solution, unit_material};
@@ -64,7 +64,7 @@ impl Motion for Vortex {
         self.plane
     }
 
-    fn displacement(&self, [x, y, t]: [Jet; 3]) -> [Jet; 2] {
+    fn displacement<T: Scalar>(&self, [x, y, t]: [T; 3]) -> [T; 2] {
         let s = (x * x + y * y).sqrt() - 1.0;
         let square = s * s;
         let bump = square * square * 256.0 - square * 32.0 + 1.0;

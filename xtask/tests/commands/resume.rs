@@ -1,6 +1,6 @@
 //! `run --resume`: killed and interrupted runs go on to the same bytes; checkpoints of others are refused.
 
-use std::process::{Child, Stdio};
+use std::process::Stdio;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -18,9 +18,21 @@ fn plate() -> Place {
 const ARGUMENTS: [&str; 6] = ["run", "plate.toml", "--vtk", "--threads", "2", "--out"];
 const OFTEN: [&str; 2] = ["--checkpoint", "0.02"];
 
-fn start(place: &Place, more: &[&str]) -> Child {
+/// Waits until `there` is true, a minute at most.
+fn wait_until(there: impl Fn() -> bool) {
+    let clock = Instant::now();
+    while !there() && clock.elapsed() < Duration::from_secs(60) {
+        sleep(Duration::from_millis(5));
+    }
+}
+
+/// Starts a run in `killed` and kills it once `there` is true.
+fn kill_once(place: &Place, more: &[&str], there: impl Fn() -> bool) {
     let mut command = place.command(&[&ARGUMENTS[..], &["killed"], &OFTEN, more].concat());
-    command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the binary starts")
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the binary starts");
+    wait_until(there);
+    child.kill().expect("SIGKILL");
+    child.wait().expect("it ends");
 }
 
 /// Histories, pictures and files for ParaView are those of the undisturbed run, and nothing else is left.
@@ -42,16 +54,15 @@ fn a_run_killed_again_and_again_gives_the_bytes_of_an_undisturbed_one() {
     place.xtask(&[&ARGUMENTS[..], &["undisturbed", "--checkpoint", "none"]].concat()).with_status(0);
     let whole = clock.elapsed();
     for part in [0.05, 0.3, 0.1, 0.45, 0.2] {
-        let mut child = start(&place, &["--resume"]);
-        sleep(whole.mul_f64(part));
-        child.kill().expect("SIGKILL");
-        child.wait().expect("it ends");
+        let begun = Instant::now();
+        kill_once(&place, &["--resume"], || begun.elapsed() >= whole.mul_f64(part));
         let finished = place.path("killed/summary.json").exists();
         let marked =
             !place.path("killed/fisura.sha256").exists() || place.read("killed/fisura.sha256").contains("# unfinished");
         assert!(finished || marked, "a part of a history looks finished");
     }
-    assert!(place.path("killed/checkpoint.bin").exists(), "in {whole:?} no checkpoint was reached");
+    let exists = |name: &str| place.path(name).exists();
+    kill_once(&place, &["--resume"], || exists("killed/checkpoint.bin") || exists("killed/summary.json"));
     place.xtask(&[&ARGUMENTS[..], &["killed", "--resume"]].concat()).with_status(0);
     same_files(&place);
 }
@@ -64,7 +75,9 @@ fn an_interrupted_run_stores_where_it_is_and_ends_with_130() {
         place.xtask(&[&ARGUMENTS[..], &["undisturbed"]].concat()).with_status(0);
         let mut command = place.command(&[&ARGUMENTS[..], &["killed"]].concat());
         let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the binary starts");
-        sleep(Duration::from_millis(400));
+        wait_until(|| {
+            place.path("killed/history.csv").exists() && place.read("killed/history.csv").lines().count() >= 2
+        });
         let id = child.id().to_string();
         assert!(std::process::Command::new("kill").args([signal, &id]).status().expect("kill").success());
         let output = child.wait_with_output().expect("it ends");
@@ -88,10 +101,7 @@ fn interrupt(place: &Place, name: &str, more: &[&str]) -> String {
     let scene = ["run", "plate.toml", "--threads", "2", "--out", "killed"];
     let mut command = place.command(&[&scene[..], &OFTEN, more].concat());
     let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the binary starts");
-    let clock = Instant::now();
-    while !place.path("killed").join(name).exists() && clock.elapsed() < Duration::from_secs(60) {
-        sleep(Duration::from_millis(5));
-    }
+    wait_until(|| place.path("killed").join(name).exists());
     let id = child.id().to_string();
     assert!(std::process::Command::new("kill").args(["-INT", &id]).status().expect("kill").success());
     let output = child.wait_with_output().expect("it ends");
@@ -155,13 +165,7 @@ fn without_a_checkpoint_the_run_begins_at_the_start_and_says_so() {
 #[test]
 fn a_checkpoint_of_another_scene_or_damaged_is_refused_with_2() {
     let place = plate();
-    let mut child = start(&place, &[]);
-    let clock = Instant::now();
-    while !place.path("killed/checkpoint.bin").exists() && clock.elapsed() < Duration::from_secs(60) {
-        sleep(Duration::from_millis(5));
-    }
-    child.kill().expect("SIGKILL");
-    child.wait().expect("it ends");
+    kill_once(&place, &[], || place.path("killed/checkpoint.bin").exists());
     let resumed = |more: &[&str]| place.xtask(&[&ARGUMENTS[..], &["killed", "--resume"], more].concat());
     let refused = |more: &[&str], parts: &[&str]| {
         assert_eq!(resumed(more).with_status(2).complains_of(parts).out, "");

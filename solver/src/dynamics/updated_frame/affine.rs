@@ -10,23 +10,21 @@
 //! ```
 //!
 //! Greville points reproduce positions, so D is diagonal, and g a product of one-dimensional factors. D is
-//! computed at every point: h²/4 for quadratics and h²/3 for cubics on uniform knots, but it goes to zero at
-//! the ends of an open knot vector, where the derivative of N is the limit, and at every knot for p = 1,
-//! where both transfers are the same. C is kept rather than C D: an affine field is then carried exactly
-//! wherever the point goes, and angular momentum to round-off as long as D does not change, which is on
-//! uniform knots for p ≥ 2 away from the sides of the patch.
+//! computed at every point: on uniform knots h²/4 for quadratics and h²/3 for cubics, and a third of the
+//! square of half the width of the domain. It goes to zero only where a domain has no width at the end of an
+//! open knot vector; there the derivative of N is the limit. C is kept rather than C D: an affine field is
+//! then carried exactly wherever the point goes, and angular momentum to round-off as long as D changes with
+//! the domain alone, which is on uniform knots for p ≥ 2 away from the sides of the patch.
 
-use rayon::prelude::*;
+use std::ops::Range;
 
-use super::transfer::walk;
-use super::windows::{Window, control_values, cut, in_cell, scatter, zeros};
-use crate::linear_algebra::control_grid::ControlGrid;
+use super::windows::{Slopes, control_sums, control_values, cut};
 use crate::linear_algebra::control_grid::VectorField;
-use crate::linear_algebra::lane::{Vectorised, dispatch, each};
+use crate::linear_algebra::lane::each;
 use crate::material::hencky::Gradient;
 use crate::particles::points::{Cell, Cells, Point};
 use crate::splines::patch::Patch;
-use crate::splines::spline::{MAX_REACH, MeanFunctions, SplineSpace};
+use crate::splines::spline::{MAX_REACH, MeanFunctions};
 
 /// `D/h²` below which the derivatives stand for the affine fit.
 const DEGENERATE: f64 = 1e-14;
@@ -61,39 +59,35 @@ impl AffineVelocities {
         self.greville = [0, 1].map(|d| patch.spaces[d].greville());
     }
 
-    /// Velocity gradients from a velocity on the control points, m/s.
+    /// Velocity gradients of a velocity on the control points, m/s, where no step gives them.
     pub(crate) fn take(&mut self, patch: &Patch, cells: &Cells, points: &[Point], velocity: &VectorField) {
         let Self { fit, gradients, greville } = self;
-        let (fit, grid) = (*fit, patch.control_grid());
-        let velocity = velocity.each_ref().map(|component| &component[..]);
-        let gradients = cut(gradients, cells.strips.iter().map(|s| s.points.clone())).into_par_iter();
-        gradients.zip(&cells.strips).for_each(|(gradients, strip)| {
-            let points = &points[strip.points.clone()];
-            let cells = &cells.cells[strip.cells.clone()];
-            dispatch(GradientsFromGrid { patch, grid, fit, greville, velocity, cells, points, gradients });
-        });
+        let (grid, order) = (patch.control_grid(), patch.spaces.each_ref().map(|space| space.degree() + 1));
+        let [vx, vy] = velocity.each_ref().map(|component| &component[..]);
+        let view = AffineView { fit: *fit, greville };
+        for cell in &cells.cells {
+            let local = control_values([vx, vy, vx, vy], grid, cell, order[0], order[1]);
+            for at in cell.points.clone() {
+                let functions = points[at].mean_functions(patch, cell, order);
+                let levers = view.levers(cell, &functions, points[at].position, order);
+                let slopes = view.slopes(patch, cell, &functions, &levers, order);
+                gradients[at] = control_sums(&functions, &slopes, &local, order).affine();
+            }
+        }
     }
 
-    /// Adds `Σ m N_I C (x_I − x_p)` to the momentum of the control points, kg/s.
-    pub(crate) fn give(
-        &self,
-        patch: &Patch,
-        cells: &Cells,
-        points: &[Point],
-        density: f64,
-        momentum: &mut VectorField,
-    ) {
-        let Self { gradients, greville, .. } = self;
-        let grid = patch.control_grid();
-        scatter(&cells.strips, momentum.each_mut().map(|f| &mut f[..]), [grid.stride; 2], |strip, window| {
-            let cells = &cells.cells[strip.cells.clone()];
-            dispatch(GradientsToGrid { patch, grid, density, greville, cells, points, gradients, window });
-        });
+    /// Their fit, and the gradients in pieces of these lengths.
+    pub(super) fn pieces(
+        &mut self,
+        ranges: impl Iterator<Item = Range<usize>>,
+    ) -> impl Iterator<Item = (AffineView<'_>, &mut [Gradient])> {
+        let view = AffineView { fit: self.fit, greville: &self.greville };
+        cut(&mut self.gradients, ranges).into_iter().map(move |gradients| (view, gradients))
     }
 
-    /// The velocity gradients if they are fitted with the shape functions as weights, else none.
-    pub(super) fn fitted(&mut self) -> &mut [Gradient] {
-        if self.fit == Fit::Weighted { &mut self.gradients } else { &mut [] }
+    /// Their fit.
+    pub(super) fn view(&self) -> AffineView<'_> {
+        AffineView { fit: self.fit, greville: &self.greville }
     }
 
     /// Heap memory, bytes.
@@ -102,148 +96,82 @@ impl AffineVelocities {
     }
 }
 
-impl Fit {
-    /// Factors `Σ f(x_k) slope_k` that take the slope of a function from its control values.
-    #[inline(always)]
-    fn slopes(
-        self,
-        space: &SplineSpace,
-        span: usize,
-        shape: &MeanFunctions,
-        lever: &[f64; MAX_REACH],
-    ) -> [f64; MAX_REACH] {
-        if self == Self::Taylor {
-            return shape.derivative;
-        }
-        let spread: f64 = (0..MAX_REACH).map(|k| shape.value[k] * lever[k] * lever[k]).sum();
-        let length = space.spans()[span].length();
-        if spread <= DEGENERATE * length * length {
-            return shape.derivative;
-        }
-        let inertia = fault!("apic-spread-of-quadratics", spread => 0.25 * length * length);
-        let mut slopes = [0.0; MAX_REACH];
-        for k in 0..MAX_REACH {
-            slopes[k] = shape.value[k] * lever[k] / inertia;
-        }
-        slopes
-    }
-}
-
-/// `x_k − x` of the control points that a point reaches; `first` is the first of its span.
-#[inline(always)]
-fn levers(greville: &[f64], first: usize, mean: &MeanFunctions, order: usize, x: f64) -> [f64; MAX_REACH] {
-    let mut levers = [0.0; MAX_REACH];
-    let end = (order + 1).min(greville.len() + 1 - first - mean.start);
-    for k in 0..end {
-        levers[k] = greville[first + mean.start + k - 1] - x;
-    }
-    levers
-}
-
-struct GradientsFromGrid<'a> {
-    patch: &'a Patch,
-    grid: ControlGrid,
+/// How the velocity gradients of points follow from control values.
+#[derive(Debug, Clone, Copy)]
+pub struct AffineView<'a> {
     fit: Fit,
+    /// Greville points, m.
     greville: &'a [Vec<f64>; 2],
-    velocity: [&'a [f64]; 2],
-    cells: &'a [Cell],
-    points: &'a [Point],
-    gradients: &'a mut [Gradient],
 }
 
-impl Vectorised for GradientsFromGrid<'_> {
-    type Output = ();
-
+impl AffineView<'_> {
+    /// `x_I − x` of the columns and rows of control points that a point at `position` (m) reaches.
     #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        walk!(self, FMA)
-    }
-}
-
-impl GradientsFromGrid<'_> {
-    #[inline(always)]
-    fn walk(self, kx: usize, ky: usize) {
-        let [x, y] = &self.patch.spaces;
-        let offset = self.cells.first().map_or(0, |cell| cell.points.start);
-        for cell in self.cells {
-            let local = control_values(self.velocity, self.grid, cell, kx, ky);
-            for at in cell.points.start - offset..cell.points.end - offset {
-                let position = self.points[at].position;
-                let functions = self.points[at].mean_functions(self.patch, cell, [kx, ky]);
-                let [sx, sy] = &functions;
-                let lx = levers(&self.greville[0], cell.first[0], sx, kx, position[0]);
-                let ly = levers(&self.greville[1], cell.first[1], sy, ky, position[1]);
-                let gx = self.fit.slopes(x, cell.span[0], sx, &lx);
-                let gy = self.fit.slopes(y, cell.span[1], sy, &ly);
-                let mut value = [0.0; 2];
-                for l in 0..=ky {
-                    let first = in_cell(&functions, l, kx);
-                    for k in 0..=kx {
-                        value = each!(c in [0, 1] => value[c] + sx.value[k] * sy.value[l] * local[first + k][c]);
-                    }
-                }
-                // Against the velocity at the point: a constant has no gradient, whatever rounding does to
-                // the factors.
-                let mut gradient = [[0.0; 2]; 2];
-                for l in 0..=ky {
-                    let first = in_cell(&functions, l, kx);
-                    for k in 0..=kx {
-                        let factors = [gx[k] * sy.value[l], sx.value[k] * gy[l]];
-                        let against = each!(c in [0, 1] => local[first + k][c] - value[c]);
-                        gradient = each!(c in [0, 1] => each!(d in [0, 1] => gradient[c][d] + against[c] * factors[d]));
-                    }
-                }
-                self.gradients[at] = gradient;
+    pub(super) fn levers(
+        self,
+        cell: &Cell,
+        functions: &[MeanFunctions; 2],
+        position: [f64; 2],
+        order: [usize; 2],
+    ) -> Slopes {
+        each!(d in [0, 1] => {
+            let mut levers = [0.0; MAX_REACH];
+            let first = cell.first[d] + functions[d].start;
+            let end = (order[d] + 1).min(self.greville[d].len() + 1 - first);
+            for k in 0..end {
+                levers[k] = self.greville[d][first + k - 1] - position[d];
             }
-        }
+            levers
+        })
     }
-}
 
-struct GradientsToGrid<'a> {
-    patch: &'a Patch,
-    grid: ControlGrid,
-    density: f64,
-    greville: &'a [Vec<f64>; 2],
-    cells: &'a [Cell],
-    points: &'a [Point],
-    gradients: &'a [Gradient],
-    window: Window<'a, 2>,
-}
-
-impl Vectorised for GradientsToGrid<'_> {
-    type Output = ();
-
+    /// Factors `Σ f(x_I) slope_I` that take the slope of a function from its control values.
     #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        walk!(self, FMA)
-    }
-}
-
-impl GradientsToGrid<'_> {
-    #[inline(always)]
-    fn walk(mut self, kx: usize, ky: usize) {
-        for cell in self.cells {
-            let mut sums = zeros();
-            for at in cell.points.clone() {
-                let point = &self.points[at];
-                let functions = point.mean_functions(self.patch, cell, [kx, ky]);
-                let [sx, sy] = &functions;
-                let lx = levers(&self.greville[0], cell.first[0], sx, kx, point.position[0]);
-                let ly = levers(&self.greville[1], cell.first[1], sy, ky, point.position[1]);
-                let mass = self.density * point.volume;
-                let [[xx, xy], [yx, yy]] = each!(c in [0, 1] => each!(d in [0, 1] => mass * self.gradients[at][c][d]));
-                let [cx, cy] = fault!("affine-transposed", [[xx, xy], [yx, yy]] => [[xx, yx], [xy, yy]]);
-                for l in 0..=ky {
-                    let first = in_cell(&functions, l, kx);
-                    for k in 0..=kx {
-                        let n = sx.value[k] * sy.value[l];
-                        let sum = &mut sums[first + k];
-                        sum[0] += n * (cx[0] * lx[k] + cx[1] * ly[l]);
-                        sum[1] += n * (cy[0] * lx[k] + cy[1] * ly[l]);
-                    }
-                }
+    pub(super) fn slopes(
+        self,
+        patch: &Patch,
+        cell: &Cell,
+        functions: &[MeanFunctions; 2],
+        levers: &Slopes,
+        order: [usize; 2],
+    ) -> Slopes {
+        each!(d in [0, 1] => {
+            let MeanFunctions { value, derivative, .. } = &functions[d];
+            let mut slopes = [0.0; MAX_REACH];
+            let mut spread = 0.0;
+            for k in 0..=order[d] {
+                slopes[k] = value[k] * levers[d][k];
+                spread += slopes[k] * levers[d][k];
             }
-            self.window.add(self.grid, cell, &sums, kx, ky);
+            let length = patch.spaces[d].spans()[cell.span[d]].length();
+            if self.fit == Fit::Taylor || spread <= DEGENERATE * length * length {
+                slopes = *derivative;
+            } else {
+                let factor = 1.0 / fault!("apic-spread-of-quadratics", spread => 0.25 * length * length);
+                slopes.iter_mut().for_each(|slope| *slope *= factor);
+            }
+            slopes
+        })
+    }
+
+    /// A gradient of a point whose domain grew from half a width and height to others, m: the spread D of a
+    /// fit with weights grows by a third of the square, and the angular momentum of `C D` is to stay.
+    #[inline(always)]
+    pub(super) fn rescaled(
+        self,
+        gradient: Gradient,
+        patch: &Patch,
+        cell: &Cell,
+        [before, after]: [[f64; 2]; 2],
+    ) -> Gradient {
+        if self.fit == Fit::Taylor || before == after {
+            return gradient;
         }
+        let factors = each!(d in [0, 1] => {
+            let spread = patch.spaces[d].spread(cell.span[d]);
+            let factor = (spread + before[d] * before[d] / 3.0) / (spread + after[d] * after[d] / 3.0);
+            fault!("affine-not-scaled", factor => 1.0)
+        });
+        gradient.map(|row| [row[0] * factors[0], row[1] * factors[1]])
     }
 }

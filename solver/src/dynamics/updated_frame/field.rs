@@ -165,11 +165,8 @@ impl DiscreteField {
     }
 
     fn choose_velocities(&mut self) {
-        let Self { patch, cells, points, nodes, velocity_transfer, affine, density, .. } = self;
+        let Self { patch, cells, points, nodes, velocity_transfer, density, .. } = self;
         velocity_transfer.update(nodes, &Smoothing { patch, cells, points, density: *density, mass: &nodes.mass });
-        if let Some(affine) = affine {
-            affine.take(patch, cells, points, &nodes.velocity);
-        }
     }
 
     /// `v_p ← k v_p + Σ N Δv` (k the kept fraction, Δv the increment), `x_p += dt Σ N v`, and the strain of
@@ -182,15 +179,10 @@ impl DiscreteField {
         let motions = match self.deformation.take() {
             None => self.move_points(dt, self.cells.strips.iter().map(|_| SmallStrain).collect()),
             Some(mut deformation) => {
-                let mut affine = self.affine.take();
-                let fitted = affine.as_mut().map_or(&mut [][..], AffineVelocities::fitted);
-                let ranges = || self.cells.strips.iter().map(|s| s.points.clone());
-                let fitted =
-                    if fitted.is_empty() { ranges().map(|_| &mut [][..]).collect() } else { cut(fitted, ranges()) };
-                let strips = cut(&mut deformation, ranges()).into_iter().zip(fitted);
-                let strips = strips.map(|(deformation, fitted)| FiniteStrain { deformation, fitted }).collect();
-                let motions = self.move_points(dt, strips);
-                (self.deformation, self.affine) = (Some(deformation), affine);
+                let ranges = self.cells.strips.iter().map(|s| s.points.clone());
+                let strips = cut(&mut deformation, ranges).into_iter();
+                let motions = self.move_points(dt, strips.map(|deformation| FiniteStrain { deformation }).collect());
+                self.deformation = Some(deformation);
                 motions
             }
         };
@@ -222,19 +214,23 @@ impl DiscreteField {
 
     /// Velocity, position and strain of the points; `kinematics` for each strip.
     fn move_points<K: StrainUpdate + Send>(&mut self, dt: f64, kinematics: Vec<K>) -> Vec<StripMotion> {
-        let Self { patch, cells, nodes, points, velocity_transfer, fracture, .. } = self;
+        let Self { patch, cells, nodes, points, velocity_transfer, affine, fracture, .. } = self;
         let elastic = fracture.is_none().then_some(self.moduli);
         let ranges = || cells.strips.iter().map(|s| s.points.clone());
         let cracked = match fracture {
             Some(fracture) => cut(&mut fracture.points, ranges()),
             None => cells.strips.iter().map(|_| &mut [][..]).collect(),
         };
+        let affine: Vec<_> = match affine {
+            Some(affine) => affine.pieces(ranges()).map(Some).collect(),
+            None => cells.strips.iter().map(|_| None).collect(),
+        };
         let (kept_fraction, grid) = (velocity_transfer.kept_fraction, nodes.grid);
         let motion = nodes.velocity.each_ref().map(|f| &f[..]);
         let increment = velocity_transfer.increment.each_ref().map(|f| &f[..]);
-        let strips = cut(points, ranges()).into_par_iter().zip(cracked).zip(kinematics).zip(&cells.strips);
+        let strips = cut(points, ranges()).into_par_iter().zip(cracked).zip(affine).zip(kinematics).zip(&cells.strips);
         strips
-            .map(|(((points, fracture), kinematics), strip)| {
+            .map(|((((points, fracture), affine), kinematics), strip)| {
                 let cells = &cells.cells[strip.cells.clone()];
                 dispatch(GridToPoints {
                     patch,
@@ -243,6 +239,7 @@ impl DiscreteField {
                     motion,
                     increment,
                     kept_fraction,
+                    affine,
                     kinematics,
                     elastic,
                     cells,
@@ -303,13 +300,11 @@ impl DiscreteField {
         nodes.clear();
         let (grid, density) = (nodes.grid, *density);
         let NodalFields { mass, arrived: [px, py], force: [fx, fy], .. } = nodes;
+        let affine = self.affine.as_ref().map(|affine| (affine.view(), &affine.gradients[..]));
         scatter(&cells.strips, [px, py, fx, fy, mass], [grid.stride; 5], |strip, window| {
             let cells = &cells.cells[strip.cells.clone()];
-            dispatch(PointsToGrid { patch, grid, density, cells, points, window });
+            dispatch(PointsToGrid { patch, grid, density, cells, points, affine, window });
         });
-        if let Some(affine) = &self.affine {
-            affine.give(patch, cells, points, density, &mut nodes.arrived);
-        }
         nodes.divide_by_mass();
     }
 

@@ -6,7 +6,7 @@ use super::velocity_transfer::stable_fraction;
 use super::windows::{Window, control_values, in_cell, scatter, zeros};
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::ControlGrid;
-use crate::linear_algebra::lane::{Vectorised, dispatch, each};
+use crate::linear_algebra::lane::{Vectorised, dispatch};
 use crate::material::elasticity::ElasticModuli;
 use crate::particles::points::{Cell, Point};
 use crate::splines::patch::Patch;
@@ -118,33 +118,45 @@ impl ElasticForces<'_> {
     #[inline(always)]
     fn walk(mut self, kx: usize, ky: usize) {
         let ElasticModuli { lambda, mu, .. } = self.moduli;
+        let [x, y] = self.field;
         for cell in self.cells {
-            let local = control_values(self.field, self.grid, cell, kx, ky);
-            let mut forces = zeros();
+            let local = control_values([x, y, x, y], self.grid, cell, kx, ky);
+            let mut parts = zeros::<4>();
             for point in &self.points[cell.points.clone()] {
                 let functions = point.mean_functions(self.patch, cell, [kx, ky]);
                 let [sx, sy] = &functions;
-                let slope = |k: usize, l: usize| [sx.derivative[k] * sy.value[l], sx.value[k] * sy.derivative[l]];
-                let mut gradient = [[0.0; 2]; 2];
+                let mut gradient = [0.0; 4]; // by y, and by x
                 for l in 0..=ky {
                     let first = in_cell(&functions, l, kx);
+                    let mut row = [0.0; 4];
                     for k in 0..=kx {
-                        let (u, d) = (local[first + k], slope(k, l));
-                        gradient = each!(c in [0, 1] => each!(i in [0, 1] => gradient[c][i] + u[c] * d[i]));
+                        let along = [sx.value[k], sx.value[k], sx.derivative[k], sx.derivative[k]];
+                        for c in 0..4 {
+                            row[c] += along[c] * local[first + k][c];
+                        }
+                    }
+                    let across = [sy.derivative[l], sy.derivative[l], sy.value[l], sy.value[l]];
+                    for c in 0..4 {
+                        gradient[c] += across[c] * row[c];
                     }
                 }
-                let [[uxx, uxy], [uyx, uyy]] = gradient;
+                let [uxy, uyy, uxx, uyx] = gradient;
                 let spherical = lambda * (uxx + uyy);
                 let stress = [spherical + 2.0 * mu * uxx, spherical + 2.0 * mu * uyy, mu * (uxy + uyx)];
                 let [xx, yy, xy] = stress.map(|s| s * point.volume);
                 for l in 0..=ky {
+                    let (n, d) = (sy.value[l], sy.derivative[l]);
+                    let across = [xy * d, yy * d, xx * n, xy * n];
                     let first = in_cell(&functions, l, kx);
                     for k in 0..=kx {
-                        let (f, d) = (&mut forces[first + k], slope(k, l));
-                        *f = [f[0] + xx * d[0] + xy * d[1], f[1] + xy * d[0] + yy * d[1]];
+                        let along = [sx.value[k], sx.value[k], sx.derivative[k], sx.derivative[k]];
+                        for c in 0..4 {
+                            parts[first + k][c] += along[c] * across[c];
+                        }
                     }
                 }
             }
+            let forces = parts.map(|[x, y, by_x, by_y]| [x + by_x, y + by_y]);
             self.window.add(self.grid, cell, &forces, kx, ky);
         }
     }

@@ -10,20 +10,24 @@
 //! with forces of its own wherever the points do not lie as they did at the start. Those soften or stiffen a
 //! body that is stretched or pressed, until it comes apart.
 //!
-//! Strain and deformation gradient follow from A in [`strain`](super::strain).
+//! Strain and deformation gradient follow from A in [`strain`](super::strain). Where the transfer carries
+//! velocity gradients C, they come and go with the velocities ([`affine`](super::affine)).
 //!
 //! Both go cell by cell: the control values of a span are gathered once for all its points. Shape functions
 //! are products of two one-dimensional ones (`SplineSpace::mean_functions`). Four numbers travel together
 //! through the inner loops, which is what the vector instructions of every processor in question hold.
 
+use super::affine::AffineView;
 use super::strain::StrainUpdate;
-use super::windows::{OfCell, Window, control_values, in_cell, zeros};
+use super::windows::{ControlSums, OfCell, Window, control_sums, control_values, in_cell, zeros};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised, each};
 use crate::material::elasticity::ElasticModuli;
+use crate::material::hencky::Gradient;
 use crate::particles::points::{Cell, FracturePoint, Point};
 use crate::splines::patch::Patch;
+use crate::splines::spline::MAX_REACH;
 
 /// Instantiates a walk over the usual degrees with loops of constant length on wide processors; any other
 /// runs the same code.
@@ -55,6 +59,8 @@ pub struct PointsToGrid<'a> {
     pub cells: &'a [Cell],
     /// All points.
     pub points: &'a [Point],
+    /// Their velocity gradients, if they carry such.
+    pub affine: Option<(AffineView<'a>, &'a [Gradient])>,
     /// Momentum x and y, force x and y (minus the internal force), and mass, per unit thickness.
     pub window: Window<'a, 5>,
 }
@@ -73,22 +79,34 @@ impl PointsToGrid<'_> {
     fn walk(mut self, kx: usize, ky: usize) {
         for cell in self.cells {
             let mut local = zeros::<5>();
-            for point in &self.points[cell.points.clone()] {
+            for at in cell.points.clone() {
+                let point = &self.points[at];
                 let functions = point.mean_functions(self.patch, cell, [kx, ky]);
                 let [sx, sy] = &functions;
                 let m = self.density * point.volume;
                 let [px, py] = each!(c in [0, 1] => m * point.velocity[c]);
                 let [xx, yy, xy] = each!(i in [0, 1, 2] => -point.stress[i] * point.volume);
+                let ([lx, ly], [[vx_x, vx_y], [vy_x, vy_y]]) = match self.affine {
+                    Some((view, gradients)) => {
+                        let gradient = each!(c in [0, 1] => each!(d in [0, 1] => {
+                            m * fault!("affine-transposed", gradients[at][c][d] => gradients[at][d][c])
+                        }));
+                        (view.levers(cell, &functions, point.position, [kx, ky]), gradient)
+                    }
+                    None => ([[0.0; MAX_REACH]; 2], [[0.0; 2]; 2]),
+                };
                 for l in 0..=ky {
                     let (n, d) = (sy.value[l], sy.derivative[l]);
-                    let by_value = [px * n, py * n, xy * d, yy * d];
-                    let by_slope = [0.0, 0.0, xx * n, fault!("shear-force-one-sided", xy * n => 0.0)];
+                    let by_value = [(px + vx_y * ly[l]) * n, (py + vy_y * ly[l]) * n, xy * d, yy * d];
+                    let by_slope = [vx_x * n, vy_x * n, xx * n, fault!("shear-force-one-sided", xy * n => 0.0)];
                     let first = in_cell(&functions, l, kx);
                     for k in 0..=kx {
                         let sums = &mut local[first + k];
                         sums[4] += m * n * sx.value[k];
+                        let of_lever = sx.value[k] * lx[k];
+                        let slope = [of_lever, of_lever, sx.derivative[k], sx.derivative[k]];
                         for c in 0..4 {
-                            sums[c] += sx.value[k] * by_value[c] + sx.derivative[k] * by_slope[c];
+                            sums[c] += sx.value[k] * by_value[c] + slope[c] * by_slope[c];
                         }
                     }
                 }
@@ -113,6 +131,8 @@ pub struct GridToPoints<'a, K> {
     pub increment: [&'a [f64]; 2],
     /// Part of its own velocity that a point keeps.
     pub kept_fraction: f64,
+    /// Velocity gradients of the points of the strip, if they carry such.
+    pub affine: Option<(AffineView<'a>, &'a mut [Gradient])>,
     /// Strains the points of the strip.
     pub kinematics: K,
     /// Moduli if the body is elastic: its stress follows at once.
@@ -164,13 +184,15 @@ impl<K: StrainUpdate> GridToPoints<'_, K> {
         let fields = [ux, uy, tx, ty];
         let mut increments = [[0.0; 3]; LANES];
         for cell in self.cells {
-            let local = control_values(fields, self.grid, cell, kx, ky);
+            let mut local = control_values(fields, self.grid, cell, kx, ky);
+            // A constant velocity has no gradient, whatever rounding does to the factors of the fit.
+            let reference = if self.affine.is_some() { subtract_middle(&mut local, kx, ky) } else { [0.0; 2] };
             let all = cell.points.start - offset..cell.points.end - offset;
             for first in all.clone().step_by(LANES) {
                 let some = first..(first + LANES).min(all.end);
                 for at in some.clone() {
                     let PointMotion { strain_increment, moved } =
-                        self.move_point(cell, at, &local, kx, ky, &mut motion);
+                        self.move_point(cell, at, &local, reference, kx, ky, &mut motion);
                     increments[at - first] = strain_increment;
                     if let Some(fracture) = self.fracture.get_mut(at) {
                         (fracture.strain_increment, fracture.moved) = (strain_increment, moved);
@@ -184,51 +206,60 @@ impl<K: StrainUpdate> GridToPoints<'_, K> {
         motion
     }
 
-    /// Moves and strains one point.
+    /// Moves and strains one point; `reference` is to be added to the last two fields.
     #[inline(always)]
     fn move_point(
         &mut self,
         cell: &Cell,
         at: usize,
         local: &OfCell<[f64; 4]>,
+        reference: [f64; 2],
         kx: usize,
         ky: usize,
         motion: &mut StripMotion,
     ) -> PointMotion {
+        let Self { patch, dt, .. } = *self;
         let point = &mut self.points[at];
-        let functions = point.mean_functions(self.patch, cell, [kx, ky]);
-        let [sx, sy] = &functions;
-        let (mut value, mut along_x, mut along_y) = ([0.0; 4], [0.0; 4], [0.0; 4]);
-        for l in 0..=ky {
-            let first = in_cell(&functions, l, kx);
-            let (mut row_value, mut row_slope) = ([0.0; 4], [0.0; 4]);
-            for k in 0..=kx {
-                for c in 0..4 {
-                    row_value[c] += sx.value[k] * local[first + k][c];
-                    row_slope[c] += sx.derivative[k] * local[first + k][c];
-                }
+        let functions = point.mean_functions(patch, cell, [kx, ky]);
+        let slopes = match &self.affine {
+            Some((view, _)) => {
+                let levers = view.levers(cell, &functions, point.position, [kx, ky]);
+                view.slopes(patch, cell, &functions, &levers, [kx, ky])
             }
-            for c in 0..4 {
-                value[c] += sy.value[l] * row_value[c];
-                along_x[c] += sy.value[l] * row_slope[c];
-                along_y[c] += sy.derivative[l] * row_value[c];
-            }
+            None => [[0.0; MAX_REACH]; 2],
+        };
+        let sums = control_sums(&functions, &slopes, local, [kx, ky]);
+        let ControlSums { value, along_x, along_y } = sums;
+        let step = each!(c in [0, 1] => [dt * along_x[c], dt * along_y[c]]);
+        let before = point.half_width;
+        let strain_increment = self.kinematics.strain(at, point, &step);
+        if let Some((view, gradients)) = &mut self.affine {
+            let (kept, taken) = (gradients[at], sums.affine());
+            let gradient = each!(c in [0, 1] => each!(d in [0, 1] => self.kept_fraction * kept[c][d] + taken[c][d]));
+            gradients[at] = view.rescaled(gradient, patch, cell, [before, point.half_width]);
         }
-        let spaces = &self.patch.spaces;
-        let spread = each!(d in [0, 1] => spaces[d].spread(cell.span[d]));
-        let step = each!(c in [0, 1] => [self.dt * along_x[c], self.dt * along_y[c]]);
-        let strain_increment = self.kinematics.strain(at, point, &step, spread);
-        let moved = each!(d in [0, 1] => self.dt * value[d]);
+        let moved = each!(d in [0, 1] => dt * value[d]);
         for d in 0..2 {
-            point.velocity[d] = self.kept_fraction * point.velocity[d] + value[2 + d];
+            point.velocity[d] = self.kept_fraction * point.velocity[d] + (reference[d] + value[2 + d]);
             point.displacement[d] += moved[d];
             point.position[d] += fault!("points-move-half-way", moved[d] => 0.5 * moved[d]);
             motion.fastest = larger(motion.fastest, value[d] * value[d]);
         }
-        let spans = each!(d in [0, 1] => &spaces[d].spans()[cell.span[d]]);
+        let spans = each!(d in [0, 1] => &patch.spaces[d].spans()[cell.span[d]]);
         motion.left_span |= (0..2).any(|d| !(spans[d].left <= point.position[d] && point.position[d] < spans[d].right));
         PointMotion { strain_increment, moved }
     }
+}
+
+/// Subtracts from the last two fields of a cell, whose spans have `kx` by `ky` functions, what they are in its
+/// middle, which is returned.
+#[inline(always)]
+fn subtract_middle(local: &mut OfCell<[f64; 4]>, kx: usize, ky: usize) -> [f64; 2] {
+    let [_, _, x, y] = local[(ky / 2 + 1) * (kx + 2) + kx / 2 + 1];
+    for values in local.iter_mut() {
+        (values[2], values[3]) = (values[2] - x, values[3] - y);
+    }
+    [x, y]
 }
 
 /// Stress of at most eight intact points, their energy and the work of the new stress over the step.
@@ -290,7 +321,8 @@ mod tests {
         let mut fields: [Vec<f64>; 5] = std::array::from_fn(|_| grid.zeros());
         scatter(&cells.strips, fields.each_mut().map(|f| &mut f[..]), [grid.stride; 5], |strip, window| {
             let cells = &cells.cells[strip.cells.clone()];
-            PointsToGrid { patch: &patch, grid, density: 1.0, cells, points: &points, window }.run::<false>();
+            PointsToGrid { patch: &patch, grid, density: 1.0, cells, points: &points, affine: None, window }
+                .run::<false>();
         });
         let greville = [0, 1].map(|d| patch.spaces[d].greville());
         let reach = 0.5 * (degree + 1) as f64;

@@ -6,12 +6,17 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::linear_algebra::control_grid::ControlGrid;
+use crate::linear_algebra::lane::each;
+use crate::material::hencky::Gradient;
 use crate::particles::points::{Cell, Strip};
 use crate::splines::spline::{MAX_REACH, MeanFunctions};
 
 /// Control points that the domains of the points of a cell may reach in a direction: those of its span and
 /// one on either side, which is where the cell's numbers of control columns and rows begin.
 const MAX_CELL: usize = MAX_REACH + 1;
+
+/// Factors of the columns and of the rows of control points that a point reaches.
+pub(super) type Slopes = [[f64; MAX_REACH]; 2];
 
 /// One value for each control point of a cell, row by row.
 pub type OfCell<T> = [T; MAX_CELL * MAX_CELL];
@@ -77,6 +82,53 @@ pub fn control_values<const N: usize>(
         }
     }
     values
+}
+
+/// Sums over control points with shape functions and slopes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ControlSums {
+    pub value: [f64; 4],
+    pub along_x: [f64; 4],
+    pub along_y: [f64; 4],
+}
+
+impl ControlSums {
+    /// Velocity gradient of the last two fields.
+    #[inline(always)]
+    pub(super) fn affine(&self) -> Gradient {
+        each!(c in [0, 1] => [self.along_x[2 + c], self.along_y[2 + c]])
+    }
+}
+
+/// Sums of four fields: values with the means of the shape functions, slopes of the first two fields with the
+/// means of their derivatives and of the last two with given ones.
+#[inline(always)]
+pub(super) fn control_sums(
+    functions: &[MeanFunctions; 2],
+    slopes: &Slopes,
+    local: &OfCell<[f64; 4]>,
+    [kx, ky]: [usize; 2],
+) -> ControlSums {
+    let [sx, sy] = functions;
+    let mut sums = ControlSums { value: [0.0; 4], along_x: [0.0; 4], along_y: [0.0; 4] };
+    for l in 0..=ky {
+        let first = in_cell(functions, l, kx);
+        let (mut row_value, mut row_slope) = ([0.0; 4], [0.0; 4]);
+        for k in 0..=kx {
+            let slope = [sx.derivative[k], sx.derivative[k], slopes[0][k], slopes[0][k]];
+            for c in 0..4 {
+                row_value[c] += sx.value[k] * local[first + k][c];
+                row_slope[c] += slope[c] * local[first + k][c];
+            }
+        }
+        let slope = [sy.derivative[l], sy.derivative[l], slopes[1][l], slopes[1][l]];
+        for c in 0..4 {
+            sums.value[c] += sy.value[l] * row_value[c];
+            sums.along_x[c] += sy.value[l] * row_slope[c];
+            sums.along_y[c] += slope[c] * row_value[c];
+        }
+    }
+    sums
 }
 
 /// Runs `work` once per strip with its window of `fields`, rows of `row_lengths` numbers; results in the

@@ -117,15 +117,15 @@ impl<'a> PointGraph<'a> {
         }
     }
 
-    /// Points of a span with their distances (m) from another point, the nearest first.
+    /// Points of a span with the squares of their distances (m²) from another point, the nearest first.
     fn nearest_of(&self, span: FunctionIndex, from: PointIndex) -> [Option<(f64, PointIndex)>; TRIED] {
         let [x, y] = self.position(from);
         let mut nearest = [None; TRIED];
         for point in self.points_of(span).filter(|point| *point != from) {
             let to = self.position(point);
-            let mut next = Some(((to[0] - x).hypot(to[1] - y), point));
+            let mut next = Some(((to[0] - x).powi(2) + (to[1] - y).powi(2), point));
             for place in &mut nearest {
-                if place.is_none_or(|(distance, _)| next.is_some_and(|(other, _)| other < distance)) {
+                if place.is_none_or(|(square, _)| next.is_some_and(|(other, _)| other < square)) {
                     std::mem::swap(place, &mut next);
                 }
             }
