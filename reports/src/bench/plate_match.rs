@@ -51,7 +51,9 @@ impl Match {
     fn found(&self) -> Option<Found> {
         let error = shown(self.error, self.quantity.unit);
         let what = format!("finite elements over fisura, plate, {} to {error}", self.quantity.name);
-        Some(Found { what, value: self.ratio()?, target: self.target(), verified: true })
+        let why = "four times as fast as elements of the same error is the aim of this program. If fracture cost nothing, \
+                   the ratio would be that of a step of the plate over an elastic step times as large";
+        Some(Found { what, value: self.ratio()?, target: self.target(), verified: true, why: why.into() })
     }
 
     fn words(&self) -> String {

@@ -17,6 +17,9 @@ struct Ratio {
     below: Vec<String>,
     at_most: Option<f64>,
     at_least: Option<f64>,
+    /// Why this is asked for, and what bounds it.
+    #[serde(default)]
+    why: String,
     #[serde(default)]
     whole: bool,
 }
@@ -51,6 +54,8 @@ pub struct Found {
     pub target: Target,
     /// Whether all answers hold.
     pub verified: bool,
+    /// Why this is asked for, and what bounds it.
+    pub why: String,
 }
 
 impl Found {
@@ -109,7 +114,7 @@ fn value(ratio: &Ratio, records: Records) -> Option<Found> {
         (_, Some(limit)) => Target::AtLeast(limit),
         _ => Target::None,
     };
-    let found = Found { what: ratio.what.clone(), value, target, verified };
+    let found = Found { what: ratio.what.clone(), value, target, verified, why: ratio.why.clone() };
     [value.median, value.min, value.max].iter().all(|v| v.is_finite()).then_some(found)
 }
 
@@ -127,10 +132,12 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
             Target::AtLeast(limit) => format!("≥ {}", plain(limit, 3)),
             Target::None => "–".into(),
         };
-        vec![ratio.what.clone(), plain(ratio.value.median, 3), range(ratio.value), target, ratio.word().into()]
+        let [what, median, word, why] =
+            [ratio.what.clone(), plain(ratio.value.median, 3), ratio.word().into(), ratio.why.clone()];
+        vec![what, median, range(ratio.value), target, word, why]
     });
     let note = format!("{met} of {} targets are met in this run.", judged.len());
-    let head = ["ratio", "median", "rounds", "target", "verdict"];
+    let head = ["ratio", "median", "rounds", "target", "verdict", "why, and what bounds it"];
     vec![Exhibit::grid("Ratios within this run", &head, rows, note)]
 }
 
@@ -156,6 +163,7 @@ mod tests {
     fn the_list_is_read() {
         let list: Ratios = toml::from_str(include_str!("ratios.toml")).unwrap();
         assert!(!list.ratio.is_empty() && list.ratio.iter().all(|ratio| !ratio.above.is_empty()));
+        assert!(list.ratio.iter().all(|r| r.why.is_empty() == (r.at_most.is_none() && r.at_least.is_none())));
     }
 
     #[test]

@@ -137,7 +137,7 @@ impl Point {
     /// Means of the shape functions in x and y over the domain, which lies in a cell and reaches over at most
     /// one knot in each direction; `order` is p + 1.
     #[inline(always)]
-    pub(crate) fn mean_functions(&self, patch: &Patch, cell: &Cell, order: [usize; 2]) -> [MeanFunctions; 2] {
+    pub fn mean_functions(&self, patch: &Patch, cell: &Cell, order: [usize; 2]) -> [MeanFunctions; 2] {
         let mean =
             |d: usize| patch.spaces[d].mean_functions(cell.span[d], self.position[d], self.half_width[d], order[d]);
         [mean(0), mean(1)]

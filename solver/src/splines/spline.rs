@@ -62,7 +62,7 @@ pub struct ShapeFunctions {
 
 /// Means of basis functions and of their derivatives over an interval; entries past the functions are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct MeanFunctions {
+pub struct MeanFunctions {
     /// The first function: 0 is the one before the first of the span.
     pub start: usize,
     /// Means of the values.

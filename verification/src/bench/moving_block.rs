@@ -60,14 +60,13 @@ impl MovingBlock {
         self.points.len()
     }
 
-    /// Shape functions of all points; their sum, which is the number of points.
+    /// Means of the shape functions over the domains of all points; their sum, which is the number of points.
     pub fn basis(&self) -> f64 {
-        let [x, y] = &self.patch.spaces;
+        let order = self.patch.spaces.each_ref().map(|space| space.degree() + 1);
         let mut sum = 0.0;
         for cell in &self.cells.cells {
             for point in &self.points[cell.points.clone()] {
-                let sx = x.shape_functions(cell.span[0], point.position[0]);
-                let sy = y.shape_functions(cell.span[1], point.position[1]);
+                let [sx, sy] = point.mean_functions(&self.patch, cell, order);
                 sum += sx.value.iter().sum::<f64>() * sy.value.iter().sum::<f64>();
             }
         }
@@ -103,7 +102,6 @@ impl MovingBlock {
         let patch = &*patch;
         let motion = nodes.velocity.each_ref().map(|f| &f[..]);
         let increment = nodes.acceleration.each_ref().map(|f| &f[..]);
-        let kept_fraction = 1.0;
         let strips = cut(points, cells.strips.iter().map(|s| s.points.clone())).into_par_iter().zip(&cells.strips);
         let motions: Vec<StripMotion> = strips
             .map(|(points, strip)| {
@@ -113,7 +111,7 @@ impl MovingBlock {
                     dt,
                     motion,
                     increment,
-                    kept_fraction,
+                    kept_fraction: 1.0,
                     affine: None,
                     kinematics: SmallStrain,
                     elastic: Some(*moduli),

@@ -14,6 +14,7 @@
 //!
 //! Derivatives come out to round-off, because nothing is differenced.
 
+use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Directions of differentiation: x, y, t.
@@ -87,25 +88,15 @@ pub type Jet = Dual<Field>;
 impl Field {
     /// x (m), y (m) and t (s) as the variables of differentiation.
     pub fn variables([x, y]: [f64; 2], t: f64) -> [Self; DIRECTIONS] {
-        varied([x, y, t])
+        from_fn(|d| Self { value: [x, y, t][d], gradient: from_fn(|i| f64::from(i == d)) })
     }
 }
 
 impl Jet {
     /// x (m), y (m) and t (s) as the variables of differentiation.
     pub fn variables(position: [f64; 2], t: f64) -> [Self; DIRECTIONS] {
-        varied(Field::variables(position, t))
+        Field::variables(position, t).map(|value| Self { value, gradient: value.gradient.map(Field::constant) })
     }
-}
-
-/// Numbers that vary each in its own direction.
-fn varied<T: Scalar>(values: [T; DIRECTIONS]) -> [Dual<T>; DIRECTIONS] {
-    let mut direction = 0..DIRECTIONS;
-    values.map(|value| {
-        let mut gradient = [T::constant(0.0); DIRECTIONS];
-        gradient[direction.next().unwrap_or_default()] = T::constant(1.0);
-        Dual { value, gradient }
-    })
 }
 
 impl<T: Scalar> Dual<T> {

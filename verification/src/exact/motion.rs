@@ -78,8 +78,7 @@ impl<M: Motion> ExactSolution for Derived<M> {
     }
 
     fn displacement(&self, position: [f64; 2], time: f64) -> [f64; 2] {
-        let [x, y] = position;
-        self.0.displacement([x, y, time])
+        self.0.displacement([position[0], position[1], time])
     }
 
     fn displacement_gradient(&self, position: [f64; 2], time: f64) -> [[f64; 2]; 2] {
@@ -121,8 +120,7 @@ impl<M: Motion> ExactSolution for Derived<M> {
 
 impl<M: Motion> ExactPhase for Derived<M> {
     fn value(&self, position: [f64; 2], time: f64) -> f64 {
-        let [x, y] = position;
-        self.0.phase([x, y, time])
+        self.0.phase([position[0], position[1], time])
     }
 
     fn gradient(&self, position: [f64; 2], time: f64) -> [f64; 2] {

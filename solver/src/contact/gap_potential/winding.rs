@@ -89,9 +89,9 @@ mod tests {
 
     #[test]
     fn a_hole_is_outside() {
-        let ring = polygon(&[[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]]);
+        let square = polygon(&[[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]]);
         let hole = polygon(&[[1.0, 1.0], [1.0, 2.0], [2.0, 2.0], [2.0, 1.0]]);
-        let ring = Outline::new([ring.arcs, hole.arcs].concat(), 1.0);
+        let ring = Outline::new([square.arcs, hole.arcs].concat(), 1.0);
         assert!(ring.contains([0.5, 1.5]) && ring.contains([1.5, 2.5]) && !ring.contains([1.5, 1.5]));
     }
 }
