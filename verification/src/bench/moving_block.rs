@@ -5,7 +5,7 @@ use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::dynamics::updated_frame::grid::NodalFields;
 use fisura::dynamics::updated_frame::strain::SmallStrain;
 use fisura::dynamics::updated_frame::transfer::{GridToPoints, PointsToGrid, StripMotion};
-use fisura::dynamics::updated_frame::windows::{cut, scatter};
+use fisura::dynamics::updated_frame::windows::{cut, scatter, side_by_side};
 use fisura::linear_algebra::lane::dispatch;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::points::{Cells, Point};
@@ -42,7 +42,7 @@ impl MovingBlock {
     /// The block after `steps` steps.
     ///
     /// # Errors
-    /// If a step cannot be increment.
+    /// If a step cannot be taken.
     pub fn new(degree: usize, points: usize, cells: usize, steps: usize) -> Result<Self, BenchError> {
         let (frame, _) = moved(&moving_scene(degree, points, cells), steps)?;
         let field = &frame.fields()[0];
@@ -77,10 +77,9 @@ impl MovingBlock {
     pub fn points_to_grid(&mut self) {
         let Self { patch, points, cells, nodes, .. } = self;
         let (patch, points, cells) = (&*patch, &points[..], &*cells);
-        nodes.clear();
         let grid = nodes.grid;
-        let NodalFields { mass, arrived: [px, py], force: [fx, fy], .. } = nodes;
-        scatter(&cells.strips, [px, py, fx, fy, mass], [grid.stride; 5], |strip, window| {
+        nodes.sums.fill([0.0; 5]);
+        scatter(&cells.strips, [&mut nodes.sums[..]], [grid.stride], |strip, window| {
             let cells = &cells.cells[strip.cells.clone()];
             dispatch(PointsToGrid { patch, grid, density: DENSITY, cells, points, affine: None, window });
         });
@@ -100,8 +99,8 @@ impl MovingBlock {
     pub fn grid_to_points(&mut self, dt: f64) -> StripMotion {
         let Self { patch, points, cells, nodes, moduli } = self;
         let patch = &*patch;
-        let motion = nodes.velocity.each_ref().map(|f| &f[..]);
-        let increment = nodes.acceleration.each_ref().map(|f| &f[..]);
+        let ([ux, uy], [ax, ay], mut fields) = (&nodes.velocity, &nodes.acceleration, Vec::new());
+        side_by_side([ux, uy, ax, ay], &mut fields);
         let strips = cut(points, cells.strips.iter().map(|s| s.points.clone())).into_par_iter().zip(&cells.strips);
         let motions: Vec<StripMotion> = strips
             .map(|(points, strip)| {
@@ -109,8 +108,7 @@ impl MovingBlock {
                     patch,
                     grid: nodes.grid,
                     dt,
-                    motion,
-                    increment,
+                    fields: &fields,
                     kept_fraction: 1.0,
                     affine: None,
                     kinematics: SmallStrain,
@@ -155,7 +153,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 /// The scene after some steps from [`velocity`], and the length of its steps, s.
 fn moved(scene: &Scene, steps: usize) -> Result<(UpdatedFrame, f64), BenchError> {
     let dt = Simulation::new(scene)?.plan().step;
-    let broken = |_| BenchError::other("a step of the block cannot be increment");
+    let broken = |_| BenchError::other("a step of the block cannot be taken");
     let mut frame = UpdatedFrame::new(scene).map_err(broken)?;
     frame.set_initial_velocity(velocity);
     (0..steps).try_for_each(|_| frame.step(dt)).map_err(broken)?;

@@ -18,7 +18,7 @@
 
 use std::ops::Range;
 
-use super::windows::{Slopes, control_sums, control_values, cut};
+use super::windows::{Reach, Slopes, control_sums, cut, side_by_side};
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::lane::each;
 use crate::material::hencky::Gradient;
@@ -64,14 +64,16 @@ impl AffineVelocities {
         let Self { fit, gradients, greville } = self;
         let (grid, order) = (patch.control_grid(), patch.spaces.each_ref().map(|space| space.degree() + 1));
         let [vx, vy] = velocity.each_ref().map(|component| &component[..]);
+        let mut fields = Vec::new();
+        side_by_side([vx, vy, vx, vy], &mut fields);
         let view = AffineView { fit: *fit, greville };
         for cell in &cells.cells {
-            let local = control_values([vx, vy, vx, vy], grid, cell, order[0], order[1]);
             for at in cell.points.clone() {
                 let functions = points[at].mean_functions(patch, cell, order);
                 let levers = view.levers(cell, &functions, points[at].position, order);
                 let slopes = view.slopes(patch, cell, &functions, &levers, order);
-                gradients[at] = control_sums(&functions, &slopes, &local, order).affine();
+                let reach = Reach::new(grid, cell, &functions, order, 0);
+                gradients[at] = control_sums(&functions, &slopes, &fields, [0.0; 4], reach).affine();
             }
         }
     }

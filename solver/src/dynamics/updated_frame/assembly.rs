@@ -67,7 +67,7 @@ struct AssemblePoints<'a> {
     points: &'a [Point],
     fracture: &'a [FracturePoint],
     model: &'a FractureModel,
-    window: Window<'a, 2>,
+    window: Window<'a, f64, 2>,
 }
 
 impl Vectorised for AssemblePoints<'_> {

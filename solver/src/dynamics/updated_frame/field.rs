@@ -203,7 +203,7 @@ impl DiscreteField {
             forcing.after_motion(points, self.time, dt);
         }
         let fastest = motions.iter().map(|m| m.fastest).fold(0.0, larger);
-        self.travelled += dt * (2.0 * fastest).sqrt();
+        self.travelled += dt * fastest.sqrt();
         self.elastic_energy = motions.iter().map(|m| m.elastic_energy).sum();
         self.stress_work = motions.iter().map(|m| m.stress_work).sum();
         if slid.contains(&true) {
@@ -226,8 +226,7 @@ impl DiscreteField {
             None => cells.strips.iter().map(|_| None).collect(),
         };
         let (kept_fraction, grid) = (velocity_transfer.kept_fraction, nodes.grid);
-        let motion = nodes.velocity.each_ref().map(|f| &f[..]);
-        let increment = velocity_transfer.increment.each_ref().map(|f| &f[..]);
+        let fields = velocity_transfer.fields(&nodes.velocity);
         let strips = cut(points, ranges()).into_par_iter().zip(cracked).zip(affine).zip(kinematics).zip(&cells.strips);
         strips
             .map(|((((points, fracture), affine), kinematics), strip)| {
@@ -236,8 +235,7 @@ impl DiscreteField {
                     patch,
                     grid,
                     dt,
-                    motion,
-                    increment,
+                    fields,
                     kept_fraction,
                     affine,
                     kinematics,
@@ -297,11 +295,10 @@ impl DiscreteField {
     /// Mass, arriving velocity, and internal forces.
     pub(super) fn points_to_grid(&mut self) {
         let Self { patch, cells, points, nodes, density, .. } = self;
-        nodes.clear();
         let (grid, density) = (nodes.grid, *density);
-        let NodalFields { mass, arrived: [px, py], force: [fx, fy], .. } = nodes;
+        nodes.sums.fill([0.0; 5]);
         let affine = self.affine.as_ref().map(|affine| (affine.view(), &affine.gradients[..]));
-        scatter(&cells.strips, [px, py, fx, fy, mass], [grid.stride; 5], |strip, window| {
+        scatter(&cells.strips, [&mut nodes.sums[..]], [grid.stride], |strip, window| {
             let cells = &cells.cells[strip.cells.clone()];
             dispatch(PointsToGrid { patch, grid, density, cells, points, affine, window });
         });

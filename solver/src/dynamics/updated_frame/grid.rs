@@ -32,6 +32,8 @@ pub struct NodalFields {
     pub force: VectorField,
     /// a(n), m/s²; zero where the velocity is prescribed or the mass negligible.
     pub acceleration: VectorField,
+    /// What the points add up to: momentum and force, two numbers each, and mass.
+    pub sums: Vec<[f64; 5]>,
     /// What the sides hold.
     constraints: Constraints,
     fixed: BTreeSet<(usize, usize)>,
@@ -77,6 +79,7 @@ impl NodalFields {
             velocity: vectors(),
             force: vectors(),
             acceleration: vectors(),
+            sums: vec![[0.0; 5]; grid.len()],
             fixed: constraints.iter().map(|(at, component, _)| (at, component)).collect(),
             constraints,
         }
@@ -88,14 +91,12 @@ impl NodalFields {
         self.constraints = constraints;
     }
 
-    /// Empties what the points add to; [`Self::arrived`] then takes their momentum.
-    pub fn clear(&mut self) {
-        self.mass.fill(0.0);
-        self.arrived.iter_mut().chain(&mut self.force).for_each(|field| field.fill(0.0));
-    }
-
-    /// Velocity from momentum, and the inverse masses.
+    /// Mass, arriving velocity and force from [`Self::sums`], and the inverse masses.
     pub fn divide_by_mass(&mut self) {
+        let ([px, py], [fx, fy]) = (&mut self.arrived, &mut self.force);
+        for (at, sums) in self.sums.iter().enumerate() {
+            [px[at], py[at], fx[at], fy[at], self.mass[at]] = *sums;
+        }
         let negligible = NEGLIGIBLE_MASS * self.mass.iter().copied().fold(0.0, larger);
         let [x, y] = &mut self.arrived;
         let nodes = self.mass.iter().zip(&mut self.inverse_mass).zip(x.iter_mut().zip(y));
@@ -211,6 +212,6 @@ impl NodalFields {
 
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
-        8 * (10 * self.grid.len() + self.greville[0].len() + self.greville[1].len())
+        8 * (15 * self.grid.len() + self.greville[0].len() + self.greville[1].len())
     }
 }

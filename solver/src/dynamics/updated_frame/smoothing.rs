@@ -5,7 +5,7 @@
 //! makes it a filter for all fields but the constant; that is the loss of PIC, and what XPIC corrects.
 
 use super::transfer::walk;
-use super::windows::{Window, control_values, in_cell, scatter, zeros};
+use super::windows::{Reach, Window, scatter, side_by_side};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::linear_algebra::lane::{Vectorised, dispatch, each};
@@ -32,14 +32,17 @@ impl Smoothing<'_> {
     pub(crate) fn apply(&self, field: &VectorField, out: &mut VectorField) {
         let Self { patch, cells, points, density, mass } = *self;
         let grid = patch.control_grid();
-        out.iter_mut().for_each(|component| component.fill(0.0));
-        let field = field.each_ref().map(|component| &component[..]);
-        scatter(&cells.strips, out.each_mut().map(|f| &mut f[..]), [grid.stride; 2], |strip, window| {
+        let (mut values, mut sums) = (Vec::new(), vec![[0.0; 2]; grid.len()]);
+        side_by_side(field.each_ref().map(|component| &component[..]), &mut values);
+        let field = &values[..];
+        scatter(&cells.strips, [&mut sums[..]], [grid.stride], |strip, window| {
             let cells = &cells.cells[strip.cells.clone()];
             dispatch(GridToGrid { patch, grid, density, cells, points, field, window });
         });
-        for (value, mass) in out.iter_mut().flat_map(|component| component.iter_mut().zip(mass)) {
-            *value /= if *mass == 0.0 { f64::INFINITY } else { *mass };
+        for (at, (sums, mass)) in sums.iter().zip(mass).enumerate() {
+            for c in 0..2 {
+                out[c][at] = sums[c] / if *mass == 0.0 { f64::INFINITY } else { *mass };
+            }
         }
     }
 }
@@ -50,8 +53,8 @@ struct GridToGrid<'a> {
     density: f64,
     cells: &'a [Cell],
     points: &'a [Point],
-    field: [&'a [f64]; 2],
-    window: Window<'a, 2>,
+    field: &'a [[f64; 2]],
+    window: Window<'a, [f64; 2], 1>,
 }
 
 impl Vectorised for GridToGrid<'_> {
@@ -66,31 +69,28 @@ impl Vectorised for GridToGrid<'_> {
 impl GridToGrid<'_> {
     #[inline(always)]
     fn walk(mut self, kx: usize, ky: usize) {
+        let Window { first_row, fields: [sums] } = &mut self.window;
         for cell in self.cells {
-            let local = control_values(self.field, self.grid, cell, kx, ky);
-            let mut sums = zeros();
             for point in &self.points[cell.points.clone()] {
                 let functions = point.mean_functions(self.patch, cell, [kx, ky]);
                 let [sx, sy] = &functions;
                 let mut value = [0.0; 2];
-                for l in 0..=ky {
-                    let first = in_cell(&functions, l, kx);
-                    for k in 0..=kx {
+                let reach = Reach::new(self.grid, cell, &functions, [kx, ky], 0);
+                for l in 0..reach.rows {
+                    for (k, field) in self.field[reach.row(l)].iter().enumerate() {
                         let n = sx.value[k] * sy.value[l];
-                        value = each!(c in [0, 1] => value[c] + n * local[first + k][c]);
+                        value = each!(c in [0, 1] => value[c] + n * field[c]);
                     }
                 }
                 let momentum = value.map(|v| self.density * point.volume * v);
-                for l in 0..=ky {
-                    let first = in_cell(&functions, l, kx);
-                    for k in 0..=kx {
+                let reach = Reach::new(self.grid, cell, &functions, [kx, ky], *first_row);
+                for l in 0..reach.rows {
+                    for (k, sum) in sums[reach.row(l)].iter_mut().enumerate() {
                         let n = sx.value[k] * sy.value[l];
-                        let sum = &mut sums[first + k];
                         *sum = each!(c in [0, 1] => sum[c] + n * momentum[c]);
                     }
                 }
             }
-            self.window.add(self.grid, cell, &sums, kx, ky);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::field::DiscreteField;
 use super::transfer::walk;
 use super::velocity_transfer::stable_fraction;
-use super::windows::{Window, control_values, in_cell, scatter, zeros};
+use super::windows::{Reach, Window, scatter};
 use crate::dynamics::critical_step::{StiffnessOperator, highest_frequency};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::{Vectorised, dispatch};
@@ -27,8 +27,10 @@ pub(crate) struct PointStiffness<'a> {
     frame: &'a DiscreteField,
     free: Vec<(usize, usize)>,
     masses: Vec<f64>,
-    field: [Vec<f64>; 2],
-    image: [Vec<f64>; 2],
+    /// Displacements of the control points, twice.
+    field: Vec<[f64; 4]>,
+    /// Their forces, in two parts.
+    image: Vec<[f64; 4]>,
 }
 
 impl<'a> PointStiffness<'a> {
@@ -37,8 +39,8 @@ impl<'a> PointStiffness<'a> {
         let nodes = frame.nodes();
         let free = nodes.free();
         let masses = free.iter().map(|&(at, _)| nodes.mass[at]).collect();
-        let zeros = || [nodes.grid.zeros(), nodes.grid.zeros()];
-        Self { frame, masses, free, field: zeros(), image: zeros() }
+        let zeros = vec![[0.0; 4]; nodes.grid.len()];
+        Self { frame, masses, free, field: zeros.clone(), image: zeros }
     }
 }
 
@@ -54,27 +56,13 @@ impl StiffnessOperator for PointStiffness<'_> {
     }
 
     fn stiffness(&mut self, x: &[f64], out: &mut [f64]) {
-        self.set(x);
-        self.find_forces();
-        self.forces(out);
-    }
-}
-
-impl PointStiffness<'_> {
-    /// Takes the displacements of the free components.
-    pub(super) fn set(&mut self, x: &[f64]) {
-        for (&(at, component), x) in self.free.iter().zip(x) {
-            self.field[component][at] = *x;
+        let Self { frame, free, field, image, .. } = self;
+        for (&(at, component), x) in free.iter().zip(x) {
+            (field[at][component], field[at][component + 2]) = (*x, *x);
         }
-    }
-
-    /// The forces of the displacements.
-    pub(super) fn find_forces(&mut self) {
-        self.image.iter_mut().for_each(|field| field.fill(0.0));
-        let (frame, field) = (self.frame, self.field.each_ref().map(|f| &f[..]));
-        let grid = frame.nodes().grid;
-        let [x, y] = &mut self.image;
-        scatter(&frame.cells().strips, [x, y], [grid.stride; 2], |strip, window| {
+        image.fill([0.0; 4]);
+        let (grid, field) = (frame.nodes().grid, &field[..]);
+        scatter(&frame.cells().strips, [&mut image[..]], [grid.stride], |strip, window| {
             dispatch(ElasticForces {
                 patch: frame.patch(),
                 grid,
@@ -85,12 +73,8 @@ impl PointStiffness<'_> {
                 window,
             });
         });
-    }
-
-    /// Those on the free components.
-    pub(super) fn forces(&self, out: &mut [f64]) {
-        for (&(at, component), out) in self.free.iter().zip(out) {
-            *out = self.image[component][at];
+        for (&(at, component), out) in free.iter().zip(out) {
+            *out = image[at][component] + image[at][component + 2];
         }
     }
 }
@@ -101,8 +85,8 @@ struct ElasticForces<'a> {
     moduli: ElasticModuli,
     cells: &'a [Cell],
     points: &'a [Point],
-    field: [&'a [f64]; 2],
-    window: Window<'a, 2>,
+    field: &'a [[f64; 4]],
+    window: Window<'a, [f64; 4], 1>,
 }
 
 impl Vectorised for ElasticForces<'_> {
@@ -118,21 +102,19 @@ impl ElasticForces<'_> {
     #[inline(always)]
     fn walk(mut self, kx: usize, ky: usize) {
         let ElasticModuli { lambda, mu, .. } = self.moduli;
-        let [x, y] = self.field;
+        let Window { first_row, fields: [parts] } = &mut self.window;
         for cell in self.cells {
-            let local = control_values([x, y, x, y], self.grid, cell, kx, ky);
-            let mut parts = zeros::<4>();
             for point in &self.points[cell.points.clone()] {
                 let functions = point.mean_functions(self.patch, cell, [kx, ky]);
                 let [sx, sy] = &functions;
                 let mut gradient = [0.0; 4]; // by y, and by x
-                for l in 0..=ky {
-                    let first = in_cell(&functions, l, kx);
+                let reach = Reach::new(self.grid, cell, &functions, [kx, ky], 0);
+                for l in 0..reach.rows {
                     let mut row = [0.0; 4];
-                    for k in 0..=kx {
+                    for (k, field) in self.field[reach.row(l)].iter().enumerate() {
                         let along = [sx.value[k], sx.value[k], sx.derivative[k], sx.derivative[k]];
                         for c in 0..4 {
-                            row[c] += along[c] * local[first + k][c];
+                            row[c] += along[c] * field[c];
                         }
                     }
                     let across = [sy.derivative[l], sy.derivative[l], sy.value[l], sy.value[l]];
@@ -144,20 +126,18 @@ impl ElasticForces<'_> {
                 let spherical = lambda * (uxx + uyy);
                 let stress = [spherical + 2.0 * mu * uxx, spherical + 2.0 * mu * uyy, mu * (uxy + uyx)];
                 let [xx, yy, xy] = stress.map(|s| s * point.volume);
-                for l in 0..=ky {
+                let reach = Reach::new(self.grid, cell, &functions, [kx, ky], *first_row);
+                for l in 0..reach.rows {
                     let (n, d) = (sy.value[l], sy.derivative[l]);
                     let across = [xy * d, yy * d, xx * n, xy * n];
-                    let first = in_cell(&functions, l, kx);
-                    for k in 0..=kx {
+                    for (k, part) in parts[reach.row(l)].iter_mut().enumerate() {
                         let along = [sx.value[k], sx.value[k], sx.derivative[k], sx.derivative[k]];
                         for c in 0..4 {
-                            parts[first + k][c] += along[c] * across[c];
+                            part[c] += along[c] * across[c];
                         }
                     }
                 }
             }
-            let forces = parts.map(|[x, y, by_x, by_y]| [x + by_x, y + by_y]);
-            self.window.add(self.grid, cell, &forces, kx, ky);
         }
     }
 }

@@ -13,13 +13,13 @@
 //! Strain and deformation gradient follow from A in [`strain`](super::strain). Where the transfer carries
 //! velocity gradients C, they come and go with the velocities ([`affine`](super::affine)).
 //!
-//! Both go cell by cell: the control values of a span are gathered once for all its points. Shape functions
-//! are products of two one-dimensional ones (`SplineSpace::mean_functions`). Four numbers travel together
-//! through the inner loops, which is what the vector instructions of every processor in question hold.
+//! Shape functions are products of two one-dimensional ones (`SplineSpace::mean_functions`). Fields stand
+//! side by side in both passes: four numbers of a control point travel together through the inner loops,
+//! which is what the vector instructions of every processor in question hold.
 
 use super::affine::AffineView;
 use super::strain::StrainUpdate;
-use super::windows::{ControlSums, OfCell, Window, control_sums, control_values, in_cell, zeros};
+use super::windows::{ControlSums, Reach, Window, control_sums};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised, each};
@@ -62,7 +62,7 @@ pub struct PointsToGrid<'a> {
     /// Their velocity gradients, if they carry such.
     pub affine: Option<(AffineView<'a>, &'a [Gradient])>,
     /// Momentum x and y, force x and y (minus the internal force), and mass, per unit thickness.
-    pub window: Window<'a, 5>,
+    pub window: Window<'a, [f64; 5], 1>,
 }
 
 impl Vectorised for PointsToGrid<'_> {
@@ -77,8 +77,8 @@ impl Vectorised for PointsToGrid<'_> {
 impl PointsToGrid<'_> {
     #[inline(always)]
     fn walk(mut self, kx: usize, ky: usize) {
+        let Window { first_row, fields: [sums] } = &mut self.window;
         for cell in self.cells {
-            let mut local = zeros::<5>();
             for at in cell.points.clone() {
                 let point = &self.points[at];
                 let functions = point.mean_functions(self.patch, cell, [kx, ky]);
@@ -95,13 +95,12 @@ impl PointsToGrid<'_> {
                     }
                     None => ([[0.0; MAX_REACH]; 2], [[0.0; 2]; 2]),
                 };
-                for l in 0..=ky {
+                let reach = Reach::new(self.grid, cell, &functions, [kx, ky], *first_row);
+                for l in 0..reach.rows {
                     let (n, d) = (sy.value[l], sy.derivative[l]);
                     let by_value = [(px + vx_y * ly[l]) * n, (py + vy_y * ly[l]) * n, xy * d, yy * d];
                     let by_slope = [vx_x * n, vy_x * n, xx * n, fault!("shear-force-one-sided", xy * n => 0.0)];
-                    let first = in_cell(&functions, l, kx);
-                    for k in 0..=kx {
-                        let sums = &mut local[first + k];
+                    for (k, sums) in sums[reach.row(l)].iter_mut().enumerate() {
                         sums[4] += m * n * sx.value[k];
                         let of_lever = sx.value[k] * lx[k];
                         let slope = [of_lever, of_lever, sx.derivative[k], sx.derivative[k]];
@@ -111,7 +110,6 @@ impl PointsToGrid<'_> {
                     }
                 }
             }
-            self.window.add(self.grid, cell, &local, kx, ky);
         }
     }
 }
@@ -125,10 +123,9 @@ pub struct GridToPoints<'a, K> {
     pub grid: ControlGrid,
     /// Time step, s.
     pub dt: f64,
-    /// Velocity of the control points with which the points move and strain, m/s.
-    pub motion: [&'a [f64]; 2],
-    /// What the points take up into their velocity, m/s.
-    pub increment: [&'a [f64]; 2],
+    /// Velocity of the control points with which the points move and strain, m/s, and what the points take up
+    /// into their velocity, m/s.
+    pub fields: &'a [[f64; 4]],
     /// Part of its own velocity that a point keeps.
     pub kept_fraction: f64,
     /// Velocity gradients of the points of the strip, if they carry such.
@@ -150,7 +147,7 @@ pub struct GridToPoints<'a, K> {
 pub struct StripMotion {
     /// Whether a point left its span.
     pub left_span: bool,
-    /// Largest square of a velocity component, m²/s².
+    /// Largest square of a speed, m²/s².
     pub fastest: f64,
     /// Elastic energy, J/m; only of an elastic body.
     pub elastic_energy: f64,
@@ -180,19 +177,13 @@ impl<K: StrainUpdate> GridToPoints<'_, K> {
     fn walk(mut self, kx: usize, ky: usize) -> StripMotion {
         let mut motion = StripMotion::default();
         let offset = self.cells.first().map_or(0, |cell| cell.points.start);
-        let ([ux, uy], [tx, ty]) = (self.motion, self.increment);
-        let fields = [ux, uy, tx, ty];
         let mut increments = [[0.0; 3]; LANES];
         for cell in self.cells {
-            let mut local = control_values(fields, self.grid, cell, kx, ky);
-            // A constant velocity has no gradient, whatever rounding does to the factors of the fit.
-            let reference = if self.affine.is_some() { subtract_middle(&mut local, kx, ky) } else { [0.0; 2] };
             let all = cell.points.start - offset..cell.points.end - offset;
             for first in all.clone().step_by(LANES) {
                 let some = first..(first + LANES).min(all.end);
                 for at in some.clone() {
-                    let PointMotion { strain_increment, moved } =
-                        self.move_point(cell, at, &local, reference, kx, ky, &mut motion);
+                    let PointMotion { strain_increment, moved } = self.move_point(cell, at, [kx, ky], &mut motion);
                     increments[at - first] = strain_increment;
                     if let Some(fracture) = self.fracture.get_mut(at) {
                         (fracture.strain_increment, fracture.moved) = (strain_increment, moved);
@@ -206,29 +197,23 @@ impl<K: StrainUpdate> GridToPoints<'_, K> {
         motion
     }
 
-    /// Moves and strains one point; `reference` is to be added to the last two fields.
+    /// Moves and strains one point.
     #[inline(always)]
-    fn move_point(
-        &mut self,
-        cell: &Cell,
-        at: usize,
-        local: &OfCell<[f64; 4]>,
-        reference: [f64; 2],
-        kx: usize,
-        ky: usize,
-        motion: &mut StripMotion,
-    ) -> PointMotion {
-        let Self { patch, dt, .. } = *self;
+    fn move_point(&mut self, cell: &Cell, at: usize, order: [usize; 2], motion: &mut StripMotion) -> PointMotion {
+        let Self { patch, grid, dt, fields, .. } = *self;
         let point = &mut self.points[at];
-        let functions = point.mean_functions(patch, cell, [kx, ky]);
-        let slopes = match &self.affine {
+        let functions = point.mean_functions(patch, cell, order);
+        let reach = Reach::new(grid, cell, &functions, order, 0);
+        // A constant velocity has no gradient, whatever rounding does to the factors of the fit.
+        let ([.., x, y], slopes) = match &self.affine {
             Some((view, _)) => {
-                let levers = view.levers(cell, &functions, point.position, [kx, ky]);
-                view.slopes(patch, cell, &functions, &levers, [kx, ky])
+                let levers = view.levers(cell, &functions, point.position, order);
+                (fields[reach.row(reach.rows / 2).start], view.slopes(patch, cell, &functions, &levers, order))
             }
-            None => [[0.0; MAX_REACH]; 2],
+            None => ([0.0; 4], [[0.0; MAX_REACH]; 2]),
         };
-        let sums = control_sums(&functions, &slopes, local, [kx, ky]);
+        let reference = [0.0, 0.0, x, y];
+        let sums = control_sums(&functions, &slopes, fields, reference, reach);
         let ControlSums { value, along_x, along_y } = sums;
         let step = each!(c in [0, 1] => [dt * along_x[c], dt * along_y[c]]);
         let before = point.half_width;
@@ -240,26 +225,15 @@ impl<K: StrainUpdate> GridToPoints<'_, K> {
         }
         let moved = each!(d in [0, 1] => dt * value[d]);
         for d in 0..2 {
-            point.velocity[d] = self.kept_fraction * point.velocity[d] + (reference[d] + value[2 + d]);
+            point.velocity[d] = self.kept_fraction * point.velocity[d] + (reference[2 + d] + value[2 + d]);
             point.displacement[d] += moved[d];
             point.position[d] += fault!("points-move-half-way", moved[d] => 0.5 * moved[d]);
-            motion.fastest = larger(motion.fastest, value[d] * value[d]);
         }
+        motion.fastest = larger(motion.fastest, value[0] * value[0] + value[1] * value[1]);
         let spans = each!(d in [0, 1] => &patch.spaces[d].spans()[cell.span[d]]);
         motion.left_span |= (0..2).any(|d| !(spans[d].left <= point.position[d] && point.position[d] < spans[d].right));
         PointMotion { strain_increment, moved }
     }
-}
-
-/// Subtracts from the last two fields of a cell, whose spans have `kx` by `ky` functions, what they are in its
-/// middle, which is returned.
-#[inline(always)]
-fn subtract_middle(local: &mut OfCell<[f64; 4]>, kx: usize, ky: usize) -> [f64; 2] {
-    let [_, _, x, y] = local[(ky / 2 + 1) * (kx + 2) + kx / 2 + 1];
-    for values in local.iter_mut() {
-        (values[2], values[3]) = (values[2] - x, values[3] - y);
-    }
-    [x, y]
 }
 
 /// Stress of at most eight intact points, their energy and the work of the new stress over the step.
@@ -318,8 +292,8 @@ mod tests {
         }
         let mut cells = Cells::default();
         cells.sort(&patch, &mut points).unwrap();
-        let mut fields: [Vec<f64>; 5] = std::array::from_fn(|_| grid.zeros());
-        scatter(&cells.strips, fields.each_mut().map(|f| &mut f[..]), [grid.stride; 5], |strip, window| {
+        let mut sums = vec![[0.0; 5]; grid.len()];
+        scatter(&cells.strips, [&mut sums[..]], [grid.stride], |strip, window| {
             let cells = &cells.cells[strip.cells.clone()];
             PointsToGrid { patch: &patch, grid, density: 1.0, cells, points: &points, affine: None, window }
                 .run::<false>();
@@ -333,12 +307,9 @@ mod tests {
                 from - reach > 0.0 && from + reach < 8.0 * stretch[d]
             })
         };
-        assert!((fields[4].iter().sum::<f64>() - 64.0).abs() < 1e-12, "the mass is that of the points");
+        assert!((sums.iter().map(|sums| sums[4]).sum::<f64>() - 64.0).abs() < 1e-12, "the mass is that of the points");
         let most = |some: &dyn Fn(usize) -> bool| {
-            grid.indices()
-                .filter(|&at| some(at))
-                .map(|at| fields[2][at].abs().max(fields[3][at].abs()))
-                .fold(0.0, larger)
+            grid.indices().filter(|&at| some(at)).map(|at| sums[at][2].abs().max(sums[at][3].abs())).fold(0.0, larger)
         };
         [most(&inside), most(&|_| true)]
     }

@@ -33,6 +33,7 @@
 
 use super::grid::NodalFields;
 use super::smoothing::Smoothing;
+use super::windows::side_by_side;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::scene::Transfer;
@@ -50,12 +51,14 @@ pub(crate) struct VelocityTransfer {
     /// Part of its own velocity that a point keeps.
     pub kept_fraction: f64,
     transfer: Transfer,
+    /// Velocity of the grid and [`Self::increment`], side by side.
+    fields: Vec<[f64; 4]>,
 }
 
 impl VelocityTransfer {
     /// Nothing yet.
     pub(crate) fn new(grid: ControlGrid, transfer: Transfer) -> Self {
-        Self { increment: [grid.zeros(), grid.zeros()], kept_fraction: 1.0, transfer }
+        Self { increment: [grid.zeros(), grid.zeros()], kept_fraction: 1.0, transfer, fields: Vec::new() }
     }
 
     /// The transfer.
@@ -65,7 +68,7 @@ impl VelocityTransfer {
 
     /// From the velocities on the grid before and after the step.
     pub(crate) fn update(&mut self, nodes: &NodalFields, smoothing: &Smoothing) {
-        let Self { increment, kept_fraction, transfer } = self;
+        let Self { increment, kept_fraction, transfer, .. } = self;
         let of_flip = fault!("transfer-keeps-less", 1.0 => 0.999);
         *kept_fraction = if *transfer == Transfer::Flip { of_flip } else { 0.0 };
         for (to, from) in increment.iter_mut().zip(&nodes.velocity) {
@@ -91,9 +94,16 @@ impl VelocityTransfer {
         self.kept_fraction = 1.0;
     }
 
+    /// What the points read: the velocity with which they move, m/s, and the increment.
+    pub(crate) fn fields(&mut self, motion: &VectorField) -> &[[f64; 4]] {
+        let ([ux, uy], [tx, ty]) = (motion, &self.increment);
+        side_by_side([ux, uy, tx, ty], &mut self.fields);
+        &self.fields
+    }
+
     /// Heap memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
-        8 * 2 * self.increment[0].len()
+        8 * (2 + 4) * self.increment[0].len()
     }
 }
 

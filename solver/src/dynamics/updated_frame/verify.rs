@@ -15,7 +15,7 @@ impl UpdatedFrame {
     /// # Panics
     /// After a step.
     pub fn set_initial_velocity(&mut self, velocity: impl Fn([f64; 2]) -> [f64; 2]) {
-        assert!(self.fields.iter().all(|field| field.at_start), "a step has been increment");
+        assert!(self.fields.iter().all(|field| field.at_start), "a step has been taken");
         self.fields.iter_mut().for_each(|field| field.set_velocity(&velocity));
     }
 
@@ -25,7 +25,7 @@ impl UpdatedFrame {
     /// # Panics
     /// After a step.
     pub fn apply_forcing(&mut self, forcing: Arc<dyn Forcing>) {
-        assert!(self.fields.iter().all(|field| field.at_start), "a step has been increment");
+        assert!(self.fields.iter().all(|field| field.at_start), "a step has been taken");
         self.fields.iter_mut().for_each(|field| field.apply_forcing(Arc::clone(&forcing)));
     }
 

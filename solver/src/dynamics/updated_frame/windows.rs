@@ -11,77 +11,56 @@ use crate::material::hencky::Gradient;
 use crate::particles::points::{Cell, Strip};
 use crate::splines::spline::{MAX_REACH, MeanFunctions};
 
-/// Control points that the domains of the points of a cell may reach in a direction: those of its span and
-/// one on either side, which is where the cell's numbers of control columns and rows begin.
-const MAX_CELL: usize = MAX_REACH + 1;
-
 /// Factors of the columns and of the rows of control points that a point reaches.
 pub(super) type Slopes = [[f64; MAX_REACH]; 2];
 
-/// One value for each control point of a cell, row by row.
-pub type OfCell<T> = [T; MAX_CELL * MAX_CELL];
-
-/// Values of zero for the control points of a cell.
-#[inline(always)]
-pub fn zeros<const N: usize>() -> OfCell<[f64; N]> {
-    [[0.0; N]; MAX_CELL * MAX_CELL]
-}
-
-/// Number in an [`OfCell`] of the first of some functions of a row, in a cell of spans with `kx` functions.
-#[inline(always)]
-pub(super) fn in_cell([sx, sy]: &[MeanFunctions; 2], l: usize, kx: usize) -> usize {
-    (sy.start + l) * (kx + 2) + sx.start
+/// Puts fields side by side: for each control point an array of their values.
+pub fn side_by_side<const N: usize>(fields: [&[f64]; N], together: &mut Vec<[f64; N]>) {
+    together.clear();
+    together.extend((0..fields[0].len()).map(|at| fields.map(|field| field[at])));
 }
 
 /// The control rows a strip may write, in `N` fields.
 #[derive(Debug)]
-pub struct Window<'a, const N: usize> {
+pub struct Window<'a, T, const N: usize> {
     /// Control row the fields begin with.
     pub first_row: usize,
     /// The fields.
-    pub fields: [&'a mut [f64]; N],
+    pub fields: [&'a mut [T]; N],
 }
 
-impl<const N: usize> Window<'_, N> {
-    /// Adds the sums over the points of a cell, whose spans have `kx` by `ky` functions. Rows of fields have
-    /// room for a column too many at either end.
+/// The control points that a point reaches, in fields that begin with a control row.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reach {
+    at: usize,
+    columns: usize,
+    stride: usize,
+    /// Rows; the one beyond the grid, whose function is zero, is left out.
+    pub(super) rows: usize,
+}
+
+impl Reach {
+    /// Those of a point of a cell with these functions, `kx + 1` by `ky + 1`. The first span of a grid has
+    /// no neighbour, so its functions start with its own.
     #[inline(always)]
-    pub fn add(&mut self, grid: ControlGrid, cell: &Cell, sums: &OfCell<[f64; N]>, kx: usize, ky: usize) {
-        for l in rows_of_cell(grid, cell, ky) {
-            let base = grid.index(cell.first[0], cell.first[1] + l - 1 - self.first_row) - 1;
-            for k in 0..kx + 2 {
-                for component in 0..N {
-                    self.fields[component][base + k] += sums[l * (kx + 2) + k][component];
-                }
-            }
-        }
+    pub(super) fn new(
+        grid: ControlGrid,
+        cell: &Cell,
+        [sx, sy]: &[MeanFunctions; 2],
+        [kx, ky]: [usize; 2],
+        first_row: usize,
+    ) -> Self {
+        let row = cell.first[1] + sy.start - 1;
+        let at = grid.index(cell.first[0], row - first_row) + sx.start - 1;
+        Self { at, columns: kx + 1, stride: grid.stride, rows: (ky + 1).min(grid.rows - row) }
     }
-}
 
-/// The rows of a cell that the grid has.
-#[inline(always)]
-fn rows_of_cell(grid: ControlGrid, cell: &Cell, ky: usize) -> Range<usize> {
-    usize::from(cell.first[1] == 0)..(ky + 2).min(grid.rows + 1 - cell.first[1])
-}
-
-/// Values of fields at the control points of a cell, whose spans have `kx` by `ky` functions; zero beyond the
-/// grid.
-#[inline(always)]
-pub fn control_values<const N: usize>(
-    fields: [&[f64]; N],
-    grid: ControlGrid,
-    cell: &Cell,
-    kx: usize,
-    ky: usize,
-) -> OfCell<[f64; N]> {
-    let mut values = zeros();
-    for l in rows_of_cell(grid, cell, ky) {
-        let base = grid.index(cell.first[0], cell.first[1] + l - 1) - 1;
-        for k in 0..kx + 2 {
-            values[l * (kx + 2) + k] = fields.map(|field| field[base + k]);
-        }
+    /// Indices of those in a row.
+    #[inline(always)]
+    pub(super) fn row(&self, row: usize) -> Range<usize> {
+        let at = self.at + row * self.stride;
+        at..at + self.columns
     }
-    values
 }
 
 /// Sums over control points with shape functions and slopes.
@@ -100,25 +79,25 @@ impl ControlSums {
     }
 }
 
-/// Sums of four fields: values with the means of the shape functions, slopes of the first two fields with the
-/// means of their derivatives and of the last two with given ones.
+/// Sums of four fields, less a reference: values with the means of the shape functions, slopes of the first
+/// two fields with the means of their derivatives and of the last two with given ones.
 #[inline(always)]
 pub(super) fn control_sums(
-    functions: &[MeanFunctions; 2],
+    [sx, sy]: &[MeanFunctions; 2],
     slopes: &Slopes,
-    local: &OfCell<[f64; 4]>,
-    [kx, ky]: [usize; 2],
+    fields: &[[f64; 4]],
+    reference: [f64; 4],
+    reach: Reach,
 ) -> ControlSums {
-    let [sx, sy] = functions;
     let mut sums = ControlSums { value: [0.0; 4], along_x: [0.0; 4], along_y: [0.0; 4] };
-    for l in 0..=ky {
-        let first = in_cell(functions, l, kx);
+    for l in 0..reach.rows {
         let (mut row_value, mut row_slope) = ([0.0; 4], [0.0; 4]);
-        for k in 0..=kx {
+        for (k, values) in fields[reach.row(l)].iter().enumerate() {
             let slope = [sx.derivative[k], sx.derivative[k], slopes[0][k], slopes[0][k]];
             for c in 0..4 {
-                row_value[c] += sx.value[k] * local[first + k][c];
-                row_slope[c] += slope[c] * local[first + k][c];
+                let value = values[c] - reference[c];
+                row_value[c] += sx.value[k] * value;
+                row_slope[c] += slope[c] * value;
             }
         }
         let slope = [sy.derivative[l], sy.derivative[l], slopes[1][l], slopes[1][l]];
@@ -131,16 +110,16 @@ pub(super) fn control_sums(
     sums
 }
 
-/// Runs `work` once per strip with its window of `fields`, rows of `row_lengths` numbers; results in the
+/// Runs `work` once per strip with its window of `fields`, rows of `row_lengths` items; results in the
 /// order of strips.
 ///
 /// Strips of one colour (even or odd) share no control row and run side by side, first the even, then the
 /// odd: the order of additions at a control point does not depend on the number of threads.
-pub fn scatter<const N: usize, R: Send>(
+pub fn scatter<T: Send, const N: usize, R: Send>(
     strips: &[Strip],
-    mut fields: [&mut [f64]; N],
+    mut fields: [&mut [T]; N],
     row_lengths: [usize; N],
-    work: impl Fn(&Strip, Window<N>) -> R + Sync,
+    work: impl Fn(&Strip, Window<T, N>) -> R + Sync,
 ) -> Vec<R> {
     let mut results: Vec<(usize, R)> = Vec::with_capacity(strips.len());
     for colour in 0..2 {
