@@ -36,6 +36,8 @@ pub struct Point {
     pub aspect: f64,
     /// Half the width and half the height of its domain now, m.
     pub half_width: [f64; 2],
+    /// Where the middle of the domain is from the point, which is its centre of mass, m.
+    pub offset: [f64; 2],
 }
 
 /// What a point of a fracturing body carries besides.
@@ -107,18 +109,20 @@ impl Point {
         let [velocity, displacement] = [[0.0; 2]; 2];
         let half_width = [0.5 * (volume * aspect).sqrt(), 0.5 * (volume / aspect).sqrt()];
         let (strain, stress) = ([0.0; 3], [0.0; 3]);
-        Self { position, velocity, displacement, strain, stress, volume, aspect, half_width }
+        let offset = [0.0; 2];
+        Self { position, velocity, displacement, strain, stress, volume, aspect, half_width, offset }
     }
 
     /// The points of a lattice of `particles_per_cell` points a span on `patch`, at rest.
     pub(crate) fn of_lattice(lattice: &Lattice, patch: &Patch, particles_per_cell: [usize; 2]) -> Vec<Self> {
         let mut points = Vec::new();
-        lattice.for_each_point(|_, _, position, volume| {
+        lattice.for_each_point(|batch, lane, position, volume| {
             let [width, height] = [0, 1].map(|d| {
                 let span = patch.spaces[d].find_span(position[d]).unwrap_or_default();
                 patch.spaces[d].spans()[span].length() / particles_per_cell[d] as f64
             });
-            points.push(Self::at_rest(position, volume, width / height));
+            let aspect = lattice.cut_batch(batch).map_or(width / height, |cut| cut.aspect[lane]);
+            points.push(Self::at_rest(position, volume, aspect));
         });
         points
     }
@@ -138,8 +142,10 @@ impl Point {
     /// one knot in each direction; `order` is p + 1.
     #[inline(always)]
     pub fn mean_functions(&self, patch: &Patch, cell: &Cell, order: [usize; 2]) -> [MeanFunctions; 2] {
-        let mean =
-            |d: usize| patch.spaces[d].mean_functions(cell.span[d], self.position[d], self.half_width[d], order[d]);
+        let mean = |d: usize| {
+            let domain = [self.half_width[d], self.offset[d]];
+            patch.spaces[d].mean_functions(cell.span[d], self.position[d], domain, order[d])
+        };
         [mean(0), mean(1)]
     }
 }

@@ -6,6 +6,8 @@
 
 use std::ops::Range;
 
+use crate::linear_algebra::extremes::larger;
+
 /// Highest polynomial degree.
 pub(crate) const MAX_DEGREE: usize = 4;
 /// Positions beyond an end of a patch by up to this fraction of its length are on it: an end at `0.1 + 0.7`
@@ -67,8 +69,10 @@ pub struct MeanFunctions {
     pub start: usize,
     /// Means of the values.
     pub value: [f64; MAX_REACH],
-    /// Means of the derivatives, 1/m or 1/unit of the knots.
+    /// Means of the derivatives, 1/m or 1/unit of the knots, over the interval with its offset.
     pub derivative: [f64; MAX_REACH],
+    /// Averages of the values at both ends, less the means.
+    pub ends_less_mean: [f64; MAX_REACH],
 }
 
 /// B-spline space of one direction.
@@ -177,38 +181,61 @@ impl SplineSpace {
 
     /// Means of the `order` = p + 1 functions of a span and the one beyond its nearer end over an interval
     /// around `x` (m), which should lie in `span`. The interval is shortened where it would reach beyond two
-    /// spans, an end of the space or a repeated knot.
+    /// spans, an end of the space or a repeated knot. Derivatives are means over an interval of the same width
+    /// whose middle lies beside x by a small `offset`, m.
     #[inline(always)]
-    pub(crate) fn mean_functions(&self, span: usize, x: f64, half_width: f64, order: usize) -> MeanFunctions {
+    pub(crate) fn mean_functions(
+        &self,
+        span: usize,
+        x: f64,
+        [half_width, offset]: [f64; 2],
+        order: usize,
+    ) -> MeanFunctions {
         let span = &self.spans[span];
         let scale = 1.0 / span.length();
-        let to_end = [x - span.left, span.right - x];
-        let near = usize::from(to_end[1] < to_end[0]);
+        let near = usize::from(span.right - x < x - span.left);
         let neighbour = &span.neighbours[near];
-        let half_width = half_width.min(to_end[1 - near]).min(to_end[near] + neighbour.length);
-        let (t, r) = (to_end[0] * scale, half_width * scale);
+        // Local coordinate of the middle, half the width, and how far the interval reaches over the near knot.
+        let interval = |middle: f64| {
+            let to_end = [middle - span.left, span.right - middle];
+            let half_width = half_width.min(to_end[1 - near]).min(to_end[near] + neighbour.length);
+            let beyond = fault!("domain-ends-at-the-knot", half_width - to_end[near] => 0.0);
+            [to_end[0] * scale, half_width, larger(beyond, 0.0)]
+        };
+        let of_knot = |half_width: f64, beyond: f64| {
+            let mut factor = if beyond > 0.0 { 0.5 / half_width } else { 0.0 };
+            (1..order).for_each(|_| factor *= beyond);
+            factor
+        };
+        // Means of the powers of the local coordinate, and what the ends differ by.
+        let [t, half, beyond] = interval(x);
+        let r = half * scale;
         let (tt, rr) = (t * t, r * r);
-        // Means of the powers of the local coordinate, and of their derivatives.
         let power = [1.0, t, tt + rr / 3.0, t * (tt + rr), tt * tt + 2.0 * tt * rr + rr * rr / 5.0];
-        let slope = [0.0, scale, 2.0 * scale * t, scale * (3.0 * tt + rr), 4.0 * scale * t * (tt + rr)];
-        let beyond = half_width - to_end[near];
-        let reaches = fault!("domain-ends-at-the-knot", beyond > 0.0 => false);
-        let before = reaches && near == 0;
-        let mut of_slope = 0.5 / half_width;
-        (1..order).for_each(|_| of_slope *= beyond);
-        of_slope = if reaches { of_slope } else { 0.0 };
-        let of_value = if before { -beyond } else { beyond } * of_slope / order as f64;
+        let ends = [0.0, 0.0, rr / 1.5, 2.0 * t * rr, 4.0 * tt * rr + 0.8 * rr * rr];
+        // Means of their derivatives.
+        let [u, half_beside, beyond_beside] = interval((x + offset).clamp(span.left, span.right));
+        let (uu, ss) = (u * u, half_beside * half_beside * scale * scale);
+        let slope = [0.0, scale, 2.0 * scale * u, scale * (3.0 * uu + ss), 4.0 * scale * u * (uu + ss)];
+        let before = near == 0 && larger(beyond, beyond_beside) > 0.0;
+        let sign = if near == 0 { -1.0 } else { 1.0 };
+        let of_slope = of_knot(half_beside, beyond_beside);
+        let of_ends = sign * half * of_knot(half, beyond);
+        let of_value = sign * beyond * of_knot(half, beyond) / order as f64;
         let start = usize::from(!before);
-        let mut mean = MeanFunctions { start, value: [0.0; MAX_REACH], derivative: [0.0; MAX_REACH] };
+        let zeros = [0.0; MAX_REACH];
+        let mut mean = MeanFunctions { start, value: zeros, derivative: zeros, ends_less_mean: zeros };
         for k in 0..=order {
             mean.value[k] = of_value * neighbour.kink[k];
             mean.derivative[k] = of_slope * neighbour.kink[k];
+            mean.ends_less_mean[k] = (of_ends - of_value) * neighbour.kink[k];
         }
         for m in 0..order {
             let coefficients = &span.polynomials[m][start..];
             for k in 0..=order {
                 mean.value[k] += coefficients[k] * power[m];
                 mean.derivative[k] += coefficients[k] * slope[m];
+                mean.ends_less_mean[k] += coefficients[k] * ends[m];
             }
         }
         mean
@@ -327,7 +354,7 @@ mod tests {
             let space = graded(degree);
             for (x, half_width) in [(0.02, 0.01), (0.11, 0.04), (0.148, 0.01), (0.3, 0.1), (0.42, 0.3), (0.89, 0.05)] {
                 let span = space.find_span(x).unwrap();
-                let mean = space.mean_functions(span, x, half_width, degree + 1);
+                let mean = space.mean_functions(span, x, [half_width, 0.0], degree + 1);
                 let (mut value, mut slope) = ([0.0; 16], [0.0; 16]);
                 let to_end = [x - space.spans()[span].left, space.spans()[span].right - x];
                 let (near, far) = (to_end[0].min(to_end[1]), to_end[0].max(to_end[1]));

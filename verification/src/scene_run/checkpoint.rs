@@ -2,7 +2,7 @@
 //! simulation, and a check sum of all that.
 //!
 //! ```text
-//! fisura checkpoint 3
+//! fisura checkpoint 4
 //! <name, version, commit and sources of the program>
 //! <fingerprint of the scene>
 //! <its title>
@@ -21,7 +21,7 @@ use crate::output::fingerprint::fingerprint;
 use crate::output::{OutputError, OutputFolder};
 
 /// First line of the file, with the version of its form.
-const FORM: &str = "fisura checkpoint 3";
+const FORM: &str = "fisura checkpoint 4";
 /// What every version begins with.
 const MAGIC: &str = "fisura checkpoint ";
 /// Most bytes of a line of the head.

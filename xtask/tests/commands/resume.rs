@@ -118,7 +118,7 @@ fn the_checkpoint_of_another_scene_is_kept_and_named() {
     let first = std::fs::read(place.path("killed/checkpoint.bin")).expect("a checkpoint");
     let head = String::from_utf8_lossy(&first[..200]).into_owned();
     let head: Vec<&str> = head.lines().take(4).collect();
-    assert_eq!((head[0], head[3]), ("fisura checkpoint 3", "Block"));
+    assert_eq!((head[0], head[3]), ("fisura checkpoint 4", "Block"));
     assert!(head[1].starts_with("fisura 0.1.0 of commit ") && head[2].len() == 16, "{head:?}");
 
     let other = ["--set", "output.samples=100"];

@@ -12,7 +12,7 @@ pub trait StrainUpdate {
     fn strain(&mut self, at: usize, point: &mut Point, step: &Gradient) -> [f64; 3];
 }
 
-/// Linear strain, the sum of `dt sym(grad v)`; domains keep their sizes.
+/// Linear strain, the sum of `dt sym(grad v)`.
 #[derive(Debug, Clone, Copy)]
 pub struct SmallStrain;
 
@@ -23,6 +23,7 @@ impl StrainUpdate for SmallStrain {
         for i in 0..3 {
             point.strain[i] += increment[i];
         }
+        (0..2).for_each(|d| point.half_width[d] *= 1.0 + step[d][d]);
         increment
     }
 }

@@ -64,11 +64,13 @@ impl Reach {
 }
 
 /// Sums over control points with shape functions and slopes.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ControlSums {
     pub value: [f64; 4],
     pub along_x: [f64; 4],
     pub along_y: [f64; 4],
+    /// Of the field of each direction: average over the two ends of the domain there, less the mean.
+    pub ends_less_mean: [f64; 2],
 }
 
 impl ControlSums {
@@ -89,9 +91,9 @@ pub(super) fn control_sums(
     reference: [f64; 4],
     reach: Reach,
 ) -> ControlSums {
-    let mut sums = ControlSums { value: [0.0; 4], along_x: [0.0; 4], along_y: [0.0; 4] };
+    let mut sums = ControlSums::default();
     for l in 0..reach.rows {
-        let (mut row_value, mut row_slope) = ([0.0; 4], [0.0; 4]);
+        let (mut row_value, mut row_slope, mut row_ends) = ([0.0; 4], [0.0; 4], 0.0);
         for (k, values) in fields[reach.row(l)].iter().enumerate() {
             let slope = [sx.derivative[k], sx.derivative[k], slopes[0][k], slopes[0][k]];
             for c in 0..4 {
@@ -99,6 +101,7 @@ pub(super) fn control_sums(
                 row_value[c] += sx.value[k] * value;
                 row_slope[c] += slope[c] * value;
             }
+            row_ends += sx.ends_less_mean[k] * values[0];
         }
         let slope = [sy.derivative[l], sy.derivative[l], slopes[1][l], slopes[1][l]];
         for c in 0..4 {
@@ -106,6 +109,8 @@ pub(super) fn control_sums(
             sums.along_x[c] += sy.value[l] * row_slope[c];
             sums.along_y[c] += slope[c] * row_value[c];
         }
+        sums.ends_less_mean[0] += sy.value[l] * row_ends;
+        sums.ends_less_mean[1] += sy.ends_less_mean[l] * row_value[1];
     }
     sums
 }
