@@ -116,13 +116,12 @@ impl Point {
     /// The points of a lattice of `particles_per_cell` points a span on `patch`, at rest.
     pub(crate) fn of_lattice(lattice: &Lattice, patch: &Patch, particles_per_cell: [usize; 2]) -> Vec<Self> {
         let mut points = Vec::new();
-        lattice.for_each_point(|batch, lane, position, volume| {
+        lattice.for_each_point(|_, _, position, volume| {
             let [width, height] = [0, 1].map(|d| {
                 let span = patch.spaces[d].find_span(position[d]).unwrap_or_default();
                 patch.spaces[d].spans()[span].length() / particles_per_cell[d] as f64
             });
-            let aspect = lattice.cut_batch(batch).map_or(width / height, |cut| cut.aspect[lane]);
-            points.push(Self::at_rest(position, volume, aspect));
+            points.push(Self::at_rest(position, volume, width / height));
         });
         points
     }
@@ -139,12 +138,18 @@ impl Point {
     }
 
     /// Means of the shape functions in x and y over the domain, which lies in a cell and reaches over at most
-    /// one knot in each direction; `order` is p + 1.
+    /// one knot in each direction; `order` is p + 1. Ends are looked at if `ENDS`.
     #[inline(always)]
-    pub fn mean_functions(&self, patch: &Patch, cell: &Cell, order: [usize; 2]) -> [MeanFunctions; 2] {
+    pub fn mean_functions<const ENDS: bool>(
+        &self,
+        patch: &Patch,
+        cell: &Cell,
+        order: [usize; 2],
+    ) -> [MeanFunctions; 2] {
         let mean = |d: usize| {
-            let domain = [self.half_width[d], self.offset[d]];
-            patch.spaces[d].mean_functions(cell.span[d], self.position[d], domain, order[d])
+            // The slope of linear functions jumps with the offset.
+            let domain = [self.half_width[d], if order[d] > 2 { self.offset[d] } else { 0.0 }];
+            patch.spaces[d].mean_functions::<ENDS>(cell.span[d], self.position[d], domain, order[d])
         };
         [mean(0), mean(1)]
     }

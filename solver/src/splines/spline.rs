@@ -6,8 +6,6 @@
 
 use std::ops::Range;
 
-use crate::linear_algebra::extremes::larger;
-
 /// Highest polynomial degree.
 pub(crate) const MAX_DEGREE: usize = 4;
 /// Positions beyond an end of a patch by up to this fraction of its length are on it: an end at `0.1 + 0.7`
@@ -71,7 +69,7 @@ pub struct MeanFunctions {
     pub value: [f64; MAX_REACH],
     /// Means of the derivatives, 1/m or 1/unit of the knots, over the interval with its offset.
     pub derivative: [f64; MAX_REACH],
-    /// Averages of the values at both ends, less the means.
+    /// Averages of the values at both ends, less the means, if they are asked for.
     pub ends_less_mean: [f64; MAX_REACH],
 }
 
@@ -181,10 +179,10 @@ impl SplineSpace {
 
     /// Means of the `order` = p + 1 functions of a span and the one beyond its nearer end over an interval
     /// around `x` (m), which should lie in `span`. The interval is shortened where it would reach beyond two
-    /// spans, an end of the space or a repeated knot. Derivatives are means over an interval of the same width
-    /// whose middle lies beside x by a small `offset`, m.
+    /// spans, an end of the space or a repeated knot. Derivatives are means over an interval whose middle
+    /// lies beside x by a small `offset` (m), to first order in that. Ends are looked at if `ENDS`.
     #[inline(always)]
-    pub(crate) fn mean_functions(
+    pub(crate) fn mean_functions<const ENDS: bool>(
         &self,
         span: usize,
         x: f64,
@@ -193,49 +191,45 @@ impl SplineSpace {
     ) -> MeanFunctions {
         let span = &self.spans[span];
         let scale = 1.0 / span.length();
-        let near = usize::from(span.right - x < x - span.left);
+        let to_end = [x - span.left, span.right - x];
+        let near = usize::from(to_end[1] < to_end[0]);
         let neighbour = &span.neighbours[near];
-        // Local coordinate of the middle, half the width, and how far the interval reaches over the near knot.
-        let interval = |middle: f64| {
-            let to_end = [middle - span.left, span.right - middle];
-            let half_width = half_width.min(to_end[1 - near]).min(to_end[near] + neighbour.length);
-            let beyond = fault!("domain-ends-at-the-knot", half_width - to_end[near] => 0.0);
-            [to_end[0] * scale, half_width, larger(beyond, 0.0)]
-        };
-        let of_knot = |half_width: f64, beyond: f64| {
-            let mut factor = if beyond > 0.0 { 0.5 / half_width } else { 0.0 };
-            (1..order).for_each(|_| factor *= beyond);
-            factor
-        };
-        // Means of the powers of the local coordinate, and what the ends differ by.
-        let [t, half, beyond] = interval(x);
-        let r = half * scale;
+        let half_width = half_width.min(to_end[1 - near]).min(to_end[near] + neighbour.length);
+        let (t, r) = (to_end[0] * scale, half_width * scale);
         let (tt, rr) = (t * t, r * r);
+        // Means of the powers of the local coordinate, of their derivatives, and of the second ones times the
+        // offset; by how much the average of both ends is more than the mean.
         let power = [1.0, t, tt + rr / 3.0, t * (tt + rr), tt * tt + 2.0 * tt * rr + rr * rr / 5.0];
+        let slope = [0.0, scale, 2.0 * scale * t, scale * (3.0 * tt + rr), 4.0 * scale * t * (tt + rr)];
+        let moved = offset * scale * scale;
+        let bent = [0.0, 0.0, 2.0 * moved, 6.0 * moved * t, moved * (12.0 * tt + 4.0 * rr)];
         let ends = [0.0, 0.0, rr / 1.5, 2.0 * t * rr, 4.0 * tt * rr + 0.8 * rr * rr];
-        // Means of their derivatives.
-        let [u, half_beside, beyond_beside] = interval((x + offset).clamp(span.left, span.right));
-        let (uu, ss) = (u * u, half_beside * half_beside * scale * scale);
-        let slope = [0.0, scale, 2.0 * scale * u, scale * (3.0 * uu + ss), 4.0 * scale * u * (uu + ss)];
-        let before = near == 0 && larger(beyond, beyond_beside) > 0.0;
-        let sign = if near == 0 { -1.0 } else { 1.0 };
-        let of_slope = of_knot(half_beside, beyond_beside);
-        let of_ends = sign * half * of_knot(half, beyond);
-        let of_value = sign * beyond * of_knot(half, beyond) / order as f64;
+        let beyond = half_width - to_end[near];
+        let reaches = fault!("domain-ends-at-the-knot", beyond > 0.0 => false);
+        let before = reaches && near == 0;
+        let sign = if before { -1.0 } else { 1.0 };
+        let mut of_curve = if reaches { 0.5 / half_width } else { 0.0 };
+        (2..order).for_each(|_| of_curve *= beyond);
+        let of_slope = of_curve * beyond;
+        let of_value = sign * beyond * of_slope / order as f64;
+        let of_ends = sign * half_width * of_slope - of_value;
+        let of_slope = of_slope + sign * offset * (order - 1) as f64 * of_curve;
         let start = usize::from(!before);
         let zeros = [0.0; MAX_REACH];
         let mut mean = MeanFunctions { start, value: zeros, derivative: zeros, ends_less_mean: zeros };
         for k in 0..=order {
             mean.value[k] = of_value * neighbour.kink[k];
             mean.derivative[k] = of_slope * neighbour.kink[k];
-            mean.ends_less_mean[k] = (of_ends - of_value) * neighbour.kink[k];
+            mean.ends_less_mean[k] = if ENDS { of_ends * neighbour.kink[k] } else { 0.0 };
         }
         for m in 0..order {
             let coefficients = &span.polynomials[m][start..];
             for k in 0..=order {
                 mean.value[k] += coefficients[k] * power[m];
-                mean.derivative[k] += coefficients[k] * slope[m];
-                mean.ends_less_mean[k] += coefficients[k] * ends[m];
+                mean.derivative[k] += coefficients[k] * (slope[m] + bent[m]);
+                if ENDS {
+                    mean.ends_less_mean[k] += coefficients[k] * ends[m];
+                }
             }
         }
         mean
@@ -354,7 +348,7 @@ mod tests {
             let space = graded(degree);
             for (x, half_width) in [(0.02, 0.01), (0.11, 0.04), (0.148, 0.01), (0.3, 0.1), (0.42, 0.3), (0.89, 0.05)] {
                 let span = space.find_span(x).unwrap();
-                let mean = space.mean_functions(span, x, [half_width, 0.0], degree + 1);
+                let mean = space.mean_functions::<false>(span, x, [half_width, 0.0], degree + 1);
                 let (mut value, mut slope) = ([0.0; 16], [0.0; 16]);
                 let to_end = [x - space.spans()[span].left, space.spans()[span].right - x];
                 let (near, far) = (to_end[0].min(to_end[1]), to_end[0].max(to_end[1]));

@@ -66,7 +66,7 @@ impl MovingBlock {
         let mut sum = 0.0;
         for cell in &self.cells.cells {
             for point in &self.points[cell.points.clone()] {
-                let [sx, sy] = point.mean_functions(&self.patch, cell, order);
+                let [sx, sy] = point.mean_functions::<false>(&self.patch, cell, order);
                 sum += sx.value.iter().sum::<f64>() * sy.value.iter().sum::<f64>();
             }
         }

@@ -69,7 +69,7 @@ impl AffineVelocities {
         let view = AffineView { fit: *fit, greville };
         for cell in &cells.cells {
             for at in cell.points.clone() {
-                let functions = points[at].mean_functions(patch, cell, order);
+                let functions = points[at].mean_functions::<false>(patch, cell, order);
                 let levers = view.levers(cell, &functions, points[at].position, order);
                 let slopes = view.slopes(patch, cell, &functions, &levers, order);
                 let reach = Reach::new(grid, cell, &functions, order, 0);

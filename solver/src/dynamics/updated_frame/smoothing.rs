@@ -72,7 +72,7 @@ impl GridToGrid<'_> {
         let Window { first_row, fields: [sums] } = &mut self.window;
         for cell in self.cells {
             for point in &self.points[cell.points.clone()] {
-                let functions = point.mean_functions(self.patch, cell, [kx, ky]);
+                let functions = point.mean_functions::<false>(self.patch, cell, [kx, ky]);
                 let [sx, sy] = &functions;
                 let mut value = [0.0; 2];
                 let reach = Reach::new(self.grid, cell, &functions, [kx, ky], 0);

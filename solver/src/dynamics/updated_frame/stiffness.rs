@@ -105,7 +105,7 @@ impl ElasticForces<'_> {
         let Window { first_row, fields: [parts] } = &mut self.window;
         for cell in self.cells {
             for point in &self.points[cell.points.clone()] {
-                let functions = point.mean_functions(self.patch, cell, [kx, ky]);
+                let functions = point.mean_functions::<false>(self.patch, cell, [kx, ky]);
                 let [sx, sy] = &functions;
                 let mut gradient = [0.0; 4]; // by y, and by x
                 let reach = Reach::new(self.grid, cell, &functions, [kx, ky], 0);

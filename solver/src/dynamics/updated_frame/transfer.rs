@@ -87,7 +87,7 @@ impl PointsToGrid<'_> {
         for cell in self.cells {
             for at in cell.points.clone() {
                 let point = &self.points[at];
-                let functions = point.mean_functions(self.patch, cell, [kx, ky]);
+                let functions = point.mean_functions::<false>(self.patch, cell, [kx, ky]);
                 let [sx, sy] = &functions;
                 let m = self.density * point.volume;
                 let [px, py] = each!(c in [0, 1] => m * point.velocity[c]);
@@ -208,7 +208,7 @@ impl<K: StrainUpdate> GridToPoints<'_, K> {
     fn move_point(&mut self, cell: &Cell, at: usize, order: [usize; 2], motion: &mut StripMotion) -> PointMotion {
         let Self { patch, grid, dt, fields, .. } = *self;
         let point = &mut self.points[at];
-        let functions = point.mean_functions(patch, cell, order);
+        let functions = point.mean_functions::<true>(patch, cell, order);
         let reach = Reach::new(grid, cell, &functions, order, 0);
         // A constant velocity has no gradient, whatever rounding does to the factors of the fit.
         let ([.., x, y], slopes) = match &self.affine {

@@ -131,7 +131,7 @@ fn for_each_function(
     mut f: impl FnMut(usize, f64, [f64; 2]),
 ) {
     let order = [0, 1].map(|d| patch.spaces[d].degree() + 1);
-    let [sx, sy] = point.mean_functions(patch, cell, order);
+    let [sx, sy] = point.mean_functions::<false>(patch, cell, order);
     for l in (0..=order[1]).filter(|&l| sy.value[l] != 0.0) {
         for k in (0..=order[0]).filter(|&k| sx.value[k] != 0.0) {
             let slope = [sx.derivative[k] * sy.value[l], sx.value[k] * sy.derivative[l]];

@@ -27,8 +27,8 @@ const DEPTH: usize = 7;
 
 /// Lower left and upper right corner, m.
 type Corners = [[f64; 2]; 2];
-/// Position of a point, and the lengths in x and in y that it stands for, m: their product is its weight.
-pub(super) type WeightedPoint = ([f64; 2], [f64; 2]);
+/// Position (m) and weight (m²) of a point.
+pub(super) type WeightedPoint = ([f64; 2], f64);
 
 /// The rules of a span that the boundary cuts, along both directions.
 #[derive(Debug, Clone)]
@@ -98,7 +98,7 @@ pub(super) fn cut_spans<'a>(
         let [low, high] = corners(spaces, *span);
         let mut points = Vec::new();
         cutter.add([low, high], &edges.iter().collect::<Vec<_>>(), 0, &mut points);
-        let part = points.iter().map(|(_, [w, v])| w * v).sum::<f64>() / ((high[0] - low[0]) * (high[1] - low[1]));
+        let part = points.iter().map(|point| point.1).sum::<f64>() / ((high[0] - low[0]) * (high[1] - low[1]));
         (part > SLIVER && part < 1.0 - SLIVER).then_some((*span, points))
     })
 }
@@ -167,7 +167,7 @@ impl Cutter<'_> {
     /// Gauss points in all of a box.
     fn fill(&self, [low, high]: Corners, out: &mut Vec<WeightedPoint>) {
         let points = |d: usize| self.rules.across.between(low[d], high[d]);
-        out.extend(points(1).flat_map(|(y, v)| points(0).map(move |(x, w)| ([x, y], [w, v]))));
+        out.extend(points(1).flat_map(|(y, v)| points(0).map(move |(x, w)| ([x, y], v * w))));
     }
 
     /// Gauss points on lines across direction `inner`.
@@ -191,16 +191,14 @@ impl Cutter<'_> {
         breaks.sort_by(f64::total_cmp);
         for slab in breaks.windows(2).filter(|slab| slab[1] - slab[0] > 1e-14 * (high[outer] - low[outer])) {
             for (place, weight) in self.rules.along[arcs].between(slab[0], slab[1]) {
-                let pair = |inside: f64, outside: f64| if inner == 0 { [inside, outside] } else { [outside, inside] };
-                let on_line = |x: f64| pair(x, place);
+                let on_line = |x: f64| if inner == 0 { [x, place] } else { [place, x] };
                 let mut ends = vec![low[inner], high[inner]];
                 let met = edges.iter().flat_map(|edge| edge.crossings(outer, place));
                 ends.extend(met.filter(|x| (low[inner]..=high[inner]).contains(x)));
                 ends.sort_by(f64::total_cmp);
                 for part in ends.windows(2) {
                     if part[1] > part[0] && self.shape.contains(on_line(0.5 * (part[0] + part[1]))) {
-                        let across = self.rules.across.between(part[0], part[1]);
-                        out.extend(across.map(|(x, w)| (on_line(x), pair(w, weight))));
+                        out.extend(self.rules.across.between(part[0], part[1]).map(|(x, w)| (on_line(x), weight * w)));
                     }
                 }
             }
@@ -230,11 +228,11 @@ mod tests {
                     let inside = shape.contains([0.5 * (x.left + x.right), 0.5 * (y.left + y.right)]);
                     let points = rule
                         .between(y.left, y.right)
-                        .flat_map(|(y, v)| rule.between(x.left, x.right).map(move |(x, w)| ([x, y], [w, v])));
+                        .flat_map(|(y, v)| rule.between(x.left, x.right).map(move |(x, w)| ([x, y], v * w)));
                     points.filter(|_| inside).collect::<Vec<_>>()
                 };
                 let points = cut.get(&[i, j]).cloned().unwrap_or_else(whole);
-                sum += points.iter().map(|([x, y], [w, v])| w * v * x.powi(a) * y.powi(b)).sum::<f64>();
+                sum += points.iter().map(|([x, y], w)| w * x.powi(a) * y.powi(b)).sum::<f64>();
             }
         }
         sum
@@ -291,7 +289,7 @@ mod tests {
             of: Box::new(Shape::Disk { center: [0.5, 0.5], radius: 0.4 }),
             minus: vec![Shape::Disk { center: [0.7, 0.5], radius: 0.3 }],
         };
-        let area: f64 = all(&two, &spaces).values().flatten().map(|(_, [w, v])| w * v).sum();
+        let area: f64 = all(&two, &spaces).values().flatten().map(|point| point.1).sum();
         let whole = spaces[0].spans().iter().flat_map(|x| spaces[1].spans().iter().map(move |y| [x, y]));
         let cut = all(&two, &spaces);
         let inside = whole.enumerate().filter(|(n, [x, y])| {

@@ -12,7 +12,7 @@ pub(super) struct CutPoint {
     pub span: [usize; 2],
     /// Column and row of its first function.
     pub first: FunctionIndex,
-    /// Position and lengths, m.
+    /// Position (m) and weight (m²).
     pub point: WeightedPoint,
     /// Rows by which its control points lie behind those of the patch.
     pub lift: usize,
@@ -35,8 +35,6 @@ pub(crate) struct CutBatch {
     pub lift: usize,
     /// Weights, m²; zero where there is no point.
     pub weight: Lane,
-    /// Length in x that a point stands for over that in y.
-    pub aspect: Lane,
     /// Positions, m.
     pub position: [Lane; 2],
     /// Values of the basis functions in x and in y.
@@ -59,14 +57,13 @@ impl CutBatch {
                 first,
                 lift,
                 weight: Lane::ZERO,
-                aspect: Lane::splat(1.0),
                 position: [Lane::ZERO; 2],
                 value: [[Lane::ZERO; MAX_ORDER]; 2],
                 derivative: [[Lane::ZERO; MAX_ORDER]; 2],
             };
             for lane in 0..LANES {
-                let (position, [width, height]) = points.get(lane).copied().unwrap_or((points[0].0, [0.0, 1.0]));
-                (batch.weight[lane], batch.aspect[lane]) = (width * height, width / height);
+                let (position, weight) = points.get(lane).copied().unwrap_or((points[0].0, 0.0));
+                batch.weight[lane] = weight;
                 for d in 0..2 {
                     let functions = patch.spaces[d].shape_functions(span[d], position[d]);
                     batch.position[d][lane] = position[d];
