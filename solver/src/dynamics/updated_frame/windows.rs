@@ -40,8 +40,8 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// Those of a point of a cell with these functions, `kx + 1` by `ky + 1`. The first span of a grid has
-    /// no neighbour, so its functions start with its own.
+    /// Those of a point of a cell with these functions, `kx + 1` by `ky + 1`. The first span of a patch has
+    /// no neighbour, and in that of a part no point lies, so no row lies before the grid.
     #[inline(always)]
     pub(super) fn new(
         grid: ControlGrid,
