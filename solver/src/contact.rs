@@ -4,7 +4,8 @@
 //! boundaries do, though supports of quadratic and cubic splines overlap up to three spans earlier. The
 //! centre of every segment that faces another boundary measures the signed gap to it. What the segments of
 //! both bodies measure within a square as large as a span is one [`ContactConstraint`]: its position x and
-//! gap g are their means, so that constraints are as many as control points can tell apart, and neither body
+//! gap g are their means, with more weight where the gap is smaller. So constraints are as many as control
+//! points can tell apart, and neither body
 //! is the master of the other. An impulse P acts there on one body, −P on the other. Both spread it over
 //! control points with weights W that stand for the same position x ([`mod@boundary_functions`]),
 //!
@@ -13,8 +14,10 @@
 //! ```
 //!
 //! which keeps momentum and angular momentum to round-off. The normal is that between both boundaries, the
-//! same for both bodies but for its sign. Impulses are the smallest that keep every gap from closing further
-//! than it is open, `v_rel · n ≥ −max(g, 0)/dt`, with Coulomb friction: they stop sliding or are the
+//! same for both bodies but for its sign. On a rigid body it is that of the rigid boundary, except at its
+//! corners: a smooth rigid surface without friction pushes along its normal only. Impulses are the smallest
+//! that keep every gap from closing further than it is open, `v_rel · n ≥ −max(g, 0)/dt`, with Coulomb
+//! friction: they stop sliding or are the
 //! coefficient times their normal part. They never pull, and never push apart. They are found constraint by
 //! constraint until they converge (projected Gauss–Seidel), starting from those of the step before.
 //!
@@ -62,8 +65,11 @@ const FACING: f64 = -0.5;
 /// the flanks of a wedge of half angle 3° or more. Beside a right corner that is pressed in the faces of the
 /// corner do not meet the face beneath.
 const CUTTING: f64 = -0.05;
-/// Gap up to which a constraint is looked at, in spans, unless more could close in a step.
+/// Gap up to which a constraint is looked at, in spans, unless more could close in a step. What a segment
+/// measures counts by how much smaller its gap is.
 const NEAR: f64 = 0.1;
+/// Part of a span by which a segment at that gap counts.
+const LEAST: f64 = 1e-3;
 
 /// What contact took and gave so far, J per metre of thickness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -135,7 +141,13 @@ impl ContactSolver {
                     [0, 1].map(|d| boxes[a][1][d].min(boxes[b][1][d]) + reach),
                 ];
                 if (0..2).all(|d| common[0][d] <= common[1][d]) {
-                    encounters.extend(self.compare([surfaces[a], surfaces[b]], [a, b], common, reach)?);
+                    encounters.extend(self.compare(
+                        [surfaces[a], surfaces[b]],
+                        [a, b],
+                        b >= bodies.len(),
+                        common,
+                        reach,
+                    )?);
                 }
             }
         }
@@ -144,11 +156,12 @@ impl ContactSolver {
     }
 
     /// What the segments of two boundaries in a box see of each other, no further than `reach` (m), square by
-    /// square: across gaps that are small, or could close in a step.
+    /// square: across gaps that are small, or could close in a step. The second body may be rigid.
     fn compare(
         &self,
         surfaces: [&Surface; 2],
         bodies: [usize; 2],
+        is_rigid: bool,
         common: [[f64; 2]; 2],
         reach: f64,
     ) -> Result<Vec<Encounter>, TooFast> {
@@ -163,25 +176,35 @@ impl ContactSolver {
                 if is_cutting && (cosine > fault!("flanks-not-met", CUTTING => FACING) || nearest.distance >= 0.0) {
                     continue;
                 }
-                let own_normal = if is_cutting { [0.0; 2] } else { normal };
-                let halfway = [0, 1].map(|d| sign * (own_normal[d] - nearest.normal[d]));
+                let is_rigid = fault!("rigid-normal-between-both", is_rigid => false);
+                let between = [0, 1].map(|d| normal[d] - nearest.normal[d]);
+                let outward = if is_rigid && own == 1 {
+                    normal
+                } else if is_cutting || is_rigid && nearest.is_smooth {
+                    nearest.normal.map(|n| -n)
+                } else {
+                    between
+                };
+                let halfway = outward.map(|n| sign * n);
                 let along = fault!("normal-of-one-body", halfway => if own == 0 { normal } else { nearest.normal });
                 let Some(normal) = unit(along) else { continue };
                 let closing = sign * dot([0, 1].map(|d| displacement[d] - nearest.displacement[d]), normal);
-                if nearest.distance > larger(NEAR * self.reach, AHEAD * closing) {
+                let near = larger(NEAR * self.reach, AHEAD * closing);
+                if nearest.distance > near {
                     continue;
                 }
+                let weight = near - nearest.distance + LEAST * self.reach;
                 if closing > MOST * self.reach {
                     return Err(TooFast { place: position, spans: closing / self.reach });
                 }
                 let middle = [0, 1].map(|d| position[d] + 0.5 * sign * nearest.distance * normal[d]);
                 let square = self.squares.of(middle);
                 let sums: &mut Encounter = squares.entry(square).or_insert_with(|| Encounter::new(bodies, square));
-                sums.count += 1.0;
-                sums.gap += nearest.distance;
+                sums.count += weight;
+                sums.gap += weight * nearest.distance;
                 for d in 0..2 {
-                    sums.position[d] += middle[d];
-                    sums.normal[d] += normal[d];
+                    sums.position[d] += weight * middle[d];
+                    sums.normal[d] += weight * normal[d];
                 }
             }
         }

@@ -65,7 +65,9 @@ pub struct Simulation {
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 struct Warned {
     step: bool,
-    closure: bool,
+    /// Time, s, and what the ledger was open by then, J, where that was widest and too wide for the energy
+    /// put in until then. Told at the end, if it is too wide for all of the energy.
+    open: Option<[f64; 2]>,
     boundary: bool,
     rotation: bool,
     healing: bool,

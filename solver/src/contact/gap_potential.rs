@@ -22,7 +22,8 @@
 //! them.
 //!
 //! The boundaries are the cubics through places and tangents that the displacement moves ([`arc`]), with
-//! four Gauss points each. Both are linear in the control values, so the forces are the derivatives of E.
+//! four Gauss points each, and 32 on a rigid body near a corner of another one. Both are linear in the
+//! control values, so the forces are the derivatives of E.
 //! Wriggers 2006, *Computational contact mechanics*, section 6.3, has the penalty method; Puso & Laursen
 //! 2004, *A mortar segment-to-segment contact method for large deformation solid mechanics*, the reason to
 //! integrate over boundaries instead of looking at their nodes.
@@ -41,7 +42,7 @@ use crate::checkpoint::{Archive, StateError};
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::vectors::dot;
 use crate::splines::quadrature::Rule;
-use arc::{BoundaryPlace, Closest, Outline, around, nearest, rule};
+use arc::{BoundaryPlace, Closest, Outline, around, nearest, rules};
 use friction::{ContactPoint, Friction};
 use own_pairs::OwnPairs;
 use rigid_outline::RigidOutline;
@@ -100,7 +101,7 @@ impl GapForce {
 pub(crate) struct GapPotential {
     /// Depth that contact follows where bodies are thick, m: the shortest span.
     reach: f64,
-    rule: Rule,
+    rules: [Rule; 2],
     /// They are counted after the bodies that deform.
     rigid: Vec<RigidOutline>,
     /// Of all bodies, in this order.
@@ -127,7 +128,7 @@ impl GapPotential {
     ) -> Self {
         Self {
             reach: span,
-            rule: rule(),
+            rules: rules(),
             rigid,
             thin,
             own,
@@ -176,7 +177,7 @@ impl GapPotential {
         let own = self.own.get(a).filter(|_| a == b);
         let spring = smaller(outlines[a].spring, outlines[b].spring);
         for number in outlines[a].within(common) {
-            for (point, place) in outlines[a].arcs[number].places(&self.rule).enumerate() {
+            for (point, t, place) in outlines[a].places(number, &self.rules, &outlines[b], self.reach) {
                 let found = match own {
                     None => self.opposite(place, &outlines[b], b),
                     Some(own) => self
@@ -201,7 +202,7 @@ impl GapPotential {
                 self.forces.push(GapForce {
                     bodies: [a, b],
                     places: [place.position, nearest.position],
-                    labels: [(number, self.rule.points[point]), nearest.label],
+                    labels: [(number, t), nearest.label],
                     force: nearest.direction.map(|out| -pressure * out),
                     friction,
                 });
@@ -297,7 +298,7 @@ impl GapPotential {
     /// # Errors
     /// Bytes of another scene.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        let Self { reach: _, rule: _, rigid: _, thin: _, own: _, friction, forces: _, energy: _, power: _, work } =
+        let Self { reach: _, rules: _, rigid: _, thin: _, own: _, friction, forces: _, energy: _, power: _, work } =
             self;
         if let Some(friction) = friction {
             friction.exchange(archive)?;

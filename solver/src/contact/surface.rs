@@ -10,6 +10,8 @@ use crate::scene::{Body, Mesh};
 /// Distance from the boundary within which the middle of a segment counts as lying on it, over that of the
 /// points.
 const ON_BOUNDARY: f64 = 0.1;
+/// Cosine of half the angle by which a boundary turns where it is smooth.
+const SMOOTH: f64 = 0.97;
 
 /// A boundary: segments with the body to their left.
 #[derive(Debug, Clone, Default)]
@@ -31,6 +33,8 @@ pub(crate) struct Nearest {
     pub distance: f64,
     /// Outward unit normal there.
     pub normal: [f64; 2],
+    /// Whether it is not a corner.
+    pub is_smooth: bool,
     /// Its displacement in the last step, m.
     pub displacement: [f64; 2],
 }
@@ -204,7 +208,8 @@ impl Surface {
         let normal = self.normal_at(segment, t);
         let outside = dot(from, normal) >= 0.0;
         let sign = if outside { 1.0 } else { fault!("gap-without-sign", -1.0 => 1.0) };
-        Some(Nearest { distance: sign * distance, normal, displacement: self.way_at(segment, t) })
+        let is_smooth = dot(normal, self.segment_normal(segment)) > SMOOTH;
+        Some(Nearest { distance: sign * distance, normal, is_smooth, displacement: self.way_at(segment, t) })
     }
 
     /// Keeps the segments whose places half a spacing of points (m) under them belong.

@@ -190,19 +190,15 @@ fn held(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) 
     if scene.mesh.geometry.is_some() {
         return; // the sides of the patch are not those of the box around it
     }
-    let reaches = |body: &Body| scene.mesh.is_reached(boundary.side, &body.shape);
     let patch = (scene.analysis.frame == Frame::Updated).then(|| Patch::new(&scene.mesh));
-    if patch.is_some_and(|patch| !scene.bodies.iter().any(|body| lies_on(&patch, body, boundary))) {
+    let is_held = |body: &Body| match &patch {
+        Some(patch) => lies_on(patch, body, boundary),
+        None => scene.mesh.is_reached(boundary.side, &body.shape),
+    };
+    if !scene.bodies.iter().any(is_held) {
         let message = format!(
             "no body lies on the {} side of the mesh at t = 0, so nothing is held there; a [[body.condition]] holds an \
              edge wherever it is",
-            side_name(boundary.side)
-        );
-        findings.warn(key, message);
-    } else if !scene.bodies.iter().any(reaches) {
-        let message = format!(
-            "no body reaches the {} side of the mesh, so it holds that body loosely or not at all; let the mesh end \
-             where the body does, or remove the boundary",
             side_name(boundary.side)
         );
         findings.warn(key, message);

@@ -111,6 +111,21 @@ fn a_part_of_a_side_is_held_and_the_rest_is_free() {
 }
 
 #[test]
+fn a_side_that_the_body_does_not_reach_holds_nothing() {
+    for degree in [1, 2, 3] {
+        for gap in [0.02e-3, 0.3e-3, 0.9e-3] {
+            let mut scene = elastic_scene(degree, [0.01; 2], [10; 2]);
+            scene.bodies[0].shape = Shape::Rectangle { min: [gap, 0.0], max: [0.01, 0.01] };
+            scene.boundaries = vec![Boundary::driven(Side::Left, [true, true], [1.0, 0.0])];
+            let warnings = validate(&scene).unwrap();
+            assert!(warnings.iter().any(|warning| warning.message.contains("nothing is held there")), "{warnings:?}");
+            let samples = run(&scene).1;
+            assert_eq!(samples.last().unwrap().kinetic, 0.0, "p = {degree}, a gap of {gap} m");
+        }
+    }
+}
+
+#[test]
 fn a_part_that_holds_nothing_is_bad_input() {
     let mut scene = elastic_scene(2, [0.01; 2], [10; 2]);
     let held = |from, to| Boundary { part: Some([from, to]), ..Boundary::fixed(Side::Left, [true, false]) };

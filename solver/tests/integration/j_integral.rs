@@ -94,6 +94,24 @@ fn a_hole_in_the_domain_leaves_no_j_integral() {
     assert!(value(&scene) > 0.0);
 }
 
+/// A driven crack that goes on from the slit, which is the same crack, and one aside, which is another.
+#[test]
+fn only_a_crack_that_continues_the_first_may_reach_into_the_domain() {
+    let mut scene = strip(1e-6);
+    scene.mesh = Mesh::uniform([2; 2], [0.0; 2], [0.028, 0.008], [112, 32]);
+    scene.analysis.end_time = 1e-7;
+    scene.output.samples = 1;
+    let with = |from: [f64; 2], to: [f64; 2]| {
+        let mut scene = scene.clone();
+        let kind = CrackKind::Driven(500.0);
+        scene.bodies[0].cracks.push(Crack { points: vec![from, to], kind });
+        column(&run(&scene).1[0], "j_integral_j_per_m2")
+    };
+    assert!(with([0.006, 0.004], [0.02, 0.004]) > 0.0);
+    assert!(with([0.006, 0.004], [0.02, 0.005]).is_nan());
+    assert!(with([0.007, 0.004], [0.02, 0.004]).is_nan());
+}
+
 /// To 1 % of the largest: without the accelerations in the domain they differ by 25 %, without the kinetic
 /// energy by 18 %.
 #[test]

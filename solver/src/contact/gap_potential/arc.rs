@@ -7,6 +7,11 @@ use crate::splines::quadrature::Rule;
 
 /// Gauss points of an arc.
 const POINTS: usize = 4;
+/// Parts with as many each of an arc of a rigid body near a corner of another body: corners that dig into it
+/// are smaller than a span, and with fewer points a floor without friction brakes a body that slides on one.
+const RIGID_PARTS: usize = 8;
+/// Cosine of the angle between arcs that follow each other up to which there is a corner between them.
+const CORNER: f64 = 0.9;
 /// Divisions of an arc whose ends are looked at for the nearest place: a crushed corner bends its arcs far.
 const LOOKS: usize = 16;
 /// Corrections of that place, and what is near enough, in arcs.
@@ -161,12 +166,37 @@ pub(crate) struct Outline {
     pub boxes: Vec<[[f64; 2]; 2]>,
     /// κ of the body, Pa/m; infinite if it is rigid.
     pub spring: f64,
+    /// Places of its corners, m.
+    corners: Vec<[f64; 2]>,
 }
 
 impl Outline {
     /// These arcs, of a body with this κ, Pa/m.
     pub(crate) fn new(arcs: Vec<Arc>, spring: f64) -> Self {
-        Self { boxes: arcs.iter().map(Arc::bounds).collect(), arcs, spring }
+        let before = arcs.iter().cycle().skip(arcs.len().saturating_sub(1));
+        let corners = before.zip(&arcs).filter(|(before, arc)| dot(before.normal(1.0), arc.normal(0.0)) <= CORNER);
+        let corners = corners.map(|(_, arc)| arc.position(0.0)).collect();
+        Self { boxes: arcs.iter().map(Arc::bounds).collect(), arcs, spring, corners }
+    }
+
+    /// Number, t and place of the points of an arc that look for another body, by the rules of [`rules`]: by
+    /// the second one within a distance (m) of its corners if this body is rigid.
+    pub(crate) fn places<'a>(
+        &'a self,
+        number: usize,
+        [few, many]: &'a [Rule; 2],
+        other: &Self,
+        reach: f64,
+    ) -> impl Iterator<Item = (usize, f64, BoundaryPlace)> + 'a {
+        let (arc, [low, high]) = (&self.arcs[number], self.boxes[number]);
+        let is_near = |corner: &[f64; 2]| (0..2).all(|d| (low[d] - reach..=high[d] + reach).contains(&corner[d]));
+        let is_divided = self.spring.is_infinite() && other.corners.iter().any(is_near);
+        let (rule, first) = if is_divided { (many, POINTS) } else { (few, 0) };
+        rule.points.iter().zip(&rule.weights).enumerate().map(move |(at, (&t, weight))| {
+            let [x, y] = arc.tangent(t);
+            let length = if is_divided { weight * x.hypot(y) } else { arc.lengths[at] };
+            (first + at, t, BoundaryPlace { position: arc.position(t), normal: arc.normal(t), length })
+        })
     }
 
     /// The numbers of the arcs whose boxes meet a region.
@@ -188,6 +218,15 @@ pub(crate) fn around(boxes: impl Iterator<Item = [[f64; 2]; 2]>) -> [[f64; 2]; 2
 /// Rule along an arc.
 pub(crate) fn rule() -> Rule {
     Rule::new(Layout::Gauss, POINTS)
+}
+
+/// Rules along an arc: with few points, and with many for arcs of rigid bodies near corners.
+pub(crate) fn rules() -> [Rule; 2] {
+    let rule = rule();
+    let part = |x: f64, number: usize| (number as f64 + x) / RIGID_PARTS as f64;
+    let points = (0..RIGID_PARTS).flat_map(|number| rule.points.iter().map(move |x| part(*x, number))).collect();
+    let weights = (0..RIGID_PARTS).flat_map(|_| rule.weights.iter().map(|weight| part(*weight, 0))).collect();
+    [rule, Rule { points, weights }]
 }
 
 /// The nearest place of a boundary.

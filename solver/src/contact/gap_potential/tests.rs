@@ -1,6 +1,7 @@
 //! What circles feel that overlap: forces, slip, and the work of a rigid one.
 
 use super::arc::Arc;
+use super::arc::rule;
 use super::*;
 use crate::contact::rigid::RigidMotion;
 

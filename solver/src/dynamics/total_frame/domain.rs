@@ -22,7 +22,7 @@ pub(crate) struct Domain {
     pub axis: [f64; 2],
     /// Positions along the boundary of the body, m.
     pub boundary: Arc<Vec<[f64; 2]>>,
-    /// Cracks at the start besides the nearest to the tip.
+    /// Cracks at the start besides the nearest to the tip, and those that continue it in a straight line.
     others: Vec<Crack>,
 }
 
@@ -39,6 +39,7 @@ impl Domain {
             let mut others = body.cracks.clone();
             others.sort_by(|a, b| a.distance(tip).total_cmp(&b.distance(tip)));
             others.drain(..others.len().min(1));
+            others.retain(|crack| !continues(crack, tip, axis, integral.radius));
             Some(Self { column, radius: integral.radius, tip, moves: integral.at.is_none(), axis, boundary, others })
         };
         integrals.iter().filter_map(domain).collect()
@@ -50,6 +51,13 @@ impl Domain {
         let is_free = self.others.iter().all(|crack| crack.distance(tip) >= self.radius);
         shape.contains(tip) && is_free && !self.boundary.iter().any(reaches)
     }
+}
+
+/// Whether a crack touches the tip (m) and lies along the axis; for lengths of the order of the radius (m).
+fn continues(crack: &Crack, tip: [f64; 2], axis: [f64; 2], radius: f64) -> bool {
+    let aside = |place: &[f64; 2]| (axis[0] * (place[1] - tip[1]) - axis[1] * (place[0] - tip[0])).abs();
+    let tolerance = 1e-9 * radius;
+    crack.distance(tip) <= tolerance && crack.points.iter().all(|place| aside(place) <= tolerance)
 }
 
 /// Column of the history, J/m².
