@@ -176,11 +176,11 @@ impl ContactSolver {
                 if is_cutting && (cosine > fault!("flanks-not-met", CUTTING => FACING) || nearest.distance >= 0.0) {
                     continue;
                 }
-                let is_rigid = fault!("rigid-normal-between-both", is_rigid => false);
                 let between = [0, 1].map(|d| normal[d] - nearest.normal[d]);
-                let outward = if is_rigid && own == 1 {
+                let at_rigid = fault!("rigid-normal-between-both", is_rigid => false);
+                let outward = if at_rigid && own == 1 {
                     normal
-                } else if is_cutting || is_rigid && nearest.is_smooth {
+                } else if is_cutting || at_rigid && nearest.is_smooth {
                     nearest.normal.map(|n| -n)
                 } else {
                     between
