@@ -39,6 +39,12 @@ pub struct Extent {
     pub phase_field_bytes: usize,
 }
 
+/// Least and largest part of the critical step at the moved positions that an automatic step may be: longer
+/// ones take energy from compressed bodies. That is taken again where points have moved a quarter of a span.
+const SPARE: [f64; 2] = [0.801, 0.95];
+/// By how much that part is above the safety of a scene: the first step is as long as that.
+const ABOVE: f64 = 1.001;
+
 /// A running scene.
 #[derive(Debug)]
 pub struct Simulation {
@@ -46,8 +52,9 @@ pub struct Simulation {
     plan: TimePlan,
     /// Equal parts in which a planned step is taken, so that it stays below the critical one.
     parts: usize,
-    /// Whether the scene leaves the time step to the program.
-    is_automatic: bool,
+    /// Part of the critical step at the moved positions that a step may be, if the scene leaves the time step
+    /// to the program.
+    spare: Option<f64>,
     warnings: Vec<String>,
     steps: usize,
     /// Stored energy at t = 0, J.
@@ -92,9 +99,10 @@ impl Simulation {
         let start = either!(&frame, body => body.sample(plan.step));
         let (initial, energy_in) = (start.stored(), start.kinetic + start.elastic);
         let warned = Warned { step: plan.step > critical, ..Warned::default() };
-        let (parts, is_automatic) = (1, scene.analysis.time_step == TimeStep::Auto);
-        let (steps, failed) = (0, false);
-        Ok(Self { frame, plan, parts, is_automatic, warnings, steps, initial, energy_in, warned, failed, tolerance })
+        let is_automatic = scene.analysis.time_step == TimeStep::Auto;
+        let spare = is_automatic.then(|| (ABOVE * scene.analysis.safety).clamp(SPARE[0], SPARE[1]));
+        let (parts, steps, failed) = (1, 0, false);
+        Ok(Self { frame, plan, parts, spare, warnings, steps, initial, energy_in, warned, failed, tolerance })
     }
 
     /// Steps and samples.

@@ -53,7 +53,7 @@ impl Simulation {
             frame,
             plan: _,
             parts,
-            is_automatic: _,
+            spare: _,
             warnings,
             steps,
             initial,

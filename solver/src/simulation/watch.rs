@@ -24,10 +24,6 @@ const CLOSURE_LIMIT: f64 = 0.02;
 /// the phase field.
 const CLOSURE_FLOOR: f64 = 1e-6;
 
-/// Part of the critical step at the moved positions that an automatic step may be: the default safety, up to
-/// round-off. Longer steps take energy from compressed bodies. The critical step is taken again where points
-/// have moved a quarter of a span.
-const SPARE: f64 = 0.801;
 /// Parts of a step beyond which the critical step has collapsed.
 const MOST_PARTS: f64 = 64.0;
 
@@ -81,8 +77,8 @@ impl Simulation {
             Bodies::Total(frame) if look => frame.retake_critical_step(step, self.plan.critical),
             Bodies::Total(_) => None,
         };
-        if let (true, Some(critical), Bodies::Updated(_)) = (self.is_automatic, critical, &self.frame) {
-            let parts = (step / (SPARE * critical)).ceil();
+        if let (Some(spare), Some(critical), Bodies::Updated(_)) = (self.spare, critical, &self.frame) {
+            let parts = (step / (spare * critical)).ceil();
             if parts <= MOST_PARTS {
                 self.parts = larger(parts, 1.0) as usize;
                 return;
