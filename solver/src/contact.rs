@@ -5,9 +5,9 @@
 //! centre of every segment that faces another boundary measures the signed gap to it. What the segments of
 //! both bodies measure within a square as large as a span is one [`ContactConstraint`]: its position x and
 //! gap g are their means, with more weight where the gap is smaller. So constraints are as many as control
-//! points can tell apart, and neither body
-//! is the master of the other. An impulse P acts there on one body, −P on the other. Both spread it over
-//! control points with weights W that stand for the same position x ([`mod@boundary_functions`]),
+//! points can tell apart, and neither body is the master of the other. An impulse P acts there on one body,
+//! −P on the other. Both spread it over control points with weights W that stand for the same position x
+//! ([`mod@boundary_functions`]),
 //!
 //! ```text
 //! f_I = ± W_I P,        v_rel = Σ W_I^b v_I^b − Σ W_I^a v_I^a,        Σ W_I = 1,   Σ W_I x_I = x,
@@ -17,9 +17,9 @@
 //! same for both bodies but for its sign. On a rigid body it is that of the rigid boundary, except at its
 //! corners: a smooth rigid surface without friction pushes along its normal only. Impulses are the smallest
 //! that keep every gap from closing further than it is open, `v_rel · n ≥ −max(g, 0)/dt`, with Coulomb
-//! friction: they stop sliding or are the
-//! coefficient times their normal part. They never pull, and never push apart. They are found constraint by
-//! constraint until they converge (projected Gauss–Seidel), starting from those of the step before.
+//! friction: they stop sliding or are the coefficient times their normal part. They never pull, and never
+//! push apart. They are found constraint by constraint until they converge (projected Gauss–Seidel),
+//! starting from those of the step before.
 //!
 //! The force P/dt acts over a kick from w to v, so `−P · (w + v)/2`, with w and v relative velocities, is
 //! lost: that is the contact loss of the ledger, half of it booked with the velocity the step begins with,
@@ -176,14 +176,13 @@ impl ContactSolver {
                 if is_cutting && (cosine > fault!("flanks-not-met", CUTTING => FACING) || nearest.distance >= 0.0) {
                     continue;
                 }
-                let between = [0, 1].map(|d| normal[d] - nearest.normal[d]);
                 let at_rigid = fault!("rigid-normal-between-both", is_rigid => false);
                 let outward = if at_rigid && own == 1 {
                     normal
                 } else if is_cutting || at_rigid && nearest.is_smooth {
                     nearest.normal.map(|n| -n)
                 } else {
-                    between
+                    [0, 1].map(|d| normal[d] - nearest.normal[d])
                 };
                 let halfway = outward.map(|n| sign * n);
                 let along = fault!("normal-of-one-body", halfway => if own == 0 { normal } else { nearest.normal });
@@ -193,12 +192,12 @@ impl ContactSolver {
                 if nearest.distance > near {
                     continue;
                 }
-                let weight = near - nearest.distance + LEAST * self.reach;
                 if closing > MOST * self.reach {
                     return Err(TooFast { place: position, spans: closing / self.reach });
                 }
                 let middle = [0, 1].map(|d| position[d] + 0.5 * sign * nearest.distance * normal[d]);
                 let square = self.squares.of(middle);
+                let weight = near - nearest.distance + LEAST * self.reach;
                 let sums: &mut Encounter = squares.entry(square).or_insert_with(|| Encounter::new(bodies, square));
                 sums.count += weight;
                 sums.gap += weight * nearest.distance;

@@ -176,8 +176,9 @@ impl GapPotential {
     fn compare(&mut self, [a, b]: [usize; 2], outlines: &[Outline], common: [[f64; 2]; 2]) -> Result<(), TooDeep> {
         let own = self.own.get(a).filter(|_| a == b);
         let spring = smaller(outlines[a].spring, outlines[b].spring);
+        let corners = if outlines[a].spring.is_infinite() { outlines[b].corners() } else { Vec::new() };
         for number in outlines[a].within(common) {
-            for (point, t, place) in outlines[a].places(number, &self.rules, &outlines[b], self.reach) {
+            for (point, t, place) in outlines[a].places(number, &self.rules, &corners, self.reach) {
                 let found = match own {
                     None => self.opposite(place, &outlines[b], b),
                     Some(own) => self

@@ -60,8 +60,14 @@ impl Simulation {
                 self.watch_boundary();
                 Ok(())
             }
-            Err(failure) if healthy => Err(self.broken(failure)),
-            _ => Err(self.unstable()),
+            Err(failure) if healthy => {
+                self.tell_open_ledger();
+                Err(self.broken(failure))
+            }
+            _ => {
+                self.tell_open_ledger();
+                Err(self.unstable())
+            }
         }
     }
 
@@ -196,7 +202,23 @@ impl Simulation {
         self.watch_losses(sample);
         let held = self.hold_to_ledger(sample);
         self.failed |= held.is_err();
+        if self.finished() || held.is_err() {
+            self.tell_open_ledger();
+        }
         held
+    }
+
+    /// Warns of the ledger where it was open widest, if that is much of all energy: where a run ends.
+    fn tell_open_ledger(&mut self) {
+        if let Some([time, open]) = self.warned.open.take()
+            && open.abs() > CLOSURE_LIMIT * self.energy_in
+        {
+            self.warnings.push(format!(
+                "at t = {time:.4e} s the energy ledger is open by {open:.3e} J of {:.3e} J put in by the end: the time step \
+                 is long for contact or for the work of stress; lower analysis.safety (0.2 leaves about a sixteenth of it)",
+                self.energy_in
+            ));
+        }
     }
 
     fn hold_to_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
@@ -218,18 +240,6 @@ impl Simulation {
             if self.warned.open.is_none_or(|[_, widest]| closure.abs() > widest.abs()) {
                 self.warned.open = Some([time, closure]);
             }
-        }
-        if self.finished()
-            && let Some([time, open]) = self.warned.open
-            && open.abs() > CLOSURE_LIMIT * self.energy_in
-        {
-            let process =
-                if sample.contact.is_some() { "contact, or for the work of stress" } else { "the work of stress" };
-            self.warnings.push(format!(
-                "at t = {time:.4e} s the energy ledger is open by {open:.3e} J of {:.3e} J put in by the end: the time step \
-                 is long for {process}; lower analysis.safety (0.2 leaves about a sixteenth of it)",
-                self.energy_in
-            ));
         }
         Ok(())
     }

@@ -12,6 +12,8 @@ const POINTS: usize = 4;
 const RIGID_PARTS: usize = 8;
 /// Cosine of the angle between arcs that follow each other up to which there is a corner between them.
 const CORNER: f64 = 0.9;
+/// Square of the distance of their ends, in lengths of an arc, from which on they are of different lines.
+const APART: f64 = 0.25;
 /// Divisions of an arc whose ends are looked at for the nearest place: a crushed corner bends its arcs far.
 const LOOKS: usize = 16;
 /// Corrections of that place, and what is near enough, in arcs.
@@ -166,31 +168,36 @@ pub(crate) struct Outline {
     pub boxes: Vec<[[f64; 2]; 2]>,
     /// κ of the body, Pa/m; infinite if it is rigid.
     pub spring: f64,
-    /// Places of its corners, m.
-    corners: Vec<[f64; 2]>,
 }
 
 impl Outline {
     /// These arcs, of a body with this κ, Pa/m.
     pub(crate) fn new(arcs: Vec<Arc>, spring: f64) -> Self {
-        let before = arcs.iter().cycle().skip(arcs.len().saturating_sub(1));
-        let corners = before.zip(&arcs).filter(|(before, arc)| dot(before.normal(1.0), arc.normal(0.0)) <= CORNER);
-        let corners = corners.map(|(_, arc)| arc.position(0.0)).collect();
-        Self { boxes: arcs.iter().map(Arc::bounds).collect(), arcs, spring, corners }
+        Self { boxes: arcs.iter().map(Arc::bounds).collect(), arcs, spring }
     }
 
-    /// Number, t and place of the points of an arc that look for another body, by the rules of [`rules`]: by
-    /// the second one within a distance (m) of its corners if this body is rigid.
+    /// Places of its corners, m, and where a closed line begins.
+    pub(crate) fn corners(&self) -> Vec<[f64; 2]> {
+        let before = self.arcs.iter().cycle().skip(self.arcs.len().saturating_sub(1));
+        let turns = |(before, arc): &(&Arc, &Arc)| {
+            let [apart, tangent] = [before.to(arc.position(0.0), 1.0), arc.tangent(0.0)];
+            dot(apart, apart) > APART * dot(tangent, tangent) || dot(before.normal(1.0), arc.normal(0.0)) <= CORNER
+        };
+        before.zip(&self.arcs).filter(turns).map(|(_, arc)| arc.position(0.0)).collect()
+    }
+
+    /// Number, t and place of the points of an arc that look for another body, by the first of two [`rules`];
+    /// within a distance (m) of corners by the second one, whose numbers come after those of the first.
     pub(crate) fn places<'a>(
         &'a self,
         number: usize,
         [few, many]: &'a [Rule; 2],
-        other: &Self,
+        corners: &[[f64; 2]],
         reach: f64,
-    ) -> impl Iterator<Item = (usize, f64, BoundaryPlace)> + 'a {
+    ) -> impl Iterator<Item = (usize, f64, BoundaryPlace)> + use<'a> {
         let (arc, [low, high]) = (&self.arcs[number], self.boxes[number]);
         let is_near = |corner: &[f64; 2]| (0..2).all(|d| (low[d] - reach..=high[d] + reach).contains(&corner[d]));
-        let is_divided = self.spring.is_infinite() && other.corners.iter().any(is_near);
+        let is_divided = corners.iter().any(is_near);
         let (rule, first) = if is_divided { (many, POINTS) } else { (few, 0) };
         rule.points.iter().zip(&rule.weights).enumerate().map(move |(at, (&t, weight))| {
             let [x, y] = arc.tangent(t);

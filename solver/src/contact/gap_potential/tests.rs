@@ -1,7 +1,6 @@
 //! What circles feel that overlap: forces, slip, and the work of a rigid one.
 
-use super::arc::Arc;
-use super::arc::rule;
+use super::arc::{Arc, rule};
 use super::*;
 use crate::contact::rigid::RigidMotion;
 
