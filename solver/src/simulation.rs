@@ -76,7 +76,7 @@ struct Warned {
     /// put in until then. Told at the end, if it is too wide for all of the energy.
     open: Option<[f64; 2]>,
     boundary: bool,
-    rotation: bool,
+    distortion: bool,
     healing: bool,
 }
 

@@ -9,6 +9,10 @@ use crate::extremes::{larger, smaller};
 /// Longest formula, in bytes.
 const LONGEST: usize = 1000;
 
+/// What [`Operators`] allows.
+const KNOWN: &str = "it may have numbers, names, brackets, + - * / < >, pow(a, b), min(a, b), max(a, b), hypot(a, b), \
+                     abs, sqrt, sin, cos, exp, ln, and PI";
+
 /// What a formula may use: no `^`, for which the parser takes `-a^2` as `(-a)^2`.
 #[derive(Debug, Clone)]
 struct Operators;
@@ -66,7 +70,7 @@ impl FromStr for Arithmetic {
         if text.contains('^') {
             return Err(format!("{text:?} has a ^; write pow(a, b)"));
         }
-        let expression = FlatEx::parse(text).map_err(|e| format!("{text:?} is not a valid formula: {e}"))?;
+        let expression = FlatEx::parse(text).map_err(|_| format!("{text:?} is not a valid formula; {KNOWN}"))?;
         Ok(Self { text: text.to_string(), expression })
     }
 }

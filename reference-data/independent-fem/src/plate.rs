@@ -137,14 +137,19 @@ impl Plate {
         }
     }
 
-    /// AT1: c = 0 on the crack. AT2: history B Gc/(4 l0) (1 − d/l0) at the distance d ≤ l0 from it.
+    /// AT1: c = 0 on the crack and one element beside it. AT2: history B Gc/(4 l0) (1 − d/w) at the distance
+    /// d ≤ w from it, with w = l0 and at least two elements, since the faces of narrower ones hold together.
     fn seed(&self, mesh: &Mesh, field: &mut PhaseField) {
         if self.material.surface == Surface::At1 {
             let axis = if self.whole { mesh.rows() / 2 } else { 0 };
             let nodes = (0..mesh.x.len()).filter(|&i| mesh.x[i] <= CRACK + 1e-9);
-            return nodes.for_each(|i| field.bound[axis * mesh.stride() + i + 1] = 0.0);
+            for row in axis.saturating_sub(1)..=axis + 1 {
+                nodes.clone().for_each(|i| field.bound[row * mesh.stride() + i + 1] = 0.0);
+            }
+            return;
         }
         let (stride, l0) = (mesh.stride(), self.material.length_scale);
+        let width = l0.max(2.0 * mesh.smallest());
         for j in 0..mesh.rows() {
             for point in 0..4 {
                 for i in 0..mesh.columns() {
@@ -153,9 +158,9 @@ impl Plate {
                     };
                     let (x, y) = (at(&mesh.x, i, point % 2 == 1), at(&mesh.y, j, point / 2 == 1));
                     let distance = (x - CRACK).max(0.0).hypot(y);
-                    if distance <= l0 {
+                    if distance <= width {
                         field.history[(4 * j + point) * stride + i + 1] =
-                            SEED * self.material.toughness / (4.0 * l0) * (1.0 - distance / l0);
+                            SEED * self.material.toughness / (4.0 * l0) * (1.0 - distance / width);
                     }
                 }
             }

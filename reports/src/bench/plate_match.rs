@@ -61,7 +61,7 @@ impl Match {
     }
 }
 
-/// Every quantity at every error that the reference can tell from none.
+/// Every quantity at every error that the reference can tell from none, down to twice its uncertainty.
 fn matches(records: Records) -> Vec<Match> {
     let mut matches = Vec::new();
     for quantity in &QUANTITIES {
@@ -69,7 +69,8 @@ fn matches(records: Records) -> Vec<Match> {
         let Some(error) = all.iter().find_map(|record| error_in(record, quantity)) else { continue };
         let levels = if error.unit.is_empty() { &RELATIVE[..] } else { &LENGTHS[..] };
         let uncertainty = error.uncertainty;
-        for &error in levels.iter().filter(|level| **level >= UNCERTAINTIES * uncertainty) {
+        let ranked = levels.iter().copied().filter(|level| *level >= UNCERTAINTIES * uncertainty);
+        for error in ranked.chain([2.0 * uncertainty]) {
             let ours = best(records, &[EQUAL, GRADED], quantity, error);
             let elements = best(records, &[ELEMENTS], quantity, error);
             matches.push(Match { quantity, error, uncertainty, ours, elements });

@@ -26,13 +26,21 @@ const ROUND_OFF: f64 = 1e-14;
 /// as they are.
 const ACCEPTED: f64 = 1e-6;
 
-/// Time of a kick and of the step it belongs to, s: the first kick is half a step.
+/// Time of a kick and of the step it leads into, s: from the middle of the step before to the middle of the
+/// coming one, which may have another length. The first kick is half a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Kick {
     /// Length of the kick.
     pub length: f64,
-    /// Length of the step.
+    /// Length of the coming step.
     pub step: f64,
+}
+
+impl Kick {
+    /// Part of the kick that belongs to the coming step.
+    fn leaving(self) -> f64 {
+        fault!("kick-in-equal-halves", 0.5 * self.step / self.length => 0.5)
+    }
 }
 
 /// Acceleration of a control point by contact.
@@ -147,7 +155,7 @@ impl ContactSolver {
         if let Some(unconverged) = problem.unconverged {
             return Err(unconverged);
         }
-        let ledger = self.ledger.plus(problem.arriving(kick)).plus(problem.energy(kick, |node| node.after));
+        let ledger = self.ledger.plus(problem.arriving(kick)).plus(problem.leaving(kick));
         let pushing = problem.constraints.iter().filter(|acting| acting.impulse.normal > 0.0);
         let last =
             pushing.map(|a| ((a.constraint.bodies, a.constraint.square), a.impulse.times(1.0 / kick.length))).collect();
@@ -265,16 +273,22 @@ impl Problem<'_> {
         self.nodes.iter().map(push).filter(|push| push.acceleration != [0.0; 2]).collect()
     }
 
-    /// Energies of half the force of the kick with the velocities before it; there are none at the start.
+    /// Energies of the part of the kick that belongs to the step before, with the velocities before it;
+    /// there is no such part at the start.
     fn arriving(&self, kick: Kick) -> ContactLedger {
-        if kick.length < kick.step { ContactLedger::default() } else { self.energy(kick, |node| node.before) }
+        self.energy(1.0 - kick.leaving(), |node| node.before)
     }
 
-    /// Energies of half the force of the kick with given velocities.
-    fn energy(&self, kick: Kick, velocity: impl Fn(&Node) -> [f64; 2] + Copy) -> ContactLedger {
-        let half = fault!("contact-loss-doubled", 0.5 => 1.0) * kick.step / kick.length;
-        let parts = self.constraints.iter().map(|acting| acting.energy(&self.nodes, velocity));
-        parts.fold(ContactLedger::default(), |sum, part| sum.plus(part.times(half)))
+    /// Energies of the part of the kick that belongs to the coming step, with the velocities after it.
+    fn leaving(&self, kick: Kick) -> ContactLedger {
+        self.energy(kick.leaving(), |node| node.after)
+    }
+
+    /// Energies of a part of the impulses with given velocities.
+    fn energy(&self, part: f64, velocity: impl Fn(&Node) -> [f64; 2] + Copy) -> ContactLedger {
+        let part = fault!("contact-loss-doubled", part => 2.0 * part);
+        let energies = self.constraints.iter().map(|acting| acting.energy(&self.nodes, velocity));
+        energies.fold(ContactLedger::default(), |sum, energy| sum.plus(energy.times(part)))
     }
 }
 

@@ -50,7 +50,7 @@ impl TimePlan {
             let asked = samples;
             samples = whole(end / longest); // of a step each: one less would make it two
             warnings.push(format!(
-                "{asked} samples would shorten the time step of {longest:.4e} s more than twofold; {samples} samples are written"
+                "{asked} samples would shorten the time step of {longest:.4e} s more than twofold; the number of samples is {samples}"
             ));
         }
         let interval = end / samples as f64;
@@ -136,7 +136,7 @@ mod tests {
         assert!(changed[0].contains("5.000000e-8 s instead of 7.000000e-8 s"), "{changed:?}");
         let fewer = told(TimeStep::Fixed(7e-8), 320);
         assert!(
-            fewer[0].contains("143 samples are written") && fewer[1].contains("6.993007e-8 s instead of"),
+            fewer[0].contains("the number of samples is 143") && fewer[1].contains("6.993007e-8 s instead of"),
             "{fewer:?}"
         );
         assert_eq!(told(TimeStep::Fixed(1.0), 1).len(), 2, "beyond the end, and critical");

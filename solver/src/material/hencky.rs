@@ -86,6 +86,45 @@ pub(crate) fn rotation([[xx, xy], [yx, yy]]: &Gradient) -> f64 {
     (yx - xy).atan2(2.0 + xx + yy)
 }
 
+/// What small strains do not follow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Distortion {
+    /// Angle by which material has turned, rad.
+    Turned(f64),
+    /// Magnitude of the largest principal strain.
+    Strained(f64),
+}
+
+impl Distortion {
+    /// Of a displacement gradient, whichever is larger.
+    pub(crate) fn of(gradient: &Gradient) -> Self {
+        let (angle, strain) = (rotation(gradient).abs(), largest_principal(symmetric(*gradient)));
+        if strain > angle { Self::Strained(strain) } else { Self::Turned(angle) }
+    }
+
+    /// Its size, rad or 1.
+    pub(crate) fn size(self) -> f64 {
+        match self {
+            Self::Turned(size) | Self::Strained(size) => size,
+        }
+    }
+}
+
+impl std::fmt::Display for Distortion {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Turned(angle) => write!(f, "has turned by {angle:.3} rad"),
+            Self::Strained(strain) => write!(f, "is strained by {:.0} %", 100.0 * strain),
+        }
+    }
+}
+
+/// Magnitude of the largest principal value of a symmetric tensor `[xx, yy, xy]`.
+#[inline(always)]
+pub(crate) fn largest_principal([xx, yy, xy]: [f64; 3]) -> f64 {
+    0.5 * (xx + yy).abs() + (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt()
+}
+
 /// Symmetric part `[xx, yy, xy]`.
 #[inline(always)]
 pub fn symmetric([[xx, xy], [yx, yy]]: Gradient) -> [f64; 3] {

@@ -28,6 +28,9 @@ pub(crate) const SEED_STRENGTH: f64 = 1000.0;
 /// that vanishes there.
 const SEED_STEP: f64 = 0.05;
 const VANISHING: f64 = 1e-9;
+/// Distance on either side of a seed to which its functions are looked for, in spans: a little more than
+/// half, so that a seed in the middle of a span has both neighbours.
+const SEED_REACH: f64 = 0.52;
 
 /// Difference of two distances from the start of a crack that counts as none, of the spacing of points.
 const TIE: f64 = 1e-3;
@@ -356,16 +359,24 @@ pub(crate) fn seed_energy(model: &FractureModel, cracks: &[Crack], position: [f6
     cracks.iter().filter_map(of_crack).fold(0.0, larger)
 }
 
-/// Control points whose functions do not vanish on the seeds of a body.
+/// Control points whose functions do not vanish in the two spans, or three, next to the seeds of a body. A
+/// displacement that is smooth across a knot opens freely over as many; over fewer it stays bridged.
 fn functions_on_seeds(patch: &Patch, body: &Body) -> Vec<usize> {
     let step = SEED_STEP * patch.shortest_span();
     let mut found = BTreeSet::new();
     for [from, to] in body.cracks.iter().filter(|crack| !crack.is_slit()).flat_map(Crack::segments) {
-        let steps = ((to[0] - from[0]).hypot(to[1] - from[1]) / step).ceil();
+        let along = [0, 1].map(|d| to[d] - from[d]);
+        let length = along[0].hypot(along[1]);
+        let normal = [-along[1] / length, along[0] / length];
+        let steps = (length / step).ceil();
         for n in 0..=steps as usize {
-            let place = [0, 1].map(|d| from[d] + (to[d] - from[d]) * (n as f64 / steps).min(1.0));
-            let functions = patch.functions_at(place).into_iter().flat_map(|functions| functions.values);
-            found.extend(functions.filter(|(_, value)| *value > VANISHING).map(|(at, _)| at));
+            let place = [0, 1].map(|d| from[d] + along[d] * (n as f64 / steps).min(1.0));
+            let reach = fault!("seed-on-a-line", SEED_REACH => 0.0) * patch.span_across(place, normal).unwrap_or(0.0);
+            for side in [-reach, 0.0, reach] {
+                let beside = [0, 1].map(|d| place[d] + side * normal[d]);
+                let functions = patch.functions_at(beside).into_iter().flat_map(|functions| functions.values);
+                found.extend(functions.filter(|(_, value)| *value > VANISHING).map(|(at, _)| at));
+            }
         }
     }
     found.into_iter().collect()

@@ -32,9 +32,10 @@ const LOSS_LIMIT: f64 = 0.05;
 /// Energy besides that of the mean motion that counts as none, of the largest energy.
 const LEAST_BESIDE: f64 = 1e-6;
 
-/// Angle that material may turn by with small strains, rad: in the total frame they take this one for a
-/// strain of 0.5 %, and in the updated frame stresses do not turn with the material.
-const ROTATION_LIMIT: f64 = 0.1;
+/// Angle that material may turn by with small strains, rad, and strain that it may have. In the total frame
+/// they take the angle for a strain of 0.5 %, and in the updated frame stresses do not turn with the
+/// material. Energies at this strain are a tenth off.
+const SMALL: f64 = 0.1;
 
 /// Increase of a control value of c by a solve after steps without one that is worth a warning: twice what
 /// the automatic interval lets c change by.
@@ -114,16 +115,17 @@ impl Simulation {
         ));
     }
 
-    fn watch_rotation(&mut self) {
-        if self.warned.rotation {
+    fn watch_distortion(&mut self) {
+        if self.warned.distortion {
             return;
         }
-        let Some(([x, y], angle)) = either!(&self.frame, body => body.turned_beyond(ROTATION_LIMIT)) else { return };
-        self.warned.rotation = true;
+        let Some(([x, y], distortion)) = either!(&self.frame, body => body.distorted_beyond(SMALL)) else { return };
+        self.warned.distortion = true;
         self.warnings.push(format!(
-            "at t = {:.4e} s material near ({x:.6e}, {y:.6e}) m has turned by {angle:.3} rad: small strains hold up to \
-             {ROTATION_LIMIT} rad; use analysis.kinematics = \"finite\"",
-            self.time()
+            "at t = {:.4e} s material near ({x:.6e}, {y:.6e}) m {distortion}: small strains hold up to {SMALL} rad and \
+             strains of {:.0} %; use analysis.kinematics = \"finite\"",
+            self.time(),
+            100.0 * SMALL
         ));
     }
 
@@ -152,10 +154,11 @@ impl Simulation {
         let [px, py] = sample.momentum;
         let mean = if mass > 0.0 { 0.5 * (px * px + py * py) / mass } else { 0.0 };
         let fracture = sample.fracture.as_ref().map_or(0.0, |fracture| fracture.energy);
-        let beside = [sample.kinetic - mean, sample.elastic, fracture, self.energy_in - mean];
+        let friction = sample.contact.map_or(0.0, |contact| contact.friction);
+        let beside = [sample.kinetic - mean, sample.elastic, fracture, friction, self.energy_in - mean];
         let least = LEAST_BESIDE * larger(self.energy_in, sample.largest_term());
         let largest = beside.into_iter().fold(least, larger);
-        let by_contact = sample.contact.map_or(0.0, |contact| contact.loss - contact.friction);
+        let by_contact = sample.contact.map_or(0.0, |contact| contact.loss - friction);
         let damped = "motion that varies over one or two spans is damped, and so are stresses where points cross spans; use \
                       frame = \"total\" and kinematics = \"finite\", or compare meshes";
         let grows = "this is unstable; lower analysis.safety, or use degree 2 or more and more particles_per_cell";
@@ -163,7 +166,9 @@ impl Simulation {
             Bodies::Updated(_) => ("contact without friction", "took", damped),
             Bodies::Total(_) => ("overlaps of boundaries", "hold", "contact is soft; raise contact.stiffness"),
         };
-        let transfers = ("transfers between points and grid", "took", damped);
+        let spins = self.updated_frame().is_none_or(|frame| frame.keeps_spin());
+        let unspun = "flip, pic and xpic brake bodies that turn; use analysis.transfer = \"apic\", the default";
+        let transfers = ("transfers between points and grid", "took", if spins { damped } else { unspun });
         let by_transfers = sample.transfer_loss.unwrap_or(0.0);
         for ((who, does, remedy), column, loss) in
             [(transfers, "transfer_loss_j", by_transfers), (contact, "contact_loss_j less friction_j", by_contact)]
@@ -191,13 +196,13 @@ impl Simulation {
     }
 
     /// Holds a sample to its ledger: an open one is a warning at the end, and a breakdown if the step is
-    /// above the critical one. Warns once of material that has turned too far for small strains.
+    /// above the critical one. Warns once of material that is distorted too far for small strains.
     ///
     /// # Errors
     /// If a number of the sample is not finite, or the ledger is open and the time step is too long to be
     /// stable, or the impulses of contact in the sample did not converge.
     pub fn watch_ledger(&mut self, sample: &Sample) -> Result<(), Breakdown> {
-        self.watch_rotation();
+        self.watch_distortion();
         self.watch_healing();
         self.watch_losses(sample);
         let held = self.hold_to_ledger(sample);
@@ -341,8 +346,8 @@ impl Simulation {
         } else if self.warned.step {
             "the time step exceeds the critical one at the moved positions; lower analysis.safety".to_string()
         } else {
-            "the time step is below the critical one of the undamaged body; look for extreme loads or velocities, \
-             and halve the safety factor"
+            "loads or velocities may be extreme: check their values and units; if they are right, halve analysis.safety \
+             (the time step is below the critical one of the undamaged body)"
                 .to_string()
         }
     }

@@ -81,6 +81,18 @@ impl Patch {
         spans.map(|span| span.length()).fold(f64::INFINITY, smaller)
     }
 
+    /// Length of the span at a position (m) in a direction of unit length, m; `None` outside the patch.
+    pub(crate) fn span_across(&self, position: [f64; 2], direction: [f64; 2]) -> Option<f64> {
+        let at = self.locate(position)?;
+        let [x, y] = [0, 1].map(|d| self.spaces[d].spans()[at.span[d]].length());
+        let [[xx, xy], [yx, yy]] = match &self.geometry {
+            None => [[1.0, 0.0], [0.0, 1.0]],
+            Some(patch) => patch.map(&patch.shape_functions(at.span, at.parameters)).jacobian,
+        };
+        let part = |column: [f64; 2]| (column[0] * direction[0] + column[1] * direction[1]).abs();
+        Some(x * part([xx, yx]) + y * part([xy, yy]))
+    }
+
     /// Points along a side with a rule in every span of it.
     pub fn boundary(&self, side: Side, rule: &Rule) -> Vec<BoundaryPoint> {
         self.boundary_cut(side, rule, &[])

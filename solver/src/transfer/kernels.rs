@@ -11,6 +11,7 @@ use crate::linear_algebra::lane::{Lane, prefetch};
 use crate::material::degradation::BROKEN;
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
+use crate::material::hencky::largest_principal;
 use crate::material::split::{driving_energy, split};
 use crate::transfer::point_kernel::{PointKernel, PointValues, Stress};
 
@@ -261,16 +262,17 @@ impl PointKernel for LeastStretch<'_> {
     }
 }
 
-/// Largest angle by which material is turned (see [`rotation`](crate::material::hencky::rotation)).
+/// What bounds the largest [`Distortion`](crate::material::hencky::Distortion).
 #[derive(Debug)]
-pub(crate) struct LargestRotation<'a> {
+pub(crate) struct LargestDistortion<'a> {
     /// Phase field at the points of the strip, as in [`LeastStretch`].
     pub phase: &'a [Lane],
-    /// Tangent of the largest of the strip, infinite from a right angle on; NaN if one is.
-    pub tangent: Lane,
+    /// Tangent of the largest angle of the strip, infinite from a right angle on, or its largest strain where
+    /// nothing can break; NaN if one is.
+    pub size: Lane,
 }
 
-impl PointKernel for LargestRotation<'_> {
+impl PointKernel for LargestDistortion<'_> {
     const DISPLACEMENT: bool = true;
     const PHASE: bool = false;
     const PHASE_GRADIENT: bool = false;
@@ -282,8 +284,12 @@ impl PointKernel for LargestRotation<'_> {
         let (sine, cosine) = (yx - xy, xx + yy + Lane::splat(2.0));
         let tangent = sine.zip(cosine, |sine, cosine| if cosine <= 0.0 { f64::INFINITY } else { sine.abs() / cosine });
         let weight = of_intact(weight, self.phase, at);
-        let tangent = tangent.zip(weight, |tangent, w| if w > 0.0 { tangent } else { 0.0 });
-        self.tangent = self.tangent.zip(tangent, larger);
+        let turned = tangent.zip(weight, |tangent, w| if w > 0.0 { tangent } else { 0.0 });
+        self.size = self.size.zip(turned, larger);
+        if self.phase.is_empty() {
+            let strain = |l: usize| largest_principal([xx.0[l], yy.0[l], 0.5 * (xy.0[l] + yx.0[l])]);
+            self.size = self.size.zip(Lane(std::array::from_fn(strain)), larger);
+        }
         Stress::ZERO
     }
 }

@@ -11,8 +11,10 @@ use crate::splines::spline::SplineSpace;
 
 /// Most steps of a run.
 pub(super) const MOST_STEPS: f64 = 1e9;
-/// Part of the smallest cell that waves cross in the shortest run without a warning.
-const LEAST_CROSSED: f64 = 0.25;
+/// Steps of a run that is likely to have another unit in mind.
+const MANY_STEPS: f64 = 1e7;
+/// How many of the smallest cells waves cross in the shortest run without a warning.
+const LEAST_CROSSED: f64 = 1.0;
 /// Highest order of XPIC: each costs a transfer to the points and back per step.
 const HIGHEST_XPIC: usize = 100;
 /// Relative tolerance of "on the side", of the size of the mesh.
@@ -157,12 +159,15 @@ fn steps(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     } else if ground.is_sound {
         let steps = scene.bodies.iter().filter_map(|body| crossings(body, scene, ground)).fold(0.0, larger);
         if steps > 0.0 && steps < LEAST_CROSSED && !scene.equilibrium {
-            let message = "until then waves cross no quarter of a cell; check the units of times and lengths (m)";
+            let message = "until then waves cross less than one cell; check the units of times and lengths (m)";
             findings.warn("analysis.end_time", message);
         }
         if steps > MOST_STEPS {
             let message = format!("{end:e} s are about {steps:.1e} steps of the smallest cell, above {MOST_STEPS:e}");
             findings.error("analysis.end_time", message, "give a shorter end_time with its unit, such as \"80 us\"");
+        } else if steps > MANY_STEPS {
+            let message = format!("{end:e} s are about {steps:.1e} steps of the smallest cell; check its unit");
+            findings.warn("analysis.end_time", message);
         }
     }
 }

@@ -7,7 +7,7 @@ use super::look::{Look, TOLERANCE};
 use super::points::Points;
 use super::{cracks, edge_conditions, resolution, seed, tractions};
 use crate::particles::lattice::cuts_spans;
-use crate::scene::{Body, CrackModel, Fracture, Frame, Layout, Scene, Shape};
+use crate::scene::{Body, CrackModel, Fracture, Frame, Kinematics, Layout, Scene, Shape};
 use crate::splines::nurbs::{LocateError, NurbsPatch};
 use crate::splines::quadrature::MAX_POINTS;
 
@@ -40,7 +40,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
                 "add rigid = true, or give the time of a load or a condition",
             );
         }
-        points(&key, body, scene.mesh.degree, findings);
+        points(&key, body, scene, findings);
         let fracture = material(&key, body, scene, findings);
         if let Some((message, remedy)) = defect(&body.shape) {
             findings.error(format!("{key}.shape"), message, remedy);
@@ -128,8 +128,8 @@ pub(super) fn has_rule(body: &Body, d: usize) -> bool {
     (1..=most).contains(&body.particles_per_cell[d])
 }
 
-fn points(key: &str, body: &Body, degree: [usize; 2], findings: &mut Findings) {
-    let counts = body.particles_per_cell;
+fn points(key: &str, body: &Body, scene: &Scene, findings: &mut Findings) {
+    let (counts, degree) = (body.particles_per_cell, scene.mesh.degree);
     let points = format!("{key}.particles_per_cell");
     if let Some(n) = counts.iter().find(|n| **n == 0 || **n > MAX_POINTS) {
         findings.error(points, format!("{n} points per cell and direction"), format!("give 1 to {MAX_POINTS}"));
@@ -141,7 +141,20 @@ fn points(key: &str, body: &Body, degree: [usize; 2], findings: &mut Findings) {
         let message =
             "one point per cell leaves modes of a mesh of degree 2 and higher without stiffness; use at least 2";
         findings.warn(points, message);
+    } else if scene.analysis.frame == Frame::Total && !body.rigid && (0..2).any(|d| weak(degree[d], counts[d], scene)) {
+        let message = format!(
+            "{counts:?} points per cell are fewer than the degree of the mesh, {degree:?}: a body that is pressed or hit \
+             can collapse without resistance; use as many points as the degree, which is the default"
+        );
+        findings.warn(points, message);
     }
+}
+
+/// Whether modes between so many points per span have hardly any stiffness. Cubic ones need a finite
+/// compression to show.
+fn weak(degree: usize, count: usize, scene: &Scene) -> bool {
+    let sound = if scene.analysis.kinematics == Kinematics::Finite { 2 } else { 3 };
+    degree > sound && count < degree
 }
 
 /// The fracture table of the body's material, if it has one that makes sense.

@@ -117,8 +117,8 @@ fn likely_units(material: &Material, speed: f64) -> String {
         return "check the units of density (kg/m^3) and young_modulus (Pa)".to_string();
     }
     format!(
-        "numbers without a unit are SI; if these are without, they do not look like it: {}; write the unit with every \
-         number, lengths and loads too, as in density = \"{density:e} {density_unit}\" and young_modulus = \"{modulus:e} {modulus_unit}\"",
+        "check both values and their units; numbers without a unit are SI, and if these have none, they look like \
+         other units: {}; then write the unit with every number, lengths and loads too, as in density = \"{density:e} {density_unit}\" and young_modulus = \"{modulus:e} {modulus_unit}\"",
         looks.join(", ")
     )
 }

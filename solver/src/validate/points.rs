@@ -37,6 +37,8 @@ pub(super) struct Near {
     pub distance: f64,
     /// Length of a span there along the segment, m.
     pub span: f64,
+    /// Length of a span there across the segment, m.
+    pub across: f64,
     /// What it stands for, m².
     pub area: f64,
 }
@@ -95,9 +97,10 @@ impl<'a> Points<'a> {
                 let project = |v: Position| (v[0] * along[0] + v[1] * along[1]) / length;
                 let foot = project([position[0] - from[0], position[1] - from[1]]);
                 let span = spans.into_iter().map(|span| project(span).abs()).sum();
+                let across = spans.into_iter().map(|[x, y]| project([y, -x]).abs()).sum();
                 let [[ax, ay], [bx, by]] = [0, 1].map(|d| self.along(pair, d, |axis| axis.weight));
                 let area = (ax * by - ay * bx).abs();
-                near.push(Near { along: foot.clamp(0.0, length), distance, span, area });
+                near.push(Near { along: foot.clamp(0.0, length), distance, span, across, area });
             }
         }
         near.sort_by(|a, b| a.along.total_cmp(&b.along));

@@ -18,6 +18,10 @@ const TOLERANCE: f64 = 1e-6;
 /// Strength, of 4 l0 + h, at which c0 is [`BROKEN`] in half of a body that is symmetric about the crack, and
 /// 0.095 in a whole one.
 const BREAKING: f64 = 0.5 * (1.0 / BROKEN - 1.0);
+/// Half width of a seed, in spans across it, from which on it opens freely. A bar that is cut by a seed
+/// transmits 0.05 to 0.5 of a wave with half a span, up to 0.04 with one, and up to 0.003 with this (p = 1 to
+/// 3, on knots and between them, l0 = 1 to 4 spans).
+const OPENING: f64 = 1.5;
 /// Distance from a crack up to which points are counted, of l0: they are enough to break it.
 const COUNTED: f64 = 0.25;
 
@@ -42,6 +46,8 @@ pub(super) fn check(key: &str, body: &Body, fracture: &Fracture, points: &Points
                 whole.message(width),
                 remedy(&near, length, width, l0, h),
             );
+        } else {
+            bridged(format!("{key}.crack.{j}.half_width"), &near, width, findings);
         }
     }
     let spared = |x| seeds().all(|(_, crack, width)| crack.distance(x) >= width);
@@ -52,6 +58,20 @@ pub(super) fn check(key: &str, body: &Body, fracture: &Fracture, points: &Points
             format!("the initial history of the cracks covers all of body {:?}: nothing is left whole", body.name);
         let remedy = format!("give a smaller half width; the default is l0/2 = {} m", 0.5 * l0);
         findings.error(format!("{key}.crack.{widest}.half_width"), message, remedy);
+    }
+}
+
+/// Warns of a seed that is broken but too narrow for the functions of the mesh to open over it.
+fn bridged(key: String, near: &[Near], width: f64, findings: &mut Findings) {
+    let across = near.iter().map(|point| point.across).fold(0.0, larger);
+    if width < OPENING * across * (1.0 - TOLERANCE) {
+        let message = format!(
+            "the seed is narrower than {OPENING} spans of {across:.3e} m on either side: functions of the mesh reach across \
+             it and hold its faces together, so that it opens too little until it tears; give a half_width of at least \
+             {:.3e} m, or as = \"slit\" in the total frame",
+            OPENING * across
+        );
+        findings.warn(key, message);
     }
 }
 

@@ -72,9 +72,12 @@ pub fn cost_on_a_line(degree: usize, knots: &[f64], x: f64, unit: f64, m: f64) -
         }
     }
     let mut least = vec![0.0; n];
-    let span = space.find_span(x).unwrap();
-    let functions = space.shape_functions(span, x);
-    (0..=degree).filter(|&i| functions.value[i] > 1e-9).for_each(|i| least[space.spans()[span].first + i] = 1.0);
+    for beside in [-0.52, 0.0, 0.52] {
+        let x = x + beside * space.spans()[0].length();
+        let span = space.find_span(x).unwrap();
+        let functions = space.shape_functions(span, x);
+        (0..=degree).filter(|&i| functions.value[i] > 1e-9).for_each(|i| least[space.spans()[span].first + i] = 1.0);
+    }
     let mut d = DVector::from_vec(least.clone());
     for _ in 0..200 {
         let residual = &stiffness * &d + &load;
@@ -100,10 +103,9 @@ fn a_seed_costs_what_it_costs_on_a_line_and_in_the_limit_gc() {
                 cost - 1.0
             };
             let [coarse, fine] = [2.0, 4.0].map(of);
-            assert!(fine > 0.0 && coarse < 0.3, "p = {degree}, {place}: {coarse} and {fine}");
+            assert!(fine > 0.0 && coarse < 0.5, "p = {degree}, {place}: {coarse} and {fine}");
             let order = (coarse / fine).log2();
-            let expected = if degree == 1 && place == 0.0 { 2.0 } else { 1.0 };
-            assert!((order - expected).abs() < 0.03, "p = {degree}, {place}: order {order}");
+            assert!((order - 1.0).abs() < 0.03, "p = {degree}, {place}: order {order}");
         }
     }
 }

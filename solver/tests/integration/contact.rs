@@ -37,6 +37,28 @@ fn bodies_pass_through_each_other_without_a_contact_table() {
     assert!(samples.iter().all(|s| s.momentum.iter().all(|p| p.abs() < 1e-12 * one)));
 }
 
+/// The kick between two steps of different lengths belongs to both by their lengths.
+#[test]
+fn the_ledger_of_friction_closes_where_the_step_changes() {
+    let friction = Contact { friction: 0.3, ..Contact::default() };
+    let mut scene = blocks(Some(friction));
+    scene.analysis.gravity = [0.0, -1.0];
+    scene.analysis.end_time = 0.2;
+    scene.output = Output::rows(667); // about a step each
+    scene.bodies.truncate(1);
+    scene.bodies[0].shape = rectangle([0.2, 0.1], [0.6, 0.3]);
+    let floor = body(rectangle([-1.0, -0.4], [5.0, 0.1]), [2; 2]);
+    scene.bodies.push(Body { name: "floor".into(), rigid: true, ..floor });
+    let (_, samples) = run(&scene);
+    let changes = samples.windows(2).filter(|s| s[1].time_step != s[0].time_step).count();
+    let end = samples.last().unwrap();
+    let (taken, contact) = (samples[0].kinetic - end.kinetic, end.contact.unwrap());
+    assert!(changes > 5, "{changes} changes of the step");
+    assert!(contact.friction > 0.1 * samples[0].kinetic, "{contact:?} of {:e} J", samples[0].kinetic);
+    assert!((contact.friction / taken - 1.0).abs() < 5e-3, "friction {:e} J, taken {taken:e} J", contact.friction);
+    assert!(end.closure.abs() < 1e-3 * contact.friction, "open by {:e} J", end.closure);
+}
+
 #[test]
 fn nodal_fields_follow_a_body_with_its_phase_field() {
     let mut scene = blocks(None);

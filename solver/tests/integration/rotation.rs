@@ -31,6 +31,23 @@ fn a_bar_that_turns_with_small_strains_is_told_once() {
     }
 }
 
+#[test]
+fn a_bar_that_stretches_with_small_strains_is_told_once() {
+    for frame in [Frame::Total, Frame::Updated] {
+        for (kinematics, strain, told) in
+            [(Kinematics::Small, 0.13, 1), (Kinematics::Small, 0.08, 0), (Kinematics::Finite, 0.13, 0)]
+        {
+            let mut scene = spinning(frame, kinematics, 0.0);
+            let rate = strain / scene.analysis.end_time;
+            scene.bodies[0].velocity_gradient = [[rate, 0.0], [0.0, 0.0]];
+            scene.materials.get_mut("glass").unwrap().young_modulus *= 1e-6; // no stress in that time
+            let (simulation, _) = run(&scene);
+            let found: Vec<_> = simulation.warnings().iter().filter(|text| text.contains("is strained by")).collect();
+            assert_eq!(found.len(), told, "{frame:?}, {kinematics:?}, {strain}: {:?}", simulation.warnings());
+        }
+    }
+}
+
 /// A part that bends away counts as much as a body that turns as a whole, and a place is named where it does.
 #[test]
 fn the_place_that_turns_is_named() {

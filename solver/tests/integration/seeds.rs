@@ -174,7 +174,7 @@ fn long_cells_are_refused_where_a_seed_lies_and_named_elsewhere() {
         let ([from, to], fine) = (crack.unwrap_or_default(), (0..24).map(|i| f64::from(i) * L0));
         let knots = [0.0; 2].into_iter().chain(fine).chain([0.006, 0.008]).chain([0.01; 3]);
         scene.mesh.knots[0] = knots.collect();
-        let crack = Crack::wide_seed([from, 0.0051], [to, 0.0051], Some(L0));
+        let crack = Crack::wide_seed([from, 0.0051], [to, 0.0051], Some(2.0 * L0));
         scene.bodies[0].cracks = if from < to { vec![crack] } else { vec![] };
         scene
     };

@@ -1,6 +1,6 @@
 //! The half plate of the cases on meshes of any span.
 
-use fisura::scene::Side;
+use fisura::scene::{CrackKind, Side};
 
 use super::mesh_toughness::kappa;
 use super::{BenchError, Settings};
@@ -13,12 +13,14 @@ use crate::extremes::larger;
 const SHORT_SPANS: [f64; 2] = [44e-3, 36e-3];
 /// Where spans of four times their length end in x, m.
 const LONGEST_SPANS: f64 = 36e-3;
+/// Half width of the seed in spans, at least l0: the faces of a narrower one hold together.
+const SEED_SPANS: f64 = 2.0;
 /// Step over the critical one, and rows of the history: one every 0.5 µs.
 const SAFETY: f64 = 0.96;
 const SAMPLES: usize = 160;
 
-/// The half plate of the cases with square spans of `h` length scales, as many Gauss points per direction as
-/// the degree but at least two, without pictures.
+/// The half plate of the cases with square spans of `h` length scales, a seed that opens freely, as many
+/// Gauss points per direction as the degree but at least two, without pictures.
 ///
 /// # Errors
 /// If the case is missing or wrong.
@@ -29,7 +31,19 @@ pub fn half(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, Ben
     let points = format!("body.0.particles_per_cell=[{points}, {points}]");
     let overrides = [cells, points, format!("mesh.degree={degree}"), "output.frames=[]".to_string()];
     let case = Case::load(&settings.plate_case("half-p2-h1"), &overrides)?;
-    case.scenes()?.into_iter().next().ok_or_else(|| BenchError::input("the case of the plate has no scene"))
+    let case = case.scenes()?.into_iter().next();
+    let mut case = case.ok_or_else(|| BenchError::input("the case of the plate has no scene"))?;
+    let l0 = length_scale(&case);
+    for crack in case.scene.bodies.iter_mut().flat_map(|body| &mut body.cracks) {
+        crack.kind = CrackKind::Seed(Some(larger(1.0, SEED_SPANS * h) * l0));
+    }
+    Ok(case)
+}
+
+/// Length scale of the plate, m.
+fn length_scale(case: &CaseScene) -> f64 {
+    let materials = case.scene.materials.values();
+    materials.filter_map(|material| material.fracture.as_ref()).map(|f| f.length_scale).fold(0.0, larger)
 }
 
 /// The same as someone in a hurry would run it: with spans of twice and four times `h` where no crack runs,
@@ -40,8 +54,7 @@ pub fn half(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, Ben
 /// As [`half`].
 pub fn graded(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, BenchError> {
     let mut case = half(settings, degree, h)?;
-    let materials = case.scene.materials.values();
-    let span = h * materials.filter_map(|m| m.fracture.as_ref()).map(|f| f.length_scale).fold(0.0, larger);
+    let span = h * length_scale(&case);
     let (low, high) = (case.scene.mesh.origin(), case.scene.mesh.end());
     let parts = [
         &[

@@ -225,6 +225,10 @@ impl File {
                 let (message, remedy) = (format!("{} has no column {:?}", self.name, names[0]), "name it in the file");
                 submission.error(mapping, message, remedy)
             })?,
+            ColumnName::Named(name) if self.names.iter().filter(|known| *known == name).count() > 1 => {
+                let message = format!("{} has several columns {name:?}", self.name);
+                return Err(submission.error(mapping, message, "give the number of one instead, counted from 1"));
+            }
             ColumnName::Named(name) => self.position(name).ok_or_else(|| {
                 let known: Vec<&str> = self.names.iter().map(String::as_str).collect();
                 let meant = crate::scene::suggest::nearest(name, &known);

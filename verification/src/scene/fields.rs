@@ -171,7 +171,7 @@ impl<'a> Item<'a> {
     pub fn list(&self) -> Option<Vec<Item<'a>>> {
         let entries = match self.node.as_array() {
             Some(entries) => entries,
-            None => return self.wrong_kind("an array"),
+            None => return self.wrong_kind("an array, such as [0.0, 1.0]"),
         };
         let item = |(i, node)| Item { node, path: format!("{}.{i}", self.path), problems: self.problems };
         Some(entries.iter().enumerate().map(item).collect())

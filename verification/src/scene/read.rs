@@ -45,7 +45,8 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     let solver = fields.or("solver", default_solver(), solver);
     let materials = fields.or("material", BTreeMap::new(), materials);
     let frame = analysis.as_ref().map_or(Frame::Total, |analysis| analysis.frame);
-    let bodies = fields.or("body", Vec::new(), |item| bodies(item, frame));
+    let degree = mesh.as_ref().map_or([2; 2], |mesh| mesh.degree);
+    let bodies = fields.or("body", Vec::new(), |item| bodies(item, frame, degree));
     let contact = fields.maybe("contact", |item| {
         let fields = item.fields(&["friction", "fragments", "self_contact", "stiffness"])?;
         let friction = fields.need("friction", "friction = 0.65", number);

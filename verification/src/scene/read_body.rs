@@ -131,9 +131,17 @@ fn random(item: &Item<'_>) -> Option<RandomToughness> {
     Some(RandomToughness { modulus: modulus?, correlation: correlation?, seed: seed? as u64 })
 }
 
-/// `[[body]]` tables in order.
-pub(super) fn bodies(item: &Item<'_>, frame: Frame) -> Option<Vec<Body>> {
-    all(item, |item| body(item, default_layout(frame)))
+/// `[[body]]` tables in order, on a mesh of the given degrees.
+pub(super) fn bodies(item: &Item<'_>, frame: Frame, degree: [usize; 2]) -> Option<Vec<Body>> {
+    all(item, |item| body(item, default_points(frame, degree), default_layout(frame)))
+}
+
+/// Where points keep their places in the spans, fewer than the degree leave modes nearly without stiffness.
+fn default_points(frame: Frame, degree: [usize; 2]) -> [usize; 2] {
+    match frame {
+        Frame::Total => degree.map(|p| p.max(2)),
+        Frame::Updated => [2, 2],
+    }
 }
 
 /// Points that move through the mesh lose Gauss's places in the spans, and equal distances serve them better.
@@ -150,7 +158,7 @@ fn all<T>(item: &Item<'_>, read: impl Fn(&Item<'_>) -> Option<T>) -> Option<Vec<
     read.into_iter().collect()
 }
 
-fn body(item: &Item<'_>, default_layout: Layout) -> Option<Body> {
+fn body(item: &Item<'_>, default_points: [usize; 2], default_layout: Layout) -> Option<Body> {
     let fields = item.fields(&[
         "name",
         "material",
@@ -170,7 +178,7 @@ fn body(item: &Item<'_>, default_layout: Layout) -> Option<Body> {
     let material = fields.need("material", "the name of a [material.NAME] table", Item::text);
     let shape_like = "shape = { rectangle = { min = [0.0, 0.0], max = [0.1, 0.04] } }";
     let shape = fields.need("shape", shape_like, shape);
-    let points = fields.or("particles_per_cell", [2, 2], |item| item.whole_per_direction(1, 16));
+    let points = fields.or("particles_per_cell", default_points, |item| item.whole_per_direction(1, 16));
     let layout = fields.or("layout", default_layout, Item::word);
     let velocity = fields.or("velocity", [0.0, 0.0], |item| item.vector(Dimension::VELOCITY));
     let angular_velocity = fields.or("angular_velocity", 0.0, |item| item.quantity(Dimension::RATE));

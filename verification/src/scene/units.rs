@@ -145,8 +145,10 @@ impl UnitError {
 /// # Errors
 /// Text that is no quantity, an unknown unit, a number too large for a double, or another dimension.
 pub fn parse_as(text: &str, expected: Dimension) -> Result<f64, UnitError> {
-    let quantity =
-        parse(text).map_err(|e| UnitError::new(e.message, format!("{}; give {}", e.remedy, expected.example())))?;
+    let quantity = parse(text).map_err(|e| {
+        let end = if e.remedy.ends_with('?') { "" } else { ";" };
+        UnitError::new(e.message, format!("{}{end} give {}", e.remedy, expected.example()))
+    })?;
     if quantity.dimension == expected {
         return Ok(quantity.value);
     }

@@ -49,6 +49,7 @@ fn what_is_left_out_takes_its_default() {
     expected.title.clear();
     expected.mesh = Mesh::uniform([2, 3], [0.0, 0.0], [0.1, 0.04], [400, 160]);
     expected.materials.get_mut("glass").unwrap().fracture = None;
+    expected.bodies[0].particles_per_cell = [2, 3]; // as many as the degree
     expected.bodies[0].tractions.clear();
     expected.bodies[0].cracks.clear();
     expected.boundaries.clear();

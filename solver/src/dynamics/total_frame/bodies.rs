@@ -16,6 +16,7 @@ use crate::dynamics::body_sample::{BodySample, BodySamples, PairForce, names, pa
 use crate::dynamics::energy::{ContactSample, Sample};
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::smaller;
+use crate::material::hencky::Distortion;
 use crate::output::inspection::{InvertedPoint, PointState};
 use crate::output::raster::Raster;
 use crate::output::span_grid::SpanGrid;
@@ -215,10 +216,10 @@ impl TotalBodies {
         fastest.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default()
     }
 
-    /// Where material has turned too far for small strains: see [`TotalFrame::turned_beyond`].
-    pub(crate) fn turned_beyond(&self, limit: f64) -> Option<([f64; 2], f64)> {
-        let turned = self.bodies.iter().filter_map(|body| body.turned_beyond(limit));
-        turned.max_by(|a, b| a.1.total_cmp(&b.1))
+    /// Where material is distorted too far for small strains: see [`TotalFrame::distorted_beyond`].
+    pub(crate) fn distorted_beyond(&self, limit: f64) -> Option<([f64; 2], Distortion)> {
+        let turned = self.bodies.iter().filter_map(|body| body.distorted_beyond(limit));
+        turned.max_by(|a, b| a.1.size().total_cmp(&b.1.size()))
     }
 
     /// The point that is turned inside out furthest, if one is.
