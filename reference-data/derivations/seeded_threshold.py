@@ -3,7 +3,7 @@ PF-CZM (unit 1/pi, m = 2).
 
 ```text
 minimise  unit ∫ [(m d + (1 − m) d²)/b + b d'²] dx   for 0 ≤ d ≤ 1,  b = 2 l0,  d = 1 for the functions that do not
-vanish at x = 0 or 0.52 spans beside it
+vanish at x = 0 or 0.501 spans beside it
 ```
 
 Sets of values at the bound are found one after the other: those that a solve would make negative join, those
@@ -31,7 +31,7 @@ def energy(degree, spans_of_l0, place, unit, m):
                     local = (1 - m) / b * values[i] * values[j]
                     matrix[first + i][first + j] += 2 * unit * weight * h * (b * slopes[i] * slopes[j] + local)
     broken = set()
-    for beside in (-0.52, 0.0, 0.52):
+    for beside in (-0.501, 0.0, 0.501):
         first, values, _ = shape_functions(knots, degree, (spans // 2 + place + beside) * h)
         broken |= {first + i for i in range(degree + 1) if values[i] > 1e-9}
     d = [1.0 if i in broken else 0.0 for i in range(n)]

@@ -29,8 +29,9 @@ pub(crate) const SEED_STRENGTH: f64 = 1000.0;
 const SEED_STEP: f64 = 0.05;
 const VANISHING: f64 = 1e-9;
 /// Distance on either side of a seed to which its functions are looked for, in spans: a little more than
-/// half, so that a seed in the middle of a span has both neighbours.
-const SEED_REACH: f64 = 0.52;
+/// half, so that a seed in the middle of a span has both neighbours. For p = 3 and 4 what their functions
+/// reach there is below [`VANISHING`], and one span is enough.
+const SEED_REACH: f64 = 0.501;
 
 /// Difference of two distances from the start of a crack that counts as none, of the spacing of points.
 const TIE: f64 = 1e-3;
@@ -359,7 +360,7 @@ pub(crate) fn seed_energy(model: &FractureModel, cracks: &[Crack], position: [f6
     cracks.iter().filter_map(of_crack).fold(0.0, larger)
 }
 
-/// Control points whose functions do not vanish in the two spans, or three, next to the seeds of a body. A
+/// Control points whose functions do not vanish in the one to three spans next to the seeds of a body. A
 /// displacement that is smooth across a knot opens freely over as many; over fewer it stays bridged.
 fn functions_on_seeds(patch: &Patch, body: &Body) -> Vec<usize> {
     let step = SEED_STEP * patch.shortest_span();

@@ -72,7 +72,7 @@ pub fn cost_on_a_line(degree: usize, knots: &[f64], x: f64, unit: f64, m: f64) -
         }
     }
     let mut least = vec![0.0; n];
-    for beside in [-0.52, 0.0, 0.52] {
+    for beside in [-0.501, 0.0, 0.501] {
         let x = x + beside * space.spans()[0].length();
         let span = space.find_span(x).unwrap();
         let functions = space.shape_functions(span, x);
