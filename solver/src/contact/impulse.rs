@@ -286,9 +286,9 @@ impl Problem<'_> {
 
     /// Energies of a part of the impulses with given velocities.
     fn energy(&self, part: f64, velocity: impl Fn(&Node) -> [f64; 2] + Copy) -> ContactLedger {
-        let part = fault!("contact-loss-doubled", part => 2.0 * part);
+        let counted = fault!("contact-loss-doubled", part => 2.0 * part);
         let energies = self.constraints.iter().map(|acting| acting.energy(&self.nodes, velocity));
-        energies.fold(ContactLedger::default(), |sum, energy| sum.plus(energy.times(part)))
+        energies.fold(ContactLedger::default(), |sum, energy| sum.plus(energy.times(counted)))
     }
 }
 

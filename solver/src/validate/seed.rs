@@ -11,7 +11,7 @@ use super::points::{Near, Points};
 use crate::linear_algebra::extremes::larger;
 use crate::material::degradation::BROKEN;
 use crate::phase_field::fracture::{SEED_STRENGTH, half_width};
-use crate::scene::{Body, Fracture};
+use crate::scene::{Body, CrackKind, Fracture};
 
 /// Relative tolerance of lengths along a crack.
 const TOLERANCE: f64 = 1e-6;
@@ -47,7 +47,8 @@ pub(super) fn check(key: &str, body: &Body, fracture: &Fracture, points: &Points
                 remedy(&near, length, width, l0, h),
             );
         } else {
-            bridged(format!("{key}.crack.{j}.half_width"), &near, width, findings);
+            let is_driven = matches!(body.cracks[j].kind, CrackKind::Driven(_));
+            bridged(&format!("{key}.crack.{j}"), is_driven, &near, width, findings);
         }
     }
     let spared = |x| seeds().all(|(_, crack, width)| crack.distance(x) >= width);
@@ -62,17 +63,22 @@ pub(super) fn check(key: &str, body: &Body, fracture: &Fracture, points: &Points
 }
 
 /// Warns of a seed that is broken but too narrow for the functions of the mesh to open over it.
-fn bridged(key: String, near: &[Near], width: f64, findings: &mut Findings) {
+fn bridged(key: &str, is_driven: bool, near: &[Near], width: f64, findings: &mut Findings) {
     let across = near.iter().map(|point| point.across).fold(0.0, larger);
-    if width < OPENING * across * (1.0 - TOLERANCE) {
-        let message = format!(
-            "the seed is narrower than {OPENING} spans of {across:.3e} m on either side: functions of the mesh reach across \
-             it and hold its faces together, so that it opens too little until it tears; give a half_width of at least \
-             {:.3e} m, or as = \"slit\" in the total frame",
-            OPENING * across
-        );
-        findings.warn(key, message);
+    if width >= OPENING * across * (1.0 - TOLERANCE) {
+        return;
     }
+    let (key, remedy) = if is_driven {
+        (format!("{key}.speed"), format!("use cells of at most {:.3e} m", width / OPENING))
+    } else {
+        let wider = format!("give a half_width of at least {:.3e} m", OPENING * across);
+        (format!("{key}.half_width"), format!("{wider}, or as = \"slit\" in the total frame"))
+    };
+    let message = format!(
+        "the seed is narrower than {OPENING} spans of {across:.3e} m on either side: functions of the mesh reach across it \
+         and hold its faces together, so that it opens too little until it tears; {remedy}"
+    );
+    findings.warn(key, message);
 }
 
 /// Says that it was not checked whether a seed breaks its body.
