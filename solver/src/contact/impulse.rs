@@ -39,7 +39,7 @@ pub(crate) struct Kick {
 impl Kick {
     /// Part of the kick that belongs to the coming step.
     fn leaving(self) -> f64 {
-        fault!("kick-in-equal-halves", 0.5 * self.step / self.length => 0.5)
+        0.5 * self.step / self.length
     }
 }
 
@@ -276,7 +276,10 @@ impl Problem<'_> {
     /// Energies of the part of the kick that belongs to the step before, with the velocities before it;
     /// there is no such part at the start.
     fn arriving(&self, kick: Kick) -> ContactLedger {
-        self.energy(1.0 - kick.leaving(), |node| node.before)
+        let part = 1.0 - kick.leaving();
+        self.energy(fault!("longer-steps-forget-the-last", part => if part < 0.5 { 0.0 } else { part }), |node| {
+            node.before
+        })
     }
 
     /// Energies of the part of the kick that belongs to the coming step, with the velocities after it.
