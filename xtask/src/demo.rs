@@ -62,7 +62,7 @@ fn shown(folder: &Path) -> Result<String, Failure> {
         "\ne elastic, f fracture energy (J) over 80 µs\n\n{}\n\
          the crack: {}\n\n\
          The mesh is coarse: its spans are as long as the length scale of the phase field. Compared with a\n\
-         converged solution, the kinetic energy has an error of 4 % and the elastic energy of 9 %. With spans\n\
+         converged solution, the kinetic energy has an error of 4 % and the elastic energy of 11 %. With spans\n\
          a quarter as long, both errors are about 1 %.\n\n\
          next:\n  \
          cargo xtask verify --suite plate      compare this plate with independent finite elements\n  \
