@@ -96,10 +96,10 @@ pub(crate) enum Distortion {
 }
 
 impl Distortion {
-    /// Of a displacement gradient, whichever is larger.
-    pub(crate) fn of(gradient: &Gradient) -> Self {
+    /// Of a displacement gradient: the angle, or the strain if it is larger and `strains` count.
+    pub(crate) fn of(gradient: &Gradient, strains: bool) -> Self {
         let (angle, strain) = (rotation(gradient).abs(), largest_principal(symmetric(*gradient)));
-        if strain > angle { Self::Strained(strain) } else { Self::Turned(angle) }
+        if strains && strain > angle { Self::Strained(strain) } else { Self::Turned(angle) }
     }
 
     /// Its size, rad or 1.

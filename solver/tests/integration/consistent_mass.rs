@@ -123,7 +123,7 @@ fn what_it_cannot_do_is_refused() {
     assert_eq!(validate(&cut), Ok(vec![]), "a body may end at any knot");
 
     let mut part = consistent(patch_scene(&annulus(2, 8), 3), 3);
-    part.analysis.end_time *= 10.0; // waves cross a quarter of a cell and more
+    part.analysis.end_time *= 10.0; // waves cross a cell and more
     assert_eq!(validate(&part), Ok(vec![]));
     part.bodies[0] = body(Shape::Disk { center: [1.1, 1.1], radius: 0.2 }, [3; 2]);
     assert_refused(&part, &["cuts spans", "lumped"]);

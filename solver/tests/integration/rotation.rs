@@ -48,6 +48,17 @@ fn a_bar_that_stretches_with_small_strains_is_told_once() {
     }
 }
 
+#[test]
+fn a_larger_strain_does_not_hide_the_rotation_of_a_body_that_can_break() {
+    for frame in [Frame::Total, Frame::Updated] {
+        let mut scene = spinning(frame, Kinematics::Small, 0.13);
+        scene.bodies[0].velocity_gradient = [[0.2 / scene.analysis.end_time, 0.0], [0.0, 0.0]];
+        let glass = scene.materials.get_mut("glass").unwrap();
+        (glass.young_modulus, glass.fracture) = (1e-6 * glass.young_modulus, Some(brittle()));
+        assert_eq!(warnings(&scene).len(), 1, "{frame:?}");
+    }
+}
+
 /// A part that bends away counts as much as a body that turns as a whole, and a place is named where it does.
 #[test]
 fn the_place_that_turns_is_named() {

@@ -22,9 +22,8 @@ impl TotalFrame {
             let functions = self.lattice.functions_at(&self.patch, batch, lane);
             let gradient = self.displacement.each_ref().map(|u| functions.interpolate(u).gradient);
             let broken = self.fracture.as_ref().is_some_and(|fracture| fracture.phase[batch][lane] < BROKEN);
-            let found = Distortion::of(&gradient);
-            let counts = matches!(found, Distortion::Turned(_)) || self.fracture.is_none();
-            if counts && !broken && found.size() > most.map_or(limit, |(_, most)| most.size()) {
+            let found = Distortion::of(&gradient, self.fracture.is_none());
+            if !broken && found.size() > most.map_or(limit, |(_, most)| most.size()) {
                 most = Some((position, found));
             }
         });
