@@ -94,7 +94,10 @@ impl Simulation {
         if critical.is_nan() {
             return Err(not_started(Failure::NoStep));
         }
-        let (plan, warnings) = TimePlan::new(scene, critical);
+        let (plan, mut warnings) = TimePlan::new(scene, critical);
+        if let Bodies::Total(bodies) = &frame {
+            warnings.extend(bodies.idle_slits(scene));
+        }
         frame.prepare(plan.step).map_err(not_started)?;
         let start = either!(&frame, body => body.sample(plan.step));
         let (initial, energy_in) = (start.stored(), start.kinetic + start.elastic);

@@ -28,11 +28,17 @@ pub fn cost_of(curve: &[(f64, f64)], error: f64) -> Option<f64> {
     })
 }
 
-/// Cost of an error of at most `error` on a curve: as [`cost_of`], or that of its cheapest point if that is
-/// good enough already.
+/// Cost from which on the error of a curve is at most `error`: as [`cost_of`], or that of its cheapest point
+/// if all are good enough. An error counts for a point if no dearer one has a larger error: a coarse mesh may
+/// be right by chance, and nobody knows beforehand which one is.
 pub fn cost_to_reach(curve: &[(f64, f64)], error: f64) -> Option<f64> {
-    let cheapest = curve.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    if cheapest.1 <= error { Some(cheapest.0) } else { cost_of(curve, error) }
+    let mut kept = curve.to_vec();
+    kept.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for i in (1..kept.len()).rev() {
+        kept[i - 1].1 = kept[i - 1].1.max(kept[i].1);
+    }
+    let cheapest = kept.first()?;
+    if cheapest.1 <= error { Some(cheapest.0) } else { cost_of(&kept, error) }
 }
 
 #[cfg(test)]
@@ -60,5 +66,14 @@ mod tests {
         assert_eq!(cost_of(&curve, 2.0), None);
         assert_eq!((cost_to_reach(&curve, 2.0), cost_to_reach(&curve, 1e-6)), (Some(1.0), None));
         assert_eq!(cost_to_reach(&curve, 1e-2), Some(found));
+    }
+
+    #[test]
+    fn an_error_that_is_small_by_chance_does_not_count() {
+        let curve = [(1.0, 0.01), (2.0, 0.03), (4.0, 0.01), (8.0, 0.005)];
+        let found = cost_to_reach(&curve, 0.02).unwrap();
+        assert!((2.0..4.0).contains(&found), "{found}");
+        assert_eq!(cost_to_reach(&curve, 0.03), Some(1.0));
+        assert_eq!(cost_to_reach(&[(1.0, 0.01), (2.0, 0.03)], 0.02), None);
     }
 }

@@ -17,9 +17,12 @@ const LENGTHS: [f64; 5] = [4.0, 2.0, 1.0, 0.5, 0.25];
 /// No error is compared below so many uncertainties of the reference, to three digits.
 const UNCERTAINTIES: f64 = 1.999;
 
-/// How many times less time fisura should take at an error, where that is asked for and the reference is
-/// known well enough.
-const TARGETS: [(&str, f64, f64); 2] = [("kinetic energy", 0.02, 4.0), ("external work", 0.02, 4.0)];
+/// Quantities, errors, and how many times less time fisura should take at them.
+const TARGETS: [([&str; 2], &[f64], f64); 3] = [
+    (["kinetic energy", "external work"], &[0.01], 4.0),
+    (["kinetic energy", "external work"], &[0.005, 0.003], 8.0),
+    (["elastic energy", "fracture energy"], &[0.04, 0.02], 4.0),
+];
 
 /// What the best way of a code is called, and its time, s: from medians, and from the least and the greatest
 /// of every mesh.
@@ -44,14 +47,16 @@ impl Match {
     }
 
     fn target(&self) -> Target {
-        let of = |(name, error, _): &&(&str, f64, f64)| *name == self.quantity.name && *error == self.error;
-        TARGETS.iter().find(of).map_or(Target::None, |target| Target::AtLeast(target.2))
+        let asked =
+            |names: &[&str; 2], errors: &[f64]| names.contains(&self.quantity.name) && errors.contains(&self.error);
+        let target = TARGETS.iter().find(|(names, errors, _)| asked(names, errors));
+        target.map_or(Target::None, |target| Target::AtLeast(target.2))
     }
 
     fn found(&self) -> Option<Found> {
         let error = shown(self.error, self.quantity.unit);
         let what = format!("finite elements over fisura, plate, {} to {error}", self.quantity.name);
-        let why = "four times as fast as elements of the same error is the aim of this program. If fracture cost nothing, \
+        let why = "to be several times as fast as elements of the same error is the aim of this program. If fracture cost nothing, \
                    the ratio would be that of a step of the plate over an elastic step times as large";
         Some(Found { what, value: self.ratio()?, target: self.target(), verified: true, why: why.into() })
     }
@@ -136,8 +141,8 @@ fn note(all: &[Match], unbuilt: Option<&str>) -> String {
     };
     let mut note = "Processor time of one thread on this machine, in the same rounds; times between two meshes are those of a power law. \
                     The range of a ratio is from the least and greatest times of each mesh; a mesh that ran once has no spread. \
-                    κ: a crack on a mesh costs κ Gc, and both codes may run with Gc/κ. No error below twice the uncertainty U of the \
-                    reference is compared."
+                    κ: a crack on a mesh costs κ Gc, and both codes may run with Gc/κ. An error counts for a mesh if no finer one of the same \
+                    way has a larger error. No error below twice the uncertainty U of the reference is compared."
         .to_string();
     for (who, ours) in [("fisura", true), ("the finite elements", false)] {
         let words = alone(ours);
@@ -207,7 +212,7 @@ mod tests {
             [("10 %", "0.5", "fisura behind"), ("5 %", "1.28", "fisura ahead"), ("4 %", "2", "fisura ahead")];
         assert_eq!(kinetic[..3], expected);
         assert_eq!(kinetic[3..], [("2 %", "4", "fisura ahead"), ("1 %", "8", "fisura ahead")]);
-        assert!(grid.rows.iter().any(|r| r[0] == "kinetic energy" && r[1] == "2 %" && r[9] == "met"), "{grid:?}");
+        assert!(grid.rows.iter().any(|r| r[0] == "kinetic energy" && r[1] == "1 %" && r[9] == "met"), "{grid:?}");
         assert!(!grid.rows.iter().any(|r| r[1] == "0.5 %"), "below twice the uncertainty");
         assert!(reading(Records(&records), None).contains("Of 9 errors that both reach"));
     }
@@ -216,8 +221,8 @@ mod tests {
     fn targets_are_judged_and_what_one_alone_reaches_is_said() {
         let mut records = records();
         let found = targets(Records(&records));
-        assert_eq!(found.len(), 1, "{found:?}");
-        assert!(found.iter().any(|f| f.what.ends_with("kinetic energy to 2 %") && f.holds() == Some(true)));
+        assert_eq!(found.len(), 3, "{found:?}");
+        assert!(found.iter().any(|f| f.what.ends_with("kinetic energy to 1 %") && f.holds() == Some(true)));
         records.pop();
         let Exhibit::Grid(grid) = table(Records(&records), Some("no cargo")) else { panic!("a table") };
         assert!(grid.note.contains("Only fisura reached: kinetic energy to 1 %"), "{}", grid.note);

@@ -1,7 +1,7 @@
 //! Points on the boundary of a body: along the edge of a traction, or around all of it.
 //!
-//! An edge is divided where it crosses knots: shape functions are smooth on every part, and Gauss points
-//! integrate them.
+//! An edge is divided where it crosses knots and where a slit ends on it: shape functions are smooth on every
+//! part, and Gauss points integrate them.
 
 use crate::scene::edges::{BESIDE, BoundaryEdge, beside, bounding_parts};
 use crate::scene::{Body, Edge, Layout, Shape};
@@ -41,7 +41,7 @@ pub(crate) fn surface_points(patch: &Patch, body: &Body, edge: &Edge) -> Vec<Sur
         }
         _ => smooth_rule(patch),
     };
-    points_between(&divisions(patch, &curve, part), &curve, &rule, &body.shape).collect()
+    points_between(&divisions(patch, &curve, part, &mouths(body)), &curve, &rule, &body.shape).collect()
 }
 
 /// The curve of an edge of a body, and the part of it, s.
@@ -59,7 +59,7 @@ pub(crate) fn curve_of(body: &Body, edge: &Edge) -> (BoundaryEdge, [f64; 2]) {
 /// are from the first end of the edge.
 pub(crate) fn smooth_parts(patch: &Patch, body: &Body, edge: &Edge) -> Vec<Vec<SurfacePoint>> {
     let ((curve, part), rule) = (curve_of(body, edge), smooth_rule(patch));
-    let places = divisions(patch, &curve, part);
+    let places = divisions(patch, &curve, part, &mouths(body));
     let from_the_end = |point: SurfacePoint| SurfacePoint { along: point.along - places[0] * curve.length(), ..point };
     let points = |pair| points_between(pair, &curve, &rule, &body.shape).map(from_the_end).collect();
     places.windows(2).map(points).collect()
@@ -80,7 +80,7 @@ pub(crate) fn points_around(patch: &Patch, shape: &Shape) -> Vec<SurfacePoint> {
     let rule = smooth_rule(patch);
     let mut points = Vec::new();
     for (edge, part) in bounding_parts(shape) {
-        points.extend(points_between(&divisions(patch, &edge, part), &edge, &rule, shape));
+        points.extend(points_between(&divisions(patch, &edge, part, &[]), &edge, &rule, shape));
     }
     points
 }
@@ -101,9 +101,20 @@ fn smooth_rule(patch: &Patch) -> Rule {
     Rule::new(Layout::Gauss, degree + BEYOND_DEGREE)
 }
 
-/// Ends of a part of an edge (s), and where it crosses knots between them.
-fn divisions(patch: &Patch, edge: &BoundaryEdge, [from, to]: [f64; 2]) -> Vec<f64> {
+/// Places (m) where slits of a body may end on its boundary.
+pub(crate) fn mouths(body: &Body) -> Vec<[f64; 2]> {
+    body.slits().flat_map(|slit| slit.points.iter().copied()).collect()
+}
+
+/// Ends of a part of an edge (s), and where between them it crosses knots or is met by one of the `mouths`.
+fn divisions(patch: &Patch, edge: &BoundaryEdge, [from, to]: [f64; 2], mouths: &[[f64; 2]]) -> Vec<f64> {
+    let near = NEAR.sqrt() * patch.shortest_span();
+    let met = mouths.iter().map(|mouth| (edge.place_of(*mouth), mouth)).filter(|(s, mouth)| {
+        let [x, y] = edge.at(*s).0;
+        (x - mouth[0]).hypot(y - mouth[1]) < near
+    });
     let mut places = vec![from, to];
+    places.extend(met.map(|(s, _)| s));
     let [low, high] = edge.bounding_box();
     for d in 0..2 {
         let knots = patch.spaces[d].spans().iter().map(|span| span.left);
@@ -170,7 +181,7 @@ mod tests {
             for origin in [[-30.0, -30.0], [-29.0, -31.0]] {
                 let patch = Patch::new(&Mesh::uniform([2, 2], origin, [60.0, 60.0], [60, 60]));
                 let circle = BoundaryEdge::Circle { center: [0.0; 2], radius, sign: 1.0 };
-                let places = divisions(&patch, &circle, [0.0, 1.0]);
+                let places = divisions(&patch, &circle, [0.0, 1.0], &[]);
                 assert!(places.windows(2).all(|pair| pair[1] - pair[0] > 1e-6), "radius {radius}");
                 let is_whole = |x: f64| (x - x.round()).abs() < 1e-9;
                 let at_corner = places.iter().filter(|s| circle.at(**s).0.iter().all(|x| is_whole(*x)));

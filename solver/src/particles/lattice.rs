@@ -31,7 +31,8 @@ pub(crate) use sheets::Sheets;
 
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::lane::{LANES, Lane};
-use crate::scene::{Body, Layout, Shape};
+use crate::scene::edges::BoundaryEdge;
+use crate::scene::{Body, Crack, Layout, Shape};
 use crate::splines::patch::Patch;
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::MAX_FUNCTIONS;
@@ -114,10 +115,13 @@ pub(crate) fn fills_lattice(mapped: bool, shape: &Shape) -> bool {
     *shape == Shape::Patch || (!mapped && matches!(shape, Shape::Rectangle { .. }))
 }
 
-/// Whether the boundary of a shape, if it is no rectangle, cuts spans of a patch over a rectangle.
-pub(crate) fn cuts_spans(shape: &Shape, spaces: &[SplineSpace; 2]) -> bool {
-    let edges = cut::edges_in_spans(shape, spaces);
-    !fills_lattice(false, shape) && cut::cut_spans(shape, &edges, spaces, Rules::exact(spaces, 1)).next().is_some()
+/// Whether the boundary of a body, if it is no rectangle, or a slit cuts spans of a patch over a rectangle.
+pub(crate) fn cuts_spans(body: &Body, spaces: &[SplineSpace; 2]) -> bool {
+    let shape = &body.shape;
+    let edges = if fills_lattice(false, shape) { Vec::new() } else { shape.edges() };
+    let slits = body.slits().flat_map(Crack::segments).map(BoundaryEdge::Line).collect();
+    let [edges, slits] = [edges, slits].map(|edges| cut::edges_in_spans(edges, spaces));
+    cut::cut_spans(shape, [&edges, &slits], spaces, Rules::exact(spaces, 1)).next().is_some()
 }
 
 /// The box around a body, with its rule, along both directions. A rectangle cuts spans, unless the lattice is

@@ -365,19 +365,12 @@ pub(crate) fn seed_energy(model: &FractureModel, cracks: &[Crack], position: [f6
 fn functions_on_seeds(patch: &Patch, body: &Body) -> Vec<usize> {
     let step = SEED_STEP * patch.shortest_span();
     let mut found = BTreeSet::new();
-    for [from, to] in body.cracks.iter().filter(|crack| !crack.is_slit()).flat_map(Crack::segments) {
-        let along = [0, 1].map(|d| to[d] - from[d]);
-        let length = along[0].hypot(along[1]);
-        let normal = [-along[1] / length, along[0] / length];
-        let steps = (length / step).ceil();
-        for n in 0..=steps as usize {
-            let place = [0, 1].map(|d| from[d] + along[d] * (n as f64 / steps).min(1.0));
-            let reach = fault!("seed-on-a-line", SEED_REACH => 0.0) * patch.span_across(place, normal).unwrap_or(0.0);
-            for side in [-reach, 0.0, reach] {
-                let beside = [0, 1].map(|d| place[d] + side * normal[d]);
-                let functions = patch.functions_at(beside).into_iter().flat_map(|functions| functions.values);
-                found.extend(functions.filter(|(_, value)| *value > VANISHING).map(|(at, _)| at));
-            }
+    for [place, normal] in body.cracks.iter().filter(|crack| !crack.is_slit()).flat_map(|crack| crack.places(step)) {
+        let reach = fault!("seed-on-a-line", SEED_REACH => 0.0) * patch.span_across(place, normal).unwrap_or(0.0);
+        for side in [-reach, 0.0, reach] {
+            let beside = [0, 1].map(|d| place[d] + side * normal[d]);
+            let functions = patch.functions_at(beside).into_iter().flat_map(|functions| functions.values);
+            found.extend(functions.filter(|(_, value)| *value > VANISHING).map(|(at, _)| at));
         }
     }
     found.into_iter().collect()

@@ -207,6 +207,17 @@ impl Crack {
         self.segments().map(|[from, to]| distance_to_segment(position, from, to)).fold(f64::INFINITY, smaller)
     }
 
+    /// Places along it at most `step` (m) apart, ends included, each with the normal there.
+    pub(crate) fn places(&self, step: f64) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
+        self.segments().flat_map(move |[from, to]| {
+            let along = [0, 1].map(|d| to[d] - from[d]);
+            let length = along[0].hypot(along[1]);
+            let steps = (length / step).ceil();
+            let place = move |n: usize| [0, 1].map(|d| from[d] + along[d] * (n as f64 / steps).min(1.0));
+            (0..=steps as usize).map(move |n| [place(n), [-along[1] / length, along[0] / length]])
+        })
+    }
+
     /// Its straight parts, m.
     pub fn segments(&self) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
         self.points.windows(2).map(|ends| [ends[0], ends[1]])
@@ -245,6 +256,11 @@ pub struct Body {
 }
 
 impl Body {
+    /// Its slits.
+    pub(crate) fn slits(&self) -> impl Iterator<Item = &Crack> {
+        self.cracks.iter().filter(|crack| crack.is_slit())
+    }
+
     /// A deformable body at rest with 2 × 2 Gauss points per span, without loads and cracks.
     pub fn at_rest(name: &str, material: &str, shape: Shape) -> Self {
         Self {

@@ -142,7 +142,8 @@ impl TimeFactor {
     pub(crate) fn range(&self, end: f64) -> [f64; 2] {
         let times = (0..=PANELS).map(|i| end * i as f64 / PANELS as f64);
         let rows = if let Course::Table(rows) = &self.course { rows.as_slice() } else { &[] };
-        let values = times.chain(rows.iter().map(|row| row[0])).map(|time| self.value(time));
+        let within = rows.iter().map(|row| row[0]).filter(|time| *time <= end);
+        let values = times.chain(within).map(|time| self.value(time));
         values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [smaller(v, low), larger(v, high)])
     }
 }

@@ -69,7 +69,7 @@ pub(super) fn check(scene: &Scene, ground: &Ground<'_>, findings: &mut Findings)
         edge_conditions::check(&key, scene, &look, findings);
         for (j, crack) in body.cracks.iter().enumerate() {
             if crack.is_slit() {
-                cracks::slit(&format!("{key}.crack.{j}"), scene, findings);
+                cracks::slit(&format!("{key}.crack.{j}"), crack, scene, ground, findings);
             }
             cracks::check(&format!("{key}.crack.{j}"), crack, fracture, &look, findings);
         }
@@ -115,10 +115,16 @@ fn gaps(key: &str, body: &Body, degree: &[usize; 2], ground: &Ground<'_>, findin
 /// Bilinear functions of a small part of a span shorten the step, down to a twenty-fifth.
 fn cut_spans(key: &str, body: &Body, ground: &Ground<'_>, findings: &mut Findings) {
     let Some(spaces) = ground.spaces.as_ref().filter(|_| ground.patch.is_none()) else { return };
-    if spaces.iter().any(|space| space.degree() == 1) && cuts_spans(&body.shape, spaces) {
-        let message =
-            format!("the boundary of body {:?} cuts cells, which needs splines of degree 2 or higher", body.name);
-        findings.error(format!("{key}.shape"), message, "use mesh.degree = 2, or put its edges on the edges of cells");
+    if spaces.iter().any(|space| space.degree() == 1) && cuts_spans(body, spaces) {
+        let message = format!(
+            "the boundary or a slit of body {:?} cuts cells, which needs splines of degree 2 or higher",
+            body.name
+        );
+        findings.error(
+            format!("{key}.shape"),
+            message,
+            "use mesh.degree = 2, or put its edges and slits on the edges of cells",
+        );
     }
 }
 

@@ -1,12 +1,24 @@
 //! Checks of initial cracks: polylines that lie in their body.
 
 use super::findings::Findings;
+use super::ground::Ground;
 use super::look::{Look, MOST_POSITIONS};
 use crate::scene::{Crack, CrackKind, Fracture, Frame, Mass, Scene};
+use crate::splines::nurbs::NurbsPatch;
+
+/// Distance from a knot line that counts as none, of the range of a parameter; and places on a straight part
+/// of a slit that are looked at, less one.
+const ON_KNOT: f64 = 1e-6;
+const LOOKS: usize = 8;
 
 /// A slit parts the control points of the total frame, which keep their places.
-pub(super) fn slit(key: &str, scene: &Scene, findings: &mut Findings) {
+pub(super) fn slit(key: &str, crack: &Crack, scene: &Scene, ground: &Ground<'_>, findings: &mut Findings) {
     let key = format!("{key}.as");
+    if ground.patch.as_ref().is_some_and(|patch| !crack.segments().all(|ends| follows_knots(patch, ends))) {
+        let message = "a slit between the knot lines of a patch with a geometry acts up to half a span beside its place, and \
+                       material between it and a loaded edge may move too far: let it follow knot lines";
+        findings.warn(key.clone(), message);
+    }
     if scene.analysis.frame == Frame::Updated {
         let remedy = "use frame = \"total\", or cut a notch out of the shape: { difference = { of, minus } }";
         findings.error(key.clone(), "a slit in the updated frame, which is not implemented", remedy);
@@ -14,6 +26,19 @@ pub(super) fn slit(key: &str, scene: &Scene, findings: &mut Findings) {
     if scene.analysis.mass == Mass::Consistent {
         findings.error(key, "a slit with the consistent mass, which is not implemented", "use mass = \"lumped\"");
     }
+}
+
+/// Whether a line (m) follows a knot line of a patch. What lies outside is found elsewhere.
+fn follows_knots(patch: &NurbsPatch, [from, to]: [[f64; 2]; 2]) -> bool {
+    let place = |i: usize| [0, 1].map(|d| from[d] + (to[d] - from[d]) * i as f64 / LOOKS as f64);
+    let places = (0..=LOOKS).filter_map(|i| patch.locate(place(i), None).ok());
+    let parameters: Vec<[f64; 2]> = places.map(|location| location.parameters).collect();
+    (0..2).any(|d| {
+        let spans = patch.spaces()[d].spans();
+        let near = ON_KNOT * (spans[spans.len() - 1].right - spans[0].left);
+        let follows = |knot: f64| parameters.iter().all(|at| (at[d] - knot).abs() < near);
+        spans.iter().any(|span| follows(span.left) || follows(span.right))
+    })
 }
 
 /// A crack that is driven grows by the history field of the total frame.

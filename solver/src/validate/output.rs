@@ -73,9 +73,9 @@ fn j_integral(i: usize, integral: &JIntegral, scene: &Scene, ground: &Ground<'_>
         space.find_span(tip[d]).map(|span| space.spans()[span].length())
     };
     let span = (0..2).filter_map(span).fold(0.0, larger);
-    if integral.radius < LEAST_SPANS * span {
+    if integral.radius < LEAST_SPANS * span * (1.0 - TOLERANCE) {
         let message = format!("a radius of {:.2} cells", integral.radius / span);
-        let remedy = format!("give at least {LEAST_SPANS} cells, {} m, or use smaller cells", LEAST_SPANS * span);
+        let remedy = format!("give at least {LEAST_SPANS} cells, {:.4e} m, or use smaller cells", LEAST_SPANS * span);
         findings.error(format!("{key}.radius"), message, remedy);
     }
     if let Some(l0) = fracture.map(|fracture| fracture.length_scale).filter(|l0| integral.radius < 8.0 * l0) {

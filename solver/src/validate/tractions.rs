@@ -22,6 +22,9 @@ pub(super) fn check(key: &str, traction: &Traction, look: &Look<'_>, findings: &
         Load::Field(_) => {} // whether it is finite where it acts is seen when the run begins
     }
     time::check(key, &traction.time, look.end_time, findings);
+    if traction.time.range(look.end_time) == [0.0; 2] && traction.time.integral(look.end_time) == 0.0 {
+        findings.warn(format!("{key}.time"), "the factor is zero until end_time: this load never acts");
+    }
     edge(key, &traction.edge, traction.load.has_side(), look, findings);
 }
 

@@ -96,6 +96,28 @@ fn balanced_loads_on_a_free_body_are_static_and_others_are_refused() {
     assert!(samples.iter().all(|s| s.kinetic < 1e-16 * samples[0].elastic));
 }
 
+/// Coordinates of nine digits: what is left of the balance is taken away.
+#[test]
+fn loads_in_balance_up_to_the_digits_of_a_scene_are_static() {
+    let mut scene = pulled(2, TimeFactor::default());
+    scene.boundaries.clear();
+    scene.mesh = Mesh::uniform([2; 2], [-1.0; 2], [2.0; 2], [30; 2]);
+    let (sine, cosine) = 0.4_f64.sin_cos();
+    let digits = |x: f64| (1e9 * x).round() / 1e9;
+    let corner = |[x, y]: [f64; 2]| [digits(cosine * x - sine * y), digits(sine * x + cosine * y)];
+    let points = [[-0.6, -0.3], [0.6, -0.3], [0.6, 0.3], [-0.6, 0.3]].map(corner);
+    scene.bodies[0].shape = Shape::Polygon { points: points.to_vec() };
+    let pull = |ends, sign: f64| {
+        let load = Load::Stress([sign * cosine * 1e6, sign * sine * 1e6]);
+        Traction { edge: Edge::Segment(ends), load, time: TimeFactor::default() }
+    };
+    scene.bodies[0].tractions = vec![pull([points[1], points[2]], 1.0), pull([points[3], points[0]], -1.0)];
+    let samples = run(&scene).1;
+    let modulus = 32e9 / (1.0 - 0.2 * 0.2); // plane strain
+    assert_relative_eq!(samples[0].elastic, 0.5 * 1e12 / modulus * 0.72, max_relative = 1e-6);
+    assert!(samples.iter().all(|s| s.kinetic < 1e-12 * samples[0].elastic));
+}
+
 #[test]
 fn a_disc_between_arcs_is_static_on_any_mesh() {
     // Spans are cut to slivers, and some batches of points are not full.

@@ -36,7 +36,7 @@ fn speed_below(simulation: &Simulation, slope: f64) -> f64 {
 #[test]
 fn what_a_slit_cuts_off_stays_at_rest() {
     for degree in [1, 2, 3] {
-        for slope in [0.0, 0.3, -0.77, 1.0] {
+        for slope in [0.0, 0.3, -0.77, 1.0].into_iter().filter(|slope| degree > 1 || *slope == 0.0) {
             let end = |x: f64| [x, 0.005 + slope * (x - 0.005)];
             let scene = pulled(degree, &[end(0.0), end(0.004), end(0.01)]);
             let (simulation, samples) = run(&scene);
@@ -141,6 +141,12 @@ fn a_slit_parts_a_patch_with_a_geometry() {
         let (sine, cosine) = 0.8_f64.sin_cos();
         let mut scene = patch_scene(&annulus(degree, 12), degree);
         scene.bodies[0].cracks = vec![slit(&[[cosine, sine], [2.0 * cosine, 2.0 * sine]])];
+        let warnings = |angle: f64, scene: &mut Scene| {
+            let (sine, cosine) = angle.sin_cos();
+            scene.bodies[0].cracks[0].points = vec![[cosine, sine], [2.0 * cosine, 2.0 * sine]];
+            validate(scene).unwrap().iter().filter(|warning| warning.message.contains("knot lines")).count()
+        };
+        assert_eq!([std::f64::consts::FRAC_PI_4, 0.8].map(|angle| warnings(angle, &mut scene)), [0, 1]);
         scene.bodies[0].tractions = vec![Traction::on(Side::Top, [1e6, 2e6], TimeFactor::ramp(1e-4))];
         scene.analysis.end_time = 1e-3;
         let (simulation, samples) = run(&scene);
@@ -158,7 +164,7 @@ fn a_slit_parts_a_patch_with_a_geometry() {
 /// A load beside a slit whose side has no point in the span under it goes to the next span of that side.
 #[test]
 fn a_load_stays_on_its_side_of_a_slit() {
-    for degree in [1, 2, 3] {
+    for degree in [2, 3] {
         let mut scene = pulled(degree, &[[0.0, 0.0005], [0.0095, 0.01]]);
         let ends = [[0.0, 0.01], [0.0094, 0.01]];
         let load = Load::Stress([0.0, 1e6]);
@@ -176,11 +182,59 @@ fn a_load_stays_on_its_side_of_a_slit() {
 #[test]
 fn a_slit_is_refused_where_it_is_not_implemented() {
     let keys = |change: fn(&mut Scene)| {
-        let mut scene = pulled(2, &[[0.0, 0.005], [0.004, 0.005]]);
+        let mut scene = pulled(2, &[[0.0, 0.0051], [0.004, 0.0051]]);
         change(&mut scene);
         validate(&scene).unwrap_err().into_iter().map(|e| e.key).collect::<Vec<_>>()
     };
     assert_eq!(keys(|s| s.analysis.frame = Frame::Updated), ["body.0.crack.0.as"]);
+    assert_eq!(
+        keys(|s| s.mesh = Mesh::uniform([1; 2], [0.0; 2], [0.01; 2], [12; 2])),
+        ["body.0.shape"],
+        "it runs between two knots"
+    );
     assert_eq!(keys(|s| s.bodies[0].cracks[0].points.truncate(1)), ["body.0.crack.0"]);
     assert_eq!(keys(|s| s.bodies[0].cracks[0].points.push([0.02, 0.0])), ["body.0.crack.0.points.2"]);
+}
+
+/// Elastic energy of a held body under a load on its top, with slits.
+fn held(cells: usize, degree: usize, slits: &[[[f64; 2]; 2]]) -> f64 {
+    let mut scene = elastic_scene(degree, [1.0; 2], [cells; 2]);
+    scene.bodies[0].tractions = vec![Traction::on(Side::Top, [0.3e6, 1e6], TimeFactor::default())];
+    scene.bodies[0].cracks = slits.iter().map(|ends| slit(ends)).collect();
+    scene.boundaries = vec![Boundary::fixed(Side::Bottom, [true, true])];
+    scene.equilibrium = true;
+    Simulation::new(&scene).unwrap().sample().elastic
+}
+
+/// Slits from a loaded corner or edge, across each other, close to each other and to a held side: no material
+/// is left without neighbours, wherever the points of the spans lie.
+#[test]
+fn material_beside_a_slit_keeps_its_neighbours() {
+    let places: [&[[[f64; 2]; 2]]; 5] = [
+        &[[[0.0, 1.0], [0.3, 0.7]]],
+        &[[[0.312, 1.0], [0.306, 0.6]]],
+        &[[[0.487, 0.595], [0.284, 0.216]], [[0.369, 0.355], [0.685, 0.833]]],
+        &[[[0.3, 0.5], [0.7, 0.55]], [[0.45, 0.3], [0.5, 0.8]]],
+        &[[[0.0, 0.01], [0.5, 0.01]]],
+    ];
+    for slits in places {
+        for degree in [2, 3] {
+            let [coarse, middle, fine] = [17, 20, 30].map(|cells| held(cells, degree, slits));
+            let whole = held(20, degree, &[]);
+            for energy in [coarse, middle] {
+                assert!((energy / fine - 1.0).abs() < 0.25, "{slits:?}, p = {degree}: {coarse} {middle} {fine}");
+            }
+            assert!(fine > 1.005 * whole, "{slits:?}, p = {degree}: {fine} for {whole} without a slit");
+        }
+    }
+}
+
+#[test]
+fn a_slit_that_parts_nothing_is_told() {
+    let told = |from: f64, to: f64| {
+        let scene = pulled(2, &[[from, 0.005], [to, 0.005]]);
+        let warnings = Simulation::new(&scene).unwrap().warnings().to_vec();
+        warnings.iter().any(|warning| warning.contains("has no effect"))
+    };
+    assert!(told(0.004, 0.006) && !told(0.002, 0.008) && !told(0.0, 0.002));
 }

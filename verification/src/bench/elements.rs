@@ -33,14 +33,14 @@ use crate::output::history::Table;
 const LENGTH_SCALE_MM: f64 = 0.25;
 const TOUGHNESS: f64 = 3.0;
 /// Elements at the crack over l0. The finest takes a minute or more.
-const MESHES: [f64; 8] = [2.8, 2.0, 1.4, 1.0, 0.7, 0.5, 1.0 / 3.0, 0.25];
+const MESHES: [f64; 10] = [5.6, 4.0, 2.8, 2.0, 1.4, 1.0, 0.7, 0.5, 1.0 / 3.0, 0.25];
 /// The first of them for a quick run.
-const QUICK: usize = 5;
+const QUICK: usize = 8;
 /// Tolerances of the phase field, with Gc as it is and with Gc/kappa.
 const WITH_GC: [f64; 2] = [1e-3, 1e-6];
 const WITH_KAPPA: [f64; 3] = [1e-3, 1e-4, 1e-6];
 /// Options of a fast run: the critical step, samples that leave room for it, solves in every third step.
-const FAST: [&str; 7] = ["--graded", "--fraction", "1", "--interval-us", "0.5", "--every", "3"];
+const FAST: [&str; 7] = ["--graded", "--fraction", "1", "--interval-us", "1", "--every", "3"];
 /// Time that one run may take.
 const LIMIT: Duration = Duration::from_secs(1800);
 /// Open part of the balance of energies over the largest work.

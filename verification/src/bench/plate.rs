@@ -33,8 +33,8 @@ const FINEST_QUARTIC: f64 = 1.0;
 /// Tolerance of the phase field for someone in a hurry.
 const LOOSE_TOLERANCE: f64 = 1e-3;
 /// Graded meshes: spans where a crack runs over l0, and how many of them a quick run has.
-const GRADED: [f64; 7] = [2.8, 2.0, 1.4, 1.0, 0.7, 0.5, 0.4];
-const QUICK: usize = 4;
+const GRADED: [f64; 8] = [4.0, 2.8, 2.0, 1.4, 1.0, 0.7, 0.5, 0.4];
+const QUICK: usize = 5;
 /// Finest graded mesh for p = 3.
 const FINEST_CUBIC: f64 = 0.5;
 

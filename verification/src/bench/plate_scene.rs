@@ -15,9 +15,9 @@ const SHORT_SPANS: [f64; 2] = [44e-3, 36e-3];
 const LONGEST_SPANS: f64 = 36e-3;
 /// Half width of the seed in spans, at least l0: the faces of a narrower one hold together.
 const SEED_SPANS: f64 = 2.0;
-/// Step over the critical one, and rows of the history: one every 0.5 µs.
+/// Step over the critical one, and rows of the history: one every microsecond.
 const SAFETY: f64 = 0.96;
-const SAMPLES: usize = 160;
+const SAMPLES: usize = 80;
 
 /// The half plate of the cases with square spans of `h` length scales, a seed that opens freely, as many
 /// Gauss points per direction as the degree but at least two, without pictures.

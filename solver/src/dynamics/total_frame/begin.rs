@@ -42,7 +42,7 @@ impl TotalFrame {
         let grid = lattice.grid;
         let constraints = Constraints::new(&scene.boundaries, |boundary| {
             let is_reached = scene.mesh.geometry.is_some() || scene.mesh.is_reached(boundary.side, &body.shape);
-            if is_reached { held_points(&patch, &lattice, boundary) } else { Vec::new() }
+            if is_reached { held_points(&patch, &lattice, body, boundary) } else { Vec::new() }
         });
         if let Some(conditions) = constraints.contradiction {
             return Err(Failure::Contradiction(conditions));

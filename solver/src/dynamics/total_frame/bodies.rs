@@ -21,7 +21,7 @@ use crate::output::inspection::{InvertedPoint, PointState};
 use crate::output::raster::Raster;
 use crate::output::span_grid::SpanGrid;
 use crate::phase_field::PhaseFieldCounts;
-use crate::scene::{Body, Scene, Side};
+use crate::scene::{Body, Crack, Scene, Side};
 use crate::splines::patch::Patch;
 use crate::splines::spline::ROUND_OFF;
 
@@ -102,6 +102,22 @@ impl TotalBodies {
             }
         }
         Ok(())
+    }
+
+    /// Warnings of slits that part no function of the mesh.
+    pub(crate) fn idle_slits(&self, scene: &Scene) -> Vec<String> {
+        let bodies = scene.bodies.iter().filter(|body| !body.rigid).zip(&self.bodies);
+        let slits = bodies.flat_map(|(body, frame)| body.slits().map(move |slit| (frame, slit)));
+        let idle = slits.filter(|(frame, slit)| !frame.lattice.is_parted_by(&frame.patch, slit));
+        let words = |(frame, slit): (&TotalFrame, &Crack)| {
+            let [[x0, y0], [x1, y1]] = [slit.points[0], slit.points[slit.points.len() - 1]];
+            let functions = 1 + frame.lattice.degree[0].max(frame.lattice.degree[1]);
+            format!(
+                "the slit from ({x0}, {y0}) to ({x1}, {y1}) m has no effect: functions of the mesh reach over up to \
+                 {functions} cells, and it parts none of them; use smaller cells, or make it longer"
+            )
+        };
+        idle.map(words).collect()
     }
 
     /// The bodies that deform.

@@ -2,7 +2,7 @@
 //! step by conjugate gradients in the inner product of the mass.
 //!
 //! A mode of rigid motion that no condition holds stays zero: the iterates are orthogonal to it in that inner
-//! product. Loads that would accelerate it are refused.
+//! product. Loads that would accelerate it are refused; what is left of them by round-off is taken away.
 
 use super::TotalFrame;
 use super::tangent::Tangent;
@@ -42,7 +42,9 @@ impl TotalFrame {
         let free = self.free_components();
         let (mut residual, mut scale) = self.out_of_balance(&free);
         let least = ROUND_OFF * scale;
-        self.refuse_unbalanced(&free, &residual)?;
+        let motions = self.free_motions(&free);
+        refuse_unbalanced(&motions, &residual)?;
+        self.balance(&free, &motions, &mut residual);
         for _ in 0..MOST_STEPS {
             if largest(residual.iter().map(|r| r.abs())) <= larger(TOLERANCE * scale, least) {
                 return Ok(());
@@ -53,6 +55,7 @@ impl TotalFrame {
             let descends = |_| {
                 self.displace(&free, &change, part - taken);
                 (residual, scale) = self.out_of_balance(&free);
+                self.balance(&free, &motions, &mut residual);
                 let left = dot(&residual, &change) / slope;
                 taken = part;
                 bounds[usize::from(left < 0.0 || left.is_nan())] = part; // turned inside out: too far
@@ -94,8 +97,8 @@ impl TotalFrame {
         (residual, largest(inner.chain(outer.map(|(net, f)| (net + f).abs()))))
     }
 
-    /// Refuses forces along rigid motions that no condition holds.
-    fn refuse_unbalanced(&self, free: &[(usize, usize)], residual: &[f64]) -> Result<(), Failure> {
+    /// Rigid motions that no condition holds, at the free components.
+    fn free_motions(&self, free: &[(usize, usize)]) -> Vec<Vec<f64>> {
         let [x, y] = self.control_positions();
         let held: Vec<_> = self.constraints.iter().map(|(at, component, _)| (at, component)).collect();
         let mass = self.mass.row_sums();
@@ -107,18 +110,24 @@ impl TotalFrame {
             &|_, component| if component == 1 { 1.0 } else { 0.0 },
             &turning,
         ];
-        for mode in modes {
+        let is_free = |mode: &&dyn Fn(usize, usize) -> f64| {
             let by_sides = held.iter().any(|&(at, component)| mode(at, component) != 0.0);
-            if by_sides || self.edges.as_ref().is_some_and(|edges| edges.restrain(mode)) {
-                continue;
-            }
-            let works = || free.iter().zip(residual).map(|(&(at, component), r)| mode(at, component) * r);
-            let (sum, magnitude) = (works().sum::<f64>(), works().map(f64::abs).sum::<f64>());
-            if sum.abs() > BALANCED * magnitude {
-                return Err(Failure::Unbalanced(sum.abs() / magnitude));
+            !by_sides && !self.edges.as_ref().is_some_and(|edges| edges.restrain(mode))
+        };
+        let values = |mode: &dyn Fn(usize, usize) -> f64| free.iter().map(|&(at, d)| mode(at, d)).collect();
+        modes.into_iter().filter(is_free).map(values).collect()
+    }
+
+    /// Takes the forces away that would accelerate these motions.
+    fn balance(&self, free: &[(usize, usize)], motions: &[Vec<f64>], residual: &mut [f64]) {
+        let mass = self.mass.row_sums();
+        for motion in motions {
+            let inertia: f64 = free.iter().zip(motion).map(|(&(at, _), v)| mass[at] * v * v).sum();
+            let acceleration = dot(motion, residual) / inertia;
+            for ((&(at, _), v), force) in free.iter().zip(motion).zip(&mut *residual) {
+                *force -= acceleration * mass[at] * v;
             }
         }
-        Ok(())
     }
 
     /// Solves `K x = right` for the free components, to [`REDUCTION`] of the residual.
@@ -152,6 +161,18 @@ impl TotalFrame {
         }
         if square.is_finite() { Ok(x) } else { Err(Failure::NoEquilibrium(f64::NAN)) }
     }
+}
+
+/// Refuses forces along rigid motions that no condition holds.
+fn refuse_unbalanced(motions: &[Vec<f64>], residual: &[f64]) -> Result<(), Failure> {
+    for motion in motions {
+        let works = || motion.iter().zip(residual).map(|(v, r)| v * r);
+        let (sum, magnitude) = (works().sum::<f64>(), works().map(f64::abs).sum::<f64>());
+        if sum.abs() > BALANCED * magnitude {
+            return Err(Failure::Unbalanced(sum.abs() / magnitude));
+        }
+    }
+    Ok(())
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

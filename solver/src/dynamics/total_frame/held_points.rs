@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::dynamics::surface::mouths;
 use crate::particles::lattice::Lattice;
-use crate::scene::{Boundary, Layout, Side};
+use crate::scene::{Body, Boundary, Layout, Side};
 use crate::splines::patch::{Patch, control_points_on};
 use crate::splines::quadrature::Rule;
 
@@ -15,7 +16,7 @@ const ROUND_OFF: f64 = 1e-12;
 
 /// Control points of the side; of a part of it, or where a slit ends on it, those whose functions have at
 /// least half of their integral along the side on the part.
-pub(super) fn held_points(patch: &Patch, lattice: &Lattice, boundary: &Boundary) -> Vec<usize> {
+pub(super) fn held_points(patch: &Patch, lattice: &Lattice, body: &Body, boundary: &Boundary) -> Vec<usize> {
     if boundary.part.is_none() && lattice.sheets().is_none() {
         return control_points_on(boundary.side, lattice.grid);
     }
@@ -23,7 +24,9 @@ pub(super) fn held_points(patch: &Patch, lattice: &Lattice, boundary: &Boundary)
     let part = boundary.part.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     let rule = Rule::new(Layout::Gauss, patch.spaces[along].degree() + 1);
     let mut integrals = BTreeMap::<usize, [f64; 2]>::new(); // on the part, and in all
-    for point in patch.boundary_cut(boundary.side, &rule, &part) {
+    let mut cuts: Vec<f64> = mouths(body).into_iter().map(|mouth| mouth[along]).chain(part).collect();
+    cuts.sort_by(f64::total_cmp);
+    for point in patch.boundary_cut(boundary.side, &rule, &cuts) {
         let on_it = (part[0]..=part[1]).contains(&point.functions.position[along]);
         let inside = fault!("part-of-a-side-is-all-of-it", on_it => true);
         for &(at, value) in point.functions.values.iter().filter(|(_, value)| *value > ROUND_OFF) {

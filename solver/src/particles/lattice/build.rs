@@ -6,30 +6,36 @@ use super::gaps::Gaps;
 use super::tables::{Row, tiles};
 use super::{Lattice, cut, directions, fills_lattice};
 use crate::linear_algebra::lane::{LANES, Lane};
+use crate::scene::edges::BoundaryEdge;
+use crate::scene::shape::Segment;
 use crate::scene::{Body, Crack, Shape};
 use crate::splines::patch::Patch;
 
 impl Lattice {
-    /// The points of `body` on `patch`; spans that its boundary cuts have points of their own.
+    /// The points of `body` on `patch`; spans that its boundary or a slit cuts have points of their own.
     pub fn new(patch: &Patch, body: &Body) -> Self {
         let mut lattice = Self::of_tables(patch, body);
         let mapped = patch.geometry.is_some();
         let fills = fills_lattice(mapped, &body.shape);
-        let mut cut = Vec::new();
-        let mut gaps = Gaps::None;
+        let slits: Vec<Segment> = body.slits().flat_map(Crack::segments).collect();
+        let mut gaps = if fills { Gaps::None } else { Gaps::Of(&body.shape) };
         if !fills {
             lattice.keep_inside(&body.shape);
-            gaps = Gaps::Of(&body.shape);
-            if !mapped {
-                let edges = cut::edges_in_spans(&body.shape, &patch.spaces);
-                cut.extend(cut_points(patch, body, &edges, Rules::exact(&patch.spaces, most(body))));
-                if body.shape.all_edges_bound() {
-                    let of_function = |(span, edges)| (first_function(patch, span), edges);
-                    gaps = Gaps::Between(edges.into_iter().map(of_function).collect());
-                }
+        }
+        let mut cut = Vec::new();
+        if !mapped && (!fills || !slits.is_empty()) {
+            let mut edges = cut::edges_in_spans(body.shape.edges(), &patch.spaces);
+            let lines = slits.iter().copied().map(BoundaryEdge::Line).collect();
+            let by_slits = cut::edges_in_spans(fault!("slits-cut-no-spans", lines => Vec::new()), &patch.spaces);
+            if fills {
+                edges.retain(|span, _| by_slits.contains_key(span)); // its tables end at the others
+            }
+            cut.extend(cut_points(patch, body, [&edges, &by_slits], Rules::exact(&patch.spaces, most(body))));
+            if !fills && body.shape.all_edges_bound() {
+                let of_function = |(span, edges)| (first_function(patch, span), edges);
+                gaps = Gaps::Between(edges.into_iter().map(of_function).collect());
             }
         }
-        let slits: Vec<_> = body.cracks.iter().filter(|crack| crack.is_slit()).flat_map(Crack::segments).collect();
         if !fills || !slits.is_empty() {
             lattice.part(&slits, &gaps, &mut cut);
             let shape = (!fills).then(|| body.shape.clone());
@@ -48,8 +54,9 @@ impl Lattice {
         let mut lattice = Self::of_tables(patch, body);
         if !fills_lattice(false, &body.shape) {
             lattice.keep_inside(&body.shape);
-            let edges = cut::edges_in_spans(&body.shape, &patch.spaces);
-            let cut: Vec<_> = cut_points(patch, body, &edges, Rules::plain(body.layout, most(body))).collect();
+            let edges = cut::edges_in_spans(body.shape.edges(), &patch.spaces);
+            let rules = Rules::plain(body.layout, most(body));
+            let cut: Vec<_> = cut_points(patch, body, [&edges, &EdgesInSpans::new()], rules).collect();
             if !cut.is_empty() {
                 lattice.append_cut(patch, cut);
             }
@@ -120,11 +127,11 @@ impl Lattice {
     }
 }
 
-/// The points in the spans that the boundary of a body cuts.
+/// The points in the spans that the boundary of a body cuts, or a slit.
 fn cut_points<'a>(
     patch: &'a Patch,
     body: &'a Body,
-    edges: &'a EdgesInSpans,
+    edges: [&'a EdgesInSpans; 2],
     rules: Rules,
 ) -> impl Iterator<Item = CutPoint> + 'a {
     let spans = cut::cut_spans(&body.shape, edges, &patch.spaces, rules);

@@ -1,13 +1,13 @@
-//! Quadrature over the part of a span inside a shape.
+//! Quadrature over the part of a span inside a shape, and over the parts on both sides of a slit.
 //!
-//! A span is divided along one direction wherever an edge of the shape begins, ends, turns back, meets
-//! another edge or leaves the span. Between two such places every line across meets the same edges, so Gauss
-//! points along and across integrate over the part inside (Saye 2015, *High-order quadrature methods for
-//! implicitly defined surfaces and volumes in hyperrectangles*, SIAM Journal on Scientific Computing 37):
+//! A span is divided along one direction wherever an edge of the shape or a slit begins, ends, turns back,
+//! meets another one or leaves the span. Between two such places every line across meets the same edges,
+//! so Gauss points along and across integrate over the part inside (Saye 2015, *High-order quadrature methods
+//! for implicitly defined surfaces and volumes in hyperrectangles*, SIAM Journal on Scientific Computing 37):
 //! polynomials up to degree 2 p in x and in y exactly between straight edges, to 1e-10 beside arcs. All
 //! weights are positive. A span in which an arc turns much is quartered first.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::linear_algebra::extremes::{larger, smaller};
 use crate::scene::edges::BoundaryEdge;
@@ -67,10 +67,10 @@ fn corners(spaces: &[SplineSpace; 2], [i, j]: [usize; 2]) -> Corners {
     [spans.map(|span| span.left), spans.map(|span| span.right)]
 }
 
-/// The edges of a shape in the spans that they run through.
-pub(super) fn edges_in_spans(shape: &Shape, spaces: &[SplineSpace; 2]) -> EdgesInSpans {
+/// Edges, or slits, by the spans that they run through.
+pub(super) fn edges_in_spans(edges: Vec<BoundaryEdge>, spaces: &[SplineSpace; 2]) -> EdgesInSpans {
     let mut found = EdgesInSpans::new();
-    for edge in shape.edges() {
+    for edge in edges {
         let [low, high] = edge.bounding_box();
         let reached = |d: usize| {
             let spans = spaces[d].spans();
@@ -86,20 +86,23 @@ pub(super) fn edges_in_spans(shape: &Shape, spaces: &[SplineSpace; 2]) -> EdgesI
     found
 }
 
-/// The points of all spans, by column and row, that the boundary of a shape cuts.
+/// The points of all spans, by column and row, that the boundary of a shape cuts, or a slit.
 pub(super) fn cut_spans<'a>(
     shape: &'a Shape,
-    edges: &'a EdgesInSpans,
+    [edges, slits]: [&'a EdgesInSpans; 2],
     spaces: &'a [SplineSpace; 2],
     rules: Rules,
 ) -> impl Iterator<Item = ([usize; 2], Vec<WeightedPoint>)> + 'a {
     let cutter = Cutter { shape, rules };
-    edges.iter().filter_map(move |(span, edges)| {
-        let [low, high] = corners(spaces, *span);
+    let spans: BTreeSet<[usize; 2]> = edges.keys().chain(slits.keys()).copied().collect();
+    spans.into_iter().filter_map(move |span| {
+        let [low, high] = corners(spaces, span);
         let mut points = Vec::new();
-        cutter.add([low, high], &edges.iter().collect::<Vec<_>>(), 0, &mut points);
+        let all: Vec<&BoundaryEdge> = edges.get(&span).into_iter().chain(slits.get(&span)).flatten().collect();
+        cutter.add([low, high], &all, 0, &mut points);
         let part = points.iter().map(|point| point.1).sum::<f64>() / ((high[0] - low[0]) * (high[1] - low[1]));
-        (part > SLIVER && part < 1.0 - SLIVER).then_some((*span, points))
+        let is_cut = part < 1.0 - SLIVER || slits.contains_key(&span);
+        (part > SLIVER && is_cut).then_some((span, points))
     })
 }
 
@@ -213,7 +216,8 @@ mod tests {
     use crate::splines::patch::Patch;
 
     fn all(shape: &Shape, spaces: &[SplineSpace; 2]) -> BTreeMap<[usize; 2], Vec<WeightedPoint>> {
-        cut_spans(shape, &edges_in_spans(shape, spaces), spaces, Rules::exact(spaces, 1)).collect()
+        let edges = edges_in_spans(shape.edges(), spaces);
+        cut_spans(shape, [&edges, &EdgesInSpans::new()], spaces, Rules::exact(spaces, 1)).collect()
     }
 
     /// `∫ x^a y^b` over a shape on a mesh: spans inside by their middles.

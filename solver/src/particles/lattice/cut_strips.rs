@@ -69,18 +69,17 @@ impl Lattice {
             spans.entry((lift, [j, i])).or_default().push(point);
         }
         let cut: BTreeSet<FunctionIndex> = spans.keys().map(|(_, [j, i])| first_function(patch, [*i, *j])).collect();
-        for batch in 0..self.table_batches() {
+        let mut factor = self.factor.take().unwrap_or_else(|| vec![Lane::splat(1.0); self.table_batches()]);
+        for (batch, factor) in factor.iter_mut().enumerate() {
             for lane in 0..LANES {
-                if cut.contains(&self.first_of(batch, lane))
-                    && let Some(factor) = &mut self.factor
-                {
-                    factor[batch][lane] = fault!("points-of-cut-spans-twice", 0.0 => 1.0);
+                if cut.contains(&self.first_of(batch, lane)) {
+                    factor[lane] = fault!("points-of-cut-spans-twice", 0.0 => 1.0);
                 }
             }
         }
         self.fill_strip(&mut Vec::new());
-        let length = self.table_batches();
-        self.factor.iter_mut().for_each(|factor| factor.resize(length, Lane::ZERO));
+        factor.resize(self.table_batches(), Lane::ZERO);
+        self.factor = Some(factor);
         let batches =
             spans.iter().flat_map(|((lift, [j, i]), points)| CutBatch::of_span(patch, [*i, *j], *lift, points));
         let mut batches: Vec<CutBatch> = batches.collect();

@@ -15,7 +15,14 @@ use super::sheets::{FunctionIndex, Sheets};
 use super::{Lattice, Row, STRIP_ROWS};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::Lane;
+use crate::scene::Crack;
 use crate::scene::shape::Segment;
+use crate::splines::patch::Patch;
+
+/// Distance of the places on a slit at which its sides are compared, and of these sides from it, of the
+/// shortest span.
+const STEP: f64 = 0.2;
+const BESIDE: f64 = 1e-6;
 
 /// Rows of spans that a sheet takes over, and those that were added for it.
 struct SheetRows {
@@ -35,6 +42,22 @@ impl Lattice {
             let windows = self.add_rows(&groups, sheets);
             self.move_points(&groups, &windows, cut);
         }
+    }
+
+    /// Whether a slit parts a function: whether any has two control points on its two sides.
+    pub(crate) fn is_parted_by(&self, patch: &Patch, slit: &Crack) -> bool {
+        let span = patch.shortest_span();
+        slit.places(STEP * span).any(|[place, normal]| {
+            let on_side = |side: f64| {
+                let beside = [0, 1].map(|d| place[d] + side * BESIDE * span * normal[d]);
+                let values = patch.functions_at(beside).map_or_else(Vec::new, |functions| functions.values);
+                let first = values.first().map_or(0, |value| value.0);
+                let point = |(at, _): (usize, f64)| (at, self.control_point(at, first, beside));
+                values.into_iter().map(point).collect::<BTreeMap<_, _>>()
+            };
+            let [left, right] = [1.0, -1.0].map(on_side);
+            left.iter().any(|(at, point)| right.get(at).is_some_and(|other| other != point))
+        })
     }
 
     /// Adds rows of spans and of control points for every sheet.
