@@ -14,8 +14,8 @@ use crate::number::plain;
 /// Errors that are compared: relative, and in mm.
 const RELATIVE: [f64; 7] = [0.1, 0.05, 0.04, 0.02, 0.01, 0.005, 0.003];
 const LENGTHS: [f64; 5] = [4.0, 2.0, 1.0, 0.5, 0.25];
-/// No error is compared below so many uncertainties of the reference, to three digits.
-const UNCERTAINTIES: f64 = 1.999;
+/// The smallest error that is compared, and the least of the others, in uncertainties of the reference.
+const UNCERTAINTIES: [f64; 2] = [2.0, 2.05];
 
 /// Quantities, errors, and how many times less time fisura should take at them.
 const TARGETS: [([&str; 2], &[f64], f64); 3] = [
@@ -74,8 +74,8 @@ fn matches(records: Records) -> Vec<Match> {
         let Some(error) = all.iter().find_map(|record| error_in(record, quantity)) else { continue };
         let levels = if error.unit.is_empty() { &RELATIVE[..] } else { &LENGTHS[..] };
         let uncertainty = error.uncertainty;
-        let ranked = levels.iter().copied().filter(|level| *level >= UNCERTAINTIES * uncertainty);
-        for error in ranked.chain([2.0 * uncertainty]) {
+        let ranked = levels.iter().copied().filter(|level| *level >= UNCERTAINTIES[1] * uncertainty);
+        for error in ranked.chain([UNCERTAINTIES[0] * uncertainty]) {
             let ours = best(records, &[EQUAL, GRADED], quantity, error);
             let elements = best(records, &[ELEMENTS], quantity, error);
             matches.push(Match { quantity, error, uncertainty, ours, elements });
