@@ -27,7 +27,6 @@ pub mod block;
 pub mod ceilings;
 pub mod contact;
 pub mod elements;
-pub mod mesh_toughness;
 pub mod minimal;
 pub mod motion;
 pub mod moving_block;

@@ -8,12 +8,13 @@ use crate::linear_algebra::extremes::{larger, smaller};
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::material::degradation::{BROKEN, FractureModel};
 use crate::material::elasticity::ElasticModuli;
+use crate::material::mesh_toughness::{kappa, rule};
 use crate::material::random_field::RandomField;
 use crate::particles::lattice::Lattice;
 use crate::phase_field::PhaseField;
 use crate::phase_field::awake::Awake;
 use crate::phase_field::lag::LagWork;
-use crate::scene::{Body, Crack, CrackKind, Kinematics, RandomToughness, SolverSettings};
+use crate::scene::{Body, Crack, CrackKind, Fracture, Kinematics, SolverSettings};
 use crate::splines::patch::Patch;
 use crate::transfer::elastic_forces::elastic_sweep;
 use crate::transfer::finite::sweep_with;
@@ -81,10 +82,10 @@ impl LatticeFracture {
         lattice: &Lattice,
         body: &Body,
         model: FractureModel,
-        random: Option<RandomToughness>,
+        fracture: Option<&Fracture>,
         settings: &SolverSettings,
     ) -> Result<Self, SolveFailure> {
-        let relative = random.map(|random| relative_toughness(lattice, random));
+        let relative = fracture.and_then(|fracture| relative_toughness(patch, lattice, body, fracture));
         let history = seeded_history(lattice, body, &model, relative.as_deref());
         let zeros = vec![Lane::ZERO; lattice.batches()];
         let mut field = PhaseField::with_toughness(lattice, model, relative.as_deref(), settings);
@@ -376,12 +377,23 @@ fn functions_on_seeds(patch: &Patch, body: &Body) -> Vec<usize> {
     found.into_iter().collect()
 }
 
-/// Gc over its mean at the points; 1 where there is none.
-fn relative_toughness(lattice: &Lattice, random: RandomToughness) -> Vec<Lane> {
-    let field = RandomField::new(random);
+/// Gc over its mean at the points, 1 where there is none, if it varies or is over the cost of a crack on the
+/// mesh, kappa with the shorter side of the span.
+fn relative_toughness(patch: &Patch, lattice: &Lattice, body: &Body, fracture: &Fracture) -> Option<Vec<Lane>> {
+    let field = fracture.random.map(RandomField::new);
+    if field.is_none() && !fracture.mesh_toughness {
+        return None;
+    }
+    let rule = rule(fracture, lattice.degree, body).filter(|_| fracture.mesh_toughness);
+    let side = |place, direction| patch.span_across(place, direction).unwrap_or(0.0);
+    let shorter = |place| smaller(side(place, [1.0, 0.0]), side(place, [0.0, 1.0]));
     let mut relative = vec![Lane::splat(1.0); lattice.batches()];
-    lattice.for_each_point(|batch, lane, place, _| relative[batch][lane] = field.at(place));
-    relative
+    lattice.for_each_point(|batch, lane, place, _| {
+        let random = field.as_ref().map_or(1.0, |field| field.at(place));
+        let cost = rule.and_then(|[degree, points]| kappa(degree, points, shorter(place) / fracture.length_scale));
+        relative[batch][lane] = random / fault!("toughness-of-the-mesh-forgotten", cost => None).unwrap_or(1.0);
+    });
+    Some(relative)
 }
 
 /// H0 at the points, with the Gc that is there.

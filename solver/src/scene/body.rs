@@ -107,6 +107,8 @@ pub struct Fracture {
     pub anisotropy: Option<Anisotropy>,
     /// How Gc varies from place to place about its mean, if it does.
     pub random: Option<RandomToughness>,
+    /// Whether Gc is over the cost of a crack on the mesh, where that is known.
+    pub mesh_toughness: bool,
 }
 
 impl Fracture {
@@ -120,6 +122,7 @@ impl Fracture {
             split: Split::Spectral,
             anisotropy: None,
             random: None,
+            mesh_toughness: false,
         }
     }
 

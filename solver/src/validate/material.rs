@@ -181,7 +181,11 @@ fn varying_toughness(key: &str, fracture: &Fracture, frame: Frame, findings: &mu
             findings.error(key("field"), message, "use model = \"at1\" or \"at2\"");
         }
     }
-    let given = [("anisotropy", fracture.anisotropy.is_some()), ("random", fracture.random.is_some())];
+    let given = [
+        ("anisotropy", fracture.anisotropy.is_some()),
+        ("random", fracture.random.is_some()),
+        ("mesh_toughness", fracture.mesh_toughness),
+    ];
     for (name, _) in given.into_iter().filter(|(_, given)| *given && frame == Frame::Updated) {
         let message = "in the updated frame Gc is the same in every direction and at every place";
         findings.error(format!("{key}.{name}"), message, "use frame = \"total\", or remove the key");

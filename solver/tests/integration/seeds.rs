@@ -190,3 +190,32 @@ fn long_cells_are_refused_where_a_seed_lies_and_named_elsewhere() {
         assert_eq!(errors[0].key, key, "{errors:?}");
     }
 }
+
+/// On equal cells `mesh_toughness` is Gc over the cost of a crack, where that is known, and else said to be
+/// nothing.
+#[test]
+fn the_toughness_of_the_mesh_is_gc_over_the_cost_of_a_crack() {
+    let run = |change: &dyn Fn(&mut Fracture)| {
+        let mut scene = notched_plate(3e6);
+        scene.analysis.end_time = 5e-6;
+        change(scene.materials.get_mut("glass").unwrap().fracture.as_mut().unwrap());
+        let (_, samples) = crate::common::run(&scene);
+        samples.last().unwrap().kinetic
+    };
+    let mesh = notched_plate(3e6).mesh;
+    let h = mesh.knots[0].windows(2).map(|k| k[1] - k[0]).fold(0.0, larger);
+    let by_key = run(&|fracture| fracture.mesh_toughness = true);
+    let by_hand = run(&|fracture| fracture.critical_energy_release_rate /= 1.0 + 0.12 * h / L0);
+    approx::assert_relative_eq!(by_key, by_hand, max_relative = 1e-6);
+    assert!((run(&|_| {}) / by_key - 1.0).abs() > 1e-4, "it makes a difference");
+    let warnings = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = seeded(L0, [2, 2], Crack::seed([0.0, 5e-3], [5e-3, 5e-3]));
+        scene.materials.get_mut("glass").unwrap().fracture.as_mut().unwrap().mesh_toughness = true;
+        change(&mut scene);
+        let found = validate(&scene).unwrap_or_default();
+        found.iter().filter(|warning| warning.key.ends_with("mesh_toughness")).count()
+    };
+    assert_eq!(warnings(&|_| {}), 0);
+    assert_eq!(warnings(&|scene| scene.bodies[0].particles_per_cell = [3, 3]), 1);
+    assert_eq!(warnings(&|scene| scene.bodies[0].layout = Layout::Uniform), 1);
+}

@@ -7,7 +7,7 @@
 //! | mesh | graded: elements twice and four times as large where no crack runs |
 //! | step | the critical one of an element |
 //! | phase field | solved for in every third step, in between it goes on linearly |
-//! | toughness | Gc, and Gc/kappa ([`super::mesh_toughness`]) |
+//! | toughness | Gc, and Gc/kappa ([`fisura::material::mesh_toughness`]) |
 //! | tolerance | 1e-3, 1e-4 and the 1e-6 of the reference |
 //!
 //! What else was tried, with numbers, is in the README of the package. It is no part of the workspace and
@@ -20,7 +20,8 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::mesh_toughness::kappa;
+use fisura::material::mesh_toughness::kappa;
+
 use super::peer::program::Program;
 use super::plate_error::References;
 use super::record::{BenchRecord, Sample};

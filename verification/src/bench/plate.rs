@@ -5,7 +5,7 @@
 //!
 //! Besides equal spans and the tolerance of the suite there is what someone in a hurry would run: longer
 //! spans where no crack runs and nearly the critical step (`plate_scene`), a loose tolerance of the phase
-//! field, and Gc/kappa ([`super::mesh_toughness`]). What a tolerance does to the energies is a
+//! field, and Gc/kappa ([`fisura::material::mesh_toughness`]). What a tolerance does to the energies is a
 //! diagram of its own, against a run with 2e-8.
 
 use std::sync::Arc;

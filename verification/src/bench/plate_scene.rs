@@ -1,8 +1,8 @@
 //! The half plate of the cases on meshes of any span.
 
+use fisura::material::mesh_toughness::kappa;
 use fisura::scene::{CrackKind, Side};
 
-use super::mesh_toughness::kappa;
 use super::{BenchError, Settings};
 use crate::case::Case;
 use crate::case::expand::CaseScene;

@@ -62,6 +62,7 @@ fn fracture(item: &Item<'_>) -> Option<Fracture> {
         "split",
         "anisotropy",
         "random",
+        "mesh_toughness",
     ])?;
     let model = model(&fields);
     let rate = fields.need("critical_energy_release_rate", "critical_energy_release_rate = \"3 J/m^2\"", |item| {
@@ -72,6 +73,7 @@ fn fracture(item: &Item<'_>) -> Option<Fracture> {
     let split = fields.or("split", Split::Spectral, split);
     let anisotropy = fields.maybe("anisotropy", anisotropy);
     let random = fields.maybe("random", random);
+    let mesh_toughness = fields.or("mesh_toughness", false, Item::flag);
     Some(Fracture {
         model: model?,
         critical_energy_release_rate: rate?,
@@ -80,6 +82,7 @@ fn fracture(item: &Item<'_>) -> Option<Fracture> {
         split: split?,
         anisotropy: anisotropy?,
         random: random?,
+        mesh_toughness: mesh_toughness?,
     })
 }
 

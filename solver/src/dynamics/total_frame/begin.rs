@@ -49,10 +49,7 @@ impl TotalFrame {
         }
         let held = [0, 1].map(|component| constraints.held(component));
         let fracture = FractureModel::of(material)
-            .map(|model| {
-                let random = material.fracture.as_ref().and_then(|fracture| fracture.random);
-                LatticeFracture::new(&patch, &lattice, body, model, random, &scene.solver)
-            })
+            .map(|model| LatticeFracture::new(&patch, &lattice, body, model, material.fracture.as_ref(), &scene.solver))
             .transpose()?;
         let mass = MassMatrix::new(&lattice, material.density, scene.analysis.mass, held)?;
         if let Some(number) = constraints.conditions().iter().enumerate().position(|(number, condition)| {

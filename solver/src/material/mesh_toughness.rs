@@ -2,9 +2,10 @@
 //! its functions, and the energy of a crack per length exceeds Gc by the factor `kappa = 1 + a h/l0`.
 //!
 //! `a` is fitted to the cost of one broken row of points, which `reference-data/derivations/crack_cost.py`
-//! computes (AT2, Borden's convention; h/l0 from 1/4 to 1). A run with Gc/kappa pays Gc, and
-//! its error is no longer of first order in h. Codes of any method can do so, and in the comparison of
-//! [`super::plate`] all of them do.
+//! computes (AT2, Borden's convention; h/l0 from 1/4 to 1). A run with Gc/kappa pays Gc, and its error is no
+//! longer of first order in h.
+
+use crate::scene::{Body, CrackModel, Fracture, Layout};
 
 /// A discretisation, and `a` of its cracks.
 struct Discretisation {
@@ -24,6 +25,13 @@ const MEASURED: [Discretisation; 3] = [
 pub fn kappa(degree: usize, points: usize, h: f64) -> Option<f64> {
     let found = MEASURED.iter().find(|d| (d.degree, d.points) == (degree, points))?;
     Some(1.0 + found.slope * h)
+}
+
+/// Degree and points per direction of a body, if the cost of its cracks on a mesh of this degree is known.
+pub(crate) fn rule(fracture: &Fracture, [p, q]: [usize; 2], body: &Body) -> Option<[usize; 2]> {
+    let [nx, ny] = body.particles_per_cell;
+    let is_plain = fracture.model == CrackModel::At2 && fracture.anisotropy.is_none() && body.layout == Layout::Gauss;
+    (is_plain && p == q && nx == ny && kappa(p, nx, 0.0).is_some()).then_some([p, nx])
 }
 
 #[cfg(test)]
