@@ -5,6 +5,7 @@
 //! [`fisura::validate::validate`] says whether it makes sense. Every problem names file, line, column and
 //! full key path.
 
+mod accuracy;
 pub mod diagnostic;
 pub mod document;
 pub mod fields;

@@ -8,6 +8,7 @@ use fisura::scene::{
     Scene, Shape, SolverSettings, TimeStep, Transfer,
 };
 
+use super::accuracy::{accuracy, choose_settings, choose_span};
 use super::diagnostic::Problem;
 use super::document::Node;
 use super::fields::{Item, Problems};
@@ -40,10 +41,13 @@ pub fn read_scene(node: &Node, prefix: &str, folder: &Path) -> Result<Scene, Vec
 fn scene(item: &Item<'_>) -> Option<Scene> {
     let fields = item.fields(&SCENE_KEYS)?;
     let title = fields.or("title", String::new(), Item::text);
-    let mesh = fields.need("mesh", "a table [mesh] with degree, origin, size and cells", mesh);
     let analysis = fields.need("analysis", "a table [analysis] with end_time", analysis);
-    let solver = fields.or("solver", default_solver(), solver);
-    let materials = fields.or("material", BTreeMap::new(), materials);
+    let solver = fields.or("solver", (default_solver(), None), solver);
+    let mut materials = fields.or("material", BTreeMap::new(), materials);
+    let accuracy = solver.as_ref().and_then(|(_, accuracy)| *accuracy);
+    let table = fields.get("material").map(|item| item.node);
+    let span = accuracy.zip(materials.as_mut()).and_then(|(a, materials)| choose_span(a, materials, table));
+    let mesh = fields.need("mesh", "a table [mesh] with degree, origin, size and cells", |item| mesh(item, span));
     let frame = analysis.as_ref().map_or(Frame::Total, |analysis| analysis.frame);
     let degree = mesh.as_ref().map_or([2; 2], |mesh| mesh.degree);
     let bodies = fields.or("body", Vec::new(), |item| bodies(item, frame, degree));
@@ -60,7 +64,15 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
         item.fields(&["equilibrium"])?.need("equilibrium", "equilibrium = true", Item::flag)
     });
     let output = fields.or("output", Output::rows(320), output);
-    let (mesh, mut bodies) = (mesh?, bodies?);
+    let (mesh, mut bodies, analysis, materials) = (mesh?, bodies?, analysis?, materials?);
+    let (mut solver, _) = solver?;
+    if let Some((accuracy, item)) = accuracy.zip(fields.get("solver")) {
+        if span.is_none() {
+            return item
+                .fail("an accuracy without a material that can break", "remove the key, or add a fracture table");
+        }
+        choose_settings(accuracy, &mut solver, (&materials, analysis.frame), item.node);
+    }
     if mesh.geometry.is_none() {
         // All of a rectangular mesh is a rectangle.
         for body in bodies.iter_mut().filter(|body| body.shape == Shape::Patch) {
@@ -70,9 +82,9 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     Some(Scene {
         title: title?,
         mesh,
-        analysis: analysis?,
-        solver: solver?,
-        materials: materials?,
+        analysis,
+        solver,
+        materials,
         bodies,
         contact: contact?,
         boundaries: boundaries?,
@@ -161,9 +173,11 @@ fn default_solver() -> SolverSettings {
     }
 }
 
-fn solver(item: &Item<'_>) -> Option<SolverSettings> {
+/// Settings, and the accuracy that others are to be chosen for.
+fn solver(item: &Item<'_>) -> Option<(SolverSettings, Option<f64>)> {
     let default = default_solver();
-    let fields = item.fields(&["phase_field_tolerance", "phase_field_solver", "phase_field_interval"])?;
+    let fields = item.fields(&["phase_field_tolerance", "phase_field_solver", "phase_field_interval", "accuracy"])?;
+    let accuracy = accuracy(&fields);
     let tolerance = fields.or("phase_field_tolerance", default.phase_field_tolerance, number);
     let solver = fields.or("phase_field_solver", default.phase_field_solver, Item::word);
     let interval = fields.or("phase_field_interval", default.phase_field_interval, |item| match item.node.as_str() {
@@ -171,11 +185,12 @@ fn solver(item: &Item<'_>) -> Option<SolverSettings> {
         Some(_) => item.fail("unknown interval", "write a whole number of steps, or \"auto\""),
         None => item.whole(1, 100).map(PhaseFieldInterval::Steps),
     });
-    Some(SolverSettings {
+    let settings = SolverSettings {
         phase_field_tolerance: tolerance?,
         phase_field_solver: solver?,
         phase_field_interval: interval?,
-    })
+    };
+    Some((settings, accuracy?))
 }
 
 fn output(item: &Item<'_>) -> Option<Output> {

@@ -13,13 +13,15 @@ const MOST_CELLS: usize = 100_000;
 /// folds: half a second; and of its spans in one direction.
 const MOST_MAPPED_POSITIONS: usize = 2_500_000;
 const MOST_MAPPED_IN_A_ROW: usize = 10_000;
+/// Excess of a length over whole cells that counts as none.
+const ROUND_OFF: f64 = 1e-9;
 /// Angle short of a full turn that a ring has to leave open, rad.
 const LEAST_OPENING: f64 = 1e-9;
 const KEYS: [&str; 10] =
     ["degree", "origin", "size", "cells", "knots", "long_ends", "control_points", "weights", "subdivide", "annulus"];
 
-/// The `[mesh]` table.
-pub(super) fn mesh(item: &Item<'_>) -> Option<Mesh> {
+/// The `[mesh]` table; a rectangle without cells has cells of at most `longest`, m.
+pub(super) fn mesh(item: &Item<'_>, longest: Option<f64>) -> Option<Mesh> {
     let fields = item.fields(&KEYS)?;
     let form = ["control_points", "annulus"].into_iter().find(|key| fields.get(key).is_some());
     let allowed: &[&str] = match form {
@@ -40,17 +42,20 @@ pub(super) fn mesh(item: &Item<'_>) -> Option<Mesh> {
         (_, false) => None,
         (Some("control_points"), _) => general(&fields, degree?),
         (Some(_), _) => fields.get("annulus").and_then(|item| annulus(&item, &fields, degree?)),
-        (None, _) => rectangle(&fields, degree),
+        (None, _) => rectangle(&fields, degree, longest),
     }
 }
 
-fn rectangle(fields: &Fields<'_>, degree: Option<[usize; 2]>) -> Option<Mesh> {
+fn rectangle(fields: &Fields<'_>, degree: Option<[usize; 2]>, longest: Option<f64>) -> Option<Mesh> {
     let origin = fields.need("origin", "origin = [0.0, 0.0] (m), the lower left corner", point);
     let size = fields.need("size", "size = [0.1, 0.04] (m), width and height", size);
     let knots = fields.maybe("knots", |item| item.pair(|direction| direction.each(length)));
     let cells = match (fields.get("cells"), &knots) {
         (Some(cells), Some(Some(_))) => cells.fail("both cells and knots are given", "remove one of the two"),
-        (None, Some(None)) => fields.need("cells", "cells = [100, 40], the spans per direction", |_| None),
+        (None, Some(None)) => match (longest, size) {
+            (Some(longest), Some(size)) => cells_of(fields, size, longest),
+            _ => fields.need("cells", "cells = [100, 40], the spans per direction", |_| None),
+        },
         (Some(cells), _) => cells.whole_per_direction(1, MOST_CELLS),
         (None, _) => Some([1, 1]),
     };
@@ -65,6 +70,18 @@ fn rectangle(fields: &Fields<'_>, degree: Option<[usize; 2]>) -> Option<Mesh> {
         Some(knots) => graded(fields, degree, origin, size, knots, parts)?,
     };
     if ends?.into_iter().all(|side| mesh.lengthen_end(side)) { Some(mesh) } else { too_short(fields) }
+}
+
+/// Cells of at most `longest` (m) in a rectangle of a size, m.
+fn cells_of(fields: &Fields<'_>, size: [f64; 2], longest: f64) -> Option<[usize; 2]> {
+    let cells = size.map(|size| (size / longest * (1.0 - ROUND_OFF)).ceil().max(1.0));
+    if cells.iter().all(|cells| *cells <= MOST_CELLS as f64) {
+        return Some(cells.map(|cells| cells as usize));
+    }
+    let message = format!("cells of {longest:.3e} m would be {} x {}", cells[0], cells[1]);
+    fields
+        .get("size")?
+        .fail(message, format!("ask for less accuracy, or give cells: at most {MOST_CELLS} in a direction"))
 }
 
 /// Sides at which the last two spans are one.

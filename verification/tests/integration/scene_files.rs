@@ -61,6 +61,27 @@ fn what_is_left_out_takes_its_default() {
 }
 
 #[test]
+fn an_accuracy_chooses_what_a_scene_leaves_out() {
+    let left_out = edited("cells  = [400, 160]", "").replace("phase_field_tolerance = 1e-8", "accuracy = \"1 %\"");
+    let chosen = |list: &[&str]| {
+        let scene = SceneFile::parse("plate.toml", &left_out, &overrides(list)).unwrap().scene;
+        let SolverSettings { phase_field_tolerance: tolerance, phase_field_interval: interval, .. } = scene.solver;
+        let spans = scene.mesh.knots.each_ref().map(|knots| knots.len() - 5);
+        (spans, tolerance, interval, scene.materials["glass"].fracture.as_ref().unwrap().mesh_toughness)
+    };
+    let steps = PhaseFieldInterval::Steps;
+    assert_eq!(chosen(&[]), ([400, 160], 1e-3, steps(2), true));
+    assert_eq!(chosen(&["solver.accuracy=\"0.5 %\""]), ([800, 320], 5e-4, steps(1), true));
+    let by_direction = ["material.glass.fracture.anisotropy={ tensor = [[1.0, 0.0], [0.0, 4.0]] }"];
+    assert_eq!(chosen(&by_direction).0, [1600, 640], "the cost of a crack is not known");
+    let given = ["mesh.cells=[200, 80]", "solver.phase_field_interval=3", "solver.phase_field_tolerance=1e-6"];
+    let kept = [&given[..], &["material.glass.fracture.mesh_toughness=false"]].concat();
+    assert_eq!(chosen(&kept), ([200, 80], 1e-6, steps(3), false));
+    let refused = |list: &[&str]| SceneFile::parse("plate.toml", &left_out, &overrides(list)).unwrap_err().to_string();
+    assert!(refused(&["solver.accuracy=2"]).contains("0.1 %"), "{}", refused(&["solver.accuracy=2"]));
+}
+
+#[test]
 fn every_form_of_a_key_is_read() {
     let text = edited("cells  = [400, 160]", "knots = [[0, 0, 0, 1, 3, 4, 4, 4], [0, 0, 0, 1, 1, 1]]")
         .replace("transfer   = \"flip\"", "transfer = { xpic = 5 }")
