@@ -47,6 +47,11 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     let accuracy = solver.as_ref().and_then(|(_, accuracy)| *accuracy);
     let table = fields.get("material").map(|item| item.node);
     let span = accuracy.zip(materials.as_mut()).and_then(|(a, materials)| choose_span(a, materials, table));
+    let is_idle = accuracy.is_some() && materials.is_some() && span.is_none();
+    if let Some(item) = fields.get("solver").filter(|_| is_idle) {
+        let message = "an accuracy in a scene without a material that can break: there is nothing to choose";
+        item.fail::<()>(message, "remove accuracy, or add [material.NAME.fracture]");
+    }
     let mesh = fields.need("mesh", "a table [mesh] with degree, origin, size and cells", |item| mesh(item, span));
     let frame = analysis.as_ref().map_or(Frame::Total, |analysis| analysis.frame);
     let degree = mesh.as_ref().map_or([2; 2], |mesh| mesh.degree);
@@ -67,10 +72,6 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     let (mesh, mut bodies, analysis, materials) = (mesh?, bodies?, analysis?, materials?);
     let (mut solver, _) = solver?;
     if let Some((accuracy, item)) = accuracy.zip(fields.get("solver")) {
-        if span.is_none() {
-            return item
-                .fail("an accuracy without a material that can break", "remove the key, or add a fracture table");
-        }
         choose_settings(accuracy, &mut solver, (&materials, analysis.frame), item.node);
     }
     if mesh.geometry.is_none() {

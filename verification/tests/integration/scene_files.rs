@@ -79,6 +79,10 @@ fn an_accuracy_chooses_what_a_scene_leaves_out() {
     assert_eq!(chosen(&kept), ([200, 80], 1e-6, steps(3), false));
     let refused = |list: &[&str]| SceneFile::parse("plate.toml", &left_out, &overrides(list)).unwrap_err().to_string();
     assert!(refused(&["solver.accuracy=2"]).contains("0.1 %"), "{}", refused(&["solver.accuracy=2"]));
+    let [start, end] = ["[material.glass.fracture]", "[[body]]"].map(|part| left_out.find(part).unwrap());
+    let elastic = left_out.replace(&left_out[start..end], "");
+    let refused = SceneFile::parse("plate.toml", &elastic, &[]).unwrap_err().to_string();
+    assert!(refused.contains("nothing to choose"), "{refused}");
 }
 
 #[test]
