@@ -45,8 +45,7 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     let solver = fields.or("solver", (default_solver(), None), solver);
     let mut materials = fields.or("material", BTreeMap::new(), materials);
     let accuracy = solver.as_ref().and_then(|(_, accuracy)| *accuracy);
-    let table = fields.get("material").map(|item| item.node);
-    let span = accuracy.zip(materials.as_mut()).and_then(|(a, materials)| choose_span(a, materials, table));
+    let span = accuracy.zip(materials.as_mut()).and_then(|(a, materials)| choose_span(a, materials, item.node));
     let is_idle = accuracy.is_some() && materials.is_some() && span.is_none();
     if let Some(item) = fields.get("solver").filter(|_| is_idle) {
         let message = "an accuracy in a scene without a material that can break: there is nothing to choose";

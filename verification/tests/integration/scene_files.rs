@@ -74,6 +74,11 @@ fn an_accuracy_chooses_what_a_scene_leaves_out() {
     assert_eq!(chosen(&["solver.accuracy=\"0.5 %\""]), ([800, 320], 5e-4, steps(1), true));
     let by_direction = ["material.glass.fracture.anisotropy={ tensor = [[1.0, 0.0], [0.0, 4.0]] }"];
     assert_eq!(chosen(&by_direction).0, [1600, 640], "the cost of a crack is not known");
+    for without in ["body.0.layout=\"uniform\"", "body.0.particles_per_cell=[3, 3]", "mesh.degree=[2, 3]"] {
+        let (spans, .., by_mesh) = chosen(&[without]);
+        assert!(spans[0] >= 1600 && !by_mesh, "{without}: {spans:?}");
+    }
+    assert_eq!(chosen(&["solver.accuracy=\"10 %\""]).1, 1e-3);
     let given = ["mesh.cells=[200, 80]", "solver.phase_field_interval=3", "solver.phase_field_tolerance=1e-6"];
     let kept = [&given[..], &["material.glass.fracture.mesh_toughness=false"]].concat();
     assert_eq!(chosen(&kept), ([200, 80], 1e-6, steps(3), false));
