@@ -221,6 +221,7 @@ fn material_beside_a_slit_keeps_its_neighbours() {
         for degree in [2, 3] {
             let [coarse, middle, fine] = [17, 20, 30].map(|cells| held(cells, degree, slits));
             let whole = held(20, degree, &[]);
+            // a slit acts up to a span before its tip, and beside a held side that is much of its effect
             for energy in [coarse, middle] {
                 assert!((energy / fine - 1.0).abs() < 0.25, "{slits:?}, p = {degree}: {coarse} {middle} {fine}");
             }

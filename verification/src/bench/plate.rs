@@ -66,7 +66,7 @@ impl Way {
             case.scene.solver.phase_field_tolerance = LOOSE_TOLERANCE;
         }
         if self.corrected {
-            with_toughness_of_mesh(&mut case, h)?;
+            with_toughness_of_mesh(&mut case)?;
         }
         Ok(case)
     }

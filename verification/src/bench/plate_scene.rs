@@ -70,17 +70,16 @@ pub fn graded(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, B
     Ok(case)
 }
 
-/// Divides Gc by what a crack costs on the mesh ([`kappa`]) with spans of `h` length scales.
+/// Gives the scene Gc over what a crack costs on its mesh ([`kappa`]).
 ///
 /// # Errors
 /// If that is not known of the degree and the points of the scene.
-pub fn with_toughness_of_mesh(case: &mut CaseScene, h: f64) -> Result<(), BenchError> {
+pub fn with_toughness_of_mesh(case: &mut CaseScene) -> Result<(), BenchError> {
     let (degree, points) = (case.scene.mesh.degree[0], case.scene.bodies[0].particles_per_cell[0]);
-    let unknown =
-        || BenchError::input(format!("the surface energy of a crack with p = {degree} and {points} points is unknown"));
-    let kappa = kappa(degree, points, h).ok_or_else(unknown)?;
+    let unknown = || format!("the surface energy of a crack with p = {degree} and {points} points is unknown");
+    kappa(degree, points, 0.0).ok_or_else(|| BenchError::input(unknown()))?;
     let fractures = case.scene.materials.values_mut().filter_map(|material| material.fracture.as_mut());
-    fractures.for_each(|fracture| fracture.critical_energy_release_rate /= kappa);
+    fractures.for_each(|fracture| fracture.mesh_toughness = true);
     Ok(())
 }
 
@@ -119,11 +118,10 @@ mod tests {
         let spans = case.scene.mesh.knots.each_ref().map(|knots| knots.len() - 7);
         assert_eq!((spans, case.energy_factor, case.scene.output.frames.len()), ([200, 40], 2.0, 0));
         let mut case = graded(&settings, 2, 1.0).unwrap();
-        with_toughness_of_mesh(&mut case, 1.0).unwrap();
-        let fracture = case.scene.materials["glass"].fracture.as_ref().unwrap();
-        assert!((fracture.critical_energy_release_rate - 3.0 / 1.12).abs() < 1e-12);
+        with_toughness_of_mesh(&mut case).unwrap();
+        assert!(case.scene.materials["glass"].fracture.as_ref().unwrap().mesh_toughness);
         case.scene.mesh.degree = [4; 2];
-        assert!(with_toughness_of_mesh(&mut case, 1.0).is_err());
+        assert!(with_toughness_of_mesh(&mut case).is_err());
         let knots = &case.scene.mesh.knots;
         let spans = knots.each_ref().map(|knots| knots.windows(2).map(|k| k[1] - k[0]).filter(|d| *d > 0.0));
         for ((spans, count), length) in spans.into_iter().zip([36 + 16 + 223, 64 + 8]).zip([0.1, 0.02]) {
