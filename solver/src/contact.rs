@@ -186,7 +186,7 @@ impl ContactSolver {
                 };
                 let halfway = outward.map(|n| sign * n);
                 let along = fault!("normal-of-one-body", halfway => if own == 0 { normal } else { nearest.normal });
-                let Some(normal) = unit(along) else { continue };
+                let Some(normal) = unit(along, 1.0) else { continue };
                 let closing = sign * dot([0, 1].map(|d| displacement[d] - nearest.displacement[d]), normal);
                 let near = larger(NEAR * self.reach, AHEAD * closing);
                 if nearest.distance > near {
@@ -213,7 +213,7 @@ impl ContactSolver {
     /// The constraint of a square; none if a body has no material there.
     fn constraint(&self, encounter: &Encounter, bodies: &[BodyView]) -> Option<ContactConstraint> {
         let position = encounter.position();
-        let normal = unit(encounter.normal)?;
+        let normal = encounter.direction()?;
         let Encounter { bodies: pair @ [a, b], square, .. } = *encounter;
         let on_a = BoundaryFunctions::new(&bodies[a], position)?;
         let on_b = match bodies.get(b) {

@@ -10,6 +10,7 @@ pub mod conjugate_gradients;
 pub mod control_grid;
 pub mod extremes;
 pub mod incomplete_cholesky;
+pub(crate) mod interface;
 pub mod lane;
 pub(crate) mod preconditioned;
 pub mod preconditioner;

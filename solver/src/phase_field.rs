@@ -33,6 +33,7 @@ mod bounds;
 pub mod fracture;
 mod increments;
 pub(crate) mod lag;
+pub(crate) mod levels;
 mod method;
 mod minimise;
 mod newton;
@@ -40,6 +41,7 @@ mod state;
 
 use serde::{Deserialize, Serialize};
 
+use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::conjugate_gradients::{Convergence, SolveFailure};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::larger;
@@ -117,19 +119,7 @@ impl PhaseField {
         settings: &SolverSettings,
     ) -> Self {
         let mut matrix = Stencil::zeros(lattice.patch_grid, lattice.degree);
-        let diffusion = match model.gradient {
-            Anisotropy::NONE => Integrand::Diffusion,
-            tensor => Integrand::Anisotropic(tensor),
-        };
-        let everywhere = vec![Lane::splat(1.0); lattice.batches()];
-        let toughness = relative.unwrap_or(&everywhere);
-        // with a threshold, the driving energies will take the place of the local term
-        let local = if model.threshold().is_some() { &everywhere } else { toughness };
-        add_form(&mut matrix, lattice, Integrand::Mass, &Scaled(local, model.source()));
-        let gradients = fault!("gradient-of-mean-toughness", toughness => &everywhere);
-        add_form(&mut matrix, lattice, diffusion, &Scaled(gradients, model.diffusion()));
-        let mut load = integrate_with(lattice, |batch, lane| toughness[batch][lane]);
-        load.iter_mut().for_each(|load| *load *= model.source());
+        let mut load = add_forms(&mut matrix, lattice, &model, relative, 1.0);
         isolate_empty(&mut matrix, &mut load);
         if lattice.has_cut_spans() {
             separate_small(&mut matrix);
@@ -205,12 +195,32 @@ impl PhaseField {
         (&mut self.matrix, &mut self.load)
     }
 
+    /// Leaves others than these control points out of the system.
+    pub(crate) fn restrict(&mut self, active: ActiveColumns) {
+        self.matrix.restrict(active);
+    }
+
+    /// Takes control values from those of a coarser level, now and at the last solves: `spread` sets them in
+    /// a field from another.
+    pub(crate) fn take_values(&mut self, coarse: &Self, spread: impl Fn(&[f64], &mut [f64])) {
+        spread(&coarse.phase, &mut self.phase);
+        spread(&coarse.previous, &mut self.previous);
+        if let (Some(coarse), Some(lag)) = (&coarse.lag, &mut self.lag) {
+            spread(&coarse.solved, &mut lag.solved);
+        }
+    }
+
     /// Replaces the right-hand side: `Σ_p V_p s_p N_I(x_p)` with a manufactured source s.
     pub fn set_load(&mut self, load: Vec<f64>) {
         if let Some(linearised) = self.bounds.as_mut().and_then(|bounds| bounds.linearised.as_mut()) {
             linearised.rest.clone_from(&load);
         }
         self.load = load;
+    }
+
+    /// Right-hand side.
+    pub(crate) fn load(&self) -> &[f64] {
+        &self.load
     }
 
     /// Control values of c.
@@ -298,7 +308,13 @@ impl PhaseField {
     /// As [`Self::solve`].
     pub(crate) fn initialise_system(&mut self) -> Result<Convergence, SolveFailure> {
         self.renew_preconditioner();
-        let convergence = self.solve_with(ITERATION_LIMIT, 1.0)?; // from afar: says nothing of the solves to come
+        let convergence = self.solve_with(ITERATION_LIMIT, 1.0)?;
+        self.begin_from_here();
+        Ok(convergence)
+    }
+
+    /// Takes the present c for the first: the solve came from afar, and says nothing of those to come.
+    fn begin_from_here(&mut self) {
         self.previous.copy_from_slice(&self.phase);
         if let Some(lag) = &mut self.lag {
             lag.begin(&self.phase);
@@ -306,7 +322,18 @@ impl PhaseField {
         if let Some(preconditioner) = self.method.preconditioner() {
             preconditioner.forget();
         }
-        Ok(convergence)
+    }
+
+    /// Adds the points of a lattice with their H to the matrix, or with a `sign` of −1 takes them away; their
+    /// part of the right-hand side.
+    fn add_points(&mut self, lattice: &Lattice, relative: Option<&[Lane]>, history: &[Lane], sign: f64) -> Vec<f64> {
+        if sign > 0.0 {
+            self.assemble_history(lattice, history);
+        } else {
+            let none = vec![Lane::ZERO; history.len()];
+            self.assemble_increments(lattice, &none, 0.0, |_| true);
+        }
+        add_forms(&mut self.matrix, lattice, &self.model, relative, sign)
     }
 
     /// Makes the preconditioner anew from the matrix as it stands: control points may have gained or lost
@@ -342,7 +369,7 @@ impl PhaseField {
         let increments = Increments { history, assembled: &self.assembled, reaction, takes: &takes };
         add_form(&mut self.matrix, lattice, Integrand::Mass, &increments);
         for (cell, (assembled, history)) in self.assembled.chunks_mut(span).zip(history.chunks(span)).enumerate() {
-            if takes(cell, assembled, history) {
+            if lattice.is_cell_occupied(cell) && takes(cell, assembled, history) {
                 assembled.copy_from_slice(history);
             }
         }
@@ -372,6 +399,30 @@ impl PhaseField {
             + self.lag.as_ref().map_or(0, |lag| lag.bytes())
             + self.bounds.as_ref().map_or(0, |bounds| bounds.bytes())
     }
+}
+
+/// Adds what does not depend on H to a matrix, times a sign; returns what it adds to the right-hand side.
+fn add_forms(
+    matrix: &mut Stencil,
+    lattice: &Lattice,
+    model: &FractureModel,
+    relative: Option<&[Lane]>,
+    sign: f64,
+) -> Vec<f64> {
+    let diffusion = match model.gradient {
+        Anisotropy::NONE => Integrand::Diffusion,
+        tensor => Integrand::Anisotropic(tensor),
+    };
+    let everywhere = vec![Lane::splat(1.0); lattice.batches()];
+    let toughness = relative.unwrap_or(&everywhere);
+    // with a threshold, the driving energies will take the place of the local term
+    let local = if model.threshold().is_some() { &everywhere } else { toughness };
+    add_form(matrix, lattice, Integrand::Mass, &Scaled(local, sign * model.source()));
+    let gradients = fault!("gradient-of-mean-toughness", toughness => &everywhere);
+    add_form(matrix, lattice, diffusion, &Scaled(gradients, sign * model.diffusion()));
+    let mut load = integrate_with(lattice, |batch, lane| toughness[batch][lane]);
+    load.iter_mut().for_each(|load| *load *= sign * model.source());
+    load
 }
 
 /// Holds control points at `c = 1` that see no material, or so little of it that they cannot change c

@@ -57,9 +57,9 @@ pub struct Simulation {
     spare: Option<f64>,
     warnings: Vec<String>,
     steps: usize,
-    /// Stored energy at t = 0, J.
+    /// Stored energy at t = 0, with what contact holds of bodies that overlap, J.
     initial: f64,
-    /// Kinetic and elastic energy at t = 0 and the largest external work since, J.
+    /// Kinetic and elastic energy and that of contact at t = 0 and the largest external work since, J.
     energy_in: f64,
     warned: Warned,
     /// Whether a step failed: what it left is half a step.
@@ -100,7 +100,8 @@ impl Simulation {
         }
         frame.prepare(plan.step).map_err(not_started)?;
         let start = either!(&frame, body => body.sample(plan.step));
-        let (initial, energy_in) = (start.stored(), start.kinetic + start.elastic);
+        let held = start.contact.map_or(0.0, |contact| contact.loss); // by bodies that overlap
+        let (initial, energy_in) = (start.stored() + held, start.kinetic + start.elastic + held);
         let warned = Warned { step: plan.step > critical, ..Warned::default() };
         let is_automatic = scene.analysis.time_step == TimeStep::Auto;
         let spare = is_automatic.then(|| (ABOVE * scene.analysis.safety).clamp(SPARE[0], SPARE[1]));

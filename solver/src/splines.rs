@@ -3,6 +3,7 @@
 //! Symbols: N_a shape functions of control point a, xi parameters, w_a weights, P_a control points (m).
 //! Calls [`linear_algebra`](crate::linear_algebra) and [`scene`](crate::scene).
 
+pub(crate) mod insertion;
 pub(crate) mod nearest_span;
 pub mod nurbs;
 pub mod patch;

@@ -17,6 +17,7 @@ mod material;
 mod mesh;
 mod output;
 mod points;
+mod refinement;
 mod resolution;
 mod seed;
 mod size;
@@ -37,6 +38,13 @@ pub use size::expected_size;
 pub fn validate(scene: &Scene) -> Result<Vec<SceneWarning>, Vec<SceneError>> {
     let mut findings = Findings::default();
     let patch = mesh::check(&scene.mesh, &mut findings);
+    let finest = Scene { mesh: scene.mesh.finest(), ..scene.clone() };
+    let scene = if scene.mesh.halvings > 0 {
+        refinement::check(scene, &mut findings);
+        &finest
+    } else {
+        scene
+    };
     let ground = Ground::new(&scene.mesh, findings.errors.is_empty(), patch);
     analysis::check(scene, &ground, &mut findings);
     conditions::check(scene, &ground, &mut findings);

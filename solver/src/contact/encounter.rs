@@ -57,16 +57,23 @@ impl Encounter {
         self.position.map(|sum| sum / self.count)
     }
 
+    /// Mean normal, unless the normals cancel each other.
+    pub(super) fn direction(&self) -> Option<[f64; 2]> {
+        unit(self.normal, self.count)
+    }
+
     /// Whether both are parts of what one square should see: along the border of two rows of squares,
     /// boundaries are in either to round-off.
     fn is_part_of(&self, other: &Self, squares: &Squares) -> bool {
         let apart = |d: usize| self.square[d].abs_diff(other.square[d]);
-        let (Some(normal), Some(others)) = (unit(self.normal), unit(other.normal)) else { return false };
+        let (Some(normal), Some(others)) = (self.direction(), other.direction()) else { return false };
         if larger(apart(0) as f64, apart(1) as f64) > 1.0 || dot(normal, others) < 0.5 {
             return false;
         }
         let ([width, height], [x, y]) = (squares.size(self.square), self.position());
-        let Some(along) = unit([-normal[1] / width, normal[0] / height]) else { return false };
+        let Some(along) = unit([-normal[1] / width, normal[0] / height], 1.0 / width + 1.0 / height) else {
+            return false;
+        };
         let [to_x, to_y] = other.position();
         let between = [(to_x - x) / width, (to_y - y) / height];
         let across = [-along[1], along[0]];

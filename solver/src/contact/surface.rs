@@ -243,7 +243,7 @@ impl Surface {
     /// Mean of the outward normals of the segments that meet at a vertex; zero if there are none.
     pub(super) fn vertex_normal(&self, vertex: usize) -> [f64; 2] {
         let normals = self.neighbours[vertex].iter().flatten().map(|&segment| self.segment_normal(segment));
-        unit(normals.fold([0.0; 2], |sum, n| [0, 1].map(|d| sum[d] + n[d]))).unwrap_or_default()
+        unit(normals.fold([0.0; 2], |sum, n| [0, 1].map(|d| sum[d] + n[d])), 1.0).unwrap_or_default()
     }
 
     fn segment_normal(&self, segment: u32) -> [f64; 2] {

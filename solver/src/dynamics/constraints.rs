@@ -41,6 +41,13 @@ impl Constraints {
         constraints
     }
 
+    /// The same conditions on some of the control points alone.
+    pub(crate) fn among(&self, takes: impl Fn(usize) -> bool) -> Self {
+        let mut some = self.clone();
+        some.fixed.iter_mut().for_each(|fixed| fixed.retain(|(at, _)| takes(*at)));
+        some
+    }
+
     /// The conditions.
     pub(crate) fn conditions(&self) -> &[Boundary] {
         &self.conditions

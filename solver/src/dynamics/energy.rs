@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! kinetic − stagger + elastic + fracture
-//!   = initial + external work + history work + residual work − contact loss − transfer loss + closure
+//!   = initial + external work + history work + residual work + refinement − contact loss − transfer loss
+//!     + closure
 //! ```
 //!
 //! Each term is summed from its own definition; closure alone is what is left. Stagger, `dt²/8 aᵀ M a`, is
@@ -53,6 +54,8 @@ pub struct Sample {
     pub contact: Option<ContactSample>,
     /// Loss of the transfers in the updated frame, J.
     pub transfer_loss: Option<f64>,
+    /// What local refinement added to the energies, if there is any, J.
+    pub refinement: Option<f64>,
     /// Conditions with a name.
     pub conditions: Vec<ConditionSample>,
     /// Places that are recorded.
@@ -191,6 +194,7 @@ impl Sample {
         row.extend(fracture.iter().flat_map(|f| f.works.iter().copied()));
         row.extend(self.contact.into_iter().flat_map(|c| [("contact_loss_j", c.loss), ("friction_j", c.friction)]));
         row.extend(self.transfer_loss.map(|loss| ("transfer_loss_j", loss)));
+        row.extend(self.refinement.map(|added| ("refinement_j", added)));
         row.push(("closure_j", self.closure));
         if let Some(fracture) = fracture {
             let [x, y] = fracture.crack_tip.map_or([f64::NAN; 2], |tip| tip.place);
@@ -267,7 +271,8 @@ impl Sample {
     pub fn close(&mut self, initial: f64) {
         let of_model = self.fracture.as_ref().map_or(0.0, |f| f.works.iter().map(|(_, work)| work).sum::<f64>());
         let loss = self.transfer_loss.unwrap_or(0.0) + self.contact.map_or(0.0, |c| c.loss);
-        self.closure = self.stored() - initial - self.external_work - of_model + loss;
+        let added = self.refinement.unwrap_or(0.0);
+        self.closure = self.stored() - initial - self.external_work - of_model - added + loss;
     }
 
     /// Largest single energy of the row, J: the scale of closure.

@@ -7,10 +7,11 @@
 use rayon::prelude::*;
 
 use crate::dynamics::failure::Failure;
+use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::cholesky::{Factor, SparseCholesky};
-use crate::linear_algebra::control_grid::VectorField;
+use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::extremes::larger;
-use crate::linear_algebra::stencil::Stencil;
+use crate::linear_algebra::stencil::{CHUNK_ROWS, Stencil};
 use crate::particles::lattice::Lattice;
 use crate::phase_field::assembly::{Constant, Integrand, add_form};
 use crate::scene;
@@ -75,6 +76,15 @@ impl MassMatrix {
         Ok(Self { row_sums, negligible, kind })
     }
 
+    /// Takes other row sums (kg/m) of a lumped mass.
+    pub(crate) fn set_row_sums(&mut self, row_sums: Vec<f64>) {
+        if let MassKind::Lumped { inverse } = &mut self.kind {
+            let of = |(inverse, &m): (&mut f64, &f64)| *inverse = if m > self.negligible { 1.0 / m } else { 0.0 };
+            inverse.iter_mut().zip(&row_sums).for_each(of);
+        }
+        self.row_sums = row_sums;
+    }
+
     /// Row sums, kg/m: the mass of each control point.
     pub fn row_sums(&self) -> &[f64] {
         &self.row_sums
@@ -84,6 +94,21 @@ impl MassMatrix {
     pub(crate) fn divide(&self, forces: &mut VectorField) {
         for component in 0..2 {
             self.divide_component(component, &mut forces[component]);
+        }
+    }
+
+    /// [`Self::divide`] where control points are in use.
+    pub(crate) fn divide_in_use(&self, in_use: &ActiveColumns, grid: ControlGrid, forces: &mut VectorField) {
+        let MassKind::Lumped { inverse } = &self.kind else { return self.divide(forces) };
+        let chunk = CHUNK_ROWS * grid.stride;
+        for force in forces {
+            let chunks = force.par_chunks_mut(chunk).zip(inverse.par_chunks(chunk)).enumerate();
+            chunks.for_each(|(index, (force, inverse))| {
+                let rows = index * CHUNK_ROWS..((index + 1) * CHUNK_ROWS).min(grid.rows);
+                for used in in_use.within(grid, rows) {
+                    force[used.clone()].iter_mut().zip(&inverse[used]).for_each(|(f, inverse)| *f *= inverse);
+                }
+            });
         }
     }
 

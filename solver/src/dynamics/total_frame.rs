@@ -17,6 +17,7 @@ mod fragments;
 mod held_points;
 mod inspect;
 mod j_integral;
+mod levels;
 mod observe;
 mod paint;
 mod prescribed;
@@ -26,12 +27,15 @@ mod state;
 pub(crate) mod stiffness;
 mod tangent;
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::dynamics::constraints::Constraints;
 use crate::dynamics::energy::Ledger;
 use crate::dynamics::loads::NodalLoad;
 use crate::dynamics::mass::MassMatrix;
+use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::control_grid::VectorField;
@@ -71,6 +75,8 @@ pub struct TotalFrame {
     /// The boundary, if it may meet others.
     boundary: Option<Box<MaterialBoundary>>,
     mass: MassMatrix,
+    /// Control points in use: all, unless the body has other levels.
+    in_use: ActiveColumns,
     displacement: VectorField,
     velocity: VectorField,
     acceleration: VectorField,
@@ -101,11 +107,16 @@ pub struct TotalFrame {
 impl TotalFrame {
     /// Forces and accelerations at t = 0.
     fn begin(&mut self) {
+        self.begin_forces();
+        self.accelerate();
+    }
+
+    /// Forces at t = 0.
+    fn begin_forces(&mut self) {
         self.follow_with_loads();
         self.internal_forces();
         self.ledger.history_work = 0.0; // there was no step yet
         self.fracture.iter_mut().for_each(|fracture| fracture.begin_work(&self.lattice));
-        self.accelerate();
     }
 
     /// One time step of `dt` seconds (E 14–18).
@@ -120,22 +131,32 @@ impl TotalFrame {
 
     /// The first part of a step: positions, phase field and internal forces at its end.
     fn find_internal_forces(&mut self, dt: f64) -> Result<(), SolveFailure> {
-        self.predict(dt);
-        self.update_loads();
+        self.find_strains(dt);
         if let Some(fracture) = &mut self.fracture {
-            let Self { lattice, moduli, kinematics, displacement, strip_forces, .. } = self;
-            if fracture.needs_history() {
-                fracture.update_history(lattice, self.time, *moduli, *kinematics, displacement, strip_forces);
-            }
             fracture.advance_phase_field(&self.lattice)?;
         }
         self.internal_forces();
         Ok(())
     }
 
+    /// Positions at the end of a step, and H where c is to be solved for.
+    fn find_strains(&mut self, dt: f64) {
+        self.predict(dt);
+        self.update_loads();
+        if let Some(fracture) = self.fracture.as_mut().filter(|fracture| fracture.needs_history()) {
+            let Self { lattice, moduli, kinematics, displacement, strip_forces, .. } = self;
+            fracture.update_history(lattice, self.time, *moduli, *kinematics, displacement, strip_forces);
+        }
+    }
+
     /// The other part: accelerations and velocities at its end.
     fn find_motion(&mut self, dt: f64) {
         self.accelerate();
+        self.find_velocities(dt);
+    }
+
+    /// Velocities at the end of a step, and the work that was done in it.
+    fn find_velocities(&mut self, dt: f64) {
         self.book_external_work(dt);
         self.correct(dt);
     }
@@ -146,12 +167,16 @@ impl TotalFrame {
         for component in 0..2 {
             let v = self.velocity[component].par_chunks_mut(chunk);
             let u = self.displacement[component].par_chunks_mut(chunk);
-            v.zip(u).zip(self.acceleration[component].par_chunks(chunk)).for_each(|((v, u), a)| {
-                for ((v, u), a) in v.iter_mut().zip(u).zip(a) {
-                    *v += 0.5 * dt * a;
-                    *u += dt * *v;
-                }
-            });
+            v.zip(u).zip(self.acceleration[component].par_chunks(chunk)).enumerate().for_each(
+                |(index, ((v, u), a))| {
+                    for used in in_chunk(&self.in_use, self.grid, index) {
+                        for ((v, u), a) in v[used.clone()].iter_mut().zip(&mut u[used.clone()]).zip(&a[used]) {
+                            *v += 0.5 * dt * a;
+                            *u += dt * *v;
+                        }
+                    }
+                },
+            );
         }
         if let Some(sheets) = self.lattice.sheets() {
             sheets.spread(&mut self.displacement);
@@ -164,9 +189,11 @@ impl TotalFrame {
         let chunk = CHUNK_ROWS * self.grid.stride;
         for component in 0..2 {
             let v = self.velocity[component].par_chunks_mut(chunk);
-            v.zip(self.acceleration[component].par_chunks(chunk)).for_each(|(v, a)| {
-                for (v, a) in v.iter_mut().zip(a) {
-                    *v += fault!("whole-kick", 0.5 * dt => dt) * a;
+            v.zip(self.acceleration[component].par_chunks(chunk)).enumerate().for_each(|(index, (v, a))| {
+                for used in in_chunk(&self.in_use, self.grid, index) {
+                    for (v, a) in v[used.clone()].iter_mut().zip(&a[used]) {
+                        *v += fault!("whole-kick", 0.5 * dt => dt) * a;
+                    }
                 }
             });
         }
@@ -210,8 +237,13 @@ impl TotalFrame {
     /// `a = M⁻¹ (f_ext − f_int)`, or what is prescribed.
     fn accelerate(&mut self) {
         self.external_minus_internal();
+        self.divide_by_mass();
+    }
+
+    /// `a = M⁻¹ f`, or what is prescribed, of the forces in the room of the acceleration.
+    fn divide_by_mass(&mut self) {
         self.reactions.begin(&self.constraints, &self.acceleration);
-        self.mass.divide(&mut self.acceleration);
+        self.mass.divide_in_use(&self.in_use, self.grid, &mut self.acceleration);
         let Self { reactions, constraints, edges, mass, velocity, acceleration, .. } = self;
         let step = [self.time, self.time_step];
         reactions.prescribe(constraints, step, mass, velocity, acceleration);
@@ -222,9 +254,35 @@ impl TotalFrame {
 
     /// Makes ready for steps of `dt` seconds: the accelerations at t = 0 of what is prescribed.
     pub(crate) fn prepare(&mut self, dt: f64) {
+        self.expect_steps(dt);
+        self.accelerate();
+    }
+
+    /// Takes the length of the steps to come, s.
+    fn expect_steps(&mut self, dt: f64) {
         self.time_step = dt;
         self.loads.iter_mut().for_each(|load| load.factor.prepare(dt));
-        self.accelerate();
+    }
+
+    /// Kinetic and elastic energy, and energy of the crack, J/m.
+    fn stored_energies(&self) -> [f64; 2] {
+        let surface = self.fracture.as_ref().map_or(0.0, |fracture| fracture.surface_energy(&self.lattice).0);
+        [self.mass.half_square(&self.velocity) + self.elastic_energy, surface]
+    }
+
+    /// Forces and state of the points after points came or went, where the crack had so much energy (J/m):
+    /// no step was taken, so no work was done.
+    fn refresh(&mut self, surface_energy: f64) {
+        let (history_work, surface) = (self.ledger.history_work, surface_energy);
+        let on_drive = self.fracture.as_ref().and_then(|fracture| fracture.lag_work.as_ref()).map(|work| work.on_drive);
+        self.internal_forces();
+        self.ledger.history_work = history_work;
+        if let Some(fracture) = &mut self.fracture {
+            let now = fracture.surface_energy(&self.lattice).0;
+            if let (Some(work), Some(on_drive)) = (&mut fracture.lag_work, on_drive) {
+                (work.on_drive, work.surface_at_start) = (on_drive, work.surface_at_start + now - surface);
+            }
+        }
     }
 
     /// `f_ext − f_int` in the room of the acceleration.
@@ -234,9 +292,11 @@ impl TotalFrame {
             let gravity = fault!("gravity-upwards", self.gravity[component] => -self.gravity[component]);
             let a = self.acceleration[component].par_chunks_mut(chunk);
             let mass = self.mass.row_sums().par_chunks(chunk);
-            a.zip(self.internal[component].par_chunks(chunk)).zip(mass).for_each(|((a, f), m)| {
-                for ((a, f), m) in a.iter_mut().zip(f).zip(m) {
-                    *a = gravity * m - f;
+            a.zip(self.internal[component].par_chunks(chunk)).zip(mass).enumerate().for_each(|(index, ((a, f), m))| {
+                for used in in_chunk(&self.in_use, self.grid, index) {
+                    for ((a, f), m) in a[used.clone()].iter_mut().zip(&f[used.clone()]).zip(&m[used]) {
+                        *a = gravity * m - f;
+                    }
                 }
             });
         }
@@ -271,4 +331,9 @@ impl TotalFrame {
         let conditions = self.reactions.work(dt) + edges;
         self.ledger.external_work += dt * power + fault!("driven-work-left-out", conditions => 0.0);
     }
+}
+
+/// Places in a chunk of rows of a field that are in use.
+fn in_chunk(in_use: &ActiveColumns, grid: ControlGrid, index: usize) -> impl Iterator<Item = Range<usize>> {
+    in_use.within(grid, index * CHUNK_ROWS..((index + 1) * CHUNK_ROWS).min(grid.rows))
 }

@@ -57,6 +57,16 @@ impl ActiveColumns {
         &self.ranges[self.starts[row]..self.starts[row + 1]]
     }
 
+    /// The ranges of some rows as places in a part of a field that begins at the first of them.
+    pub(crate) fn within(&self, grid: ControlGrid, rows: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+        let first = rows.start;
+        let of_row = move |row: usize| {
+            let place = move |column: usize| grid.index(column, row - first);
+            self.row(row).iter().map(move |range| place(range.start)..place(range.end))
+        };
+        rows.flat_map(of_row)
+    }
+
     /// Whether there are any in some rows.
     pub(crate) fn any_in(&self, rows: Range<usize>) -> bool {
         self.starts[rows.start] < self.starts[rows.end]

@@ -12,6 +12,10 @@
 //! Wilkinson 1963; Higham 2002, *Accuracy and stability of numerical algorithms*, chapter 12). A correction
 //! in single precision is good for [`DIGITS`]; a tolerance below that takes another one.
 //!
+//! A system may live on several nested grids: control values of a finer one next to a coarser one are those of
+//! the coarser one (`interface.rs`). Each grid has a preconditioner of its own, for the values that are its
+//! own.
+//!
 //! Rounded to single precision, a matrix whose coefficients differ by more than seven digits from one control
 //! point to the next may no longer be positive definite: material under a strain of one and more has 1e9
 //! times the reaction of intact material. Where iterations fail in single precision, or are many, they go on
@@ -20,6 +24,9 @@
 use rayon::prelude::*;
 use thiserror::Error;
 
+use crate::linear_algebra::active_columns::ActiveColumns;
+use crate::linear_algebra::extremes::smaller;
+use crate::linear_algebra::interface::{Interface, fold_all, spread_all};
 use crate::linear_algebra::lane::{Scalar, Vectorised, add_product, dispatch};
 use crate::linear_algebra::preconditioner::Preconditioner;
 use crate::linear_algebra::stencil::{CHUNK_ROWS, Stencil};
@@ -92,16 +99,8 @@ impl ConjugateGradients {
         tolerance: f64,
         limit: usize,
     ) -> Result<Convergence, SolveFailure> {
-        let Self { single, double, product } = self;
-        let system = System { matrix, preconditioner, b, tolerance, limit };
-        let spent = match single.solve(&system, x, product) {
-            Ok(found) if found.iterations < TRUSTED => return Ok(found),
-            Err(SolveFailure::NotFinite) => return Err(SolveFailure::NotFinite),
-            found => found.map_or(0, |found| found.iterations),
-        };
-        let double = double.get_or_insert_with(|| Box::new(Workspace::new(matrix)));
-        let found = double.solve(&system, x, product)?;
-        Ok(Convergence { iterations: spent + found.iterations, ..found })
+        let own = matrix.active();
+        solve_on_grids(&mut [OnGrid { workspace: self, matrix, preconditioner, own, b, x }], &[], tolerance, limit)
     }
 
     /// Heap memory, bytes.
@@ -110,11 +109,70 @@ impl ConjugateGradients {
     }
 }
 
-/// What is to be solved, and how well.
-struct System<'a> {
+/// The part of a system on one grid.
+pub(crate) struct OnGrid<'a> {
+    pub workspace: &'a mut ConjugateGradients,
+    pub matrix: &'a Stencil,
+    pub preconditioner: &'a Preconditioner,
+    /// Control points with values of their own: the others that take part are those of the interface.
+    pub own: &'a ActiveColumns,
+    pub b: &'a [f64],
+    pub x: &'a mut [f64],
+}
+
+/// As [`ConjugateGradients::solve`], on nested grids from coarse to fine with what lies between them.
+///
+/// # Errors
+/// As there.
+pub(crate) fn solve_on_grids(
+    grids: &mut [OnGrid],
+    interfaces: &[Interface],
+    tolerance: f64,
+    limit: usize,
+) -> Result<Convergence, SolveFailure> {
+    let single = |grid| Iterated::new(grid, |workspace| (&mut workspace.single, &mut workspace.product));
+    let mut iterated: Vec<_> = grids.iter_mut().map(single).collect();
+    let spent = match (Iteration { grids: &mut iterated, interfaces, tolerance, limit }).solve() {
+        Ok(found) if found.iterations < TRUSTED => return Ok(found),
+        Err(SolveFailure::NotFinite) => return Err(SolveFailure::NotFinite),
+        found => found.map_or(0, |found| found.iterations),
+    };
+    let double = |grid| {
+        Iterated::new(grid, |ConjugateGradients { single, double, product }| {
+            (&mut **double.get_or_insert_with(|| Box::new(Workspace::new(&single.matrix))), product)
+        })
+    };
+    let mut iterated: Vec<_> = grids.iter_mut().map(double).collect();
+    let found = Iteration { grids: &mut iterated, interfaces, tolerance, limit }.solve()?;
+    Ok(Convergence { iterations: spent + found.iterations, ..found })
+}
+
+/// The part of a system on one grid with the vectors of a precision.
+struct Iterated<'a, T> {
+    work: &'a mut Workspace<T>,
+    product: &'a mut Vec<f64>,
     matrix: &'a Stencil,
     preconditioner: &'a Preconditioner,
+    own: &'a ActiveColumns,
     b: &'a [f64],
+    x: &'a mut [f64],
+}
+
+impl<'a, T> Iterated<'a, T> {
+    fn new<'b: 'a>(
+        grid: &'a mut OnGrid<'b>,
+        vectors: impl FnOnce(&'a mut ConjugateGradients) -> (&'a mut Workspace<T>, &'a mut Vec<f64>),
+    ) -> Self {
+        let OnGrid { workspace, matrix, preconditioner, own, b, x } = grid;
+        let (work, product) = vectors(workspace);
+        Self { work, product, matrix, preconditioner, own, b, x }
+    }
+}
+
+/// What is to be solved, and how well.
+struct Iteration<'a, 'b, T> {
+    grids: &'a mut [Iterated<'b, T>],
+    interfaces: &'a [Interface],
     tolerance: f64,
     limit: usize,
 }
@@ -131,7 +189,7 @@ struct Workspace<T> {
 }
 
 impl<T: Scalar + Coefficients<T>> Workspace<T> {
-    fn new(matrix: &Stencil) -> Self {
+    fn new<S: Scalar>(matrix: &Stencil<S>) -> Self {
         let zeros = || vec![T::ZERO; matrix.grid.len()];
         Self {
             matrix: matrix.empty(),
@@ -140,21 +198,6 @@ impl<T: Scalar + Coefficients<T>> Workspace<T> {
             preconditioned: zeros(),
             direction: zeros(),
             image: zeros(),
-        }
-    }
-
-    fn solve(&mut self, system: &System, x: &mut [f64], product: &mut [f64]) -> Result<Convergence, SolveFailure> {
-        let &System { matrix, preconditioner, b, .. } = system;
-        self.take_part(matrix);
-        let mut iterations = 0;
-        loop {
-            matrix.residual(preconditioner.unit(), b, x, product, &mut self.residual, &mut self.matrix);
-            matrix.active().clear_inside(matrix.grid, &mut self.correction);
-            let corrected = self.correct(system, &mut iterations);
-            self.add_to(x);
-            if let Some(error) = corrected? {
-                return Ok(Convergence { iterations, error });
-            }
         }
     }
 
@@ -171,48 +214,6 @@ impl<T: Scalar + Coefficients<T>> Workspace<T> {
     fn is_active(&self, chunk: usize) -> bool {
         let first = chunk * CHUNK_ROWS;
         self.matrix.active().any_in(first..(first + CHUNK_ROWS).min(self.matrix.grid.rows))
-    }
-
-    /// Finds a correction, and counts its iterations; returns the error that is left, or none if the
-    /// tolerance is below what a correction is good for.
-    fn correct(&mut self, system: &System, iterations: &mut usize) -> Result<Option<f64>, SolveFailure> {
-        let &System { preconditioner, tolerance, limit, .. } = system;
-        let unit = preconditioner.unit();
-        let mut rho = self.precondition(preconditioner);
-        let mut remaining = Remaining::from_start(rho / unit);
-        let enough = DIGITS * remaining.estimate.sqrt();
-        let mut beta = 0.0;
-        loop {
-            let error = remaining.estimate.sqrt();
-            if !error.is_finite() {
-                return Err(SolveFailure::NotFinite);
-            } else if fault!("one-iteration-is-enough", error <= tolerance => *iterations > 0)
-                && (*iterations > 0 || error == 0.0 || preconditioner.judges_starts())
-            {
-                return Ok(Some(error));
-            } else if *iterations == limit {
-                return Err(SolveFailure::NotConverged { iterations: limit, error });
-            } else if error <= enough {
-                return Ok(None);
-            } else if remaining.last.is_some() {
-                let previous = std::mem::replace(&mut rho, self.precondition(preconditioner));
-                beta = rho / previous;
-            }
-            self.turn(T::of(beta));
-            let curvature = self.matrix.apply(&self.direction, &mut self.image);
-            if curvature <= 0.0 {
-                return Err(SolveFailure::NotPositiveDefinite);
-            }
-            let alpha = rho / curvature;
-            self.advance(T::of(alpha));
-            remaining.learn(alpha * rho / unit);
-            *iterations += 1;
-        }
-    }
-
-    /// `z = M⁻¹ r`; returns `r·z`.
-    fn precondition(&mut self, preconditioner: &Preconditioner) -> f64 {
-        preconditioner.apply(self.matrix.active(), &self.residual, &mut self.preconditioned)
     }
 
     /// `d ← z + beta d`.
@@ -249,6 +250,94 @@ impl<T: Scalar + Coefficients<T>> Workspace<T> {
 
     fn bytes(&self) -> usize {
         self.matrix.bytes() + 5 * size_of::<T>() * self.image.len()
+    }
+}
+
+impl<T: Scalar + Coefficients<T>> Iteration<'_, '_, T> {
+    fn solve(&mut self) -> Result<Convergence, SolveFailure> {
+        let unit = self.grids.iter().map(|grid| grid.preconditioner.unit()).fold(f64::INFINITY, smaller);
+        self.grids.iter_mut().for_each(|grid| grid.work.take_part(grid.matrix));
+        let mut iterations = 0;
+        loop {
+            for Iterated { work, product, matrix, b, x, .. } in &mut *self.grids {
+                matrix.residual(unit, b, x, product, &mut work.residual, &mut work.matrix);
+                matrix.active().clear_inside(matrix.grid, &mut work.correction);
+            }
+            self.fold(|work| &mut work.residual);
+            let corrected = self.correct(unit, &mut iterations);
+            self.grids.iter_mut().for_each(|grid| grid.work.add_to(grid.x));
+            if let Some(error) = corrected? {
+                return Ok(Convergence { iterations, error });
+            }
+        }
+    }
+
+    /// Moves the values of a vector at the interfaces to the coarser grids.
+    fn fold(&mut self, vector: impl Fn(&mut Workspace<T>) -> &mut Vec<T>) {
+        let mut fields: Vec<_> = self.grids.iter_mut().map(|grid| &mut vector(grid.work)[..]).collect();
+        fold_all(self.interfaces, &mut fields);
+    }
+
+    /// Finds a correction, and counts its iterations; returns the error that is left, or none if the
+    /// tolerance is below what a correction is good for.
+    fn correct(&mut self, unit: f64, iterations: &mut usize) -> Result<Option<f64>, SolveFailure> {
+        let &mut Self { tolerance, limit, .. } = self;
+        let judges_starts = self.grids.iter().all(|grid| grid.preconditioner.judges_starts());
+        let mut rho = self.precondition(unit);
+        let mut remaining = Remaining::from_start(rho / unit);
+        let enough = DIGITS * remaining.estimate.sqrt();
+        let mut beta = 0.0;
+        loop {
+            let error = remaining.estimate.sqrt();
+            if !error.is_finite() {
+                return Err(SolveFailure::NotFinite);
+            } else if fault!("one-iteration-is-enough", error <= tolerance => *iterations > 0)
+                && (*iterations > 0 || error == 0.0 || judges_starts)
+            {
+                return Ok(Some(error));
+            } else if *iterations == limit {
+                return Err(SolveFailure::NotConverged { iterations: limit, error });
+            } else if error <= enough {
+                return Ok(None);
+            } else if remaining.last.is_some() {
+                let previous = std::mem::replace(&mut rho, self.precondition(unit));
+                beta = rho / previous;
+            }
+            let curvature = self.turn(T::of(beta));
+            if curvature <= 0.0 {
+                return Err(SolveFailure::NotPositiveDefinite);
+            }
+            let alpha = rho / curvature;
+            self.grids.iter_mut().for_each(|grid| grid.work.advance(T::of(alpha)));
+            remaining.learn(alpha * rho / unit);
+            *iterations += 1;
+        }
+    }
+
+    /// `z = M⁻¹ r`; returns `r·z`.
+    fn precondition(&mut self, unit: f64) -> f64 {
+        let of_grid = |grid: &mut Iterated<T>| {
+            let Workspace { residual, preconditioned, .. } = &mut *grid.work;
+            let product = grid.preconditioner.apply(grid.own, residual, preconditioned);
+            let ratio = grid.preconditioner.unit() / unit; // a power of two
+            if ratio != 1.0 {
+                preconditioned.iter_mut().for_each(|z| *z = *z * T::of(ratio));
+            }
+            ratio * product
+        };
+        self.grids.iter_mut().map(of_grid).sum()
+    }
+
+    /// `d ← z + beta d` and its image `A d`; returns `d·A d`.
+    fn turn(&mut self, beta: T) -> f64 {
+        self.grids.iter_mut().for_each(|grid| grid.work.turn(beta));
+        let mut directions: Vec<_> = self.grids.iter_mut().map(|grid| &mut grid.work.direction[..]).collect();
+        spread_all(self.interfaces, &mut directions);
+        let curvature = |Workspace { matrix, direction, image, .. }: &mut Workspace<T>| matrix.apply(direction, image);
+        let curvatures = self.grids.iter_mut().map(|grid| curvature(grid.work));
+        let sum = curvatures.sum();
+        self.fold(|work| &mut work.image);
+        sum
     }
 }
 

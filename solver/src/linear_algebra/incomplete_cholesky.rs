@@ -79,6 +79,9 @@ impl IncompleteCholesky {
         let Self { offsets, updates, factor, scale, unit, .. } = self;
         let shifts = factor.par_chunks_mut(block).enumerate().map(|(index, factor)| {
             let (first, scale) = (index * BLOCK_ROWS, scale.as_deref());
+            if scale.is_none() && !matrix.active().any_in(first..(first + BLOCK_ROWS).min(matrix.grid.rows)) {
+                return 0.0; // of a matrix that is assembled once: the factor is made anew where that changes
+            }
             let rows = Rows { matrix, first, unit: *unit, scale, offsets, updates };
             let (mut block, mut shift) = (vec![0.0; factor.len()], 0.0);
             while !rows.factor(shift, &mut block) && shift < LARGEST_SHIFT {

@@ -21,6 +21,11 @@ impl PreconditionedSolver {
         Self { workspace: ConjugateGradients::new(matrix), preconditioner: Preconditioner::new(matrix, anew) }
     }
 
+    /// Working vectors and preconditioner, for a solve on several grids.
+    pub(crate) fn parts(&mut self) -> (&mut ConjugateGradients, &Preconditioner) {
+        (&mut self.workspace, &self.preconditioner)
+    }
+
     /// Makes ready for the solves of a matrix.
     pub(crate) fn prepare(&mut self, matrix: &Stencil) {
         self.preconditioner.prepare(matrix);
@@ -45,7 +50,10 @@ impl PreconditionedSolver {
             let limit = if preconditioner.is_complete() { ITERATION_LIMIT } else { patience };
             match workspace.solve(matrix, preconditioner, load, x, tolerance, limit) {
                 Ok(Convergence { iterations, error }) => {
-                    preconditioner.learn(matrix, iterations);
+                    if preconditioner.learn(iterations) {
+                        preconditioner.renew(matrix);
+                        preconditioner.forget();
+                    }
                     return Ok(Convergence { iterations: spent + iterations, error });
                 }
                 Err(SolveFailure::NotConverged { iterations, .. }) if preconditioner.improve(matrix) => {

@@ -150,18 +150,14 @@ impl Preconditioner {
         self.fresh_iterations = None;
     }
 
-    /// Learns what a solve needed that came to its end, and renews a stale factor.
-    pub fn learn(&mut self, matrix: &Stencil, iterations: usize) {
+    /// Learns what a solve needed that came to its end; whether the factor is stale.
+    pub fn learn(&mut self, iterations: usize) -> bool {
         self.is_fresh = false;
         if self.is_complete() {
-            return;
+            return false;
         }
         self.pause.next = FIRST_PAUSE;
-        let fresh = *self.fresh_iterations.get_or_insert(iterations);
-        if iterations > fresh + EXTRA_ITERATIONS {
-            self.renew(matrix);
-            self.forget();
-        }
+        iterations > *self.fresh_iterations.get_or_insert(iterations) + EXTRA_ITERATIONS
     }
 
     /// A better factor for the solve under way: a fresh one, or else a complete one for this solve and some

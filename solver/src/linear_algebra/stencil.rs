@@ -49,14 +49,6 @@ impl Stencil {
         Self { grid, degree, offsets, coefficients, active: ActiveColumns::all(grid) }
     }
 
-    /// A matrix of zeros of another precision.
-    pub(crate) fn empty<T: Scalar>(&self) -> Stencil<T> {
-        let Self { grid, degree, offsets, coefficients, active } = self;
-        let coefficients = vec![T::ZERO; coefficients.len()];
-        let (offsets, active) = (offsets.clone(), active.clone());
-        Stencil { grid: *grid, degree: *degree, offsets, coefficients, active }
-    }
-
     /// Position of a coupling in [`Self::offsets`].
     #[inline(always)]
     pub fn offset_index(degree: [usize; 2], columns: isize, rows: usize) -> usize {
@@ -139,6 +131,16 @@ impl Stencil {
                 self.active.clear_outside(self.grid, residual, first);
             }
         }
+    }
+}
+
+impl<T: Scalar> Stencil<T> {
+    /// A matrix of zeros of another precision.
+    pub(crate) fn empty<S: Scalar>(&self) -> Stencil<S> {
+        let Self { grid, degree, offsets, coefficients, active } = self;
+        let coefficients = vec![S::ZERO; coefficients.len()];
+        let (offsets, active) = (offsets.clone(), active.clone());
+        Stencil { grid: *grid, degree: *degree, offsets, coefficients, active }
     }
 }
 

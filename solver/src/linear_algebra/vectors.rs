@@ -1,9 +1,9 @@
 //! Vectors in the plane.
 
-/// The direction of a vector, unless it is next to nothing beside a unit vector.
-pub(crate) fn unit(vector: [f64; 2]) -> Option<[f64; 2]> {
+/// The direction of a sum of vectors, unless it is next to nothing beside the sum of their lengths.
+pub(crate) fn unit(vector: [f64; 2], lengths: f64) -> Option<[f64; 2]> {
     let length = vector[0].hypot(vector[1]);
-    (length > 1e-6).then(|| vector.map(|x| x / length))
+    (length > 1e-6 * lengths).then(|| vector.map(|x| x / length))
 }
 
 /// Scalar product.

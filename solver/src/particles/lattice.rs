@@ -43,7 +43,7 @@ pub(crate) use tables::{Row, Tile};
 
 /// Rows of spans in a strip; at least the highest degree, so that only neighbouring strips share control
 /// points.
-const STRIP_ROWS: usize = 8;
+pub(crate) const STRIP_ROWS: usize = 8;
 
 /// Material points of one body, in reference positions.
 #[derive(Debug, Clone)]
@@ -63,6 +63,8 @@ pub struct Lattice {
     /// Rows of spans, those of sheets last.
     pub rows: Vec<Row>,
     patch_rows: usize,
+    /// Rows of spans in a strip.
+    strip_rows: usize,
     /// What the geometry of the patch adds; absent over a rectangle.
     pub(crate) mapping: Option<Box<Mapping>>,
     /// What the product of the weights of both directions is multiplied by, per batch: 0 where there is no
@@ -148,6 +150,41 @@ impl Lattice {
         self.occupied.as_ref().is_none_or(|occupied| occupied[strip * self.tiles.len() + tile])
     }
 
+    /// Its points in some tiles of the patch alone, without those of sheets and of cut spans.
+    pub(crate) fn on_tiles(&self, occupied: &[bool]) -> Self {
+        let mut part = Self { cut: Vec::new(), occupied: None, ..self.clone() };
+        let mut all = occupied.to_vec();
+        all.resize(part.table_strips() * part.tiles.len(), false);
+        part.occupied = Some(all);
+        part
+    }
+
+    /// Whether a strip has points.
+    pub(crate) fn has_points(&self, strip: usize) -> bool {
+        let tiles = self.tiles.len();
+        let of_strip = |occupied: &Vec<bool>| occupied[strip * tiles..(strip + 1) * tiles].contains(&true);
+        strip >= self.table_strips() || self.occupied.as_ref().is_none_or(of_strip)
+    }
+
+    /// Whether a cell of the tables or of cut spans has points.
+    pub(crate) fn is_cell_occupied(&self, cell: usize) -> bool {
+        let (row, tile) = (cell / self.tiles.len(), cell % self.tiles.len());
+        row >= self.rows.len() || self.is_occupied(row / self.strip_rows, tile)
+    }
+
+    /// Whether the strip of a batch has points in its tile.
+    fn is_batch_occupied(&self, batch: usize) -> bool {
+        let Some(occupied) = &self.occupied else { return true };
+        let (row, tile, ..) = self.unbatch(batch);
+        occupied[row / self.strip_rows * self.tiles.len() + tile]
+    }
+
+    /// Takes the points of strips of the patch away, or back, tile by tile: `occupied` goes strip by strip.
+    pub(crate) fn occupy(&mut self, occupied: &[bool]) {
+        let number = self.table_strips() * self.tiles.len();
+        self.occupied.get_or_insert_with(|| vec![true; number])[..occupied.len()].copy_from_slice(occupied);
+    }
+
     /// A field on all control points as one on those of the patch, to which copies add.
     pub(crate) fn onto_patch(&self, field: Vec<f64>) -> Vec<f64> {
         match &self.sheets {
@@ -200,22 +237,27 @@ impl Lattice {
 
     /// Batches in a full strip: point state is cut into chunks of this length.
     pub fn strip_batches(&self) -> usize {
-        STRIP_ROWS * self.tiles.len() * self.points_per_span()
+        self.strip_rows * self.tiles.len() * self.points_per_span()
     }
 
     /// Number of strips of tables; those of cut spans follow.
     pub(crate) fn table_strips(&self) -> usize {
-        self.rows.len().div_ceil(STRIP_ROWS)
+        self.rows.len().div_ceil(self.strip_rows)
     }
 
     /// Number of strips of the patch; those of sheets follow.
     pub(crate) fn patch_strips(&self) -> usize {
-        self.patch_rows.div_ceil(STRIP_ROWS)
+        self.patch_rows.div_ceil(self.strip_rows)
+    }
+
+    /// Rows of spans of the patch.
+    pub(crate) fn patch_rows(&self) -> usize {
+        self.patch_rows
     }
 
     /// Rows of spans in a strip.
     pub(crate) fn strip_rows(&self, strip: usize) -> std::ops::Range<usize> {
-        strip * STRIP_ROWS..((strip + 1) * STRIP_ROWS).min(self.rows.len())
+        strip * self.strip_rows..((strip + 1) * self.strip_rows).min(self.rows.len())
     }
 
     /// Control rows of the patch that a strip contributes to.
@@ -255,6 +297,9 @@ impl Lattice {
     pub fn weights_of(&self, batch: usize) -> Lane {
         if let Some(cut) = self.cut_batch(batch) {
             return cut.weight;
+        }
+        if !self.is_batch_occupied(batch) {
+            return Lane::ZERO;
         }
         let (row, tile, b, a) = self.unbatch(batch);
         self.weight(row, tile, b, a)

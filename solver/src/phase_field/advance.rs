@@ -20,6 +20,8 @@
 //! with H, c before a step and H', c' after it: no matrix is needed between solves
 //! ([`LagWork`](super::lag::LagWork)).
 
+use std::ops::Range;
+
 use super::PhaseField;
 use super::lag::Lag;
 use crate::linear_algebra::conjugate_gradients::{Convergence, SolveFailure};
@@ -82,22 +84,43 @@ impl PhaseField {
     }
 
     fn solve_after(&mut self, lag: &mut Lag) -> Result<Convergence, SolveFailure> {
-        let carried = std::mem::replace(&mut self.phase, lag.solved.clone());
+        let carried = self.go_back(lag);
         let convergence = self.solve_with(TOO_MANY, lag.ahead())?;
-        let changes = self.matrix.grid.indices().map(|at| self.phase[at] - carried[at]);
-        lag.healing = changes.fold(lag.healing, larger);
-        (lag.apart, lag.since, lag.expected) = (lag.since, 0, false);
-        lag.solved.copy_from_slice(&self.phase);
-        let steps = lag.apart as f64;
-        let decreases = self.previous.iter().zip(&self.phase).map(|(before, now)| (before - now) / steps);
-        lag.fastest = decreases.fold(0.0, larger);
+        self.end_solve(lag, &carried);
         Ok(convergence)
     }
 
-    fn carry_on(&mut self, lag: &Lag) {
-        let ahead = fault!("phase-field-carried-too-far", lag.ahead() => 2.0 * lag.ahead());
-        for ((phase, solved), previous) in self.phase.iter_mut().zip(&lag.solved).zip(&self.previous) {
-            *phase = larger(solved.min(0.0), solved + ahead * (solved - previous).min(0.0));
+    /// Goes back to the last solve; returns the values that were carried on since.
+    pub(super) fn go_back(&mut self, lag: &Lag) -> Vec<f64> {
+        std::mem::replace(&mut self.phase, lag.solved.clone())
+    }
+
+    /// Learns what a solve changed.
+    pub(super) fn end_solve(&mut self, lag: &mut Lag, carried: &[f64]) {
+        (lag.apart, lag.since, lag.expected) = (lag.since, 0, false);
+        lag.fastest = 0.0;
+        let steps = lag.apart as f64;
+        for at in self.taking_part().flatten() {
+            lag.healing = larger(lag.healing, self.phase[at] - carried[at]);
+            lag.solved[at] = self.phase[at];
+            lag.fastest = larger(lag.fastest, (self.previous[at] - self.phase[at]) / steps);
         }
+    }
+
+    pub(super) fn carry_on(&mut self, lag: &Lag) {
+        let ahead = fault!("phase-field-carried-too-far", lag.ahead() => 2.0 * lag.ahead());
+        let grid = self.matrix.grid;
+        for used in self.matrix.active().within(grid, 0..grid.rows) {
+            let solved = self.phase[used.clone()].iter_mut().zip(&lag.solved[used.clone()]);
+            for ((phase, solved), previous) in solved.zip(&self.previous[used]) {
+                *phase = larger(solved.min(0.0), solved + ahead * (solved - previous).min(0.0));
+            }
+        }
+    }
+
+    /// Indices of the control points that take part in the system, range by range.
+    pub(crate) fn taking_part(&self) -> impl Iterator<Item = Range<usize>> {
+        let grid = self.matrix.grid;
+        self.matrix.active().within(grid, 0..grid.rows)
     }
 }

@@ -19,6 +19,8 @@ pub struct Mesh {
     pub knots: [Vec<f64>; 2],
     /// Control points and weights; absent over a rectangle, whose knots are its coordinates.
     pub geometry: Option<Geometry>,
+    /// How often spans near a crack are halved; zero without refinement.
+    pub halvings: usize,
 }
 
 /// Geometry of a general patch, row by row, first direction fastest.
@@ -41,7 +43,7 @@ impl Mesh {
             knots.extend(std::iter::repeat_n(origin[d] + size[d], degree[d]));
             knots
         });
-        Self { degree, knots, geometry: None }
+        Self { degree, knots, geometry: None, halvings: 0 }
     }
 
     /// Joins the two spans next to a side of a mesh over a rectangle, all along it; `false` if there is only
@@ -55,6 +57,22 @@ impl Mesh {
         let Some(next) = next.copied() else { return false };
         self.knots[d].retain(|knot| *knot != next);
         true
+    }
+
+    /// The mesh whose spans are half as long.
+    pub(crate) fn halved(&self) -> Self {
+        let knots = self.knots.each_ref().map(|knots| {
+            let middle = |pair: &[f64]| (pair[1] > pair[0]).then_some(0.5 * (pair[0] + pair[1]));
+            let pairs = knots.windows(2).flat_map(|pair| std::iter::once(pair[0]).chain(middle(pair)));
+            pairs.chain(knots.last().copied()).collect()
+        });
+        Self { knots, ..self.clone() }
+    }
+
+    /// The mesh whose spans are all as short as those near a crack.
+    pub(crate) fn finest(&self) -> Self {
+        let finest = (0..self.halvings).fold(self.clone(), |mesh, _| mesh.halved());
+        Self { halvings: 0, ..finest }
     }
 
     /// Lower left corner of the patch, or of the box around its control points, m.
@@ -94,7 +112,7 @@ impl Mesh {
             let ends = |knot: f64| std::iter::repeat_n(knot, degree + 1);
             ends(knots[first]).chain(inner).chain(ends(knots[last])).collect()
         });
-        Self { degree: self.degree, knots, geometry: None }
+        Self { degree: self.degree, knots, geometry: None, halvings: 0 }
     }
 
     /// Whether a shape reaches a side of the box around the mesh.

@@ -165,6 +165,7 @@ impl Mesh {
             degree: [x.degree(), y.degree()],
             knots: [x.knot_vector().to_vec(), y.knot_vector().to_vec()],
             geometry: Some(Geometry { control_points, weights }),
+            halvings: 0,
         }
     }
 

@@ -20,7 +20,8 @@ use strip::{StripForce, StripSweep};
 /// Nodal forces strip by strip; neighbouring strips share control rows and are added in a fixed order.
 #[derive(Debug, Clone)]
 pub struct StripForces {
-    strips: Vec<StripForce>,
+    /// Strips with points.
+    strips: Vec<Option<StripForce>>,
 }
 
 impl StripForces {
@@ -29,7 +30,8 @@ impl StripForces {
         let strips = (0..lattice.strips()).map(|strip| {
             let rows = lattice.strip_control_rows(strip);
             let length = rows.len() * lattice.grid.stride;
-            StripForce { first_row: rows.start, components: [vec![0.0; length], vec![0.0; length]] }
+            let force = || StripForce { first_row: rows.start, components: [vec![0.0; length], vec![0.0; length]] };
+            lattice.has_points(strip).then(force)
         });
         Self { strips: strips.collect() }
     }
@@ -38,11 +40,15 @@ impl StripForces {
     pub fn assemble(&self, stride: usize, out: &mut [Vec<f64>; 2]) {
         let [x, y] = out;
         x.par_chunks_mut(stride).zip(y.par_chunks_mut(stride)).enumerate().for_each(|(row, (x, y))| {
-            x.fill(0.0);
-            y.fill(0.0);
-            for strip in &self.strips {
-                if row < strip.first_row || (row - strip.first_row) * stride >= strip.components[0].len() {
-                    continue;
+            let reaches = |strip: &&StripForce| {
+                row >= strip.first_row && (row - strip.first_row) * stride < strip.components[0].len()
+            };
+            let mut is_clear = false;
+            for strip in self.strips.iter().flatten().filter(reaches) {
+                if !is_clear {
+                    x.fill(0.0);
+                    y.fill(0.0);
+                    is_clear = true;
                 }
                 let part = (row - strip.first_row) * stride..(row - strip.first_row + 1) * stride;
                 for (out, component) in [&mut *x, &mut *y].into_iter().zip(&strip.components) {
@@ -56,7 +62,7 @@ impl StripForces {
 
     /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
-        self.strips.iter().map(|s| 16 * s.components[0].len()).sum()
+        self.strips.iter().flatten().map(|s| 16 * s.components[0].len()).sum()
     }
 }
 
@@ -66,14 +72,17 @@ pub fn sweep<K: PointKernel>(lattice: &Lattice, fields: Fields, kernels: &mut [K
     match forces {
         Some(forces) if K::STRESS => {
             kernels.par_iter_mut().zip(&mut forces.strips).enumerate().for_each(|(strip, (kernel, force))| {
+                let Some(force) = force else { return };
                 if !kernel.adds() {
                     force.components.iter_mut().for_each(|c| c.fill(0.0));
                 }
                 dispatch(StripSweep { lattice, fields, strip, kernel, force: Some(force) });
             });
         }
-        _ => kernels.par_iter_mut().enumerate().for_each(|(strip, kernel)| {
-            dispatch(StripSweep { lattice, fields, strip, kernel, force: None });
-        }),
+        _ => kernels.par_iter_mut().enumerate().filter(|(strip, _)| lattice.has_points(*strip)).for_each(
+            |(strip, kernel)| {
+                dispatch(StripSweep { lattice, fields, strip, kernel, force: None });
+            },
+        ),
     }
 }

@@ -71,6 +71,9 @@ fn in_the_total_frame() {
     let mut consistent = pulled_and_driven();
     consistent.analysis.mass = Mass::Consistent;
     goes_on_bit_by_bit("consistent mass", &consistent);
+    let mut refined = crate::refinement::refined(2, [32, 16], 2);
+    refined.solver.phase_field_interval = PhaseFieldInterval::Automatic;
+    goes_on_bit_by_bit("refined along a crack", &refined);
     for kinematics in [Kinematics::Small, Kinematics::Finite] {
         let mut scene = notched_plate(2e7);
         scene.analysis.kinematics = kinematics;

@@ -37,6 +37,28 @@ fn bodies_pass_through_each_other_without_a_contact_table() {
     assert!(samples.iter().all(|s| s.momentum.iter().all(|p| p.abs() < 1e-12 * one)));
 }
 
+/// Lengths and times times a power of two leave the velocities as they are, bit by bit.
+#[test]
+fn bodies_meet_at_any_size() {
+    let velocities = |scale: f64| {
+        let mut scene = blocks(Some(Contact { friction: 0.3, ..Contact::default() }));
+        scene.mesh.knots.iter_mut().flatten().for_each(|knot| *knot *= scale);
+        for body in &mut scene.bodies {
+            let Shape::Rectangle { min, max } = body.shape else { unreachable!() };
+            body.shape = rectangle(min.map(|x| scale * x), max.map(|x| scale * x));
+        }
+        scene.analysis.end_time *= scale;
+        let (simulation, _) = run(&scene);
+        let fields = simulation.updated_frame().unwrap().fields();
+        fields.iter().map(|field| field.momentum()[0] / field.mass()).collect::<Vec<_>>()
+    };
+    let in_metres = velocities(1.0);
+    assert!(in_metres[0] < -0.5, "{in_metres:?}");
+    for exponent in [-40, -24, 30] {
+        assert_eq!(velocities(f64::from(exponent).exp2()), in_metres, "2^{exponent} m");
+    }
+}
+
 /// The kick between two steps of different lengths belongs to both by their lengths.
 #[test]
 fn the_ledger_of_friction_closes_where_the_step_changes() {

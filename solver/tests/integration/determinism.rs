@@ -49,6 +49,7 @@ fn in_the_total_frame() {
     let mut cohesive = tall(notched_plate(6e6));
     make_cohesive(&mut cohesive, 7.5e6, Softening::Linear, Split::Rankine);
     check(&cohesive);
+    check(&crate::refinement::refined(2, [32, 16], 1));
     let mut direct = tall(notched_plate(6e6));
     direct.solver.phase_field_solver = PhaseFieldSolver::Cholesky;
     direct.analysis.end_time = 0.3e-6;

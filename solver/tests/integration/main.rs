@@ -36,6 +36,7 @@ mod nurbs;
 mod phase_field_interval;
 mod points_and_spans;
 mod pressure;
+mod refinement;
 mod rotation;
 mod seeds;
 mod self_contact;

@@ -1,6 +1,6 @@
 //! Contact in the total frame: what is conserved, and what is not there before bodies meet.
 
-use crate::common::{unit_solid, updated_scene};
+use crate::common::{body, elastic_scene, glass, rectangle, run, unit_solid, updated_scene};
 use fisura::Simulation;
 use fisura::dynamics::failure::Failure;
 use fisura::dynamics::total_frame::bodies::TotalBodies;
@@ -135,4 +135,24 @@ fn a_disc_may_fill_a_hole_and_rigid_bodies_that_approach_are_told() {
         ..scene.bodies[0].clone()
     }));
     assert!(told(&scene));
+}
+
+/// Bodies that overlap a little at the start are pushed apart by what contact holds, which the ledger knows.
+#[test]
+fn an_overlap_at_the_start_is_energy_put_in() {
+    for overlap in [1e-9, 1e-7, 2e-5] {
+        let mut scene = elastic_scene(2, [1.0, 1.0], [20, 20]);
+        scene.mesh = Mesh::uniform([2; 2], [-0.5, -0.3], [1.0, 1.0], [20, 20]);
+        scene.materials.insert("glass".into(), Material { young_modulus: 1e7, density: 1e3, ..glass() });
+        let block = |name: &str, min, max| Body { name: name.into(), ..body(rectangle(min, max), [2; 2]) };
+        scene.bodies = vec![block("upper", [-0.2, -overlap], [0.2, 0.2]), block("lower", [-0.45, -0.25], [0.45, 0.0])];
+        scene.contact = Some(Contact::default());
+        scene.analysis.kinematics = Kinematics::Finite;
+        scene.analysis.end_time = 0.02;
+        let (_, samples) = run(&scene);
+        let (first, last) = (samples[0].contact.unwrap().loss, samples.last().unwrap());
+        assert!(first > 0.0 && last.contact.unwrap().loss < 0.1 * first, "{overlap}: {first:e} J, then {last:?}");
+        assert!(last.closure.abs() < 1e-2 * first, "{overlap}: open by {:e} of {first:e} J", last.closure);
+        assert!(last.kinetic + last.elastic > 0.8 * first);
+    }
 }

@@ -17,8 +17,21 @@ const MOST_MAPPED_IN_A_ROW: usize = 10_000;
 const ROUND_OFF: f64 = 1e-9;
 /// Angle short of a full turn that a ring has to leave open, rad.
 const LEAST_OPENING: f64 = 1e-9;
-const KEYS: [&str; 10] =
-    ["degree", "origin", "size", "cells", "knots", "long_ends", "control_points", "weights", "subdivide", "annulus"];
+/// Most times that spans near a crack are halved.
+const MOST_HALVINGS: usize = 3;
+const KEYS: [&str; 11] = [
+    "degree",
+    "origin",
+    "size",
+    "cells",
+    "knots",
+    "long_ends",
+    "control_points",
+    "weights",
+    "subdivide",
+    "annulus",
+    "refine",
+];
 
 /// The `[mesh]` table; a rectangle without cells has cells of at most `longest`, m.
 pub(super) fn mesh(item: &Item<'_>, longest: Option<f64>) -> Option<Mesh> {
@@ -27,7 +40,7 @@ pub(super) fn mesh(item: &Item<'_>, longest: Option<f64>) -> Option<Mesh> {
     let allowed: &[&str] = match form {
         Some("control_points") => &["degree", "knots", "control_points", "weights", "subdivide"],
         Some(_) => &["degree", "cells", "long_ends", "annulus"],
-        None => &["degree", "origin", "size", "cells", "knots", "subdivide", "long_ends"],
+        None => &["degree", "origin", "size", "cells", "knots", "subdivide", "long_ends", "refine"],
     };
     let mut complete = true;
     for key in KEYS.into_iter().filter(|key| !allowed.contains(key)) {
@@ -64,11 +77,16 @@ fn rectangle(fields: &Fields<'_>, degree: Option<[usize; 2]>, longest: Option<f6
         _ => fields.or("subdivide", 1, |item| item.whole(1, MOST_CELLS)),
     };
     let ends = long_ends(fields);
+    let halvings = fields.maybe("refine", |item| {
+        item.fields(&["levels"])?
+            .need("levels", "levels = 1, how often spans near a crack are halved", |item| item.whole(1, MOST_HALVINGS))
+    });
     let (degree, origin, size, knots, cells, parts) = (degree?, origin?, size?, knots?, cells?, parts?);
     let mut mesh = match knots {
         None => Mesh::uniform(degree, origin, size, cells),
         Some(knots) => graded(fields, degree, origin, size, knots, parts)?,
     };
+    mesh.halvings = halvings?.unwrap_or(0);
     if ends?.into_iter().all(|side| mesh.lengthen_end(side)) { Some(mesh) } else { too_short(fields) }
 }
 
@@ -138,7 +156,7 @@ fn graded(
         let cut = knots[d].windows(2).flat_map(cut).chain([last]);
         cut.map(|k| origin[d] + size[d] * ((k - first) / (last - first))).collect()
     });
-    Some(Mesh { degree, knots, geometry: None })
+    Some(Mesh { degree, knots, geometry: None, halvings: 0 })
 }
 
 /// Knots, control points and weights as given, every span cut into `subdivide` equal parts by knot insertion.
@@ -153,7 +171,7 @@ fn general(fields: &Fields<'_>, degree: [usize; 2]) -> Option<Mesh> {
     let parts = fields.or("subdivide", 1, |item| item.whole(1, MOST_CELLS));
     let (knots, control_points, weights, parts) = (knots?, control_points?, weights?, parts?);
     let weights = weights.unwrap_or_else(|| vec![1.0; control_points.len()]);
-    let mesh = Mesh { degree, knots, geometry: Some(Geometry { control_points, weights }) };
+    let mesh = Mesh { degree, knots, geometry: Some(Geometry { control_points, weights }), halvings: 0 };
     match mesh.nurbs()? {
         Ok(patch) if parts > 1 => {
             let spans = patch.spaces().each_ref().map(|space| space.spans().len().saturating_mul(parts));

@@ -235,6 +235,7 @@ fn ledger(run: &RunInfo) -> Figure {
         "history_work_j",
         "phase_field_lag_j",
         "transfer_loss_j",
+        "refinement_j",
         "closure_j",
     ];
     let present = terms.into_iter().filter(|t| run.columns.iter().any(|c| c == t));

@@ -15,11 +15,12 @@ use crate::dynamics::failure::Failure;
 use crate::dynamics::forcing::Forcing;
 use crate::dynamics::loads::NodalLoad;
 use crate::dynamics::mass::MassMatrix;
+use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::conjugate_gradients::SolveFailure;
 use crate::linear_algebra::control_grid::VectorField;
 use crate::material::degradation::FractureModel;
 use crate::material::elasticity::ElasticModuli;
-use crate::particles::lattice::Lattice;
+use crate::particles::lattice::{Lattice, STRIP_ROWS};
 use crate::phase_field::fracture::{LatticeFracture, crack_start};
 use crate::scene::{Body, Scene};
 use crate::splines::patch::Patch;
@@ -32,10 +33,18 @@ impl TotalFrame {
     /// If the body holds no material point, a part of a traction would be lost, the initial phase field does
     /// not converge, or a consistent mass matrix is singular to round-off.
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
+        Self::in_strips(scene, STRIP_ROWS)
+    }
+
+    /// As [`Self::new`], with so many rows of spans in a strip of the lattice.
+    ///
+    /// # Errors
+    /// As there.
+    pub(super) fn in_strips(scene: &Scene, strip_rows: usize) -> Result<Self, Failure> {
         let patch = Patch::new(&scene.mesh);
         let body = &scene.bodies[0];
         let material = &scene.materials[&body.material];
-        let lattice = Lattice::new(&patch, body);
+        let lattice = Lattice::in_strips(&patch, body, strip_rows);
         if lattice.count() == 0 {
             return Err(Failure::NoPoints(0));
         }
@@ -84,6 +93,7 @@ impl TotalFrame {
             density: material.density,
             crack_start: crack_start(body),
             counts_fragments: scene.output.fragments,
+            in_use: ActiveColumns::all(grid),
             displacement: zeros(),
             velocity: zeros(),
             acceleration: zeros(),

@@ -5,6 +5,7 @@
 
 use super::TotalFrame;
 use super::boundary::arcs_at_rest;
+use super::levels::Levels;
 use crate::checkpoint::{Archive, StateError};
 use crate::contact::ContactLedger;
 use crate::contact::gap_potential::rigid_outline::RigidOutline;
@@ -31,6 +32,8 @@ pub struct TotalBodies {
     /// Those that deform.
     bodies: Vec<TotalFrame>,
     contact: Option<GapPotential>,
+    /// If they are the levels of one body on a mesh that is refined.
+    levels: Option<Levels>,
     /// The mesh of the scene.
     patch: Patch,
     thickness: f64,
@@ -46,7 +49,13 @@ impl TotalBodies {
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
         let numbered = scene.bodies.iter().enumerate();
         let deformable: Vec<(usize, &Body)> = numbered.filter(|(_, body)| !body.rigid).collect();
+        let mut levels = None;
         let bodies = match (&scene.contact, deformable.as_slice()) {
+            (None, [_]) if scene.mesh.halvings > 0 => {
+                let (frames, of_frames) = Levels::new(scene)?;
+                levels = Some(of_frames);
+                frames
+            }
             (None, [_]) => vec![TotalFrame::new(scene)?],
             _ => {
                 let first = deformable.first().map_or(0, |(number, _)| *number);
@@ -70,7 +79,9 @@ impl TotalBodies {
             GapPotential::new(span, contact.friction, rigid, thin, own)
         });
         let recorded = scene.output.bodies.then(|| names(scene));
-        Ok(Self { bodies, contact, patch, thickness: scene.analysis.thickness, recorded })
+        let mut all = Self { bodies, contact, levels, patch, thickness: scene.analysis.thickness, recorded };
+        all.meet(0.0)?; // bodies may overlap a little
+        Ok(all)
     }
 
     /// One time step of `dt` seconds; phase fields that are `sampled` after it are solved for.
@@ -78,10 +89,12 @@ impl TotalBodies {
     /// # Errors
     /// If a phase field cannot be solved for, or a boundary is deep in another body.
     pub(crate) fn step(&mut self, dt: f64, sampled: bool) -> Result<(), Failure> {
+        let fractures = self.bodies.iter_mut().filter_map(|body| body.fracture.as_mut());
+        fractures.filter(|_| sampled).for_each(|fracture| fracture.field.expect_solve());
+        if let Some(levels) = &mut self.levels {
+            return levels.step(&mut self.bodies, dt);
+        }
         for body in &mut self.bodies {
-            if sampled && let Some(fracture) = &mut body.fracture {
-                fracture.field.expect_solve();
-            }
             body.find_internal_forces(dt)?;
         }
         self.meet(dt)?;
@@ -137,11 +150,17 @@ impl TotalBodies {
 
     /// Makes ready for steps of `dt` seconds.
     pub(crate) fn prepare(&mut self, dt: f64) {
-        self.bodies.iter_mut().for_each(|body| body.prepare(dt));
+        match &self.levels {
+            None => self.bodies.iter_mut().for_each(|body| body.prepare(dt)),
+            Some(levels) => levels.prepare(&mut self.bodies, dt),
+        }
     }
 
     /// Critical time step, s; infinite if nothing can move.
     pub(crate) fn critical_step(&self) -> f64 {
+        if let Some(levels) = &self.levels {
+            return levels.critical_step();
+        }
         let steps = self.bodies.iter().map(TotalFrame::critical_step);
         steps.fold(f64::INFINITY, |least, step| if step >= least { least } else { step }) // NaN stays
     }
@@ -161,6 +180,9 @@ impl TotalBodies {
     /// zero.
     pub(crate) fn sample(&self, dt: f64) -> Sample {
         let samples: Vec<Sample> = self.bodies.iter().map(|body| body.sample(dt)).collect();
+        if let Some(levels) = &self.levels {
+            return levels.sample(&self.bodies, samples);
+        }
         let recorded = self.recorded.as_ref().map(|names| self.sample_bodies(names, &samples));
         let mut sample = samples.into_iter().reduce(Sample::with).expect("a scene has a body");
         if let Some(ContactLedger { loss, friction, work }) = self.contact.as_ref().map(GapPotential::ledger) {
@@ -200,22 +222,26 @@ impl TotalBodies {
     /// Calls `f` with the state of every point.
     pub(crate) fn for_each_point_state(&self, f: &mut dyn FnMut(PointState)) {
         for (number, body) in self.bodies.iter().enumerate() {
-            body.for_each_point_state(&mut |state| f(PointState { body: number, ..state }));
+            let body_number = if self.levels.is_some() { 0 } else { number };
+            body.for_each_point_state(&mut |state| f(PointState { body: body_number, ..state }));
         }
     }
 
     /// The spans with points; their corners move with the bodies.
     pub(crate) fn span_grid(&self) -> SpanGrid {
         let mut grid = SpanGrid::default();
-        self.bodies.iter().enumerate().for_each(|(number, body)| body.add_spans(number, &mut grid));
+        let number = |number| if self.levels.is_some() { 0 } else { number };
+        self.bodies.iter().enumerate().for_each(|(index, body)| body.add_spans(number(index), &mut grid));
         grid
     }
 
     /// Phase field, if there is one, and largest principal stress (Pa) on a raster; NaN where there is no
     /// body. A body that meets no others is drawn where it was at t = 0.
     pub(crate) fn paint(&self, raster: &Raster) -> (Option<Vec<f64>>, Vec<f64>) {
-        if let ([body], None) = (self.bodies.as_slice(), &self.contact) {
-            return body.paint(raster);
+        match (self.bodies.as_slice(), &self.levels, &self.contact) {
+            (bodies, Some(levels), _) => return levels.on_finest(bodies).paint(raster),
+            ([body], None, None) => return body.paint(raster),
+            _ => {}
         }
         let blank = vec![[f64::NAN; 2]; raster.pixels[0] * raster.pixels[1]];
         let values = self.bodies.iter().fold(blank, |mut values, body| {
@@ -272,6 +298,9 @@ impl TotalBodies {
     /// # Errors
     /// Bytes of another scene, and loads that only the program knows.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
+        if let Some(levels) = &mut self.levels {
+            levels.exchange(archive, &mut self.bodies)?;
+        }
         self.bodies.iter_mut().try_for_each(|body| body.exchange(archive))?;
         if let Some(contact) = &mut self.contact {
             contact.exchange(archive)?;

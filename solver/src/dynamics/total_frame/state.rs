@@ -26,6 +26,7 @@ impl TotalFrame {
             edges,
             boundary: _,
             mass: _,
+            in_use: _,
             displacement,
             velocity,
             acceleration,

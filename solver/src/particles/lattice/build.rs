@@ -4,7 +4,7 @@ use super::cut::{EdgesInSpans, Rules};
 use super::cut_batch::{CutPoint, first_function};
 use super::gaps::Gaps;
 use super::tables::{Row, tiles};
-use super::{Lattice, cut, directions, fills_lattice};
+use super::{Lattice, STRIP_ROWS, cut, directions, fills_lattice};
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::scene::edges::BoundaryEdge;
 use crate::scene::shape::Segment;
@@ -14,7 +14,12 @@ use crate::splines::patch::Patch;
 impl Lattice {
     /// The points of `body` on `patch`; spans that its boundary or a slit cuts have points of their own.
     pub fn new(patch: &Patch, body: &Body) -> Self {
-        let mut lattice = Self::of_tables(patch, body);
+        Self::in_strips(patch, body, STRIP_ROWS)
+    }
+
+    /// As [`Self::new`], with so many rows of spans in a strip.
+    pub(crate) fn in_strips(patch: &Patch, body: &Body, strip_rows: usize) -> Self {
+        let mut lattice = Self { strip_rows, ..Self::of_tables(patch, body) };
         let mapped = patch.geometry.is_some();
         let fills = fills_lattice(mapped, &body.shape);
         let slits: Vec<Segment> = body.slits().flat_map(Crack::segments).collect();
@@ -87,6 +92,7 @@ impl Lattice {
             layout: body.layout,
             tiles: tiles(&x, degree[0] + 1),
             patch_rows: rows.len(),
+            strip_rows: STRIP_ROWS,
             rows,
             mapping: None,
             factor: None,

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Lattice, STRIP_ROWS};
+use super::Lattice;
 use crate::linear_algebra::lane::LANES;
 
 impl Lattice {
@@ -13,7 +13,7 @@ impl Lattice {
 
     /// The strip of a row of spans, if it is one of the patch: behind them are those of slits and cut spans.
     pub(crate) fn patch_strip_of(&self, row: usize) -> Option<usize> {
-        (row < self.patch_rows).then_some(row / STRIP_ROWS)
+        (row < self.patch_rows).then_some(row / self.strip_rows)
     }
 
     /// The first control point of the patch that a point sees, by column and row: that of its span.

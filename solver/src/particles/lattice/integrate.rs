@@ -38,6 +38,9 @@ impl Lattice {
         };
         let densities: Vec<_> = (0..self.batches()).into_par_iter().map(of_batch).collect();
         for (batch, (weight, force, stress)) in densities.into_iter().enumerate() {
+            if weight == Lane::ZERO {
+                continue;
+            }
             let functions = self.shape_functions(batch);
             for l in 0..ky {
                 for k in 0..kx {

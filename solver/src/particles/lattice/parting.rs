@@ -12,7 +12,7 @@ use super::cut_batch::CutPoint;
 use super::gaps::Gaps;
 use super::point_graph::{Group, PointGraph, PointIndex};
 use super::sheets::{FunctionIndex, Sheets};
-use super::{Lattice, Row, STRIP_ROWS};
+use super::{Lattice, Row};
 use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::lane::Lane;
 use crate::scene::Crack;
@@ -99,7 +99,7 @@ impl Lattice {
     /// Adds rows without points up to the end of a strip.
     pub(super) fn fill_strip(&mut self, copied: &mut Vec<usize>) {
         let last = self.rows.len() - 1;
-        while !self.rows.len().is_multiple_of(STRIP_ROWS) {
+        while !self.rows.len().is_multiple_of(self.strip_rows) {
             self.rows.push(self.rows[last].clone());
             copied.push(0);
         }

@@ -1,0 +1,92 @@
+//! Local refinement: levels of truncated hierarchical splines that follow the crack.
+
+use crate::common::{brittle, elastic_scene, run};
+use fisura::linear_algebra::extremes::larger;
+use fisura::scene::*;
+
+/// A plate of 16 by 8 mm with a seed along the middle of its left half, pulled open; cells of h = 2 l0, halved
+/// `halvings` times near the crack.
+pub fn refined(degree: usize, cells: [usize; 2], halvings: usize) -> Scene {
+    let mut scene = elastic_scene(degree, [0.016, 0.008], cells);
+    scene.materials.get_mut("glass").unwrap().fracture = Some(brittle());
+    let pull = |side, stress| Traction::on(side, [0.0, stress], TimeFactor::ramp(1e-6));
+    let points = vec![[0.0, 0.004], [0.006, 0.004]];
+    scene.bodies[0].tractions = vec![pull(Side::Top, 12e6), pull(Side::Bottom, -12e6)];
+    scene.bodies[0].cracks = vec![Crack { points, kind: CrackKind::Seed(Some(0.5e-3)) }];
+    scene.mesh.halvings = halvings;
+    scene.analysis.end_time = 8e-6;
+    scene
+}
+
+/// Where every tile is refined from the start, the run is that on the finest mesh.
+#[test]
+fn refined_everywhere_it_is_the_finest_mesh() {
+    for degree in [1, 2, 3] {
+        let mut coarse = refined(degree, [16, 8], 1);
+        coarse.bodies[0].cracks[0].points[1] = [0.009, 0.004];
+        let mut fine = coarse.clone();
+        fine.mesh = Mesh::uniform([degree; 2], [0.0; 2], [0.016, 0.008], [32, 16]);
+        let [(_, coarse), (_, fine)] = [coarse, fine].map(|scene| run(&scene));
+        for (coarse, fine) in coarse.iter().zip(&fine) {
+            let scale = larger(fine.largest_term(), 1e-6);
+            let differences = [
+                coarse.kinetic - fine.kinetic,
+                coarse.elastic - fine.elastic,
+                coarse.external_work - fine.external_work,
+                coarse.fracture.as_ref().unwrap().energy - fine.fracture.as_ref().unwrap().energy,
+            ];
+            assert!(differences.iter().all(|d| d.abs() < 1e-8 * scale), "p = {degree}: {differences:?} of {scale:e}");
+            assert_eq!(coarse.refinement, Some(0.0));
+        }
+    }
+}
+
+/// A crack that runs into coarse cells refines them; momentum is kept, and the ledger has the energy.
+#[test]
+fn what_refinement_changes_is_a_term_of_the_ledger() {
+    for (degree, halvings) in [(2, 1), (3, 1), (2, 2)] {
+        let mut scene = refined(degree, [32, 16], halvings);
+        scene.bodies[0].velocity = [3.0, 1.0];
+        let (simulation, samples) = run(&scene);
+        let (first, last) = (&samples[0], samples.last().unwrap());
+        let tips = [first, last].map(|s| s.fracture.as_ref().unwrap().crack_tip.unwrap().place[0]);
+        assert!(tips[1] > tips[0] + 4e-3, "p = {degree}: the crack runs by {:e} m", tips[1] - tips[0]);
+        let mass = 2450.0 * 0.016 * 0.008;
+        for sample in &samples {
+            let drift = [0, 1].map(|d| sample.momentum[d] - [3.0, 1.0][d] * mass);
+            assert!(drift.iter().all(|p| p.abs() < 1e-10 * mass), "p = {degree}, {halvings}: {drift:?}");
+        }
+        let added = last.refinement.unwrap();
+        let loads = last.external_work.abs();
+        assert!(added != 0.0 && added.abs() < 2e-3 * loads, "p = {degree}, {halvings}: {added:e} of {loads:e} J");
+        assert!(last.closure.abs() < 2e-3 * loads, "p = {degree}, {halvings}: open by {:e} J", last.closure);
+        let mut points = 0;
+        simulation.for_each_point(&mut |_| points += 1);
+        let (coarse, fine) =
+            (32 * 16 * degree.pow(2).max(4), 32 * 16 * 4_usize.pow(halvings as u32) * degree.pow(2).max(4));
+        assert!(coarse < points && points < fine, "{points} points, of {coarse} to {fine}");
+    }
+}
+
+#[test]
+fn what_it_cannot_be_used_with_is_refused() {
+    let error = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = refined(2, [32, 16], 1);
+        change(&mut scene);
+        let errors = fisura::validate::validate(&scene).unwrap_err();
+        errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    };
+    assert!(fisura::validate::validate(&refined(2, [32, 16], 1)).is_ok());
+    let refused: [(&str, &dyn Fn(&mut Scene)); 4] = [
+        ("frame = \"updated\"", &|scene| scene.analysis.frame = Frame::Updated),
+        ("a static start", &|scene| scene.equilibrium = true),
+        ("does not cover the mesh", &|scene| {
+            scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [0.016, 0.006] };
+        }),
+        ("a body that does not break", &|scene| scene.materials.get_mut("glass").unwrap().fracture = None),
+    ];
+    for (what, change) in refused {
+        let found = error(change);
+        assert!(found.contains(what) && found.contains("mesh.refine"), "{found}");
+    }
+}
