@@ -12,9 +12,9 @@
 //! Wilkinson 1963; Higham 2002, *Accuracy and stability of numerical algorithms*, chapter 12). A correction
 //! in single precision is good for [`DIGITS`]; a tolerance below that takes another one.
 //!
-//! A system may live on several nested grids: control values of a finer one next to a coarser one are those of
-//! the coarser one (`interface.rs`). Each grid has a preconditioner of its own, for the values that are its
-//! own.
+//! A system may live on several nested grids: control values of a finer one next to a coarser one are those
+//! of the coarser one (`interface.rs`). Each grid has a preconditioner of its own, for the values that are
+//! its own.
 //!
 //! Rounded to single precision, a matrix whose coefficients differ by more than seven digits from one control
 //! point to the next may no longer be positive definite: material under a strain of one and more has 1e9
@@ -132,7 +132,7 @@ pub(crate) fn solve_on_grids(
 ) -> Result<Convergence, SolveFailure> {
     let single = |grid| Iterated::new(grid, |workspace| (&mut workspace.single, &mut workspace.product));
     let mut iterated: Vec<_> = grids.iter_mut().map(single).collect();
-    let spent = match (Iteration { grids: &mut iterated, interfaces, tolerance, limit }).solve() {
+    let spent = match (Solving { grids: &mut iterated, interfaces, tolerance, limit }).solve() {
         Ok(found) if found.iterations < TRUSTED => return Ok(found),
         Err(SolveFailure::NotFinite) => return Err(SolveFailure::NotFinite),
         found => found.map_or(0, |found| found.iterations),
@@ -143,7 +143,7 @@ pub(crate) fn solve_on_grids(
         })
     };
     let mut iterated: Vec<_> = grids.iter_mut().map(double).collect();
-    let found = Iteration { grids: &mut iterated, interfaces, tolerance, limit }.solve()?;
+    let found = Solving { grids: &mut iterated, interfaces, tolerance, limit }.solve()?;
     Ok(Convergence { iterations: spent + found.iterations, ..found })
 }
 
@@ -170,7 +170,7 @@ impl<'a, T> Iterated<'a, T> {
 }
 
 /// What is to be solved, and how well.
-struct Iteration<'a, 'b, T> {
+struct Solving<'a, 'b, T> {
     grids: &'a mut [Iterated<'b, T>],
     interfaces: &'a [Interface],
     tolerance: f64,
@@ -253,7 +253,7 @@ impl<T: Scalar + Coefficients<T>> Workspace<T> {
     }
 }
 
-impl<T: Scalar + Coefficients<T>> Iteration<'_, '_, T> {
+impl<T: Scalar + Coefficients<T>> Solving<'_, '_, T> {
     fn solve(&mut self) -> Result<Convergence, SolveFailure> {
         let unit = self.grids.iter().map(|grid| grid.preconditioner.unit()).fold(f64::INFINITY, smaller);
         self.grids.iter_mut().for_each(|grid| grid.work.take_part(grid.matrix));

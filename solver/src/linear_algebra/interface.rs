@@ -43,7 +43,7 @@ impl Interface {
         for (point, row) in self.rows() {
             let force: f64 = std::mem::replace(&mut fine[point], T::ZERO).into();
             for &(at, weight) in row {
-                coarse[at] = T::of(coarse[at].into() + weight * force);
+                coarse[at] = T::of(coarse[at].into() + fault!("forces-of-the-interface-lost", weight * force => 0.0));
             }
         }
     }

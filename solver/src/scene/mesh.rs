@@ -43,6 +43,11 @@ impl Mesh {
             knots.extend(std::iter::repeat_n(origin[d] + size[d], degree[d]));
             knots
         });
+        Self::of_knots(degree, knots)
+    }
+
+    /// A mesh over a rectangle with these knots, m.
+    pub fn of_knots(degree: [usize; 2], knots: [Vec<f64>; 2]) -> Self {
         Self { degree, knots, geometry: None, halvings: 0 }
     }
 
@@ -112,7 +117,7 @@ impl Mesh {
             let ends = |knot: f64| std::iter::repeat_n(knot, degree + 1);
             ends(knots[first]).chain(inner).chain(ends(knots[last])).collect()
         });
-        Self { degree: self.degree, knots, geometry: None, halvings: 0 }
+        Self::of_knots(self.degree, knots)
     }
 
     /// Whether a shape reaches a side of the box around the mesh.

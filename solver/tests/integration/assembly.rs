@@ -86,7 +86,7 @@ fn entries_on_graded_and_repeated_knots_and_in_a_disk() {
     for degree in 2..=4 {
         let knots = [graded_knots(degree, 19, &[3, 8, 9]), graded_knots(degree, 21, &[1, 2, 3, 17])];
         let end = [knots[0][knots[0].len() - 1], knots[1][knots[1].len() - 1]];
-        compare(&Mesh { degree: [degree; 2], knots, geometry: None }, &body(rectangle([0.0; 2], end), [2, 3]), None);
+        compare(&Mesh::of_knots([degree; 2], knots), &body(rectangle([0.0; 2], end), [2, 3]), None);
         let disk = Shape::Disk { center: [0.91, 0.8], radius: 0.6 };
         compare(&Mesh::uniform([degree; 2], [0.0; 2], [1.9, 1.8], [19, 18]), &body(disk, [2; 2]), None);
     }

@@ -235,7 +235,7 @@ fn complete_factors_take_over_and_go_back() {
     };
     let mut preconditioner = Preconditioner::new(&matrix, false);
     let incomplete = solve(&preconditioner);
-    preconditioner.learn(&matrix, incomplete);
+    preconditioner.learn(incomplete);
     assert_eq!(solve(&preconditioner), incomplete, "so few iterations call for nothing");
     preconditioner.renew(&matrix);
     for pause in [16, 32, 64, 128, 256, 512, 512] {
@@ -252,7 +252,7 @@ fn complete_factors_take_over_and_go_back() {
         assert!(solve(&preconditioner) <= 6, "the factor is exact");
     }
     preconditioner.prepare(&matrix);
-    preconditioner.learn(&matrix, incomplete);
+    preconditioner.learn(incomplete);
     assert_eq!(solve(&preconditioner), incomplete, "the incomplete factor is good again, and stays");
     preconditioner.prepare(&matrix);
     assert!(!preconditioner.is_complete());

@@ -186,7 +186,7 @@ proptest! {
         let (degree, knots) = ([x.degree, y.degree], [x.knots, y.knots]);
         let rectangle = NurbsPatch::rectangle(degree, [&knots[0], &knots[1]], [0.0, 0.0], [1.0, 1.0]).unwrap();
         let general = rectangle.general();
-        let patch = Patch::new(&Mesh { degree, knots, geometry: None });
+        let patch = Patch::new(&Mesh::of_knots(degree, knots));
         let grid = patch.control_grid();
         let control: Vec<f64> = (0..grid.rows * grid.columns).map(|n| (1.7 * n as f64).sin()).collect();
         let mut field = grid.zeros();

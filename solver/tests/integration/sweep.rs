@@ -106,8 +106,7 @@ fn graded_and_repeated_knots() {
         for repeated in [&[][..], &[3, 8, 9], &[1, 2, 3, 4, 5, 6]] {
             let knots = [graded_knots(degree, 19, repeated), graded_knots(degree, 21, repeated)];
             let end = [knots[0][knots[0].len() - 1], knots[1][knots[1].len() - 1]];
-            let (_, area) =
-                compare(&Mesh { degree: [degree; 2], knots, geometry: None }, &body(rectangle([0.0; 2], end), [3, 2]));
+            let (_, area) = compare(&Mesh::of_knots([degree; 2], knots), &body(rectangle([0.0; 2], end), [3, 2]));
             approx::assert_relative_eq!(area, end[0] * end[1], max_relative = 1e-14);
         }
     }
@@ -123,7 +122,7 @@ fn knots_repeated_to_continuity() {
             knots.extend(std::iter::repeat_n(0.1 * f64::from(i), if i % 3 == 0 { degree } else { 1 }));
         }
         knots.extend(vec![1.8; degree + 1]);
-        let mesh = Mesh { degree: [degree; 2], knots: [knots.clone(), knots], geometry: None };
+        let mesh = Mesh::of_knots([degree; 2], [knots.clone(), knots]);
         compare(&mesh, &body(rectangle([0.0; 2], [1.8; 2]), [2; 2]));
     }
 }

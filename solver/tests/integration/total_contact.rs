@@ -149,6 +149,7 @@ fn an_overlap_at_the_start_is_energy_put_in() {
         scene.contact = Some(Contact::default());
         scene.analysis.kinematics = Kinematics::Finite;
         scene.analysis.end_time = 0.02;
+        scene.analysis.safety = 0.2;
         let (_, samples) = run(&scene);
         let (first, last) = (samples[0].contact.unwrap().loss, samples.last().unwrap());
         assert!(first > 0.0 && last.contact.unwrap().loss < 0.1 * first, "{overlap}: {first:e} J, then {last:?}");

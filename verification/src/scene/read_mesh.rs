@@ -63,9 +63,14 @@ fn rectangle(fields: &Fields<'_>, degree: Option<[usize; 2]>, longest: Option<f6
     let origin = fields.need("origin", "origin = [0.0, 0.0] (m), the lower left corner", point);
     let size = fields.need("size", "size = [0.1, 0.04] (m), width and height", size);
     let knots = fields.maybe("knots", |item| item.pair(|direction| direction.each(length)));
+    let halvings = fields.maybe("refine", |item| {
+        item.fields(&["levels"])?
+            .need("levels", "levels = 1, how often spans near a crack are halved", |item| item.whole(1, MOST_HALVINGS))
+    });
+    let coarsening = f64::from(1 << halvings.flatten().unwrap_or(0)); // of the spans away from cracks
     let cells = match (fields.get("cells"), &knots) {
         (Some(cells), Some(Some(_))) => cells.fail("both cells and knots are given", "remove one of the two"),
-        (None, Some(None)) => match (longest, size) {
+        (None, Some(None)) => match (longest.map(|longest| longest * coarsening), size) {
             (Some(longest), Some(size)) => cells_of(fields, size, longest),
             _ => fields.need("cells", "cells = [100, 40], the spans per direction", |_| None),
         },
@@ -77,10 +82,6 @@ fn rectangle(fields: &Fields<'_>, degree: Option<[usize; 2]>, longest: Option<f6
         _ => fields.or("subdivide", 1, |item| item.whole(1, MOST_CELLS)),
     };
     let ends = long_ends(fields);
-    let halvings = fields.maybe("refine", |item| {
-        item.fields(&["levels"])?
-            .need("levels", "levels = 1, how often spans near a crack are halved", |item| item.whole(1, MOST_HALVINGS))
-    });
     let (degree, origin, size, knots, cells, parts) = (degree?, origin?, size?, knots?, cells?, parts?);
     let mut mesh = match knots {
         None => Mesh::uniform(degree, origin, size, cells),
@@ -156,7 +157,7 @@ fn graded(
         let cut = knots[d].windows(2).flat_map(cut).chain([last]);
         cut.map(|k| origin[d] + size[d] * ((k - first) / (last - first))).collect()
     });
-    Some(Mesh { degree, knots, geometry: None, halvings: 0 })
+    Some(Mesh::of_knots(degree, knots))
 }
 
 /// Knots, control points and weights as given, every span cut into `subdivide` equal parts by knot insertion.

@@ -60,7 +60,7 @@ fn crack(degree: usize, per_length: usize) -> Result<(f64, f64), StudyError> {
     }
     x.extend(vec![at(2 * half); degree]);
     let rows = Mesh::uniform([degree; 2], [0.0; 2], [1.0, HEIGHT], [1, 2]).knots[1].clone();
-    let mesh = Mesh { degree: [degree; 2], knots: [x, rows], geometry: None, halvings: 0 };
+    let mesh = Mesh::of_knots([degree; 2], [x, rows]);
     let scene = PlainScene { held: vec![], ..PlainScene::unit_bar(mesh, Mass::Lumped) }.scene();
     let patch = Patch::new(&scene.mesh);
     let lattice = Lattice::new(&patch, &scene.bodies[0]);

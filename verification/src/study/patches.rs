@@ -62,7 +62,7 @@ pub fn shifted_mesh(family: PatchFamily, degree: usize, cells: usize, offset: f6
         PatchFamily::Graded => {
             let mut random = Random::new(11);
             let knots = SIZE.map(|size| open(degree, &subdivided(&breaks(&mut random, size), parts)));
-            Ok(Mesh { degree: [degree; 2], knots, geometry: None, halvings: 0 })
+            Ok(Mesh::of_knots([degree; 2], knots))
         }
         PatchFamily::Bent => Ok(Mesh::of(&refined(&bent()?, degree, cells)?)),
         PatchFamily::Annulus => Ok(Mesh::of(&refined(&NurbsPatch::quarter_annulus(1.0, 2.0)?, degree, cells)?)),

@@ -8,11 +8,11 @@
 //! points of a level are those of the coarser one by knot insertion, `u_f = R u_c`; what acts on them acts on
 //! the coarser one, `f_c += Rᵀ f_f`. So the functions sum to one, and the lumped mass is positive.
 //!
-//! What is refined stays so. Tiles of spans are refined where c falls below 0.75, and around (`levels/regions.rs`).
-//! Fields are copied, so that they do not change and momentum is kept; the change of the energies, which
-//! comes from the lumped mass and the new points, is a term of the ledger. The critical step is that of the
-//! finest level over the whole mesh: the functions in use are combinations of its own, and the lumped mass
-//! is convex.
+//! What is refined stays so. Tiles of spans are refined where c falls below 0.75, and around
+//! (`levels/regions.rs`). Fields are copied, so that they do not change and momentum is kept; the change of
+//! the energies, which comes from the lumped mass and the new points, is a term of the ledger. The critical
+//! step is that of the finest level over the whole mesh: the functions in use are combinations of its own,
+//! and the lumped mass is convex.
 
 mod copies;
 mod regions;
@@ -97,6 +97,9 @@ impl Levels {
             };
             frame.loads.iter().map(field).collect::<Vec<_>>()
         };
+        let phase_load = |frame: &TotalFrame| {
+            frame.fracture.as_ref().map_or_else(Vec::new, |fracture| fracture.field.load().to_vec())
+        };
         let mut levels = Self {
             regions: Regions::new(&frames),
             insertions: frames.windows(2).map(insertion).collect(),
@@ -106,10 +109,7 @@ impl Levels {
             masses: frames.iter().map(|frame| frame.mass.row_sums().to_vec()).collect(),
             loads: frames.iter().map(dense).collect(),
             constraints: frames.iter().map(|frame| frame.constraints.clone()).collect(),
-            phase_loads: frames
-                .iter()
-                .filter_map(|frame| Some(frame.fracture.as_ref()?.field.load().to_vec()))
-                .collect(),
+            phase_loads: frames.iter().map(phase_load).collect(),
             critical_step: frames[finest].critical_step(),
             since: 0,
             added: 0.0,
@@ -329,7 +329,11 @@ impl Levels {
             let share = |all: &[f64], of_finer: Option<&Vec<f64>>| {
                 let mut field = all.to_vec();
                 if let (Some((lattice, within)), Some(of_finer)) = (&finer, of_finer) {
-                    let mut taken: Vec<f64> = lattice.onto_patch(of_finer.clone()).iter().map(|value| -value).collect();
+                    let mut taken: Vec<f64> = lattice
+                        .onto_patch(of_finer.clone())
+                        .iter()
+                        .map(|value| fault!("mass-of-both-levels", -value => 0.0))
+                        .collect();
                     within.fold(&mut taken, &mut field);
                 }
                 grid.indices().filter(|&at| !functions[level].is_own(at)).for_each(|at| field[at] = 0.0);

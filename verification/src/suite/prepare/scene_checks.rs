@@ -230,6 +230,7 @@ fn blank_history(scene: &Scene) -> Table {
         fracture: materials.find_map(FractureModel::of).map(fracture),
         contact: scene.contact.is_some().then_some(ContactSample { loss: 0.0, friction: 0.0 }),
         transfer_loss: (scene.analysis.frame == Frame::Updated).then_some(0.0),
+        refinement: (scene.mesh.halvings > 0).then_some(0.0),
         fragments: (scene.output.fragments || scene.contact.as_ref().is_some_and(|contact| contact.fragments))
             .then_some(0),
         conditions: blank_conditions(scene),

@@ -117,8 +117,8 @@ impl Regions {
         any
     }
 
-    /// Refines the tiles of some spans of a level, and those of coarser levels that they lie in; whether there
-    /// are new ones.
+    /// Refines the tiles of some spans of a level, and those of coarser levels that they lie in; whether
+    /// there are new ones.
     fn mark(&mut self, level: usize, [i, j]: [Range<usize>; 2]) -> bool {
         let mut any = false;
         let tiles = |range: Range<usize>, size: usize| range.start / size..range.end.div_ceil(size);
