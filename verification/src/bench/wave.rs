@@ -116,7 +116,7 @@ impl Way {
 }
 
 fn solution() -> Derived<StandingWave> {
-    Derived(StandingWave { plane: Plane::Strain })
+    Derived { motion: StandingWave, plane: Plane::Strain }
 }
 
 /// A body at t = 0.
