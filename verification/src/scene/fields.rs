@@ -189,8 +189,12 @@ impl<'a> Item<'a> {
 
     /// Every entry of an array read by `read`.
     pub fn each<T>(&self, read: impl Fn(&Item<'a>) -> Option<T>) -> Option<Vec<T>> {
-        let read: Vec<Option<T>> = self.list()?.iter().map(read).collect();
-        read.into_iter().collect()
+        all(&self.list()?, read)
+    }
+
+    /// Every entry of an array of tables read by `read`.
+    pub fn each_table<T>(&self, read: impl Fn(&Item<'a>) -> Option<T>) -> Option<Vec<T>> {
+        all(&self.tables()?, read)
     }
 
     /// An array of two entries, x and y.
@@ -273,6 +277,12 @@ impl<'a> Fields<'a> {
             (first, _) => Some(first),
         }
     }
+}
+
+/// Every item read, so that all their problems are told.
+fn all<'a, T>(items: &[Item<'a>], read: impl Fn(&Item<'a>) -> Option<T>) -> Option<Vec<T>> {
+    let read: Vec<Option<T>> = items.iter().map(read).collect();
+    read.into_iter().collect()
 }
 
 fn quoted(words: &[&str]) -> String {
