@@ -39,7 +39,7 @@ use thiserror::Error;
 use crate::case::Case;
 use crate::case::expand::CaseScene;
 use crate::output::history::Table;
-use crate::record::{Figure, Reference};
+use crate::record::{Figure, Reference, ReferenceKind};
 
 /// One number a study found.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,6 +80,21 @@ impl Findings {
     }
 }
 
+/// What a number is held against that is known exactly.
+fn exact(value: f64, source: &str) -> Option<Reference> {
+    Some(Reference::new(Some(value), ReferenceKind::Exact, source))
+}
+
+/// What a number is held against that a theory gives.
+fn theory(value: f64, source: &str) -> Option<Reference> {
+    Some(Reference::new(Some(value), ReferenceKind::Theory, source))
+}
+
+/// 1 for what holds, else 0.
+fn yes(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
+}
+
 /// A study that could not be carried out.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum StudyError {
@@ -92,6 +107,11 @@ pub enum StudyError {
     /// Something else.
     #[error("{0}")]
     Other(String),
+}
+
+/// An error in these words.
+fn other(message: impl ToString) -> StudyError {
+    StudyError::Other(message.to_string())
 }
 
 /// What a study offers for a case, or why it cannot be carried out.
