@@ -33,6 +33,8 @@ use stability::{
     boundary_points, critical_step, growth, incompressible, repeatability, split_families, units, unloading,
 };
 
+use fisura::dynamics::projection::Projection;
+use fisura::dynamics::total_frame::TotalFrame;
 pub use offers::{Offer, Offers};
 use thiserror::Error;
 
@@ -93,6 +95,19 @@ fn theory(value: f64, source: &str) -> Option<Reference> {
 /// 1 for what holds, else 0.
 fn yes(holds: bool) -> f64 {
     f64::from(u8::from(holds))
+}
+
+/// Control values of a vector field on a body; a component is zero where conditions hold it.
+pub(crate) fn projected(
+    frame: &TotalFrame,
+    field: impl Fn([f64; 2]) -> [f64; 2] + Sync,
+) -> Result<[Vec<f64>; 2], StudyError> {
+    let component = |c: usize| -> Result<Vec<f64>, StudyError> {
+        let projection = Projection::new(frame.lattice(), &frame.constraints().held(c));
+        let projection = projection.ok_or_else(|| other("the points do not determine a projection"))?;
+        Ok(projection.project(|x| field(x)[c]))
+    };
+    Ok([component(0)?, component(1)?])
 }
 
 /// A study that could not be carried out.

@@ -16,7 +16,7 @@ use crate::extremes::largest;
 use crate::measure::{Run, measure};
 use crate::output::history::Table;
 use crate::record::{Accept, Discretisation, Limit, Record, Reference, ReferenceKind, Status, worst};
-use crate::reference::{Library, Obtained, ReferenceBand, ReferenceCurve, relative_rms};
+use crate::reference::{Library, ReferenceBand, ReferenceCurve, relative_rms};
 use crate::scene::plain::PlainScene;
 use crate::study::orders::observed_order;
 
@@ -156,17 +156,7 @@ fn verdicts(base: &Check) -> Vec<bool> {
     }
     let around = Check { around_reference: Some([1.0, 2.0]), ..base.clone() };
     right.push(around.bounds_around(by_hand(10.0).as_ref()) == Ok(Some([9.0, 12.0])));
-    let band = ReferenceBand {
-        id: String::new(),
-        name: String::new(),
-        unit: "s",
-        min: 2e-6,
-        max: 5e-6,
-        sources: Vec::new(),
-        note: String::new(),
-        citation: String::new(),
-        kind: ReferenceKind::Literature,
-    };
+    let band = ReferenceBand { min: 2e-6, max: 5e-6, ..ReferenceBand::default() };
     let Reference { value, uncertainty, .. } = band.reference(1e6);
     let near = |found: Option<f64>, wanted: f64| found.is_some_and(|found| (found - wanted).abs() < 1e-12);
     right.push(near(value, 3.5) && near(uncertainty, 1.5));
@@ -201,7 +191,14 @@ fn known_measures(case: &Case) -> Result<[(f64, f64); 8], StudyError> {
         let found = measure(&check, run, &[*run, other], &library).map_err(StudyError::Other)?;
         Ok::<f64, StudyError>(found.value.unwrap_or(f64::NAN))
     };
-    let curve = curve();
+    // of mean zero
+    let curve = ReferenceCurve {
+        x: vec![1.0, 2.0, 3.0, 4.0],
+        y: vec![1.0, -1.0, 1.0, -1.0],
+        x_unit: "s",
+        y_unit: "J",
+        ..ReferenceCurve::default()
+    };
     let zeros = vec![0.0; curve.x.len()];
     let rms = relative_rms(&curve, &curve.x, &zeros, 0.0, 4.0).unwrap_or(f64::NAN);
     let levels: Vec<(f64, f64)> = [1.0_f64, 0.5, 0.25].into_iter().map(|h| (h, 3.0 * h.powi(3))).collect();
@@ -215,27 +212,6 @@ fn known_measures(case: &Case) -> Result<[(f64, f64); 8], StudyError> {
         (observed_order(&levels, 0.0).unwrap_or(f64::NAN), 3.0),
         (largest([1.0, f64::NAN, 0.5]), f64::NAN),
     ])
-}
-
-/// A curve of mean zero.
-fn curve() -> ReferenceCurve {
-    ReferenceCurve {
-        id: String::new(),
-        quantity: String::new(),
-        label: String::new(),
-        citation: String::new(),
-        kind: ReferenceKind::Exact,
-        obtained: Obtained::Text,
-        x: vec![1.0, 2.0, 3.0, 4.0],
-        y: vec![1.0, -1.0, 1.0, -1.0],
-        x_unit: "s",
-        y_unit: "J",
-        max_gap: None,
-        uncertainty_absolute: 0.0,
-        uncertainty_relative: 0.0,
-        uncertainty_x: 0.0,
-        uncertainty_note: String::new(),
-    }
 }
 
 /// Any scene: the measures above do not look at it.

@@ -11,16 +11,12 @@
 //! and c, the same for all k, solves `(2 − c²/c_s²)² = 4 sqrt(1 − c²/c_d²) sqrt(1 − c²/c_s²)`. A packet of
 //! such waves keeps its shape, so the centroid of `u_y²` along the surface travels with c.
 
-use std::sync::Arc;
-
-use fisura::dynamics::forcing::NoLoads;
-use fisura::dynamics::projection::Projection;
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Layout, Mass, Material, Mesh, Plane, Side};
 use fisura::splines::quadrature::Rule;
 
-use super::{Case, CaseScene, Findings, StudyError, exact, other};
+use super::{Case, CaseScene, Findings, StudyError, exact, other, projected};
 use crate::scene::plain::{PlainScene, ROLLERS};
 
 const MATERIAL: Material = Material { young_modulus: 1.0, poisson_ratio: 0.2, density: 1.0, fracture: None };
@@ -162,16 +158,8 @@ impl Flying {
         displacement: impl Fn([f64; 2]) -> [f64; 2] + Sync,
         velocity: impl Fn([f64; 2]) -> [f64; 2] + Sync,
     ) -> Result<(), StudyError> {
-        let mut fields: [[Vec<f64>; 2]; 2] = Default::default();
-        for component in 0..2 {
-            let held = self.frame.constraints().held(component);
-            let projection = Projection::new(self.frame.lattice(), &held)
-                .ok_or_else(|| other("the points do not determine a projection"))?;
-            fields[0][component] = projection.project(|x| displacement(x)[component]);
-            fields[1][component] = projection.project(|x| velocity(x)[component]);
-        }
-        let [displacement, velocity] = fields;
-        self.frame.start_from(displacement, velocity, Arc::new(NoLoads)).map_err(broken)
+        let (displacement, velocity) = (projected(&self.frame, displacement)?, projected(&self.frame, velocity)?);
+        self.frame.start_with(displacement, velocity).map_err(broken)
     }
 
     /// Distance (m) that the centroid of the square of a component along a side flies in a time (s).

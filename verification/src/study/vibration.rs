@@ -5,14 +5,10 @@
 //! `(ω dt)²/4` from peak to peak, and does not drift. Drift is the difference of the means over the first and
 //! the second half of the run, both with a window that suppresses the oscillation itself.
 
-use std::sync::Arc;
-
-use fisura::dynamics::forcing::NoLoads;
-use fisura::dynamics::projection::Projection;
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::scene::{Mass, Mesh};
 
-use super::{Case, CaseScene, Findings, StudyError, other, theory};
+use super::{Case, CaseScene, Findings, StudyError, other, projected, theory};
 use crate::extremes::spread;
 use crate::scene::plain::PlainScene;
 
@@ -62,14 +58,9 @@ fn vibrate(degree: usize, mass: Mass) -> Result<Energies, StudyError> {
     let scene = PlainScene::unit_bar(mesh, mass).scene();
     let broken = || other("no phase field is expected");
     let mut frame = TotalFrame::new(&scene).map_err(|_| broken())?;
-    let zeros = || frame.lattice().grid.zeros();
-    let held = frame.constraints().held(0);
-    let projection =
-        Projection::new(frame.lattice(), &held).ok_or_else(|| other("the points do not determine a projection"))?;
-    let velocity = [projection.project(|[x, _]| (std::f64::consts::PI * x).sin()), zeros()];
-    let still = [zeros(), zeros()];
-    drop(projection);
-    frame.start_from(still, velocity, Arc::new(NoLoads)).map_err(|_| broken())?;
+    let velocity = projected(&frame, |[x, _]| [(std::f64::consts::PI * x).sin(), 0.0])?;
+    let still = [frame.lattice().grid.zeros(), frame.lattice().grid.zeros()];
+    frame.start_with(still, velocity).map_err(|_| broken())?;
     let dt = SAFETY * frame.critical_step();
     let phase = std::f64::consts::PI * dt;
     let steps = (PERIODS * std::f64::consts::TAU / phase).ceil() as usize;
