@@ -4,7 +4,6 @@ use fisura::material::mesh_toughness::kappa;
 use fisura::scene::{CrackKind, Side};
 
 use super::{BenchError, Settings};
-use crate::case::Case;
 use crate::case::expand::CaseScene;
 use crate::extremes::larger;
 
@@ -30,9 +29,7 @@ pub fn half(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, Ben
     let points = degree.max(2);
     let points = format!("body.0.particles_per_cell=[{points}, {points}]");
     let overrides = [cells, points, format!("mesh.degree={degree}"), "output.frames=[]".to_string()];
-    let case = Case::load(&settings.plate_case("half-p2-h1"), &overrides)?;
-    let case = case.scenes()?.into_iter().next();
-    let mut case = case.ok_or_else(|| BenchError::input("the case of the plate has no scene"))?;
+    let mut case = settings.scene("plate/half-p2-h1", &overrides)?;
     let l0 = length_scale(&case);
     for crack in case.scene.bodies.iter_mut().flat_map(|body| &mut body.cracks) {
         crack.kind = CrackKind::Seed(Some(larger(1.0, SEED_SPANS * h) * l0));
