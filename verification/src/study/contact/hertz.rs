@@ -21,10 +21,10 @@ use fisura::Simulation;
 use fisura::contact::impulse::ContactForce;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::output::inspection::PointState;
+use fisura::particles::spans::smallest_span;
 use fisura::scene::{Body, Plane, Scene, Shape};
 
 use super::{Books, dot, larger, run, sample_is_due, sum};
-use crate::extremes::smaller;
 use crate::output::history::Table;
 use crate::record::CurveStyle;
 use crate::study::charts::{chart, curve};
@@ -123,10 +123,7 @@ impl Hertz {
         }
         let total = |part: &dyn Fn(&Body) -> f64| scene.bodies.iter().map(part).sum::<f64>();
         let points = scene.bodies[0].particles_per_cell[0] as f64;
-        let shortest = |d: usize| {
-            scene.mesh.knots[d].windows(2).map(|w| w[1] - w[0]).filter(|l| *l > 0.0).fold(f64::INFINITY, smaller)
-        };
-        let span = shortest(0).min(shortest(1));
+        let span = smallest_span(&scene.mesh);
         let material = &scene.materials[&scene.bodies[0].material];
         let wave = ElasticModuli::new(material, scene.analysis.plane).dilatational_speed(material.density);
         Ok(Self {
