@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::diagnostic::{Location, Problem};
 use super::document::{Node, Value, join};
-use super::suggest::nearest;
+use super::suggest::hint;
 use super::units::{self, Dimension};
 
 /// A type whose values are words of a file.
@@ -158,8 +158,7 @@ impl<'a> Item<'a> {
         if let Some(found) = words.iter().find(|w| w.0 == text) {
             return Some(found.1);
         }
-        let meant = nearest(text, &names).map_or(String::new(), |n| format!("did you mean {n:?}? "));
-        self.fail(format!("unknown value {text:?}"), format!("{meant}known: {list}"))
+        self.fail(format!("unknown value {text:?}"), format!("{}known: {list}", hint(text, &names)))
     }
 
     /// One of the words of a type.
@@ -225,9 +224,9 @@ impl<'a> Item<'a> {
     pub fn fields(&self, known: &[&str]) -> Option<Fields<'a>> {
         let Some(table) = self.node.as_table() else { return self.wrong_kind("a table") };
         for (key, node) in table.iter().filter(|(key, _)| !known.contains(&key.as_str())) {
-            let meant = nearest(key, known).map_or(String::new(), |n| format!("did you mean {n:?}? "));
             let location = node.key_location.clone().or_else(|| node.location.clone());
-            let (path, remedy) = (join(&self.path, key), format!("{meant}known keys: {}", known.join(", ")));
+            let (path, remedy) =
+                (join(&self.path, key), format!("{}known keys: {}", hint(key, known), known.join(", ")));
             self.fail_at::<()>(location, &path, format!("unknown key {key:?}"), remedy);
         }
         Some(Fields { item: self.clone() })
