@@ -8,9 +8,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use fisura_verification::output::OutputFolder;
 use fisura_verification::output::fingerprint::fingerprint;
 use fisura_verification::output::history::{Table, format_number};
+use fisura_verification::output::{OutputError, OutputFolder};
 use fisura_verification::record::{Environment, Figure, FigureBody};
 use serde::{Deserialize, Serialize};
 
@@ -60,9 +60,9 @@ pub fn write(
         Ok::<(), ReportError>(())
     };
     for (file, table) in &tables {
-        let text = csv(table);
-        data.insert(file.clone(), fingerprint([&text]));
-        store(file.clone(), text.as_bytes())?;
+        let bytes = table.to_csv().map_err(|error| OutputError::unwritable(Path::new(file), error))?;
+        data.insert(file.clone(), fingerprint([&bytes]));
+        store(file.clone(), &bytes)?;
     }
     let svg = draw(&figure, tables).map_err(|e| ReportError::Figures(vec![e]))?;
     store(format!("{name}.svg"), svg.as_bytes())?;
@@ -169,13 +169,6 @@ fn from_matrix(matrix: &Table) -> Table {
         }
     }
     raster
-}
-
-/// A table as the text of a CSV file.
-fn csv(table: &Table) -> String {
-    let row = |row: usize| table.columns.iter().map(|c| format_number(c[row])).collect::<Vec<_>>().join(",");
-    let rows = (0..table.rows()).map(|r| row(r) + "\n");
-    std::iter::once(table.names.join(",") + "\n").chain(rows).collect()
 }
 
 /// Title, caption and every deviation, for below the figure in a paper.

@@ -274,40 +274,24 @@ fn link(name: &str) -> Value {
 
 /// What the records cite beyond closed forms and theory, each source once with the number of its checks.
 fn sources(records: &[Record]) -> Value {
-    let mut sources: Vec<(&Reference, usize)> = Vec::new();
-    let mut place = HashMap::new();
-    let cited = records.iter().filter_map(|r| r.reference.as_ref());
-    for reference in cited.filter(|r| matches!(r.kind, ReferenceKind::Literature | ReferenceKind::IndependentCode)) {
-        let at = *place.entry(&reference.source).or_insert(sources.len());
-        match sources.get_mut(at) {
-            Some((_, checks)) => *checks += 1,
-            None => sources.push((reference, 1)),
-        }
-    }
-    let source = |(reference, checks): (&Reference, usize)| {
-        context! { text => &reference.source, kind => view::kind(reference), checks }
+    let is_other = |r: &&Reference| matches!(r.kind, ReferenceKind::Literature | ReferenceKind::IndependentCode);
+    let cited = records.iter().filter_map(|r| r.reference.as_ref()).filter(is_other);
+    let source = |(text, checks): (&str, Vec<&Reference>)| {
+        context! { text, kind => view::kind(checks[0]), checks => checks.len() }
     };
-    sources.into_iter().map(source).collect()
+    view::by_key(cited.map(|reference| (reference.source.as_str(), reference))).into_iter().map(source).collect()
 }
 
 /// Every deviation from a cited source, with the cases that deviate.
 fn deviations(set: &ResultSet) -> Value {
-    let mut all: Vec<(&String, Vec<(String, String)>)> = Vec::new();
-    let mut place = HashMap::new();
     let mut seen = HashSet::new();
-    for (record, text) in set.records.iter().flat_map(|r| r.deviations.iter().map(move |text| (r, text))) {
-        if !seen.insert((text, &record.suite, &record.case)) {
-            continue;
-        }
+    let said = set.records.iter().flat_map(|r| r.deviations.iter().map(move |text| (r, text)));
+    let said = said.filter(|(record, text)| seen.insert((*text, &record.suite, &record.case)));
+    let by_text = view::by_key(said.map(|(record, text)| {
         let case = format!("{}/{}", record.suite, record.case);
-        let case = (format!("case-{}", slug(&case)), case);
-        let at = *place.entry(text).or_insert(all.len());
-        match all.get_mut(at) {
-            Some((_, cases)) => cases.push(case),
-            None => all.push((text, vec![case])),
-        }
-    }
-    all.into_iter().map(|(text, cases)| context! { text, cases => Serde(cases) }).collect()
+        (text.as_str(), (format!("case-{}", slug(&case)), case))
+    }));
+    by_text.into_iter().map(|(text, cases)| context! { text, cases => Serde(cases) }).collect()
 }
 
 #[cfg(test)]

@@ -126,14 +126,8 @@ const RESULTS: [RGBColor; 6] = [
 ];
 
 /// References: grey first, then the palette from its other end.
-const REFERENCES: [RGBColor; 6] = [
-    RGBColor(0x3c, 0x3c, 0x3c),
-    RGBColor(0xe6, 0x9f, 0x00),
-    RGBColor(0xcc, 0x79, 0xa7),
-    RGBColor(0x56, 0xb4, 0xe9),
-    RGBColor(0x00, 0x9e, 0x73),
-    RGBColor(0xd5, 0x5e, 0x00),
-];
+const REFERENCES: [RGBColor; 6] =
+    [RGBColor(0x3c, 0x3c, 0x3c), RESULTS[5], RESULTS[3], RESULTS[4], RESULTS[2], RESULTS[1]];
 
 const DASHES: [&[f64]; 5] =
     [&[7.0, 4.0], &[2.0, 3.0], &[11.0, 3.5, 2.0, 3.5], &[13.0, 5.0], &[6.0, 2.5, 1.5, 2.5, 1.5, 2.5]];
@@ -141,34 +135,22 @@ const DASHES: [&[f64]; 5] =
 /// The look of each curve of a chart: colour differs together with dash or marker, so that neither is needed
 /// alone.
 pub fn looks(styles: &[CurveStyle]) -> Vec<Look> {
-    let (mut results, mut references) = (0, 0);
-    let solid = |n: usize, marker| Look { colour: RESULTS[n % RESULTS.len()], dashes: &[], marker };
-    styles
-        .iter()
-        .map(|style| match style {
-            CurveStyle::Line => {
-                results += 1;
-                // the first line is bare, later ones carry a few markers
-                solid(results - 1, (results > 1).then(|| Marker::ALL[(results - 2) % 5]))
-            }
-            CurveStyle::Markers => {
-                results += 1;
-                let n = results - 1;
-                let dashes = if n == 0 { &[] } else { DASHES[(n - 1) % 5] };
-                Look { dashes, ..solid(n, Some(Marker::ALL[n % 5])) }
-            }
-            CurveStyle::Reference => {
-                references += 1;
-                let n = references - 1;
-                Look { colour: REFERENCES[n % 6], dashes: DASHES[n % 5], marker: None }
-            }
-            CurveStyle::Points => {
-                references += 1;
-                let n = references - 1;
-                Look { colour: REFERENCES[n % 6], dashes: &[], marker: Some(Marker::ALL[(n + 3) % 5]) }
-            }
-        })
-        .collect()
+    let mut seen = [0; 2]; // results, and references
+    let look = |style: &CurveStyle| {
+        let is_reference = matches!(style, CurveStyle::Reference | CurveStyle::Points);
+        let n = seen[usize::from(is_reference)];
+        seen[usize::from(is_reference)] += 1;
+        let colour = if is_reference { REFERENCES[n % 6] } else { RESULTS[n % 6] };
+        let (dashes, marker): (&[f64], _) = match style {
+            // the first line is bare, later ones carry a few markers
+            CurveStyle::Line => (&[], n.checked_sub(1).map(|n| Marker::ALL[n % 5])),
+            CurveStyle::Markers => (n.checked_sub(1).map_or(&[], |n| DASHES[n % 5]), Some(Marker::ALL[n % 5])),
+            CurveStyle::Reference => (DASHES[n % 5], None),
+            CurveStyle::Points => (&[], Some(Marker::ALL[(n + 3) % 5])),
+        };
+        Look { colour, dashes, marker }
+    };
+    styles.iter().map(look).collect()
 }
 
 #[cfg(test)]

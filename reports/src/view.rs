@@ -202,17 +202,21 @@ pub fn run_id(record: &Record) -> &str {
 
 /// Records grouped by run, in order of first appearance.
 pub fn runs<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<(&'a str, Vec<&'a Record>)> {
-    let mut runs: Vec<(&str, Vec<&Record>)> = Vec::new();
+    by_key(records.into_iter().map(|record| (run_id(record), record)))
+}
+
+/// Values grouped by their keys, in the order in which these first appear.
+pub fn by_key<'a, V>(pairs: impl Iterator<Item = (&'a str, V)>) -> Vec<(&'a str, Vec<V>)> {
+    let mut groups: Vec<(&str, Vec<V>)> = Vec::new();
     let mut place = HashMap::new();
-    for record in records {
-        let id = run_id(record);
-        let at = *place.entry(id).or_insert(runs.len());
-        match runs.get_mut(at) {
-            Some((_, members)) => members.push(record),
-            None => runs.push((id, vec![record])),
+    for (key, value) in pairs {
+        let at = *place.entry(key).or_insert(groups.len());
+        match groups.get_mut(at) {
+            Some((_, members)) => members.push(value),
+            None => groups.push((key, vec![value])),
         }
     }
-    runs
+    groups
 }
 
 /// The time of each record, where it is the first of its case with that measurement: records of one run, and

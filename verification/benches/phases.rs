@@ -13,9 +13,9 @@ use fisura::dynamics::critical_step::highest_frequency;
 use fisura::linear_algebra::incomplete_cholesky::IncompleteCholesky;
 use fisura::scene::{Contact, Split};
 use fisura::transfer::sweep::StripForces;
-use fisura_verification::bench::block::{Block, DENSITY, SPAN, elastic_scene};
+use fisura_verification::bench::block::{Block, DENSITY, SPAN, elastic_scene, moving_scene};
 use fisura_verification::bench::minimal::Minimal;
-use fisura_verification::bench::moving_block::{MovingBlock, minimal, moving_scene};
+use fisura_verification::bench::moving_block::{MovingBlock, minimal};
 use fisura_verification::bench::scenes::pair;
 
 /// Round-off in sums of forces.
@@ -163,7 +163,7 @@ fn updated_frame<const P: usize>(criterion: &mut Criterion, points: usize, cells
     timed("g2p", &name, &mut || {
         black_box(block.grid_to_points(0.0));
     });
-    let mut simulation = Simulation::new(&moving_scene(P, points, cells)).expect("the scene starts");
+    let mut simulation = Simulation::new(&moving_scene(P, points, cells, P)).expect("the scene starts");
     timed("elastic_step_updated", &name, &mut || simulation.step().expect("a stable step"));
 
     let (mut kernel, dt): (Minimal<P>, f64) = minimal(points, cells).expect("the scene starts");

@@ -53,6 +53,8 @@ use fisura::Simulation;
 use fisura::simulation::breakdown::Breakdown;
 use thiserror::Error;
 
+use crate::case::Case;
+use crate::case::expand::CaseScene;
 use crate::output::{OutputError, OutputFolder};
 use crate::record::Environment;
 use crate::reference::{Library, ReferenceError, ReferenceValue};
@@ -95,9 +97,21 @@ impl Settings<'_> {
         if self.quick { 1.5 } else { 20.0 }
     }
 
-    /// A case of the plate.
-    pub fn plate_case(&self, name: &str) -> PathBuf {
-        self.workspace.join("verification/cases/plate").join(name).with_extension("toml")
+    /// A case below `verification/cases`, with changes of its scene.
+    ///
+    /// # Errors
+    /// If it is missing or wrong.
+    pub fn case(&self, name: &str, set: &[String]) -> Result<Case, SceneFileError> {
+        Case::load(&self.workspace.join("verification/cases").join(name).with_extension("toml"), set)
+    }
+
+    /// The first scene of such a case.
+    ///
+    /// # Errors
+    /// As [`Self::case`], or if it has no scene.
+    pub fn scene(&self, name: &str, set: &[String]) -> Result<CaseScene, BenchError> {
+        let first = self.case(name, set)?.scenes()?.into_iter().next();
+        first.ok_or_else(|| BenchError::input(format!("the case {name} has no scene")))
     }
 
     /// All reference data.

@@ -59,6 +59,22 @@ pub struct Solution {
     pub radii: &'static [f64],
 }
 
+impl Solution {
+    /// The motion of a body that is free on the unit square, with small strains, for 0.6 s.
+    const fn of(name: &'static str, fields: fn(Plane) -> Box<dyn ExactSolution>) -> Self {
+        Self {
+            name,
+            fields,
+            equation: Equation::Dynamic,
+            held: Held::Sides(&[]),
+            end_time: 0.6,
+            kinematics: Kinematics::Small,
+            frames: &[Frame::Total],
+            radii: &[],
+        }
+    }
+}
+
 /// Which equation is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Equation {

@@ -71,7 +71,7 @@ pub struct ReferenceValue {
 }
 
 /// A range in which a result should fall.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct ReferenceBand {
     /// Folder of its source.
     pub id: String,

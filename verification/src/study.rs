@@ -33,13 +33,15 @@ use stability::{
     boundary_points, critical_step, growth, incompressible, repeatability, split_families, units, unloading,
 };
 
+use fisura::dynamics::projection::Projection;
+use fisura::dynamics::total_frame::TotalFrame;
 pub use offers::{Offer, Offers};
 use thiserror::Error;
 
 use crate::case::Case;
 use crate::case::expand::CaseScene;
 use crate::output::history::Table;
-use crate::record::{Figure, Reference};
+use crate::record::{Figure, Reference, ReferenceKind};
 
 /// One number a study found.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,6 +82,34 @@ impl Findings {
     }
 }
 
+/// What a number is held against that is known exactly.
+fn exact(value: f64, source: &str) -> Option<Reference> {
+    Some(Reference::new(Some(value), ReferenceKind::Exact, source))
+}
+
+/// What a number is held against that a theory gives.
+fn theory(value: f64, source: &str) -> Option<Reference> {
+    Some(Reference::new(Some(value), ReferenceKind::Theory, source))
+}
+
+/// 1 for what holds, else 0.
+fn yes(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
+}
+
+/// Control values of a vector field on a body; a component is zero where conditions hold it.
+pub(crate) fn projected(
+    frame: &TotalFrame,
+    field: impl Fn([f64; 2]) -> [f64; 2] + Sync,
+) -> Result<[Vec<f64>; 2], StudyError> {
+    let component = |c: usize| -> Result<Vec<f64>, StudyError> {
+        let projection = Projection::new(frame.lattice(), &frame.constraints().held(c));
+        let projection = projection.ok_or_else(|| other("the points do not determine a projection"))?;
+        Ok(projection.project(|x| field(x)[c]))
+    };
+    Ok([component(0)?, component(1)?])
+}
+
 /// A study that could not be carried out.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum StudyError {
@@ -92,6 +122,11 @@ pub enum StudyError {
     /// Something else.
     #[error("{0}")]
     Other(String),
+}
+
+/// An error in these words.
+fn other(message: impl ToString) -> StudyError {
+    StudyError::Other(message.to_string())
 }
 
 /// What a study offers for a case, or why it cannot be carried out.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use fisura_reports::number::duration;
 use fisura_verification::output::foreign::line;
 use fisura_verification::scene::SceneFileError;
-use fisura_verification::scene::document::{self, Node};
+use fisura_verification::scene::document::Node;
 use fisura_verification::suite::prepare::{Prepared, prepare};
 use fisura_verification::suite::{Case, Selection, Tier, read_cases, select};
 use serde_json::{Value, json};
@@ -69,20 +69,8 @@ fn entry(case: &Case, prepared: &Prepared) -> Value {
         "models": case.models,
         "seconds": case.seconds,
         "records": records,
-        "checks": case.document.root.get("check").map(value),
+        "checks": case.document.root.get("check").map(Node::to_json),
     })
-}
-
-/// A value of a case file, as JSON; numbers that JSON does not have as text.
-fn value(node: &Node) -> Value {
-    match &node.value {
-        document::Value::String(text) | document::Value::Datetime(text) => json!(text),
-        document::Value::Integer(i) => json!(i),
-        document::Value::Float(x) => serde_json::Number::from_f64(*x).map_or(json!(x.to_string()), Value::Number),
-        document::Value::Boolean(flag) => json!(flag),
-        document::Value::Array(entries) => entries.iter().map(value).collect(),
-        document::Value::Table(entries) => entries.iter().map(|(key, node)| (key.clone(), value(node))).collect(),
-    }
 }
 
 /// A case and its records, each with the check behind it as if it stood in the file alone.
@@ -91,7 +79,7 @@ fn expanded((case, prepared): &(Case, Prepared)) -> String {
     let said = |index: usize| {
         let table = checks.get(index).and_then(Node::as_table).into_iter().flatten();
         let others = table.filter(|(key, _)| !["id", "quantity", "variant"].contains(&key.as_str()));
-        others.map(|(key, node)| format!("    {key} = {}\n", line(&value(node).to_string()))).collect::<String>()
+        others.map(|(key, node)| format!("    {key} = {}\n", line(&node.to_json().to_string()))).collect::<String>()
     };
     let records = prepared.records.iter().map(|planned| {
         let check = &case.checks[planned.check];

@@ -1,6 +1,6 @@
 //! Errors of collisions against time.
 
-use super::work_precision::{Chart, Cost, lines, on_finest};
+use super::work_precision::{Chart, lines, on_finest};
 use super::{Exhibit, Records};
 
 /// Bodies and errors in the order of the report: parts of the id.
@@ -22,15 +22,10 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
                 "{title}, head-on, elastic, without friction, one thread; against {}",
                 reference.map_or("", |error| error.reference.as_str())
             );
-            let chart = Chart {
-                id: format!("timing/contact-{bodies}-{name}"),
-                title: format!("{title} in collision: {words} against time"),
-                lines: &lines,
-                front: None,
-                cost: Cost::Time,
-                axis: "processor time of the steps (s)",
-                uncertainty,
-            };
+            let (id, title) =
+                (format!("timing/contact-{bodies}-{name}"), format!("{title} in collision: {words} against time"));
+            let chart = Chart::of_time(&id, &title, &lines, "processor time of the steps (s)");
+            let chart = Chart { uncertainty, ..chart };
             exhibits.push(chart.plot(&caption, on_finest(&lines, &format!("spans per {size}"))));
         }
     }

@@ -1,6 +1,6 @@
 //! The error of a motion in both frames, against time.
 
-use super::work_precision::{Chart, Cost, Line, at_equal_error, lines, on_finest};
+use super::work_precision::{Chart, Line, at_equal_error, lines, on_finest};
 use super::{Exhibit, Records};
 
 /// One figure.
@@ -9,15 +9,8 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
     if lines.is_empty() {
         return Vec::new();
     }
-    let chart = Chart {
-        id: "timing/motion".into(),
-        title: "A body that moves: error of the displacement against time".into(),
-        lines: &lines,
-        front: None,
-        cost: Cost::Time,
-        axis: "processor time of the run (s)",
-        uncertainty: 0.0,
-    };
+    let title = "A body that moves: error of the displacement against time";
+    let chart = Chart::of_time("timing/motion", title, &lines, "processor time of the run (s)");
     let caption = "Axis-aligned displacement of finite strain (convergence/axis-aligned, moving-axis-aligned), one thread; against the exact motion";
     let in_total = |line: &&Line| line.records.iter().all(|record| record.id.contains("-total/"));
     let (total, updated) = lines.iter().partition(in_total);

@@ -40,8 +40,8 @@ fn chart(id: &str, title: &str, lines: &[Line], reading: String) -> Exhibit {
         "Half plate to 80 µs, whole runs on one thread; kinetic energy from 5 to 80 µs against {}",
         first.map_or("", |e| e.reference.as_str())
     );
-    let (id, title, uncertainty) = (id.to_string(), title.to_string(), first.map_or(0.0, |e| e.uncertainty));
-    Chart { id, title, lines, front: None, cost: Cost::Time, axis: AXIS, uncertainty }.plot(&caption, reading)
+    let uncertainty = first.map_or(0.0, |e| e.uncertainty);
+    Chart { uncertainty, ..Chart::of_time(id, title, lines, AXIS) }.plot(&caption, reading)
 }
 
 fn finest(lines: &[Line]) -> String {
@@ -101,8 +101,6 @@ fn tolerances(records: Records) -> Option<Exhibit> {
         format!("{tolerance}: {} % in {} s", pretty(100.0 * error(r), 2), pretty(Cost::Time.of(r).median, 3))
     };
     let reading = format!("Tolerance: {}.", found.iter().map(word).collect::<Vec<_>>().join("; "));
-    let title = "The plate: tolerance of the phase field against processor time".to_string();
-    let id = "timing/plate-tolerance-against-time".to_string();
-    let chart = Chart { id, title, lines: &lines, front: None, cost: Cost::Time, axis: AXIS, uncertainty: 0.0 };
-    Some(chart.plot(&caption, reading))
+    let title = "The plate: tolerance of the phase field against processor time";
+    Some(Chart::of_time("timing/plate-tolerance-against-time", title, &lines, AXIS).plot(&caption, reading))
 }

@@ -1,6 +1,6 @@
 //! Error against time over the benchmarks, for this solver and for finite elements.
 
-use super::work_precision::{Chart, Cost, Line, at_equal_error, lines};
+use super::work_precision::{Chart, Line, at_equal_error, lines};
 use super::{Exhibit, Records};
 
 /// One figure for all of them.
@@ -18,15 +18,8 @@ pub fn exhibits(records: Records) -> Vec<Exhibit> {
         at_equal_error([elements, fisura])
     });
     let reading = reading.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" ");
-    let chart = Chart {
-        id: "timing/scoreboard".into(),
-        title: "Benchmarks: error against time".into(),
-        lines: &lines,
-        front: None,
-        cost: Cost::Time,
-        axis: "processor time of the run (s)",
-        uncertainty: 0.0,
-    };
+    let title = "Benchmarks: error against time";
+    let chart = Chart::of_time("timing/scoreboard", title, &lines, "processor time of the run (s)");
     let caption = "Whole runs on one thread, both programs on uniform meshes and with a solve for the phase field in \
                    every step; the references are extrapolated from runs of the same elements, which favours them";
     vec![chart.plot(caption, reading)]

@@ -9,6 +9,7 @@ use super::{Exhibit, Records};
 use crate::number::{plain, pretty};
 use crate::series::SeriesSet;
 use crate::svg::slug;
+use crate::view::by_key;
 
 /// What is paid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,14 +87,9 @@ pub(super) fn at_equal_error(groups: [Vec<&Line>; 2]) -> String {
 
 /// Records whose answers hold, by label, in the order in which labels appear.
 pub(super) fn lines<'a>(records: impl IntoIterator<Item = &'a BenchRecord>) -> Vec<Line<'a>> {
-    let mut lines: Vec<Line> = Vec::new();
-    for record in records.into_iter().filter(|r| r.verified && error(r).is_finite()) {
-        match lines.iter_mut().find(|line| line.label == record.label) {
-            Some(line) => line.records.push(record),
-            None => lines.push(Line { label: record.label.clone(), records: vec![record] }),
-        }
-    }
-    lines
+    let known = records.into_iter().filter(|r| r.verified && error(r).is_finite());
+    let by_label = by_key(known.map(|record| (record.label.as_str(), record)));
+    by_label.into_iter().map(|(label, records)| Line { label: label.to_string(), records }).collect()
 }
 
 /// The diagrams of the manufactured problem: a figure for each group of curves and each cost.
@@ -141,7 +137,13 @@ pub(super) struct Chart<'a> {
     pub uncertainty: f64,
 }
 
-impl Chart<'_> {
+impl<'a> Chart<'a> {
+    /// Errors against processor time, the axis in words; of references without uncertainty.
+    pub(super) fn of_time(id: &str, title: &str, lines: &'a [Line<'a>], axis: &'a str) -> Self {
+        let [id, title] = [id, title].map(String::from);
+        Self { id, title, lines, front: None, cost: Cost::Time, axis, uncertainty: 0.0 }
+    }
+
     pub(super) fn plot(&self, caption: &str, reading: String) -> Exhibit {
         let mut set = SeriesSet::default();
         let mut curves = Vec::new();

@@ -28,7 +28,7 @@ pub fn kappa(degree: usize, points: usize, h: f64) -> Option<f64> {
 }
 
 /// Degree and points per direction of a body, if the cost of its cracks on a mesh of this degree is known.
-pub(crate) fn rule(fracture: &Fracture, [p, q]: [usize; 2], body: &Body) -> Option<[usize; 2]> {
+pub fn rule(fracture: &Fracture, [p, q]: [usize; 2], body: &Body) -> Option<[usize; 2]> {
     let [nx, ny] = body.particles_per_cell;
     let is_plain = fracture.model == CrackModel::At2 && fracture.anisotropy.is_none() && body.layout == Layout::Gauss;
     (is_plain && p == q && nx == ny && kappa(p, nx, 0.0).is_some()).then_some([p, nx])

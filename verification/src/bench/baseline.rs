@@ -18,7 +18,6 @@ use super::peer::program::Program;
 use super::record::{AnswerError, BenchRecord};
 use super::timing::{Contestant, round_robin};
 use super::{BenchError, Settings};
-use crate::case::Case;
 use crate::extremes::{larger, largest};
 use crate::output::history::Table;
 use crate::scene::typed::plain;
@@ -112,9 +111,8 @@ fn name_of(checkout: &Path) -> String {
 
 /// The scene of a case as a file of its own, which `run` takes.
 fn scene_of(settings: &Settings, case: &str, folder: &Path) -> Result<PathBuf, BenchError> {
-    let file = settings.workspace.join("verification/cases").join(case).with_extension("toml");
-    let wrong = |reason: String| BenchError::input(format!("{}: {reason}", file.display()));
-    let case = Case::load(&file, &[])?;
+    let case = settings.case(case, &[])?;
+    let wrong = |reason: String| BenchError::input(format!("{}: {reason}", case.path.display()));
     let scene = case.scene_with_numbers()?.ok_or_else(|| wrong("it has no scene".into()))?;
     let scene = toml::to_string(&plain(&scene)).map_err(|error| wrong(error.to_string()))?;
     let target = folder.join("scene.toml");

@@ -65,9 +65,9 @@ pub fn elastic_scene(degree: usize, points: usize, cells: usize, margin: usize) 
     scene
 }
 
-/// Elastic points that move through a mesh which reaches [`MARGIN`] spans beyond them.
-pub fn moving_scene(degree: usize, points: usize, cells: usize) -> Scene {
-    let mut scene = elastic_scene(degree, points, cells, MARGIN);
+/// The same in the updated frame (FLIP).
+pub fn moving_scene(degree: usize, points: usize, cells: usize, margin: usize) -> Scene {
+    let mut scene = elastic_scene(degree, points, cells, margin);
     (scene.analysis.frame, scene.analysis.transfer) = (Frame::Updated, Transfer::Flip);
     scene
 }

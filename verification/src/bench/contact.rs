@@ -14,8 +14,6 @@ use fisura::scene::{Frame, Kinematics, Mesh, Scene, Shape, Transfer};
 use super::record::{AnswerError, BenchRecord};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
 use super::{BenchError, Settings};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
 use crate::extremes::largest;
 use crate::study::contact::{run, sample_is_due};
 
@@ -124,16 +122,6 @@ fn contestant(id: &str, way: Way, spans: usize, scene: Scene) -> Result<Contesta
     Ok(Contestant { record, run: Box::new(run) })
 }
 
-fn base(settings: &Settings, name: &str) -> Result<Scene, BenchError> {
-    let path = settings.workspace.join("verification/cases/contact").join(name).with_extension("toml");
-    let CaseScene { scene, .. } = Case::load(&path, &[])?
-        .scenes()?
-        .into_iter()
-        .next()
-        .ok_or_else(|| BenchError::input(format!("the case {name} has no scene")))?;
-    Ok(scene)
-}
-
 /// The meshes that a way is run on: in the total frame none coarser than `least`.
 fn meshes(way: Way, all: &[usize], least: usize) -> Vec<usize> {
     let fits = |n: &usize| way.1.is_some() || *n >= least;
@@ -141,7 +129,7 @@ fn meshes(way: Way, all: &[usize], least: usize) -> Vec<usize> {
 }
 
 fn bars(settings: &Settings) -> Result<Vec<Collision>, BenchError> {
-    let base = base(settings, "impact-equal")?;
+    let base = settings.scene("contact/impact-equal", &[])?.scene;
     let material = &base.materials[&base.bodies[0].material];
     let wave = ElasticModuli::new(material, base.analysis.plane).dilatational_speed(material.density);
     let all: &[usize] = if settings.quick { &[8, 16, 32] } else { &[16, 32, 64, 128] };
@@ -184,7 +172,7 @@ fn bars_of(base: &Scene, way: Way, spans: usize) -> Scene {
 }
 
 fn discs(settings: &Settings) -> Result<Vec<Collision>, BenchError> {
-    let base = base(settings, "discs-head-on")?;
+    let base = settings.scene("contact/discs-head-on", &[])?.scene;
     let all: &[usize] = if settings.quick { &[10, 20] } else { &[20, 40, 80] };
     let runs = WAYS.into_iter().flat_map(|way| meshes(way, all, FEWEST).into_iter().map(move |cells| (way, cells)));
     runs.map(|(way, cells)| {

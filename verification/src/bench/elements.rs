@@ -122,11 +122,28 @@ fn contestant<'a>(program: &Path, history: PathBuf, run: Run, references: Arc<Re
     let program = Program::of_words(run.words(program), LIMIT);
     let record =
         BenchRecord::new(run.id(), run.label(), 1.0, "run").with("h_over_l0", run.h).with("options", FAST.join(" "));
+    written(
+        record,
+        history,
+        move |file| mean_of_runs(|| program.run(file)),
+        move |record, table| {
+            answer(record, table, &references);
+        },
+    )
+}
+
+/// A program that writes its history to a file, which tells its `answer`.
+pub fn written<'a>(
+    record: BenchRecord,
+    file: PathBuf,
+    run: impl Fn(&Path) -> Result<Sample, BenchError> + 'a,
+    answer: impl Fn(&mut BenchRecord, &Table) + 'a,
+) -> Contestant<'a> {
     let run = move |record: &mut BenchRecord| {
-        let _ = fs::remove_file(&history); // the answer of another run is none
-        let sample = mean_of_runs(|| program.run(&history))?;
-        match Table::read(&history) {
-            Ok(table) => answer(record, &table, &references),
+        let _ = fs::remove_file(&file); // the answer of another run is none
+        let sample = run(&file)?;
+        match Table::read(&file) {
+            Ok(table) => answer(record, &table),
             Err(error) => record.verify(false, format!("it wrote no history: {error}")),
         }
         Ok(sample)

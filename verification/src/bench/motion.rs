@@ -7,7 +7,6 @@
 use super::record::{AnswerError, BenchRecord};
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
 use super::{BenchError, Settings};
-use crate::case::Case;
 use crate::study::convergence::Meshes;
 
 /// Spans per direction, and those that points alone need: their error falls more slowly.
@@ -19,12 +18,8 @@ const FINE: [usize; 2] = [48, 64];
 /// # Errors
 /// If a case is missing, or a run breaks down.
 pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
-    let load = |name: &str| {
-        let path = settings.workspace.join("verification/cases/convergence").join(name).with_extension("toml");
-        Case::load(&path, &[])
-    };
-    let total = load("axis-aligned")?;
-    let updated = load("moving-axis-aligned")?;
+    let total = settings.case("convergence/axis-aligned", &[])?;
+    let updated = settings.case("convergence/moving-axis-aligned", &[])?;
     pool(1)?.install(|| {
         Meshes::with(&total, |total| {
             Meshes::with(&updated, |updated| {

@@ -9,11 +9,11 @@ use fisura::dynamics::updated_frame::windows::{cut, scatter, side_by_side};
 use fisura::linear_algebra::lane::dispatch;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::points::{Cells, Point};
-use fisura::scene::{Frame, Scene, Transfer};
+use fisura::scene::Scene;
 use fisura::splines::patch::Patch;
 use rayon::prelude::*;
 
-use super::block::{DENSITY, elastic_scene};
+use super::block::{DENSITY, moving_scene};
 use super::{BenchError, minimal::Minimal};
 use crate::extremes::{larger, largest};
 
@@ -24,13 +24,6 @@ pub struct MovingBlock {
     cells: Cells,
     nodes: NodalFields,
     moduli: ElasticModuli,
-}
-
-/// The elastic block of [`elastic_scene`] in the updated frame (FLIP).
-pub fn moving_scene(degree: usize, points: usize, cells: usize) -> Scene {
-    let mut scene = elastic_scene(degree, points, cells, degree);
-    (scene.analysis.frame, scene.analysis.transfer) = (Frame::Updated, Transfer::Flip);
-    scene
 }
 
 /// A velocity that strains: m/s at a position in m.
@@ -44,7 +37,7 @@ impl MovingBlock {
     /// # Errors
     /// If a step cannot be taken.
     pub fn new(degree: usize, points: usize, cells: usize, steps: usize) -> Result<Self, BenchError> {
-        let (frame, _) = moved(&moving_scene(degree, points, cells), steps)?;
+        let (frame, _) = moved(&moving_scene(degree, points, cells, degree), steps)?;
         let field = &frame.fields()[0];
         Ok(Self {
             patch: field.patch().clone(),
@@ -165,7 +158,7 @@ fn moved(scene: &Scene, steps: usize) -> Result<(UpdatedFrame, f64), BenchError>
 /// # Errors
 /// If the scene cannot be started.
 pub fn minimal<const P: usize>(points: usize, cells: usize) -> Result<(Minimal<P>, f64), BenchError> {
-    let scene = moving_scene(P, points, cells);
+    let scene = moving_scene(P, points, cells, P);
     let (frame, dt) = moved(&scene, 0)?;
     let field = &frame.fields()[0];
     Ok((Minimal::new(&scene.mesh, field.points(), field.moduli(), DENSITY), dt))

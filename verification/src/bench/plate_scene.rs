@@ -4,9 +4,9 @@ use fisura::material::mesh_toughness::kappa;
 use fisura::scene::{CrackKind, Side};
 
 use super::{BenchError, Settings};
-use crate::case::Case;
 use crate::case::expand::CaseScene;
 use crate::extremes::larger;
+use crate::study::scene::length_scale;
 
 /// Where the short spans begin in x and end in y for someone in a hurry, m: the crack starts at x = 50 mm and
 /// is 14.3 mm off the axis at the right edge.
@@ -30,20 +30,12 @@ pub fn half(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, Ben
     let points = degree.max(2);
     let points = format!("body.0.particles_per_cell=[{points}, {points}]");
     let overrides = [cells, points, format!("mesh.degree={degree}"), "output.frames=[]".to_string()];
-    let case = Case::load(&settings.plate_case("half-p2-h1"), &overrides)?;
-    let case = case.scenes()?.into_iter().next();
-    let mut case = case.ok_or_else(|| BenchError::input("the case of the plate has no scene"))?;
-    let l0 = length_scale(&case);
+    let mut case = settings.scene("plate/half-p2-h1", &overrides)?;
+    let l0 = length_scale(&case.scene).unwrap_or(f64::NAN);
     for crack in case.scene.bodies.iter_mut().flat_map(|body| &mut body.cracks) {
         crack.kind = CrackKind::Seed(Some(larger(1.0, SEED_SPANS * h) * l0));
     }
     Ok(case)
-}
-
-/// Length scale of the plate, m.
-fn length_scale(case: &CaseScene) -> f64 {
-    let materials = case.scene.materials.values();
-    materials.filter_map(|material| material.fracture.as_ref()).map(|f| f.length_scale).fold(0.0, larger)
 }
 
 /// The same as someone in a hurry would run it: with spans of twice and four times `h` where no crack runs,
@@ -54,7 +46,7 @@ fn length_scale(case: &CaseScene) -> f64 {
 /// As [`half`].
 pub fn graded(settings: &Settings, degree: usize, h: f64) -> Result<CaseScene, BenchError> {
     let mut case = half(settings, degree, h)?;
-    let span = h * length_scale(&case);
+    let span = h * length_scale(&case.scene).unwrap_or(f64::NAN);
     let (low, high) = (case.scene.mesh.origin(), case.scene.mesh.end());
     let parts = [
         &[

@@ -8,7 +8,6 @@ use super::plate_scene::half;
 use super::record::BenchRecord;
 use super::timing::Stopwatch;
 use super::{BenchError, Settings};
-use crate::case::Case;
 
 /// Steps of the plate while it cracks, on one thread, and in each of them the part of the phase field: the
 /// same solve, from the same start with the same history, done once more and timed on its own.
@@ -19,9 +18,7 @@ pub fn share(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     let (scene, run_up, steps) = if settings.quick {
         (half(settings, 2, 1.0)?.scene, 400, 20)
     } else {
-        let paper = Case::load(&settings.plate_case("paper-p2-262144"), &[])?.scenes()?;
-        let first = paper.into_iter().next().ok_or_else(|| BenchError::input("the case of the paper has no scene"))?;
-        (first.scene, 900, 100)
+        (settings.scene("plate/paper-p2-262144", &[])?.scene, 900, 100)
     };
     share_of(&scene, run_up, steps)
 }

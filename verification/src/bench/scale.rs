@@ -15,7 +15,7 @@
 use fisura::Simulation;
 use fisura::scene::{Crack, Scene, Side, TimeFactor, Traction};
 
-use super::block::{SPAN, cracked_scene, elastic_scene, moving_scene};
+use super::block::{MARGIN, SPAN, cracked_scene, elastic_scene, moving_scene};
 use super::record::BenchRecord;
 use super::timing::{Stopwatch, pool};
 use super::{BenchError, Settings, advance};
@@ -55,7 +55,7 @@ fn elastic(cells: usize) -> Scene {
 }
 
 fn moving(cells: usize) -> Scene {
-    moving_scene(DEGREE, 2, cells)
+    moving_scene(DEGREE, 2, cells, MARGIN)
 }
 
 fn cracking(cells: usize) -> Scene {

@@ -13,7 +13,6 @@ use super::plate_scene;
 use super::record::BenchRecord;
 use super::timing::{Contestant, Stopwatch, pool, round_robin};
 use super::{BenchError, Settings, advance};
-use crate::case::Case;
 
 /// Degree of the blocks.
 const DEGREE: usize = 2;
@@ -169,7 +168,7 @@ fn contestant(
 /// Half of the plate and all of it at h = l0, from the start; the energies of both must agree.
 fn halves(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     let half = plate_scene::half(settings, 2, 1.0)?;
-    let whole = Case::load(&settings.plate_case("half-against-full-p2-h1"), &[])?.scenes()?;
+    let whole = settings.case("plate/half-against-full-p2-h1", &[])?.scenes()?;
     let whole = whole.into_iter().find(|s| s.energy_factor == 1.0);
     let whole = whole.ok_or_else(|| BenchError::other("the case half-against-full-p2-h1 has no whole plate"))?;
     let mut contestants = Vec::new();

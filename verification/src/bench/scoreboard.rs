@@ -10,7 +10,6 @@
 //! with the reference, measured in the same way for both programs. Numbers whose reference is uncertain by
 //! more than 5 % do not count.
 
-use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
@@ -99,11 +98,8 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
 
 /// The case of a problem on one mesh, and its first scene without pictures.
 fn load(settings: &Settings, problem: &Contest, mesh: &[String]) -> Result<(Case, CaseScene), BenchError> {
-    let path = settings.workspace.join("verification/cases/benchmarks").join(problem.case).with_extension("toml");
-    let case = Case::load(&path, mesh)?;
-    let scene = case.scenes()?.into_iter().next();
-    let scene = scene.ok_or_else(|| BenchError::input(format!("{} has no scene", path.display())))?;
-    Ok((case, scene))
+    let name = format!("benchmarks/{}", problem.case);
+    Ok((settings.case(&name, mesh)?, settings.scene(&name, mesh)?))
 }
 
 fn ours(
@@ -143,19 +139,11 @@ fn theirs(
     words.extend(problem.elements.0.iter().map(|word| word.to_string()));
     words.extend(["--fraction", "1", "--interval-us", "0.25", "--h-mm", h, "--out"].map(String::from));
     let (program, library) = (Program::of_words(words, LIMIT), Arc::clone(library));
-    let run = move |record: &mut BenchRecord| {
-        let _ = fs::remove_file(&file); // the answer of another run is none
-        let sample = program.run(&file)?;
-        match Table::read(&file) {
-            Ok(table) => {
-                record.verify_at_most("balance of energies over the largest", open(&table), CLOSURE);
-                note(record, errors(&case, &scene, &renamed(&table), 1.0, &library));
-            }
-            Err(error) => record.verify(false, format!("it wrote no history: {error}")),
-        }
-        Ok(sample)
+    let answer = move |record: &mut BenchRecord, table: &Table| {
+        record.verify_at_most("balance of energies over the largest", open(table), CLOSURE);
+        note(record, errors(&case, &scene, &renamed(table), 1.0, &library));
     };
-    Ok(Contestant { record, run: Box::new(run) })
+    Ok(elements::written(record, file, move |file| program.run(file), answer))
 }
 
 /// A history of the elements with the columns of this solver.

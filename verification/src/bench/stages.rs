@@ -11,8 +11,8 @@ use fisura::linear_algebra::incomplete_cholesky::IncompleteCholesky;
 use fisura::scene::Split;
 use fisura::transfer::sweep::StripForces;
 
-use super::block::{Block, elastic_scene};
-use super::moving_block::{MovingBlock, minimal, moving_scene};
+use super::block::{Block, elastic_scene, moving_scene};
+use super::moving_block::{MovingBlock, minimal};
 use super::record::{BenchRecord, Sample};
 use super::timing::{Contestant, Stopwatch, pool, round_robin, time};
 use super::{BenchError, Settings};
@@ -195,7 +195,7 @@ fn time_grid(block: &mut MovingBlock) -> Sample {
 /// Whole steps: of the solver in both frames, with fracture, and of the minimal kernel.
 fn steps<'a, const P: usize>(block: &'a Block, cells: usize) -> Result<Vec<Contestant<'a>>, BenchError> {
     let mut contestants = Vec::new();
-    let moving = moving_scene(P, POINTS, cells);
+    let moving = moving_scene(P, POINTS, cells, P);
     let elastic = elastic_scene(P, POINTS, cells, 0);
     for (scene, phase, label) in [
         (&elastic, "elastic-step", "elastic step, total frame"),

@@ -5,7 +5,7 @@ use fisura::Simulation;
 use fisura::scene::Scene;
 use rayon::ThreadPool;
 
-use super::block::{elastic_scene, moving_scene};
+use super::block::{MARGIN, elastic_scene, moving_scene};
 use super::plate_scene;
 use super::record::{BenchRecord, Clock};
 use super::timing::{Stopwatch, pool};
@@ -37,7 +37,7 @@ pub fn family(settings: &Settings) -> Result<Vec<BenchRecord>, BenchError> {
     let cells = if settings.quick { 192 } else { 256 };
     let plate = plate_scene::half(settings, 2, if settings.quick { 1.0 } else { 0.5 })?.scene;
     let mut records = scaled(settings, "elastic", "elastic block, p = 2", &elastic_scene(2, 2, cells, 0), [5, 20])?;
-    records.extend(scaled(settings, "moving", "moving points, p = 2", &moving_scene(2, 2, cells), [5, 20])?);
+    records.extend(scaled(settings, "moving", "moving points, p = 2", &moving_scene(2, 2, cells, MARGIN), [5, 20])?);
     let steps = if settings.quick { [400, 10] } else { [800, 20] };
     records.extend(scaled(settings, "plate", "plate with a growing crack, p = 2", &plate, steps)?);
     Ok(records)

@@ -8,7 +8,6 @@
 //! at the points, weighted with their volumes).
 
 use fisura::dynamics::energy;
-use fisura::dynamics::projection::Projection;
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::scene::{Frame, Layout, Mass, Mesh, Plane, Scene, Transfer};
@@ -23,6 +22,7 @@ use crate::exact::standing_wave::{SIZE, StandingWave};
 use crate::scene::plain::{PlainScene, ROLLERS};
 use crate::study::convergence::errors::{ErrorPoints, Squares};
 use crate::study::convergence::moving::displace;
+use crate::study::projected;
 
 /// Factor on the exact solution.
 const AMPLITUDE: f64 = 1e-6;
@@ -116,7 +116,7 @@ impl Way {
 }
 
 fn solution() -> Derived<StandingWave> {
-    Derived(StandingWave { plane: Plane::Strain })
+    Derived { motion: StandingWave, plane: Plane::Strain }
 }
 
 /// A body at t = 0.
@@ -146,13 +146,7 @@ impl Wave {
         let (body, critical, particles, bytes) = match way.frame {
             Frame::Total => {
                 let mut frame = TotalFrame::new(&scene).map_err(|_| broken())?;
-                let held = [0, 1].map(|component| frame.constraints().held(component));
-                let project = |c: usize, field: &(dyn Fn([f64; 2]) -> [f64; 2] + Sync)| {
-                    let projection = Projection::new(frame.lattice(), &held[c]).ok_or_else(broken)?;
-                    Ok::<_, BenchError>(projection.project(|x| field(x)[c]))
-                };
-                let displacement = [project(0, &start)?, project(1, &start)?];
-                let velocity = [project(0, &velocity)?, project(1, &velocity)?];
+                let (displacement, velocity) = (projected(&frame, start)?, projected(&frame, velocity)?);
                 frame.start_with(displacement, velocity).map_err(|_| broken())?;
                 let points = ErrorPoints::new(frame.patch(), &scene.bodies[0]);
                 let (critical, particles) = (frame.critical_step(), frame.lattice().count());

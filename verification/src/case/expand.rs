@@ -203,7 +203,7 @@ impl Tree {
         let mut tree = self.clone();
         tree.node.set(path, value.clone())?;
         let key = path.rsplit('.').next().unwrap_or(path);
-        let json = to_json(value);
+        let json = value.to_json();
         let shown = json.to_string().replace('"', "").replace(',', "x").replace(['[', ']'], "");
         tree.parameters.push((key.to_string(), json));
         tree.name = join_names(&tree.name, &format!("{key}={shown}"));
@@ -224,17 +224,6 @@ impl Tree {
 
 fn join_names(first: &str, second: &str) -> String {
     if first.is_empty() { second.to_string() } else { format!("{first},{second}") }
-}
-
-fn to_json(node: &Node) -> serde_json::Value {
-    match &node.value {
-        Value::String(s) | Value::Datetime(s) => s.clone().into(),
-        Value::Integer(i) => (*i).into(),
-        Value::Float(x) => (*x).into(),
-        Value::Boolean(b) => (*b).into(),
-        Value::Array(entries) => entries.iter().map(to_json).collect(),
-        Value::Table(table) => table.iter().map(|(k, v)| (k.clone(), to_json(v))).collect(),
-    }
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::value::identifier;
 use crate::scene::document::{Document, Node, Value};
-use crate::scene::suggest::nearest;
+use crate::scene::suggest::hint;
 use crate::scene::{Problem, SceneFileError};
 
 /// File of the bases.
@@ -67,8 +67,7 @@ fn named(shared: &Node, file: &str, name: &Node, key: &str, problems: &mut Vec<P
     let found = name.as_str().and_then(|name| shared.as_table()?.get(name));
     if found.is_none() {
         let known: Vec<&str> = shared.as_table().into_iter().flatten().map(|(key, _)| key.as_str()).collect();
-        let meant = name.as_str().and_then(|name| nearest(name, &known));
-        let meant = meant.map_or(String::new(), |near| format!("did you mean {near:?}? "));
+        let meant = name.as_str().map_or(String::new(), |name| hint(name, &known));
         let remedy = format!("{meant}{file} has {}", known.join(", "));
         let message = "there is nothing of that name".into();
         problems.push(Problem { key: key.into(), location: name.location.clone(), message, remedy });

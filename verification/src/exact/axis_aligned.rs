@@ -5,7 +5,7 @@
 //! ```text
 //! u = A sin(2πX) sin(πct),      v = A sin(2πY) sin(πct + 2π/3),      c = sqrt(E/rho)
 //! P = tau/F per axis,      tau_i = lam* (e_x + e_y) + 2 mu e_i,      e_i = ln F_i
-//! b = rho a − Div P,      E = 1 Pa, nu = 0.3, rho = 1 kg/m³,      A = 0.05 m unless said
+//! b = rho a − Div P,      E = 1 Pa, nu = 0.3, rho = 1 kg/m³,      A = 0.05 m
 //! ```
 //!
 //! The displacement is theirs, the law is fisura's own (Hencky instead of neo-Hookean), so body forces
@@ -17,56 +17,35 @@
 
 use std::f64::consts::PI;
 
-use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Frame, Kinematics, Material, Plane};
+use fisura::scene::{Frame, Kinematics, Plane};
 
 use super::dual::Scalar;
-use super::law::{self, Tensor};
+use super::law::{self, Law};
 use super::motion::{Derived, Motion};
-use super::{Equation, Held, Solution, unit_material};
+use super::{Held, Solution};
 
-/// Amplitude of the registered solution, m.
-pub const AMPLITUDE: f64 = 0.05;
+/// Amplitude A, m; below 1/(2π).
+const AMPLITUDE: f64 = 0.05;
 
 /// What this file registers.
 pub const SOLUTIONS: &[Solution] = &[Solution {
-    name: "axis-aligned",
-    fields: |plane| Box::new(Derived(AxisAligned { plane, amplitude: AMPLITUDE })),
-    equation: Equation::Dynamic,
     held: Held::Rollers,
-    end_time: 0.6,
     kinematics: Kinematics::Finite,
     frames: &[Frame::Total, Frame::Updated],
-    radii: &[],
+    ..Solution::of("axis-aligned", |plane| Box::new(Derived { motion: AxisAligned, plane }))
 }];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]
-pub struct AxisAligned {
-    /// Plane state.
-    pub plane: Plane,
-    /// Amplitude A, m; below 1/(2π).
-    pub amplitude: f64,
-}
+pub struct AxisAligned;
 
 impl Motion for AxisAligned {
-    fn material(&self) -> Material {
-        unit_material(0.3)
-    }
+    const LAW: Law = law::hencky;
 
-    fn plane(&self) -> Plane {
-        self.plane
-    }
-
-    fn displacement<T: Scalar>(&self, [x, y, t]: [T; 3]) -> [T; 2] {
+    fn displacement<T: Scalar>(&self, _: Plane, [x, y, t]: [T; 3]) -> [T; 2] {
         let speed = (self.material().young_modulus / self.material().density).sqrt();
-        let along = |coordinate: T, phase: f64| {
-            (coordinate * (2.0 * PI)).sin() * (t * (PI * speed) + phase).sin() * self.amplitude
-        };
+        let along =
+            |coordinate: T, phase: f64| (coordinate * (2.0 * PI)).sin() * (t * (PI * speed) + phase).sin() * AMPLITUDE;
         [along(x, 0.0), along(y, 2.0 * PI / 3.0)]
-    }
-
-    fn stress(&self, gradient: Tensor) -> Tensor {
-        law::hencky(&ElasticModuli::new(&self.material(), self.plane), gradient)
     }
 }

@@ -20,81 +20,45 @@
 
 use std::f64::consts::PI;
 
-use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Frame, Kinematics, Material, Plane};
 
 use super::dual::Scalar;
-use super::law::{self, Tensor};
+use super::law::{self, Law};
 use super::motion::{Derived, Motion};
-use super::{Equation, Held, Solution, unit_material};
+use super::{Held, Solution, unit_material};
 
 /// Amplitudes of the first and the second mode, m.
-pub const AMPLITUDES: [f64; 2] = [0.04, 0.02];
-
-fn material() -> Material {
-    unit_material(0.0)
-}
-
-fn displacement<T: Scalar>([x, _, t]: [T; 3]) -> [T; 2] {
-    let speed = (material().young_modulus / material().density).sqrt();
-    let mode = |n: f64| (x * (n * PI)).sin() * (t * (n * PI * speed)).sin();
-    [mode(1.0) * AMPLITUDES[0] + mode(2.0) * AMPLITUDES[1], T::constant(0.0)]
-}
+const AMPLITUDES: [f64; 2] = [0.04, 0.02];
 
 /// What this file registers.
 pub const SOLUTIONS: &[Solution] = &[
     Solution {
-        name: "finite-wave",
-        fields: |plane| Box::new(Derived(FiniteWave { plane })),
-        equation: Equation::Dynamic,
         held: Held::Rollers,
-        end_time: 0.6,
-        kinematics: Kinematics::Small,
-        frames: &[Frame::Total],
-        radii: &[],
+        ..Solution::of("finite-wave", |plane| Box::new(Derived { motion: BarWave::<false>, plane }))
     },
     Solution {
-        name: "hencky-wave",
-        fields: |plane| Box::new(Derived(HenckyWave { plane })),
-        equation: Equation::Dynamic,
         held: Held::Rollers,
-        end_time: 0.6,
         kinematics: Kinematics::Finite,
         frames: &[Frame::Total, Frame::Updated],
-        radii: &[],
+        ..Solution::of("hencky-wave", |plane| Box::new(Derived { motion: BarWave::<true>, plane }))
     },
 ];
 
 /// The wave with the logarithmic law and a body force, or with the linear one and none.
 #[derive(Debug, Clone, Copy)]
-pub struct BarWave<const HENCKY: bool> {
-    /// Plane state.
-    pub plane: Plane,
-}
-
-/// `finite-wave`: stress linear in the deformation gradient, no body force.
-pub type FiniteWave = BarWave<false>;
-
-/// `hencky-wave`: logarithmic stress law, with a body force.
-pub type HenckyWave = BarWave<true>;
+pub struct BarWave<const HENCKY: bool>;
 
 impl<const HENCKY: bool> Motion for BarWave<HENCKY> {
     const FORCE_FREE: bool = !HENCKY;
+    const LAW: Law = if HENCKY { law::hencky } else { law::linear };
 
     fn material(&self) -> Material {
-        material()
+        unit_material(0.0)
     }
 
-    fn plane(&self) -> Plane {
-        self.plane
-    }
-
-    fn displacement<T: Scalar>(&self, variables: [T; 3]) -> [T; 2] {
-        displacement(variables)
-    }
-
-    fn stress(&self, gradient: Tensor) -> Tensor {
-        let law = if HENCKY { law::hencky } else { law::linear };
-        law(&ElasticModuli::new(&material(), self.plane), gradient)
+    fn displacement<T: Scalar>(&self, _: Plane, [x, _, t]: [T; 3]) -> [T; 2] {
+        let speed = (self.material().young_modulus / self.material().density).sqrt();
+        let mode = |n: f64| (x * (n * PI)).sin() * (t * (n * PI * speed)).sin();
+        [mode(1.0) * AMPLITUDES[0] + mode(2.0) * AMPLITUDES[1], T::constant(0.0)]
     }
 }

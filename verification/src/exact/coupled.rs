@@ -28,11 +28,11 @@
 //! at t = 0.
 
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{CrackModel, Fracture, Frame, Kinematics, Material, Plane, Softening, Split};
+use fisura::scene::{CrackModel, Fracture, Material, Plane, Softening, Split};
 
 use super::dual::{Jet, Scalar};
-use super::motion::{Derived, Motion, displacement_gradient};
-use super::{Equation, ExactSolution, Held, Solution, fracture, unit_material};
+use super::motion::{Derived, Motion};
+use super::{ExactSolution, Solution, fracture, unit_material};
 
 /// What this file registers.
 pub const SOLUTIONS: &[Solution] = &[
@@ -46,16 +46,7 @@ pub const SOLUTIONS: &[Solution] = &[
 ];
 
 const fn solution(name: &'static str, fields: fn(Plane) -> Box<dyn ExactSolution>) -> Solution {
-    Solution {
-        name,
-        fields,
-        equation: Equation::Dynamic,
-        held: Held::Sides(&[]),
-        end_time: 0.5,
-        kinematics: Kinematics::Small,
-        frames: &[Frame::Total],
-        radii: &[],
-    }
+    Solution { end_time: 0.5, ..Solution::of(name, fields) }
 }
 
 const fn cohesive(softening: Softening) -> CrackModel {
@@ -65,14 +56,12 @@ const fn cohesive(softening: Softening) -> CrackModel {
 fn fields(plane: Plane, model: CrackModel, split: Split) -> Box<dyn ExactSolution> {
     let critical_energy_release_rate = if model == CrackModel::At2 { 0.02 } else { 0.01 };
     let fracture = Fracture { model, split, ..Fracture::at2(critical_energy_release_rate, 0.1) };
-    Box::new(Derived(Coupled { plane, fracture }))
+    Box::new(Derived { motion: Coupled { fracture }, plane })
 }
 
 /// See the module.
 #[derive(Debug, Clone)]
 pub struct Coupled {
-    /// Plane state.
-    pub plane: Plane,
     /// Model of the crack.
     pub fracture: Fracture,
 }
@@ -88,11 +77,7 @@ impl Motion for Coupled {
         Material { fracture: Some(self.fracture.clone()), ..unit_material(0.3) }
     }
 
-    fn plane(&self) -> Plane {
-        self.plane
-    }
-
-    fn displacement<T: Scalar>(&self, [x, y, t]: [T; 3]) -> [T; 2] {
+    fn displacement<T: Scalar>(&self, _: Plane, [x, y, t]: [T; 3]) -> [T; 2] {
         let mut alpha = (t * 1.2 + 0.1).sin() * 0.15 + 0.20;
         let mut beta = t * t * 0.08 + t * 0.10 + 0.15;
         if self.is_squeezed() {
@@ -111,8 +96,9 @@ impl Motion for Coupled {
         (x * 1.9 - 0.6).sin() * (y * 1.3 + 0.4).cos() * 0.12 + 0.75 - t * fall * 0.4
     }
 
-    fn history(&self, variables: [Jet; 3]) -> f64 {
-        let moduli = ElasticModuli::new(&self.material(), self.plane);
-        fracture::driving_energy(&moduli, self.fracture.split, displacement_gradient(self, variables))
+    fn history(&self, plane: Plane, variables: [Jet; 3]) -> f64 {
+        let moduli = ElasticModuli::new(&self.material(), plane);
+        let gradient = self.displacement(plane, variables).map(|u| [u.gradient[0], u.gradient[1]]);
+        fracture::driving_energy(&moduli, self.fracture.split, gradient)
     }
 }

@@ -11,11 +11,11 @@
 //! Pa, nu = 0.3, rho = 1 kg/m³; k1 = 2.05 and k2 = 5.39 in plane stress.
 
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Frame, Kinematics, Material, Plane};
+use fisura::scene::Plane;
 
 use super::dual::Scalar;
 use super::motion::{Derived, Motion};
-use super::{Equation, Held, Solution, unit_material};
+use super::{Solution, unit_material};
 
 /// Between these numbers k R lies: a zero of J0 is the upper one, and a zero of J1 the lower one of the
 /// second.
@@ -24,21 +24,12 @@ const BRACKETS: [[f64; 2]; 2] = [[1.0, 2.404_825_557_695_773], [3.831_705_970_20
 const TERMS: usize = 20;
 
 /// What this file registers.
-pub const SOLUTIONS: &[Solution] = &[Solution {
-    name: "disc-wave",
-    fields: |plane| Box::new(Derived(DiscWave::new(plane))),
-    equation: Equation::Dynamic,
-    held: Held::Sides(&[]),
-    end_time: 0.6,
-    kinematics: Kinematics::Small,
-    frames: &[Frame::Total],
-    radii: &[],
-}];
+pub const SOLUTIONS: &[Solution] =
+    &[Solution::of("disc-wave", |plane| Box::new(Derived { motion: DiscWave::new(plane), plane }))];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]
 pub struct DiscWave {
-    plane: Plane,
     /// Wave numbers, 1/m.
     wave_numbers: [f64; 2],
 }
@@ -67,23 +58,15 @@ impl DiscWave {
             }
             low
         };
-        Self { plane, wave_numbers: BRACKETS.map(root) }
+        Self { wave_numbers: BRACKETS.map(root) }
     }
 }
 
 impl Motion for DiscWave {
     const FORCE_FREE: bool = true;
 
-    fn material(&self) -> Material {
-        unit_material(0.3)
-    }
-
-    fn plane(&self) -> Plane {
-        self.plane
-    }
-
-    fn displacement<T: Scalar>(&self, [x, y, t]: [T; 3]) -> [T; 2] {
-        let moduli = ElasticModuli::new(&self.material(), self.plane);
+    fn displacement<T: Scalar>(&self, plane: Plane, [x, y, t]: [T; 3]) -> [T; 2] {
+        let moduli = ElasticModuli::new(&self.material(), plane);
         let speed = moduli.dilatational_speed(self.material().density);
         let square = x * x + y * y;
         let radial = |k: f64| series(1, square * (0.25 * k * k)) * (0.5 * k); // J1(k r)/r

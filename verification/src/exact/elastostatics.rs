@@ -10,41 +10,26 @@
 //! Boundary conditions: the displacement, or the traction sigma n, neither of which vanishes anywhere in
 //! particular.
 
-use fisura::scene::{Frame, Kinematics, Material, Plane, Side};
+use fisura::scene::{Plane, Side};
 
 use super::dual::Scalar;
 use super::motion::{Derived, Motion};
-use super::{Equation, Held, Solution, unit_material};
+use super::{Equation, Held, Solution};
 
 /// What this file registers.
 pub const SOLUTIONS: &[Solution] = &[Solution {
-    name: "elastostatics",
-    fields: |plane| Box::new(Derived(Elastostatics { plane })),
     equation: Equation::Static,
     held: Held::Sides(&[(Side::Left, [true; 2])]),
     end_time: 0.0,
-    kinematics: Kinematics::Small,
-    frames: &[Frame::Total],
-    radii: &[],
+    ..Solution::of("elastostatics", |plane| Box::new(Derived { motion: Elastostatics, plane }))
 }];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]
-pub struct Elastostatics {
-    /// Plane state.
-    pub plane: Plane,
-}
+pub struct Elastostatics;
 
 impl Motion for Elastostatics {
-    fn material(&self) -> Material {
-        unit_material(0.3)
-    }
-
-    fn plane(&self) -> Plane {
-        self.plane
-    }
-
-    fn displacement<T: Scalar>(&self, [x, y, _]: [T; 3]) -> [T; 2] {
+    fn displacement<T: Scalar>(&self, _: Plane, [x, y, _]: [T; 3]) -> [T; 2] {
         [
             (x * 1.3 + 0.4).sin() * (y * 0.9 - 0.3).cos() * 0.10 + (x * 0.5 - y * 0.4).exp() * 0.03,
             (x * 0.8 - 0.2).cos() * (y * 1.7 + 0.6).sin() * 0.08 + (y * 0.6 - x * 0.3).exp() * 0.02,

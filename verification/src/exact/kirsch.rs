@@ -16,11 +16,11 @@
 //! shear vanish).
 
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Frame, Kinematics, Material, Plane};
+use fisura::scene::Plane;
 
 use super::dual::Scalar;
 use super::motion::{Derived, Motion};
-use super::{Equation, Held, Solution, unit_material};
+use super::{Equation, Held, Solution};
 
 /// Radius of the hole, m.
 pub const RADIUS: f64 = 1.0;
@@ -30,37 +30,23 @@ pub const TENSION: f64 = 1.0;
 
 /// What this file registers.
 pub const SOLUTIONS: &[Solution] = &[Solution {
-    name: "kirsch",
-    fields: |plane| Box::new(Derived(Kirsch { plane })),
     equation: Equation::Static,
     held: Held::Axes,
     end_time: 0.0,
-    kinematics: Kinematics::Small,
-    frames: &[Frame::Total],
     radii: &[1.0, 1.7, 3.1],
+    ..Solution::of("kirsch", |plane| Box::new(Derived { motion: Kirsch, plane }))
 }];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]
-pub struct Kirsch {
-    /// Plane state.
-    pub plane: Plane,
-}
+pub struct Kirsch;
 
 impl Motion for Kirsch {
     const FORCE_FREE: bool = true;
 
-    fn material(&self) -> Material {
-        unit_material(0.3)
-    }
-
-    fn plane(&self) -> Plane {
-        self.plane
-    }
-
-    fn displacement<T: Scalar>(&self, [x, y, _]: [T; 3]) -> [T; 2] {
+    fn displacement<T: Scalar>(&self, plane: Plane, [x, y, _]: [T; 3]) -> [T; 2] {
         let nu = self.material().poisson_ratio;
-        let kappa = match self.plane {
+        let kappa = match plane {
             Plane::Strain => 3.0 - 4.0 * nu,
             Plane::Stress => (3.0 - nu) / (1.0 + nu),
         };
@@ -70,7 +56,7 @@ impl Motion for Kirsch {
         let sin3 = sin * 3.0 - sin * sin * sin * 4.0;
         let (near, far) = (T::constant(2.0 * RADIUS) / r, r * (1.0 / RADIUS));
         let nearest = near * near * near * 0.25;
-        let scale = TENSION * RADIUS / (8.0 * ElasticModuli::new(&self.material(), self.plane).mu);
+        let scale = TENSION * RADIUS / (8.0 * ElasticModuli::new(&self.material(), plane).mu);
         [
             (far * cos * (kappa + 1.0) + near * (cos * (1.0 + kappa) + cos3) - nearest * cos3) * scale,
             (far * sin * (kappa - 3.0) + near * (sin * (1.0 - kappa) + sin3) - nearest * sin3) * scale,

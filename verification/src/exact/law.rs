@@ -20,6 +20,9 @@ use super::dual::{Field, Scalar};
 /// A 2×2 tensor that varies in space and time.
 pub type Tensor = [[Field; 2]; 2];
 
+/// First Piola–Kirchhoff stress, Pa, from the displacement gradient.
+pub type Law = fn(&ElasticModuli, Tensor) -> Tensor;
+
 /// Cauchy stress of linear elasticity, Pa, from the displacement gradient.
 pub fn linear(moduli: &ElasticModuli, gradient: Tensor) -> Tensor {
     let shear = (gradient[0][1] + gradient[1][0]) * 0.5;

@@ -15,11 +15,11 @@
 use std::f64::consts::PI;
 
 use fisura::material::degradation::FractureModel;
-use fisura::scene::{Fracture, Frame, Kinematics, Material, Plane};
+use fisura::scene::{Fracture, Material, Plane};
 
 use super::dual::{Jet, Scalar};
 use super::motion::{Derived, Motion};
-use super::{Equation, Held, Solution, unit_material};
+use super::{Equation, ExactSolution, Solution, unit_material};
 
 /// Size of the rectangle, m.
 pub const SIZE: [f64; 2] = [1.0, 0.8];
@@ -28,33 +28,17 @@ const FRACTURE: Fracture = Fracture { residual_stiffness: 0.01, ..Fracture::at2(
 
 /// What this file registers.
 pub const SOLUTIONS: &[Solution] = &[
-    Solution {
-        name: "phase-field",
-        fields: |plane| Box::new(Derived(PhaseField { plane, zero_flux: false })),
-        equation: Equation::PhaseField,
-        held: Held::Sides(&[]),
-        end_time: 0.0,
-        kinematics: Kinematics::Small,
-        frames: &[Frame::Total],
-        radii: &[],
-    },
-    Solution {
-        name: "phase-field-zero-flux",
-        fields: |plane| Box::new(Derived(PhaseField { plane, zero_flux: true })),
-        equation: Equation::PhaseField,
-        held: Held::Sides(&[]),
-        end_time: 0.0,
-        kinematics: Kinematics::Small,
-        frames: &[Frame::Total],
-        radii: &[],
-    },
+    solution("phase-field", |plane| Box::new(Derived { motion: PhaseField { zero_flux: false }, plane })),
+    solution("phase-field-zero-flux", |plane| Box::new(Derived { motion: PhaseField { zero_flux: true }, plane })),
 ];
+
+const fn solution(name: &'static str, fields: fn(Plane) -> Box<dyn ExactSolution>) -> Solution {
+    Solution { equation: Equation::PhaseField, end_time: 0.0, ..Solution::of(name, fields) }
+}
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]
 pub struct PhaseField {
-    /// Plane state of the material, which rests.
-    pub plane: Plane,
     /// Whether the normal derivative of c vanishes on the boundary.
     pub zero_flux: bool,
 }
@@ -66,11 +50,7 @@ impl Motion for PhaseField {
         Material { fracture: Some(FRACTURE), ..unit_material(0.3) }
     }
 
-    fn plane(&self) -> Plane {
-        self.plane
-    }
-
-    fn displacement<T: Scalar>(&self, _variables: [T; 3]) -> [T; 2] {
+    fn displacement<T: Scalar>(&self, _: Plane, _: [T; 3]) -> [T; 2] {
         [T::constant(0.0); 2]
     }
 
@@ -83,7 +63,7 @@ impl Motion for PhaseField {
         }
     }
 
-    fn history(&self, [x, y, _]: [Jet; 3]) -> f64 {
+    fn history(&self, _: Plane, [x, y, _]: [Jet; 3]) -> f64 {
         let reaction = y * (x * 3.0).sin() + 2.0;
         let model = FractureModel::of(&self.material());
         model.map_or(f64::NAN, |model| reaction.value.value / model.reaction_per_energy())

@@ -17,33 +17,24 @@
 use std::f64::consts::PI;
 
 use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Frame, Kinematics, Material, Plane};
+use fisura::scene::Plane;
 
 use super::dual::Scalar;
 use super::motion::{Derived, Motion};
-use super::{Equation, Held, Solution, unit_material};
+use super::{Held, Solution};
 
 /// Size of the rectangle, m.
 pub const SIZE: [f64; 2] = [1.0, 0.8];
 
 /// What this file registers.
 pub const SOLUTIONS: &[Solution] = &[Solution {
-    name: "standing-wave",
-    fields: |plane| Box::new(Derived(StandingWave { plane })),
-    equation: Equation::Dynamic,
     held: Held::Rollers,
-    end_time: 0.6,
-    kinematics: Kinematics::Small,
-    frames: &[Frame::Total],
-    radii: &[],
+    ..Solution::of("standing-wave", |plane| Box::new(Derived { motion: StandingWave, plane }))
 }];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]
-pub struct StandingWave {
-    /// Plane state.
-    pub plane: Plane,
-}
+pub struct StandingWave;
 
 /// Wave vector of a mode and its length, rad/m.
 fn wave_vector(mode: [f64; 2]) -> ([f64; 2], f64) {
@@ -54,17 +45,9 @@ fn wave_vector(mode: [f64; 2]) -> ([f64; 2], f64) {
 impl Motion for StandingWave {
     const FORCE_FREE: bool = true;
 
-    fn material(&self) -> Material {
-        unit_material(0.3)
-    }
-
-    fn plane(&self) -> Plane {
-        self.plane
-    }
-
-    fn displacement<T: Scalar>(&self, [x, y, t]: [T; 3]) -> [T; 2] {
+    fn displacement<T: Scalar>(&self, plane: Plane, [x, y, t]: [T; 3]) -> [T; 2] {
         let density = self.material().density;
-        let moduli = ElasticModuli::new(&self.material(), self.plane);
+        let moduli = ElasticModuli::new(&self.material(), plane);
         let dilatational = {
             let (k, length) = wave_vector([1.0, 2.0]);
             let (px, py) = (x * k[0], y * k[1]);

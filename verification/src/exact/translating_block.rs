@@ -12,13 +12,12 @@
 
 use std::f64::consts::PI;
 
-use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Frame, Kinematics, Material, Plane};
+use fisura::scene::{Frame, Kinematics, Plane};
 
+use super::Solution;
 use super::dual::Scalar;
-use super::law::{self, Tensor};
+use super::law::{self, Law};
 use super::motion::{Derived, Motion};
-use super::{Equation, Held, Solution, unit_material};
 
 /// Amplitude A, m.
 const AMPLITUDE: f64 = 0.06;
@@ -29,42 +28,25 @@ const PHASE: f64 = 2.0;
 
 /// What this file registers.
 pub const SOLUTIONS: &[Solution] = &[Solution {
-    name: "translating-block",
-    fields: |plane| Box::new(Derived(TranslatingBlock { plane })),
-    equation: Equation::Dynamic,
-    held: Held::Sides(&[]),
     end_time: 0.9,
     kinematics: Kinematics::Finite,
     frames: &[Frame::Updated],
-    radii: &[],
+    ..Solution::of("translating-block", |plane| Box::new(Derived { motion: TranslatingBlock, plane }))
 }];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]
-pub struct TranslatingBlock {
-    /// Plane state.
-    pub plane: Plane,
-}
+pub struct TranslatingBlock;
 
 impl Motion for TranslatingBlock {
-    fn material(&self) -> Material {
-        unit_material(0.3)
-    }
+    const LAW: Law = law::hencky;
 
-    fn plane(&self) -> Plane {
-        self.plane
-    }
-
-    fn displacement<T: Scalar>(&self, [x, y, t]: [T; 3]) -> [T; 2] {
+    fn displacement<T: Scalar>(&self, _: Plane, [x, y, t]: [T; 3]) -> [T; 2] {
         let bump = |coordinate: T| {
             let sine = (coordinate * PI).sin();
             sine * sine
         };
         let (shape, angle) = (bump(x) * bump(y) * AMPLITUDE, t * (2.0 * PI));
         [t * VELOCITY[0] + shape * angle.sin(), t * VELOCITY[1] + shape * (angle + PHASE).sin()]
-    }
-
-    fn stress(&self, gradient: Tensor) -> Tensor {
-        law::hencky(&ElasticModuli::new(&self.material(), self.plane), gradient)
     }
 }

@@ -22,13 +22,12 @@
 
 use std::f64::consts::PI;
 
-use fisura::material::elasticity::ElasticModuli;
-use fisura::scene::{Frame, Kinematics, Material, Plane};
+use fisura::scene::{Frame, Kinematics, Plane};
 
+use super::Solution;
 use super::dual::Scalar;
-use super::law::{self, Tensor};
+use super::law::{self, Law};
 use super::motion::{Derived, Motion};
-use super::{Equation, Held, Solution, unit_material};
 
 /// Inner and outer radius of the ring, m.
 pub const RADII: [f64; 2] = [0.75, 1.25];
@@ -38,42 +37,25 @@ pub const AMPLITUDE: f64 = 0.1;
 
 /// What this file registers.
 pub const SOLUTIONS: &[Solution] = &[Solution {
-    name: "vortex",
-    fields: |plane| Box::new(Derived(Vortex { plane })),
-    equation: Equation::Dynamic,
-    held: Held::Sides(&[]),
-    end_time: 0.6,
     kinematics: Kinematics::Finite,
     frames: &[Frame::Updated],
     radii: &[0.75, 0.93, 1.25],
+    ..Solution::of("vortex", |plane| Box::new(Derived { motion: Vortex, plane }))
 }];
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]
-pub struct Vortex {
-    /// Plane state.
-    pub plane: Plane,
-}
+pub struct Vortex;
 
 impl Motion for Vortex {
-    fn material(&self) -> Material {
-        unit_material(0.3)
-    }
+    const LAW: Law = law::hencky;
 
-    fn plane(&self) -> Plane {
-        self.plane
-    }
-
-    fn displacement<T: Scalar>(&self, [x, y, t]: [T; 3]) -> [T; 2] {
+    fn displacement<T: Scalar>(&self, _: Plane, [x, y, t]: [T; 3]) -> [T; 2] {
         let s = (x * x + y * y).sqrt() - 1.0;
         let square = s * s;
         let bump = square * square * 256.0 - square * 32.0 + 1.0;
         let angle = bump * (t * PI).sin() * AMPLITUDE;
         let (cos, sin) = (angle.cos(), angle.sin());
         [x * cos - y * sin - x, x * sin + y * cos - y]
-    }
-
-    fn stress(&self, gradient: Tensor) -> Tensor {
-        law::hencky(&ElasticModuli::new(&self.material(), self.plane), gradient)
     }
 }

@@ -154,20 +154,10 @@ impl<'a> Numerics<'a> {
 pub fn quantities(curves: &[Option<Curve>; 6], variant: &Variant<'_>, numerics: &Numerics<'_>) -> Vec<QuantityVerdict> {
     let judged = (0..TIP_Y).map(|quantity| {
         let words = QUANTITIES[quantity].words.to_string();
+        let missing = |outcome, why: &str| Comparison { outcome, why: why.into(), ..row("whole", quantity) };
         let comparisons = match (&curves[quantity], variant.curves[quantity]) {
-            (None, _) => vec![Comparison {
-                name: "whole".into(),
-                unit: unit(quantity).into(),
-                outcome: Outcome::Incomplete,
-                why: "not given".into(),
-                ..Comparison::default()
-            }],
-            (Some(_), None) => vec![Comparison {
-                name: "whole".into(),
-                unit: unit(quantity).into(),
-                why: "the reference does not have it".into(),
-                ..Comparison::default()
-            }],
+            (None, _) => vec![missing(Outcome::Incomplete, "not given")],
+            (Some(_), None) => vec![missing(Outcome::Diagnostic, "the reference does not have it")],
             (Some(curve), Some(reference)) => {
                 let windows = variant.windows(quantity).into_iter();
                 windows
@@ -190,8 +180,10 @@ pub fn conclude(verdict: &mut QuantityVerdict) {
     verdict.outcome = if fails { Outcome::Fail } else { whole };
 }
 
-fn unit(quantity: usize) -> &'static str {
-    if quantity == TIP_X { "m" } else { "1" }
+/// Nothing known yet of a quantity in a phase; errors are relative, those of the tip in m.
+fn row(phase: &str, quantity: usize) -> Comparison {
+    let unit = if quantity == TIP_X { "m" } else { "1" };
+    Comparison { name: phase.into(), unit: unit.into(), ..Comparison::default() }
 }
 
 /// `None` where the reference has nothing in the window.
@@ -206,7 +198,7 @@ fn compare(
     let absolute = quantity == TIP_X;
     let uncertainty = if absolute { rms_uncertainty } else { relative_uncertainty };
     let u_ref = uncertainty(reference, from, to)?;
-    let mut out = Comparison { name: phase.into(), unit: unit(quantity).into(), ..Comparison::default() };
+    let mut out = row(phase, quantity);
     let (first, last) = (curve.t[0], curve.t[curve.t.len() - 1]);
     let window = [larger(from, first), if last < to { last } else { to }];
     out.window_s = Some(window);

@@ -7,6 +7,7 @@ use super::mapping::{ColumnName, Mapping};
 use super::submission::Submission;
 use crate::output::foreign;
 use crate::scene::diagnostic::Sources;
+use crate::scene::suggest::hint;
 use crate::scene::{Location, Problem, SceneFileError};
 
 /// Most rows of a file.
@@ -231,9 +232,7 @@ impl File {
             }
             ColumnName::Named(name) => self.position(name).ok_or_else(|| {
                 let known: Vec<&str> = self.names.iter().map(String::as_str).collect();
-                let meant = crate::scene::suggest::nearest(name, &known);
-                let meant = meant.map_or(String::new(), |n| format!("did you mean {n:?}? "));
-                let remedy = format!("{meant}its columns are {}", known.join(", "));
+                let remedy = format!("{}its columns are {}", hint(name, &known), known.join(", "));
                 submission.error(mapping, format!("{} has no column {name:?}", self.name), remedy)
             })?,
         };

@@ -5,7 +5,7 @@ use crate::output::history::Table;
 use crate::record::{Curve, CurveStyle, Reference, ReferenceKind};
 
 /// A curve from elsewhere, in SI units, with its uncertainty.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct ReferenceCurve {
     /// Folder below the library's, with the variant if the folder has several: `mandal-2020/at2`.
     pub id: String,

@@ -6,7 +6,7 @@ use toml::Spanned;
 use crate::record::ReferenceKind;
 
 /// How numbers were obtained.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Obtained {
     /// Read from output that the authors publish.
@@ -18,6 +18,7 @@ pub enum Obtained {
     /// Computed with this code, to recognise something in results of others.
     OwnCode,
     /// Stated in a text.
+    #[default]
     Text,
     /// Put together from other folders.
     Compiled,

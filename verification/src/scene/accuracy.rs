@@ -8,10 +8,10 @@
 
 use std::collections::BTreeMap;
 
-use fisura::material::mesh_toughness::kappa;
-use fisura::scene::{CrackModel, Frame, Material, PhaseFieldInterval, SolverSettings};
+use fisura::material::mesh_toughness::rule;
+use fisura::scene::{Body, CrackModel, Frame, Material, PhaseFieldInterval, SolverSettings};
 
-use super::document::{Node, Value};
+use super::document::Node;
 use super::fields::{Fields, Item};
 use super::read::number;
 use crate::extremes::smaller;
@@ -35,35 +35,19 @@ pub(super) fn accuracy(fields: &Fields<'_>) -> Option<Option<f64>> {
     })
 }
 
-/// Whether the cost of a crack is known on the mesh of a scene, given by its tree: see
-/// [`fisura::material::mesh_toughness`].
-fn cost_is_known(scene: &Node) -> bool {
-    let both = |node: &Node| match &node.value {
-        Value::Integer(value) => Some(*value),
-        Value::Array(pair) if pair.len() == 2 && pair[0].value == pair[1].value => match pair[0].value {
-            Value::Integer(value) => Some(value),
-            _ => None,
-        },
-        _ => None,
-    };
-    let Some(degree) = scene.get("mesh").and_then(|mesh| both(mesh.get("degree")?)) else { return false };
-    let is_updated = scene.get("analysis").and_then(|table| table.get("frame")?.as_str()) == Some("updated");
-    let holds = |body: &Node| {
-        let is_gauss = body.get("layout").is_none_or(|layout| layout.as_str() == Some("gauss"));
-        let points = body.get("particles_per_cell").map_or(Some(degree.max(2)), both);
-        is_gauss && points.is_some_and(|points| kappa(degree as usize, points as usize, 0.0).is_some())
-    };
-    !is_updated && scene.get("body").and_then(Node::as_array).is_some_and(|bodies| bodies.iter().all(holds))
-}
-
-/// Makes Gc that of the mesh where that is known and the scene does not say, and returns the longest span
-/// (m), if a material can break. `scene` is the tree of the scene.
-pub(super) fn choose_span(accuracy: f64, materials: &mut BTreeMap<String, Material>, scene: &Node) -> Option<f64> {
+/// Makes Gc that of a mesh of some degree where that is known and the scene does not say, and returns the
+/// longest span (m), if a material can break. `scene` is the tree of the scene.
+pub(super) fn choose_span(
+    accuracy: f64,
+    materials: &mut BTreeMap<String, Material>,
+    (bodies, frame, degree): (&[Body], Frame, [usize; 2]),
+    scene: &Node,
+) -> Option<f64> {
     let mut longest = None;
     for (name, material) in materials {
         let Some(fracture) = &mut material.fracture else { continue };
         let says = |node: &Node| node.get(name)?.get("fracture")?.get("mesh_toughness").map(|_| ());
-        let is_known = fracture.model == CrackModel::At2 && fracture.anisotropy.is_none() && cost_is_known(scene);
+        let is_known = frame == Frame::Total && bodies.iter().all(|body| rule(fracture, degree, body).is_some());
         if scene.get("material").and_then(says).is_none() {
             fracture.mesh_toughness = is_known;
         }

@@ -79,6 +79,19 @@ impl Node {
         }
     }
 
+    /// As JSON, where a number that is not finite is its word.
+    pub fn to_json(&self) -> serde_json::Value {
+        match &self.value {
+            Value::String(text) | Value::Datetime(text) => text.clone().into(),
+            Value::Integer(i) => (*i).into(),
+            Value::Float(x) if x.is_finite() => (*x).into(),
+            Value::Float(x) => x.to_string().into(),
+            Value::Boolean(flag) => (*flag).into(),
+            Value::Array(entries) => entries.iter().map(Self::to_json).collect(),
+            Value::Table(table) => table.iter().map(|(key, node)| (key.clone(), node.to_json())).collect(),
+        }
+    }
+
     /// Kind of value, with an article: `a string`.
     pub fn kind(&self) -> &'static str {
         match &self.value {

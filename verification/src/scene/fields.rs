@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::diagnostic::{Location, Problem};
 use super::document::{Node, Value, join};
-use super::suggest::nearest;
+use super::suggest::hint;
 use super::units::{self, Dimension};
 
 /// A type whose values are words of a file.
@@ -158,8 +158,7 @@ impl<'a> Item<'a> {
         if let Some(found) = words.iter().find(|w| w.0 == text) {
             return Some(found.1);
         }
-        let meant = nearest(text, &names).map_or(String::new(), |n| format!("did you mean {n:?}? "));
-        self.fail(format!("unknown value {text:?}"), format!("{meant}known: {list}"))
+        self.fail(format!("unknown value {text:?}"), format!("{}known: {list}", hint(text, &names)))
     }
 
     /// One of the words of a type.
@@ -189,8 +188,12 @@ impl<'a> Item<'a> {
 
     /// Every entry of an array read by `read`.
     pub fn each<T>(&self, read: impl Fn(&Item<'a>) -> Option<T>) -> Option<Vec<T>> {
-        let read: Vec<Option<T>> = self.list()?.iter().map(read).collect();
-        read.into_iter().collect()
+        all(&self.list()?, read)
+    }
+
+    /// Every entry of an array of tables read by `read`.
+    pub fn each_table<T>(&self, read: impl Fn(&Item<'a>) -> Option<T>) -> Option<Vec<T>> {
+        all(&self.tables()?, read)
     }
 
     /// An array of two entries, x and y.
@@ -221,9 +224,9 @@ impl<'a> Item<'a> {
     pub fn fields(&self, known: &[&str]) -> Option<Fields<'a>> {
         let Some(table) = self.node.as_table() else { return self.wrong_kind("a table") };
         for (key, node) in table.iter().filter(|(key, _)| !known.contains(&key.as_str())) {
-            let meant = nearest(key, known).map_or(String::new(), |n| format!("did you mean {n:?}? "));
             let location = node.key_location.clone().or_else(|| node.location.clone());
-            let (path, remedy) = (join(&self.path, key), format!("{meant}known keys: {}", known.join(", ")));
+            let (path, remedy) =
+                (join(&self.path, key), format!("{}known keys: {}", hint(key, known), known.join(", ")));
             self.fail_at::<()>(location, &path, format!("unknown key {key:?}"), remedy);
         }
         Some(Fields { item: self.clone() })
@@ -273,6 +276,12 @@ impl<'a> Fields<'a> {
             (first, _) => Some(first),
         }
     }
+}
+
+/// Every item read, so that all their problems are told.
+fn all<'a, T>(items: &[Item<'a>], read: impl Fn(&Item<'a>) -> Option<T>) -> Option<Vec<T>> {
+    let read: Vec<Option<T>> = items.iter().map(read).collect();
+    read.into_iter().collect()
 }
 
 fn quoted(words: &[&str]) -> String {

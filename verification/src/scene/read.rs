@@ -13,8 +13,8 @@ use super::diagnostic::Problem;
 use super::document::Node;
 use super::fields::{Item, Problems};
 use super::read_body::{bodies, materials};
-use super::read_load::boundaries;
-use super::read_mesh::mesh;
+use super::read_load::boundary;
+use super::read_mesh::{degree, mesh};
 use super::units::Dimension;
 
 /// Keys of a scene.
@@ -45,16 +45,17 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
     let solver = fields.or("solver", (default_solver(), None), solver);
     let mut materials = fields.or("material", BTreeMap::new(), materials);
     let accuracy = solver.as_ref().and_then(|(_, accuracy)| *accuracy);
-    let span = accuracy.zip(materials.as_mut()).and_then(|(a, materials)| choose_span(a, materials, item.node));
+    let frame = analysis.as_ref().map_or(Frame::Total, |analysis| analysis.frame);
+    let degree = degree(item.node).unwrap_or([2; 2]);
+    let bodies = fields.or("body", Vec::new(), |item| bodies(item, frame, degree));
+    let rule = (bodies.as_deref().unwrap_or_default(), frame, degree);
+    let span = accuracy.zip(materials.as_mut()).and_then(|(a, materials)| choose_span(a, materials, rule, item.node));
     let is_idle = accuracy.is_some() && materials.is_some() && span.is_none();
     if let Some(item) = fields.get("solver").filter(|_| is_idle) {
         let message = "an accuracy in a scene without a material that can break: there is nothing to choose";
         item.fail::<()>(message, "remove accuracy, or add [material.NAME.fracture]");
     }
     let mesh = fields.need("mesh", "a table [mesh] with degree, origin, size and cells", |item| mesh(item, span));
-    let frame = analysis.as_ref().map_or(Frame::Total, |analysis| analysis.frame);
-    let degree = mesh.as_ref().map_or([2; 2], |mesh| mesh.degree);
-    let bodies = fields.or("body", Vec::new(), |item| bodies(item, frame, degree));
     let contact = fields.maybe("contact", |item| {
         let fields = item.fields(&["friction", "fragments", "self_contact", "stiffness"])?;
         let friction = fields.need("friction", "friction = 0.65", number);
@@ -63,7 +64,7 @@ fn scene(item: &Item<'_>) -> Option<Scene> {
         let stiffness = fields.or("stiffness", Contact::default().stiffness, number);
         Some(Contact { friction: friction?, fragments: fragments?, self_contact: self_contact?, stiffness: stiffness? })
     });
-    let boundaries = fields.or("boundary", Vec::new(), boundaries);
+    let boundaries = fields.or("boundary", Vec::new(), |item| item.each_table(boundary));
     let equilibrium = fields.or("start", false, |item| {
         item.fields(&["equilibrium"])?.need("equilibrium", "equilibrium = true", Item::flag)
     });

@@ -136,7 +136,7 @@ fn random(item: &Item<'_>) -> Option<RandomToughness> {
 
 /// `[[body]]` tables in order, on a mesh of the given degrees.
 pub(super) fn bodies(item: &Item<'_>, frame: Frame, degree: [usize; 2]) -> Option<Vec<Body>> {
-    all(item, |item| body(item, default_points(frame, degree), default_layout(frame)))
+    item.each_table(|item| body(item, default_points(frame, degree), default_layout(frame)))
 }
 
 /// Where points keep their places in the spans, fewer than the degree leave modes nearly without stiffness.
@@ -153,12 +153,6 @@ fn default_layout(frame: Frame) -> Layout {
         Frame::Total => Layout::Gauss,
         Frame::Updated => Layout::Uniform,
     }
-}
-
-/// Every entry of an array of tables.
-fn all<T>(item: &Item<'_>, read: impl Fn(&Item<'_>) -> Option<T>) -> Option<Vec<T>> {
-    let read: Vec<Option<T>> = item.tables()?.iter().map(read).collect();
-    read.into_iter().collect()
 }
 
 fn body(item: &Item<'_>, default_points: [usize; 2], default_layout: Layout) -> Option<Body> {
@@ -188,9 +182,9 @@ fn body(item: &Item<'_>, default_points: [usize; 2], default_layout: Layout) -> 
     let gradient = fields.or("velocity_gradient", [[0.0; 2]; 2], |item| item.pair(|row| row.vector(Dimension::RATE)));
     let rigid = fields.or("rigid", false, Item::flag);
     let time = fields.or("time", TimeFactor::default(), factor);
-    let tractions = fields.or("traction", Vec::new(), |item| all(item, traction));
-    let conditions = fields.or("condition", Vec::new(), |item| all(item, edge_condition));
-    let cracks = fields.or("crack", Vec::new(), |item| all(item, crack));
+    let tractions = fields.or("traction", Vec::new(), |item| item.each_table(traction));
+    let conditions = fields.or("condition", Vec::new(), |item| item.each_table(edge_condition));
+    let cracks = fields.or("crack", Vec::new(), |item| item.each_table(crack));
     Some(Body {
         name: name?,
         material: material?,

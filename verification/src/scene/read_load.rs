@@ -8,13 +8,8 @@ use super::read::{length, number, point, time};
 use super::read_function::{factor, stress_field};
 use super::units::Dimension;
 
-/// `[[boundary]]` tables in order.
-pub(super) fn boundaries(item: &Item<'_>) -> Option<Vec<Boundary>> {
-    let read: Vec<Option<Boundary>> = item.tables()?.iter().map(boundary).collect();
-    read.into_iter().collect()
-}
-
-fn boundary(item: &Item<'_>) -> Option<Boundary> {
+/// One `[[boundary]]`.
+pub(super) fn boundary(item: &Item<'_>) -> Option<Boundary> {
     let fields = item.fields(&["name", "side", "from", "to", "fix", "velocity", "displacement", "time"])?;
     let name = fields.maybe("name", Item::words);
     let side = fields.need("side", "side = \"left\"", Item::word);

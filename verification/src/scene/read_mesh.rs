@@ -4,7 +4,8 @@
 use fisura::scene::{Geometry, Mesh, Side};
 use fisura::splines::nurbs::{NurbsError, NurbsPatch};
 
-use super::fields::{Fields, Item};
+use super::document::Node;
+use super::fields::{Fields, Item, Problems};
 use super::read::{length, number, point};
 
 /// Largest number of spans in one direction.
@@ -50,13 +51,22 @@ pub(super) fn mesh(item: &Item<'_>, longest: Option<f64>) -> Option<Mesh> {
             complete = extra.fail::<()>(format!("{key} cannot be used with {what}"), remedy).is_some();
         }
     }
-    let degree = fields.need("degree", "degree = 2", |item| item.whole_per_direction(1, 4));
+    let degree = fields.need("degree", "degree = 2", of_degree);
     match (form, complete) {
         (_, false) => None,
         (Some("control_points"), _) => general(&fields, degree?),
         (Some(_), _) => fields.get("annulus").and_then(|item| annulus(&item, &fields, degree?)),
         (None, _) => rectangle(&fields, degree, longest),
     }
+}
+
+/// The degree in the tree of a scene, if it is one; [`mesh`] says what is wrong with it.
+pub(super) fn degree(scene: &Node) -> Option<[usize; 2]> {
+    of_degree(&Item::new(scene.at("mesh.degree")?, "", &Problems::default()))
+}
+
+fn of_degree(item: &Item<'_>) -> Option<[usize; 2]> {
+    item.whole_per_direction(1, 4)
 }
 
 fn rectangle(fields: &Fields<'_>, degree: Option<[usize; 2]>, longest: Option<f64>) -> Option<Mesh> {

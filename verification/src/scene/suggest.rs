@@ -9,6 +9,11 @@ pub fn nearest<'a>(word: &str, candidates: &[&'a str]) -> Option<&'a str> {
     near.filter(|(distance, _)| *distance <= limit).min_by_key(|(distance, _)| *distance).map(|(_, known)| known)
 }
 
+/// `did you mean "density"? `, or nothing.
+pub fn hint(word: &str, candidates: &[&str]) -> String {
+    nearest(word, candidates).map_or(String::new(), |near| format!("did you mean {near:?}? "))
+}
+
 #[cfg(test)]
 mod tests {
     use super::nearest;

@@ -12,7 +12,7 @@ use serde_path_to_error::Segment;
 use super::diagnostic::Problem;
 use super::document::{Node, Value, join};
 use super::fields::{Item, Problems};
-use super::suggest::nearest;
+use super::suggest::hint;
 
 /// Most problems that one pass notes.
 const MOST_PROBLEMS: usize = 20;
@@ -119,7 +119,7 @@ impl Wrong<'_> {
     fn problem<T: JsonSchema>(&self) -> Problem {
         let names: Vec<&str> = self.text.split('`').skip(1).step_by(2).collect();
         let (found, known) = names.split_first().map_or(("", &[][..]), |(found, known)| (*found, known));
-        let meant = || nearest(found, known).map_or(String::new(), |name| format!("did you mean {name:?}? "));
+        let meant = || hint(found, known);
         if let Some((message, rest)) = self.text.split_once(BREAK) {
             let (remedy, key) = rest.split_once(BREAK).unwrap_or((rest, ""));
             self.at(key, message.into(), remedy.into())

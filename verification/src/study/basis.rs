@@ -6,9 +6,7 @@
 
 use fisura::splines::spline::SplineSpace;
 
-use super::{Findings, StudyError};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{Case, CaseScene, Findings, StudyError};
 use crate::extremes::larger;
 use crate::study::random::Random;
 

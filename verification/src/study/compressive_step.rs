@@ -5,9 +5,7 @@
 
 use fisura::simulation::Simulation;
 
-use super::{Findings, StudyError};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{Case, CaseScene, Findings, StudyError, other};
 use crate::extremes::{larger, largest};
 
 pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
@@ -32,7 +30,7 @@ pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, Stud
             .total_frame()
             .and_then(|f| f.fracture.as_ref())
             .map(|f| &f.history)
-            .ok_or_else(|| StudyError::Other("nothing fractures here".into()))?;
+            .ok_or_else(|| other("nothing fractures here"))?;
         let most = largest(history.iter().flat_map(|lane| lane.0));
         findings.add(
             &scene.name,

@@ -10,11 +10,9 @@ use fisura::dynamics::critical_step::StiffnessOperator;
 use fisura::dynamics::loads::{NodalLoad, boundary_points};
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::scene::{Kinematics, Shape, Side, TimeFactor, Traction};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
-use super::{Findings, StudyError};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{Case, CaseScene, Findings, StudyError, dense, other};
 use crate::extremes::larger;
 
 pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
@@ -29,7 +27,7 @@ pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
 pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
     for scene in scenes {
-        let frame = TotalFrame::new(&scene.scene).map_err(|_| StudyError::Other("no equilibrium at rest".into()))?;
+        let frame = TotalFrame::new(&scene.scene).map_err(|_| other("no equilibrium at rest"))?;
         let patch_test = PatchTest::new(&frame)?;
         for (name, stress) in [("xx", [1.0, 0.0, 0.0]), ("yy", [0.0, 1.0, 0.0]), ("xy", [0.0, 0.0, 1.0])] {
             let error = patch_test.largest_stress_error(scene, stress);
@@ -52,14 +50,7 @@ impl<'a> PatchTest<'a> {
         let mut operator = frame.stiffness_operator();
         let degrees_of_freedom = operator.degrees_of_freedom().to_vec();
         let n = degrees_of_freedom.len();
-        let mut matrix = DMatrix::zeros(n, n);
-        let (mut unit, mut image) = (vec![0.0; n], vec![0.0; n]);
-        for column in 0..n {
-            unit[column] = 1.0;
-            operator.stiffness(&unit, &mut image);
-            unit[column] = 0.0;
-            matrix.set_column(column, &DVector::from_column_slice(&image));
-        }
+        let mut matrix = dense::matrix(n, |x, out| operator.stiffness(x, out))?;
         let grid = frame.lattice().grid;
         let corner = |column: usize, component: usize| {
             let wanted = (grid.index(column, 0), component);
@@ -67,7 +58,7 @@ impl<'a> PatchTest<'a> {
         };
         let held = [corner(0, 0), corner(0, 1), corner(grid.columns - 1, 1)];
         let [Some(a), Some(b), Some(c)] = held else {
-            return Err(StudyError::Other("the body does not reach the lower corners of the mesh".into()));
+            return Err(other("the body does not reach the lower corners of the mesh"));
         };
         for index in [a, b, c] {
             let diagonal = matrix[(index, index)];
@@ -75,7 +66,7 @@ impl<'a> PatchTest<'a> {
             matrix.column_mut(index).fill(0.0);
             matrix[(index, index)] = diagonal;
         }
-        let singular = || StudyError::Other("the stiffness is not positive definite: too few points per span".into());
+        let singular = || other("the stiffness is not positive definite: too few points per span");
         let factor = matrix.cholesky().ok_or_else(singular)?;
         Ok(Self { frame, degrees_of_freedom, held: [a, b, c], factor })
     }

@@ -12,7 +12,6 @@ use fisura::scene::Scene;
 
 use super::StudyError;
 use crate::extremes::{self, larger};
-use crate::record::{Reference, ReferenceKind};
 
 /// Runs a scene to its end; `seen` looks at it at the start and after every step.
 pub(crate) fn run(scene: &Scene, seen: &mut dyn FnMut(&Simulation)) -> Result<(), StudyError> {
@@ -47,10 +46,6 @@ fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
-}
-
-fn exact(value: f64, source: &str) -> Option<Reference> {
-    Some(Reference::new(Some(value), ReferenceKind::Exact, source))
 }
 
 /// What the ledger of a run has to show, gathered sample by sample.

@@ -14,10 +14,8 @@ mod solve;
 
 use fisura::scene::{Frame, Layout, Mass, Transfer};
 
-use super::{Findings, StudyError};
-use crate::case::Case;
+use super::{Case, CaseScene, Findings, StudyError, other};
 use crate::case::convergence::{ConvergenceSetup, Loading, PatchFamily, Refine};
-use crate::case::expand::CaseScene;
 use crate::exact::Equation;
 use crate::study::orders::{Convergence, Curve, Level, Norm, Refined};
 pub(crate) use meshes::{CurveKey, Meshes};
@@ -169,10 +167,6 @@ fn theory(setup: &ConvergenceSetup, problem: &Problem, degree: usize, below: usi
         }
         _ => Some(space),
     }
-}
-
-fn other(message: impl Into<String>) -> StudyError {
-    StudyError::Other(message.into())
 }
 
 fn words_of_theory(setup: &ConvergenceSetup, problem: &Problem) -> String {

@@ -18,9 +18,7 @@ use fisura::phase_field::assembly::{Constant, Integrand, PointCoefficients, add_
 use fisura::scene::{Layout, Mass, Mesh};
 use fisura::splines::patch::Patch;
 
-use super::{Findings, Offered, Offers, StudyError};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{Case, CaseScene, Findings, Offered, Offers, StudyError, other};
 use crate::record::{Reference, ReferenceKind};
 use crate::scene::plain::PlainScene;
 
@@ -114,7 +112,7 @@ impl Setting {
         let surface = matrix.clone();
         add_form(&mut matrix, &lattice, Integrand::Mass, &self.strengths(&lattice, broken));
         let factor = SparseCholesky::default().factor(&matrix, &[]);
-        let factor = factor.ok_or_else(|| StudyError::Other("the matrix is not positive definite".into()))?;
+        let factor = factor.ok_or_else(|| other("the matrix is not positive definite"))?;
         let mut phase = grid.zeros();
         factor.solve(&lattice.integrate(|_, _, _| 1.0), &mut phase);
         let (mut damage, mut image) = (grid.zeros(), grid.zeros());

@@ -11,11 +11,8 @@ use fisura::phase_field::assembly::{Constant, Integrand, add_form};
 use fisura::scene::{Mass, Mesh};
 use fisura::splines::patch::Patch;
 
-use super::{Findings, StudyError};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{Case, CaseScene, Findings, StudyError, exact, other};
 use crate::extremes::largest;
-use crate::record::{Reference, ReferenceKind};
 use crate::scene::plain::PlainScene;
 
 /// Length scale l0, m.
@@ -42,8 +39,8 @@ pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stu
         for per_length in [1, 2] {
             let (energy, error) = crack(degree, per_length)?;
             let variant = format!("p={degree}, h=l0/{per_length}");
-            let one = Reference::new(Some(1.0), ReferenceKind::Exact, "AT2 in one dimension");
-            findings.add(&variant, "surface energy of the crack over Gc", energy, Some(one));
+            let one = exact(1.0, "AT2 in one dimension");
+            findings.add(&variant, "surface energy of the crack over Gc", energy, one);
             findings.add(&variant, "phase field, largest error at a control line of its knots", error, None);
         }
     }
@@ -72,7 +69,7 @@ fn crack(degree: usize, per_length: usize) -> Result<(f64, f64), StudyError> {
     let middle = (grid.columns - 1) / 2;
     let held: Vec<usize> = (0..grid.rows).map(|row| grid.index(middle, row)).collect();
     let factor = SparseCholesky::default().factor(&matrix, &held);
-    let factor = factor.ok_or_else(|| StudyError::Other("the matrix is not positive definite".into()))?;
+    let factor = factor.ok_or_else(|| other("the matrix is not positive definite"))?;
     let mut phase = grid.zeros();
     factor.solve(&lattice.integrate(|_, _, _| 1.0), &mut phase);
     let (mut broken, mut image) = (grid.zeros(), grid.zeros());

@@ -6,10 +6,14 @@ use fisura::linear_algebra::stencil::Stencil;
 use fisura::phase_field::assembly::{Constant, Integrand, add_form};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
+use super::{StudyError, other};
 use crate::watch::{self, Stopped};
 
 /// The matrix of a linear map on `n` numbers.
-fn matrix(n: usize, mut map: impl FnMut(&[f64], &mut [f64])) -> Result<DMatrix<f64>, Stopped> {
+///
+/// # Errors
+/// If the case is to stop.
+pub fn matrix(n: usize, mut map: impl FnMut(&[f64], &mut [f64])) -> Result<DMatrix<f64>, Stopped> {
     let mut matrix = DMatrix::zeros(n, n);
     let (mut unit, mut image) = (vec![0.0; n], vec![0.0; n]);
     for column in 0..n {
@@ -22,25 +26,25 @@ fn matrix(n: usize, mut map: impl FnMut(&[f64], &mut [f64])) -> Result<DMatrix<f
     Ok(matrix)
 }
 
-/// Squares of the angular frequencies of a body with the mass it has, increasing, and their number; `None` if
-/// its mass is not positive definite.
+/// Angular frequencies of a body with the mass it has, increasing.
 ///
 /// # Errors
-/// If the case is to stop.
-pub fn eigenvalues(operator: &mut impl StiffnessOperator) -> Result<Option<Vec<f64>>, Stopped> {
+/// If the case is to stop, or the mass is not positive definite.
+pub fn frequencies(frame: &TotalFrame) -> Result<Vec<f64>, StudyError> {
+    let mut operator = frame.stiffness_operator();
     let n = operator.size();
     let stiffness = matrix(n, |x, out| operator.stiffness(x, out))?;
     let inverse_mass = matrix(n, |x, out| operator.divide_by_mass(x, out))?;
-    let factor = inverse_mass.cholesky().map(|factor| factor.l());
-    Ok(factor.map(|factor| sorted(factor.transpose() * stiffness * factor)))
+    let factor = inverse_mass.cholesky().ok_or_else(indefinite)?.l();
+    Ok(frequencies_of(factor.transpose() * stiffness * factor))
 }
 
 /// The same with the consistent mass of `density` (kg/m³), also where a body cuts spans: masses are scaled to
 /// a unit diagonal before they are factored, so that next to nothing in a span stays well conditioned.
 ///
 /// # Errors
-/// If the case is to stop.
-pub fn eigenvalues_of_consistent_mass(frame: &TotalFrame, density: f64) -> Result<Option<Vec<f64>>, Stopped> {
+/// As [`frequencies`].
+pub fn frequencies_of_consistent_mass(frame: &TotalFrame, density: f64) -> Result<Vec<f64>, StudyError> {
     let mut operator = frame.stiffness_operator();
     let free = operator.degrees_of_freedom().to_vec();
     let n = free.len();
@@ -64,11 +68,21 @@ pub fn eigenvalues_of_consistent_mass(frame: &TotalFrame, density: f64) -> Resul
         let half = lower.solve_lower_triangular(&stiffness)?;
         lower.solve_lower_triangular(&half.transpose())
     });
-    Ok(reduced.map(sorted))
+    reduced.map(frequencies_of).ok_or_else(indefinite)
 }
 
-fn sorted(matrix: DMatrix<f64>) -> Vec<f64> {
-    let mut values: Vec<f64> = SymmetricEigen::new(matrix).eigenvalues.iter().copied().collect();
-    values.sort_by(f64::total_cmp);
-    values
+fn indefinite() -> StudyError {
+    other("the mass is not positive definite")
+}
+
+/// The largest of frequencies that increase.
+pub fn highest(frequencies: &[f64]) -> f64 {
+    frequencies.last().copied().unwrap_or(f64::NAN)
+}
+
+/// Roots of the eigenvalues, increasing; those that round-off makes negative have none and come first.
+fn frequencies_of(matrix: DMatrix<f64>) -> Vec<f64> {
+    let mut squares: Vec<f64> = SymmetricEigen::new(matrix).eigenvalues.iter().copied().collect();
+    squares.sort_by(f64::total_cmp);
+    squares.into_iter().map(f64::sqrt).collect()
 }

@@ -5,13 +5,10 @@
 //! generalised eigenproblem is solved densely. With the consistent mass frequencies are too high, by order 2
 //! p; with the lumped one too low, by order 2.
 
-use fisura::dynamics::critical_step::StiffnessOperator;
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::scene::{Mass, Mesh, Scene};
 
-use super::{Findings, StudyError};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{Case, CaseScene, Findings, StudyError, other};
 use crate::scene::plain::PlainScene;
 use crate::study::dense;
 use crate::study::orders::{Convergence, Curve, Level, Norm, Refined};
@@ -86,17 +83,13 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
 
 /// Relative errors, with sign, of the lowest frequencies, and the number of unknowns.
 fn relative_errors(mass: Mass, degree: usize, spans: usize) -> Result<(Vec<f64>, usize), StudyError> {
-    let other = |message: &str| StudyError::Other(message.into());
     let scene = bar(mass, degree, spans);
-    fisura::validate::validate(&scene).map_err(|errors| StudyError::Other(errors[0].to_string()))?;
+    fisura::validate::validate(&scene).map_err(|errors| other(errors[0].to_string()))?;
     let frame = TotalFrame::new(&scene).map_err(|_| other("there is no phase field"))?;
-    let mut operator = frame.stiffness_operator();
-    let n = operator.size();
-    let eigenvalues = dense::eigenvalues(&mut operator)?;
-    let eigenvalues = eigenvalues.ok_or_else(|| other("the mass is not positive definite"))?;
+    let found = dense::frequencies(&frame)?;
     let exact = |mode: usize| mode as f64 * std::f64::consts::PI; // unit modulus, density and length
-    let error = |(i, eigenvalue): (usize, &f64)| eigenvalue.sqrt() / exact(i + 1) - 1.0;
-    Ok((eigenvalues.iter().take(MODES).enumerate().map(error).collect(), n))
+    let error = |(i, frequency): (usize, &f64)| frequency / exact(i + 1) - 1.0;
+    Ok((found.iter().take(MODES).enumerate().map(error).collect(), found.len()))
 }
 
 /// The strip, all of unit modulus, density and length.

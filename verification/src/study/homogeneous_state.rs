@@ -26,13 +26,11 @@ use fisura::splines::patch::control_points_on;
 use fisura::transfer::sweep::StripForces;
 
 use super::charts::curve;
-use super::{Findings, StudyError};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{Case, CaseScene, Findings, StudyError, exact, other};
 use crate::exact::cohesive::CohesiveLaw;
 use crate::extremes::{larger, largest, smaller};
 use crate::output::history::Table;
-use crate::record::{Axis, CurveStyle, Figure, FigureBody, Reference, ReferenceKind};
+use crate::record::{Axis, CurveStyle, Figure, FigureBody};
 
 /// Strains looked at, over the strain at the peak.
 const STRAINS: usize = 40;
@@ -53,16 +51,15 @@ pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, Study
         let stress = largest(table.columns[1].iter().zip(&table.columns[2]).map(|(a, b)| (a - b).abs()));
         findings.add(&scene.name, "stress, largest error over the peak stress", stress, None);
         let (peak_strain, peak_stress) = peak(&table);
-        let exact = |what: &str| Some(Reference::new(Some(1.0), ReferenceKind::Exact, what));
         findings.add(
             &scene.name,
             "strain at the peak over closed form",
             peak_strain,
-            exact("H = Gc/(12 l0), with AT1 3 Gc/(32 l0), with a cohesive crack ft^2/(2 E)"),
+            exact(1.0, "H = Gc/(12 l0), with AT1 3 Gc/(32 l0), with a cohesive crack ft^2/(2 E)"),
         );
         let strengths = strengths(&scene.scene)?;
         findings.add(&scene.name, STRENGTHS, strengths, None);
-        let source = exact("9/16 of M times that strain with AT2, else all");
+        let source = exact(1.0, "9/16 of M times that strain with AT2, else all");
         findings.add(&scene.name, "stress at the peak over closed form", peak_stress, source);
         if findings.series.is_empty() {
             let stem = format!("{}-{}", case.suite, case.name);
@@ -178,7 +175,7 @@ fn strengths(scene: &Scene) -> Result<f64, StudyError> {
 }
 
 fn brittle() -> StudyError {
-    StudyError::Other("the material has no fracture".into())
+    other("the material has no fracture")
 }
 
 fn constants(scene: &Scene) -> Result<(&Material, &Fracture), StudyError> {
@@ -230,7 +227,7 @@ impl Points<'_> {
 }
 
 fn unsolved(failure: SolveFailure) -> StudyError {
-    StudyError::Other(format!("the phase-field solve {failure}"))
+    other(format!("the phase-field solve {failure}"))
 }
 
 /// Strain and stress of the highest row over the closed forms; rows include the peak itself.

@@ -9,14 +9,14 @@ use std::collections::BTreeMap;
 
 use fisura::scene::{Material, Mesh, Scene};
 
-use super::{Findings, Offered, Offers, StudyError};
+use super::{Findings, Offered, Offers, StudyError, exact, other};
 use crate::case::expand::CaseScene;
 use crate::case::{Case, Check};
 use crate::extremes::largest;
 use crate::measure::{Run, measure};
 use crate::output::history::Table;
 use crate::record::{Accept, Discretisation, Limit, Record, Reference, ReferenceKind, Status, worst};
-use crate::reference::{Library, Obtained, ReferenceBand, ReferenceCurve, relative_rms};
+use crate::reference::{Library, ReferenceBand, ReferenceCurve, relative_rms};
 use crate::scene::plain::PlainScene;
 use crate::study::orders::observed_order;
 
@@ -49,20 +49,20 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
     if !right.iter().any(|right| *right)
         || of_accept(bounds(None, Some(0.0))).status_of(Some(1.0)) != Status::Fail && wrong > 0
     {
-        return Err(StudyError::Other(format!("{wrong} verdicts are wrong, but the judge passes this")));
+        return Err(other(format!("{wrong} verdicts are wrong, but the judge passes this")));
     }
-    findings.add("", WRONG, wrong as f64, exact(0.0));
-    findings.add("", RIGHT, (right.len() - wrong) as f64, exact(right.len() as f64));
+    findings.add("", WRONG, wrong as f64, by_hand(0.0));
+    findings.add("", RIGHT, (right.len() - wrong) as f64, by_hand(right.len() as f64));
     for (name, (found, expected)) in MEASURES.into_iter().zip(known_measures(case)?) {
         let error = if expected.is_nan() && found.is_nan() { 0.0 } else { (found - expected).abs() };
         let counted = if error.is_nan() { 1.0 } else { error };
-        findings.add(name, MEASURE, counted, exact(0.0));
+        findings.add(name, MEASURE, counted, by_hand(0.0));
     }
     Ok(findings)
 }
 
-fn exact(value: f64) -> Option<Reference> {
-    Some(Reference::new(Some(value), ReferenceKind::Exact, "by hand"))
+fn by_hand(value: f64) -> Option<Reference> {
+    exact(value, "by hand")
 }
 
 fn bounds(min: Option<f64>, max: Option<f64>) -> Accept {
@@ -119,13 +119,13 @@ fn verdicts(base: &Check) -> Vec<bool> {
         (25.0, None, bounds(Some(9.0), Some(26.0)), true, Info),
         (10.3, Some(0.6), bounds(None, None), false, Info),
     ] {
-        let reference = exact(10.0).map(|reference| Reference { uncertainty, ..reference });
+        let reference = by_hand(10.0).map(|reference| Reference { uncertainty, ..reference });
         let limit = limited.then(|| limit.clone());
         let record = Record { value: Some(value), reference, accept, limit, ..Record::default() };
         right.push(status(record) == expected);
     }
     // reference 10 +- 0.2, and a discretisation error of 0.3
-    let reference = exact(10.0).map(|reference| Reference { uncertainty: Some(0.2), ..reference });
+    let reference = by_hand(10.0).map(|reference| Reference { uncertainty: Some(0.2), ..reference });
     let discretisation = Some(Discretisation { value: 0.3, from: String::new() });
     let compared = Record { reference, discretisation, ..Record::default() };
     for (value, expected) in [(10.3, Pass), (10.4, Fail)] {
@@ -155,18 +155,8 @@ fn verdicts(base: &Check) -> Vec<bool> {
         right.push(worst(statuses.iter().copied()) == expected);
     }
     let around = Check { around_reference: Some([1.0, 2.0]), ..base.clone() };
-    right.push(around.bounds_around(exact(10.0).as_ref()) == Ok(Some([9.0, 12.0])));
-    let band = ReferenceBand {
-        id: String::new(),
-        name: String::new(),
-        unit: "s",
-        min: 2e-6,
-        max: 5e-6,
-        sources: Vec::new(),
-        note: String::new(),
-        citation: String::new(),
-        kind: ReferenceKind::Literature,
-    };
+    right.push(around.bounds_around(by_hand(10.0).as_ref()) == Ok(Some([9.0, 12.0])));
+    let band = ReferenceBand { min: 2e-6, max: 5e-6, ..ReferenceBand::default() };
     let Reference { value, uncertainty, .. } = band.reference(1e6);
     let near = |found: Option<f64>, wanted: f64| found.is_some_and(|found| (found - wanted).abs() < 1e-12);
     right.push(near(value, 3.5) && near(uncertainty, 1.5));
@@ -201,7 +191,14 @@ fn known_measures(case: &Case) -> Result<[(f64, f64); 8], StudyError> {
         let found = measure(&check, run, &[*run, other], &library).map_err(StudyError::Other)?;
         Ok::<f64, StudyError>(found.value.unwrap_or(f64::NAN))
     };
-    let curve = curve();
+    // of mean zero
+    let curve = ReferenceCurve {
+        x: vec![1.0, 2.0, 3.0, 4.0],
+        y: vec![1.0, -1.0, 1.0, -1.0],
+        x_unit: "s",
+        y_unit: "J",
+        ..ReferenceCurve::default()
+    };
     let zeros = vec![0.0; curve.x.len()];
     let rms = relative_rms(&curve, &curve.x, &zeros, 0.0, 4.0).unwrap_or(f64::NAN);
     let levels: Vec<(f64, f64)> = [1.0_f64, 0.5, 0.25].into_iter().map(|h| (h, 3.0 * h.powi(3))).collect();
@@ -215,27 +212,6 @@ fn known_measures(case: &Case) -> Result<[(f64, f64); 8], StudyError> {
         (observed_order(&levels, 0.0).unwrap_or(f64::NAN), 3.0),
         (largest([1.0, f64::NAN, 0.5]), f64::NAN),
     ])
-}
-
-/// A curve of mean zero.
-fn curve() -> ReferenceCurve {
-    ReferenceCurve {
-        id: String::new(),
-        quantity: String::new(),
-        label: String::new(),
-        citation: String::new(),
-        kind: ReferenceKind::Exact,
-        obtained: Obtained::Text,
-        x: vec![1.0, 2.0, 3.0, 4.0],
-        y: vec![1.0, -1.0, 1.0, -1.0],
-        x_unit: "s",
-        y_unit: "J",
-        max_gap: None,
-        uncertainty_absolute: 0.0,
-        uncertainty_relative: 0.0,
-        uncertainty_x: 0.0,
-        uncertainty_note: String::new(),
-    }
 }
 
 /// Any scene: the measures above do not look at it.

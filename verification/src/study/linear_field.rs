@@ -14,10 +14,8 @@ use fisura::scene::{Body, Layout, Side};
 use fisura::splines::patch::Patch;
 use fisura::splines::quadrature::{MAX_POINTS, Rule};
 
-use super::{Findings, StudyError};
-use crate::case::Case;
+use super::{Case, CaseScene, Findings, StudyError, other};
 use crate::case::convergence::PatchFamily;
-use crate::case::expand::CaseScene;
 use crate::extremes::larger;
 use crate::study::orders::{Convergence, Curve, Level, Norm, Refined};
 use crate::study::patches;
@@ -109,7 +107,7 @@ pub(super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stud
 }
 
 fn patch(family: PatchFamily, degree: usize, spans: usize) -> Result<Patch, StudyError> {
-    let mesh = patches::mesh(family, degree, spans).map_err(|e| StudyError::Other(e.to_string()))?;
+    let mesh = patches::mesh(family, degree, spans).map_err(other)?;
     Ok(Patch::new(&mesh))
 }
 

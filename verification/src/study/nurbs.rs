@@ -9,9 +9,7 @@
 use fisura::splines::nurbs::{LocateError, NurbsError, NurbsPatch, RationalFunctions, rational_functions};
 use fisura::splines::spline::SplineSpace;
 
-use super::{Findings, StudyError};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{Case, CaseScene, Findings, StudyError, other};
 use crate::extremes::{larger, largest};
 use crate::study::random::Random;
 
@@ -61,10 +59,6 @@ pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stu
     }
     circles(&mut findings).map_err(other)?;
     Ok(findings)
-}
-
-fn other(error: impl ToString) -> StudyError {
-    StudyError::Other(error.to_string())
 }
 
 /// Degree p in the first direction, 1 + p mod 4 in the second, so that every degree meets another.

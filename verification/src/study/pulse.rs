@@ -11,19 +11,12 @@
 //! and c, the same for all k, solves `(2 − c²/c_s²)² = 4 sqrt(1 − c²/c_d²) sqrt(1 − c²/c_s²)`. A packet of
 //! such waves keeps its shape, so the centroid of `u_y²` along the surface travels with c.
 
-use std::sync::Arc;
-
-use fisura::dynamics::forcing::NoLoads;
-use fisura::dynamics::projection::Projection;
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::scene::{Layout, Mass, Material, Mesh, Plane, Side};
 use fisura::splines::quadrature::Rule;
 
-use super::{Findings, StudyError};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
-use crate::record::{Reference, ReferenceKind};
+use super::{Case, CaseScene, Findings, StudyError, exact, other, projected};
 use crate::scene::plain::{PlainScene, ROLLERS};
 
 const MATERIAL: Material = Material { young_modulus: 1.0, poisson_ratio: 0.2, density: 1.0, fracture: None };
@@ -49,15 +42,24 @@ pub(super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> super::Offered {
 
 pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, StudyError> {
     let mut findings = Findings::default();
-    let one = |source: &str| Some(Reference::new(Some(1.0), ReferenceKind::Exact, source));
     for degree in [2, 3] {
         for (plane, word) in [(Plane::Strain, "strain"), (Plane::Stress, "stress")] {
             let speeds = Speeds::new(plane);
             let variant = format!("p={degree}, plane {word}");
             let ratio = dilatational(degree, plane, &speeds)?;
-            findings.add(&variant, "speed of a dilatational pulse over c_d", ratio, one("sqrt((lam* + 2 mu)/rho)"));
+            findings.add(
+                &variant,
+                "speed of a dilatational pulse over c_d",
+                ratio,
+                exact(1.0, "sqrt((lam* + 2 mu)/rho)"),
+            );
             let ratio = rayleigh(degree, plane, &speeds)?;
-            findings.add(&variant, "speed of a Rayleigh pulse over c_R", ratio, one("root of Rayleigh's equation"));
+            findings.add(
+                &variant,
+                "speed of a Rayleigh pulse over c_R",
+                ratio,
+                exact(1.0, "root of Rayleigh's equation"),
+            );
         }
     }
     Ok(findings)
@@ -141,7 +143,7 @@ struct Flying {
 }
 
 fn broken<E>(_: E) -> StudyError {
-    StudyError::Other("no phase field is expected".into())
+    other("no phase field is expected")
 }
 
 impl Flying {
@@ -156,16 +158,8 @@ impl Flying {
         displacement: impl Fn([f64; 2]) -> [f64; 2] + Sync,
         velocity: impl Fn([f64; 2]) -> [f64; 2] + Sync,
     ) -> Result<(), StudyError> {
-        let mut fields: [[Vec<f64>; 2]; 2] = Default::default();
-        for component in 0..2 {
-            let held = self.frame.constraints().held(component);
-            let projection = Projection::new(self.frame.lattice(), &held)
-                .ok_or_else(|| StudyError::Other("the points do not determine a projection".into()))?;
-            fields[0][component] = projection.project(|x| displacement(x)[component]);
-            fields[1][component] = projection.project(|x| velocity(x)[component]);
-        }
-        let [displacement, velocity] = fields;
-        self.frame.start_from(displacement, velocity, Arc::new(NoLoads)).map_err(broken)
+        let (displacement, velocity) = (projected(&self.frame, displacement)?, projected(&self.frame, velocity)?);
+        self.frame.start_with(displacement, velocity).map_err(broken)
     }
 
     /// Distance (m) that the centroid of the square of a component along a side flies in a time (s).

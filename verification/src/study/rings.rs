@@ -10,9 +10,7 @@ use fisura::scene::Scene;
 use fisura::simulation::square_pixels;
 
 use super::scene::series_stem;
-use super::{Findings, Measurement, StudyError};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{Case, CaseScene, Findings, Measurement, StudyError, other};
 use crate::extremes::{larger, largest};
 use crate::record::{Reference, ReferenceKind};
 use crate::scene_run::frame_steps;
@@ -99,7 +97,7 @@ pub(super) fn offers(_case: &Case, scenes: &[CaseScene]) -> super::Offered {
 }
 
 fn no_ring() -> StudyError {
-    StudyError::Other("no body is a brittle ring".into())
+    other("no body is a brittle ring")
 }
 
 /// Events and invariants of every scene of a case.

@@ -9,11 +9,8 @@ use std::f64::consts::TAU;
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::scene::Kinematics;
 
-use super::{Findings, StudyError};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{Case, CaseScene, Findings, StudyError, exact, other};
 use crate::extremes::largest;
-use crate::record::{Reference, ReferenceKind};
 
 const INCREMENTS: usize = 1000;
 
@@ -26,7 +23,7 @@ pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, Stud
     let mut findings = Findings::default();
     let (sine, cosine) = (TAU / INCREMENTS as f64).sin_cos();
     for CaseScene { name, scene, .. } in scenes {
-        let broken = |_| StudyError::Other("a point left the mesh, or the phase field did not converge".into());
+        let broken = |_| other("a point left the mesh, or the phase field did not converge");
         let mut frame = UpdatedFrame::new(scene).map_err(broken)?;
         let turn = |[x, y]: [f64; 2]| [(cosine - 1.0) * x - sine * y, sine * x + (cosine - 1.0) * y];
         for _ in 0..INCREMENTS {
@@ -39,10 +36,9 @@ pub(super) fn study(_case: &Case, scenes: &[CaseScene]) -> Result<Findings, Stud
         };
         let off = frame.fields()[0].points().iter().flat_map(|p| [p.strain[0] - left, p.strain[1] - left, p.strain[2]]);
         let back = frame.fields()[0].points().iter().flat_map(|p| p.displacement);
-        let exact = |source: &str| Some(Reference::new(Some(0.0), ReferenceKind::Exact, source));
-        let source = exact("no strain (Hencky); 1000 (cos θ − 1) in both directions (linear)");
+        let source = exact(0.0, "no strain (Hencky); 1000 (cos θ − 1) in both directions (linear)");
         findings.add(name, "strain after a revolution, less the exact one", largest(off.map(f64::abs)), source);
-        findings.add(name, "displacement after a revolution", largest(back.map(f64::abs)), exact("none"));
+        findings.add(name, "displacement after a revolution", largest(back.map(f64::abs)), exact(0.0, "none"));
     }
     Ok(findings)
 }

@@ -14,13 +14,11 @@ use fisura::splines::patch::Patch;
 
 use super::charts::{chart, curve};
 use super::scene::series_stem;
-use super::{Findings, Offered, Offers, StudyError};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{Case, CaseScene, Findings, Offered, Offers, StudyError, exact, other};
 use crate::exact::cohesive::CohesiveLaw;
 use crate::extremes::{larger, largest};
 use crate::output::history::Table;
-use crate::record::{CurveStyle, Figure, Reference, ReferenceKind};
+use crate::record::{CurveStyle, Figure};
 
 const STRENGTH: &str = "largest stress over the strength";
 const ERROR: &str = "stress, largest difference from the law over the strength, where spans resolve it";
@@ -48,12 +46,11 @@ pub(super) fn study(case: &Case, scenes: &[CaseScene]) -> Result<Findings, Study
         let bar = Bar::new(scene)?;
         let Pulled { table, strength, energy } = bar.pull()?;
         let [openings, stresses, law] = [0, 1, 2].map(|column| table.columns[column].iter().copied());
-        let exact = |what: &str| Some(Reference::new(Some(1.0), ReferenceKind::Exact, what));
-        findings.add(&scene.name, STRENGTH, strength, exact("the tensile strength"));
+        findings.add(&scene.name, STRENGTH, strength, exact(1.0, "the tensile strength"));
         let resolved = bar.law.stress(1.0 - bar.span / bar.fracture.length_scale);
         let rows = openings.zip(stresses.zip(law)).filter(|(opening, (_, law))| *opening > OPEN && *law > resolved);
         findings.add(&scene.name, ERROR, largest(rows.map(|(_, (found, law))| (found - law).abs())), None);
-        findings.add(&scene.name, ENERGY, energy, exact("a cohesive crack in the limit of small spans"));
+        findings.add(&scene.name, ENERGY, energy, exact(1.0, "a cohesive crack in the limit of small spans"));
         if findings.series.is_empty() {
             let stem = series_stem(case, "bar");
             findings.figures.push(figure(case, &stem));
@@ -89,7 +86,6 @@ impl<'a> Bar<'a> {
     fn new(scene: &'a CaseScene) -> Result<Self, StudyError> {
         let body = &scene.scene.bodies[0];
         let material = &scene.scene.materials[&body.material];
-        let other = |message: &str| StudyError::Other(message.into());
         let fracture = material.fracture.as_ref().ok_or_else(|| other("the material has no fracture"))?;
         let CrackModel::PfCzm { tensile_strength, .. } = fracture.model else {
             return Err(other("the study is of model = \"pf-czm\""));
@@ -105,7 +101,7 @@ impl<'a> Bar<'a> {
         let scene = &self.scene.scene;
         let lattice = Lattice::new(&Patch::new(&scene.mesh), &scene.bodies[0]);
         let model = FractureModel::of(self.material);
-        let model = model.ok_or_else(|| StudyError::Other("the material has no fracture".into()))?;
+        let model = model.ok_or_else(|| other("the material has no fracture"))?;
         let mut field = PhaseField::new(&lattice, model, &scene.solver);
         let drive = self.drive(&lattice);
         let unit = self.fracture.critical_energy_release_rate / self.strength;
@@ -119,7 +115,7 @@ impl<'a> Bar<'a> {
             let mut stress = f64::NAN;
             for iteration in 0.. {
                 if iteration == MOST_ITERATIONS {
-                    return Err(StudyError::Other("the stress of the bar does not settle".into()));
+                    return Err(other("the stress of the bar does not settle"));
                 }
                 let before = stress;
                 let kept = degradation(&lattice, &field, &model);
@@ -131,7 +127,7 @@ impl<'a> Bar<'a> {
                 let history =
                     drive.iter().zip(&kept).map(|(drive, g)| drive.zip(*g, |drive, g| drive * at_rest / (g * g)));
                 let history: Vec<Lane> = history.collect();
-                field.solve(&lattice, &history).map_err(|error| StudyError::Other(error.to_string()))?;
+                field.solve(&lattice, &history).map_err(other)?;
             }
             strength = larger(strength, stress / self.strength);
             let opening = (elongation - stress * self.length / self.material.young_modulus) / unit;

@@ -13,22 +13,14 @@ pub(super) mod unloading;
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::scene::Scene;
 
-use super::StudyError;
 use super::scene::series_stem;
+use super::{StudyError, other};
 use crate::case::Case;
-use crate::record::{Axis, Curve, Figure, FigureBody, Reference, ReferenceKind};
+use crate::record::{Axis, Curve, Figure, FigureBody};
 
 /// The body of a scene without a phase field in the total frame.
 fn total_frame(scene: &Scene) -> Result<TotalFrame, StudyError> {
-    TotalFrame::new(scene).map_err(|_| StudyError::Other("the initial phase field did not converge".into()))
-}
-
-fn exact(value: f64, source: &str) -> Option<Reference> {
-    Some(Reference::new(Some(value), ReferenceKind::Exact, source))
-}
-
-fn theory(value: f64, source: &str) -> Option<Reference> {
-    Some(Reference::new(Some(value), ReferenceKind::Theory, source))
+    TotalFrame::new(scene).map_err(|_| other("the initial phase field did not converge"))
 }
 
 /// A chart with logarithmic axes.

@@ -5,18 +5,11 @@
 //! `(ω dt)²/4` from peak to peak, and does not drift. Drift is the difference of the means over the first and
 //! the second half of the run, both with a window that suppresses the oscillation itself.
 
-use std::sync::Arc;
-
-use fisura::dynamics::forcing::NoLoads;
-use fisura::dynamics::projection::Projection;
 use fisura::dynamics::total_frame::TotalFrame;
 use fisura::scene::{Mass, Mesh};
 
-use super::{Findings, StudyError};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{Case, CaseScene, Findings, StudyError, other, projected, theory};
 use crate::extremes::spread;
-use crate::record::{Reference, ReferenceKind};
 use crate::scene::plain::PlainScene;
 
 const SPANS: usize = 16;
@@ -42,9 +35,9 @@ pub(super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Findings, Stu
         for (mass, word) in [(Mass::Consistent, "consistent"), (Mass::Lumped, "lumped")] {
             let energies = vibrate(degree, mass)?;
             let variant = format!("p={degree}, {word} mass");
-            let quarter = Reference::new(Some(0.25), ReferenceKind::Theory, "velocity Verlet");
+            let quarter = theory(0.25, "velocity Verlet");
             let oscillation = "energy at whole steps, oscillation over (omega dt)^2";
-            findings.add(&variant, oscillation, energies.oscillation(), Some(quarter));
+            findings.add(&variant, oscillation, energies.oscillation(), quarter);
             findings.add(&variant, "energy at whole steps, relative drift", energies.drift(), None);
             findings.add(&variant, "staggered energy, relative spread", energies.spread(), None);
         }
@@ -63,16 +56,11 @@ fn vibrate(degree: usize, mass: Mass) -> Result<Energies, StudyError> {
     let height = 2.0 / SPANS as f64;
     let mesh = Mesh::uniform([degree; 2], [0.0; 2], [1.0, height], [SPANS, 2]);
     let scene = PlainScene::unit_bar(mesh, mass).scene();
-    let broken = || StudyError::Other("no phase field is expected".into());
+    let broken = || other("no phase field is expected");
     let mut frame = TotalFrame::new(&scene).map_err(|_| broken())?;
-    let zeros = || frame.lattice().grid.zeros();
-    let held = frame.constraints().held(0);
-    let projection = Projection::new(frame.lattice(), &held)
-        .ok_or_else(|| StudyError::Other("the points do not determine a projection".into()))?;
-    let velocity = [projection.project(|[x, _]| (std::f64::consts::PI * x).sin()), zeros()];
-    let still = [zeros(), zeros()];
-    drop(projection);
-    frame.start_from(still, velocity, Arc::new(NoLoads)).map_err(|_| broken())?;
+    let velocity = projected(&frame, |[x, _]| [(std::f64::consts::PI * x).sin(), 0.0])?;
+    let still = [frame.lattice().grid.zeros(), frame.lattice().grid.zeros()];
+    frame.start_with(still, velocity).map_err(|_| broken())?;
     let dt = SAFETY * frame.critical_step();
     let phase = std::f64::consts::PI * dt;
     let steps = (PERIODS * std::f64::consts::TAU / phase).ceil() as usize;

@@ -28,76 +28,60 @@ struct Quantity {
 /// Charts of the plate under impact.
 const PLATE: [Quantity; 7] = [
     Quantity {
-        id: "elastic-energy",
-        title: "Elastic energy",
-        label: "elastic energy (J/m)",
-        column: "elastic_j",
-        derived: false,
-        scale: 1.0,
-        reference: "plate/elastic-energy",
         bands: &["first-elastic-peak-time", "second-elastic-peak-time"],
+        ..quantity("elastic-energy", "Elastic energy", "elastic energy (J/m)", "elastic_j", "plate/elastic-energy")
     },
     Quantity {
-        id: "fracture-increment",
-        title: "Fracture energy since the start",
-        label: "fracture energy increment (J/m)",
-        column: "fracture_increment_j",
         derived: true,
-        scale: 1.0,
-        reference: "plate/fracture-increment",
         bands: &["branching-time"],
+        ..quantity(
+            "fracture-increment",
+            "Fracture energy since the start",
+            "fracture energy increment (J/m)",
+            "fracture_increment_j",
+            "plate/fracture-increment",
+        )
     },
+    quantity("kinetic-energy", "Kinetic energy", "kinetic energy (J/m)", "kinetic_j", "plate/kinetic-energy"),
+    quantity("external-work", "Work of the tractions", "external work (J/m)", "external_work_j", "plate/external-work"),
     Quantity {
-        id: "kinetic-energy",
-        title: "Kinetic energy",
-        label: "kinetic energy (J/m)",
-        column: "kinetic_j",
-        derived: false,
-        scale: 1.0,
-        reference: "plate/kinetic-energy",
-        bands: &[],
-    },
-    Quantity {
-        id: "external-work",
-        title: "Work of the tractions",
-        label: "external work (J/m)",
-        column: "external_work_j",
-        derived: false,
-        scale: 1.0,
-        reference: "plate/external-work",
-        bands: &[],
-    },
-    Quantity {
-        id: "tip-position",
-        title: "Crack tip along the plate",
-        label: "tip x (mm)",
-        column: "crack_tip_x_m",
-        derived: false,
         scale: 1e3,
-        reference: "plate/tip-x",
         bands: &["branching-time"],
+        ..quantity("tip-position", "Crack tip along the plate", "tip x (mm)", "crack_tip_x_m", "plate/tip-x")
     },
     Quantity {
-        id: "tip-height",
-        title: "Crack tip across the plate (upper half)",
-        label: "tip y (mm)",
-        column: "crack_tip_y_m",
-        derived: false,
         scale: 1e3,
-        reference: "plate/tip-y",
         bands: &["branching-time"],
+        ..quantity(
+            "tip-height",
+            "Crack tip across the plate (upper half)",
+            "tip y (mm)",
+            "crack_tip_y_m",
+            "plate/tip-y",
+        )
     },
     Quantity {
-        id: "tip-speed",
-        title: "Crack tip speed along the plate, fitted over ±2 µs",
-        label: "dx/dt of the tip (m/s)",
-        column: "tip_speed_m_per_s",
         derived: true,
-        scale: 1.0,
-        reference: "plate/tip-x",
-        bands: &[],
+        ..quantity(
+            "tip-speed",
+            "Crack tip speed along the plate, fitted over ±2 µs",
+            "dx/dt of the tip (m/s)",
+            "tip_speed_m_per_s",
+            "plate/tip-x",
+        )
     },
 ];
+
+/// A column of the history in SI units, without events.
+const fn quantity(
+    id: &'static str,
+    title: &'static str,
+    label: &'static str,
+    column: &'static str,
+    reference: &'static str,
+) -> Quantity {
+    Quantity { id, title, label, column, derived: false, scale: 1.0, reference, bands: &[] }
+}
 
 /// Charts and pictures of all runs, and the tables they need beyond those of the runs. Variants of one case,
 /// such as the meshes of a study, have charts of their own.

@@ -172,21 +172,13 @@ fn bare_record(case: &Case, planned: &Planned) -> Record {
         case: case.name.clone(),
         tier: case.tier.to_string(),
         claim: case.claim.clone(),
-        parameters: BTreeMap::new(),
         models: case.models.clone(),
         deviations: case.deviations.clone(),
         quantity: check.quantity.clone(),
         unit: check.unit.clone(),
-        value: None,
-        reference: None,
         accept: check.accept.clone(),
-        status: Status::Info,
-        discretisation: None,
         limit: check.limit.clone(),
-        message: None,
-        series: None,
-        work: None,
-        timing: Timing::default(),
+        ..Record::default()
     }
 }
 

@@ -13,7 +13,7 @@ use crate::case::{Case, Check};
 use crate::measure::grid_convergence;
 use crate::record::{LONGEST, normal_id};
 use crate::reference::{Library, ReferenceBand};
-use crate::scene::suggest::nearest;
+use crate::scene::suggest::hint;
 use crate::scene::{Problem, SceneFileError};
 use crate::study::scene::concerned;
 use crate::study::{INPUTS, Offer, STUDIES, Study, find};
@@ -86,8 +86,11 @@ pub fn prepare(case: &Case, library: &Library) -> Result<Prepared, SceneFileErro
     let mut wrong = Wrong { case, problems: Vec::new() };
     if study.is_none() && case.study != "scene" {
         let known: Vec<&str> = std::iter::once("scene").chain(STUDIES.iter().map(|study| study.name)).collect();
-        let meant = nearest(&case.study, &known).map_or(String::new(), |name| format!("did you mean {name:?}? "));
-        wrong.note("study", format!("unknown study {:?}", case.study), format!("{meant}known: {}", known.join(", ")));
+        wrong.note(
+            "study",
+            format!("unknown study {:?}", case.study),
+            format!("{}known: {}", hint(&case.study, &known), known.join(", ")),
+        );
         return Err(wrong.error());
     }
     wrong.look_at_inputs(study);
@@ -191,9 +194,7 @@ impl Wrong<'_> {
         let found: Vec<&Offer> = offers.iter().filter(|offer| offer.quantity == check.quantity).collect();
         if found.is_empty() {
             let known = distinct(offers.iter().map(|offer| offer.quantity.as_str()));
-            let meant =
-                nearest(&check.quantity, &known).map_or(String::new(), |near| format!("did you mean {near:?}? "));
-            let remedy = format!("{meant}it measures: {}", known.join("; "));
+            let remedy = format!("{}it measures: {}", hint(&check.quantity, &known), known.join("; "));
             self.note(key("quantity"), "the study does not measure this", remedy);
             return Vec::new();
         }

@@ -123,7 +123,7 @@ fn the_field_of_kirsch_is_that_of_the_exact_solution() {
     let text = edited("edge   = \"bottom\"\nstress", &format!("edge = \"bottom\"\n{field}\n# stress"));
     let scene = SceneFile::parse("field.toml", &text, &[]).unwrap().scene;
     let Load::Field(field) = &scene.bodies[0].tractions[1].load else { panic!("a stress field") };
-    let exact = Derived(Kirsch { plane: Plane::Stress });
+    let exact = Derived { motion: Kirsch, plane: Plane::Stress };
     for at in [[0.035, 0.01], [0.03, 0.015], [0.02, 0.017], [0.041, -0.003]] {
         let [[xx, xy], [_, yy]] = exact.stress([(at[0] - 0.03) / 0.005, (at[1] - 0.01) / 0.005], 0.0);
         for (found, exact) in field.value(at).into_iter().zip([xx, yy, xy]) {

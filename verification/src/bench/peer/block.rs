@@ -17,11 +17,11 @@ use fisura::Simulation;
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::points::Point;
-use fisura::scene::{Frame, Plane, Scene, Transfer};
+use fisura::scene::{Plane, Scene};
 use serde_json::json;
 
 use super::super::BenchError;
-use super::super::block::{DENSITY, SPAN, elastic_scene};
+use super::super::block::{DENSITY, SPAN, moving_scene};
 use crate::extremes::larger;
 use crate::output::OutputFolder;
 use crate::output::history::Table;
@@ -62,8 +62,7 @@ impl PeerBlock {
     /// # Errors
     /// If it cannot be started, or a step cannot be taken.
     pub fn new(cells: usize) -> Result<Self, BenchError> {
-        let mut scene = elastic_scene(DEGREE, POINTS, cells, MARGIN);
-        (scene.analysis.frame, scene.analysis.transfer) = (Frame::Updated, Transfer::Flip);
+        let mut scene = moving_scene(DEGREE, POINTS, cells, MARGIN);
         scene.bodies[0].angular_velocity = 0.0;
         Self::of(scene, cells)
     }
@@ -194,6 +193,7 @@ fn table(points: &[Point]) -> Table {
 
 #[cfg(test)]
 mod tests {
+    use fisura::scene::Transfer;
 
     use super::super::SAME;
     use super::*;

@@ -21,17 +21,15 @@ use fisura::Simulation;
 use fisura::contact::impulse::ContactForce;
 use fisura::material::elasticity::ElasticModuli;
 use fisura::output::inspection::PointState;
+use fisura::particles::spans::smallest_span;
 use fisura::scene::{Body, Plane, Scene, Shape};
 
-use super::{Books, dot, exact, larger, run, sample_is_due, sum};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
-use crate::extremes::smaller;
+use super::{Books, dot, larger, run, sample_is_due, sum};
 use crate::output::history::Table;
 use crate::record::CurveStyle;
 use crate::study::charts::{chart, curve};
 use crate::study::scene::series_stem;
-use crate::study::{Findings, StudyError};
+use crate::study::{Case, CaseScene, Findings, StudyError, exact, other};
 
 /// Share of the largest force above which a step counts.
 const NEAR_THE_TOP: f64 = 0.97;
@@ -121,14 +119,11 @@ impl Hertz {
             if body.rigid { 0.0 } else { (1.0 - material.poisson_ratio.powi(2)) / material.young_modulus }
         };
         if scene.bodies.len() != 2 || scene.analysis.plane != Plane::Strain {
-            return Err(StudyError::Other("this study needs two bodies in plane strain".into()));
+            return Err(other("this study needs two bodies in plane strain"));
         }
         let total = |part: &dyn Fn(&Body) -> f64| scene.bodies.iter().map(part).sum::<f64>();
         let points = scene.bodies[0].particles_per_cell[0] as f64;
-        let shortest = |d: usize| {
-            scene.mesh.knots[d].windows(2).map(|w| w[1] - w[0]).filter(|l| *l > 0.0).fold(f64::INFINITY, smaller)
-        };
-        let span = shortest(0).min(shortest(1));
+        let span = smallest_span(&scene.mesh);
         let material = &scene.materials[&scene.bodies[0].material];
         let wave = ElasticModuli::new(material, scene.analysis.plane).dilatational_speed(material.density);
         Ok(Self {

@@ -12,15 +12,13 @@ use fisura::material::elasticity::ElasticModuli;
 use fisura::particles::spans::largest_spans;
 use fisura::scene::{Scene, Transfer};
 
-use super::{Books, exact, run, sample_is_due, sum};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{Books, run, sample_is_due, sum};
 use crate::output::history::Table;
 use crate::record::CurveStyle;
 use crate::study::charts::{chart, curve};
 use crate::study::orders::{Convergence, Curve, Level, Norm, Refined};
 use crate::study::scene::series_stem;
-use crate::study::{Findings, StudyError};
+use crate::study::{Case, CaseScene, Findings, StudyError, exact, other};
 
 pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
     let mut groups: BTreeMap<String, usize> = BTreeMap::new();
@@ -149,7 +147,7 @@ struct Collision {
 impl Bars {
     fn of(scene: &Scene) -> Result<Self, StudyError> {
         let [one, two] = scene.bodies.as_slice() else {
-            return Err(StudyError::Other("this study needs two bars".into()));
+            return Err(other("this study needs two bars"));
         };
         let material = &scene.materials[&one.material];
         let wave = ElasticModuli::new(material, scene.analysis.plane).dilatational_speed(material.density);

@@ -7,10 +7,8 @@ use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::particles::spans::largest_spans;
 use fisura::scene::Scene;
 
-use super::{dot, exact, larger, run};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
-use crate::study::{Findings, StudyError};
+use super::{dot, larger, run};
+use crate::study::{Case, CaseScene, Findings, StudyError, exact, other};
 
 pub(in super::super) fn offers(_case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
     let held = &["gap at the first force of contact, in spans", "change of momentum before it, over the momentum"];
@@ -51,7 +49,7 @@ struct Onset {
 
 fn approach(scene: &Scene) -> Result<Onset, StudyError> {
     let [one, two] = scene.bodies.as_slice() else {
-        return Err(StudyError::Other("this study needs two blocks".into()));
+        return Err(other("this study needs two blocks"));
     };
     let (_, high) = one.shape.bounding_box();
     let (low, _) = two.shape.bounding_box();

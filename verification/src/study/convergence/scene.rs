@@ -26,7 +26,7 @@ pub(super) fn scene(
         material.fracture = None; // the study builds its own phase field, on the points of this scene
     }
     let plain = PlainScene {
-        mesh: patches::shifted_mesh(setup.patch, setup.degrees[n], cells, offset).map_err(|e| other(e.to_string()))?,
+        mesh: patches::shifted_mesh(setup.patch, setup.degrees[n], cells, offset).map_err(other)?,
         material,
         plane: setup.plane,
         mass: setup.mass,

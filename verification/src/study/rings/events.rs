@@ -9,6 +9,7 @@ use fisura::scene::{Scene, Shape};
 
 use crate::extremes::smaller;
 use crate::output::history::Table;
+use crate::study::yes;
 
 /// Part of the final fracture energy at which it counts as levelled off.
 const LEVEL: f64 = 0.97;
@@ -142,7 +143,6 @@ impl Watch {
             self.table.columns.resize(self.table.names.len(), Vec::new());
         }
         let [front, rear] = &seen.walls;
-        let yes = |holds: bool| f64::from(u8::from(holds));
         let aside = if seen.broken > 0.0 { seen.aside / seen.broken } else { 0.0 };
         let begun = [front, rear].map(|wall| yes(wall.begun()));
         let mut row = vec![front.broken(), rear.broken(), begun[0], begun[1], force, elastic, damage, aside];

@@ -6,13 +6,11 @@ use fisura::simulation::breakdown::Breakdown;
 use rayon::prelude::*;
 
 use super::{PAPER, Watched, in_microseconds};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
 use crate::case::geometry::{Geometry, PARTICLES};
 use crate::extremes::larger;
 use crate::output::history::Table;
 use crate::study::scene::series_stem;
-use crate::study::{Findings, StudyError};
+use crate::study::{Case, CaseScene, Findings, StudyError, other};
 
 /// Events the score counts: the first three. The level of the fracture energy and the end of contact are held
 /// out.
@@ -121,7 +119,7 @@ pub fn offers(case: &Case, scenes: &[CaseScene]) -> crate::study::Offered {
 fn setup<'a>(case: &'a Case, scenes: &'a [CaseScene]) -> Result<(&'a [Geometry], &'a CaseScene), StudyError> {
     match (&case.rings, scenes) {
         (Some(geometries), [template]) if !geometries.is_empty() => Ok((geometries, template)),
-        _ => Err(StudyError::Other("a sweep needs a [rings] table with geometries, and one scene".into())),
+        _ => Err(other("a sweep needs a [rings] table with geometries, and one scene")),
     }
 }
 

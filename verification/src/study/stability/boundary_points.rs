@@ -10,12 +10,9 @@ use fisura::scene::{Body, Contact, Frame, Layout, Material, Mesh, Scene, Shape, 
 use fisura::simulation::breakdown::Breakdown;
 use fisura::validate::validate;
 
-use super::exact;
-use crate::case::Case;
-use crate::case::expand::CaseScene;
 use crate::extremes::{larger, largest};
 use crate::scene::plain::PlainScene;
-use crate::study::{Findings, StudyError};
+use crate::study::{Case, CaseScene, Findings, StudyError, exact, other, yes};
 
 /// Spans of the mesh along x, all of length one; the block is two long and begins at one.
 const SPANS: usize = 12;
@@ -53,20 +50,10 @@ pub(in super::super) fn study(_case: &Case, _scenes: &[CaseScene]) -> Result<Fin
         let refused = validate(&overlapping(depth)).err();
         let named = refused.is_some_and(|errors| errors.iter().any(|e| e.message.contains("overlaps")));
         let name = format!("{depth} of a span deep");
-        findings.add(
-            &name,
-            "overlapping bodies are refused (1 is yes)",
-            f64::from(u8::from(named)),
-            exact(1.0, "refused"),
-        );
+        findings.add(&name, "overlapping bodies are refused (1 is yes)", yes(named), exact(1.0, "refused"));
     }
     let touching = validate(&overlapping(0.0)).is_ok();
-    findings.add(
-        "touching",
-        "touching bodies are taken (1 is yes)",
-        f64::from(u8::from(touching)),
-        exact(1.0, "taken"),
-    );
+    findings.add("touching", "touching bodies are taken (1 is yes)", yes(touching), exact(1.0, "taken"));
     Ok(findings)
 }
 
@@ -110,7 +97,7 @@ fn fly(scene: &Scene) -> Result<Flight, StudyError> {
         if let Err(ending) = simulation.step() {
             break Some(ending);
         }
-        let frame = simulation.updated_frame().ok_or_else(|| StudyError::Other("not the updated frame".into()))?;
+        let frame = simulation.updated_frame().ok_or_else(|| other("not the updated frame"))?;
         let points = frame.fields()[0].points();
         on_knots += points.iter().filter(|p| (p.position[0] - p.position[0].round()).abs() < 1e-12).count();
         let speed = points.iter().flat_map(|p| [(p.velocity[0] - 1.0).abs(), p.velocity[1].abs()]);
@@ -132,7 +119,7 @@ impl Flight {
         findings.add(name, "time at which the run ends, s", time, exact(expected, "the first point beyond the edge"));
         let named =
             ending.as_ref().is_some_and(|e| e.to_string().contains("left the mesh") && e.cause.contains("mesh"));
-        findings.add(name, "the ending names what left, and a remedy (1 is yes)", f64::from(u8::from(named)), None);
+        findings.add(name, "the ending names what left, and a remedy (1 is yes)", yes(named), None);
     }
 }
 

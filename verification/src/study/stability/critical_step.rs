@@ -8,16 +8,14 @@
 use fisura::dynamics::updated_frame::UpdatedFrame;
 use fisura::scene::{Analysis, Frame, Mass, Material, Mesh, Scene, Shape, Side};
 
-use super::{exact, logarithmic, theory, total_frame};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{logarithmic, total_frame};
 use crate::output::history::Table;
 use crate::record::{CurveStyle, Reference, ReferenceKind};
 use crate::scene::plain::PlainScene;
 use crate::study::charts::curve;
 use crate::study::dense;
 use crate::study::scene::series_stem;
-use crate::study::{Findings, StudyError};
+use crate::study::{Case, CaseScene, Findings, StudyError, exact, other, theory};
 
 /// Whole spans of the bar, and the cut part of the next one.
 const SPANS: usize = 16;
@@ -89,16 +87,14 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
         for (word, mass, cut) in SQUARES {
             let scene = patch(degree, mass, cut);
             let frame = total_frame(&scene)?;
-            let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator())?.ok_or_else(indefinite)?;
-            let frequency = largest_frequency(&eigenvalues);
+            let frequency = dense::highest(&dense::frequencies(&frame)?);
             let variant = format!("p={degree}, {word}");
             let source = exact(1.0, "2/ω of the dense eigenvalue");
             let ratio = frame.critical_step() * frequency / 2.0;
             findings.add(&variant, "critical step of a square over that of the dense eigenvalue", ratio, source);
             if mass == Mass::Lumped {
                 let moving = Scene { analysis: Analysis { frame: Frame::Updated, ..scene.analysis.clone() }, ..scene };
-                let moving =
-                    UpdatedFrame::new(&moving).map_err(|_| StudyError::Other("a point is off the mesh".into()))?;
+                let moving = UpdatedFrame::new(&moving).map_err(|_| other("a point is off the mesh"))?;
                 let ratio = moving.critical_step() * frequency / std::f64::consts::SQRT_2;
                 let source = theory(1.0, "√2/ω, the limit of FLIP for waves the points do not see");
                 findings.add(&variant, "critical step in the updated frame over that of theory", ratio, source);
@@ -106,14 +102,6 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
         }
     }
     Ok(findings)
-}
-
-fn indefinite() -> StudyError {
-    StudyError::Other("the mass is not positive definite".into())
-}
-
-fn largest_frequency(eigenvalues: &[f64]) -> f64 {
-    eigenvalues.last().copied().unwrap_or(f64::NAN).sqrt()
 }
 
 /// Critical steps of cut bars against the table, their scaling, and their chart.
@@ -179,11 +167,11 @@ fn bar_step(degree: usize, mass: Mass, cut: f64) -> Result<f64, StudyError> {
     scene.bodies[0].particles_per_cell[1] = 2;
     scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [SPANS as f64 + cut, height] };
     let frame = total_frame(&scene)?;
-    let eigenvalues = match mass {
-        Mass::Lumped => dense::eigenvalues(&mut frame.stiffness_operator())?,
-        Mass::Consistent => dense::eigenvalues_of_consistent_mass(&frame, 1.0)?,
+    let frequencies = match mass {
+        Mass::Lumped => dense::frequencies(&frame)?,
+        Mass::Consistent => dense::frequencies_of_consistent_mass(&frame, 1.0)?,
     };
-    Ok(2.0 / largest_frequency(&eigenvalues.ok_or_else(indefinite)?))
+    Ok(2.0 / dense::highest(&frequencies))
 }
 
 /// A free square of 6 spans a side; `cut` of the last span in each direction belongs to it.

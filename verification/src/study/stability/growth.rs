@@ -8,9 +8,7 @@
 use fisura::Simulation;
 use fisura::scene::{Boundary, Material, Mesh, Scene, Shape, Side, TimeStep};
 
-use super::{theory, total_frame};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::total_frame;
 use crate::extremes::larger;
 use crate::output::history::Table;
 use crate::record::{Axis, CurveStyle, Figure, FigureBody, Reference};
@@ -18,7 +16,7 @@ use crate::scene::plain::PlainScene;
 use crate::study::charts::curve;
 use crate::study::dense;
 use crate::study::scene::series_stem;
-use crate::study::{Findings, StudyError};
+use crate::study::{Case, CaseScene, Findings, StudyError, other, theory, yes};
 
 /// Time steps over the critical one.
 const RATIOS: [f64; 3] = [BELOW, 1.01, ABOVE];
@@ -65,9 +63,7 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
     for degree in 1..=3 {
         let scene = cut_block(degree);
         let frame = total_frame(&scene)?;
-        let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator())?;
-        let fastest = eigenvalues.and_then(|all| all.last().copied());
-        let frequency = fastest.ok_or_else(|| StudyError::Other("the mass is not positive definite".into()))?.sqrt();
+        let frequency = dense::highest(&dense::frequencies(&frame)?);
         for ratio in RATIOS {
             let energies = elastic_energies(&scene, ratio * 2.0 / frequency, TO)?;
             let variant = variant(degree, ratio);
@@ -113,7 +109,7 @@ fn elastic_energies(scene: &Scene, dt: f64, steps: usize) -> Result<Vec<f64>, St
     let mut energies = vec![frame.sample(dt).kinetic]; // nothing is strained yet: the scale of what follows
     for _ in 0..steps {
         crate::watch::check()?;
-        frame.step(dt).map_err(|_| StudyError::Other("no phase field is expected".into()))?;
+        frame.step(dt).map_err(|_| other("no phase field is expected"))?;
         energies.push(frame.elastic_energy());
     }
     Ok(energies)
@@ -168,7 +164,7 @@ fn above(degree: usize, scene: &Scene, frequency: f64, findings: &mut Findings) 
         let near = scene.bodies[0].shape.contains_within(found.place, 1.0);
         let timed = found.time > 0.0 && found.time.is_finite() && !found.to_string().contains("NaN");
         steps = found.step as f64;
-        named = f64::from(u8::from(near && timed && found.cause.contains("times the critical step")));
+        named = yes(near && timed && found.cause.contains("times the critical step"));
     }
     findings.add(&variant, "steps until the run breaks down", steps, None);
     findings.add(&variant, "place, time and cause are named (1 is yes)", named, None);

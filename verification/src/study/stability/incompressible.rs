@@ -8,9 +8,7 @@
 use fisura::Simulation;
 use fisura::scene::{Boundary, Material, Mesh, Scene, Side, TimeStep};
 
-use super::{exact, logarithmic, total_frame};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{logarithmic, total_frame};
 use crate::extremes::larger;
 use crate::output::history::Table;
 use crate::record::{CurveStyle, Reference, ReferenceKind};
@@ -18,7 +16,7 @@ use crate::scene::plain::PlainScene;
 use crate::study::charts::curve;
 use crate::study::dense;
 use crate::study::scene::series_stem;
-use crate::study::{Findings, StudyError};
+use crate::study::{Case, CaseScene, Findings, StudyError, exact};
 
 const RATIOS: [f64; 4] = [0.3, 0.49, 0.499, 0.4999];
 const SPANS: usize = 8;
@@ -61,10 +59,9 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
     for degree in 1..=3 {
         let scene = square(degree, SPANS, RATIOS[3]);
         let frame = total_frame(&scene)?;
-        let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator())?.unwrap_or_default();
-        let largest = eigenvalues.last().copied().unwrap_or(f64::NAN).sqrt();
+        let highest = dense::highest(&dense::frequencies(&frame)?);
         let variant = format!("p={degree}, nu={}", RATIOS[3]);
-        let ratio = frame.critical_step() * largest / 2.0;
+        let ratio = frame.critical_step() * highest / 2.0;
         findings.add(&variant, "critical step over that of the dense eigenvalue", ratio, exact(1.0, "2/ω"));
         findings.add(
             &variant,
@@ -97,10 +94,7 @@ fn square(degree: usize, spans: usize, nu: f64) -> Scene {
 }
 
 fn lowest_frequency(scene: &Scene) -> Result<f64, StudyError> {
-    let frame = total_frame(scene)?;
-    let eigenvalues = dense::eigenvalues(&mut frame.stiffness_operator())?;
-    let lowest = eigenvalues.and_then(|all| all.first().copied());
-    lowest.map(f64::sqrt).ok_or_else(|| StudyError::Other("the mass is not positive definite".into()))
+    Ok(dense::frequencies(&total_frame(scene)?)?[0])
 }
 
 /// Largest closure over the energy at t = 0 of a run of steps of `dt` (s).

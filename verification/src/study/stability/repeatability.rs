@@ -9,12 +9,9 @@ use fisura::scene::{
     Boundary, Crack, Fracture, Frame, Material, Mesh, PhaseFieldSolver, Scene, Side, TimeFactor, Traction,
 };
 
-use super::exact;
-use crate::case::Case;
-use crate::case::expand::CaseScene;
 use crate::extremes::{larger, largest};
 use crate::scene::plain::PlainScene;
-use crate::study::{Findings, StudyError};
+use crate::study::{Case, CaseScene, Findings, StudyError, exact, other};
 use crate::watch;
 
 pub(in super::super) fn offers(_case: &Case, _scenes: &[CaseScene]) -> crate::study::Offered {
@@ -95,7 +92,7 @@ fn notched(frame: Frame) -> Scene {
 /// Every number of every sample of a run on some threads, as bits.
 fn on_threads(threads: usize, scene: &Scene) -> Result<Vec<u64>, StudyError> {
     let pool = watch::pool(threads);
-    let pool = pool.map_err(|e| StudyError::Other(format!("{threads} threads cannot be started: {e}")))?;
+    let pool = pool.map_err(|e| other(format!("{threads} threads cannot be started: {e}")))?;
     pool.install(|| {
         let mut simulation = Simulation::new(scene)?;
         let mut bits = Vec::new();
@@ -119,9 +116,9 @@ fn interrupted(scene: &Scene) -> Result<Vec<u64>, StudyError> {
     while !simulation.finished() {
         watch::check()?;
         bits.extend(next_sample(&mut simulation)?);
-        let state = simulation.checkpoint().map_err(|error| StudyError::Other(error.to_string()))?;
+        let state = simulation.checkpoint().map_err(other)?;
         let resumed = Simulation::resume(scene, &state);
-        simulation = resumed.map_err(|error| StudyError::Other(error.to_string()))?;
+        simulation = resumed.map_err(other)?;
     }
     Ok(bits)
 }
@@ -143,7 +140,7 @@ fn asymmetry(scene: &Scene) -> Result<f64, StudyError> {
     while !simulation.finished() {
         watch::check()?;
         simulation.advance_to_next_sample()?;
-        let frame = simulation.total_frame().ok_or_else(|| StudyError::Other("not the total frame".into()))?;
+        let frame = simulation.total_frame().ok_or_else(|| other("not the total frame"))?;
         let ([x, y], grid) = (frame.displacement(), frame.lattice().grid);
         let mirrored = |at: usize| grid.index(grid.columns - 1 - grid.column_of(at), grid.row_of(at));
         let off = grid.indices().flat_map(|at| [(x[at] + x[mirrored(at)]).abs(), (y[at] - y[mirrored(at)]).abs()]);

@@ -16,9 +16,7 @@ use fisura::material::hencky::hencky_strain;
 use fisura::material::split::tensile_strain;
 use fisura::scene::{Boundary, Fracture, Material, Mesh, Scene, Side};
 
-use super::{exact, logarithmic, total_frame};
-use crate::case::Case;
-use crate::case::expand::CaseScene;
+use super::{logarithmic, total_frame};
 use crate::extremes::{larger, largest};
 use crate::output::history::Table;
 use crate::record::CurveStyle;
@@ -26,7 +24,7 @@ use crate::scene::plain::PlainScene;
 use crate::study::charts::curve;
 use crate::study::random::Random;
 use crate::study::scene::series_stem;
-use crate::study::{Findings, StudyError};
+use crate::study::{Case, CaseScene, Findings, StudyError, exact, other};
 
 /// Draws two principal strains.
 type Family = fn(&mut Random) -> [f64; 2];
@@ -142,7 +140,7 @@ fn scaled_runs() -> Result<(Table, f64), StudyError> {
     for step in 1..=STEPS {
         crate::watch::check()?;
         for run in &mut runs {
-            run.step(dt).map_err(|_| StudyError::Other("the phase field did not converge".into()))?;
+            run.step(dt).map_err(|_| other("the phase field did not converge"))?;
         }
         let [large, small] = runs.each_ref().map(|run| run.velocity().iter().flatten());
         let fastest = largest(runs[0].velocity().iter().flatten().map(|v| v.abs()));

@@ -9,16 +9,13 @@ use fisura::Simulation;
 use fisura::dynamics::energy::Sample;
 use fisura::scene::{Boundary, Crack, Fracture, Material, Mesh, Scene, Shape, Side, TimeFactor, Traction};
 
-use super::exact;
-use crate::case::Case;
-use crate::case::expand::CaseScene;
 use crate::extremes::largest;
 use crate::output::history::Table;
 use crate::record::CurveStyle;
 use crate::scene::plain::PlainScene;
 use crate::study::charts::{chart, curve};
 use crate::study::scene::series_stem;
-use crate::study::{Findings, StudyError};
+use crate::study::{Case, CaseScene, Findings, StudyError, exact, other};
 
 /// Thickness, m: neither one metre nor one millimetre.
 const THICKNESS: f64 = 2.5e-3;
@@ -66,8 +63,8 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
     let mut table = Table::new(&["sample"]);
     table.columns = vec![(0..=SAMPLES).map(|i| i as f64).collect()];
     for (name, cracked) in [("elastic", false), ("cracking", true)] {
-        let [si, other] = [METRE_KILOGRAM, MILLIMETRE_TONNE].map(|units| run(&plate(units, cracked)));
-        let (si, other) = (si?, other?);
+        let [si, millimetre] = [METRE_KILOGRAM, MILLIMETRE_TONNE].map(|units| run(&plate(units, cracked)));
+        let (si, millimetre) = (si?, millimetre?);
         let factor = MILLIMETRE_TONNE.energy();
         for (quantity, value) in [
             ("kinetic energy", (|s| s.kinetic) as fn(&Sample) -> f64),
@@ -77,11 +74,11 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
         ] {
             let scale = largest(si.iter().map(|s| value(s).abs()));
             if scale > 0.0 {
-                let difference = si.iter().zip(&other).map(|(a, b)| (value(a) - value(b) / factor).abs());
+                let difference = si.iter().zip(&millimetre).map(|(a, b)| (value(a) - value(b) / factor).abs());
                 findings.add(name, &in_other_units(quantity), largest(difference) / scale, exact(0.0, "the same body"));
             }
         }
-        for (units, samples, factor) in [("m, kg", &si, 1.0), ("mm, t", &other, factor)] {
+        for (units, samples, factor) in [("m, kg", &si, 1.0), ("mm, t", &millimetre, factor)] {
             let column = format!("{name}_{}", if factor == 1.0 { "si" } else { "mm" });
             curves.push(curve(&format!("{name}, {units}"), &stem, ["sample", &column], CurveStyle::Line));
             table.names.push(column);
@@ -90,7 +87,7 @@ pub(in super::super) fn study(case: &Case, _scenes: &[CaseScene]) -> Result<Find
         if !cracked {
             // A traction t on the side of length L drives a wave with the velocity t/(rho c): work t² L d
             // T/(rho c) per side.
-            let last = si.last().ok_or_else(|| StudyError::Other("an empty history".into()))?;
+            let last = si.last().ok_or_else(|| other("an empty history"))?;
             let speed = (32e9 * 0.8 / (1.2 * 0.6) / 2450.0_f64).sqrt();
             let work = 2.0 * 1e12 * 4e-3 * THICKNESS * last.time / (2450.0 * speed);
             let source = exact(1.0, "t² A T/(rho c) on two sides of plane waves");

@@ -10,16 +10,13 @@ use std::collections::BTreeMap;
 use fisura::Simulation;
 use fisura::scene::{Boundary, Fracture, Frame, Material, Mesh, Scene, Shape, Side};
 
-use super::exact;
-use crate::case::Case;
-use crate::case::expand::CaseScene;
 use crate::extremes::{larger, largest};
 use crate::output::history::Table;
 use crate::record::CurveStyle;
 use crate::scene::plain::PlainScene;
 use crate::study::charts::{chart, curve};
 use crate::study::scene::series_stem;
-use crate::study::{Findings, StudyError};
+use crate::study::{Case, CaseScene, Findings, StudyError, exact};
 
 /// Length and height of the bar, m.
 const LENGTH: f64 = 2.0;

@@ -12,7 +12,7 @@ use crate::case::expand::CaseScene;
 use crate::measure::{LooksAt, Measure, Run, find};
 use crate::output::history::Table;
 use crate::reference::{Library, relative_uncertainty};
-use crate::scene::suggest::nearest;
+use crate::scene::suggest::hint;
 use crate::study::scene::concerned;
 
 /// Keys that every measure reads, beside those of every study.
@@ -115,8 +115,7 @@ fn look_at_variants(wrong: &mut Wrong<'_>, index: usize, check: &Check, scenes: 
     let patterned = scenes.iter().any(|scene| check.is_about(&scene.name));
     for (key, name) in [("variant", &check.variant), ("against", &check.against)] {
         if let Some(name) = name.as_deref().filter(|name| !(known.contains(name) || key == "variant" && patterned)) {
-            let meant = nearest(name, &known).map_or(String::new(), |near| format!("did you mean {near:?}? "));
-            let remedy = format!("{meant}known variants: {}", known.join("; "));
+            let remedy = format!("{}known variants: {}", hint(name, &known), known.join("; "));
             wrong.note(at(key), format!("no run of this case matches {name:?}"), remedy);
         }
     }
