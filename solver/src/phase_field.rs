@@ -278,13 +278,7 @@ impl PhaseField {
         self.counts.solves += 1;
         let unit = self.model.diffusion().sqrt();
         let found = self.method.solve(&self.matrix, &self.load, &mut self.phase, unit * self.tolerance, patience);
-        let found = found.map_err(|failure| match failure {
-            SolveFailure::NotConverged { iterations, error } => {
-                SolveFailure::NotConverged { iterations, error: error / unit }
-            }
-            SolveFailure::NotPositiveDefinite if !is_finite(&self.matrix) => SolveFailure::NotFinite,
-            other => other,
-        })?;
+        let found = found.map_err(|failure| in_the_norm(failure, unit, || is_finite(&self.matrix)))?;
         let convergence = Convergence { error: found.error / unit, ..found };
         self.counts.iterations += convergence.iterations;
         Ok(convergence)
@@ -445,6 +439,17 @@ fn separate_small(matrix: &mut Stencil) {
     let grid = matrix.grid;
     for (row, column) in (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (row, column))) {
         matrix.set_diagonal(column, row, matrix.diagonal(column, row) * (1.0 + SEPARATE));
+    }
+}
+
+/// A failure with its error in the norm of the tolerance, of a matrix that may not be finite.
+fn in_the_norm(failure: SolveFailure, unit: f64, is_finite: impl FnOnce() -> bool) -> SolveFailure {
+    match failure {
+        SolveFailure::NotConverged { iterations, error } => {
+            SolveFailure::NotConverged { iterations, error: error / unit }
+        }
+        SolveFailure::NotPositiveDefinite if !is_finite() => SolveFailure::NotFinite,
+        other => other,
     }
 }
 

@@ -29,6 +29,8 @@ pub(crate) use cut_batch::CutBatch;
 pub(crate) use mapped::{MappedPoint, Mapping};
 pub(crate) use sheets::Sheets;
 
+use std::ops::Range;
+
 use crate::linear_algebra::control_grid::{ControlGrid, VectorField};
 use crate::linear_algebra::lane::{LANES, Lane};
 use crate::scene::edges::BoundaryEdge;
@@ -159,11 +161,16 @@ impl Lattice {
         part
     }
 
-    /// Whether a strip has points.
-    pub(crate) fn has_points(&self, strip: usize) -> bool {
-        let tiles = self.tiles.len();
-        let of_strip = |occupied: &Vec<bool>| occupied[strip * tiles..(strip + 1) * tiles].contains(&true);
-        strip >= self.table_strips() || self.occupied.as_ref().is_none_or(of_strip)
+    /// Places in a row of a field that the points of a strip may see; none if it has no points.
+    pub(crate) fn columns_of_strip(&self, strip: usize) -> Option<Range<usize>> {
+        let Some(occupied) = self.occupied.as_ref().filter(|_| strip < self.table_strips()) else {
+            return Some(0..self.grid.stride);
+        };
+        let tiles = self.tiles.iter().zip(&occupied[strip * self.tiles.len()..]);
+        let mut first = tiles.filter(|(_, occupied)| **occupied).map(|(tile, _)| self.grid.index(tile.first, 0));
+        let start = first.next()?;
+        let last = first.last().unwrap_or(start);
+        Some(start..(last + LANES + self.degree[0]).min(self.grid.stride))
     }
 
     /// Whether a cell of the tables or of cut spans has points.
@@ -256,12 +263,12 @@ impl Lattice {
     }
 
     /// Rows of spans in a strip.
-    pub(crate) fn strip_rows(&self, strip: usize) -> std::ops::Range<usize> {
+    pub(crate) fn strip_rows(&self, strip: usize) -> Range<usize> {
         strip * self.strip_rows..((strip + 1) * self.strip_rows).min(self.rows.len())
     }
 
     /// Control rows of the patch that a strip contributes to.
-    pub(crate) fn strip_patch_rows(&self, strip: usize) -> std::ops::Range<usize> {
+    pub(crate) fn strip_patch_rows(&self, strip: usize) -> Range<usize> {
         if strip >= self.table_strips() {
             return self.cut_control_rows(strip, |_| 0);
         }

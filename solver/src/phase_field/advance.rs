@@ -84,24 +84,28 @@ impl PhaseField {
     }
 
     fn solve_after(&mut self, lag: &mut Lag) -> Result<Convergence, SolveFailure> {
-        let carried = self.go_back(lag);
+        self.go_back(lag);
         let convergence = self.solve_with(TOO_MANY, lag.ahead())?;
-        self.end_solve(lag, &carried);
+        self.end_solve(lag);
         Ok(convergence)
     }
 
-    /// Goes back to the last solve; returns the values that were carried on since.
-    pub(super) fn go_back(&mut self, lag: &Lag) -> Vec<f64> {
-        std::mem::replace(&mut self.phase, lag.solved.clone())
+    /// Goes back to the last solve.
+    pub(super) fn go_back(&mut self, lag: &mut Lag) {
+        let grid = self.matrix.grid;
+        for used in self.matrix.active().within(grid, 0..grid.rows) {
+            lag.carried[used.clone()].copy_from_slice(&self.phase[used.clone()]);
+            self.phase[used.clone()].copy_from_slice(&lag.solved[used]);
+        }
     }
 
     /// Learns what a solve changed.
-    pub(super) fn end_solve(&mut self, lag: &mut Lag, carried: &[f64]) {
+    pub(super) fn end_solve(&mut self, lag: &mut Lag) {
         (lag.apart, lag.since, lag.expected) = (lag.since, 0, false);
         lag.fastest = 0.0;
         let steps = lag.apart as f64;
         for at in self.taking_part().flatten() {
-            lag.healing = larger(lag.healing, self.phase[at] - carried[at]);
+            lag.healing = larger(lag.healing, self.phase[at] - lag.carried[at]);
             lag.solved[at] = self.phase[at];
             lag.fastest = larger(lag.fastest, (self.previous[at] - self.phase[at]) / steps);
         }

@@ -17,6 +17,8 @@ pub(super) struct Lag {
     interval: PhaseFieldInterval,
     /// Control values of the last solve; those of the solve before are `previous` of the field.
     pub(super) solved: Vec<f64>,
+    /// Those that were carried on to the present solve.
+    pub(super) carried: Vec<f64>,
     /// Steps between the last two solves, zero before the second one, and steps since the last one.
     pub(super) apart: usize,
     pub(super) since: usize,
@@ -35,6 +37,7 @@ impl Lag {
             Box::new(Self {
                 interval,
                 solved: phase.to_vec(),
+                carried: phase.to_vec(),
                 apart: 0,
                 since: 0,
                 fastest: 0.0,
@@ -72,7 +75,7 @@ impl Lag {
     /// Bytes of another scene.
     pub(super) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
         // A step begins and ends with `expected` false.
-        let Self { interval: _, solved, apart, since, fastest, healing, expected: _ } = self;
+        let Self { interval: _, solved, carried: _, apart, since, fastest, healing, expected: _ } = self;
         archive.list(solved)?;
         [apart, since].into_iter().try_for_each(|count| archive.value(count))?;
         [fastest, healing].into_iter().try_for_each(|value| archive.value(value))
@@ -80,7 +83,7 @@ impl Lag {
 
     /// Heap memory, bytes.
     pub(super) fn bytes(&self) -> usize {
-        8 * self.solved.len()
+        8 * (self.solved.len() + self.carried.len())
     }
 }
 

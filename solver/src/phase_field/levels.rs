@@ -4,8 +4,8 @@
 //! level holds what its own points add; what they add to functions of the interface belongs to the coarser
 //! level.
 
-use super::PhaseField;
 use super::lag::Lag;
+use super::{PhaseField, in_the_norm, is_finite};
 use crate::linear_algebra::active_columns::ActiveColumns;
 use crate::linear_algebra::conjugate_gradients::{Convergence, OnGrid, SolveFailure, solve_on_grids};
 use crate::linear_algebra::extremes::larger;
@@ -50,24 +50,24 @@ impl PhaseFieldLevels<'_> {
         let mut lags: Vec<Box<Lag>> = self.levels.iter_mut().filter_map(|level| level.field.lag.take()).collect();
         lags.iter_mut().for_each(|lag| lag.since += 1);
         let mut lag = lags.iter_mut();
-        let mut carried = Vec::new();
         for OnLevel { field, lattice, history, .. } in &mut self.levels {
-            match lag.next() {
-                Some(lag) if !due => field.carry_on(lag),
-                lag => {
-                    field.assemble_history(lattice, history);
-                    let ahead = lag.as_ref().map_or(1.0, |lag| lag.ahead());
-                    carried.extend(lag.map(|lag| field.go_back(lag)));
-                    field.extrapolate(ahead);
-                }
+            let mut lag = lag.next();
+            if due {
+                field.assemble_history(lattice, history);
+                lag.iter_mut().for_each(|lag| field.go_back(lag));
+                field.extrapolate(lag.map_or(1.0, |lag| lag.ahead()));
+            } else if let Some(lag) = lag {
+                field.carry_on(lag);
             }
         }
         self.spread();
         let result = if due { self.solve(TOO_MANY).map(Some) } else { Ok(None) };
-        for ((level, lag), carried) in self.levels.iter_mut().zip(&mut lags).zip(carried) {
-            level.field.end_solve(lag, &carried);
+        for (OnLevel { field, .. }, mut lag) in self.levels.iter_mut().zip(lags) {
+            if due {
+                field.end_solve(&mut lag);
+            }
+            field.lag = Some(lag);
         }
-        self.levels.iter_mut().zip(lags).for_each(|(level, lag)| level.field.lag = Some(lag));
         result
     }
 
@@ -114,12 +114,8 @@ impl PhaseFieldLevels<'_> {
                 found => break found,
             }
         };
-        let found = found.map_err(|failure| match failure {
-            SolveFailure::NotConverged { iterations, error } => {
-                SolveFailure::NotConverged { iterations, error: error / unit }
-            }
-            other => other,
-        })?;
+        let finite = || self.levels.iter().all(|level| is_finite(&level.field.matrix));
+        let found = found.map_err(|failure| in_the_norm(failure, unit, finite))?;
         self.spread();
         let counts = &mut self.levels[0].field.counts;
         (counts.solves, counts.iterations) = (counts.solves + 1, counts.iterations + spent + found.iterations);

@@ -30,8 +30,8 @@ impl StripForces {
         let strips = (0..lattice.strips()).map(|strip| {
             let rows = lattice.strip_control_rows(strip);
             let length = rows.len() * lattice.grid.stride;
-            let force = || StripForce { first_row: rows.start, components: [vec![0.0; length], vec![0.0; length]] };
-            lattice.has_points(strip).then(force)
+            let columns = lattice.columns_of_strip(strip)?;
+            Some(StripForce { first_row: rows.start, columns, components: [vec![0.0; length], vec![0.0; length]] })
         });
         Self { strips: strips.collect() }
     }
@@ -43,18 +43,15 @@ impl StripForces {
             let reaches = |strip: &&StripForce| {
                 row >= strip.first_row && (row - strip.first_row) * stride < strip.components[0].len()
             };
-            let mut is_clear = false;
             for strip in self.strips.iter().flatten().filter(reaches) {
-                if !is_clear {
-                    x.fill(0.0);
-                    y.fill(0.0);
-                    is_clear = true;
-                }
+                x[strip.columns.clone()].fill(0.0);
+                y[strip.columns.clone()].fill(0.0);
+            }
+            for strip in self.strips.iter().flatten().filter(reaches) {
                 let part = (row - strip.first_row) * stride..(row - strip.first_row + 1) * stride;
                 for (out, component) in [&mut *x, &mut *y].into_iter().zip(&strip.components) {
-                    for (value, add) in out.iter_mut().zip(&component[part.clone()]) {
-                        *value += add;
-                    }
+                    let added = &component[part.clone()][strip.columns.clone()];
+                    out[strip.columns.clone()].iter_mut().zip(added).for_each(|(value, add)| *value += add);
                 }
             }
         });
@@ -74,15 +71,18 @@ pub fn sweep<K: PointKernel>(lattice: &Lattice, fields: Fields, kernels: &mut [K
             kernels.par_iter_mut().zip(&mut forces.strips).enumerate().for_each(|(strip, (kernel, force))| {
                 let Some(force) = force else { return };
                 if !kernel.adds() {
-                    force.components.iter_mut().for_each(|c| c.fill(0.0));
+                    let rows = force.components.iter_mut().flat_map(|c| c.chunks_mut(lattice.grid.stride));
+                    rows.for_each(|row| row[force.columns.clone()].fill(0.0));
                 }
                 dispatch(StripSweep { lattice, fields, strip, kernel, force: Some(force) });
             });
         }
-        _ => kernels.par_iter_mut().enumerate().filter(|(strip, _)| lattice.has_points(*strip)).for_each(
-            |(strip, kernel)| {
-                dispatch(StripSweep { lattice, fields, strip, kernel, force: None });
-            },
-        ),
+        _ => {
+            kernels.par_iter_mut().enumerate().filter(|(strip, _)| lattice.columns_of_strip(*strip).is_some()).for_each(
+                |(strip, kernel)| {
+                    dispatch(StripSweep { lattice, fields, strip, kernel, force: None });
+                },
+            )
+        }
     }
 }

@@ -7,7 +7,7 @@ use super::look::{Look, TOLERANCE};
 use super::points::Points;
 use super::{cracks, edge_conditions, resolution, seed, tractions};
 use crate::particles::lattice::cuts_spans;
-use crate::scene::{Body, CrackModel, Fracture, Frame, Kinematics, Layout, Scene, Shape};
+use crate::scene::{Body, CrackModel, Fracture, Frame, Kinematics, Layout, Mesh, Scene, Shape};
 use crate::splines::nurbs::{LocateError, NurbsPatch};
 use crate::splines::quadrature::MAX_POINTS;
 
@@ -153,7 +153,28 @@ fn points(key: &str, body: &Body, scene: &Scene, findings: &mut Findings) {
              can collapse without resistance; use as many points as the degree, which is the default"
         );
         findings.warn(points, message);
+    } else if !body.rigid && is_underdetermined(body, scene) {
+        let message = format!(
+            "{counts:?} points in a body of one cell leave some of its motions without stiffness; use [{}, {}], or smaller \
+             cells",
+            degree[0] + 1,
+            degree[1] + 1
+        );
+        findings.warn(points, message);
     }
+}
+
+/// Whether a body of one cell has fewer strains at its points than its control points have motions, besides
+/// those of a rigid body.
+fn is_underdetermined(body: &Body, scene: &Scene) -> bool {
+    let Mesh { degree: [p, q], geometry: None, knots, .. } = &scene.mesh else { return false };
+    if knots[0].len() < 2 * (p + 1) || knots[1].len() < 2 * (q + 1) {
+        return false; // said elsewhere
+    }
+    let around = scene.mesh.around(&body.shape).knots;
+    let is_one_cell = around[0].len() == 2 * (p + 1) && around[1].len() == 2 * (q + 1);
+    let strains = 3 * body.particles_per_cell.iter().product::<usize>();
+    matches!(body.shape, Shape::Rectangle { .. }) && is_one_cell && strains < 2 * (p + 1) * (q + 1) - 3
 }
 
 /// Whether modes between so many points per span have hardly any stiffness. Cubic ones need a finite

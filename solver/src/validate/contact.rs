@@ -9,11 +9,16 @@ use crate::contact::Surface;
 use crate::contact::motion::{longest_step, rigid_bodies_that_approach};
 use crate::contact::outline::without_patch;
 use crate::linear_algebra::extremes::larger;
+use crate::particles::spans::smallest_span;
 use crate::scene::edges::{BoundaryEdge, bounding_parts};
 use crate::scene::{Body, Frame, Kinematics, Scene, Shape, TimeStep};
 
 /// Overlap of two bodies that is not one, in spans: circles are lines of short segments.
 const TOLERANCE: f64 = 1e-3;
+
+/// Size of a rigid body, in spans, below which contact does not resolve it: discs of half a span in radius
+/// and less turned what they struck the wrong way.
+const SMALLEST: f64 = 1.5;
 
 /// Steps, in spans, in which boundaries are looked at for an overlap.
 const STEP: f64 = 0.25;
@@ -120,6 +125,15 @@ fn rigid(key: &str, body: &Body, scene: &Scene, findings: &mut Findings) {
             let message = format!("a {what} has no effect on a rigid body");
             findings.error(format!("{key}.{what}"), message, "remove it, or the key rigid");
         }
+    }
+    let (low, high) = without_patch(&body.shape, &scene.mesh).bounding_box();
+    let span = smallest_span(&scene.mesh);
+    if scene.mesh.geometry.is_none() && (0..2).all(|d| high[d] - low[d] < SMALLEST * span) {
+        let message = format!(
+            "is smaller than {SMALLEST} cells: contact does not resolve its boundary, and turns what it strikes; use \
+             smaller cells"
+        );
+        findings.warn(format!("{key}.shape"), message);
     }
     time::check(key, &body.time, scene.analysis.end_time, findings);
 }

@@ -1,6 +1,8 @@
 //! The sweep over one strip: control fields to points and stresses back to control points, by sum
 //! factorisation.
 
+use std::ops::Range;
+
 use crate::linear_algebra::lane::{LANES, Lane, Vectorised, prefetch};
 use crate::particles::lattice::{Lattice, MappedPoint, Row, Tile};
 use crate::splines::quadrature::MAX_POINTS;
@@ -11,6 +13,8 @@ use crate::transfer::point_kernel::{Fields, PointKernel, PointValues, Stress};
 #[derive(Debug, Clone)]
 pub(super) struct StripForce {
     pub first_row: usize,
+    /// Places in a row of a field that it may write to.
+    pub columns: Range<usize>,
     pub components: [Vec<f64>; 2],
 }
 
