@@ -92,6 +92,9 @@ struct Findings {
     materials: BTreeMap<String, MaterialFindings>,
     degree: [usize; 2],
     cells: [usize; 2],
+    /// How often spans are halved near cracks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    halvings: Option<usize>,
     /// Largest span per direction, m.
     span_m: [f64; 2],
     particles: usize,
@@ -225,9 +228,10 @@ impl Findings {
             frame: if scene.analysis.frame == Frame::Total { "total" } else { "updated" },
             transfer: by_points.then(|| transfer(scene.analysis.transfer)),
             bodies: bodies(scene),
-            materials: materials(scene, span_m[0].max(span_m[1])),
+            materials: materials(scene, span_m[0].max(span_m[1]) / f64::from(1_u32 << scene.mesh.halvings)),
             degree: scene.mesh.degree,
             cells: spans(&scene.mesh),
+            halvings: Some(scene.mesh.halvings).filter(|halvings| *halvings > 0),
             span_m,
             particles: extent.particles,
             control_points: extent.control_points,
@@ -262,8 +266,10 @@ impl Findings {
         let [hx, hy] = self.span_m.map(|h| plain(1e3 * h, 5));
         let critical = self.critical_step_s.map_or("none, nothing can move".to_string(), second);
         let time = format!("{} in {} steps of {}", second(self.end_time_s), self.steps, second(self.time_step_s));
+        let halved = |times: usize| format!(", halved {times} times near cracks");
+        let halved = self.halvings.map_or(String::new(), halved);
         rows.extend([
-            ("mesh", format!("{} x {} spans of {hx} x {hy} mm", self.cells[0], self.cells[1])),
+            ("mesh", format!("{} x {} spans of {hx} x {hy} mm{halved}", self.cells[0], self.cells[1])),
             ("degree", format!("{} x {}", self.degree[0], self.degree[1])),
             ("particles", self.particles.to_string()),
             ("control points", self.control_points.to_string()),

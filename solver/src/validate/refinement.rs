@@ -1,6 +1,7 @@
 //! Checks of local refinement: what it cannot be used with.
 
 use super::findings::Findings;
+use crate::particles::spans::longest_span;
 use crate::scene::{CrackModel, Frame, Kinematics, Mass, PhaseFieldSolver, Scene, Shape};
 
 /// Relative tolerance of "covers the mesh".
@@ -26,7 +27,12 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         (scene.analysis.frame == Frame::Updated, "frame = \"updated\"", "use frame = \"total\""),
         (scene.analysis.kinematics == Kinematics::Finite, "finite kinematics", "use kinematics = \"small\""),
         (scene.analysis.mass == Mass::Consistent, "a consistent mass", "leave analysis.mass out"),
-        (scene.contact.is_some() || scene.bodies.len() > 1, "several bodies or contact", "describe one body"),
+        (scene.contact.is_some() || scene.bodies.len() > 1, "several bodies or contact", "describe one body alone"),
+        (
+            body.is_some_and(|body| !body.conditions.is_empty()),
+            "conditions on edges of a body",
+            "give them on sides of the mesh ([[boundary]])",
+        ),
         (body.is_some_and(|body| !covers(&body.shape)), "a body that does not cover the mesh", "let it cover the mesh"),
         (fracture.is_none(), "a body that does not break", "give its material a fracture table"),
         (fracture.is_some_and(|f| f.model != CrackModel::At2), "another model than at2", "use model = \"at2\""),
@@ -46,5 +52,18 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
             format!("local refinement with {what} is not implemented"),
             format!("{remedy}, or remove mesh.refine"),
         );
+    }
+    if let (Some(body), Some(fracture)) = (body, fracture) {
+        let (coarse, l0) = (longest_span(&scene.mesh, &body.shape), fracture.shortest_length());
+        let begins_anywhere = body.cracks.is_empty() || fracture.random.is_some();
+        if begins_anywhere && scene.mesh.geometry.is_none() && coarse > l0 * (1.0 + TOLERANCE) {
+            let message = format!(
+                "a crack may begin where cells are {:.4} mm long against l0 = {:.4} mm: they are halved when it is there, \
+                 which is late; use cells of at most l0, or fewer levels",
+                1e3 * coarse,
+                1e3 * l0
+            );
+            findings.warn("mesh.refine", message);
+        }
     }
 }

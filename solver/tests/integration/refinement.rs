@@ -22,9 +22,12 @@ pub fn refined(degree: usize, cells: [usize; 2], halvings: usize) -> Scene {
 /// Where every tile is refined from the start, the run is that on the finest mesh.
 #[test]
 fn refined_everywhere_it_is_the_finest_mesh() {
-    for degree in [1, 2, 3] {
+    for (degree, tensor) in [(1, [1.0, 0.0]), (2, [1.0, 0.0]), (2, [4.0, 0.5]), (3, [1.0, 0.0])] {
         let mut coarse = refined(degree, [16, 8], 1);
         coarse.bodies[0].cracks[0].points[1] = [0.009, 0.004];
+        let [along, mixed] = tensor;
+        let anisotropy = Anisotropy { tensor: [[along, mixed], [mixed, 1.0]], angle: 0.4 };
+        coarse.materials.get_mut("glass").unwrap().fracture.as_mut().unwrap().anisotropy = Some(anisotropy);
         let mut fine = coarse.clone();
         fine.mesh = Mesh::uniform([degree; 2], [0.0; 2], [0.016, 0.008], [32, 16]);
         let [(_, coarse), (_, fine)] = [coarse, fine].map(|scene| run(&scene));
@@ -38,6 +41,29 @@ fn refined_everywhere_it_is_the_finest_mesh() {
             ];
             assert!(differences.iter().all(|d| d.abs() < 1e-8 * scale), "p = {degree}: {differences:?} of {scale:e}");
             assert_eq!(coarse.refinement, Some(0.0));
+        }
+    }
+}
+
+/// Mass, momentum and loads are those of the body wherever a short seed lies, also where the finest level
+/// borders the coarsest one.
+#[test]
+fn mass_and_loads_are_shared_between_levels() {
+    for (degree, halvings) in [(1, 2), (2, 1), (2, 2), (3, 2), (2, 3)] {
+        for place in [[0.0072, 0.0019], [0.0041, 0.0066], [0.0001, 0.0079], [0.0103, 0.0001]] {
+            let mut scene = refined(degree, [32, 16], halvings);
+            let end = [place[0] + 4e-4, (place[1] - 2e-4_f64).max(0.0)];
+            scene.bodies[0].cracks = vec![Crack { points: vec![place, end], kind: CrackKind::Seed(Some(0.5e-3)) }];
+            scene.bodies[0].velocity = [50.0, 0.0];
+            scene.bodies[0].tractions = vec![Traction::on(Side::Top, [0.0, 1e5], TimeFactor::ramp(1e-9))];
+            scene.analysis.end_time = 0.2e-6;
+            let (_, samples) = run(&scene);
+            let mass = 2450.0 * 0.016 * 0.008;
+            approx::assert_relative_eq!(samples[0].kinetic, 0.5 * mass * 2500.0, max_relative = 1e-12);
+            let [x, y] = samples.last().unwrap().momentum;
+            approx::assert_relative_eq!(x, 50.0 * mass, max_relative = 1e-12);
+            let impulse = 0.016 * 1e5 * (0.2e-6 - 0.5e-9);
+            approx::assert_relative_eq!(y, impulse, max_relative = 1e-9);
         }
     }
 }
@@ -81,8 +107,12 @@ fn what_it_cannot_be_used_with_is_refused() {
         errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
     };
     assert!(fisura::validate::validate(&refined(2, [32, 16], 1)).is_ok());
-    let refused: [(&str, &dyn Fn(&mut Scene)); 4] = [
+    let refused: [(&str, &dyn Fn(&mut Scene)); 5] = [
         ("frame = \"updated\"", &|scene| scene.analysis.frame = Frame::Updated),
+        ("conditions on edges", &|scene| {
+            let held = EdgeCondition::fixed(Edge::Side(Side::Left), Hold::Components([true; 2]));
+            scene.bodies[0].conditions = vec![held];
+        }),
         ("a static start", &|scene| scene.equilibrium = true),
         ("does not cover the mesh", &|scene| {
             scene.bodies[0].shape = Shape::Rectangle { min: [0.0; 2], max: [0.016, 0.006] };

@@ -119,7 +119,8 @@ impl TotalBodies {
 
     /// Warnings of slits that part no function of the mesh.
     pub(crate) fn idle_slits(&self, scene: &Scene) -> Vec<String> {
-        let bodies = scene.bodies.iter().filter(|body| !body.rigid).zip(&self.bodies);
+        let coarser = if self.levels.is_some() { self.bodies.len() - 1 } else { 0 }; // these have no slits
+        let bodies = scene.bodies.iter().filter(|body| !body.rigid).zip(&self.bodies[coarser..]);
         let slits = bodies.flat_map(|(body, frame)| body.slits().map(move |slit| (frame, slit)));
         let idle = slits.filter(|(frame, slit)| !frame.lattice.is_parted_by(&frame.patch, slit));
         let words = |(frame, slit): (&TotalFrame, &Crack)| {

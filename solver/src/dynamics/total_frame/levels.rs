@@ -30,7 +30,7 @@ use crate::linear_algebra::interface::{Interface, fold_all, spread_all};
 use crate::particles::lattice::STRIP_ROWS;
 use crate::phase_field::fracture::LatticeFracture;
 use crate::phase_field::levels::{OnLevel, PhaseFieldLevels};
-use crate::scene::{Crack, Scene};
+use crate::scene::{Crack, CrackKind, Scene};
 use crate::splines::insertion::knot_insertion;
 use crate::transfer::sweep::StripForces;
 use copies::{copy_fields, copy_points};
@@ -114,8 +114,9 @@ impl Levels {
             since: 0,
             added: 0.0,
         };
-        let slits: Vec<&Crack> = scene.bodies[0].slits().collect();
-        levels.regions.mark_slits(&slits, &frames);
+        let seeded = |crack: &&Crack| matches!(crack.kind, CrackKind::Seed(_)); // these have a phase field
+        let others: Vec<&Crack> = scene.bodies[0].cracks.iter().filter(|crack| !seeded(crack)).collect();
+        levels.regions.mark_along(&others, &frames);
         levels.regions.mark_cracks(&frames);
         levels.functions = levels.regions.functions(&frames);
         levels.take_regions(&mut frames);
@@ -318,41 +319,54 @@ impl Levels {
         Interface::new(fine.indices().filter(|&at| takes(at)).map(row))
     }
 
-    /// Gives masses and loads to the functions in use: a truncated function is what its own leaves of the
-    /// finer ones that lie wholly within their points.
+    /// Gives masses and loads to the functions in use.
     fn share(&self, frames: &mut [TotalFrame], functions: &[Functions]) {
-        for level in 0..frames.len() {
-            let grid = frames[level].lattice.patch_grid;
-            let finer = functions
-                .get(level + 1)
-                .map(|finer| (&frames[level + 1].lattice, self.interface(level, frames, |at| finer.whole[at])));
-            let share = |all: &[f64], of_finer: Option<&Vec<f64>>| {
-                let mut field = all.to_vec();
-                if let (Some((lattice, within)), Some(of_finer)) = (&finer, of_finer) {
-                    let mut taken: Vec<f64> = lattice
-                        .onto_patch(of_finer.clone())
-                        .iter()
-                        .map(|value| fault!("mass-of-both-levels", -value => 0.0))
-                        .collect();
-                    within.fold(&mut taken, &mut field);
-                }
-                grid.indices().filter(|&at| !functions[level].is_own(at)).for_each(|at| field[at] = 0.0);
-                field
-            };
-            let mass = share(&self.masses[level], self.masses.get(level + 1));
-            let loads: Vec<VectorField> = (0..frames[level].loads.len())
-                .map(|number| {
-                    let finer = self.loads.get(level + 1).map(|loads| &loads[number]);
-                    [0, 1].map(|d| share(&self.loads[level][number][d], finer.map(|finer| &finer[d])))
-                })
-                .collect();
-            let frame = &mut frames[level];
+        let taken = |level: usize, at: usize| functions[level].known[at];
+        let below = |level: usize| self.interface(level, frames, |at| taken(level + 1, at));
+        let insertions: Vec<Interface> = (0..self.insertions.len()).map(below).collect();
+        let masses = self.truncated(frames, functions, &insertions, |level| &self.masses[level]);
+        let of_load = |number: usize| {
+            [0, 1].map(|d| self.truncated(frames, functions, &insertions, |level| &self.loads[level][number][d]))
+        };
+        let loads: Vec<[Vec<Vec<f64>>; 2]> = (0..frames[0].loads.len()).map(of_load).collect();
+        for (level, (frame, mass)) in frames.iter_mut().zip(masses).enumerate() {
             frame.mass.set_row_sums(mass);
-            for (load, field) in frame.loads.iter_mut().zip(loads) {
-                let forces = (0..field[0].len()).map(|at| (at, [field[0][at], field[1][at]]));
+            for (load, [x, y]) in frame.loads.iter_mut().zip(&loads) {
+                let forces = (0..x[level].len()).map(|at| (at, [x[level][at], y[level][at]]));
                 load.forces = forces.filter(|(_, force)| *force != [0.0; 2]).collect();
             }
         }
+    }
+
+    /// Integrals of the functions in use from those of all functions, by level: a truncated function is what
+    /// the finer ones that have values of their own leave of it.
+    fn truncated<'a>(
+        &self,
+        frames: &[TotalFrame],
+        functions: &[Functions],
+        insertions: &[Interface],
+        all: impl Fn(usize) -> &'a Vec<f64>,
+    ) -> Vec<Vec<f64>> {
+        let mut fields: Vec<Vec<f64>> = (0..frames.len()).map(|level| all(level).clone()).collect();
+        let mut less = frames[frames.len() - 1].lattice.patch_grid.zeros(); // what finer ones take of each
+        for level in (0..frames.len()).rev() {
+            let lattice = &frames[level].lattice;
+            let grid = lattice.patch_grid;
+            let mut taken = lattice.onto_patch(all(level).clone());
+            for at in grid.indices() {
+                if !functions[level].whole[at] {
+                    taken[at] = less[at];
+                }
+                let is_own = functions[level].is_own(at);
+                fields[level][at] =
+                    if is_own { fields[level][at] - fault!("mass-of-both-levels", less[at] => 0.0) } else { 0.0 };
+            }
+            if let Some(coarser) = level.checked_sub(1) {
+                less = frames[coarser].lattice.patch_grid.zeros();
+                insertions[coarser].fold(&mut taken, &mut less);
+            }
+        }
+        fields
     }
 
     /// Stores or takes up which tiles are refined, before the levels themselves.

@@ -24,7 +24,7 @@ pub(super) fn assemble<C: PointCoefficients>(
     let count = (lattice.degree[0] + 1) * (lattice.degree[1] + 1);
     let mut pairs = vec![Lane::ZERO; count * (count + 1) / 2];
     for row in lattice.strip_rows(strip) {
-        for tile in 0..lattice.tiles.len() {
+        for tile in (0..lattice.tiles.len()).filter(|&tile| lattice.is_occupied(strip, tile)) {
             for b in 0..ny {
                 for a in 0..nx {
                     weights[b * nx + a] = lattice.weight(row, tile, b, a);

@@ -81,14 +81,14 @@ impl Regions {
         all.map(first_span).map(|span| self.holds(level, span) && !self.is_refined(level, span)).collect()
     }
 
-    /// Refines the tiles next to slits.
-    pub(super) fn mark_slits(&mut self, slits: &[&Crack], frames: &[TotalFrame]) {
+    /// Refines the tiles along slits and the ways of driven cracks.
+    pub(super) fn mark_along(&mut self, cracks: &[&Crack], frames: &[TotalFrame]) {
         for level in 0..self.columns.len() {
             let [x, y] = frames[level].patch.spaces.each_ref().map(|space| space.spans());
             for (j, i) in (0..y.len()).flat_map(|j| (0..x.len()).map(move |i| (j, i))) {
                 let center = [0.5 * (x[i].left + x[i].right), 0.5 * (y[j].left + y[j].right)];
                 let (size, diagonal) = (x[i].length().max(y[j].length()), x[i].length().hypot(y[j].length()));
-                if slits.iter().any(|slit| slit.distance(center) < 0.5 * diagonal + MARGIN as f64 * size) {
+                if cracks.iter().any(|crack| crack.distance(center) < 0.5 * diagonal + MARGIN as f64 * size) {
                     self.mark(level, [i..i + 1, j..j + 1]);
                 }
             }
