@@ -169,7 +169,7 @@ impl Lattice {
         let tiles = self.tiles.iter().zip(&occupied[strip * self.tiles.len()..]);
         let mut first = tiles.filter(|(_, occupied)| **occupied).map(|(tile, _)| self.grid.index(tile.first, 0));
         let start = first.next()?;
-        let last = first.last().unwrap_or(start);
+        let last = first.next_back().unwrap_or(start);
         Some(start..(last + LANES + self.degree[0]).min(self.grid.stride))
     }
 

@@ -227,6 +227,33 @@ fn points_and_layouts_have_bounds() {
 }
 
 #[test]
+fn bodies_too_small_for_their_cells_are_told() {
+    let alone = |points: usize, degree: usize, cells: usize| {
+        warnings(|s| {
+            s.mesh = Mesh::uniform([degree; 2], [0.0; 2], [0.01; 2], [cells, 1]);
+            s.bodies[0].cracks.clear();
+            s.materials.get_mut("glass").unwrap().fracture = None;
+            s.bodies[0].particles_per_cell = [points; 2];
+            s.analysis.end_time = 1e-3;
+        })
+    };
+    assert_eq!(alone(2, 2, 1), ["body.0.particles_per_cell"]);
+    assert!(alone(3, 2, 1).is_empty() && alone(2, 2, 2).is_empty() && alone(2, 1, 1).is_empty());
+    let rigid = |radius: f64| {
+        warnings(|s| {
+            let shape = Shape::Disk { center: [0.007, 0.005], radius };
+            s.bodies[0].shape = rectangle([0.0; 2], [0.005, 0.01]);
+            s.bodies[0].cracks.clear();
+            s.bodies.push(Body { rigid: true, ..Body::at_rest("pin", "glass", shape) });
+            s.contact = Some(Contact::default());
+            s.analysis.kinematics = Kinematics::Finite;
+        })
+    };
+    assert_eq!(rigid(1e-4), ["body.1.shape"]);
+    assert!(rigid(5e-4).is_empty(), "{:?}", rigid(5e-4));
+}
+
+#[test]
 fn shapes_without_area_are_refused() {
     let square = |points: &[[f64; 2]]| Shape::Polygon { points: points.to_vec() };
     for shape in [
