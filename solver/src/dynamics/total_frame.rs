@@ -143,9 +143,16 @@ impl TotalFrame {
     fn find_strains(&mut self, dt: f64) {
         self.predict(dt);
         self.update_loads();
-        if let Some(fracture) = self.fracture.as_mut().filter(|fracture| fracture.needs_history()) {
-            let Self { lattice, moduli, kinematics, displacement, strip_forces, .. } = self;
-            fracture.update_history(lattice, self.time, *moduli, *kinematics, displacement, strip_forces);
+        if self.fracture.as_ref().is_some_and(LatticeFracture::needs_history) {
+            self.update_history();
+        }
+    }
+
+    /// H at the present displacement.
+    fn update_history(&mut self) {
+        let Self { lattice, moduli, kinematics, displacement, strip_forces, fracture, time, .. } = self;
+        if let Some(fracture) = fracture {
+            fracture.update_history(lattice, *time, *moduli, *kinematics, displacement, strip_forces);
         }
     }
 

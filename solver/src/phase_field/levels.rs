@@ -84,6 +84,26 @@ impl PhaseFieldLevels<'_> {
         Ok(convergence)
     }
 
+    /// Solves for c at the present time once more, with other points: its rate stays.
+    ///
+    /// # Errors
+    /// As [`PhaseField::solve`].
+    pub(crate) fn solve_anew(&mut self) -> Result<(), SolveFailure> {
+        let before: Vec<Vec<f64>> = self.levels.iter().map(|level| level.field.phase.clone()).collect();
+        for OnLevel { field, lattice, history, .. } in &mut self.levels {
+            field.assemble_history(lattice, history);
+        }
+        self.solve(ITERATION_LIMIT)?;
+        for (OnLevel { field, .. }, before) in self.levels.iter_mut().zip(before) {
+            for at in field.matrix.active().within(field.matrix.grid, 0..field.matrix.grid.rows).flatten() {
+                let change = field.phase[at] - before[at];
+                field.previous[at] += change;
+                field.lag.iter_mut().for_each(|lag| lag.solved[at] += change);
+            }
+        }
+        Ok(())
+    }
+
     /// Makes the right-hand sides and preconditioners anew, after points came or went.
     pub(crate) fn renew(&mut self) {
         for OnLevel { field, load, .. } in &mut self.levels {

@@ -68,6 +68,25 @@ fn mass_and_loads_are_shared_between_levels() {
     }
 }
 
+/// A side that is held while the body moves: functions between two levels begin with the velocities of the
+/// coarser one.
+#[test]
+fn the_ledger_closes_beside_a_held_side() {
+    for halvings in [1, 2] {
+        let mut scene = refined(2, [32, 16], halvings);
+        scene.bodies[0].cracks[0].points = vec![[0.0135, 0.0], [0.0127, 5e-4]];
+        scene.bodies[0].tractions.clear();
+        scene.bodies[0].velocity = [1.0, 0.0];
+        let hold = Boundary::fixed(Side::Right, [true, false]);
+        scene.boundaries = vec![Boundary { name: Some("wall".into()), ..hold }];
+        scene.analysis.end_time = 0.5e-6;
+        let (_, samples) = run(&scene);
+        let (first, last) = (&samples[0], samples.last().unwrap());
+        let stopped = first.kinetic - last.kinetic;
+        assert!(stopped > 0.0 && last.closure.abs() < 1e-3 * stopped, "open by {:e} of {stopped:e} J", last.closure);
+    }
+}
+
 /// A crack that runs into coarse cells refines them; momentum is kept, and the ledger has the energy.
 #[test]
 fn what_refinement_changes_is_a_term_of_the_ledger() {

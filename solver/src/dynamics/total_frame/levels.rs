@@ -9,10 +9,10 @@
 //! the coarser one, `f_c += Rᵀ f_f`. So the functions sum to one, and the lumped mass is positive.
 //!
 //! What is refined stays so. Tiles of spans are refined where c falls below 0.75, and around
-//! (`levels/regions.rs`). Fields are copied, so that they do not change and momentum is kept; the change of
-//! the energies, which comes from the lumped mass and the new points, is a term of the ledger. The critical
-//! step is that of the finest level over the whole mesh: the functions in use are combinations of its own,
-//! and the lumped mass is convex.
+//! (`levels/regions.rs`). Fields are copied, so that they do not change and momentum is kept. The change of
+//! the energies, which comes from the lumped mass, the new points and c there, is a term of the ledger. The
+//! critical step is that of the finest level over the whole mesh: the functions in use are combinations of
+//! its own, and the lumped mass is convex.
 
 mod copies;
 mod regions;
@@ -120,6 +120,8 @@ impl Levels {
         levels.regions.mark_cracks(&frames);
         levels.functions = levels.regions.functions(&frames);
         levels.take_regions(&mut frames);
+        levels.on_fields(&mut frames, |frame| &mut frame.displacement, spread_all);
+        levels.on_fields(&mut frames, |frame| &mut frame.velocity, spread_all);
         levels.phase_fields(&mut frames).map(|mut fields| fields.initialise()).transpose()?;
         for frame in &mut frames {
             frame.begin_forces();
@@ -134,15 +136,18 @@ impl Levels {
     }
 
     /// Refines where the crack has come.
-    fn follow(&mut self, frames: &mut [TotalFrame]) {
+    ///
+    /// # Errors
+    /// If the phase field cannot be solved for.
+    fn follow(&mut self, frames: &mut [TotalFrame]) -> Result<(), SolveFailure> {
         self.since += 1;
         if self.since < LOOK {
-            return;
+            return Ok(());
         }
         self.since = 0;
         let before = self.regions.clone();
         if !self.regions.mark_cracks(frames) {
-            return;
+            return Ok(());
         }
         let stored = |frames: &[TotalFrame]| frames.iter().map(TotalFrame::stored_energies).collect::<Vec<_>>();
         let energies = stored(frames);
@@ -155,12 +160,15 @@ impl Levels {
             copy_points(level, [&before, &self.regions], &coarse[level], &mut fine[0]);
         }
         self.take_regions(frames);
+        frames.iter_mut().for_each(TotalFrame::update_history);
+        self.phase_fields(frames).map(|mut fields| fields.solve_anew()).transpose()?;
         for (frame, energies) in frames.iter_mut().zip(&energies) {
             frame.refresh(energies[1]);
         }
         self.accelerate(frames);
         let sum = |energies: &[[f64; 2]]| energies.iter().flatten().sum::<f64>();
         self.added += sum(&stored(frames)) - sum(&energies);
+        Ok(())
     }
 
     /// One time step of `dt` seconds.
@@ -168,7 +176,7 @@ impl Levels {
     /// # Errors
     /// If the phase field cannot be solved for.
     pub(super) fn step(&mut self, frames: &mut [TotalFrame], dt: f64) -> Result<(), Failure> {
-        self.follow(frames);
+        self.follow(frames)?;
         let mut fields = frames.iter_mut().filter_map(|frame| frame.fracture.as_mut());
         if fields.any(|fracture| fracture.field.is_due()) {
             let fields = frames.iter_mut().filter_map(|frame| frame.fracture.as_mut());
@@ -230,14 +238,20 @@ impl Levels {
     /// Accelerations of all levels at the present forces.
     fn accelerate(&self, frames: &mut [TotalFrame]) {
         frames.iter_mut().for_each(TotalFrame::external_minus_internal);
-        self.on_accelerations(frames, fold_all);
+        self.on_fields(frames, |frame| &mut frame.acceleration, fold_all);
         frames.iter_mut().for_each(TotalFrame::divide_by_mass);
-        self.on_accelerations(frames, spread_all);
+        self.on_fields(frames, |frame| &mut frame.acceleration, spread_all);
     }
 
-    fn on_accelerations(&self, frames: &mut [TotalFrame], f: fn(&[Interface], &mut [&mut [f64]])) {
+    /// Spreads or folds a field of all levels.
+    fn on_fields(
+        &self,
+        frames: &mut [TotalFrame],
+        field: fn(&mut TotalFrame) -> &mut VectorField,
+        f: fn(&[Interface], &mut [&mut [f64]]),
+    ) {
         for d in 0..2 {
-            let mut fields: Vec<_> = frames.iter_mut().map(|frame| &mut frame.acceleration[d][..]).collect();
+            let mut fields: Vec<_> = frames.iter_mut().map(|frame| &mut field(frame)[d][..]).collect();
             f(&self.interfaces, &mut fields);
         }
     }
