@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use crate::linear_algebra::control_grid::ControlGrid;
-use crate::linear_algebra::extremes::{larger, smaller};
+use crate::linear_algebra::extremes::{around, smaller};
 use crate::scene::{Geometry, Mesh, Side};
 use crate::splines::nurbs::locate::Location;
 use crate::splines::nurbs::{NurbsError, NurbsPatch, RationalFunctions};
@@ -66,13 +66,8 @@ impl Patch {
 
     /// Lower left and upper right corner of the box around the control points, m.
     pub fn bounding_box(&self) -> ([f64; 2], [f64; 2]) {
-        let positions = self.control_positions();
-        let ends = |d: usize| {
-            let values = self.control_grid().indices().map(|at| positions[d][at]).collect::<Vec<_>>();
-            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (smaller(l, x), larger(h, x)))
-        };
-        let [x, y] = [0, 1].map(ends);
-        ([x.0, y.0], [x.1, y.1])
+        let [x, y] = self.control_positions();
+        around(self.control_grid().indices().map(|at| [[x[at], y[at]]; 2])).into()
     }
 
     /// Length of the shortest span in the parameters, m where the patch has no geometry.
