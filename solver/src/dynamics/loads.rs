@@ -53,8 +53,7 @@ impl Sum {
 
 /// Points on a side of the patch, with the layout of the body in every span.
 pub fn boundary_points(patch: &Patch, body: &Body, side: Side) -> Vec<BoundaryPoint> {
-    let along = if matches!(side, Side::Left | Side::Right) { 1 } else { 0 };
-    patch.boundary(side, &Rule::new(body.layout, body.particles_per_cell[along]))
+    patch.boundary(side, &Rule::new(body.layout, body.particles_per_cell[side.along()]))
 }
 
 /// A traction of which a part would not act on the body.

@@ -111,12 +111,9 @@ impl Shape {
     /// End points of a side of a rectangle, m; `None` for other shapes.
     pub fn side(&self, side: Side) -> Option<[[f64; 2]; 2]> {
         let Self::Rectangle { min, max } = self else { return None };
-        Some(match side {
-            Side::Left => [*min, [min[0], max[1]]],
-            Side::Right => [[max[0], min[1]], *max],
-            Side::Bottom => [*min, [max[0], min[1]]],
-            Side::Top => [[min[0], max[1]], *max],
-        })
+        let (across, upper) = side.axis();
+        let at = if upper { max[across] } else { min[across] };
+        Some([min, max].map(|corner| [0, 1].map(|d| if d == across { at } else { corner[d] })))
     }
 }
 

@@ -143,12 +143,10 @@ fn on_grid(grid: ControlGrid, functions: &RationalFunctions) -> Vec<(usize, f64)
 
 /// Indices of the control points on a side, in increasing order.
 pub fn control_points_on(side: Side, grid: ControlGrid) -> Vec<usize> {
-    match side {
-        Side::Left => (0..grid.rows).map(|row| grid.index(0, row)).collect(),
-        Side::Right => (0..grid.rows).map(|row| grid.index(grid.columns - 1, row)).collect(),
-        Side::Bottom => (0..grid.columns).map(|column| grid.index(column, 0)).collect(),
-        Side::Top => (0..grid.columns).map(|column| grid.index(column, grid.rows - 1)).collect(),
-    }
+    let ((across, upper), counts) = (side.axis(), [grid.columns, grid.rows]);
+    let end = if upper { counts[across] - 1 } else { 0 };
+    let at = |along: usize| if across == 0 { grid.index(end, along) } else { grid.index(along, end) };
+    (0..counts[side.along()]).map(at).collect()
 }
 
 impl Mesh {

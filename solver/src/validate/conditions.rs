@@ -94,7 +94,7 @@ fn part(key: &str, boundary: &Boundary, mesh: &Mesh, findings: &mut Findings) ->
         findings.error(format!("{key}.from"), message, "remove from and to");
         return false;
     }
-    let d = along(boundary.side);
+    let d = boundary.side.along();
     let (origin, end) = (mesh.origin()[d], mesh.end()[d]);
     let tolerance = TOLERANCE * (end - origin);
     let (side, name) = (side_name(boundary.side), ["x", "y"][d]);
@@ -110,11 +110,6 @@ fn part(key: &str, boundary: &Boundary, mesh: &Mesh, findings: &mut Findings) ->
         return false;
     }
     true
-}
-
-/// Direction along a side.
-fn along(side: Side) -> usize {
-    usize::from(matches!(side, Side::Left | Side::Right))
 }
 
 /// Two conditions that prescribe the same component on the same part of a side.
@@ -136,7 +131,8 @@ fn same_part(key: &str, j: usize, [boundary, other]: [&Boundary; 2], findings: &
 /// Sides that meet in a corner and prescribe a component of its motion differently.
 fn corner(i: usize, j: usize, scene: &Scene, findings: &mut Findings) {
     let pair = [i, j].map(|n| &scene.boundaries[n]);
-    if along(pair[0].side) == along(pair[1].side) || !(0..2).all(|n| reaches(pair[n], pair[1 - n].side, &scene.mesh)) {
+    let along = pair.map(|boundary| boundary.side.along());
+    if along[0] == along[1] || !(0..2).all(|n| reaches(pair[n], pair[1 - n].side, &scene.mesh)) {
         return;
     }
     let differ =
@@ -158,10 +154,10 @@ fn corner(i: usize, j: usize, scene: &Scene, findings: &mut Findings) {
 
 /// Whether a condition reaches the corner at which its side meets another.
 fn reaches(boundary: &Boundary, other: Side, mesh: &Mesh) -> bool {
-    let d = along(boundary.side);
+    let d = boundary.side.along();
     let (origin, end) = (mesh.origin()[d], mesh.end()[d]);
     let tolerance = TOLERANCE * (end - origin);
-    let upper = matches!(other, Side::Right | Side::Top);
+    let (_, upper) = other.axis();
     boundary.part.is_none_or(|[from, to]| if upper { to >= end - tolerance } else { from <= origin + tolerance })
 }
 

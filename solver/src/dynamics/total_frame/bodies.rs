@@ -22,7 +22,7 @@ use crate::output::inspection::{InvertedPoint, PointState};
 use crate::output::raster::Raster;
 use crate::output::span_grid::SpanGrid;
 use crate::phase_field::PhaseFieldCounts;
-use crate::scene::{Body, Crack, Scene, Side};
+use crate::scene::{Body, Crack, Scene};
 use crate::splines::patch::Patch;
 use crate::splines::spline::ROUND_OFF;
 
@@ -322,7 +322,7 @@ fn of_body(scene: &Scene, body: &Body, is_first: bool) -> Result<TotalFrame, Fai
     let mesh = scene.mesh.around(&body.shape);
     let (low, high) = body.shape.bounding_box();
     let boundaries = scene.boundaries.iter().filter(|boundary| {
-        let along = usize::from(matches!(boundary.side, Side::Left | Side::Right));
+        let along = boundary.side.along();
         let meets = boundary.part.is_none_or(|[from, to]| from < high[along] && low[along] < to);
         meets && scene.mesh.is_reached(boundary.side, &body.shape)
     });
