@@ -78,9 +78,7 @@ impl TotalFrame {
         for (&(at, component), change) in free.iter().zip(change) {
             self.displacement[component][at] += part * change;
         }
-        if let Some(sheets) = self.lattice.sheets() {
-            sheets.spread(&mut self.displacement);
-        }
+        self.lattice.spread(&mut self.displacement);
     }
 
     /// External minus internal force at the free components, and the largest internal or external one, N/m.
