@@ -231,7 +231,7 @@ impl Simulation {
             return Err(self.at_worst_point(&format!("{name} of the history is not a finite number"), None));
         }
         if let Some(frame) = self.updated_frame() {
-            frame.contact_converges(self.part_of_step()).map_err(|failure| self.broken(failure.into()))?;
+            frame.contact_converges(self.part_of_step()).map_err(|found| self.broken(Failure::Unconverged(found)))?;
         }
         let Sample { closure, time, .. } = *sample;
         let limit =

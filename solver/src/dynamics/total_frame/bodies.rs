@@ -10,7 +10,7 @@ use crate::checkpoint::{Archive, StateError};
 use crate::contact::ContactLedger;
 use crate::contact::gap_potential::rigid_outline::RigidOutline;
 use crate::contact::gap_potential::thin_parts::ThinParts;
-use crate::contact::gap_potential::{GapForce, GapPotential, TooDeep};
+use crate::contact::gap_potential::{GapForce, GapPotential};
 use crate::contact::impulse::ContactForce;
 use crate::contact::rigid::RigidMotion;
 use crate::dynamics::body_sample::{BodySample, BodySamples, PairForce, names, pairs};
@@ -103,10 +103,10 @@ impl TotalBodies {
     }
 
     /// Forces of contact at the present positions, `dt` seconds after they were found last.
-    fn meet(&mut self, dt: f64) -> Result<(), TooDeep> {
+    fn meet(&mut self, dt: f64) -> Result<(), Failure> {
         let Self { bodies, contact: Some(contact), .. } = self else { return Ok(()) };
         let outlines = bodies.iter().filter_map(TotalFrame::outline).collect();
-        contact.find(outlines, bodies[0].time(), dt)?;
+        contact.find(outlines, bodies[0].time(), dt).map_err(Failure::TooDeep)?;
         for pair in contact.forces() {
             for (side, body) in pair.bodies.into_iter().enumerate() {
                 if let Some(body) = bodies.get_mut(body) {
