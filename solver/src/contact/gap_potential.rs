@@ -301,9 +301,7 @@ impl GapPotential {
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
         let Self { reach: _, rules: _, rigid: _, thin: _, own: _, friction, forces: _, energy: _, power: _, work } =
             self;
-        if let Some(friction) = friction {
-            friction.exchange(archive)?;
-        }
+        friction.iter_mut().try_for_each(|friction| friction.exchange(archive))?;
         if !self.rigid.is_empty() {
             archive.value(work)?;
         }

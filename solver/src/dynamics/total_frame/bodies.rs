@@ -299,9 +299,7 @@ impl TotalBodies {
     /// # Errors
     /// Bytes of another scene, and loads that only the program knows.
     pub(crate) fn exchange(&mut self, archive: &mut Archive) -> Result<(), StateError> {
-        if let Some(levels) = &mut self.levels {
-            levels.exchange(archive, &mut self.bodies)?;
-        }
+        self.levels.iter_mut().try_for_each(|levels| levels.exchange(archive, &mut self.bodies))?;
         self.bodies.iter_mut().try_for_each(|body| body.exchange(archive))?;
         if let Some(contact) = &mut self.contact {
             contact.exchange(archive)?;
