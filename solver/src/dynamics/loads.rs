@@ -293,18 +293,7 @@ pub(super) fn take_side(lattice: &Lattice, functions: &mut PointFunctions, place
     functions.values.iter_mut().for_each(|(at, _)| *at = lattice.control_point(*at, first, place));
 }
 
-/// Control points of the material at a surface point, and values of their functions there; `None` if there
-/// is no material within a span of it.
-pub(crate) fn functions_of_material(
-    patch: &Patch,
-    lattice: &Lattice,
-    point: &SurfacePoint,
-    moves: impl Fn(usize) -> bool,
-) -> Option<Vec<(usize, f64)>> {
-    Some(material_at(patch, lattice, point, moves)?.values)
-}
-
-/// The same with the gradients of the functions.
+/// Functions of the material at a surface point; `None` if there is no material within a span of it.
 pub(crate) fn material_at(
     patch: &Patch,
     lattice: &Lattice,
