@@ -9,7 +9,7 @@ use crate::linear_algebra::control_grid::ControlGrid;
 use crate::linear_algebra::extremes::{around, smaller};
 use crate::scene::{Geometry, Mesh, Side};
 use crate::splines::nurbs::locate::Location;
-use crate::splines::nurbs::{NurbsError, NurbsPatch, RationalFunctions};
+use crate::splines::nurbs::{NurbsError, NurbsPatch, RationalFunctions, products};
 use crate::splines::point_value::PointValue;
 use crate::splines::quadrature::Rule;
 use crate::splines::spline::SplineSpace;
@@ -128,11 +128,6 @@ impl Patch {
         }
         points
     }
-
-    /// Products of the B-splines of both directions.
-    fn products(&self, span: [usize; 2], parameters: [f64; 2]) -> RationalFunctions {
-        crate::splines::nurbs::products(&self.spaces, span, parameters)
-    }
 }
 
 /// Values of shape functions with their control points as indices of fields.
@@ -223,7 +218,7 @@ impl Patch {
     pub(crate) fn functions(&self, Location { span, parameters }: Location) -> PointFunctions {
         let (functions, position, gradient) = match &self.geometry {
             None => {
-                let functions = self.products(span, parameters);
+                let functions = products(&self.spaces, span, parameters);
                 (functions, parameters, functions.gradient)
             }
             Some(patch) => {

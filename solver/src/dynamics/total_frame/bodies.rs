@@ -350,6 +350,6 @@ fn sample_body(body: &TotalFrame, sample: &Sample, name: &str) -> BodySample {
     let arm = |at: usize| [0, 1].map(|d| position(d, at) - center[d]);
     let moment = sum(&|at| arm(at)[0] * (velocity[1][at] - mean[1]) - arm(at)[1] * (velocity[0][at] - mean[0]));
     let inertia = sum(&|at| arm(at).iter().map(|x| x * x).sum());
-    let mass = mass * body.thickness();
+    let mass = mass * body.thickness;
     BodySample { name: name.to_string(), mass, center, velocity: mean, spin: moment / inertia, kinetic: sample.kinetic }
 }

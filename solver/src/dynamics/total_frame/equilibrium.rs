@@ -6,7 +6,7 @@
 
 use super::TotalFrame;
 use super::tangent::Tangent;
-use crate::dynamics::critical_step::StiffnessOperator;
+use crate::dynamics::critical_step::{StiffnessOperator, dot};
 use crate::dynamics::failure::Failure;
 use crate::linear_algebra::extremes::{larger, largest};
 
@@ -171,8 +171,4 @@ fn refuse_unbalanced(motions: &[Vec<f64>], residual: &[f64]) -> Result<(), Failu
         }
     }
     Ok(())
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
