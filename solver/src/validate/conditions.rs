@@ -70,19 +70,13 @@ fn without_jump(key: &str, prescribed: &Prescribed, fix: [bool; 2], equilibrium:
     }
 }
 
-/// What bodies that meet themselves and the consistent mass do not have.
+/// What the consistent mass does not have.
 fn supported(key: &str, boundary: &Boundary, scene: &Scene, findings: &mut Findings) {
-    let varying = [
-        ("displacement", boundary.prescribed.is_displacement()),
-        ("time", !boundary.prescribed.time.is_constant()),
-        ("from", boundary.part.is_some()),
-        ("name", boundary.name.is_some()),
-    ];
-    for (word, _) in varying.into_iter().filter(|(_, given)| *given) {
-        if scene.analysis.mass == Mass::Consistent && ["displacement", "time"].contains(&word) {
-            let message = "a boundary whose velocity changes, with the consistent mass, is not implemented";
-            findings.error(format!("{key}.{word}"), message, "use mass = \"lumped\"");
-        }
+    let prescribed = &boundary.prescribed;
+    let varying = [("displacement", prescribed.is_displacement()), ("time", !prescribed.time.is_constant())];
+    for (word, _) in varying.into_iter().filter(|(_, given)| *given && scene.analysis.mass == Mass::Consistent) {
+        let message = "a boundary whose velocity changes, with the consistent mass, is not implemented";
+        findings.error(format!("{key}.{word}"), message, "use mass = \"lumped\"");
     }
 }
 
